@@ -13,7 +13,11 @@ from uplift.lab.timing import write_record
 
 ROOT = Path(__file__).parents[1]
 DOCS, DATA = ROOT / "docs", ROOT / "docs" / "data"
-ATLASES, CUBES, REFERENCE = ROOT / "atlases", ROOT / "cubes", ROOT / "tests" / "reference"
+ATLASES, CUBES, REFERENCE = (
+    ROOT / "atlases",
+    ROOT / "cubes",
+    ROOT / "tests" / "reference",
+)
 MACBETH = ATLASES / "macbeth.txt"
 Row = dict[str, Any]
 

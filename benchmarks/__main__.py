@@ -21,8 +21,13 @@ def pages() -> dict[str, str]:
     found = {}
     for path in sorted(Path(__file__).parent.glob("[!_]*.py")):
         module = ast.parse(path.read_text(encoding="utf-8"))
-        if any(isinstance(node, ast.FunctionDef) and node.name == "main" for node in module.body):
-            found[path.stem.replace("_", "-")] = (ast.get_docstring(module) or "").partition("\n")[0]
+        if any(
+            isinstance(node, ast.FunctionDef) and node.name == "main"
+            for node in module.body
+        ):
+            found[path.stem.replace("_", "-")] = (
+                ast.get_docstring(module) or ""
+            ).partition("\n")[0]
     return found
 
 
@@ -39,15 +44,23 @@ def main(names: list[str]) -> int:
     if not names:
         print(*(f"{name:16}{line}" for name, line in known.items()), sep="\n")
         return 0
-    names = [name for name in known if not is_current(name)] if names == ["all"] else names
+    names = (
+        [name for name in known if not is_current(name)] if names == ["all"] else names
+    )
     if unknown := [name for name in names if name not in known]:
         print(f"no page '{unknown[0]}'; pages are {', '.join(known)}", file=sys.stderr)
         return 2
     failed = []
     for name in names:
         print(name, file=sys.stderr)
-        command = [sys.executable, "-c", f"from benchmarks import measure; measure('{name}')"]
-        if subprocess.run(command, cwd=ROOT, env=os.environ | ONE_THREAD, check=False).returncode:
+        command = [
+            sys.executable,
+            "-c",
+            f"from benchmarks import measure; measure('{name}')",
+        ]
+        if subprocess.run(
+            command, cwd=ROOT, env=os.environ | ONE_THREAD, check=False
+        ).returncode:
             failed.append(name)
     if failed:
         print(f"failed: {', '.join(failed)}", file=sys.stderr)

@@ -26,7 +26,15 @@ from uplift.models import reflectance
 from uplift.report.diff_page import mosaic
 from uplift.viz.figure import colour_map, new_figure, show_image, write_figure
 
-RANGES = ((380, 780, 10), (380, 780, 5), (380, 780, 1), (360, 830, 10), (360, 830, 5), (360, 830, 1), (360, 1000, 5))
+RANGES = (
+    (380, 780, 10),
+    (380, 780, 5),
+    (380, 780, 1),
+    (360, 830, 10),
+    (360, 830, 5),
+    (360, 830, 1),
+    (360, 1000, 5),
+)
 """First and last wavelength and step in nm."""
 VISIBLE = np.arange(400, 701, 5)
 DIMS = (16, 32, 64)
@@ -58,13 +66,21 @@ def measure_round_trips() -> None:
         round_trips.append(
             {
                 "cube": name,
-                "errors": {mode: round_trip(cube, cube.data.sensor, mode) for mode in MODES},
+                "errors": {
+                    mode: round_trip(cube, cube.data.sensor, mode) for mode in MODES
+                },
                 "fine": {mode: round_trip(cube, fine, mode) for mode in MODES},
                 "published": round_trip(cube, published_srgb()),
             }
         )
     ranges = [at_range(*each) for each in RANGES]
-    record("accuracy", queries=len(QUERIES), fitted=fitted, round_trips=round_trips, ranges=ranges)
+    record(
+        "accuracy",
+        queries=len(QUERIES),
+        fitted=fitted,
+        round_trips=round_trips,
+        ranges=ranges,
+    )
 
 
 def measure_growth() -> None:
@@ -73,11 +89,17 @@ def measure_growth() -> None:
         "accuracy",
         "growth",
         runs=RUNS,
-        orders=[growth(name, space) for space in SPACES for name in ("outward", "coarse-to-fine", "neighbours")],
+        orders=[
+            growth(name, space)
+            for space in SPACES
+            for name in ("outward", "coarse-to-fine", "neighbours")
+        ],
         solvers=[solver(name) for name in SOLVERS],
         order_dim=ORDER_DIM,
         solver_dim=SOLVER_DIM,
-        materials=[{"name": name, "count": len(materials(name).rgb)} for name in OTHERS],
+        materials=[
+            {"name": name, "count": len(materials(name).rgb)} for name in OTHERS
+        ],
     )
 
 
@@ -85,9 +107,15 @@ def cubes() -> Iterator[tuple[str, Cube]]:
     """Build the cubes, with their names."""
     build = partial(uplift.build, debug=True)
     for dim, model, atlas in product(DIMS, ("moments", "sigmoid"), (MACBETH, None)):
-        yield f"{model}, {'Macbeth' if atlas else 'no atlas'}, {dim}³", build(atlas, dim=dim, model=model)
+        yield (
+            f"{model}, {'Macbeth' if atlas else 'no atlas'}, {dim}³",
+            build(atlas, dim=dim, model=model),
+        )
     for count in (3, 17):
-        yield f"{count} coefficients, Macbeth, 32³", build(MACBETH, dim=32, coefficients=count)
+        yield (
+            f"{count} coefficients, Macbeth, 32³",
+            build(MACBETH, dim=32, coefficients=count),
+        )
 
 
 def fit_quality(cube: Cube) -> Row:
@@ -108,7 +136,10 @@ def round_trip(cube: Cube, sensor: Sensor, mode: str = "spectra") -> list[float]
         spectra = cube.reflectance(rgb, sensor.wavelengths, mode)
         return delta_e_rgb(sensor, rgb, sensor.rgb(spectra))
 
-    return [float(error(QUERIES).mean()), largest(error, np.concatenate([QUERIES, ON_FACES]))]
+    return [
+        float(error(QUERIES).mean()),
+        largest(error, np.concatenate([QUERIES, ON_FACES])),
+    ]
 
 
 def largest(error: Callable[[Array], Array], rgb: Array) -> float:
@@ -129,9 +160,14 @@ def largest(error: Callable[[Array], Array], rgb: Array) -> float:
 
 def at_range(shortest: int, longest: int, step: int) -> Row:
     """Build the ColorChecker at a range; return errors at 1 nm, and those of the spectra of its entries."""
-    cube, atlas = uplift.build(MACBETH, shortest=shortest, longest=longest, step=step), uplift.read_atlas(MACBETH)
+    cube, atlas = (
+        uplift.build(MACBETH, shortest=shortest, longest=longest, step=step),
+        uplift.read_atlas(MACBETH),
+    )
     measured = dict(zip(atlas.names, on_grid(atlas, VISIBLE), strict=True))
-    off = cube.reflectance(cube.data.atlas.rgb, VISIBLE) - [measured[name] for name in cube.data.atlas.names]
+    off = cube.reflectance(cube.data.atlas.rgb, VISIBLE) - [
+        measured[name] for name in cube.data.atlas.names
+    ]
     fine = round_trip(cube, at_1_nm(cube.data.sensor))
     rms = float(np.sqrt((off**2).mean()))
     return {"range": f"{shortest}–{longest} nm", "step": step, "fine": fine, "rms": rms}
@@ -151,12 +187,23 @@ def draw_rounds() -> None:
 
 def growth(name: str, space: str) -> Row:
     """Build in an order of growth, and compare answers for materials that neither atlas nor library contains."""
-    build = partial(uplift.build, MACBETH, dim=ORDER_DIM, growth=name, space=space, leave_out=OTHERS, debug=True)
+    build = partial(
+        uplift.build,
+        MACBETH,
+        dim=ORDER_DIM,
+        growth=name,
+        space=space,
+        leave_out=OTHERS,
+        debug=True,
+    )
     cube = build()
     _, seconds = time_calls(build, RUNS)
     answers = {}
     if space == SPACES[0]:
-        answers = {each: errors(cube.reflectance(materials(each).rgb), materials(each)) for each in OTHERS}
+        answers = {
+            each: errors(cube.reflectance(materials(each).rgb), materials(each))
+            for each in OTHERS
+        }
     status = cube.data.points.status
     return {
         "growth": name,
@@ -173,7 +220,9 @@ def growth(name: str, space: str) -> Row:
 def share_outward(cube: Cube) -> float:
     """Return the share of nodes whose round is their distance from the nearest seed, in steps to 26 neighbours."""
     points, lattice = cube.data.points, cube.data.lattice
-    seeds = np.flatnonzero(np.isin(points.status, (Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)))
+    seeds = np.flatnonzero(
+        np.isin(points.status, (Status.ATLAS_PRIMARY, Status.ATLAS_CORNER))
+    )
     distance, _ = shells(lattice, seeds)
     fitted = points.round >= 0
     return float((points.round == distance)[fitted].mean())
@@ -215,4 +264,6 @@ def steps_per_node(build: Callable[[], Cube]) -> float:
 
 def node_spectra(cube: Cube) -> Array:
     """Return the reflectances (n, N) of the nodes."""
-    return reflectance(cube.data.model, cube.data.points.coefficients, cube.data.sensor.wavelengths)
+    return reflectance(
+        cube.data.model, cube.data.points.coefficients, cube.data.sensor.wavelengths
+    )

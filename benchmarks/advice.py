@@ -28,7 +28,9 @@ ADVICE, PIXELS, COLOURS = "advice", "random pixels", "random colours"
 def run_scene(entries: Atlas, measured: Array, seed: int) -> list[dict[str, Any]]:
     """Return mean ΔE00 of a scene whose areas are exponentially distributed, by choice and number of swatches."""
     rng, sensor = np.random.default_rng(seed), observer.sensor()
-    known, hidden = np.split(rng.permutation(len(measured))[: KNOWN + MATERIALS], [KNOWN])
+    known, hidden = np.split(
+        rng.permutation(len(measured))[: KNOWN + MATERIALS], [KNOWN]
+    )
     rgb = np.clip(sensor.rgb(measured[hidden]), 0, 1)
     areas = rng.exponential(size=len(hidden))
     areas /= areas.sum()
@@ -37,26 +39,40 @@ def run_scene(entries: Atlas, measured: Array, seed: int) -> list[dict[str, Any]
 
     def build(swatches: Indices) -> uplift.Cube:
         rows = [*known, *hidden[swatches]]
-        return uplift.build(Atlas(tuple(entries.entries[row] for row in rows)), **options)
+        return uplift.build(
+            Atlas(tuple(entries.entries[row] for row in rows)), **options
+        )
 
     def error(cube: uplift.Cube) -> float:
-        return float(areas @ delta_e_under(lights, cube.reflectance(rgb), measured[hidden]).mean(axis=1))
+        return float(
+            areas
+            @ delta_e_under(lights, cube.reflectance(rgb), measured[hidden]).mean(
+                axis=1
+            )
+        )
 
     first = build(np.zeros(0, dtype=int))
     expected = uncertainty(first, PixelSample(rgb, areas), lights)
     chosen, _ = advise(expected, COUNTS[-1])
     choices = [(ADVICE, np.array([each.colour for each in chosen]))]
     for _ in range(DRAWS):
-        choices.append((PIXELS, rng.choice(len(hidden), COUNTS[-1], replace=False, p=areas)))
+        choices.append(
+            (PIXELS, rng.choice(len(hidden), COUNTS[-1], replace=False, p=areas))
+        )
         choices.append((COLOURS, rng.choice(len(hidden), COUNTS[-1], replace=False)))
     start = {"delta_e": error(first), "expected": expected.mean}
-    rows = [{"choice": name, "swatches": 0, **start} for name in (ADVICE, PIXELS, COLOURS)]
+    rows = [
+        {"choice": name, "swatches": 0, **start} for name in (ADVICE, PIXELS, COLOURS)
+    ]
     for name, order in choices:
         remaining = expected
         for step, swatch in enumerate(order, 1):
             remaining = remaining.measured(int(swatch))
             if step in COUNTS:
-                found = {"delta_e": error(build(order[:step])), "expected": remaining.mean}
+                found = {
+                    "delta_e": error(build(order[:step])),
+                    "expected": remaining.mean,
+                }
                 rows.append({"choice": name, "swatches": step, **found})
     return rows
 
@@ -69,16 +85,32 @@ def main() -> None:
         sensor = observer.sensor()
         measured = resample(atlas, sensor.wavelengths).values
         rows = np.flatnonzero(in_unit_cube(sensor.rgb(measured)))
-        atlas, measured = Atlas(tuple(atlas.entries[row] for row in rows)), measured[rows]
-        found = [row for seed in range(SCENES) for row in run_scene(atlas, measured, seed)]
+        atlas, measured = (
+            Atlas(tuple(atlas.entries[row] for row in rows)),
+            measured[rows],
+        )
+        found = [
+            row for seed in range(SCENES) for row in run_scene(atlas, measured, seed)
+        ]
         for choice in (ADVICE, PIXELS, COLOURS):
             figures: dict[str, Any] = {"set": name, "choice": choice}
             for count in (0, *COUNTS):
-                some = [row for row in found if (row["choice"], row["swatches"]) == (choice, count)]
+                some = [
+                    row
+                    for row in found
+                    if (row["choice"], row["swatches"]) == (choice, count)
+                ]
                 figures |= {
-                    f"{key}_{count}": float(np.mean([row[key] for row in some])) for key in ("delta_e", "expected")
+                    f"{key}_{count}": float(np.mean([row[key] for row in some]))
+                    for key in ("delta_e", "expected")
                 }
             results.append(figures)
     record(
-        "advice", results=results, scenes=SCENES, known=KNOWN, materials=MATERIALS, draws=DRAWS, lights=RELIGHT_LIGHTS
+        "advice",
+        results=results,
+        scenes=SCENES,
+        known=KNOWN,
+        materials=MATERIALS,
+        draws=DRAWS,
+        lights=RELIGHT_LIGHTS,
     )

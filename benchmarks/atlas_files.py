@@ -20,10 +20,14 @@ def largest_difference(vendor: Vendor, atlas: Atlas) -> float:
     with tempfile.TemporaryDirectory() as folder:
         path = vendor.save(atlas[: vendor.count], Path(folder))
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UpliftWarning)  # columns of other quantities
+            warnings.simplefilter(
+                "ignore", UpliftWarning
+            )  # columns of other quantities
             found = read_atlas(path)
     pairs = zip(found, atlas, strict=False)
-    return max(float(np.abs(entry.values - expected.values).max()) for entry, expected in pairs)
+    return max(
+        float(np.abs(entry.values - expected.values).max()) for entry, expected in pairs
+    )
 
 
 def main() -> None:
@@ -34,8 +38,24 @@ def main() -> None:
     for each in FORMATS:
         names = [vendor.name for vendor in VENDORS if vendor.format == each.name]
         largest = max((found[name] for name in names), default=None)
-        row = {"name": each.name, "suffixes": ", ".join(each.suffixes), "written": each.written}
+        row = {
+            "name": each.name,
+            "suffixes": ", ".join(each.suffixes),
+            "written": each.written,
+        }
         row |= {"library": each.library or UPLIFT, "extra": each.extra}
-        rows.append(row | {"layouts": len(names) or "the shipped atlases", "difference": largest})
-    programs = [{"program": vendor.program, "format": vendor.format, "sample": vendor.template} for vendor in VENDORS]
-    record("atlas-files", layouts=len(found), largest=max(found.values()), formats=rows, programs=programs)
+        rows.append(
+            row
+            | {"layouts": len(names) or "the shipped atlases", "difference": largest}
+        )
+    programs = [
+        {"program": vendor.program, "format": vendor.format, "sample": vendor.template}
+        for vendor in VENDORS
+    ]
+    record(
+        "atlas-files",
+        layouts=len(found),
+        largest=max(found.values()),
+        formats=rows,
+        programs=programs,
+    )

@@ -86,9 +86,13 @@ class Browser:
 
     def evaluate(self, code: str) -> Any:
         """The value of an expression in the page, waited for if it is a promise. Raises `RuntimeError`."""
-        answer = self.call("Runtime.evaluate", expression=code, awaitPromise=True, returnByValue=True)
+        answer = self.call(
+            "Runtime.evaluate", expression=code, awaitPromise=True, returnByValue=True
+        )
         if "exceptionDetails" in answer:
-            raise RuntimeError(answer["exceptionDetails"]["exception"].get("description", "uncaught"))
+            raise RuntimeError(
+                answer["exceptionDetails"]["exception"].get("description", "uncaught")
+            )
         return answer["result"].get("value")
 
     def open(self, path: Path) -> None:
@@ -96,7 +100,9 @@ class Browser:
         self.errors.clear()
         self.call("Page.navigate", url=path.resolve().as_uri())
         end = time.monotonic() + PATIENCE
-        while not self.evaluate("document.querySelector('main')?.getAttribute('aria-busy') === 'false'"):
+        while not self.evaluate(
+            "document.querySelector('main')?.getAttribute('aria-busy') === 'false'"
+        ):
             if time.monotonic() > end:
                 raise TimeoutError(f"{path} stays busy: {self.errors}")
             time.sleep(0.02)
@@ -108,24 +114,52 @@ class Browser:
 
     def window(self, width: int, height: int, scheme: str = "light") -> None:
         """The page's size in pixels, and light or dark."""
-        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        size = {
+            "width": width,
+            "height": height,
+            "deviceScaleFactor": 1,
+            "mobile": False,
+        }
         self.call("Emulation.setDeviceMetricsOverride", **size)
-        self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+        self.call(
+            "Emulation.setEmulatedMedia",
+            features=[{"name": "prefers-color-scheme", "value": scheme}],
+        )
 
     def mouse(self, kind: str, x: float, y: float) -> None:
         """``kind`` is mousePressed, mouseMoved or mouseReleased; the left button."""
-        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1)
+        self.call(
+            "Input.dispatchMouseEvent",
+            type=kind,
+            x=x,
+            y=y,
+            button="left",
+            buttons=1,
+            clickCount=1,
+        )
 
     def key(self, name: str, modifiers: int = 0) -> None:
         for kind in ("keyDown", "keyUp"):
             text = {"text": name} if kind == "keyDown" and len(name) == 1 else {}
-            self.call("Input.dispatchKeyEvent", type=kind, key=name, modifiers=modifiers, **text)
+            self.call(
+                "Input.dispatchKeyEvent",
+                type=kind,
+                key=name,
+                modifiers=modifiers,
+                **text,
+            )
 
     def screenshot(self, selector: str = "body", scale: float = 1.0) -> bytes:
         """An element, as far as the window shows it, as JPEG."""
-        box = self.evaluate(f"document.querySelector('{selector}').getBoundingClientRect().toJSON()")
-        clip = {name: box[name] for name in ("x", "y", "width", "height")} | {"scale": scale}
-        answer = self.call("Page.captureScreenshot", format="jpeg", quality=88, clip=clip)
+        box = self.evaluate(
+            f"document.querySelector('{selector}').getBoundingClientRect().toJSON()"
+        )
+        clip = {name: box[name] for name in ("x", "y", "width", "height")} | {
+            "scale": scale
+        }
+        answer = self.call(
+            "Page.captureScreenshot", format="jpeg", quality=88, clip=clip
+        )
         return base64.b64decode(answer["data"])
 
     def _next(self) -> Answer:
@@ -143,9 +177,16 @@ class Browser:
         method, params = message.get("method"), message.get("params", {})
         if method == "Runtime.exceptionThrown":
             self.errors.append(json.dumps(params["exceptionDetails"]))
-        elif method == "Runtime.consoleAPICalled" and params["type"] in ("error", "warning", "assert"):
+        elif method == "Runtime.consoleAPICalled" and params["type"] in (
+            "error",
+            "warning",
+            "assert",
+        ):
             self.errors.append(json.dumps(params["args"]))
-        elif method == "Log.entryAdded" and params["entry"]["level"] in ("error", "warning"):
+        elif method == "Log.entryAdded" and params["entry"]["level"] in (
+            "error",
+            "warning",
+        ):
             self.errors.append(params["entry"]["text"])
 
 
@@ -158,9 +199,19 @@ def browser() -> Iterator[Browser]:
     reads, write = os.pipe()
     read, writes = os.pipe()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        command = [sys.executable, "-c", HANDS_OVER, str(reads), str(writes), path, *OPTIONS]
+        command = [
+            sys.executable,
+            "-c",
+            HANDS_OVER,
+            str(reads),
+            str(writes),
+            path,
+            *OPTIONS,
+        ]
         child = subprocess.Popen(
-            [*command, f"--user-data-dir={profile}"], pass_fds=(reads, writes), stderr=subprocess.DEVNULL
+            [*command, f"--user-data-dir={profile}"],
+            pass_fds=(reads, writes),
+            stderr=subprocess.DEVNULL,
         )
         for end in (reads, writes):
             os.close(end)

@@ -52,12 +52,18 @@ def lab_matrix(raw: Array, xyz: Array, white: Array) -> Array:
     return matrix(least_squares(residuals, start[:, :2].ravel()).x)
 
 
-def methods(atlas: Atlas, training: Indices, sensor: Sensor, plain: Cube) -> dict[str, ToXyz]:
+def methods(
+    atlas: Atlas, training: Indices, sensor: Sensor, plain: Cube
+) -> dict[str, ToXyz]:
     """Return the methods, each trained on the entries of an atlas in rows ``training``, ``plain`` on none."""
     measured = on_grid(atlas, sensor.wavelengths)
-    library = np.concatenate([family.measured for family in shipped_library(families_with(measured))])
+    library = np.concatenate(
+        [family.measured for family in shipped_library(families_with(measured))]
+    )
     half, more = measured[training], np.concatenate([measured[training], library])
-    cube = _build(Atlas(tuple(atlas.entries[row] for row in training)), sensor, measured)
+    cube = _build(
+        Atlas(tuple(atlas.entries[row] for row in training)), sensor, measured
+    )
     white = sensor.light.white
 
     def by_matrix(spectra: Array, *white: Array) -> ToXyz:
@@ -66,7 +72,9 @@ def methods(atlas: Atlas, training: Indices, sensor: Sensor, plain: Cube) -> dic
         return lambda raw: raw @ matrix.T
 
     def by_cube(cube: Cube, mode: str = "spectra") -> ToXyz:
-        return lambda raw: cube.reflectance(raw, sensor.wavelengths, mode) @ sensor.light.xyz.T
+        return lambda raw: (
+            cube.reflectance(raw, sensor.wavelengths, mode) @ sensor.light.xyz.T
+        )
 
     return {
         "matrix, XYZ": by_matrix(half),
@@ -80,7 +88,11 @@ def methods(atlas: Atlas, training: Indices, sensor: Sensor, plain: Cube) -> dic
 
 def _build(entries: Atlas | None, sensor: Sensor, measured: Array) -> Cube:
     """Build a cube whose prior does not know the families of measured reflectances (E, N)."""
-    options = {"observer": sensor.space, "illuminant": sensor.illuminant, "leave_out": families_with(measured)}
+    options = {
+        "observer": sensor.space,
+        "illuminant": sensor.illuminant,
+        "leave_out": families_with(measured),
+    }
     return build(entries, dim=DIM, space=CAMERA, **options)
 
 
@@ -107,18 +119,26 @@ def compare(camera: str, illuminant: str) -> dict[str, Any]:
         "camera": camera,
         "light": illuminant,
         "realisable": 100 * realisable_share(sensor),
-        "errors": {name: {"mean": each.mean(), "high": np.percentile(each, 95)} for name, each in pooled.items()},
+        "errors": {
+            name: {"mean": each.mean(), "high": np.percentile(each, 95)}
+            for name, each in pooled.items()
+        },
     }
 
 
 def main() -> None:
     """Measure, and write the data of the page."""
-    rows = [compare(camera, light) for camera in tables.names("camera") for light in LIGHTS]
+    rows = [
+        compare(camera, light) for camera in tables.names("camera") for light in LIGHTS
+    ]
     record(
         "cameras",
         atlas=ATLAS,
         splits=SPLITS,
         dim=DIM,
-        marks={method: mark([ATLAS], CHOSEN_AS[method]) if method in CHOSEN_AS else "" for method in rows[0]["errors"]},
+        marks={
+            method: mark([ATLAS], CHOSEN_AS[method]) if method in CHOSEN_AS else ""
+            for method in rows[0]["errors"]
+        },
         rows=rows,
     )

@@ -11,7 +11,14 @@ from uplift.common.files import write_text
 from uplift.lab.chart.measure import measure_methods, select_methods
 from uplift.lab.chart.method import Effort, make_task
 from uplift.lab.chart.picture import render_chart, write_picture
-from uplift.lab.chart.table import MEASURED, Chart, MethodResult, State, chart_csv, criteria
+from uplift.lab.chart.table import (
+    MEASURED,
+    Chart,
+    MethodResult,
+    State,
+    chart_csv,
+    criteria,
+)
 
 UNSEEN = ("lights", "rms")
 """Errors of panels that are those of unseen materials."""
@@ -29,7 +36,9 @@ def publish(chart: Chart) -> None:
     ``publish(shipped_chart())`` does so without measuring again.
     """
     folder = DOCS / "chart"
-    write_text(chart_csv(chart), ROOT / "uplift" / "lab" / "chart" / MEASURED, force=True)
+    write_text(
+        chart_csv(chart), ROOT / "uplift" / "lab" / "chart" / MEASURED, force=True
+    )
     write_picture(chart, folder / "chart.png", force=True)
     write_text(render_chart(chart), folder / "chart.html", force=True)
     record(
@@ -50,7 +59,9 @@ def publish(chart: Chart) -> None:
 def fronts(chart: Chart) -> list[dict[str, Any]]:
     """Return the Pareto front of every panel, fastest first; the panel is named in its first row. Times in ns."""
     rows = []
-    for criterion in (criterion for batch in chart.batches for criterion in criteria(batch)):
+    for criterion in (
+        criterion for batch in chart.batches for criterion in criteria(batch)
+    ):
         for number, row in enumerate(criterion.front(chart)):
             rows.append(
                 {
@@ -78,8 +89,15 @@ def method_record(row: MethodResult, batches: tuple[int, ...]) -> dict[str, Any]
     record |= {"build_s": None, **numbers}
     for batch in batches:
         record[f"mark_{batch}"] = "≈ " if numbers[f"ns_{batch}_colours"] < batch else ""
-        record[f"total_{batch}"] = 1e9 * numbers["setup_s"] + batch * numbers[f"ns_{batch}"]
-    return record | {"spread": max(numbers[f"ns_{batch}_most"] / numbers[f"ns_{batch}_least"] - 1 for batch in batches)}
+        record[f"total_{batch}"] = (
+            1e9 * numbers["setup_s"] + batch * numbers[f"ns_{batch}"]
+        )
+    return record | {
+        "spread": max(
+            numbers[f"ns_{batch}_most"] / numbers[f"ns_{batch}_least"] - 1
+            for batch in batches
+        )
+    }
 
 
 def optimistic_mark(row: MethodResult) -> str:

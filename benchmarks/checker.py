@@ -54,7 +54,13 @@ def chart() -> Chart:
     sensor, spectra = observer.sensor(), read_atlas(MACBETH)
     measured = on_grid(spectra, sensor.wavelengths)
     rgb = sensor.rgb(measured)
-    return Chart(spectra.names, sensor.wavelengths, measured, np.clip(rgb, 0, 1), ~in_unit_cube(rgb))
+    return Chart(
+        spectra.names,
+        sensor.wavelengths,
+        measured,
+        np.clip(rgb, 0, 1),
+        ~in_unit_cube(rgb),
+    )
 
 
 @dataclass(frozen=True)
@@ -80,7 +86,10 @@ class Layout:
     def patches(self, inset: int = 0) -> Iterator[Place]:
         """Yield the rows and columns of each patch, without ``inset`` pixels along its edges."""
         for x, y in self.corners():
-            yield slice(y + inset, y + self.patch - inset), slice(x + inset, x + self.patch - inset)
+            yield (
+                slice(y + inset, y + self.patch - inset),
+                slice(x + inset, x + self.patch - inset),
+            )
 
     def middles(self) -> list[Place]:
         """Return the rows and columns of a square in the middle of each patch."""
@@ -89,7 +98,10 @@ class Layout:
     def halves(self) -> list[Place]:
         """Return the rows and columns of the left half of each patch."""
         width = self.patch // 2
-        return [(rows, slice(columns.start, columns.start + width)) for rows, columns in self.patches()]
+        return [
+            (rows, slice(columns.start, columns.start + width))
+            for rows, columns in self.patches()
+        ]
 
     def paint(self, colours: Array, background: Array) -> Array:
         """Return an image (height, width, 3) of patches (24, 3) before a background (3,)."""
@@ -128,7 +140,11 @@ def draw(
             height, width, _ = image.shape
             # Means of 2 × 2 pixels halve the noise.
             binned = image.reshape(height // 2, 2, width // 2, 2, 3).mean(axis=(1, 3))
-            show_image(axes, to_display_codes(binned @ matrix.T, SRGB).astype(np.uint8), interpolation="nearest")
+            show_image(
+                axes,
+                to_display_codes(binned @ matrix.T, SRGB).astype(np.uint8),
+                interpolation="nearest",
+            )
             if column:
                 errors = delta_e[name, method]
                 text = f"mean ΔE00 {errors.mean():.1f}, largest {errors.max():.1f}"
@@ -153,7 +169,9 @@ def start_mitsuba(variant: str = VARIANT) -> str:
 
 def measured_spectra(painted: Chart) -> Reflectances:
     """Return the measured spectra of the patches: the reference."""
-    return [regular_spectrum(painted.wavelengths, spectrum) for spectrum in painted.measured]
+    return [
+        regular_spectrum(painted.wavelengths, spectrum) for spectrum in painted.measured
+    ]
 
 
 def constant_light(illuminant: str) -> dict[str, Any]:
@@ -163,7 +181,9 @@ def constant_light(illuminant: str) -> dict[str, Any]:
     luminous = (sensor.power * sensor.cmfs[:, 1]).sum() * step
     return {
         "type": "constant",
-        "radiance": regular_spectrum(sensor.wavelengths, sensor.power * CIE_Y_INTEGRAL / luminous),
+        "radiance": regular_spectrum(
+            sensor.wavelengths, sensor.power * CIE_Y_INTEGRAL / luminous
+        ),
     }
 
 
@@ -177,20 +197,38 @@ def regular_spectrum(wavelengths: Array, values: Array) -> dict[str, Any]:
     }
 
 
-def render(emitter: dict[str, Any], reflectances: Reflectances, layout: Layout, spp: int, seed: int) -> Array:
+def render(
+    emitter: dict[str, Any],
+    reflectances: Reflectances,
+    layout: Layout,
+    spp: int,
+    seed: int,
+) -> Array:
     """Return XYZ (height, width, 3) of the chart under an emitter, from straight above, a unit a pixel."""
     import mitsuba as mi
 
     transform, (width, height) = mi.ScalarTransform4f, layout.size
 
-    def square(reflectance: dict[str, Any], middle: list[float], scale: list[float]) -> dict[str, Any]:
+    def square(
+        reflectance: dict[str, Any], middle: list[float], scale: list[float]
+    ) -> dict[str, Any]:
         placed = transform().translate(middle).scale(scale)
-        return {"type": "rectangle", "to_world": placed, "bsdf": {"type": "diffuse", "reflectance": reflectance}}
+        return {
+            "type": "rectangle",
+            "to_world": placed,
+            "bsdf": {"type": "diffuse", "reflectance": reflectance},
+        }
 
     half = layout.patch / 2
     patches = {
-        f"patch_{number}": square(reflectance, [x + half - width / 2, height / 2 - y - half, 0], [half, half, 1])
-        for number, (reflectance, (x, y)) in enumerate(zip(reflectances, layout.corners(), strict=True))
+        f"patch_{number}": square(
+            reflectance,
+            [x + half - width / 2, height / 2 - y - half, 0],
+            [half, half, 1],
+        )
+        for number, (reflectance, (x, y)) in enumerate(
+            zip(reflectances, layout.corners(), strict=True)
+        )
     }
     view = transform().look_at(origin=[0, 0, 100], target=[0, 0, 0], up=[0, 1, 0])
     camera = {
@@ -203,7 +241,9 @@ def render(emitter: dict[str, Any], reflectances: Reflectances, layout: Layout, 
         "integrator": OF_SURFACES,
         "light": emitter,
         "camera": camera,
-        "background": square({"type": "uniform", "value": BACKGROUND}, [0, 0, -1e-3], [width, height, 1]),
+        "background": square(
+            {"type": "uniform", "value": BACKGROUND}, [0, 0, -1e-3], [width, height, 1]
+        ),
         **patches,
     }
     return np.array(mi.render(mi.load_dict(scene), spp=spp, seed=seed), dtype=float)
@@ -212,4 +252,9 @@ def render(emitter: dict[str, Any], reflectances: Reflectances, layout: Layout, 
 def xyz_film(width: int, height: int) -> dict[str, Any]:
     """Describe a film of XYZ."""
     size = {"width": width, "height": height}
-    return {"type": "hdrfilm", **size, "pixel_format": "xyz", "component_format": "float32"}
+    return {
+        "type": "hdrfilm",
+        **size,
+        "pixel_format": "xyz",
+        "component_format": "float32",
+    }

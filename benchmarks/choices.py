@@ -27,20 +27,42 @@ class Choice:
 
 
 CHOICES = (
-    Choice("metric, phase and start of smooth spectra", ("rawtoaces",), (OURS, OURS_SMOOTH, ALONE, ALONE_SMOOTH)),
-    Choice("weights of entries: lights, ends, curvature", CHOSEN_ON, (OURS, OURS_SMOOTH)),
+    Choice(
+        "metric, phase and start of smooth spectra",
+        ("rawtoaces",),
+        (OURS, OURS_SMOOTH, ALONE, ALONE_SMOOTH),
+    ),
+    Choice(
+        "weights of entries: lights, ends, curvature", CHOSEN_ON, (OURS, OURS_SMOOTH)
+    ),
     Choice("weight of smooth multipliers of entries", SHIPPED, (OURS, OURS_SMOOTH)),
-    Choice("kriging: metric, noise, median, default, corners", (*SHIPPED, "munsell"), (OURS, OURS_SMOOTH)),
+    Choice(
+        "kriging: metric, noise, median, default, corners",
+        (*SHIPPED, "munsell"),
+        (OURS, OURS_SMOOTH),
+    ),
     Choice("standard errors: few entries", (*SHIPPED, "munsell"), (OURS, OURS_SMOOTH)),
-    Choice("learnt prior: length, spreads, noise, bounds, relevance", (*SHIPPED, "munsell"), (OURS, ALONE)),
-    Choice("local-linear regression: regressors, criterion and ridge", ("rawtoaces", "cie2017"), (LOCAL_LINEAR,)),
+    Choice(
+        "learnt prior: length, spreads, noise, bounds, relevance",
+        (*SHIPPED, "munsell"),
+        (OURS, ALONE),
+    ),
+    Choice(
+        "local-linear regression: regressors, criterion and ridge",
+        ("rawtoaces", "cie2017"),
+        (LOCAL_LINEAR,),
+    ),
 )
 
 
 def is_optimistic(sets: Iterable[str], method: str) -> bool:
     """Whether a choice behind a method was made with one of the sets."""
-    names = {each for name in sets for each in (SHIPPED if name == MIXTURE else (name,))}
-    return any(names & {*choice.sets} and method in choice.methods for choice in CHOICES)
+    names = {
+        each for name in sets for each in (SHIPPED if name == MIXTURE else (name,))
+    }
+    return any(
+        names & {*choice.sets} and method in choice.methods for choice in CHOICES
+    )
 
 
 def mark(sets: Iterable[str], method: str) -> str:

@@ -38,7 +38,9 @@ class Chips:
         values = np.clip(colour.notation.munsell_value_ASTMD1535(100 * light), 1, 9)
         nearest = [
             delta_e_2000(_lab_of(self._line(hue, value), y), colour_lab).min()
-            for hue, value, y, colour_lab in zip(self.hues, values, light, _lab(mapped), strict=True)
+            for hue, value, y, colour_lab in zip(
+                self.hues, values, light, _lab(mapped), strict=True
+            )
         ]
         return np.array(nearest)
 
@@ -54,21 +56,33 @@ def chips() -> Chips:
     """Return the chips outside sRGB; illuminant C is adapted to the white of the screen (Bradford)."""
     c = tuple(colour.CCS_ILLUMINANTS["CIE 1931 2 Degree Standard Observer"]["C"])
     to_srgb = conversion(Primaries(SRGB.red, SRGB.green, SRGB.blue, c), SRGB)
-    from_xyz = to_srgb @ np.linalg.inv(Primaries(SRGB.red, SRGB.green, SRGB.blue, c).rgb_to_xyz)
+    from_xyz = to_srgb @ np.linalg.inv(
+        Primaries(SRGB.red, SRGB.green, SRGB.blue, c).rgb_to_xyz
+    )
     real = {name for name, _ in colour.MUNSELL_COLOURS["Munsell Colours Real"]}
-    book = colour.MUNSELL_COLOURS["Munsell Colours All"]  # lines extend beyond the real chips
+    book = colour.MUNSELL_COLOURS[
+        "Munsell Colours All"
+    ]  # lines extend beyond the real chips
     names = [name for name, _ in book]
     xyz = colour.xyY_to_XYZ(np.array([xyY for _, xyY in book]) / [1, 1, 100])
     rgb = xyz @ from_xyz.T
     outside = [
         row
         for row, name in enumerate(names)
-        if name in real and DARKEST <= name[1] <= BRIGHTEST and ((rgb[row] < 0) | (rgb[row] > 1)).any()
+        if name in real
+        and DARKEST <= name[1] <= BRIGHTEST
+        and ((rgb[row] < 0) | (rgb[row] > 1)).any()
     ]
-    return Chips(rgb[outside], tuple(names[row][0] for row in outside), _lines(names, rgb @ SRGB.rgb_to_xyz.T))
+    return Chips(
+        rgb[outside],
+        tuple(names[row][0] for row in outside),
+        _lines(names, rgb @ SRGB.rgb_to_xyz.T),
+    )
 
 
-def _lines(names: list[tuple[str, float, float]], xyz: Array) -> dict[tuple[str, float], Array]:
+def _lines(
+    names: list[tuple[str, float, float]], xyz: Array
+) -> dict[tuple[str, float], Array]:
     found = defaultdict(list)
     for (hue, value, chroma), row in zip(names, xyz, strict=True):
         found[hue, value].append((chroma, *(row[:2] / row.sum())))
@@ -76,7 +90,9 @@ def _lines(names: list[tuple[str, float, float]], xyz: Array) -> dict[tuple[str,
     for key, points in found.items():
         chroma, x, y = np.array([(0.0, *SRGB.white), *sorted(points)]).T
         at = np.arange(0, chroma[-1] + STEP / 2, STEP)
-        lines[key] = np.stack([np.interp(at, chroma, x), np.interp(at, chroma, y)], axis=1)
+        lines[key] = np.stack(
+            [np.interp(at, chroma, x), np.interp(at, chroma, y)], axis=1
+        )
     return lines
 
 
@@ -98,9 +114,13 @@ def draw(path: Path) -> None:
     figure = new_figure(15, 2.25)
     hue = np.linspace(0, 6, 360)
     pure = np.clip(np.abs((hue[:, None] + [3, 1, 5]) % 6 - 3) - 1, 0, 1)
-    image = (np.geomspace(3, 0.02, 180)[:, None, None] * pure) @ conversion(REC_2020, SRGB).T
+    image = (np.geomspace(3, 0.02, 180)[:, None, None] * pure) @ conversion(
+        REC_2020, SRGB
+    ).T
     for axes, method in zip(figure.subplots(1, len(MAPPINGS)), MAPPINGS, strict=True):
-        axes.imshow(encode(map_to_gamut(image, SRGB, method).rgb), interpolation="antialiased")
+        axes.imshow(
+            encode(map_to_gamut(image, SRGB, method).rgb), interpolation="antialiased"
+        )
         axes.set_title(method, fontsize=17, pad=8)
         axes.set_axis_off()
     write_png(figure, path, force=True)
@@ -114,14 +134,19 @@ LAP, RUNS = 0.02, 7
 
 def main() -> None:
     """Draw, measure and store."""
-    warnings.simplefilter("ignore")  # colour-science warns about undefined values in some spaces
+    warnings.simplefilter(
+        "ignore"
+    )  # colour-science warns about undefined values in some spaces
     draw(PICTURE)
     found = chips()
     mapped = {name: map_to_gamut(found.rgb, SRGB, name).rgb for name in MAPPINGS}
     record(
         "display",
         chips=len(found.hues),
-        methods=[{"name": name, **errors(found, rgb), "ns": cost(name)} for name, rgb in mapped.items()],
+        methods=[
+            {"name": name, **errors(found, rgb), "ns": cost(name)}
+            for name, rgb in mapped.items()
+        ],
     )
 
 
@@ -134,7 +159,11 @@ def errors(found: Chips, mapped: Array) -> dict[str, Any]:
         "delta_e": delta_e_2000(original, changed),
     }
     return {
-        name: {"mean": each.mean(), "p95": np.percentile(each, 95), "largest": each.max()}
+        name: {
+            "mean": each.mean(),
+            "p95": np.percentile(each, 95),
+            "largest": each.max(),
+        }
         for name, each in values.items()
     }
 
@@ -143,4 +172,6 @@ def cost(method: str) -> TimingStats:
     """Return the CPU time per mapped colour in nanoseconds."""
     rgb = np.random.default_rng(0).normal(0.5, 1, (3 * TIMED, 3))
     rgb = rgb[((rgb < 0) | (rgb > 1)).any(axis=1)][:TIMED]
-    return time_laps(lambda: map_to_gamut(rgb, SRGB, method), LAP, RUNS).scaled(1e9 / TIMED)
+    return time_laps(lambda: map_to_gamut(rgb, SRGB, method), LAP, RUNS).scaled(
+        1e9 / TIMED
+    )

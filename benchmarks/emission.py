@@ -48,17 +48,23 @@ NEAREST, THIRDS, WORST = 8, 3, 8
 def main() -> None:
     """Measure and store."""
     table, lamps = uplift.load_emission(), known_lamps()
-    surfaces = {label: on_grid(read_atlas(name), observers.grid()) for label, name in SURFACES.items()}
+    surfaces = {
+        label: on_grid(read_atlas(name), observers.grid())
+        for label, name in SURFACES.items()
+    }
     radiometry, checker = table.data.radiometry, surfaces["ColorChecker"]
     uv = chromaticity(lamps.power @ radiometry)
     unknown = unknown_lamps(lamps, checker, radiometry)
     found = predict(lamps, unknown)
     lights = {
-        rule: {TABLE: power, **by_nearest(lamps, unknown[rule], radiometry)} for rule, (power, _) in found.items()
+        rule: {TABLE: power, **by_nearest(lamps, unknown[rule], radiometry)}
+        for rule, (power, _) in found.items()
     }
     lights["lamp"] |= {
         "the prior alone": fit_lamp_prior(lamps.power, checker, radiometry)[1],
-        "sigmoid × D65": sigmoid_times_d65(lamps.power, table, lamps.power[lamps.names.index("D65")]),
+        "sigmoid × D65": sigmoid_times_d65(
+            lamps.power, table, lamps.power[lamps.names.index("D65")]
+        ),
         "Planck, moved": planck(uv, radiometry, table.wavelengths),
     }
     power, expected = found["lamp"]
@@ -68,7 +74,10 @@ def main() -> None:
         lamps=len(lamps),
         exact=len(table.lamp_names),
         rows=list(summaries(lamps, lights, surfaces, radiometry)),
-        worst=[{"lamp": lamps.names[row], "error": errors[row]} for row in np.argsort(errors)[::-1][:WORST]],
+        worst=[
+            {"lamp": lamps.names[row], "error": errors[row]}
+            for row in np.argsort(errors)[::-1][:WORST]
+        ],
         calibration=[
             {"expected": expected[part].mean(), "measured": errors[part].mean()}
             for part in np.array_split(np.argsort(expected, kind="stable"), THIRDS)
@@ -84,14 +93,21 @@ def lamp_family(name: str) -> str:
     return found
 
 
-def unknown_lamps(lamps: Lamps, reflectances: Array, radiometry: Array) -> dict[str, Mask]:
+def unknown_lamps(
+    lamps: Lamps, reflectances: Array, radiometry: Array
+) -> dict[str, Mask]:
     """Return which lamps (L, L) the prediction of each lamp must not know, by rule.
 
     Shapes: ``reflectances`` (P, N), ``radiometry`` (N, 3).
     """
     families = np.array([lamp_family(name) for name in lamps.names])
     same = [np.broadcast_to(row, lamps.power.shape) for row in lamps.power]
-    apart = np.array([relit_delta_e(lamps.power, row, reflectances, radiometry).mean(axis=1) for row in same])
+    apart = np.array(
+        [
+            relit_delta_e(lamps.power, row, reflectances, radiometry).mean(axis=1)
+            for row in same
+        ]
+    )
     return {
         "lamp": np.eye(len(lamps), dtype=bool),
         "near-duplicates": (apart <= SAME_COLOURS) | (apart.T <= SAME_COLOURS),
@@ -99,19 +115,30 @@ def unknown_lamps(lamps: Lamps, reflectances: Array, radiometry: Array) -> dict[
     }
 
 
-def predict(lamps: Lamps, unknown: Mapping[str, Mask], **size: int) -> dict[str, tuple[Array, Array]]:
+def predict(
+    lamps: Lamps, unknown: Mapping[str, Mask], **size: int
+) -> dict[str, tuple[Array, Array]]:
     """Predict lamps by tables that are built without those that each prediction must not know (L, L).
 
     Returns power (L, N) and expected errors (L,) by rule.
     """
     shape = (len(unknown), len(lamps))
     power, expected = np.empty((*shape, lamps.power.shape[1])), np.empty(shape)
-    sets, member = np.unique(np.stack(list(unknown.values())).reshape(-1, len(lamps)), axis=0, return_inverse=True)
+    sets, member = np.unique(
+        np.stack(list(unknown.values())).reshape(-1, len(lamps)),
+        axis=0,
+        return_inverse=True,
+    )
     for number, left_out in enumerate(sets):
-        table = uplift.build_emission(without=[lamps.names[row] for row in np.flatnonzero(left_out)], **size)
+        table = uplift.build_emission(
+            without=[lamps.names[row] for row in np.flatnonzero(left_out)], **size
+        )
         rule, rows = np.nonzero(member.reshape(shape) == number)
         rgb = table.rgb(lamps.power[rows])
-        power[rule, rows], expected[rule, rows] = table.spectrum(rgb), table.expected_error(rgb)
+        power[rule, rows], expected[rule, rows] = (
+            table.spectrum(rgb),
+            table.expected_error(rgb),
+        )
     return dict(zip(unknown, zip(power, expected, strict=True), strict=True))
 
 
@@ -120,8 +147,13 @@ def by_nearest(lamps: Lamps, unknown: Mask, radiometry: Array) -> dict[str, Arra
     uv = chromaticity(lamps.power @ radiometry)
     apart = np.where(unknown, np.inf, np.linalg.norm(uv[:, None] - uv, axis=-1))
     known = lamps.power[np.argsort(apart, axis=1, kind="stable")[:, :NEAREST]]
-    found = {"nearest lamp, moved": known[:, 0], f"mean of the {NEAREST} nearest, moved": known.mean(axis=1)}
-    return {label: nearest_lights(power, uv, radiometry) for label, power in found.items()}
+    found = {
+        "nearest lamp, moved": known[:, 0],
+        f"mean of the {NEAREST} nearest, moved": known.mean(axis=1),
+    }
+    return {
+        label: nearest_lights(power, uv, radiometry) for label, power in found.items()
+    }
 
 
 PBRT_SCALE = 2.0
@@ -147,7 +179,9 @@ def sigmoid_times_d65(power: Array, table: EmissionTable, d65: Array) -> Array:
         tolerance=1e-7,
         max_passes=200,
     )
-    return np.asarray(model.to_reflectance(found.multipliers @ model.basis(wavelengths).T) * d65)
+    return np.asarray(
+        model.to_reflectance(found.multipliers @ model.basis(wavelengths).T) * d65
+    )
 
 
 MIREDS = np.linspace(20, 1000, 981)
@@ -162,20 +196,29 @@ def planck(uv: Array, radiometry: Array, wavelengths: Array) -> Array:
     CIE 015:2018, 9.5: the correlated colour temperature, by the distance in CIE 1960 uv.
     """
     metres = wavelengths * 1e-9
-    radiators = metres**-5 / np.expm1(SECOND_RADIATION_CONSTANT / metres * MIREDS[:, None] * 1e-6)
+    radiators = metres**-5 / np.expm1(
+        SECOND_RADIATION_CONSTANT / metres * MIREDS[:, None] * 1e-6
+    )
     apart = (uv[:, None] - chromaticity(radiators @ radiometry)) * (1.0, 2 / 3)
-    return nearest_lights(radiators[np.linalg.norm(apart, axis=-1).argmin(axis=1)], uv, radiometry)
+    return nearest_lights(
+        radiators[np.linalg.norm(apart, axis=-1).argmin(axis=1)], uv, radiometry
+    )
 
 
 def summaries(
-    lamps: Lamps, lights: dict[str, dict[str, Array]], surfaces: dict[str, Array], radiometry: Array
+    lamps: Lamps,
+    lights: dict[str, dict[str, Array]],
+    surfaces: dict[str, Array],
+    radiometry: Array,
 ) -> Iterator[Row]:
     """Yield mean, median and 95th percentile over the lamps of the mean ΔE00, by rule, method and surfaces."""
     for rule, methods in lights.items():
         for method, power in methods.items():
             row: Row = {"rule": rule, "method": method}
             for label, reflectances in surfaces.items():
-                errors = relit_delta_e(lamps.power, power, reflectances, radiometry).mean(axis=1)
+                errors = relit_delta_e(
+                    lamps.power, power, reflectances, radiometry
+                ).mean(axis=1)
                 median, high = np.percentile(errors, (50, 95))
                 row[label] = {"mean": errors.mean(), "median": median, "p95": high}
             yield row
@@ -187,27 +230,44 @@ def spokes(table: EmissionTable, directions: int, steps: int) -> Array:
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     locus = direction / table.data.lattice.polar(direction)[2][:, None]
     share = np.linspace(0, 1, steps)[:, None]
-    return np.asarray((table.data.lattice.white + locus[:, None] * share).reshape(-1, 2))
+    return np.asarray(
+        (table.data.lattice.white + locus[:, None] * share).reshape(-1, 2)
+    )
 
 
 def exactness(table: EmissionTable, uv: Array) -> Iterator[Row]:
     """Yield the largest difference in u′v′ and the smallest power at chromaticities (n, 2), by type."""
     for dtype in ("float64", "float32"):
         power = table.spectrum_of_xyz(unit_xyz(uv), dtype=dtype)
-        apart = np.linalg.norm(chromaticity(power.astype(float) @ table.data.radiometry) - uv, axis=1)
-        yield {"type": dtype, "colours": len(uv), "uv_error": apart.max(), "min_power": power.min()}
+        apart = np.linalg.norm(
+            chromaticity(power.astype(float) @ table.data.radiometry) - uv, axis=1
+        )
+        yield {
+            "type": dtype,
+            "colours": len(uv),
+            "uv_error": apart.max(),
+            "min_power": power.min(),
+        }
 
 
 def lookups(count: int, runs: int) -> Iterator[Row]:
     """Yield nanoseconds per colour of lights and of reflectances, and the ratio of their medians, by type."""
     rgb = np.random.default_rng(1).random((count, 3))
     table, cube = uplift.load_emission(), uplift.load()
-    for at, dtype in product((np.linspace(400, 700, 16), table.wavelengths), ("float64", "float32")):
+    for at, dtype in product(
+        (np.linspace(400, 700, 16), table.wavelengths), ("float64", "float32")
+    ):
         times = []
         for query in (table.spectrum, cube.reflectance):
             call = partial(query, rgb, at, dtype=dtype)
             call()
             times.append(time_calls(call, runs)[0].scaled(1e9 / count))
         light, reflectance = times
-        row = {"type": dtype, "wavelengths": len(at), "colours": count, "light": light, "reflectance": reflectance}
+        row = {
+            "type": dtype,
+            "wavelengths": len(at),
+            "colours": count,
+            "light": light,
+            "reflectance": reflectance,
+        }
         yield row | {"ratio": light.median / reflectance.median}

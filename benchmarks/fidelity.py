@@ -9,7 +9,14 @@ from typing import Any
 import numpy as np
 
 from benchmarks import Row, record
-from benchmarks.choices import ALONE, ALONE_SMOOTH, CHOICES, OURS, OURS_SMOOTH, is_optimistic
+from benchmarks.choices import (
+    ALONE,
+    ALONE_SMOOTH,
+    CHOICES,
+    OURS,
+    OURS_SMOOTH,
+    is_optimistic,
+)
 from benchmarks.materials import (
     LARGE,
     MIXTURE,
@@ -56,9 +63,17 @@ Pairs = list[tuple[Cube, Materials]]
 def main() -> None:
     """Measure and store."""
     cubes = [*product(LARGE, COUNTS), *((name, 9) for name in (*SMALL, MIXTURE))]
-    known = {(name, count): other_halves(name, dim=DIM, coefficients=count) for name, count in cubes}
+    known = {
+        (name, count): other_halves(name, dim=DIM, coefficients=count)
+        for name, count in cubes
+    }
     others = {
-        f"macbeth, queried for {name}": [(build("macbeth", dim=DIM, leave_out=shipped_families(name)), materials(name))]
+        f"macbeth, queried for {name}": [
+            (
+                build("macbeth", dim=DIM, leave_out=shipped_families(name)),
+                materials(name),
+            )
+        ]
         for name in LARGE
     }
     record(
@@ -72,7 +87,8 @@ def main() -> None:
             *(coverage(label, 9, pairs) for label, pairs in others.items()),
         ],
         light_errors=[
-            {"atlas": name, "coefficients": count, "covered": covered(pairs)} for (name, count), pairs in known.items()
+            {"atlas": name, "coefficients": count, "covered": covered(pairs)}
+            for (name, count), pairs in known.items()
         ],
     )
     record(
@@ -83,7 +99,13 @@ def main() -> None:
         choices=[asdict(choice) for choice in CHOICES],
         sets=[compare_methods(name) for name in (*SETS, MIXTURE)],
     )
-    record("fidelity", "mixture", dim=DIM, splits=SPLITS, rows=[learning_curve(parts) for parts in PARTS])
+    record(
+        "fidelity",
+        "mixture",
+        dim=DIM,
+        splits=SPLITS,
+        rows=[learning_curve(parts) for parts in PARTS],
+    )
     sets = (*LIBRARY_SETS, *(["munsell"] if MUNSELL.exists() else []))
     size = FILE.stat().st_size
     record(
@@ -91,8 +113,17 @@ def main() -> None:
         "prior",
         dim=COARSE,
         lights=list(HELD_OUT_LIGHTS),
-        parameters={"length": LENGTH, "nugget": NUGGET, "spread": SPREAD, "otsu_spread": OTSU_SPREAD, "bytes": size},
-        library=[{"name": each.name, "spectra": len(each.measured)} for each in shipped_library()],
+        parameters={
+            "length": LENGTH,
+            "nugget": NUGGET,
+            "spread": SPREAD,
+            "otsu_spread": OTSU_SPREAD,
+            "bytes": size,
+        },
+        library=[
+            {"name": each.name, "spectra": len(each.measured)}
+            for each in shipped_library()
+        ],
         unseen=[unseen(name, count) for name in sets for count in (9, 17)],
         atlases=[with_atlas(name) for name in sets if name not in FAMILIES["checker"]],
         libraries=[row for name in LARGE for row in with_library(name)],
@@ -102,7 +133,12 @@ def main() -> None:
 def at_entries(name: str) -> Iterator[Row]:
     """Yield the errors of cubes at the colours of their entries, and the size of the cubes' arrays."""
     some = materials(name)
-    cubes = {f"9 coefficients, entries {count}": build(name, dim=DIM, entry_coefficients=count) for count in COUNTS}
+    cubes = {
+        f"9 coefficients, entries {count}": build(
+            name, dim=DIM, entry_coefficients=count
+        )
+        for count in COUNTS
+    }
     cubes |= {
         "17 coefficients": build(name, dim=DIM, coefficients=17),
         "9, without the atlas": build(dim=DIM),
@@ -110,7 +146,12 @@ def at_entries(name: str) -> Iterator[Row]:
     }
     for label, cube in cubes.items():
         size = sum(array.nbytes for array in contents(cube.data)[0].values())
-        yield {"atlas": name, "cube": label, "megabytes": size / 1e6, **errors(cube.reflectance(some.rgb), some)}
+        yield {
+            "atlas": name,
+            "cube": label,
+            "megabytes": size / 1e6,
+            **errors(cube.reflectance(some.rgb), some),
+        }
 
 
 def pooled(splits: tuple[held_out.HoldoutSplit, ...], method: str) -> Array:
@@ -150,7 +191,10 @@ def coverage(label: str, count: int, pairs: Pairs) -> Row:
 
 def covered(pairs: Pairs) -> dict[str, Array]:
     """Return, by light, the shares of errors within the standard error and within the error bound."""
-    return {name: stated(pairs, observer.light(name))[1].mean(axis=0) for name in HELD_OUT_LIGHTS}
+    return {
+        name: stated(pairs, observer.light(name))[1].mean(axis=0)
+        for name in HELD_OUT_LIGHTS
+    }
 
 
 def compare_methods(name: str) -> Row:
@@ -187,10 +231,18 @@ def learning_curve(parts: int) -> Row:
     some, left_out, found = materials(MIXTURE), shipped_families(MIXTURE), []
     rows = np.arange(len(some.rgb))
     for seed in range(SPLITS):
-        for queried in np.array_split(np.random.default_rng(seed).permutation(rows), parts):
-            cube = some.take(np.setdiff1d(rows, queried)).cube(dim=DIM, leave_out=left_out)
+        for queried in np.array_split(
+            np.random.default_rng(seed).permutation(rows), parts
+        ):
+            cube = some.take(np.setdiff1d(rows, queried)).cube(
+                dim=DIM, leave_out=left_out
+            )
             held = some.take(queried)
-            found.append(held_out.spectrum_errors(cube.reflectance(held.rgb), held.measured).delta_e)
+            found.append(
+                held_out.spectrum_errors(
+                    cube.reflectance(held.rgb), held.measured
+                ).delta_e
+            )
     by_light = np.concatenate(found).mean(axis=0)
     return {
         "known": 1 - 1 / parts,
@@ -203,12 +255,18 @@ def learning_curve(parts: int) -> Row:
 def methods() -> dict[str, Any]:
     """Return the methods of other authors, which use no atlas."""
     task = make_task({"macbeth": spectra("macbeth")})
-    return {method.title: method.prepare(task).uplift for method in select_methods(PUBLISHED)}
+    return {
+        method.title: method.prepare(task).uplift
+        for method in select_methods(PUBLISHED)
+    }
 
 
 def published(some: Materials) -> dict[str, Array]:
     """Return the answers (n, N) of other authors' methods."""
-    return {method: uplift_rgb(some.rgb, SENSOR.wavelengths) for method, uplift_rgb in methods().items()}
+    return {
+        method: uplift_rgb(some.rgb, SENSOR.wavelengths)
+        for method, uplift_rgb in methods().items()
+    }
 
 
 def family(name: str) -> list[str]:
@@ -232,8 +290,14 @@ def unseen(name: str, count: int) -> Row:
     """Return the errors without an atlas where the prior does not know the family, relative to other methods."""
     some = materials(name)
     learnt = means(build(dim=COARSE, coefficients=count, leave_out=family(name)), some)
-    others = {"smooth": smooth_cube(count), **published(some), "sigmoid": build(dim=COARSE, model="sigmoid")}
-    ratios = {method: learnt / means(answers, some) for method, answers in others.items()}
+    others = {
+        "smooth": smooth_cube(count),
+        **published(some),
+        "sigmoid": build(dim=COARSE, model="sigmoid"),
+    }
+    ratios = {
+        method: learnt / means(answers, some) for method, answers in others.items()
+    }
     return {
         "set": name,
         "spectra": len(some.rgb),
@@ -260,14 +324,23 @@ def with_atlas(name: str) -> Row:
 def with_library(name: str) -> Iterator[Row]:
     """Yield the errors at one half of a set, relative to smooth spectra, with the other half as a library."""
     entries = spectra(name).entries
-    atlas = Atlas(tuple(entries[row] for row in sorted(held_out.random_halves(len(entries), 0)[0])))
+    atlas = Atlas(
+        tuple(
+            entries[row] for row in sorted(held_out.random_halves(len(entries), 0)[0])
+        )
+    )
     known = {entry.values.tobytes() for entry in atlas}
-    others = Atlas(tuple(entry for entry in entries if entry.values.tobytes() not in known))
+    others = Atlas(
+        tuple(entry for entry in entries if entry.values.tobytes() not in known)
+    )
     queried = inside(others)
     smooth = means(smooth_cube(9), queried)
     for label, options in {
         "learnt": {"leave_out": family(name)},
-        "learnt, the other half as library": {"library": atlas, "leave_out": family(name)},
+        "learnt, the other half as library": {
+            "library": atlas,
+            "leave_out": family(name),
+        },
         "smooth, the other half as atlas": {"atlas": atlas, "prior": "smooth"},
         "learnt, the other half as atlas": {"atlas": atlas, "leave_out": family(name)},
     }.items():

@@ -47,7 +47,11 @@ SCREENSHOT, WINDOW, SCALE = DOCS / "looks" / "page.jpg", (1440, 1400), 0.85
 CHOICE = (("region-1", "ArrowLeft", 6), ("region-1", "ArrowDown", 2))
 """Keys that are pressed for the screenshot, with Shift, and how often: 30 less a*, 10 less b* under FL11."""
 LOOKS_ATLAS, DIM = "macbeth", 32
-IMPOSSIBLE = (("#4060a0", "A", "#5060a0"), ("#8a2a20", "A", "#8a4020"), ("#40a060", "A", "#50a050"))
+IMPOSSIBLE = (
+    ("#4060a0", "A", "#5060a0"),
+    ("#8a2a20", "A", "#8a4020"),
+    ("#40a060", "A", "#50a050"),
+)
 PIXELS, SPP = 220, 256
 """Pixels along each side of the picture of a ball, and samples of each."""
 
@@ -60,7 +64,9 @@ def main() -> None:
     lights = [light(name, own.observer, *own.range) for name in LIGHTS]
 
     def search(colours: Array) -> list[Bounds]:
-        return [bounds(cube, colours, each, divisions=PAGE_DIVISIONS) for each in lights]
+        return [
+            bounds(cube, colours, each, divisions=PAGE_DIVISIONS) for each in lights
+        ]
 
     found = search(rgb)
     plot_bounds(cube, [search(drawn)[:DRAWN_LIGHTS]], PICTURE, force=True)
@@ -71,7 +77,9 @@ def main() -> None:
         colours=[
             {
                 "name": name,
-                "largest": {each.light.name: each.largest.delta_e_2000[row] for each in found},
+                "largest": {
+                    each.light.name: each.largest.delta_e_2000[row] for each in found
+                },
                 "share": {each.light.name: each.share[row] for each in found},
             }
             for row, name in enumerate(atlas.names)
@@ -107,9 +115,12 @@ def likely(name: str) -> Iterator[dict[str, Any]]:
         for cube, some in pairs:
             errors = lab_errors(cube.data, each)
             measured, answered = (
-                lab(spectra @ each.xyz.T, each.white)[:, 1:] for spectra in (some.measured, cube.reflectance(some.rgb))
+                lab(spectra @ each.xyz.T, each.white)[:, 1:]
+                for spectra in (some.measured, cube.reflectance(some.rgb))
             )
-            distances.append(mahalanobis(errors.covariance(some.rgb)[:, 1:, 1:], measured - answered))
+            distances.append(
+                mahalanobis(errors.covariance(some.rgb)[:, 1:, 1:], measured - answered)
+            )
             radii.append(np.full(len(measured), errors.likely_radius))
         distance, radius = np.concatenate(distances), np.concatenate(radii)
         yield {
@@ -158,11 +169,20 @@ def looks(plain: Cube, looked: Cube) -> Iterator[Row]:
         for each in look["lights"]:
             (screen,) = display_sensors([each["light"]], plain.observer)
             wish = np.array(each["wish"])
-            before, after = (screen.rgb(cube.reflectance(look["rgb"])) for cube in (plain, looked))
-            codes = dict(
-                zip(("colour", "wish", "before"), hex_codes(np.array([look["rgb"], wish, before])), strict=True)
+            before, after = (
+                screen.rgb(cube.reflectance(look["rgb"])) for cube in (plain, looked)
             )
-            distances = {"without": delta_e_rgb(screen, before, wish), "with_look": delta_e_rgb(screen, after, wish)}
+            codes = dict(
+                zip(
+                    ("colour", "wish", "before"),
+                    hex_codes(np.array([look["rgb"], wish, before])),
+                    strict=True,
+                )
+            )
+            distances = {
+                "without": delta_e_rgb(screen, before, wish),
+                "with_look": delta_e_rgb(screen, after, wish),
+            }
             yield {"look": look["name"], "light": each["light"], **codes, **distances}
 
 
@@ -187,9 +207,16 @@ def render(plain: Cube, looked: Cube) -> Row:
             here = sensor(illuminant=lamp)
             image = balls(paths, look["rgb"], lamp) @ here.xyz_to_rgb.T
             middle = slice(PIXELS // 2 - 12, PIXELS // 2 + 12)
-            patches = [half[middle, middle].mean(axis=(0, 1)) for half in np.split(image, 2, axis=1)]
+            patches = [
+                half[middle, middle].mean(axis=(0, 1))
+                for half in np.split(image, 2, axis=1)
+            ]
             found[lamp] = {"delta_e": delta_e_rgb(here, *patches)}
-            show_image(axes, to_display_codes(image, SRGB).astype(np.uint8), interpolation="nearest")
+            show_image(
+                axes,
+                to_display_codes(image, SRGB).astype(np.uint8),
+                interpolation="nearest",
+            )
             axes.set_ylabel(figure_text(lamp), fontsize=11)
     write_png(figure, DOCS / "look-cubes" / "two-cubes.png", force=True)
     return {"mitsuba": version, "look": look["name"], "lights": found}
@@ -215,9 +242,19 @@ def balls(cubes: Sequence[str], rgb: Sequence[float], lamp: str) -> Array:
         "type": "scene",
         "integrator": {"type": "path", "max_depth": 4},
         "sky": constant_light(lamp),
-        "ground": {"type": "rectangle", "to_world": ground, "bsdf": diffuse(type="uniform", value=0.5)},
+        "ground": {
+            "type": "rectangle",
+            "to_world": ground,
+            "bsdf": diffuse(type="uniform", value=0.5),
+        },
         "left": ball(cubes[0], -1.35),
         "right": ball(cubes[1], 1.35),
-        "camera": {"type": "perspective", "fov": 28, "fov_axis": "x", "to_world": view, "film": film},
+        "camera": {
+            "type": "perspective",
+            "fov": 28,
+            "fov_axis": "x",
+            "to_world": view,
+            "film": film,
+        },
     }
     return np.array(mi.render(mi.load_dict(scene), spp=SPP, seed=0), dtype=float)

@@ -41,7 +41,10 @@ class Materials:
 
     def cube(self, **options: Any) -> Cube:
         """Build a cube whose atlas they are."""
-        entries = (Entry(str(row), SENSOR.wavelengths, values) for row, values in enumerate(self.measured))
+        entries = (
+            Entry(str(row), SENSOR.wavelengths, values)
+            for row, values in enumerate(self.measured)
+        )
         return uplift.build(Atlas(tuple(entries)), **options)
 
 

@@ -16,7 +16,14 @@ from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.design.mixing import dispersive
 from uplift.design.mixing.coats import ramp
-from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, Pigment, PowerOfReflectance, Scattering, from_opaque
+from uplift.design.mixing.pigments import (
+    CONSTANT,
+    SQUARE_ROOT,
+    Pigment,
+    PowerOfReflectance,
+    Scattering,
+    from_opaque,
+)
 from uplift.design.mixing.theories import Mixer, mixers, spectral_models
 from uplift.lab.timing import time_laps
 from uplift.lookup import Cube
@@ -76,8 +83,13 @@ def evaluate(mixer: Mixer, sensor: Sensor, colours: Array) -> tuple[float, ...]:
 
     def chromaticities(rgb: Array) -> Array:
         """CIE 1976 u', v' (…, 2). Black, which has none, gets those of white."""
-        xyz = np.where((rgb > 0).any(axis=-1, keepdims=True), sensor.xyz(rgb), sensor.light.white)
-        return np.stack([4 * xyz[..., 0], 9 * xyz[..., 1]], axis=-1) / (xyz @ [1, 15, 3])[..., None]
+        xyz = np.where(
+            (rgb > 0).any(axis=-1, keepdims=True), sensor.xyz(rgb), sensor.light.white
+        )
+        return (
+            np.stack([4 * xyz[..., 0], 9 * xyz[..., 1]], axis=-1)
+            / (xyz @ [1, 15, 3])[..., None]
+        )
 
     def hues(rgb: Array) -> Array:
         u, v = np.moveaxis(chromaticities(rgb) - chromaticities(WHITE), -1, 0)
@@ -85,15 +97,22 @@ def evaluate(mixer: Mixer, sensor: Sensor, colours: Array) -> tuple[float, ...]:
 
     itself = np.array([mixer.mix(np.stack([one, one]), np.ones(2)) for one in colours])
     shades, tints = (
-        np.array([mixer.mix(np.stack([one, other]), 2 * SHARES) for one in colours]) for other in (BLACK, WHITE)
+        np.array([mixer.mix(np.stack([one, other]), 2 * SHARES) for one in colours])
+        for other in (BLACK, WHITE)
     )
-    neutral = [mixer.mix(np.array(pair, dtype=float), np.ones(2)) for pair in COMPLEMENTS]
+    neutral = [
+        mixer.mix(np.array(pair, dtype=float), np.ones(2)) for pair in COMPLEMENTS
+    ]
     greens = mixer.mix(BLUE_YELLOW, 2 * SHARES)
     lightness = rgb_to_lab(sensor, colours)[:, None, 0]
     turns = (hues(tints) - hues(colours)[:, None] + 180) % 360 - 180
     return (
         float(delta_e_rgb(sensor, colours, itself).max()),
-        float(np.linalg.norm(chromaticities(shades) - chromaticities(colours)[:, None], axis=-1).max()),
+        float(
+            np.linalg.norm(
+                chromaticities(shades) - chromaticities(colours)[:, None], axis=-1
+            ).max()
+        ),
         float((rgb_to_lab(sensor, shades)[..., 0] - lightness).max()),
         float(np.abs(turns).max()),
         float((lightness - rgb_to_lab(sensor, tints)[..., 0]).max()),
@@ -108,8 +127,12 @@ def criteria(cube: Cube) -> Row:
     coloured = atlas[np.ptp(atlas, axis=1) > 0.1 * atlas.max(axis=1)]
     rows = []
     for mixer in mixers(cube):
-        values = zip(CRITERIA.values(), evaluate(mixer, cube.data.sensor, coloured), strict=True)
-        verdicts = [{"obeys": value <= limit, "value": value + 0.0} for limit, value in values]
+        values = zip(
+            CRITERIA.values(), evaluate(mixer, cube.data.sensor, coloured), strict=True
+        )
+        verdicts = [
+            {"obeys": value <= limit, "value": value + 0.0} for limit, value in values
+        ]
         rows.append({"mixer": mixer.title, "verdicts": verdicts})
     return {"criteria_titles": list(CRITERIA), "criteria": rows}
 
@@ -143,21 +166,38 @@ def acrylics(first: tuple[str, ...] = (), second: str = "") -> Mixtures:
     def wanted(one: str, other: str) -> bool:
         return (not first or one.startswith(first)) and other.endswith(second)
 
-    table = [(row["first"], row["second"], row) for row in read_reference("paint_mixtures.csv")]
+    table = [
+        (row["first"], row["second"], row)
+        for row in read_reference("paint_mixtures.csv")
+    ]
     masstones = {one: _numbers(row, "rgb") for one, other, row in table if one == other}
     names = list(masstones)
-    kept = [each for each in table if each[0] != each[1] and (wanted(*each[:2]) or wanted(each[1], each[0]))]
+    kept = [
+        each
+        for each in table
+        if each[0] != each[1] and (wanted(*each[:2]) or wanted(each[1], each[0]))
+    ]
     pairs = np.array([[names.index(one), names.index(other)] for one, other, _ in kept])
     expected = np.array([_numbers(row, "rgb") for *_, row in kept])
-    return Mixtures(np.array(list(masstones.values())), pairs, _shares([row for *_, row in kept]), expected)
+    return Mixtures(
+        np.array(list(masstones.values())),
+        pairs,
+        _shares([row for *_, row in kept]),
+        expected,
+    )
 
 
 def three_bands(name: str) -> Mixtures:
     """Return the mixtures of all pairs of a set of paints_rgb.csv, whose three bands are taken as linear RGB."""
     rows = [row for row in read_reference("paints_rgb.csv") if row["set"] == name]
-    K, S = (np.array([_numbers(row, columns) for row in rows]) for columns in (("Kr", "Kg", "Kb"), ("Sr", "Sg", "Sb")))
+    K, S = (
+        np.array([_numbers(row, columns) for row in rows])
+        for columns in (("Kr", "Kg", "Kb"), ("Sr", "Sg", "Sb"))
+    )
     pairs = np.array(list(itertools.combinations(range(len(K)), 2)))
-    mixtures = [Pigment(K[pairs], S[pairs]).mix(share).opaque_reflectance() for share in SHARES]
+    mixtures = [
+        Pigment(K[pairs], S[pairs]).mix(share).opaque_reflectance() for share in SHARES
+    ]
     return Mixtures(
         Pigment(K, S).opaque_reflectance(),
         np.concatenate([pairs] * len(SHARES)),
@@ -168,8 +208,15 @@ def three_bands(name: str) -> Mixtures:
 
 def published(tool: str, cube: Cube) -> Mixtures:
     """Return the mixtures that a tool publishes (published_mixtures.csv)."""
-    kept = [row for row in read_reference("published_mixtures.csv") if row["tool"] == tool]
-    linear = np.array([[colour(cube, row[column]) for column in ("first", "second", "mixture")] for row in kept])
+    kept = [
+        row for row in read_reference("published_mixtures.csv") if row["tool"] == tool
+    ]
+    linear = np.array(
+        [
+            [colour(cube, row[column]) for column in ("first", "second", "mixture")]
+            for row in kept
+        ]
+    )
     pairs = np.arange(2 * len(kept)).reshape(-1, 2)
     return Mixtures(linear[:, :2].reshape(-1, 3), pairs, _shares(kept), linear[:, 2])
 
@@ -178,7 +225,9 @@ def colour(cube: Cube, word: str) -> Array:
     """Return the linear RGB (3,) of an entry or of '#rrggbb'."""
     if word.startswith("#"):
         return cube.decode(list(bytes.fromhex(word[1:])))
-    return np.asarray(cube.data.atlas.rgb[cube.data.atlas.names.index(word)], dtype=float)
+    return np.asarray(
+        cube.data.atlas.rgb[cube.data.atlas.names.index(word)], dtype=float
+    )
 
 
 def _numbers(row: dict[str, str], columns: Iterable[str]) -> Array:
@@ -193,10 +242,16 @@ def _shares(rows: list[dict[str, str]]) -> Array:
 def mix(cube: Cube, mixtures: Mixtures, rule: Scattering | None) -> Array:
     """Return the colours (n, 3) of mixtures from those of their paints, in linear RGB in [0, 1]; None averages RGB."""
     if rule is None:
-        return np.asarray((mixtures.shares[:, None] @ mixtures.paints[mixtures.pairs])[:, 0])
+        return np.asarray(
+            (mixtures.shares[:, None] @ mixtures.paints[mixtures.pairs])[:, 0]
+        )
     paints = from_opaque(cube.reflectance(mixtures.paints), rule)
-    pairs = Pigment(paints.absorption[mixtures.pairs], paints.scattering[mixtures.pairs])
-    return np.clip(cube.data.sensor.rgb(pairs.mix(mixtures.shares).opaque_reflectance()), 0, 1)
+    pairs = Pigment(
+        paints.absorption[mixtures.pairs], paints.scattering[mixtures.pairs]
+    )
+    return np.clip(
+        cube.data.sensor.rgb(pairs.mix(mixtures.shares).opaque_reflectance()), 0, 1
+    )
 
 
 def compare_scattering(smooth: Cube, atlas: Cube) -> Row:
@@ -238,12 +293,19 @@ def compare_scattering(smooth: Cube, atlas: Cube) -> Row:
             pair = np.array([colour(cube, word) for word in words])
             row[name] = list(_greens(cube, pair, rule))
         rows.append(row)
-    return {"scatterings": rows, "set_sizes": {name: len(one.pairs) for name, one in sets.items()}}
+    return {
+        "scatterings": rows,
+        "set_sizes": {name: len(one.pairs) for name, one in sets.items()},
+    }
 
 
 def _greens(cube: Cube, pair: Array, rule: Scattering | None) -> Iterator[Row]:
     """Mix a blue and a yellow at 1:3, 1:1 and 3:1."""
-    for rgb in mix(cube, Mixtures(pair, np.array([[0, 1]] * 3), SHARES[::-1], np.zeros((3, 3))), rule):
+    for rgb in mix(
+        cube,
+        Mixtures(pair, np.array([[0, 1]] * 3), SHARES[::-1], np.zeros((3, 3))),
+        rule,
+    ):
         code = "#" + "".join(f"{round(code):02x}" for code in cube.encode(rgb).tolist())
         yield {"green": bool(rgb[1] > max(rgb[0], rgb[2]) + GREEN_MARGIN), "code": code}
 
@@ -254,7 +316,10 @@ def _greens(cube: Cube, pair: Array, rule: Scattering | None) -> Iterator[Row]:
 def draw(cube: Cube, smooth: Cube, folder: Path) -> None:
     """Write a picture for each pair of colours, and one that compares other tools, by ``smooth``."""
     folder.mkdir(exist_ok=True)
-    by_name, parts = {mixer.name: mixer for mixer in mixers(cube)}, ramp(np.ones(2), STEPS)
+    by_name, parts = (
+        {mixer.name: mixer for mixer in mixers(cube)},
+        ramp(np.ones(2), STEPS),
+    )
     for name, pair in PAIRS.items():
         rgb = np.array([colour(cube, word) for word in pair])
         strips = {by_name[each].title: by_name[each].mix(rgb, parts) for each in DRAWN}
@@ -264,7 +329,14 @@ def draw(cube: Cube, smooth: Cube, folder: Path) -> None:
 
 def _plot(cube: Cube, strips: dict[str, Array], path: Path) -> None:
     sensor = cube.data.sensor
-    plot_strips([Strip(title, to_display_codes(rgb, sensor) / 255) for title, rgb in strips.items()], path, force=True)
+    plot_strips(
+        [
+            Strip(title, to_display_codes(rgb, sensor) / 255)
+            for title, rgb in strips.items()
+        ],
+        path,
+        force=True,
+    )
 
 
 def _tools(cube: Cube) -> dict[str, Array]:
@@ -277,7 +349,9 @@ def _tools(cube: Cube) -> dict[str, Array]:
         "mean of sRGB codes": np.clip(cube.decode(parts @ cube.encode(ends)), 0, 1),
         "uplift mix --scattering root": by_name["pigments, S = √R"].mix(ends, parts),
         "uplift mix": by_name["pigments"].mix(ends, parts),
-        "coloraide's spectral, after spectral.js (published)": np.concatenate([ends[:1], steps.expected, ends[1:]]),
+        "coloraide's spectral, after spectral.js (published)": np.concatenate(
+            [ends[:1], steps.expected, ends[1:]]
+        ),
         "Mixbox 1:1 (published)": np.concatenate([ends[:1], mixbox, ends[1:]]),
     }
 
@@ -292,11 +366,22 @@ def mixture_times(cube: Cube) -> Iterator[Row]:
     spectra, spectral_mixers = cube.reflectance(rgb), spectral_models(cube.data.sensor)
     for mixer in mixers(cube):
         pairs = zip(rgb[:CHECKED], parts[:CHECKED], strict=True)
-        if not np.allclose(mixer.mix(rgb[:CHECKED], parts[:CHECKED]), [mixer.mix(*pair) for pair in pairs], 0, 1e-9):
+        if not np.allclose(
+            mixer.mix(rgb[:CHECKED], parts[:CHECKED]),
+            [mixer.mix(*pair) for pair in pairs],
+            0,
+            1e-9,
+        ):
             raise RuntimeError(f"{mixer.title}: wrong result, nothing to time")
         between = spectral_mixers.get(mixer.name)
-        calls = {"rgb": partial(mixer.mix, rgb, parts), "spectra": between and partial(between[1], spectra, parts)}
-        times = {name: call and time_laps(call, LAP, RUNS).scaled(1e9 / MIXTURES) for name, call in calls.items()}
+        calls = {
+            "rgb": partial(mixer.mix, rgb, parts),
+            "spectra": between and partial(between[1], spectra, parts),
+        }
+        times = {
+            name: call and time_laps(call, LAP, RUNS).scaled(1e9 / MIXTURES)
+            for name, call in calls.items()
+        }
         yield {"mixer": mixer.title, **times}
 
 

@@ -10,7 +10,13 @@ from benchmarks import ATLASES, DOCS, record
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import Sensor, delta_e_rgb, observer
 from uplift.common.arrays import Array
-from uplift.design.palette import design, illuminant, matrix, read_palette, standard_model
+from uplift.design.palette import (
+    design,
+    illuminant,
+    matrix,
+    read_palette,
+    standard_model,
+)
 from uplift.design.palette.colours import exposure, screen_matrix
 from uplift.design.palette.factor import FactorModel, linear_product
 from uplift.design.palette.plots import plot_matrix, plot_spectra
@@ -58,7 +64,9 @@ def by_rgb(sensor: Sensor) -> Product:
 
 
 def by_factors(model: FactorModel) -> Product:
-    return lambda power, met: model.rgb(model.reflectance(met).prod(axis=1) * model.light(power))
+    return lambda power, met: model.rgb(
+        model.reflectance(met).prod(axis=1) * model.light(power)
+    )
 
 
 def unsharpened(model: FactorModel) -> Product:
@@ -66,7 +74,9 @@ def unsharpened(model: FactorModel) -> Product:
     back = np.linalg.inv(model.transform).T
 
     def product(power: Array, met: Array) -> Array:
-        coefficients = (model.reflectance(met) @ back).prod(axis=1) * (model.reflectance(power) @ back)
+        coefficients = (model.reflectance(met) @ back).prod(axis=1) * (
+            model.reflectance(power) @ back
+        )
         return model.rgb(coefficients @ model.transform.T)
 
     return product
@@ -75,7 +85,9 @@ def unsharpened(model: FactorModel) -> Product:
 def by_matrices(model: FactorModel) -> Product:
     """Return products of the Λ model; the light is the first factor, within the span."""
     return lambda power, met: model.rgb(
-        linear_product(model, model.reflectance(power), *np.moveaxis(model.reflectance(met), 1, 0))
+        linear_product(
+            model, model.reflectance(power), *np.moveaxis(model.reflectance(met), 1, 0)
+        )
     )
 
 
@@ -89,7 +101,10 @@ def main() -> None:
     """Draw the examples, measure and store."""
     sensor = observer.sensor()
     models = {count: standard_model(sensor, count) for count in COUNTS}
-    palettes = {name: design(read_palette(sample_path(f"{name}.toml")), models[DEFAULT]) for name in EXAMPLES}
+    palettes = {
+        name: design(read_palette(sample_path(f"{name}.toml")), models[DEFAULT])
+        for name in EXAMPLES
+    }
     for name, palette in palettes.items():
         plot_matrix(palette, matrix(palette), FOLDER / f"{name}-matrix.png", force=True)
     plot_spectra(palettes["metamers"], FOLDER / "metamers-spectra.png", force=True)
@@ -112,9 +127,21 @@ def by_bounces(paths: LightPaths, products: dict[str, Product]) -> list[dict[str
     """Return mean ΔE00 and 95th percentile by number of reflections, and the gain over RGB."""
     rows = []
     for name, product in products.items():
-        errors = {k: np.concatenate([paths.errors(product, light, k) for light in LIGHTS]) for k in BOUNCES}
-        pairs = {str(k): [float(one.mean()), float(np.percentile(one, 95))] for k, one in errors.items()}
-        rows.append({"product": name, "errors": pairs, "all": float(np.mean([one[0] for one in pairs.values()]))})
+        errors = {
+            k: np.concatenate([paths.errors(product, light, k) for light in LIGHTS])
+            for k in BOUNCES
+        }
+        pairs = {
+            str(k): [float(one.mean()), float(np.percentile(one, 95))]
+            for k, one in errors.items()
+        }
+        rows.append(
+            {
+                "product": name,
+                "errors": pairs,
+                "all": float(np.mean([one[0] for one in pairs.values()])),
+            }
+        )
     return [row | {"gain": rows[0]["all"] / row["all"]} for row in rows]
 
 

@@ -59,7 +59,9 @@ def main() -> None:
     order = [list(DENSITIES).index(material.name) for material in palette.materials]
     view = relighting("engine", designed, weights[..., order])
     lights = np.eye(len(view.lights))
-    row = np.concatenate([encode(np.clip(EXPOSURE * view.rgb(one), 0, 1)) for one in lights], axis=1)
+    row = np.concatenate(
+        [encode(np.clip(EXPOSURE * view.rgb(one), 0, 1)) for one in lights], axis=1
+    )
     imsave(FOLDER / "scan.jpg", row, pil_kwargs={"quality": 88})
     ball = relighting("engine", designed, cutaway(len(palette.materials), BALL))
     with tempfile.TemporaryDirectory() as folder, browser() as tab:
@@ -85,7 +87,10 @@ def main() -> None:
 
 def write_weights(weights: Array, path: Path) -> None:
     """Write an OpenEXR file with a channel for each material."""
-    channels = {name: np.ascontiguousarray(weights[..., row]) for row, name in enumerate(DENSITIES)}
+    channels = {
+        name: np.ascontiguousarray(weights[..., row])
+        for row, name in enumerate(DENSITIES)
+    }
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     OpenEXR.File(header, channels).write(str(path))
 
@@ -99,7 +104,9 @@ def scan(voxels: int = VOXELS) -> Array:
     opened = (y > -0.05) & (z > 0.04)
     bores = [(x - at) ** 2 + z**2 for at in BORES]
     hollow = np.logical_or.reduce([(one < 0.19**2) & (y > -0.3) for one in bores])
-    density[(abs(x) < 0.74) & (abs(y) < 0.42) & (abs(z) < 0.36) & ~hollow & ~opened] = DENSITIES["block"]
+    density[(abs(x) < 0.74) & (abs(y) < 0.42) & (abs(z) < 0.36) & ~hollow & ~opened] = (
+        DENSITIES["block"]
+    )
     for one, height in zip(bores, (0.08, -0.16, 0.2), strict=True):
         head = (one < 0.165**2) & (abs(y - height) < 0.11)
         rod = (one < 0.06**2) & (y < height) & (y > -0.62)
@@ -118,8 +125,12 @@ def cast(density: Array, side: int = SIDE) -> Array:
     weights = np.zeros((side, side, len(DENSITIES)), dtype=np.float32)
     passed = np.ones((side, side))
     for depth in range(side - 2, 0, -1):
-        shade, inside = _surface(smooth[:, :, depth - 1 : depth + 2], side / len(density))
-        opacities = _opacities(turned[:, :, depth]) * (inside * len(density) / side)[..., None]
+        shade, inside = _surface(
+            smooth[:, :, depth - 1 : depth + 2], side / len(density)
+        )
+        opacities = (
+            _opacities(turned[:, :, depth]) * (inside * len(density) / side)[..., None]
+        )
         weights += (passed * shade)[..., None] * opacities
         passed *= 1 - np.minimum(opacities.sum(axis=-1), 1)
     return np.asarray(weights.transpose(1, 0, 2)[::-1])
@@ -128,7 +139,10 @@ def cast(density: Array, side: int = SIDE) -> Array:
 def _opacities(layer: Array) -> Array:
     """Transfer function: opacity (side, side, 4) per voxel of each material, of densities (side, side)."""
     return np.stack(
-        [OPACITIES[name] * np.sqrt(np.maximum(1 - abs(layer - level) / WIDTH, 0)) for name, level in DENSITIES.items()],
+        [
+            OPACITIES[name] * np.sqrt(np.maximum(1 - abs(layer - level) / WIDTH, 0))
+            for name, level in DENSITIES.items()
+        ],
         axis=-1,
     )
 
@@ -138,8 +152,12 @@ def _surface(slab: Array, magnification: float) -> tuple[Array, Array]:
     slopes = (*np.gradient(slab[:, :, 1]), (slab[:, :, 2] - slab[:, :, 0]) / 2)
     steep = np.sqrt(sum(slope**2 for slope in slopes)) + np.finfo(np.float32).tiny
     light = LIGHT / np.linalg.norm(LIGHT)
-    facing = -sum(part * slope for part, slope in zip(light, slopes, strict=True)) / steep
-    return AMBIENT + (1 - AMBIENT) * np.maximum(facing, 0), 1 / (1 + (steep * magnification / EDGE) ** 2)
+    facing = (
+        -sum(part * slope for part, slope in zip(light, slopes, strict=True)) / steep
+    )
+    return AMBIENT + (1 - AMBIENT) * np.maximum(facing, 0), 1 / (
+        1 + (steep * magnification / EDGE) ** 2
+    )
 
 
 def _turn(density: Array, side: int) -> Array:

@@ -31,8 +31,18 @@ THRESHOLD = 1e-4
 DIM = 16
 SENSOR, LATTICE = observer.sensor(), Lattice(axis_nodes("srgb", DIM))
 """CIE 1931 observer, D65, linear sRGB; nodes of Ceres, spaced as sRGB."""
-OUR_MODELS = (("sigmoid", 3), ("moments", 3), ("moments", 5), ("moments", 9), ("moments", 17))
-OUR_BUILDS = (*product((16, 32), OUR_MODELS), (64, ("sigmoid", 3)), (64, ("moments", 9)))
+OUR_MODELS = (
+    ("sigmoid", 3),
+    ("moments", 3),
+    ("moments", 5),
+    ("moments", 9),
+    ("moments", 17),
+)
+OUR_BUILDS = (
+    *product((16, 32), OUR_MODELS),
+    (64, ("sigmoid", 3)),
+    (64, ("moments", 9)),
+)
 """Dim, model and coefficients."""
 RUNS, LIMIT = 3, 3600
 """Runs, and seconds after which a tool counts as hung."""
@@ -58,7 +68,9 @@ class Peer:
 def main() -> None:
     """Time each tool in a process without the compiled code or settings of the others, and store."""
     tools = (ceres, rgb2spec, ours)  # what may be missing comes first
-    solvers, tables, builds = (call_in_child(tool, RUNS, seconds=LIMIT) for tool in tools)
+    solvers, tables, builds = (
+        call_in_child(tool, RUNS, seconds=LIMIT) for tool in tools
+    )
     record("peers", runs=RUNS, threshold=THRESHOLD, peers=[*builds, *solvers, *tables])
 
 
@@ -68,10 +80,14 @@ def check_answers(rgb: Array, target: Array, *, least: float) -> dict[str, float
     Raises `RuntimeError` if fewer than the share ``least`` come within `THRESHOLD`: some tools leave a few nodes
     unfitted, with more a time means nothing.
     """
-    residual = np.nan_to_num(np.abs(rgb - target).max(axis=1), nan=np.inf, posinf=np.inf)
+    residual = np.nan_to_num(
+        np.abs(rgb - target).max(axis=1), nan=np.inf, posinf=np.inf
+    )
     share = float((residual <= THRESHOLD).mean())
     if share < least:
-        raise RuntimeError(f"wrong answer, not timed: {share:.1%} of the nodes are within {THRESHOLD:g}")
+        raise RuntimeError(
+            f"wrong answer, not timed: {share:.1%} of the nodes are within {THRESHOLD:g}"
+        )
     return {"share": share, "worst": float(residual.max())}
 
 
@@ -90,12 +106,26 @@ def ours(runs: int) -> list[Peer]:
 
     rows = []
     for dim, (name, count) in OUR_BUILDS:
-        build = partial(uplift.build, dim=dim, model=name, coefficients=count, prior="smooth")
+        build = partial(
+            uplift.build, dim=dim, model=name, coefficients=count, prior="smooth"
+        )
         cube = build()  # compiles
         cpu = time_calls(build, runs)[1].scaled(1e6 / dim**3)
-        spectra = reflectance(cube.data.model, cube.data.points.coefficients, SENSOR.wavelengths)
+        spectra = reflectance(
+            cube.data.model, cube.data.points.coefficients, SENSOR.wavelengths
+        )
         answer = check_answers(SENSOR.rgb(spectra), cube.data.lattice.points, least=1.0)
-        rows.append(Peer("uplift", name, count, dim**3, cpu, **answer, notes=f"{dim}³, compiled before"))
+        rows.append(
+            Peer(
+                "uplift",
+                name,
+                count,
+                dim**3,
+                cpu,
+                **answer,
+                notes=f"{dim}³, compiled before",
+            )
+        )
     return rows
 
 
@@ -103,7 +133,11 @@ CERES_SOURCE, CERES_BUILT = ROOT / "benchmarks" / "ceres", ROOT / "out" / "ceres
 CERES_NEEDS = "install Ceres, cmake and a C++ compiler: libceres-dev, cmake, g++"
 CERES_STEPS = 12
 """Iterations from each start. The default of Ceres, 50, doubles the time for moments and fits no more of them."""
-CERES_JOBS = (("sigmoid", 3, "sigmoid", 0.99), ("moments", 9, "moments", 0.5), ("moments", 9, "multipliers", 0.99))
+CERES_JOBS = (
+    ("sigmoid", 3, "sigmoid", 0.99),
+    ("moments", 9, "moments", 0.5),
+    ("moments", 9, "multipliers", 0.99),
+)
 """Model, coefficients, unknowns, and the minimum share of nodes that must be fitted."""
 UNKNOWNS = {"sigmoid": "", "moments": "in c, ", "multipliers": "in p, "}
 
@@ -113,41 +147,78 @@ def ceres(runs: int) -> list[Peer]:
 
     It grows from the middle of the lattice, every node from its fitted neighbours.
     """
-    _install(CERES_NEEDS, ["cmake", "-S", CERES_SOURCE, "-B", CERES_BUILT], ["cmake", "--build", CERES_BUILT])
+    _install(
+        CERES_NEEDS,
+        ["cmake", "-S", CERES_SOURCE, "-B", CERES_BUILT],
+        ["cmake", "--build", CERES_BUILT],
+    )
     return [_ceres_row(CERES_BUILT / "fit", *job, runs) for job in CERES_JOBS]
 
 
-def _ceres_row(program: Path, name: str, count: int, unknowns: str, least: float, runs: int) -> Peer:
+def _ceres_row(
+    program: Path, name: str, count: int, unknowns: str, least: float, runs: int
+) -> Peer:
     model, points = Sigmoid() if name == "sigmoid" else Moments(count), LATTICE.points
     done = [_run_ceres(program, unknowns, count) for _ in range(runs)]
     solution, facts = done[-1]
     multipliers = model.from_storage(solution) if unknowns == "moments" else solution
-    answer = check_answers(SENSOR.rgb(evaluate(model, multipliers, SENSOR.wavelengths)), points, least=least)
+    answer = check_answers(
+        SENSOR.rgb(evaluate(model, multipliers, SENSOR.wavelengths)),
+        points,
+        least=least,
+    )
     cpu = timing_stats([each["cpu"] for _, each in done]).scaled(1e6 / len(points))
     starts = facts["solves"] / len(points)
     notes = f"{DIM}³, {UNKNOWNS[unknowns]}numeric differences, C++; grown from the middle, {starts:.1f} starts a point"
-    return Peer(f"Ceres {facts['ceres']}", name, count, len(points), cpu, **answer, notes=notes)
+    return Peer(
+        f"Ceres {facts['ceres']}", name, count, len(points), cpu, **answer, notes=notes
+    )
 
 
-def _run_ceres(program: Path, unknowns: str, count: int) -> tuple[Array, dict[str, Any]]:
+def _run_ceres(
+    program: Path, unknowns: str, count: int
+) -> tuple[Array, dict[str, Any]]:
     """Return the solutions (n, count), and the statistics printed by the program."""
     numbers = np.concatenate([SENSOR.wavelengths, SENSOR.matrix.ravel(), LATTICE.nodes])
-    text = f"{len(SENSOR.wavelengths)} {DIM}\n" + "\n".join(map(repr, numbers.tolist())) + "\n"
+    text = (
+        f"{len(SENSOR.wavelengths)} {DIM}\n"
+        + "\n".join(map(repr, numbers.tolist()))
+        + "\n"
+    )
     with tempfile.TemporaryDirectory() as folder:
         scene, solution = Path(folder, "scene.txt"), Path(folder, "found")
         scene.write_text(text)
-        command = [str(program), str(scene), str(solution), unknowns, str(count), str(CERES_STEPS)]
+        command = [
+            str(program),
+            str(scene),
+            str(solution),
+            unknowns,
+            str(count),
+            str(CERES_STEPS),
+        ]
         # Ceres logs every step outside the moments of reflectances, which would be timed too.
         quiet = os.environ | {"GLOG_minloglevel": "3"}
-        done = subprocess.run(command, env=quiet, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
+        done = subprocess.run(
+            command,
+            env=quiet,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            check=True,
+        )
         return np.fromfile(solution).reshape(-1, count), json.loads(done.stdout)
 
 
 RGB2SPEC, RGB2SPEC_DIM = ROOT / "out" / "rgb2spec", 64
-RGB2SPEC_NEEDS = "get the source of rgb2spec by `make peers`, and install a C++ compiler: g++"
+RGB2SPEC_NEEDS = (
+    "get the source of rgb2spec by `make peers`, and install a C++ compiler: g++"
+)
 RGB2SPEC_VERSIONS = (
     ("e162107a2dfd7efe4384618ecd14e97d4a035685", "Gauss-Newton, double precision", 0.9),
-    ("30a97d414f7cdb1c2c553daf3b4a83c333e6365e", "Levenberg-Marquardt, single precision", 0.99),
+    (
+        "30a97d414f7cdb1c2c553daf3b4a83c333e6365e",
+        "Levenberg-Marquardt, single precision",
+        0.99,
+    ),
 )
 """Commit, method, and the minimum share of nodes that must be fitted."""
 RGB2SPEC_FLAGS = ("-O3 -DNDEBUG", "-O3 -DNDEBUG -march=native -ffast-math")
@@ -160,17 +231,35 @@ def rgb2spec(runs: int) -> list[Peer]:
     """Time the program that fits the tables of Jakob & Hanika 2019, with its own flags and with the fastest."""
     rows = []
     for (commit, method, least), flags in product(RGB2SPEC_VERSIONS, RGB2SPEC_FLAGS):
-        program, source = RGB2SPEC / "rgb2spec_opt", RGB2SPEC / commit / "rgb2spec_opt.cpp"
-        _install(RGB2SPEC_NEEDS, ["c++", *flags.split(), *RGB2SPEC_COMPILES, source, "-o", program])
+        program, source = (
+            RGB2SPEC / "rgb2spec_opt",
+            RGB2SPEC / commit / "rgb2spec_opt.cpp",
+        )
+        _install(
+            RGB2SPEC_NEEDS,
+            ["c++", *flags.split(), *RGB2SPEC_COMPILES, source, "-o", program],
+        )
         with tempfile.NamedTemporaryFile() as table:
             command = [program, str(RGB2SPEC_DIM), table.name]
-            fit = partial(subprocess.run, command, stdout=subprocess.DEVNULL, check=True)
+            fit = partial(
+                subprocess.run, command, stdout=subprocess.DEVNULL, check=True
+            )
             seconds = [children_cpu(fit) for _ in range(runs)]
             found, target = table_colours(Path(table.name))
         answer = check_answers(found, target, least=least)
         cpu = timing_stats(seconds).scaled(1e6 / len(target))
         notes = f"3 tables of {RGB2SPEC_DIM}³, {method}, C++, {flags}"
-        rows.append(Peer(f"rgb2spec {commit[:7]}", "sigmoid", 3, len(target), cpu, **answer, notes=notes))
+        rows.append(
+            Peer(
+                f"rgb2spec {commit[:7]}",
+                "sigmoid",
+                3,
+                len(target),
+                cpu,
+                **answer,
+                notes=notes,
+            )
+        )
     return rows
 
 
@@ -180,20 +269,38 @@ def table_sensor() -> Sensor:
     wavelengths = np.linspace(360, 830, 3 * (len(wide.wavelengths) - 1) + 1)
     weights = np.full(len(wavelengths), 3.0)
     weights[::3], weights[[0, -1]] = 2, 1
-    tables = [np.interp(wavelengths, wide.wavelengths, each) for each in (*wide.cmfs.T, wide.power)]
+    tables = [
+        np.interp(wavelengths, wide.wavelengths, each)
+        for each in (*wide.cmfs.T, wide.power)
+    ]
     cmfs, power = np.stack(tables[:3], axis=-1), tables[3] * weights
-    return replace(wide, wavelengths=wavelengths, cmfs=cmfs, power=power, xyz_to_rgb=XYZ_TO_RGB)
+    return replace(
+        wide, wavelengths=wavelengths, cmfs=cmfs, power=power, xyz_to_rgb=XYZ_TO_RGB
+    )
 
 
 def table_colours(path: Path) -> tuple[Array, Array]:
     """Return the linear RGB (n, 3) of the spectra in a table of rgb2spec, and those of its nodes."""
-    data = path.read_bytes()  # "SPEC", u32 dim, f32 scale[dim], f32 data[3][dim][dim][dim][3]
+    data = (
+        path.read_bytes()
+    )  # "SPEC", u32 dim, f32 scale[dim], f32 data[3][dim][dim][dim][3]
     dim = int.from_bytes(data[4:8], "little")
-    level, even = np.frombuffer(data, "<f4", dim, 8).astype(float), np.linspace(0, 1, dim)
-    planes = np.frombuffer(data, "<f4", 9 * dim**3, 8 + 4 * dim).astype(float).reshape(-1, dim * dim, 3)
+    level, even = (
+        np.frombuffer(data, "<f4", dim, 8).astype(float),
+        np.linspace(0, 1, dim),
+    )
+    planes = (
+        np.frombuffer(data, "<f4", 9 * dim**3, 8 + 4 * dim)
+        .astype(float)
+        .reshape(-1, dim * dim, 3)
+    )
     sensor = table_sensor()
-    found = [sensor.rgb(evaluate_unscaled(plane, sensor.wavelengths)) for plane in planes]
+    found = [
+        sensor.rgb(evaluate_unscaled(plane, sensor.wavelengths)) for plane in planes
+    ]
     # In table l component l is the level; components l + 2 and l + 1 (modulo 3) are even fractions of it.
     largest, last, middle = np.meshgrid(level, even, even, indexing="ij")
     target = np.stack([largest, middle * largest, last * largest], axis=-1)
-    return np.concatenate(found), np.concatenate([np.roll(target, each, axis=-1).reshape(-1, 3) for each in range(3)])
+    return np.concatenate(found), np.concatenate(
+        [np.roll(target, each, axis=-1).reshape(-1, 3) for each in range(3)]
+    )

@@ -40,15 +40,29 @@ def main() -> None:
     record(
         "performance",
         runs=RUNS,
-        dims=[time_build("moments", 9, dim, RUNS if dim <= MODEL_DIM else FEW_RUNS) for dim in DIMS],
-        models=[time_build(model, count, MODEL_DIM, FEW_RUNS) for model, count in MODELS],
+        dims=[
+            time_build("moments", 9, dim, RUNS if dim <= MODEL_DIM else FEW_RUNS)
+            for dim in DIMS
+        ],
+        models=[
+            time_build(model, count, MODEL_DIM, FEW_RUNS) for model, count in MODELS
+        ],
         processes=processes,
         bulk=time_bulk(cube),
     )
-    record("performance", "atlases", dim=MIXTURE_DIM, rows=[time_atlas(count) for count in MIXTURES])
+    record(
+        "performance",
+        "atlases",
+        dim=MIXTURE_DIM,
+        rows=[time_atlas(count) for count in MIXTURES],
+    )
     if compiler := shutil.which("cc"):
-        version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=True).stdout
-        colours = np.random.default_rng(1).random((PROGRAM_COLOURS, 3)).astype(np.float32)
+        version = subprocess.run(
+            [compiler, "--version"], capture_output=True, text=True, check=True
+        ).stdout
+        colours = (
+            np.random.default_rng(1).random((PROGRAM_COLOURS, 3)).astype(np.float32)
+        )
         cubes = (cube, _build(dim=32, model="sigmoid"))
         record(
             "performance",
@@ -71,7 +85,10 @@ def time_build(model: str, count: int, dim: int, runs: int) -> Row:
     """Time builds in this process, which has compiled."""
     build = partial(_build, dim=dim, model=model, coefficients=count)
     data = build().data
-    unfitted, worst = data.points.counts()["unfitted"], float(data.points.distance.max())
+    unfitted, worst = (
+        data.points.counts()["unfitted"],
+        float(data.points.distance.max()),
+    )
     if unfitted:
         raise RuntimeError(f"{unfitted} nodes are unfitted: nothing to time")
     wall, cpu = time_calls(build, runs)
@@ -92,14 +109,25 @@ def time_atlas(count: int) -> Row:
     from benchmarks.materials import SENSOR, materials
     from uplift.atlas import Atlas, Entry, shipped_atlases
 
-    known = np.concatenate([materials(each.path.stem).measured for each in shipped_atlases()])
+    known = np.concatenate(
+        [materials(each.path.stem).measured for each in shipped_atlases()]
+    )
     random, entries = np.random.default_rng(1), []
     for number in range(count):
         rows = random.integers(0, len(known), random.integers(2, 4))
-        logarithmic, weights = random.random() < 0.5, random.dirichlet(np.full(len(rows), 0.6))
-        mixed = np.exp(weights @ np.log(known[rows] + 1e-3)) if logarithmic else weights @ known[rows]
+        logarithmic, weights = (
+            random.random() < 0.5,
+            random.dirichlet(np.full(len(rows), 0.6)),
+        )
+        mixed = (
+            np.exp(weights @ np.log(known[rows] + 1e-3))
+            if logarithmic
+            else weights @ known[rows]
+        )
         entries.append(Entry(str(number), SENSOR.wavelengths, np.clip(mixed, 0, 1)))
-    _, cpu = time_calls(partial(uplift.build, Atlas(tuple(entries)), dim=MIXTURE_DIM), 1)
+    _, cpu = time_calls(
+        partial(uplift.build, Atlas(tuple(entries)), dim=MIXTURE_DIM), 1
+    )
     return {"entries": count, "cpu_s": cpu.median}
 
 
@@ -108,27 +136,56 @@ def time_processes() -> list[Row]:
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         for dim in DIMS:
-            command = [UPLIFT, "build", "--atlas", str(MACBETH), "--dim", str(dim), "-o", f"{folder}/{dim}.uplift"]
+            command = [
+                UPLIFT,
+                "build",
+                "--atlas",
+                str(MACBETH),
+                "--dim",
+                str(dim),
+                "-o",
+                f"{folder}/{dim}.uplift",
+            ]
             command += ["--force", "-q"]
             if dim == 32:
                 uncached = {"JAX_ENABLE_COMPILATION_CACHE": "false"}
                 what = f"uplift build --dim {dim}, compilation cache disabled"
                 rows.insert(0, (what, *time_process(command, RUNS, uncached)))
             runs = RUNS if dim < max(DIMS) else 1
-            caches = [{"JAX_COMPILATION_CACHE_DIR": f"{folder}/cache-{dim}-{run}"} for run in range(runs)]
-            walls, peaks = zip(*(time_process(command, 1, cache) for cache in caches), strict=True)
+            caches = [
+                {"JAX_COMPILATION_CACHE_DIR": f"{folder}/cache-{dim}-{run}"}
+                for run in range(runs)
+            ]
+            walls, peaks = zip(
+                *(time_process(command, 1, cache) for cache in caches), strict=True
+            )
             rows.append(
-                (f"uplift build --dim {dim}, first run", timing_stats([wall.median for wall in walls]), max(peaks))
+                (
+                    f"uplift build --dim {dim}, first run",
+                    timing_stats([wall.median for wall in walls]),
+                    max(peaks),
+                )
             )
             what = f"uplift build --dim {dim}, compiled before"
             rows.append((what, *time_process(command, runs, caches[0])))
     starts = {
         "python -c 'import numpy'": [sys.executable, "-c", "import numpy"],
-        "uplift query '#cc3319' --format json": [UPLIFT, "query", "#cc3319", "--format", "json"],
+        "uplift query '#cc3319' --format json": [
+            UPLIFT,
+            "query",
+            "#cc3319",
+            "--format",
+            "json",
+        ],
         "uplift --help": [UPLIFT, "--help"],
     }
-    rows += [(what, *time_process(command, 2 * RUNS)) for what, command in starts.items()]
-    return [{"what": what, "wall": wall, "megabytes": megabytes} for what, wall, megabytes in rows]
+    rows += [
+        (what, *time_process(command, 2 * RUNS)) for what, command in starts.items()
+    ]
+    return [
+        {"what": what, "wall": wall, "megabytes": megabytes}
+        for what, wall, megabytes in rows
+    ]
 
 
 def time_bulk(cube: Any) -> list[Row]:
@@ -143,8 +200,19 @@ def time_bulk(cube: Any) -> list[Row]:
         if not error <= MAX_ERROR:
             raise RuntimeError(f"error {error} exceeds {MAX_ERROR}: nothing to time")
         wall, cpu = time_calls(partial(sample, rgb), RUNS)
-        rates = {"million_per_s": BULK / wall.median / 1e6, "cpu_us": 1e6 * cpu.median / BULK}
-        rows.append({"threads": threads, "colours": BULK, "wall_s": wall, **rates, "error": error})
+        rates = {
+            "million_per_s": BULK / wall.median / 1e6,
+            "cpu_us": 1e6 * cpu.median / BULK,
+        }
+        rows.append(
+            {
+                "threads": threads,
+                "colours": BULK,
+                "wall_s": wall,
+                **rates,
+                "error": error,
+            }
+        )
     return rows
 
 
@@ -155,7 +223,9 @@ def time_header(cube: Any, mode: str, colours: Any) -> Row:
     data = cube.data
     found, rates = run_header(cube, mode, colours, RUNS)
     checked = colours[:CHECKED].astype(float)
-    worst = float(np.abs(found - cube.reflectance(checked, cube.wavelengths, mode=mode)).max())
+    worst = float(
+        np.abs(found - cube.reflectance(checked, cube.wavelengths, mode=mode)).max()
+    )
     if not worst <= MAX_DIFFERENCE:
         raise RuntimeError(f"{mode}: reflectances differ by {worst}: nothing to time")
     errors = delta_e_rgb(data.sensor, data.sensor.rgb(found), checked)
@@ -171,7 +241,9 @@ def time_header(cube: Any, mode: str, colours: Any) -> Row:
     }
 
 
-def run_header(cube: Any, mode: str, colours: Any, runs: int) -> tuple[Any, list[float]]:
+def run_header(
+    cube: Any, mode: str, colours: Any, runs: int
+) -> tuple[Any, list[float]]:
     """Return reflectances (CHECKED, N) of the first colours by the C header, and the CPU seconds of its functions."""
     from uplift.io.export import write_program
 
@@ -181,8 +253,16 @@ def run_header(cube: Any, mode: str, colours: Any, runs: int) -> tuple[Any, list
         write_program(cube.data, folder / "cube.h", mode=mode)
         colours.tofile(folder / "rgb")
         cube.wavelengths.astype(np.float32).tofile(folder / "at")
-        subprocess.run(["cc", *FLAGS, "-I.", str(source), "-o", "rates", "-lm"], cwd=folder, check=True)
+        subprocess.run(
+            ["cc", *FLAGS, "-I.", str(source), "-o", "rates", "-lm"],
+            cwd=folder,
+            check=True,
+        )
         command = ["./rates", "rgb", "at", str(runs), "found"]
-        done = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
-        found = np.fromfile(folder / "found", np.float32).reshape(CHECKED, -1).astype(float)
+        done = subprocess.run(
+            command, cwd=folder, check=True, capture_output=True, text=True
+        )
+        found = (
+            np.fromfile(folder / "found", np.float32).reshape(CHECKED, -1).astype(float)
+        )
     return found, [float(word) for word in done.stdout.split()[:-1]]

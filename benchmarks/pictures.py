@@ -46,8 +46,16 @@ def pictures() -> Iterator[Picture]:
     for name in ("astronaut.png", "coffee.png", "chelsea.png", "ihc.png", "rocket.jpg"):
         yield Picture(INSTALLED / "skimage" / "data" / name, "scikit-image")
     for name in ("china.jpg", "flower.jpg"):
-        yield Picture(INSTALLED / "sklearn" / "datasets" / "images" / name, "scikit-learn")
-    test_pattern = Path(colour.__file__).parent / "io" / "tests" / "resources" / "CMS_Test_Pattern.exr"
+        yield Picture(
+            INSTALLED / "sklearn" / "datasets" / "images" / name, "scikit-learn"
+        )
+    test_pattern = (
+        Path(colour.__file__).parent
+        / "io"
+        / "tests"
+        / "resources"
+        / "CMS_Test_Pattern.exr"
+    )
     yield Picture(test_pattern, "colour-science")
     portrait = Path(matplotlib.get_data_path()) / "sample_data" / "grace_hopper.jpg"
     yield Picture(portrait, "matplotlib")

@@ -57,8 +57,20 @@ class Case:
 
 
 CASES = (
-    Case(("still-life.png", "wood.png"), "paints.csv", ("D65", "A", "FL11"), 1.0, quick=False),
-    Case(("still-life.png", "wood.png"), "paints.csv", ("FL11", "HP1", "LED-RGB1"), 0.15, quick=False),
+    Case(
+        ("still-life.png", "wood.png"),
+        "paints.csv",
+        ("D65", "A", "FL11"),
+        1.0,
+        quick=False,
+    ),
+    Case(
+        ("still-life.png", "wood.png"),
+        "paints.csv",
+        ("FL11", "HP1", "LED-RGB1"),
+        0.15,
+        quick=False,
+    ),
     Case(("astronaut.png",), "macbeth.txt", TWO, 1.0),
     Case(("astronaut.png",), "macbeth.txt", TWO, 0.5, quick=False),
     Case(("coffee.png",), "macbeth.txt", FIVE, 1.0),
@@ -68,7 +80,13 @@ CASES = (
     Case(("chelsea.png",), "", ("D65", "D55"), 1.0),
 )
 """The front of the first case is shown."""
-LIMITS = {"margin": MARGIN, "floor": FLOOR, "ceiling": CEILING, "colours": MAX_LIST, "pixels": MAX_PIXELS}
+LIMITS = {
+    "margin": MARGIN,
+    "floor": FLOOR,
+    "ceiling": CEILING,
+    "colours": MAX_LIST,
+    "pixels": MAX_PIXELS,
+}
 
 
 def main() -> None:
@@ -77,7 +95,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         copy_samples(folder)
-        for source in [picture.path for picture in pictures()] + [ATLASES / "macbeth.txt", ATLASES / "babelcolor.txt"]:
+        for source in [picture.path for picture in pictures()] + [
+            ATLASES / "macbeth.txt",
+            ATLASES / "babelcolor.txt",
+        ]:
             shutil.copy(source, folder)
         scenes, plans = zip(*(run(folder, case) for case in CASES), strict=True)
     draw(plans[0])
@@ -96,7 +117,11 @@ def main() -> None:
 def run(folder: Path, case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
     """Plan a scene; return the figures of the page, and the plan."""
     (folder / "scene.toml").write_text(case.scene(), encoding="utf-8")
-    seconds = children_cpu(lambda: call(folder, f"plan scene.toml --force {'--quick' if case.quick else ''}"))
+    seconds = children_cpu(
+        lambda: call(
+            folder, f"plan scene.toml --force {'--quick' if case.quick else ''}"
+        )
+    )
     plan = json.loads((folder / "scene.plan.json").read_text(encoding="utf-8"))
     size = None
     if plan["build"]:
@@ -120,24 +145,39 @@ def run(folder: Path, case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def call(folder: Path, line: str) -> None:
     """Run a command of this package."""
-    subprocess.run([UPLIFT, *shlex.split(line)], cwd=folder, check=True, capture_output=True)
+    subprocess.run(
+        [UPLIFT, *shlex.split(line)], cwd=folder, check=True, capture_output=True
+    )
 
 
 def draw(plan: dict[str, Any]) -> None:
     """Draw error over memory and over samples for the front of a plan."""
-    axes = {"memory": ("cube file and pixels", format_size), "samples": ("samples per ray", "{:g}".format)}
+    axes = {
+        "memory": ("cube file and pixels", format_size),
+        "samples": ("samples per ray", "{:g}".format),
+    }
     styles = {True: (ACCENT, "D"), False: (INK, "o")}
 
     def point(row: int, each: dict[str, Any], key: str) -> Point:
         style = styles[each["name"] == plan["name"]]
-        return Point(row, each["name"], each[key], each["error"]["quantile"], *style, named=False)
+        return Point(
+            row, each["name"], each[key], each["error"]["quantile"], *style, named=False
+        )
 
     panels = [
-        Panel(f"ΔE00 over {key}", title, text, [point(*each, key) for each in enumerate(plan["front"])])
+        Panel(
+            f"ΔE00 over {key}",
+            title,
+            text,
+            [point(*each, key) for each in enumerate(plan["front"])],
+        )
         for key, (title, text) in axes.items()
     ]
     PICTURE.parent.mkdir(exist_ok=True)
-    legend = {"on the front": {"color": INK}, "chosen": {"color": ACCENT, "marker": "D"}}
+    legend = {
+        "on the front": {"color": INK},
+        "chosen": {"color": ACCENT, "marker": "D"},
+    }
     write_panels(panels, 2, PICTURE, legend, force=True)
 
 
@@ -159,14 +199,22 @@ def measure(images: list[Picture], space: str, dim: int) -> dict[str, Any]:
         difference = largest_difference(sparse[0], complete[0], picture)
         rows.append(compare(name, sparse, complete) | {"largest_delta_e": difference})
     rows.append(compare("all images", build(space, dim, images), complete))
-    return {"space": space, "dim": dim, "nodes": complete[0].data.lattice.size, "rows": rows}
+    return {
+        "space": space,
+        "dim": dim,
+        "nodes": complete[0].data.lattice.size,
+        "rows": rows,
+    }
 
 
 def build(space: str, dim: int, scene: list[Picture]) -> Measured:
     """Build a cube for images, or a complete one."""
     images = Images(tuple(picture.path for picture in scene)) if scene else None
     made: list[Cube] = []
-    _, cpu = time_calls(lambda: made.append(uplift.build(MACBETH, dim=dim, space=space, scene=images)), RUNS)
+    _, cpu = time_calls(
+        lambda: made.append(uplift.build(MACBETH, dim=dim, space=space, scene=images)),
+        RUNS,
+    )
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.uplift"
         made[-1].save(path)
@@ -195,7 +243,9 @@ def largest_difference(sparse: Cube, complete: Cube, picture: Picture) -> float:
     The colours are those of an image, as scenes read it: decoders of JPEG differ by a code value.
     """
     sensor = sparse.data.sensor
-    colours = np.concatenate(list(Images((picture.path,)).colours(picture.path, sensor)))
+    colours = np.concatenate(
+        list(Images((picture.path,)).colours(picture.path, sensor))
+    )
     sample = np.random.default_rng(0).permutation(colours)[:SAMPLE]
     ours, theirs = sparse.reflectance(sample), complete.reflectance(sample)
     lights = [light(name, sensor.observer, *sensor.range) for name in SCENE_LIGHTS]

@@ -43,7 +43,9 @@ ROUNDS = 5
 LIMIT = 3600
 """Seconds after which a variant counts as hung."""
 DEPTHS = (2, 5)
-PLAIN_CUBE, ATLAS_CUBE = (str(CUBES / f"moments-16{suffix}.uplift") for suffix in ("", "-macbeth"))
+PLAIN_CUBE, ATLAS_CUBE = (
+    str(CUBES / f"moments-16{suffix}.uplift") for suffix in ("", "-macbeth")
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +64,15 @@ def main() -> None:
     to_screen = {name: sensor(illuminant=name).xyz_to_rgb for name in LIGHTS}
     picture = DOCS / "render" / "charts.png"
     shown = (REFERENCE, MITSUBA, ATLAS)
-    checker.draw(renders.images, renders.delta_e, to_screen, shown, LAYOUT.middles(), picture, (10.5, 7.6))
+    checker.draw(
+        renders.images,
+        renders.delta_e,
+        to_screen,
+        shown,
+        LAYOUT.middles(),
+        picture,
+        (10.5, 7.6),
+    )
     record(
         "render",
         mitsuba=version,
@@ -98,10 +108,20 @@ def render(methods: dict[str, Reflectances], layout: Layout, spp: int) -> Render
     for name in LIGHTS:
         emitter, white = checker.constant_light(name), light(name).white
         for method, reflectances in methods.items():
-            images[name, method] = render_chart(emitter, reflectances, layout, spp, seed=0)
-        images[name, OTHER_SEED] = render_chart(emitter, methods[REFERENCE], layout, spp, seed=1)
-        labs = {method: lab(layout.means(images[name, method]), white) for method in (*methods, OTHER_SEED)}
-        delta_e |= {(name, method): delta_e_2000(labs[REFERENCE], values) for method, values in labs.items()}
+            images[name, method] = render_chart(
+                emitter, reflectances, layout, spp, seed=0
+            )
+        images[name, OTHER_SEED] = render_chart(
+            emitter, methods[REFERENCE], layout, spp, seed=1
+        )
+        labs = {
+            method: lab(layout.means(images[name, method]), white)
+            for method in (*methods, OTHER_SEED)
+        }
+        delta_e |= {
+            (name, method): delta_e_2000(labs[REFERENCE], values)
+            for method, values in labs.items()
+        }
     return Renders(images, delta_e)
 
 
@@ -110,19 +130,36 @@ def figures(painted: Chart, renders: Renders) -> dict[str, Any]:
     errors = renders.delta_e
 
     def means(name: str, method: str) -> list[float]:
-        return [float(errors[name, method].mean()), float(errors[name, method][~painted.outside].mean())]
+        return [
+            float(errors[name, method].mean()),
+            float(errors[name, method][~painted.outside].mean()),
+        ]
 
     def of_patch(row: int) -> dict[str, dict[str, float]]:
-        return {name: {"mitsuba": errors[name, MITSUBA][row], "cube": errors[name, ATLAS][row]} for name in LIGHTS}
+        return {
+            name: {
+                "mitsuba": errors[name, MITSUBA][row],
+                "cube": errors[name, ATLAS][row],
+            }
+            for name in LIGHTS
+        }
 
-    ratios = {name: np.divide(means(name, MITSUBA), means(name, ATLAS)).tolist() for name in LIGHTS[1:]}
+    ratios = {
+        name: np.divide(means(name, MITSUBA), means(name, ATLAS)).tolist()
+        for name in LIGHTS[1:]
+    }
     return {
-        "ratios": [{"light": name, "all": both[0], "in_gamut": both[1]} for name, both in ratios.items()],
+        "ratios": [
+            {"light": name, "all": both[0], "in_gamut": both[1]}
+            for name, both in ratios.items()
+        ],
         "means": [
             {"method": method, **{name: means(name, method) for name in LIGHTS}}
             for method in (MITSUBA, PLAIN, ATLAS, ATLAS_17, OTHER_SEED)
         ],
-        "patches": [{"patch": patch, **of_patch(row)} for row, patch in enumerate(painted.names)],
+        "patches": [
+            {"patch": patch, **of_patch(row)} for row, patch in enumerate(painted.names)
+        ],
     }
 
 
@@ -147,11 +184,16 @@ def measure_rates(variant: str) -> list[dict[str, Any]]:
 
     checker.start_mitsuba(variant)
     with tempfile.TemporaryDirectory() as folder:
-        textures = {name: mitsuba.load_dict(texture) for name, texture in _textures(Path(folder)).items()}
+        textures = {
+            name: mitsuba.load_dict(texture)
+            for name, texture in _textures(Path(folder)).items()
+        }
     return [row for depth in DEPTHS for row in _rows(variant, depth, textures)]
 
 
-def _rows(variant: str, depth: int, textures: dict[str, Any]) -> Iterator[dict[str, Any]]:
+def _rows(
+    variant: str, depth: int, textures: dict[str, Any]
+) -> Iterator[dict[str, Any]]:
     runs = {name: _rendering(texture, depth) for name, texture in textures.items()}
     seconds: dict[str, list[float]] = {name: [] for name in textures}
     for seed in range(ROUNDS + 1):
@@ -185,11 +227,19 @@ def _textures(folder: Path) -> dict[str, dict[str, Any]]:
 
     def convert(encoding: PixelEncoding) -> dict[str, Any]:
         target = folder / f"{encoding.name}.exr"
-        texture.convert(texture.prepare(uplift.load(PLAIN_CUBE), encoding), folder / "image.exr", target)
+        texture.convert(
+            texture.prepare(uplift.load(PLAIN_CUBE), encoding),
+            folder / "image.exr",
+            target,
+        )
         return {"type": "uplift", "filename": str(target)}
 
     spectra, multipliers = convert(texture.Spectrum()), convert(texture.Multipliers())
-    entries = {"type": "uplift", "cube": ATLAS_CUBE, "filename": str(folder / "image.exr")}
+    entries = {
+        "type": "uplift",
+        "cube": ATLAS_CUBE,
+        "filename": str(folder / "image.exr"),
+    }
     return {
         BITMAP: {"type": "bitmap", "bitmap": mitsuba.Bitmap(image)},
         "9 coefficients": multipliers,
@@ -203,7 +253,9 @@ def _textures(folder: Path) -> dict[str, dict[str, Any]]:
 def _image(size: int) -> Any:
     """Return tiles of random colours with noise, float32 (size, size, 3)."""
     rng = np.random.default_rng(8)
-    tiles = np.kron(0.05 + 0.9 * rng.random((16, 16, 3)), np.ones((size // 16, size // 16, 1)))
+    tiles = np.kron(
+        0.05 + 0.9 * rng.random((16, 16, 3)), np.ones((size // 16, size // 16, 1))
+    )
     return (tiles * (1 - 0.1 * rng.random((size, size, 1)))).astype(np.float32)
 
 
@@ -227,12 +279,21 @@ def _scene(texture: Any, size: int, depth: int) -> dict[str, Any]:
 
     paint = {"type": "diffuse", "reflectance": texture}
     view = mi.ScalarTransform4f().look_at([0, -1.2, 1.6], [0, 0, 0], [0, 0, 1])
-    film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
+    film = {
+        "type": "hdrfilm",
+        "width": size,
+        "height": size,
+        "rfilter": {"type": "box"},
+    }
     return {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": depth, "hide_emitters": True},
         "light": {"type": "constant"},
         "camera": {"type": "perspective", "fov": 45, "to_world": view, "film": film},
-        "plane": {"type": "rectangle", "to_world": mi.ScalarTransform4f().scale(2), "bsdf": paint},
+        "plane": {
+            "type": "rectangle",
+            "to_world": mi.ScalarTransform4f().scale(2),
+            "bsdf": paint,
+        },
         "ball": {"type": "sphere", "radius": 0.4, "center": [0, 0, 0.4], "bsdf": paint},
     }

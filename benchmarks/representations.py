@@ -15,7 +15,11 @@ from uplift.lab.comparison import compare
 from uplift.lab.comparison.compare import Comparison, Scene, TunedFilter
 from uplift.lab.comparison.pictures import write_boxes, write_costs
 from uplift.scene.representations import all_representations, samples
-from uplift.scene.representations.composite import ENHANCED_THRESHOLD, composite, enhanced_riemann
+from uplift.scene.representations.composite import (
+    ENHANCED_THRESHOLD,
+    composite,
+    enhanced_riemann,
+)
 from uplift.scene.representations.samples import Representation, linear
 
 OTHER_LIGHTS = ("LED-B3", "LED-RGB1", "HP1")
@@ -36,9 +40,14 @@ class Printed:
 
 def main() -> None:
     """Measure, draw and store."""
-    atlases = {path.stem: uplift.read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))}
+    atlases = {
+        path.stem: uplift.read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))
+    }
     default = compare.make_scene(atlases)
-    ours, others = (_compare(scene) for scene in (default, compare.make_scene(atlases, OTHER_LIGHTS)))
+    ours, others = (
+        _compare(scene)
+        for scene in (default, compare.make_scene(atlases, OTHER_LIGHTS))
+    )
     write_boxes(ours, DOCS / "representations" / "boxes.png", force=True)
     write_costs(ours, DOCS / "representations" / "cost.png", force=True)
     record(
@@ -58,7 +67,12 @@ def _compare(scene: Scene) -> Comparison:
 def printed_tables() -> dict[tuple[str, str], Printed]:
     """Return tables 6.1 and 6.2 of the thesis, by lights and representation."""
     rows = read_reference("representations_kment2011.csv")
-    return {(row["lights"], row["representation"]): Printed(float(row["mean"]), float(row["q97_5"])) for row in rows}
+    return {
+        (row["lights"], row["representation"]): Printed(
+            float(row["mean"]), float(row["q97_5"])
+        )
+        for row in rows
+    }
 
 
 def printed_filters() -> dict[tuple[str, int, str], Printed]:
@@ -74,17 +88,29 @@ def printed_filters() -> dict[tuple[str, int, str], Printed]:
 def advice(comparison: Comparison) -> Iterator[Row]:
     """Yield the cheapest representation for each set of lights and target, with and without tables of lights."""
     without = tuple(row for row in comparison.results if row.light_floats < TABLE)
-    kinds = {"cheapest": comparison, "without_light_table": replace(comparison, results=without)}
+    kinds = {
+        "cheapest": comparison,
+        "without_light_table": replace(comparison, results=without),
+    }
     for (name, title), target in product(comparison.sets.items(), TARGETS):
-        best = {key: compare.cheapest(each, name, target) for key, each in kinds.items()}
+        best = {
+            key: compare.cheapest(each, name, target) for key, each in kinds.items()
+        }
         named = {
-            key: row and {"name": row.name, "floats": row.floats, "light_floats": row.light_floats}
+            key: row
+            and {
+                "name": row.name,
+                "floats": row.floats,
+                "light_floats": row.light_floats,
+            }
             for key, row in best.items()
         }
         yield {"lights": title, "target": target, **named}
 
 
-def ranking(comparison: Comparison, thesis: Mapping[tuple[str, str], Printed]) -> Iterator[Row]:
+def ranking(
+    comparison: Comparison, thesis: Mapping[tuple[str, str], Printed]
+) -> Iterator[Row]:
     """Yield the errors and costs of every representation under each set of lights, smallest mean first."""
     names = ("mean", "std", "median", "p2_5", "p25", "p75", "p97_5")
     for row in comparison.results:
@@ -101,14 +127,26 @@ def ranking(comparison: Comparison, thesis: Mapping[tuple[str, str], Printed]) -
         }
 
 
-def filter_rows(tuned: Sequence[TunedFilter], thesis: Mapping[tuple[str, int, str], Printed]) -> list[Row]:
+def filter_rows(
+    tuned: Sequence[TunedFilter], thesis: Mapping[tuple[str, int, str], Printed]
+) -> list[Row]:
     """Return the best filter of each kind; ``change`` is relative to no filter, None for that row."""
-    unfiltered = {(one.lights, one.count): one.statistics.mean for one in tuned if one.kind == compare.NONE}
+    unfiltered = {
+        (one.lights, one.count): one.statistics.mean
+        for one in tuned
+        if one.kind == compare.NONE
+    }
     rows = []
     for one in tuned:
-        printed, bare = thesis[one.lights, one.count, one.kind], thesis[one.lights, one.count, compare.NONE]
+        printed, bare = (
+            thesis[one.lights, one.count, one.kind],
+            thesis[one.lights, one.count, compare.NONE],
+        )
         mean = one.statistics.mean
-        changes = (mean / unfiltered[one.lights, one.count] - 1, printed.mean / bare.mean - 1)
+        changes = (
+            mean / unfiltered[one.lights, one.count] - 1,
+            printed.mean / bare.mean - 1,
+        )
         ours, theirs = (None, None) if one.kind == compare.NONE else changes
         rows.append(
             {
@@ -119,7 +157,11 @@ def filter_rows(tuned: Sequence[TunedFilter], thesis: Mapping[tuple[str, int, st
                 "std": one.statistics.deviation,
                 "change": ours,
                 "parameters": one.parameters,
-                "thesis": {"mean": printed.mean, "change": theirs, "parameters": printed.parameters},
+                "thesis": {
+                    "mean": printed.mean,
+                    "change": theirs,
+                    "parameters": printed.parameters,
+                },
             }
         )
     return sorted(rows, key=lambda row: (row["lights"], row["samples"], row["mean"]))
@@ -130,7 +172,9 @@ def riemann_rows(scene: Scene, thesis: Mapping[tuple[str, str], Printed]) -> lis
 
     Closed cells are the literal reading of eq. 5.3: samples on a border count twice.
     """
-    pairs: list[tuple[Any, Any]] = [(samples.riemann_sums(count), closed(count)) for count in RIEMANN_COUNTS]
+    pairs: list[tuple[Any, Any]] = [
+        (samples.riemann_sums(count), closed(count)) for count in RIEMANN_COUNTS
+    ]
     pairs += [(enhanced_riemann(count), enhanced(count)) for count in RIEMANN_COUNTS]
     return [
         {
@@ -150,14 +194,22 @@ def closed(count: int) -> Representation:
     inside = _cells(count)
     encoder = np.zeros((len(samples.wavelengths()), count))
     encoder[:: samples.TABLE_STRIDE] = (inside / inside.sum(axis=1, keepdims=True)).T
-    weights = (inside / inside.sum(axis=0)) @ (samples.xyz_weights()[:: samples.TABLE_STRIDE] * samples.TABLE_STRIDE)
+    weights = (inside / inside.sum(axis=0)) @ (
+        samples.xyz_weights()[:: samples.TABLE_STRIDE] * samples.TABLE_STRIDE
+    )
     return linear(f"RS{count}", "Riemann sums, closed cells", encoder, weights)
 
 
 def enhanced(count: int) -> Representation:
     """Return enhanced sums over the same cells; a spike on a border is multiplied by the mean of both."""
     inside, family = _cells(count), "enhanced Riemann sums, closed cells"
-    return composite(f"RE{count}", family, closed(count), inside / inside.sum(axis=0), ENHANCED_THRESHOLD)
+    return composite(
+        f"RE{count}",
+        family,
+        closed(count),
+        inside / inside.sum(axis=0),
+        ENHANCED_THRESHOLD,
+    )
 
 
 def _cells(count: int) -> Array:

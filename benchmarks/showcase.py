@@ -18,7 +18,14 @@ from benchmarks.checker import BACKGROUND, Layout, chart, draw
 from tests.examples import build_wheel, run_lines, unpack
 from uplift.colorimetry import delta_e_2000, lab
 from uplift.colorimetry.lights import RELIGHT_LIGHTS
-from uplift.colorimetry.observer import DEFAULT_OBSERVER, grid, illuminant_spd, light, matching_functions, sensor
+from uplift.colorimetry.observer import (
+    DEFAULT_OBSERVER,
+    grid,
+    illuminant_spd,
+    light,
+    matching_functions,
+    sensor,
+)
 from uplift.colorimetry.srgb import encode
 from uplift.io.export import write_film
 from uplift.io.export.film import CAT16, LAYER_WIDTH, LAYERS
@@ -69,10 +76,18 @@ def session() -> list[dict[str, str]]:
         package = unpack(build_wheel(folder / "wheel"), folder / "package")
         outputs = []
         for line in SESSION:
-            outputs.append("".join(each["stderr"] + each["stdout"] for each in run_lines([line], package, folder)))
+            outputs.append(
+                "".join(
+                    each["stderr"] + each["stdout"]
+                    for each in run_lines([line], package, folder)
+                )
+            )
             if line.startswith("cd "):
                 folder /= line.removeprefix("cd ")
-    return [{"command": line, "output": output.strip("\n")} for line, output in zip(SESSION, outputs, strict=True)]
+    return [
+        {"command": line, "output": output.strip("\n")}
+        for line, output in zip(SESSION, outputs, strict=True)
+    ]
 
 
 def draw_charts(cubes: Cubes) -> list[dict[str, Any]]:
@@ -96,13 +111,33 @@ def draw_charts(cubes: Cubes) -> list[dict[str, Any]]:
         for name in METHODS:
             delta_e = delta_e_2000(truth, lab(xyz[name], lamp.white))
             inside = delta_e[~painted.outside]
-            rows[name][lamp.name] = {"all": delta_e.mean(), "inside": inside.mean(), "largest": delta_e.max()}
+            rows[name][lamp.name] = {
+                "all": delta_e.mean(),
+                "inside": inside.mean(),
+                "largest": delta_e.max(),
+            }
             errors[lamp.name, name] = delta_e
             images[lamp.name, name] = LAYOUT.paint(xyz[name], BACKGROUND * lamp.white)
-    draw(images, errors, to_screen, METHODS, LAYOUT.middles(), FOLDER / "charts.png", SIZE)
+    draw(
+        images,
+        errors,
+        to_screen,
+        METHODS,
+        LAYOUT.middles(),
+        FOLDER / "charts.png",
+        SIZE,
+    )
     shown = {name: to_screen[name] for name in TRUTH_LIGHTS}
     picture = FOLDER / "truth.png"
-    draw(images, errors, shown, (MEASURED, PRODUCT, ATLAS), LAYOUT.halves(), picture, TRUTH_SIZE)
+    draw(
+        images,
+        errors,
+        shown,
+        (MEASURED, PRODUCT, ATLAS),
+        LAYOUT.halves(),
+        picture,
+        TRUTH_SIZE,
+    )
     return [rows[name] for name in METHODS[1:]]
 
 
@@ -125,8 +160,14 @@ def draw_still_life(cubes: Cubes) -> None:
 
 def expose_film(cubes: Cubes) -> None:
     """Expose the chart on a film by tables, draw the layers as red, green and blue, and store the errors in stops."""
-    painted, daylight, luminous = chart(), light(FILM_LIGHT), matching_functions(DEFAULT_OBSERVER)[:, 1]
-    power = illuminant_spd(FILM_LIGHT) / (illuminant_spd(FILM_LIGHT) @ luminous / luminous.sum())
+    painted, daylight, luminous = (
+        chart(),
+        light(FILM_LIGHT),
+        matching_functions(DEFAULT_OBSERVER)[:, 1],
+    )
+    power = illuminant_spd(FILM_LIGHT) / (
+        illuminant_spd(FILM_LIGHT) @ luminous / luminous.sum()
+    )
     layers = np.exp(-0.5 * ((grid()[:, None] - LAYERS[::-1]) / LAYER_WIDTH) ** 2)
     exposures, figures = {MEASURED: painted.measured * power @ layers}, {}
     for name, cube in cubes.items():
@@ -135,21 +176,46 @@ def expose_film(cubes: Cubes) -> None:
             table = np.load(Path(folder) / "film.npy").astype(float) @ layers
         # As readers do: adapt to the light of the film, look up the chromaticity, scale by X + Y + Z.
         gain = (CAT16 @ daylight.white) / (CAT16 @ cube.data.sensor.light.white)
-        xyz = np.linalg.solve(CAT16, gain[:, None] * (CAT16 @ cube.data.sensor.xyz(painted.painted).T))
+        xyz = np.linalg.solve(
+            CAT16, gain[:, None] * (CAT16 @ cube.data.sensor.xyz(painted.painted).T)
+        )
         (x, y, _), total = xyz / xyz.sum(axis=0), xyz.sum(axis=0)
         places = np.array([(1 - x) ** 2, y / (1 - x)]) * (len(table) - 1)
-        found = np.stack([map_coordinates(table[..., each], places, order=1) for each in range(3)], axis=1)
+        found = np.stack(
+            [map_coordinates(table[..., each], places, order=1) for each in range(3)],
+            axis=1,
+        )
         exposures[name] = found * total[:, None]
         stops = np.abs(np.log2(exposures[name] / exposures[MEASURED])).mean(axis=1)
-        figures[name] = {"stated": stated, "mean": stops.mean(), "largest": stops.max(), "patches": stops.tolist()}
+        figures[name] = {
+            "stated": stated,
+            "mean": stops.mean(),
+            "largest": stops.max(),
+            "patches": stops.tolist(),
+        }
     figure = new_figure(*FILM_SIZE)
-    for axes, (name, exposure) in zip(figure.subplots(1, len(exposures)), exposures.items(), strict=True):
+    for axes, (name, exposure) in zip(
+        figure.subplots(1, len(exposures)), exposures.items(), strict=True
+    ):
         image = LAYOUT.paint(exposure / (power @ layers), np.full(3, BACKGROUND))
         for number, place in enumerate(LAYOUT.patches()):
             if name in figures:
-                corner, dark = (place[1].start + 2, place[0].stop - 3), image[place].mean() < 0.25
-                axes.text(*corner, f"{figures[name]['patches'][number]:.2f}", fontsize=8, color="w" if dark else "k")
+                corner, dark = (
+                    (place[1].start + 2, place[0].stop - 3),
+                    image[place].mean() < 0.25,
+                )
+                axes.text(
+                    *corner,
+                    f"{figures[name]['patches'][number]:.2f}",
+                    fontsize=8,
+                    color="w" if dark else "k",
+                )
         show_image(axes, encode(np.clip(image, 0, 1)), interpolation="nearest")
         axes.set_title(name)
     write_png(figure, FOLDER / "film.png", force=True)
-    record("showcase", "film", light=FILM_LIGHT, cubes=[{"cube": name, **each} for name, each in figures.items()])
+    record(
+        "showcase",
+        "film",
+        light=FILM_LIGHT,
+        cubes=[{"cube": name, **each} for name, each in figures.items()],
+    )

@@ -12,14 +12,32 @@ from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.arrays import Array
 from uplift.lab.chart.measure import perturb_method, select_methods
 from uplift.lab.study.plots import plot_locality, plot_map
-from uplift.lab.study.sensitivity import COLOURS, MOVED_DELTA_E, NOISE, perturb, study_sensitivity
-from uplift.lab.study.stability import NO_ATLAS, SYNTHETIC_ATLASES, DesignSpace, study_stability
+from uplift.lab.study.sensitivity import (
+    COLOURS,
+    MOVED_DELTA_E,
+    NOISE,
+    perturb,
+    study_sensitivity,
+)
+from uplift.lab.study.stability import (
+    NO_ATLAS,
+    SYNTHETIC_ATLASES,
+    DesignSpace,
+    study_stability,
+)
 from uplift.lookup import Cube
 from uplift.pipeline.rebuild import recorded_atlas
 
 FOLDER = DOCS / "stability"
 PLAIN, CONSTRAINED = "moments-16", "moments-16-macbeth"
-STORED = (PLAIN, CONSTRAINED, "sigmoid-16", "sigmoid-16-macbeth", "moments-8", "sigmoid-8")
+STORED = (
+    PLAIN,
+    CONSTRAINED,
+    "sigmoid-16",
+    "sigmoid-16-macbeth",
+    "moments-8",
+    "sigmoid-8",
+)
 """Stored cubes; the page lists the first two, and the atlas of the second one is changed."""
 ENTRIES = 24
 PUBLISHED = ("otsu2018", "mallett2019", "smits1999")
@@ -51,22 +69,43 @@ def main() -> None:
         constrained=CONSTRAINED,
         map=failure_map(),
         cubes=cubes,
-        atlas_changes=[summary(title, part, cubes[CONSTRAINED]["changes"]) for title, part in KINDS.items()],
+        atlas_changes=[
+            summary(title, part, cubes[CONSTRAINED]["changes"])
+            for title, part in KINDS.items()
+        ],
     )
 
 
 def published() -> None:
     """Measure how the packaged cube and published methods answer moved queries, and store it."""
     light = observer.light(NARROW_BAND_LIGHT)
-    ours = [move | {"mode": "packaged cube"} for move in perturb(uplift.load(), light) if move["mode"] == "spectra"]
-    others = [move for method in select_methods(PUBLISHED) for move in perturb_method(method, light)]
-    record("stability", "stability-published", light=NARROW_BAND_LIGHT, queries=COLOURS, moves=ours + others)
+    ours = [
+        move | {"mode": "packaged cube"}
+        for move in perturb(uplift.load(), light)
+        if move["mode"] == "spectra"
+    ]
+    others = [
+        move
+        for method in select_methods(PUBLISHED)
+        for move in perturb_method(method, light)
+    ]
+    record(
+        "stability",
+        "stability-published",
+        light=NARROW_BAND_LIGHT,
+        queries=COLOURS,
+        moves=ours + others,
+    )
 
 
 def failure_map() -> list[dict[str, Any]]:
     """Run the builds of the design, and plot them."""
-    atlases = {"macbeth": uplift.read_atlas("macbeth")} | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
-    results = study_stability(DesignSpace(atlases=(NO_ATLAS, *atlases)).configs(), atlases, show)
+    atlases = {"macbeth": uplift.read_atlas("macbeth")} | {
+        name: make() for name, make in SYNTHETIC_ATLASES.items()
+    }
+    results = study_stability(
+        DesignSpace(atlases=(NO_ATLAS, *atlases)).configs(), atlases, show
+    )
     plot_map(list(results.values()), FOLDER / "map.png", force=True)
     return [row | {"technique": config.model_label} for config, row in results.items()]
 
@@ -91,7 +130,9 @@ def summary(title: str, part: str, changes: list[dict[str, Any]]) -> dict[str, A
         "builds": len(kind),
         "moved": sum(one["moved"] for one in kind) / len(kind),
         "most_moved": {"share": worst["moved"], "change": worst["change"]},
-        "lab_radius": None if worst["lab_radius"] is None else max(one["lab_radius"] for one in kind),
+        "lab_radius": None
+        if worst["lab_radius"] is None
+        else max(one["lab_radius"] for one in kind),
         "delta_e": max(one["delta_e_most"] for one in kind),
         "rms": max(one["rms_mean"] for one in kind),
     }
@@ -102,24 +143,48 @@ def exports() -> None:
     rows: list[Row] = []
     for space in SPACES:
         for count, entry_count, atlas in EXPORTED:
-            cube = uplift.build(atlas, space=space, dim=EXPORT_DIM, coefficients=count, entry_coefficients=entry_count)
+            cube = uplift.build(
+                atlas,
+                space=space,
+                dim=EXPORT_DIM,
+                coefficients=count,
+                entry_coefficients=entry_count,
+            )
             rgb = realisable(cube)
             rows += [
-                {"space": space, "coefficients": count, "entries": entry_count if atlas else None, "mode": mode}
+                {
+                    "space": space,
+                    "coefficients": count,
+                    "entries": entry_count if atlas else None,
+                    "mode": mode,
+                }
                 | difference(cube, mode, rgb)
                 for mode in MODES
             ]
-    record("stability", "exports", dim=EXPORT_DIM, colours=CHECKED, visible=VISIBLE, rows=rows)
+    record(
+        "stability",
+        "exports",
+        dim=EXPORT_DIM,
+        colours=CHECKED,
+        visible=VISIBLE,
+        rows=rows,
+    )
 
 
 def realisable(cube: Cube) -> Array:
     """Return random colours (CHECKED, 3), float32, farther inside the solid than the threshold."""
     rgb = np.random.default_rng(0).uniform(0, 1, (4 * CHECKED, 3)).astype(np.float32)
-    return rgb[cube.data.solid.signed_distance(rgb.astype(float)) < -cube.data.threshold][:CHECKED]
+    return rgb[
+        cube.data.solid.signed_distance(rgb.astype(float)) < -cube.data.threshold
+    ][:CHECKED]
 
 
 def difference(cube: Cube, mode: str, rgb: Array) -> Row:
     """Return the largest and mean difference of reflectances of each colour, and the share of visible ones."""
     found, _ = run_header(cube, mode, rgb, 0)
     error = np.abs(found - cube.reflectance(rgb.astype(float), mode=mode)).max(axis=1)
-    return {"largest": error.max(), "mean": error.mean(), "visible": (error > VISIBLE).mean()}
+    return {
+        "largest": error.max(),
+        "mean": error.mean(),
+        "visible": (error > VISIBLE).mean(),
+    }

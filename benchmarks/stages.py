@@ -52,19 +52,43 @@ def main() -> None:
         texture = ["texture", str(sample_path(SAMPLE)), "-o"]
         build = ["build", "--atlas", str(MACBETH), "--force", "-q", "--dim"]
         commands: dict[str, tuple[list[str], dict[str, str]]] = {
-            **{f"build --dim {dim}": ([*build, str(dim), "-o", f"{folder}/x.uplift"], BUILD) for dim in (32, 64, 128)},
-            "relight -o page.html": (["relight", "-o", f"{folder}/page.html", "--force"], RELIGHT),
-            "relight -o lit.exr": (["relight", "-o", f"{folder}/lit.exr", "--force"], RELIGHT),
-            f"texture {SAMPLE}": ([*texture, f"{folder}/texture.exr", "--force"], TEXTURE),
+            **{
+                f"build --dim {dim}": (
+                    [*build, str(dim), "-o", f"{folder}/x.uplift"],
+                    BUILD,
+                )
+                for dim in (32, 64, 128)
+            },
+            "relight -o page.html": (
+                ["relight", "-o", f"{folder}/page.html", "--force"],
+                RELIGHT,
+            ),
+            "relight -o lit.exr": (
+                ["relight", "-o", f"{folder}/lit.exr", "--force"],
+                RELIGHT,
+            ),
+            f"texture {SAMPLE}": (
+                [*texture, f"{folder}/texture.exr", "--force"],
+                TEXTURE,
+            ),
         }
         rows = []
-        call_in_child(run, [*build, "8", "-o", f"{folder}/x.uplift"], BUILD, seconds=LIMIT)
+        call_in_child(
+            run, [*build, "8", "-o", f"{folder}/x.uplift"], BUILD, seconds=LIMIT
+        )
         for command, (arguments, stages) in commands.items():
             count = RUNS if LARGE not in arguments else 1
-            runs = [call_in_child(run, arguments, stages, seconds=LIMIT) for _ in range(count)]
+            runs = [
+                call_in_child(run, arguments, stages, seconds=LIMIT)
+                for _ in range(count)
+            ]
             for stage in runs[0]:
                 rows.append(
-                    {"command": command, "stage": stage, "cpu_s": timing_stats([each.get(stage, 0) for each in runs])}
+                    {
+                        "command": command,
+                        "stage": stage,
+                        "cpu_s": timing_stats([each.get(stage, 0) for each in runs]),
+                    }
                 )
     record("stages", runs=RUNS, rows=rows)
 
@@ -99,7 +123,10 @@ def run(arguments: list[str], stages: dict[str, str]) -> dict[str, float]:
         _replace(place, lambda function, stage=stage: clocked(function, stage))
     if arguments[0] == "build":
         program, kernel = PROGRAMS
-        _replace(program, lambda make: functools.cache(lambda *given: _first(make(*given), clocked)))
+        _replace(
+            program,
+            lambda make: functools.cache(lambda *given: _first(make(*given), clocked)),
+        )
         _replace(kernel, lambda function: _first(function, clocked))
     times["imports"] = begin = time.process_time()
     command_line(arguments, prog_name="uplift", standalone_mode=False)
@@ -107,7 +134,9 @@ def run(arguments: list[str], stages: dict[str, str]) -> dict[str, float]:
     return dict(times)
 
 
-def _first(function: Callable[..., Any], clocked: Callable[..., Any]) -> Callable[..., Any]:
+def _first(
+    function: Callable[..., Any], clocked: Callable[..., Any]
+) -> Callable[..., Any]:
     """Count the first call of a function that JAX traces as a stage."""
     calls = iter([clocked(function, "tracing")])
     return lambda *given: next(calls, function)(*given)

@@ -31,22 +31,38 @@ FORMS: tuple[tuple[str, PixelEncoding, str], ...] = (
 )
 ROWS = 64
 """Rows per call of colour-science, which limits its memory."""
-GRIDS = ((380, 780, 5), (400, 700, 5), (380, 780, 10), (400, 700, 10), (380, 780, 20), (400, 700, 20))
+GRIDS = (
+    (380, 780, 5),
+    (400, 700, 5),
+    (380, 780, 10),
+    (400, 700, 10),
+    (380, 780, 20),
+    (400, 700, 20),
+)
 """First, last, step in nm."""
 
 
-def round_trips(cube: Cube, images: list[Picture], target: Path) -> Iterator[dict[str, Any]]:
+def round_trips(
+    cube: Cube, images: list[Picture], target: Path
+) -> Iterator[dict[str, Any]]:
     """Yield ΔE00 between each image and its textures, read by OpenEXR and, where spectral, by colour-science."""
-    uplifters = [(name, form, texture.prepare(cube, form, depth=depth)) for name, form, depth in FORMS]
+    uplifters = [
+        (name, form, texture.prepare(cube, form, depth=depth))
+        for name, form, depth in FORMS
+    ]
     for picture in images:
         linear = np.clip(picture.linear(), 0, 1)
         errors, colour_science = {}, {}
         for name, form, uplifter in uplifters:
             texture.convert(uplifter, picture.path, target, force=True)
-            found = delta_e_rgb(cube.data.sensor, linear, _rgb(cube, form, uplifter.channels, target))
+            found = delta_e_rgb(
+                cube.data.sensor, linear, _rgb(cube, form, uplifter.channels, target)
+            )
             errors[name] = [float(found.mean()), float(found.max())]
             if isinstance(form, texture.Spectrum):
-                found = delta_e_rgb(cube.data.sensor, linear, _rgb_by_colour_science(target))
+                found = delta_e_rgb(
+                    cube.data.sensor, linear, _rgb_by_colour_science(target)
+                )
                 colour_science[name] = float(found.mean())
         yield {
             "image": f"{picture.path.name} ({picture.package})",
@@ -68,7 +84,9 @@ def _rgb(cube: Cube, form: PixelEncoding, names: tuple[str, ...], path: Path) ->
         if isinstance(model, Moments) and isinstance(form, texture.Moments):
             numbers, valid = multipliers_of_rounded(model, numbers)
             if not valid.all():
-                raise ValueError(f"{path}: {(~valid).sum()} pixels hold no moments of a reflectance")
+                raise ValueError(
+                    f"{path}: {(~valid).sum()} pixels hold no moments of a reflectance"
+                )
         if not isinstance(form, texture.Spectrum):
             numbers = evaluate(model, numbers, sensor.wavelengths)
         blocks.append(sensor.rgb(numbers))
@@ -80,15 +98,22 @@ def _rgb_by_colour_science(path: Path) -> Array:
     io = colour.io.fichet2021
     with warnings.catch_warnings(action="ignore"):
         at, values = io.read_spectral_image_Fichet2021(path)["T"]
-        blocks = [values[first : first + ROWS].astype(float) for first in range(0, len(values), ROWS)]
-        return np.concatenate([io.components_to_sRGB_Fichet2021({"T": (at, rows)})[0] for rows in blocks])
+        blocks = [
+            values[first : first + ROWS].astype(float)
+            for first in range(0, len(values), ROWS)
+        ]
+        return np.concatenate(
+            [io.components_to_sRGB_Fichet2021({"T": (at, rows)})[0] for rows in blocks]
+        )
 
 
 def fewer_wavelengths(
     cube: Cube, images: list[Picture], target: Path, first: int, last: int, step: int
 ) -> dict[str, Any]:
     """Return ΔE00 of half-float spectra at first:last:step nm, converted back by colour-science."""
-    wavelengths = tuple(float(wavelength) for wavelength in range(first, last + 1, step))
+    wavelengths = tuple(
+        float(wavelength) for wavelength in range(first, last + 1, step)
+    )
     uplifter = texture.prepare(cube, texture.Spectrum(wavelengths))
     means, worst = [], 0.0
     for picture in images:
@@ -98,7 +123,8 @@ def fewer_wavelengths(
         means.append(float(errors.mean()))
         worst = max(worst, float(errors.max()))
     return {
-        "wavelengths": f"{first}:{last}:{step}" + (", the default" if (first, last, step) == GRIDS[0] else ""),
+        "wavelengths": f"{first}:{last}:{step}"
+        + (", the default" if (first, last, step) == GRIDS[0] else ""),
         "channels": len(wavelengths),
         "bytes": 2 * (len(wavelengths) + 3),
         "lowest_mean": min(means),
@@ -124,24 +150,42 @@ def _write(path: Path, size: int) -> None:
     import OpenImageIO
     from PIL import Image
 
-    photo = np.asarray(Image.open(next(iter(pictures())).path).convert("RGB"), dtype=int)
+    photo = np.asarray(
+        Image.open(next(iter(pictures())).path).convert("RGB"), dtype=int
+    )
     rng, height = np.random.default_rng(0), photo.shape[0]
     tiled = np.tile(photo, (1, size // photo.shape[1], 1))
     image = OpenImageIO.ImageOutput.create("png")
-    if image is None or not image.open(str(path), OpenImageIO.ImageSpec(size, size, 3, "uint8")):
+    if image is None or not image.open(
+        str(path), OpenImageIO.ImageSpec(size, size, 3, "uint8")
+    ):
         raise RuntimeError(OpenImageIO.geterror())
     for first in range(0, size, height):
-        noisy = np.clip(tiled + rng.integers(-3, 4, tiled.shape), 0, 255).astype(np.uint8)
+        noisy = np.clip(tiled + rng.integers(-3, 4, tiled.shape), 0, 255).astype(
+            np.uint8
+        )
         image.write_scanlines(first, first + height, 0, noisy)
     image.close()
 
 
-def time_textures(cube: Path, size: int, options: tuple[str, ...], runs: int) -> dict[str, Any]:
+def time_textures(
+    cube: Path, size: int, options: tuple[str, ...], runs: int
+) -> dict[str, Any]:
     """Time a process that uplifts size² pixels."""
     with tempfile.TemporaryDirectory() as folder:
         source, target = Path(folder) / "in.png", Path(folder) / "out.exr"
         _write(source, size)
-        command = [UPLIFT, "texture", str(source), "-o", str(target), "--cube", str(cube), "--force", *options]
+        command = [
+            UPLIFT,
+            "texture",
+            str(source),
+            "-o",
+            str(target),
+            "--cube",
+            str(cube),
+            "--force",
+            *options,
+        ]
         wall, megabytes = time_process(command, runs)
         return {
             "options": " ".join(options) or "none: spectra at 81 wavelengths",

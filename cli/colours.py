@@ -62,7 +62,9 @@ class ColourSource:
     @property
     def single(self) -> bool:
         """Whether there is one colour, and not a file of them."""
-        return self.path is None and (self.xyz is not None or len(_parse_words(self.words)) == 1)
+        return self.path is None and (
+            self.xyz is not None or len(_parse_words(self.words)) == 1
+        )
 
     def blocks(self, sensor: Sensor, *, bounded: bool = False) -> Iterable[Array]:
         """Return blocks of linear RGB (n, 3) from the words or the file, which must lie in [0, 1] if ``bounded``."""
@@ -78,11 +80,17 @@ class ColourSource:
     def _read(self, path: str, sensor: Sensor, bounded: bool) -> Iterator[Array]:
         try:
             with click.open_file(path, "rb") as file:
-                yield from self.parse_table(file, "standard input" if path == "-" else path, sensor, bounded)
+                yield from self.parse_table(
+                    file, "standard input" if path == "-" else path, sensor, bounded
+                )
         except OSError as error:
-            raise ColourError(f"cannot be read: {error.strerror}", path=path, hint=TABLE) from error
+            raise ColourError(
+                f"cannot be read: {error.strerror}", path=path, hint=TABLE
+            ) from error
 
-    def parse_table(self, file: IO[bytes], name: str, sensor: Sensor, bounded: bool = False) -> Iterator[Array]:
+    def parse_table(
+        self, file: IO[bytes], name: str, sensor: Sensor, bounded: bool = False
+    ) -> Iterator[Array]:
         """Parse lines of 'r,g,b' or hex colours into blocks of linear RGB (n, 3), as the lines come.
 
         Cells are separated by commas, semicolons, tabs or blanks, and numbers may have decimal commas. A first line
@@ -106,9 +114,15 @@ class ColourSource:
                 empty = False
                 yield self._linear(colours, sensor)
         if empty:
-            raise ColourError("has no colours", path=name, hint="give lines of r,g,b or of hex colours")
+            raise ColourError(
+                "has no colours",
+                path=name,
+                hint="give lines of r,g,b or of hex colours",
+            )
 
-    def _check_range(self, colour: Colour, text: str, name: str, line: int, bounded: bool) -> None:
+    def _check_range(
+        self, colour: Colour, text: str, name: str, line: int, bounded: bool
+    ) -> None:
         """Check the range as the cube does, but report the line."""
         from uplift.colorimetry.sensor import SLACK
 
@@ -121,9 +135,13 @@ class ColourSource:
         elif bounded:
             if not all(-SLACK <= number <= 1 + SLACK for number in numbers):
                 problem = f"linear RGB must be in [0, 1], got {values}"
-                raise ColourError(problem, code="rgb-out-of-gamut", path=name, line=line)
+                raise ColourError(
+                    problem, code="rgb-out-of-gamut", path=name, line=line
+                )
         elif not all(map(math.isfinite, numbers)):
-            raise ColourError(f"{values} is not finite", path=name, line=line, hint=SYNTAX)
+            raise ColourError(
+                f"{values} is not finite", path=name, line=line, hint=SYNTAX
+            )
 
     def _linear(self, colours: list[Colour], sensor: Sensor) -> Array:
         """Decode codes, and convert colours of another space to the sensor's."""
@@ -158,20 +176,29 @@ def find_colours(
     if colour == ("-",):
         colour, input_path = (), input_path or "-"
     if (xy is None) != (luminance is None) or (xyz is not None and xy is not None):
-        raise click.UsageError("--xy X Y and --luminance Y require each other, and --xyz is an alternative.")
+        raise click.UsageError(
+            "--xy X Y and --luminance Y require each other, and --xyz is an alternative."
+        )
     if xy is not None and luminance is not None:
         x, y = xy
         if not y > 0:
-            raise ColourError(f"y of a chromaticity must be positive, got {y:g}", hint="give CIE x and y")
+            raise ColourError(
+                f"y of a chromaticity must be positive, got {y:g}",
+                hint="give CIE x and y",
+            )
         xyz = x * luminance / y, luminance, (1 - x - y) * luminance / y
     if (xyz is not None) + bool(colour) + (input_path is not None) != 1:
         raise click.UsageError("Give colours, --input FILE, '-', --xyz or --xy.")
     return ColourSource(colour, input_path, xyz, encoded, space)
 
 
-def _row_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, str, list[str]]]]:
+def _row_blocks(
+    file: IO[bytes], name: str
+) -> Iterator[list[tuple[int, str, list[str]]]]:
     """Yield line numbers, texts and cells in blocks, each as soon as it can be read: a stream may never end."""
-    decoder = io.IncrementalNewlineDecoder(codecs.getincrementaldecoder("utf-8-sig")(), translate=True)
+    decoder = io.IncrementalNewlineDecoder(
+        codecs.getincrementaldecoder("utf-8-sig")(), translate=True
+    )
     read = getattr(file, "read1", file.read)
     first, rest, at_end = 1, "", False
     while not at_end:
@@ -184,15 +211,25 @@ def _row_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, str, lis
         numbered = list(enumerate([*lines, rest], first))
         for line, text in numbered:
             if len(text) > MAX_LINE:
-                raise ColourError(f"lines must not exceed {MAX_LINE:,} characters", path=name, line=line, hint=TABLE)
-        rows = ((line, text.strip(), _cells(text, name, line)) for line, text in numbered[: None if at_end else -1])
+                raise ColourError(
+                    f"lines must not exceed {MAX_LINE:,} characters",
+                    path=name,
+                    line=line,
+                    hint=TABLE,
+                )
+        rows = (
+            (line, text.strip(), _cells(text, name, line))
+            for line, text in numbered[: None if at_end else -1]
+        )
         yield [(line, text, row) for line, text, row in rows if row]
         first += len(lines)
 
 
 def _cells(text: str, name: str, line: int) -> list[str]:
     """Return the cells of a line; none of an empty line, and of one that states the delimiter."""
-    if not text.strip("".join(DELIMITERS)) or (line == 1 and STATED_DELIMITER.match(text)):
+    if not text.strip("".join(DELIMITERS)) or (
+        line == 1 and STATED_DELIMITER.match(text)
+    ):
         return []
     try:
         return split_line(text, find_delimiter([text]))
@@ -202,13 +239,21 @@ def _cells(text: str, name: str, line: int) -> list[str]:
 
 def _is_header(row: Sequence[str]) -> bool:
     """Whether the cells of a line are neither numbers nor a hex colour, not even a misspelt one."""
-    return re.match(r"#\w", row[0]) is None and _parse(row[:1]) is None and all(_number(cell) is None for cell in row)
+    return (
+        re.match(r"#\w", row[0]) is None
+        and _parse(row[:1]) is None
+        and all(_number(cell) is None for cell in row)
+    )
 
 
 def _is_ambiguous(text: str) -> bool:
     """Whether a text between commas may be three numbers with decimal commas; not red, green, blue and alpha."""
     text = re.sub(r"\s", "", text)
-    return text.count(",") > 2 and RGBA.fullmatch(text) is None and AMBIGUOUS.fullmatch(text) is not None
+    return (
+        text.count(",") > 2
+        and RGBA.fullmatch(text) is None
+        and AMBIGUOUS.fullmatch(text) is not None
+    )
 
 
 def _parse(parts: Sequence[str]) -> Colour | None:
@@ -229,7 +274,11 @@ def _parse_words(words: Sequence[str]) -> list[Colour]:
     words = [word for text in given for word in re.split(r"[;\s]+", text) if word]
     parts = list[str]()
     while words:
-        has_commas = len(words) > 2 and all(map(DECIMAL.fullmatch, words[:3])) and "," in "".join(words[:3])
+        has_commas = (
+            len(words) > 2
+            and all(map(DECIMAL.fullmatch, words[:3]))
+            and "," in "".join(words[:3])
+        )
         parts += words[:3] if has_commas else filter(None, words[0].split(","))
         words = words[3 if has_commas else 1 :]
     colours: list[Colour] = []
@@ -251,7 +300,14 @@ def _warn_of_fractions(colours: Sequence[Colour]) -> None:
     if values and max(values) <= 1 and any(value % 1 for value in values):
         codes = " ".join(f"{255 * value:.0f}" for value in values[:3])
         problem = f"8-bit codes run from 0 to 255, got numbers up to {max(values):g}"
-        warn([UpliftWarning(problem, hint=f"for encoded numbers from 0 to 1 give 255 times as much: {codes}")])
+        warn(
+            [
+                UpliftWarning(
+                    problem,
+                    hint=f"for encoded numbers from 0 to 1 give 255 times as much: {codes}",
+                )
+            ]
+        )
 
 
 def _number(word: str) -> float | None:
@@ -261,10 +317,20 @@ def _number(word: str) -> float | None:
         return None
 
 
-def _ambiguous(text: str, path: str | None = None, line: int | None = None) -> ColourError:
-    problem = f"{format_value(text)} may have decimal commas, or more than three numbers"
-    return ColourError(problem, code="ambiguous-numbers", path=path, line=line, hint=DECIMALS)
+def _ambiguous(
+    text: str, path: str | None = None, line: int | None = None
+) -> ColourError:
+    problem = (
+        f"{format_value(text)} may have decimal commas, or more than three numbers"
+    )
+    return ColourError(
+        problem, code="ambiguous-numbers", path=path, line=line, hint=DECIMALS
+    )
 
 
-def _not_a_colour(text: str, path: str | None = None, line: int | None = None) -> ColourError:
-    return ColourError(f"{format_value(text)} is not a colour", path=path, line=line, hint=SYNTAX)
+def _not_a_colour(
+    text: str, path: str | None = None, line: int | None = None
+) -> ColourError:
+    return ColourError(
+        f"{format_value(text)} is not a colour", path=path, line=line, hint=SYNTAX
+    )

@@ -37,7 +37,9 @@ class SpectrumResolver:
     space: ImageSpace | None = None
     method: str = "error"
 
-    def ingredient(self, word: str, kind: str = "pigment") -> tuple[str, float, Array, Array | None]:
+    def ingredient(
+        self, word: str, kind: str = "pigment"
+    ) -> tuple[str, float, Array, Array | None]:
         """Return name, parts, spectrum (N,), and spectrum on black (N,) if one is given.
 
         Of the kind 'duntley' the name is a file of constants, which replace the spectrum (6, N). Raises `ColourError`
@@ -45,7 +47,11 @@ class SpectrumResolver:
         """
         from uplift.design.mixing.pigments import read_constants
 
-        entries = () if kind == "duntley" else (*self.cube.data.atlas.names, *self.atlas.names)
+        entries = (
+            ()
+            if kind == "duntley"
+            else (*self.cube.data.atlas.names, *self.atlas.names)
+        )
         parts, name = 1.0, word.strip()
         match = None if name in entries else PARTS.match(name)
         if match:
@@ -54,7 +60,9 @@ class SpectrumResolver:
             return name, parts, read_constants(name, self.wavelengths), None
         if name in entries or "/" not in name:
             return name, parts, self.spectrum(name), None
-        on_white, on_black = (self.spectrum(half.strip()) for half in name.split("/", 1))
+        on_white, on_black = (
+            self.spectrum(half.strip()) for half in name.split("/", 1)
+        )
         return name, parts, on_white, on_black
 
     def spectrum(self, text: str) -> Array:
@@ -66,19 +74,25 @@ class SpectrumResolver:
 
         entries = self.cube.data.atlas
         if text in entries.names:
-            return self.cube.reflectance(entries.rgb[entries.names.index(text)], self.wavelengths)
+            return self.cube.reflectance(
+                entries.rgb[entries.names.index(text)], self.wavelengths
+            )
         if text in self.atlas.names:
             entry = self.atlas.entries[self.atlas.names.index(text)]
             return on_grid(Atlas((entry,)), self.wavelengths)[0]
         if text in CONSTANT_SPECTRA:
             return np.full(len(self.wavelengths), CONSTANT_SPECTRA[text])
         try:
-            [(rgb,)] = ColourSource((text,), space=self.space).blocks(self.cube.data.sensor)
+            [(rgb,)] = ColourSource((text,), space=self.space).blocks(
+                self.cube.data.sensor
+            )
         except ColourError as error:
             if error.code == "ambiguous-numbers":
                 raise
             hint = "write '#rrggbb', 'r,g,b' in linear RGB, or an entry of the cube's atlas or of --atlas"
-            raise ColourError(f"{error.problem} and not an atlas entry", hint=hint) from error
+            raise ColourError(
+                f"{error.problem} and not an atlas entry", hint=hint
+            ) from error
         mapped = map_to_gamut(rgb, self.cube.data.sensor, self.method)
         if mapped.count:
             problem = f"{format_value(text)} lies outside [0, 1]: mapped into the gamut ({self.method})"

@@ -39,7 +39,11 @@ def atlas_files(files: Sequence[str | Path]) -> Sequence[str | Path]:
     """Return the files of atlases; without any, the default ones."""
     from uplift.atlas import shipped_atlases
 
-    return files or sorted(Path().glob(LOCAL)) or [shipped.path for shipped in shipped_atlases()]
+    return (
+        files
+        or sorted(Path().glob(LOCAL))
+        or [shipped.path for shipped in shipped_atlases()]
+    )
 
 
 def read_atlases(files: Sequence[str | Path]) -> dict[str, Atlas]:
@@ -50,7 +54,11 @@ def read_atlases(files: Sequence[str | Path]) -> dict[str, Atlas]:
     for file in atlas_files(files):
         name = Path(file).stem
         if name in atlases:
-            raise AtlasError(f"another atlas has the name '{name}' too", path=file, hint="rename one of the files")
+            raise AtlasError(
+                f"another atlas has the name '{name}' too",
+                path=file,
+                hint="rename one of the files",
+            )
         atlases[name] = read_atlas(file)
     return atlases
 
@@ -71,16 +79,23 @@ def _expand(source: str) -> list[str]:
         return [source]
     paths = sorted(glob.glob(source.replace(UDIM, UDIM_DIGITS)))
     if not paths:
-        raise TextureError(f"no file matches the pattern '{source}'", hint="check the pattern")
+        raise TextureError(
+            f"no file matches the pattern '{source}'", hint="check the pattern"
+        )
     return paths
 
 
-def read_pictures(paths: Sequence[str], sensor: Sensor, *, space: str | None = None, **options: str) -> list[Picture]:
+def read_pictures(
+    paths: Sequence[str], sensor: Sensor, *, space: str | None = None, **options: str
+) -> list[Picture]:
     """Return images, reduced to `MAX_SIDE`, with the options of `options.pixels`, and emit their warnings."""
     from uplift.io.texture.picture import read_picture
 
     found = None if space is None else find_input_space(space)
-    pictures = [read_picture(path, sensor, max_side=MAX_SIDE, space=found, **options) for path in paths]
+    pictures = [
+        read_picture(path, sensor, max_side=MAX_SIDE, space=found, **options)
+        for path in paths
+    ]
     for picture in pictures:
         warn(picture.warnings)
     return pictures
@@ -116,7 +131,9 @@ def find_light(text: str) -> Illuminant:
     """Return the name of an illuminant, or the lamp of a file. Without a file of this name no reader is imported."""
     from uplift.colorimetry import tables
 
-    if text in tables.names("illuminant") or (not os.path.lexists(text) and ":" not in text):
+    if text in tables.names("illuminant") or (
+        not os.path.lexists(text) and ":" not in text
+    ):
         tables.stated_name("illuminant", text)
         return text
     from uplift.lights import lamps
@@ -127,7 +144,11 @@ def find_light(text: str) -> Illuminant:
 def check_page(path: str) -> None:
     """Check the name of a page, which must end in .html."""
     if not path.lower().endswith(".html"):
-        raise OutputError("the name of a page must end in .html", path=path, hint="name the page .html")
+        raise OutputError(
+            "the name of a page must end in .html",
+            path=path,
+            hint="name the page .html",
+        )
 
 
 def check_figure_page(path: str) -> None:
@@ -152,5 +173,12 @@ def check_range(wavelengths: Array, own: Array) -> None:
     outside = [each for each in wavelengths if not first <= each <= last]
     if outside:
         micrometres = f"give nm: {outside[0]:g} µm are {1000 * outside[0]:g} nm"
-        hint = micrometres if outside[0] < 10 else "stay in this range; 'uplift build --range' sets that of a cube"
-        raise OptionError(f"wavelengths must lie in {first:g}-{last:g} nm, got {outside[0]:g}", hint=hint)
+        hint = (
+            micrometres
+            if outside[0] < 10
+            else "stay in this range; 'uplift build --range' sets that of a cube"
+        )
+        raise OptionError(
+            f"wavelengths must lie in {first:g}-{last:g} nm, got {outside[0]:g}",
+            hint=hint,
+        )

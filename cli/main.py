@@ -13,7 +13,14 @@ from uplift.common.version import version
 
 from .options import OUTPUT_FORMAT, Group
 from .output.console import emit, flush_stdout
-from .output.diagnostics import BAD_INPUT, FAILED_CHECK, INTERNAL_ERROR, CommandFailure, show_usage_error, show_warning
+from .output.diagnostics import (
+    BAD_INPUT,
+    FAILED_CHECK,
+    INTERNAL_ERROR,
+    CommandFailure,
+    show_usage_error,
+    show_warning,
+)
 from .startup import hide_drawing_notes
 
 GROUPS = {
@@ -65,15 +72,21 @@ class LazyGroup(Group):
             return None
         if name not in QUICK:
             hide_drawing_notes()
-        command: click.Command = importlib.import_module(f"uplift_cli.commands.{name}").command
+        command: click.Command = importlib.import_module(
+            f"uplift_cli.commands.{name}"
+        ).command
         return command
 
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+    def format_commands(
+        self, ctx: click.Context, formatter: click.HelpFormatter
+    ) -> None:
         """Write a section of the help for each group."""
         width = max(map(len, COMMANDS))
         for title, names in GROUPS.items():
             with formatter.section(title):
-                formatter.write_dl([(f"{name:<{width}}", summary) for name, summary in names.items()])
+                formatter.write_dl(
+                    [(f"{name:<{width}}", summary) for name, summary in names.items()]
+                )
 
     def main(self, *args: Any, **options: Any) -> Any:
         """Run the command line and exit with one of the codes of `uplift help exit-codes`."""
@@ -94,7 +107,9 @@ class LazyGroup(Group):
         except OSError as error:
             CommandFailure(error).show()
             code = BAD_INPUT
-        with contextlib.suppress(OSError):  # what cannot be written is dropped: it is reported above
+        with contextlib.suppress(
+            OSError
+        ):  # what cannot be written is dropped: it is reported above
             flush_stdout()
         if options.get("standalone_mode", True):
             sys.exit(code if isinstance(code, int) else 0)
@@ -108,10 +123,17 @@ class LazyGroup(Group):
             try:
                 result = super().invoke(ctx)
                 flush_stdout()  # a full disk must be noticed while errors can still be reported
-            except (click.ClickException, click.exceptions.Exit, click.Abort, BrokenPipeError):
+            except (
+                click.ClickException,
+                click.exceptions.Exit,
+                click.Abort,
+                BrokenPipeError,
+            ):
                 raise
             except (Exception, KeyboardInterrupt) as error:
-                failure = CommandFailure(error, as_json=ctx.meta.get(OUTPUT_FORMAT) == "json")
+                failure = CommandFailure(
+                    error, as_json=ctx.meta.get(OUTPUT_FORMAT) == "json"
+                )
                 if failure.exit_code == INTERNAL_ERROR and ctx.params["traceback"]:
                     raise
                 raise failure from error
@@ -149,6 +171,11 @@ def _show_version(ctx: click.Context, _: click.Parameter, is_requested: bool) ->
     callback=_show_version,
     help="Show the version and exit.",
 )
-@click.option("--traceback", is_flag=True, envvar="UPLIFT_TRACEBACK", help="Show the traceback of an internal error.")
+@click.option(
+    "--traceback",
+    is_flag=True,
+    envvar="UPLIFT_TRACEBACK",
+    help="Show the traceback of an internal error.",
+)
 def main(traceback: bool) -> None:
     """Hold the subcommands."""

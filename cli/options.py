@@ -17,7 +17,14 @@ from click.shell_completion import CompletionItem
 
 from uplift.common.text import format_value, parse_float, parse_whole
 
-from .inputs import check_figure_page, check_page, check_plot, find_input_space, find_light, parse_wavelengths
+from .inputs import (
+    check_figure_page,
+    check_page,
+    check_plot,
+    find_input_space,
+    find_light,
+    parse_wavelengths,
+)
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 NEGATIVE_NUMBER = re.compile(r"-\.?\d")
@@ -36,11 +43,24 @@ class Command(click.Command):
     ``--help-all`` shows everything. ``no_arguments`` is stated where a command without arguments is given some.
     """
 
-    def __init__(self, *args: Any, everyday: Collection[str], no_arguments: str = "", **settings: Any) -> None:
+    def __init__(
+        self,
+        *args: Any,
+        everyday: Collection[str],
+        no_arguments: str = "",
+        **settings: Any,
+    ) -> None:
         super().__init__(*args, **settings)
         self.everyday = everyday
         self.no_arguments = no_arguments
-        self.params.append(click.Option(["--help-all"], is_flag=True, expose_value=False, help="Show all options."))
+        self.params.append(
+            click.Option(
+                ["--help-all"],
+                is_flag=True,
+                expose_value=False,
+                help="Show all options.",
+            )
+        )
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Mark negative numbers by a leading space before parsing."""
@@ -48,24 +68,38 @@ class Command(click.Command):
             ctx.meta[HELP_ALL] = True
             args = ["--help"]
         try:
-            return super().parse_args(ctx, [f" {arg}" if NEGATIVE_NUMBER.match(arg) else arg for arg in args])
+            return super().parse_args(
+                ctx, [f" {arg}" if NEGATIVE_NUMBER.match(arg) else arg for arg in args]
+            )
         except click.UsageError as error:
             if self.no_arguments and "extra argument" in error.message:
-                raise click.UsageError(f"{error.message}. {self.no_arguments}", ctx) from error
+                raise click.UsageError(
+                    f"{error.message}. {self.no_arguments}", ctx
+                ) from error
             raise
 
-    def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+    def format_help_text(
+        self, ctx: click.Context, formatter: click.HelpFormatter
+    ) -> None:
         """Write the text, after the form feed for --help-all only."""
         short, _, rest = inspect.cleandoc(self.help or "").partition("\f")
         formatter.write_paragraph()
         with formatter.indentation():
             formatter.write_text(short + rest if HELP_ALL in ctx.meta else short)
 
-    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+    def format_options(
+        self, ctx: click.Context, formatter: click.HelpFormatter
+    ) -> None:
         """Write the options of every day, the last two of help, or all options."""
-        *own, help_all, help_option = (each for each in self.get_params(ctx) if isinstance(each, click.Option))
-        shown = [each for each in own if HELP_ALL in ctx.meta or each.name in self.everyday]
-        records = (each.get_help_record(ctx) for each in (*shown, help_all, help_option))
+        *own, help_all, help_option = (
+            each for each in self.get_params(ctx) if isinstance(each, click.Option)
+        )
+        shown = [
+            each for each in own if HELP_ALL in ctx.meta or each.name in self.everyday
+        ]
+        records = (
+            each.get_help_record(ctx) for each in (*shown, help_all, help_option)
+        )
         with formatter.section("Options"):
             formatter.write_dl([record for record in records if record is not None])
 
@@ -77,10 +111,18 @@ class Group(click.Group):
         """Parse ``--help`` in place of no arguments."""
         return super().parse_args(ctx, args or ["--help"])
 
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+    def format_commands(
+        self, ctx: click.Context, formatter: click.HelpFormatter
+    ) -> None:
         """Write names and first sentences, which click would cut to one line."""
-        commands = ((name, self.get_command(ctx, name)) for name in self.list_commands(ctx))
-        records = [(name, command.get_short_help_str(limit=sys.maxsize)) for name, command in commands if command]
+        commands = (
+            (name, self.get_command(ctx, name)) for name in self.list_commands(ctx)
+        )
+        records = [
+            (name, command.get_short_help_str(limit=sys.maxsize))
+            for name, command in commands
+            if command
+        ]
         with formatter.section("Commands"):
             formatter.write_dl(records)
 
@@ -90,7 +132,9 @@ class Number(click.ParamType):  # type: ignore[type-arg]
 
     name = "float"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
         """Return a finite number."""
         try:
             number = parse_float(value) if isinstance(value, str) else float(value)
@@ -104,18 +148,26 @@ class Number(click.ParamType):  # type: ignore[type-arg]
 class Whole(click.IntRange):
     """A whole number in ASCII digits that fits into 64 bits, in a range, or a ``word`` in place of it."""
 
-    def __init__(self, min: int | None = None, max: int | None = None, *, word: str = "") -> None:
+    def __init__(
+        self, min: int | None = None, max: int | None = None, *, word: str = ""
+    ) -> None:
         super().__init__(min, max)
         self.word = word
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:
         """Return a whole number, or the word."""
         if self.word and value == self.word:
             return value
         try:
             number = parse_whole(value) if isinstance(value, str) else value
         except ValueError:
-            known = f"neither a whole number nor '{self.word}'" if self.word else "not a whole number"
+            known = (
+                f"neither a whole number nor '{self.word}'"
+                if self.word
+                else "not a whole number"
+            )
             self.fail(f"{format_value(value)} is {known}.", param, ctx)
         return super().convert(number, param, ctx)
 
@@ -131,7 +183,9 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
     def __init__(self, function: Callable[[str], Any]) -> None:
         self.function = function
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:
         """Return what the function makes of the text."""
         return self.function(value)
 
@@ -139,7 +193,9 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
 class Checked(Parsed):
     """A text that a function of `uplift_cli.inputs` checks."""
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:
         """Return the text."""
         self.function(value)
         return value
@@ -148,7 +204,9 @@ class Checked(Parsed):
 class Light(Parsed):
     """The name of an illuminant, or a file of a lamp, which is kept among the inputs of the command."""
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:
         """Return the name, or the lamp."""
         if ctx is not None:
             ctx.meta.setdefault(INPUTS, []).extend((value, value.rpartition(":")[0]))
@@ -167,19 +225,32 @@ OUTPUT, PAGE, PLOT = OutputFile(str), OutputFile(check_page), OutputFile(check_p
 FIGURE_PAGE = OutputFile(check_figure_page)
 
 
-def completion(*sources: str, files: bool = False) -> Callable[..., list[CompletionItem]]:
+def completion(
+    *sources: str, files: bool = False
+) -> Callable[..., list[CompletionItem]]:
     """Complete names, and the names of ``files``.
 
     Sources are tuples or functions of the library with their arguments: 'module:name', 'module:name:argument'.
     """
 
-    def complete(ctx: click.Context, param: click.Parameter, text: str) -> list[CompletionItem]:
-        items = [CompletionItem(text, type="file")] * files  # first: bash drops the items before it
+    def complete(
+        ctx: click.Context, param: click.Parameter, text: str
+    ) -> list[CompletionItem]:
+        items = [
+            CompletionItem(text, type="file")
+        ] * files  # first: bash drops the items before it
         for source in sources:
             module, name, *arguments = source.split(":")
             names = getattr(import_module(f"uplift.{module}"), name)
-            found = (getattr(each, "name", each) for each in (names(*arguments) if callable(names) else names))
-            items += [CompletionItem(each) for each in found if each.lower().startswith(text.lower())]
+            found = (
+                getattr(each, "name", each)
+                for each in (names(*arguments) if callable(names) else names)
+            )
+            items += [
+                CompletionItem(each)
+                for each in found
+                if each.lower().startswith(text.lower())
+            ]
         return items
 
     return complete
@@ -187,48 +258,82 @@ def completion(*sources: str, files: bool = False) -> Callable[..., list[Complet
 
 complete_atlas = completion("atlas:shipped_atlases", files=True)
 complete_cube = completion("lookup.cube:PACKAGED", files=True)
-complete_light = completion("colorimetry.lights:COMMON_NAMES", "colorimetry.tables:names:illuminant", files=True)
-complete_observer = completion("colorimetry.tables:names:observer", "colorimetry.tables:names:camera", files=True)
+complete_light = completion(
+    "colorimetry.lights:COMMON_NAMES", "colorimetry.tables:names:illuminant", files=True
+)
+complete_observer = completion(
+    "colorimetry.tables:names:observer", "colorimetry.tables:names:camera", files=True
+)
 complete_space = completion("colorimetry.tables:names:RGB space")
 
 
 def stacked(*decorators: Decorator) -> Decorator:
     """Combine decorators, the first one outermost."""
-    return lambda function: reduce(lambda inner, each: each(inner), reversed(decorators), function)
+    return lambda function: reduce(
+        lambda inner, each: each(inner), reversed(decorators), function
+    )
 
 
 def repeatable(
-    option: str, name: str, help: str, default: str = "", *, examples: str = "", **settings: Any
+    option: str,
+    name: str,
+    help: str,
+    default: str = "",
+    *,
+    examples: str = "",
+    **settings: Any,
 ) -> Decorator:
     """An option that may be given several times, as the tuple ``name``."""
-    text = f"{help}{examples}; repeatable." + (f" [default: {default}]" if default else "")
+    text = f"{help}{examples}; repeatable." + (
+        f" [default: {default}]" if default else ""
+    )
     return click.option(option, name, multiple=True, help=text, **settings)
 
 
-atlas = partial(repeatable, "--atlas", "files", metavar="FILE", shell_complete=complete_atlas)
+atlas = partial(
+    repeatable, "--atlas", "files", metavar="FILE", shell_complete=complete_atlas
+)
 LAMPS = ", such as led, 3200K or FL11, or the file of a measured lamp"
-named_lights = partial(repeatable, metavar="NAME|FILE", type=LIGHT, shell_complete=complete_light)
+named_lights = partial(
+    repeatable, metavar="NAME|FILE", type=LIGHT, shell_complete=complete_light
+)
 light = partial(named_lights, "--light", "lights", examples=LAMPS)
 """Why its defaults differ is in `uplift help illuminants`."""
 tolerance = partial(click.option, "--tolerance", metavar="ΔE00", type=NUMBER)
 output = partial(click.option, "-o", "--output", metavar="FILE", type=OUTPUT)
-OF_PACKAGE = ", or ACEScg for the packaged ACEScg cube{}. [default: the packaged sRGB cube]"
+OF_PACKAGE = (
+    ", or ACEScg for the packaged ACEScg cube{}. [default: the packaged sRGB cube]"
+)
 """Help of ``--cube`` where a packaged cube will do."""
 
 
-def cube(help: str = OF_PACKAGE.format(""), name: str = "cube_path", **settings: Any) -> Decorator:
+def cube(
+    help: str = OF_PACKAGE.format(""), name: str = "cube_path", **settings: Any
+) -> Decorator:
     """``--cube``, as ``cube_path``."""
     return click.option(
-        "--cube", name, metavar="FILE", help=f"Cube file{help}", shell_complete=complete_cube, **settings
+        "--cube",
+        name,
+        metavar="FILE",
+        help=f"Cube file{help}",
+        shell_complete=complete_cube,
+        **settings,
     )
 
 
 def choice(
-    option: str, *choices: str, name: str | None = None, default: str | None = None, **settings: Any
+    option: str,
+    *choices: str,
+    name: str | None = None,
+    default: str | None = None,
+    **settings: Any,
 ) -> Decorator:
     """An option with one of some values; without a ``default``, the first one is."""
     return click.option(
-        *filter(None, (option, name)), type=click.Choice(choices), default=default or choices[0], **settings
+        *filter(None, (option, name)),
+        type=click.Choice(choices),
+        default=default or choices[0],
+        **settings,
     )
 
 
@@ -239,7 +344,9 @@ encoding = choice(
 )
 
 
-def input_space(subject: str, default: str = "as the file states", name: str = "input_space") -> Decorator:
+def input_space(
+    subject: str, default: str = "as the file states", name: str = "input_space"
+) -> Decorator:
     """``--input-space``: text for `uplift.colorimetry.spaces.find_space`."""
     return click.option(
         "--input-space",
@@ -256,16 +363,29 @@ PIXELS = "clip", "as images often have a few, which are counted"
 """Default of ``--out-of-gamut`` of images, and the reason."""
 
 
-def out_of_gamut(default: str, why: str, subject: str = "colours", name: str = "method") -> Decorator:
+def out_of_gamut(
+    default: str, why: str, subject: str = "colours", name: str = "method"
+) -> Decorator:
     """``--out-of-gamut``: names of `uplift.colorimetry.gamut.METHODS`, which is not imported here."""
     methods = ("error", "clip", "scale", "desaturate", "desaturate-oklab")
     text = f"Treatment of {subject} outside [0, 1]; 'uplift help gamut' describes it. [default: {default}, {why}]"
-    return choice("--out-of-gamut", *methods, name=name, default=default, help=text, show_default=False)
+    return choice(
+        "--out-of-gamut",
+        *methods,
+        name=name,
+        default=default,
+        help=text,
+        show_default=False,
+    )
 
 
 def pixels() -> Decorator:
     """``--encoding``, ``--input-space`` and ``--out-of-gamut`` of images, as `uplift.io.texture` names them."""
-    return stacked(encoding, input_space("the images", name="space"), out_of_gamut(*PIXELS, "pixels", "out_of_gamut"))
+    return stacked(
+        encoding,
+        input_space("the images", name="space"),
+        out_of_gamut(*PIXELS, "pixels", "out_of_gamut"),
+    )
 
 
 def output_format(*choices: str) -> Decorator:
@@ -294,7 +414,15 @@ def plot(help: str, option: str = "--plot", name: str = "plot_path") -> Decorato
     """
     default = f"{name.removesuffix('_path')}.png"
     text = f"{help}, as .png, .svg or .pdf. [default of FILE: {default}]"
-    return click.option(option, name, metavar="[FILE]", type=PLOT, is_flag=False, flag_value=default, help=text)
+    return click.option(
+        option,
+        name,
+        metavar="[FILE]",
+        type=PLOT,
+        is_flag=False,
+        flag_value=default,
+        help=text,
+    )
 
 
 def page(help: str, type: OutputFile = PAGE) -> Decorator:
@@ -320,7 +448,11 @@ missing = choice(  # names of uplift.atlas.measurements.MISSING
     help="What becomes of an entry that lacks a value within 380-780 nm.",
 )
 coefficients = click.option(
-    "--coefficients", type=WHOLE, default=9, metavar="N", help="Coefficients per spectrum, 3 to 17."
+    "--coefficients",
+    type=WHOLE,
+    default=9,
+    metavar="N",
+    help="Coefficients per spectrum, 3 to 17.",
 )
 output_wavelengths = wavelengths(". [default: those of the cube or table]")
 depth = click.option(
@@ -348,20 +480,40 @@ def colours(xyz: str, space: str) -> Decorator:
     return stacked(
         click.argument("colour", metavar="[COLOUR]...", nargs=-1),
         click.option(
-            "--input", "input_path", metavar="FILE", help="Table of colours, one per line; '-' is standard input."
+            "--input",
+            "input_path",
+            metavar="FILE",
+            help="Table of colours, one per line; '-' is standard input.",
         ),
-        click.option("--xyz", type=NUMBER, nargs=3, metavar="X Y Z", help=f"Colour by XYZ {xyz}."),
         click.option(
-            "--xy", type=NUMBER, nargs=2, metavar="X Y", help="Colour by chromaticity, with --luminance, as for --xyz."
+            "--xyz", type=NUMBER, nargs=3, metavar="X Y Z", help=f"Colour by XYZ {xyz}."
         ),
-        click.option("--luminance", type=NUMBER, metavar="Y", help="Luminance of --xy, where white has 1."),
-        click.option("--encoded", is_flag=True, help="Numbers are encoded 8-bit codes from 0 to 255."),
+        click.option(
+            "--xy",
+            type=NUMBER,
+            nargs=2,
+            metavar="X Y",
+            help="Colour by chromaticity, with --luminance, as for --xyz.",
+        ),
+        click.option(
+            "--luminance",
+            type=NUMBER,
+            metavar="Y",
+            help="Luminance of --xy, where white has 1.",
+        ),
+        click.option(
+            "--encoded",
+            is_flag=True,
+            help="Numbers are encoded 8-bit codes from 0 to 255.",
+        ),
         input_space("the colours", default=space),
     )
 
 
 fill = click.option(
-    "--fill-missing", is_flag=True, help="Take colours that a cube built with --scene lacks from the packaged cube."
+    "--fill-missing",
+    is_flag=True,
+    help="Take colours that a cube built with --scene lacks from the packaged cube.",
 )
 atlas_folders = repeatable(
     "--atlas-dir",
@@ -371,21 +523,36 @@ atlas_folders = repeatable(
     type=click.Path(exists=True, file_okay=False),
 )
 force = click.option("--force", is_flag=True, help="Replace existing files.")
-quiet = click.option("-q", "--quiet", is_flag=True, help="Print only warnings and errors.")
-verbose = click.option("-v", "--verbose", is_flag=True, help="Print a line for every round and improvement step.")
+quiet = click.option(
+    "-q", "--quiet", is_flag=True, help="Print only warnings and errors."
+)
+verbose = click.option(
+    "-v",
+    "--verbose",
+    is_flag=True,
+    help="Print a line for every round and improvement step.",
+)
 
 
 def space(camera: str = "") -> Decorator:
     """``--space``: the space of what is built or listed."""
     text = f"RGB space by its name in colour-science or OpenColorIO, such as ACEScg{camera}."
-    return click.option("--space", default="sRGB", help=text, shell_complete=complete_space)
+    return click.option(
+        "--space", default="sRGB", help=text, shell_complete=complete_space
+    )
 
 
 def observer(camera: str = "") -> Decorator:
     """``--observer``."""
     default, text = "CIE 1931 2 Degree Standard Observer", f"Standard observer{camera}."
     metavar = "NAME|FILE" if camera else "NAME"
-    return click.option("--observer", metavar=metavar, default=default, help=text, shell_complete=complete_observer)
+    return click.option(
+        "--observer",
+        metavar=metavar,
+        default=default,
+        help=text,
+        shell_complete=complete_observer,
+    )
 
 
 sensor = stacked(
@@ -398,6 +565,8 @@ sensor = stacked(
         help="Illuminant under which RGB are defined; a cube needs a name, other commands read the file of a lamp.",
         shell_complete=complete_light,
     ),
-    observer(", or with --space camera a camera: name or FILE of sensitivities (CSV, or JSON of rawtoaces)"),
+    observer(
+        ", or with --space camera a camera: name or FILE of sensitivities (CSV, or JSON of rawtoaces)"
+    ),
 )
 """``space``, ``illuminant`` and ``observer``, for `uplift.colorimetry.observer.sensor`."""

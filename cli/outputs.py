@@ -22,7 +22,9 @@ def check_outputs(*paths: StrPath | None, inputs: Paths = ()) -> None:
     files.check_outputs(paths, inputs=[*stated_inputs(), *inputs], force=_is_forced())
 
 
-def check_folder(path: StrPath | None, names: Sequence[str], inputs: Paths = ()) -> None:
+def check_folder(
+    path: StrPath | None, names: Sequence[str], inputs: Paths = ()
+) -> None:
     """Check the files of a folder as `check_outputs`, and that PNG can be drawn; `write_files` creates the folder."""
     if path is None:
         return
@@ -30,10 +32,14 @@ def check_folder(path: StrPath | None, names: Sequence[str], inputs: Paths = ())
         from uplift.viz.figure import matplotlib
 
         matplotlib()
-    files.check_folder(path, names, inputs=[*stated_inputs(), *inputs], force=_is_forced())
+    files.check_folder(
+        path, names, inputs=[*stated_inputs(), *inputs], force=_is_forced()
+    )
 
 
-def write_files(path: StrPath, names: Sequence[str], *writers: Callable[..., None]) -> None:
+def write_files(
+    path: StrPath, names: Sequence[str], *writers: Callable[..., None]
+) -> None:
     """Write the files of a folder, and print their names to standard error."""
     folder = files.make_folder(path)
     for name, write in zip(names, writers, strict=True):
@@ -48,9 +54,17 @@ def _is_forced() -> bool:
 def stated_inputs() -> list[str]:
     """Return the texts of all parameters but outputs, and files of lamps: those that name no file do no harm."""
     context = click.get_current_context()
-    outputs = [param.name for param in context.command.params if isinstance(param.type, OutputFile)]
+    outputs = [
+        param.name
+        for param in context.command.params
+        if isinstance(param.type, OutputFile)
+    ]
     texts: list[str] = list(context.meta.get(INPUTS, ()))
     for name, value in context.params.items():
         if name not in outputs:
-            texts += [text for text in (value if isinstance(value, tuple) else [value]) if isinstance(text, str)]
+            texts += [
+                text
+                for text in (value if isinstance(value, tuple) else [value])
+                if isinstance(text, str)
+            ]
     return texts

@@ -20,7 +20,11 @@ ENDING = ("SIGTERM", "SIGHUP", "SIGBREAK")
 """Signals that end a command and its worker processes, as well as Ctrl-C."""
 GRACE = 5.0
 """Seconds between Ctrl-C and the end of a command that does not react."""
-SPELLINGS = dict(zip("▁▂▃▄▅▆▇█Δ–−×±", "_.-:=+*#d--x~", strict=True)) | {"²": "^2", "³": "^3", "…": "..."}
+SPELLINGS = dict(zip("▁▂▃▄▅▆▇█Δ–−×±", "_.-:=+*#d--x~", strict=True)) | {
+    "²": "^2",
+    "³": "^3",
+    "…": "...",
+}
 """Characters of messages and plots of text in ASCII."""
 _CACHES: set[Path] = set()
 """The folder of compiled code that is checked and in use."""
@@ -34,7 +38,9 @@ def prepare_process() -> None:
             stream.reconfigure(errors=_respell.__name__)
     for name in ENDING:
         number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) is signal.SIG_DFL:  # not under nohup
+        if (
+            number is not None and signal.getsignal(number) is signal.SIG_DFL
+        ):  # not under nohup
             signal.signal(number, _end)
     if os.name == "posix":
         _watch_signals()
@@ -42,20 +48,28 @@ def prepare_process() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("PJRT_NPROC", "1")
     os.environ["MPLBACKEND"] = "agg"  # which needs no display
-    os.environ["MATPLOTLIBRC"] = os.devnull  # figures do not depend on settings of the user
-    os.environ["PYTHONSAFEPATH"] = "1"  # worker processes load no module from the working folder
+    os.environ["MATPLOTLIBRC"] = (
+        os.devnull
+    )  # figures do not depend on settings of the user
+    os.environ["PYTHONSAFEPATH"] = (
+        "1"  # worker processes load no module from the working folder
+    )
     if os.path.lexists("matplotlibrc"):  # matplotlib would obey it
         hide_drawing_notes()
         with contextlib.chdir(os.sep), contextlib.suppress(ImportError):
-            import matplotlib  # noqa: F401
-    sys.warnoptions.append("ignore:resource_tracker:UserWarning")  # of multiprocessing, about a process that was ended
+            import matplotlib
+    sys.warnoptions.append(
+        "ignore:resource_tracker:UserWarning"
+    )  # of multiprocessing, about a process that was ended
 
 
 def _respell(error: UnicodeError) -> tuple[str, int]:
     """Spell characters that the encoding of a stream lacks in ASCII."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
-    return "".join(SPELLINGS.get(letter, "?") for letter in error.object[error.start : error.end]), error.end
+    return "".join(
+        SPELLINGS.get(letter, "?") for letter in error.object[error.start : error.end]
+    ), error.end
 
 
 codecs.register_error(_respell.__name__, _respell)
@@ -67,11 +81,11 @@ def _open_closed_streams() -> None:
     It is opened such that each use of standard input and output is an error: nothing is lost without notice.
     """
     if sys.stdin is None:
-        sys.stdin = open(os.open(os.devnull, os.O_WRONLY))  # noqa: SIM115
+        sys.stdin = open(os.open(os.devnull, os.O_WRONLY))
     if sys.stdout is None:
-        sys.stdout = open(os.open(os.devnull, os.O_RDONLY), "w", encoding="utf-8")  # noqa: SIM115
+        sys.stdout = open(os.open(os.devnull, os.O_RDONLY), "w", encoding="utf-8")
     if sys.stderr is None:
-        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")
 
 
 def _end(number: int, frame: object = None) -> None:
@@ -118,7 +132,9 @@ def enable_jit_cache() -> None:
         return
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        folder = folder.resolve(strict=True)  # the folder that is checked, not a link to it
+        folder = folder.resolve(
+            strict=True
+        )  # the folder that is checked, not a link to it
         str(folder).encode()  # JAX takes UTF-8 only
         problem = _exposure(folder) if os.name == "posix" else None
     except (OSError, RuntimeError, UnicodeError) as error:
@@ -143,8 +159,12 @@ def _exposure(folder: Path) -> str | None:
         return "other users can write to it"
     for place in folder.parents:
         status = place.stat()
-        shared = status.st_mode & stat.S_IWOTH or (status.st_mode & stat.S_IWGRP and not _is_private(status.st_gid))
-        if status.st_uid not in (user, 0) or (shared and not status.st_mode & stat.S_ISVTX):  # as /tmp has
+        shared = status.st_mode & stat.S_IWOTH or (
+            status.st_mode & stat.S_IWGRP and not _is_private(status.st_gid)
+        )
+        if status.st_uid not in (user, 0) or (
+            shared and not status.st_mode & stat.S_ISVTX
+        ):  # as /tmp has
             return f"other users can write to {place}"
     return None
 

@@ -14,12 +14,44 @@ from pathlib import Path
 
 import numpy as np
 
-TYPES = {"F64": "<f8", "F32": "<f4", "U8": "|u1", "I32": "<i4", "I16": "<i2", "U32": "<u4"}
-GREY = (0, 1e-10, 1e-8, 1e-6, 1e-4)  # weights of grey, until the moments have a spectrum
-LEAST, SLOPE, MOST = 3e-4, 0.03, 0.01  # distance from 0 and 1 of the mixtures that are moved
-MAX_SIZE, EDGE = 500, 1e-6  # of multipliers that are mixed without their own colour; of entries from the edge
-FEATURES = {"debug", "errors", "left-out", "camera", "sparse", "outside", "outside-measured"}
-TERMS = {"none": [], "vision": [(1, 0.0072, 538)], "colour": [(1, 0.0263, 480), (1.066, 0.0227, 578)]}
+TYPES = {
+    "F64": "<f8",
+    "F32": "<f4",
+    "U8": "|u1",
+    "I32": "<i4",
+    "I16": "<i2",
+    "U32": "<u4",
+}
+GREY = (
+    0,
+    1e-10,
+    1e-8,
+    1e-6,
+    1e-4,
+)  # weights of grey, until the moments have a spectrum
+LEAST, SLOPE, MOST = (
+    3e-4,
+    0.03,
+    0.01,
+)  # distance from 0 and 1 of the mixtures that are moved
+MAX_SIZE, EDGE = (
+    500,
+    1e-6,
+)  # of multipliers that are mixed without their own colour; of entries from the edge
+FEATURES = {
+    "debug",
+    "errors",
+    "left-out",
+    "camera",
+    "sparse",
+    "outside",
+    "outside-measured",
+}
+TERMS = {
+    "none": [],
+    "vision": [(1, 0.0072, 538)],
+    "colour": [(1, 0.0263, 480), (1.066, 0.0227, 578)],
+}
 
 
 class Cube:
@@ -31,21 +63,29 @@ class Cube:
         header = json.loads(data[8:start])
         self.meta = json.loads(header.pop("__metadata__")["uplift"])
         digest = self.meta.pop("digest")
-        text = json.dumps(self.meta, sort_keys=True, ensure_ascii=False, separators=(",", ":"))
+        text = json.dumps(
+            self.meta, sort_keys=True, ensure_ascii=False, separators=(",", ":")
+        )
         found = hashlib.sha256(text.encode())
         self.arrays = {}
         for name in sorted(header):
             low, high = header[name]["data_offsets"]
-            array = np.frombuffer(data[start + low : start + high], TYPES[header[name]["dtype"]])
+            array = np.frombuffer(
+                data[start + low : start + high], TYPES[header[name]["dtype"]]
+            )
             self.arrays[name] = array = array.reshape(header[name]["shape"])
-            found.update(f"{name} {array.dtype.str} {array.shape}".encode() + array.tobytes())
+            found.update(
+                f"{name} {array.dtype.str} {array.shape}".encode() + array.tobytes()
+            )
         if (self.meta["format"], found.hexdigest()) != ("uplift cube", digest):
             raise ValueError("not a cube file, or damaged")
         if not set(self.meta["features"]) <= FEATURES:
             raise ValueError("a feature that this reader does not know")
         self.sigmoid = self.meta["model"]["name"] == "sigmoid"
         self.nodes, self.threshold = self.arrays["nodes"], self.meta["threshold"]
-        self.entries = self.arrays.get("atlas.entry_coefficients", self.arrays["atlas.coefficients"])
+        self.entries = self.arrays.get(
+            "atlas.entry_coefficients", self.arrays["atlas.coefficients"]
+        )
         points = self.arrays.get("points", np.arange(len(self.nodes) ** 3))
         self.row = {int(number): row for row, number in enumerate(points)}
         # RGB of a reflectance is W g; K are the curves of the sensor without the light
@@ -53,7 +93,9 @@ class Cube:
         self.curves = self.arrays["sensor.cmfs"] @ to_rgb.T
         scale = power @ self.arrays["sensor.cmfs"][:, 1]
         if "sensor.sensitivities" in self.arrays:
-            self.curves = self.arrays["sensor.sensitivities"] / (power @ self.arrays["sensor.sensitivities"])
+            self.curves = self.arrays["sensor.sensitivities"] / (
+                power @ self.arrays["sensor.sensitivities"]
+            )
             scale = 1
         self.matrix = (self.curves * power[:, None] / scale).T
         self.luminance = np.linalg.inv(to_rgb)[1]
@@ -68,7 +110,9 @@ class Cube:
         # g′ = S(x + K y) with W g′ = t, by Newton's steps, which are shortened where they go too far
         goal, y, part = self.realisable(rgb), np.zeros(3), 1.0
         scale = np.linalg.inv(np.linalg.cholesky(self.matrix @ self.curves))
-        least = min(LEAST + SLOPE * np.abs(scale @ (goal - self.matrix @ at_sensor)).max(), MOST)
+        least = min(
+            LEAST + SLOPE * np.abs(scale @ (goal - self.matrix @ at_sensor)).max(), MOST
+        )
         x = self.linear(at_sensor, least)
         off = goal - self.matrix @ self.squash(x)
         for _ in range(100):
@@ -77,34 +121,53 @@ class Cube:
             slope = self.squash(x + self.curves @ y, derivative=True)
             step = part * np.linalg.solve((self.matrix * slope) @ self.curves, off)
             after = goal - self.matrix @ self.squash(x + self.curves @ (y + step))
-            part, good = (min(4 * part, 1), True) if after @ step >= -off @ step / 2 else (part / 4, False)
+            part, good = (
+                (min(4 * part, 1), True)
+                if after @ step >= -off @ step / 2
+                else (part / 4, False)
+            )
             y, off = (y + step, after) if good else (y, off)
-        curves = np.array([np.interp(wavelengths, sensor, curve) for curve in self.curves.T])
+        curves = np.array(
+            [np.interp(wavelengths, sensor, curve) for curve in self.curves.T]
+        )
         return self.squash(self.linear(mixed, least) + y @ curves)
 
     def mixture(self, rgb, wavelengths):
         """Weighted reflectances of nodes and entry, and whether all nodes have their own colours."""
         entry, share, at = self.box(rgb)
-        low = np.clip(np.searchsorted(self.nodes, at, side="right") - 1, 0, len(self.nodes) - 2)
+        low = np.clip(
+            np.searchsorted(self.nodes, at, side="right") - 1, 0, len(self.nodes) - 2
+        )
         along = (at - self.nodes[low]) / (self.nodes[low + 1] - self.nodes[low])
         rows, weights = [], []
         for corner in product((0, 1), repeat=3):
             red, green, blue = low + corner
-            rows.append(self.row[int((red * len(self.nodes) + green) * len(self.nodes) + blue)])
+            rows.append(
+                self.row[int((red * len(self.nodes) + green) * len(self.nodes) + blue)]
+            )
             weights.append(np.where(corner, along, 1 - along).prod())
         is_exact = self.arrays["distance"][rows] <= self.threshold
         limits = np.where(is_exact, np.inf, MAX_SIZE)
-        value = weights @ self.spectra(self.arrays["coefficients"][rows].astype(float), wavelengths, limits)
+        value = weights @ self.spectra(
+            self.arrays["coefficients"][rows].astype(float), wavelengths, limits
+        )
         if entry is not None:
-            value = share * value + (1 - share) * self.spectra(self.entries[[entry]], wavelengths)[0]
+            value = (
+                share * value
+                + (1 - share) * self.spectra(self.entries[[entry]], wavelengths)[0]
+            )
         return value, is_exact.all()
 
     def box(self, rgb):
         """The entry in whose box a colour lies, the weight of the lattice, and the colour at which it is evaluated."""
         steps = np.arange(len(self.nodes))
-        for entry, (centre, reach) in enumerate(zip(self.arrays["atlas.rgb"], self.arrays["atlas.reach"], strict=True)):
+        for entry, (centre, reach) in enumerate(
+            zip(self.arrays["atlas.rgb"], self.arrays["atlas.reach"], strict=True)
+        ):
             at = np.interp(centre, self.nodes, steps)
-            low, high = (np.interp(at + reach * sign, steps, self.nodes) for sign in (-1, 1))
+            low, high = (
+                np.interp(at + reach * sign, steps, self.nodes) for sign in (-1, 1)
+            )
             low, high = (
                 np.where(centre < EDGE, 2 * centre - high, low),
                 np.where(centre > 1 - EDGE, 2 * centre - low, high),
@@ -113,18 +176,28 @@ class Cube:
                 ray = rgb - centre
                 room = np.where(ray > 0, high - centre, centre - low)
                 share = np.divide(abs(ray), room, out=np.zeros(3), where=ray != 0).max()
-                return entry, share, np.clip(centre + ray / share, 0, 1) if share > 0 else rgb
+                return (
+                    entry,
+                    share,
+                    np.clip(centre + ray / share, 0, 1) if share > 0 else rgb,
+                )
         return None, 1.0, rgb
 
     def spectra(self, coefficients, wavelengths, limits=np.inf):
         """Reflectances (n, N) of coefficients (n, C), with multipliers Σ |p| up to a limit."""
         model = self.meta["model"]
-        first, last = (model.get(key, model.get("phase", {}).get(key)) for key in ("start", "end"))
+        first, last = (
+            model.get(key, model.get("phase", {}).get(key)) for key in ("start", "end")
+        )
         at = np.clip(wavelengths, first, last)
         if self.sigmoid:
             s = 2 * (at - first) / (last - first) - 1
-            return self.squash(limited(coefficients, limits) @ [s * s, s, np.ones_like(s)])
-        low, at, high = (warp(model["phase"]["warp"], each) for each in (first, at, last))
+            return self.squash(
+                limited(coefficients, limits) @ [s * s, s, np.ones_like(s)]
+            )
+        low, at, high = (
+            warp(model["phase"]["warp"], each) for each in (first, at, last)
+        )
         phase = np.pi * (at - low) / (high - low) - np.pi
         basis = 2 * np.cos(np.outer(np.arange(coefficients.shape[1]), phase))
         basis[0] = 1
@@ -133,13 +206,21 @@ class Cube:
     def squash(self, x, derivative=False):
         """S(x) or S′(x)."""
         if self.sigmoid:
-            return 0.5 / (1 + x * x) ** 1.5 if derivative else 0.5 + x / (2 * np.sqrt(1 + x * x))
+            return (
+                0.5 / (1 + x * x) ** 1.5
+                if derivative
+                else 0.5 + x / (2 * np.sqrt(1 + x * x))
+            )
         return 1 / (np.pi * (1 + x * x)) if derivative else 0.5 + np.arctan(x) / np.pi
 
     def linear(self, reflectance, least):
         """S⁻¹ of reflectances, at least a distance away from 0 and 1."""
         half = np.clip(reflectance, least, 1 - least) - 0.5
-        return 2 * half / np.sqrt(1 - 4 * half * half) if self.sigmoid else np.tan(np.pi * half)
+        return (
+            2 * half / np.sqrt(1 - 4 * half * half)
+            if self.sigmoid
+            else np.tan(np.pi * half)
+        )
 
     @cached_property
     def solid(self):
@@ -160,7 +241,9 @@ class Cube:
         chroma = rgb - grey
         speed = normals @ chroma
         out = speed > 0
-        reach = ((room - normals @ grey)[out] / speed[out]).min() - margin / max(margin, np.abs(chroma).max())
+        reach = ((room - normals @ grey)[out] / speed[out]).min() - margin / max(
+            margin, np.abs(chroma).max()
+        )
         return grey + np.clip(reach, 0, 1) * chroma
 
 
@@ -176,7 +259,11 @@ def multipliers(moments):
     for weight in GREY:
         c = ((1 - weight) * moments[pending]).T
         c[0] += weight / 2
-        count, turn, tangent = len(c), np.exp(1j * np.pi * c[0]), np.tan(np.pi * c[0] / 2)
+        count, turn, tangent = (
+            len(c),
+            np.exp(1j * np.pi * c[0]),
+            np.tan(np.pi * c[0] / 2),
+        )
         with np.errstate(all="ignore"):
             series = [np.ones_like(turn)]  # exp(iX), X = π Σ c_l z^l
             for order in range(1, count):
@@ -191,7 +278,12 @@ def multipliers(moments):
                 a[1 : order + 2] += g * a[order::-1]
                 b[1 : order + 2] -= g * b[order::-1]
                 scale, valid = scale * (1 - g * g), valid & (g * g < 1)
-            lags = [(tangent * a[k:] * a[: count - k] - b[k:] * b[: count - k] / tangent).sum(0) for k in range(count)]
+            lags = [
+                (
+                    tangent * a[k:] * a[: count - k] - b[k:] * b[: count - k] / tangent
+                ).sum(0)
+                for k in range(count)
+            ]
             p = np.array(lags).T / (2 * scale)[:, None]
         valid &= np.isfinite(p).all(axis=1)
         found[pending[valid]], pending = p[valid], pending[~valid]

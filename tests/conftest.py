@@ -22,7 +22,9 @@ settings.load_profile("uplift")
 
 # The command line must not hide internal errors.
 os.environ["UPLIFT_TRACEBACK"] = "1"
-os.environ.pop("PYTHONUNBUFFERED", None)  # with it, commands hold nothing back that could be lost at their end
+os.environ.pop(
+    "PYTHONUNBUFFERED", None
+)  # with it, commands hold nothing back that could be lost at their end
 
 # Compiled JAX code of this worker and the processes that it starts, kept between runs. JAX does not write entries at
 # once, so workers that share a folder may read half of one.
@@ -44,7 +46,9 @@ MACBETH = ATLASES / "macbeth.txt"
 
 def pytest_terminal_summary(terminalreporter) -> None:
     """List why tests were skipped, one line for each reason."""
-    skipped = Counter(report.longrepr[2] for report in terminalreporter.stats.get("skipped", ()))
+    skipped = Counter(
+        report.longrepr[2] for report in terminalreporter.stats.get("skipped", ())
+    )
     for reason, count in skipped.most_common():
         terminalreporter.line(f"{count:4} {reason}")
 

@@ -36,15 +36,22 @@ ELSEWHERE = {
 
 def examples() -> list[str]:
     """Return every example once."""
-    return list(dict.fromkeys(line for lines in examples_by_page().values() for line in lines))
+    return list(
+        dict.fromkeys(line for lines in examples_by_page().values() for line in lines)
+    )
 
 
 def examples_by_page() -> dict[str, list[str]]:
     """Return the examples of each page of the documentation and of each help text, in reading order."""
     paths = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md"))]
-    texts = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in paths}
+    texts = {
+        path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
+        for path in paths
+    }
     del texts[TUTORIAL]
-    listed = {name: page_examples(text) for name, text in texts.items()} | help_examples()
+    listed = {
+        name: page_examples(text) for name, text in texts.items()
+    } | help_examples()
     return {name: lines for name, lines in listed.items() if lines}
 
 
@@ -52,7 +59,9 @@ def page_examples(text: str) -> list[str]:
     """Return the examples of a page: lines that begin with ``uplift``, ``mkdir -p`` or ``cd`` in its code blocks."""
     lines = []
     for language, block in BLOCKS.findall(text):
-        for line in block.replace("\\\n", " ").splitlines() if language in SHELLS else ():
+        for line in (
+            block.replace("\\\n", " ").splitlines() if language in SHELLS else ()
+        ):
             if match := re.match(r"(?:\$ )?((?:uplift|mkdir -p|cd) .*)", line):
                 lines.append(" ".join(match[1].partition("    #")[0].split()))
     return lines
@@ -65,17 +74,26 @@ def help_examples() -> dict[str, list[str]]:
         for name in COMMANDS:
             command = main.get_command(context, name)
             assert command is not None
-            helps = [each.help or "" for each in (command, *getattr(command, "commands", {}).values())]
+            helps = [
+                each.help or ""
+                for each in (command, *getattr(command, "commands", {}).values())
+            ]
             lines = (line.strip() for line in "\n".join(helps).splitlines())
-            listed[f"{name} --help"] = list(dict.fromkeys(line for line in lines if line.startswith("uplift ")))
+            listed[f"{name} --help"] = list(
+                dict.fromkeys(line for line in lines if line.startswith("uplift "))
+            )
     return listed
 
 
 def source_files(repository: Path) -> list[str]:
     """Return what git tracks, and what it would track if added; paths from the root."""
     args = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
-    listed = subprocess.run(args, cwd=repository, capture_output=True, check=True).stdout.decode()
-    return [name for name in listed.split("\0") if name and (repository / name).is_file()]
+    listed = subprocess.run(
+        args, cwd=repository, capture_output=True, check=True
+    ).stdout.decode()
+    return [
+        name for name in listed.split("\0") if name and (repository / name).is_file()
+    ]
 
 
 def build_wheel(folder: Path) -> Path:
@@ -84,8 +102,18 @@ def build_wheel(folder: Path) -> Path:
     for name in source_files(ROOT):
         (copy / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, copy / name)
-    args = ["-m", "build", "--wheel", "--no-isolation", "--outdir", folder / "dist", copy]
-    done = subprocess.run([sys.executable, *args], cwd=folder, capture_output=True, text=True)
+    args = [
+        "-m",
+        "build",
+        "--wheel",
+        "--no-isolation",
+        "--outdir",
+        folder / "dist",
+        copy,
+    ]
+    done = subprocess.run(
+        [sys.executable, *args], cwd=folder, capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     (path,) = (folder / "dist").iterdir()
     return path
@@ -98,18 +126,32 @@ def unpack(wheel: Path, folder: Path) -> Path:
     return folder
 
 
-def run_lines(lines: Sequence[str], package: Path, folder: Path) -> list[dict[str, Any]]:
+def run_lines(
+    lines: Sequence[str], package: Path, folder: Path
+) -> list[dict[str, Any]]:
     """Run command lines of the unpacked package in a folder, one after the other, and return their outcomes."""
     package = package.resolve()
     environment = os.environ | {"PYTHONPATH": str(package), "UPLIFT_FROM": str(package)}
     command = [sys.executable, Path(__file__).parent / "run_lines.py"]
-    options = {"cwd": folder, "env": environment, "text": True, "stdout": subprocess.PIPE, "check": True}
-    return list(json.loads(subprocess.run(command, input=json.dumps(lines), **options).stdout))
+    options = {
+        "cwd": folder,
+        "env": environment,
+        "text": True,
+        "stdout": subprocess.PIPE,
+        "check": True,
+    }
+    return list(
+        json.loads(subprocess.run(command, input=json.dumps(lines), **options).stdout)
+    )
 
 
 def run_all(names: Sequence[str]) -> int:
     """Run the examples of pages, all by default, each page in its folder, and print those that fail."""
-    listed = {name: lines for name, lines in examples_by_page().items() if name in names or not names}
+    listed = {
+        name: lines
+        for name, lines in examples_by_page().items()
+        if name in names or not names
+    }
     with tempfile.TemporaryDirectory() as temporary:
         root = Path(temporary)
         package = unpack(build_wheel(root), root / "package")
@@ -123,7 +165,9 @@ def run_all(names: Sequence[str]) -> int:
             if name.endswith("--help") and CUBE not in lines:
                 shutil.copy(root / "macbeth-32.uplift", folder)
             runnable = [line for line in lines if line not in ELSEWHERE]
-            outcomes += [(name, outcome) for outcome in run_lines(runnable, package, folder)]
+            outcomes += [
+                (name, outcome) for outcome in run_lines(runnable, package, folder)
+            ]
     failures = [(name, outcome) for name, outcome in outcomes if outcome["code"]]
     for name, outcome in failures:
         print(f"{name}: {outcome['line']}\n{outcome['stderr']}")

@@ -32,7 +32,9 @@ def warns(*codes: str) -> Iterator[list[UpliftWarning]]:
         warnings.simplefilter("always")
         found: list[UpliftWarning] = []
         yield found
-    found += [each.message for each in caught if isinstance(each.message, UpliftWarning)]
+    found += [
+        each.message for each in caught if isinstance(each.message, UpliftWarning)
+    ]
     assert sorted(each.code for each in found) == sorted(codes)
 
 

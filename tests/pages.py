@@ -34,7 +34,13 @@ class Page(HTMLParser):
 
     def __init__(self, html):
         super().__init__()
-        self.open, self.tags, self.attributes, self.words, self.tables = [], [], [], [], []
+        self.open, self.tags, self.attributes, self.words, self.tables = (
+            [],
+            [],
+            [],
+            [],
+            [],
+        )
         self.feed(html)
         self.close()
         assert self.open == []
@@ -71,14 +77,22 @@ class Page(HTMLParser):
 
     def table(self, *headings):
         """The body rows of the only table that begins with these headings."""
-        (found,) = [rows for rows in self.tables if [cell.text for cell in rows[0]][: len(headings)] == list(headings)]
+        (found,) = [
+            rows
+            for rows in self.tables
+            if [cell.text for cell in rows[0]][: len(headings)] == list(headings)
+        ]
         return found[1:]
 
 
 def external_links(html):
     """Addresses that a browser would load."""
     page = Page(html)
-    links = [value for name, value in page.attributes if name in ("src", "srcset", "href", "xlink:href")]
+    links = [
+        value
+        for name, value in page.attributes
+        if name in ("src", "srcset", "href", "xlink:href")
+    ]
     return [link for link in links if not link.startswith("#")] + [
         tag for tag in page.tags if tag in ("link", "img", "iframe", "object")
     ]

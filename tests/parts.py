@@ -37,7 +37,10 @@ def need(*parts: Part) -> None:
     """Skip the test, or the module that is being imported, unless these parts work."""
     for part in parts:
         if problem := _problem(part):
-            pytest.skip(f"needs {part.name}, {part.installation}: {problem}", allow_module_level=True)
+            pytest.skip(
+                f"needs {part.name}, {part.installation}: {problem}",
+                allow_module_level=True,
+            )
 
 
 @cache
@@ -80,15 +83,25 @@ def vulkan_device():
     import wgpu
 
     adapters = wgpu.gpu.enumerate_adapters_sync()
-    return next(each for each in adapters if each.info["backend_type"] == "Vulkan").request_device_sync()
+    return next(
+        each for each in adapters if each.info["backend_type"] == "Vulkan"
+    ).request_device_sync()
 
 
 def _open_device() -> None:
     vulkan_device()
 
 
-MITSUBA = Part("Mitsuba 3", "pip install '.[mitsuba]'", partial(_evaluate_texture, "scalar_spectral"))
-LLVM = Part("LLVM that Mitsuba works with", "apt install libllvm19", partial(_evaluate_texture, "llvm_ad_spectral"))
+MITSUBA = Part(
+    "Mitsuba 3",
+    "pip install '.[mitsuba]'",
+    partial(_evaluate_texture, "scalar_spectral"),
+)
+LLVM = Part(
+    "LLVM that Mitsuba works with",
+    "apt install libllvm19",
+    partial(_evaluate_texture, "llvm_ad_spectral"),
+)
 _cc = partial(_compile, "main.c", EMPTY_PROGRAM, "cc main.c -o main", "./main")
 _cxx = partial(_compile, "main.cpp", EMPTY_PROGRAM, "c++ main.cpp -o main", "./main")
 _clang = partial(_compile, "main.c", EMPTY_PROGRAM, "clang main.c -o main")
@@ -96,9 +109,23 @@ _glslang = partial(_compile, "a.comp", EMPTY_SHADER, "glslangValidator a.comp")
 CC = Part("a C compiler, cc", "apt install gcc", _cc)
 CLANG = Part("clang", "apt install clang", _clang)
 CXX = Part("a C++ compiler, c++", "apt install g++", _cxx)
-_sanitized = partial(_compile, "main.c", EMPTY_PROGRAM, f"cc {' '.join(SANITIZED)} main.c -o main", "./main")
+_sanitized = partial(
+    _compile,
+    "main.c",
+    EMPTY_PROGRAM,
+    f"cc {' '.join(SANITIZED)} main.c -o main",
+    "./main",
+)
 SANITIZERS = Part("AddressSanitizer and UBSan", "apt install gcc", _sanitized)
 CHROMIUM = Part("Chromium", "apt install chromium", _open_tab)
-VULKAN = Part("a Vulkan driver", "pip install '.[gpu]' and apt install mesa-vulkan-drivers", _open_device)
-NVCC = Part("nvcc", "the CUDA toolkit", partial(_compile, "a.cu", EMPTY_KERNEL, "nvcc -ptx a.cu"))
+VULKAN = Part(
+    "a Vulkan driver",
+    "pip install '.[gpu]' and apt install mesa-vulkan-drivers",
+    _open_device,
+)
+NVCC = Part(
+    "nvcc",
+    "the CUDA toolkit",
+    partial(_compile, "a.cu", EMPTY_KERNEL, "nvcc -ptx a.cu"),
+)
 GLSLANG = Part("glslangValidator", "apt install glslang-tools", _glslang)

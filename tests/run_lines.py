@@ -23,7 +23,9 @@ def main() -> None:
     import uplift
 
     for module in (uplift, uplift_cli):
-        assert str(module.__file__).startswith(os.environ["UPLIFT_FROM"]), module.__file__
+        assert str(module.__file__).startswith(os.environ["UPLIFT_FROM"]), (
+            module.__file__
+        )
     outcomes = []
     for line in json.load(sys.stdin):
         begin = time.process_time()
@@ -37,10 +39,19 @@ def main() -> None:
         result = CliRunner().invoke(uplift_cli.main.main, words[1:], prog_name="uplift")
         if target is not None:
             Path(target).write_text(result.stdout, encoding="utf-8")
-        code = result.exit_code or int(key is not None and key not in json.loads(result.stdout))
+        code = result.exit_code or int(
+            key is not None and key not in json.loads(result.stdout)
+        )
         seconds = time.process_time() - begin
         print(f"{seconds:6.1f} s  {code}  {line}", file=sys.stderr, flush=True)
-        outcomes.append({"line": line, "code": code, "stdout": result.stdout, "stderr": result.stderr})
+        outcomes.append(
+            {
+                "line": line,
+                "code": code,
+                "stdout": result.stdout,
+                "stderr": result.stderr,
+            }
+        )
     json.dump(outcomes, sys.stdout)
 
 
@@ -51,7 +62,9 @@ def parse(line: str) -> tuple[list[str], str | None, str | None]:
     words = []
     for quoted in re.findall(r"(?:[^\s\"']|\"[^\"]*\"|'[^']*')+", line):
         (word,) = shlex.split(quoted)
-        matches = sorted(glob.glob(word)) if glob.has_magic(word) and word == quoted else []
+        matches = (
+            sorted(glob.glob(word)) if glob.has_magic(word) and word == quoted else []
+        )
         words += matches or [word]
     return words, target.strip() or None, pipe.strip() or None
 

@@ -13,7 +13,9 @@ from tests.conftest import ROOT
 from tools.render_docs import pages
 from uplift.io.export import write_program
 
-CLAIMS = tomllib.loads((ROOT / "docs/data/claims.toml").read_text(encoding="utf-8"))["claim"]
+CLAIMS = tomllib.loads((ROOT / "docs/data/claims.toml").read_text(encoding="utf-8"))[
+    "claim"
+]
 SOURCES = ("code", "data", "test", "printed", "meaning")
 UNIT = r" ?%|-?fold| times\b| ?(?:ms|µs|ns|kB|MB|GB)\b| (?:s|seconds|minutes|hours)\b| million\b"
 NUMBER = re.compile(
@@ -39,7 +41,9 @@ def prose(path):
         text = re.sub(pattern, "", text, flags=re.DOTALL)
     text = re.sub(r"\{%.*?%\}|\{\{.*?\}\}|\{#.*?#\}", "◊", text, flags=re.DOTALL)
     text = re.sub(r"\]\([^)]*\)", "]", re.sub(r"`[^`\n]*`", "`…`", text))
-    text = "\n".join("" if line.startswith(("|", "    ")) else line for line in text.splitlines())
+    text = "\n".join(
+        "" if line.startswith(("|", "    ")) else line for line in text.splitlines()
+    )
     return VERSIONS.sub("", PLACES.sub("", text))
 
 
@@ -60,7 +64,8 @@ def spans(text, claims):
     for claim in claims:
         before, number, after = re.split("[«»]", claim["text"])
         found += [
-            (match.start() + len(before), number) for match in re.finditer(re.escape(before + number + after), text)
+            (match.start() + len(before), number)
+            for match in re.finditer(re.escape(before + number + after), text)
         ]
     return found
 
@@ -79,7 +84,11 @@ def as_number(text):
     """Value of a number as written: 2e−7, 10⁻⁸, 0.95."""
     plain = text.replace("−", "-").replace(",", "")
     power = re.fullmatch(r"10⁻([⁰¹²³⁴-⁹]+)", plain)
-    return 10.0 ** -int(power[1].translate(str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789"))) if power else float(plain)
+    return (
+        10.0 ** -int(power[1].translate(str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")))
+        if power
+        else float(plain)
+    )
 
 
 def digits(text):
@@ -110,14 +119,21 @@ def from_data(path):
         value = value[int(name)] if name.isdigit() else value[name]
         if where:
             wanted = dict(pair.split("=") for pair in where.rstrip("]").split(","))
-            (value,) = [row for row in value if all(str(row[one]) == other for one, other in wanted.items())]
+            (value,) = [
+                row
+                for row in value
+                if all(str(row[one]) == other for one, other in wanted.items())
+            ]
     return value
 
 
 @pytest.mark.parametrize("path", sources(), ids=lambda path: path.name)
 def test_every_number_is_listed(path):
     page = path.relative_to(ROOT).as_posix()
-    assert unlisted(prose(path), [claim for claim in CLAIMS if claim["page"] == page]) == []
+    assert (
+        unlisted(prose(path), [claim for claim in CLAIMS if claim["page"] == page])
+        == []
+    )
 
 
 @pytest.mark.parametrize("claim", CLAIMS, ids=label)
@@ -127,10 +143,16 @@ def test_claim_occurs_and_names_one_source(claim):
     assert ("data" in claim) == ("command" in claim)
 
 
-@pytest.mark.parametrize("claim", [claim for claim in CLAIMS if {"code", "data"} & claim.keys()], ids=label)
+@pytest.mark.parametrize(
+    "claim", [claim for claim in CLAIMS if {"code", "data"} & claim.keys()], ids=label
+)
 def test_number_agrees_with_its_source(claim):
     number = re.split("[«»]", claim["text"])[1]
-    stated = as_number(number) / (100 if claim.get("percent") else 1) * (-1 if claim.get("negative") else 1)
+    stated = (
+        as_number(number)
+        / (100 if claim.get("percent") else 1)
+        * (-1 if claim.get("negative") else 1)
+    )
     actual = from_code(claim) if "code" in claim else from_data(claim["data"])
     if "value" in claim:
         assert isclose(actual, claim["value"]), number
@@ -138,11 +160,15 @@ def test_number_agrees_with_its_source(claim):
         assert abs(actual - stated) <= digits(number) + 1e-15, (number, actual)
 
 
-@pytest.mark.parametrize("claim", [claim for claim in CLAIMS if "test" in claim], ids=label)
+@pytest.mark.parametrize(
+    "claim", [claim for claim in CLAIMS if "test" in claim], ids=label
+)
 def test_named_file_has_the_number(claim):
     value = as_number(re.split("[«»]", claim["text"])[1])
     text = (ROOT / claim["test"]).read_text(encoding="utf-8")
-    assert value in {float(each) for each in re.findall(r"\d+(?:\.\d+)?(?:e-?\d+)?", text)}
+    assert value in {
+        float(each) for each in re.findall(r"\d+(?:\.\d+)?(?:e-?\d+)?", text)
+    }
 
 
 def test_a_header_of_32_nodes_has_about_5_megabytes(tmp_path, macbeth_cube):

@@ -10,7 +10,9 @@ import uplift
 
 def run_python(code):
     """Run code in a new process and return its output."""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
     return done.stdout.strip()
 
 
@@ -29,16 +31,34 @@ QUERY = "from uplift_cli.main import main\ntry: main(['query', '#123456', '--for
 
 
 def test_builds_and_queries_load_only_the_core():
-    assert not loaded_subpackages("import uplift")[1] & {"numpy", "click", *HEAVY_OF_FITS}
-    assert not loaded_subpackages(QUERY)[1] & {"matplotlib", "rich", "logging", "subprocess", *HEAVY_OF_FITS}
-    assert loaded_subpackages("import uplift; uplift.build(dim=2)")[0] == CORE | {"atlas", "fit", "pipeline"}
+    assert not loaded_subpackages("import uplift")[1] & {
+        "numpy",
+        "click",
+        *HEAVY_OF_FITS,
+    }
+    assert not loaded_subpackages(QUERY)[1] & {
+        "matplotlib",
+        "rich",
+        "logging",
+        "subprocess",
+        *HEAVY_OF_FITS,
+    }
+    assert loaded_subpackages("import uplift; uplift.build(dim=2)")[0] == CORE | {
+        "atlas",
+        "fit",
+        "pipeline",
+    }
     for code, more in (
         ("uplift.load().reflectance([0.5, 0.5, 0.5], wavelengths=[400, 500])", set()),
         ("uplift.load_emission().spectrum([0.5, 0.5, 0.5])", {"lights"}),
     ):
         subpackages, modules = loaded_subpackages(f"import uplift; {code}")
         assert subpackages <= CORE | more
-        assert not modules & {"uplift.colorimetry.observer", "uplift.lookup.bulk", *HEAVY_OF_FITS}
+        assert not modules & {
+            "uplift.colorimetry.observer",
+            "uplift.lookup.bulk",
+            *HEAVY_OF_FITS,
+        }
 
 
 def test_settings_of_jax_numpy_and_warnings_are_unchanged():
@@ -58,7 +78,10 @@ def test_settings_of_jax_numpy_and_warnings_are_unchanged():
     assert run_python(code) == "set()\nfloat32"
 
 
-@pytest.mark.parametrize("code", ["import uplift", "import uplift.bulk", "from uplift import bulk; import uplift"])
+@pytest.mark.parametrize(
+    "code",
+    ["import uplift", "import uplift.bulk", "from uplift import bulk; import uplift"],
+)
 def test_bulk_is_a_module_and_an_attribute(code):
     assert run_python(f"{code}\nprint(uplift.bulk.spectra.__name__)") == "spectra"
 
@@ -69,7 +92,9 @@ def test_dir_lists_the_interface():
 
 
 def test_unknown_names_raise_attribute_error():
-    with pytest.raises(AttributeError, match="module 'uplift' has no attribute 'paint'"):
+    with pytest.raises(
+        AttributeError, match="module 'uplift' has no attribute 'paint'"
+    ):
         _ = uplift.paint
     assert not hasattr(uplift, "np")
     with pytest.raises(ImportError):

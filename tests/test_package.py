@@ -5,7 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.examples import ELSEWHERE, build_wheel, examples, run_lines, source_files, unpack
+from tests.examples import (
+    ELSEWHERE,
+    build_wheel,
+    examples,
+    run_lines,
+    source_files,
+    unpack,
+)
 from uplift.common.version import UNKNOWN, VERSION
 
 FOLDERS = {"uplift": "uplift", "cli": "uplift_cli", "atlases": "uplift_atlases"}
@@ -42,15 +49,29 @@ def wheel(path):
 
 def test_every_module_is_in_it(wheel, repository):
     for here, there in FOLDERS.items():
-        modules = [path.relative_to(repository / here).as_posix() for path in (repository / here).rglob("*.py")]
+        modules = [
+            path.relative_to(repository / here).as_posix()
+            for path in (repository / here).rglob("*.py")
+        ]
         assert len(modules) > 10 or here == "atlases"
         assert {f"{there}/{module}" for module in modules} <= set(wheel.namelist())
 
 
 def test_data_and_licence_are_in_it_and_nothing_else(wheel, repository):
-    assert wheel.read(f"{INFO}/licenses/LICENSE") == (repository / "LICENSE").read_bytes()
-    assert {name.split("/")[0] for name in wheel.namelist()} == {"uplift", "uplift_atlases", "uplift_cli", INFO}
-    data = {name for name in wheel.namelist() if ".dist-info/" not in name and not name.endswith(".py")}
+    assert (
+        wheel.read(f"{INFO}/licenses/LICENSE") == (repository / "LICENSE").read_bytes()
+    )
+    assert {name.split("/")[0] for name in wheel.namelist()} == {
+        "uplift",
+        "uplift_atlases",
+        "uplift_cli",
+        INFO,
+    }
+    data = {
+        name
+        for name in wheel.namelist()
+        if ".dist-info/" not in name and not name.endswith(".py")
+    }
     tracked = {name for name in source_files(repository) if not name.endswith(".py")}
     library = {name for name in tracked if name.startswith("uplift/")}
     atlases = {f"uplift_{name}" for name in tracked if name.startswith("atlases/")}
@@ -63,7 +84,11 @@ def test_data_and_licence_are_in_it_and_nothing_else(wheel, repository):
 def test_examples_run_as_written_in_an_empty_folder(path, tmp_path):
     assert set(FEW) | ELSEWHERE <= set(examples())
     (tmp_path / "empty").mkdir()
-    outcomes = run_lines([*FEW, "uplift --version"], unpack(path, tmp_path / "package"), tmp_path / "empty")
+    outcomes = run_lines(
+        [*FEW, "uplift --version"],
+        unpack(path, tmp_path / "package"),
+        tmp_path / "empty",
+    )
     for outcome in outcomes:
         assert outcome["code"] == 0, outcome["line"] + outcome["stderr"]
         assert "error: " not in outcome["stderr"]

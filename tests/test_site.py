@@ -14,7 +14,10 @@ NOTEBOOKS = sorted(DOCS.glob("notebooks/*.ipynb"))
 
 @pytest.mark.site
 def test_every_page_is_built():
-    pages = [path.relative_to(DOCS).with_suffix(".html") for path in (*DOCS.rglob("*.md"), *NOTEBOOKS)]
+    pages = [
+        path.relative_to(DOCS).with_suffix(".html")
+        for path in (*DOCS.rglob("*.md"), *NOTEBOOKS)
+    ]
     assert len(pages) > 30
     assert [page for page in pages if not (SITE / page).is_file()] == []
 
@@ -23,7 +26,11 @@ def test_every_page_is_built():
 def test_notebooks_have_run():
     assert len(NOTEBOOKS) == 4
     for notebook in NOTEBOOKS:
-        page = (SITE / notebook.relative_to(DOCS)).with_suffix(".html").read_text(encoding="utf-8")
+        page = (
+            (SITE / notebook.relative_to(DOCS))
+            .with_suffix(".html")
+            .read_text(encoding="utf-8")
+        )
         assert "cell_output" in page
         assert "data:image" in page or "<img" in page
 

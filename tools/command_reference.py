@@ -30,7 +30,9 @@ def _command(command: click.Command, name: str, parent: click.Context) -> Iterat
     with click.Context(command, info_name=name, parent=parent) as context:
         usage = " ".join([context.command_path, *command.collect_usage_pieces(context)])
         yield f"\n### {context.command_path}\n\n```text\n{usage}\n```\n"
-        for paragraph in inspect.cleandoc((command.help or "").replace("\f\n", "")).split("\n\n"):
+        for paragraph in inspect.cleandoc(
+            (command.help or "").replace("\f\n", "")
+        ).split("\n\n"):
             is_code = paragraph.startswith(VERBATIM)
             yield _code_block(paragraph) if is_code else f"\n{_escape(paragraph)}\n"
         yield "\n| option | |\n|---|---|\n"

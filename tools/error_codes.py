@@ -18,33 +18,54 @@ def codes(tree: ast.AST) -> Iterator[tuple[str, str]]:
     named = defaultdict(list)
     for node in ast.walk(tree):
         if isinstance(node, ast.Assign):
-            sides = (getattr(side, "elts", [side]) for side in (node.targets[0], node.value))
+            sides = (
+                getattr(side, "elts", [side]) for side in (node.targets[0], node.value)
+            )
             for target, value in zip(*sides, strict=False):
                 named[ast.unparse(target)].append(value)
     for node in ast.walk(tree):
         found: list[tuple[str, ast.expr]] = []
         if isinstance(node, ast.ClassDef):
             own = (each for each in node.body if isinstance(each, ast.Assign))
-            found = [(node.name, each.value) for each in own if ast.unparse(each.targets[0]) == "code"]
+            found = [
+                (node.name, each.value)
+                for each in own
+                if ast.unparse(each.targets[0]) == "code"
+            ]
         elif isinstance(node, ast.Call):
             name = ast.unparse(node.func).rpartition(".")[2]
-            values = [keyword.value for keyword in node.keywords if keyword.arg in KEYWORDS]
-            found = [(name, each) for value in values for each in named.get(ast.unparse(value), [value])]
-        yield from ((name, str(each.value)) for name, each in found if isinstance(each, ast.Constant) and each.value)
+            values = [
+                keyword.value for keyword in node.keywords if keyword.arg in KEYWORDS
+            ]
+            found = [
+                (name, each)
+                for value in values
+                for each in named.get(ast.unparse(value), [value])
+            ]
+        yield from (
+            (name, str(each.value))
+            for name, each in found
+            if isinstance(each, ast.Constant) and each.value
+        )
 
 
 def collect(root: Path = ROOT) -> list[dict[str, Any]]:
     """Return ``code``, ``kind`` ("error" or "warning") and ``packages`` that use it, by code."""
     found: dict[tuple[str, str], set[str]] = {}
-    for path in sorted(path for folder in ("cli", "uplift") for path in (root / folder).rglob("*.py")):
+    for path in sorted(
+        path for folder in ("cli", "uplift") for path in (root / folder).rglob("*.py")
+    ):
         package = ".".join(path.relative_to(root).parent.parts)
         for name, code in codes(ast.parse(path.read_text(encoding="utf-8"))):
             kind = "warning" if "warn" in name.lower() else "error"
             found.setdefault((code, kind), set()).add(package)
     return [
-        {"code": code, "kind": kind, "packages": sorted(packages)} for (code, kind), packages in sorted(found.items())
+        {"code": code, "kind": kind, "packages": sorted(packages)}
+        for (code, kind), packages in sorted(found.items())
     ]
 
 
 if __name__ == "__main__":
-    TARGET.write_text(json.dumps({"codes": collect()}, indent=1) + "\n", encoding="utf-8")
+    TARGET.write_text(
+        json.dumps({"codes": collect()}, indent=1) + "\n", encoding="utf-8"
+    )

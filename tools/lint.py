@@ -22,8 +22,19 @@ FILE_KEYS = {"mended", "told"}
 
 def tracked() -> list[Path]:
     """Return the Python and Markdown files and the templates that git tracks, or would if they were added."""
-    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.py", "*.md", "*.j2"]
-    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
+    command = [
+        "git",
+        "ls-files",
+        "--cached",
+        "--others",
+        "--exclude-standard",
+        "*.py",
+        "*.md",
+        "*.j2",
+    ]
+    listed = subprocess.run(
+        command, cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.split()
     return [ROOT / name for name in listed if (ROOT / name).is_file()]
 
 
@@ -33,11 +44,20 @@ def prose(path: Path) -> Iterator[tuple[int, str]]:
     if path.suffix == ".py":
         for token in tokenize.generate_tokens(io.StringIO(text).readline):
             kind = tokenize.tok_name[token.type]
-            if kind == "NAME" and set(token.string.lower().strip("_").split("_")) & DIALECT:
+            if (
+                kind == "NAME"
+                and set(token.string.lower().strip("_").split("_")) & DIALECT
+            ):
                 yield token.start[0], token.string.replace("_", " ")
-            elif kind in ("STRING", "COMMENT", "FSTRING_MIDDLE") and token.string.strip("\"'") not in FILE_KEYS:
+            elif (
+                kind in ("STRING", "COMMENT", "FSTRING_MIDDLE")
+                and token.string.strip("\"'") not in FILE_KEYS
+            ):
                 for offset, line in enumerate(token.string.splitlines()):
-                    yield token.start[0] + offset, re.sub(r"\{[^{}]*\}|``[^`]*``|`[^`]*`", " ", line)
+                    yield (
+                        token.start[0] + offset,
+                        re.sub(r"\{[^{}]*\}|``[^`]*``|`[^`]*`", " ", line),
+                    )
         return
     fenced = False
     for number, line in enumerate(text.splitlines(), 1):
@@ -49,9 +69,18 @@ def prose(path: Path) -> Iterator[tuple[int, str]]:
 
 def check_words() -> list[str]:
     """Return a line for every banned expression."""
-    lines = [line.partition("  ") for line in WORDS.read_text(encoding="utf-8").splitlines()]
-    banned = {line[0]: line[2].strip() for line in lines if line[0] and not line[0].startswith("#")}
-    patterns = {re.compile(rf"\b(?:{expression})\b", re.IGNORECASE): advice for expression, advice in banned.items()}
+    lines = [
+        line.partition("  ") for line in WORDS.read_text(encoding="utf-8").splitlines()
+    ]
+    banned = {
+        line[0]: line[2].strip()
+        for line in lines
+        if line[0] and not line[0].startswith("#")
+    }
+    patterns = {
+        re.compile(rf"\b(?:{expression})\b", re.IGNORECASE): advice
+        for expression, advice in banned.items()
+    }
     return [
         f"{path.relative_to(ROOT)}:{number}: '{match.group()}': {advice}"
         for path in tracked()
@@ -73,11 +102,17 @@ def documented(package: str) -> Iterator[tuple[str, frozenset[str]]]:
         if inspect.isfunction(found):
             yield name, REQUIRED
         elif inspect.isclass(found):
-            own_constructor = "__init__" in vars(found) and not getattr(found, "_is_protocol", False)
+            own_constructor = "__init__" in vars(found) and not getattr(
+                found, "_is_protocol", False
+            )
             yield name, REQUIRED if own_constructor else REQUIRED - {"PR01"}
             for key, value in vars(found).items():
-                is_method = inspect.isfunction(value) or isinstance(value, property | classmethod)
-                inherited = value.__doc__ is None and inspect.getdoc(getattr(found, key, None))
+                is_method = inspect.isfunction(value) or isinstance(
+                    value, property | classmethod
+                )
+                inherited = value.__doc__ is None and inspect.getdoc(
+                    getattr(found, key, None)
+                )
                 if is_method and not key.startswith("_") and not inherited:
                     yield f"{name}.{key}", REQUIRED
 

@@ -17,11 +17,22 @@ def main(folder: str, output: str) -> None:
     """Convert the data of the luxpy installation in ``folder`` to a CSV atlas at 5 nm."""
     data = Path(folder) / "luxpy" / "data" / "rfls"
     table = np.loadtxt(data / "Munsell1269.dat", delimiter=",")
-    lines = (data / "Munsell1269NotationInfo.dat").read_text(encoding="utf-8").splitlines()
-    names = [f"{chip['H']} {float(chip['V']):g}/{float(chip['C']):g}" for chip in csv.DictReader(lines)]
+    lines = (
+        (data / "Munsell1269NotationInfo.dat").read_text(encoding="utf-8").splitlines()
+    )
+    names = [
+        f"{chip['H']} {float(chip['V']):g}/{float(chip['C']):g}"
+        for chip in csv.DictReader(lines)
+    ]
     repeats = [names[:row].count(name) + 1 for row, name in enumerate(names)]
-    names = [name if repeat == 1 else f"{name} ({repeat})" for name, repeat in zip(names, repeats, strict=True)]
-    entries = (Entry(name, table[::5, 0], chip) for name, chip in zip(names, table[::5, 1:].T.round(4), strict=True))
+    names = [
+        name if repeat == 1 else f"{name} ({repeat})"
+        for name, repeat in zip(names, repeats, strict=True)
+    ]
+    entries = (
+        Entry(name, table[::5, 0], chip)
+        for name, chip in zip(names, table[::5, 1:].T.round(4), strict=True)
+    )
     write_atlas(Atlas(tuple(entries)), output, force=True)
 
 

@@ -47,10 +47,16 @@ def number(value: Any, spec: str = "") -> str:
         return "●" if value else "○"
     if isinstance(value, list | tuple):
         separator = ", " if spec.startswith("list ") else " / "
-        return separator.join(number(item, spec.removeprefix("list ")) for item in value)
+        return separator.join(
+            number(item, spec.removeprefix("list ")) for item in value
+        )
     if isinstance(value, Mapping):
         parts = {key: number(item, spec) for key, item in value.items()}
-        return "{mean} ± {std}".format_map(parts) if "std" in parts else "{median} ({min}–{max})".format_map(parts)
+        return (
+            "{mean} ± {std}".format_map(parts)
+            if "std" in parts
+            else "{median} ({min}–{max})".format_map(parts)
+        )
     named = getattr(viz_format, f"format_{spec}", None)
     return named(value) if named else format(value, spec)
 
@@ -58,7 +64,9 @@ def number(value: Any, spec: str = "") -> str:
 class RowFormatter(string.Formatter):
     """Fill a pattern such as ``{cube} | {worst:.1e}`` from a row; a dot leads into a nested dict or list."""
 
-    def get_field(self, field_name: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> Any:
+    def get_field(
+        self, field_name: str, args: Sequence[Any], kwargs: Mapping[str, Any]
+    ) -> Any:
         """Return the value at a dotted path."""
         value: Any = kwargs
         for key in field_name.split("."):
@@ -81,7 +89,9 @@ def table(rows: Iterable[Row], caller: Callable[[], str]) -> str:
     return "".join(f"| {line} |\n" for line in (heading, rule, *body))
 
 
-def leaves(value: Any, parts: Sequence[str], name: str = "") -> Iterator[tuple[str, Any]]:
+def leaves(
+    value: Any, parts: Sequence[str], name: str = ""
+) -> Iterator[tuple[str, Any]]:
     """Yield the names and values of a nested row, the names joined by dots; floats have six digits.
 
     The items of a list have the names ``parts``. A list of another length is one value.
@@ -92,7 +102,10 @@ def leaves(value: Any, parts: Sequence[str], name: str = "") -> Iterator[tuple[s
         for key, item in value.items():
             yield from leaves(item, parts, f"{name}.{key}" if name else str(key))
     elif isinstance(value, list):
-        yield name, "; ".join(str(item) for each in value for _, item in leaves(each, ()))
+        yield (
+            name,
+            "; ".join(str(item) for each in value for _, item in leaves(each, ())),
+        )
     else:
         yield name, f"{value:.6g}" if isinstance(value, float) else value
 
@@ -106,7 +119,11 @@ def flat_csv(rows: Iterable[Row], parts: Sequence[str]) -> str:
 
 def where(rows: Iterable[Row], **conditions: Any) -> list[Row]:
     """Return the rows with these values."""
-    return [row for row in rows if all(row[key] == value for key, value in conditions.items())]
+    return [
+        row
+        for row in rows
+        if all(row[key] == value for key, value in conditions.items())
+    ]
 
 
 def pick(rows: Iterable[Row], **conditions: Any) -> Row:
@@ -118,12 +135,18 @@ def pick(rows: Iterable[Row], **conditions: Any) -> Row:
 def recommended() -> list[Row]:
     """Return the cubes that ``uplift chart --recommend`` names, by situation."""
     chart = shipped_chart()
-    return [{"title": name, "needed": each, "cube": recommend_cube(chart, each)} for name, each in SITUATIONS.items()]
+    return [
+        {"title": name, "needed": each, "cube": recommend_cube(chart, each)}
+        for name, each in SITUATIONS.items()
+    ]
 
 
 def pages() -> list[str]:
     """Return the names of the pages that have a template."""
-    return sorted(path.relative_to(TEMPLATES).as_posix().removesuffix(".md.j2") for path in TEMPLATES.rglob("*.md.j2"))
+    return sorted(
+        path.relative_to(TEMPLATES).as_posix().removesuffix(".md.j2")
+        for path in TEMPLATES.rglob("*.md.j2")
+    )
 
 
 def read_data(name: str) -> dict[str, Any]:
@@ -141,17 +164,32 @@ def render(name: str, data: Mapping[str, Any] | None = None) -> dict[Path, str]:
     """Return the text of a page and of its CSV files, from its template and its data, by default the stored one."""
     page, tables = (ROOT if name == "README" else DOCS) / f"{name}.md", {}
 
-    def long_table(rows: Iterable[Row], table_name: str, parts: Sequence[str] = ()) -> str:
+    def long_table(
+        rows: Iterable[Row], table_name: str, parts: Sequence[str] = ()
+    ) -> str:
         path = DOCS / "tables" / f"{table_name}.csv"
         tables[path] = flat_csv(rows, parts)
         return f"[{path.name}]({Path(os.path.relpath(path, page.parent)).as_posix()})"
 
     style = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
-    environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, **style)
+    environment = Environment(
+        loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, **style
+    )
     environment.filters |= {"num": number, "mean": statistics.fmean}
-    functions = {"load": read_data, "text": read_text, "table": table, "where": where, "pick": pick}
-    environment.globals |= functions | {"long_table": long_table, "recommended": recommended}
-    text = environment.get_template(f"{name}.md.j2").render(read_data(name) if data is None else data)
+    functions = {
+        "load": read_data,
+        "text": read_text,
+        "table": table,
+        "where": where,
+        "pick": pick,
+    }
+    environment.globals |= functions | {
+        "long_table": long_table,
+        "recommended": recommended,
+    }
+    text = environment.get_template(f"{name}.md.j2").render(
+        read_data(name) if data is None else data
+    )
     return {page: text} | tables
 
 

@@ -19,7 +19,9 @@ COPYRIGHT = "Copyright 2013 Colour Developers (colour-science 0.4.7)"
 BABELCOLOR = "Copyright 2004-2012 Danny Pascale (www.babelcolor.com), used by permission in colour-science; "
 
 
-def columns(spectra: colour.MultiSpectralDistributions) -> dict[str, colour.SpectralDistribution]:
+def columns(
+    spectra: colour.MultiSpectralDistributions,
+) -> dict[str, colour.SpectralDistribution]:
     """Return the columns of a table by their labels."""
     return dict(zip(spectra.labels, spectra.to_sds(), strict=True))
 
@@ -70,10 +72,21 @@ def main(folder: Path = FOLDER) -> None:
     for file, (content, spectra, patterns) in ATLASES.items():
         entries = []
         for number, (key, spectrum) in enumerate(spectra.items(), start=1):
-            name, description = (each.format(name=key, lower=key.lower(), number=number) for each in patterns)
-            entries.append(Entry(name, spectrum.wavelengths, spectrum.values, description=description))
+            name, description = (
+                each.format(name=key, lower=key.lower(), number=number)
+                for each in patterns
+            )
+            entries.append(
+                Entry(
+                    name, spectrum.wavelengths, spectrum.values, description=description
+                )
+            )
         owner = BABELCOLOR + COPYRIGHT if file == "babelcolor" else COPYRIGHT
-        write_atlas(Atlas(tuple(entries)), folder / f"{file}.txt", Header(content, owner, LICENCE))
+        write_atlas(
+            Atlas(tuple(entries)),
+            folder / f"{file}.txt",
+            Header(content, owner, LICENCE),
+        )
 
 
 if __name__ == "__main__":

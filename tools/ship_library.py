@@ -62,7 +62,9 @@ def main(path: Path = FILE) -> None:
 def smooth_nodes(problem: Problem) -> Array:
     """Coefficients (17³, 9) of smooth spectra at the nodes of the table."""
     nodes = nodes_of(TABLE, problem.sensor)
-    return np.asarray(smooth(problem.model, problem.forward, nodes.goal(nodes.points)).nodes)
+    return np.asarray(
+        smooth(problem.model, problem.forward, nodes.goal(nodes.points)).nodes
+    )
 
 
 def measurements(atlases: tuple[str, ...]) -> Array:
@@ -83,12 +85,22 @@ def otsu_spectra() -> Array:
 def blurred_otsu(xyz: Array, light: Array) -> Array:
     """Spectra (n, 81) of XYZ (n, 3) under a light (3, 81), blended between clusters; exact, not clipped."""
     shape = otsu2018.SPECTRAL_SHAPE_OTSU2018
-    resampled = np.stack([np.interp(observer.grid(), shape.wavelengths, row) for row in np.eye(36)])
-    basis, means = (table @ resampled for table in (otsu2018.BASIS_FUNCTIONS_OTSU2018, otsu2018.CLUSTER_MEANS_OTSU2018))
+    resampled = np.stack(
+        [np.interp(observer.grid(), shape.wavelengths, row) for row in np.eye(36)]
+    )
+    basis, means = (
+        table @ resampled
+        for table in (
+            otsu2018.BASIS_FUNCTIONS_OTSU2018,
+            otsu2018.CLUSTER_MEANS_OTSU2018,
+        )
+    )
     xy = colour.XYZ_to_xy(xyz)
     spectra = np.zeros((len(xyz), basis.shape[-1]))
     for cluster, share in enumerate(shares(xy, len(basis)).T):
-        scores = np.linalg.solve(light @ basis[cluster].T, (xyz - light @ means[cluster]).T)
+        scores = np.linalg.solve(
+            light @ basis[cluster].T, (xyz - light @ means[cluster]).T
+        )
         spectra += share[:, None] * (means[cluster] + scores.T @ basis[cluster])
     return spectra
 
@@ -101,7 +113,9 @@ def shares(xy: Array, clusters: int) -> Array:
     def descend(node: int, share: Array) -> None:
         threshold, axis, *branches = tree[node]
         above = 1 / (1 + np.exp((threshold - xy[:, int(axis)]) / BLUR))
-        for branch, part in zip(map(int, branches), (share * (1 - above), share * above), strict=True):
+        for branch, part in zip(
+            map(int, branches), (share * (1 - above), share * above), strict=True
+        ):
             if branch < 0:
                 descend(-branch, part)
             else:
@@ -116,7 +130,9 @@ def farthest(points: Array, count: int) -> list[int]:
     rows, distance = [0], np.linalg.norm(points - points[0], axis=1)
     while len(rows) < count:
         rows.append(int(distance.argmax()))
-        distance = np.minimum(distance, np.linalg.norm(points - points[rows[-1]], axis=1))
+        distance = np.minimum(
+            distance, np.linalg.norm(points - points[rows[-1]], axis=1)
+        )
     return rows
 
 

@@ -24,13 +24,23 @@ def tables() -> dict[str, np.ndarray]:
         arrays[f"{kind}: names"] = np.array(list(found))
         arrays[f"{kind}: stated"] = np.array([each.name for each in found.values()])
         if kind in SPECTRA:
-            arrays[f"{kind}: samples"] = np.array([aligned(kind, each, *WAVELENGTHS).values for each in found.values()])
+            arrays[f"{kind}: samples"] = np.array(
+                [aligned(kind, each, *WAVELENGTHS).values for each in found.values()]
+            )
     spaces = colour.RGB_COLOURSPACES
-    arrays["RGB space: primaries"] = np.array([each.primaries for each in spaces.values()], dtype=float)
-    arrays["RGB space: whitepoint"] = np.array([each.whitepoint for each in spaces.values()], dtype=float)
-    arrays["RGB space: matrix"] = np.array([each.matrix_XYZ_to_RGB for each in spaces.values()], dtype=float)
+    arrays["RGB space: primaries"] = np.array(
+        [each.primaries for each in spaces.values()], dtype=float
+    )
+    arrays["RGB space: whitepoint"] = np.array(
+        [each.whitepoint for each in spaces.values()], dtype=float
+    )
+    arrays["RGB space: matrix"] = np.array(
+        [each.matrix_XYZ_to_RGB for each in spaces.values()], dtype=float
+    )
     codes = np.arange(256) / 255
-    arrays["RGB space: decoding"] = np.array([each.cctf_decoding(codes) for each in spaces.values()], dtype=float)
+    arrays["RGB space: decoding"] = np.array(
+        [each.cctf_decoding(codes) for each in spaces.values()], dtype=float
+    )
     return arrays
 
 

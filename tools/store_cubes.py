@@ -15,9 +15,15 @@ LOOKUP = ROOT / "uplift" / "lookup"
 def main() -> None:
     """Build all cubes and the emission table."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
-    for model, dim, atlas in product(("moments", "sigmoid"), (8, 16), (None, "macbeth")):
+    for model, dim, atlas in product(
+        ("moments", "sigmoid"), (8, 16), (None, "macbeth")
+    ):
         source = ROOT / "atlases" / f"{atlas}.txt" if atlas else None
-        path = ROOT / "cubes" / ("-".join(filter(None, (model, str(dim), atlas))) + ".uplift")
+        path = (
+            ROOT
+            / "cubes"
+            / ("-".join(filter(None, (model, str(dim), atlas))) + ".uplift")
+        )
         uplift.build(source, dim=dim, model=model, debug=True).save(path, force=True)
     # The cube that is installed with the package: sRGB, D65, without an atlas
     shutil.copyfile(ROOT / "cubes" / "moments-16.uplift", LOOKUP / "default.uplift")

@@ -92,7 +92,9 @@ def __getattr__(name: str) -> Any:
         return importlib.import_module("uplift.bulk")
     if name not in __all__:
         raise AttributeError(f"module 'uplift' has no attribute '{name}'")
-    return getattr(importlib.import_module(_HOMES.get(name, "uplift.common.errors")), name)
+    return getattr(
+        importlib.import_module(_HOMES.get(name, "uplift.common.errors")), name
+    )
 
 
 def __dir__() -> list[str]:

@@ -38,7 +38,13 @@ SHOWN = 4
 @click.argument("images", metavar="IMAGE...", nargs=-1, required=True)
 @options.cube(" with an atlas of at least 8 entries.", required=True)
 @options.light("Illuminant of the scene", "A FL11 HP1")
-@click.option("--count", metavar="N", type=options.Whole(1, 100), default=6, help="Number of swatches.")
+@click.option(
+    "--count",
+    metavar="N",
+    type=options.Whole(1, 100),
+    default=6,
+    help="Number of swatches.",
+)
 @options.pixels()
 @options.plot("Draw the first 4 images, their expected errors and the swatches")
 @options.output_format("table", "json")
@@ -65,7 +71,9 @@ def command(
     cube = load(cube_path)
     sensor = cube.data.sensor
     check_distinct(lights)
-    lit = [light(name, cube.observer, *sensor.range) for name in lights or RELIGHT_LIGHTS]
+    lit = [
+        light(name, cube.observer, *sensor.range) for name in lights or RELIGHT_LIGHTS
+    ]
     with progress_bar("choosing swatches"):
         colours = advice.colour_areas(Images(tuple(map(Path, paths)), **pixels), sensor)
         before = advice.uncertainty(cube, colours, lit)
@@ -76,22 +84,47 @@ def command(
         from uplift.viz.figure import write_figure
 
         shown = paths[:SHOWN]
-        pictures = {path: each.rgb for path, each in zip(shown, read_pictures(shown, sensor, **pixels), strict=True)}
-        texts = [f"{code}\nlowers the mean\nby ΔE00 {each.gain:.2f}" for code, each in zip(codes, chosen, strict=True)]
+        pictures = {
+            path: each.rgb
+            for path, each in zip(
+                shown, read_pictures(shown, sensor, **pixels), strict=True
+            )
+        }
+        texts = [
+            f"{code}\nlowers the mean\nby ΔE00 {each.gain:.2f}"
+            for code, each in zip(codes, chosen, strict=True)
+        ]
         chips = list(zip(texts, rgb, strict=True))
-        write_figure(advice.draw_advice(cube, pictures, lit, chips), plot_path, force=force)
+        write_figure(
+            advice.draw_advice(cube, pictures, lit, chips), plot_path, force=force
+        )
     stages = zip(lit, before.by_light(), after.by_light(), strict=True)
     errors = {each.name: {"before": now, "after": then} for each, now, then in stages}
-    swatches = [{"hex": code, **asdict(each)} for code, each in zip(codes, chosen, strict=True)]
+    swatches = [
+        {"hex": code, **asdict(each)} for code, each in zip(codes, chosen, strict=True)
+    ]
     if style == "json":
-        print_json({"images": paths, "cube": cube_path, "lights": errors, "swatches": swatches})
+        print_json(
+            {"images": paths, "cube": cube_path, "lights": errors, "swatches": swatches}
+        )
         return
     summary = make_table(
-        ("light",), ("expected ΔE00", "95 % of the area", f"after {pluralise(len(chosen), 'swatch')}", "95 %")
+        ("light",),
+        (
+            "expected ΔE00",
+            "95 % of the area",
+            f"after {pluralise(len(chosen), 'swatch')}",
+            "95 %",
+        ),
     )
     for name, each in errors.items():
-        summary.add_row(name, *(f"{number:.2f}" for stage in each.values() for number in stage.values()))
-    table = make_table(("swatch",), ("area", "expected ΔE00", "gain in ΔE00", "mean ΔE00 after"))
+        summary.add_row(
+            name,
+            *(f"{number:.2f}" for stage in each.values() for number in stage.values()),
+        )
+    table = make_table(
+        ("swatch",), ("area", "expected ΔE00", "gain in ΔE00", "mean ΔE00 after")
+    )
     for row in swatches:
         numbers = (f"{row[name]:.2f}" for name in ("error", "gain", "mean_after"))
         table.add_row(row["hex"], f"{row['area']:.1%}", *numbers)

@@ -12,7 +12,17 @@ from uplift.common.text import pluralise
 
 from .. import options
 from ..output.answers import as_lists
-from ..output.console import has_colours, make_table, paragraph, print_csv, print_fields, print_json, say, show, swatch
+from ..output.console import (
+    has_colours,
+    make_table,
+    paragraph,
+    print_csv,
+    print_fields,
+    print_json,
+    say,
+    show,
+    swatch,
+)
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
@@ -48,7 +58,9 @@ SOURCE = ("name", "digest", "format", "measured", "missing", "notes")
       uplift atlas paints.csv -o paints.txt
     """,
 )
-@click.argument("files", metavar="[FILE]...", nargs=-1, shell_complete=options.complete_atlas)
+@click.argument(
+    "files", metavar="[FILE]...", nargs=-1, shell_complete=options.complete_atlas
+)
 @options.scale
 @options.missing
 @options.sensor
@@ -56,7 +68,13 @@ SOURCE = ("name", "digest", "format", "measured", "missing", "notes")
 @options.output(help="Write all entries to FILE instead of a list.")
 @options.force
 def command(
-    files: tuple[str, ...], scale: Any, missing: Any, style: str, output: str | None, force: bool, **camera: Any
+    files: tuple[str, ...],
+    scale: Any,
+    missing: Any,
+    style: str,
+    output: str | None,
+    force: bool,
+    **camera: Any,
 ) -> None:
     from uplift.atlas import read_atlas, resample, write_atlas
     from uplift.colorimetry.observer import sensor
@@ -79,7 +97,10 @@ def command(
     if style == "json":
         fields = {
             **{name: getattr(target, name) for name in camera},
-            "sources": [{name: getattr(source, name) for name in SOURCE} for source in atlas.sources],
+            "sources": [
+                {name: getattr(source, name) for name in SOURCE}
+                for source in atlas.sources
+            ],
             "smallest_space": smallest,
             "entries": rows,
             "skipped": [asdict(skipped) for skipped in atlas.skipped],
@@ -89,7 +110,12 @@ def command(
         print_csv(
             ["name", "start", "end", "step", "r", "g", "b", "in_gamut", "warnings"],
             [
-                [*list(row.values())[:4], *row["rgb"], str(row["in_gamut"]).lower(), "; ".join(row["warnings"])]
+                [
+                    *list(row.values())[:4],
+                    *row["rgb"],
+                    str(row["in_gamut"]).lower(),
+                    "; ".join(row["warnings"]),
+                ]
                 for row in rows
             ],
         )
@@ -104,12 +130,18 @@ def _print_shipped(style: str) -> None:
     if style == "json":
         rows = ({name: getattr(atlas, name) for name in SHIPPED} for atlas in atlases)
         files = ({"path": str(atlas.path), "digest": atlas.digest} for atlas in atlases)
-        print_json({"atlases": [row | file for row, file in zip(rows, files, strict=True)]})
+        print_json(
+            {"atlases": [row | file for row, file in zip(rows, files, strict=True)]}
+        )
     elif style == "csv":
-        print_csv(SHIPPED, ([getattr(atlas, name) for name in SHIPPED] for atlas in atlases))
+        print_csv(
+            SHIPPED, ([getattr(atlas, name) for name in SHIPPED] for atlas in atlases)
+        )
     else:
         for atlas in atlases:
-            print_fields({atlas.name: atlas.content, "": f"{atlas.source}. {atlas.licence}"})
+            print_fields(
+                {atlas.name: atlas.content, "": f"{atlas.source}. {atlas.licence}"}
+            )
         say()
         paragraph("Use a name as --atlas NAME, or in place of FILE.")
 
@@ -145,13 +177,23 @@ def _list_entries(
 
 
 def _print_table(
-    atlas: Atlas, sensor: Sensor, rows: Sequence[dict[str, Any]], codes: Array, smallest: str | None
+    atlas: Atlas,
+    sensor: Sensor,
+    rows: Sequence[dict[str, Any]],
+    codes: Array,
+    smallest: str | None,
 ) -> None:
     coloured = has_colours()
     texts = [""] * coloured + ["name", "nm"]
-    table = make_table(texts, "RGB", title=f"linear {sensor.space} under {sensor.illuminant}")
+    table = make_table(
+        texts, "RGB", title=f"linear {sensor.space} under {sensor.illuminant}"
+    )
     for row, code in zip(rows, codes.tolist(), strict=True):
-        wavelengths = ":".join(f"{row[name]:g}" for name in ("start", "end", "step") if row[name] is not None)
+        wavelengths = ":".join(
+            f"{row[name]:g}"
+            for name in ("start", "end", "step")
+            if row[name] is not None
+        )
         rgb = (f"{channel:.4f}" for channel in row["rgb"])
         table.add_row(*[swatch(code)] * coloured, row["name"], wavelengths, *rgb)
     show(table)
@@ -167,7 +209,11 @@ def _print_table(
     entries = pluralise(len(rows), "entry")
     text = f"{entries}, {_count(outside, f'out of the {sensor.space} gamut')}, {_count(skipped, 'skipped')}"
     if outside:
-        text += f"; {smallest} holds all {len(rows)}" if smallest else "; no common RGB space holds all"
+        text += (
+            f"; {smallest} holds all {len(rows)}"
+            if smallest
+            else "; no common RGB space holds all"
+        )
     paragraph(text)
 
 

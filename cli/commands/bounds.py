@@ -11,7 +11,14 @@ from uplift.common.files import write_text
 
 from .. import options
 from ..output.answers import as_lists, format_rgb, hex_code, patch
-from ..output.console import make_table, print_csv, print_fields, print_json_answers, say, show
+from ..output.console import (
+    make_table,
+    print_csv,
+    print_fields,
+    print_json_answers,
+    say,
+    show,
+)
 from ..outputs import check_outputs
 from .query import Answers, colour_options, result_object
 
@@ -53,10 +60,17 @@ DIVISIONS, SINGLE_DIVISIONS = 2, 3
 @options.light("Illuminant under which the bounds are shown", "A FL11 HP1")
 @options.output_format("table", "json", "csv")
 @options.plot("Plot the bounds")
-@options.page("Write a page on which the colour under each --light is dragged within its bounds, for a file of looks.")
+@options.page(
+    "Write a page on which the colour under each --light is dragged within its bounds, for a file of looks."
+)
 @options.force
 def command(
-    lights: tuple[Illuminant, ...], style: str, plot_path: str | None, html: str | None, force: bool, **colours: Any
+    lights: tuple[Illuminant, ...],
+    style: str,
+    plot_path: str | None,
+    html: str | None,
+    force: bool,
+    **colours: Any,
 ) -> None:
     import numpy as np
 
@@ -71,7 +85,10 @@ def command(
     def compute(block: Sequence[QueryResult]) -> Block:
         rgb = np.stack([result.rgb for result in block])
         divisions = SINGLE_DIVISIONS if answers.single else DIVISIONS
-        return block, [bounds(answers.cube, rgb, light, answers.mode, divisions) for light in answers.lights]
+        return block, [
+            bounds(answers.cube, rgb, light, answers.mode, divisions)
+            for light in answers.lights
+        ]
 
     blocks: Iterable[Block] = map(compute, answers)
     if plot_path is not None or html is not None:
@@ -79,7 +96,9 @@ def command(
     if plot_path is not None:
         from uplift.viz.plots import plot_bounds
 
-        plot_bounds(answers.cube, [found for _, found in blocks], plot_path, force=force)
+        plot_bounds(
+            answers.cube, [found for _, found in blocks], plot_path, force=force
+        )
         say(f"{plot_path}: bounds", err=True)
     if html is not None:
         from uplift.report.look_page import page
@@ -87,14 +106,19 @@ def command(
         write_text(page(answers.cube, next(iter(blocks))[1]), html, force=force)
         say(f"{html}: page to choose a look on", err=True)
     if style == "json":
-        print_json_answers((each for block in blocks for each in _objects(answers, *block)), single=answers.single)
+        print_json_answers(
+            (each for block in blocks for each in _objects(answers, *block)),
+            single=answers.single,
+        )
     elif style == "csv":
         _print_csv(blocks)
     else:
         _print_table(answers.cube, blocks, single=answers.single)
 
 
-def _objects(answers: Answers, results: Sequence[QueryResult], found: Sequence[Bounds]) -> Iterable[dict[str, Any]]:
+def _objects(
+    answers: Answers, results: Sequence[QueryResult], found: Sequence[Bounds]
+) -> Iterable[dict[str, Any]]:
     from uplift.colorimetry.delta_e import lab
     from uplift.lookup.light_errors import LIKELY
 
@@ -110,7 +134,9 @@ def _objects(answers: Answers, results: Sequence[QueryResult], found: Sequence[B
                 "lab_range": each.box[row].tolist(),
                 "share": float(each.share[row]),
                 "outline": each.outline(row).tolist(),
-                "covariance": None if each.covariance is None else each.covariance[row].tolist(),
+                "covariance": None
+                if each.covariance is None
+                else each.covariance[row].tolist(),
                 "likely": None if likely is None else likely.tolist(),
                 "likely_share": LIKELY,
             }
@@ -118,8 +144,20 @@ def _objects(answers: Answers, results: Sequence[QueryResult], found: Sequence[B
 
 
 def _print_csv(blocks: Iterable[Block]) -> None:
-    lab_range = [f"{name}_{end}" for end in ("min", "max") for name in ("L*", "a*", "b*")]
-    columns = ["r", "g", "b", "light", "L*", "a*", "b*", "standard_error", "error_bound"]
+    lab_range = [
+        f"{name}_{end}" for end in ("min", "max") for name in ("L*", "a*", "b*")
+    ]
+    columns = [
+        "r",
+        "g",
+        "b",
+        "light",
+        "L*",
+        "a*",
+        "b*",
+        "standard_error",
+        "error_bound",
+    ]
     rows = (
         [
             *as_lists(result.rgb),
@@ -145,7 +183,10 @@ def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
     for number, (results, found) in enumerate(blocks):
         if single:
             rgb = results[0].rgb
-            print_fields({"linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"}, {"linear RGB": patch(cube, rgb)})
+            print_fields(
+                {"linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"},
+                {"linear RGB": patch(cube, rgb)},
+            )
             say()
         table = make_table(
             ("hex",) * (not single) + ("light",),

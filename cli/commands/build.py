@@ -34,7 +34,9 @@ OF_IMAGES = ("encoding", "method", "input_space")
 """Parameters of --scene images, in the order of `uplift.io.scene_colours.Images`."""
 
 
-def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple[float, float]:
+def parse_range(
+    ctx: click.Context, param: click.Parameter, value: str
+) -> tuple[float, float]:
     """Parse '360:830', a first and a last wavelength in nm."""
     try:
         start, end = (parse_float(part) for part in value.split(":"))
@@ -87,7 +89,9 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 @options.atlas("Measured spectra")
 @options.scale
 @options.missing
-@options.output(help="Cube to write. [default: named after atlas and dim, in the current folder]")
+@options.output(
+    help="Cube to write. [default: named after atlas and dim, in the current folder]"
+)
 @click.option(
     "--dim",
     default=32,
@@ -96,7 +100,9 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     help="Lattice nodes along each axis. 'auto' chooses the smallest dim, and its axis, that resolves every entry.",
 )
 @options.tolerance(
-    "auto_tolerance", default=0.5, help="Largest difference to the entries that the lattice of --dim auto may have."
+    "auto_tolerance",
+    default=0.5,
+    help="Largest difference to the entries that the lattice of --dim auto may have.",
 )
 @click.option("--model", default="moments", help="Spectrum model: moments or sigmoid.")
 @options.coefficients
@@ -107,7 +113,9 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     metavar="N",
     help="Coefficients per spectrum of an atlas entry, from --coefficients to 17.",
 )
-@click.option("--warp", default="none", help="Phase warp of the moments: none, vision or colour.")
+@click.option(
+    "--warp", default="none", help="Phase warp of the moments: none, vision or colour."
+)
 @click.option("--axis", default="srgb", help="Spacing of the nodes: srgb or linear.")
 @options.sensor
 @click.option(
@@ -117,19 +125,36 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     callback=parse_range,
     help="First and last wavelength of the spectra in nm, from 300 to 1000.",
 )
-@click.option("--step", type=options.NUMBER, default=5, help="Distance of wavelengths in nm: 1, 5 or 10.")
-@options.light("Illuminant under which entries must keep their colour", "D65 A FL2 FL11 LED-B3")
 @click.option(
-    "--prior", default="learnt", help="Spectra of colours without measurements: learnt (from real materials) or smooth."
+    "--step",
+    type=options.NUMBER,
+    default=5,
+    help="Distance of wavelengths in nm: 1, 5 or 10.",
+)
+@options.light(
+    "Illuminant under which entries must keep their colour", "D65 A FL2 FL11 LED-B3"
 )
 @click.option(
-    "--neutral", default="expected", help="Spectra of greys: expected (of real materials) or flat (docs/prior.md)."
+    "--prior",
+    default="learnt",
+    help="Spectra of colours without measurements: learnt (from real materials) or smooth.",
+)
+@click.option(
+    "--neutral",
+    default="expected",
+    help="Spectra of greys: expected (of real materials) or flat (docs/prior.md).",
 )
 @options.repeatable(
-    "--library", "library", "Measured spectra that shape the learnt prior without being constraints", metavar="FILE"
+    "--library",
+    "library",
+    "Measured spectra that shape the learnt prior without being constraints",
+    metavar="FILE",
 )
 @click.option(
-    "--look", "looks", metavar="LOOKS.toml", help="File of looks: colours, and what they are to be under other lights."
+    "--look",
+    "looks",
+    metavar="LOOKS.toml",
+    help="File of looks: colours, and what they are to be under other lights.",
 )
 @options.repeatable(
     "--exclude-family",
@@ -137,9 +162,17 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     "Family of the shipped library that the learnt prior must not know, for tests on it",
     metavar="FAMILY",
 )
-@click.option("--threshold", type=options.NUMBER, default=1e-4, help="Largest residual of a node, |linear RGB|.")
+@click.option(
+    "--threshold",
+    type=options.NUMBER,
+    default=1e-4,
+    help="Largest residual of a node, |linear RGB|.",
+)
 @options.repeatable(
-    "--scene", "images", "Build only the cells that the colours of this image, or quoted pattern, need", metavar="IMAGE"
+    "--scene",
+    "images",
+    "Build only the cells that the colours of this image, or quoted pattern, need",
+    metavar="IMAGE",
 )
 @click.option(
     "--growth",
@@ -154,14 +187,23 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 )
 @options.encoding
 @options.input_space("--scene images")
-@click.option("--plan", "plan_path", metavar="PLAN", help="Build the cube of a plan by 'uplift plan'.")
+@click.option(
+    "--plan",
+    "plan_path",
+    metavar="PLAN",
+    help="Build the cube of a plan by 'uplift plan'.",
+)
 @options.out_of_gamut(*options.PIXELS, "pixels of --scene images")
 @click.option(
     "--seed-corners",
     is_flag=True,
     help="Start all eight nodes around an entry from it: closer near entries, less so for other materials.",
 )
-@click.option("--debug", is_flag=True, help="Store the round of every node, and write slices as .exr next to the cube.")
+@click.option(
+    "--debug",
+    is_flag=True,
+    help="Store the round of every node, and write slices as .exr next to the cube.",
+)
 @options.force
 @options.quiet
 @options.verbose
@@ -188,8 +230,12 @@ def command(
     notes: list[UpliftWarning] = []
     atlas = None
     if plan_path is not None:
-        if others := [option for name, option in given.items() if name not in ALLOWED_WITH_PLAN]:
-            raise click.UsageError(f"The plan already sets these options: leave out {', '.join(others)}.")
+        if others := [
+            option for name, option in given.items() if name not in ALLOWED_WITH_PLAN
+        ]:
+            raise click.UsageError(
+                f"The plan already sets these options: leave out {', '.join(others)}."
+            )
         from uplift.scene.plan.files import cube_name, read_plan
 
         plan = read_plan(plan_path)
@@ -197,22 +243,32 @@ def command(
         name = cube_name(plan_path) if output is None else output
         inputs = (*plan.images.paths, *plan.atlases)
     else:
-        if not images and (useless := [given[name] for name in OF_IMAGES if name in given]):
-            raise click.UsageError(f"{', '.join(useless)}: no --scene image is given to which this applies.")
+        if not images and (
+            useless := [given[name] for name in OF_IMAGES if name in given]
+        ):
+            raise click.UsageError(
+                f"{', '.join(useless)}: no --scene image is given to which this applies."
+            )
         name = _default_name(files, images, settings) if output is None else output
         settings["shortest"], settings["longest"] = settings.pop("limits")
         pixels = [settings.pop(name) for name in OF_IMAGES]
         if images:
             from uplift.io.scene_colours import Images
 
-            settings["scene"] = Images(tuple(map(Path, expand_patterns(images))), *pixels)
+            settings["scene"] = Images(
+                tuple(map(Path, expand_patterns(images))), *pixels
+            )
             inputs = settings["scene"].paths
         from uplift.atlas import read_atlas
         from uplift.pipeline.build import build
 
-        stated = {name: value for name, value in settings.items() if value not in (None, ())}
+        stated = {
+            name: value for name, value in settings.items() if value not in (None, ())
+        }
         if files:
-            atlas, notes = collect_notes(partial(read_atlas, *files, measured=scale, missing=missing))
+            atlas, notes = collect_notes(
+                partial(read_atlas, *files, measured=scale, missing=missing)
+            )
         make = partial(build, atlas, **stated)
     path = Path(name)
     slices = path.with_suffix(".exr") if settings["debug"] else None
@@ -243,7 +299,9 @@ def _print_assumptions(atlas: Atlas | None) -> None:
             paragraph(f"{source.name}: {note}")
 
 
-def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], settings: dict[str, Any]) -> str:
+def _default_name(
+    atlases: tuple[str, ...], images: tuple[str, ...], settings: dict[str, Any]
+) -> str:
     """Return the name of a cube file: atlases, dim, and the space if it is not sRGB."""
     from uplift.colorimetry.camera import CAMERA
 
@@ -264,7 +322,9 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
     facts = [f"{data.lattice.dim}³ nodes"]
     if data.complete_cells is not None:
         count = int(data.points.present.sum())
-        facts = [f"{count:,} of {pluralise(data.lattice.size, 'node')} ({count / data.lattice.size:.1%})"]
+        facts = [
+            f"{count:,} of {pluralise(data.lattice.size, 'node')} ({count / data.lattice.size:.1%})"
+        ]
     if data.provenance["atlases"]:
         facts.append(pluralise(measured, "atlas entry"))
     if looks:
@@ -272,6 +332,10 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
     facts += [f"{path.stat().st_size / 1e6:.1f} MB", f"{seconds:.1f} s"]
     paragraph(f"{path}: {', '.join(facts)}")
     if unrealisable := counts["unrealisable"]:
-        paragraph(f"{pluralise(unrealisable, 'node')} whose colour no reflectance has: stored with less chroma")
+        paragraph(
+            f"{pluralise(unrealisable, 'node')} whose colour no reflectance has: stored with less chroma"
+        )
     if unfitted := counts["unfitted"]:
-        paragraph(f"{pluralise(unfitted, 'node')} EXCEED the threshold {data.threshold:g}: 'uplift report' shows where")
+        paragraph(
+            f"{pluralise(unfitted, 'node')} EXCEED the threshold {data.threshold:g}: 'uplift report' shows where"
+        )

@@ -47,19 +47,35 @@ FILES = ("chart.csv", "chart.png", "chart.html")
     """,
 )
 @options.output(help="Folder to write to.", metavar="DIR", default="chart")
-@options.repeatable("--method", "patterns", "Methods by name, with '*' as a wildcard", metavar="PATTERN")
+@options.repeatable(
+    "--method", "patterns", "Methods by name, with '*' as a wildcard", metavar="PATTERN"
+)
 @options.atlas("Measured spectra", DEFAULT_ATLASES)
-@click.option("--quick", is_flag=True, help="Few methods and repeats: about a minute instead of half an hour.")
-@click.option("--from", "source", metavar="CSV", help="Table of an earlier chart to draw or to recommend from.")
+@click.option(
+    "--quick",
+    is_flag=True,
+    help="Few methods and repeats: about a minute instead of half an hour.",
+)
+@click.option(
+    "--from",
+    "source",
+    metavar="CSV",
+    help="Table of an earlier chart to draw or to recommend from.",
+)
 @click.option(
     "--recommend",
     is_flag=True,
     help="Recommend a cube for common situations, or for limits, by the packaged chart or --from.",
 )
-@click.option("--time-ns", type=options.NUMBER, help="With --recommend: largest CPU time per RGB, in ns.")
+@click.option(
+    "--time-ns",
+    type=options.NUMBER,
+    help="With --recommend: largest CPU time per RGB, in ns.",
+)
 @options.tolerance("delta_e", help="With --recommend: largest mean ΔE00.")
 @click.option(
-    "--light", help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: mean of five]"
+    "--light",
+    help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: mean of five]",
 )
 @click.option(
     "--atlas-materials",
@@ -90,19 +106,36 @@ def command(
     from uplift.lab.chart.table import chart_csv, read_chart
 
     check_folder(output, FILES, inputs=atlas_files(files))
-    chart = read_chart(source) if source is not None else _measure(files, patterns, quick=quick)
-    table, page = partial(write_text, chart_csv(chart)), partial(write_text, render_chart(chart))
+    chart = (
+        read_chart(source)
+        if source is not None
+        else _measure(files, patterns, quick=quick)
+    )
+    table, page = (
+        partial(write_text, chart_csv(chart)),
+        partial(write_text, render_chart(chart)),
+    )
     write_files(output, FILES, table, partial(write_picture, chart), page)
     _print_fronts(chart)
 
 
 def _recommend(source: str | None, required: dict[str, Any]) -> None:
     """Print the cube that meets the requirement, or those of common situations."""
-    from uplift.lab.chart.table import SITUATIONS, Requirement, read_chart, recommend_cube, shipped_chart
+    from uplift.lab.chart.table import (
+        SITUATIONS,
+        Requirement,
+        read_chart,
+        recommend_cube,
+        shipped_chart,
+    )
     from uplift.viz.format import format_error, format_size, format_time
 
     chart = read_chart(source) if source is not None else shipped_chart()
-    for title, each in {"": Requirement(**required)}.items() if any(required.values()) else SITUATIONS.items():
+    for title, each in (
+        {"": Requirement(**required)}.items()
+        if any(required.values())
+        else SITUATIONS.items()
+    ):
         row = recommend_cube(chart, each)
         paragraph(
             f"{title}{': ' * bool(title)}{row.title}: {format_time(row.numbers['time_ns'])} per RGB, mean ΔE00 "
@@ -112,7 +145,9 @@ def _recommend(source: str | None, required: dict[str, Any]) -> None:
         say(f"  {row.call}")
 
 
-def _measure(files: tuple[str, ...], patterns: tuple[str, ...], *, quick: bool) -> Chart:
+def _measure(
+    files: tuple[str, ...], patterns: tuple[str, ...], *, quick: bool
+) -> Chart:
     from uplift.lab.chart.measure import QUICK_METHODS, measure_methods, select_methods
     from uplift.lab.chart.method import QUICK, Effort, make_task
 
@@ -128,11 +163,15 @@ def _print_fronts(chart: Chart) -> None:
 
     say("Pareto fronts, from the fastest to the most accurate")
     tables = []
-    for criterion in (criterion for batch in chart.batches for criterion in criteria(batch)[:PRINTED]):
+    for criterion in (
+        criterion for batch in chart.batches for criterion in criteria(batch)[:PRINTED]
+    ):
         title = f"{criterion.title}: {criterion.colours}"
         table = make_table(("method",), ("time", criterion.unit, "bytes"), title=title)
         for row in criterion.front(chart):
-            table.add_row(row.method, *criterion.labels(row), format_size(row.numbers["bytes"]))
+            table.add_row(
+                row.method, *criterion.labels(row), format_size(row.numbers["bytes"])
+            )
         tables.append(table)
     show(*tables)
     for row in chart.results:

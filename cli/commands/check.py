@@ -45,18 +45,33 @@ if TYPE_CHECKING:
     wrote a cube, if it is older than this one.
     """,
 )
-@click.argument("files", metavar="CUBE...", nargs=-1, required=True, shell_complete=options.complete_cube)
+@click.argument(
+    "files",
+    metavar="CUBE...",
+    nargs=-1,
+    required=True,
+    shell_complete=options.complete_cube,
+)
 @options.atlas_folders
-@click.option("--update", is_flag=True, help="Replace the cubes that differ by the rebuilt ones.")
+@click.option(
+    "--update", is_flag=True, help="Replace the cubes that differ by the rebuilt ones."
+)
 @options.output_format("table", "json")
 @options.quiet
 @options.verbose
 def command(
-    files: tuple[str, ...], folders: tuple[str, ...], update: bool, style: str, quiet: bool, verbose: bool
+    files: tuple[str, ...],
+    folders: tuple[str, ...],
+    update: bool,
+    style: str,
+    quiet: bool,
+    verbose: bool,
 ) -> None:
     enable_jit_cache()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
-        results = [_check(Path(file), folders, progress) for file in dict.fromkeys(files)]
+        results = [
+            _check(Path(file), folders, progress) for file in dict.fromkeys(files)
+        ]
     records = [record for record, _, _ in results]
     if style == "json":
         print_json(records)
@@ -92,7 +107,11 @@ def _check(
         try:
             stored = load(path)
             rebuilt = rebuild(stored, path, folders, progress=progress)
-            noted = [each.message for each in caught if isinstance(each.message, UpliftWarning)]
+            noted = [
+                each.message
+                for each in caught
+                if isinstance(each.message, UpliftWarning)
+            ]
             comparison = compare_rebuilt(path, stored.data, rebuilt.data)
         except UpliftError as cause:
             error = cause
@@ -104,10 +123,17 @@ def _check(
         "passed": not failures,
         "failures": failures,
         "measures": comparison.measures if comparison else {},
-        "status": {"stored": comparison.stored_counts, "rebuilt": comparison.rebuilt_counts} if comparison else {},
+        "status": {
+            "stored": comparison.stored_counts,
+            "rebuilt": comparison.rebuilt_counts,
+        }
+        if comparison
+        else {},
         "atlas_changed": changed,
         "notes": [note.problem for note in noted if note.problem not in changed],
-        "entries": [asdict(entry) for entry in comparison.entries] if comparison else [],
+        "entries": [asdict(entry) for entry in comparison.entries]
+        if comparison
+        else [],
         "error": error_object(error) if error else None,
     }
     return record, rebuilt, error
@@ -123,20 +149,36 @@ def _print_table(records: Sequence[dict[str, Any]]) -> None:
 
     from uplift.report.regression import LIMITS
 
-    headings = {"rgb": "RGB", "spectra_max": "spectra", "spectra_rms": "rms", "delta_e_D65": "ΔE D65"}
+    headings = {
+        "rgb": "RGB",
+        "spectra_max": "spectra",
+        "spectra_rms": "rms",
+        "delta_e_D65": "ΔE D65",
+    }
     measures = [headings.get(name, name.removeprefix("delta_e_")) for name in LIMITS]
     table = make_table(("cube", "result", "atlas", "nodes"), measures)
     for record in records:
         failures = record["failures"]
         cells = dict.fromkeys(("atlas-changed", "status", *LIMITS), "–")
         if record["measures"]:
-            cells["atlas-changed"] = "changed" if "atlas-changed" in failures else "same"
+            cells["atlas-changed"] = (
+                "changed" if "atlas-changed" in failures else "same"
+            )
             cells["status"] = "differs" if "status" in failures else "same"
             cells |= {name: _short(record["measures"][name]) for name in LIMITS}
-        styled = (Text(text, style="bold red" if name in failures else "") for name, text in cells.items())
-        verdict = Text("passed", style="green") if record["passed"] else Text("FAILED", style="bold red")
+        styled = (
+            Text(text, style="bold red" if name in failures else "")
+            for name, text in cells.items()
+        )
+        verdict = (
+            Text("passed", style="green")
+            if record["passed"]
+            else Text("FAILED", style="bold red")
+        )
         table.add_row(record["cube"], verdict, *styled)
-    table.add_row("limit", "", "same", "same", *map(_short, LIMITS.values()), style="dim")
+    table.add_row(
+        "limit", "", "same", "same", *map(_short, LIMITS.values()), style="dim"
+    )
     show(table)
     for record in records:
         for problem in (*record["atlas_changed"], *record["notes"]):

@@ -55,12 +55,25 @@ SPECTRA = ("surfaces.csv", "lights.csv")
 )
 @options.atlas("Surfaces", DEFAULT_ATLASES)
 @options.light("Illuminant", "A, B, C, and FL2, FL7, FL11")
-@options.tolerance(help="Print the cheapest representation with 97.5 % of errors below this value.")
-@click.option(
-    "--filters", is_flag=True, help="Also search the best low-pass filters for point sampling, which takes minutes."
+@options.tolerance(
+    help="Print the cheapest representation with 97.5 % of errors below this value."
 )
-@click.option("--all", "every", is_flag=True, help="Print all representations, not the Pareto front alone.")
-@click.option("--quick", is_flag=True, help="At most forty surfaces, few repeats and a coarse search: seconds.")
+@click.option(
+    "--filters",
+    is_flag=True,
+    help="Also search the best low-pass filters for point sampling, which takes minutes.",
+)
+@click.option(
+    "--all",
+    "every",
+    is_flag=True,
+    help="Print all representations, not the Pareto front alone.",
+)
+@click.option(
+    "--quick",
+    is_flag=True,
+    help="At most forty surfaces, few repeats and a coarse search: seconds.",
+)
 @click.option(
     "--write",
     metavar="NAME",
@@ -87,7 +100,9 @@ def command(
 
     if write is not None:
         if output is None or filters or tolerance is not None:
-            raise click.UsageError("--write requires --output, and does not apply to --filters and --tolerance.")
+            raise click.UsageError(
+                "--write requires --output, and does not apply to --filters and --tolerance."
+            )
         _write_spectra(write, files, lights, output)
         return
     if tolerance is not None:
@@ -95,10 +110,20 @@ def command(
     check_folder(output, FILES, inputs=atlas_files(files))
     comparison, tuned = _measure(files, lights, filters=filters, quick=quick)
     if output is not None:
-        from uplift.lab.comparison.pictures import render_comparison, write_boxes, write_costs
+        from uplift.lab.comparison.pictures import (
+            render_comparison,
+            write_boxes,
+            write_costs,
+        )
 
         page = partial(write_text, render_comparison(comparison, tuned))
-        write_files(output, FILES, partial(write_boxes, comparison), partial(write_costs, comparison), page)
+        write_files(
+            output,
+            FILES,
+            partial(write_boxes, comparison),
+            partial(write_costs, comparison),
+            page,
+        )
     if tolerance is not None:
         _print_advice(comparison, tolerance)
     elif style == "table":
@@ -107,7 +132,9 @@ def command(
         _print_records(comparison, tuned, style)
 
 
-def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[Illuminant, ...], output: str) -> None:
+def _write_spectra(
+    name: str, files: tuple[str, ...], lights: tuple[Illuminant, ...], output: str
+) -> None:
     from uplift.atlas import merge, write_atlas
     from uplift.lab.comparison.compare import make_scene, represent
     from uplift.scene.representations import find_representation
@@ -115,7 +142,9 @@ def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[Illuminant, 
     representation = find_representation(name)
     check_folder(output, SPECTRA, inputs=atlas_files(files))
     atlases = read_atlases(files)
-    pair = represent(representation, make_scene(atlases, lights), merge(atlases.values()).names)
+    pair = represent(
+        representation, make_scene(atlases, lights), merge(atlases.values()).names
+    )
     write_files(output, SPECTRA, *(partial(write_atlas, atlas) for atlas in pair))
     surfaces = pluralise(len(pair[0]), "surface")
     powers = pluralise(len(pair[1]), "light")
@@ -123,19 +152,33 @@ def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[Illuminant, 
 
 
 def _measure(
-    files: tuple[str, ...], lights: tuple[Illuminant, ...], *, filters: bool, quick: bool
+    files: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
+    *,
+    filters: bool,
+    quick: bool,
 ) -> tuple[Comparison, tuple[TunedFilter, ...]]:
-    from uplift.lab.comparison.compare import COARSE_STRIDE, FINE_STRIDE, compare, make_scene, tune_filters
+    from uplift.lab.comparison.compare import (
+        COARSE_STRIDE,
+        FINE_STRIDE,
+        compare,
+        make_scene,
+        tune_filters,
+    )
     from uplift.lab.comparison.fitted import scene_representations
 
     scene = make_scene(read_atlases(files), lights)
     scene = scene.thinned() if quick else scene
     with progress_bar("representations") as progress:
-        comparison = compare(scene, scene_representations(scene), quick=quick, progress=progress)
+        comparison = compare(
+            scene, scene_representations(scene), quick=quick, progress=progress
+        )
     if not filters:
         return comparison, ()
     with progress_bar("filters") as progress:
-        return comparison, tune_filters(scene, COARSE_STRIDE if quick else FINE_STRIDE, progress=progress)
+        return comparison, tune_filters(
+            scene, COARSE_STRIDE if quick else FINE_STRIDE, progress=progress
+        )
 
 
 def _print_advice(comparison: Comparison, tolerance: float) -> None:
@@ -156,7 +199,9 @@ def _print_advice(comparison: Comparison, tolerance: float) -> None:
         say(f"{title}: {text}")
 
 
-def _print_table(comparison: Comparison, tuned: tuple[TunedFilter, ...], *, every: bool) -> None:
+def _print_table(
+    comparison: Comparison, tuned: tuple[TunedFilter, ...], *, every: bool
+) -> None:
     from uplift.lab.comparison.compare import HEADINGS, pareto
     from uplift.viz.format import format_time
 
@@ -166,20 +211,30 @@ def _print_table(comparison: Comparison, tuned: tuple[TunedFilter, ...], *, ever
         table = make_table(("representation",), numbers, title=f"ΔE00 under {title}")
         for row in comparison.of(name) if every else pareto(comparison, name):
             errors = (row.statistics.mean, row.statistics.median, row.statistics.q97_5)
-            cost = (f"{row.floats:.1f}", f"{row.light_floats:.1f}", format_time(row.ns.median))
+            cost = (
+                f"{row.floats:.1f}",
+                f"{row.light_floats:.1f}",
+                format_time(row.ns.median),
+            )
             table.add_row(row.name, *(f"{error:.3f}" for error in errors), *cost)
         tables.append(table)
     if tuned:
         title = "point sampling after the best low-pass filter of each kind"
-        table = make_table(("lights", "samples", "filter", "parameters"), HEADINGS, title=title)
-        for one in sorted(tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)):
+        table = make_table(
+            ("lights", "samples", "filter", "parameters"), HEADINGS, title=title
+        )
+        for one in sorted(
+            tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)
+        ):
             values = (f"{value:.3f}" for value in one.statistics)
             table.add_row(one.lights, str(one.count), one.kind, one.parameters, *values)
         tables.append(table)
     show(*tables)
 
 
-def _print_records(comparison: Comparison, tuned: tuple[TunedFilter, ...], style: str) -> None:
+def _print_records(
+    comparison: Comparison, tuned: tuple[TunedFilter, ...], style: str
+) -> None:
     from uplift.lab.comparison.compare import filter_records, records
     from uplift.lab.timing import records_csv
 

@@ -39,9 +39,16 @@ from ..outputs import check_outputs
     help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by more, if one cube alone lacks a "
     "colour, or if entries were added or removed."
 )
-@click.option("--worst", type=options.Whole(0), default=5, help="Number of worst colours of each set.")
+@click.option(
+    "--worst",
+    type=options.Whole(0),
+    default=5,
+    help="Number of worst colours of each set.",
+)
 @options.pixels()
-@options.output(help="HTML page with pictures of where the cubes differ.", type=options.FIGURE_PAGE)
+@options.output(
+    help="HTML page with pictures of where the cubes differ.", type=options.FIGURE_PAGE
+)
 @options.output_format("table", "json")
 @options.force
 def command(
@@ -70,7 +77,10 @@ def command(
     cubes = dict(zip(names, map(load, (first, second)), strict=True))
     with progress_bar("comparing answers"):
         read = read_pictures(paths, next(iter(cubes.values())).data.sensor, **pixels)
-        pictures = {path: picture.rgb.astype(float) for path, picture in zip(paths, read, strict=True)}
+        pictures = {
+            path: picture.rgb.astype(float)
+            for path, picture in zip(paths, read, strict=True)
+        }
         found = diff_cubes(cubes, lights or SCENE_LIGHTS, pictures)
         if output is not None:
             from uplift.report.diff_page import render_diff
@@ -92,16 +102,26 @@ def _print(figures: dict[str, Any]) -> None:
     table = make_table(("colours", "light"), ("mean ΔE00", "95 %", "largest", *moved))
     for row in figures["differences"]:
         numbers = [f"{row[name]:.3f}" for name in ("mean", "p95", "max")]
-        table.add_row(row["set"], row["light"], *numbers, *(f"{row[name]:,}" for name in moved))
+        table.add_row(
+            row["set"], row["light"], *numbers, *(f"{row[name]:,}" for name in moved)
+        )
     worst = make_table(("worst colours", "linear RGB", "light"), ("ΔE00",))
     for row in figures["worst"]:
         rgb = " ".join(f"{value:.4f}" for value in row["rgb"])
-        worst.add_row(row.get("entry", row["set"]), rgb, row["light"], f"{row['delta_e']:.3f}")
+        worst.add_row(
+            row.get("entry", row["set"]), rgb, row["light"], f"{row['delta_e']:.3f}"
+        )
     show(table, *([worst] if figures["worst"] else []))
     for change in ("removed", "added"):
         if figures[f"entries_{change}"]:
             paragraph(f"entries {change}: {', '.join(figures[f'entries_{change}'])}")
     for row in figures["lacking"]:
-        say(f"{row['set']}: {row['cubes']} cannot answer {pluralise(row['colours'], 'colour')}")
+        say(
+            f"{row['set']}: {row['cubes']} cannot answer {pluralise(row['colours'], 'colour')}"
+        )
     if "tolerance" in figures:
-        say("passed" if figures["passed"] else f"FAILED: the tolerance is ΔE00 {figures['tolerance']:g}")
+        say(
+            "passed"
+            if figures["passed"]
+            else f"FAILED: the tolerance is ΔE00 {figures['tolerance']:g}"
+        )

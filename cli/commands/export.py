@@ -21,7 +21,11 @@ if TYPE_CHECKING:
 
 PROGRAMS = {"c": ".h", "cuda": ".cuh", "glsl": ".glsl", "hlsl": ".hlsl"}
 LUTS = {"cube": ".cube", "clf": ".clf"}
-SIGMOIDS = {"coeff": ".coeff", "luisa": ".cpp", "pbrt": ".cpp"}  # of one suffix the last is the default
+SIGMOIDS = {
+    "coeff": ".coeff",
+    "luisa": ".cpp",
+    "pbrt": ".cpp",
+}  # of one suffix the last is the default
 SUFFIXES = {
     **SIGMOIDS,
     **PROGRAMS,
@@ -111,17 +115,32 @@ APPLIES = {
 @options.table
 @options.fill
 @options.force
-def command(cube: str, output: str | None, style: str | None, fill_missing: bool, force: bool, **given: Any) -> None:
+def command(
+    cube: str,
+    output: str | None,
+    style: str | None,
+    fill_missing: bool,
+    force: bool,
+    **given: Any,
+) -> None:
     suffix = "" if output is None else Path(output).suffix.lower()
-    style = style or {SUFFIXES[name]: name for name in SUFFIXES}.get(".cuh" if suffix == ".cu" else suffix)
+    style = style or {SUFFIXES[name]: name for name in SUFFIXES}.get(
+        ".cuh" if suffix == ".cu" else suffix
+    )
     if style is None:
-        raise click.UsageError(f"Give --format, or --output ending in {', '.join(dict.fromkeys(SUFFIXES.values()))}.")
+        raise click.UsageError(
+            f"Give --format, or --output ending in {', '.join(dict.fromkeys(SUFFIXES.values()))}."
+        )
     settings = {name: value for name, value in given.items() if value is not None}
     for name in settings:
         if style not in APPLIES[name]:
-            raise click.UsageError(f"--{name} applies to {', '.join(APPLIES[name])} only.")
+            raise click.UsageError(
+                f"--{name} applies to {', '.join(APPLIES[name])} only."
+            )
     if style in LUTS and "light" not in settings:
-        raise click.UsageError("A cube or clf table shows the colours under a light: give --light, such as HP1.")
+        raise click.UsageError(
+            "A cube or clf table shows the colours under a light: give --light, such as HP1."
+        )
     from uplift.common.files import check_output, check_outputs
     from uplift.io.export import check_form, output_files
     from uplift.lookup import load
@@ -130,7 +149,9 @@ def command(cube: str, output: str | None, style: str | None, fill_missing: bool
     files = output_files(output or Path(cube).stem + SUFFIXES[style], form)
     inputs = stated_inputs()
     path = check_output(files[0], inputs=inputs, force=force)
-    check_outputs(files, inputs=inputs, force=True)  # second files that exist are judged by their content
+    check_outputs(
+        files, inputs=inputs, force=True
+    )  # second files that exist are judged by their content
     loaded = load(cube).fill_missing() if fill_missing else load(cube)
     say(f"{path}: {_write(loaded, path, style, force=force, **settings)}")
 
@@ -167,16 +188,26 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
 
 
 def _write_program(
-    data: CubeData, path: Path, style: str, *, force: bool, mode: str = "spectra", table: str | None = None
+    data: CubeData,
+    path: Path,
+    style: str,
+    *,
+    force: bool,
+    mode: str = "spectra",
+    table: str | None = None,
 ) -> str:
     """Write a program, and return a description of it."""
     from uplift.io import export
 
-    written = export.write_program(data, path, style=style, mode=mode, form=table, force=force)
+    written = export.write_program(
+        data, path, style=style, mode=mode, form=table, force=force
+    )
     size = sum(each.stat().st_size for each in written) / 1e6
     nodes = pluralise(data.lattice.size, "node")
     facts = [nodes, pluralise(len(data.atlas.names), "atlas entry"), f"{size:.1f} MB"]
-    facts.append(f"single precision changes reflectances by less than {round_up(export.rounding_error(data, mode)):g}")
+    facts.append(
+        f"single precision changes reflectances by less than {round_up(export.rounding_error(data, mode)):g}"
+    )
     moved = export.moved_cells(data, mode).sum() / (data.lattice.dim - 1) ** 3
     if moved:
         facts.append(f"more in {moved:.0%} of the cells, next to unrealisable colours")

@@ -71,7 +71,9 @@ def command(words: tuple[str, ...]) -> None:
     if not words:
         print_fields({name: summary for name, (summary, _) in TOPICS.items()})
         say()
-        paragraph("'uplift help TOPIC' explains a topic, and 'uplift help COMMAND' a command.")
+        paragraph(
+            "'uplift help TOPIC' explains a topic, and 'uplift help COMMAND' a command."
+        )
     elif words[0] in TOPICS and len(words) == 1:
         _, parts = TOPICS[words[0]]
         _print_parts(parts())
@@ -84,10 +86,14 @@ def _find_context(names: Iterable[str]) -> click.Context:
     context = click.get_current_context().find_root()
     for name in names:
         group = context.command
-        command = group.get_command(context, name) if isinstance(group, click.Group) else None
+        command = (
+            group.get_command(context, name) if isinstance(group, click.Group) else None
+        )
         if command is None:
             problem = f"'{' '.join(names)}' is neither a topic nor a command."
-            raise click.UsageError(f"{problem} 'uplift help' lists the topics, and 'uplift' the commands.")
+            raise click.UsageError(
+                f"{problem} 'uplift help' lists the topics, and 'uplift' the commands."
+            )
         context = click.Context(command, info_name=name, parent=context)
     return context
 
@@ -106,8 +112,16 @@ def _print_parts(parts: Iterable[Part]) -> None:
 def _illuminants() -> list[Part]:
     from uplift.colorimetry.lights import COMMON_NAMES, DESCRIPTIONS
 
-    words = ", ".join(f"{name} ({illuminant})" for name, illuminant in COMMON_NAMES.items())
-    return [DESCRIPTIONS, f"Names in words: {words}. {TEMPERATURES}", LAMP_FILES, DEFAULT_LIGHTS, *_names("illuminant")]
+    words = ", ".join(
+        f"{name} ({illuminant})" for name, illuminant in COMMON_NAMES.items()
+    )
+    return [
+        DESCRIPTIONS,
+        f"Names in words: {words}. {TEMPERATURES}",
+        LAMP_FILES,
+        DEFAULT_LIGHTS,
+        *_names("illuminant"),
+    ]
 
 
 def _observers() -> list[Part]:
@@ -119,7 +133,12 @@ def _spaces() -> list[Part]:
 
     words = ", ".join(f"{name} ({space})" for name, space in SHORT_NAMES.items())
     listed = ", ".join(names("RGB space"))
-    return [f"Short names: {words}.", "Names of colour-science, some of them from OpenColorIO:", listed, OCIO_SPACES]
+    return [
+        f"Short names: {words}.",
+        "Names of colour-science, some of them from OpenColorIO:",
+        listed,
+        OCIO_SPACES,
+    ]
 
 
 def _names(kind: str) -> list[Part]:

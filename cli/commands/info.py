@@ -14,9 +14,21 @@ DIGEST = re.compile(r"([0-9a-f]{16})[0-9a-f]{48}")
 
 
 EMPTY: tuple[Any, ...] = (None, [], {})
-INTERNAL = ("format", "lattice_nodes", "entry_coefficients", "threshold", "debug", "rounds", "prior")
+INTERNAL = (
+    "format",
+    "lattice_nodes",
+    "entry_coefficients",
+    "threshold",
+    "debug",
+    "rounds",
+    "prior",
+)
 """Facts that are in JSON only: options, too, and what a developer looks for."""
-OPTIONS = {"auto_tolerance": "tolerance", "leave_out": "exclude-family", "lights": "light"}
+OPTIONS = {
+    "auto_tolerance": "tolerance",
+    "leave_out": "exclude-family",
+    "lights": "light",
+}
 """Options of `uplift build` that have another name in Python."""
 
 
@@ -30,7 +42,9 @@ OPTIONS = {"auto_tolerance": "tolerance", "leave_out": "exclude-family", "lights
       uplift info macbeth-32.uplift --format json | jq .status
     """,
 )
-@click.argument("cube", metavar="[CUBE]", required=False, shell_complete=options.complete_cube)
+@click.argument(
+    "cube", metavar="[CUBE]", required=False, shell_complete=options.complete_cube
+)
 @options.output_format("table", "json")
 def command(cube: str | None, style: str) -> None:
     from uplift.cube import summarise
@@ -48,11 +62,16 @@ def print_facts(name: str, fields: dict[str, Any], style: str) -> None:
     if fields.get("outside"):  # the same names
         del provenance["left_out"]
     settings = provenance.pop("options", {})
-    looks = {f"look {each['name'].removeprefix('look ')}": _look(each) for each in provenance.pop("looks", ())}
+    looks = {
+        f"look {each['name'].removeprefix('look ')}": _look(each)
+        for each in provenance.pop("looks", ())
+    }
     facts = fields | looks | provenance
     if "status" in facts:  # of a cube
         facts["model"] = facts["model"]["name"]
-        facts["status"] = {status: count for status, count in facts["status"].items() if count}
+        facts["status"] = {
+            status: count for status, count in facts["status"].items() if count
+        }
         facts["options"] = _as_options(settings)
     say(name)
     print_fields(
@@ -75,9 +94,12 @@ def _as_options(settings: dict[str, Any]) -> str:
             words += [option] * value
         else:
             values = value if isinstance(value, list) else [value]
-            values = [each["name"] if isinstance(each, dict) else each for each in values]
+            values = [
+                each["name"] if isinstance(each, dict) else each for each in values
+            ]
             words += [
-                f"{option} {shlex.quote(f'{each:g}' if isinstance(each, float) else str(each))}" for each in values
+                f"{option} {shlex.quote(f'{each:g}' if isinstance(each, float) else str(each))}"
+                for each in values
             ]
     return " ".join(words)
 

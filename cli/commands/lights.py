@@ -30,7 +30,9 @@ PACKAGED = "emission"
 LANGUAGES = {".h": "c", ".glsl": "glsl"}
 """Languages of `uplift.io.export.write_light_program` by suffix."""
 
-table_argument = click.argument("table_path", metavar="[TABLE]", required=False, default=PACKAGED, type=click.Path())
+table_argument = click.argument(
+    "table_path", metavar="[TABLE]", required=False, default=PACKAGED, type=click.Path()
+)
 table_option = click.option(
     "--lights",
     "table_path",
@@ -76,7 +78,14 @@ def command() -> None:
 @options.observer()
 @options.force
 @options.quiet
-def build(files: tuple[str, ...], output: str | None, space: str, observer: str, force: bool, quiet: bool) -> None:
+def build(
+    files: tuple[str, ...],
+    output: str | None,
+    space: str,
+    observer: str,
+    force: bool,
+    quiet: bool,
+) -> None:
     from uplift.lights.build import build_emission
 
     stem = "+".join(Path(file).stem for file in files)
@@ -111,9 +120,14 @@ def build(files: tuple[str, ...], output: str | None, space: str, observer: str,
 @table_argument
 @options.output_format("table", "json")
 @options.plot("Plot colours, expected errors and lamps over u′v′")
-@options.page("Write a page with the plots, answers to random lights, and all lamps.", options.FIGURE_PAGE)
+@options.page(
+    "Write a page with the plots, answers to random lights, and all lamps.",
+    options.FIGURE_PAGE,
+)
 @options.force
-def info(table_path: str, style: str, plot_path: str | None, html: str | None, force: bool) -> None:
+def info(
+    table_path: str, style: str, plot_path: str | None, html: str | None, force: bool
+) -> None:
     from uplift.lights.lookup import find_table, load_emission
     from uplift.lights.table import summarise
 
@@ -128,7 +142,11 @@ def info(table_path: str, style: str, plot_path: str | None, html: str | None, f
         from uplift.report.lights import render_light_report
 
         file = Path(find_table(table_path))
-        write_text(render_light_report(table, file.name, file.stat().st_size), html, force=force)
+        write_text(
+            render_light_report(table, file.name, file.stat().st_size),
+            html,
+            force=force,
+        )
     print_facts(table_path, summarise(table.data), style)
 
 
@@ -157,7 +175,9 @@ def export(table_path: str, output: str, table: str | None, force: bool) -> None
         raise click.UsageError(f"--output must end in {' or '.join(LANGUAGES)}.")
     files = output_files(output, check_form(language, table))
     path = check_output(files[0], inputs=[table_path], force=force)
-    check_outputs(files, inputs=[table_path], force=True)  # a table that exists is judged by its content
+    check_outputs(
+        files, inputs=[table_path], force=True
+    )  # a table that exists is judged by its content
     data = load_emission(table_path).data
     written = write_light_program(data, path, style=language, form=table, force=force)
     size = sum(each.stat().st_size for each in written) / 1e6
@@ -191,7 +211,9 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
     from uplift.lights.lookup import find_table, load_emission
 
     table = None if table_path is None else os.path.abspath(find_table(table_path))
-    own = load_emission(table_path).wavelengths  # a table that cannot be read is reported before images are
+    own = load_emission(
+        table_path
+    ).wavelengths  # a table that cannot be read is reported before images are
     if wavelengths is not None:
         check_range(wavelengths, own)
     convert((table,), Spectrum(as_tuple(wavelengths)), emission=True, **settings)
@@ -242,20 +264,35 @@ def query(
     table = load_emission(table_path)
     at = table.wavelengths if wavelengths is None else wavelengths
     check_range(at, table.wavelengths)
-    blocks = [np.array([source.xyz])] if source.xyz else map(table.xyz, source.blocks(sensor(table.space)))
+    blocks = (
+        [np.array([source.xyz])]
+        if source.xyz
+        else map(table.xyz, source.blocks(sensor(table.space)))
+    )
     results: Iterable[dict[str, Any]] = _answers(table, blocks, at, outside)
     if plot_path is not None:
         from uplift.viz.plots import plot_lights
 
         results = list(results)
-        plot_lights([(np.array(each["rgb"]), at, each["power"]) for each in results], table, plot_path, force=force)
+        plot_lights(
+            [(np.array(each["rgb"]), at, each["power"]) for each in results],
+            table,
+            plot_path,
+            force=force,
+        )
         say(f"{plot_path}: {pluralise(len(results), 'light')}", err=True)
     if style == "json":
         values = (result | {"power": result["power"].tolist()} for result in results)
         print_json_answers(values, single=source.single)
     elif style == "csv":
         header = ["r", "g", "b", "expected_error", *(f"{each:g}" for each in at)]
-        print_csv(header, ([*each["rgb"], each["expected_error"], *each["power"].tolist()] for each in results))
+        print_csv(
+            header,
+            (
+                [*each["rgb"], each["expected_error"], *each["power"].tolist()]
+                for each in results
+            ),
+        )
     elif source.single:
         (result,) = results
         power = result["power"]
@@ -265,7 +302,9 @@ def query(
             "expected error": f"ΔE00 {result['expected_error']:.2g} of surfaces, to a measured lamp of this RGB",
             "peak": f"{power.max():.5g} at {at[power.argmax()]:g} nm",
         }
-        print_spectrum(fields, at, power, complete=wavelengths is not None, highest=_peak(power))
+        print_spectrum(
+            fields, at, power, complete=wavelengths is not None, highest=_peak(power)
+        )
     else:
         say(f"{'linear RGB':<34}{'ΔE00':>6}  spectrum")
         for result in results:
@@ -274,13 +313,17 @@ def query(
             say(f"{text:<34}{result['expected_error']:>6.2f}  {shape}")
 
 
-def _answers(table: EmissionTable, blocks: Iterable[Array], at: Array, outside: str) -> Iterator[dict[str, Any]]:
+def _answers(
+    table: EmissionTable, blocks: Iterable[Array], at: Array, outside: str
+) -> Iterator[dict[str, Any]]:
     """Answer blocks of XYZ (n, 3), each before the next one is read, by JSON values and ``power`` (N,)."""
     for xyz in blocks:
         answers = table.rgb(table.spectrum_of_xyz(xyz, outside=outside))
         power = table.spectrum_of_xyz(xyz, at, outside=outside)
         errors, requested = table.expected_error(answers), table.rgb_of_xyz(xyz)
-        for rgb, answer, row, error in zip(requested, answers, power, errors, strict=True):
+        for rgb, answer, row, error in zip(
+            requested, answers, power, errors, strict=True
+        ):
             yield {
                 "rgb": rgb.tolist(),
                 "wavelengths": at.tolist(),

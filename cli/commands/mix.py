@@ -14,7 +14,15 @@ from uplift.common.text import pluralise
 from .. import options
 from ..ingredients import SpectrumResolver
 from ..inputs import check_range, find_input_space
-from ..output.answers import as_lists, coordinates, describe_coordinates, format_rgb, hex_code, patch, print_spectrum
+from ..output.answers import (
+    as_lists,
+    coordinates,
+    describe_coordinates,
+    format_rgb,
+    hex_code,
+    patch,
+    print_spectrum,
+)
 from ..output.console import has_colours, make_table, print_json, say, show
 from ..output.diagnostics import warn
 from ..output.progress import progress_bar
@@ -30,7 +38,16 @@ if TYPE_CHECKING:
 @click.command(
     "mix",
     cls=options.Command,
-    everyday=("kind", "thickness", "ground", "cube_path", "files", "plot_path", "over", "output"),
+    everyday=(
+        "kind",
+        "thickness",
+        "ground",
+        "cube_path",
+        "files",
+        "plot_path",
+        "over",
+        "output",
+    ),
     help="""Mix colours as spectra. A cube converts each colour to a spectrum, and the mixture has its illuminant.
 
     A COLOUR is '#rrggbb', 'r,g,b' in linear RGB, 'white', 'black', or an entry of the cube's atlas or of --atlas.
@@ -58,7 +75,11 @@ if TYPE_CHECKING:
 )
 @click.argument("words", metavar="[PARTS:]COLOUR...", nargs=-1, required=True)
 @click.option(
-    "--pigment", "kind", flag_value="pigment", default="pigment", help="Mix paints, which absorb and scatter."
+    "--pigment",
+    "kind",
+    flag_value="pigment",
+    default="pigment",
+    help="Mix paints, which absorb and scatter.",
 )
 @click.option("--dye", "kind", flag_value="dye", help="Mix dyes, which absorb.")
 @click.option(
@@ -68,12 +89,24 @@ if TYPE_CHECKING:
     help="Mix paints by Duntley's theory. Ingredients are [PARTS:]FILE: tables, over wavelength, of the constants "
     "K', B', F' of a beam and K, B, F of diffuse light, per unit thickness.",
 )
-@click.option("--filter", "kind", flag_value="filter", help="Stack filters; PARTS is the thickness.")
-@click.option("--additive", "kind", flag_value="light", help="Add lights; PARTS is the intensity.")
 @click.option(
-    "--thickness", type=options.NUMBER, metavar="X", help="Thickness of the coat. [default: opaque; dyes, --duntley: 1]"
+    "--filter",
+    "kind",
+    flag_value="filter",
+    help="Stack filters; PARTS is the thickness.",
 )
-@click.option("--ground", metavar="COLOUR", help="Substrate of the coat. [default: white]")
+@click.option(
+    "--additive", "kind", flag_value="light", help="Add lights; PARTS is the intensity."
+)
+@click.option(
+    "--thickness",
+    type=options.NUMBER,
+    metavar="X",
+    help="Thickness of the coat. [default: opaque; dyes, --duntley: 1]",
+)
+@click.option(
+    "--ground", metavar="COLOUR", help="Substrate of the coat. [default: white]"
+)
 @click.option(
     "--refractive-index",
     type=options.NUMBER,
@@ -113,14 +146,27 @@ if TYPE_CHECKING:
 @options.cube()
 @options.atlas("Measured spectra whose entries are ingredients")
 @options.output_wavelengths
-@options.out_of_gamut("scale", "which keeps the hue of bright mixtures; ingredients: error", "mixtures and pixels")
+@options.out_of_gamut(
+    "scale",
+    "which keeps the hue of bright mixtures; ingredients: error",
+    "mixtures and pixels",
+)
 @options.output_format("table", "json")
 @options.plot("Plot the ramp from the first ingredient to the last")
-@click.option("--steps", type=options.Whole(2, 1000), default=9, help="Number of swatches on the ramp.")
-@click.option("--over", metavar="IMAGE", help="Image to paint over (EXR, PNG, JPEG, TIFF).")
+@click.option(
+    "--steps",
+    type=options.Whole(2, 1000),
+    default=9,
+    help="Number of swatches on the ramp.",
+)
+@click.option(
+    "--over", metavar="IMAGE", help="Image to paint over (EXR, PNG, JPEG, TIFF)."
+)
 @options.output(help="With --over: image to write, as .exr.")
 @options.encoding
-@options.input_space("the colours and of the image of --over", default="that of the cube")
+@options.input_space(
+    "the colours and of the image of --over", default="that of the cube"
+)
 @options.force
 def command(
     words: tuple[str, ...],
@@ -149,7 +195,14 @@ def command(
     import numpy as np
 
     from uplift.atlas import Atlas, read_atlas
-    from uplift.design.mixing import Ingredients, Medium, Surface, make_coat, mix, overpainter
+    from uplift.design.mixing import (
+        Ingredients,
+        Medium,
+        Surface,
+        make_coat,
+        mix,
+        overpainter,
+    )
     from uplift.design.mixing.coats import COATS, ramp
     from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, dispersive
     from uplift.lookup import load
@@ -158,36 +211,63 @@ def command(
     if (over is None) != (output is None):
         raise click.UsageError("--over IMAGE and --output EXR require each other.")
     if ground is not None and (kind not in COATS or over is not None):
-        raise click.UsageError("--ground applies to coats of --pigment, --dye or --duntley, without --over.")
+        raise click.UsageError(
+            "--ground applies to coats of --pigment, --dye or --duntley, without --over."
+        )
     if plate is not None and kind != "dye":
         raise click.UsageError("--plate applies to --dye.")
     if plate == "transmitted" and (ground is not None or over is not None):
-        raise click.UsageError("--plate transmitted does not apply to --ground and --over.")
+        raise click.UsageError(
+            "--plate transmitted does not apply to --ground and --over."
+        )
     if over is not None and plot_path is not None:
         raise click.UsageError("--plot shows a mixture and does not apply to --over.")
     if theories and (
-        kind == "duntley" or any(each is not None for each in (thickness, ground, plate, over, plot_path))
+        kind == "duntley"
+        or any(each is not None for each in (thickness, ground, plate, over, plot_path))
     ):
         raise click.UsageError(
             "--theories mixes opaque colours, without --duntley, --thickness, --ground, --plate, --over and --plot."
         )
     if output is not None and not output.lower().endswith(".exr"):
-        raise OutputError("painted images are OpenEXR files", path=output, hint="give a file name ending in .exr")
+        raise OutputError(
+            "painted images are OpenEXR files",
+            path=output,
+            hint="give a file name ending in .exr",
+        )
     check_outputs(plot_path, output, inputs=[word.partition(":")[2] for word in words])
     cube = load(cube_path)
-    sensor, space = cube.data.sensor, None if input_space is None else find_input_space(input_space)
+    sensor, space = (
+        cube.data.sensor,
+        None if input_space is None else find_input_space(input_space),
+    )
     if wavelengths is not None:
         check_range(wavelengths, cube.wavelengths)
-    further = np.array([]) if theories or over is not None else as_wavelengths(wavelengths, cube.wavelengths)
-    grid = np.concatenate([sensor.wavelengths, further])  # for colours, followed by those of the output
+    further = (
+        np.array([])
+        if theories or over is not None
+        else as_wavelengths(wavelengths, cube.wavelengths)
+    )
+    grid = np.concatenate(
+        [sensor.wavelengths, further]
+    )  # for colours, followed by those of the output
     # The default is for mixtures: an ingredient outside [0, 1] is a mistake, unless the option is given.
-    is_given = click.get_current_context().get_parameter_source("method") is ParameterSource.COMMANDLINE
+    is_given = (
+        click.get_current_context().get_parameter_source("method")
+        is ParameterSource.COMMANDLINE
+    )
     atlas = read_atlas(*files) if files else Atlas()
-    resolver = SpectrumResolver(cube, atlas, grid, space, method if is_given else "error")
-    names, parts, spectra, on_black = zip(*(resolver.ingredient(word, kind) for word in words), strict=True)
+    resolver = SpectrumResolver(
+        cube, atlas, grid, space, method if is_given else "error"
+    )
+    names, parts, spectra, on_black = zip(
+        *(resolver.ingredient(word, kind) for word in words), strict=True
+    )
     ingredients = Ingredients(np.stack(spectra), on_black)
     if theories:
-        _print_theories(cube, names, np.array(parts), ingredients.spectra, method, style)
+        _print_theories(
+            cube, names, np.array(parts), ingredients.spectra, method, style
+        )
         return
     assumed: dict[str, Scattering] = {"root": SQUARE_ROOT, "constant": CONSTANT}
     law = assumed.get(scattering) or dispersive(sensor, further)
@@ -210,7 +290,9 @@ def command(
             **({"plate": True} if medium.plate else {}),
         }
         coat = make_coat(kind, ingredients, parts, medium)
-        painter = overpainter(cube, coat, recipe, encoding=encoding, out_of_gamut=method, space=space)
+        painter = overpainter(
+            cube, coat, recipe, encoding=encoding, out_of_gamut=method, space=space
+        )
         with progress_bar("rows") as progress:
             painted = convert(painter, over, output, force=force, progress=progress)
         warn(painted.warnings)
@@ -222,7 +304,9 @@ def command(
     if plate == "transmitted":
         mixed = make_coat(kind, ingredients, amounts, medium).layer.transmittance
     else:
-        mixed = mix(kind, ingredients, amounts, medium, resolver.spectrum(ground or "white"))
+        mixed = mix(
+            kind, ingredients, amounts, medium, resolver.spectrum(ground or "white")
+        )
     count = len(sensor.wavelengths)
     rgb = sensor.rgb(mixed[:, :count])
     inside = np.clip(rgb, 0, 1)
@@ -231,31 +315,71 @@ def command(
     if mapped.outside[0]:
         problem = f"the mixture lies outside [0, 1]: mapped into the gamut ({method})"
         warn([UpliftWarning(problem)])
-    title = ", ".join(f"{each:g} of {name}" for each, name in zip(parts, names, strict=True))
+    title = ", ".join(
+        f"{each:g} of {name}" for each, name in zip(parts, names, strict=True)
+    )
     if plot_path is not None:
         from uplift.colorimetry.srgb import to_display_codes
         from uplift.viz.plots import Strip, plot_strips
 
         codes = to_display_codes(mapped.rgb, sensor) / 255
-        strips = [Strip(f"{kind}: {title}", codes[:1]), Strip(f"from {names[0]} to {names[-1]}", codes[1:])]
+        strips = [
+            Strip(f"{kind}: {title}", codes[:1]),
+            Strip(f"from {names[0]} to {names[-1]}", codes[1:]),
+        ]
         plot_strips(strips[: len(names)], plot_path, force=force)
     # The mixture, followed by the ramp from its first to its last ingredient.
-    colours = [{"parts": row.tolist(), **_colour(cube, rgb)} for row, rgb in zip(amounts, mapped.rgb, strict=True)]
+    colours = [
+        {"parts": row.tolist(), **_colour(cube, rgb)}
+        for row, rgb in zip(amounts, mapped.rgb, strict=True)
+    ]
     if style == "json":
-        spectrum = {"wavelengths": further.tolist(), "spectrum": as_lists(mixed[0, count:])}
-        print_json({"kind": kind, "names": names, **colours[0], **spectrum, "ramp": colours[1:]}, indent=None)
+        spectrum = {
+            "wavelengths": further.tolist(),
+            "spectrum": as_lists(mixed[0, count:]),
+        }
+        print_json(
+            {
+                "kind": kind,
+                "names": names,
+                **colours[0],
+                **spectrum,
+                "ramp": colours[1:],
+            },
+            indent=None,
+        )
         return
-    fields = {kind: title, "linear RGB": f"{format_rgb(mapped.rgb[0])}  {colours[0]['hex']}"}
+    fields = {
+        kind: title,
+        "linear RGB": f"{format_rgb(mapped.rgb[0])}  {colours[0]['hex']}",
+    }
     fields |= describe_coordinates(colours[0])
     if len(names) > 1:
         fields["ramp"] = " ".join(each["hex"] for each in colours[1:])
     values = mixed[0, count:]
-    patches = {"linear RGB": patch(cube, mapped.rgb[0]), "ramp": "".join(patch(cube, rgb, 4) for rgb in mapped.rgb[1:])}
+    patches = {
+        "linear RGB": patch(cube, mapped.rgb[0]),
+        "ramp": "".join(patch(cube, rgb, 4) for rgb in mapped.rgb[1:]),
+    }
     highest = max(1, values.max())
-    print_spectrum(fields, further, values, complete=wavelengths is not None, patches=patches, highest=highest)
+    print_spectrum(
+        fields,
+        further,
+        values,
+        complete=wavelengths is not None,
+        patches=patches,
+        highest=highest,
+    )
 
 
-def _print_theories(cube: Cube, names: tuple[str, ...], parts: Array, spectra: Array, method: str, style: str) -> None:
+def _print_theories(
+    cube: Cube,
+    names: tuple[str, ...],
+    parts: Array,
+    spectra: Array,
+    method: str,
+    style: str,
+) -> None:
     import numpy as np
     from rich.text import Text
 
@@ -264,7 +388,10 @@ def _print_theories(cube: Cube, names: tuple[str, ...], parts: Array, spectra: A
 
     sensor = cube.data.sensor
     rgb = np.clip(sensor.rgb(spectra), 0, 1)
-    mixed = {mixer.title: map_to_gamut(mixer.mix(rgb, parts)[None], sensor, method).rgb[0] for mixer in mixers(cube)}
+    mixed = {
+        mixer.title: map_to_gamut(mixer.mix(rgb, parts)[None], sensor, method).rgb[0]
+        for mixer in mixers(cube)
+    }
     if style == "json":
         rows = [{"theory": title, **_colour(cube, rgb)} for title, rgb in mixed.items()]
         print_json({"names": names, "theories": rows}, indent=None)

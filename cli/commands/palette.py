@@ -50,16 +50,26 @@ LEGEND = "requested, obtained, factor model, ΔE00 of obtained/model; * designed
     """,
 )
 @click.argument("spec", metavar="SPEC.toml", type=click.Path())
-@options.output(help="Write the designed materials as an atlas; CSV if FILE ends in .csv.")
+@options.output(
+    help="Write the designed materials as an atlas; CSV if FILE ends in .csv."
+)
 @options.plot("Plot the matrix of colours")
-@options.plot("Plot the spectra of lights and materials", "--plot-spectra", "spectra_path")
+@options.plot(
+    "Plot the spectra of lights and materials", "--plot-spectra", "spectra_path"
+)
 @options.page("Write a page that shows the materials under any mixture of the lights.")
 @click.option(
     "--image",
     metavar="FILE",
     help="Picture for the page: an 8-bit image of labels, or EXR channels with the names of the materials.",
 )
-@options.repeatable("--label", "labels", "Colour of a material in --image", "greys 1, 2, …", metavar="NAME=#RRGGBB")
+@options.repeatable(
+    "--label",
+    "labels",
+    "Colour of a material in --image",
+    "greys 1, 2, …",
+    metavar="NAME=#RRGGBB",
+)
 @options.output_format("table", "json")
 @options.force
 def command(
@@ -74,7 +84,14 @@ def command(
     force: bool,
 ) -> None:
     from uplift.common.files import write_text
-    from uplift.design.palette import design, matrix, read_palette, standard_model, unmet_goals, write_designed
+    from uplift.design.palette import (
+        design,
+        matrix,
+        read_palette,
+        standard_model,
+        unmet_goals,
+        write_designed,
+    )
     from uplift.design.palette.picture import cutaway
     from uplift.design.palette.plots import plot_matrix, plot_spectra
     from uplift.design.palette.relight_page import page, relighting
@@ -100,7 +117,9 @@ def command(
         say(f"{spectra_path}: spectra", err=True)
     if html is not None:
         weights = cutaway(len(palette.materials)) if picture is None else picture
-        write_text(page(relighting(Path(spec).stem, solution, weights)), html, force=force)
+        write_text(
+            page(relighting(Path(spec).stem, solution, weights)), html, force=force
+        )
         say(f"{html}: relighting page", err=True)
 
 
@@ -109,7 +128,9 @@ def _read_picture(
 ) -> NDArray[np.float32] | None:
     """Read how much of each material a pixel shows; None if the page draws its own picture."""
     if image is None and labels:
-        raise click.UsageError("--label requires --image, the image that has these colours.")
+        raise click.UsageError(
+            "--label requires --image, the image that has these colours."
+        )
     if image is None:
         return None
     if html is None:
@@ -120,9 +141,13 @@ def _read_picture(
     for label in labels:
         name, sign, colour = label.partition("=")
         if not sign or name in colours:
-            raise OptionError(f"labels must be NAME=#rrggbb, one per material, got '{label}'")
+            raise OptionError(
+                f"labels must be NAME=#rrggbb, one per material, got '{label}'"
+            )
         colours[name] = colour
-    return read_weights(image, [part.name for part in palette.materials], colours or None)
+    return read_weights(
+        image, [part.name for part in palette.materials], colours or None
+    )
 
 
 def _print_table(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
@@ -139,9 +164,14 @@ def _print_table(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
         for at in ((row, column) for column in range(len(design.palette.lights))):
             has_goal = not math.isnan(colours.delta_e[at])
             cell = Text()
-            for rgb in [colours.target[at]] * has_goal + [colours.obtained[at], colours.factor[at]]:
+            for rgb in [colours.target[at]] * has_goal + [
+                colours.obtained[at],
+                colours.factor[at],
+            ]:
                 (code,) = hex_codes(rgb[None])
-                cell.append("    " if coloured else code, style=f"on {code}" if coloured else "")
+                cell.append(
+                    "    " if coloured else code, style=f"on {code}" if coloured else ""
+                )
                 cell.append(" ")
             error = f"{colours.delta_e[at]:.2f}" if has_goal else "–"
             cells.append(cell.append(f"{error}/{colours.model_error[at]:.2f}"))
@@ -188,7 +218,9 @@ def _print_json(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
 
 
 def _parts(
-    specs: Sequence[SpectrumSpec], spectra: Iterable[Array], coefficients: Callable[[Array], Array]
+    specs: Sequence[SpectrumSpec],
+    spectra: Iterable[Array],
+    coefficients: Callable[[Array], Array],
 ) -> list[dict[str, object]]:
     return [
         {

@@ -40,11 +40,15 @@ from ..startup import enable_jit_cache
     """,
 )
 @click.argument("scene", metavar="SCENE.toml", type=click.Path())
-@options.output(help="Plan to write. [default: SCENE.plan.json in the folder of the scene]")
+@options.output(
+    help="Plan to write. [default: SCENE.plan.json in the folder of the scene]"
+)
 @click.option("--quick", is_flag=True, help="Fewer candidates, and fewer pixels.")
 @options.output_format("table", "json")
 @options.force
-def command(scene: str, output: str | None, quick: bool, style: str, force: bool) -> None:
+def command(
+    scene: str, output: str | None, quick: bool, style: str, force: bool
+) -> None:
     enable_jit_cache()
     from uplift.common.files import write_text
     from uplift.scene.plan import plan, read_scene_file, summary
@@ -53,7 +57,9 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
 
     scene_file = read_scene_file(scene)
     path = scene_file.path.with_suffix(SUFFIX) if output is None else Path(output)
-    check_outputs(path, inputs=(*scene_file.textures, *scene_file.atlases, *scene_file.lamp_files))
+    check_outputs(
+        path, inputs=(*scene_file.textures, *scene_file.atlases, *scene_file.lamp_files)
+    )
     summary.check_path(scene_file, path)
     with progress_bar() as progress:
         result = plan(scene_file, QUICK if quick else SearchGrid(), progress)
@@ -67,13 +73,17 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
         say()
         worst = result.confirmed.worst
         paragraph(f"{result.scene.path.name}: {result.chosen.name}")
-        paragraph(f"{summary.verdict(result)} ({worst.group} under {worst.light}). {' '.join(summary.notes(result))}")
+        paragraph(
+            f"{summary.verdict(result)} ({worst.group} under {worst.light}). {' '.join(summary.notes(result))}"
+        )
         say()
         table = make_table(("",), summary.HEADINGS[:4])
         for heading in summary.HEADINGS[4:]:
             table.add_column(heading)
         for each in summary.front_rows(result):
-            table.add_row("→" if each is result.chosen else "", *summary.front_row(each))
+            table.add_row(
+                "→" if each is result.chosen else "", *summary.front_row(each)
+            )
         show(table)
         say()
         paragraph(summary.describe_error(result))

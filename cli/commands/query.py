@@ -26,7 +26,15 @@ from ..output.answers import (
     print_spectrum,
     sparkline,
 )
-from ..output.console import emit, has_colours, paragraph, print_csv, print_json, print_json_answers, say
+from ..output.console import (
+    emit,
+    has_colours,
+    paragraph,
+    print_csv,
+    print_json,
+    print_json_answers,
+    say,
+)
 from ..output.diagnostics import warn
 from ..outputs import check_outputs
 
@@ -47,7 +55,8 @@ LARGEST = 1e30
 
 colour_options = options.stacked(
     options.colours(
-        "under the cube's illuminant, where white has Y = 1; also outside the cube's space", "that of the cube"
+        "under the cube's illuminant, where white has Y = 1; also outside the cube's space",
+        "that of the cube",
     ),
     options.cube(),
     options.output_wavelengths,
@@ -85,20 +94,34 @@ class Answers:
         self.cube = load(cube_path)
         if wavelengths is not None:
             check_range(wavelengths, self.cube.wavelengths)
-        self.wavelengths, self.mode, self.method, self.fill_missing = wavelengths, mode, method, fill_missing
+        self.wavelengths, self.mode, self.method, self.fill_missing = (
+            wavelengths,
+            mode,
+            method,
+            fill_missing,
+        )
         data = self.cube.data
         atlases = [source["name"] for source in data.provenance.get("atlases", ())]
         file, dim = cube_path or PACKAGED, data.lattice.dim
         self.origin: dict[str, Any] = {"file": file, "dim": dim, "atlases": atlases}
-        self.title = f"{Path(file).name}: {dim}³ nodes, {', '.join(atlases) or 'no atlas'}"
+        self.title = (
+            f"{Path(file).name}: {dim}³ nodes, {', '.join(atlases) or 'no atlas'}"
+        )
         self.lights: list[Light] = []
-        self.to_srgb: dict[str, Array] = {}  # matrices from XYZ under a light to linear sRGB with the same white
+        self.to_srgb: dict[
+            str, Array
+        ] = {}  # matrices from XYZ under a light to linear sRGB with the same white
         if lights:
             from uplift.colorimetry.observer import display_sensors, light
 
             setting = self.cube.observer, *data.sensor.range
-            self.to_srgb = {each.illuminant: each.xyz_to_rgb for each in display_sensors(lights, *setting)}
-            named = {each.name: each for each in (light(given, *setting) for given in lights)}
+            self.to_srgb = {
+                each.illuminant: each.xyz_to_rgb
+                for each in display_sensors(lights, *setting)
+            }
+            named = {
+                each.name: each for each in (light(given, *setting) for given in lights)
+            }
             self.lights = list(named.values())
 
     def __iter__(self) -> Iterator[list[QueryResult]]:
@@ -106,7 +129,15 @@ class Answers:
         from uplift.lookup.query import query, query_xyz
 
         if self.source.xyz is not None:
-            yield list(query_xyz(self.cube, [self.source.xyz], self.wavelengths, self.mode, self.lights))
+            yield list(
+                query_xyz(
+                    self.cube,
+                    [self.source.xyz],
+                    self.wavelengths,
+                    self.mode,
+                    self.lights,
+                )
+            )
             return
         count = mapped = filled = 0
         change = 0.0
@@ -117,27 +148,41 @@ class Answers:
                 from uplift.colorimetry.gamut import map_to_gamut
 
                 inside = map_to_gamut(requested, self.cube.data.sensor, self.method)
-                rgb, mapped, change = inside.rgb, mapped + inside.count, max(change, inside.max_change)
+                rgb, mapped, change = (
+                    inside.rgb,
+                    mapped + inside.count,
+                    max(change, inside.max_change),
+                )
             count += len(rgb)
             if self.fill_missing:
                 filled += int((~self.cube.covers(rgb)).sum())
                 self.cube = self.cube.fill_missing(rgb)
-            yield list(query(self.cube, rgb, self.wavelengths, self.mode, requested, self.lights))
+            yield list(
+                query(
+                    self.cube, rgb, self.wavelengths, self.mode, requested, self.lights
+                )
+            )
             sys.stdout.flush()
         if mapped:
             by = f"mapped into the gamut ({self.method}), a component by up to {change:.3g}"
-            warn([UpliftWarning(f"{mapped} of {pluralise(count, 'colour')} outside [0, 1]: {by}")])
-        if filled:
-            problem = (
-                f"{filled} of {pluralise(count, 'colour')} outside the cube's scene: filled from the packaged cube"
+            warn(
+                [
+                    UpliftWarning(
+                        f"{mapped} of {pluralise(count, 'colour')} outside [0, 1]: {by}"
+                    )
+                ]
             )
+        if filled:
+            problem = f"{filled} of {pluralise(count, 'colour')} outside the cube's scene: filled from the packaged cube"
             warn([UpliftWarning(problem)])
 
     def light_colours(self, result: QueryResult) -> dict[str, tuple[Array, str]]:
         """Return linear sRGB (3,) and '#rrggbb' of an answer by light; its white is that of the screen."""
         from uplift.colorimetry.srgb import hex_codes
 
-        colours = {light: self.to_srgb[light] @ xyz for light, xyz in result.light_xyz.items()}
+        colours = {
+            light: self.to_srgb[light] @ xyz for light, xyz in result.light_xyz.items()
+        }
         return {light: (rgb, hex_codes(rgb[None])[0]) for light, rgb in colours.items()}
 
 
@@ -181,9 +226,17 @@ class Answers:
 @options.light("Illuminant under which colour and standard error are shown", "none")
 @options.output_format("table", "json", "csv")
 @options.plot("Plot the spectra")
-@click.option("--check", "stored", metavar="FILE", help="Compare answers that --format csv has stored; exit code 1.")
 @click.option(
-    "--tolerance", type=options.NUMBER, default=1e-4, help="Largest difference in reflectance that --check accepts."
+    "--check",
+    "stored",
+    metavar="FILE",
+    help="Compare answers that --format csv has stored; exit code 1.",
+)
+@click.option(
+    "--tolerance",
+    type=options.NUMBER,
+    default=1e-4,
+    help="Largest difference in reflectance that --check accepts.",
 )
 @options.force
 def command(
@@ -196,8 +249,12 @@ def command(
     **colours: Any,
 ) -> None:
     if stored is not None:
-        if colours["colour"] or any(colours[name] is not None for name in ("input_path", "xyz", "xy")):
-            raise click.UsageError("--check takes the colours from its FILE: give no others.")
+        if colours["colour"] or any(
+            colours[name] is not None for name in ("input_path", "xyz", "xy")
+        ):
+            raise click.UsageError(
+                "--check takes the colours from its FILE: give no others."
+            )
         _check(stored, colours["cube_path"], colours["mode"], tolerance, style)
         return
     check_outputs(plot_path)
@@ -210,7 +267,9 @@ def command(
         plot_spectra(answers.cube, results, plot_path, force=force)
         say(f"{plot_path}: {pluralise(len(results), 'colour')}", err=True)
     if style == "json":
-        print_json_answers((result_object(answers, each) for each in results), single=answers.single)
+        print_json_answers(
+            (result_object(answers, each) for each in results), single=answers.single
+        )
     elif style == "csv":
         _print_csv(answers, results)
     elif answers.single:
@@ -224,12 +283,20 @@ def command(
         )
     else:
         _print_lines(answers, results)
-    cubes = list(Path().glob("*.uplift")) if style == "table" and colours["cube_path"] is None else []
+    cubes = (
+        list(Path().glob("*.uplift"))
+        if style == "table" and colours["cube_path"] is None
+        else []
+    )
     if len(cubes) == 1:
-        paragraph(f"hint: to use the cube of this folder, add --cube {cubes[0]}", err=True)
+        paragraph(
+            f"hint: to use the cube of this folder, add --cube {cubes[0]}", err=True
+        )
 
 
-def _check(path: str, cube_path: str | None, mode: str, tolerance: float, style: str) -> None:
+def _check(
+    path: str, cube_path: str | None, mode: str, tolerance: float, style: str
+) -> None:
     """Compare stored answers with those of a cube; exit with 1 if one differs by more than the tolerance."""
     from uplift.lookup import load
     from uplift.report.answers import read_answers
@@ -240,7 +307,11 @@ def _check(path: str, cube_path: str | None, mode: str, tolerance: float, style:
     passed = bool(differences[worst] <= tolerance)
     moved = int((differences > tolerance).sum())
     if style == "json":
-        figures = {"largest": float(differences[worst]), "worst_rgb": stored.rgb[worst].tolist(), "moved": moved}
+        figures = {
+            "largest": float(differences[worst]),
+            "worst_rgb": stored.rgb[worst].tolist(),
+            "moved": moved,
+        }
         counts = {"answers": path, "colours": len(differences)}
         print_json(counts | figures | {"tolerance": tolerance, "passed": passed})
     else:
@@ -263,7 +334,10 @@ def result_object(answers: Answers, result: QueryResult) -> dict[str, Any]:
         "reflectance": as_lists(result.reflectance),
         "xyz": as_lists(result.xyz),
         **coordinates(cube, result.rgb),
-        "round_trip": {"rgb": as_lists(result.round_trip), "delta_e_2000": result.delta_e_2000},
+        "round_trip": {
+            "rgb": as_lists(result.round_trip),
+            "delta_e_2000": result.delta_e_2000,
+        },
         "cell": list(result.cell),
         "status": [status.label for status in result.statuses],
         "realisable": result.realisable,
@@ -274,7 +348,11 @@ def result_object(answers: Answers, result: QueryResult) -> dict[str, Any]:
         "standard_errors": dict(result.standard_errors),
         "error_bounds": dict(result.error_bounds),
         "lights": {
-            light: {"srgb": as_lists(rgb), "hex": code, "xyz": as_lists(result.light_xyz[light])}
+            light: {
+                "srgb": as_lists(rgb),
+                "hex": code,
+                "xyz": as_lists(result.light_xyz[light]),
+            }
             for light, (rgb, code) in answers.light_colours(result).items()
         },
         "unlike_atlas": result.unlike_atlas,
@@ -289,27 +367,44 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
     data, atlas, rgb = cube.data, cube.data.atlas, result.rgb
     fields = {}
     if (abs(result.requested_rgb - rgb) > 2 * SLACK).any():
-        moved = float(delta_e_rgb(data.sensor, result.requested_rgb.clip(-LARGEST, LARGEST), rgb))
-        fields["requested"] = f"{format_rgb(result.requested_rgb)}  outside [0, 1], mapped by ΔE00 {moved:.2g}"
+        moved = float(
+            delta_e_rgb(data.sensor, result.requested_rgb.clip(-LARGEST, LARGEST), rgb)
+        )
+        fields["requested"] = (
+            f"{format_rgb(result.requested_rgb)}  outside [0, 1], mapped by ΔE00 {moved:.2g}"
+        )
     fields["linear RGB"] = f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"
     fields |= describe_coordinates(coordinates(cube, rgb))
     fields["cube"] = answers.title
-    fields["cell"] = f"{result.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in result.statuses)}"
+    fields["cell"] = (
+        f"{result.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in result.statuses)}"
+    )
     round_trip = f"{format_rgb(result.round_trip)}  ΔE00 {result.delta_e_2000:.2g} ({data.sensor.illuminant})"
     fields["round trip"] = round_trip
     if data.sensor.sensitivities is not None:
         fields["XYZ"] = format_rgb(result.xyz)
     if not result.realisable:
-        fields["realisable"] = "no: the spectrum has less chroma, because no reflectance has this colour"
+        fields["realisable"] = (
+            "no: the spectrum has less chroma, because no reflectance has this colour"
+        )
     if result.light_xyz:
         relit = answers.light_colours(result).items()
-        fields["sRGB under"] = ", ".join(f"{name}: {code} ({format_rgb(lit)})" for name, (lit, code) in relit)
+        fields["sRGB under"] = ", ".join(
+            f"{name}: {code} ({format_rgb(lit)})" for name, (lit, code) in relit
+        )
     if result.entry is None:
-        fields["atlas entry"] = "none, and none is near: unlike the atlas" if result.unlike_atlas else "none"
+        fields["atlas entry"] = (
+            "none, and none is near: unlike the atlas"
+            if result.unlike_atlas
+            else "none"
+        )
     else:
         is_look = result.entry in atlas.names[atlas.measured_count :]
         fields["look" if is_look else "atlas entry"] = result.entry
-    errors = (f"ΔE00 {error:.2g} under {name} (95 %: {bound:.2g})" for name, error, bound in _errors(cube, result))
+    errors = (
+        f"ΔE00 {error:.2g} under {name} (95 %: {bound:.2g})"
+        for name, error, bound in _errors(cube, result)
+    )
     fields["expected error"] = ", ".join(errors) or NO_ERROR
     return fields
 
@@ -318,13 +413,28 @@ def _print_csv(answers: Answers, results: Iterable[QueryResult]) -> None:
     cube, lights = answers.cube, [light.name for light in answers.lights]
     known = lights if cube.data.points.standard_error is not None else []
     columns = [*"rgb", "delta_e_2000", "standard_error", "error_bound"]
-    columns += [f"{name}_{light}" for light in known for name in ("standard_error", "error_bound")]
+    columns += [
+        f"{name}_{light}"
+        for light in known
+        for name in ("standard_error", "error_bound")
+    ]
     columns += [*(f"hex_{light}" for light in lights), "entry"]
-    wavelengths = cube.wavelengths if answers.wavelengths is None else answers.wavelengths
+    wavelengths = (
+        cube.wavelengths if answers.wavelengths is None else answers.wavelengths
+    )
     rows = (
         [
-            *(*as_lists(result.rgb), result.delta_e_2000, result.standard_error, result.error_bound),
-            *(each.get(light) for light in known for each in (result.standard_errors, result.error_bounds)),
+            *(
+                *as_lists(result.rgb),
+                result.delta_e_2000,
+                result.standard_error,
+                result.error_bound,
+            ),
+            *(
+                each.get(light)
+                for light in known
+                for each in (result.standard_errors, result.error_bounds)
+            ),
             *(code for _, code in answers.light_colours(result).values()),
             *(result.entry, *as_lists(result.reflectance)),
         ]
@@ -336,15 +446,23 @@ def _print_csv(answers: Answers, results: Iterable[QueryResult]) -> None:
 def _print_lines(answers: Answers, results: Iterable[QueryResult]) -> None:
     cube = answers.cube
     for number, result in enumerate(results):
-        errors = {f"± {light}": f"{error:.2f}" for light, error, _ in _errors(cube, result)}
+        errors = {
+            f"± {light}": f"{error:.2f}" for light, error, _ in _errors(cube, result)
+        }
         if number == 0:
             names = list(errors) or [f"{'spectrum':<16}"]
             indent = " " * 5 * has_colours()
             say(f"cube     {answers.title}")
-            say(f"{indent}hex      {'linear RGB':<17}  {'ΔE00':<7}  {'  '.join(names)}  atlas entry")
-        last = [f"{error:>{len(name)}}" for name, error in errors.items()] or [sparkline(result.reflectance, 16)]
+            say(
+                f"{indent}hex      {'linear RGB':<17}  {'ΔE00':<7}  {'  '.join(names)}  atlas entry"
+            )
+        last = [f"{error:>{len(name)}}" for name, error in errors.items()] or [
+            sparkline(result.reflectance, 16)
+        ]
         rgb = " ".join(f"{value:.3f}" for value in result.rgb)
-        entry = result.entry or ("unlike the atlas" if errors and result.unlike_atlas else "")
+        entry = result.entry or (
+            "unlike the atlas" if errors and result.unlike_atlas else ""
+        )
         line = f"{hex_code(cube, result.rgb)}  {rgb}  {result.delta_e_2000:<7.2g}  {'  '.join(last)}  {entry}"
         swatch = patch(cube, result.rgb, 3)
         emit((swatch and f"{swatch}  ") + printable(line.rstrip()))
@@ -355,5 +473,9 @@ def _errors(cube: Cube, result: QueryResult) -> list[tuple[str, float, float]]:
     if result.standard_error is None or result.error_bound is None:
         return []
     reference = cube.data.error_illuminant
-    others = [(name, x, result.error_bounds[name]) for name, x in result.standard_errors.items() if name != reference]
+    others = [
+        (name, x, result.error_bounds[name])
+        for name, x in result.standard_errors.items()
+        if name != reference
+    ]
     return [(reference, result.standard_error, result.error_bound), *others]

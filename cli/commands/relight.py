@@ -82,7 +82,9 @@ def _check_output(path: str) -> str:
 @options.light("Illuminant", "A FL11 HP1")
 @options.cube(" whose spectra are shown as well.")
 @options.atlas("Measured spectra; a cube is built from them and shown as well")
-@options.adapt("adapt, but tinted in pictures under lights too coloured to look white, such as HP1")
+@options.adapt(
+    "adapt, but tinted in pictures under lights too coloured to look white, such as HP1"
+)
 @options.pixels()
 @options.output(
     help="File to write: a figure if it ends in .png, .svg or .pdf, a page if in .html, the image itself if in .exr.",
@@ -111,11 +113,15 @@ def command(
     from uplift.samples import sample_path
 
     if cube_path is not None and files:
-        raise click.UsageError("--cube and --atlas are alternatives: give one of the two.")
+        raise click.UsageError(
+            "--cube and --atlas are alternatives: give one of the two."
+        )
     suffix = Path(output).suffix.lower()
     paths = expand_patterns(images) or [str(sample_path(SAMPLE))]
     if suffix == IMAGE and len(paths) > 1:
-        raise click.UsageError("An .exr file holds one image: relight images one by one.")
+        raise click.UsageError(
+            "An .exr file holds one image: relight images one by one."
+        )
     check_outputs(output, inputs=paths)
     atlases = files
     if not images and cube_path is None:
@@ -126,14 +132,23 @@ def command(
             extra, notes = _cube_of_user(cube_path, atlases)
             balanced = adapt is not False
             threads = os.cpu_count() or 1
-            converter = texture.prepare_relighter(extra or load(), lights, adapt=balanced, threads=threads, **pixels)
-            conversion = texture.convert(converter, paths[0], output, force=force, progress=progress)
+            converter = texture.prepare_relighter(
+                extra or load(), lights, adapt=balanced, threads=threads, **pixels
+            )
+            conversion = texture.convert(
+                converter, paths[0], output, force=force, progress=progress
+            )
         warn(conversion.warnings)
         shown = json.loads(converter.header["uplift.texture"])["lights"]
         if style == "json":
-            print_json({"output": output, "lights": shown, "pixels": conversion.counts.pixels})
+            print_json(
+                {"output": output, "lights": shown, "pixels": conversion.counts.pixels}
+            )
         else:
-            names, count = ", ".join(shown), pluralise(conversion.counts.pixels, "pixel")
+            names, count = (
+                ", ".join(shown),
+                pluralise(conversion.counts.pixels, "pixel"),
+            )
             paragraph(f"{output}: {Path(paths[0]).name} under {names}, {count}")
     else:
         with progress_bar("computing spectra"):
@@ -149,7 +164,12 @@ def command(
             relit = []
             for path, picture in zip(paths, pictures, strict=True):
                 image = relight(
-                    Path(path).name, picture.rgb, cubes, lights, opacity=picture.opacity, reduction=picture.reduction
+                    Path(path).name,
+                    picture.rgb,
+                    cubes,
+                    lights,
+                    opacity=picture.opacity,
+                    reduction=picture.reduction,
                 )
                 relit.append(image)
             if suffix == PAGE:
@@ -176,20 +196,32 @@ def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:
     for image in relit:
         for rendering in image.renderings:
             for spectra in image.methods[1:]:
-                key = {"image": image.name, "light": rendering.light, "spectra": spectra}
-                rows.append(key | mean_p95_max(rendering.differences[RGB_PRODUCT, spectra]))
+                key = {
+                    "image": image.name,
+                    "light": rendering.light,
+                    "spectra": spectra,
+                }
+                rows.append(
+                    key | mean_p95_max(rendering.differences[RGB_PRODUCT, spectra])
+                )
     if style == "json":
         print_json({"output": output, "differences": rows})
         return
     table = make_table(("image", "light", "spectra"), ("mean ΔE00", "95 %", "largest"))
     for row in rows:
-        table.add_row(*(cell if isinstance(cell, str) else f"{cell:.2f}" for cell in row.values()))
+        table.add_row(
+            *(cell if isinstance(cell, str) else f"{cell:.2f}" for cell in row.values())
+        )
     show(table)
     names = ", ".join(image.name for image in relit)
-    paragraph(f"{output}: {names} under {', '.join(rendering.light for rendering in relit[0].renderings)}")
+    paragraph(
+        f"{output}: {names} under {', '.join(rendering.light for rendering in relit[0].renderings)}"
+    )
 
 
-def _cube_of_user(path: str | None, atlases: tuple[str, ...]) -> tuple[Cube | None, list[UpliftWarning]]:
+def _cube_of_user(
+    path: str | None, atlases: tuple[str, ...]
+) -> tuple[Cube | None, list[UpliftWarning]]:
     """Load the cube of a file, or build that of atlases with its warnings; None without either."""
     from uplift.lookup import load
 

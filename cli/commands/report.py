@@ -41,10 +41,15 @@ if TYPE_CHECKING:
 @options.atlas("Measured spectra that replace the atlases of the cube")
 @options.atlas_folders
 @options.light("Illuminant to evaluate", "D65 A FL2 FL7 FL11 LED-B3")
-@options.output(help="File to write. [default: CUBE's name with .html, in the current folder]")
+@options.output(
+    help="File to write. [default: CUBE's name with .html, in the current folder]"
+)
 @options.output_format("html", "json")
 @click.option(
-    "--worst", type=options.Whole(0), default=24, help="Number of entries with plotted spectra, largest errors first."
+    "--worst",
+    type=options.Whole(0),
+    default=24,
+    help="Number of entries with plotted spectra, largest errors first.",
 )
 @options.force
 def command(
@@ -76,8 +81,14 @@ def command(
     atlas = read_atlas(*files) if files else recorded_atlas(loaded.data, cube, folders)
     with progress_bar("evaluating the cube"):
         size = Path(find_file(cube)).stat().st_size
-        assessment = assess(loaded, Path(cube).name, size, atlas, lights or REPORT_LIGHTS)
-        text = json_text(to_json(assessment)) + "\n" if style == "json" else render_report(assessment, worst)
+        assessment = assess(
+            loaded, Path(cube).name, size, atlas, lights or REPORT_LIGHTS
+        )
+        text = (
+            json_text(to_json(assessment)) + "\n"
+            if style == "json"
+            else render_report(assessment, worst)
+        )
     if path is None:
         emit(text, nl=False)
     else:
@@ -88,14 +99,20 @@ def command(
 def _summary(assessment: Assessment) -> str:
     from uplift.common.text import pluralise
 
-    parts = [f"{pluralise(assessment.failures['over_threshold'], 'node')} over the threshold"]
+    parts = [
+        f"{pluralise(assessment.failures['over_threshold'], 'node')} over the threshold"
+    ]
     if assessment.entries is not None:
         names, answers = assessment.entries.names, assessment.entries.answers
         parts.append(pluralise(len(names), "entry"))
-        parts.append(f"ΔE00 mean {answers.delta_e.mean():.2f}, worst {answers.worst[0]:.2f} ('{names[0]}')")
+        parts.append(
+            f"ΔE00 mean {answers.delta_e.mean():.2f}, worst {answers.worst[0]:.2f} ('{names[0]}')"
+        )
     if assessment.calibration is not None:
         calibration, light = assessment.calibration, assessment.data.error_illuminant
-        parts.append(f"68 % within {calibration.actual:.2f} under {light}, predicted {calibration.predicted:.2f}")
+        parts.append(
+            f"68 % within {calibration.actual:.2f} under {light}, predicted {calibration.predicted:.2f}"
+        )
     if assessment.crowding is not None:
         parts.append(pluralise(len(assessment.crowding.entries.names), "crowded entry"))
     return ", ".join(parts)

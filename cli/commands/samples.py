@@ -26,20 +26,26 @@ from ..output.console import paragraph, say
       uplift samples --force
     """,
 )
-@click.argument("folder", metavar="[FOLDER]", default="uplift-samples", type=click.Path())
+@click.argument(
+    "folder", metavar="[FOLDER]", default="uplift-samples", type=click.Path()
+)
 @options.force
 def command(folder: str, force: bool) -> None:
     from uplift.samples import copy_samples
 
     copies = copy_samples(folder, force=force)
-    paragraph(f"{folder}: {pluralise(len(copies), 'sample file')}, with which all examples run. Try first:")
+    paragraph(
+        f"{folder}: {pluralise(len(copies), 'sample file')}, with which all examples run. Try first:"
+    )
     for line in _first_commands(Path(folder)):
         say(f"  {line}")
 
 
 def _first_commands(folder: Path) -> tuple[str, ...]:
     """Return commands that run where the folder was created."""
-    wood, paints = (shlex.quote(str(folder / name)) for name in ("wood.png", "paints.csv"))
+    wood, paints = (
+        shlex.quote(str(folder / name)) for name in ("wood.png", "paints.csv")
+    )
     return (
         f"uplift relight {wood} -o wood.html",
         f"uplift build --atlas {paints} -o paints.uplift",

@@ -41,8 +41,16 @@ SHEET = options.OutputFile(_check_sheet)
     """,
 )
 @options.cube_argument
-@options.output(help="Slices to write, as .exr. [default: CUBE's name with .exr, in the current folder]")
-@click.option("--plot", "sheet", metavar="FILE", type=SHEET, help="Contact sheet to write, as .exr or .png.")
+@options.output(
+    help="Slices to write, as .exr. [default: CUBE's name with .exr, in the current folder]"
+)
+@click.option(
+    "--plot",
+    "sheet",
+    metavar="FILE",
+    type=SHEET,
+    help="Contact sheet to write, as .exr or .png.",
+)
 @options.force
 def command(cube: str, output: str | None, sheet: str | None, force: bool) -> None:
     if output is None and sheet is None:

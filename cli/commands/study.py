@@ -58,7 +58,13 @@ def command() -> None:
     """Hold the subcommands."""
 
 
-def _print(style: str, records: Any, rows: Sequence[Row], table: Sequence[Row], title: str | None = None) -> None:
+def _print(
+    style: str,
+    records: Any,
+    rows: Sequence[Row],
+    table: Sequence[Row],
+    title: str | None = None,
+) -> None:
     """Print JSON of the records, CSV of rows, or a table, in which floats have three digits."""
     from uplift.lab.timing import records_csv
 
@@ -73,10 +79,15 @@ def _print(style: str, records: Any, rows: Sequence[Row], table: Sequence[Row], 
 def _print_table(rows: Sequence[Row], title: str | None = None) -> None:
     texts = [key for key, value in rows[0].items() if isinstance(value, str)]
     numbers = [key for key in rows[0] if key not in texts]
-    table = make_table(*([HEADINGS.get(key, key) for key in keys] for keys in (texts, numbers)), title=title)
+    table = make_table(
+        *([HEADINGS.get(key, key) for key in keys] for keys in (texts, numbers)),
+        title=title,
+    )
     for row in rows:
         cells = ("" if row[key] is None else row[key] for key in (*texts, *numbers))
-        table.add_row(*(f"{cell:.3g}" if isinstance(cell, float) else str(cell) for cell in cells))
+        table.add_row(
+            *(f"{cell:.3g}" if isinstance(cell, float) else str(cell) for cell in cells)
+        )
     show(table)
 
 
@@ -100,11 +111,23 @@ def _print_table(rows: Sequence[Row], title: str | None = None) -> None:
     """,
 )
 @options.atlas("Atlas", DEFAULT_ATLASES)
-@click.option("--max-moments", metavar="N", type=options.WHOLE, default=15, help="Largest number of moments, up to 32.")
+@click.option(
+    "--max-moments",
+    metavar="N",
+    type=options.WHOLE,
+    default=15,
+    help="Largest number of moments, up to 32.",
+)
 @options.output(help="Folder for plots.", metavar="DIR")
 @options.output_format("table", "json", "csv")
 @options.force
-def moments(files: tuple[str, ...], max_moments: int, output: str | None, style: str, force: bool) -> None:
+def moments(
+    files: tuple[str, ...],
+    max_moments: int,
+    output: str | None,
+    style: str,
+    force: bool,
+) -> None:
     from uplift.lab.study.moments import TECHNIQUES, study_moments
 
     atlases = read_atlases(files)
@@ -114,12 +137,21 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
     if output is not None:
         from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
 
-        plots = partial(plot_errors, {"all entries": study.curves()}), partial(plot_patches, study)
+        plots = (
+            partial(plot_errors, {"all entries": study.curves()}),
+            partial(plot_patches, study),
+        )
         write_files(output, MOMENTS_PLOTS, *plots, partial(plot_worst, study))
-    results = [[study.result(technique, count) for technique in TECHNIQUES] for count in range(max_moments + 1)]
+    results = [
+        [study.result(technique, count) for technique in TECHNIQUES]
+        for count in range(max_moments + 1)
+    ]
     table = [
         {"moments": str(count)}
-        | {each.label: f"{one.mean[0]:.2f} / {one.max[0]:6.2f}" for each, one in zip(TECHNIQUES, row, strict=True)}
+        | {
+            each.label: f"{one.mean[0]:.2f} / {one.max[0]:6.2f}"
+            for each, one in zip(TECHNIQUES, row, strict=True)
+        }
         for count, row in enumerate(results)
     ]
     records = study.records()
@@ -144,11 +176,20 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
     """,
 )
 @options.atlas("Atlas", DEFAULT_ATLASES)
-@click.option("--splits", type=options.Whole(1, 1000), default=3, help="Number of splits of each atlas.")
-@click.option("--dim", type=options.WHOLE, default=32, help="Lattice nodes along each axis.")
+@click.option(
+    "--splits",
+    type=options.Whole(1, 1000),
+    default=3,
+    help="Number of splits of each atlas.",
+)
+@click.option(
+    "--dim", type=options.WHOLE, default=32, help="Lattice nodes along each axis."
+)
 @options.coefficients
 @options.output_format("table", "json", "csv")
-def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, style: str) -> None:
+def held_out(
+    files: tuple[str, ...], splits: int, dim: int, coefficients: int, style: str
+) -> None:
     enable_jit_cache()
     from uplift.lab.study.held_out import holdout, split_records
 
@@ -157,7 +198,10 @@ def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, s
         with progress_bar(name) as progress:
             found = holdout(atlas, splits, progress, dim=dim, coefficients=coefficients)
         records += [{"atlas": name, **record} for record in split_records(found)]
-    rows = [{key: value for key, value in record.items() if key != "standard_error"} for record in records]
+    rows = [
+        {key: value for key, value in record.items() if key != "standard_error"}
+        for record in records
+    ]
     _print(style, records, rows, rows)
     for record in records if style == "table" else ():
         if errors := record.get("standard_error"):
@@ -183,17 +227,33 @@ def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, s
       uplift study stability --atlas paints.csv --format json
     """,
 )
-@click.option("--quick", is_flag=True, help="Small lattices and few values: some seconds per model.")
+@click.option(
+    "--quick",
+    is_flag=True,
+    help="Small lattices and few values: some seconds per model.",
+)
 @options.atlas("Atlas in addition to the synthetic ones", MACBETH)
 @options.output(help="Folder for plots.", metavar="DIR")
 @options.output_format("table", "json", "csv")
 @options.force
-def stability(quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool) -> None:
+def stability(
+    quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool
+) -> None:
     enable_jit_cache()
-    from uplift.lab.study.stability import NO_ATLAS, QUICK_DESIGN, SYNTHETIC_ATLASES, DesignSpace, study_stability
+    from uplift.lab.study.stability import (
+        NO_ATLAS,
+        QUICK_DESIGN,
+        SYNTHETIC_ATLASES,
+        DesignSpace,
+        study_stability,
+    )
 
-    atlases = read_atlases(files or (MACBETH,)) | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
-    design = replace(QUICK_DESIGN if quick else DesignSpace(), atlases=(NO_ATLAS, *atlases))
+    atlases = read_atlases(files or (MACBETH,)) | {
+        name: make() for name, make in SYNTHETIC_ATLASES.items()
+    }
+    design = replace(
+        QUICK_DESIGN if quick else DesignSpace(), atlases=(NO_ATLAS, *atlases)
+    )
     check_folder(output, STABILITY_PLOTS, inputs=atlas_files(files))
     with progress_bar("builds") as progress:
         results = study_stability(design.configs(), atlases, progress)
@@ -203,12 +263,22 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
 
         write_files(output, STABILITY_PLOTS, partial(plot_map, records))
     hidden = ("success", "points", "stand_ins")
-    _print(style, records, records, [{key: row[key] for key in row if key not in hidden} for row in records])
+    _print(
+        style,
+        records,
+        records,
+        [{key: row[key] for key in row if key not in hidden} for row in records],
+    )
     if style == "table":
         failed = [row["unfitted"] for row in records if row["unfitted"]]
         nodes = sum(row["realisable"] for row in records)
-        builds, missed = pluralise(len(records), "build"), pluralise(len(failed), "build")
-        say(f"{builds}, {pluralise(nodes, 'realisable node')}: {sum(failed)} unfitted in {missed}")
+        builds, missed = (
+            pluralise(len(records), "build"),
+            pluralise(len(failed), "build"),
+        )
+        say(
+            f"{builds}, {pluralise(nodes, 'realisable node')}: {sum(failed)} unfitted in {missed}"
+        )
 
 
 @command.command(
@@ -234,7 +304,12 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
 )
 @click.argument("cube", metavar="[CUBE]", required=False)
 @options.atlas_folders
-@click.option("--entries", type=options.Whole(0), default=24, help="Number of atlas entries to change, one at a time.")
+@click.option(
+    "--entries",
+    type=options.Whole(0),
+    default=24,
+    help="Number of atlas entries to change, one at a time.",
+)
 @options.repeatable(
     "--method",
     "methods",
@@ -269,7 +344,9 @@ def sensitivity(
         recorded = recorded_files(loaded.data, cube, folders)
         atlas = recorded_atlas(loaded.data, cube, folders)
     if output is not None and atlas is None:
-        raise click.UsageError("--output draws the effect of entries: it needs a CUBE with an atlas, and --entries.")
+        raise click.UsageError(
+            "--output draws the effect of entries: it needs a CUBE with an atlas, and --entries."
+        )
     check_folder(output, SENSITIVITY_PLOTS, inputs=recorded)
     of_methods = []
     for method in others:

@@ -42,7 +42,12 @@ LARGE = 100.0
 image_options = options.stacked(
     click.argument("sources", metavar="IN...", nargs=-1, required=True),
     click.option(
-        "-o", "--output", "target", metavar="FILE", required=True, help="Texture to write, or folder of textures."
+        "-o",
+        "--output",
+        "target",
+        metavar="FILE",
+        required=True,
+        help="Texture to write, or folder of textures.",
     ),
     click.option(
         "--processes",
@@ -55,7 +60,9 @@ image_options = options.stacked(
         type=options.Checked(_check_scheduler),
         help="Dask cluster that converts the images; requires the package distributed.",
     ),
-    click.option("--resume", is_flag=True, help="Skip images whose textures are complete."),
+    click.option(
+        "--resume", is_flag=True, help="Skip images whose textures are complete."
+    ),
     options.force,
     options.quiet,
 )
@@ -97,25 +104,44 @@ image_options = options.stacked(
     """,
 )
 @image_options
-@options.cube(options.OF_PACKAGE.format("; repeatable with --mask"), name="cube_paths", multiple=True)
+@options.cube(
+    options.OF_PACKAGE.format("; repeatable with --mask"),
+    name="cube_paths",
+    multiple=True,
+)
 @click.option(
     "--mask",
     metavar="FILE",
     help="Image of which cube a pixel belongs to: 0 for the first, 1 for the second …, or from black to white.",
 )
-@options.choice("--representation", "spectrum", "moments", "multipliers", name="kind", help="Contents of a pixel.")
+@options.choice(
+    "--representation",
+    "spectrum",
+    "moments",
+    "multipliers",
+    name="kind",
+    help="Contents of a pixel.",
+)
 @options.output_wavelengths
 @options.depth
 @options.pixels()
 @options.fill
 @options.repeatable(
-    *("--errors", "errors", "Add a channel with the standard error, ΔE00, under an illuminant, such as error.A"),
+    *(
+        "--errors",
+        "errors",
+        "Add a channel with the standard error, ΔE00, under an illuminant, such as error.A",
+    ),
     metavar="NAME|FILE",
     type=options.LIGHT,
     shell_complete=options.complete_light,
 )
 def command(
-    cube_paths: tuple[str, ...], mask: str | None, kind: str, wavelengths: Array | None, **settings: Any
+    cube_paths: tuple[str, ...],
+    mask: str | None,
+    kind: str,
+    wavelengths: Array | None,
+    **settings: Any,
 ) -> None:
     from uplift.io import texture
     from uplift.lookup.cube import find_file, load
@@ -125,13 +151,21 @@ def command(
         hint = "leave out --wavelengths, or use --representation spectrum"
         raise OptionError(f"{kind} have no wavelengths", hint=hint)
     if len(cube_paths) > 1 and mask is None:
-        raise click.UsageError("Several cubes need --mask, an image of which cube a pixel belongs to.")
+        raise click.UsageError(
+            "Several cubes need --mask, an image of which cube a pixel belongs to."
+        )
     cubes = tuple(os.path.abspath(find_file(path)) for path in cube_paths) or (None,)
     if wavelengths is not None:
         for path in cubes:
             check_range(wavelengths, load(path).wavelengths)
-    pixels = texture.Spectrum(as_tuple(wavelengths)) if encode is texture.Spectrum else encode()
-    convert(cubes, pixels, mask=None if mask is None else os.path.abspath(mask), **settings)
+    pixels = (
+        texture.Spectrum(as_tuple(wavelengths))
+        if encode is texture.Spectrum
+        else encode()
+    )
+    convert(
+        cubes, pixels, mask=None if mask is None else os.path.abspath(mask), **settings
+    )
 
 
 def convert(
@@ -154,11 +188,20 @@ def convert(
 
     pairs = _texture_paths(sources, target)
     existing = [path for _, path in pairs if path.exists()]
-    check_outputs(existing, inputs=click.get_current_context().meta.get(options.INPUTS, ()), force=True)
+    check_outputs(
+        existing,
+        inputs=click.get_current_context().meta.get(options.INPUTS, ()),
+        force=True,
+    )
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
-    settings = texture.TextureSettings(cubes, pixel_encoding, threads=max(cores // count, 1), **given)
-    jobs = [texture.Job(settings, source.absolute(), path.absolute(), force, resume) for source, path in pairs]
+    settings = texture.TextureSettings(
+        cubes, pixel_encoding, threads=max(cores // count, 1), **given
+    )
+    jobs = [
+        texture.Job(settings, source.absolute(), path.absolute(), force, resume)
+        for source, path in pairs
+    ]
     pending = texture.pending(jobs)
     converter_for(settings)  # reports invalid options once, not once per image
     begin = time.perf_counter()
@@ -173,17 +216,26 @@ def convert(
         warn(conversion.warnings)
     failures = [one for one in results if isinstance(one, texture.Failure)]
     if not quiet and len(failures) < len(jobs):
-        count = len(jobs) - len(pending) + sum(isinstance(one, texture.Skipped) for one in results)
+        count = (
+            len(jobs)
+            - len(pending)
+            + sum(isinstance(one, texture.Skipped) for one in results)
+        )
         skipped = f", {count} skipped" if count else ""
         pixels = sum(one.counts.pixels for one in converted)
         size = sum(one.target.stat().st_size for one in converted) / 1e6
-        spaces = ", ".join(dict.fromkeys(space for one in converted for space in one.spaces))
+        spaces = ", ".join(
+            dict.fromkeys(space for one in converted for space in one.spaces)
+        )
         say(
             f"{target}: {pluralise(len(converted), 'texture')}{skipped}, {pluralise(pixels, 'pixel')}, "
             f"{size:.1f} MB, {time.perf_counter() - begin:.1f} s{f', read as {spaces}' * bool(spaces)}"
         )
         if size > LARGE and isinstance(settings.pixel_encoding, texture.Spectrum):
-            say("hint: --representation moments --depth half takes a fraction of the size", err=True)
+            say(
+                "hint: --representation moments --depth half takes a fraction of the size",
+                err=True,
+            )
     for failure in failures[1:]:
         CommandFailure(failure.error).show()
     if failures:
@@ -200,7 +252,12 @@ def _texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path
         return _tiles(sources, images, target)
     folder = Path(target)
     is_single = len(sources) == 1 and images == [sources[0]]
-    if is_single and folder.suffix and not folder.is_dir() and not target.endswith(os.sep):
+    if (
+        is_single
+        and folder.suffix
+        and not folder.is_dir()
+        and not target.endswith(os.sep)
+    ):
         if folder.suffix.lower() != ".exr":
             hint = "give a file name ending in .exr, or a folder"
             raise OutputError("textures are OpenEXR files", path=target, hint=hint)
@@ -211,16 +268,24 @@ def _texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path
     return [(Path(path), folder / f"{Path(path).stem}.exr") for path in images]
 
 
-def _tiles(sources: Sequence[str], images: list[str], target: str) -> list[tuple[Path, Path]]:
+def _tiles(
+    sources: Sequence[str], images: list[str], target: str
+) -> list[tuple[Path, Path]]:
     """Return pairs of the tiles of one UDIM pattern and their textures, whose names have the same numbers."""
     is_plain = len(sources) == 1 and not glob.has_magic(sources[0])
     if not is_plain or sources[0].count(UDIM) != 1 or target.count(UDIM) != 1:
         hint = f"write for example 'wood.{UDIM}.exr' -o 'uplifted.{UDIM}.exr'"
-        raise OutputError(f"{UDIM} in the output needs one input with {UDIM}", path=target, hint=hint)
+        raise OutputError(
+            f"{UDIM} in the output needs one input with {UDIM}", path=target, hint=hint
+        )
     before, _, after = (re.escape(part) for part in sources[0].partition(UDIM))
     numbers = (re.fullmatch(f"{before}(\\d{{4}}){after}", image) for image in images)
     pairs = zip(images, numbers, strict=True)
-    return [(Path(image), Path(target.replace(UDIM, match[1]))) for image, match in pairs if match]
+    return [
+        (Path(image), Path(target.replace(UDIM, match[1])))
+        for image, match in pairs
+        if match
+    ]
 
 
 def as_tuple(wavelengths: Array | None) -> tuple[float, ...] | None:
@@ -230,11 +295,16 @@ def as_tuple(wavelengths: Array | None) -> tuple[float, ...] | None:
 def _collect(results: Generator[Outcome], total: int, *, quiet: bool) -> list[Outcome]:
     collected = []
     try:
-        with contextlib.closing(results), progress_bar("images", quiet=quiet) as progress:
+        with (
+            contextlib.closing(results),
+            progress_bar("images", quiet=quiet) as progress,
+        ):
             for result in results:
                 collected.append(result)
                 progress(Progress("images", len(collected), total))
     except KeyboardInterrupt as interrupt:
-        interrupt.add_note(f"{len(collected)} of {pluralise(total, 'image')} finished, continue with --resume")
+        interrupt.add_note(
+            f"{len(collected)} of {pluralise(total, 'image')} finished, continue with --resume"
+        )
         raise
     return collected

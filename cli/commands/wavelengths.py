@@ -41,7 +41,9 @@ if TYPE_CHECKING:
       uplift wavelengths --orders 3 2 1 --light C --atlas macbeth
     """,
 )
-@click.option("--count", metavar="N", type=options.WHOLE, help="Number of wavelengths, 1 to 40.")
+@click.option(
+    "--count", metavar="N", type=options.WHOLE, help="Number of wavelengths, 1 to 40."
+)
 @options.tolerance(help="Choose the fewest wavelengths with an error below this ΔE00.")
 @options.wavelengths("; only their weights and powers are fitted.")
 @click.option(
@@ -88,10 +90,19 @@ def command(
     force: bool,
     **camera: Any,
 ) -> None:
-    if sum(option is not None for option in (count, tolerance, wavelengths, orders)) != 1:
-        raise click.UsageError("Give one of --count, --tolerance, --wavelengths and --orders.")
-    if (measure is not None and tolerance is None) or (method is not None and count is None and tolerance is None):
-        raise click.UsageError("--measure requires --tolerance, --method requires --count or --tolerance.")
+    if (
+        sum(option is not None for option in (count, tolerance, wavelengths, orders))
+        != 1
+    ):
+        raise click.UsageError(
+            "Give one of --count, --tolerance, --wavelengths and --orders."
+        )
+    if (measure is not None and tolerance is None) or (
+        method is not None and count is None and tolerance is None
+    ):
+        raise click.UsageError(
+            "--measure requires --tolerance, --method requires --count or --tolerance."
+        )
     if channels is not None and orders is None:
         raise click.UsageError("--channels requires --orders.")
     from uplift.atlas import merge, on_grid
@@ -102,7 +113,11 @@ def command(
     observer.require_observer(camera["observer"], "weights of wavelengths")
     sensor = observer.sensor(**camera)
     atlas = merge(read_atlases(files).values())
-    setting = library.make_setup(on_grid(atlas, library.grid()), lights or ("D65",), observer_name=camera["observer"])
+    setting = library.make_setup(
+        on_grid(atlas, library.grid()),
+        lights or ("D65",),
+        observer_name=camera["observer"],
+    )
     with progress_bar("fitting wavelengths"):
         if orders is not None:
             choice = library.choose_orders(setting, orders, channels or "opponent")
@@ -111,7 +126,11 @@ def command(
             choice = library.fit_weights(setting, wavelengths)
         else:
             choice = library.choose(
-                setting, count=count, target=tolerance, measure=measure or "max", method=method or "optimised"
+                setting,
+                count=count,
+                target=tolerance,
+                measure=measure or "max",
+                method=method or "optimised",
             )
     if plot_path is not None:
         from uplift.scene.wavelengths.plots import plot_choice
@@ -121,7 +140,9 @@ def command(
     _print(choice, sensor, atlas.names, style)
 
 
-def _print(choice: Choice, camera: Sensor, materials: tuple[str, ...], style: str) -> None:
+def _print(
+    choice: Choice, camera: Sensor, materials: tuple[str, ...], style: str
+) -> None:
     from uplift.scene.wavelengths.sampling import statistics
 
     sampling = choice.sampling
@@ -129,11 +150,16 @@ def _print(choice: Choice, camera: Sensor, materials: tuple[str, ...], style: st
     errors = dict(zip(sampling.lights, choice.errors, strict=True))
     if len(errors) > 1:
         errors["all lights"] = choice.errors
-    worst = {name: materials[each.argmax() % len(materials)] for name, each in errors.items()}
+    worst = {
+        name: materials[each.argmax() % len(materials)] for name, each in errors.items()
+    }
     summary = {name: statistics(each) for name, each in errors.items()}
     # wavelength, weights to XYZ and to RGB, and powers of the lights
     parts = (sampling.wavelengths[:, None], sampling.to_xyz, to_rgb, sampling.powers.T)
-    rows = [[number for part in parts for number in part[row].tolist()] for row in range(len(sampling))]
+    rows = [
+        [number for part in parts for number in part[row].tolist()]
+        for row in range(len(sampling))
+    ]
     if style == "json":
         fields = {
             "method": choice.method,
@@ -146,14 +172,26 @@ def _print(choice: Choice, camera: Sensor, materials: tuple[str, ...], style: st
             "to_xyz": sampling.to_xyz.tolist(),
             "to_rgb": to_rgb.tolist(),
             "powers": dict(zip(sampling.lights, sampling.powers.tolist(), strict=True)),
-            "errors": {name: {**each, "worst": worst[name]} for name, each in summary.items()},
+            "errors": {
+                name: {**each, "worst": worst[name]} for name, each in summary.items()
+            },
         }
         print_json(fields)
     elif style == "csv":
-        print_csv(["wavelength", *"XYZ", *"rgb", *(f"power {light}" for light in sampling.lights)], rows)
+        print_csv(
+            [
+                "wavelength",
+                *"XYZ",
+                *"rgb",
+                *(f"power {light}" for light in sampling.lights),
+            ],
+            rows,
+        )
     else:
         weights = make_table(
-            (), ("nm", *"XYZRGB"), title=f"{pluralise(len(sampling), 'wavelength')}, {choice.method}: weights"
+            (),
+            ("nm", *"XYZRGB"),
+            title=f"{pluralise(len(sampling), 'wavelength')}, {choice.method}: weights",
         )
         powers = make_table((), ("nm", *sampling.lights), title="power of the lights")
         for nm, *others in rows:
@@ -161,9 +199,13 @@ def _print(choice: Choice, camera: Sensor, materials: tuple[str, ...], style: st
             weights.add_row(f"{nm:.1f}", *cells[:6])
             powers.add_row(f"{nm:.1f}", *cells[6:])
         table = make_table(
-            ("light",), ("mean", "95 %", "max"), title=f"ΔE00 of {pluralise(len(materials), 'material')}"
+            ("light",),
+            ("mean", "95 %", "max"),
+            title=f"ΔE00 of {pluralise(len(materials), 'material')}",
         )
         table.add_column("worst material")
         for name, each in summary.items():
-            table.add_row(name, *(f"{number:.3f}" for number in each.values()), worst[name])
+            table.add_row(
+                name, *(f"{number:.3f}" for number in each.values()), worst[name]
+            )
         show(weights, powers, table)

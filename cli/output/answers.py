@@ -35,7 +35,9 @@ def print_spectrum(
     At most `MAX_CELLS` of them are printed, unless ``complete``.
     """
     ends = f"{wavelengths[0]:g}–{wavelengths[-1]:g} nm"
-    print_fields(fields | {"spectrum": f"{sparkline(values / highest)}  {ends}"}, patches)
+    print_fields(
+        fields | {"spectrum": f"{sparkline(values / highest)}  {ends}"}, patches
+    )
     say()
     step = 1 if complete else -(-len(wavelengths) // MAX_CELLS)
     pairs = zip(wavelengths[::step], values[::step], strict=True)
@@ -51,7 +53,9 @@ def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
         return ""
     from uplift.colorimetry.srgb import to_display_codes
 
-    return click.style(" " * width, bg=to_display_codes(rgb, cube.data.sensor).astype(int).tolist())
+    return click.style(
+        " " * width, bg=to_display_codes(rgb, cube.data.sensor).astype(int).tolist()
+    )
 
 
 def hex_code(cube: Cube, rgb: Array) -> str:
@@ -68,14 +72,21 @@ def as_lists(values: Array) -> list[Any]:
 
 def format_rgb(rgb: Iterable[float]) -> str:
     """Return numbers with six decimals, separated by spaces."""
-    return " ".join(f"{round(value, 6) + 0.0:.6f}" for value in rgb)  # -0.0 + 0.0 is 0.0
+    return " ".join(
+        f"{round(value, 6) + 0.0:.6f}" for value in rgb
+    )  # -0.0 + 0.0 is 0.0
 
 
 def sparkline(values: Array, width: int = 40) -> str:
     """Return a spectrum as block characters, from 0 to 1 in eighths."""
     count = len(values)
-    picks = [round(i * (count - 1) / max(min(width, count) - 1, 1)) for i in range(min(width, count))]
-    return "".join(BLOCKS[round(float(values[pick]) * (len(BLOCKS) - 1))] for pick in picks)
+    picks = [
+        round(i * (count - 1) / max(min(width, count) - 1, 1))
+        for i in range(min(width, count))
+    ]
+    return "".join(
+        BLOCKS[round(float(values[pick]) * (len(BLOCKS) - 1))] for pick in picks
+    )
 
 
 def coordinates(cube: Cube, rgb: Array) -> dict[str, Any]:
@@ -108,7 +119,11 @@ def describe_coordinates(values: dict[str, Any]) -> dict[str, str]:
         return {}
     kind = "complement of " if values["complementary"] else ""
     wavelength = values["dominant_wavelength"]
-    hue = "grey" if wavelength is None else f"{kind}{wavelength:.0f} nm, purity {values['purity']:.2f}"
+    hue = (
+        "grey"
+        if wavelength is None
+        else f"{kind}{wavelength:.0f} nm, purity {values['purity']:.2f}"
+    )
     codes = []
     for name in ("hsv", "hsl", "yiq"):
         first, second, third = (round(value, 2) + 0.0 for value in values[name])

@@ -54,17 +54,29 @@ def columns() -> int:
 
 def has_colours() -> bool:
     """Return whether standard output shows colours."""
-    is_plain = bool(os.environ.get("NO_COLOR")) or os.environ.get("TERM", "dumb") in ("dumb", "unknown")
+    is_plain = bool(os.environ.get("NO_COLOR")) or os.environ.get("TERM", "dumb") in (
+        "dumb",
+        "unknown",
+    )
     return sys.stdout.isatty() and not is_plain
 
 
-def paragraph(text: str, indent: int = 0, prefix: str = "", suffix: str = "", *, err: bool = False) -> None:
+def paragraph(
+    text: str, indent: int = 0, prefix: str = "", suffix: str = "", *, err: bool = False
+) -> None:
     """Print prose with control characters escaped, wrapped to the window; words such as URLs stay whole."""
-    lines = textwrap.wrap(printable(text), columns() - indent, break_long_words=False, break_on_hyphens=False)
+    lines = textwrap.wrap(
+        printable(text),
+        columns() - indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
     emit(prefix + ("\n" + " " * indent).join(lines) + suffix, err=err)
 
 
-def print_fields(fields: Mapping[str, str], patches: Mapping[str, str] | None = None) -> None:
+def print_fields(
+    fields: Mapping[str, str], patches: Mapping[str, str] | None = None
+) -> None:
     """Print names and values in two columns, and the patches of colour that belong to a value."""
     names = {name: printable(name) for name in fields}
     width = max(12, *(len(name) + 2 for name in names.values()))
@@ -75,10 +87,14 @@ def print_fields(fields: Mapping[str, str], patches: Mapping[str, str] | None = 
 
 def json_text(values: Any, indent: int | None = 2, *, ascii_only: bool = False) -> str:
     """Return standard JSON. Raises ValueError for NaN and infinity, which it cannot represent."""
-    return json_escapes(json.dumps(values, indent=indent, ensure_ascii=ascii_only, allow_nan=False))
+    return json_escapes(
+        json.dumps(values, indent=indent, ensure_ascii=ascii_only, allow_nan=False)
+    )
 
 
-def print_json(values: Any, indent: int | None = 2, *, before: str = "", nl: bool = True) -> None:
+def print_json(
+    values: Any, indent: int | None = 2, *, before: str = "", nl: bool = True
+) -> None:
     """Print standard JSON, in the characters that standard output has."""
     is_unicode = (sys.stdout.encoding or "utf-8").lower().startswith("utf")
     emit(before + json_text(values, indent, ascii_only=not is_unicode), nl=nl)
@@ -121,7 +137,9 @@ def swatch(codes: Iterable[int], text: str = "   ") -> Text:
     return Text(text, style="on rgb({},{},{})".format(*codes))
 
 
-def make_table(texts: Iterable[str] = (), numbers: Iterable[str] = (), **options: Any) -> SafeTable:
+def make_table(
+    texts: Iterable[str] = (), numbers: Iterable[str] = (), **options: Any
+) -> SafeTable:
     """Return a table with left-aligned columns of text followed by right-aligned columns of numbers."""
     from rich import box
 
@@ -146,4 +164,6 @@ def show(*tables: SafeTable) -> None:
         if number:
             say()
         width = max(columns(), table_width(part.columns))
-        Console(file=sys.stdout, width=width, highlight=False, markup=False, emoji=False).print(part)
+        Console(
+            file=sys.stdout, width=width, highlight=False, markup=False, emoji=False
+        ).print(part)

@@ -12,7 +12,14 @@ from typing import Any
 
 import click
 
-from uplift.common.errors import CubeFileError, Diagnostic, OptionError, OutputError, UpliftError, UpliftWarning
+from uplift.common.errors import (
+    CubeFileError,
+    Diagnostic,
+    OptionError,
+    OutputError,
+    UpliftError,
+    UpliftWarning,
+)
 from uplift.common.text import printable
 
 from ..startup import remove_compiled_code
@@ -88,7 +95,9 @@ def _hint_of_missing_cube(path: str) -> str:
     if os.path.isfile(f"{path}.uplift"):
         return f"did you mean {path}.uplift?"
     match = re.fullmatch(r"(.+?)(?:-(\d+))?(?:\.uplift)?", os.path.basename(path))
-    if match is None or match[1] not in [atlas.path.stem for atlas in shipped_atlases()]:
+    if match is None or match[1] not in [
+        atlas.path.stem for atlas in shipped_atlases()
+    ]:
         return ""
     dim = f" --dim {match[2]}" if match[2] else ""
     return f"'{match[1]}' is an atlas: build its cube with 'uplift build --atlas {match[1]}{dim}'"
@@ -118,15 +127,27 @@ def _as_uplift_error(cause: BaseException) -> UpliftError:
     if isinstance(cause, UpliftError):
         return cause
     if isinstance(cause, KeyboardInterrupt):
-        hint = "; ".join(getattr(cause, "__notes__", ())) or "unfinished files are removed"
+        hint = (
+            "; ".join(getattr(cause, "__notes__", ())) or "unfinished files are removed"
+        )
         return UpliftError("interrupted", code="interrupted", hint=hint)
-    if isinstance(cause, MemoryError) or any(text in str(cause) for text in MEMORY_PROBLEMS):
-        return UpliftError("not enough memory", code="out-of-memory", hint="use a smaller input, or more memory")
+    if isinstance(cause, MemoryError) or any(
+        text in str(cause) for text in MEMORY_PROBLEMS
+    ):
+        return UpliftError(
+            "not enough memory",
+            code="out-of-memory",
+            hint="use a smaller input, or more memory",
+        )
     if isinstance(cause, OSError):
         path = cause.filename if isinstance(cause.filename, str) else None
         problem = cause.strerror or str(cause)
         hint = "check the path, its permissions and the free space"
-        return OutputError(problem if path else f"output cannot be written: {problem}", path=path, hint=hint)
+        return OutputError(
+            problem if path else f"output cannot be written: {problem}",
+            path=path,
+            hint=hint,
+        )
     return _internal_error(cause)
 
 
@@ -136,10 +157,16 @@ def _internal_error(cause: BaseException) -> UpliftError:
     place = traceback.extract_tb(cause.__traceback__)[-1:]
     if place and Path(place[0].filename).name == "xla_bridge.py":
         problem = f"JAX finds no device for JAX_PLATFORMS={printable(os.environ.get('JAX_PLATFORMS', ''))}"
-        return OptionError(problem, hint="unset JAX_PLATFORMS, or install JAX for this device")
-    where = "".join(f" in {Path(frame.filename).name}:{frame.lineno}" for frame in place)
+        return OptionError(
+            problem, hint="unset JAX_PLATFORMS, or install JAX for this device"
+        )
+    where = "".join(
+        f" in {Path(frame.filename).name}:{frame.lineno}" for frame in place
+    )
     detail = " ".join(str(cause).split())[:MAX_DETAIL]
-    problem = f"internal error, please report it: {type(cause).__name__}{where}" + (f": {detail}" if detail else "")
+    problem = f"internal error, please report it: {type(cause).__name__}{where}" + (
+        f": {detail}" if detail else ""
+    )
     hint = "'uplift --traceback COMMAND …' shows more"
     if "jax" in sys.modules and remove_compiled_code():
         hint = f"try again first: compiled code, which may have been damaged, was removed; {hint}"
@@ -155,7 +182,10 @@ def show_usage_error(error: click.ClickException) -> None:
     """Print an error of the command line on one line, with the command that shows the help."""
     message = " ".join(error.format_message().split())
     context = getattr(error, "ctx", None)
-    _print_error(printable(message) + (f" See '{context.command_path} --help'." if context else ""))
+    _print_error(
+        printable(message)
+        + (f" See '{context.command_path} --help'." if context else "")
+    )
 
 
 def warn(found: Iterable[UpliftWarning]) -> None:
@@ -164,7 +194,9 @@ def warn(found: Iterable[UpliftWarning]) -> None:
         warnings.warn(each, stacklevel=1)
 
 
-def show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
+def show_warning(
+    message: Warning | str, category: type[Warning], *_: Any, **__: Any
+) -> None:
     """Print warnings of the library on one line each, and no others; replaces `warnings.showwarning`."""
     if str(message).startswith("Error reading persistent compilation cache entry"):
         remove_compiled_code()
@@ -178,5 +210,7 @@ def _print_error(text: str) -> None:
 
 
 def _print(text: str) -> None:
-    with contextlib.suppress(OSError):  # nowhere else is left to report it; the exit code shows that it failed
+    with contextlib.suppress(
+        OSError
+    ):  # nowhere else is left to report it; the exit code shows that it failed
         emit(text, err=True)

@@ -42,7 +42,9 @@ def collect_notes(make: Callable[[], Made]) -> tuple[Made, list[UpliftWarning]]:
     return made, notes
 
 
-def print_notes(cube: Cube, notes: Iterable[UpliftWarning], *, err: bool = False) -> None:
+def print_notes(
+    cube: Cube, notes: Iterable[UpliftWarning], *, err: bool = False
+) -> None:
     """Print the notes of a build and on the entries outside the space of the cube, a paragraph for each."""
     for note in notes:
         paragraph(note.describe(hint_for(note)), err=err)

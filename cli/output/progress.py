@@ -17,7 +17,9 @@ INTERVAL = 10.0
 
 
 @contextlib.contextmanager
-def progress_bar(title: str = "", *, quiet: bool = False, verbose: bool = False) -> Iterator[ProgressCallback]:
+def progress_bar(
+    title: str = "", *, quiet: bool = False, verbose: bool = False
+) -> Iterator[ProgressCallback]:
     """Yield a callback for events, titled ``title`` or by their stages: all lines if ``verbose``, none if ``quiet``."""
 
     def describe(event: Progress) -> str:
@@ -35,15 +37,30 @@ def progress_bar(title: str = "", *, quiet: bool = False, verbose: bool = False)
             last = time.monotonic()
             print_line(event)
 
-    is_animated = sys.stderr.isatty() and os.environ.get("TERM", "dumb") not in ("dumb", "unknown")
+    is_animated = sys.stderr.isatty() and os.environ.get("TERM", "dumb") not in (
+        "dumb",
+        "unknown",
+    )
     if verbose or quiet or not is_animated:
         yield print_line if verbose else ignore_progress if quiet else print_sometimes
         return
     from rich.console import Console
-    from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import (
+        BarColumn,
+        TaskProgressColumn,
+        TextColumn,
+        TimeElapsedColumn,
+    )
     from rich.progress import Progress as Bar
 
-    columns = (TextColumn("{task.description}"), BarColumn(bar_width=None), TaskProgressColumn(), TimeElapsedColumn())
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=None),
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+    )
     with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(title or "preparing", total=None)
-        yield lambda event: bar.update(task, description=describe(event), completed=event.done, total=event.total)
+        yield lambda event: bar.update(
+            task, description=describe(event), completed=event.done, total=event.total
+        )

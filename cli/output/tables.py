@@ -31,8 +31,14 @@ MAX_KEYS = 3
 class SafeTable(Table):
     """A table that shows its texts as they are: no markup, and control characters escaped."""
 
-    def __init__(self, *, title: str | None = None, caption: str | None = None, **options: Any) -> None:
-        super().__init__(title=title and plain(title), caption=caption and plain(caption), **LAYOUT | options)
+    def __init__(
+        self, *, title: str | None = None, caption: str | None = None, **options: Any
+    ) -> None:
+        super().__init__(
+            title=title and plain(title),
+            caption=caption and plain(caption),
+            **LAYOUT | options,
+        )
 
     def add_column(self, header: Any = "", *args: Any, **options: Any) -> None:
         """Add a column with a heading of text, wrapped between words unless it is ``no_wrap``."""
@@ -70,7 +76,9 @@ class SafeTable(Table):
 
     def _with_columns(self, columns: Sequence[Column]) -> "SafeTable":
         part = copy.copy(self)
-        part.columns = [replace(column, _index=index) for index, column in enumerate(columns)]
+        part.columns = [
+            replace(column, _index=index) for index, column in enumerate(columns)
+        ]
         return part
 
 
@@ -80,7 +88,9 @@ def narrowest(column: Column) -> int:
     natural = max(map(cell_len, texts))
     if column.no_wrap:
         return natural
-    longest_word = max(cell_len(word) for text in texts for word in text.split() or [""])
+    longest_word = max(
+        cell_len(word) for text in texts for word in text.split() or [""]
+    )
     return max(longest_word, min(natural, WRAPPED))
 
 

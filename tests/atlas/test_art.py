@@ -37,13 +37,17 @@ def test_printed_entry_stops_at_the_ellipsis(save):
     assert (caught.value.line, caught.value.entry) == (19, "orange")
 
 
-@pytest.mark.parametrize("header", ["", HEADER_1_0, HEADER_1_1, HEADER_1_1.replace("1.1", "1.2")])
+@pytest.mark.parametrize(
+    "header", ["", HEADER_1_0, HEADER_1_1, HEADER_1_1.replace("1.1", "1.2")]
+)
 def test_headers(save, header):
     spectra = read_atlas(save(header + PLAIN))
     assert spectra.names == ("grey",)
     stated = spectra.sources[0].header
     assert stated.content == ("greys" if header else "")
-    assert (stated.copyright, stated.licence) == (("(c) A. Person: 2020", "CC0") if "copyright" in header else ("", ""))
+    assert (stated.copyright, stated.licence) == (
+        ("(c) A. Person: 2020", "CC0") if "copyright" in header else ("", "")
+    )
 
 
 @pytest.mark.parametrize(
@@ -53,7 +57,9 @@ def test_headers(save, header):
         lambda text: text.replace("  :  ", ":"),
         lambda text: text.replace(", ", " ,\n  "),
         lambda text: text.replace("{0.5, ", "{\n\n0.5,\n\n").replace("}", "\n}"),
-        lambda text: text.replace("---------------------------------------------------------------", "<hr/>"),
+        lambda text: text.replace(
+            "---------------------------------------------------------------", "<hr/>"
+        ),
         lambda text: text.replace("400.0 nm", "400").replace("100.0 nm", "1e2nm"),
         lambda text: text.replace("Measured by           :  A. Person\n", ""),
         lambda text: "\ufeff" + text,
@@ -66,22 +72,36 @@ def test_equivalent_notations(save, change):
 
 def test_latin_1_is_the_fallback_of_utf_8(save):
     text = PLAIN.replace("A. Person", "Anežka Tódová".replace("ž", "z"))
-    assert read_atlas(save(text.encode("latin-1"))).entries[0].measured_by == "Anezka Tódová"
+    assert (
+        read_atlas(save(text.encode("latin-1"))).entries[0].measured_by
+        == "Anezka Tódová"
+    )
     assert read_atlas(save(text.encode())).entries[0].measured_by == "Anezka Tódová"
 
 
-@pytest.mark.parametrize("samples", ["{{400, 50}, {555.5, 25}, {700, 12.5}}", "{ {400,50}{555.5,25}\n,{700,12.5} }"])
+@pytest.mark.parametrize(
+    "samples",
+    ["{{400, 50}, {555.5, 25}, {700, 12.5}}", "{ {400,50}{555.5,25}\n,{700,12.5} }"],
+)
 def test_point_samples(save, samples):
-    text = PLAIN.replace("regular", "point sampled").replace("value  :  1.0", "value  :  100.0")
-    (entry,) = read_atlas(save(text.replace(SAMPLES, samples).replace(REGULAR, ""))).entries
+    text = PLAIN.replace("regular", "point sampled").replace(
+        "value  :  1.0", "value  :  100.0"
+    )
+    (entry,) = read_atlas(
+        save(text.replace(SAMPLES, samples).replace(REGULAR, ""))
+    ).entries
     assert entry.wavelengths.tolist() == [400, 555.5, 700]
     assert entry.values.tolist() == [0.5, 0.25, 0.125]
     assert entry.step is None
 
 
 OTHER = PLAIN.replace("grey", "other")
-EMISSION = OTHER.replace("reflectance spectrum", "emission spectrum").replace("Maximum sample value  :  1.0\n", "")
-FLUORESCENT = OTHER.replace("data     :  no", "data     :  yes").replace("{0.5,", "{{-0.01, 0},{0.5,")
+EMISSION = OTHER.replace("reflectance spectrum", "emission spectrum").replace(
+    "Maximum sample value  :  1.0\n", ""
+)
+FLUORESCENT = OTHER.replace("data     :  no", "data     :  yes").replace(
+    "{0.5,", "{{-0.01, 0},{0.5,"
+)
 FLUORESCENT = FLUORESCENT.replace("0.0625}", "0.0625}}").replace(REGULAR, BISPECTRAL)
 
 
@@ -89,7 +109,10 @@ FLUORESCENT = FLUORESCENT.replace("0.0625}", "0.0625}}").replace(REGULAR, BISPEC
     ("other", "reason"),
     [
         (EMISSION.replace("Fluorescence data     :  no\n", ""), "'emission spectrum'"),
-        (EMISSION.replace("emission spectrum", "colour matching function"), "'colour matching function'"),
+        (
+            EMISSION.replace("emission spectrum", "colour matching function"),
+            "'colour matching function'",
+        ),
         (FLUORESCENT, "fluorescent"),
         (FLUORESCENT.replace("Fluorescence data     :  yes\n", ""), "fluorescent"),
     ],
@@ -100,7 +123,10 @@ def test_entries_that_are_no_reflectances_are_skipped(save, other, reason):
         spectra = read_atlas(path)
     assert caught[0].where == f"{path}:19: entry 'other'"
     assert reason in caught[0].problem
-    assert (spectra.names, [each.name for each in spectra.skipped]) == (("grey",), ["other"])
+    assert (spectra.names, [each.name for each in spectra.skipped]) == (
+        ("grey",),
+        ["other"],
+    )
 
 
 def without(key):
@@ -108,7 +134,11 @@ def without(key):
 
 
 def pairs(samples):
-    return PLAIN.replace("regular", "point sampled").replace(REGULAR, "").replace(SAMPLES, samples)
+    return (
+        PLAIN.replace("regular", "point sampled")
+        .replace(REGULAR, "")
+        .replace(SAMPLES, samples)
+    )
 
 
 FAULTS = [
@@ -136,7 +166,13 @@ FAULTS = [
     ),
     *(
         (pairs(samples), 15)
-        for samples in ("{1, 2, 3}", "{{400, 1}, {500}}", "{{400, 1}, 500, 1}", "{}", "{{{400, 1}}}")
+        for samples in (
+            "{1, 2, 3}",
+            "{{400, 1}, {500}}",
+            "{{400, 1}, 500, 1}",
+            "{}",
+            "{{{400, 1}}}",
+        )
     ),
 ]
 OUTSIDE = [
@@ -148,7 +184,8 @@ OUTSIDE = [
 
 
 @pytest.mark.parametrize(
-    ("text", "line", "entry"), [*((*each, "grey") for each in FAULTS), *((*each, None) for each in OUTSIDE)]
+    ("text", "line", "entry"),
+    [*((*each, "grey") for each in FAULTS), *((*each, None) for each in OUTSIDE)],
 )
 def test_faults_report_line_and_entry(save, text, line, entry):
     with raises(AtlasError, "atlas") as caught:

@@ -72,9 +72,13 @@ def test_distributions_of_colour_science(tmp_path):
     assert spectra.names == tuple(checker)
     np.testing.assert_array_equal(spectra["orange"].values, checker["orange"].values)
     write_atlas(spectra, tmp_path / "out.txt")
-    assert read_atlas(tmp_path / "out.txt").sources[0].digest == spectra.sources[0].digest
+    assert (
+        read_atlas(tmp_path / "out.txt").sources[0].digest == spectra.sources[0].digest
+    )
     values = np.array([[0.1, 0.8], [0.2, 0.3], [0.9, 0.05]])
-    several = from_distributions(colour.MultiSpectralDistributions(values, NM, labels=["red", "blue"]))
+    several = from_distributions(
+        colour.MultiSpectralDistributions(values, NM, labels=["red", "blue"])
+    )
     assert several.names == ("red", "blue")
     assert several["blue"].values.tolist() == [0.8, 0.3, 0.05]
 
@@ -95,7 +99,12 @@ def test_invalid_distributions_raise(distributions, entry):
 
 
 def spectra(*rows):
-    return Atlas(tuple(Entry(f"e{i}", np.linspace(400, 700, len(row)), np.array(row)) for i, row in enumerate(rows)))
+    return Atlas(
+        tuple(
+            Entry(f"e{i}", np.linspace(400, 700, len(row)), np.array(row))
+            for i, row in enumerate(rows)
+        )
+    )
 
 
 def test_one_warning_for_all_clipped_entries():
@@ -107,5 +116,7 @@ def test_one_warning_for_all_clipped_entries():
     assert [clip.name for clip in resample(spectra(*rows), GRID).clips] == ["e0", "e2"]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = on_grid(spectra([-2e-16, 0.5, 1 + 2e-16, 0.5, -9e-7, 0.5, 0.5]), GRID)  # noise
+        found = on_grid(
+            spectra([-2e-16, 0.5, 1 + 2e-16, 0.5, -9e-7, 0.5, 0.5]), GRID
+        )  # noise
     assert (found.min(), found.max()) == (0.0, 1.0)

@@ -37,7 +37,12 @@ def test_files_without_an_atlas_raise(save, content, code):
 
 
 @pytest.mark.parametrize(
-    ("path", "code"), [("none.txt", "file-not-found"), (".", "file-unreadable"), ("a\0b", "file-unreadable")]
+    ("path", "code"),
+    [
+        ("none.txt", "file-not-found"),
+        (".", "file-unreadable"),
+        ("a\0b", "file-unreadable"),
+    ],
 )
 def test_unreadable_files_raise(path, code):
     with raises(AtlasError, code):
@@ -46,21 +51,35 @@ def test_unreadable_files_raise(path, code):
 
 def test_content_determines_the_format(save):
     assert read_atlas(save(PLAIN, "atlas.csv")).names == ("grey",)
-    assert read_atlas(save("name,400,700\nblue,0.5,0.25\n", "atlas.ark")).names == ("blue",)
+    assert read_atlas(save("name,400,700\nblue,0.5,0.25\n", "atlas.ark")).names == (
+        "blue",
+    )
 
 
 def test_several_files_make_one_atlas_in_order(save):
-    paths = [save(PLAIN.replace("grey", name).replace("\n", "\r\n"), f"{name}.txt") for name in "cab"]
+    paths = [
+        save(PLAIN.replace("grey", name).replace("\n", "\r\n"), f"{name}.txt")
+        for name in "cab"
+    ]
     spectra = read_atlas(*paths)
     assert spectra.names == ("c", "a", "b")
     assert [source.name for source in spectra.sources] == ["c.txt", "a.txt", "b.txt"]
-    assert spectra.sources[0].digest == hashlib.sha256(paths[0].read_bytes()).hexdigest()
+    assert (
+        spectra.sources[0].digest == hashlib.sha256(paths[0].read_bytes()).hexdigest()
+    )
     assert len(read_atlas()) == 0
 
 
 def test_duplicate_name_reports_both_locations(save):
-    first, second, twice = save(PLAIN, "a.txt"), save(PLAIN, "b.txt"), save(PLAIN + PLAIN, "c.txt")
-    for paths, at, known in (([first, second], f"{second}:1", first), ([twice], f"{twice}:19", twice)):
+    first, second, twice = (
+        save(PLAIN, "a.txt"),
+        save(PLAIN, "b.txt"),
+        save(PLAIN + PLAIN, "c.txt"),
+    )
+    for paths, at, known in (
+        ([first, second], f"{second}:1", first),
+        ([twice], f"{twice}:19", twice),
+    ):
         with raises(AtlasError, "atlas") as caught:
             read_atlas(*paths)
         assert caught.value.where == f"{at}: entry 'grey'"
@@ -84,15 +103,30 @@ def test_atlases_that_cannot_be_written_raise(tmp_path):
         (GREY, tmp_path / "file" / "out.txt", "output"),
         (GREY, tmp_path / ("x" * 300), "output"),
         (Atlas(), tmp_path / "out.txt", "output"),
-        (Atlas((*GREY, other)), tmp_path / "out.csv", "output"),  # one row of wavelengths
+        (
+            Atlas((*GREY, other)),
+            tmp_path / "out.csv",
+            "output",
+        ),  # one row of wavelengths
     ):
         with raises(OutputError, code):
             write_atlas(atlas, path)
     assert os.listdir(tmp_path) == ["file"]
 
 
-STATEMENTS = ("name", "description", "additional_description", "device", "measured_by", "date")
-NAMES = st.text(st.characters(codec="utf-8", exclude_categories=["Cc", "Zl", "Zp"]), min_size=1, max_size=20)
+STATEMENTS = (
+    "name",
+    "description",
+    "additional_description",
+    "device",
+    "measured_by",
+    "date",
+)
+NAMES = st.text(
+    st.characters(codec="utf-8", exclude_categories=["Cc", "Zl", "Zp"]),
+    min_size=1,
+    max_size=20,
+)
 TEXTS = st.text('ab" :{}-', max_size=12).map(lambda text: " ".join(text.split()))
 REFLECTANCES = st.floats(-0.05, 1.0)
 INNER = st.floats(1.0, 2000.0).map(lambda nm: round(nm, 4))
@@ -110,11 +144,15 @@ def samplings(draw):
 @st.composite
 def atlases(draw, one_sampling):
     shared = draw(samplings())
-    names = draw(st.lists(NAMES.map(str.strip).filter(bool), min_size=1, max_size=4, unique=True))
+    names = draw(
+        st.lists(NAMES.map(str.strip).filter(bool), min_size=1, max_size=4, unique=True)
+    )
     entries = []
     for name in names:
         wavelengths = shared if one_sampling else draw(samplings())
-        values = draw(st.lists(REFLECTANCES, min_size=len(wavelengths), max_size=len(wavelengths)))
+        values = draw(
+            st.lists(REFLECTANCES, min_size=len(wavelengths), max_size=len(wavelengths))
+        )
         statements = {key: draw(TEXTS) for key in STATEMENTS[1:]}
         entries.append(Entry(name, wavelengths, np.array(values), **statements))
     return Atlas(tuple(entries))
@@ -125,7 +163,9 @@ def check_round_trip(spectra, name):
         path = os.path.join(folder, name)
         write_atlas(spectra, path)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UpliftWarning)  # values far from their neighbours
+            warnings.simplefilter(
+                "ignore", UpliftWarning
+            )  # values far from their neighbours
             found = read_atlas(path)
     for one, other in zip(found, spectra, strict=True):
         for key in ("wavelengths", "values"):
@@ -148,7 +188,9 @@ def test_csv_keeps_every_bit(spectra):
 
 def test_quoted_hash_is_a_name_and_not_a_comment(tmp_path):
     path = tmp_path / "atlas.csv"
-    path.write_text('# a comment\n"name",400,700\n  # another\n"#",0.1,0.2\n"# 1",0.3,0.4\n')
+    path.write_text(
+        '# a comment\n"name",400,700\n  # another\n"#",0.1,0.2\n"# 1",0.3,0.4\n'
+    )
     assert [entry.name for entry in read_atlas(path)] == ["#", "# 1"]
 
 
@@ -172,17 +214,28 @@ TALL = "wavelength,red,blue\n400,0.1,0.8\n550,0.2,0.3\n700,0.9,0.05\n"
 def test_layouts(save, text):
     spectra = read_atlas(save(text, "table.csv"))
     assert spectra.names in (("red", "blue"), ("1", "2"))
-    assert [entry.wavelengths.tolist() for entry in spectra.entries] == [[400, 550, 700]] * 2
-    assert [entry.values.tolist() for entry in spectra.entries] == [[0.1, 0.2, 0.9], [0.8, 0.3, 0.05]]
+    assert [entry.wavelengths.tolist() for entry in spectra.entries] == [
+        [400, 550, 700]
+    ] * 2
+    assert [entry.values.tolist() for entry in spectra.entries] == [
+        [0.1, 0.2, 0.9],
+        [0.8, 0.3, 0.05],
+    ]
 
 
-@pytest.mark.parametrize("text", ["name,400,700\nred,10,90\nblue,5,1.5\n", "nm,red,blue\n400,10,5\n700,90,1.5\n"])
+@pytest.mark.parametrize(
+    "text",
+    ["name,400,700\nred,10,90\nblue,5,1.5\n", "nm,red,blue\n400,10,5\n700,90,1.5\n"],
+)
 def test_percent(save, text):
     with warns("values-in-percent") as caught:
         spectra = read_atlas(save(text))
     assert caught[0].entry == "red"
     assert "90" in caught[0].problem
-    assert [entry.values.tolist() for entry in spectra.entries] == [[0.1, 0.9], [0.05, 0.015]]
+    assert [entry.values.tolist() for entry in spectra.entries] == [
+        [0.1, 0.9],
+        [0.05, 0.015],
+    ]
 
 
 @pytest.mark.parametrize(
@@ -220,7 +273,10 @@ def test_endless_cells_and_numbers_raise(save):
     [
         ("blue,30,1000,50", "got 1000 at 550 nm"),
         ("blue,30,,50", "missing value at 550 nm"),
-        ("blue, dark,30,40,50", "got 5; put a name that contains the separator in quotes"),
+        (
+            "blue, dark,30,40,50",
+            "got 5; put a name that contains the separator in quotes",
+        ),
         ("blue,30,40", "missing value at 700 nm"),
     ],
 )

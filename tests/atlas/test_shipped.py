@@ -20,14 +20,24 @@ def empty_folder(tmp_path, monkeypatch):
 @pytest.mark.parametrize("shipped", shipped_atlases(), ids=lambda shipped: shipped.name)
 def test_entries_header_and_readme(shipped):
     spectra = read_atlas(ATLASES / shipped.path.name)
-    assert (shipped.name, shipped.entries, spectra.skipped) == (shipped.path.stem, len(spectra), ())
+    assert (shipped.name, shipped.entries, spectra.skipped) == (
+        shipped.path.stem,
+        len(spectra),
+        (),
+    )
     start, *_, end = next(iter(spectra)).wavelengths
     header = spectra.sources[0].header
     assert "colour-science" in header.copyright
     assert "BSD-3-Clause" in header.licence
-    assert (shipped.content, shipped.source, shipped.licence) == (header.content, header.copyright, header.licence)
+    assert (shipped.content, shipped.source, shipped.licence) == (
+        header.content,
+        header.copyright,
+        header.licence,
+    )
     readme = (ATLASES / "README.md").read_text(encoding="utf-8")
-    assert f"| `{shipped.path.name}` | {len(spectra)} | {start:.0f}–{end:.0f}, " in readme
+    assert (
+        f"| `{shipped.path.name}` | {len(spectra)} | {start:.0f}–{end:.0f}, " in readme
+    )
 
 
 def test_tool_writes_the_same_bytes(tmp_path):
@@ -39,7 +49,9 @@ def test_tool_writes_the_same_bytes(tmp_path):
         assert (tmp_path / file).read_bytes() == (ATLASES / file).read_bytes()
 
 
-@pytest.mark.parametrize("name", ["macbeth.txt", "./macbeth.txt", "Macbeth.txt", "MACBETH"])
+@pytest.mark.parametrize(
+    "name", ["macbeth.txt", "./macbeth.txt", "Macbeth.txt", "MACBETH"]
+)
 def test_names_of_missing_files_read_the_shipped_atlas(empty_folder, name):
     with warns("shipped-atlas") as caught:
         atlas = read_atlas(name, "pmc")
@@ -54,7 +66,9 @@ def test_existing_file_takes_precedence(empty_folder, name):
     assert read_atlas(name).names == ("white",)
 
 
-@pytest.mark.parametrize("path", ["macbet", "Macbet.txt", "atlases/macbeth.txt", "atlases/Macbeth.txt"])
+@pytest.mark.parametrize(
+    "path", ["macbet", "Macbet.txt", "atlases/macbeth.txt", "atlases/Macbeth.txt"]
+)
 def test_hint_names_the_nearest_shipped_atlas(empty_folder, path):
     with raises(AtlasError, "file-not-found") as caught:
         read_atlas(path)

@@ -30,13 +30,41 @@ def name(quantity):
     ("text", "expected"),
     [
         *dict.fromkeys(
-            ["Reflect. %", "(%R)", "%R", "R% 400", "R [%]", "ochre [%]", "R_pct", "reflectance in percent", "0-100"],
+            [
+                "Reflect. %",
+                "(%R)",
+                "%R",
+                "R% 400",
+                "R [%]",
+                "ochre [%]",
+                "R_pct",
+                "reflectance in percent",
+                "0-100",
+            ],
             100,
         ).items(),
         *dict.fromkeys(
-            ["R-factor", "Reflectance factor", "fraction", "R (0-1)", "0..1", "in [0, 1]", "0 to 1"], 1
+            [
+                "R-factor",
+                "Reflectance factor",
+                "fraction",
+                "R (0-1)",
+                "0..1",
+                "in [0, 1]",
+                "0 to 1",
+            ],
+            1,
         ).items(),
-        *dict.fromkeys(["50% grey", "grey 50 %", "Reflectance", "2020-01-01", "scale factor 10", "fraction 3"]).items(),
+        *dict.fromkeys(
+            [
+                "50% grey",
+                "grey 50 %",
+                "Reflectance",
+                "2020-01-01",
+                "scale factor 10",
+                "fraction 3",
+            ]
+        ).items(),
         ("Reflectance factor [%]", 100),
     ],
 )
@@ -48,11 +76,24 @@ def test_scales_of_labels(text, expected):
     ("text", "expected"),
     [
         *dict.fromkeys(
-            ["Units: % Reflectance", "Y Units: Reflectance (percentage)", "values in %", "%", "in percent"], 100
+            [
+                "Units: % Reflectance",
+                "Y Units: Reflectance (percentage)",
+                "values in %",
+                "%",
+                "in percent",
+            ],
+            100,
         ).items(),
         ("Reflectance as a fraction", 1),
         *dict.fromkeys(
-            ["Humidity: 45 %", "Relative humidity (%)", "Gloss [%]", "Ink coverage %", "Battery level %"]
+            [
+                "Humidity: 45 %",
+                "Relative humidity (%)",
+                "Gloss [%]",
+                "Ink coverage %",
+                "Battery level %",
+            ]
         ).items(),
     ],
 )
@@ -105,7 +146,10 @@ def test_quantities_of_labels(text, expected, of_light):
 def test_keys_of_light_meters(text):
     assert remark_quantity([text]).of_light
     assert remark_quantity([text, "Mode: reflectance"]).is_reflectance
-    assert remark_quantity(["x 0.43", "Illuminant: D65", "Lamp: xenon", "Scan counts: 3"]) is None
+    assert (
+        remark_quantity(["x 0.43", "Illuminant: D65", "Lamp: xenon", "Scan counts: 3"])
+        is None
+    )
 
 
 @pytest.mark.parametrize(
@@ -122,7 +166,12 @@ def test_units(text, expected):
 
 
 def test_units_of_remarks_are_about_wavelengths():
-    assert remark_unit(["Aperture: 8 mm", "Slit: 10 µm", "X Units: Wavelength (micrometers)"]) == 1e3
+    assert (
+        remark_unit(
+            ["Aperture: 8 mm", "Slit: 10 µm", "X Units: Wavelength (micrometers)"]
+        )
+        == 1e3
+    )
     assert remark_unit(["Slit: 10 µm"]) is None
 
 
@@ -142,7 +191,9 @@ def test_units_by_values_need_an_order():
 
 
 def test_labels_without_a_name():
-    assert all(map(is_plain, ["Reflectance", "R [%]", "%R", "[counts]", "Reflect. %", "value"]))
+    assert all(
+        map(is_plain, ["Reflectance", "R [%]", "%R", "[counts]", "Reflect. %", "value"])
+    )
     assert not any(map(is_plain, ["ochre", "R1", "G", "", "Sample reflectance"]))
     assert all(map(names_wavelengths, ["Wavelength", "wl", "nm", "λ", "X"]))
     assert not any(map(names_wavelengths, ["nm400", "ochre", "Sample"]))

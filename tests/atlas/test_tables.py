@@ -14,11 +14,19 @@ VALUES = np.round(0.08 + 0.47 / (1 + np.exp((600 - NM) / 20)), 4)
 
 
 def lines(pattern="{:g},{:g}", factor=1.0, nm=NM):
-    return "".join(pattern.format(at, round(value * factor, 6)) + "\n" for at, value in zip(nm, VALUES, strict=True))
+    return "".join(
+        pattern.format(at, round(value * factor, 6)) + "\n"
+        for at, value in zip(nm, VALUES, strict=True)
+    )
 
 
 def row(name, factor=1.0, pattern="{:g}"):
-    return ",".join([name, *(pattern.format(round(value * factor, 6)) for value in VALUES)]) + "\n"
+    return (
+        ",".join(
+            [name, *(pattern.format(round(value * factor, 6)) for value in VALUES)]
+        )
+        + "\n"
+    )
 
 
 HEADER = ",".join(["name", *map(str, NM)]) + "\n"
@@ -119,7 +127,12 @@ def test_other_quantities_of_materials_are_neither(save, text):
 
 
 @pytest.mark.parametrize(
-    "text", ["nm,R%\n" + lines(factor=100), "# Reflectance\n" + HEADER + row("a"), HEADER + row("%R a")]
+    "text",
+    [
+        "nm,R%\n" + lines(factor=100),
+        "# Reflectance\n" + HEADER + row("a"),
+        HEADER + row("%R a"),
+    ],
 )
 def test_reflectances_are_no_lamps(save, text):
     path = save(text)
@@ -140,13 +153,29 @@ def test_columns_of_other_quantities_are_skipped_by_name(save):
     assert rows.names == ("ochre",)
 
 
-@pytest.mark.parametrize("label", ["{}[nm]", "{}nm", "nm{}", "R_{}", "X{}.0", "{}.0", "R% {}", "Spectral Data {}[nm]"])
+@pytest.mark.parametrize(
+    "label",
+    [
+        "{}[nm]",
+        "{}nm",
+        "nm{}",
+        "R_{}",
+        "X{}.0",
+        "{}.0",
+        "R% {}",
+        "Spectral Data {}[nm]",
+    ],
+)
 def test_labels_are_wavelengths_in_rows_and_columns(save, label):
     factor = 100 if "%" in label else 1
     heads = ["id", *(label.format(at) for at in NM)]
-    check_values(read_atlas(save(",".join(heads) + "\n" + row("a", factor), "wide.csv")))
+    check_values(
+        read_atlas(save(",".join(heads) + "\n" + row("a", factor), "wide.csv"))
+    )
     labels = [label.format(at) for at in NM]
-    check_values(read_atlas(save("label,a\n" + lines("{},{:g}", factor, labels), "tall.csv")))
+    check_values(
+        read_atlas(save("label,a\n" + lines("{},{:g}", factor, labels), "tall.csv"))
+    )
 
 
 @pytest.mark.parametrize(
@@ -166,7 +195,9 @@ def test_units_of_wavelengths(save, head, pattern, numbers):
     check_values(read_atlas(save(f"{head}\n" + lines(pattern, nm=numbers))))
 
 
-@pytest.mark.parametrize("text", [lines(nm=NM * 10), lines(nm=1e7 / NM), lines(nm=NM + 600)])
+@pytest.mark.parametrize(
+    "text", [lines(nm=NM * 10), lines(nm=1e7 / NM), lines(nm=NM + 600)]
+)
 def test_units_that_nothing_states_are_refused_by_their_numbers(save, text):
     with raises(AtlasError, "atlas") as caught:
         read_atlas(save(text))
@@ -216,7 +247,11 @@ def test_missing_values_within_the_range(save, mark):
 def test_values_in_percent_as_spreadsheets_write_them(save):
     text = (
         HEADER.replace(",", ";")
-        + row("a", 100).replace(",", " %;").replace(".", ",").replace("a %", "a").strip()
+        + row("a", 100)
+        .replace(",", " %;")
+        .replace(".", ",")
+        .replace("a %", "a")
+        .strip()
         + " %\n"
     )
     check_values(read_atlas(save(text)))
@@ -226,7 +261,9 @@ def test_values_in_percent_as_spreadsheets_write_them(save):
 def test_a_value_ten_times_its_neighbours_is_warned_of(save, value):
     values = np.full(81, 0.3 if value < 1 else 0.08)
     values[40] *= 1.1 * value if value > 1 else value / 1.1
-    text = "nm,a\n" + "".join(f"{380 + 5 * at},{each:.4f}\n" for at, each in enumerate(values))
+    text = "nm,a\n" + "".join(
+        f"{380 + 5 * at},{each:.4f}\n" for at, each in enumerate(values)
+    )
     with warns("odd-value") as caught:
         read_atlas(save(text))
     assert (caught[0].entry, "580 nm" in caught[0].problem) == ("a", True)
@@ -236,14 +273,23 @@ def test_a_value_ten_times_its_neighbours_is_warned_of(save, value):
     "text",
     [
         lines("{:g}.0 {:g}"),
-        "Data from x\nUser: u\n>>>>>Begin Spectral Data<<<<<\n" + lines("{:g}\t{:g}") + ">>>>>End<<<<<\nsigned\n",
+        "Data from x\nUser: u\n>>>>>Begin Spectral Data<<<<<\n"
+        + lines("{:g}\t{:g}")
+        + ">>>>>End<<<<<\nsigned\n",
         lines("{:g},0;{:g}").replace("0.", "0,"),
         "nm;a\n" + lines("{:g},0;{:g}").replace("0.", "0,"),
         "nm,a,nm,b\n" + lines("{0:g},{1:g},{0:g},{1:g}"),
-        "pixel,nm,a\n" + "".join(f"{at},{line}\n" for at, line in enumerate(lines().split())),
-        "nm,cm-1,a\n" + "".join(f"{at:g},{1e7 / at:.6f},{value:g}\n" for at, value in zip(NM, VALUES, strict=True)),
+        "pixel,nm,a\n"
+        + "".join(f"{at},{line}\n" for at, line in enumerate(lines().split())),
+        "nm,cm-1,a\n"
+        + "".join(
+            f"{at:g},{1e7 / at:.6f},{value:g}\n"
+            for at, value in zip(NM, VALUES, strict=True)
+        ),
         "nm,a,,\n" + lines("{:g},{:g},,"),
-        "Sample No," + HEADER[5:] + "".join(row(str(number)) for number in range(101, 801, 100)),
+        "Sample No,"
+        + HEADER[5:]
+        + "".join(row(str(number)) for number in range(101, 801, 100)),
     ],
 )
 def test_where_a_table_begins_and_ends(save, text):
@@ -252,14 +298,21 @@ def test_where_a_table_begins_and_ends(save, text):
 
 def test_pairs_on_a_line_are_one_spectrum(save):
     pairs = [f"{at:g} {value:g}" for at, value in zip(NM, VALUES, strict=True)]
-    atlas = read_atlas(save("\n".join(" ".join(pairs[at : at + 3]) for at in range(0, len(pairs), 3)), "paint.txt"))
+    atlas = read_atlas(
+        save(
+            "\n".join(" ".join(pairs[at : at + 3]) for at in range(0, len(pairs), 3)),
+            "paint.txt",
+        )
+    )
     assert atlas.names == ("paint",)
     check_values(atlas)
 
 
 def test_a_second_table_is_skipped_by_name(save):
     with warns("entry-skipped"):
-        atlas = read_atlas(save("nm R\n" + lines("{:g} {:g}") + "\nnm R\n" + lines("{:g} {:g}")))
+        atlas = read_atlas(
+            save("nm R\n" + lines("{:g} {:g}") + "\nnm R\n" + lines("{:g} {:g}"))
+        )
     assert [entry.line for entry in atlas.skipped] == [25]
     check_values(atlas)
 
@@ -267,7 +320,10 @@ def test_a_second_table_is_skipped_by_name(save):
 @pytest.mark.parametrize(
     "text",
     [
-        "nm," + ",".join(map(str, range(101, 801))) + "\n" + lines("{:g},{:g}" + ",0.5" * 699),
+        "nm,"
+        + ",".join(map(str, range(101, 801)))
+        + "\n"
+        + lines("{:g},{:g}" + ",0.5" * 699),
         lines("{:g} {:g} 0.5"),
         "nm,a\n" + lines("{:g},0,{:g}"),
     ],
@@ -278,7 +334,12 @@ def test_tables_that_may_mean_two_things_are_refused(save, text):
 
 
 @pytest.mark.parametrize(
-    ("text", "line"), [("a,b\nc,d\n1,x\n2,y\n", 3), ("hello\nworld\n", 1), ("name,400,x,700\na,1,1,1\n", 1)]
+    ("text", "line"),
+    [
+        ("a,b\nc,d\n1,x\n2,y\n", 3),
+        ("hello\nworld\n", 1),
+        ("name,400,x,700\na,1,1,1\n", 1),
+    ],
 )
 def test_errors_show_the_line_that_was_not_understood(save, text, line):
     with raises(AtlasError, "not-an-atlas") as caught:
@@ -288,11 +349,15 @@ def test_errors_show_the_line_that_was_not_understood(save, text, line):
 
 
 def test_values_without_their_wavelengths(tmp_path):
-    (tmp_path / "a.txt").write_text("a paint\n" + "".join(f"{value}\n" for value in VALUES))
+    (tmp_path / "a.txt").write_text(
+        "a paint\n" + "".join(f"{value}\n" for value in VALUES)
+    )
     with raises(AtlasError, "not-an-atlas"):
         read_atlas(tmp_path / "a.txt")
     for name in ("Wavelengths_1.txt", "Wavelengths_2.txt"):
-        (tmp_path / name).write_text("Wavelengths in microns\n" + "".join(f"{at / 1000}\n" for at in NM))
+        (tmp_path / name).write_text(
+            "Wavelengths in microns\n" + "".join(f"{at / 1000}\n" for at in NM)
+        )
         if name == "Wavelengths_1.txt":
             atlas = read_atlas(tmp_path / "a.txt")
             check_values(atlas)
@@ -305,8 +370,11 @@ def test_values_without_their_wavelengths(tmp_path):
 def test_decimal_commas_of_jcamp(save, xy, factor):
     head = "##TITLE=a\n##JCAMP-DX=4.24\n##XUNITS=NANOMETERS\n##YUNITS=% REFLECTANCE\n##XYPOINTS=(XY..XY)\n"
     text = "".join(
-        xy.format(at, f"{value * factor:.4f}".replace(".", ",")) + "\n" for at, value in zip(NM, VALUES, strict=True)
+        xy.format(at, f"{value * factor:.4f}".replace(".", ",")) + "\n"
+        for at, value in zip(NM, VALUES, strict=True)
     )
     check_values(read_atlas(save(head + text + "##END=\n")))
-    pairs = "".join(f"{at:g},{value * factor:.0f}\n" for at, value in zip(NM, VALUES, strict=True))
+    pairs = "".join(
+        f"{at:g},{value * factor:.0f}\n" for at, value in zip(NM, VALUES, strict=True)
+    )
     check_values(read_atlas(save(head + pairs + "##END=\n")), np.round(VALUES, 2))

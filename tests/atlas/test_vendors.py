@@ -20,28 +20,49 @@ LAYOUTS = {vendor.name: vendor for vendor in VENDORS}
 @pytest.mark.parametrize("vendor", VENDORS, ids=lambda vendor: vendor.name)
 def test_spectra_are_those_that_were_written(tmp_path, vendor):
     path = vendor.save(MACBETH[: vendor.count], tmp_path)
-    with warns(*["values-in-percent"] * vendor.percent, *["entry-skipped"] * vendor.skipped):
+    with warns(
+        *["values-in-percent"] * vendor.percent, *["entry-skipped"] * vendor.skipped
+    ):
         atlas = read_atlas(path)
     assert atlas.sources[0].format == vendor.format
     assert len(atlas) == vendor.count
     if vendor.name != "argyll_sp":
         assert atlas.names == MACBETH[: vendor.count].names
     for entry, expected in zip(atlas, MACBETH, strict=False):
-        np.testing.assert_allclose(entry.wavelengths, expected.wavelengths, rtol=0, atol=1e-6)
+        np.testing.assert_allclose(
+            entry.wavelengths, expected.wavelengths, rtol=0, atol=1e-6
+        )
         np.testing.assert_allclose(entry.values, expected.values, rtol=0, atol=1e-6)
 
 
-@pytest.mark.parametrize("label", ["nm{}", "R{}", "{}nm", "{} nm", "SPECTRAL_NM{}", "R_{}", "Refl ({} nm)", "λ{}"])
+@pytest.mark.parametrize(
+    "label",
+    ["nm{}", "R{}", "{}nm", "{} nm", "SPECTRAL_NM{}", "R_{}", "Refl ({} nm)", "λ{}"],
+)
 def test_labels_of_wavelengths(save, label):
     heads = ",".join(label.format(nm) for nm in (400, 550, 700))
     (entry,) = read_atlas(save(f"id,L*,a*,b*,{heads}\ngrey,50,0,0,0.1,0.2,0.3\n"))
-    assert (entry.name, entry.wavelengths.tolist(), entry.values.tolist()) == ("grey", [400, 550, 700], [0.1, 0.2, 0.3])
+    assert (entry.name, entry.wavelengths.tolist(), entry.values.tolist()) == (
+        "grey",
+        [400, 550, 700],
+        [0.1, 0.2, 0.3],
+    )
 
 
 def test_rows_of_single_samples(save):
-    rows = [f"{name},{nm},{value}" for nm, value in ((700, 0.3), (400, 0.1), (550, 0.2)) for name in ("a", "b")]
-    first, second = read_atlas(save("\n".join(["Sample,Wavelength (nm),Reflectance", *rows])))
-    assert (first.name, first.wavelengths.tolist(), first.values.tolist()) == ("a", [400, 550, 700], [0.1, 0.2, 0.3])
+    rows = [
+        f"{name},{nm},{value}"
+        for nm, value in ((700, 0.3), (400, 0.1), (550, 0.2))
+        for name in ("a", "b")
+    ]
+    first, second = read_atlas(
+        save("\n".join(["Sample,Wavelength (nm),Reflectance", *rows]))
+    )
+    assert (first.name, first.wavelengths.tolist(), first.values.tolist()) == (
+        "a",
+        [400, 550, 700],
+        [0.1, 0.2, 0.3],
+    )
     assert (second.name, second.values.tolist()) == ("b", [0.1, 0.2, 0.3])
     with raises(AtlasError, "atlas") as caught:
         read_atlas(save("sample,wavelength,reflectance\na,400,0.1\na,red,0.2\n"))
@@ -70,8 +91,14 @@ def test_mixed_scales_name_the_row(save, text, line, entry):
 def test_scale_given_by_the_caller(save):
     dark = save(ROW + "trap,0.4,0.5,0.5,0.4\ngrey,20,20,20,20\n")
     found = read_atlas(dark, measured="percent")
-    assert (found["trap"].values.tolist(), found.sources[0].measured) == ([0.004, 0.005, 0.005, 0.004], "percent")
-    for scale, error, code in (("fraction", AtlasError, "atlas"), ("per mille", UnknownNameError, "unknown-name")):
+    assert (found["trap"].values.tolist(), found.sources[0].measured) == (
+        [0.004, 0.005, 0.005, 0.004],
+        "percent",
+    )
+    for scale, error, code in (
+        ("fraction", AtlasError, "atlas"),
+        ("per mille", UnknownNameError, "unknown-name"),
+    ):
         with raises(error, code):
             read_atlas(dark, measured=scale)
 
@@ -98,9 +125,12 @@ def test_conditions_of_cxf_are_kept_in_names(tmp_path):
     path = LAYOUTS["cxf3"].save(MACBETH[:2], tmp_path)
     spectrum = re.compile(r'<cc:ReflectanceSpectrum ColorSpecification="[^"]*"')
     text = path.read_text()
-    (one, *_) = re.findall(r"<cc:ReflectanceSpectrum.*?</cc:ReflectanceSpectrum>", text, re.DOTALL)
+    (one, *_) = re.findall(
+        r"<cc:ReflectanceSpectrum.*?</cc:ReflectanceSpectrum>", text, re.DOTALL
+    )
     three = "".join(
-        spectrum.sub(f'<cc:ReflectanceSpectrum ColorSpecification="{each}"', one) for each in ("M0", "M1", "U")
+        spectrum.sub(f'<cc:ReflectanceSpectrum ColorSpecification="{each}"', one)
+        for each in ("M0", "M1", "U")
     )
     path.write_text(text.replace(one, three))
     atlas = read_atlas(path)
@@ -124,14 +154,20 @@ def test_transmittances_of_cxf_are_skipped(tmp_path):
     text = path.read_text()
     first = text.index("<cc:ReflectanceSpectrum")
     last = text.index("</cc:ReflectanceSpectrum>") + len("</cc:ReflectanceSpectrum>")
-    path.write_text(text[:first] + text[first:last].replace("Reflectance", "Transmittance") + text[last:])
+    path.write_text(
+        text[:first]
+        + text[first:last].replace("Reflectance", "Transmittance")
+        + text[last:]
+    )
     with warns("entry-skipped"):
         atlas = read_atlas(path)
     assert [skipped.name for skipped in atlas.skipped] == ["dark skin"]
     assert len(atlas) == 5
 
 
-@pytest.mark.parametrize("format", [each for each in FORMATS if each.extra], ids=lambda each: each.name)
+@pytest.mark.parametrize(
+    "format", [each for each in FORMATS if each.extra], ids=lambda each: each.name
+)
 def test_missing_packages_are_named(tmp_path, monkeypatch, format):
     modules = {"colour-cxf": "colour_cxf", "python-calamine": "python_calamine"}
     module = modules.get(format.library, format.library)
@@ -147,16 +183,34 @@ def test_missing_packages_are_named(tmp_path, monkeypatch, format):
 @pytest.mark.parametrize(
     ("text", "code"),
     [
-        ('<?xml version="1.0"?>\n<!DOCTYPE x [<!ENTITY a "b">]>\n<IESTM2714 xmlns="i">&a;</IESTM2714>', "atlas"),
-        ('<IESTM2714 xmlns="i">' + "<a>" * 100 + "</a>" * 100 + "</IESTM2714>", "atlas"),
+        (
+            '<?xml version="1.0"?>\n<!DOCTYPE x [<!ENTITY a "b">]>\n<IESTM2714 xmlns="i">&a;</IESTM2714>',
+            "atlas",
+        ),
+        (
+            '<IESTM2714 xmlns="i">' + "<a>" * 100 + "</a>" * 100 + "</IESTM2714>",
+            "atlas",
+        ),
         ('<IESTM2714 xmlns="iestm2714"/>', "atlas"),
-        ('<cc:CxF xmlns:cc="http://colorexchangeformat.com/CxF3-core"/>', "not-an-atlas"),
+        (
+            '<cc:CxF xmlns:cc="http://colorexchangeformat.com/CxF3-core"/>',
+            "not-an-atlas",
+        ),
         ("##TITLE=a\n##NPOINTS=1000000000\n", "atlas"),
-        ("##TITLE=a\n##XUNITS=HZ\n##YUNITS=REFLECTANCE\n##XYPOINTS=(XY..XY)\n1, 1\n", "atlas"),
+        (
+            "##TITLE=a\n##XUNITS=HZ\n##YUNITS=REFLECTANCE\n##XYPOINTS=(XY..XY)\n1, 1\n",
+            "atlas",
+        ),
         ("##TITLE=a\n##XYDATA=(X++(Y..Y))\n400 q\n", "atlas"),
         ("CGATS.17\nBEGIN_DATA_FORMAT\nEND_DATA_FORMAT\n", "atlas"),
-        ("CGATS.17\nBEGIN_DATA_FORMAT\nID LAB_L\nEND_DATA_FORMAT\nBEGIN_DATA\n1 2\nEND_DATA\n", "atlas"),
-        ('X\nSPECTRAL_NORM "0"\nBEGIN_DATA_FORMAT\nnm400 nm700\nEND_DATA_FORMAT\nBEGIN_DATA\n1 2\nEND_DATA', "atlas"),
+        (
+            "CGATS.17\nBEGIN_DATA_FORMAT\nID LAB_L\nEND_DATA_FORMAT\nBEGIN_DATA\n1 2\nEND_DATA\n",
+            "atlas",
+        ),
+        (
+            'X\nSPECTRAL_NORM "0"\nBEGIN_DATA_FORMAT\nnm400 nm700\nEND_DATA_FORMAT\nBEGIN_DATA\n1 2\nEND_DATA',
+            "atlas",
+        ),
         (b"PK\x03\x04junk", "atlas"),
         ("ENVI\nsamples = 3\n", "file-not-found"),
         ("name,nm410,nm550,nm690\na,1,1,1\n", "atlas"),
@@ -196,7 +250,10 @@ def test_content_of_archives_is_limited(tmp_path, monkeypatch, limit, value):
     ("change", "code"),
     [
         (lambda text: text.replace("lines = 6", "lines = 600000000"), "atlas"),
-        (lambda text: text.replace("ENVI Spectral Library", "ENVI Standard"), "not-an-atlas"),
+        (
+            lambda text: text.replace("ENVI Spectral Library", "ENVI Standard"),
+            "not-an-atlas",
+        ),
         (lambda text: text.replace("Micrometers", "Furlongs"), "atlas"),
         (lambda text: text.replace("factor = 100000000", "factor = -1"), "atlas"),
         (lambda text: text.replace("{0.38000", "{1e306"), "atlas"),

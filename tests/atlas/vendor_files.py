@@ -30,7 +30,12 @@ def sample(atlas: Atlas, count: int = 6) -> Atlas:
     """Return the first entries at the wavelengths of an instrument, with eight decimals."""
     chosen = atlas[:count]
     values = np.round(on_grid(chosen, NM), 8)
-    return Atlas(tuple(Entry(entry.name, NM, row) for entry, row in zip(chosen, values, strict=True)))
+    return Atlas(
+        tuple(
+            Entry(entry.name, NM, row)
+            for entry, row in zip(chosen, values, strict=True)
+        )
+    )
 
 
 def labels(pattern: str, separator: str, step: int = 1) -> str:
@@ -38,7 +43,9 @@ def labels(pattern: str, separator: str, step: int = 1) -> str:
     return separator.join(pattern.format(f"{nm:g}") for nm in NM[::step])
 
 
-def row(values: Sequence[float], separator: str, scale: float = 1.0, comma: bool = False) -> str:
+def row(
+    values: Sequence[float], separator: str, scale: float = 1.0, comma: bool = False
+) -> str:
     """Return numbers of eight decimals."""
     text = separator.join(f"{value * scale:.8f}" for value in values)
     return text.replace(".", ",") if comma else text
@@ -74,21 +81,36 @@ class Vendor:
         values = np.array([entry.values for entry in atlas])
         columns = [(f"{nm:g}", column) for nm, column in zip(NM, values.T, strict=True)]
         sheet = [["Measured with a spectrophotometer"], ["Mode", "M1"]]
-        sheet.append(["No", "Sample Name", "L*", "a*", "b*", *(f"{nm:g}nm" for nm in NM)])
-        sheet += [[i, each.name, 50.0, 1.0, 2.0, *(100 * each.values).tolist()] for i, each in enumerate(atlas, 1)]
+        sheet.append(
+            ["No", "Sample Name", "L*", "a*", "b*", *(f"{nm:g}nm" for nm in NM)]
+        )
+        sheet += [
+            [i, each.name, 50.0, 1.0, 2.0, *(100 * each.values).tolist()]
+            for i, each in enumerate(atlas, 1)
+        ]
         template = LAYOUTS.get_template(self.template)
-        text = template.render(atlas=atlas, columns=columns, sheet=sheet, labels=labels, row=row)
+        text = template.render(
+            atlas=atlas, columns=columns, sheet=sheet, labels=labels, row=row
+        )
         content = text.replace("\n", self.newline).encode(self.encoding)
         if self.format == "spreadsheet":
             content = archive(text)
         files = {atlas[0].name + Path(self.template).suffix: content}
         if self.wavelengths:
-            lines = [" Wavelengths 0.38-0.73 microns", *(f" {nm / 1000:.6E}" for nm in NM)]
+            lines = [
+                " Wavelengths 0.38-0.73 microns",
+                *(f" {nm / 1000:.6E}" for nm in NM),
+            ]
             files["Wavelengths.txt"] = "\n".join(lines).encode()
         if self.samples is None:
             return files
         kind, unit = self.samples
-        return {f"{atlas[0].name}.sli": np.round(np.rint(1e8 * values) * unit, 8).astype(kind).tobytes(), **files}
+        return {
+            f"{atlas[0].name}.sli": np.round(np.rint(1e8 * values) * unit, 8)
+            .astype(kind)
+            .tobytes(),
+            **files,
+        }
 
     def save(self, atlas: Atlas, folder: Path) -> Path:
         """Write the files of an atlas and return the path to read."""
@@ -111,27 +133,62 @@ def archive(text: str) -> bytes:
 TABLE, CGATS, ENVI, SHEET = "table", "CGATS", "ENVI spectral library", "spreadsheet"
 VENDORS = (
     Vendor(TABLE, "plain_csv.csv", "programs with tables"),
-    Vendor(TABLE, "excel_csv.csv", "spreadsheets, European", encoding="utf-8-sig", newline="\r\n"),
+    Vendor(
+        TABLE,
+        "excel_csv.csv",
+        "spreadsheets, European",
+        encoding="utf-8-sig",
+        newline="\r\n",
+    ),
     Vendor(TABLE, "excel_percent.csv", "spreadsheets, cells in percent"),
-    Vendor(TABLE, "excel_unicode_text.txt", "Excel, Unicode text", percent=True, encoding="utf-16", newline="\r\n"),
-    Vendor(TABLE, "utf_16_without_mark.txt", "programs for Windows", encoding="utf-16-be"),
+    Vendor(
+        TABLE,
+        "excel_unicode_text.txt",
+        "Excel, Unicode text",
+        percent=True,
+        encoding="utf-16",
+        newline="\r\n",
+    ),
+    Vendor(
+        TABLE, "utf_16_without_mark.txt", "programs for Windows", encoding="utf-16-be"
+    ),
     Vendor(TABLE, "commented.csv", "scripts"),
-    Vendor(TABLE, "konica_minolta.csv", "Konica Minolta SpectraMagic", percent=True, encoding="latin-1"),
+    Vendor(
+        TABLE,
+        "konica_minolta.csv",
+        "Konica Minolta SpectraMagic",
+        percent=True,
+        encoding="latin-1",
+    ),
     Vendor(TABLE, "datacolor.txt", "Datacolor", percent=True),
     Vendor(TABLE, "babelcolor.csv", "BabelColor"),
     Vendor(TABLE, "lambda_spectrophotometer.csv", "PerkinElmer Lambda", percent=True),
     Vendor(TABLE, "spd.spd", "Mitsuba", count=1),
     Vendor(TABLE, "ocean_optics.txt", "Ocean Optics OceanView", count=1, percent=True),
     Vendor(TABLE, "avantes.txt", "Avantes AvaSoft", count=1, skipped=True),
-    Vendor(TABLE, "spectral_evolution.sed", "Spectral Evolution DARWin", count=1, skipped=True),
+    Vendor(
+        TABLE,
+        "spectral_evolution.sed",
+        "Spectral Evolution DARWin",
+        count=1,
+        skipped=True,
+    ),
     Vendor(TABLE, "ecostress.txt", "ECOSTRESS and ASTER libraries", count=1),
     Vendor(TABLE, "usgs_columns.txt", "USGS library 6", count=1, skipped=True),
     Vendor(TABLE, "usgs_values.txt", "USGS library 7", count=1, wavelengths=True),
-    Vendor(TABLE, "detectors.txt", "spectrometers with three detectors", count=1, skipped=True),
+    Vendor(
+        TABLE,
+        "detectors.txt",
+        "spectrometers with three detectors",
+        count=1,
+        skipped=True,
+    ),
     Vendor(TABLE, "cary.csv", "Agilent Cary WinUV"),
     Vendor(TABLE, "uvprobe.txt", "Shimadzu UVProbe", count=1),
     Vendor(CGATS, "cgats.txt", "programs with CGATS", percent=True),
-    Vendor(CGATS, "xrite.txt", "X-Rite ProfileMaker", encoding="latin-1", newline="\r\n"),
+    Vendor(
+        CGATS, "xrite.txt", "X-Rite ProfileMaker", encoding="latin-1", newline="\r\n"
+    ),
     Vendor(CGATS, "cgats_spreadsheet.csv", "CGATS saved by spreadsheets", percent=True),
     Vendor(CGATS, "argyll_ti3.ti3", "ArgyllCMS chartread"),
     Vendor(CGATS, "argyll_sp.sp", "ArgyllCMS spotread", count=1),

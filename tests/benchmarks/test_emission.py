@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 
 import uplift
-from benchmarks.emission import FAMILIES, exactness, lamp_family, planck, predict, spokes, unknown_lamps
+from benchmarks.emission import (
+    FAMILIES,
+    exactness,
+    lamp_family,
+    planck,
+    predict,
+    spokes,
+    unknown_lamps,
+)
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.lights.discs import Lamps
@@ -23,7 +31,9 @@ UV = chromaticity(LAMPS.power @ RADIOMETRY)
 
 @pytest.fixture(scope="module")
 def unknown():
-    return unknown_lamps(LAMPS, on_grid(read_atlas("macbeth"), observer.grid()), RADIOMETRY)
+    return unknown_lamps(
+        LAMPS, on_grid(read_atlas("macbeth"), observer.grid()), RADIOMETRY
+    )
 
 
 def row(name):
@@ -46,9 +56,18 @@ def test_predictions_of_a_lamp_never_know_it_nor_its_family(unknown):
 
 def test_a_table_without_a_lamp_has_its_colour_and_not_its_spectrum():
     few = Lamps(("FL11", "FL1"), LAMPS.power[[row("FL11"), row("FL1")]])
-    found = predict(few, {"lamp": np.eye(2, dtype=bool), "both": np.ones((2, 2), dtype=bool)}, knots=32, rings=4)
+    found = predict(
+        few,
+        {"lamp": np.eye(2, dtype=bool), "both": np.ones((2, 2), dtype=bool)},
+        knots=32,
+        rings=4,
+    )
     for power, expected in found.values():
-        np.testing.assert_allclose(chromaticity(power @ RADIOMETRY), chromaticity(few.power @ RADIOMETRY), atol=1e-7)
+        np.testing.assert_allclose(
+            chromaticity(power @ RADIOMETRY),
+            chromaticity(few.power @ RADIOMETRY),
+            atol=1e-7,
+        )
         assert np.abs(power - few.power).max(axis=1)[0] > 0.1
         assert (expected > 0).all()
     assert np.abs(found["lamp"][0] - found["both"][0]).max() > 1e-4
@@ -63,11 +82,18 @@ def test_tungsten_is_planckian():
 def test_exactness_is_measured_from_white_to_the_locus():
     uv = spokes(TABLE, 12, 5)
     share = TABLE.data.lattice.polar(uv - TABLE.data.lattice.white)[2]
-    assert (share.min(), share.max()) == (pytest.approx(0, abs=1e-12), pytest.approx(1, abs=1e-12))
+    assert (share.min(), share.max()) == (
+        pytest.approx(0, abs=1e-12),
+        pytest.approx(1, abs=1e-12),
+    )
     double, single = exactness(TABLE, uv)
     assert double["uv_error"] < 1e-6
     assert single["uv_error"] < 1e-5
     assert min(double["min_power"], single["min_power"]) >= 0
     data = TABLE.data
-    wrong = EmissionTable(replace(data, spectra=data.spectra * np.linspace(0.9, 1.1, 81, dtype=np.float32)))
+    wrong = EmissionTable(
+        replace(
+            data, spectra=data.spectra * np.linspace(0.9, 1.1, 81, dtype=np.float32)
+        )
+    )
     assert next(exactness(wrong, uv))["uv_error"] > 1e-3

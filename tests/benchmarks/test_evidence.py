@@ -6,7 +6,13 @@ import pytest
 from benchmarks import palette_dial as scan
 from benchmarks.accuracy import largest
 from benchmarks.cameras import lab_matrix, realisable_share, xyz_matrix
-from benchmarks.representations import Printed, closed, enhanced, printed_filters, printed_tables
+from benchmarks.representations import (
+    Printed,
+    closed,
+    enhanced,
+    printed_filters,
+    printed_tables,
+)
 from uplift.colorimetry import observer, tables
 from uplift.design.palette.picture import read_weights
 from uplift.scene.representations.samples import xyz_weights
@@ -27,7 +33,9 @@ def test_known_camera_matrices_are_found_and_keep_white(known):
     np.testing.assert_allclose(xyz_matrix(raw, raw @ known.T), known, rtol=1e-10)
     np.testing.assert_allclose(lab_matrix(raw, raw @ known.T, WHITE), known, rtol=1e-6)
     noisy = raw @ known.T + 0.01 * rng.standard_normal((12, 3))
-    np.testing.assert_allclose(lab_matrix(raw, noisy, WHITE).sum(axis=1), WHITE, rtol=1e-12)
+    np.testing.assert_allclose(
+        lab_matrix(raw, noisy, WHITE).sum(axis=1), WHITE, rtol=1e-12
+    )
 
 
 def test_the_largest_error_is_searched_for():
@@ -36,7 +44,10 @@ def test_the_largest_error_is_searched_for():
 
 
 def test_overlapping_channels_leave_few_raw_values():
-    shares = [realisable_share(observer.sensor("camera", "D65", name), 12) for name in tables.names("camera")]
+    shares = [
+        realisable_share(observer.sensor("camera", "D65", name), 12)
+        for name in tables.names("camera")
+    ]
     assert 0 < shares[1] < shares[0] < 1
 
 
@@ -44,7 +55,9 @@ def test_overlapping_channels_leave_few_raw_values():
 def test_closed_cells_keep_the_white(count):
     light = np.ones((1, 401))
     for one in (closed(count), enhanced(count)):
-        np.testing.assert_allclose(one.xyz(one.encode_light(light)), light @ xyz_weights(), rtol=2e-3)
+        np.testing.assert_allclose(
+            one.xyz(one.encode_light(light)), light @ xyz_weights(), rtol=2e-3
+        )
 
 
 def test_a_sample_on_a_border_counts_twice():
@@ -56,7 +69,10 @@ def test_a_sample_on_a_border_counts_twice():
 
 def test_thesis_tables_have_the_printed_values():
     assert printed_tables()["spiky", "CS15"] == Printed(0.316, 0.816)
-    assert printed_filters()["spiky", 16, "mitchell"].parameters == "extent 19, b -0.4, c 1"
+    assert (
+        printed_filters()["spiky", 16, "mitchell"].parameters
+        == "extent 19, b -0.4, c 1"
+    )
 
 
 def test_the_viewer_reads_the_scan_in_which_every_material_is_visible(tmp_path):
@@ -68,4 +84,8 @@ def test_the_viewer_reads_the_scan_in_which_every_material_is_visible(tmp_path):
     scan.write_weights(weights, tmp_path / "engine.exr")
     order = ["block", "haze", "piston", "valve"]
     found = read_weights(tmp_path / "engine.exr", order, {})
-    np.testing.assert_allclose(found, weights[..., [list(scan.DENSITIES).index(name) for name in order]], atol=1e-6)
+    np.testing.assert_allclose(
+        found,
+        weights[..., [list(scan.DENSITIES).index(name) for name in order]],
+        atol=1e-6,
+    )

@@ -24,7 +24,9 @@ DOCS = ROOT / "docs"
 def test_every_program_can_be_imported(name):
     if name in ("render", "looks", "showcase"):
         need(MITSUBA)
-    assert callable(importlib.import_module(f"benchmarks.{name.replace('-', '_')}").main)
+    assert callable(
+        importlib.import_module(f"benchmarks.{name.replace('-', '_')}").main
+    )
 
 
 def test_every_stored_figure_names_a_page_that_can_be_measured():
@@ -32,12 +34,20 @@ def test_every_stored_figure_names_a_page_that_can_be_measured():
     for path in (DOCS / "data").glob("*.json"):
         command = json.loads(path.read_text(encoding="utf-8")).get("command", "")
         if command != "make nightly":
-            assert not command or command.removeprefix("make measure PAGE=") in known, path
+            assert not command or command.removeprefix("make measure PAGE=") in known, (
+                path
+            )
 
 
 def test_committed_pages_and_tables_are_the_rendering_of_the_committed_data():
-    files = {path: text for name in render_docs.pages() for path, text in render(name).items()}
-    assert [path for path, text in files.items() if path.read_text(encoding="utf-8") != text] == []
+    files = {
+        path: text
+        for name in render_docs.pages()
+        for path, text in render(name).items()
+    }
+    assert [
+        path for path, text in files.items() if path.read_text(encoding="utf-8") != text
+    ] == []
     assert set((DOCS / "tables").iterdir()) <= files.keys()
 
 
@@ -49,8 +59,12 @@ def test_a_missing_figure_is_an_error():
 
 
 def test_a_choice_marks_its_methods_on_its_sets(monkeypatch):
-    assert sorted(SHIPPED) == sorted(path.stem for path in (ROOT / "atlases").glob("*.txt"))
-    monkeypatch.setattr(choices, "CHOICES", (choices.Choice("length", ("macbeth",), (OURS,)),))
+    assert sorted(SHIPPED) == sorted(
+        path.stem for path in (ROOT / "atlases").glob("*.txt")
+    )
+    monkeypatch.setattr(
+        choices, "CHOICES", (choices.Choice("length", ("macbeth",), (OURS,)),)
+    )
     assert is_optimistic(["vs", "macbeth"], OURS)
     assert not is_optimistic(["vs"], OURS)
     assert (mark(["macbeth"], OURS), mark(["macbeth"], ALONE)) == (MARK, "")
@@ -58,9 +72,14 @@ def test_a_choice_marks_its_methods_on_its_sets(monkeypatch):
 
 def test_stored_marks_agree_with_the_choices():
     held_out = read_data("held-out")
-    assert held_out["choices"] == json.loads(json.dumps([vars(choice) for choice in choices.CHOICES]))
+    assert held_out["choices"] == json.loads(
+        json.dumps([vars(choice) for choice in choices.CHOICES])
+    )
     for each in held_out["sets"]:
-        assert all(row["optimistic"] == is_optimistic([each["set"]], row["method"]) for row in each["rows"])
+        assert all(
+            row["optimistic"] == is_optimistic([each["set"]], row["method"])
+            for row in each["rows"]
+        )
     marks = {name: text for name, text in read_data("cameras")["marks"].items() if text}
     assert marks == {name: mark([ATLAS], method) for name, method in CHOSEN_AS.items()}
     rows = read_chart(ROOT / "uplift" / "lab" / "chart" / "measured.csv").measured

@@ -15,7 +15,11 @@ LEVELS, MODEL = (0.25, 0.5), Sigmoid(360, 830)
 
 def fit(rgb, sensor):
     """Coefficients of the spectrum of a colour, by a general solver."""
-    found = root(lambda x: sensor.rgb(evaluate(MODEL, x[None], sensor.wavelengths))[0] - rgb, np.zeros(3), tol=1e-10)
+    found = root(
+        lambda x: sensor.rgb(evaluate(MODEL, x[None], sensor.wavelengths))[0] - rgb,
+        np.zeros(3),
+        tol=1e-10,
+    )
     assert found.success
     return unscaled(MODEL, found.x[None])[0]
 
@@ -23,7 +27,10 @@ def fit(rgb, sensor):
 @pytest.fixture(scope="module")
 def table(tmp_path_factory):
     """A table of two levels; component l + 1 varies fastest."""
-    sensor, path = peers.table_sensor(), tmp_path_factory.mktemp("table") / "small.coeff"
+    sensor, path = (
+        peers.table_sensor(),
+        tmp_path_factory.mktemp("table") / "small.coeff",
+    )
     colours = [
         np.roll([level, middle * level, last * level], largest)
         for largest, level, last, middle in product(range(3), LEVELS, (0, 1), (0, 1))
@@ -34,7 +41,9 @@ def table(tmp_path_factory):
 
 
 def write(path, coefficients):
-    head = b"SPEC" + np.uint32(len(LEVELS)).tobytes() + np.array(LEVELS, "<f4").tobytes()
+    head = (
+        b"SPEC" + np.uint32(len(LEVELS)).tobytes() + np.array(LEVELS, "<f4").tobytes()
+    )
     path.write_bytes(head + coefficients.astype("<f4").tobytes())
 
 
@@ -48,18 +57,25 @@ def test_colours_of_a_table_come_back(table):
 def test_axes_that_are_swapped_are_wrong_answers(table, tmp_path):
     swapped = table[1].reshape(3, 2, 2, 2, 3).swapaxes(2, 3)
     write(tmp_path / "swapped.coeff", swapped)
-    with pytest.raises(RuntimeError, match=r"wrong answer, not timed: 50\.0% of the nodes"):
+    with pytest.raises(
+        RuntimeError, match=r"wrong answer, not timed: 50\.0% of the nodes"
+    ):
         peers.check_answers(*peers.table_colours(tmp_path / "swapped.coeff"), least=0.9)
 
 
 def test_a_point_without_a_number_is_not_within_the_threshold():
     found = np.array([[0.5, 0.5, np.nan], [0.5, 0.5, 0.5]])
-    assert peers.check_answers(found, np.full((2, 3), 0.5), least=0.5) == {"share": 0.5, "worst": np.inf}
+    assert peers.check_answers(found, np.full((2, 3), 0.5), least=0.5) == {
+        "share": 0.5,
+        "worst": np.inf,
+    }
 
 
 def test_the_sensor_of_a_table_keeps_white():
     sensor = peers.table_sensor()
-    np.testing.assert_allclose(sensor.rgb(np.ones(len(sensor.wavelengths))), 1, atol=2e-4)
+    np.testing.assert_allclose(
+        sensor.rgb(np.ones(len(sensor.wavelengths))), 1, atol=2e-4
+    )
 
 
 def test_without_its_source_the_tool_says_what_it_needs(monkeypatch, tmp_path):

@@ -1,6 +1,6 @@
 """The rendered ColorChecker, small and noisy: layout, reference, errors."""
 
-# ruff: noqa: E402  (what follows imports Mitsuba)
+
 import numpy as np
 import pytest
 
@@ -29,7 +29,10 @@ def renders(painted, repository):
     methods = {
         demo.REFERENCE: measured_spectra(painted),
         **dict.fromkeys((demo.MITSUBA, demo.PLAIN, demo.ATLAS_17), built_in),
-        demo.ATLAS: [{"type": "uplift", "cube": cube, "rgb": rgb} for rgb in painted.painted.tolist()],
+        demo.ATLAS: [
+            {"type": "uplift", "cube": cube, "rgb": rgb}
+            for rgb in painted.painted.tolist()
+        ],
     }
     return demo.render(methods, LAYOUT, SPP)
 
@@ -45,6 +48,7 @@ def test_reference_equals_the_integral_of_the_measured_spectra(painted, renders)
 def test_cube_with_atlas_has_less_than_half_the_error_of_mitsuba(painted, renders):
     for name in demo.LIGHTS[1:]:
         cube, mitsuba = (
-            renders.delta_e[name, method][~painted.outside].mean() for method in (demo.ATLAS, demo.MITSUBA)
+            renders.delta_e[name, method][~painted.outside].mean()
+            for method in (demo.ATLAS, demo.MITSUBA)
         )
         assert cube < mitsuba / 2

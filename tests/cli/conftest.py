@@ -37,12 +37,17 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def shown(monkeypatch: pytest.MonkeyPatch) -> list[click.ClickException]:
     """Errors that were printed, in order."""
     errors: list[click.ClickException] = []
-    for owner, name in ((CommandFailure, "show"), (uplift_cli.main, "show_usage_error")):
+    for owner, name in (
+        (CommandFailure, "show"),
+        (uplift_cli.main, "show_usage_error"),
+    ):
         monkeypatch.setattr(owner, name, _recorded(getattr(owner, name), errors))
     return errors
 
 
-def _recorded(show: Callable[..., None], errors: list[click.ClickException]) -> Callable[..., None]:
+def _recorded(
+    show: Callable[..., None], errors: list[click.ClickException]
+) -> Callable[..., None]:
     def record(error: click.ClickException) -> None:
         errors.append(error)
         show(error)
@@ -55,7 +60,9 @@ def run(home: Path) -> Run:
     """Run ``uplift`` with arguments; any exception but an exit code is a failure."""
 
     def run(*args: object, code: int = 0, **options: object) -> Result:
-        result = CliRunner().invoke(main, [str(arg) for arg in args], catch_exceptions=False, **options)  # type: ignore[arg-type]
+        result = CliRunner().invoke(
+            main, [str(arg) for arg in args], catch_exceptions=False, **options
+        )  # type: ignore[arg-type]
         assert result.exit_code == code, result.output
         return result
 
@@ -65,7 +72,9 @@ def run(home: Path) -> Run:
 @pytest.fixture
 def ask(run: Run) -> Callable[..., Any]:
     """Run ``uplift`` with ``--format json`` and return the answer."""
-    return lambda *args, **options: json.loads(run(*args, "--format", "json", **options).stdout)
+    return lambda *args, **options: json.loads(
+        run(*args, "--format", "json", **options).stdout
+    )
 
 
 @pytest.fixture
@@ -77,7 +86,11 @@ def refuse(run: Run, shown: list[click.ClickException]) -> Callable[..., UpliftE
         assert result.stdout == ""
         failure = shown.pop()
         assert isinstance(failure, CommandFailure), result.stderr
-        (line,) = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
+        (line,) = [
+            line
+            for line in result.stderr.splitlines()
+            if not line.startswith("warning: ")
+        ]
         assert line == f"error: {failure.message}"
         assert "; " in line or " must " in line
         assert failure.error.where in line
@@ -118,7 +131,9 @@ def commands(group: click.Group, path: str = "") -> dict[str, click.Command]:
 def warning_lines(result: Result) -> list[str]:
     """Return the warnings on standard error, without their prefix."""
     lines = result.stderr.splitlines()
-    return [line.removeprefix("warning: ") for line in lines if line.startswith("warning: ")]
+    return [
+        line.removeprefix("warning: ") for line in lines if line.startswith("warning: ")
+    ]
 
 
 @pytest.fixture

@@ -13,7 +13,18 @@ from uplift.samples import sample_path
 
 def test_command_prints_and_draws_its_advice(run, ask, refuse, cubes, home):
     file, wood = cubes / "moments-16-macbeth.uplift", sample_path("wood.png")
-    found = ask("advise", wood, "--cube", file, "--light", "FL11", "--count", 2, "--plot", "a.png")
+    found = ask(
+        "advise",
+        wood,
+        "--cube",
+        file,
+        "--light",
+        "FL11",
+        "--count",
+        2,
+        "--plot",
+        "a.png",
+    )
     assert list(found["lights"]) == ["FL11"]
     first, second = found["swatches"]
     errors = {stage: each["mean"] for stage, each in found["lights"]["FL11"].items()}
@@ -21,8 +32,13 @@ def test_command_prints_and_draws_its_advice(run, ask, refuse, cubes, home):
     assert errors["before"] - first["gain"] == pytest.approx(first["mean_after"])
     assert second["mean_after"] == pytest.approx(errors["after"])
     assert matplotlib.image.imread("a.png").shape[1] > 500
-    assert first["hex"] in run("advise", wood, "--cube", file, "--light", "FL11", "--count", 2).stdout
-    assert refuse("advise", wood, "--cube", file, "--plot", "a.png").code == "file-exists"
+    assert (
+        first["hex"]
+        in run("advise", wood, "--cube", file, "--light", "FL11", "--count", 2).stdout
+    )
+    assert (
+        refuse("advise", wood, "--cube", file, "--plot", "a.png").code == "file-exists"
+    )
 
 
 def test_textures_have_the_standard_errors_of_their_pixels(run, refuse, cubes, home):
@@ -36,5 +52,9 @@ def test_textures_have_the_standard_errors_of_their_pixels(run, refuse, cubes, h
     np.testing.assert_allclose(channels["error.FL11"], expected, atol=1e-3)
     assert json.loads(texture.header()["uplift.texture"])["errors"] == ["FL11"]
     masked = ("--mask", sample_path("mask.png"), "--cube", file, "--cube", file)
-    assert refuse("texture", source, "-o", "b.exr", *masked, *arguments).code == "option"
-    assert refuse("texture", source, "-o", "b.exr", *arguments).code == "too-few-entries"
+    assert (
+        refuse("texture", source, "-o", "b.exr", *masked, *arguments).code == "option"
+    )
+    assert (
+        refuse("texture", source, "-o", "b.exr", *arguments).code == "too-few-entries"
+    )

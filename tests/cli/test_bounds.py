@@ -21,24 +21,46 @@ def test_bounds_of_a_colour_in_json(ask):
         (least, most), answer = np.array(each["lab_range"]), np.array(each["lab"])
         assert ((least < answer) & (answer < most)).all()
         lit = light(name)
-        np.testing.assert_allclose(answer, lab(lit.xyz @ found["reflectance"], lit.white), atol=1e-9)
+        np.testing.assert_allclose(
+            answer, lab(lit.xyz @ found["reflectance"], lit.white), atol=1e-9
+        )
         assert 0 < each["largest_delta_e_2000"] <= each["outer_delta_e_2000"]
         assert each["likely"] is None  # the packaged cube has no atlas
     assert found["bounds"]["FL11"]["share"] > 10 * found["bounds"]["A"]["share"]
 
 
 def test_the_likely_difference_is_the_error_bound_in_all_formats(run, ask, cubes):
-    colour = ("bounds", "--cube", cubes / "moments-16-macbeth.uplift", "0.2", "0.3", "0.1", "--light", "FL11")
+    colour = (
+        "bounds",
+        "--cube",
+        cubes / "moments-16-macbeth.uplift",
+        "0.2",
+        "0.3",
+        "0.1",
+        "--light",
+        "FL11",
+    )
     found = ask(*colour)
     bound = found["error_bounds"]["FL11"]
     assert bound > found["standard_errors"]["FL11"]
-    assert float(run(*colour).stdout.splitlines()[-1].split()[4]) == pytest.approx(bound, abs=0.005)
+    assert float(run(*colour).stdout.splitlines()[-1].split()[4]) == pytest.approx(
+        bound, abs=0.005
+    )
     (row,) = csv.DictReader(io.StringIO(run(*colour, "--format", "csv").stdout))
     assert float(row["error_bound"]) == pytest.approx(bound)
 
 
 def test_table_plot_and_page(run, home):
-    words = ["--light", "D65", "--light", "d65", "--plot", "bounds.png", "--html", "page.html"]  # a light counts once
+    words = [
+        "--light",
+        "D65",
+        "--light",
+        "d65",
+        "--plot",
+        "bounds.png",
+        "--html",
+        "page.html",
+    ]  # a light counts once
     text = run("bounds", "0.2,0.3,0.4", *words).stdout
     row = text.splitlines()[-1].split()
     assert (row[0], float(row[5])) == ("D65", 0)  # metamers match under the build light

@@ -38,20 +38,59 @@ def test_default_name_has_atlas_or_space_and_dim(run, home, args, name):
 
 def test_all_options_are_passed_to_the_build(run, home, monkeypatch, plain_cube):
     given = {
-        **{"dim": 3, "coefficients": 5, "entry_coefficients": 12, "warp": "vision", "axis": "linear", "step": 10.0},
-        **{"space": "Display P3", "illuminant": "D50", "observer": "CIE 1964 10 Degree Standard Observer"},
-        **{"model": "moments", "growth": "neighbours", "solver": "dogleg", "prior": "smooth", "neutral": "flat"},
-        **{"lights": ("A", "FL2"), "library": ("b.csv",), "looks": "l.toml", "leave_out": ("wood",)},
-        **{"threshold": 1e-3, "auto_tolerance": 0.7, "seed_corners": True, "debug": True},
+        **{
+            "dim": 3,
+            "coefficients": 5,
+            "entry_coefficients": 12,
+            "warp": "vision",
+            "axis": "linear",
+            "step": 10.0,
+        },
+        **{
+            "space": "Display P3",
+            "illuminant": "D50",
+            "observer": "CIE 1964 10 Degree Standard Observer",
+        },
+        **{
+            "model": "moments",
+            "growth": "neighbours",
+            "solver": "dogleg",
+            "prior": "smooth",
+            "neutral": "flat",
+        },
+        **{
+            "lights": ("A", "FL2"),
+            "library": ("b.csv",),
+            "looks": "l.toml",
+            "leave_out": ("wood",),
+        },
+        **{
+            "threshold": 1e-3,
+            "auto_tolerance": 0.7,
+            "seed_corners": True,
+            "debug": True,
+        },
     }
-    names = {"lights": "light", "looks": "look", "leave_out": "exclude-family", "auto_tolerance": "tolerance"}
+    names = {
+        "lights": "light",
+        "looks": "look",
+        "leave_out": "exclude-family",
+        "auto_tolerance": "tolerance",
+    }
     words = ["--range", "360:830"]
     for name, value in given.items():
         option = "--" + names.get(name, name).replace("_", "-")
         values = value if isinstance(value, tuple) else (value,)
-        words += [option] if value is True else [word for each in values for word in (option, each)]
+        words += (
+            [option]
+            if value is True
+            else [word for each in values for word in (option, each)]
+        )
     passed = {}
-    monkeypatch.setattr("uplift.pipeline.build.build", lambda atlas, **options: passed.update(options) or plain_cube)
+    monkeypatch.setattr(
+        "uplift.pipeline.build.build",
+        lambda atlas, **options: passed.update(options) or plain_cube,
+    )
     run("build", *words, "-o", "cube")
     assert callable(passed.pop("progress"))
     assert passed == given | {"shortest": 360, "longest": 830}
@@ -76,11 +115,24 @@ def test_a_shipped_atlas_by_the_name_of_its_file_is_a_note(run):
 
 def test_looks_are_built_summarised_and_shown(run, home):
     (home / "looks.toml").write_text(LOOK)
-    result = run("build", *SMALL, "--prior", "smooth", "--look", "looks.toml", "-o", "looks.uplift")
+    result = run(
+        "build",
+        *SMALL,
+        "--prior",
+        "smooth",
+        "--look",
+        "looks.toml",
+        "-o",
+        "looks.uplift",
+    )
     assert ", 2 looks, " in result.stdout
     (impossible,) = warning_lines(result)
     assert "looks.toml" in impossible
     assert "#5060a0" in impossible
-    line = next(line for line in run("info", "looks.uplift").stdout.splitlines() if line.startswith("look brick"))
+    line = next(
+        line
+        for line in run("info", "looks.uplift").stdout.splitlines()
+        if line.startswith("look brick")
+    )
     assert line.split()[2:] == ["HP1", "#70392a", "(ΔE00", "0.00)"]
     run("check", "looks.uplift")

@@ -26,13 +26,20 @@ def quick(repository, tmp_path_factory):
     folder = tmp_path_factory.mktemp("quick")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        patch.setattr(method, "QUICK", replace(method.QUICK, seconds_per_error=0.1, lap=0.002, longest=0.02))
+        patch.setattr(
+            method,
+            "QUICK",
+            replace(method.QUICK, seconds_per_error=0.1, lap=0.002, longest=0.02),
+        )
         for name, value in ONE_THREAD.items():
             patch.setenv(name, value)
         atlas = str(repository / "atlases" / "macbeth.txt")
         patch.setattr(chart, "COLOURS", 300)
         words = ["chart", "--quick", "--atlas", atlas, "-o", "out"]
-        words += [f"--method={name}" for name in ("mallett2019", "moments9-16*-spectra", "sigmoid-32-moments")]
+        words += [
+            f"--method={name}"
+            for name in ("mallett2019", "moments9-16*-spectra", "sigmoid-32-moments")
+        ]
         result = CliRunner().invoke(main, words, catch_exceptions=False)
     assert result.exit_code == 0, result.output
     return folder / "out", result
@@ -41,22 +48,33 @@ def quick(repository, tmp_path_factory):
 @pytest.fixture(scope="module")
 def numbers(quick):
     """Numbers of the measured methods by name."""
-    return {row.method: row.numbers for row in read_chart(quick[0] / "chart.csv").measured}
+    return {
+        row.method: row.numbers for row in read_chart(quick[0] / "chart.csv").measured
+    }
 
 
 def test_all_files_are_written_and_fronts_printed(quick, numbers):
     folder, result = quick
     assert sorted(path.name for path in folder.iterdir()) == FILES
     assert matplotlib.image.imread(folder / "chart.png").std() > 0.05
-    assert re.search(r"marker-0-\d", (folder / "chart.html").read_text(encoding="utf-8"))
+    assert re.search(
+        r"marker-0-\d", (folder / "chart.html").read_text(encoding="utf-8")
+    )
     assert sum(name in result.stdout for name in numbers) >= 2
     assert result.stderr == "out: chart.csv, chart.png, chart.html\n"
-    assert all(found["time_ns"] > 0 and found["bytes"] > 0 for found in numbers.values())
-    assert {row.method for row in read_chart(folder / "chart.csv").results} - set(numbers) <= FOREIGN
+    assert all(
+        found["time_ns"] > 0 and found["bytes"] > 0 for found in numbers.values()
+    )
+    assert {row.method for row in read_chart(folder / "chart.csv").results} - set(
+        numbers
+    ) <= FOREIGN
 
 
 def test_an_atlas_improves_its_own_materials(numbers):
-    own = {name: numbers[f"moments9-16{name}-spectra"]["own_lights_mean"] for name in ("", "-atlas")}
+    own = {
+        name: numbers[f"moments9-16{name}-spectra"]["own_lights_mean"]
+        for name in ("", "-atlas")
+    }
     assert own["-atlas"] < own[""] / 2
 
 
@@ -74,12 +92,26 @@ def test_an_atlas_improves_its_own_materials(numbers):
         (1.0, {"hang": ("broken", f"no answer within 1 s; it needs {faulty.NEEDS}")}),
     ],
 )
-def test_methods_that_crash_hang_or_are_missing_have_rows(run, macbeth, monkeypatch, limit, reasons):
+def test_methods_that_crash_hang_or_are_missing_have_rows(
+    run, macbeth, monkeypatch, limit, reasons
+):
     monkeypatch.setattr(method, "QUICK", replace(method.QUICK, limit=limit))
     monkeypatch.setattr(measure, "METHODS", (*measure.METHODS, *faulty.METHODS))
     names = [f"--method=faulty-{name}" for name in reasons]
-    result = run("chart", "--quick", "--atlas", macbeth, "--method", "mallett2019", *names, "-o", "out")
-    rows = {row.method: (row.state, row.why) for row in read_chart("out/chart.csv").results}
+    result = run(
+        "chart",
+        "--quick",
+        "--atlas",
+        macbeth,
+        "--method",
+        "mallett2019",
+        *names,
+        "-o",
+        "out",
+    )
+    rows = {
+        row.method: (row.state, row.why) for row in read_chart("out/chart.csv").results
+    }
     assert rows.pop("mallett2019") == ("measured", "")
     assert rows == {f"faulty-{name}": reason for name, reason in reasons.items()}
     for name, (state, why) in rows.items():
@@ -96,18 +128,32 @@ def test_chart_can_be_redrawn_from_its_table(quick, run, refuse):
 
 def test_page_and_command_recommend_the_same_cubes(run, repository):
     page = (repository / "docs" / "choosing.md").read_text(encoding="utf-8")
-    printed = [line.strip() for line in run("chart", "--recommend").stdout.splitlines() if line.startswith("  ")]
-    pairs = [f"`{build}`, then\n  `{call}`" for build, call in zip(printed[::2], printed[1::2], strict=True)]
+    printed = [
+        line.strip()
+        for line in run("chart", "--recommend").stdout.splitlines()
+        if line.startswith("  ")
+    ]
+    pairs = [
+        f"`{build}`, then\n  `{call}`"
+        for build, call in zip(printed[::2], printed[1::2], strict=True)
+    ]
     assert len(pairs) > 2
     assert [pair for pair in pairs if pair not in page] == []
 
 
 def test_recommendations(quick, run, refuse):
     table = quick[0] / "chart.csv"
-    result = run("chart", "--recommend", "--from", table, "--tolerance", 0.05, "--light", "D65")
+    result = run(
+        "chart", "--recommend", "--from", table, "--tolerance", 0.05, "--light", "D65"
+    )
     assert re.search(r"\n  uplift build (--atlas FILE )?--dim \d+ ", result.stdout)
-    assert refuse("chart", "--recommend", "--from", table, "--time-ns", 0.5).code == "requirements-not-met"
-    result = run("chart", "--recommend", "--tolerance", 1, "--light", "FL11", "--atlas-materials")
+    assert (
+        refuse("chart", "--recommend", "--from", table, "--time-ns", 0.5).code
+        == "requirements-not-met"
+    )
+    result = run(
+        "chart", "--recommend", "--tolerance", 1, "--light", "FL11", "--atlas-materials"
+    )
     assert "--atlas FILE" in result.stdout
 
 

@@ -15,7 +15,10 @@ from uplift.lattice import Lattice
 from uplift.report.regression import LIMITS
 
 ROOT = Path(__file__).parents[2]
-CUBES = [*sorted((ROOT / "cubes").glob("*.uplift")), ROOT / "uplift" / "lookup" / "default.uplift"]
+CUBES = [
+    *sorted((ROOT / "cubes").glob("*.uplift")),
+    ROOT / "uplift" / "lookup" / "default.uplift",
+]
 
 
 @pytest.fixture(scope="module")
@@ -42,8 +45,15 @@ def modified(home, stored):
 
 def test_json_has_measures_and_failures(run, stored, modified):
     before = modified.read_bytes()
-    good, bad = json.loads(run("check", stored, modified, "--format", "json", code=1).stdout)
-    assert (good["cube"], good["passed"], good["failures"], good["error"]) == (str(stored), True, [], None)
+    good, bad = json.loads(
+        run("check", stored, modified, "--format", "json", code=1).stdout
+    )
+    assert (good["cube"], good["passed"], good["failures"], good["error"]) == (
+        str(stored),
+        True,
+        [],
+        None,
+    )
     assert good["measures"].keys() == LIMITS.keys()
     assert good["status"]["stored"] == good["status"]["rebuilt"]
     assert (bad["cube"], bad["passed"]) == (str(modified), False)
@@ -63,16 +73,30 @@ def other_lattice(home, stored):
 
 def reported(result, shown):
     """Codes and locations of the errors on standard error, one line each."""
-    assert result.stderr.splitlines() == [f"error: {failure.message}" for failure in shown]
+    assert result.stderr.splitlines() == [
+        f"error: {failure.message}" for failure in shown
+    ]
     return [(failure.error.code, failure.error.where) for failure in shown]
 
 
-def test_failed_cubes_do_not_stop_the_others(run, shown, home, stored, modified, other_lattice, monkeypatch):
-    monkeypatch.setenv("COLUMNS", "1000")  # one line for each cube, however long its path is
+def test_failed_cubes_do_not_stop_the_others(
+    run, shown, home, stored, modified, other_lattice, monkeypatch
+):
+    monkeypatch.setenv(
+        "COLUMNS", "1000"
+    )  # one line for each cube, however long its path is
     (home / "text.uplift").write_text("no cube")
-    result = run("check", "none.uplift", "text.uplift", other_lattice, modified, stored, code=2)
-    verdicts = {line.split()[0]: line.split()[1] for line in result.stdout.splitlines() if ".uplift" in line}
-    failed = dict.fromkeys(("none.uplift", "text.uplift", str(other_lattice), str(modified)), "FAILED")
+    result = run(
+        "check", "none.uplift", "text.uplift", other_lattice, modified, stored, code=2
+    )
+    verdicts = {
+        line.split()[0]: line.split()[1]
+        for line in result.stdout.splitlines()
+        if ".uplift" in line
+    }
+    failed = dict.fromkeys(
+        ("none.uplift", "text.uplift", str(other_lattice), str(modified)), "FAILED"
+    )
     assert verdicts == failed | {str(stored): "passed"}
     assert reported(result, shown) == [
         ("file-not-found", "none.uplift"),
@@ -84,20 +108,49 @@ def test_failed_cubes_do_not_stop_the_others(run, shown, home, stored, modified,
 def test_json_has_the_errors_of_failed_cubes(run, other_lattice):
     result = run("check", other_lattice, "--format", "json", code=2)
     (failed,) = json.loads(result.stdout)
-    assert (failed["passed"], failed["failures"], failed["measures"]) == (False, ["cube-file"], {})
-    assert (failed["error"]["code"], failed["error"]["where"], result.stderr) == ("cube-file", str(other_lattice), "")
+    assert (failed["passed"], failed["failures"], failed["measures"]) == (
+        False,
+        ["cube-file"],
+        {},
+    )
+    assert (failed["error"]["code"], failed["error"]["where"], result.stderr) == (
+        "cube-file",
+        str(other_lattice),
+        "",
+    )
 
 
-def test_update_replaces_failed_cubes_that_can_be_rebuilt(run, shown, stored, modified, other_lattice):
+def test_update_replaces_failed_cubes_that_can_be_rebuilt(
+    run, shown, stored, modified, other_lattice
+):
     before = stored.read_bytes()
-    result = run("check", "-q", "--update", "none.uplift", stored, modified, other_lattice, code=2)
+    result = run(
+        "check",
+        "-q",
+        "--update",
+        "none.uplift",
+        stored,
+        modified,
+        other_lattice,
+        code=2,
+    )
     assert [failure.error.code for failure in shown] == ["file-not-found"]
-    assert result.stderr.splitlines()[1:] == [f"{modified}: replaced", f"{other_lattice}: replaced"]
-    assert before == stored.read_bytes() == modified.read_bytes() == other_lattice.read_bytes()
+    assert result.stderr.splitlines()[1:] == [
+        f"{modified}: replaced",
+        f"{other_lattice}: replaced",
+    ]
+    assert (
+        before
+        == stored.read_bytes()
+        == modified.read_bytes()
+        == other_lattice.read_bytes()
+    )
     run("check", modified, other_lattice)
 
 
-def test_atlases_are_searched_for_in_given_folders(run, shown, home, monkeypatch, macbeth):
+def test_atlases_are_searched_for_in_given_folders(
+    run, shown, home, monkeypatch, macbeth
+):
     monkeypatch.setattr("uplift.pipeline.rebuild.shipped_atlases", tuple)
     with pytest.warns(uplift.UpliftWarning):
         uplift.build(macbeth, dim=3, coefficients=4).save(home / "cube.uplift")
@@ -114,8 +167,13 @@ def test_a_changed_atlas_is_explained_and_the_cube_updated(run, ask, home):
     wavelengths = list(range(380, 781, 10))
 
     def write(**entries):
-        rows = [("name", *wavelengths), *((name, *values) for name, values in entries.items())]
-        (home / "mine.csv").write_text("".join(",".join(map(str, row)) + "\n" for row in rows))
+        rows = [
+            ("name", *wavelengths),
+            *((name, *values) for name, values in entries.items()),
+        ]
+        (home / "mine.csv").write_text(
+            "".join(",".join(map(str, row)) + "\n" for row in rows)
+        )
 
     red, grey, dark = np.linspace(0.1, 0.6, 41), np.full(41, 0.5), np.full(41, 0.3)
     write(red=red, grey=grey, dark=dark)

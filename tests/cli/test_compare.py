@@ -57,7 +57,9 @@ def test_target_prints_the_cheapest_for_each_set_of_lights(run, macbeth):
     words = ["compare", "--quick", "--atlas", macbeth, "--tolerance"]
     near = run(*words, 1.0, "--filters").stdout.splitlines()
     assert [line.split(" lights")[0] for line in near] == ["smooth", "spiky"]
-    assert all(float(re.search(r"97\.5 % below ([\d.]+)", line)[1]) <= 1 for line in near)
+    assert all(
+        float(re.search(r"97\.5 % below ([\d.]+)", line)[1]) <= 1 for line in near
+    )
     (far,) = run(*words, 0.001, *GIVEN).stdout.splitlines()
     assert far.startswith("given lights (LED-B3, HP1): none; ")
 
@@ -66,7 +68,11 @@ def test_lights_replace_the_default_sets(run, macbeth):
     words = ["compare", "--quick", "--atlas", macbeth, *GIVEN, "--format"]
     fields = json.loads(run(*words, "json").stdout)
     rows = list(csv.DictReader(run(*words, "csv").stdout.splitlines()))
-    names = {row["representation"] for row in fields["representations"] if row["lights"] == "given"}
+    names = {
+        row["representation"]
+        for row in fields["representations"]
+        if row["lights"] == "given"
+    }
     assert {row["representation"] for row in rows} == names
     assert len(rows) == len(fields["representations"]) == 46
     assert fields["facts"]["products"] == "24 surfaces under each light"
@@ -74,7 +80,17 @@ def test_lights_replace_the_default_sets(run, macbeth):
 
 
 def test_written_spectra_are_an_atlas_and_lamps(run, misuse, home, macbeth):
-    words = ("compare", "--atlas", macbeth, "--light", "FL11", "--light", "A", "--write", "RS16")
+    words = (
+        "compare",
+        "--atlas",
+        macbeth,
+        "--light",
+        "FL11",
+        "--light",
+        "A",
+        "--write",
+        "RS16",
+    )
     assert run(*words, "-o", "out").stdout == "out: 24 surfaces and 2 lights as RS16\n"
     assert read_atlas("out/surfaces.csv").names == read_atlas(macbeth).names
     assert read_lamps("out/lights.csv").names == ("FL11", "A")

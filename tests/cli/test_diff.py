@@ -19,12 +19,26 @@ def test_exit_code_by_tolerance(run, cubes):
 
 
 def test_json_and_page(run, cubes, home):
-    result = run("diff", *cubes, "--light", "A", "--format", "json", "-o", "page.html", "--tolerance", "1", code=1)
+    result = run(
+        "diff",
+        *cubes,
+        "--light",
+        "A",
+        "--format",
+        "json",
+        "-o",
+        "page.html",
+        "--tolerance",
+        "1",
+        code=1,
+    )
     figures = json.loads(result.stdout)
     assert figures["cubes"] == list(cubes)
     assert {row["light"] for row in figures["differences"]} == {"A"}
     assert len(figures["entries_removed"]) == 24
-    assert (home / "page.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+    assert (
+        (home / "page.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+    )
 
 
 @pytest.mark.parametrize(

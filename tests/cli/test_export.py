@@ -19,10 +19,17 @@ def cube(home, cubes):
 
 @pytest.mark.parametrize(
     ("style", "suffix", "first"),
-    [("c", "h", b"/* A spectral"), ("npz", "npz", b"PK"), ("csv", "csv", b"r,g,b"), ("html", "html", b"<!DOCTYPE")],
+    [
+        ("c", "h", b"/* A spectral"),
+        ("npz", "npz", b"PK"),
+        ("csv", "csv", b"r,g,b"),
+        ("html", "html", b"<!DOCTYPE"),
+    ],
 )
 def test_formats_and_default_names(run, home, cube, style, suffix, first):
-    assert run("export", cube, "--format", style).stdout.startswith(f"{STEM}.{suffix}: ")
+    assert run("export", cube, "--format", style).stdout.startswith(
+        f"{STEM}.{suffix}: "
+    )
     assert (home / f"{STEM}.{suffix}").read_bytes().startswith(first)
 
 
@@ -37,7 +44,10 @@ def test_the_table_of_a_program_is_a_choice(run, refuse, home, cube):
     run("export", cube, "-o", "a.h", "--table", "file")
     assert {path.name for path in home.iterdir()} == {cube, "a.h", "a.bin"}
     assert refuse("export", cube, "-o", "c.cuh", "--table", "header").code == "option"
-    assert refuse("export", cube, "-o", "a.glsl", "--mode", "moments").code == "file-exists"
+    assert (
+        refuse("export", cube, "-o", "a.glsl", "--mode", "moments").code
+        == "file-exists"
+    )
     assert not (home / "a.glsl").exists()
 
 
@@ -64,8 +74,12 @@ def test_no_output_replaces_the_cube_or_another(refuse, home, cube, name, output
 
 
 def test_format_follows_the_suffix_of_out(run, home, cube, monkeypatch):
-    assert run("export", cube, "-o", "table.coeff", "--res", 3).stdout.startswith("table.coeff: ")
-    monkeypatch.setattr(write_coeff, "__kwdefaults__", {**write_coeff.__kwdefaults__, "res": 2})
+    assert run("export", cube, "-o", "table.coeff", "--res", 3).stdout.startswith(
+        "table.coeff: "
+    )
+    monkeypatch.setattr(
+        write_coeff, "__kwdefaults__", {**write_coeff.__kwdefaults__, "res": 2}
+    )
     run("export", cube, "-o", "table.cpp")
     assert (home / "table.cpp").read_text().startswith("namespace pbrt {")
     assert (home / "table.coeff").read_bytes()[:8] == b"SPEC" + bytes([3, 0, 0, 0])
@@ -77,7 +91,11 @@ def test_format_follows_the_suffix_of_out(run, home, cube, monkeypatch):
 
 @pytest.mark.parametrize(
     ("arguments", "option"),
-    [((), "--format"), (("-o", "cube.h", "--res", "8"), "--res"), (("-o", "cube.npz", "--mode", "moments"), "--mode")],
+    [
+        ((), "--format"),
+        (("-o", "cube.h", "--res", "8"), "--res"),
+        (("-o", "cube.npz", "--mode", "moments"), "--mode"),
+    ],
 )
 def test_wrong_usage(misuse, home, cube, arguments, option):
     assert option in misuse("export", cube, *arguments)

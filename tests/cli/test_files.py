@@ -92,7 +92,10 @@ texture image.exr wood.*.exr --errors lamp.csv | -o out | out/image.exr out/wood
 wavelengths --count 4 --atlas atlas.txt --observer camera.csv --light lamp.csv | --plot x.png | x.png
 """
 """Commands with all their inputs | the outputs that are added | the files that these are."""
-WITHOUT_ROWS = {"check": "--update replaces the cubes that it checks", "samples": "reads no file of the user"}
+WITHOUT_ROWS = {
+    "check": "--update replaces the cubes that it checks",
+    "samples": "reads no file of the user",
+}
 """Commands without a row, and why."""
 
 
@@ -103,7 +106,9 @@ def inputs(home, cubes, macbeth, monkeypatch):
         shutil.copy(macbeth, home / name)
     for name in ("cube.uplift", "cube2.uplift", "recorded.uplift"):
         shutil.copy(cubes / "moments-8-macbeth.uplift", home / name)
-    shutil.copy(cubes.parent / "uplift" / "lights" / "emission.uplift", home / "lights.uplift")
+    shutil.copy(
+        cubes.parent / "uplift" / "lights" / "emission.uplift", home / "lights.uplift"
+    )
     for name in ("image.exr", "mask.exr", "wood.1.exr", "wood.2.exr"):
         write_exr(home / name, planes(np.full((2, 2, 3), 0.5, np.float32)))
     for name, text in CONTENT.items():
@@ -130,16 +135,28 @@ def test_no_output_of_a_command_replaces_an_input(refuse, home, inputs, row):
         (home / link).symlink_to(home / source)
         assert refuse(*words, *output, "--force").code == "output-is-input", source
         (home / link).unlink()
-    assert {path.name: path.read_bytes() for path in home.iterdir() if path.is_file()} == inputs
+    assert {
+        path.name: path.read_bytes() for path in home.iterdir() if path.is_file()
+    } == inputs
 
 
 def test_every_output_of_every_command_has_a_row():
     for path, command in commands(main).items():
-        options = [param.opts for param in command.params if isinstance(param.type, OutputFile)]
-        if path not in WITHOUT_ROWS and (options or any(param.name == "force" for param in command.params)):
-            rows = [row.split() for row in WRITTEN.splitlines() if row.startswith(f"{path} ")]
+        options = [
+            param.opts for param in command.params if isinstance(param.type, OutputFile)
+        ]
+        if path not in WITHOUT_ROWS and (
+            options or any(param.name == "force" for param in command.params)
+        ):
+            rows = [
+                row.split()
+                for row in WRITTEN.splitlines()
+                if row.startswith(f"{path} ")
+            ]
             assert rows, path
-            assert all(any(set(names) & set(row) for row in rows) for names in options), path
+            assert all(
+                any(set(names) & set(row) for row in rows) for names in options
+            ), path
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,10 @@ def test_json_has_all_fields(ask, cubes):
     assert facts["model"] == data.model.describe()
     assert facts["status"] == data.points.counts()
     assert facts["entries"] == list(data.atlas.names)
-    assert (facts["reference"], facts["mean_standard_error"]) == ("A", data.points.standard_error.mean(dtype=float))
+    assert (facts["reference"], facts["mean_standard_error"]) == (
+        "A",
+        data.points.standard_error.mean(dtype=float),
+    )
     assert facts["rounds"] == data.points.round.max() + 1
     assert facts["provenance"]["left_out"] == ["cyan"]
     assert facts["digest"] == digest(data)
@@ -25,11 +28,19 @@ def test_json_has_all_fields(ask, cubes):
 def test_options_are_those_of_the_command_line(run, cubes, monkeypatch):
     monkeypatch.setenv("COLUMNS", "2000")
     for path in cubes.iterdir():
-        (line,) = [line for line in run("info", path).stdout.splitlines() if line.startswith("options")]
+        (line,) = [
+            line
+            for line in run("info", path).stdout.splitlines()
+            if line.startswith("options")
+        ]
         words = shlex.split(line)[1:]
         values = build.make_context("build", words).params
         data = uplift.load(path).data
-        assert (values["dim"], values["limits"], values["model"]) == (data.lattice.dim, (380, 780), data.model.name)
+        assert (values["dim"], values["limits"], values["model"]) == (
+            data.lattice.dim,
+            (380, 780),
+            data.model.name,
+        )
 
 
 def test_default_is_the_packaged_cube(run, ask):
@@ -42,5 +53,7 @@ def test_invalid_files_are_errors(refuse, home, repository):
     assert (error.code, error.where) == ("file-not-found", "none.uplift")
     assert refuse("info", home).code == "file-unreadable"
     assert refuse("info", repository / "README.md").code == "not-a-cube"
-    (home / "cut.uplift").write_bytes((repository / "cubes" / "sigmoid-8.uplift").read_bytes()[:-1])
+    (home / "cut.uplift").write_bytes(
+        (repository / "cubes" / "sigmoid-8.uplift").read_bytes()[:-1]
+    )
     assert refuse("info", "cut.uplift").code == "not-a-cube"

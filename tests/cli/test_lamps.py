@@ -9,7 +9,10 @@ import pytest
 
 from .conftest import warning_lines
 
-LAMP = "\n".join(f"{nm}\t{power:.5f}" for nm, power in zip(range(380, 781, 5), np.linspace(1, 5, 81), strict=True))
+LAMP = "\n".join(
+    f"{nm}\t{power:.5f}"
+    for nm, power in zip(range(380, 781, 5), np.linspace(1, 5, 81), strict=True)
+)
 COMMANDS = """
 advise wood.png --cube cube.uplift --light {}
 atlas macbeth --illuminant {}
@@ -35,7 +38,9 @@ def files(home, repository, cubes):
     shutil.copy(repository / "uplift" / "samples" / "files" / "wood.png", home)
     shutil.copy(cubes / "moments-8-macbeth.uplift", home / "cube.uplift")
     (home / "lamp.spd").write_text(LAMP)
-    (home / "card.csv").write_text("wavelength,reflectance\n400,0.1\n500,0.2\n700,0.3\n")
+    (home / "card.csv").write_text(
+        "wavelength,reflectance\n400,0.1\n500,0.2\n700,0.3\n"
+    )
     (home / "empty.spd").write_text("")
     (home / "folder").mkdir()
     (home / "two.csv").write_text("name,400,550,700\ncold,3,2,1\nwarm,1,2,3\n")
@@ -61,14 +66,32 @@ def test_every_light_may_be_a_file(run, refuse, home, files, line):
 
 
 def test_a_lamp_of_several_and_answers_under_it(ask, files):
-    lights = ask("query", "#888", "--light", "two.csv:warm", "--light", "lamp.spd", "--light", "A")["lights"]
+    lights = ask(
+        "query",
+        "#888",
+        "--light",
+        "two.csv:warm",
+        "--light",
+        "lamp.spd",
+        "--light",
+        "A",
+    )["lights"]
     assert list(lights) == ["warm", "lamp", "A"]
     np.testing.assert_allclose(lights["lamp"]["srgb"], lights["A"]["srgb"], atol=0.02)
     assert lights["lamp"]["xyz"] != lights["A"]["xyz"]
 
 
 def test_channels_have_the_name_of_the_lamp(run, home, files):
-    run("texture", "wood.png", "-o", "x.exr", "--cube", "cube.uplift", "--errors", "lamp.spd")
+    run(
+        "texture",
+        "wood.png",
+        "-o",
+        "x.exr",
+        "--cube",
+        "cube.uplift",
+        "--errors",
+        "lamp.spd",
+    )
     with OpenEXR.File(str(home / "x.exr"), separate_channels=True) as file:
         assert "error.lamp" in file.channels()
         settings = json.loads(file.header()["uplift.texture"])
@@ -76,7 +99,17 @@ def test_channels_have_the_name_of_the_lamp(run, home, files):
 
 
 def test_a_changed_lamp_is_another_texture(run, refuse, home, files):
-    words = "texture", "wood.png", "-o", "x.exr", "--cube", "cube.uplift", "--errors", "lamp.spd", "--resume"
+    words = (
+        "texture",
+        "wood.png",
+        "-o",
+        "x.exr",
+        "--cube",
+        "cube.uplift",
+        "--errors",
+        "lamp.spd",
+        "--resume",
+    )
     run(*words)
     run(*words)
     (home / "lamp.spd").write_text(LAMP.replace("780\t5", "780\t4"))
@@ -97,11 +130,18 @@ def test_two_lights_of_one_name(refuse, home, files):
 
 def test_scenes_name_lamps(run, refuse, home, files):
     scene = home / "scene.toml"
-    scene.write_text('textures = ["wood.png"]\natlases = ["two.csv"]\nlights = ["lamp.spd", "A"]\ntolerance = 0.5\n')
-    (home / "two.csv").write_text("name,400,550,700\ncold,0.3,0.2,0.1\nwarm,0.1,0.2,0.3\n")
+    scene.write_text(
+        'textures = ["wood.png"]\natlases = ["two.csv"]\nlights = ["lamp.spd", "A"]\ntolerance = 0.5\n'
+    )
+    (home / "two.csv").write_text(
+        "name,400,550,700\ncold,0.3,0.2,0.1\nwarm,0.1,0.2,0.3\n"
+    )
     plan = json.loads(run("plan", "scene.toml", "--quick", "--format", "json").stdout)
     assert plan["scene"]["lights"] == ["lamp", "A"]
-    assert refuse("plan", "scene.toml", "-o", "lamp.spd", "--force").code == "output-is-input"
+    assert (
+        refuse("plan", "scene.toml", "-o", "lamp.spd", "--force").code
+        == "output-is-input"
+    )
     if plan["build"]:
         assert not warning_lines(run("build", "--plan", "scene.plan.json"))
     for lights in ('"card.csv"', '"none.spd"', '"../lamp.spd"', '"folder"', "3"):
@@ -117,7 +157,12 @@ def test_palettes_name_lamps(run, refuse, home, files):
     for name in ("lamp.spd", "two.csv:warm"):
         palette.write_text(text.format(name))
         assert json.loads(run("palette", "palette.toml", "--format", "json").stdout)
-        assert refuse("palette", "palette.toml", "-o", name.partition(":")[0], "--force").code == "output-is-input"
+        assert (
+            refuse(
+                "palette", "palette.toml", "-o", name.partition(":")[0], "--force"
+            ).code
+            == "output-is-input"
+        )
     for name in ("card.csv", "none.spd", "../lamp.spd", "two.csv", "D66"):
         palette.write_text(text.format(name))
         code = refuse("palette", "palette.toml", "-o", "x.csv").code

@@ -43,7 +43,10 @@ def test_help_lists_every_command_under_a_heading(run):
 
 def test_help_shows_the_options_of_every_day_and_help_all_shows_all(run):
     short, full = run("build", "--help").stdout, run("build", "--help-all").stdout
-    every, shown = ({word for word in text.split() if word.startswith("--")} for text in (full, short))
+    every, shown = (
+        {word for word in text.split() if word.startswith("--")}
+        for text in (full, short)
+    )
     assert {"--atlas", "--dim", "--help", "--help-all"} <= shown < every
     command = main.get_command(click.Context(main), "build")
     assert all(each.opts[-1] in full for each in command.params)
@@ -77,7 +80,10 @@ def test_wrong_usage_is_one_line_with_exit_code_2(misuse, args, words):
 )
 def test_shells_complete_names(run, monkeypatch, shell, words, expected):
     monkeypatch.setenv("COMP_WORDS", words)
-    monkeypatch.setenv("COMP_CWORD", words.rsplit(" ", 1)[-1] if shell == "fish" else str(len(words.split()) - 1))
+    monkeypatch.setenv(
+        "COMP_CWORD",
+        words.rsplit(" ", 1)[-1] if shell == "fish" else str(len(words.split()) - 1),
+    )
     result = run(env={"_MAIN_COMPLETE": f"{shell}_complete"}, prog_name="main")
     assert expected in result.stdout.replace(",", "\n").replace("\t", "\n").splitlines()
 
@@ -96,28 +102,47 @@ def failing(monkeypatch):
 
 
 def test_errors_are_one_line_with_the_hint_of_the_command_line(failing, run):
-    failing(UpliftError("is bad", code="no-such-code", path="x", line=3, hint="make it good"))
+    failing(
+        UpliftError(
+            "is bad", code="no-such-code", path="x", line=3, hint="make it good"
+        )
+    )
     result = run("info", "x", code=2)
     assert (result.stdout, result.stderr) == ("", "error: x:3: is bad; make it good\n")
-    failing(UpliftError("exists already", code="file-exists", path="x", hint="pass force=True"))
+    failing(
+        UpliftError(
+            "exists already", code="file-exists", path="x", hint="pass force=True"
+        )
+    )
     hint = "pass --force"
     assert run("info", "x", code=2).stderr == f"error: x: exists already; {hint}\n"
     result = run("info", "x", "--format", "json", code=2)
     assert (result.stdout, result.stderr.count("\n")) == ("", 1)
-    fields = {"code": "file-exists", "where": "x", "problem": "exists already", "hint": hint}
+    fields = {
+        "code": "file-exists",
+        "where": "x",
+        "problem": "exists already",
+        "hint": hint,
+    }
     assert json.loads(result.stderr) == {"error": fields}
 
 
 @pytest.mark.parametrize(
     "bug",
-    [RuntimeError("a bug\nof two lines\x1b[2J"), ZeroDivisionError(), UnicodeEncodeError("utf-8", "\udcff", 0, 1, "x")],
+    [
+        RuntimeError("a bug\nof two lines\x1b[2J"),
+        ZeroDivisionError(),
+        UnicodeEncodeError("utf-8", "\udcff", 0, 1, "x"),
+    ],
 )
 def test_internal_errors_are_one_line_with_exit_code_70(failing, run, monkeypatch, bug):
     monkeypatch.delenv("UPLIFT_TRACEBACK")
     failing(bug)
     result = run("info", "x", code=70)
     assert result.stdout == ""
-    assert result.stderr.startswith(f"error: internal error, please report it: {type(bug).__name__} in test_main.py:")
+    assert result.stderr.startswith(
+        f"error: internal error, please report it: {type(bug).__name__} in test_main.py:"
+    )
     assert result.stderr == printable(result.stderr[:-1]) + "\n"
     result = run("info", "x", "--format", "json", code=70)
     assert json.loads(result.stderr)["error"]["code"] == "internal-error"
@@ -128,7 +153,10 @@ def test_internal_errors_are_one_line_with_exit_code_70(failing, run, monkeypatc
     ("error", "code"),
     [
         (MemoryError(), "out-of-memory"),
-        (RuntimeError("RESOURCE_EXHAUSTED: Out of memory allocating 9 bytes."), "out-of-memory"),
+        (
+            RuntimeError("RESOURCE_EXHAUSTED: Out of memory allocating 9 bytes."),
+            "out-of-memory",
+        ),
         (PermissionError(13, "Permission denied", "x"), "output"),
         (OSError(errno.ENOSPC, "No space left on device"), "output"),
     ],
@@ -138,9 +166,13 @@ def test_failures_of_the_system_are_errors(failing, refuse, error, code):
     assert refuse("info", "x").code == code
 
 
-def test_warnings_of_the_library_are_one_line_each_and_others_are_ignored(monkeypatch, run):
+def test_warnings_of_the_library_are_one_line_each_and_others_are_ignored(
+    monkeypatch, run
+):
     def load(path):
-        warnings.warn(UpliftWarning("is left out", code="entry-skipped", entry="a"), stacklevel=2)
+        warnings.warn(
+            UpliftWarning("is left out", code="entry-skipped", entry="a"), stacklevel=2
+        )
         with warnings.catch_warnings():
             warnings.simplefilter("always")
             warnings.warn("internal", RuntimeWarning, stacklevel=2)
@@ -150,7 +182,9 @@ def test_warnings_of_the_library_are_one_line_each_and_others_are_ignored(monkey
     monkeypatch.setattr("uplift.lookup.load", load)
     before = warnings.showwarning
     result = run("info")
-    assert warning_lines(result) == [f"entry 'a': is left out; {HINTS['entry-skipped']}"]
+    assert warning_lines(result) == [
+        f"entry 'a': is left out; {HINTS['entry-skipped']}"
+    ]
     assert result.stderr.count("\n") == 1
     assert warnings.showwarning is before
 
@@ -159,7 +193,15 @@ COMMANDS_BY_PATH = commands(main)
 
 
 @pytest.mark.parametrize(
-    "path", ["", *(path for path, command in COMMANDS_BY_PATH.items() if isinstance(command, click.Group))]
+    "path",
+    [
+        "",
+        *(
+            path
+            for path, command in COMMANDS_BY_PATH.items()
+            if isinstance(command, click.Group)
+        ),
+    ],
 )
 def test_a_group_alone_prints_its_help(run, path):
     alone, requested = run(*path.split()), run(*path.split(), "--help")
@@ -170,7 +212,9 @@ def test_a_group_alone_prints_its_help(run, path):
 
 def test_help_of_a_command_is_that_of_its_option(run):
     for path in COMMANDS_BY_PATH:
-        assert run("help", *path.split()).stdout == run(*path.split(), "--help").stdout, path
+        assert (
+            run("help", *path.split()).stdout == run(*path.split(), "--help").stdout
+        ), path
 
 
 def test_topics_have_text_and_names_that_no_command_has(run):
@@ -194,7 +238,12 @@ print(json.dumps([texts, [str(parts()) for _, parts in TOPICS.values()]]))
 
 def test_help_does_not_depend_on_docstrings():
     plain, optimised = (
-        subprocess.run([sys.executable, *flags, "-c", HELP_OF_ALL], cwd=ROOT, capture_output=True, text=True)
+        subprocess.run(
+            [sys.executable, *flags, "-c", HELP_OF_ALL],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+        )
         for flags in ([], ["-OO"])
     )
     assert optimised.stderr == ""
@@ -206,42 +255,72 @@ def test_help_fits_80_columns(monkeypatch):
     for command in (main, *COMMANDS_BY_PATH.values()):
         with click.Context(command, info_name="uplift lights texture") as context:
             context.meta[HELP_ALL] = True
-            assert max(map(len, command.get_help(context).splitlines())) <= 80, command.name
+            assert max(map(len, command.get_help(context).splitlines())) <= 80, (
+                command.name
+            )
 
 
-OPTIONS = [(command, param) for command in COMMANDS_BY_PATH.values() for param in command.params]
+OPTIONS = [
+    (command, param)
+    for command in COMMANDS_BY_PATH.values()
+    for param in command.params
+]
 NUMERIC = [
     pytest.param(command, option, id=f"{command.name}{option.opts[-1]}")
     for command, option in OPTIONS
-    if isinstance(option.type, Number | click.types.IntParamType | click.types.FloatParamType)
+    if isinstance(
+        option.type, Number | click.types.IntParamType | click.types.FloatParamType
+    )
 ]
 
 
 def test_hints_name_options_and_codes_that_exist(repository):
     known = {name for _, option in OPTIONS for name in option.opts}
-    sources = "".join(path.read_text(encoding="utf-8") for path in (repository / "uplift").rglob("*.py"))
+    sources = "".join(
+        path.read_text(encoding="utf-8")
+        for path in (repository / "uplift").rglob("*.py")
+    )
     for code, hint in HINTS.items():
         assert f'"{code}"' in sources, code
-        assert {word.strip(",.;:'()") for word in hint.split() if word.startswith("--")} <= known, hint
+        assert {
+            word.strip(",.;:'()") for word in hint.split() if word.startswith("--")
+        } <= known, hint
 
 
-def test_texts_of_the_library_name_parameters_that_are_options_and_no_options(repository):
+def test_texts_of_the_library_name_parameters_that_are_options_and_no_options(
+    repository,
+):
     known = {name for _, option in OPTIONS for name in option.opts}
     in_hints = {"measured", "outside"}  # of errors with a hint in `HINTS`
     for path in (repository / "uplift").rglob("*.py"):
         package = path.relative_to(repository / "uplift").parts[0]
         for text in prose(path) if package not in ("lab", "viz") else ():
-            assert text.startswith("uplift ") or not re.search(" --[a-z]", text), f"{path}: {text}"
-            names = set(re.findall(r"""(?<![\w'"-])([a-z_]+)=(?=$|['"\w])""", text)) - in_hints
-            assert {f"--{name.replace('_', '-')}" for name in names} <= known, f"{path}: {text}"
+            assert text.startswith("uplift ") or not re.search(" --[a-z]", text), (
+                f"{path}: {text}"
+            )
+            names = (
+                set(re.findall(r"""(?<![\w'"-])([a-z_]+)=(?=$|['"\w])""", text))
+                - in_hints
+            )
+            assert {f"--{name.replace('_', '-')}" for name in names} <= known, (
+                f"{path}: {text}"
+            )
 
 
 def prose(path):
     """Texts with blanks of a module, without its docstrings."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     docs = {node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-    constants = (node for node in ast.walk(tree) if isinstance(node, ast.Constant) and node not in docs)
-    return [node.value for node in constants if isinstance(node.value, str) and " " in node.value]
+    constants = (
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Constant) and node not in docs
+    )
+    return [
+        node.value
+        for node in constants
+        if isinstance(node.value, str) and " " in node.value
+    ]
 
 
 @pytest.mark.parametrize(
@@ -267,11 +346,18 @@ def test_invalid_numbers_are_refused_on_one_line(command, option):
         assert len(caught.value.message) < 200
 
 
-def test_tables_wrap_texts_keep_numbers_whole_and_show_texts_as_they_are(capsys, monkeypatch):
+def test_tables_wrap_texts_keep_numbers_whole_and_show_texts_as_they_are(
+    capsys, monkeypatch
+):
     monkeypatch.setenv("COLUMNS", "40")
     table = make_table(("name",), ("first", "second"))
     table.add_column("text")
-    table.add_row("[r]\x1b[2J", "1234567.5", "7654321.5", "some words of text, and averyveryverylongword")
+    table.add_row(
+        "[r]\x1b[2J",
+        "1234567.5",
+        "7654321.5",
+        "some words of text, and averyveryverylongword",
+    )
     show(table)
     lines = capsys.readouterr().out.splitlines()
     assert max(map(cell_len, lines)) == 40
@@ -295,7 +381,10 @@ def test_tables_wrap_texts_keep_numbers_whole_and_show_texts_as_they_are(capsys,
 )
 def test_no_line_breaks_inside_a_word_at_60_columns(run, monkeypatch, cubes, command):
     monkeypatch.chdir(sample_path(".") if command.endswith(".toml") else cubes)
-    wide, narrow = (_printed_at(columns, run, monkeypatch, *command.split()) for columns in (500, 60))
+    wide, narrow = (
+        _printed_at(columns, run, monkeypatch, *command.split())
+        for columns in (500, 60)
+    )
     assert max(map(cell_len, narrow.splitlines())) <= 60
     assert set(narrow.split()) <= set(wide.split())
 
@@ -335,17 +424,30 @@ def test_progress_off_terminals_is_a_line_now_and_then(monkeypatch, capsys):
         ("build --illuminant nosuch", "; 'uplift help illuminants' lists all"),
         ("build --observer nosuch", "; 'uplift help observers' lists all"),
         ("build --observer paints.csv", "use --space camera"),
-        ("lights build --atlas macbeth", "macbeth: the file states 'reflectance spectrum'"),
+        (
+            "lights build --atlas macbeth",
+            "macbeth: the file states 'reflectance spectrum'",
+        ),
         ("build --atlas colorchecker", "'uplift atlas' lists"),
-        ("build --atlas macbeth --atlas paints.csv", "first used at macbeth:7; leave out one of the two files"),
+        (
+            "build --atlas macbeth --atlas paints.csv",
+            "first used at macbeth:7; leave out one of the two files",
+        ),
         ("query 0.1,,0.2", "'0.1,,0.2' is not a colour"),
     ],
 )
-def test_errors_name_what_was_given_and_what_to_do(run, monkeypatch, cubes, command, words):
+def test_errors_name_what_was_given_and_what_to_do(
+    run, monkeypatch, cubes, command, words
+):
     monkeypatch.chdir(sample_path("."))
-    assert words in run(*command.format(cubes / "moments-8.uplift").split(), code=2).stderr
+    assert (
+        words in run(*command.format(cubes / "moments-8.uplift").split(), code=2).stderr
+    )
 
 
 def test_texts_without_unicode_are_spelt_in_ascii():
-    assert "ΔE00 0–1, 16³ × ▁▄█".encode("ascii", _respell.__name__) == b"dE00 0-1, 16^3 x _:#"
+    assert (
+        "ΔE00 0–1, 16³ × ▁▄█".encode("ascii", _respell.__name__)
+        == b"dE00 0-1, 16^3 x _:#"
+    )
     assert "16³".encode("cp1252", _respell.__name__) == b"16\xb3"

@@ -32,7 +32,9 @@ def test_entries_by_name_have_their_measured_spectra(ask, cubes, macbeth):
         ask("mix", "2:blue sky", "yellow", "--atlas", macbeth),
     )
     assert from_cube["names"] == measured["names"] == ["blue sky", "yellow"]
-    np.testing.assert_allclose(from_cube["spectrum"][4:], measured["spectrum"][4:], atol=0.03)  # from 400 nm
+    np.testing.assert_allclose(
+        from_cube["spectrum"][4:], measured["spectrum"][4:], atol=0.03
+    )  # from 400 nm
     plain = ask("mix", "2:0.113,0.199,0.336", "yellow", "--atlas", macbeth)
     assert np.abs(np.subtract(plain["spectrum"], measured["spectrum"])).max() > 0.03
 
@@ -40,8 +42,14 @@ def test_entries_by_name_have_their_measured_spectra(ask, cubes, macbeth):
 def test_duntley_s_constants_from_files(ask):
     """Without thickness the ground shows; a paint mixed with itself is the same."""
     paint = str(sample_path("duntley.csv"))
-    assert ask("mix", "--duntley", paint, "--thickness", 0, "--ground", "#f0e8d8")["hex"] == "#f0e8d8"
-    once, twice = (ask("mix", "--duntley", *words, "--ground", "black") for words in ((paint,), (f"2:{paint}", paint)))
+    assert (
+        ask("mix", "--duntley", paint, "--thickness", 0, "--ground", "#f0e8d8")["hex"]
+        == "#f0e8d8"
+    )
+    once, twice = (
+        ask("mix", "--duntley", *words, "--ground", "black")
+        for words in ((paint,), (f"2:{paint}", paint))
+    )
     np.testing.assert_allclose(once["spectrum"], twice["spectrum"])
     assert once["rgb"][0] > 3 * once["rgb"][2]
 

@@ -47,8 +47,14 @@ def test_the_matrix_and_goals_that_cannot_be_met_are_printed(run, spec, home):
     assert "new*" in text
     assert "not met" not in text
     path = home / spec()
-    path.write_text(path.read_text().replace('"#a06040"', "[1.2, 1.2, 1.2]"), encoding="utf-8")
-    (line,) = [line for line in run("palette", path).stdout.splitlines() if line.startswith("not met: ")]
+    path.write_text(
+        path.read_text().replace('"#a06040"', "[1.2, 1.2, 1.2]"), encoding="utf-8"
+    )
+    (line,) = [
+        line
+        for line in run("palette", path).stdout.splitlines()
+        if line.startswith("not met: ")
+    ]
     assert all(word in line for word in ("new", "day", "ΔE00"))
 
 
@@ -58,12 +64,16 @@ def test_json_reproduces_the_matrix(ask, spec):
     light, material = found["lights"][0], found["materials"][1]
     product = np.array(light["coefficients"]) * material["coefficients"]
     (cell,) = (cell for cell in found["colours"] if cell["material"] == "new")
-    np.testing.assert_allclose(np.array(found["to_rgb"]) @ product, cell["factor"], atol=1e-12)
+    np.testing.assert_allclose(
+        np.array(found["to_rgb"]) @ product, cell["factor"], atol=1e-12
+    )
     assert found["colours"][0]["wanted"] is None
     assert found["missed"] == []
     for parts, name in ((found["materials"], "dual"), (found["lights"], "light_dual")):
         for part in parts:
-            np.testing.assert_allclose(np.array(found[name]) @ part["samples"], part["coefficients"], atol=1e-9)
+            np.testing.assert_allclose(
+                np.array(found[name]) @ part["samples"], part["coefficients"], atol=1e-9
+            )
 
 
 def test_files_are_written(run, refuse, spec, home):
@@ -90,17 +100,36 @@ def test_pages(run, pair, home):
     [
         (("--html", "a.html", "--image", "labels.png", "--label", "leaf"), "option"),
         (("--html", "a.html", "--image", "labels.png"), "texture"),
-        (("--html", "a.html", "--image", "labels.png", "--label", "leaf=#1", "--label", "leaf=#2"), "option"),
+        (
+            (
+                "--html",
+                "a.html",
+                "--image",
+                "labels.png",
+                "--label",
+                "leaf=#1",
+                "--label",
+                "leaf=#2",
+            ),
+            "option",
+        ),
         (("--html", "two.toml"), "output"),
     ],
 )
-def test_invalid_input_is_reported_before_any_work(refuse, pair, home, monkeypatch, arguments, code):
-    monkeypatch.setattr("uplift.design.palette.design", lambda *_: pytest.fail("designed"))
+def test_invalid_input_is_reported_before_any_work(
+    refuse, pair, home, monkeypatch, arguments, code
+):
+    monkeypatch.setattr(
+        "uplift.design.palette.design", lambda *_: pytest.fail("designed")
+    )
     assert refuse("palette", pair, *arguments).code == code
     assert not (home / "a.html").exists()
     assert refuse("palette", "none.toml").code == "file-not-found"
 
 
-@pytest.mark.parametrize("arguments", [("--image", "labels.png"), ("--html", "a.html", "--label", "leaf=#ff0000")])
+@pytest.mark.parametrize(
+    "arguments",
+    [("--image", "labels.png"), ("--html", "a.html", "--label", "leaf=#ff0000")],
+)
 def test_options_that_need_others(misuse, pair, arguments):
     misuse("palette", pair, *arguments)

@@ -21,8 +21,12 @@ SECONDS = 60
 """Limit of waiting for what takes a second or two."""
 COMMANDS = ("--help", "query 0 0 0 --format csv", "info")
 needs_modes = pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
-needs_full = pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no such device")
-needs_proc = pytest.mark.skipif(not os.path.exists("/proc/self/task"), reason="needs /proc")
+needs_full = pytest.mark.skipif(
+    not os.path.exists("/dev/full"), reason="no such device"
+)
+needs_proc = pytest.mark.skipif(
+    not os.path.exists("/proc/self/task"), reason="needs /proc"
+)
 
 
 def shell(command, **environment):
@@ -31,13 +35,21 @@ def shell(command, **environment):
         ["bash", "-o", "pipefail", "-c", command],
         capture_output=True,
         stdin=subprocess.DEVNULL,
-        env={name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"} | environment,
+        env={
+            name: value
+            for name, value in os.environ.items()
+            if name != "PYTHONUNBUFFERED"
+        }
+        | environment,
         timeout=SECONDS,
     )
 
 
 def test_the_package_runs_as_the_command_does():
-    alone, named = (shell(f"{sys.executable} -m {name} help exit-codes") for name in ("uplift", "uplift_cli"))
+    alone, named = (
+        shell(f"{sys.executable} -m {name} help exit-codes")
+        for name in ("uplift", "uplift_cli")
+    )
     assert (alone.returncode, alone.stdout, alone.stderr) == (0, named.stdout, b"")
 
 
@@ -51,21 +63,29 @@ def test_closed_pipe_is_not_an_error():
 def test_output_that_cannot_be_written_is_one_line(command):
     done = shell(f"{UPLIFT} {command} >/dev/full")
     assert done.returncode == 2
-    assert done.stderr.startswith(b"error: output cannot be written: No space left on device")
+    assert done.stderr.startswith(
+        b"error: output cannot be written: No space left on device"
+    )
     assert done.stderr.count(b"\n") == 1
 
 
 @pytest.mark.parametrize(
-    ("arguments", "code"), [("0 0 0 >&-", "output"), ("0 0 0 >/dev/full", "output"), ("- <&-", "colour")]
+    ("arguments", "code"),
+    [("0 0 0 >&-", "output"), ("0 0 0 >/dev/full", "output"), ("- <&-", "colour")],
 )
-def test_streams_that_cannot_be_used_are_errors_in_json_for_json_output(arguments, code):
+def test_streams_that_cannot_be_used_are_errors_in_json_for_json_output(
+    arguments, code
+):
     done = shell(f"{UPLIFT} query --format json {arguments}")
     assert done.returncode == 2
     assert json.loads(done.stderr)["error"]["code"] == code
 
 
 def test_swatches_are_for_terminals_with_colours():
-    for variables, coloured in (("TERM=xterm-256color COLORTERM=truecolor", True), ("TERM=xterm NO_COLOR=1", False)):
+    for variables, coloured in (
+        ("TERM=xterm-256color COLORTERM=truecolor", True),
+        ("TERM=xterm NO_COLOR=1", False),
+    ):
         code = f"import pty; pty.spawn({f'{UPLIFT} query 0.2 0.3 0.4'.split()!r})"
         done = shell(f'{variables} {sys.executable} -c "{code}"')
         assert (b"\x1b[48;2;" in done.stdout) == coloured
@@ -79,9 +99,13 @@ def test_closed_streams_that_are_not_needed_do_no_harm(streams):
 
 
 def test_json_is_the_same_on_any_terminal(tmp_path):
-    (tmp_path / "a.csv").write_text("name,400,500,600,700\n青 ΔE00,0.1,0.2,0.3,0.4\n", encoding="utf-8")
+    (tmp_path / "a.csv").write_text(
+        "name,400,500,600,700\n青 ΔE00,0.1,0.2,0.3,0.4\n", encoding="utf-8"
+    )
     command = f"{UPLIFT} atlas {tmp_path}/a.csv --format json"
-    answers = [shell(command, PYTHONIOENCODING=code).stdout for code in ("ascii", "utf-8")]
+    answers = [
+        shell(command, PYTHONIOENCODING=code).stdout for code in ("ascii", "utf-8")
+    ]
     assert [answer.isascii() for answer in answers] == [True, False]
     assert json.loads(answers[0]) == json.loads(answers[1])
 
@@ -90,13 +114,33 @@ def test_json_is_the_same_on_any_terminal(tmp_path):
 def texture(tmp_path):
     """A process that converts two large images on two workers, and has begun with both."""
     for name in ("a.png", "b.png"):
-        Image.fromarray(np.full((4096, 4096, 3), 100, np.uint8)).save(tmp_path / name, compress_level=1)
-    command = [sys.executable, "-m", "uplift_cli", "texture", "a.png", "b.png", "-o", "out", "--processes", "2"]
+        Image.fromarray(np.full((4096, 4096, 3), 100, np.uint8)).save(
+            tmp_path / name, compress_level=1
+        )
+    command = [
+        sys.executable,
+        "-m",
+        "uplift_cli",
+        "texture",
+        "a.png",
+        "b.png",
+        "-o",
+        "out",
+        "--processes",
+        "2",
+    ]
     # A shell without job control starts what runs in its background with SIGINT ignored.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(
+        command, cwd=tmp_path, stderr=subprocess.PIPE, text=True
+    ) as process:
         signal.signal(signal.SIGINT, before)
-        wait_until(lambda: len(list((tmp_path / "out").glob(".*.part"))) == 2 or process.poll() is not None)
+        wait_until(
+            lambda: (
+                len(list((tmp_path / "out").glob(".*.part"))) == 2
+                or process.poll() is not None
+            )
+        )
         yield process
         process.kill()
 
@@ -110,8 +154,14 @@ def wait_until(condition):
 
 def workers_of(process):
     """Processes of Python that the process started, without the tracker of resources."""
-    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
-    return [int(child) for child in children if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes()]
+    children = (
+        Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    )
+    return [
+        int(child)
+        for child in children
+        if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes()
+    ]
 
 
 def is_running(number):
@@ -122,8 +172,12 @@ def is_running(number):
 
 
 @needs_proc
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_signals_end_a_command_and_its_workers_and_leave_no_file(texture, tmp_path, number, code):
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)]
+)
+def test_signals_end_a_command_and_its_workers_and_leave_no_file(
+    texture, tmp_path, number, code
+):
     workers = workers_of(texture)
     assert len(workers) == 2
     texture.send_signal(number)
@@ -140,7 +194,9 @@ def test_a_killed_worker_is_one_line(texture, tmp_path):
     os.kill(workers_of(texture)[0], signal.SIGKILL)
     assert texture.wait(SECONDS) == 2
     (line,) = texture.stderr.read().splitlines()
-    assert line.startswith("error: the workers ended unexpectedly; finished: 0 of 2 textures; ")
+    assert line.startswith(
+        "error: the workers ended unexpectedly; finished: 0 of 2 textures; "
+    )
     assert list((tmp_path / "out").iterdir()) == []
 
 
@@ -152,7 +208,15 @@ def strange_folder(tmp_path):
     """A working folder with a module for each one of Python, and some others, that leave a trace in a file."""
     folder = tmp_path / "strange"
     folder.mkdir()
-    for name in {*sys.stdlib_module_names, "click", "numpy", "jax", "PIL", "matplotlib", "uplift"} - {"__main__"}:
+    for name in {
+        *sys.stdlib_module_names,
+        "click",
+        "numpy",
+        "jax",
+        "PIL",
+        "matplotlib",
+        "uplift",
+    } - {"__main__"}:
         (folder / f"{name}.py").write_text(MARK.format(path=str(tmp_path / "trace")))
     for name in ("a.png", "b.png"):
         Image.fromarray(np.full((2, 2, 3), 100, np.uint8)).save(folder / name)
@@ -160,34 +224,95 @@ def strange_folder(tmp_path):
     assert not (tmp_path / "trace").exists()
 
 
-def test_no_module_of_the_working_folder_is_loaded_by_a_command_and_its_workers(strange_folder, tmp_path):
+def test_no_module_of_the_working_folder_is_loaded_by_a_command_and_its_workers(
+    strange_folder, tmp_path
+):
     script = tmp_path / "uplift"  # as pip installs it
-    script.write_text("from uplift_cli.__main__ import run\nif __name__ == '__main__':\n    run()\n")
-    command = [sys.executable, str(script), "texture", "a.png", "b.png", "-o", "out", "--processes", "2"]
-    subprocess.run(command, cwd=strange_folder, check=True, capture_output=True, timeout=SECONDS)
+    script.write_text(
+        "from uplift_cli.__main__ import run\nif __name__ == '__main__':\n    run()\n"
+    )
+    command = [
+        sys.executable,
+        str(script),
+        "texture",
+        "a.png",
+        "b.png",
+        "-o",
+        "out",
+        "--processes",
+        "2",
+    ]
+    subprocess.run(
+        command, cwd=strange_folder, check=True, capture_output=True, timeout=SECONDS
+    )
     assert len(list(strange_folder.glob("out/*"))) == 2
 
 
-def test_no_module_of_the_working_folder_is_loaded_by_a_command_of_a_module(strange_folder):
-    for name in ("runpy", "importlib", "contextlib", "types", "warnings", "functools"):  # by Python itself, for -m
+def test_no_module_of_the_working_folder_is_loaded_by_a_command_of_a_module(
+    strange_folder,
+):
+    for name in (
+        "runpy",
+        "importlib",
+        "contextlib",
+        "types",
+        "warnings",
+        "functools",
+    ):  # by Python itself, for -m
         (strange_folder / f"{name}.py").unlink(missing_ok=True)
-    command = [sys.executable, "-m", "uplift_cli", "query", "0.1", "0.2", "0.3", "--plot", "plot.png"]
-    subprocess.run(command, cwd=strange_folder, check=True, capture_output=True, timeout=SECONDS)
+    command = [
+        sys.executable,
+        "-m",
+        "uplift_cli",
+        "query",
+        "0.1",
+        "0.2",
+        "0.3",
+        "--plot",
+        "plot.png",
+    ]
+    subprocess.run(
+        command, cwd=strange_folder, check=True, capture_output=True, timeout=SECONDS
+    )
 
 
 @pytest.mark.parametrize(
-    "settings", [b"figure.dpi: 20\nsavefig.dpi: 20\naxes.facecolor: red\n", b"no colon", b"\xff\xfe"]
+    "settings",
+    [
+        b"figure.dpi: 20\nsavefig.dpi: 20\naxes.facecolor: red\n",
+        b"no colon",
+        b"\xff\xfe",
+    ],
 )
 def test_settings_of_matplotlib_are_neither_obeyed_nor_remarked_on(tmp_path, settings):
-    command = [sys.executable, "-m", "uplift_cli", "query", "0.1", "0.2", "0.3", "--plot"]
+    command = [
+        sys.executable,
+        "-m",
+        "uplift_cli",
+        "query",
+        "0.1",
+        "0.2",
+        "0.3",
+        "--plot",
+    ]
     for name, text in (("plain", b""), ("strange", settings)):
         folder = tmp_path / name
         folder.mkdir()
         (folder / "matplotlibrc").write_bytes(text)
-        places = {"MPLCONFIGDIR": str(folder)}  # the folder of the user, and the working folder
-        done = subprocess.run([*command, "a.png"], cwd=folder, env=os.environ | places, check=True, capture_output=True)
+        places = {
+            "MPLCONFIGDIR": str(folder)
+        }  # the folder of the user, and the working folder
+        done = subprocess.run(
+            [*command, "a.png"],
+            cwd=folder,
+            env=os.environ | places,
+            check=True,
+            capture_output=True,
+        )
         assert done.stderr == b"a.png: 1 colour\n"
-    assert (tmp_path / "strange" / "a.png").read_bytes() == (tmp_path / "plain" / "a.png").read_bytes()
+    assert (tmp_path / "strange" / "a.png").read_bytes() == (
+        tmp_path / "plain" / "a.png"
+    ).read_bytes()
 
 
 @pytest.fixture
@@ -195,7 +320,9 @@ def cache(tmp_path, monkeypatch):
     """The user's cache folder, which does not exist yet; the folders above it are the user's alone."""
     monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", "")  # so that it is restored
     monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR")
-    monkeypatch.setattr("platformdirs.user_cache_dir", lambda name: str(tmp_path / "a" / "cache"))
+    monkeypatch.setattr(
+        "platformdirs.user_cache_dir", lambda name: str(tmp_path / "a" / "cache")
+    )
     return tmp_path / "a" / "cache"
 
 
@@ -220,7 +347,9 @@ def test_compiled_code_is_not_kept_where_another_folder_can_take_its_place(cache
     cache.parent.chmod(0o777)
     with warns("warning"):
         assert used_cache() is None
-    cache.parent.chmod(0o1777)  # as /tmp, where users can replace their own folders only
+    cache.parent.chmod(
+        0o1777
+    )  # as /tmp, where users can replace their own folders only
     assert used_cache() == str(cache)
 
 
@@ -235,7 +364,9 @@ def test_jax_uses_the_folder_that_was_checked_not_a_link_to_it(cache, tmp_path):
 def test_a_cache_folder_that_cannot_be_used_is_a_warning(cache, tmp_path, monkeypatch):
     (tmp_path / "loop").symlink_to(tmp_path / "loop")
     for folder in (tmp_path / "loop" / "uplift", f"{tmp_path}/\udcff/uplift"):
-        monkeypatch.setattr("platformdirs.user_cache_dir", lambda name, folder=folder: str(folder))
+        monkeypatch.setattr(
+            "platformdirs.user_cache_dir", lambda name, folder=folder: str(folder)
+        )
         with warns("warning"):
             assert used_cache() is None
 
@@ -245,7 +376,12 @@ BUILD = f"env -u JAX_COMPILATION_CACHE_DIR {UPLIFT} build --dim 2 --prior smooth
 
 def test_compiled_code_that_cannot_be_read_is_removed(tmp_path):
     for damage in (True, False, False):
-        assert shell(f"{BUILD} {tmp_path}/cube.uplift", XDG_CACHE_HOME=str(tmp_path)).returncode == 0
+        assert (
+            shell(
+                f"{BUILD} {tmp_path}/cube.uplift", XDG_CACHE_HOME=str(tmp_path)
+            ).returncode
+            == 0
+        )
         entries = list(tmp_path.glob("uplift/*-cache"))
         assert entries
         for entry in entries if damage else ():
@@ -269,15 +405,22 @@ def test_exchanged_compiled_code_is_removed_with_the_error_that_it_causes(tmp_pa
 def test_compiled_code_of_users_whose_files_their_group_can_write_is_kept(tmp_path):
     found = []
     for _ in range(2):
-        done = shell(f"umask 0002; {BUILD} {tmp_path}/cube.uplift", XDG_CACHE_HOME=f"{tmp_path}/cache")
+        done = shell(
+            f"umask 0002; {BUILD} {tmp_path}/cube.uplift",
+            XDG_CACHE_HOME=f"{tmp_path}/cache",
+        )
         assert (done.returncode, done.stderr) == (0, b"")
-        found.append({entry.stat().st_ino for entry in tmp_path.glob("cache/uplift/*-cache")})
+        found.append(
+            {entry.stat().st_ino for entry in tmp_path.glob("cache/uplift/*-cache")}
+        )
     assert found[0]
     assert found[0] == found[1]
 
 
 def test_a_missing_device_of_jax_is_no_internal_error(tmp_path):
-    done = shell(f"{UPLIFT} build --dim 2 -o {tmp_path}/cube.uplift", JAX_PLATFORMS="cuda")
+    done = shell(
+        f"{UPLIFT} build --dim 2 -o {tmp_path}/cube.uplift", JAX_PLATFORMS="cuda"
+    )
     assert (done.returncode, b"JAX_PLATFORMS=cuda" in done.stderr) == (2, True)
 
 
@@ -293,7 +436,11 @@ def test_a_missing_device_of_jax_is_no_internal_error(tmp_path):
 )
 def test_too_little_memory_is_an_error_not_an_abort(tmp_path, limit, command):
     done = shell(f"cd {tmp_path}; ulimit -v {limit}; {UPLIFT} {command}")
-    assert (done.returncode in (1, 2), done.stderr.count(b"\n"), b"memory" in done.stderr) == (True, 1, True)
+    assert (
+        done.returncode in (1, 2),
+        done.stderr.count(b"\n"),
+        b"memory" in done.stderr,
+    ) == (True, 1, True)
     assert b"version" not in done.stderr  # of a cube's options
 
 
@@ -309,10 +456,14 @@ hashlib.pbkdf2_hmac("sha256", b"", b"", 2**31 - 1)
 
 
 @needs_modes
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)]
+)
 def test_signals_end_compiled_code(number, code):
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    with subprocess.Popen([sys.executable, "-c", DEAF], stdout=subprocess.PIPE) as process:
+    with subprocess.Popen(
+        [sys.executable, "-c", DEAF], stdout=subprocess.PIPE
+    ) as process:
         signal.signal(signal.SIGINT, before)
         process.stdout.readline()
         time.sleep(0.5)  # until the call has begun

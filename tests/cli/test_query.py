@@ -68,7 +68,9 @@ def test_syntax_of_colours(ask, words, rgb):
 def test_several_colours_have_a_row_each(ask, run, refuse, home):
     words = ("#cc3319", "0.8", "0.2", "0.1", "#c31", "0.5,0.5,0.5")
     rows = ask("query", *words)
-    alone = [ask("query", *part) for part in (words[:1], words[1:4], words[4:5], words[5:])]
+    alone = [
+        ask("query", *part) for part in (words[:1], words[1:4], words[4:5], words[5:])
+    ]
     assert [row["rgb"] for row in rows] == [one["rgb"] for one in alone]
     assert run("query", *words, "--plot").stdout.count("#") == 4
     assert (home / "plot.png").is_file()
@@ -99,9 +101,18 @@ def test_whole_numbers_between_commas(ask, refuse, table):
     text = "r,g,b,i,j,k\n0,1,0,3,0,4\n"
     assert ask("query", "--input", table(text))[0]["rgb"] == [0, 1, 0]
     assert ask("query", "--input", table("1,0,0,1\n"))[0]["rgb"] == [1, 0, 0]
-    assert ask("query", "--encoded", "--input", table("0,255,0,25,0,25\n"))[0]["rgb"] == [0, 1, 0]
-    assert [one["rgb"] for one in ask("query", "1,0,0", "0,1,0")] == [[1, 0, 0], [0, 1, 0]]
-    for words in (("0,2,0,3,0,4",), ("1,0,0,0,1,0",), ("0,2,0,3,0,4", "--out-of-gamut", "clip")):
+    assert ask("query", "--encoded", "--input", table("0,255,0,25,0,25\n"))[0][
+        "rgb"
+    ] == [0, 1, 0]
+    assert [one["rgb"] for one in ask("query", "1,0,0", "0,1,0")] == [
+        [1, 0, 0],
+        [0, 1, 0],
+    ]
+    for words in (
+        ("0,2,0,3,0,4",),
+        ("1,0,0,0,1,0",),
+        ("0,2,0,3,0,4", "--out-of-gamut", "clip"),
+    ):
         assert refuse("query", *words).code == "ambiguous-numbers"
 
 
@@ -117,7 +128,9 @@ def test_rounding_is_not_out_of_gamut(run, ask):
 
 
 @pytest.mark.parametrize("command", [("query",), ("bounds",), ("mix",)])
-def test_the_advice_on_colours_outside_the_gamut_works_as_it_stands(run, refuse, command):
+def test_the_advice_on_colours_outside_the_gamut_works_as_it_stands(
+    run, refuse, command
+):
     words = (*command, "1.2,0,0")
     hint = hint_for(refuse(*words))
     option = hint[hint.index("--") :].split()
@@ -125,7 +138,10 @@ def test_the_advice_on_colours_outside_the_gamut_works_as_it_stands(run, refuse,
     assert run(*words, *option).stdout
 
 
-@pytest.mark.parametrize(("method", "rgb"), [("clip", [1, 0.3, 0]), ("desaturate-oklab", [1, 0.4215, 0.1069])])
+@pytest.mark.parametrize(
+    ("method", "rgb"),
+    [("clip", [1, 0.3, 0]), ("desaturate-oklab", [1, 0.4215, 0.1069])],
+)
 def test_out_of_gamut_colours_are_mapped_with_a_warning(run, method, rgb):
     words = ("query", "-", "--out-of-gamut", method)
     result = run(*words, "--format", "json", input="1.4,0.3,-0.1\n#cc3319\n")
@@ -143,7 +159,9 @@ def test_out_of_gamut_colours_are_mapped_with_a_warning(run, method, rgb):
 @pytest.mark.parametrize("name", ["P3-D65", P3])
 def test_colours_of_another_display(ask, name):
     theirs = colour.matrix_RGB_to_RGB("P3-D65", "sRGB")
-    requested = ask("query", "0.5", "0.6", "0.3", "--input-space", name)["requested_rgb"]
+    requested = ask("query", "0.5", "0.6", "0.3", "--input-space", name)[
+        "requested_rgb"
+    ]
     np.testing.assert_allclose(requested, theirs @ [0.5, 0.6, 0.3], rtol=0, atol=3e-4)
     green = ask("query", "0", "1", "0", "--input-space", name, "--out-of-gamut", "clip")
     np.testing.assert_allclose(green["requested_rgb"], theirs[:, 1], rtol=0, atol=3e-4)
@@ -170,12 +188,21 @@ def test_colours_of_another_display(ask, name):
 def test_syntax_of_files(ask, table, text):
     for source in (["--input", table(text)], ["-"], ["--input", "-"]):
         answers = ask("query", *source, input=text.encode())
-        np.testing.assert_array_equal([answer["rgb"] for answer in answers], [[0.8, 0.2, 0.1], [0.1] * 3])
+        np.testing.assert_array_equal(
+            [answer["rgb"] for answer in answers], [[0.8, 0.2, 0.1], [0.1] * 3]
+        )
 
 
 def test_files_of_codes_and_hex(ask, table):
-    answers = ask("query", "--input", table("#cc3319\ncc3319\n204,51,25\n#cc3319,brick\n"), "--encoded")
-    np.testing.assert_allclose([answer["rgb"] for answer in answers], [RED] * 4, rtol=0, atol=1e-15)
+    answers = ask(
+        "query",
+        "--input",
+        table("#cc3319\ncc3319\n204,51,25\n#cc3319,brick\n"),
+        "--encoded",
+    )
+    np.testing.assert_allclose(
+        [answer["rgb"] for answer in answers], [RED] * 4, rtol=0, atol=1e-15
+    )
 
 
 @pytest.mark.parametrize(
@@ -200,7 +227,11 @@ def test_errors_in_files_have_the_line(refuse, table, text, line):
     assert error.where == (str(path) if line is None else f"{path}:{line}")
     assert len(str(error)) < len(str(path)) + 250
     piped = refuse("query", "-", input=path.read_bytes())
-    assert (piped.path, piped.line, piped.problem) == ("standard input", line, error.problem)
+    assert (piped.path, piped.line, piped.problem) == (
+        "standard input",
+        line,
+        error.problem,
+    )
 
 
 def test_files_that_cannot_be_read_are_errors(refuse, home, table):
@@ -212,13 +243,20 @@ def test_files_that_cannot_be_read_are_errors(refuse, home, table):
 
 
 @pytest.mark.parametrize("chunk", [1, 3])
-def test_lines_and_their_numbers_do_not_depend_on_the_blocks(ask, run, table, monkeypatch, chunk):
+def test_lines_and_their_numbers_do_not_depend_on_the_blocks(
+    ask, run, table, monkeypatch, chunk
+):
     monkeypatch.setattr(colours, "CHUNK", chunk)
     path = table("\ufeffr,g,b,\u00e9\r\n0.1,0.2,0.3\r\u0020\n\n0.5,0.5,0.5")
     answers = ask("query", "--input", path)
-    np.testing.assert_array_equal([answer["rgb"] for answer in answers], [[0.1, 0.2, 0.3], [0.5] * 3])
+    np.testing.assert_array_equal(
+        [answer["rgb"] for answer in answers], [[0.1, 0.2, 0.3], [0.5] * 3]
+    )
     path.write_bytes(path.read_bytes() + b"\r\n0.5,0.5")
-    assert f"{path}:6: '0.5,0.5' is not a colour" in run("query", "--input", path, code=2).stderr
+    assert (
+        f"{path}:6: '0.5,0.5' is not a colour"
+        in run("query", "--input", path, code=2).stderr
+    )
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="needs /dev/zero")
@@ -230,14 +268,20 @@ def test_an_endless_line_is_an_error(refuse):
 def test_lines_of_a_stream_are_answered_as_they_come(style):
     words = ["query", "-", "--format", style, "--wavelengths", "500,600"]
     command = [sys.executable, "-m", "uplift_cli", *words]
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment) as query:
+    environment = {
+        name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"
+    }
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment
+    ) as query:
         for line in (b"#cc3319\n", b"0.5,0.5,0.5\n"):
             query.stdin.write(line)
             query.stdin.flush()
             answer = b""
             while answer.count(b"0.") < 2:
-                chunk = query.stdout.read1()  # hangs if the answer waits for the end of the stream
+                chunk = (
+                    query.stdout.read1()
+                )  # hangs if the answer waits for the end of the stream
                 assert chunk
                 answer += chunk
         query.stdin.close()
@@ -250,12 +294,23 @@ def test_colours_by_xyz_and_by_chromaticity(ask):
     assert min(xyz["rgb"]) < 0
     assert xyz["round_trip"]["delta_e_2000"] < 1e-3
     np.testing.assert_allclose(xyz["lights"]["D65"]["xyz"], [0.05, 0.2, 0.1], atol=1e-5)
-    by_xy = ask("query", "--xy", str(0.05 / 0.35), str(0.2 / 0.35), "--luminance", "0.2")
-    np.testing.assert_allclose(by_xy["reflectance"], xyz["reflectance"], rtol=0, atol=1e-6)
+    by_xy = ask(
+        "query", "--xy", str(0.05 / 0.35), str(0.2 / 0.35), "--luminance", "0.2"
+    )
+    np.testing.assert_allclose(
+        by_xy["reflectance"], xyz["reflectance"], rtol=0, atol=1e-6
+    )
 
 
 @pytest.mark.parametrize(
-    "words", ["", "#fff --input a.csv", "#fff --xyz 1 1 1", "--xy 0.3 0.3", "--luminance 0.3 #fff"]
+    "words",
+    [
+        "",
+        "#fff --input a.csv",
+        "#fff --xyz 1 1 1",
+        "--xy 0.3 0.3",
+        "--luminance 0.3 #fff",
+    ],
 )
 def test_exactly_one_source_of_colours(misuse, words):
     misuse("query", *words.split())
@@ -266,18 +321,60 @@ def test_json_has_every_field(ask, macbeth_cube):
     row = cube.data.atlas.names.index("red")
     answer = ask("query", "--cube", macbeth_cube, *cube.data.atlas.rgb[row].tolist())
     assert answer.keys() == {
-        *("cube", "rgb", "requested_rgb", "wavelengths", "reflectance", "xyz", "round_trip", "cell", "status"),
-        *("realisable", "entry", "standard_error", "error_bound", "reference", "standard_errors", "error_bounds"),
-        *("lights", "unlike_atlas", "hsv", "hsl", "yiq", "dominant_wavelength", "complementary", "purity"),
+        *(
+            "cube",
+            "rgb",
+            "requested_rgb",
+            "wavelengths",
+            "reflectance",
+            "xyz",
+            "round_trip",
+            "cell",
+            "status",
+        ),
+        *(
+            "realisable",
+            "entry",
+            "standard_error",
+            "error_bound",
+            "reference",
+            "standard_errors",
+            "error_bounds",
+        ),
+        *(
+            "lights",
+            "unlike_atlas",
+            "hsv",
+            "hsl",
+            "yiq",
+            "dominant_wavelength",
+            "complementary",
+            "purity",
+        ),
     }
-    assert answer["cube"] == {"file": str(macbeth_cube), "dim": cube.data.lattice.dim, "atlases": ["macbeth.txt"]}
-    assert (answer["lights"], answer["standard_errors"], answer["unlike_atlas"]) == ({}, {}, False)
+    assert answer["cube"] == {
+        "file": str(macbeth_cube),
+        "dim": cube.data.lattice.dim,
+        "atlases": ["macbeth.txt"],
+    }
+    assert (answer["lights"], answer["standard_errors"], answer["unlike_atlas"]) == (
+        {},
+        {},
+        False,
+    )
     assert answer["standard_error"] == pytest.approx(cube.data.atlas.error[row])
     assert answer["error_bound"] == pytest.approx(answer["standard_error"])
     assert answer["rgb"] == cube.data.atlas.rgb[row].tolist()
-    np.testing.assert_allclose(answer["reflectance"], cube.reflectance(answer["rgb"]), rtol=0, atol=1e-12)
-    np.testing.assert_allclose(answer["round_trip"]["rgb"], answer["rgb"], rtol=0, atol=1e-6)
-    assert (answer["status"], answer["entry"]) == (["atlas primary", "atlas corner"], "red")
+    np.testing.assert_allclose(
+        answer["reflectance"], cube.reflectance(answer["rgb"]), rtol=0, atol=1e-12
+    )
+    np.testing.assert_allclose(
+        answer["round_trip"]["rgb"], answer["rgb"], rtol=0, atol=1e-6
+    )
+    assert (answer["status"], answer["entry"]) == (
+        ["atlas primary", "atlas corner"],
+        "red",
+    )
 
 
 def test_classical_coordinates(ask):
@@ -293,26 +390,52 @@ def test_classical_coordinates(ask):
 
 def test_csv_has_a_row_per_colour(run, table):
     path = table("0.8,0.2,0.1\n0.1,0.1,0.1\n")
-    text = run("query", "--input", path, "--format", "csv", "--wavelengths", "450,550.5").stdout
+    text = run(
+        "query", "--input", path, "--format", "csv", "--wavelengths", "450,550.5"
+    ).stdout
     header, *rows = csv.reader(io.StringIO(text))
-    assert header == ["r", "g", "b", "delta_e_2000", "standard_error", "error_bound", "entry", "450", "550.5"]
+    assert header == [
+        "r",
+        "g",
+        "b",
+        "delta_e_2000",
+        "standard_error",
+        "error_bound",
+        "entry",
+        "450",
+        "550.5",
+    ]
     expected = uplift.load().reflectance([[0.8, 0.2, 0.1], [0.1] * 3], [450, 550.5])
-    np.testing.assert_allclose([[float(cell) for cell in row[7:]] for row in rows], expected, atol=1e-12)
+    np.testing.assert_allclose(
+        [[float(cell) for cell in row[7:]] for row in rows], expected, atol=1e-12
+    )
     assert [float(cell) for cell in rows[0][:3]] == [0.8, 0.2, 0.1]
     assert rows[0][4:7] == ["", "", ""]
 
 
 def test_standard_errors_under_other_lights(ask, run, table, macbeth_cube):
     cube, rgb, lights = uplift.load(macbeth_cube), [0.8, 0.2, 0.1], ("FL11", "HP1")
-    words = ["--cube", macbeth_cube, *(word for light in lights for word in ("--light", light))]
-    expected = {light: pytest.approx(float(cube.standard_error(rgb, light))) for light in lights}
-    bounds = {light: pytest.approx(float(cube.error_bound(rgb, light))) for light in lights}
+    words = [
+        "--cube",
+        macbeth_cube,
+        *(word for light in lights for word in ("--light", light)),
+    ]
+    expected = {
+        light: pytest.approx(float(cube.standard_error(rgb, light))) for light in lights
+    }
+    bounds = {
+        light: pytest.approx(float(cube.error_bound(rgb, light))) for light in lights
+    }
     answer = ask("query", *rgb, *words)
     assert (answer["standard_errors"], answer["error_bounds"]) == (expected, bounds)
     file = table("0.8,0.2,0.1\n0,1,0\n")
-    rows = csv.DictReader(io.StringIO(run("query", "--input", file, "--format", "csv", *words).stdout))
+    rows = csv.DictReader(
+        io.StringIO(run("query", "--input", file, "--format", "csv", *words).stdout)
+    )
     row = next(rows)
-    assert {light: float(row[f"standard_error_{light}"]) for light in lights} == expected
+    assert {
+        light: float(row[f"standard_error_{light}"]) for light in lights
+    } == expected
     assert {light: float(row[f"error_bound_{light}"]) for light in lights} == bounds
     text = run("query", "--input", file, *words).stdout
     assert "unlike the atlas" in text
@@ -349,13 +472,31 @@ def test_wavelengths(ask, text, expected):
     assert len(answer["reflectance"]) == len(expected)
 
 
-def test_stored_answers_are_checked(run, refuse, misuse, home, small_cube, plain_cube, table):
+def test_stored_answers_are_checked(
+    run, refuse, misuse, home, small_cube, plain_cube, table
+):
     small_cube.save(home / "a.uplift")
     plain_cube.save(home / "b.uplift")
     colours = table("0.2,0.3,0.4\n0.5,0.1,0.7\n")
-    (home / "answers.csv").write_text(run("query", "--cube", "a.uplift", "--input", colours, "--format", "csv").stdout)
-    assert "passed, 0 of 2" in run("query", "--cube", "a.uplift", "--check", "answers.csv").stdout
-    failed = json.loads(run("query", "--cube", "b.uplift", "--check", "answers.csv", "--format", "json", code=1).stdout)
+    (home / "answers.csv").write_text(
+        run("query", "--cube", "a.uplift", "--input", colours, "--format", "csv").stdout
+    )
+    assert (
+        "passed, 0 of 2"
+        in run("query", "--cube", "a.uplift", "--check", "answers.csv").stdout
+    )
+    failed = json.loads(
+        run(
+            "query",
+            "--cube",
+            "b.uplift",
+            "--check",
+            "answers.csv",
+            "--format",
+            "json",
+            code=1,
+        ).stdout
+    )
     assert (failed["passed"], failed["colours"]) == (False, 2)
     assert failed["largest"] > failed["tolerance"]
     run("query", "--cube", "b.uplift", "--check", "answers.csv", "--tolerance", "1")
@@ -382,6 +523,8 @@ def test_plot(run, refuse, home, table):
 
 
 def test_a_light_is_named_once_in_a_line(run, macbeth_cube):
-    lines = run("query", "--cube", macbeth_cube, "0.2", "0.3", "0.4", "--light", "A").stdout.splitlines()
+    lines = run(
+        "query", "--cube", macbeth_cube, "0.2", "0.3", "0.4", "--light", "A"
+    ).stdout.splitlines()
     named = [line.split().count("A") + line.count("(A)") for line in lines]
     assert sorted(set(named)) == [0, 1]

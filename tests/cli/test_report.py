@@ -19,7 +19,9 @@ def cube(home, cubes, macbeth):
 
 def test_page_is_written_to_the_working_folder(run, home, cube):
     result = run("report", cube)
-    assert result.stdout.startswith("macbeth-8.html: 0 nodes over the threshold, 24 entries, ")
+    assert result.stdout.startswith(
+        "macbeth-8.html: 0 nodes over the threshold, 24 entries, "
+    )
     assert result.stderr == ""
     text = (home / "macbeth-8.html").read_text(encoding="utf-8")
     assert text.startswith("<!DOCTYPE html>")

@@ -15,23 +15,44 @@ from .conftest import warning_lines
 @pytest.fixture
 def scene(home, small_cube):
     """The ColorChecker cube restricted to dark colours."""
-    write(with_absent_points(small_cube.data, near_black(small_cube.data)), home / "dark.uplift")
+    write(
+        with_absent_points(small_cube.data, near_black(small_cube.data)),
+        home / "dark.uplift",
+    )
     return home / "dark.uplift"
 
 
 def test_summary_counts_nodes_and_default_name_has_scene(run, ask, home, macbeth):
     for name, value in (("a.exr", 0.1), ("b.1.exr", 0.2), ("b.2.exr", 0.9)):
         write_exr(home / name, planes(np.full((4, 4, 3), value, np.float32)))
-    result = run("build", "--atlas", macbeth, "--dim", 8, "--scene", "a.exr", "--scene", "b.*.exr", "-v")
+    result = run(
+        "build",
+        "--atlas",
+        macbeth,
+        "--dim",
+        8,
+        "--scene",
+        "a.exr",
+        "--scene",
+        "b.*.exr",
+        "-v",
+    )
     data = read(home / "macbeth-8-scene.uplift")
     count = int(data.points.present.sum())
     assert 16 <= count < 300
-    assert f"macbeth-8-scene.uplift: {count} of 512 nodes ({count / 512:.1%})" in result.stdout
+    assert (
+        f"macbeth-8-scene.uplift: {count} of 512 nodes ({count / 512:.1%})"
+        in result.stdout
+    )
     assert "reading images: 0 of 3" in result.stderr
     names = [image["name"] for image in data.provenance["scene"]]
     assert names == ["a.exr", "b.1.exr", "b.2.exr"]
     facts = ask("info", "macbeth-8-scene.uplift")
-    assert (facts["nodes"], facts["lattice_nodes"], facts["status"]["absent"]) == (count, 512, 512 - count)
+    assert (facts["nodes"], facts["lattice_nodes"], facts["status"]["absent"]) == (
+        count,
+        512,
+        512 - count,
+    )
     run("check", "macbeth-8-scene.uplift", "--atlas-dir", macbeth.parent)
 
 
@@ -51,8 +72,14 @@ def test_queries_of_other_colours_are_errors_unless_filled(run, refuse, scene):
     result = run(*words, input="0,1,0\n0.001,0.002,0.001\n")
     (warning,) = warning_lines(result)
     assert "1 of 2" in warning
-    assert all(answer["round_trip"]["delta_e_2000"] < 1e-3 for answer in json.loads(result.stdout))
-    assert run("query", "--cube", scene, "--fill-missing", 0.001, 0.002, 0.001).stderr == ""
+    assert all(
+        answer["round_trip"]["delta_e_2000"] < 1e-3
+        for answer in json.loads(result.stdout)
+    )
+    assert (
+        run("query", "--cube", scene, "--fill-missing", 0.001, 0.002, 0.001).stderr
+        == ""
+    )
 
 
 def test_exports_of_all_colours_are_errors_unless_filled(run, refuse, scene, home):

@@ -16,7 +16,10 @@ def cube(home):
 
 def test_slices_and_sheet(run, cube, home):
     result = run("slices", cube, "-o", "out.exr", "--plot", "sheet.png")
-    assert result.stdout.splitlines() == ["out.exr: 4 blue slices", "sheet.png: contact sheet"]
+    assert result.stdout.splitlines() == [
+        "out.exr: 4 blue slices",
+        "sheet.png: contact sheet",
+    ]
     assert len(OpenEXR.File("out.exr").parts) == 4
     assert (home / "sheet.png").read_bytes().startswith(b"\x89PNG")
 
@@ -39,6 +42,9 @@ def test_bad_input_is_refused(run, refuse, cube, home):
     assert refuse("slices", "missing.uplift", "-o", "out.exr").code == "file-not-found"
     for exists, other in (("out.exr", "sheet.png"), ("sheet.png", "out.exr")):
         (home / exists).write_text("old")
-        assert refuse("slices", cube, "-o", "out.exr", "--plot", "sheet.png").where == exists
+        assert (
+            refuse("slices", cube, "-o", "out.exr", "--plot", "sheet.png").where
+            == exists
+        )
         assert not (home / other).exists()
         (home / exists).unlink()

@@ -23,7 +23,9 @@ def tcs(repository):
 @pytest.fixture
 def rows(run):
     """Rows of the CSV on standard output."""
-    return lambda *args: list(csv.DictReader(io.StringIO(run("study", *args, "--format", "csv").stdout)))
+    return lambda *args: list(
+        csv.DictReader(io.StringIO(run("study", *args, "--format", "csv").stdout))
+    )
 
 
 def compute_once(monkeypatch, module, name):
@@ -54,12 +56,24 @@ def test_moments(run, rows, home, macbeth, tcs, monkeypatch):
     words = ("moments", "--atlas", macbeth, "--atlas", tcs, "--max-moments", 9)
     monkeypatch.setenv("COLUMNS", "120")  # one part
     table = run("study", *words, "-o", "out")
-    check_plots(home / "out", ["moments.png", "moments-patches.png", "moments-worst.png"], table.stderr)
+    check_plots(
+        home / "out",
+        ["moments.png", "moments-patches.png", "moments-worst.png"],
+        table.stderr,
+    )
     found = rows(*words)
     assert len(found) == 3 * 4 * 10
     key = ("macbeth", "True", "False", "8")
-    (nine,) = [row for row in found if (row["atlas"], row["mirrored"], row["warped"], row["moments"]) == key]
-    assert (nine["entries"], nine["floats"], nine["worst"]) == ("24", "9", "blue flower")
+    (nine,) = [
+        row
+        for row in found
+        if (row["atlas"], row["mirrored"], row["warped"], row["moments"]) == key
+    ]
+    assert (nine["entries"], nine["floats"], nine["worst"]) == (
+        "24",
+        "9",
+        "blue flower",
+    )
     assert float(nine["delta_e_76_D65_mean"]) == pytest.approx(0.54, abs=0.01)
     assert float(nine["delta_e_76_D65_max"]) == pytest.approx(1.22, abs=0.01)
     assert as_text(json.loads(run("study", *words, "--format", "json").stdout)) == found
@@ -67,12 +81,19 @@ def test_moments(run, rows, home, macbeth, tcs, monkeypatch):
     assert set("0123456789") <= set(words)
 
 
-def test_default_atlases_are_those_of_the_working_folder_or_the_shipped_ones(rows, home, tcs):
+def test_default_atlases_are_those_of_the_working_folder_or_the_shipped_ones(
+    rows, home, tcs
+):
     shipped = {path.stem for path in tcs.parent.glob("*.txt")}
-    assert {row["atlas"] for row in rows("moments", "--max-moments", 0)} == {"all"} | shipped
+    assert {row["atlas"] for row in rows("moments", "--max-moments", 0)} == {
+        "all"
+    } | shipped
     (home / "atlases").mkdir()
     shutil.copy(tcs, home / "atlases")
-    assert {row["atlas"] for row in rows("moments", "--max-moments", 0)} == {"all", "tcs"}
+    assert {row["atlas"] for row in rows("moments", "--max-moments", 0)} == {
+        "all",
+        "tcs",
+    }
 
 
 def test_held_out_has_the_same_numbers_in_all_formats(run, rows, macbeth, monkeypatch):
@@ -81,7 +102,9 @@ def test_held_out_has_the_same_numbers_in_all_formats(run, rows, macbeth, monkey
     objects = json.loads(run("study", *args, "--format", "json").stdout)
     assert [one["cube"] for one in objects] == METHODS
     assert all(one["atlas"] == "macbeth" and 0 < one["rms"] < 0.5 for one in objects)
-    assert [float(row["FL11"]) for row in rows(*args)] == pytest.approx([one["FL11"] for one in objects])
+    assert [float(row["FL11"]) for row in rows(*args)] == pytest.approx(
+        [one["FL11"] for one in objects]
+    )
     table = run("study", *args)
     assert table.stderr == ""
     assert f"{objects[0]['A']:.3g}" in table.stdout
@@ -96,10 +119,16 @@ def test_stability(run, rows, home, monkeypatch, tcs):
     words = ("stability", "--quick", "--atlas", tcs)
     result = run("study", *words, "-o", "out")
     check_plots(home / "out", ["stability.png"], result.stderr)
-    assert re.fullmatch(r"\d builds, \d+ realisable nodes: 0 unfitted in 0 builds", result.stdout.splitlines()[-1])
+    assert re.fullmatch(
+        r"\d builds, \d+ realisable nodes: 0 unfitted in 0 builds",
+        result.stdout.splitlines()[-1],
+    )
     found = rows(*words)
     assert {row["atlas"] for row in found} == {"none", "tcs"}
-    assert all(float(row["success"]) == 1 and float(row["worst"]) <= float(row["threshold"]) for row in found)
+    assert all(
+        float(row["success"]) == 1 and float(row["worst"]) <= float(row["threshold"])
+        for row in found
+    )
 
 
 def test_sensitivity_of_a_stored_cube(run, home, cubes):

@@ -17,7 +17,10 @@ def frames(home):
     """Three frames of 6 × 5 pixels, the second out of gamut."""
     rng = np.random.default_rng(0)
     for frame in range(3):
-        write_exr(home / f"shot.{frame}.exr", planes(rng.random((6, 5, 3)).astype(np.float32) + (frame == 1)))
+        write_exr(
+            home / f"shot.{frame}.exr",
+            planes(rng.random((6, 5, 3)).astype(np.float32) + (frame == 1)),
+        )
     return home
 
 
@@ -26,10 +29,15 @@ def test_one_image(run, refuse, frames, cubes):
     result = run("texture", "shot.0.exr", "-o", "out.exr", *options)
     assert result.output.startswith("out.exr: 1 texture, 30 pixels, 0.0 MB, ")
     assert "moment.08" in OpenEXR.File("out.exr", separate_channels=True).channels()
-    assert refuse("texture", "shot.0.exr", "-o", "out.exr", *options).code == "file-exists"
+    assert (
+        refuse("texture", "shot.0.exr", "-o", "out.exr", *options).code == "file-exists"
+    )
     result = run("texture", "shot.0.exr", "-o", "out.exr", *options, "--resume")
     assert result.output.startswith("out.exr: 0 textures, 1 skipped, ")
-    assert run("texture", "shot.0.exr", "-o", "out.exr", *options, "--force", "-q").output == ""
+    assert (
+        run("texture", "shot.0.exr", "-o", "out.exr", *options, "--force", "-q").output
+        == ""
+    )
 
 
 def test_sequences_continue_after_an_invalid_image(run, shown, frames, cubes):
@@ -43,18 +51,37 @@ def test_sequences_continue_after_an_invalid_image(run, shown, frames, cubes):
     assert re.search(r"shot\.1\.exr: \d+ of 30 pixels .* by up to 0\.9", warning)
     error = shown.pop().error
     assert (error.code, error.path.name) == ("texture", "shot.2.exr")
-    assert sorted(path.name for path in (frames / "out").iterdir()) == ["shot.0.exr", "shot.1.exr"]
+    assert sorted(path.name for path in (frames / "out").iterdir()) == [
+        "shot.0.exr",
+        "shot.1.exr",
+    ]
 
 
 def test_masks_choose_among_cubes(run, refuse, misuse, frames, cubes):
-    two = ("--cube", cubes / "moments-8.uplift", "--cube", cubes / "moments-8-macbeth.uplift")
+    two = (
+        "--cube",
+        cubes / "moments-8.uplift",
+        "--cube",
+        cubes / "moments-8-macbeth.uplift",
+    )
     options = ("--mask", "mask.exr", *two, "--representation", "moments")
     for weight in (0.25, 0.5):  # a changed mask makes the texture out of date
         write_exr(frames / "mask.exr", {"Y": np.full((6, 5), weight, dtype=np.float32)})
         converter_for.cache_clear()  # as of another process
-        result = run("texture", "shot.0.exr", "-o", "mixed.exr", *options, "--resume", "--force")
+        result = run(
+            "texture", "shot.0.exr", "-o", "mixed.exr", *options, "--resume", "--force"
+        )
         assert result.output.startswith("mixed.exr: 1 texture, ")
-    assert "0 textures, 1 skipped" in run("texture", "shot.0.exr", "-o", "mixed.exr", *options, "--resume").output
-    assert refuse("texture", "shot.0.exr", "-o", "mask.exr", *options, "--force").code == "output-is-input"
-    assert "at least two cubes" in refuse("texture", "shot.0.exr", "-o", "one.exr", *options[:4]).problem
+    assert (
+        "0 textures, 1 skipped"
+        in run("texture", "shot.0.exr", "-o", "mixed.exr", *options, "--resume").output
+    )
+    assert (
+        refuse("texture", "shot.0.exr", "-o", "mask.exr", *options, "--force").code
+        == "output-is-input"
+    )
+    assert (
+        "at least two cubes"
+        in refuse("texture", "shot.0.exr", "-o", "one.exr", *options[:4]).problem
+    )
     assert "--mask" in misuse("texture", "shot.0.exr", "-o", "one.exr", *two)

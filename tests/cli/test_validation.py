@@ -289,12 +289,18 @@ def files(home, repository):
     shutil.copy(home / "macbeth.txt", home / "copy")
     for name in ("broken.png", "mine", "taken/compare.html"):
         (home / name).write_text("")
-    (home / "two.csv").write_text("name,400,550,700\none,0.5,0.5,0.5\nother,0.4,0.4,0.4\n")
+    (home / "two.csv").write_text(
+        "name,400,550,700\none,0.5,0.5,0.5\nother,0.4,0.4,0.4\n"
+    )
     (home / "palette.toml").write_text(PALETTE)
     (home / "scene.toml").write_text('textures = ["wood.png", "none.png"]\n')
     measured = 'atlas = "paints.xlsx", entry = "x"'
-    (home / "spreadsheet.toml").write_text(PALETTE.replace("rgb = [0.5, 0.5, 0.5]", measured))
-    (home / "spreadsheet-scene.toml").write_text('textures = ["wood.png"]\natlases = ["paints.xlsx"]\n')
+    (home / "spreadsheet.toml").write_text(
+        PALETTE.replace("rgb = [0.5, 0.5, 0.5]", measured)
+    )
+    (home / "spreadsheet-scene.toml").write_text(
+        'textures = ["wood.png"]\natlases = ["paints.xlsx"]\n'
+    )
     return {path.name for path in home.iterdir()}
 
 
@@ -304,7 +310,9 @@ def lines(text):
 
 def command_of(line):
     """The words of the command of a line."""
-    return max((path for path in commands(main) if f"{line} ".startswith(f"{path} ")), key=len)
+    return max(
+        (path for path in commands(main) if f"{line} ".startswith(f"{path} ")), key=len
+    )
 
 
 @pytest.fixture
@@ -335,8 +343,13 @@ def test_every_command_has_a_line():
     assert {*tested, *WITHOUT_ROWS, *GROUPS} == set(commands(main))
 
 
-@pytest.mark.parametrize(("package", "line"), [(name, line) for name, text in PACKAGES.items() for line in lines(text)])
-def test_missing_packages_are_named_before_anything_is_computed_or_written(refuse_at_once, monkeypatch, package, line):
+@pytest.mark.parametrize(
+    ("package", "line"),
+    [(name, line) for name, text in PACKAGES.items() for line in lines(text)],
+)
+def test_missing_packages_are_named_before_anything_is_computed_or_written(
+    refuse_at_once, monkeypatch, package, line
+):
     monkeypatch.setitem(sys.modules, package, None)
     error = refuse_at_once(line)
     assert error.code == "extra-not-installed"
@@ -344,8 +357,15 @@ def test_missing_packages_are_named_before_anything_is_computed_or_written(refus
 
 
 def test_every_figure_has_a_line():
-    options = {words for line in lines(UNPLOTTED) for words in itertools.product([command_of(line)], line.split())}
+    options = {
+        words
+        for line in lines(UNPLOTTED)
+        for words in itertools.product([command_of(line)], line.split())
+    }
     for path, command in commands(main).items():
         for param in command.params:
             if param.type in (PLOT, FIGURE_PAGE, SHEET):
-                assert any((path, option) in options for option in param.opts), (path, param.opts)
+                assert any((path, option) in options for option in param.opts), (
+                    path,
+                    param.opts,
+                )

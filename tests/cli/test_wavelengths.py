@@ -8,7 +8,9 @@ import pytest
 @pytest.fixture
 def choose(run, macbeth):
     """Standard output for the ColorChecker."""
-    return lambda *args, **options: run("wavelengths", "--atlas", macbeth, *args, **options).stdout
+    return lambda *args, **options: (
+        run("wavelengths", "--atlas", macbeth, *args, **options).stdout
+    )
 
 
 @pytest.fixture
@@ -18,7 +20,18 @@ def answer(ask, macbeth):
 
 
 def test_plot(choose, home):
-    choose("--count", 4, "--light", "A", "--light", "FL11", "--plot", "a.png", "--method", "bins")
+    choose(
+        "--count",
+        4,
+        "--light",
+        "A",
+        "--light",
+        "FL11",
+        "--plot",
+        "a.png",
+        "--method",
+        "bins",
+    )
     picture = matplotlib.image.imread(home / "a.png")
     assert picture.shape[0] > 400
     assert picture[..., :3].std() > 0.05
@@ -50,7 +63,9 @@ def test_orders_of_the_channels(answer):
     found = answer("--orders", 3, 2, 1, "--light", "C")
     assert (found["count"], found["method"]) == (6, "meyer")
     np.testing.assert_allclose(
-        answer("--count", 4, "--method", "meyer", "--light", "C")["wavelengths"], [456.4, 490.9, 557.7, 631.4], atol=0.1
+        answer("--count", 4, "--method", "meyer", "--light", "C")["wavelengths"],
+        [456.4, 490.9, 557.7, 631.4],
+        atol=0.1,
     )
     cones = answer("--orders", 3, 2, 1, "--channels", "cones", "--light", "C")
     assert cones["wavelengths"] != found["wavelengths"]

@@ -18,5 +18,10 @@ def test_colours_and_pages_without_figures_need_no_matplotlib(tmp_path, cubes):
         f"relight -o page.html --cube {cube} --light A",
         "bounds #888 --html look.html",
     )
-    subprocess.run([sys.executable, "-c", WITHOUT, *lines], cwd=tmp_path, check=True, capture_output=True)
+    subprocess.run(
+        [sys.executable, "-c", WITHOUT, *lines],
+        cwd=tmp_path,
+        check=True,
+        capture_output=True,
+    )
     assert {path.name for path in tmp_path.iterdir()} == {"page.html", "look.html"}

@@ -24,14 +24,30 @@ def write(folder, text):
 
 @pytest.mark.parametrize(("camera", "illuminant"), [(NIKON, "A"), (SIGMA, "D65")])
 def test_raw_values_are_sums_of_sensitivities_balanced_to_white(camera, illuminant):
-    sensor, reflectance = observer.sensor(CAMERA, illuminant, camera), np.random.default_rng(1).random(81)
-    power = colour.SDS_ILLUMINANTS[illuminant].copy().align(colour.SpectralShape(380, 780, 5)).values
+    sensor, reflectance = (
+        observer.sensor(CAMERA, illuminant, camera),
+        np.random.default_rng(1).random(81),
+    )
+    power = (
+        colour.SDS_ILLUMINANTS[illuminant]
+        .copy()
+        .align(colour.SpectralShape(380, 780, 5))
+        .values
+    )
     table = colour.MSDS_CAMERA_SENSITIVITIES[camera]  # every 5 or 10 nm
-    given = {float(nm): row for nm, row in zip(table.wavelengths, table.values, strict=True)}
+    given = {
+        float(nm): row for nm, row in zip(table.wavelengths, table.values, strict=True)
+    }
     raw, white = np.zeros(3), np.zeros(3)
     for nm, light, value in zip(range(380, 781, 5), power, reflectance, strict=True):
-        near = [given[float(each)] for each in (nm - nm % 10, nm + -nm % 10) if float(each) in given]
-        row = given.get(float(nm), np.mean(near, axis=0) if len(near) == 2 else np.zeros(3))
+        near = [
+            given[float(each)]
+            for each in (nm - nm % 10, nm + -nm % 10)
+            if float(each) in given
+        ]
+        row = given.get(
+            float(nm), np.mean(near, axis=0) if len(near) == 2 else np.zeros(3)
+        )
         raw, white = raw + light * value * row, white + light * row
     np.testing.assert_allclose(sensor.rgb(reflectance), raw / white, rtol=1e-12)
     assert (sensor.space, sensor.observer) == (camera, observer.DEFAULT_OBSERVER)
@@ -42,18 +58,33 @@ def test_raw_values_are_sums_of_sensitivities_balanced_to_white(camera, illumina
 
 def test_the_matrix_of_a_camera_that_sees_as_the_observer_is_known():
     mixed = np.array([[0.9, 0.1, 0.02], [0.05, 0.8, 0.1], [0.01, 0.05, 0.95]])
-    sensor = observer.sensor(CAMERA, "A", Camera("luther", observer.grid(), observer.matching_functions() @ mixed.T))
+    sensor = observer.sensor(
+        CAMERA,
+        "A",
+        Camera("luther", observer.grid(), observer.matching_functions() @ mixed.T),
+    )
     expected = mixed / (mixed @ sensor.light.white)[:, None]
     np.testing.assert_allclose(sensor.xyz_to_rgb, expected, rtol=1e-9, atol=1e-12)
     reflectance = np.random.default_rng(2).random((5, 81))
-    np.testing.assert_allclose(sensor.xyz(sensor.rgb(reflectance)), reflectance @ sensor.light.xyz.T, rtol=1e-9)
+    np.testing.assert_allclose(
+        sensor.xyz(sensor.rgb(reflectance)), reflectance @ sensor.light.xyz.T, rtol=1e-9
+    )
 
 
 def test_a_file_is_read(tmp_path):
     camera = read_camera(write(tmp_path, TABLE))
     assert (camera.name, camera.wavelengths.tolist()) == ("mine", [400, 500, 600, 700])
-    assert camera.sensitivities.tolist() == [[0, 0, 0.5], [0, 1, 0.25], [0.5, 0.25, 0], [0.25, 0, 0]]
-    assert camera.at([399, 450, 701]).tolist() == [[0, 0, 0], [0, 0.5, 0.375], [0, 0, 0]]
+    assert camera.sensitivities.tolist() == [
+        [0, 0, 0.5],
+        [0, 1, 0.25],
+        [0.5, 0.25, 0],
+        [0.25, 0, 0],
+    ]
+    assert camera.at([399, 450, 701]).tolist() == [
+        [0, 0, 0],
+        [0, 0.5, 0.375],
+        [0, 0, 0],
+    ]
     assert observer.sensor(CAMERA, observer=str(tmp_path / "mine.csv")).space == "mine"
 
 
@@ -73,14 +104,22 @@ def test_tables_of_any_spreadsheet(tmp_path, text, encoding):
     path.write_text(text, encoding=encoding)
     camera = read_camera(path)
     assert camera.wavelengths.tolist() == [400, 500, 600, 700]
-    assert camera.sensitivities.tolist() == [[0, 0, 0.5], [0, 1, 0.25], [0.5, 0.25, 0], [0.125, 0, 0]]
+    assert camera.sensitivities.tolist() == [
+        [0, 0, 0.5],
+        [0, 1, 0.25],
+        [0.5, 0.25, 0],
+        [0.125, 0, 0],
+    ]
 
 
 ROWS = {"400": [0, 0, 2], "500": [0, 4, 1], "600": [2, 1, 0]}
 
 
 def json_of(labels, rows):
-    return {"header": {"model": "x"}, "spectral_data": {"index": {"main": labels}, "data": {"main": rows}}}
+    return {
+        "header": {"model": "x"},
+        "spectral_data": {"index": {"main": labels}, "data": {"main": rows}},
+    }
 
 
 @pytest.mark.parametrize(
@@ -88,7 +127,12 @@ def json_of(labels, rows):
     [
         json_of(["R", "G", "B"], ROWS),
         json_of(["B", "G", "R"], {nm: row[::-1] for nm, row in reversed(ROWS.items())}),
-        {"maker": "x", "model": "y", "range": [400, 600, 100], "sensitivity": list(ROWS.values())},
+        {
+            "maker": "x",
+            "model": "y",
+            "range": [400, 600, 100],
+            "sensitivity": list(ROWS.values()),
+        },
     ],
 )
 def test_json_of_rawtoaces(tmp_path, table):
@@ -164,7 +208,9 @@ def test_a_camera_and_its_space_require_each_other():
         observer.sensor(CAMERA)
     nikon = observer.find_camera(NIKON)
     with raises(OptionError, "option"):
-        observer.sensor(CAMERA, observer=Camera("sRGB", nikon.wavelengths, nikon.sensitivities))
+        observer.sensor(
+            CAMERA, observer=Camera("sRGB", nikon.wavelengths, nikon.sensitivities)
+        )
     with raises(OptionError, "file-not-found"):
         observer.sensor(CAMERA, observer="missing.csv")
 

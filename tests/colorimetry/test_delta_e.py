@@ -11,14 +11,18 @@ from uplift.colorimetry.delta_e import delta_e_2000, lab, lab_to_xyz
 from uplift.colorimetry.dominant import GREY, dominant_wavelength
 
 PAIRS = np.loadtxt(
-    Path(__file__).parents[1] / "reference" / "ciede2000_sharma2005.csv", delimiter=",", comments=("#", "L1")
+    Path(__file__).parents[1] / "reference" / "ciede2000_sharma2005.csv",
+    delimiter=",",
+    comments=("#", "L1"),
 )
 
 
 def test_published_pairs_of_sharma_2005():
     assert len(PAIRS) == 34
     for first, second in ((PAIRS[:, :3], PAIRS[:, 3:6]), (PAIRS[:, 3:6], PAIRS[:, :3])):
-        np.testing.assert_allclose(delta_e_2000(first, second), PAIRS[:, 6], atol=5.1e-5)
+        np.testing.assert_allclose(
+            delta_e_2000(first, second), PAIRS[:, 6], atol=5.1e-5
+        )
 
 
 def test_delta_e_2000_agrees_with_colour_science():
@@ -35,11 +39,15 @@ def test_lab_agrees_with_colour_science_and_is_invertible(name):
     white = colour.xy_to_XYZ(xy)
     xyz = np.random.default_rng(4).uniform(-0.01, 1, (500, 3))
     xyz[0] = 0
-    np.testing.assert_allclose(lab(xyz, white), colour.XYZ_to_Lab(xyz, xy), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(
+        lab(xyz, white), colour.XYZ_to_Lab(xyz, xy), rtol=1e-9, atol=1e-9
+    )
     np.testing.assert_allclose(lab_to_xyz(lab(xyz, white), white), xyz, atol=1e-14)
 
 
-@pytest.mark.parametrize("name", [observer.DEFAULT_OBSERVER, "CIE 2015 2 Degree Standard Observer"])
+@pytest.mark.parametrize(
+    "name", [observer.DEFAULT_OBSERVER, "CIE 2015 2 Degree Standard Observer"]
+)
 def test_spectral_colours_and_their_tints(name):
     """A mixture of white and one wavelength has that wavelength, and the purity of the distances in x, y."""
     sensor = observer.sensor(observer=name)
@@ -67,7 +75,9 @@ def test_dominant_wavelengths_agree_with_colour_science(sensor):
         assert found.complementary == (theirs < 0)
         assert found.wavelength == pytest.approx(abs(float(theirs)), abs=1.0)
         if not found.complementary:
-            assert found.purity == pytest.approx(colour.excitation_purity(xy, white), abs=5e-3)
+            assert found.purity == pytest.approx(
+                colour.excitation_purity(xy, white), abs=5e-3
+            )
     assert kinds == {True, False}
 
 

@@ -27,8 +27,12 @@ def test_errors_of_any_tail_are_covered(tail):
     known, unknown = np.abs(rng.standard_t(tail, (2, 1500)))
     learnt = expected_error(places, known, np.zeros(1500))
     expected = np.sqrt(learnt(queried)[:, 0])
-    assert (unknown <= learnt.radii[0] * expected).mean() == pytest.approx(0.68, abs=0.04)
-    assert (unknown <= learnt.radii[1] * expected).mean() == pytest.approx(0.95, abs=0.02)
+    assert (unknown <= learnt.radii[0] * expected).mean() == pytest.approx(
+        0.68, abs=0.04
+    )
+    assert (unknown <= learnt.radii[1] * expected).mean() == pytest.approx(
+        0.95, abs=0.02
+    )
     assert (learnt.radii[1] > 2.5 * learnt.radii[0]) == (tail == 3)
 
 
@@ -39,17 +43,27 @@ def test_errors_are_weighted_sums(monkeypatch):
     squares = learnt.columns[:, 0]
 
     def plain(weights):
-        spread = (weights @ squares + PRIOR_COUNT * squares.mean()) / (weights.sum(axis=1) + PRIOR_COUNT)
+        spread = (weights @ squares + PRIOR_COUNT * squares.mean()) / (
+            weights.sum(axis=1) + PRIOR_COUNT
+        )
         return (1 - weights.max(axis=1) ** 2), spread
 
     monkeypatch.setattr(module, "BLOCK_NUMBERS", 50)
     distances = cdist(queried, PLACES)
-    np.testing.assert_allclose(learnt(queried)[:, 0], np.multiply(*plain(np.exp(-distances / LENGTH))), rtol=1e-12)
-    np.testing.assert_allclose(nearest_distances(queried, PLACES), distances.min(axis=1), rtol=1e-12)
+    np.testing.assert_allclose(
+        learnt(queried)[:, 0],
+        np.multiply(*plain(np.exp(-distances / LENGTH))),
+        rtol=1e-12,
+    )
+    np.testing.assert_allclose(
+        nearest_distances(queried, PLACES), distances.min(axis=1), rtol=1e-12
+    )
     others = np.exp(-cdist(PLACES, PLACES) / LENGTH)
     np.fill_diagonal(others, 0)
     variance, spread = plain(others)
-    np.testing.assert_allclose(learnt.left_out[:, 0], np.maximum(variance, 0.02) * spread, rtol=1e-12)
+    np.testing.assert_allclose(
+        learnt.left_out[:, 0], np.maximum(variance, 0.02) * spread, rtol=1e-12
+    )
 
 
 @pytest.mark.parametrize("count", [8, 12, 24])
@@ -60,7 +74,9 @@ def test_errors_of_few_entries_are_covered(count):
     known = squares[:, :-1]
     others = (known.sum(axis=1, keepdims=True) - known) / (count - 1)
     radii = np.array([learn_radii(row, COVERAGE) for row in np.sqrt(known / others)])
-    within = (np.sqrt(squares[:, -1] / known.mean(axis=1))[:, None] <= radii).mean(axis=0)
+    within = (np.sqrt(squares[:, -1] / known.mean(axis=1))[:, None] <= radii).mean(
+        axis=0
+    )
     assert within[0] == pytest.approx(0.68, abs=0.03)
     assert within[1] == pytest.approx(0.95, abs=0.015)
 
@@ -76,7 +92,9 @@ def test_nearly_all_entries_are_within_the_familiar_distance():
     places = np.random.default_rng(8).uniform(0, 100, (3000, 3))
     apart = cdist(places[:1000], places)
     apart[np.arange(1000), np.arange(1000)] = np.inf
-    assert (apart.min(axis=1) <= familiar_distance(places)).mean() == pytest.approx(0.95, abs=0.02)
+    assert (apart.min(axis=1) <= familiar_distance(places)).mean() == pytest.approx(
+        0.95, abs=0.02
+    )
     assert familiar_distance(np.array([[0.0, 0, 0], [3, 4, 0]])) == pytest.approx(5)
 
 
@@ -84,8 +102,13 @@ def test_distances_are_those_of_the_inverse_covariance():
     rng = np.random.default_rng(3)
     covariance = np.stack([np.cov(rng.normal(size=(2, 9))) for _ in range(20)])
     difference = rng.normal(size=(20, 2))
-    plain = [np.sqrt(each @ np.linalg.inv(matrix) @ each) for each, matrix in zip(difference, covariance, strict=True)]
+    plain = [
+        np.sqrt(each @ np.linalg.inv(matrix) @ each)
+        for each, matrix in zip(difference, covariance, strict=True)
+    ]
     np.testing.assert_allclose(mahalanobis(covariance, difference), plain, rtol=1e-9)
-    singular = np.diag([4.0, 0.0])[None]  # huge but finite along directions without variance
+    singular = np.diag([4.0, 0.0])[
+        None
+    ]  # huge but finite along directions without variance
     assert mahalanobis(singular, np.array([[6.0, 0.0]])) == pytest.approx(3)
     assert 1e100 < mahalanobis(singular, np.array([[0.0, 1.0]])) < np.inf

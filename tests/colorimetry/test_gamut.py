@@ -37,8 +37,15 @@ def gamut(request):
 def outside() -> Array:
     """(n, 3) linear RGB, all outside [0, 1]: slightly, far, too bright, too dark, too saturated, and combinations."""
     rng = np.random.default_rng(0)
-    near = np.clip(rng.normal(0.5, 0.5, (3000, 3)), 0, 1) + rng.normal(0, 1e-3, (3000, 3))
-    found = [near, rng.normal(0.5, 1, (4000, 3)), 20 * rng.random((1000, 3)), -rng.random((100, 3))]
+    near = np.clip(rng.normal(0.5, 0.5, (3000, 3)), 0, 1) + rng.normal(
+        0, 1e-3, (3000, 3)
+    )
+    found = [
+        near,
+        rng.normal(0.5, 1, (4000, 3)),
+        20 * rng.random((1000, 3)),
+        -rng.random((100, 3)),
+    ]
     grey = np.linspace(-1, 3, 41)[:, None].repeat(3, axis=1)
     rgb = np.concatenate([*found, grey, 3 * np.eye(3), -np.eye(3), 2 - 2 * np.eye(3)])
     return rgb[((rgb < 0) | (rgb > 1)).any(axis=1)]
@@ -48,10 +55,14 @@ MOVERS = [method for method in METHODS if method != "error"]
 
 
 def test_result_reports_the_moved_colours():
-    found = map_to_gamut([[[0.2, 0.3, 0.4]], [[-0.25, 0.5, 1.5]], [[1.125, 0, 0]]], SRGB, "clip")
+    found = map_to_gamut(
+        [[[0.2, 0.3, 0.4]], [[-0.25, 0.5, 1.5]], [[1.125, 0, 0]]], SRGB, "clip"
+    )
     assert found.outside.tolist() == [[False], [True], [True]]
     assert (found.count, found.max_change) == (2, 0.5)
-    np.testing.assert_array_equal(found.rgb[:, 0], [[0.2, 0.3, 0.4], [0, 0.5, 1], [1, 0, 0]])
+    np.testing.assert_array_equal(
+        found.rgb[:, 0], [[0.2, 0.3, 0.4], [0, 0.5, 1], [1, 0, 0]]
+    )
     np.testing.assert_array_equal(found.requested[1], [[-0.25, 0.5, 1.5]])
 
 
@@ -65,17 +76,23 @@ def test_rounding_errors_are_in_gamut(method):
 @pytest.mark.parametrize("method", MOVERS)
 def test_answers_do_not_depend_on_precision_or_blocks(method):
     rgb = np.random.default_rng(0).normal(0.5, 1, (BLOCK + 10, 3)).astype(np.float32)
-    found, expected = (map_to_gamut(each, SRGB, method).rgb for each in (rgb, rgb.astype(float)))
+    found, expected = (
+        map_to_gamut(each, SRGB, method).rgb for each in (rgb, rgb.astype(float))
+    )
     assert found.dtype == np.float32
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-7)
-    np.testing.assert_array_equal(expected[-20:], map_to_gamut(rgb[-20:].astype(float), SRGB, method).rgb)
+    np.testing.assert_array_equal(
+        expected[-20:], map_to_gamut(rgb[-20:].astype(float), SRGB, method).rgb
+    )
 
 
 @pytest.mark.parametrize("method", MOVERS)
 @pytest.mark.parametrize("value", [1.7e308, 1e150, 5e-324, 1e-160])
 def test_extreme_magnitudes_are_mapped_inside(method, value):
     signs = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3), axis=-1).reshape(-1, 3)
-    found = map_to_gamut(value * signs - (value < 1) * np.array([0, 0, 1e-3]), SRGB, method).rgb
+    found = map_to_gamut(
+        value * signs - (value < 1) * np.array([0, 0, 1e-3]), SRGB, method
+    ).rgb
     assert ((found >= 0) & (found <= 1)).all()
 
 
@@ -98,14 +115,22 @@ def test_bad_input_raises(rgb, method, error, code):
         map_to_gamut(rgb, SRGB, method)
 
 
-CIE_RGB = Primaries((0.73467, 0.26533), (0.27376, 0.71741), (0.16658, 0.00886), (1 / 3, 1 / 3))
+CIE_RGB = Primaries(
+    (0.73467, 0.26533), (0.27376, 0.71741), (0.16658, 0.00886), (1 / 3, 1 / 3)
+)
 D65 = (0.3127, 0.3290)
 
 
 def test_example_of_the_thesis():
     """Equations 4.2 and 4.3, whose last printed digit is unreliable: .26553 stands for .26533."""
-    np.testing.assert_allclose(CIE_RGB.lengths, [0.66694, 1.1324, 1.2006], rtol=0, atol=2e-4)
-    printed = [[0.48989, 0.31001, 0.20000], [0.176696, 0.81240, 0.01064], [0, 0.01000, 0.98999]]
+    np.testing.assert_allclose(
+        CIE_RGB.lengths, [0.66694, 1.1324, 1.2006], rtol=0, atol=2e-4
+    )
+    printed = [
+        [0.48989, 0.31001, 0.20000],
+        [0.176696, 0.81240, 0.01064],
+        [0, 0.01000, 0.98999],
+    ]
     np.testing.assert_allclose(CIE_RGB.rgb_to_xyz, printed, rtol=0, atol=3e-4)
 
 
@@ -114,13 +139,19 @@ def test_matrices_agree_with_all_spaces_of_colour_science():
         ours = Primaries.of([*space.primaries.ravel(), *space.whitepoint])
         theirs = colour.normalised_primary_matrix(space.primaries, space.whitepoint)
         np.testing.assert_allclose(ours.rgb_to_xyz, theirs, rtol=0, atol=1e-12)
-        np.testing.assert_allclose(ours.rgb_to_xyz.sum(axis=1)[1], 1, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(
+            ours.rgb_to_xyz.sum(axis=1)[1], 1, rtol=0, atol=1e-12
+        )
 
 
 @pytest.mark.parametrize(("source", "name"), [(P3, "P3-D65"), (ACESCG, "ACEScg")])
 def test_conversions_agree_with_colour_science(source, name):
-    theirs = colour.matrix_RGB_to_RGB(name, "sRGB", chromatic_adaptation_transform="Bradford")
-    np.testing.assert_allclose(conversion(source, SRGB), theirs, rtol=0, atol=2e-4)  # of rounded matrices
+    theirs = colour.matrix_RGB_to_RGB(
+        name, "sRGB", chromatic_adaptation_transform="Bradford"
+    )
+    np.testing.assert_allclose(
+        conversion(source, SRGB), theirs, rtol=0, atol=2e-4
+    )  # of rounded matrices
 
 
 def test_conversions_keep_white_and_are_invertible():
@@ -128,7 +159,9 @@ def test_conversions_keep_white_and_are_invertible():
     np.testing.assert_allclose(there @ [1, 1, 1], 1, rtol=0, atol=1e-15)
     np.testing.assert_allclose(back @ there, np.eye(3), rtol=0, atol=1e-12)
     # The sensor of a cube is a gamut under any light.
-    np.testing.assert_allclose(conversion(observer.sensor("sRGB", "A"), SRGB), np.eye(3), rtol=0, atol=3e-4)
+    np.testing.assert_allclose(
+        conversion(observer.sensor("sRGB", "A"), SRGB), np.eye(3), rtol=0, atol=3e-4
+    )
 
 
 @pytest.mark.parametrize(
@@ -158,7 +191,9 @@ def luminance(rgb, gamut):
 
 
 @pytest.mark.parametrize("method", MOVERS)
-def test_mapped_colours_are_inside_and_colours_inside_are_unchanged(method, gamut, outside):
+def test_mapped_colours_are_inside_and_colours_inside_are_unchanged(
+    method, gamut, outside
+):
     found = map_to_gamut(outside, gamut, method).rgb
     assert ((found >= 0) & (found <= 1)).all()
     corners = np.stack(np.meshgrid([0.0, 1], [0.0, 1], [0.0, 1]), axis=-1).reshape(8, 3)
@@ -169,8 +204,12 @@ def test_mapped_colours_are_inside_and_colours_inside_are_unchanged(method, gamu
 def test_oklab_keeps_hue_and_lightness(gamut, outside):
     before = oklab(outside, gamut)
     after = oklab(map_to_gamut(outside, gamut, "desaturate-oklab").rgb, gamut)
-    np.testing.assert_allclose(after[:, 0], np.clip(before[:, 0], 0, 1), rtol=0, atol=3e-3)
-    chromatic = (np.hypot(*after[:, 1:].T) > 0.02) & (before[:, 0] > 0) & (before[:, 0] < 1)
+    np.testing.assert_allclose(
+        after[:, 0], np.clip(before[:, 0], 0, 1), rtol=0, atol=3e-3
+    )
+    chromatic = (
+        (np.hypot(*after[:, 1:].T) > 0.02) & (before[:, 0] > 0) & (before[:, 0] < 1)
+    )
     turn = np.arctan2(after[:, 2], after[:, 1]) - np.arctan2(before[:, 2], before[:, 1])
     turn = np.degrees((turn + np.pi) % (2 * np.pi) - np.pi)
     assert chromatic.sum() > 1000
@@ -181,7 +220,9 @@ def test_oklab_keeps_hue_and_lightness(gamut, outside):
 @pytest.mark.parametrize("name", GAMUTS)
 def test_mappings_are_continuous(method, name, outside):
     near = outside + 1e-6 * np.random.default_rng(4).normal(0, 1, outside.shape)
-    here, there = (map_to_gamut(rgb, GAMUTS[name], method).rgb for rgb in (outside, near))
+    here, there = (
+        map_to_gamut(rgb, GAMUTS[name], method).rgb for rgb in (outside, near)
+    )
     np.testing.assert_allclose(there, here, rtol=0, atol=1e-3)
 
 
@@ -194,7 +235,9 @@ def test_procedure_of_the_thesis_gives_the_same_chromaticity(gamut):
         slope = (y - 1 / 3) / (x - 1 / 3)
         intercept = 1 / 3 - slope / 3
         met = (1 - intercept) / (1 + slope)
-        np.testing.assert_allclose(after / after.sum(), [met, 1 - met, 0], rtol=0, atol=1e-12)
+        np.testing.assert_allclose(
+            after / after.sum(), [met, 1 - met, 0], rtol=0, atol=1e-12
+        )
 
 
 def scalar_mapping(rgb, gamut, method):
@@ -206,11 +249,17 @@ def scalar_mapping(rgb, gamut, method):
         lightness = min(max(lab[0], 0), 1)
 
         def at(share):
-            return back @ cube_roots(np.array([lightness, share * lab[1], share * lab[2]])) ** 3
+            return (
+                back
+                @ cube_roots(np.array([lightness, share * lab[1], share * lab[2]])) ** 3
+            )
 
         def margin(share):
             found = at(share)
-            return min(found.min() + mapping.NEARLY * found.max(), 1 + mapping.NEARLY - found.max())
+            return min(
+                found.min() + mapping.NEARLY * found.max(),
+                1 + mapping.NEARLY - found.max(),
+            )
 
         return scalar_mapping(at(_largest(margin)), gamut, "desaturate")
     grey = max(light, 0) if method == "scale" else min(max(light, 0), 1)
@@ -225,12 +274,21 @@ def scalar_mapping(rgb, gamut, method):
 
 def _largest(margin):
     """Largest share in [0, 1] with a margin of at least 0."""
-    return 1.0 if margin(1) >= 0 else brentq(margin, 0, 1, xtol=1e-14) if margin(0) > 0 else 0.0
+    return (
+        1.0
+        if margin(1) >= 0
+        else brentq(margin, 0, 1, xtol=1e-14)
+        if margin(0) > 0
+        else 0.0
+    )
 
 
 @pytest.mark.parametrize("method", ["scale", "desaturate", "desaturate-oklab"])
 def test_vectorised_code_agrees_with_scalar_code(method, gamut, outside):
     some = outside[:: len(outside) // 80]
     np.testing.assert_allclose(
-        map_to_gamut(some, gamut, method).rgb, [scalar_mapping(rgb, gamut, method) for rgb in some], rtol=0, atol=1e-6
+        map_to_gamut(some, gamut, method).rgb,
+        [scalar_mapping(rgb, gamut, method) for rgb in some],
+        rtol=0,
+        atol=1e-6,
     )

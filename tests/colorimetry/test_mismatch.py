@@ -12,7 +12,14 @@ from uplift.colorimetry import extreme_spectra as extremes
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.extreme_spectra import extreme_spectra
-from uplift.colorimetry.mismatch import COUNTS, largest_difference, mesh_volume, mismatch_volumes, outline, sphere
+from uplift.colorimetry.mismatch import (
+    COUNTS,
+    largest_difference,
+    mesh_volume,
+    mismatch_volumes,
+    outline,
+    sphere,
+)
 from uplift.common.errors import ColourError
 
 LIGHTS = ("A", "FL11", "HP1", "LED-B3")
@@ -22,13 +29,17 @@ ROUNDING = 1e-9
 def problems(sensor, name, count):
     """RGB of random smooth reflectances, and responses in random directions of XYZ under a light."""
     rng = np.random.default_rng(7)
-    smooth = np.cumsum(rng.normal(scale=0.3, size=(count, len(sensor.wavelengths))), axis=1)
+    smooth = np.cumsum(
+        rng.normal(scale=0.3, size=(count, len(sensor.wavelengths))), axis=1
+    )
     rgb = sensor.rgb(1 / (1 + np.exp(-smooth)))
     return rgb, rng.normal(size=(count, 3)) @ observer.light(name).xyz
 
 
 def linear_program(sensor, rgb, response):
-    return linprog(-response, A_eq=sensor.matrix, b_eq=rgb, bounds=(0, 1), method="highs")
+    return linprog(
+        -response, A_eq=sensor.matrix, b_eq=rgb, bounds=(0, 1), method="highs"
+    )
 
 
 @pytest.mark.parametrize("name", ["A", "FL11", "HP1", "D65"])
@@ -40,23 +51,35 @@ def test_extremes_are_those_of_a_linear_program(sensor, name):
     np.testing.assert_allclose(sensor.rgb(found.reflectance), rgb, atol=1e-9)
     assert ((found.reflectance >= 0) & (found.reflectance <= 1)).all()
     assert (((found.reflectance > 0) & (found.reflectance < 1)).sum(axis=1) <= 3).all()
-    best = [-linear_program(sensor, *each).fun for each in zip(rgb, response, strict=True)]
-    np.testing.assert_allclose((response * found.reflectance).sum(axis=1), best, rtol=0, atol=1e-9)
+    best = [
+        -linear_program(sensor, *each).fun for each in zip(rgb, response, strict=True)
+    ]
+    np.testing.assert_allclose(
+        (response * found.reflectance).sum(axis=1), best, rtol=0, atol=1e-9
+    )
 
 
 def test_extremes_do_not_depend_on_the_start_or_the_neighbours(sensor, monkeypatch):
     rgb, response = problems(sensor, "A", 40)
     found = extreme_spectra(sensor.matrix, rgb, response)
     monkeypatch.setattr(extremes, "BLOCK_NUMBERS", 81 * 7)
-    warm = extreme_spectra(sensor.matrix, rgb, response, np.roll(found.basis, 1, axis=0))
+    warm = extreme_spectra(
+        sensor.matrix, rgb, response, np.roll(found.basis, 1, axis=0)
+    )
     expected = (found.reflectance * response).sum(axis=1)
-    np.testing.assert_allclose((warm.reflectance * response).sum(axis=1), expected, atol=1e-9)
+    np.testing.assert_allclose(
+        (warm.reflectance * response).sum(axis=1), expected, atol=1e-9
+    )
 
 
 def test_colours_without_reflectance_are_not_solved(sensor):
     rgb = np.array([[0.5, 0.5, 0.5], [1.5, 0, 0], [-0.4, 1, -0.4]])
     response = np.tile(observer.light("A").xyz[1], (3, 1))
-    assert extreme_spectra(sensor.matrix, rgb, response).solved.tolist() == [True, False, False]
+    assert extreme_spectra(sensor.matrix, rgb, response).solved.tolist() == [
+        True,
+        False,
+        False,
+    ]
     for bad in (rgb[1], rgb[2], [0.2, 0.2, np.nan]):
         with raises(ColourError, "colour-unrealisable"):
             mismatch_volumes(sensor, observer.light("A"), np.array([rgb[0], bad]))
@@ -90,7 +113,10 @@ def test_the_outline_of_a_mesh_is_that_of_its_projection():
 def test_measured_metamers_lie_inside(sensor, name):
     """Every measured reflectance is a metamer of the colour that it has; white is none of grey."""
     light = observer.light(name)
-    parts = [resample(read_atlas(each.path), sensor.wavelengths).values for each in shipped_atlases()]
+    parts = [
+        resample(read_atlas(each.path), sensor.wavelengths).values
+        for each in shipped_atlases()
+    ]
     spectra = np.concatenate([part[:: max(len(part) // 25, 1)] for part in parts])
     volumes = mismatch_volumes(sensor, light, sensor.rgb(spectra), divisions=1)
     assert volumes.excess(spectra @ light.xyz.T).max() <= ROUNDING
@@ -102,10 +128,14 @@ def test_volumes_that_are_points(sensor):
     """Those under the build light, and those of black and white."""
     rgb = np.random.default_rng(2).uniform(size=(20, 3))
     volumes = mismatch_volumes(sensor, sensor.light, rgb, divisions=1)
-    np.testing.assert_allclose(volumes.xyz, np.repeat(sensor.xyz(rgb)[:, None], 42, axis=1), atol=1e-9)
+    np.testing.assert_allclose(
+        volumes.xyz, np.repeat(sensor.xyz(rgb)[:, None], 42, axis=1), atol=1e-9
+    )
     assert np.abs(volumes.volume).max() < 1e-20
     light = observer.light("FL11")
-    volumes = mismatch_volumes(sensor, light, np.array([[0.0, 0, 0], [1, 1, 1]]), divisions=1)
+    volumes = mismatch_volumes(
+        sensor, light, np.array([[0.0, 0, 0], [1, 1, 1]]), divisions=1
+    )
     np.testing.assert_allclose(volumes.xyz[0], 0, atol=1e-7)
     np.testing.assert_allclose(volumes.xyz[1], np.tile(light.white, (42, 1)), atol=1e-7)
 
@@ -114,22 +144,35 @@ def test_the_volume_is_that_of_the_hull_of_linear_programs(sensor):
     """Directions, solver and volume are independent of the module."""
     light, rgb = observer.light("FL11"), np.array([0.2, 0.4, 0.1])
     directions = np.random.default_rng(3).normal(size=(250, 3))
-    hull = ConvexHull(np.array([linear_program(sensor, rgb, each @ light.xyz).x for each in directions]) @ light.xyz.T)
-    coarse, volumes = (mismatch_volumes(sensor, light, rgb[None], divisions) for divisions in (2, 3))
+    hull = ConvexHull(
+        np.array(
+            [linear_program(sensor, rgb, each @ light.xyz).x for each in directions]
+        )
+        @ light.xyz.T
+    )
+    coarse, volumes = (
+        mismatch_volumes(sensor, light, rgb[None], divisions) for divisions in (2, 3)
+    )
     assert volumes.volume[0] == pytest.approx(hull.volume, rel=0.06)
     assert coarse.volume[0] < volumes.volume[0] < 1.05 * coarse.volume[0]
     slack = hull.equations[:, :3] @ volumes.xyz[0].T + hull.equations[:, 3:]
     assert slack.max() < 0.1 * np.cbrt(hull.volume)
     # The planes of the boundary points bound the points of the other solver, and so do the corners.
     outer = ConvexHull(volumes.corners[0])
-    assert (outer.equations[:, :3] @ hull.points.T + outer.equations[:, 3:]).max() < ROUNDING
+    assert (
+        outer.equations[:, :3] @ hull.points.T + outer.equations[:, 3:]
+    ).max() < ROUNDING
     assert volumes.volume[0] < outer.volume < 2 * hull.volume
 
 
 @pytest.mark.parametrize("name", ["A", "FL11"])
 def test_no_metamer_differs_more(plain_cube, name):
     """Against extremes in random directions, and mixtures of pairs of them."""
-    light, sensor, rng = observer.light(name), plain_cube.data.sensor, np.random.default_rng(6)
+    light, sensor, rng = (
+        observer.light(name),
+        plain_cube.data.sensor,
+        np.random.default_rng(6),
+    )
     rgb = rng.uniform(0.05, 0.95, size=(6, 3))
     answers = plain_cube.reflectance(rgb) @ light.xyz.T
     volumes = mismatch_volumes(sensor, light, rgb, divisions=3)
@@ -137,11 +180,22 @@ def test_no_metamer_differs_more(plain_cube, name):
     assert (found.outer >= found.delta_e_2000).all()
     assert volumes.excess(found.xyz).max() <= ROUNDING
     reference = lab(answers, light.white)
-    np.testing.assert_allclose(found.delta_e_2000, delta_e_2000(lab(found.xyz, light.white), reference))
+    np.testing.assert_allclose(
+        found.delta_e_2000, delta_e_2000(lab(found.xyz, light.white), reference)
+    )
     for row, each in enumerate(rgb):
         response = rng.normal(size=(300, 3)) @ light.xyz
-        spectra = extreme_spectra(sensor.matrix, np.tile(each, (300, 1)), response).reflectance
+        spectra = extreme_spectra(
+            sensor.matrix, np.tile(each, (300, 1)), response
+        ).reflectance
         weights = rng.uniform(size=(300, 1))
-        metamers = np.concatenate([spectra, weights * spectra + (1 - weights) * spectra[::-1]]) @ light.xyz.T
+        metamers = (
+            np.concatenate([spectra, weights * spectra + (1 - weights) * spectra[::-1]])
+            @ light.xyz.T
+        )
         differences = delta_e_2000(lab(metamers, light.white), reference[row])
-        assert 0.8 * found.delta_e_2000[row] < differences.max() <= found.delta_e_2000[row] + 0.05
+        assert (
+            0.8 * found.delta_e_2000[row]
+            < differences.max()
+            <= found.delta_e_2000[row] + 0.05
+        )

@@ -26,7 +26,10 @@ NAMES = {
     "sRGB - Texture": "sRGB", "srgb_texture": "sRGB", "lin_p3d65": "Display P3", "AP0": "ACES2065-1",
     "adobergb": "Adobe RGB (1998)",
 }  # fmt: skip
-ENCODED = {"sRGB - Texture": colour.models.eotf_sRGB, "srgb_texture": colour.models.eotf_sRGB}
+ENCODED = {
+    "sRGB - Texture": colour.models.eotf_sRGB,
+    "srgb_texture": colour.models.eotf_sRGB,
+}
 ENCODED["adobergb"] = lambda codes: codes ** (563 / 256)
 
 
@@ -46,10 +49,16 @@ def test_colours_agree_with_colour_science(sensor):
     for patch in colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"].values():
         samples = patch.copy().align(shape)
         xyz = colour.sd_to_XYZ(samples, cmfs, d65, method="Integration") / 100
-        np.testing.assert_allclose(sensor.rgb(samples.values), colour.XYZ_to_RGB(xyz, "sRGB"), atol=5e-4)
-        np.testing.assert_allclose(sensor.xyz(sensor.rgb(samples.values)), xyz, rtol=1e-9)
+        np.testing.assert_allclose(
+            sensor.rgb(samples.values), colour.XYZ_to_RGB(xyz, "sRGB"), atol=5e-4
+        )
+        np.testing.assert_allclose(
+            sensor.xyz(sensor.rgb(samples.values)), xyz, rtol=1e-9
+        )
     decoding = colour.RGB_COLOURSPACES["sRGB"].cctf_decoding(np.arange(256) / 255)
-    np.testing.assert_allclose(sensor.decoding, decoding, rtol=1e-14)  # powers differ between instruction sets
+    np.testing.assert_allclose(
+        sensor.decoding, decoding, rtol=1e-14
+    )  # powers differ between instruction sets
 
 
 @pytest.mark.parametrize("name", tables.names("observer"))
@@ -70,7 +79,9 @@ def test_cone_fundamentals_are_refused():
 
 @pytest.mark.parametrize("kind", ["observer", "camera", "illuminant"])
 @pytest.mark.parametrize("limits", [tables.WAVELENGTHS, (300.0, 900.0, 5.0)])
-def test_a_response_is_0_outside_its_table_and_a_light_keeps_its_last_value(kind, limits):
+def test_a_response_is_0_outside_its_table_and_a_light_keeps_its_last_value(
+    kind, limits
+):
     start, end, step = limits
     wavelengths = np.arange(start, end + step / 2, step)
     for name in tables.names(kind):
@@ -94,10 +105,17 @@ def test_srgb_nodes_agree_with_colour_science(dim):
     [
         (lambda: observer.sensor("sRBG"), "unknown-name", "'sRGB'"),
         (lambda: observer.light("tungten"), "unknown-name", "'tungsten'"),
-        (lambda: observer.light("D65", "CIE 1931 2 Degree"), "unknown-name", "'CIE 1931 2 Degree Standard"),
+        (
+            lambda: observer.light("D65", "CIE 1931 2 Degree"),
+            "unknown-name",
+            "'CIE 1931 2 Degree Standard",
+        ),
         (lambda: axis_nodes("srgbb", 4), "unknown-name", "'srgb'"),
         (lambda: known_lamps().without(("A", "D66")), "unknown-name", "'D65'"),
-        *((lambda name=name: find_space(name), "unknown-name", "") for name in ("raw", "", "a\0b", "a\n")),
+        *(
+            (lambda name=name: find_space(name), "unknown-name", "")
+            for name in ("raw", "", "a\0b", "a\n")
+        ),
     ],
 )
 def test_unknown_names_raise_with_near_names(call, code, near):
@@ -125,15 +143,24 @@ def test_cie_xyz_by_name_keeps_its_white():
 def test_other_ranges_agree_with_colour_science(limits, sensor):
     found = observer.on_range(sensor, *limits)
     assert found.range == limits
-    np.testing.assert_allclose(found.rgb(np.ones(len(found.wavelengths))), 1, rtol=0, atol=1e-14)
-    steep = colour.SpectralDistribution(np.linspace(0.1, 0.9, len(found.wavelengths)), found.wavelengths)
+    np.testing.assert_allclose(
+        found.rgb(np.ones(len(found.wavelengths))), 1, rtol=0, atol=1e-14
+    )
+    steep = colour.SpectralDistribution(
+        np.linspace(0.1, 0.9, len(found.wavelengths)), found.wavelengths
+    )
     named = ("observer", sensor.observer), ("illuminant", sensor.illuminant)
-    aligned = (tables.aligned(kind, tables.look_up(kind, name), *limits) for kind, name in named)
+    aligned = (
+        tables.aligned(kind, tables.look_up(kind, name), *limits)
+        for kind, name in named
+    )
     expected = colour.sd_to_XYZ(steep, *aligned, method="Integration") / 100
     np.testing.assert_allclose(found.xyz(found.rgb(steep.values)), expected, rtol=1e-9)
     displays = observer.display_sensors(["D65", "A", "D65"], sensor.observer, *limits)
     assert [each.range for each in displays] == [limits] * 2
-    np.testing.assert_array_equal(observer.light("D65", sensor.observer, *limits).xyz, found.light.xyz)
+    np.testing.assert_array_equal(
+        observer.light("D65", sensor.observer, *limits).xyz, found.light.xyz
+    )
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -141,9 +168,15 @@ def test_spaces_convert_as_colour_science_does(name):
     found, sensor = find_space(name), observer.sensor("sRGB")
     assert look_up_space(name).name == observer.sensor(name).space == NAMES[name]
     codes = np.array([[0.2, 0.5, 0.8], [1, 1, 1]])
-    linear, decoded = (found.decode(codes), ENCODED[name](codes)) if name in ENCODED else (codes, codes)
+    linear, decoded = (
+        (found.decode(codes), ENCODED[name](codes))
+        if name in ENCODED
+        else (codes, codes)
+    )
     expected = decoded @ conversion(primaries_of(look_up_space(NAMES[name])), SRGB).T
-    np.testing.assert_allclose(linear @ conversion(found.gamut, SRGB).T, expected, rtol=0, atol=1e-3)
+    np.testing.assert_allclose(
+        linear @ conversion(found.gamut, SRGB).T, expected, rtol=0, atol=1e-3
+    )
     assert found.floats_are_codes == (name in ENCODED)
     agrees = NAMES[name] in ("sRGB", "ITU-R BT.709") and name not in ENCODED
     assert found.agrees_with(sensor, encoded=False) == agrees
@@ -169,20 +202,34 @@ def test_smallest_space():
     assert smallest_space(spectra) == "Display P3"
     assert smallest_space(spectra[:17]) == "sRGB"
     assert smallest_space(np.eye(81)[28:29]) is None
-    u, v = np.moveaxis([colour.xy_to_Luv_uv(colour.RGB_COLOURSPACES[name].primaries) for name in COMMON_SPACES], -1, 0)
-    areas = np.abs((u[:, 1] - u[:, 0]) * (v[:, 2] - v[:, 0]) - (v[:, 1] - v[:, 0]) * (u[:, 2] - u[:, 0]))
+    u, v = np.moveaxis(
+        [
+            colour.xy_to_Luv_uv(colour.RGB_COLOURSPACES[name].primaries)
+            for name in COMMON_SPACES
+        ],
+        -1,
+        0,
+    )
+    areas = np.abs(
+        (u[:, 1] - u[:, 0]) * (v[:, 2] - v[:, 0])
+        - (v[:, 1] - v[:, 0]) * (u[:, 2] - u[:, 0])
+    )
     assert (np.diff(areas) > 0).all()
 
 
 def test_transfer_curve_agrees_with_the_standard_and_is_invertible():
     linear = np.linspace(0, 1, 300)
-    np.testing.assert_allclose(encode(linear), colour.models.eotf_inverse_sRGB(linear), rtol=0, atol=1e-6)
+    np.testing.assert_allclose(
+        encode(linear), colour.models.eotf_inverse_sRGB(linear), rtol=0, atol=1e-6
+    )
     np.testing.assert_allclose(decode(encode(linear)), linear, rtol=0, atol=1e-6)
     codes = np.random.default_rng(0).integers(0, 256, (500, 3))
     np.testing.assert_array_equal(to_display_codes(decode(codes / 255), SRGB), codes)
 
 
-@pytest.mark.parametrize(("space", "illuminant"), [("P3-D65", "D65"), ("ProPhoto RGB", "D50"), ("sRGB", "A")])
+@pytest.mark.parametrize(
+    ("space", "illuminant"), [("P3-D65", "D65"), ("ProPhoto RGB", "D50"), ("sRGB", "A")]
+)
 def test_other_spaces_keep_their_appearance(space, illuminant):
     """An sRGB sensor under the illuminant of the cube adapts by Bradford's transform too."""
     own, screen = (observer.sensor(name, illuminant) for name in (space, "sRGB"))
@@ -192,19 +239,29 @@ def test_other_spaces_keep_their_appearance(space, illuminant):
     np.testing.assert_array_equal(to_display_codes([1, 1, 1], own), [255, 255, 255])
 
 
-@pytest.mark.parametrize(("name", "standard"), [("Tungsten", "A"), ("led", "LED-B3"), ("sodium", "HP1")])
+@pytest.mark.parametrize(
+    ("name", "standard"), [("Tungsten", "A"), ("led", "LED-B3"), ("sodium", "HP1")]
+)
 def test_lights_have_everyday_names(name, standard):
     assert observer.light(name).name == standard
-    np.testing.assert_array_equal(observer.illuminant_spd(name), observer.illuminant_spd(standard))
+    np.testing.assert_array_equal(
+        observer.illuminant_spd(name), observer.illuminant_spd(standard)
+    )
 
 
 @pytest.mark.parametrize("kelvin", [1000, 3200, 3999])
 def test_black_bodies_are_those_of_colour_science(kelvin):
     theirs = colour.sd_blackbody(kelvin, colour.SpectralShape(380, 780, 5)).values
     ours = observer.illuminant_spd(f"{kelvin} k")
-    np.testing.assert_allclose(ours / ours[36], theirs / theirs[36], rtol=5e-4)  # theirs has a rounded constant
-    objects = tables.look_up("illuminant", f"{kelvin}K").align(colour.SpectralShape(380, 780, 5))
-    np.testing.assert_allclose(objects.values / objects.values[36], ours / ours[36], rtol=1e-9)
+    np.testing.assert_allclose(
+        ours / ours[36], theirs / theirs[36], rtol=5e-4
+    )  # theirs has a rounded constant
+    objects = tables.look_up("illuminant", f"{kelvin}K").align(
+        colour.SpectralShape(380, 780, 5)
+    )
+    np.testing.assert_allclose(
+        objects.values / objects.values[36], ours / ours[36], rtol=1e-9
+    )
 
 
 def test_illuminant_a_is_a_black_body():
@@ -217,7 +274,9 @@ def test_illuminant_a_is_a_black_body():
 @pytest.mark.parametrize("nominal", [50, 55, 65, 75])
 def test_temperatures_from_4000_k_are_cie_daylight(nominal):
     found = observer.illuminant_spd(f"{nominal}00K")
-    np.testing.assert_allclose(found, observer.illuminant_spd(f"D{nominal}"), rtol=0, atol=1e-3)
+    np.testing.assert_allclose(
+        found, observer.illuminant_spd(f"D{nominal}"), rtol=0, atol=1e-3
+    )
     assert observer.sensor("sRGB", f"{nominal}00.0 K").illuminant == f"{nominal}00K"
 
 

@@ -12,7 +12,10 @@ from uplift.lattice import Lattice, axis_nodes
 
 def best_residual(sensor, rgb):
     """Smallest max |linear RGB| residual over all reflectances, for each colour (n, 3)."""
-    found = [lsq_linear(sensor.matrix, colour, (0, 1), method="bvls", tol=1e-14) for colour in rgb]
+    found = [
+        lsq_linear(sensor.matrix, colour, (0, 1), method="bvls", tol=1e-14)
+        for colour in rgb
+    ]
     return np.array([np.abs(result.fun).max() for result in found])
 
 
@@ -24,7 +27,9 @@ def test_solid_contains_the_colours_that_a_solver_reaches(space):
     large = Lattice(axis_nodes("srgb", 17)).points
     nearest = large[np.argsort(np.abs(limits.signed_distance(large)))[:20]]
     colours = np.concatenate([Lattice(np.linspace(0, 1, 5)).points, nearest])
-    np.testing.assert_array_equal(limits.contains(colours), best_residual(sensor, colours) <= 1e-8)
+    np.testing.assert_array_equal(
+        limits.contains(colours), best_residual(sensor, colours) <= 1e-8
+    )
 
 
 def test_spectra_of_two_steps_lie_on_the_boundary(sensor):
@@ -45,7 +50,10 @@ def test_spectra_of_two_steps_lie_on_the_boundary(sensor):
 def test_solid_volume_is_that_of_the_convex_hull(sensor):
     """For few wavelengths, all corners of the zonotope can be listed."""
     few = sensor.matrix[:, ::9]
-    corners = np.array(np.meshgrid(*[(0, 1)] * few.shape[1])).reshape(few.shape[1], -1).T @ few.T
+    corners = (
+        np.array(np.meshgrid(*[(0, 1)] * few.shape[1])).reshape(few.shape[1], -1).T
+        @ few.T
+    )
     assert solid_volume(few) == pytest.approx(ConvexHull(corners).volume)
 
 
@@ -66,6 +74,8 @@ def test_colours_move_toward_grey_until_they_are_a_margin_inside():
         for _ in range(50):
             middle = (low + high) / 2
             at = grey[row] + middle * (target[row] - grey[row])
-            low, high = (middle, high) if limits.contains(at[None])[0] else (low, middle)
+            low, high = (
+                (middle, high) if limits.contains(at[None])[0] else (low, middle)
+            )
         boundary = grey[row] + low * (target[row] - grey[row])
         assert np.abs(moved[row] - boundary).max() == pytest.approx(margin, rel=1e-3)

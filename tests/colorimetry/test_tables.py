@@ -21,13 +21,17 @@ def test_the_file_has_the_numbers_of_colour_science():
             if values.dtype.kind == "U":
                 np.testing.assert_array_equal(stored[name], values, err_msg=name)
             else:  # instruction sets round interpolated values and powers differently
-                np.testing.assert_allclose(stored[name], values, rtol=1e-12, atol=1e-14, err_msg=name)
+                np.testing.assert_allclose(
+                    stored[name], values, rtol=1e-12, atol=1e-14, err_msg=name
+                )
 
 
 @pytest.mark.parametrize("white", ["D50", "A", "FL11"])
 def test_bradford_is_that_of_colour_science(white):
     source, target = (observer.light(name).white for name in ("D65", white))
-    theirs = colour.adaptation.matrix_chromatic_adaptation_VonKries(source, target, transform="Bradford")
+    theirs = colour.adaptation.matrix_chromatic_adaptation_VonKries(
+        source, target, transform="Bradford"
+    )
     np.testing.assert_allclose(tables.bradford(source, target), theirs, rtol=1e-14)
 
 
@@ -37,7 +41,10 @@ def test_what_the_file_lacks_comes_from_colour_science():
     np.testing.assert_array_equal(wide[20:421:5], tables.samples("illuminant", "D65"))
     assert tables.samples("display", "Typical CRT Brainard 1997").shape == (81, 3)
     assert tables.rgb_space("SRGB").name == "sRGB"
-    assert tables.stated_name("observer", "cie_10_1964") == "CIE 1964 10 Degree Standard Observer"
+    assert (
+        tables.stated_name("observer", "cie_10_1964")
+        == "CIE 1964 10 Degree Standard Observer"
+    )
     assert tables.rgb_space("no space") is None
     with raises(UnknownNameError, "unknown-name"):
         tables.samples("illuminant", "no lamp")

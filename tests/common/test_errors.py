@@ -8,11 +8,22 @@ import uplift
 from uplift.common import errors
 from uplift.common.errors import AtlasError, UnknownNameError, UpliftError, unknown_name
 
-CLASSES = [kind for _, kind in inspect.getmembers(errors, inspect.isclass) if issubclass(kind, UpliftError)]
+CLASSES = [
+    kind
+    for _, kind in inspect.getmembers(errors, inspect.isclass)
+    if issubclass(kind, UpliftError)
+]
 
 
 def test_message_is_location_problem_and_hint():
-    error = AtlasError("no samples", code="no-samples", path="a.txt", line=3, entry="red", hint="add some")
+    error = AtlasError(
+        "no samples",
+        code="no-samples",
+        path="a.txt",
+        line=3,
+        entry="red",
+        hint="add some",
+    )
     assert str(error) == "a.txt:3: entry 'red': no samples; add some"
     assert error.where == "a.txt:3: entry 'red'"
     assert error.to_json() == {
@@ -24,7 +35,9 @@ def test_message_is_location_problem_and_hint():
 
 
 def test_message_is_one_line_for_any_texts():
-    error = UpliftError("no such\nfile", path="a\x1b[2J", entry="b\u202e", hint="look\relsewhere")
+    error = UpliftError(
+        "no such\nfile", path="a\x1b[2J", entry="b\u202e", hint="look\relsewhere"
+    )
     assert str(error) == "a\\x1b[2J: entry 'b\\u202e': no such\\nfile; look\\relsewhere"
     assert str(AtlasError("no samples")) == "no samples"
 

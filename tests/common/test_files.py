@@ -81,7 +81,11 @@ def test_outputs_are_checked_before_any_is_written(tmp_path):
     (tmp_path / "last").write_text("old")
     with raises(OutputError, "file-exists"):
         check_outputs([tmp_path / "first", None, tmp_path / "last"])
-    check_outputs([tmp_path / "first", None, tmp_path / "last"], inputs=[None, "macbeth"], force=True)
+    check_outputs(
+        [tmp_path / "first", None, tmp_path / "last"],
+        inputs=[None, "macbeth"],
+        force=True,
+    )
     assert os.listdir(tmp_path) == ["last"]
     (tmp_path / "none").mkdir()
     for other in (tmp_path / "first", tmp_path / "none" / ".." / "first"):
@@ -107,7 +111,11 @@ def test_temporary_files_can_be_removed_before_the_process_ends(tmp_path):
 def test_file_of_a_killed_writer_is_removed_by_a_later_one(tmp_path):
     with atomic_write(tmp_path / "cube") as temporary:
         name = temporary.name
-    for stale, age in ((name, 100_000), (".cube.now.part", 0), (".other.old.part", 100_000)):
+    for stale, age in (
+        (name, 100_000),
+        (".cube.now.part", 0),
+        (".other.old.part", 100_000),
+    ):
         (tmp_path / stale).write_text("half")
         changed = (tmp_path / stale).stat().st_mtime - age
         os.utime(tmp_path / stale, (changed, changed))
@@ -157,6 +165,9 @@ def test_pipes_devices_and_files_of_the_kernel_are_not_read(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "pipe", "/dev/zero", "/proc/kmsg", "/proc/self/status"):
         for read in (check_regular, read_bytes, file_digest):
-            options = {check_regular: {"hint": ""}, read_bytes: {"hint": "", "limit": 9}}.get(read, {})
+            options = {
+                check_regular: {"hint": ""},
+                read_bytes: {"hint": "", "limit": 9},
+            }.get(read, {})
             with raises(TextureError, "file-unreadable"):
                 read(path, TextureError, **options)

@@ -2,16 +2,18 @@
 
 from concurrent.futures import ThreadPoolExecutor
 
-import numpy as np  # noqa: F401  loads its BLAS
+import numpy as np
 import pytest
-import scipy.linalg  # noqa: F401
+import scipy.linalg
 from threadpoolctl import OpenBLASController, threadpool_info, threadpool_limits
 
 from uplift.common.machine import single_threaded_blas
 
 
 def blas_threads():
-    return {each["num_threads"] for each in threadpool_info() if each["user_api"] == "blas"}
+    return {
+        each["num_threads"] for each in threadpool_info() if each["user_api"] == "blas"
+    }
 
 
 @pytest.fixture

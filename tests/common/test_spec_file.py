@@ -21,7 +21,9 @@ def file(tmp_path):
 def test_errors_name_the_key_path(file):
     with raises(PaletteError, "invalid-file") as caught:
         file("[[rows]]\n'inner' = { deep = 3 }").fail(
-            ("rows", "~tag", 0, "inner", "deep"), "must be negative, got 3", hint="lower it"
+            ("rows", "~tag", 0, "inner", "deep"),
+            "must be negative, got 3",
+            hint="lower it",
         )
     assert caught.value.problem == "rows[0].inner.deep must be negative, got 3"
     assert caught.value.hint == "lower it"

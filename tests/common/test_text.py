@@ -12,7 +12,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from uplift.common.csv import csv_text, plain_cell
-from uplift.common.text import format_value, json_escapes, parse_float, parse_whole, printable
+from uplift.common.text import (
+    format_value,
+    json_escapes,
+    parse_float,
+    parse_whole,
+    printable,
+)
 
 ANY_TEXT = st.text(st.characters(exclude_categories=()))
 """Text of any code points, lone surrogates among them."""
@@ -22,7 +28,12 @@ ANY_TEXT = st.text(st.characters(exclude_categories=()))
 def test_printable_text_has_no_controls_and_can_be_encoded(text):
     shown = printable(text)
     shown.encode()
-    assert not {unicodedata.category(character) for character in shown} & {"Cc", "Cs", "Zl", "Zp"}
+    assert not {unicodedata.category(character) for character in shown} & {
+        "Cc",
+        "Cs",
+        "Zl",
+        "Zp",
+    }
     assert not {unicodedata.bidirectional(character) for character in shown} & {
         "LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI",
     }  # fmt: skip
@@ -39,7 +50,15 @@ def test_every_value_has_a_short_text_without_control_characters():
     deep: list[object] = []
     for _ in range(100_000):
         deep = [deep]
-    for value in ("\x1b]0;title\x07", "\ud800", "\u202e", "\n", 16**5000, deep, "a" * 100):
+    for value in (
+        "\x1b]0;title\x07",
+        "\ud800",
+        "\u202e",
+        "\n",
+        16**5000,
+        deep,
+        "a" * 100,
+    ):
         text = format_value(value)
         assert text.isprintable()
         assert text.encode()
@@ -58,7 +77,21 @@ def test_every_whole_number_is_read_back(value):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "1_000", "١", "²", "0x10", "1,5", "1e", "e5", ".", "--1", "1\n2", "9" * 10_000 + ":"]
+    "text",
+    [
+        "",
+        "1_000",
+        "١",
+        "²",
+        "0x10",
+        "1,5",
+        "1e",
+        "e5",
+        ".",
+        "--1",
+        "1\n2",
+        "9" * 10_000 + ":",
+    ],
 )
 def test_other_texts_are_errors(text):
     for parse in (parse_float, parse_whole):
@@ -73,17 +106,25 @@ def test_cells_survive_a_round_trip():
 
 
 def test_text_can_be_quoted():
-    assert csv_text(["name", 400.0], [["1", 0.5]], quote_text=True) == '"name",400.0\n"1",0.5\n'
+    assert (
+        csv_text(["name", 400.0], [["1", 0.5]], quote_text=True)
+        == '"name",400.0\n"1",0.5\n'
+    )
 
 
-@pytest.mark.parametrize("name", ["=1+2", "+cmd|' /C calc'!A0", "-x", "@SUM(A1)", "\t=1", "'=1", "''-x", "＝1"])
+@pytest.mark.parametrize(
+    "name",
+    ["=1+2", "+cmd|' /C calc'!A0", "-x", "@SUM(A1)", "\t=1", "'=1", "''-x", "＝1"],
+)
 def test_formulas_are_neutralised_and_come_back(name):
     (cell,) = next(csv.reader(io.StringIO(csv_text([name], []), newline="")))
     assert cell == f"'{name}"
     assert plain_cell(cell) == name
 
 
-@pytest.mark.parametrize("cell", ["-1.5", "+3e-5", -2.5, "a-b", "it's", "'quoted'", None, ""])
+@pytest.mark.parametrize(
+    "cell", ["-1.5", "+3e-5", -2.5, "a-b", "it's", "'quoted'", None, ""]
+)
 def test_numbers_and_other_text_stay(cell):
     text = csv_text(["x", cell], [])
     assert "'" not in text.replace(str(cell), "")
@@ -105,6 +146,10 @@ def test_one_entry_is_not_one_entries(repository):
     by_hand = []
     for path in (*(repository / "uplift").rglob("*"), *(repository / "cli").rglob("*")):
         if path.suffix in (".py", ".j2", ".js"):
-            values = map(str.strip, COUNT_BY_HAND.findall(path.read_text(encoding="utf-8")))
-            by_hand += [f"{path}: {value}" for value in values if not NEVER_ONE.fullmatch(value)]
+            values = map(
+                str.strip, COUNT_BY_HAND.findall(path.read_text(encoding="utf-8"))
+            )
+            by_hand += [
+                f"{path}: {value}" for value in values if not NEVER_ONE.fullmatch(value)
+            ]
     assert by_hand == []

@@ -21,10 +21,24 @@ def version_of(monkeypatch):
 
 
 @pytest.mark.skipif(shutil.which("git") is None, reason="no git")
-def test_every_commit_has_a_version_that_a_shallow_clone_does_not_know(version_of, tmp_path):
+def test_every_commit_has_a_version_that_a_shallow_clone_does_not_know(
+    version_of, tmp_path
+):
     def git(*arguments):
-        identity = ("-c", "user.name=a", "-c", "user.email=a@b.c", "-c", "commit.gpgsign=false")
-        subprocess.run(["git", *identity, *arguments], cwd=tmp_path, check=True, capture_output=True)
+        identity = (
+            "-c",
+            "user.name=a",
+            "-c",
+            "user.email=a@b.c",
+            "-c",
+            "commit.gpgsign=false",
+        )
+        subprocess.run(
+            ["git", *identity, *arguments],
+            cwd=tmp_path,
+            check=True,
+            capture_output=True,
+        )
 
     git("init")
     for count in (1, 2):
@@ -44,7 +58,9 @@ def test_a_source_distribution_has_the_version_of_its_build(version_of, tmp_path
 def test_versions_are_ordered_by_number_and_unknown_ones_are_not():
     versions = ["0.2.0", "0.3.0.dev9", "0.3.0.dev10", "0.3.0", "0.10.0.dev1"]
     for place, first in enumerate(versions):
-        assert [is_older(first, second) for second in versions] == [place < other for other in range(len(versions))]
+        assert [is_older(first, second) for second in versions] == [
+            place < other for other in range(len(versions))
+        ]
     for unknown in ("", "next", "0.3.0.dev0"):
         assert not is_older(unknown, "0.3.0")
         assert not is_older("0.3.0.dev1", unknown)

@@ -13,7 +13,9 @@ from safetensors.numpy import save_file
 from uplift.cube import CubeData, container, contents
 
 
-def forge(data: CubeData, path: Path, change: Callable[[dict[str, Any], dict[str, Any]], None]) -> Path:
+def forge(
+    data: CubeData, path: Path, change: Callable[[dict[str, Any], dict[str, Any]], None]
+) -> Path:
     """Write ``data`` after ``change(tensors, metadata)``, with the digest of the changed content."""
     tensors, metadata = contents(data)
     metadata = json.loads(json.dumps(metadata))
@@ -35,7 +37,9 @@ def forged_digest(tensors: dict[str, Any], metadata: dict[str, Any]) -> str:
 
 def forged_json(metadata: dict[str, Any]) -> str:
     """JSON text as in cube files, but with NaN and infinity."""
-    return json.dumps(metadata, sort_keys=True, ensure_ascii=False, separators=(",", ":"))
+    return json.dumps(
+        metadata, sort_keys=True, ensure_ascii=False, separators=(",", ":")
+    )
 
 
 def header_length(content: bytes) -> int:
@@ -50,4 +54,6 @@ def with_header_length(content: bytes, length: int) -> bytes:
 
 def with_header(content: bytes, header: bytes) -> bytes:
     """The arrays with another header."""
-    return struct.pack("<Q", len(header)) + header + content[8 + header_length(content) :]
+    return (
+        struct.pack("<Q", len(header)) + header + content[8 + header_length(content) :]
+    )

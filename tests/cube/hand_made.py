@@ -14,24 +14,40 @@ from uplift.models import Moments
 from uplift.models.model import Model
 
 
-def table(names: tuple[str, ...], rgb: Array, model: Model, coefficients: Array, half_width: Array) -> AtlasTable:
+def table(
+    names: tuple[str, ...],
+    rgb: Array,
+    model: Model,
+    coefficients: Array,
+    half_width: Array,
+) -> AtlasTable:
     """Entries with as many coefficients as the nodes."""
     error = np.full(len(names), 0.1)
-    return AtlasTable(names, rgb, coefficients, half_width, error, EntrySpectra(model, coefficients))
+    return AtlasTable(
+        names, rgb, coefficients, half_width, error, EntrySpectra(model, coefficients)
+    )
 
 
 def hand_made(dim: int = 4, **changes: object) -> CubeData:
     """A cube of ``dim``³ nodes with random coefficients; node 0 is 0.25 off, over the threshold."""
     lattice, rng = Lattice(axis_nodes("srgb", dim)), np.random.default_rng(7)
     points = np.arange(lattice.size)
-    rgb = (lattice.points + rng.uniform(-1e-4, 1e-4, lattice.points.shape)).astype(np.float32)
+    rgb = (lattice.points + rng.uniform(-1e-4, 1e-4, lattice.points.shape)).astype(
+        np.float32
+    )
     rgb[0] = 0.25
     data = CubeData(
         model=Moments(3),
         lattice=lattice,
         sensor=sensor(),
         threshold=1e-4,
-        atlas=table(("grey", "über"), np.full((2, 3), 0.5), Moments(3), np.full((2, 3), 0.25), np.array([0.5, 0.0])),
+        atlas=table(
+            ("grey", "über"),
+            np.full((2, 3), 0.5),
+            Moments(3),
+            np.full((2, 3), 0.25),
+            np.array([0.5, 0.0]),
+        ),
         points=PointTable(
             coefficients=rng.normal(size=(lattice.size, 3)),
             rgb=rgb,
@@ -57,4 +73,8 @@ def with_outside(data: CubeData, name: str = "cyan") -> CubeData:
         *((name,), np.array([[-0.03, 0.25, 1.5]]), atlas.coefficients[:1]),
         *(np.array([0.25]), np.array([0.1]), spectra, measured),
     )
-    return replace(data, atlas=replace(atlas, outside=outside), provenance={**data.provenance, "left_out": [name]})
+    return replace(
+        data,
+        atlas=replace(atlas, outside=outside),
+        provenance={**data.provenance, "left_out": [name]},
+    )

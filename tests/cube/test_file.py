@@ -81,7 +81,14 @@ def test_missing_files_folders_and_devices_are_refused(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "content", [b"", b"\0" * 8, b"\xff" * 64, b"{}", b"Some text, and long enough to be a header length\n"]
+    "content",
+    [
+        b"",
+        b"\0" * 8,
+        b"\xff" * 64,
+        b"{}",
+        b"Some text, and long enough to be a header length\n",
+    ],
 )
 def test_files_of_other_formats_are_refused(tmp_path, content):
     path = tmp_path / "other"
@@ -89,7 +96,10 @@ def test_files_of_other_formats_are_refused(tmp_path, content):
     refused(path, "not-a-cube")
 
 
-@pytest.mark.parametrize("metadata", [None, {}, {"other": "1"}, {KEY: "{}"}, {KEY: "[]"}, {KEY: "null"}, {KEY: "{"}])
+@pytest.mark.parametrize(
+    "metadata",
+    [None, {}, {"other": "1"}, {KEY: "{}"}, {KEY: "[]"}, {KEY: "null"}, {KEY: "{"}],
+)
 def test_other_safetensors_files_are_refused(tmp_path, metadata):
     path = tmp_path / "other.safetensors"
     save_file({"weights": np.zeros((2, 2))}, path, metadata=metadata)
@@ -98,8 +108,14 @@ def test_other_safetensors_files_are_refused(tmp_path, metadata):
 
 def test_truncated_and_longer_files_are_refused(path, content):
     rng = np.random.default_rng(1)
-    lengths = {*range(0, 16), *rng.integers(0, len(content), CUTS).tolist(), len(content) - 1}
-    for broken in [content[:length] for length in lengths] + [content + more for more in (b"\0", b" ", content)]:
+    lengths = {
+        *range(0, 16),
+        *rng.integers(0, len(content), CUTS).tolist(),
+        len(content) - 1,
+    }
+    for broken in [content[:length] for length in lengths] + [
+        content + more for more in (b"\0", b" ", content)
+    ]:
         path.write_bytes(broken)
         refused(path)
 
@@ -107,16 +123,26 @@ def test_truncated_and_longer_files_are_refused(path, content):
 def test_every_flipped_bit_is_refused(path, content):
     rng = np.random.default_rng(2)
     start = 8 + header_length(content)
-    in_header, in_arrays = rng.integers(0, start, FLIPS // 2), rng.integers(start, len(content), FLIPS // 2)
-    for place, bit in zip([*in_header, *in_arrays], rng.integers(0, 8, FLIPS).tolist(), strict=True):
+    in_header, in_arrays = (
+        rng.integers(0, start, FLIPS // 2),
+        rng.integers(start, len(content), FLIPS // 2),
+    )
+    for place, bit in zip(
+        [*in_header, *in_arrays], rng.integers(0, 8, FLIPS).tolist(), strict=True
+    ):
         broken = bytearray(content)
         broken[place] ^= 1 << bit
         path.write_bytes(broken)
         refused(path)
 
 
-HEADERS = [(b'"F64"', kind) for kind in (b'"BF16"', b'"F8_E4M3"', b'"I64"', b'"C64"', b'"???"')]
-HEADERS += [(b"[512,9]", shape) for shape in (b"[9,512]", b"[-512,-9]", b"[4294967296,4294967296]")]
+HEADERS = [
+    (b'"F64"', kind) for kind in (b'"BF16"', b'"F8_E4M3"', b'"I64"', b'"C64"', b'"???"')
+]
+HEADERS += [
+    (b"[512,9]", shape)
+    for shape in (b"[9,512]", b"[-512,-9]", b"[4294967296,4294967296]")
+]
 HEADERS += [(b'"F64"', b'{"a":' * 100_000)]
 
 
@@ -130,14 +156,20 @@ def test_forged_headers_are_refused(path, content, old, new):
 
 @pytest.mark.parametrize("version", [0, 2, 99, "3", None])
 def test_the_error_names_both_format_versions(data, tmp_path, version):
-    path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.update(version=version))
+    path = forge(
+        data,
+        tmp_path / "cube",
+        lambda tensors, metadata: metadata.update(version=version),
+    )
     error = refused(path, "cube-version")
     assert str(version) in error.problem
     assert str(VERSION) in error.problem
 
 
 @pytest.mark.parametrize("provenance", [{"uplift": "9.8.7"}, {}, {"uplift": 3}, None])
-def test_an_unknown_feature_is_refused_with_the_version_that_wrote_it(data, tmp_path, provenance):
+def test_an_unknown_feature_is_refused_with_the_version_that_wrote_it(
+    data, tmp_path, provenance
+):
     def change(tensors, metadata):
         metadata["features"] += ["polarised"]
         metadata["provenance"] = provenance
@@ -167,7 +199,9 @@ def test_arrays_that_are_missing_or_of_another_form_are_refused(data, tmp_path, 
 def test_numbers_out_of_range_are_refused(forged, name):
     stored = ARRAYS[name]
     kind = np.dtype(stored.types[0])
-    limits = (np.iinfo(kind).min, np.iinfo(kind).max) if kind.kind in "iu" else (-1e31, 1e31)
+    limits = (
+        (np.iinfo(kind).min, np.iinfo(kind).max) if kind.kind in "iu" else (-1e31, 1e31)
+    )
     values = [limits[0]] if stored.low > limits[0] else []
     values += [limits[1]] if stored.high < limits[1] else []
     values += [-1e-30] if kind.kind == "f" and stored.low == 0 else []
@@ -207,7 +241,11 @@ MODELS = [
 
 @pytest.mark.parametrize("model", MODELS)
 def test_unknown_models_are_refused(data, tmp_path, model):
-    path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.update(model=model, entry_model=model))
+    path = forge(
+        data,
+        tmp_path / "cube",
+        lambda tensors, metadata: metadata.update(model=model, entry_model=model),
+    )
     refused(path, "cube-file")
 
 
@@ -215,15 +253,22 @@ def test_unknown_models_are_refused(data, tmp_path, model):
 def refused_metadata(data, tmp_path):
     """Read the cube after a change of its metadata, and return the problem."""
     return lambda change: (
-        refused(forge(data, tmp_path / "cube", lambda tensors, metadata: change(metadata)), "cube-file").problem
+        refused(
+            forge(data, tmp_path / "cube", lambda tensors, metadata: change(metadata)),
+            "cube-file",
+        ).problem
     )
 
 
-@pytest.mark.parametrize("key", [key for key in METADATA if key not in ("format", "version")])
+@pytest.mark.parametrize(
+    "key", [key for key in METADATA if key not in ("format", "version")]
+)
 def test_metadata_that_are_missing_or_of_another_type_are_named(refused_metadata, key):
     assert key in refused_metadata(lambda metadata: metadata.pop(key))
     for value in (None, 10**400, [{}], {"options": 1}, "x" * 2000, True):
-        assert f"metadata.{key}" in refused_metadata(lambda metadata, value=value: metadata.update({key: value}))
+        assert f"metadata.{key}" in refused_metadata(
+            lambda metadata, value=value: metadata.update({key: value})
+        )
 
 
 @pytest.mark.parametrize(
@@ -231,13 +276,24 @@ def test_metadata_that_are_missing_or_of_another_type_are_named(refused_metadata
     [
         {"options": "dim 8"},
         {"improvements": [{"step": "a", "tried": 1.0, "mended": 1}]},
-        {"looks": [{"name": "a", "rgb": [0, 0, 0], "weight": 1, "lights": [{}] * (MAX_LIGHTS + 1)}]},
+        {
+            "looks": [
+                {
+                    "name": "a",
+                    "rgb": [0, 0, 0],
+                    "weight": 1,
+                    "lights": [{}] * (MAX_LIGHTS + 1),
+                }
+            ]
+        },
         {"scene": "photo.png"},
     ],
 )
 def test_provenance_of_another_type_is_refused(refused_metadata, provenance):
     key = f"metadata.provenance.{next(iter(provenance))}"
-    assert key in refused_metadata(lambda metadata: metadata["provenance"].update(provenance))
+    assert key in refused_metadata(
+        lambda metadata: metadata["provenance"].update(provenance)
+    )
 
 
 @pytest.mark.parametrize(
@@ -259,7 +315,9 @@ def nested(depth):
     return '{"a":' * depth + "1" + "}" * depth
 
 
-@pytest.mark.parametrize("value", [nested(40), nested(100_000), r'{"\ud800": 1}', "NaN", "1e999", "9" * 5000])
+@pytest.mark.parametrize(
+    "value", [nested(40), nested(100_000), r'{"\ud800": 1}', "NaN", "1e999", "9" * 5000]
+)
 def test_json_beyond_the_limits_is_refused_before_the_digest(tmp_path, value):
     text = f'{{"format":"uplift cube","version":3,"a":{value}}}'
     save_file({"nodes": np.zeros(2)}, tmp_path / "cube", metadata={KEY: text})
@@ -268,7 +326,11 @@ def test_json_beyond_the_limits_is_refused_before_the_digest(tmp_path, value):
 
 def test_unknown_provenance_of_later_versions_is_kept(data, tmp_path):
     later = {"a": [1, None, True]}
-    path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata["provenance"].update(later=later))
+    path = forge(
+        data,
+        tmp_path / "cube",
+        lambda tensors, metadata: metadata["provenance"].update(later=later),
+    )
     assert read(path).provenance["later"] == later
 
 
@@ -280,13 +342,22 @@ def test_a_cube_of_format_3_is_read_and_written_in_the_present_format(tmp_path):
     assert len(data.atlas.names) == 23
     write(data, tmp_path / "cube.uplift")
     assert_same(read(tmp_path / "cube.uplift"), data)
-    assert f'\\"version\\":{VERSION}'.encode() in (tmp_path / "cube.uplift").read_bytes()
+    assert (
+        f'\\"version\\":{VERSION}'.encode() in (tmp_path / "cube.uplift").read_bytes()
+    )
 
 
 @pytest.mark.parametrize(
-    "provenance", [{"options": {"within": float("nan")}}, {"options": {"within": 1e999}}, {"a": {1, 2}}]
+    "provenance",
+    [
+        {"options": {"within": float("nan")}},
+        {"options": {"within": 1e999}},
+        {"a": {1, 2}},
+    ],
 )
-def test_a_cube_that_cannot_be_read_back_leaves_the_old_file(data, path, content, provenance):
+def test_a_cube_that_cannot_be_read_back_leaves_the_old_file(
+    data, path, content, provenance
+):
     with raises(OutputError, "output"):
         write(dataclasses.replace(data, provenance=provenance), path, force=True)
     assert path.read_bytes() == content

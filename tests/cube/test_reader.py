@@ -18,7 +18,12 @@ READER = ROOT / "docs" / "reader.py"
 SPEC = importlib.util.spec_from_file_location("reader", READER)
 reader = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(reader)
-COLOURS = np.concatenate([list(product((0, 0.02, 0.25, 0.6, 1), repeat=3)), np.random.default_rng(0).random((44, 3))])
+COLOURS = np.concatenate(
+    [
+        list(product((0, 0.02, 0.25, 0.6, 1), repeat=3)),
+        np.random.default_rng(0).random((44, 3)),
+    ]
+)
 AT = [380.0, 455.5, 550.0, 602.0, 780.0]
 
 
@@ -37,10 +42,17 @@ def test_all_colours_of_acescg_those_that_are_moved_too():
 def test_entries_and_their_boxes(name):
     cube = uplift.load(ROOT / "cubes" / f"{name}.uplift")
     near = np.clip(cube.data.atlas.rgb + 0.01, 0, 1)
-    compare(cube, ROOT / "cubes" / f"{name}.uplift", np.concatenate([cube.data.atlas.rgb, near, COLOURS[::9]]), 1e-13)
+    compare(
+        cube,
+        ROOT / "cubes" / f"{name}.uplift",
+        np.concatenate([cube.data.atlas.rgb, near, COLOURS[::9]]),
+        1e-13,
+    )
 
 
-@pytest.mark.parametrize(("space", "model"), [("ITU-R BT.2020", "moments"), ("ProPhoto RGB", "sigmoid")])
+@pytest.mark.parametrize(
+    ("space", "model"), [("ITU-R BT.2020", "moments"), ("ProPhoto RGB", "sigmoid")]
+)
 def test_other_spaces_and_models(tmp_path, space, model):
     cube = uplift.build(dim=3, space=space, model=model)
     cube.save(tmp_path / "a.uplift")
@@ -55,19 +67,39 @@ def test_sparse_cubes_have_the_colours_of_their_scene(tmp_path):
     compare(sparse, tmp_path / "a.uplift", np.full((1, 3), 0.3), 1e-13)
 
 
-def test_it_runs_without_uplift_and_refuses_damaged_files_and_unknown_features(tmp_path):
-    command = [sys.executable, "-I", READER, PACKAGED["srgb"], "0.8", "0.2", "0.1", "500", "600"]
+def test_it_runs_without_uplift_and_refuses_damaged_files_and_unknown_features(
+    tmp_path,
+):
+    command = [
+        sys.executable,
+        "-I",
+        READER,
+        PACKAGED["srgb"],
+        "0.8",
+        "0.2",
+        "0.1",
+        "500",
+        "600",
+    ]
     printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     found = np.array([line.split() for line in printed.splitlines()], dtype=float)
-    np.testing.assert_allclose(found[:, 1], uplift.load().reflectance([0.8, 0.2, 0.1], [500, 600]), atol=1e-11)
+    np.testing.assert_allclose(
+        found[:, 1], uplift.load().reflectance([0.8, 0.2, 0.1], [500, 600]), atol=1e-11
+    )
     data = bytearray(PACKAGED["srgb"].read_bytes())
     data[-9] ^= 1
     (tmp_path / "a.uplift").write_bytes(data)
     with pytest.raises(ValueError, match="damaged"):
         reader.Cube(tmp_path / "a.uplift")
-    forge(uplift.load().data, tmp_path / "b.uplift", lambda _, metadata: metadata["features"].append("polarised"))
+    forge(
+        uplift.load().data,
+        tmp_path / "b.uplift",
+        lambda _, metadata: metadata["features"].append("polarised"),
+    )
     with pytest.raises(ValueError, match="feature"):
         reader.Cube(tmp_path / "b.uplift")
     assert "uplift" not in {
-        line.split()[1] for line in READER.read_text().splitlines() if line.startswith(("import", "from"))
+        line.split()[1]
+        for line in READER.read_text().splitlines()
+        if line.startswith(("import", "from"))
     }

@@ -15,8 +15,14 @@ from uplift.lattice import PointTable
 
 TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)
 JSON = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | TEXT,
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(TEXT, inner, max_size=3),
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.floats(allow_nan=False, allow_infinity=False)
+    | TEXT,
+    lambda inner: (
+        st.lists(inner, max_size=3) | st.dictionaries(TEXT, inner, max_size=3)
+    ),
     max_leaves=8,
 )
 DATA = hand_made(2)
@@ -39,7 +45,11 @@ def cubes(draw):
     return replace(
         DATA,
         threshold=draw(st.floats(1e-9, 0.1)),
-        atlas=replace(DATA.atlas, names=names, error=draw(arrays(float, 2, elements=st.floats(0, 1e30)))),
+        atlas=replace(
+            DATA.atlas,
+            names=names,
+            error=draw(arrays(float, 2, elements=st.floats(0, 1e30))),
+        ),
         points=PointTable(
             coefficients=draw(arrays(float, (8, 3), elements=NUMBERS)),
             rgb=DATA.points.rgb,
@@ -47,7 +57,9 @@ def cubes(draw):
             status=draw(arrays(np.uint8, 8, elements=st.integers(0, 5))),
             entry=draw(arrays(np.int32, 8, elements=st.integers(-1, 1))),
             round=draw(st.none() | arrays(np.int16, 8)),
-            standard_error=draw(st.none() | arrays(np.float32, 8, elements=st.floats(0, 128, width=32))),
+            standard_error=draw(
+                st.none() | arrays(np.float32, 8, elements=st.floats(0, 128, width=32))
+            ),
         ),
         error_illuminant=draw(TEXT),
         provenance=draw(st.dictionaries(TEXT, JSON, max_size=3)),
@@ -71,7 +83,9 @@ def test_cubes_are_read_back_and_written_again_unchanged(data):
     check_round_trip(data)
 
 
-def test_built_cubes_are_read_back_and_written_again_unchanged(small_cube, small_sigmoid_cube):
+def test_built_cubes_are_read_back_and_written_again_unchanged(
+    small_cube, small_sigmoid_cube
+):
     check_round_trip(small_cube.data)
     check_round_trip(with_outside(small_cube.data))
     check_round_trip(with_outside(hand_made()))

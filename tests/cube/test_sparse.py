@@ -30,7 +30,9 @@ def test_sparse_cubes_are_read_back_and_take_no_space_for_absent_points(data, tm
     write(hand_made(6), tmp_path / "whole.uplift")
     back = read(tmp_path / "part.uplift")
     for name in POINTS:
-        np.testing.assert_array_equal(getattr(back.points, name), getattr(data.points, name), err_msg=name)
+        np.testing.assert_array_equal(
+            getattr(back.points, name), getattr(data.points, name), err_msg=name
+        )
     assert digest(back) == digest(data)
     row = sum(np.asarray(getattr(data.points, name)[0]).nbytes for name in POINTS)
     saved = [(tmp_path / f"{name}.uplift").stat().st_size for name in ("whole", "part")]
@@ -76,7 +78,9 @@ CHANGES = {
     "unsorted": points(lambda numbers: numbers[::-1]),
     "beyond": with_last(6**3),
     "missing": lambda tensors, metadata: tensors.pop("points"),
-    "absent": lambda tensors, metadata: tensors.update(status=np.full_like(tensors["status"], Status.ABSENT)),
+    "absent": lambda tensors, metadata: tensors.update(
+        status=np.full_like(tensors["status"], Status.ABSENT)
+    ),
     "no feature": lambda tensors, metadata: metadata["features"].remove("sparse"),
     "no cell": without_a_cell,
     "huge": huge,
@@ -93,15 +97,23 @@ def of_dim(dim):
     """A change to the first cell of a lattice of another dim."""
 
     def change(tensors, metadata):
-        rows = np.searchsorted(tensors["points"], Lattice(tensors["nodes"]).index(CORNERS))
+        rows = np.searchsorted(
+            tensors["points"], Lattice(tensors["nodes"]).index(CORNERS)
+        )
         metadata["dim"], tensors["nodes"] = dim, np.linspace(0, 1, dim)
-        tensors["points"] = Lattice(tensors["nodes"]).index(CORNERS).astype(tensors["points"].dtype)
-        tensors.update({name: tensors[name][rows] for name in POINTS if name in tensors})
+        tensors["points"] = (
+            Lattice(tensors["nodes"]).index(CORNERS).astype(tensors["points"].dtype)
+        )
+        tensors.update(
+            {name: tensors[name][rows] for name in POINTS if name in tensors}
+        )
 
     return change
 
 
-@pytest.mark.skipif(not Path("/proc/self").exists(), reason="counts memory as Linux does")
+@pytest.mark.skipif(
+    not Path("/proc/self").exists(), reason="counts memory as Linux does"
+)
 def test_small_files_of_large_lattices_take_little_memory(plain_cube, tmp_path):
     sparse = with_absent_points(plain_cube.data, near_black(plain_cube.data))
     path = forge(sparse, tmp_path / "forged.uplift", of_dim(160))
@@ -111,7 +123,13 @@ def test_small_files_of_large_lattices_take_little_memory(plain_cube, tmp_path):
         "cube = uplift.load(sys.argv[1]).fill_missing([[0.5, 0.5, 0.5]])\ncompute_smoothness(cube.data)\n"
         "print(next(line.split()[1] for line in open('/proc/self/status') if line.startswith('VmHWM:')))"
     )
-    done = subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True, check=True, timeout=120)
+    done = subprocess.run(
+        [sys.executable, "-c", code, path],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
+    )
     assert int(done.stdout) < 300 * 1024  # kB; the arrays of all nodes take 310 MB
 
 

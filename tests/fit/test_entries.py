@@ -33,13 +33,17 @@ def problem_of(sensor, lights=LIGHTS, model=MODEL):
 
 
 def fitted(sensor, measured, lights=LIGHTS, **weights):
-    found = fit_entries(problem_of(sensor, lights), measured, sensor.rgb(measured), **weights)
+    found = fit_entries(
+        problem_of(sensor, lights), measured, sensor.rgb(measured), **weights
+    )
     return evaluate(MODEL, found.multipliers, sensor.wavelengths)
 
 
 def mean_delta_e(name, first, second):
     light = observer.light(name)
-    return delta_e_2000(*(lab(spectra @ light.xyz.T, light.white) for spectra in (first, second))).mean()
+    return delta_e_2000(
+        *(lab(spectra @ light.xyz.T, light.white) for spectra in (first, second))
+    ).mean()
 
 
 def test_colour_spectrum_and_lights_of_the_macbeth_entries(sensor, measured):
@@ -54,7 +58,9 @@ def test_colour_spectrum_and_lights_of_the_macbeth_entries(sensor, measured):
 def test_colours_are_kept_under_the_lights_of_the_objective(sensor, measured):
     """Without FL11 in the objective, errors under FL11 grow."""
     without = fitted(sensor, measured, ("D65",))
-    assert mean_delta_e("FL11", fitted(sensor, measured), measured) < 0.8 * mean_delta_e("FL11", without, measured)
+    assert mean_delta_e(
+        "FL11", fitted(sensor, measured), measured
+    ) < 0.8 * mean_delta_e("FL11", without, measured)
 
 
 def test_the_ends_of_the_spectrum_follow_the_measurement(sensor, measured):
@@ -67,7 +73,10 @@ def steps_along_noise(sensor, spectrum, **weights):
     """Steps of fitted spectra while a measurement gains noise evenly, in units of the steps of the measurement."""
     noise = np.random.default_rng(2).normal(0, 0.002, (23, len(spectrum)))[22]
     path = np.clip(spectrum + np.linspace(0, 1, 41)[:, None] * noise, 1e-4, 1)
-    changes = [np.linalg.norm(np.diff(each, axis=0), axis=1) for each in (path, fitted(sensor, path, **weights))]
+    changes = [
+        np.linalg.norm(np.diff(each, axis=0), axis=1)
+        for each in (path, fitted(sensor, path, **weights))
+    ]
     return changes[1] / changes[0]
 
 
@@ -83,9 +92,13 @@ def jacobian(goal, multipliers):
     """Derivative (m, C) of the residuals at multipliers (C,), row by row of the objective."""
     x = goal.basis @ multipliers
     change = goal.model.derivative(x)[:, None] * goal.basis
-    colours = lab_jacobian(goal.lights @ goal.model.to_reflectance(x), goal.whites) @ (goal.lights @ change)
+    colours = lab_jacobian(goal.lights @ goal.model.to_reflectance(x), goal.whites) @ (
+        goal.lights @ change
+    )
     own = np.diag(goal.multipliers)
-    return np.concatenate([goal.values * change, goal.weight * colours.reshape(-1, len(own)), own])
+    return np.concatenate(
+        [goal.values * change, goal.weight * colours.reshape(-1, len(own)), own]
+    )
 
 
 @pytest.mark.parametrize("model", [Moments(5), Sigmoid()], ids=lambda m: m.name)
@@ -105,19 +118,30 @@ def test_normal_equations_are_those_of_central_differences(sensor, measured, mod
         np.testing.assert_allclose(plain, np.transpose(numeric), rtol=1e-5, atol=1e-8)
         gram, slope = goal.normal_equations(at[None], residuals[None])
         np.testing.assert_allclose(gram[0], plain.T @ plain, rtol=1e-10, atol=1e-14)
-        np.testing.assert_allclose(slope[0], plain.T @ residuals, rtol=1e-10, atol=1e-14)
+        np.testing.assert_allclose(
+            slope[0], plain.T @ residuals, rtol=1e-10, atol=1e-14
+        )
 
 
-@pytest.mark.parametrize("model", [Moments(9), Moments(17), Sigmoid()], ids=lambda m: f"{m.name}{m.count}")
+@pytest.mark.parametrize(
+    "model", [Moments(9), Moments(17), Sigmoid()], ids=lambda m: f"{m.name}{m.count}"
+)
 def test_minima_are_those_of_minpack(sensor, measured, model):
     goal = goal_of(problem_of(sensor, model=model))
     found = minimise(goal, measured)
     for multipliers, spectrum in zip(found, measured, strict=True):
         given = (spectrum, goal.colours(spectrum))
         theirs, *_ = leastsq(
-            goal.residuals, np.zeros(model.count), given, lambda p, *_: jacobian(goal, p), full_output=True, ftol=1e-8
+            goal.residuals,
+            np.zeros(model.count),
+            given,
+            lambda p, *_: jacobian(goal, p),
+            full_output=True,
+            ftol=1e-8,
         )
-        ours, other = ((goal.residuals(p, *given) ** 2).sum() for p in (multipliers, theirs))
+        ours, other = (
+            (goal.residuals(p, *given) ** 2).sum() for p in (multipliers, theirs)
+        )
         assert ours <= other * (1 + 1e-6)
 
 
@@ -131,7 +155,9 @@ def test_error_is_the_difference_between_fit_and_measurement(sensor, measured):
     found = fit_entries(problem_of(sensor, ("A",)), measured, sensor.rgb(measured))
     spectra = evaluate(MODEL, found.multipliers, sensor.wavelengths)
     for row in range(len(measured)):
-        assert found.error[row] == pytest.approx(mean_delta_e("A", spectra[row], measured[row]))
+        assert found.error[row] == pytest.approx(
+            mean_delta_e("A", spectra[row], measured[row])
+        )
 
 
 def test_an_empty_atlas_has_no_fitted_entries(sensor):

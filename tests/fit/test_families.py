@@ -9,7 +9,15 @@ from tests.conftest import ATLASES
 from tools import ship_library
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
-from uplift.fit.families import FILE, LENGTH, NUGGET, Family, families_with, krige_families, learn_relevance
+from uplift.fit.families import (
+    FILE,
+    LENGTH,
+    NUGGET,
+    Family,
+    families_with,
+    krige_families,
+    learn_relevance,
+)
 from uplift.fit.kriging import Points
 
 RNG = np.random.default_rng(5)
@@ -26,17 +34,27 @@ OTHERS = RNG.normal(size=(20, ENTRIES, 6)) @ WAVES
 def test_the_shipped_file_is_the_output_of_the_tool(tmp_path):
     written = tmp_path / "library.npz"
     ship_library.main(written)
-    with np.load(written) as new, (files("uplift.fit") / FILE).open("rb") as file, np.load(file) as shipped:
+    with (
+        np.load(written) as new,
+        (files("uplift.fit") / FILE).open("rb") as file,
+        np.load(file) as shipped,
+    ):
         assert set(new.files) == set(shipped.files)
         for name in new.files:
-            if name.startswith(("matrices", "smooth")):  # instruction sets round them differently
-                np.testing.assert_allclose(new[name], shipped[name], rtol=0, atol=1e-7, err_msg=name)
+            if name.startswith(
+                ("matrices", "smooth")
+            ):  # instruction sets round them differently
+                np.testing.assert_allclose(
+                    new[name], shipped[name], rtol=0, atol=1e-7, err_msg=name
+                )
             else:
                 np.testing.assert_array_equal(new[name], shipped[name], err_msg=name)
     assert written.stat().st_size < 1_200_000
 
 
-@pytest.mark.parametrize(("atlas", "families"), [("macbeth", ("checker",)), ("cie2017", ("cie2017",))])
+@pytest.mark.parametrize(
+    ("atlas", "families"), [("macbeth", ("checker",)), ("cie2017", ("cie2017",))]
+)
 def test_families_are_found_by_their_spectra(sensor, atlas, families):
     measured = resample(read_atlas(ATLASES / f"{atlas}.txt"), sensor.wavelengths).values
     assert families_with(measured) == families
@@ -46,11 +64,18 @@ def test_families_are_found_by_their_spectra(sensor, atlas, families):
 
 def samples(count):
     locations = RNG.uniform([20, -30, -30], [90, 30, 30], (count, 3))
-    return Points(locations, RNG.normal(size=(count, 4)), RNG.integers(1, 4, count), np.arange(count))
+    return Points(
+        locations,
+        RNG.normal(size=(count, 4)),
+        RNG.integers(1, 4, count),
+        np.arange(count),
+    )
 
 
 def matern(first, second):
-    scaled = np.sqrt(3) * np.linalg.norm(first[:, None] - second[None], axis=-1) / LENGTH
+    scaled = (
+        np.sqrt(3) * np.linalg.norm(first[:, None] - second[None], axis=-1) / LENGTH
+    )
     return (1 + scaled) * np.exp(-scaled)
 
 
@@ -73,17 +98,25 @@ def conditional_mean(families, points, lab):
 @pytest.mark.parametrize("sizes", [(12, 30), (1, 7, 0), (25,)])
 def test_it_is_the_conditional_mean(sizes):
     points = [samples(size) for size in sizes]
-    families = [Family("", None, *pair) for pair in ((5, 0), (1, 0.5), (2, 1))][: len(sizes)]
+    families = [Family("", None, *pair) for pair in ((5, 0), (1, 0.5), (2, 1))][
+        : len(sizes)
+    ]
     lab = RNG.uniform([0, -60, -60], [100, 60, 60], (50, 3))
     kriging = krige_families(families, points)
-    np.testing.assert_allclose(kriging(lab, np.ones(len(sizes))), conditional_mean(families, points, lab), atol=1e-9)
+    np.testing.assert_allclose(
+        kriging(lab, np.ones(len(sizes))),
+        conditional_mean(families, points, lab),
+        atol=1e-9,
+    )
     relevance = RNG.uniform(0, 2, len(sizes))
     expected = np.einsum("f,fnk->nk", relevance, kriging.contributions(lab))
     np.testing.assert_allclose(kriging(lab, relevance), expected, atol=1e-12)
 
 
 def learn(measured, rows=slice(None)):
-    return learn_relevance(LIGHTS, PLACES[rows], PLAIN[rows], PARTS[:, rows], measured[rows])
+    return learn_relevance(
+        LIGHTS, PLACES[rows], PLAIN[rows], PARTS[:, rows], measured[rows]
+    )
 
 
 @pytest.mark.parametrize("truth", [(2.0, 0.5), (0.0, 1.0), (1.3, 1.6)])
@@ -95,7 +128,12 @@ def test_relevances_of_an_explained_atlas_are_found(truth):
 def distances(amplitude, rows=slice(None)):
     """Distance from 1 of relevances that are truly 2 and 0, over atlases."""
     measured = PLAIN + 2 * PARTS[0]
-    return np.mean([np.abs(learn(measured + amplitude * other, rows) - 1).mean() for other in OTHERS])
+    return np.mean(
+        [
+            np.abs(learn(measured + amplitude * other, rows) - 1).mean()
+            for other in OTHERS
+        ]
+    )
 
 
 def test_what_no_family_explains_keeps_relevances_near_1():

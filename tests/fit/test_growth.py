@@ -36,11 +36,17 @@ def all_nodes(lattice):
 
 def fitted(model, sensor, lattice, rgb=NO_COLOURS, grow=grow_outward):
     """Fit a lattice with entries of grey spectra at linear RGB (E, 3): table of nodes, improvements."""
-    problem, nodes, seeds = Problem(sensor, model), all_nodes(lattice), seed(lattice, rgb)
+    problem, nodes, seeds = (
+        Problem(sensor, model),
+        all_nodes(lattice),
+        seed(lattice, rgb),
+    )
     prior = prior_of(problem)
     grey = np.zeros((len(rgb), model.count))
 
-    expected = partial(initial_guess, prior=prior, seeds=seeds, entries=grey, blend=FULL_ENTRY)
+    expected = partial(
+        initial_guess, prior=prior, seeds=seeds, entries=grey, blend=FULL_ENTRY
+    )
     growth = grow(problem, nodes, expected, seeds.points, ignore_progress)
     improvements = improve(growth)
     return store(growth, seeds, prior), improvements
@@ -53,7 +59,14 @@ def missed(model, sensor, lattice, coefficients):
 
 
 @settings(max_examples=8, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(arrays(float, st.tuples(st.integers(0, 6), st.just(3)), elements=st.floats(0.02, 0.98), unique=True))
+@given(
+    arrays(
+        float,
+        st.tuples(st.integers(0, 6), st.just(3)),
+        elements=st.floats(0.02, 0.98),
+        unique=True,
+    )
+)
 def test_any_set_of_seeds_fits_the_lattice(sensor, rgb):
     points, _ = fitted(MODEL, sensor, LATTICE, rgb)
     assert missed(MODEL, sensor, LATTICE, points.coefficients).max() <= 1e-4
@@ -62,7 +75,9 @@ def test_any_set_of_seeds_fits_the_lattice(sensor, rgb):
     assert np.isfinite(points.coefficients).all()
 
 
-@pytest.mark.parametrize(("dim", "model"), [(2, MODEL), (3, Moments(3)), (2, Sigmoid())], ids=str)
+@pytest.mark.parametrize(
+    ("dim", "model"), [(2, MODEL), (3, Moments(3)), (2, Sigmoid())], ids=str
+)
 def test_tiny_lattices_are_fitted_to_their_corners(model, dim, sensor):
     lattice = Lattice(axis_nodes("srgb", dim))
     points, _ = fitted(model, sensor, lattice)
@@ -76,12 +91,20 @@ def test_points_that_fail_from_their_start_are_fitted_from_their_neighbours(sens
     start = np.full((LATTICE.size, 9), -1e9) * MODEL.constant()
     start[middle] = 0
     grown = grow_coarse_to_fine(
-        Problem(sensor, MODEL), all_nodes(LATTICE), lambda at, _: start[at], np.array([middle]), rounds.append
+        Problem(sensor, MODEL),
+        all_nodes(LATTICE),
+        lambda at, _: start[at],
+        np.array([middle]),
+        rounds.append,
     )
-    steps = np.abs(LATTICE.position(np.arange(LATTICE.size)) - LATTICE.position(np.array(middle))).max(axis=1)
+    steps = np.abs(
+        LATTICE.position(np.arange(LATTICE.size)) - LATTICE.position(np.array(middle))
+    ).max(axis=1)
     fitted = grown.round != NOT_FITTED
     assert fitted.sum() > 300
-    assert (grown.round[fitted & (steps > 0)] >= steps[fitted & (steps > 0)]).sum() > 300
+    assert (
+        grown.round[fitted & (steps > 0)] >= steps[fitted & (steps > 0)]
+    ).sum() > 300
     assert sorted({done.step for done in rounds}) == list(range(rounds[-1].step + 1))
     assert rounds[-1].done == fitted.sum()
     assert all(done.total == LATTICE.size for done in rounds)
@@ -93,7 +116,9 @@ def test_growth_proceeds_from_a_coarse_lattice_to_finer_ones(sensor):
     points, improvements = fitted(MODEL, sensor, lattice, grow=grow_coarse_to_fine)
     position = lattice.position(np.arange(lattice.size))
     for number, stride in enumerate(strides(lattice.dim)):
-        np.testing.assert_array_equal(points.round <= number, (position % stride == 0).all(axis=1))
+        np.testing.assert_array_equal(
+            points.round <= number, (position % stride == 0).all(axis=1)
+        )
     assert improvements == []
 
 
@@ -106,20 +131,32 @@ def test_growth_proceeds_outward_in_shells(sensor):
     steps = np.abs(position[:, None] - lattice.position(seeds)).max(axis=2).min(axis=1)
     np.testing.assert_array_equal(distance, steps)
     assert np.abs(position[toward] - position).max() == 1
-    np.testing.assert_array_equal(np.flatnonzero(toward == np.arange(lattice.size)), seeds)
+    np.testing.assert_array_equal(
+        np.flatnonzero(toward == np.arange(lattice.size)), seeds
+    )
     assert (distance[toward] < distance).mean() > 0.8
     points, _ = fitted(MODEL, sensor, lattice)
     from_middle = np.abs(position - 4).max(axis=1)
     assert (points.round == from_middle).mean() > 0.99
 
 
-@pytest.mark.parametrize("rgb", [NO_COLOURS, np.array([[0.2, 0.3, 0.4]])], ids=["no seeds", "seeds"])
+@pytest.mark.parametrize(
+    "rgb", [NO_COLOURS, np.array([[0.2, 0.3, 0.4]])], ids=["no seeds", "seeds"]
+)
 def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch, rgb):
     """Outward, all at once, and from coarse lattices to finer ones; few nodes differ."""
     lattice = Lattice(axis_nodes("srgb", 17))
-    spectra = [reflectance(MODEL, fitted(MODEL, sensor, lattice, rgb)[0].coefficients, sensor.wavelengths)]
+    spectra = [
+        reflectance(
+            MODEL,
+            fitted(MODEL, sensor, lattice, rgb)[0].coefficients,
+            sensor.wavelengths,
+        )
+    ]
     for order in ([1], [4, 2, 1]):
-        monkeypatch.setattr("uplift.fit.growth_coarse.strides", lambda dim, order=order: order)
+        monkeypatch.setattr(
+            "uplift.fit.growth_coarse.strides", lambda dim, order=order: order
+        )
         points = fitted(MODEL, sensor, lattice, rgb, grow_coarse_to_fine)[0]
         assert points.round.max() == len(order) - 1
         spectra.append(reflectance(MODEL, points.coefficients, sensor.wavelengths))
@@ -127,7 +164,9 @@ def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch, 
         difference = np.abs(other - spectra[0]).max(axis=1)
         assert np.median(difference) < 1e-6
         assert np.quantile(difference, 0.99) < 1e-5
-        assert (difference > 2e-4).mean() < 1e-3  # nearly box-shaped spectra at the faces
+        assert (
+            difference > 2e-4
+        ).mean() < 1e-3  # nearly box-shaped spectra at the faces
 
 
 def test_an_unrealisable_colour_has_status_unfitted(sensor):
@@ -147,9 +186,14 @@ def test_an_unrealisable_colour_has_status_unfitted(sensor):
 def test_improvement_fixes_points_with_a_vanishing_gradient(sensor):
     """Spectra so near black that only a new start helps."""
     problem = Problem(sensor, MODEL)
-    growth, forward = Growth(problem, all_nodes(LATTICE), ignore_progress), problem.forward
+    growth, forward = (
+        Growth(problem, all_nodes(LATTICE), ignore_progress),
+        problem.forward,
+    )
     growth.multipliers[:, 0] = -1e9
-    growth.distance[:] = np.abs(forward.residual(growth.multipliers, LATTICE.points)).max(axis=1)
+    growth.distance[:] = np.abs(
+        forward.residual(growth.multipliers, LATTICE.points)
+    ).max(axis=1)
     steps = improve(growth)
     off = forward.residual(growth.multipliers, LATTICE.points)
     assert (growth.distance <= 1e-4).all()
@@ -163,11 +207,18 @@ def test_improvement_fixes_points_with_a_vanishing_gradient(sensor):
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
 def test_seeds_are_the_entries_with_the_coefficients_of_the_nodes(repository):
     """The zeroth and first moments of an entry do not depend on how many are kept."""
-    cube = build(repository / "atlases" / "macbeth.txt", dim=16, coefficients=9, growth="neighbours")
+    cube = build(
+        repository / "atlases" / "macbeth.txt",
+        dim=16,
+        coefficients=9,
+        growth="neighbours",
+    )
     points, entries = cube.data.points, cube.data.atlas.spectra.coefficients
     assert points.distance.max() <= 1e-4
     primary = points.status == Status.ATLAS_PRIMARY
-    moved = np.abs(points.coefficients[primary] - entries[points.entry[primary], :9]).max(axis=1)
+    moved = np.abs(
+        points.coefficients[primary] - entries[points.entry[primary], :9]
+    ).max(axis=1)
     assert np.median(moved) < 0.03
 
 
@@ -185,7 +236,11 @@ def prior_of(problem):
 
 def distance(problem, coefficients):
     """Distance evaluated by numpy, as a lookup does."""
-    return np.abs(problem.forward.residual(problem.model.from_storage(coefficients), STORED.points)).max(axis=1)
+    return np.abs(
+        problem.forward.residual(
+            problem.model.from_storage(coefficients), STORED.points
+        )
+    ).max(axis=1)
 
 
 def greys(problem, level):
@@ -205,9 +260,13 @@ def grown(problem, multipliers):
 def test_single_precision_is_used_where_it_is_accurate(problem):
     multipliers = greys(problem, np.linspace(0.001, 0.999, STORED.size))
     here = distance(problem, problem.model.to_storage(multipliers))
-    stored = store(grown(problem, multipliers), seed(STORED, NO_COLOURS), prior_of(problem))
+    stored = store(
+        grown(problem, multipliers), seed(STORED, NO_COLOURS), prior_of(problem)
+    )
     assert stored.coefficients.dtype == np.float32
-    np.testing.assert_allclose(stored.distance, distance(problem, stored.coefficients), atol=1e-6)
+    np.testing.assert_allclose(
+        stored.distance, distance(problem, stored.coefficients), atol=1e-6
+    )
     assert (stored.distance <= here + MAX_LOSS * problem.threshold).all()
 
 
@@ -215,10 +274,15 @@ def test_double_precision_is_used_where_single_is_inaccurate(problem, monkeypatc
     """The threshold is so small that rounding exceeds it in the last block: all nodes are evaluated again."""
     monkeypatch.setattr("uplift.fit.growth.BLOCK_POINTS", 256)
     strict = replace(problem, threshold=1e-7)
-    multipliers = greys(problem, np.concatenate([np.full(STORED.size - 9, 0.5), np.linspace(0.99, 0.9999, 9)]))
+    multipliers = greys(
+        problem,
+        np.concatenate([np.full(STORED.size - 9, 0.5), np.linspace(0.99, 0.9999, 9)]),
+    )
     coefficients = problem.model.to_storage(multipliers)
     here = distance(problem, coefficients)
-    stored = store(grown(strict, multipliers), seed(STORED, NO_COLOURS), prior_of(problem))
+    stored = store(
+        grown(strict, multipliers), seed(STORED, NO_COLOURS), prior_of(problem)
+    )
     assert stored.coefficients.dtype == np.float64
     np.testing.assert_allclose(stored.coefficients, coefficients, atol=1e-12)
     np.testing.assert_allclose(stored.distance, here, atol=1e-7)

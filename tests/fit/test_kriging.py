@@ -50,15 +50,17 @@ def predicted(places, deviations, at, variances, at_variance=1.0, kernel=KERNEL)
     """The conditional mean of a Gaussian process at L*a*b* (3)."""
     within = covariance(places, places, np.sqrt(np.outer(variances, variances)), kernel)
     within += WHITE * kernel.noise * np.diag(variances)
-    return covariance(at[None], places, np.sqrt(at_variance * variances), kernel)[0] @ np.linalg.solve(
-        within, deviations
-    )
+    return covariance(at[None], places, np.sqrt(at_variance * variances), kernel)[
+        0
+    ] @ np.linalg.solve(within, deviations)
 
 
 def test_it_is_the_conditional_mean():
     found, _ = krige(PLACES, DEVIATIONS, KERNEL, VARIANCES)
     for at in RNG.uniform(-20, 60, (5, 3)):
-        np.testing.assert_allclose(found(at[None])[0], predicted(PLACES, DEVIATIONS, at, VARIANCES), atol=1e-9)
+        np.testing.assert_allclose(
+            found(at[None])[0], predicted(PLACES, DEVIATIONS, at, VARIANCES), atol=1e-9
+        )
 
 
 @pytest.mark.parametrize("points", [30, 20])
@@ -73,25 +75,41 @@ def test_leave_one_out_equals_kriging_of_the_other_entries(monkeypatch, points):
     _, errors = krige(PLACES, DEVIATIONS, KERNEL, VARIANCES)
     for row in range(len(PLACES)):
         others = np.arange(len(PLACES)) != row
-        again = predicted(places[others], DEVIATIONS[others], places[row], variances[others], variances[row])
+        again = predicted(
+            places[others],
+            DEVIATIONS[others],
+            places[row],
+            variances[others],
+            variances[row],
+        )
         np.testing.assert_allclose(DEVIATIONS[row] - errors[row], again, atol=1e-9)
 
 
 @given(st.floats(3, 60), st.floats(0, 4), st.integers(0, 1000))
 def test_kernels_are_positive_definite(length, noise, seed):
     places = np.random.default_rng(seed).uniform(0, 30, (30, 3))
-    assert np.linalg.eigvalsh(covariance(places, places, kernel=Kernel(length, noise))).min() > 0
+    assert (
+        np.linalg.eigvalsh(
+            covariance(places, places, kernel=Kernel(length, noise))
+        ).min()
+        > 0
+    )
 
 
 def test_close_spectra_are_averaged_where_there_are_many():
     few = average_close(PLACES, DEVIATIONS)
     assert few.locations is PLACES
     np.testing.assert_array_equal(few.counts, 1)
-    places, deviations = RNG.uniform(0, 60, (20 * MAX_POINTS, 3)), RNG.normal(size=(20 * MAX_POINTS, 4))
+    places, deviations = (
+        RNG.uniform(0, 60, (20 * MAX_POINTS, 3)),
+        RNG.normal(size=(20 * MAX_POINTS, 4)),
+    )
     many = average_close(places, deviations)
     assert len(many.locations) <= MAX_POINTS
     np.testing.assert_array_equal(many.counts, np.bincount(many.point))
-    np.testing.assert_allclose(many.counts @ many.deviations, deviations.sum(axis=0), atol=1e-9)
+    np.testing.assert_allclose(
+        many.counts @ many.deviations, deviations.sum(axis=0), atol=1e-9
+    )
     assert np.abs(many.locations[many.point] - places).max() <= CELLS[-1]
 
 
@@ -101,11 +119,15 @@ ALL_VISIBLE = np.broadcast_to(np.eye(3), (150, 1, 3, 3))
 
 
 def drawn_from(kernel):
-    drawn = covariance(MANY, MANY, kernel=kernel) + (WHITE * kernel.noise + 1e-9) * np.eye(150)
+    drawn = covariance(MANY, MANY, kernel=kernel) + (
+        WHITE * kernel.noise + 1e-9
+    ) * np.eye(150)
     return np.linalg.cholesky(drawn) @ LEARNING.normal(size=(150, 3))
 
 
-@pytest.mark.parametrize("truth", [Kernel(48.0, 0.01), Kernel(24.0, 1.0), Kernel(6.0, 0.03)])
+@pytest.mark.parametrize(
+    "truth", [Kernel(48.0, 0.01), Kernel(24.0, 1.0), Kernel(6.0, 0.03)]
+)
 def test_a_large_atlas_tells_its_kernel(truth):
     learnt = learn_kriging(MANY, drawn_from(truth), ALL_VISIBLE)[0].kernel
     assert truth.length / 2 <= learnt.length <= truth.length * 2
@@ -115,7 +137,9 @@ def test_a_large_atlas_tells_its_kernel(truth):
 def test_without_evidence_the_default_is_kept():
     few = slice(0, MIN_ENTRIES - 1)
     deviations = LEARNING.normal(size=(150, 3))
-    assert learn_kriging(MANY[few], deviations[few], ALL_VISIBLE[few])[0].kernel == DEFAULT
+    assert (
+        learn_kriging(MANY[few], deviations[few], ALL_VISIBLE[few])[0].kernel == DEFAULT
+    )
     # nor are invisible deviations evidence for another kernel
     assert learn_kriging(MANY, deviations, 0 * ALL_VISIBLE)[0].kernel == DEFAULT
     assert learn_kriging(MANY, np.zeros((150, 3)), ALL_VISIBLE)[0].kernel == DEFAULT
@@ -144,14 +168,26 @@ def test_visible_change_ranks_metameric_changes_by_delta_e(sensor):
     forward = problem.forward
     measured = on_grid(read_atlas(MACBETH), sensor.wavelengths)
     measured = np.tile(measured[in_unit_cube(sensor.rgb(measured))], (10, 1))
-    coloured = partial(solve, forward, target=sensor.rgb(measured), tolerance=1e-9, max_passes=32)
-    start = model.from_storage(smooth(model, forward).coefficients(sensor.rgb(measured)))
+    coloured = partial(
+        solve, forward, target=sensor.rgb(measured), tolerance=1e-9, max_passes=32
+    )
+    start = model.from_storage(
+        smooth(model, forward).coefficients(sensor.rgb(measured))
+    )
     plain = coloured(start=start).multipliers
     moments = model.to_storage(plain)
     change = 1e-3 * np.random.default_rng(0).normal(size=moments.shape)
     moved = coloured(start=model.from_storage(moments + change)).multipliers
-    before, after = (model.to_reflectance(each @ forward.basis.T) for each in (plain, moved))
-    linear = np.linalg.norm(np.einsum("elkc,ec->elk", visible_change(problem, before), change), axis=-1)
-    actual = np.stack([delta_e_spectra(light, before, after) for light in problem.lights], axis=1)
-    assert 0.5 < np.sqrt((linear**2).mean() / (actual**2).mean()) < 0.8  # it neglects the roughest parts
+    before, after = (
+        model.to_reflectance(each @ forward.basis.T) for each in (plain, moved)
+    )
+    linear = np.linalg.norm(
+        np.einsum("elkc,ec->elk", visible_change(problem, before), change), axis=-1
+    )
+    actual = np.stack(
+        [delta_e_spectra(light, before, after) for light in problem.lights], axis=1
+    )
+    assert (
+        0.5 < np.sqrt((linear**2).mean() / (actual**2).mean()) < 0.8
+    )  # it neglects the roughest parts
     assert np.corrcoef(linear.ravel(), actual.ravel())[0, 1] > 0.8

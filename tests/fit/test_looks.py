@@ -40,18 +40,27 @@ def materials(sensor):
     return measured, uplift.load().reflectance(np.clip(sensor.rgb(measured), 0, 1))
 
 
-@pytest.mark.parametrize("names", [("FL11",), ("A", "HP1"), ("A", "FL2", "FL11", "LED-B3")])
+@pytest.mark.parametrize(
+    "names", [("FL11",), ("A", "HP1"), ("A", "FL2", "FL11", "LED-B3")]
+)
 def test_looks_of_real_materials_are_met_in_their_entry_fit(sensor, materials, names):
     lights = [observer.light(name) for name in names]
     model = Moments(17)
     goals = [goal_of(sensor, lights, spectrum) for spectrum in materials[0]]
-    designs = np.array([design_reflectance(sensor, *each) for each in zip(goals, materials[1], strict=True)])
+    designs = np.array(
+        [
+            design_reflectance(sensor, *each)
+            for each in zip(goals, materials[1], strict=True)
+        ]
+    )
     assert designs.min() >= 0
     assert designs.max() <= 1
     fitted = fit_designs(Problem(sensor, model), goals, designs)
     answers = evaluate(model, fitted.multipliers, sensor.wavelengths)
     assert np.abs(sensor.rgb(answers) - fitted.rgb).max() <= TOLERANCE
-    distances = np.array([goal.delta_e(answer) for goal, answer in zip(goals, answers, strict=True)])
+    distances = np.array(
+        [goal.delta_e(answer) for goal, answer in zip(goals, answers, strict=True)]
+    )
     assert distances.max() <= MET
 
 
@@ -61,7 +70,9 @@ def impossible(sensor, materials):
     row = 7  # purplish blue
     light = observer.light("A")
     other = measured[row] * np.linspace(0.2, 2.5, measured.shape[1]).clip(0, 2)
-    return goal_of(sensor, [light], np.clip(other, 0, 1), sensor.rgb(expected[row])), expected[row]
+    return goal_of(
+        sensor, [light], np.clip(other, 0, 1), sensor.rgb(expected[row])
+    ), expected[row]
 
 
 def test_nearest_colour_is_that_of_a_linear_program(sensor, materials):
@@ -73,7 +84,9 @@ def test_nearest_colour_is_that_of_a_linear_program(sensor, materials):
     (light,), (wish,), xyz = goal.lights, goal.xyz, goal.colours(found)[0]
     wished, answered = lab(wish, light.white), lab(xyz, light.white)
     weights = delta_e_2000_weights(wished)
-    towards = (weights @ (wished - answered)) @ (weights @ lab_jacobian(xyz, light.white) @ light.xyz)
+    towards = (weights @ (wished - answered)) @ (
+        weights @ lab_jacobian(xyz, light.white) @ light.xyz
+    )
     best = linprog(-towards, A_eq=sensor.matrix, b_eq=sensor.rgb(found), bounds=(0, 1))
     assert best.status == 0
     length = np.linalg.norm(weights @ (wished - answered))
@@ -86,10 +99,14 @@ def test_the_prior_follows_looks_nearby_only(sensor, materials):
     measured, expected = materials
     light = observer.light("FL11")
     problem = Problem(sensor, Moments(9), (light,), light)
-    entries = fit_entries(problem, measured[:6], np.clip(sensor.rgb(measured[:6]), 0, 1))
+    entries = fit_entries(
+        problem, measured[:6], np.clip(sensor.rgb(measured[:6]), 0, 1)
+    )
     plain = fit_prior(problem, entries)
     goal = goal_of(sensor, [light], 0.9 * expected[7] + 0.05, sensor.rgb(expected[7]))
-    look = fit_designs(problem, [goal], design_reflectance(sensor, goal, expected[7])[None])
+    look = fit_designs(
+        problem, [goal], design_reflectance(sensor, goal, expected[7])[None]
+    )
     changed = plain.with_entries(join_entries(entries, look), 1)
     assert changed.errors is plain.errors
     assert changed.kriging.kernel == plain.kriging.kernel

@@ -27,18 +27,27 @@ def problem(sensor):
 @pytest.fixture(scope="module")
 def materials(problem, sensor):
     """The materials of rawtoaces within sRGB."""
-    measured = resample(read_atlas(ATLASES / "rawtoaces.txt"), sensor.wavelengths).values
+    measured = resample(
+        read_atlas(ATLASES / "rawtoaces.txt"), sensor.wavelengths
+    ).values
     measured = measured[in_unit_cube(sensor.rgb(measured))]
     return fit_entries(problem, measured, sensor.rgb(measured))
 
 
-def test_start_at_an_entry_is_nearer_to_its_spectrum_than_the_base(problem, sensor, materials):
+def test_start_at_an_entry_is_nearer_to_its_spectrum_than_the_base(
+    problem, sensor, materials
+):
     few = materials.rows(np.arange(0, 160, 20))
     prior = fit_prior(problem, few)
     own = evaluate(problem.model, few.multipliers, sensor.wavelengths)
     with_entries, without = (
-        np.sqrt(((evaluate(problem.model, start, sensor.wavelengths) - own) ** 2).mean())
-        for start in (prior(few.rgb), problem.model.from_storage(prior.base.coefficients(few.rgb)))
+        np.sqrt(
+            ((evaluate(problem.model, start, sensor.wavelengths) - own) ** 2).mean()
+        )
+        for start in (
+            prior(few.rgb),
+            problem.model.from_storage(prior.base.coefficients(few.rgb)),
+        )
     )
     assert with_entries < without / 4
 
@@ -47,8 +56,12 @@ def test_start_far_from_all_entries_is_smooth(problem, sensor, materials):
     dark = materials.rgb.max(axis=1) < 0.2
     prior = fit_prior(problem, materials.rows(dark))
     light = np.linspace(0.6, 0.9, 4)[:, None].repeat(3, axis=1)
-    smooth = reflectance(problem.model, prior.base.coefficients(light), sensor.wavelengths)
-    np.testing.assert_allclose(evaluate(problem.model, prior(light), sensor.wavelengths), smooth, atol=0.05)
+    smooth = reflectance(
+        problem.model, prior.base.coefficients(light), sensor.wavelengths
+    )
+    np.testing.assert_allclose(
+        evaluate(problem.model, prior(light), sensor.wavelengths), smooth, atol=0.05
+    )
 
 
 def test_a_deviation_that_leaves_the_moment_space_is_shrunk(problem):
@@ -56,7 +69,9 @@ def test_a_deviation_that_leaves_the_moment_space_is_shrunk(problem):
     away = np.zeros((2, 9))
     away[0, 3], away[1, 3] = 0.05, 5
     found = _bounded(problem.model, grey, away)
-    np.testing.assert_allclose(problem.model.to_storage(found)[0], (grey + away)[0], atol=1e-7)
+    np.testing.assert_allclose(
+        problem.model.to_storage(found)[0], (grey + away)[0], atol=1e-7
+    )
     shrunk = problem.model.to_storage(found)[1] - grey[1]
     assert 0.1 < shrunk[3] < 5
     np.testing.assert_allclose(np.delete(shrunk, 3), 0, atol=1e-6)
@@ -64,7 +79,10 @@ def test_a_deviation_that_leaves_the_moment_space_is_shrunk(problem):
 
 def test_a_deviation_that_ends_in_a_box_is_shrunk(problem):
     model = problem.model
-    grey, away = model.to_storage(np.zeros((1, model.count))), np.zeros((1, model.count))
+    grey, away = (
+        model.to_storage(np.zeros((1, model.count))),
+        np.zeros((1, model.count)),
+    )
     away[:, 3] = 1.0
     low, high = 0.0, 1e3
     for _ in range(60):
@@ -78,13 +96,20 @@ def test_a_deviation_that_ends_in_a_box_is_shrunk(problem):
 
 
 def test_too_few_entries_give_no_standard_error(problem, sensor, materials):
-    for count, tells in ((0, False), (1, False), (MIN_ENTRIES - 1, False), (MIN_ENTRIES, True)):
+    for count, tells in (
+        (0, False),
+        (1, False),
+        (MIN_ENTRIES - 1, False),
+        (MIN_ENTRIES, True),
+    ):
         prior = fit_prior(problem, materials.rows(np.arange(count)))
         errors = prior.standard_error(np.full((1, 3), 0.3))
         assert (errors is not None) == tells
 
 
-def test_errors_of_left_out_entries_agree_with_the_standard_error(problem, sensor, materials):
+def test_errors_of_left_out_entries_agree_with_the_standard_error(
+    problem, sensor, materials
+):
     """Half the materials are the atlas, the other half is predicted; repeated several times.
 
     Errors of materials have heavy tails: a single split is off by up to half.

@@ -29,13 +29,19 @@ ONLY_AVX = {
 
 @pytest.mark.parametrize(
     ("space", "model", "count"),
-    [*((space, "moments", 9) for space in SPACES), ("ACEScg", "moments", 17), ("ProPhoto RGB", "sigmoid", 3)],
+    [
+        *((space, "moments", 9) for space in SPACES),
+        ("ACEScg", "moments", 17),
+        ("ProPhoto RGB", "sigmoid", 3),
+    ],
 )
 def test_every_realisable_colour_is_fitted(space, model, count):
     data = uplift.build(dim=DIM, space=space, model=model, coefficients=count).data
     possible = solid(data.sensor.matrix).contains(data.lattice.points)
     assert Status.UNFITTED not in data.points.status
-    rgb = data.sensor.rgb(reflectance(data.model, data.points.coefficients, data.sensor.wavelengths))
+    rgb = data.sensor.rgb(
+        reflectance(data.model, data.points.coefficients, data.sensor.wavelengths)
+    )
     distance = np.abs(rgb - data.lattice.points).max(axis=1)
     assert (~possible).sum() > 50
     assert distance[possible].max() <= data.threshold
@@ -66,14 +72,24 @@ def store_spectra(path):
         uplift.build(dim=6, space="P3-D65").data,
         uplift.build(dim=6, looks=skin).data,
     )
-    spectra = [reflectance(each.model, each.points.coefficients, each.sensor.wavelengths) for each in cubes]
+    spectra = [
+        reflectance(each.model, each.points.coefficients, each.sensor.wavelengths)
+        for each in cubes
+    ]
     np.save(path, np.stack(spectra))
 
 
-@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="sets of x86-64")
+@pytest.mark.skipif(
+    platform.machine() not in ("x86_64", "AMD64"), reason="sets of x86-64"
+)
 def test_spectra_do_not_depend_on_the_instruction_set(tmp_path):
     here, there = tmp_path / "here.npy", tmp_path / "there.npy"
     store_spectra(here)
     code = f"from tests.fit.test_problem import store_spectra; store_spectra({str(there)!r})"
-    subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[2], env=os.environ | ONLY_AVX, check=True)
+    subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=Path(__file__).parents[2],
+        env=os.environ | ONLY_AVX,
+        check=True,
+    )
     np.testing.assert_allclose(np.load(there), np.load(here), rtol=0, atol=1e-5)

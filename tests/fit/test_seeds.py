@@ -23,18 +23,35 @@ from uplift.fit.entries import fit_entries
 from uplift.fit.families import shipped_library
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem
-from uplift.fit.seeds import DIMS, FAR, FULL_ENTRY, HALF_ENTRY, NEAR, choose_lattice, initial_guess, lattice_error, seed
+from uplift.fit.seeds import (
+    DIMS,
+    FAR,
+    FULL_ENTRY,
+    HALF_ENTRY,
+    NEAR,
+    choose_lattice,
+    initial_guess,
+    lattice_error,
+    seed,
+)
 from uplift.lattice import AXES, Lattice, axis_nodes
 from uplift.models import Moments, reflectance
 
 LATTICE = Lattice(np.linspace(0, 1, 6))
-atlases = arrays(float, st.tuples(st.integers(1, 12), st.just(3)), elements=st.floats(0, 1), unique=True)
+atlases = arrays(
+    float,
+    st.tuples(st.integers(1, 12), st.just(3)),
+    elements=st.floats(0, 1),
+    unique=True,
+)
 
 
 @given(atlases)
 def test_all_corners_of_the_cells_of_entries_are_seeds_once(rgb):
     corners, _ = LATTICE.corners(rgb)
-    np.testing.assert_array_equal(np.sort(seed(LATTICE, rgb).points), np.unique(corners))
+    np.testing.assert_array_equal(
+        np.sort(seed(LATTICE, rgb).points), np.unique(corners)
+    )
 
 
 @given(atlases, st.randoms(use_true_random=False))
@@ -43,7 +60,10 @@ def test_seeds_do_not_depend_on_the_order_of_the_atlas(rgb, random):
     random.shuffle(order)
     here, there = seed(LATTICE, rgb), seed(LATTICE, rgb[order])
     owners = dict(zip(here.points, here.entry, strict=True))
-    assert owners == {point: order[entry] for point, entry in zip(there.points, there.entry, strict=True)}
+    assert owners == {
+        point: order[entry]
+        for point, entry in zip(there.points, there.entry, strict=True)
+    }
 
 
 def test_the_nearer_of_two_entries_owns_the_primary_point():
@@ -70,10 +90,16 @@ def test_the_share_of_the_entry_falls_from_near_to_far_corners(prior):
         lattice = Lattice(np.linspace(0, 1, dim))
         seeds = seed(lattice, RGB)
         nodes, own = lattice.points[seeds.points], ENTRIES[seeds.entry]
-        distance = delta_e_1976(*(rgb_to_lab(prior.sensor, rgb) for rgb in (nodes, RGB[seeds.entry])))
-        share = np.where(seeds.primary, 1, np.clip((FAR - distance) / (FAR - NEAR), 0, 1))
+        distance = delta_e_1976(
+            *(rgb_to_lab(prior.sensor, rgb) for rgb in (nodes, RGB[seeds.entry]))
+        )
+        share = np.where(
+            seeds.primary, 1, np.clip((FAR - distance) / (FAR - NEAR), 0, 1)
+        )
         start = initial_guess(seeds.points, nodes, prior, seeds, ENTRIES, (1.0, 0.0))
-        mixed = share[:, None] * MODEL.to_storage(own) + (1 - share[:, None]) * MODEL.to_storage(prior(nodes))
+        mixed = share[:, None] * MODEL.to_storage(own) + (
+            1 - share[:, None]
+        ) * MODEL.to_storage(prior(nodes))
         np.testing.assert_allclose(MODEL.to_storage(start), mixed, atol=1e-6)
         shares.extend(share)
     assert (np.array(shares) == 0).sum() >= 5
@@ -83,7 +109,9 @@ def test_the_share_of_the_entry_falls_from_near_to_far_corners(prior):
 def test_all_other_points_start_from_the_prior(prior):
     seeds = seed(LATTICE, RGB)
     points = np.setdiff1d(np.arange(LATTICE.size), seeds.points)
-    start = initial_guess(points, LATTICE.points[points], prior, seeds, ENTRIES, FULL_ENTRY)
+    start = initial_guess(
+        points, LATTICE.points[points], prior, seeds, ENTRIES, FULL_ENTRY
+    )
     np.testing.assert_array_equal(start, prior(LATTICE.points[points]))
 
 
@@ -95,7 +123,11 @@ def stage(sensor):
     lights = tuple(map(observer.light, SCENE_LIGHTS))
     problem = Problem(sensor, Moments(9), lights, lights[1])
     entries = fit_entries(problem, spectra, sensor.rgb(spectra))
-    return problem, fit_prior(problem, entries, learn_base(problem, shipped_library(), entries)[0]), entries
+    return (
+        problem,
+        fit_prior(problem, entries, learn_base(problem, shipped_library(), entries)[0]),
+        entries,
+    )
 
 
 @pytest.mark.parametrize("seed_corners", [True, False])
@@ -103,12 +135,20 @@ def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor, seed_corner
     """The lattice of the cube is evaluated at the entries without their boxes."""
     problem, prior, entries = stage
     data = quiet_build(MACBETH, dim=16, seed_corners=seed_corners).data
-    trial = lattice_error(problem, data.lattice, prior, FULL_ENTRY if seed_corners else HALF_ENTRY, entries)
+    trial = lattice_error(
+        problem,
+        data.lattice,
+        prior,
+        FULL_ENTRY if seed_corners else HALF_ENTRY,
+        entries,
+    )
     corners, weights = data.lattice.corners(entries.rgb)
     spectra = reflectance(data.model, data.points.coefficients, sensor.wavelengths)
     answered = (weights[..., None] * spectra[corners]).sum(axis=1)
     own = reflectance(data.model, data.atlas.coefficients, sensor.wavelengths)
-    plain = np.max([delta_e_spectra(lit, answered, own) for lit in problem.lights], axis=0)
+    plain = np.max(
+        [delta_e_spectra(lit, answered, own) for lit in problem.lights], axis=0
+    )
     np.testing.assert_allclose(trial, plain, atol=1e-3)
 
 

@@ -29,10 +29,16 @@ SMALL = {"dim": 4, "coefficients": 5, "entry_coefficients": 5}
 def test_distances_are_at_most_those_of_scipy(model, sensor):
     """With as many unknowns as equations the solution is unique."""
     forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    found = solve(forward, np.zeros((40, model.count)), TARGETS, tolerance=1e-9, max_passes=40)
-    for target, multipliers, distance in zip(TARGETS, found.multipliers, found.distance, strict=True):
+    found = solve(
+        forward, np.zeros((40, model.count)), TARGETS, tolerance=1e-9, max_passes=40
+    )
+    for target, multipliers, distance in zip(
+        TARGETS, found.multipliers, found.distance, strict=True
+    ):
         oracle = least_squares(
-            lambda p, target=target: forward.residual(p[None], target[None])[0], np.zeros(model.count), xtol=1e-15
+            lambda p, target=target: forward.residual(p[None], target[None])[0],
+            np.zeros(model.count),
+            xtol=1e-15,
         )
         assert distance <= 1e-9 or distance <= np.abs(oracle.fun).max() * 1.01
         if model.count == 3 and np.abs(oracle.fun).max() <= 1e-9:
@@ -61,11 +67,21 @@ def test_solutions_do_not_depend_on_the_batch(sensor, max_passes):
     dark, wild = [[2e-4, 1e-3, 1e-5]], [[0.9, 0.0, 0.9], [1.2, -0.3, 0.5]]
     few = np.concatenate([TARGETS[:5], dark, wild])
     many = np.resize(few, (CPU_ROWS[0] + len(few), 3))
-    crowd = solve(forward, np.zeros((len(many), 9)), many, tolerance=1e-8, max_passes=max_passes)
+    crowd = solve(
+        forward, np.zeros((len(many), 9)), many, tolerance=1e-8, max_passes=max_passes
+    )
     for row, target in enumerate(few):
-        alone = solve(forward, np.zeros((1, 9)), target[None], tolerance=1e-8, max_passes=max_passes)
+        alone = solve(
+            forward,
+            np.zeros((1, 9)),
+            target[None],
+            tolerance=1e-8,
+            max_passes=max_passes,
+        )
         for found in (row, row + len(many) - len(few)):
-            np.testing.assert_allclose(crowd.multipliers[found], alone.multipliers[0], rtol=1e-9)
+            np.testing.assert_allclose(
+                crowd.multipliers[found], alone.multipliers[0], rtol=1e-9
+            )
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +92,10 @@ def forward(sensor):
 def test_optimistix_runs_it(forward):
     with jax.enable_x64(True):
         found = optimistix.least_squares(
-            lambda y, target: forward.residual(y, target), LeastChange(forward, 1e-9), PRIORS, args=INNER
+            lambda y, target: forward.residual(y, target),
+            LeastChange(forward, 1e-9),
+            PRIORS,
+            args=INNER,
         )
     off = forward.residual(np.asarray(found.value), INNER)
     assert np.abs(off).max() <= 1e-9
@@ -87,13 +106,20 @@ def test_optimistix_runs_it(forward):
 def test_the_answer_is_the_nearest_to_the_prior(forward):
     """scipy minimises the distance from the prior under the constraint of the colour."""
     found = solve(forward, PRIORS, INNER, tolerance=1e-12, max_passes=40, prior=PRIORS)
-    for prior, target, multipliers in zip(PRIORS, INNER, found.multipliers, strict=True):
+    for prior, target, multipliers in zip(
+        PRIORS, INNER, found.multipliers, strict=True
+    ):
         oracle = minimize(
             lambda p, prior=prior: ((forward.inverse_root @ (p - prior)) ** 2).sum(),
             prior,
             method="SLSQP",
             tol=1e-14,
-            constraints={"type": "eq", "fun": lambda p, target=target: forward.residual(p[None], target[None])[0]},
+            constraints={
+                "type": "eq",
+                "fun": lambda p, target=target: forward.residual(p[None], target[None])[
+                    0
+                ],
+            },
         )
         np.testing.assert_allclose(multipliers, oracle.x, atol=2e-4)
 
@@ -101,7 +127,8 @@ def test_the_answer_is_the_nearest_to_the_prior(forward):
 def test_the_answer_does_not_depend_on_the_start(forward):
     starts = PRIORS + 0.05 * RNG.normal(size=PRIORS.shape)
     one, other = (
-        solve(forward, start, INNER, tolerance=1e-12, max_passes=40, prior=PRIORS) for start in (PRIORS, starts)
+        solve(forward, start, INNER, tolerance=1e-12, max_passes=40, prior=PRIORS)
+        for start in (PRIORS, starts)
     )
     np.testing.assert_allclose(one.multipliers, other.multipliers, atol=1e-5)
     without = solve(forward, starts, INNER, tolerance=1e-12, max_passes=40)
@@ -111,11 +138,20 @@ def test_the_answer_does_not_depend_on_the_start(forward):
 def test_stock_solvers_give_the_same_cube():
     """Nodes on the faces have nearly box-shaped spectra: there the default stops to pull towards the prior."""
     dogleg = optimistix.Dogleg(rtol=1e-8, atol=1e-8)
-    cubes = [build(**SMALL, solver=solver) for solver in ("least-change", "gauss-newton", dogleg)]
-    assert [cube.data.provenance["options"]["solver"] for cube in cubes[1:]] == ["gauss-newton", CUSTOM]
+    cubes = [
+        build(**SMALL, solver=solver)
+        for solver in ("least-change", "gauss-newton", dogleg)
+    ]
+    assert [cube.data.provenance["options"]["solver"] for cube in cubes[1:]] == [
+        "gauss-newton",
+        CUSTOM,
+    ]
     sensor, nodes = cubes[0].data.sensor, cubes[0].data.lattice.points
     default, *stock = (
-        evaluate(MODEL, MODEL.from_storage(cube.data.points.coefficients), sensor.wavelengths) for cube in cubes
+        evaluate(
+            MODEL, MODEL.from_storage(cube.data.points.coefficients), sensor.wavelengths
+        )
+        for cube in cubes
     )
     inner = ~np.isin(nodes, (0, 1)).any(axis=1)
     for spectra in stock:
@@ -125,10 +161,16 @@ def test_stock_solvers_give_the_same_cube():
     assert max(cube.data.points.distance.max() for cube in cubes) <= 1e-4
 
 
-def test_every_step_of_the_lattice_goes_through_the_interface_of_optimistix(monkeypatch):
+def test_every_step_of_the_lattice_goes_through_the_interface_of_optimistix(
+    monkeypatch,
+):
     """Without steps no node is fitted but those that start at their colour."""
     stepped = build(**SMALL).data
-    monkeypatch.setattr(LeastChange, "step", lambda self, fn, y, args, options, state, tags: (y, state, None))
+    monkeypatch.setattr(
+        LeastChange,
+        "step",
+        lambda self, fn, y, args, options, state, tags: (y, state, None),
+    )
     jax.clear_caches()
     still = build(**SMALL).data
     jax.clear_caches()
@@ -160,8 +202,16 @@ def test_several_devices_build_the_same_cube(repository, tmp_path):
     """Three simulated devices distribute the rows unevenly."""
     macbeth, path = repository / "atlases" / "macbeth.txt", tmp_path / "several.uplift"
     flags = {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"}
-    subprocess.run([sys.executable, "-W", "ignore", "-c", SEVERAL, macbeth, path], env=os.environ | flags, check=True)
+    subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", SEVERAL, macbeth, path],
+        env=os.environ | flags,
+        check=True,
+    )
     one, several = build(macbeth, dim=5).data, load(path).data
-    np.testing.assert_allclose(several.points.coefficients, one.points.coefficients, rtol=0, atol=1e-9)
-    np.testing.assert_allclose(several.points.standard_error, one.points.standard_error, rtol=1e-6)
+    np.testing.assert_allclose(
+        several.points.coefficients, one.points.coefficients, rtol=0, atol=1e-9
+    )
+    np.testing.assert_allclose(
+        several.points.standard_error, one.points.standard_error, rtol=1e-6
+    )
     np.testing.assert_array_equal(several.points.status, one.points.status)

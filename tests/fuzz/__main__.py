@@ -16,7 +16,12 @@ BLOCK = 5000
 
 @click.command()
 @click.argument("names", nargs=-1, type=click.Choice([*READERS, *COMMANDS]))
-@click.option("--inputs", default=10_000, show_default=True, help="Inputs of each reader; a tenth of commands.")
+@click.option(
+    "--inputs",
+    default=10_000,
+    show_default=True,
+    help="Inputs of each reader; a tenth of commands.",
+)
 @click.option("--seed", default=0, show_default=True)
 def main(names: tuple[str, ...], inputs: int, seed: int) -> None:
     """Fuzz readers and commands, all by default, print what happened, and end with 1 after a failure."""
@@ -25,8 +30,16 @@ def main(names: tuple[str, ...], inputs: int, seed: int) -> None:
     with ProcessPoolExecutor(max_tasks_per_child=1) as pool:
         for name in names or (*READERS, *COMMANDS):
             count = inputs if name in READERS else inputs // 10
-            blocks = [range(first, min(first + BLOCK, count)) for first in range(0, count, BLOCK)]
-            tally = sum(pool.map(run_target, [name] * len(blocks), [seed] * len(blocks), blocks), Counter())
+            blocks = [
+                range(first, min(first + BLOCK, count))
+                for first in range(0, count, BLOCK)
+            ]
+            tally = sum(
+                pool.map(
+                    run_target, [name] * len(blocks), [seed] * len(blocks), blocks
+                ),
+                Counter(),
+            )
             if not tally["accepted"]:
                 tally["no input accepted"] = 1
             row = {
@@ -35,10 +48,29 @@ def main(names: tuple[str, ...], inputs: int, seed: int) -> None:
                 "taken": tally.pop("accepted", 0),
                 "refused": tally.pop("rejected", 0),
             }
-            rows.append(row | {"failures": ", ".join(f"{times} {kind}" for kind, times in tally.items()) or "none"})
-            click.echo("{target}: {tried:,} inputs, {taken:,} accepted, failures: {failures}".format(**rows[-1]))
-    figures = {"command": "make nightly", "environment": environment(), "seed": seed, "targets": rows}
-    (KEPT / "nightly.json").write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+            rows.append(
+                row
+                | {
+                    "failures": ", ".join(
+                        f"{times} {kind}" for kind, times in tally.items()
+                    )
+                    or "none"
+                }
+            )
+            click.echo(
+                "{target}: {tried:,} inputs, {taken:,} accepted, failures: {failures}".format(
+                    **rows[-1]
+                )
+            )
+    figures = {
+        "command": "make nightly",
+        "environment": environment(),
+        "seed": seed,
+        "targets": rows,
+    }
+    (KEPT / "nightly.json").write_text(
+        json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8"
+    )
     raise SystemExit(any(row["failures"] != "none" for row in rows))
 
 

@@ -40,7 +40,10 @@ from uplift.lattice import CORNERS, Lattice
 from uplift.lookup import MODES
 
 SPACES = (*tables.names("RGB space"), *["camera"] * 12)
-OBSERVERS = ("CIE 1931 2 Degree Standard Observer", "CIE 1964 10 Degree Standard Observer")
+OBSERVERS = (
+    "CIE 1931 2 Degree Standard Observer",
+    "CIE 1964 10 Degree Standard Observer",
+)
 CAMERAS = ("Nikon 5100 (NPL)", "Sigma SDMerill (NPL)")
 SHAPES = ("smooth", "equal", "dark", "black", "white", "spiky")
 EXACT, SAME, DEEP, SUM = 1e-4, 1e-3, 1e-4, 2e-6
@@ -78,7 +81,9 @@ def little_work() -> Iterator[None]:
     with (
         mock.patch.object(base, "TABLE", TABLE),
         mock.patch.object(
-            base, "smooth_table", lambda problem, goal: base.smooth(problem.model, problem.forward, goal)
+            base,
+            "smooth_table",
+            lambda problem, goal: base.smooth(problem.model, problem.forward, goal),
         ),
         mock.patch.object(batch, "CPU_ROWS", (512, 32)),
     ):
@@ -87,34 +92,66 @@ def little_work() -> Iterator[None]:
 
 def odd_options(random: Random, kind: Kind) -> dict[str, Any]:
     """Return options of a build, without atlas, library and looks."""
-    space, model = choose(random, SPACES), choose(random, ("moments", "moments", "moments", "sigmoid"))
-    options: dict[str, Any] = {"space": space, "dim": choose(random, kind.dims), "model": model}
-    options["illuminant"] = choose(random, ("D65", "D65", "A", "E", "D50", "FL2", "FL11"))
+    space, model = (
+        choose(random, SPACES),
+        choose(random, ("moments", "moments", "moments", "sigmoid")),
+    )
+    options: dict[str, Any] = {
+        "space": space,
+        "dim": choose(random, kind.dims),
+        "model": model,
+    }
+    options["illuminant"] = choose(
+        random, ("D65", "D65", "A", "E", "D50", "FL2", "FL11")
+    )
     options["observer"] = choose(random, CAMERAS if space == "camera" else OBSERVERS)
-    measured = [each for each in kind.ranges if space != "camera" or each[2] == 5]  # cameras are tabulated so
+    measured = [
+        each for each in kind.ranges if space != "camera" or each[2] == 5
+    ]  # cameras are tabulated so
     options["shortest"], options["longest"], options["step"] = choose(random, measured)
-    options["axis"], options["warp"] = choose(random, ("srgb", "linear")), choose(random, ("none", "vision"))
-    options["prior"] = choose(random, ("learnt", "smooth", "smooth", "smooth"))  # learning is slow
+    options["axis"], options["warp"] = (
+        choose(random, ("srgb", "linear")),
+        choose(random, ("none", "vision")),
+    )
+    options["prior"] = choose(
+        random, ("learnt", "smooth", "smooth", "smooth")
+    )  # learning is slow
     if model == "moments":
-        options["coefficients"], options["entry_coefficients"] = choose(random, kind.counts)
+        options["coefficients"], options["entry_coefficients"] = choose(
+            random, kind.counts
+        )
     return options
 
 
 def odd_atlas(random: Random, size: int) -> uplift.Atlas:
     """Return an atlas of 1, 2 or 300 entries of one shape."""
     shape, at = choose(random, SHAPES), np.arange(380.0, 781.0, 10)
-    middle, width, level = random.uniform(380, 780, size), random.uniform(5, 200, size), random.uniform(0.02, 0.9, size)
-    values = level[:, None] * np.exp(-(((at - middle[:, None]) / width[:, None]) ** 2)) + 0.02
+    middle, width, level = (
+        random.uniform(380, 780, size),
+        random.uniform(5, 200, size),
+        random.uniform(0.02, 0.9, size),
+    )
+    values = (
+        level[:, None] * np.exp(-(((at - middle[:, None]) / width[:, None]) ** 2))
+        + 0.02
+    )
     if shape == "spiky":
         values = random.uniform(0, 1, values.shape).round()
     elif shape != "smooth":
-        values = {"equal": values[:1] + 0 * values, "dark": values / 100, "black": 0 * values, "white": 0 * values + 1}[
-            shape
-        ]
-    return uplift.Atlas([uplift.Entry(f"e{k}", at, row) for k, row in enumerate(values)])
+        values = {
+            "equal": values[:1] + 0 * values,
+            "dark": values / 100,
+            "black": 0 * values,
+            "white": 0 * values + 1,
+        }[shape]
+    return uplift.Atlas(
+        [uplift.Entry(f"e{k}", at, row) for k, row in enumerate(values)]
+    )
 
 
-def distance_to_solid(sensor: Sensor, rgb: Array, spectra: Array, normals: Array) -> Array:
+def distance_to_solid(
+    sensor: Sensor, rgb: Array, spectra: Array, normals: Array
+) -> Array:
     """Return how far, max |linear RGB|, colours (n, 3) are from those of reflectances, by proof or linear program.
 
     A spectrum (n, N) of the colour proves that there is one. A plane that has all colours of reflectances on one side,
@@ -122,7 +159,11 @@ def distance_to_solid(sensor: Sensor, rgb: Array, spectra: Array, normals: Array
     program judges those of which neither is known to 1e-6.
     """
     near = np.abs(sensor.rgb(np.clip(spectra, 0, 1)) - rgb).max(axis=1)
-    best = normals[(rgb @ normals.T - np.maximum(normals @ sensor.matrix, 0).sum(axis=1)).argmax(axis=1)]
+    best = normals[
+        (rgb @ normals.T - np.maximum(normals @ sensor.matrix, 0).sum(axis=1)).argmax(
+            axis=1
+        )
+    ]
     beyond = (best * rgb).sum(axis=1) - np.maximum(best @ sensor.matrix, 0).sum(axis=1)
     least = beyond / np.abs(best).sum(axis=1)
     found = np.where(least > 1e-6, least, near)
@@ -136,7 +177,15 @@ def miss(matrix: Array, rgb: Array) -> float:
     count, off = matrix.shape[1], np.ones((3, 1))
     rows = np.block([[matrix, -off], [-matrix, -off]])
     cost, limits = np.append(np.zeros(count), 1), [(0, 1)] * count + [(0, None)]
-    return float(linprog(cost, A_ub=rows, b_ub=np.concatenate([rgb, -rgb]), bounds=limits, method="highs").fun)
+    return float(
+        linprog(
+            cost,
+            A_ub=rows,
+            b_ub=np.concatenate([rgb, -rgb]),
+            bounds=limits,
+            method="highs",
+        ).fun
+    )
 
 
 def colours(random: Random, cube: uplift.Cube) -> np.ndarray:
@@ -146,7 +195,9 @@ def colours(random: Random, cube: uplift.Cube) -> np.ndarray:
     rgb[12:16, int(random.integers(3))] = random.uniform(0, 0.02)
     rgb[16:20] = rgb[16:20].round()
     own = cube.data.atlas.rgb[:4]
-    rgb = np.concatenate([rgb, own, np.clip(own + random.normal(0, 0.02, own.shape), 0, 1)])
+    rgb = np.concatenate(
+        [rgb, own, np.clip(own + random.normal(0, 0.02, own.shape), 0, 1)]
+    )
     return rgb.astype(np.float32).astype(float)
 
 
@@ -159,17 +210,30 @@ def broken_laws(seed: int, folder: Path, kind: Kind = SMALL) -> Iterator[str]:
     if size:
         given["atlas"] = folder / "atlas.csv"
         write_atlas(odd_atlas(random, size), given["atlas"])
-    if options["prior"] == "learnt" and options.get("coefficients", 3) > 3 and random.random() < 0.3:
+    if (
+        options["prior"] == "learnt"
+        and options.get("coefficients", 3) > 3
+        and random.random() < 0.3
+    ):
         given["library"] = folder / "library.csv"
         write_atlas(odd_atlas(random, 12), given["library"])
-    if options.get("entry_coefficients", 3) > 3 and options["space"] != "camera" and random.random() < 0.15:
+    if (
+        options.get("entry_coefficients", 3) > 3
+        and options["space"] != "camera"
+        and random.random() < 0.15
+    ):
         light = "A" if options["illuminant"] != "A" else "D65"
-        given["looks"] = uplift.Look(tuple(random.uniform(0.2, 0.6, 3)), {light: tuple(random.uniform(0.2, 0.6, 3))})
+        given["looks"] = uplift.Look(
+            tuple(random.uniform(0.2, 0.6, 3)),
+            {light: tuple(random.uniform(0.2, 0.6, 3))},
+        )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         cube = uplift.build(**given, **options)
         cube.save(folder / "cube.uplift")
-        if seed % 8 == 0 and digest(uplift.build(**given, **options).data) != digest(cube.data):
+        if seed % 8 == 0 and digest(uplift.build(**given, **options).data) != digest(
+            cube.data
+        ):
             yield "the same build has another digest"
         yield from _file_laws(cube, folder, check=seed % 8 == 4)
         yield from _colour_laws(cube, colours(random, cube), folder)
@@ -180,7 +244,9 @@ def _file_laws(cube: uplift.Cube, folder: Path, check: bool) -> Iterator[str]:
     if digest(loaded.data) != digest(cube.data):
         yield "the file has another digest"
     if check:
-        result = CliRunner().invoke(command_line, ["check", str(folder / "cube.uplift"), "--format", "json"])
+        result = CliRunner().invoke(
+            command_line, ["check", str(folder / "cube.uplift"), "--format", "json"]
+        )
         if result.exit_code:
             yield f"check: exit code {result.exit_code}: {result.exception!r} {result.stderr[-200:]}"
 
@@ -189,19 +255,38 @@ def _colour_laws(cube: uplift.Cube, rgb: Array, folder: Path) -> Iterator[str]:
     sensor, at = cube.data.sensor, np.array(AT)
     for mode in MODES:
         spectra = cube.reflectance(rgb, mode=mode)
-        if not (np.isfinite(spectra).all() and spectra.min() >= 0 and spectra.max() <= 1):
+        if not (
+            np.isfinite(spectra).all() and spectra.min() >= 0 and spectra.max() <= 1
+        ):
             yield f"{mode}: reflectances outside [0, 1]"
     spectra = cube.reflectance(rgb)
     off = distance_to_solid(sensor, rgb, spectra, cube.data.solid.normals)
     error = np.abs(sensor.rgb(spectra) - rgb).max(axis=1)
     for worst in np.flatnonzero((off < 1e-9) & (error > EXACT)):
         yield f"realisable colour {rgb[worst].tolist()} missed by {error[worst]:.1e}"
-    (folder / "colours.csv").write_text("\n".join(",".join(map(repr, row)) for row in rgb.tolist()))
-    args = ["query", "--cube", str(folder / "cube.uplift"), "--input", str(folder / "colours.csv"), "--format", "json"]
-    answers = json.loads(CliRunner().invoke(command_line, [*args, "--wavelengths", ",".join(map(str, AT))]).stdout)
+    (folder / "colours.csv").write_text(
+        "\n".join(",".join(map(repr, row)) for row in rgb.tolist())
+    )
+    args = [
+        "query",
+        "--cube",
+        str(folder / "cube.uplift"),
+        "--input",
+        str(folder / "colours.csv"),
+        "--format",
+        "json",
+    ]
+    answers = json.loads(
+        CliRunner()
+        .invoke(command_line, [*args, "--wavelengths", ",".join(map(str, AT))])
+        .stdout
+    )
     expected = cube.reflectance(rgb, at)
     for answer, missed, row in zip(answers, off, expected, strict=True):
-        if answer.get("realisable", True) != (missed < 1e-6) and not 1e-9 < missed < 1e-6:
+        if (
+            answer.get("realisable", True) != (missed < 1e-6)
+            and not 1e-9 < missed < 1e-6
+        ):
             yield f"realisable is {answer.get('realisable')}, {missed:.1e} from the nearest: {answer['rgb']}"
         if np.abs(np.array(answer["reflectance"]) - row).max() > 1e-6:
             yield "the command line has other reflectances"
@@ -233,16 +318,25 @@ def stay(data: CubeData, mode: str, rgb: Array) -> Mask:
     place[hits.rows] = hits.exit_rgb
     moved, lattice = moved_cells(data, mode), data.lattice
     corners = (np.clip(place + NEAR * corner, 0, 1) for corner in 2 * CORNERS - 1)
-    return ~np.any([moved[lattice.index(lattice.cell(corner)[0])] for corner in corners], axis=0)
+    return ~np.any(
+        [moved[lattice.index(lattice.cell(corner)[0])] for corner in corners], axis=0
+    )
 
 
 def broken(seed: int, kind: Kind = SMALL) -> list[str]:
     """Return the laws that the build of a seed breaks."""
-    with tempfile.TemporaryDirectory() as folder, little_work() if kind != LARGE else contextlib.nullcontext():
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        little_work() if kind != LARGE else contextlib.nullcontext(),
+    ):
         try:
-            return [f"build {seed}: {law}" for law in broken_laws(seed, Path(folder), kind)]
+            return [
+                f"build {seed}: {law}" for law in broken_laws(seed, Path(folder), kind)
+            ]
         except Exception as problem:  # one build must not end a night
-            refused = getattr(problem, "code", "") == "atlas-out-of-gamut"  # spikes may all be outside the space
+            refused = (
+                getattr(problem, "code", "") == "atlas-out-of-gamut"
+            )  # spikes may all be outside the space
             return [] if refused else [f"build {seed}: {problem!r}"]
 
 
@@ -254,13 +348,20 @@ def main(first: int, count: int) -> int:
     laws = Counter[str]()
     KEPT.mkdir(parents=True, exist_ok=True)
     figures = {"command": "make nightly", "environment": environment(), "first": first}
-    figures["limits"] = {"colour": EXACT, "programs": SAME, "sums": SUM, "boundary": DEEP}
+    figures["limits"] = {
+        "colour": EXACT,
+        "programs": SAME,
+        "sums": SUM,
+        "boundary": DEEP,
+    }
     for seed in range(first, first + count):
         found = broken(seed, LARGE if seed % 50 == 0 else SMALL)
         laws.update(law.split(":")[1].strip() for law in found)
         print(*found, sep="\n", end="\n" * bool(found), flush=True)
         figures |= {"builds": seed - first + 1, "broken": laws}
-        write_text(json.dumps(figures, indent=1) + "\n", KEPT / "builds.json", force=True)
+        write_text(
+            json.dumps(figures, indent=1) + "\n", KEPT / "builds.json", force=True
+        )
     print(f"{laws.total()} laws broken by {count} builds")
     return laws.total()
 

@@ -32,7 +32,9 @@ TOKENS = (
 )  # fmt: skip
 """Parts of names that terminals, spreadsheets, templates, browsers or parsers may obey."""
 CUBE = "c.uplift"
-CHART_TEXT = (ROOT / "uplift" / "lab" / "chart" / "measured.csv").read_text(encoding="utf-8")
+CHART_TEXT = (ROOT / "uplift" / "lab" / "chart" / "measured.csv").read_text(
+    encoding="utf-8"
+)
 PALETTE = """[[lights]]
 name = {name}
 illuminant = "D65"
@@ -63,15 +65,22 @@ def check_csv(text: str) -> None:
     """Check that no cell is a formula. Raises ValueError."""
     for row in csv.reader(io.StringIO(text, newline="")):
         for cell in row:
-            if cell.startswith(tuple("=+-@\t\r")) and not re.fullmatch(r"[+-]?[\d.]+(e[+-]?\d+)?", cell):
+            if cell.startswith(tuple("=+-@\t\r")) and not re.fullmatch(
+                r"[+-]?[\d.]+(e[+-]?\d+)?", cell
+            ):
                 raise ValueError("a cell that is a formula")
 
 
 def _check(result: Result) -> None:
     """Check what a run printed. Raises `UpliftError` for rejected input, ValueError for what it must not print."""
-    if any(printable(line) != line for line in (result.stdout + "\n" + result.stderr).split("\n")):
+    if any(
+        printable(line) != line
+        for line in (result.stdout + "\n" + result.stderr).split("\n")
+    ):
         raise ValueError("a control character")
-    errors = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
+    errors = [
+        line for line in result.stderr.splitlines() if not line.startswith("warning: ")
+    ]
     if result.exit_code not in (0, 1, 2):
         raise ValueError(f"exit code {result.exit_code}")
     if len(errors) > 1 or (result.exit_code == 2 and not errors):
@@ -83,7 +92,10 @@ def _check(result: Result) -> None:
 
 
 def _generate(random: Random, path: Path) -> None:
-    name, other = ("".join(choose(random, TOKENS) for _ in range(int(random.integers(1, 5)))) for _ in range(2))
+    name, other = (
+        "".join(choose(random, TOKENS) for _ in range(int(random.integers(1, 5))))
+        for _ in range(2)
+    )
     cells = ['"' + text.replace('"', '""') + '"' for text in (name, other)]
     files = {
         CUBE: json.dumps([name, other, int(random.integers(4))]),
@@ -91,17 +103,27 @@ def _generate(random: Random, path: Path) -> None:
         "a.csv": f"name,400,500,600,700\n{cells[0]},0.1,0.2,0.3,0.4\n{cells[1]},0.2,0.3,0.4,0.5\n",
         "chart.csv": CHART_TEXT.replace("Mallett", name).replace("uplift", other),
         "p.toml": PALETTE.format(name=json.dumps(name)),
-        "colours.csv": choose(random, ("0.2,0.3,0.4\n", f"{name}\n", f"0.1,0.2,0.3,{name}\n#fff {other}\n")),
+        "colours.csv": choose(
+            random,
+            ("0.2,0.3,0.4\n", f"{name}\n", f"0.1,0.2,0.3,{name}\n#fff {other}\n"),
+        ),
     }
-    argument = name.replace("\0", "").replace("\ud800", "\udcff")  # as the system passes arguments
+    argument = name.replace("\0", "").replace(
+        "\ud800", "\udcff"
+    )  # as the system passes arguments
     args = [word.replace("{}", argument) for word in choose(random, LINES).split()]
-    case = {"args": args, "files": {file: text for file, text in files.items() if file in args}}
+    case = {
+        "args": args,
+        "files": {file: text for file, text in files.items() if file in args},
+    }
     path.write_text(json.dumps(case), encoding="ascii")
 
 
 def _forge_cube(text: str) -> None:
     """Write a cube whose metadata has hostile names in one of four places."""
-    name, other, place = json.loads(text.replace("\\ud800", "?").replace("\\udcff", "?"))
+    name, other, place = json.loads(
+        text.replace("\\ud800", "?").replace("\\udcff", "?")
+    )
 
     def change(tensors: dict[str, Any], metadata: dict[str, Any]) -> None:
         metadata["entries"][:2] = [name, other]
@@ -118,13 +140,24 @@ def _forge_cube(text: str) -> None:
 
 def _use(path: Path) -> None:
     case = json.loads(path.read_text(encoding="ascii"))
-    with tempfile.TemporaryDirectory(dir=path.parent) as folder, contextlib.chdir(folder):
+    with (
+        tempfile.TemporaryDirectory(dir=path.parent) as folder,
+        contextlib.chdir(folder),
+    ):
         for name, text in case["files"].items():
             if name == CUBE:
                 _forge_cube(text)
             else:
-                Path(name).write_bytes(text.encode("utf-8", "surrogatepass" if "\ud800" in text else "surrogateescape"))
-        with mock.patch.dict(os.environ, {"UPLIFT_TRACEBACK": "1"}), warnings.catch_warnings(action="ignore"):
+                Path(name).write_bytes(
+                    text.encode(
+                        "utf-8",
+                        "surrogatepass" if "\ud800" in text else "surrogateescape",
+                    )
+                )
+        with (
+            mock.patch.dict(os.environ, {"UPLIFT_TRACEBACK": "1"}),
+            warnings.catch_warnings(action="ignore"),
+        ):
             result = CliRunner().invoke(main, case["args"], catch_exceptions=False)
     if case["args"][-2:] == ["--format", "csv"]:
         check_csv(result.stdout)

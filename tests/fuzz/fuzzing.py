@@ -90,7 +90,11 @@ def mutate(content: bytes, random: Random, seeds: Seeds) -> bytes:
             case 5:
                 content = content.replace(choose(random, words), token, count)
             case 6 if found := NUMBER.search(content, first):
-                content = content[: found.start()] + choose(random, NUMBERS) + content[found.end() :]
+                content = (
+                    content[: found.start()]
+                    + choose(random, NUMBERS)
+                    + content[found.end() :]
+                )
             case 7 if random.random() < 0.2:
                 content = content[:first]
             case _:
@@ -101,17 +105,23 @@ def mutate(content: bytes, random: Random, seeds: Seeds) -> bytes:
     return content
 
 
-def mutated(name: str, use: Callable[[Path], object], make_seeds: Callable[[], Seeds]) -> Target:
+def mutated(
+    name: str, use: Callable[[Path], object], make_seeds: Callable[[], Seeds]
+) -> Target:
     """Make a target of mutated seeds, of which one in twenty stays as it is."""
 
     def generate(random: Random, path: Path) -> None:
         content = choose(random, make_seeds())
-        path.write_bytes(content if random.random() < 0.05 else mutate(content, random, make_seeds()))
+        path.write_bytes(
+            content if random.random() < 0.05 else mutate(content, random, make_seeds())
+        )
 
     return Target(name, generate, use)
 
 
-def fuzz(target: Target, seed: int, inputs: range, folder: Path, kept: Path) -> Counter[str]:
+def fuzz(
+    target: Target, seed: int, inputs: range, folder: Path, kept: Path
+) -> Counter[str]:
     """Run a target with numbered inputs, written to ``folder``; copy the first of each kind of failure to ``kept``.
 
     Returns the numbers of inputs that were ``accepted`` and ``rejected``, and of each kind of failure.
@@ -131,7 +141,9 @@ def fuzz(target: Target, seed: int, inputs: range, folder: Path, kept: Path) -> 
             outcome = _outcome(target, path)
             tally[outcome] += 1
             if outcome not in ("accepted", "rejected") and tally[outcome] == 1:
-                shutil.copy(path, kept / f"{target.name.replace(' ', '-')}-{seed}-{number}")
+                shutil.copy(
+                    path, kept / f"{target.name.replace(' ', '-')}-{seed}-{number}"
+                )
     finally:
         signal.signal(signal.SIGPROF, previous)
     return tally
@@ -162,4 +174,6 @@ def _outcome(target: Target, path: Path) -> str:
 def _limit_memory() -> None:
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     limit = pages * resource.getpagesize() + (MEGABYTES << 20)
-    resource.setrlimit(resource.RLIMIT_AS, (limit, resource.getrlimit(resource.RLIMIT_AS)[1]))
+    resource.setrlimit(
+        resource.RLIMIT_AS, (limit, resource.getrlimit(resource.RLIMIT_AS)[1])
+    )

@@ -47,7 +47,9 @@ class Space:
     def linear_to_srgb(self, rgb: Array) -> Array:
         """Convert linear RGB (n, 3) to linear sRGB, white to white."""
         space = rgb_space(self.gamut)
-        xyz = rgb @ colour.normalised_primary_matrix(space.primaries, space.whitepoint).T
+        xyz = (
+            rgb @ colour.normalised_primary_matrix(space.primaries, space.whitepoint).T
+        )
         return xyz_to_srgb(xyz, space.whitepoint)
 
 
@@ -55,15 +57,21 @@ def rgb_space(gamut: str | tuple[float, ...]) -> Any:
     """Return the space of colour-science of a name or of eight numbers."""
     if isinstance(gamut, str):
         return colour.RGB_COLOURSPACES[gamut]
-    return colour.RGB_Colourspace("a", np.reshape(gamut[:6], (3, 2)), np.array(gamut[6:]))
+    return colour.RGB_Colourspace(
+        "a", np.reshape(gamut[:6], (3, 2)), np.array(gamut[6:])
+    )
 
 
 def xyz_to_srgb(xyz: Array, white: Array) -> Array:
     """Convert XYZ (n, 3), relative to a white of Y = 1, to linear sRGB, adapted by Bradford."""
     srgb = colour.RGB_COLOURSPACES["sRGB"]
     from_white, to_white = colour.xy_to_XYZ(white), colour.xy_to_XYZ(srgb.whitepoint)
-    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(from_white, to_white, transform="Bradford")
-    to_rgb = np.linalg.inv(colour.normalised_primary_matrix(srgb.primaries, srgb.whitepoint))
+    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(
+        from_white, to_white, transform="Bradford"
+    )
+    to_rgb = np.linalg.inv(
+        colour.normalised_primary_matrix(srgb.primaries, srgb.whitepoint)
+    )
     return xyz @ (to_rgb @ adapt).T
 
 
@@ -94,7 +102,9 @@ def hlg(codes: Array) -> Array:
 def narrow(bits: int) -> Curve:
     """Widen codes of narrow range."""
     step = 2 ** (bits - 8)
-    return lambda codes: np.maximum((codes * (2**bits - 1) - 16 * step) / (219 * step), 0)
+    return lambda codes: np.maximum(
+        (codes * (2**bits - 1) - 16 * step) / (219 * step), 0
+    )
 
 
 POINTS: dict[tuple[int, ...], Space | None] = {
@@ -102,7 +112,9 @@ POINTS: dict[tuple[int, ...], Space | None] = {
     (12, 13, 0, 1): Space(P3),
     (9, 14, 0, 1): Space("ITU-R BT.2020", colour.models.oetf_inverse_BT2020),
     (9, 8, 0, 1): Space("ITU-R BT.2020", np.asarray),
-    (9, 16, 0, 1): Space("ITU-R BT.2020", lambda codes: colour.models.eotf_ST2084(codes) / 100),
+    (9, 16, 0, 1): Space(
+        "ITU-R BT.2020", lambda codes: colour.models.eotf_ST2084(codes) / 100
+    ),
     (12, 16, 0, 1): Space(P3, lambda codes: colour.models.eotf_ST2084(codes) / 100),
     (1, 16, 0, 1): Space("sRGB", lambda codes: colour.models.eotf_ST2084(codes) / 100),
     (9, 18, 0, 1): Space("ITU-R BT.2020", hlg),
@@ -115,7 +127,10 @@ POINTS: dict[tuple[int, ...], Space | None] = {
 }
 PROFILES = {
     "P3": (by_matrix(P3, SRGB_TABLE), Space(P3)),
-    "Adobe": (by_matrix(ADOBE, GAMMA), Space(ADOBE, lambda codes: codes ** (round(2.2 * 256) / 256))),
+    "Adobe": (
+        by_matrix(ADOBE, GAMMA),
+        Space(ADOBE, lambda codes: codes ** (round(2.2 * 256) / 256)),
+    ),
     "table": (by_matrix("sRGB", b"mft2 and so on"), None),
 }
 INTEROP = {
@@ -141,7 +156,9 @@ def first_usable(statements: list[Space | None]) -> tuple[Space, bool]:
 
 
 def draw_codes(random: Random, channels: int, dtype: str) -> Array:
-    codes = random.integers(0, np.iinfo(dtype).max, (1, WIDTH, channels), dtype=dtype, endpoint=True)
+    codes = random.integers(
+        0, np.iinfo(dtype).max, (1, WIDTH, channels), dtype=dtype, endpoint=True
+    )
     codes[0, 0], codes[0, 1] = 0, np.iinfo(dtype).max
     return codes
 
@@ -157,11 +174,15 @@ def draw_png(random: Random, folder: Path) -> Drawn:
         points = choose(random, list(POINTS))
         space = POINTS[points]
         if space is not None and not points[3]:
-            space = Space(space.gamut, lambda codes, curve=space.curve: curve(narrow(bits)(codes)))
+            space = Space(
+                space.gamut, lambda codes, curve=space.curve: curve(narrow(bits)(codes))
+            )
         chunks.append(files.cicp(*points))
         stated.append(space)
         text.append(f"cICP {points}")
-    if random.random() < 0.3 and channels > 2:  # libpng drops profiles of RGB from grey images
+    if (
+        random.random() < 0.3 and channels > 2
+    ):  # libpng drops profiles of RGB from grey images
         name = choose(random, list(PROFILES))
         chunks.append(files.iccp(PROFILES[name][0]))
         stated.append(PROFILES[name][1])
@@ -232,8 +253,12 @@ def draw_exr(random: Random, folder: Path) -> Drawn:
     if has_alpha:
         planes[layer + "A"] = alpha[None].astype(dtype)
     path = folder / "a.exr"
-    OpenEXR.File({"type": OpenEXR.scanlineimage, **header}, dict(planes)).write(str(path))
-    held = np.stack([planes[names[k % len(names)]][0].astype(float) for k in range(3)], axis=-1)
+    OpenEXR.File({"type": OpenEXR.scanlineimage, **header}, dict(planes)).write(
+        str(path)
+    )
+    held = np.stack(
+        [planes[names[k % len(names)]][0].astype(float) for k in range(3)], axis=-1
+    )
     given = alpha.astype(dtype).astype(float)[:, None]
     is_light = np.abs(held).max(axis=1, keepdims=True) > HALF_MAX * given
     divided = np.where(is_light, held, held / np.where(given == 0, 1, given))
@@ -241,13 +266,15 @@ def draw_exr(random: Random, folder: Path) -> Drawn:
     convert = usable.linear_to_srgb
     if kind == "XYZ":
         white = np.array(space.whitepoint)
-        convert = lambda values: xyz_to_srgb(values / luminance, white)  # noqa: E731
+        convert = lambda values: xyz_to_srgb(values / luminance, white)
     text = f"{layer}{kind} {dtype.__name__} {header} alpha {has_alpha}"
     tolerance = 3e-3 if dtype is np.float16 else 1e-3
     return Drawn(path, text, convert(held), convert(divided), assumed, tolerance)
 
 
-def draw_tags(random: Random, depth: int) -> tuple[dict[int, Any], list[Space | None], str]:
+def draw_tags(
+    random: Random, depth: int
+) -> tuple[dict[int, Any], list[Space | None], str]:
     """Draw the tags of TIFF about colours, and what they state."""
     tags: dict[int, Any] = {}
     stated: list[Space | None] = []
@@ -282,7 +309,9 @@ EXIF_TAGS = {
 }
 
 
-def draw_exif(random: Random, chance: float, stated: list[Space | None]) -> tuple[Any, Any, str]:
+def draw_exif(
+    random: Random, chance: float, stated: list[Space | None]
+) -> tuple[Any, Any, str]:
     """Draw the EXIF tags ColorSpace and interoperability index, by a chance, and add the space that they state."""
     if random.random() >= chance:
         return None, None, ""
@@ -297,7 +326,11 @@ def draw_tiff(random: Random, folder: Path) -> Drawn:
     dtype = choose(random, ("uint8", "uint16", "float32"))
     channels = choose(random, (1, 3, 3, 4))
     is_float = dtype == "float32"
-    codes = random.random((1, WIDTH, channels)).astype(dtype) if is_float else draw_codes(random, channels, dtype)
+    codes = (
+        random.random((1, WIDTH, channels)).astype(dtype)
+        if is_float
+        else draw_codes(random, channels, dtype)
+    )
     bits = 16 if dtype == "uint16" else 8
     tags, stated, text = draw_tags(random, bits)
     if channels == 4:
@@ -314,14 +347,20 @@ def draw_tiff(random: Random, folder: Path) -> Drawn:
     path.write_bytes(files.tiff_bytes(codes, tags, order, exif, index))
     space, assumed = first_usable(stated)
     rgb = codes[0, :, :3] if channels > 2 else np.repeat(codes[0, :, :1], 3, axis=1)
-    light = space.linear_to_srgb(rgb.astype(float)) if is_float else space.to_srgb(rgb / np.iinfo(dtype).max)
+    light = (
+        space.linear_to_srgb(rgb.astype(float))
+        if is_float
+        else space.to_srgb(rgb / np.iinfo(dtype).max)
+    )
     return Drawn(path, f"{dtype} {channels} {order}{text}", light, light, assumed)
 
 
 def draw_jpeg(random: Random, folder: Path) -> Drawn:
     """Draw a JPEG file of one colour."""
     path = folder / "a.jpg"
-    image = Image.fromarray(np.tile(random.integers(0, 256, 3, dtype=np.uint8), (8, 8, 1)))
+    image = Image.fromarray(
+        np.tile(random.integers(0, 256, 3, dtype=np.uint8), (8, 8, 1))
+    )
     tags, stated, text = draw_tags(random, 8)
     settings: dict[str, Any] = {"quality": 100, "subsampling": 0}
     exif, index, words = draw_exif(random, 0.6, stated)
@@ -355,7 +394,16 @@ def draw_hdr(random: Random, folder: Path) -> Drawn:
     return Drawn(path, header.strip(), light, light)
 
 
-DRAW = (draw_png, draw_png, draw_png, draw_exr, draw_exr, draw_tiff, draw_jpeg, draw_hdr)
+DRAW = (
+    draw_png,
+    draw_png,
+    draw_png,
+    draw_exr,
+    draw_exr,
+    draw_tiff,
+    draw_jpeg,
+    draw_hdr,
+)
 
 
 def largest_error(found: Array, expected: Array, colours: Array) -> float:
@@ -371,8 +419,12 @@ def wrong(seed: int) -> list[str]:
         drawn = choose(random, DRAW)(random, Path(folder))
         with open_image(drawn.path) as image:
             part, channels = coloured_parts(image)[0]
-            values = image.rows(part, 0, part.window.height).reshape(-1, len(part.channels))
-            light, _ = LIGHTS.decoder(part)(LIGHTS.colour_channels(channels).straight(values))
+            values = image.rows(part, 0, part.window.height).reshape(
+                -1, len(part.channels)
+            )
+            light, _ = LIGHTS.decoder(part)(
+                LIGHTS.colour_channels(channels).straight(values)
+            )
             decode = make_decoder(SENSOR, part, "auto", "clip")
             straight, _ = decode(channels.straight(values))
             codes = {warning.code for warning in space_warnings(image, SENSOR)}

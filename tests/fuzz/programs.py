@@ -13,8 +13,30 @@ from uplift.cube import CubeData
 from uplift.io.export.program import cube_program
 from uplift.io.export.table import make_table
 
-READ = ("DIM", "LATTICE", "ENTRIES", "NODES", "BINS", "LISTS", "BOXES", "PULL", "SCALES", "LUMINANCE", "FACETS")
-READ += ("FACET_COUNT", "SAMPLES", "FIRST", "STEP", "MARGIN", "START", "END", "LOW", "SCALE")
+READ = (
+    "DIM",
+    "LATTICE",
+    "ENTRIES",
+    "NODES",
+    "BINS",
+    "LISTS",
+    "BOXES",
+    "PULL",
+    "SCALES",
+    "LUMINANCE",
+    "FACETS",
+)
+READ += (
+    "FACET_COUNT",
+    "SAMPLES",
+    "FIRST",
+    "STEP",
+    "MARGIN",
+    "START",
+    "END",
+    "LOW",
+    "SCALE",
+)
 """Constants that are read: the code of the program does not depend on them."""
 MAIN = """#include <stdio.h>
 #include "cube.h"
@@ -42,15 +64,28 @@ def c_reflectances(data: CubeData, mode: str, rgb: Array, wavelengths: Array) ->
     table = make_table(data, mode)
     text = cube_program(data, table, "c", mode, "cube", "file")
     text = re.sub(r"\A/\*.*?\*/", "", text, flags=re.DOTALL)  # it names the cube
-    text = re.sub(r"static inline const char \*cube_load.*?\n}\n", "", text, flags=re.DOTALL)  # and its table
+    text = re.sub(
+        r"static inline const char \*cube_load.*?\n}\n", "", text, flags=re.DOTALL
+    )  # and its table
     names = [name for name in READ if name in table.constants]
-    kinds = {name: "int" if isinstance(table.constants[name], int) else "float" for name in names}
+    kinds = {
+        name: "int" if isinstance(table.constants[name], int) else "float"
+        for name in names
+    }
     for name, kind in kinds.items():
         text = re.sub(rf"#define CUBE_{name} .*", f"static {kind} CUBE_{name};", text)
     reads = "".join(f"fread(&CUBE_{name}, 4, 1, stdin);" for name in names)
     main = MAIN.replace("READ_ALL", reads).replace("WAVELENGTHS", str(len(wavelengths)))
-    given = [np.array(table.constants[name], np.int32 if kind == "int" else np.float32) for name, kind in kinds.items()]
-    given += [np.int32(table.numbers.size), table.numbers, wavelengths.astype(np.float32), rgb.astype(np.float32)]
+    given = [
+        np.array(table.constants[name], np.int32 if kind == "int" else np.float32)
+        for name, kind in kinds.items()
+    ]
+    given += [
+        np.int32(table.numbers.size),
+        table.numbers,
+        wavelengths.astype(np.float32),
+        rgb.astype(np.float32),
+    ]
     done = subprocess.run(
         [_compiled(text, main)],
         input=b"".join(map(np.ndarray.tobytes, map(np.asarray, given))),
@@ -66,5 +101,9 @@ def _compiled(text: str, main: str) -> Path:
     folder = Path(tempfile.mkdtemp(dir=FOLDER.name))
     (folder / "cube.h").write_text(text)
     (folder / "main.c").write_text(main)
-    subprocess.run(["cc", "-std=c99", "-O1", "-w", "main.c", "-o", "main", "-lm"], cwd=folder, check=True)
+    subprocess.run(
+        ["cc", "-std=c99", "-O1", "-w", "main.c", "-o", "main", "-lm"],
+        cwd=folder,
+        check=True,
+    )
     return folder / "main"

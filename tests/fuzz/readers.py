@@ -50,12 +50,22 @@ Maximum sample value  :  1.0
 ASCII sample data
 {%s}
 """
-REGULAR = ("regular\nStart : 400.0 nm\nIncrement : 100.0 nm", "0.5, 0.25, 0.125, 0.0625")
+REGULAR = (
+    "regular\nStart : 400.0 nm\nIncrement : 100.0 nm",
+    "0.5, 0.25, 0.125, 0.0625",
+)
 SAMPLED = ("point sampled", "{380, 0.5}, {500.5, 0.1}, {720, 1}")
-ART_ENTRIES = tuple((ART_ENTRY % (name, *rest)).encode() for name, *rest in (("grey", *REGULAR), ("other", *SAMPLED)))
+ART_ENTRIES = tuple(
+    (ART_ENTRY % (name, *rest)).encode()
+    for name, *rest in (("grey", *REGULAR), ("other", *SAMPLED))
+)
 ART_HEADER = b"ART measurement archive version 1.1\nArchive content: cards\n"
 ART_SHIPPED = (ROOT / "atlases" / "macbeth.txt").read_bytes()
-ART_SEEDS = (ART_HEADER + b"".join(ART_ENTRIES), *ART_ENTRIES, ART_SHIPPED[: ART_SHIPPED.index(b"Entry ID", 2000)])
+ART_SEEDS = (
+    ART_HEADER + b"".join(ART_ENTRIES),
+    *ART_ENTRIES,
+    ART_SHIPPED[: ART_SHIPPED.index(b"Entry ID", 2000)],
+)
 TABLE_ROWS = b"name,400,500,600,700\ngrey,0.5,0.25,0.125,0.0625\n\"a, 'b'\",1,0,1,0\n"
 TABLE_SEEDS = (
     TABLE_ROWS,
@@ -93,15 +103,21 @@ def _vendor_file(random: Random, path: Path) -> None:
     """Mutate a file of an instrument."""
     files = choose(random, _vendor_files())
     seeds = tuple(content for each in _vendor_files() for content in each.values())
-    spectra = [data for name, data in files.items() if name.endswith(".sli")]  # the header is the file to read
-    content, *others = [data for name, data in files.items() if not name.endswith(".sli")]
+    spectra = [
+        data for name, data in files.items() if name.endswith(".sli")
+    ]  # the header is the file to read
+    content, *others = [
+        data for name, data in files.items() if not name.endswith(".sli")
+    ]
     if random.random() < 0.95:
         content = mutate(content, random, seeds)
     path.write_bytes(content)
     for data in others:
         path.with_name("Wavelengths.txt").write_bytes(data)
     for data in spectra:
-        path.with_suffix(".sli").write_bytes(mutate(data, random, seeds) if random.random() < 0.3 else data)
+        path.with_suffix(".sli").write_bytes(
+            mutate(data, random, seeds) if random.random() < 0.3 else data
+        )
 
 
 # --- colours, charts, palettes, scenes, plans ---
@@ -138,7 +154,9 @@ def use_colours(path: Path) -> None:
 @functools.cache
 def _chart() -> Seeds:
     """The heading, two other methods and three cubes of the shipped table."""
-    text = (ROOT / "uplift" / "lab" / "chart" / "measured.csv").read_text(encoding="utf-8")
+    text = (ROOT / "uplift" / "lab" / "chart" / "measured.csv").read_text(
+        encoding="utf-8"
+    )
     heading, *rows = csv.reader(text.splitlines())
     first = [bool(row[heading.index("build")]) for row in rows].index(True)
     kept = io.StringIO()
@@ -149,7 +167,9 @@ def _chart() -> Seeds:
 def use_chart(path: Path) -> None:
     """Compute what pictures of the chart show, and recommend a cube."""
     chart = read_chart(path)
-    for criterion in (criterion for batch in chart.batches for criterion in criteria(batch)):
+    for criterion in (
+        criterion for batch in chart.batches for criterion in criteria(batch)
+    ):
         for result in criterion.front(chart):
             criterion.labels(result)
     recommend_cube(chart, Requirement(time_ns=1e5))
@@ -157,7 +177,9 @@ def use_chart(path: Path) -> None:
 
 SAMPLES = ROOT / "uplift" / "samples" / "files"
 PALETTE_SEEDS = tuple(
-    (SAMPLES / f"{name}.toml").read_bytes().replace(b"paints.csv", bytes(SAMPLES / "paints.csv"))
+    (SAMPLES / f"{name}.toml")
+    .read_bytes()
+    .replace(b"paints.csv", bytes(SAMPLES / "paints.csv"))
     for name in ("constant", "engine", "light", "metamers", "vanish")
 )
 _model = functools.cache(lambda count: standard_model(observer.sensor(), count))
@@ -168,11 +190,16 @@ def use_palette(path: Path) -> None:
     palette = read_palette(path)
     result = design(palette, _model(palette.count))
     matrix(result)
-    if not (np.isfinite(result.powers).all() and np.isfinite(result.reflectances).all()):
+    if not (
+        np.isfinite(result.powers).all() and np.isfinite(result.reflectances).all()
+    ):
         raise ValueError("spectra that are not finite")
 
 
-SOURCES = {"texture.png": ROOT / "docs" / "plan" / "front.png", "atlas.txt": ROOT / "atlases" / "macbeth.txt"}
+SOURCES = {
+    "texture.png": ROOT / "docs" / "plan" / "front.png",
+    "atlas.txt": ROOT / "atlases" / "macbeth.txt",
+}
 """Texture and atlas by their names in the folder of a scene or a plan."""
 SCENE_FILE = b"""# a kitchen
 textures = ["texture.png", "*.png"]
@@ -189,26 +216,66 @@ illuminant = "D65"
 @functools.cache
 def _plan() -> Seeds:
     """Make the part of a plan that its reader uses."""
-    texture, atlas = ([{"path": name, "digest": file_digest(path)}] for name, path in SOURCES.items())
+    texture, atlas = (
+        [{"path": name, "digest": file_digest(path)}] for name, path in SOURCES.items()
+    )
     scene = {"encoding": "auto", "textures": texture, "atlases": atlas}
-    plan = {"format": FORMAT, "scene": scene, "build": dataclasses.asdict(Options(dim=8)), "cells": "sparse"}
-    return (json.dumps(plan, indent=40).encode(),)  # mostly blanks, so that some mutations leave it valid
+    plan = {
+        "format": FORMAT,
+        "scene": scene,
+        "build": dataclasses.asdict(Options(dim=8)),
+        "cells": "sparse",
+    }
+    return (
+        json.dumps(plan, indent=40).encode(),
+    )  # mostly blanks, so that some mutations leave it valid
 
 
 # --- cubes ---
 
-RGB = np.array([[0.2, 0.3, 0.4], [0, 0, 0], [1, 1, 1], [0.5, 0.5, 0.5], [0.9, 0.0, 0.1]])
+RGB = np.array(
+    [[0.2, 0.3, 0.4], [0, 0, 0], [1, 1, 1], [0.5, 0.5, 0.5], [0.9, 0.0, 0.1]]
+)
 WAVELENGTHS = np.array([300.0, 380.0, 555.5, 780.0, 1000.0])
 LENGTHS = (0, 1, 7, 8, 1 << 20, 1 << 31, 1 << 40, (1 << 63) - 1, (1 << 64) - 1)
-FLOATS = (np.nan, np.inf, -np.inf, -1.0, 0.0, 1.0, 2.0, 0.5, 1e-300, 5e-324, 1e300, -1e300, 1e-9, 1 + 1e-9, 255.0, 1e9)
-DTYPES = (np.float64, np.float32, np.float16, np.int64, np.int32, np.int16, np.uint8, np.bool_, np.complex64)
+FLOATS = (
+    np.nan,
+    np.inf,
+    -np.inf,
+    -1.0,
+    0.0,
+    1.0,
+    2.0,
+    0.5,
+    1e-300,
+    5e-324,
+    1e300,
+    -1e300,
+    1e-9,
+    1 + 1e-9,
+    255.0,
+    1e9,
+)
+DTYPES = (
+    np.float64,
+    np.float32,
+    np.float16,
+    np.int64,
+    np.int32,
+    np.int16,
+    np.uint8,
+    np.bool_,
+    np.complex64,
+)
 VALUES = (
     None, True, False, 0, -1, 1, 3, 1 << 40, 1 << 70, 10**400, 5e-324, 1e-13, 1e300, float("nan"), float("inf"), "",
     "grey", "moments", "D65", "../macbeth.txt", "/etc/shadow", "/proc/kmsg", "\0", "\n", "\x1b]0;t\x07", "\u202e",
     "=1+1", "ü" * 9999, "x" * 100_000, ["grey"] * 65, ["grey"] * 100_000, [], [None], {}, {"name": "moments"}, ["x"],
     [1 << 40] * 3, "BF16", "F8_E4M3", "BOOL",
 )  # fmt: skip
-CUBE_FILES = tuple(ROOT / "cubes" / f"{name}.uplift" for name in ("moments-8-macbeth", "sigmoid-8"))
+CUBE_FILES = tuple(
+    ROOT / "cubes" / f"{name}.uplift" for name in ("moments-8-macbeth", "sigmoid-8")
+)
 
 
 def _coarse(data: CubeData) -> CubeData:
@@ -216,7 +283,12 @@ def _coarse(data: CubeData) -> CubeData:
     lattice = Lattice(data.lattice.nodes[::7])
     kept = data.lattice.index(7 * lattice.position(np.arange(lattice.size)))
     arrays = {name: getattr(data.points, name) for name in POINTS}
-    points = PointTable(**{name: None if array is None else array[kept] for name, array in arrays.items()})
+    points = PointTable(
+        **{
+            name: None if array is None else array[kept]
+            for name, array in arrays.items()
+        }
+    )
     return dataclasses.replace(data, lattice=lattice, points=points)
 
 
@@ -230,7 +302,9 @@ def use_cube(path: Path) -> None:
         reflectance = cube.reflectance(RGB, WAVELENGTHS, mode)
         if not ((reflectance >= 0) & (reflectance <= 1)).all():
             raise ValueError(f"{mode}: reflectances outside [0, 1]")
-    lights = [None] if cube.data.atlas.left_out is None else [None, observer.light("FL11")]
+    lights = (
+        [None] if cube.data.atlas.left_out is None else [None, observer.light("FL11")]
+    )
     for errors in [cube.standard_error(RGB, each) for each in lights]:
         if errors is not None and not np.isfinite(errors).all():
             raise ValueError("standard errors that are not finite")
@@ -256,13 +330,17 @@ def _corrupted(random: Random, path: Path) -> None:
             content = mutate(content, random, (header,))
         case 1:
             near = size + int(random.integers(-9, 10))
-            content = with_header_length(content, near if random.random() < 0.5 else choose(random, LENGTHS))
+            content = with_header_length(
+                content, near if random.random() < 0.5 else choose(random, LENGTHS)
+            )
         case _:
             content = with_header(content, mutate(header, random, (header,)))
     path.write_bytes(content)
 
 
-def _change_array(tensors: dict[str, Any], metadata: dict[str, Any], random: Random) -> None:
+def _change_array(
+    tensors: dict[str, Any], metadata: dict[str, Any], random: Random
+) -> None:
     """Change numbers, type or shape of an array, or remove it."""
     name = choose(random, list(tensors))
     array = np.array(tensors[name])
@@ -271,12 +349,22 @@ def _change_array(tensors: dict[str, Any], metadata: dict[str, Any], random: Ran
             places = random.integers(array.size, size=int(2 ** random.uniform(0, 10)))
             array.flat[places] = np.asarray(choose(random, FLOATS)).astype(array.dtype)
         case 1:
-            array = (random.normal(size=array.shape) * 10.0 ** random.integers(-12, 13)).astype(array.dtype)
+            array = (
+                random.normal(size=array.shape) * 10.0 ** random.integers(-12, 13)
+            ).astype(array.dtype)
         case 2:
             array = array.astype(choose(random, DTYPES))
         case 3:
             array = np.atleast_1d(array)
-            others = (array[:-1], array[:0], array[:1], array[None], array.T, array.ravel(), array.repeat(2, 0))
+            others = (
+                array[:-1],
+                array[:0],
+                array[:1],
+                array[None],
+                array.T,
+                array.ravel(),
+                array.repeat(2, 0),
+            )
             array = choose(random, (*others, array.sum()))
         case 4:
             del tensors[name]
@@ -286,16 +374,26 @@ def _change_array(tensors: dict[str, Any], metadata: dict[str, Any], random: Ran
 
 def _places(value: Any) -> Iterator[tuple[Any, Any]]:
     """Yield every container in ``value`` with each of its keys."""
-    for key in value if isinstance(value, dict) else range(len(value)) if isinstance(value, list) else ():
+    for key in (
+        value
+        if isinstance(value, dict)
+        else range(len(value))
+        if isinstance(value, list)
+        else ()
+    ):
         yield value, key
         yield from _places(value[key])
 
 
-def _change_metadata(tensors: dict[str, Any], metadata: dict[str, Any], random: Random) -> None:
+def _change_metadata(
+    tensors: dict[str, Any], metadata: dict[str, Any], random: Random
+) -> None:
     """Replace, remove or add a value anywhere in the metadata, sometimes a nested one."""
     place, key = choose(random, list(_places(metadata)))
     value, draw = choose(random, VALUES), random.random()
-    for _ in range(choose(random, (1, 2, 3, 20, 33, 300)) if random.random() < 0.2 else 0):
+    for _ in range(
+        choose(random, (1, 2, 3, 20, 33, 300)) if random.random() < 0.2 else 0
+    ):
         value = {"a": value} if random.random() < 0.5 else [value]
     if draw < 0.1:
         del place[key]
@@ -309,7 +407,9 @@ def _forged(random: Random, path: Path) -> None:
     def change(tensors: dict[str, Any], metadata: dict[str, Any]) -> None:
         with np.errstate(all="ignore"):
             for _ in range(int(random.integers(1, 3))):
-                choose(random, (_change_array, _change_metadata))(tensors, metadata, random)
+                choose(random, (_change_array, _change_metadata))(
+                    tensors, metadata, random
+                )
 
     forge(choose(random, CUBES), path, change)
 
@@ -339,22 +439,40 @@ def _images() -> Seeds:
         buffer = io.BytesIO()
         Image.fromarray(codes[..., :depth]).save(buffer, kind, **options)
         images.append(buffer.getvalue())
-    tags = {318: (5, BT2020[6:]), 319: (5, BT2020[:6]), 301: (3, list(range(0, 65536, 257)))}
+    tags = {
+        318: (5, BT2020[6:]),
+        319: (5, BT2020[:6]),
+        301: (3, list(range(0, 65536, 257))),
+    }
     exif = {0xA001: (3, [65535])}, {1: (2, b"R03\0")}
     images.append(tiff_bytes(codes, tags, "<", *exif))
     buffer = io.BytesIO()
-    Image.fromarray(codes[..., :3]).save(buffer, "JPEG", exif=b"Exif\0\0" + tiff_bytes(None, tags, ">", *exif))
+    Image.fromarray(codes[..., :3]).save(
+        buffer, "JPEG", exif=b"Exif\0\0" + tiff_bytes(None, tags, ">", *exif)
+    )
     images.append(buffer.getvalue())
-    images.append(hdr_bytes(codes[..., :3], 128, f"PRIMARIES= {' '.join(map(str, BT2020))}\n"))
-    images.append(exr_bytes([b"X", b"Y", b"Z", b"A"], attribute(b"whiteLuminance", b"float", bytes(4))))
-    text = attribute(b"owner", b"string", b"someone") + attribute(b"chromaticities", b"chromaticities", bytes(32))
+    images.append(
+        hdr_bytes(codes[..., :3], 128, f"PRIMARIES= {' '.join(map(str, BT2020))}\n")
+    )
+    images.append(
+        exr_bytes(
+            [b"X", b"Y", b"Z", b"A"], attribute(b"whiteLuminance", b"float", bytes(4))
+        )
+    )
+    text = attribute(b"owner", b"string", b"someone") + attribute(
+        b"chromaticities", b"chromaticities", bytes(32)
+    )
     return (*images, exr_bytes(), exr_bytes([b"R", b"G", b"B", b"A", b"Z"], text))
 
 
 def use_image(path: Path) -> None:
     """Convert to a texture."""
     with tempfile.TemporaryDirectory(dir=path.parent) as out:
-        convert(_Same(observer.sensor(), "half", "auto", "clip", (), {}), path, Path(out) / "out.exr")
+        convert(
+            _Same(observer.sensor(), "half", "auto", "clip", (), {}),
+            path,
+            Path(out) / "out.exr",
+        )
 
 
 def with_sources(path: Path) -> Path:
@@ -372,7 +490,11 @@ TARGETS = (
     mutated("colour table", use_colours, lambda: COLOUR_SEEDS),
     mutated("chart table", use_chart, _chart),
     mutated("palette", use_palette, lambda: PALETTE_SEEDS),
-    mutated("scene file", lambda path: read_scene_file(with_sources(path)).sensor(), lambda: (SCENE_FILE,)),
+    mutated(
+        "scene file",
+        lambda path: read_scene_file(with_sources(path)).sensor(),
+        lambda: (SCENE_FILE,),
+    ),
     mutated("plan", lambda path: read_plan(with_sources(path)), _plan),
     Target("cube, corrupted bytes", _corrupted, use_cube),
     Target("cube, valid digest", _forged, use_cube),

@@ -92,7 +92,9 @@ def draw(generator: np.random.Generator) -> Writing:
     """Draw a writing; half of its properties are the usual ones."""
     while True:
         changes = {
-            name: str(generator.choice(options)) for name, options in CHOICES.items() if generator.random() < 0.5
+            name: str(generator.choice(options))
+            for name, options in CHOICES.items()
+            if generator.random() < 0.5
         }
         writing = replace(Writing(), **changes)
         if is_possible(writing):
@@ -107,21 +109,35 @@ def spectra(writing: Writing, generator: np.random.Generator) -> dict[str, np.nd
     for name in ("ochre", "umber 2", "grey 50%")[:count]:
         centre, width = generator.uniform(450, 650), generator.uniform(30, 90)
         shape = 1 / (1 + np.exp((centre - NM) / width))
-        found[name.replace(" ", "_") if writing.separator == " " else name] = np.round(low + (high - low) * shape, 6)
+        found[name.replace(" ", "_") if writing.separator == " " else name] = np.round(
+            low + (high - low) * shape, 6
+        )
     return found
 
 
-def write(writing: Writing, reflectances: dict[str, np.ndarray], generator: np.random.Generator) -> bytes:
+def write(
+    writing: Writing,
+    reflectances: dict[str, np.ndarray],
+    generator: np.random.Generator,
+) -> bytes:
     """Return the bytes of a table."""
     lines = list(_preamble(writing))
-    order = {"ascending": slice(None), "descending": slice(None, None, -1)}.get(writing.order)
+    order = {"ascending": slice(None), "descending": slice(None, None, -1)}.get(
+        writing.order
+    )
     order = generator.permutation(len(NM)) if order is None else order
     factor, label = UNITS[writing.unit]
     nm = NM[order]
-    waves = [_number(1e7 / each if factor is None else each * factor, 6, writing) for each in nm]
+    waves = [
+        _number(1e7 / each if factor is None else each * factor, 6, writing)
+        for each in nm
+    ]
     if factor == 1e-9:
         waves = [f"{each * 1e-9:.4e}".replace(".", writing.decimal) for each in nm]
-    columns = {name: _cells(values[order], nm, writing) for name, values in reflectances.items()}
+    columns = {
+        name: _cells(values[order], nm, writing)
+        for name, values in reflectances.items()
+    }
     suffix = " (%R)" if writing.scale == "percent in label" else ""
     suffix = suffix.strip() if writing.separator == " " else suffix
     label = label.replace(" ", "") if writing.separator == " " else label
@@ -144,11 +160,19 @@ def _preamble(writing: Writing) -> Iterator[str]:
     if writing.scale == "stated fraction":
         yield "# reflectance, values 0-1"
     if writing.preamble == "keys":
-        yield from ("Instrument: S-1", "Integration time: 120 ms", "Date: 2020-01-02", "")
+        yield from (
+            "Instrument: S-1",
+            "Integration time: 120 ms",
+            "Date: 2020-01-02",
+            "",
+        )
     elif writing.preamble == "program":
         yield from ("Data from paint Node", "User: u", "Averages: 3")
     elif writing.preamble == "numbers":
-        yield from (f"Range{writing.separator}350{writing.separator}900", f"Slit{writing.separator}2")
+        yield from (
+            f"Range{writing.separator}350{writing.separator}900",
+            f"Slit{writing.separator}2",
+        )
     if writing.scale == "percent in key":
         yield "Y Units: Reflectance (percentage)"
     if writing.preamble == "program":
@@ -162,16 +186,27 @@ def _number(value: float, digits: int, writing: Writing) -> str:
 
 def _cells(values: np.ndarray, nm: np.ndarray, writing: Writing) -> list[str]:
     in_percent = writing.scale not in ("fraction", "stated fraction")
-    texts = [_number(value * (100 if in_percent else 1), 6, writing) for value in values]
+    texts = [
+        _number(value * (100 if in_percent else 1), 6, writing) for value in values
+    ]
     if writing.scale == "percent in cells":
-        texts = [f"{text}%" if writing.separator == " " else f"{text} %" for text in texts]
+        texts = [
+            f"{text}%" if writing.separator == " " else f"{text} %" for text in texts
+        ]
     if writing.mark != "none":
-        texts = [writing.mark if each < 370 or each > 840 else text for each, text in zip(nm, texts, strict=True)]
+        texts = [
+            writing.mark if each < 370 or each > 840 else text
+            for each, text in zip(nm, texts, strict=True)
+        ]
     return texts
 
 
 def _table(
-    writing: Writing, label: str, waves: list[str], columns: dict[str, list[str]], suffix: str
+    writing: Writing,
+    label: str,
+    waves: list[str],
+    columns: dict[str, list[str]],
+    suffix: str,
 ) -> Iterator[list[str]]:
     names = list(columns)
     if writing.layout == "rows":
@@ -201,7 +236,11 @@ def _table(
 def describe(writing: Writing) -> str:
     """Return what differs from the usual writing."""
     usual = Writing()
-    changed = [each.name for each in fields(Writing) if getattr(writing, each.name) != getattr(usual, each.name)]
+    changed = [
+        each.name
+        for each in fields(Writing)
+        if getattr(writing, each.name) != getattr(usual, each.name)
+    ]
     return ", ".join(f"{name}={getattr(writing, name)!r}" for name in changed)
 
 
@@ -218,11 +257,15 @@ def check(seed: int, folder: Path) -> str:
             atlas = read_atlas(path)
         except AtlasError as error:
             return error.code
-    assert is_same(atlas, writing, reflectances), f"{seed}: {describe(writing)}: {atlas.entries}"
+    assert is_same(atlas, writing, reflectances), (
+        f"{seed}: {describe(writing)}: {atlas.entries}"
+    )
     return "read"
 
 
-def is_same(atlas: Atlas, writing: Writing, reflectances: dict[str, np.ndarray]) -> bool:
+def is_same(
+    atlas: Atlas, writing: Writing, reflectances: dict[str, np.ndarray]
+) -> bool:
     """Whether an atlas has the spectra that were written, up to their rounding."""
     if len(atlas) != len(reflectances):
         return False
@@ -230,7 +273,9 @@ def is_same(atlas: Atlas, writing: Writing, reflectances: dict[str, np.ndarray])
         expected = np.interp(entry.wavelengths, NM, values)
         covers = entry.wavelengths[0] <= 380 and entry.wavelengths[-1] >= 780
         is_named = writing.head == "none" or entry.name.startswith(name)
-        if not (covers and is_named and np.abs(entry.values - expected).max() < ROUNDING):
+        if not (
+            covers and is_named and np.abs(entry.values - expected).max() < ROUNDING
+        ):
             return False
     return True
 

@@ -15,9 +15,15 @@ FINDS = {
         b"\xef\xbb\xbf",
         b"\xe2\x80\xa8\n",
     ),
-    "atlas text": (b"Entry ID: a\nSampling information\nType : regular\nStart : 400 nm\nIncrement : inf nm\n",),
+    "atlas text": (
+        b"Entry ID: a\nSampling information\nType : regular\nStart : 400 nm\nIncrement : inf nm\n",
+    ),
     "colour table": (b"1e308,0.5,0.2\n", b"9" * 5000 + b"x,0,0\n"),
-    "scene file": (b"textures = " + b"[" * 5000, b'textures = ["' + b"x" * 5000 + b'"]', b'textures = ["a\\u0000*"]'),
+    "scene file": (
+        b"textures = " + b"[" * 5000,
+        b'textures = ["' + b"x" * 5000 + b'"]',
+        b'textures = ["a\\u0000*"]',
+    ),
     "plan": (b'{"a":' * 5000, b'{"format": 1, "format": NaN}'),
     "palette": (b"lights = " + b"[" * 5000,),
 }
@@ -30,17 +36,28 @@ def unlimited(monkeypatch):
     monkeypatch.setattr(fuzzing, "_limit_memory", lambda: None)
 
 
-@pytest.mark.parametrize("target", [*READERS.values(), *COMMANDS.values()], ids=lambda target: target.name)
+@pytest.mark.parametrize(
+    "target", [*READERS.values(), *COMMANDS.values()], ids=lambda target: target.name
+)
 def test_inputs_are_accepted_or_rejected(tmp_path, target):
     tally = fuzz(target, 1, range(100), tmp_path, tmp_path)
-    assert set(tally) == {"accepted", "rejected"}  # mutations are neither too strong nor too weak
+    assert set(tally) == {
+        "accepted",
+        "rejected",
+    }  # mutations are neither too strong nor too weak
 
 
-@pytest.mark.parametrize(("name", "content"), [(name, content) for name in FINDS for content in FINDS[name]])
+@pytest.mark.parametrize(
+    ("name", "content"), [(name, content) for name in FINDS for content in FINDS[name]]
+)
 def test_inputs_that_once_failed_are_rejected(tmp_path, name, content):
-    target = Target(name, lambda random, path: path.write_bytes(content), READERS[name].use)
+    target = Target(
+        name, lambda random, path: path.write_bytes(content), READERS[name].use
+    )
     (outcome,) = fuzz(target, 0, range(1), tmp_path, tmp_path)
-    assert outcome == ("rejected" if name != "colour table" or b"x" in content else "accepted")
+    assert outcome == (
+        "rejected" if name != "colour table" or b"x" in content else "accepted"
+    )
 
 
 @pytest.mark.parametrize("seed", range(30))

@@ -13,9 +13,14 @@ import uplift
 from tests.fuzz.fuzzing import ROOT
 from uplift.cube import digest
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="needs SIGKILL and /proc")
+pytestmark = pytest.mark.skipif(
+    sys.platform != "linux", reason="needs SIGKILL and /proc"
+)
 
-OLD, NEW = (ROOT / "cubes" / f"{name}.uplift" for name in ("moments-16-macbeth", "sigmoid-16-macbeth"))
+OLD, NEW = (
+    ROOT / "cubes" / f"{name}.uplift"
+    for name in ("moments-16-macbeth", "sigmoid-16-macbeth")
+)
 SAVE_IN_TURN = """
 import itertools, sys, uplift
 cubes = [uplift.load(path) for path in sys.argv[2:]]
@@ -32,7 +37,9 @@ def test_a_killed_writer_leaves_a_complete_file_or_none(tmp_path, exists):
         path.unlink(missing_ok=True)
         if exists:
             shutil.copy(OLD, path)
-        with subprocess.Popen([sys.executable, "-c", SAVE_IN_TURN, path, OLD, NEW], stdout=subprocess.PIPE) as process:
+        with subprocess.Popen(
+            [sys.executable, "-c", SAVE_IN_TURN, path, OLD, NEW], stdout=subprocess.PIPE
+        ) as process:
             process.stdout.readline()
             time.sleep(0.02 * turn)
             process.kill()

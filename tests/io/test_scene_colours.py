@@ -33,15 +33,32 @@ def test_points_are_those_of_the_complete_cube(scene_cube, macbeth_cube):
     part, whole = scene_cube.data, macbeth_cube.data
     there = part.points.present
     assert 0 < there.sum() < 0.3 * len(there)
-    for name in ("coefficients", "rgb", "distance", "status", "entry", "round", "standard_error"):
+    for name in (
+        "coefficients",
+        "rgb",
+        "distance",
+        "status",
+        "entry",
+        "round",
+        "standard_error",
+    ):
         array = getattr(part.points, name)
-        np.testing.assert_allclose(array[there], getattr(whole.points, name)[there], rtol=0, atol=1e-5, err_msg=name)
+        np.testing.assert_allclose(
+            array[there],
+            getattr(whole.points, name)[there],
+            rtol=0,
+            atol=1e-5,
+            err_msg=name,
+        )
         absent = {"status": Status.ABSENT, "entry": -1, "round": -1}.get(name, 0)
         assert (array[~there] == absent).all(), name
 
 
 ANSWERS = [
-    *(lambda cube, rgb, mode=mode: cube.reflectance(rgb, WAVELENGTHS, mode) for mode in MODES),
+    *(
+        lambda cube, rgb, mode=mode: cube.reflectance(rgb, WAVELENGTHS, mode)
+        for mode in MODES
+    ),
     Cube.coefficients,
     Cube.standard_error,
     lambda cube, rgb: bulk.spectra(cube, WAVELENGTHS)(rgb),
@@ -50,7 +67,9 @@ ANSWERS = [
 
 
 @pytest.mark.parametrize("answer", ANSWERS)
-def test_answers_to_the_scene_are_those_of_the_complete_cube(scene_cube, macbeth_cube, photo_colours, answer):
+def test_answers_to_the_scene_are_those_of_the_complete_cube(
+    scene_cube, macbeth_cube, photo_colours, answer
+):
     assert scene_cube.covers(photo_colours).all()
     answers = (answer(cube, photo_colours[::10]) for cube in (scene_cube, macbeth_cube))
     np.testing.assert_allclose(*answers, rtol=0, atol=1e-6)
@@ -68,12 +87,16 @@ def test_an_error_quotes_the_first_colour_that_is_not_covered(small_cube):
 
 def test_all_images_of_a_scene_are_read_and_decoded(plain_cube, tmp_path):
     data = plain_cube.data
-    strange = np.array([[[np.nan, 2, -1], [0, 1, 0]]], np.float32)  # clamped as in textures
+    strange = np.array(
+        [[[np.nan, 2, -1], [0, 1, 0]]], np.float32
+    )  # clamped as in textures
     light = write_exr(tmp_path / "light.exr", planes(strange))
     Image.fromarray(np.full((2, 2, 3), 128, np.uint8)).save(tmp_path / "grey.png")
     for encoding, value in (("auto", plain_cube.decode(128)), ("linear", 128 / 255)):
         images = Images((light, tmp_path / "grey.png"), encoding, "clip")
-        points = images.required_points(data.entry_boxes, data.sensor, lambda done: None)
+        points = images.required_points(
+            data.entry_boxes, data.sensor, lambda done: None
+        )
         corners, _ = data.lattice.corners(np.array([[0, 1, 0], [value] * 3]))
         np.testing.assert_array_equal(np.flatnonzero(points), np.unique(corners))
 

@@ -32,14 +32,26 @@ from uplift.lab.comparison.compare import (
     tune_filters,
 )
 from uplift.lab.comparison.fitted import scene_representations
-from uplift.lab.comparison.pictures import cost_panels, names, render_comparison, write_boxes, write_costs
+from uplift.lab.comparison.pictures import (
+    cost_panels,
+    names,
+    render_comparison,
+    write_boxes,
+    write_costs,
+)
 from uplift.lab.timing import TimingStats
 from uplift.lights.lamps import read_lamps
 from uplift.scene.representations import find_representation
 from uplift.scene.representations.composite import enhanced_riemann, sun_composite
 from uplift.scene.representations.filters import filtered_point_samples
 from uplift.scene.representations.models import trigonometric_moments
-from uplift.scene.representations.samples import linear, point_samples, riemann_sums, wavelengths, xyz_weights
+from uplift.scene.representations.samples import (
+    linear,
+    point_samples,
+    riemann_sums,
+    wavelengths,
+    xyz_weights,
+)
 
 
 @pytest.fixture(scope="module")
@@ -49,8 +61,14 @@ def checker():
 
 @pytest.fixture(scope="module")
 def found(checker):
-    made = [make(count) for make in (point_samples, riemann_sums, enhanced_riemann) for count in (16, 32)]
-    return compare(checker, [*made, sun_composite(15), trigonometric_moments(9)], quick=True)
+    made = [
+        make(count)
+        for make in (point_samples, riemann_sums, enhanced_riemann)
+        for count in (16, 32)
+    ]
+    return compare(
+        checker, [*made, sun_composite(15), trigonometric_moments(9)], quick=True
+    )
 
 
 def test_dense_data_have_no_error(checker):
@@ -64,10 +82,19 @@ def test_errors_match_explicit_loops(checker):
     for power in part.powers:
         white = power @ xyz_weights()
         for surface in checker.surfaces:
-            product = samples.multiply(samples.encode_light(power[None]), samples.encode_surface(surface[None]))
-            pair = (lab(samples.xyz(product)[0], white), lab((power * surface) @ xyz_weights(), white))
+            product = samples.multiply(
+                samples.encode_light(power[None]), samples.encode_surface(surface[None])
+            )
+            pair = (
+                lab(samples.xyz(product)[0], white),
+                lab((power * surface) @ xyz_weights(), white),
+            )
             apart.append(float(delta_e_2000(*pair)))
-    expected = [np.mean(apart), np.std(apart), *np.quantile(apart, (0.5, 0.025, 0.25, 0.75, 0.975))]
+    expected = [
+        np.mean(apart),
+        np.std(apart),
+        *np.quantile(apart, (0.5, 0.025, 0.25, 0.75, 0.975)),
+    ]
     np.testing.assert_allclose(error_statistics(samples, part), expected, rtol=1e-9)
 
 
@@ -96,34 +123,57 @@ def test_storage_includes_spikes(found):
 
 
 def test_findings_of_the_thesis_hold_for_the_colorchecker(found):
-    smooth, spiky = ({row.name: row.statistics.mean for row in found.of(name)} for name in ("smooth", "spiky"))
+    smooth, spiky = (
+        {row.name: row.statistics.mean for row in found.of(name)}
+        for name in ("smooth", "spiky")
+    )
     assert all(smooth[f"{family}32"] < 1 for family in ("PS", "RS", "RE"))
     assert spiky["PS16"] > 10 * smooth["PS16"]
-    assert max(spiky["CS15"], spiky["RE16"]) < spiky["RS16"] < spiky["PS32"] < spiky["PS16"]
+    assert (
+        max(spiky["CS15"], spiky["RE16"])
+        < spiky["RS16"]
+        < spiky["PS32"]
+        < spiky["PS16"]
+    )
 
 
-@pytest.mark.parametrize("name", ["PS16", "PF32", "RS16", "PS16:gaussian:7:0.5", "TM9", "SG3"])
-def test_written_spectra_have_the_colours_of_the_representation(checker, name, tmp_path):
+@pytest.mark.parametrize(
+    "name", ["PS16", "PF32", "RS16", "PS16:gaussian:7:0.5", "TM9", "SG3"]
+)
+def test_written_spectra_have_the_colours_of_the_representation(
+    checker, name, tmp_path
+):
     """They are read again as surfaces and lamps."""
     made, atlas = find_representation(name), read_atlas(MACBETH)
     scene = replace(checker, sets=checker.sets[:1])
-    for part, file in zip(represent(made, scene, atlas.names), ("surfaces.csv", "lights.csv"), strict=True):
+    for part, file in zip(
+        represent(made, scene, atlas.names), ("surfaces.csv", "lights.csv"), strict=True
+    ):
         write_atlas(part, tmp_path / file)
-    surfaces, lamps = read_atlas(tmp_path / "surfaces.csv"), read_lamps(tmp_path / "lights.csv")
+    surfaces, lamps = (
+        read_atlas(tmp_path / "surfaces.csv"),
+        read_lamps(tmp_path / "lights.csv"),
+    )
     assert (surfaces.names, lamps.names) == (atlas.names, scene.sets[0].lights)
     code = made.encode_surface(scene.surfaces)
     # A linear code of samples is that of a light too; models are multiplied with a flat one.
     flat = made.encode_light(np.ones_like(scene.surfaces))
     expected = made.xyz(made.multiply(flat, code) if name[:2] in ("TM", "SG") else code)
-    np.testing.assert_allclose(on_grid(surfaces, wavelengths()) @ xyz_weights(), expected, atol=1e-12)
+    np.testing.assert_allclose(
+        on_grid(surfaces, wavelengths()) @ xyz_weights(), expected, atol=1e-12
+    )
     powers = on_grid(lamps, wavelengths()) @ xyz_weights()
     light_xyz = made.xyz(made.encode_light(scene.powers))
-    np.testing.assert_allclose(powers / powers[:, 1:2], light_xyz / light_xyz[:, 1:2], atol=1e-12)
+    np.testing.assert_allclose(
+        powers / powers[:, 1:2], light_xyz / light_xyz[:, 1:2], atol=1e-12
+    )
 
 
 def test_negative_lobes_of_a_filter_are_clipped_with_a_warning(checker):
     with warns("entry-clipped"):
-        _, lights = represent(find_representation("PF16"), checker, read_atlas(MACBETH).names)
+        _, lights = represent(
+            find_representation("PF16"), checker, read_atlas(MACBETH).names
+        )
     assert min(entry.values.min() for entry in lights) == 0
 
 
@@ -160,7 +210,9 @@ def test_named_lights_form_one_set():
 
 def row(name, high, floats, light_floats=8.0, ns=5.0, lights="smooth"):
     found = compute_statistics([high])
-    return RepresentationResult(name, "made up", lights, found, floats, light_floats, TimingStats(ns, ns, ns, 3))
+    return RepresentationResult(
+        name, "made up", lights, found, floats, light_floats, TimingStats(ns, ns, ns, 3)
+    )
 
 
 ROWS = (
@@ -171,11 +223,14 @@ ROWS = (
     row("far", 1.1, 3.0),
     row("other", 0.1, 1.0, lights="spiky"),
 )
-FOUND = Comparison({}, {"smooth": "smooth lights (A)", "spiky": "spiky lights (FL2)"}, ROWS)
+FOUND = Comparison(
+    {}, {"smooth": "smooth lights (A)", "spiky": "spiky lights (FL2)"}, ROWS
+)
 
 
 @pytest.mark.parametrize(
-    ("target", "name"), [(2.0, "far"), (1.0, "even"), (0.75, "tabled"), (0.5, "near"), (0.1, None)]
+    ("target", "name"),
+    [(2.0, "far"), (1.0, "even"), (0.75, "tabled"), (0.5, "near"), (0.1, None)],
 )
 def test_surfaces_count_first_then_lights_then_errors(target, name):
     best = cheapest(FOUND, "smooth", target)
@@ -192,14 +247,18 @@ def test_target_must_be_positive(target):
 @pytest.fixture(scope="module")
 def tuned(checker):
     kinds = ("tent", "lanczos", "mitchell")
-    return {(one.lights, one.kind): one for one in tune_filters(checker, COARSE_STRIDE, kinds, (16,))}
+    return {
+        (one.lights, one.kind): one
+        for one in tune_filters(checker, COARSE_STRIDE, kinds, (16,))
+    }
 
 
 @pytest.mark.parametrize("kind", ["tent", "lanczos"])
 def test_no_candidate_filter_is_better(checker, tuned, kind):
     part = checker.sets[1]
     means = {
-        one: error_statistics(filtered_point_samples(16, one), part).mean for one in candidates(kind, COARSE_STRIDE)
+        one: error_statistics(filtered_point_samples(16, one), part).mean
+        for one in candidates(kind, COARSE_STRIDE)
     }
     best = tuned[part.name, kind]
     assert best.low_pass == min(means, key=means.__getitem__)
@@ -208,22 +267,40 @@ def test_no_candidate_filter_is_better(checker, tuned, kind):
 
 def test_filters_improve_point_sampling_under_spiky_lights(checker, tuned):
     for part in checker.sets:
-        assert tuned[part.name, NONE].statistics == error_statistics(point_samples(16), part)
+        assert tuned[part.name, NONE].statistics == error_statistics(
+            point_samples(16), part
+        )
     for kind in ("mitchell", "lanczos"):
-        assert tuned["spiky", kind].statistics.mean < 0.3 * tuned["spiky", NONE].statistics.mean
+        assert (
+            tuned["spiky", kind].statistics.mean
+            < 0.3 * tuned["spiky", NONE].statistics.mean
+        )
 
 
 def test_stored_tables_of_the_thesis_agree():
-    tables = {(row["lights"], row["representation"]): row for row in read_reference("representations_kment2011.csv")}
+    tables = {
+        (row["lights"], row["representation"]): row
+        for row in read_reference("representations_kment2011.csv")
+    }
     filters = read_reference("filters_kment2011.csv")
     bare = [row for row in filters if row["filter"] == "none" and row["samples"] != "4"]
     assert len(bare) == 4
     for row in bare:
         other = tables[row["lights"], f"PS{row['samples']}"]
         assert (row["mean"], row["deviation"]) == (other["mean"], other["deviation"])
-    means = {row["filter"]: float(row["mean"]) for row in filters if (row["lights"], row["samples"]) == ("spiky", "16")}
-    for kind, change in (("mitchell", -85.32), ("lanczos", -83.89), ("tent", -76.80)):  # table 7.1
-        assert 100 * (means[kind] / means["none"] - 1) == pytest.approx(change, abs=0.005)
+    means = {
+        row["filter"]: float(row["mean"])
+        for row in filters
+        if (row["lights"], row["samples"]) == ("spiky", "16")
+    }
+    for kind, change in (
+        ("mitchell", -85.32),
+        ("lanczos", -83.89),
+        ("tent", -76.80),
+    ):  # table 7.1
+        assert 100 * (means[kind] / means["none"] - 1) == pytest.approx(
+            change, abs=0.005
+        )
 
 
 def test_files_are_images(found, tmp_path):
@@ -239,8 +316,13 @@ def test_page_has_every_representation_fits_and_is_accessible(found, tmp_path):
     assert render_comparison(found) == html
     known = names(found)
     for panel in range(len(cost_panels(found))):
-        assert all(html.count(f'id="marker-{panel}-{number}"') == 1 for number in range(len(known)))
-    (data,) = re.findall(r'<script type="application/json" id="rows">(.*?)</script>', html, re.DOTALL)
+        assert all(
+            html.count(f'id="marker-{panel}-{number}"') == 1
+            for number in range(len(known))
+        )
+    (data,) = re.findall(
+        r'<script type="application/json" id="rows">(.*?)</script>', html, re.DOTALL
+    )
     assert [one["title"] for one in json.loads(data)] == known
     tables = [[row[0].parts[0] for row in table[1:]] for table in Page(html).tables]
     for name in found.sets:
@@ -257,12 +339,17 @@ def fitted():
 def test_representations_fitted_to_a_scene_follow_its_products(fitted):
     scene, named = fitted
     (lights,) = scene.sets
-    errors = {name: error_statistics(named[name], lights).mean for name in ("FW5", "FW12", "BF5", "CM9", "CM17")}
+    errors = {
+        name: error_statistics(named[name], lights).mean
+        for name in ("FW5", "FW12", "BF5", "CM9", "CM17")
+    }
     assert errors["FW12"] < 0.1 < errors["FW5"] < 2
     assert errors["CM17"] < errors["CM9"] < 0.5
     assert errors["BF5"] < 6
     encode = named["FW5"].encode_light
-    np.testing.assert_array_equal(encode(lights.powers[::-1]), encode(lights.powers)[::-1])
+    np.testing.assert_array_equal(
+        encode(lights.powers[::-1]), encode(lights.powers)[::-1]
+    )
 
 
 def test_the_front_has_all_that_nothing_dominates(found):
@@ -271,7 +358,11 @@ def test_the_front_has_all_that_nothing_dominates(found):
         for row in found.of(name):
             costs = (row.floats, row.light_floats, row.statistics.q97_5)
             is_beaten = any(
-                all(np.less_equal((each.floats, each.light_floats, each.statistics.q97_5), costs))
+                all(
+                    np.less_equal(
+                        (each.floats, each.light_floats, each.statistics.q97_5), costs
+                    )
+                )
                 for each in front
                 if each is not row
             )

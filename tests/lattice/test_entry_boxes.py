@@ -17,7 +17,9 @@ from uplift.lookup.interpolate import around
 
 LATTICE = Lattice(np.linspace(0, 1, 7) ** 2)
 unit = st.floats(0, 1)
-colours = arrays(float, st.tuples(st.integers(0, 10), st.just(3)), elements=unit, unique=True)
+colours = arrays(
+    float, st.tuples(st.integers(0, 10), st.just(3)), elements=unit, unique=True
+)
 queried = arrays(float, st.tuples(st.integers(1, 30), st.just(3)), elements=unit)
 
 
@@ -30,19 +32,34 @@ def test_the_mixture_has_the_colour(entries, rgb):
     rows, entry, lattice_weight, exit_rgb = boxes(entries).find(rgb)
     assert ((lattice_weight >= 0) & (lattice_weight <= 1)).all()
     assert ((exit_rgb >= 0) & (exit_rgb <= 1)).all()
-    mixed = lattice_weight[:, None] * exit_rgb + (1 - lattice_weight[:, None]) * entries[entry]
-    np.testing.assert_allclose(mixed, rgb[rows], rtol=0, atol=MARGIN)  # exact but for entries at the edge
+    mixed = (
+        lattice_weight[:, None] * exit_rgb
+        + (1 - lattice_weight[:, None]) * entries[entry]
+    )
+    np.testing.assert_allclose(
+        mixed, rgb[rows], rtol=0, atol=MARGIN
+    )  # exact but for entries at the edge
 
 
 @given(colours, queried)
 def test_boxes_are_those_of_an_exhaustive_search(entries, rgb):
     found = boxes(entries)
     pinned = found.find(rgb)
-    held = dict(zip(pinned.rows, zip(pinned.entry, pinned.lattice_weight, strict=True), strict=True))
+    held = dict(
+        zip(
+            pinned.rows,
+            zip(pinned.entry, pinned.lattice_weight, strict=True),
+            strict=True,
+        )
+    )
     steps, middles = LATTICE.to_steps(rgb), LATTICE.to_steps(entries)
     for row in range(len(rgb)):
-        apart = np.abs(steps[row] - middles).max(axis=1) if len(entries) else np.zeros(0)
-        inside = np.flatnonzero((apart < found.half_width - 1e-9) & (found.half_width > 0))
+        apart = (
+            np.abs(steps[row] - middles).max(axis=1) if len(entries) else np.zeros(0)
+        )
+        inside = np.flatnonzero(
+            (apart < found.half_width - 1e-9) & (found.half_width > 0)
+        )
         if inside.size:
             assert held[row][0] == inside[0]
         elif row in held:
@@ -51,7 +68,10 @@ def test_boxes_are_those_of_an_exhaustive_search(entries, rgb):
 
 def test_the_lattice_has_no_weight_at_an_entry():
     entries = np.array([[0.2, 0.3, 0.4], [0.0, 1.0, 0.5], [1 - 3e-16, 0.6, 1e-10]])
-    for colours in (entries, entries.round(9)):  # an entry as good as on the edge answers there too
+    for colours in (
+        entries,
+        entries.round(9),
+    ):  # an entry as good as on the edge answers there too
         rows, entry, lattice_weight, _ = boxes(entries).find(colours)
         assert rows.tolist() == [0, 1, 2]
         assert entry.tolist() == [0, 1, 2]
@@ -62,7 +82,9 @@ def test_touched_cells_are_those_of_boxes():
     found = boxes(np.array([[0.2, 0.3, 0.4]]))
     rgb = np.random.default_rng(0).random((500, 3))
     cells = LATTICE.index(LATTICE.cell(rgb)[0])
-    np.testing.assert_array_equal(found.touched_cells[cells], np.isin(cells, found.cells[0]))
+    np.testing.assert_array_equal(
+        found.touched_cells[cells], np.isin(cells, found.cells[0])
+    )
     assert found.touched_cells.sum() == len(found.cells[0]) == 27
 
 
@@ -80,19 +102,36 @@ def test_no_two_boxes_overlap(rgb):
 
 def test_only_the_first_entry_of_a_colour_has_a_box():
     rgb = np.array([[0.2, 0.2, 0.2], [0.2, 0.2, 0.2], [0.9, 0.9, 0.9], [0.2, 0.2, 0.2]])
-    assert half_widths(LATTICE.to_steps(rgb)).tolist() == [MAX_HALF_WIDTH, 0, MAX_HALF_WIDTH, 0]
+    assert half_widths(LATTICE.to_steps(rgb)).tolist() == [
+        MAX_HALF_WIDTH,
+        0,
+        MAX_HALF_WIDTH,
+        0,
+    ]
 
 
-@given(arrays(float, st.tuples(st.integers(1, 8), st.just(3)), elements=st.floats(-0.3, 1.3)))
+@given(
+    arrays(
+        float, st.tuples(st.integers(1, 8), st.just(3)), elements=st.floats(-0.3, 1.3)
+    )
+)
 def test_boxes_outside_overlap_neither_each_other_nor_the_space(rgb):
     rgb = rgb[((rgb < 0) | (rgb > 1)).any(axis=1)]
     widths = outside_half_widths(LATTICE, rgb)
     assert ((widths >= 0) & (widths <= MAX_HALF_WIDTH)).all()
     found = OutsideBoxes(rgb, widths / (LATTICE.dim - 1))
-    corners = rgb[:, None] + found.half_width[:, None, None] * np.array(list(product((-1, 1), repeat=3)))
-    assert ((corners <= 1e-12).all(axis=1) | (corners >= 1 - 1e-12).all(axis=1)).any(axis=1).all()
+    corners = rgb[:, None] + found.half_width[:, None, None] * np.array(
+        list(product((-1, 1), repeat=3))
+    )
+    assert (
+        ((corners <= 1e-12).all(axis=1) | (corners >= 1 - 1e-12).all(axis=1))
+        .any(axis=1)
+        .all()
+    )
     hits = found.find(rgb)
-    assert hits.rows[hits.rows == hits.entry].tolist() == np.flatnonzero(widths).tolist()
+    assert (
+        hits.rows[hits.rows == hits.entry].tolist() == np.flatnonzero(widths).tolist()
+    )
     assert not hits.lattice_weight[hits.rows == hits.entry].any()
 
 
@@ -101,16 +140,22 @@ def test_the_weight_of_an_entry_outside_is_1_in_its_core_and_0_on_the_faces():
     shares = np.array([0, 0.05, 0.1, 0.55, 1 - 1e-9, 1.01])
     hits = found.find(found.rgb + 0.1 * shares[:, None] * [0, -1, 0])
     assert hits.rows.tolist() == [0, 1, 2, 3, 4]
-    np.testing.assert_allclose(hits.lattice_weight, [0, 0, 0, 0.5, 1], rtol=0, atol=1e-8)
+    np.testing.assert_allclose(
+        hits.lattice_weight, [0, 0, 0, 0.5, 1], rtol=0, atol=1e-8
+    )
 
 
 def colours_in(data, cell, count=400):
     """Linear RGB (count, 3) in a cell, some on its faces and corners, some at entries in it."""
     random = np.random.default_rng(cell)
     share = random.random((count, 3))
-    share[: count // 2] = np.clip(np.round(share[: count // 2] * 1.5 - 0.25, 1), 0, 1 - 1e-12)
+    share[: count // 2] = np.clip(
+        np.round(share[: count // 2] * 1.5 - 0.25, 1), 0, 1 - 1e-12
+    )
     low = data.lattice.position(np.array(cell))
-    rgb = data.lattice.nodes[low] + share * (data.lattice.nodes[low + 1] - data.lattice.nodes[low])
+    rgb = data.lattice.nodes[low] + share * (
+        data.lattice.nodes[low + 1] - data.lattice.nodes[low]
+    )
     return rgb[(data.lattice.cell(rgb)[0] == low).all(axis=1)]
 
 
@@ -121,7 +166,9 @@ def missing(data, required):
         mask = np.zeros(data.lattice.size, dtype=bool)
         mask[cell] = True
         nodes = around(data, colours_in(data, cell))
-        count += int((~required(mask)[nodes.points] & (nodes.weights > 0)).any(axis=1).sum())
+        count += int(
+            (~required(mask)[nodes.points] & (nodes.weights > 0)).any(axis=1).sum()
+        )
     return count
 
 
@@ -129,13 +176,21 @@ def missing(data, required):
 def test_required_points_answer_every_colour_of_a_cell(request, name):
     data = request.getfixturevalue(name).data
     assert missing(data, data.entry_boxes.required_points) == 0
-    assert missing(data, data.lattice.corner_points) > 0  # entry boxes need other points than the corners
+    assert (
+        missing(data, data.lattice.corner_points) > 0
+    )  # entry boxes need other points than the corners
 
 
 @pytest.mark.parametrize("node", [0, 3, 7])
 def test_required_points_allow_for_rounding_across_faces_on_nodes(plain_cube, node):
     data = plain_cube.data
-    one = table(("one",), np.full((1, 3), data.lattice.nodes[node]), data.model, np.zeros((1, 9)), np.ones(1))
+    one = table(
+        ("one",),
+        np.full((1, 3), data.lattice.nodes[node]),
+        data.model,
+        np.zeros((1, 9)),
+        np.ones(1),
+    )
     data = replace(data, atlas=one)
     assert data.entry_boxes.cells[0].size
     assert missing(data, data.entry_boxes.required_points) == 0

@@ -31,7 +31,9 @@ def test_weights_are_a_partition_of_unity_and_reproduce_the_colour(rgb):
     points, weights = UNEVEN.corners(rgb)
     assert (weights >= 0).all()
     np.testing.assert_allclose(weights.sum(axis=1), 1, atol=1e-14)
-    np.testing.assert_allclose((weights[:, :, None] * UNEVEN.points[points]).sum(axis=1), rgb, atol=1e-14)
+    np.testing.assert_allclose(
+        (weights[:, :, None] * UNEVEN.points[points]).sum(axis=1), rgb, atol=1e-14
+    )
 
 
 def test_neighbours_are_those_within_one_step():
@@ -39,10 +41,14 @@ def test_neighbours_are_those_within_one_step():
     position = UNEVEN.position(np.arange(UNEVEN.size))
     apart = np.abs(position[:, None] - position[None]).max(axis=-1)
     for point in range(UNEVEN.size):
-        assert set(around[point, inside[point]]) == set(np.flatnonzero(apart[point] == 1))
+        assert set(around[point, inside[point]]) == set(
+            np.flatnonzero(apart[point] == 1)
+        )
 
 
-@pytest.mark.parametrize("nodes", [[0.0], [0.0, 0.0], [1.0, 0.0], [[0.0, 1.0]], [0.0, np.nan]])
+@pytest.mark.parametrize(
+    "nodes", [[0.0], [0.0, 0.0], [1.0, 0.0], [[0.0, 1.0]], [0.0, np.nan]]
+)
 def test_nodes_must_increase(nodes):
     with raises(OptionError, "option"):
         Lattice(np.array(nodes))

@@ -44,7 +44,9 @@ def test_a_known_lamp_in_the_atlas_is_not_there_twice():
 
 def test_lamps_of_one_colour_are_left_out_with_a_warning():
     with warns("entry-duplicate") as found:
-        table = build_emission(lamps(("first", WARM), ("second", 0.5 * WARM), ("third", 2 * WARM)), **SMALL)
+        table = build_emission(
+            lamps(("first", WARM), ("second", 0.5 * WARM), ("third", 2 * WARM)), **SMALL
+        )
     assert "'second'" in found[0].problem
     assert table.data.provenance["left_out"] == ["second", "third"]
     assert "second" not in table.lamp_names
@@ -57,14 +59,21 @@ def test_expected_errors_are_numbers_where_sodium_has_no_z():
 
 
 @pytest.mark.parametrize(
-    ("problem", "atlas"), [("got none", Atlas(())), ("none of 'dark'", Atlas((Entry("dark", AT, np.zeros(81)),)))]
+    ("problem", "atlas"),
+    [
+        ("got none", Atlas(())),
+        ("none of 'dark'", Atlas((Entry("dark", AT, np.zeros(81)),))),
+    ],
 )
 def test_atlases_without_light_are_refused(problem, atlas):
     with pytest.raises(OptionError, match=problem):
         build_emission(atlas, **SMALL)
 
 
-@pytest.mark.parametrize("options", [{"knots": 2}, {"rings": 2}, {"knots": True}, {"rings": 4.0}, {"knots": 10**6}])
+@pytest.mark.parametrize(
+    "options",
+    [{"knots": 2}, {"rings": 2}, {"knots": True}, {"rings": 4.0}, {"knots": 10**6}],
+)
 def test_bad_numbers_of_nodes_are_refused(options):
     with pytest.raises(OptionError, match="whole number from 3"):
         build_emission(**options)
@@ -93,7 +102,13 @@ def test_lamps_of_the_lighting_standard_state_power(tmp_path, quantity):
 
 
 @pytest.mark.parametrize(
-    ("layout", "quantity"), [(TM27, "reflectance"), (TM27, "R-Factor"), (TM27, "transmittance"), (JCAMP, "REFLECTANCE")]
+    ("layout", "quantity"),
+    [
+        (TM27, "reflectance"),
+        (TM27, "R-Factor"),
+        (TM27, "transmittance"),
+        (JCAMP, "REFLECTANCE"),
+    ],
 )
 def test_stated_quantities_of_materials_are_refused(tmp_path, layout, quantity):
     path = tmp_path / "material.txt"

@@ -48,7 +48,9 @@ def test_a_lamp_with_the_power_of_an_illuminant_is_that_illuminant():
 
 def test_power_is_interpolated_and_narrow_lines_keep_their_energy():
     coarse = Lamp("coarse", (400, 500, 600, 700), (1, 2, 4, 2))
-    np.testing.assert_allclose(coarse.at(NM), np.interp(NM, coarse.wavelengths, coarse.power), rtol=1e-12)
+    np.testing.assert_allclose(
+        coarse.at(NM), np.interp(NM, coarse.wavelengths, coarse.power), rtol=1e-12
+    )
     fine = np.arange(380.0, 781.0, 1.0)
     for line in (500, 502, 543):
         lamp = Lamp("laser", tuple(fine), tuple(np.where(fine == line, 1.0, 0.0)))
@@ -73,18 +75,30 @@ def test_formats_of_files(write, warm):
     rows = list(zip(NM.tolist(), WARM.tolist(), strict=True))
     files = [
         warm,
-        write("comma.csv", "wavelength,power\n" + "\n".join(f"{nm},{power:.6f}" for nm, power in rows)),
         write(
-            "semicolon.csv", "\ufeffnm;W\n" + "\n".join(f"{nm:g};{power:.6f}".replace(".", ",") for nm, power in rows)
+            "comma.csv",
+            "wavelength,power\n" + "\n".join(f"{nm},{power:.6f}" for nm, power in rows),
         ),
-        write("first.json", json.dumps({"illuminant": "x", "range": [380, 780, 5], "spec": WARM.tolist()})),
+        write(
+            "semicolon.csv",
+            "\ufeffnm;W\n"
+            + "\n".join(f"{nm:g};{power:.6f}".replace(".", ",") for nm, power in rows),
+        ),
+        write(
+            "first.json",
+            json.dumps(
+                {"illuminant": "x", "range": [380, 780, 5], "spec": WARM.tolist()}
+            ),
+        ),
         write(
             "present.json",
             json.dumps(
                 {
                     "spectral_data": {
                         "index": {"main": ["power"]},
-                        "data": {"main": {f"{nm:g}": [power] for nm, power in reversed(rows)}},
+                        "data": {
+                            "main": {f"{nm:g}": [power] for nm, power in reversed(rows)}
+                        },
                     }
                 }
             ),
@@ -99,7 +113,10 @@ def test_formats_of_files(write, warm):
 def test_lamps_of_one_file_have_names(write):
     path = write("two.csv", "name,400,550,700\nA,1,2,3\nwarm,3,-0.01,1\n")
     assert read_lamp(path, "warm") == find_light(f"{path}:warm")
-    assert (read_lamp(path, "warm").name, read_lamp(path, "A").name) == ("warm", "two.csv:A")
+    assert (read_lamp(path, "warm").name, read_lamp(path, "A").name) == (
+        "warm",
+        "two.csv:A",
+    )
     assert read_lamp(path, "warm").power == (1.0, 0.0, pytest.approx(1 / 3))
     with raises(AtlasError, "atlas") as caught:
         read_lamp(path)
@@ -114,7 +131,9 @@ def test_names_of_illuminants_are_not_taken(write):
     with raises(OptionError, "option"):
         observer.light(Lamp("A", (400, 700), (1, 1)))
     with raises(OptionError, "option"):
-        observer.display_sensors([Lamp("x", (400, 700), (1, 1)), Lamp("x", (400, 700), (1, 2))], "any")
+        observer.display_sensors(
+            [Lamp("x", (400, 700), (1, 1)), Lamp("x", (400, 700), (1, 2))], "any"
+        )
 
 
 @pytest.mark.parametrize(
@@ -124,15 +143,31 @@ def test_names_of_illuminants_are_not_taken(write):
         ("words.spd", "a lamp\nof words\n", "not-an-atlas"),
         ("short.csv", "450,1\n500,2\n600,1\n", "atlas"),
         ("dark.csv", "400,0\n700,0\n", "atlas"),
-        ("card.csv", "wavelength,reflectance\n400,0.1\n500,0.2\n700,0.3\n", "not-a-lamp"),
+        (
+            "card.csv",
+            "wavelength,reflectance\n400,0.1\n500,0.2\n700,0.3\n",
+            "not-a-lamp",
+        ),
         ("filter.csv", "nm;Transmittance\n400;0,1\n500;0,2\n700;0,3\n", "not-a-lamp"),
         ("other.json", "[]", "atlas"),
         ("broken.json", "{", "atlas"),
-        ("camera.json", '{"range": [400, 700, 300], "sensitivity": [[1, 2, 3], [1, 2, 3]]}', "atlas"),
+        (
+            "camera.json",
+            '{"range": [400, 700, 300], "sensitivity": [[1, 2, 3], [1, 2, 3]]}',
+            "atlas",
+        ),
         ("range.json", '{"range": [400, 800, 5], "spec": [1, 2, 3]}', "atlas"),
         ("short.json", '{"range": [450, 650, 200], "spec": [1, 2]}', "atlas"),
-        ("none.json", '{"spectral_data": {"index": {"main": ["power"]}, "data": {"main": {}}}}', "atlas"),
-        ("huge.json", '{"range": [400, 700, 300], "spec": [1, 1%s]}' % ("0" * 400), "atlas"),
+        (
+            "none.json",
+            '{"spectral_data": {"index": {"main": ["power"]}, "data": {"main": {}}}}',
+            "atlas",
+        ),
+        (
+            "huge.json",
+            '{"range": [400, 700, 300], "spec": [1, 1%s]}' % ("0" * 400),
+            "atlas",
+        ),
         ("dark.json", '{"range": [400, 700, 300], "spec": [0, 0]}', "atlas"),
     ],
 )
@@ -170,7 +205,9 @@ def test_a_build_records_its_lamps(warm, tmp_path):
     cube.save(path)
     warm.unlink()
     again = rebuild(uplift.load(path), path)
-    np.testing.assert_array_equal(again.data.points.coefficients, cube.data.points.coefficients)
+    np.testing.assert_array_equal(
+        again.data.points.coefficients, cube.data.points.coefficients
+    )
     recorded = again.data.provenance["options"]["lights"]
     assert (recorded[0], recorded[1]["name"]) == ("D65", "warm")
     assert str(tmp_path) not in json.dumps(cube.data.provenance)

@@ -36,7 +36,9 @@ def test_weights_give_back_the_chromaticity(sector, along, share):
     weights = cells.weights
     assert weights.min() >= 0
     assert weights.sum() == pytest.approx(1)
-    np.testing.assert_allclose((weights[..., None] * corners(cells)).sum(axis=1), uv, atol=1e-12)
+    np.testing.assert_allclose(
+        (weights[..., None] * corners(cells)).sum(axis=1), uv, atol=1e-12
+    )
     assert LATTICE.contains(uv).all()
 
 
@@ -45,7 +47,9 @@ def test_chromaticities_outside_are_not_contained_and_move_to_the_rim():
     assert not LATTICE.contains(outside).any()
     assert not LATTICE.contains(np.full((1, 2), np.nan)).any()
     cells = LATTICE.locate(outside)
-    np.testing.assert_allclose((cells.weights[..., None] * corners(cells)).sum(axis=1), KNOTS, atol=1e-12)
+    np.testing.assert_allclose(
+        (cells.weights[..., None] * corners(cells)).sum(axis=1), KNOTS, atol=1e-12
+    )
 
 
 def test_chromaticity_of_equal_energy():
@@ -53,7 +57,10 @@ def test_chromaticity_of_equal_energy():
     np.testing.assert_allclose(chromaticity(np.ones(3)), [4 / 19, 9 / 19])
 
 
-@pytest.mark.parametrize(("knots", "rings"), [(KNOTS[::-1], [0, 1]), (KNOTS, [0, 0.5, 0.5, 1]), (KNOTS, [0, 0.9])])
+@pytest.mark.parametrize(
+    ("knots", "rings"),
+    [(KNOTS[::-1], [0, 1]), (KNOTS, [0, 0.5, 0.5, 1]), (KNOTS, [0, 0.9])],
+)
 def test_invalid_lattices_are_refused(knots, rings):
     with pytest.raises(OptionError, match="a lattice over chromaticity must"):
         ChromaticityLattice(WHITE, knots, np.array(rings, dtype=float))
@@ -72,13 +79,20 @@ def locus():
 def test_spectra_of_the_rim_have_the_chromaticities_of_the_knots(locus):
     lattice, rim = locus
     assert lattice.shape == (96, 4)
-    np.testing.assert_allclose(chromaticity(rim @ RADIOMETRY), lattice.knots, atol=1e-12)
+    np.testing.assert_allclose(
+        chromaticity(rim @ RADIOMETRY), lattice.knots, atol=1e-12
+    )
 
 
 def test_all_mixtures_of_wavelengths_lie_within_the_bend(locus):
     visible = np.flatnonzero(RADIOMETRY.sum(axis=1) > 1e-6)
     first, second = np.meshgrid(visible, visible)
     xyz = RADIOMETRY / RADIOMETRY.sum(axis=1, keepdims=True).clip(1e-12)
-    uv = np.concatenate([chromaticity(xyz[first] * part + xyz[second]).reshape(-1, 2) for part in (0.3, 1, 3)])
+    uv = np.concatenate(
+        [
+            chromaticity(xyz[first] * part + xyz[second]).reshape(-1, 2)
+            for part in (0.3, 1, 3)
+        ]
+    )
     share = locus[0].polar(uv - D65)[2]
     assert 1 + 1e-4 < share.max() <= 1 + LOCUS_TOLERANCE

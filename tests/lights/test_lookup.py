@@ -28,7 +28,9 @@ def plain_spectrum(xyz):
     size = xyz @ DENOMINATOR
     uv = xyz[:2] * (4, 9) / size
     share, entry = 0.0, 0
-    for number, (centre, radius) in enumerate(zip(data.entries.uv, data.entries.radius, strict=True)):
+    for number, (centre, radius) in enumerate(
+        zip(data.entries.uv, data.entries.radius, strict=True)
+    ):
         distance = np.linalg.norm(uv - centre)
         if distance < radius:
             share, entry = 1 - distance / radius, number
@@ -38,7 +40,10 @@ def plain_spectrum(xyz):
     knots, rings = data.lattice.shape
     for k in range(knots):
         following = (k + 1) % knots
-        spokes = np.stack([nodes[k, -1], nodes[following, -1]], axis=1) - data.lattice.white[:, None]
+        spokes = (
+            np.stack([nodes[k, -1], nodes[following, -1]], axis=1)
+            - data.lattice.white[:, None]
+        )
         a, b = np.linalg.solve(spokes, uv - data.lattice.white)
         if a < 0 or b < 0:
             continue
@@ -53,10 +58,14 @@ def plain_spectrum(xyz):
 
 
 def test_lookups_agree_with_a_plain_one():
-    xyz = np.concatenate([random_lights(40), TABLE.xyz(np.random.default_rng(1).random((20, 3)) + 0.5)])
+    xyz = np.concatenate(
+        [random_lights(40), TABLE.xyz(np.random.default_rng(1).random((20, 3)) + 0.5)]
+    )
     found = TABLE.spectrum_of_xyz(xyz)
     for row, power in zip(xyz, found, strict=True):
-        np.testing.assert_allclose(power, plain_spectrum(row), rtol=1e-9, atol=1e-9 * power.max())
+        np.testing.assert_allclose(
+            power, plain_spectrum(row), rtol=1e-9, atol=1e-9 * power.max()
+        )
 
 
 def test_colours_are_exact_and_powers_are_not_negative():
@@ -64,13 +73,17 @@ def test_colours_are_exact_and_powers_are_not_negative():
     power = TABLE.spectrum_of_xyz(xyz)
     assert power.min() >= 0
     size = xyz @ DENOMINATOR
-    assert np.abs(power @ RADIOMETRY - xyz).max(axis=1) / size == pytest.approx(0, abs=2e-7)
+    assert np.abs(power @ RADIOMETRY - xyz).max(axis=1) / size == pytest.approx(
+        0, abs=2e-7
+    )
 
 
 def test_light_scales():
     rgb = np.array([0.9, 0.5, 0.2])
     for scale in (0, 1e-20, 1e5, 1e20):
-        np.testing.assert_allclose(TABLE.spectrum(scale * rgb), scale * TABLE.spectrum(rgb), rtol=1e-12)
+        np.testing.assert_allclose(
+            TABLE.spectrum(scale * rgb), scale * TABLE.spectrum(rgb), rtol=1e-12
+        )
 
 
 def test_lamps_are_exact_at_their_colours():
@@ -82,7 +95,9 @@ def test_lamps_are_exact_at_their_colours():
 def test_single_wavelengths_are_themselves():
     """At 590 nm, near the lamps of low pressure sodium, a mixture of yellow and red has nearly the same colour."""
     rows = np.searchsorted(TABLE.wavelengths, [470, 530, 590, 600])
-    np.testing.assert_allclose(TABLE.spectrum_of_xyz(RADIOMETRY[rows]), np.eye(81)[rows], atol=1e-5)
+    np.testing.assert_allclose(
+        TABLE.spectrum_of_xyz(RADIOMETRY[rows]), np.eye(81)[rows], atol=1e-5
+    )
 
 
 def test_colours_beyond_the_bend_of_the_locus_are_lights_and_hardly_move():
@@ -90,7 +105,11 @@ def test_colours_beyond_the_bend_of_the_locus_are_lights_and_hardly_move():
     power = TABLE.spectrum_of_xyz(mixture)
     assert TABLE.contains(TABLE.rgb_of_xyz(mixture))
     assert power @ RADIOMETRY[:, 1] == pytest.approx(mixture[1])
-    assert 1e-6 < np.linalg.norm(chromaticity(power @ RADIOMETRY) - chromaticity(mixture)) < 1e-4
+    assert (
+        1e-6
+        < np.linalg.norm(chromaticity(power @ RADIOMETRY) - chromaticity(mixture))
+        < 1e-4
+    )
 
 
 def test_answers_are_continuous_at_the_circles_of_lamps():
@@ -98,7 +117,10 @@ def test_answers_are_continuous_at_the_circles_of_lamps():
     angle = np.linspace(0, 6, 20)
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     for centre, radius in zip(entries.uv, entries.radius, strict=True):
-        inside, outside = (unit_xyz(centre + radius * (1 + change) * circle) for change in (-1e-9, 1e-9))
+        inside, outside = (
+            unit_xyz(centre + radius * (1 + change) * circle)
+            for change in (-1e-9, 1e-9)
+        )
         difference = TABLE.spectrum_of_xyz(inside) - TABLE.spectrum_of_xyz(outside)
         assert np.abs(difference).max() < 1e-6
 
@@ -175,10 +197,17 @@ def test_bad_input_is_refused(code, kind, rgb, options):
 
 def test_discs_are_those_of_a_comparison_with_all():
     """Discs in and across bins: a row of small ones, which share a bin, a large one, and one at the edge."""
-    uv = np.array([[0.2 + 4e-4 * step, 0.5] for step in range(9)] + [[0.4, 0.3], [0.0, 0.4]])
-    lamps = LampEntries(tuple("abcdefghijk"), uv, np.ones((11, 3)), np.array([2e-4] * 9 + [0.05, 0.01]))
+    uv = np.array(
+        [[0.2 + 4e-4 * step, 0.5] for step in range(9)] + [[0.4, 0.3], [0.0, 0.4]]
+    )
+    lamps = LampEntries(
+        tuple("abcdefghijk"), uv, np.ones((11, 3)), np.array([2e-4] * 9 + [0.05, 0.01])
+    )
     rng = np.random.default_rng(0)
-    near = uv[rng.integers(0, 11, 3000)] + rng.normal(size=(3000, 2)) * lamps.radius[rng.integers(0, 11, 3000), None]
+    near = (
+        uv[rng.integers(0, 11, 3000)]
+        + rng.normal(size=(3000, 2)) * lamps.radius[rng.integers(0, 11, 3000), None]
+    )
     queried = np.concatenate([uv, near, [[-10.0, 10.0], [10.0, -10.0], [0.9, 0.9]]])
     hits = lamps.locate(queried)
     distance = np.linalg.norm(queried[:, None] - uv, axis=-1)
@@ -186,8 +215,12 @@ def test_discs_are_those_of_a_comparison_with_all():
     assert 500 < len(rows) < 2500
     np.testing.assert_array_equal(hits.rows, rows)
     np.testing.assert_array_equal(hits.entry, entry)
-    np.testing.assert_allclose(hits.share, 1 - distance[rows, entry] / lamps.radius[entry], atol=1e-9)
+    np.testing.assert_allclose(
+        hits.share, 1 - distance[rows, entry] / lamps.radius[entry], atol=1e-9
+    )
     np.testing.assert_array_equal(hits.share[:11], 1)
-    np.testing.assert_allclose(np.linalg.norm(hits.exit_uv - uv[entry], axis=1), lamps.radius[entry])
+    np.testing.assert_allclose(
+        np.linalg.norm(hits.exit_uv - uv[entry], axis=1), lamps.radius[entry]
+    )
     nobody = LampEntries((), np.empty((0, 2)), np.empty((0, 3)), np.empty(0))
     assert not nobody.locate(np.full((4, 2), 0.3)).rows.size

@@ -15,7 +15,9 @@ CMFS = observer.matching_functions()
 RADIOMETRY = CMFS / CMFS[:, 1].sum()
 LAMPS = known_lamps()
 SURFACES = on_grid(read_atlas("macbeth"), observer.grid())
-LATTICE, RIM = locus_lattice(RADIOMETRY, np.array([0.1978, 0.4683]), 64, np.linspace(0, 1, 6))
+LATTICE, RIM = locus_lattice(
+    RADIOMETRY, np.array([0.1978, 0.4683]), 64, np.linspace(0, 1, 6)
+)
 
 
 @pytest.fixture(scope="module")
@@ -25,12 +27,16 @@ def fitted():
 
 def test_every_node_is_exact_and_positive():
     uv = LATTICE.nodes[:, :-1].reshape(-1, 2)
-    power = mix_with_locus(smoothest_lights(uv, RADIOMETRY), uv, LATTICE, RIM, RADIOMETRY)
+    power = mix_with_locus(
+        smoothest_lights(uv, RADIOMETRY), uv, LATTICE, RIM, RADIOMETRY
+    )
     assert power.min() >= 0
     np.testing.assert_allclose(chromaticity(power @ RADIOMETRY), uv, atol=1e-9)
 
 
-def test_left_out_lamps_are_predicted_better_than_by_smooth_light_and_by_the_nearest_lamp(fitted):
+def test_left_out_lamps_are_predicted_better_than_by_smooth_light_and_by_the_nearest_lamp(
+    fitted,
+):
     uv = chromaticity(LAMPS.power @ RADIOMETRY)
     apart = np.linalg.norm(uv[:, None] - uv, axis=-1) + 9 * np.eye(len(uv))
 
@@ -51,8 +57,12 @@ def test_left_out_predictions_do_not_know_the_lamp(fitted):
     others = np.arange(len(LAMPS)) != row
     power = LAMPS.power / (LAMPS.power @ RADIOMETRY @ (1, 15, 3))[:, None]
     smooth = smoothest_lights(prior.uv, RADIOMETRY)
-    covariance = prior.kernel(prior.uv, prior.uv) + prior.kernel.nugget * np.eye(len(power))
-    weights = np.linalg.solve(covariance[np.ix_(others, others)], covariance[others, row])
+    covariance = prior.kernel(prior.uv, prior.uv) + prior.kernel.nugget * np.eye(
+        len(power)
+    )
+    weights = np.linalg.solve(
+        covariance[np.ix_(others, others)], covariance[others, row]
+    )
     expected = smooth[row] + weights @ (power - smooth)[others]
     expected = np.maximum(expected, 1e-3 * smooth[row])
     found = nearest_lights(expected[None], prior.uv[row : row + 1], RADIOMETRY)
@@ -71,5 +81,7 @@ def test_discs_do_not_overlap_and_duplicates_are_left_out():
     entries, duplicates = lamp_entries(twice, others, LATTICE, RADIOMETRY)
     assert duplicates == (("other", "one"),)
     assert entries.names[0] == "one"
-    apart = np.linalg.norm(entries.uv[:, None] - entries.uv, axis=-1) + 9 * np.eye(len(entries.uv))
+    apart = np.linalg.norm(entries.uv[:, None] - entries.uv, axis=-1) + 9 * np.eye(
+        len(entries.uv)
+    )
     assert (entries.radius[:, None] + entries.radius <= apart + 1e-12).all()

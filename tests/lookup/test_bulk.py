@@ -32,10 +32,15 @@ def colours(data, count=3000):
         low,
         high,
         *(low + share * (high - low) for share in rng.random((20, len(low), 3))),
-        *(np.where(rng.random(low.shape) < 0.5, low, middle) for middle in [data.atlas.rgb] * 5),
+        *(
+            np.where(rng.random(low.shape) < 0.5, low, middle)
+            for middle in [data.atlas.rgb] * 5
+        ),
         *(data.atlas.rgb + rng.normal(0, 1e-9, low.shape) for _ in range(3)),
     ]
-    return np.clip(np.concatenate([rng.random((count, 3)), data.lattice.points[::7], *boxes]), 0, 1)
+    return np.clip(
+        np.concatenate([rng.random((count, 3)), data.lattice.points[::7], *boxes]), 0, 1
+    )
 
 
 def test_spectra_are_those_of_numpy(cube):
@@ -49,17 +54,27 @@ def test_spectra_are_those_of_numpy(cube):
 
 @pytest.mark.parametrize("count", [None, "entries"])
 def test_coefficients_are_those_of_numpy(cube, count):
-    rgb, count = colours(cube.data), None if count is None else cube.entry_coefficient_count
+    rgb, count = (
+        colours(cube.data),
+        None if count is None else cube.entry_coefficient_count,
+    )
     expected = cube.coefficients(rgb, count)
     # A sigmoid's coefficients run into hundreds, and are steep in the colour.
     found = bulk.coefficients(cube, count)(rgb)
-    np.testing.assert_allclose(found, expected, rtol=0, atol=2e-6 * np.abs(expected).max())
+    np.testing.assert_allclose(
+        found, expected, rtol=0, atol=2e-6 * np.abs(expected).max()
+    )
 
 
 def test_nodes_closer_than_bins_are_distinguished():
-    data = hand_made(lattice=Lattice(np.array([0.0, 1e-5, 2e-5, 1.0])), distance=np.zeros(64, np.float32))
+    data = hand_made(
+        lattice=Lattice(np.array([0.0, 1e-5, 2e-5, 1.0])),
+        distance=np.zeros(64, np.float32),
+    )
     rng = np.random.default_rng(1)
-    rgb = np.concatenate([rng.random((500, 3)), 3e-5 * rng.random((500, 3)), data.lattice.points])
+    rgb = np.concatenate(
+        [rng.random((500, 3)), 3e-5 * rng.random((500, 3)), data.lattice.points]
+    )
     found = bulk.coefficients(Cube(data))(rgb)
     np.testing.assert_allclose(found, Cube(data).coefficients(rgb), rtol=0, atol=1e-5)
 
@@ -73,7 +88,9 @@ def test_results_do_not_depend_on_chunks_and_threads(small_cube, monkeypatch):
         np.testing.assert_allclose(again, whole, rtol=0, atol=1e-6)
 
 
-@pytest.mark.parametrize("rgb", [(np.nan, 0, 0), (0, 1.001, 0), 0.5, (0.5, 0.5), "red", None, []])
+@pytest.mark.parametrize(
+    "rgb", [(np.nan, 0, 0), (0, 1.001, 0), 0.5, (0.5, 0.5), "red", None, []]
+)
 def test_invalid_colours_are_refused(sample, small_cube, rgb):
     with pytest.raises(ColourError) as caught:
         sample(rgb)

@@ -39,7 +39,9 @@ def test_rounding_moves_no_colour_out_of_gamut_and_no_input(small_cube, mode):
         before = rgb.copy()
         near = small_cube.reflectance(rgb, mode=mode)
         np.testing.assert_array_equal(rgb, before)
-        np.testing.assert_allclose(near, small_cube.reflectance(rgb - bit, mode=mode), rtol=0, atol=1e-8)
+        np.testing.assert_allclose(
+            near, small_cube.reflectance(rgb - bit, mode=mode), rtol=0, atol=1e-8
+        )
     with pytest.raises(ColourError):
         small_cube.reflectance([1 + 1e-8, 0, 0], mode=mode)
 
@@ -47,7 +49,9 @@ def test_rounding_moves_no_colour_out_of_gamut_and_no_input(small_cube, mode):
 def test_reflectances_do_not_depend_on_threads(small_cube, mode):
     rgb = random_colours(2 * BLOCK + 5)
     alone = small_cube.reflectance(rgb, AT, mode)
-    np.testing.assert_array_equal(small_cube.reflectance(rgb, AT, mode, threads=3), alone)
+    np.testing.assert_array_equal(
+        small_cube.reflectance(rgb, AT, mode, threads=3), alone
+    )
 
 
 @pytest.mark.parametrize("count", [3, 1000])
@@ -57,7 +61,9 @@ def test_float32_agrees_with_float64(small_cube, mode, count):
     assert found.dtype == np.float32
     assert found.min() >= 0
     assert found.max() <= 1
-    np.testing.assert_allclose(found, small_cube.reflectance(rgb, AT, mode), rtol=0, atol=1e-6)
+    np.testing.assert_allclose(
+        found, small_cube.reflectance(rgb, AT, mode), rtol=0, atol=1e-6
+    )
 
 
 @pytest.mark.parametrize("mode", TABULATED)
@@ -67,22 +73,51 @@ def test_a_table_of_all_points_gives_equal_spectra(small_cube, monkeypatch, mode
     assert len(rgb) >= small_cube.data.lattice.size
     from_table = small_cube.reflectance(rgb, AT, mode)
     monkeypatch.setattr("uplift.lookup.cube.MAX_TABLE_BYTES", 0)
-    np.testing.assert_allclose(small_cube.reflectance(rgb, AT, mode), from_table, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(
+        small_cube.reflectance(rgb, AT, mode), from_table, rtol=0, atol=1e-14
+    )
 
 
 NAN, RAGGED = np.nan, [[0.5, 0.5, 0.5], [0.5, 0.5]]
-COLOURS = [(NAN, 0, 0), (-0.001, 0, 0), 0.5, (0.5, 0.5), (0.5,) * 4, [], RAGGED, "red", None, np.zeros((3, 2))]
+COLOURS = [
+    (NAN, 0, 0),
+    (-0.001, 0, 0),
+    0.5,
+    (0.5, 0.5),
+    (0.5,) * 4,
+    [],
+    RAGGED,
+    "red",
+    None,
+    np.zeros((3, 2)),
+]
 
 
 @pytest.mark.parametrize("rgb", COLOURS)
 def test_invalid_colours_are_refused(small_cube, rgb):
-    for function in (small_cube.reflectance, small_cube.coefficients, small_cube.covers, small_cube.standard_error):
+    for function in (
+        small_cube.reflectance,
+        small_cube.coefficients,
+        small_cube.covers,
+        small_cube.standard_error,
+    ):
         with pytest.raises(ColourError) as caught:
             function(rgb)
         assert "\n" not in str(caught.value)
 
 
-WAVELENGTHS = [[], [0], [-500], [500, NAN], [np.inf], "red", ["a"], [[400, 500], [600, 700]], [[400], [500, 600]], {}]
+WAVELENGTHS = [
+    [],
+    [0],
+    [-500],
+    [500, NAN],
+    [np.inf],
+    "red",
+    ["a"],
+    [[400, 500], [600, 700]],
+    [[400], [500, 600]],
+    {},
+]
 
 
 @pytest.mark.parametrize(
@@ -90,7 +125,10 @@ WAVELENGTHS = [[], [0], [-500], [500, NAN], [np.inf], "red", ["a"], [[400, 500],
     [
         *(("mode", value, "unknown-name") for value in ("", "Spectra", None, 3)),
         *(("wavelengths", value, "option") for value in WAVELENGTHS),
-        *(("dtype", value, "option") for value in (np.float16, int, "complex128", object, 3)),
+        *(
+            ("dtype", value, "option")
+            for value in (np.float16, int, "complex128", object, 3)
+        ),
         *(("threads", value, "option") for value in (0, -1, 1.0, "2", None, True)),
         *(("count", value, "option") for value in (0, 10, 17.5, "nine", True)),
     ],
@@ -103,9 +141,16 @@ def test_invalid_arguments_are_refused(small_cube, name, value, code):
 
 def test_codes_decode_as_srgb_and_encoding_is_inverse(small_cube):
     codes = np.arange(256)
-    np.testing.assert_allclose(small_cube.decode(codes), colour.cctf_decoding(codes / 255, "sRGB"), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(
+        small_cube.decode(codes),
+        colour.cctf_decoding(codes / 255, "sRGB"),
+        rtol=0,
+        atol=1e-15,
+    )
     codes = np.linspace(0, 255, 1021).reshape(1021, 1)
-    np.testing.assert_allclose(small_cube.encode(small_cube.decode(codes)), codes, rtol=0, atol=1e-10)
+    np.testing.assert_allclose(
+        small_cube.encode(small_cube.decode(codes)), codes, rtol=0, atol=1e-10
+    )
 
 
 @pytest.mark.parametrize("codes", [-1, 256, [0, 255.001, 3], NAN, "red", [[1], [2, 3]]])
@@ -114,7 +159,9 @@ def test_codes_out_of_range_are_refused(small_cube, codes):
         small_cube.decode(codes)
 
 
-def test_names_stand_for_packaged_files_unless_a_file_has_the_name(tmp_path, monkeypatch):
+def test_names_stand_for_packaged_files_unless_a_file_has_the_name(
+    tmp_path, monkeypatch
+):
     for name, path in PACKAGED.items():
         assert find_file(name) == find_file(name.upper()) == path
         assert os.path.isfile(path)

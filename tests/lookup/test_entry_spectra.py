@@ -26,10 +26,15 @@ def extended(data, rgb):
 def lookups(cube):
     """Functions from linear RGB to reflectances, by name; all are continuous."""
     data = cube.data
-    functions = {mode: lambda rgb, mode=mode: cube.reflectance(rgb, mode=mode) for mode in CONTINUOUS}
+    functions = {
+        mode: lambda rgb, mode=mode: cube.reflectance(rgb, mode=mode)
+        for mode in CONTINUOUS
+    }
     functions["multipliers"] = lambda rgb: extended(data, rgb)
     for count in (9, 17):
-        functions[f"{count} coefficients"] = lambda rgb, count=count: cube.coefficients(rgb, count)
+        functions[f"{count} coefficients"] = lambda rgb, count=count: cube.coefficients(
+            rgb, count
+        )
     return functions
 
 
@@ -42,11 +47,17 @@ def in_boxes(data, count=20):
 
 @pytest.mark.parametrize("mode", MODES)
 def test_an_entry_is_answered_with_all_its_coefficients(small_cube, data, mode):
-    own = reflectance(data.atlas.spectra.model, data.atlas.spectra.coefficients, data.sensor.wavelengths)
+    own = reflectance(
+        data.atlas.spectra.model,
+        data.atlas.spectra.coefficients,
+        data.sensor.wavelengths,
+    )
     few = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
     assert np.abs(own - few).max() > 0.1
     found = small_cube.reflectance(data.atlas.rgb, mode=mode)
-    np.testing.assert_allclose(found, own, rtol=0, atol=1e-4 if mode == "refined" else 1e-12)
+    np.testing.assert_allclose(
+        found, own, rtol=0, atol=1e-4 if mode == "refined" else 1e-12
+    )
     np.testing.assert_allclose(extended(data, data.atlas.rgb), own, rtol=0, atol=1e-4)
 
 
@@ -56,16 +67,25 @@ def test_spectra_in_boxes_mix_entry_and_lattice(small_cube, data):
     for colour in in_boxes(data, 1):
         hit = data.entry_boxes.find(colour[None])
         corners, weights = data.lattice.corners(hit.exit_rgb)
-        lattice = weights @ reflectance(data.model, data.points.coefficients[corners[0]], at)
+        lattice = weights @ reflectance(
+            data.model, data.points.coefficients[corners[0]], at
+        )
         entry = reflectance(own.model, own.coefficients[hit.entry], at)
         share = hit.lattice_weight[:, None]
         expected = share * lattice + (1 - share) * entry
-        np.testing.assert_allclose(small_cube.reflectance(colour), expected[0], rtol=0, atol=1e-9)
+        np.testing.assert_allclose(
+            small_cube.reflectance(colour), expected[0], rtol=0, atol=1e-9
+        )
 
 
 def test_colours_in_boxes_are_exact(small_cube, data):
     rgb = in_boxes(data)
-    for name, tolerance in (("spectra", 2e-6), ("refined", 2e-8), ("multipliers", 2e-8), ("moments", 0.03)):
+    for name, tolerance in (
+        ("spectra", 2e-6),
+        ("refined", 2e-8),
+        ("multipliers", 2e-8),
+        ("moments", 0.03),
+    ):
         spectra = lookups(small_cube)[name](rgb)
         assert np.abs(data.sensor.rgb(spectra) - rgb).max() <= tolerance, name
         assert spectra.min() >= 0, name
@@ -74,7 +94,11 @@ def test_colours_in_boxes_are_exact(small_cube, data):
 
 def test_answers_are_continuous_across_the_faces_of_boxes(small_cube, data):
     low, high = data.entry_boxes.faces
-    inner = (low > 1e-3).all(axis=1) & (high < 1 - 1e-3).all(axis=1) & (data.atlas.half_width > 0)
+    inner = (
+        (low > 1e-3).all(axis=1)
+        & (high < 1 - 1e-3).all(axis=1)
+        & (data.atlas.half_width > 0)
+    )
     assert inner.sum() > 10
     centre = data.atlas.rgb[inner]
     for face, axis in ((low[inner], 0), (high[inner], 2)):
@@ -84,7 +108,9 @@ def test_answers_are_continuous_across_the_faces_of_boxes(small_cube, data):
         assert len(data.entry_boxes.find(inside).rows) == len(on)
         assert len(data.entry_boxes.find(outside).rows) < len(on)
         for name, lookup in lookups(small_cube).items():
-            np.testing.assert_allclose(lookup(inside), lookup(outside), rtol=0, atol=1e-5, err_msg=name)
+            np.testing.assert_allclose(
+                lookup(inside), lookup(outside), rtol=0, atol=1e-5, err_msg=name
+            )
 
 
 def test_more_coefficients_are_the_moments_of_the_exact_spectra(small_cube, data):
@@ -92,5 +118,10 @@ def test_more_coefficients_are_the_moments_of_the_exact_spectra(small_cube, data
     rgb = np.concatenate([in_boxes(data, 1), np.random.default_rng(2).random((30, 3))])
     phase = np.linspace(-np.pi, 0, 4001)
     spectra = small_cube.reflectance(rgb, 380 + 400 * (phase + np.pi) / np.pi)
-    moments = [np.trapezoid(spectra * np.cos(order * phase), phase) / np.pi for order in range(17)]
-    np.testing.assert_allclose(small_cube.coefficients(rgb, 17), np.transpose(moments), rtol=0, atol=1e-6)
+    moments = [
+        np.trapezoid(spectra * np.cos(order * phase), phase) / np.pi
+        for order in range(17)
+    ]
+    np.testing.assert_allclose(
+        small_cube.coefficients(rgb, 17), np.transpose(moments), rtol=0, atol=1e-6
+    )

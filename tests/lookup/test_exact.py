@@ -37,7 +37,9 @@ def inside(cube, rgb, depth=0.0):
 @pytest.mark.parametrize("mode", EXACT_MODES)
 def test_realisable_colours_are_exact(wide, colours, mode):
     for cube in (wide, uplift.load("acescg")):
-        realisable = np.concatenate([colours, colours**3, GREYS, [[0.356, 0.082, 0.002]]])
+        realisable = np.concatenate(
+            [colours, colours**3, GREYS, [[0.356, 0.082, 0.002]]]
+        )
         realisable = realisable[cube.data.solid.contains(realisable)]
         found = cube.data.sensor.rgb(cube.reflectance(realisable, mode=mode))
         np.testing.assert_allclose(found, realisable, rtol=0, atol=1e-4)
@@ -46,7 +48,9 @@ def test_realisable_colours_are_exact(wide, colours, mode):
 def test_spectra_that_nearly_have_their_colours_hardly_move(wide):
     """A step from 1e-5 to 0.9 stays, if its colour is 1e-7 from the requested one."""
     sensor = wide.data.sensor
-    step = np.where((sensor.wavelengths > 480) & (sensor.wavelengths < 620), 0.9, 1e-5)[None]
+    step = np.where((sensor.wavelengths > 480) & (sensor.wavelengths < 620), 0.9, 1e-5)[
+        None
+    ]
     requested = sensor.rgb(step) + 2e-7 * (0.5 - sensor.rgb(step))
     moved = with_colours(wide.data, step, step, requested, sensor.wavelengths)
     assert 0 < np.abs(moved - step).max() < 1e-4
@@ -57,11 +61,15 @@ def test_coefficients_of_realisable_colours_have_them(wide, colours):
     realisable = colours[inside(wide, colours, 0.01)]
     found = wide.data.model.from_storage(uplift.bulk.coefficients(wide)(realisable))
     found = evaluate(wide.data.model, found, wide.wavelengths)
-    np.testing.assert_allclose(wide.data.sensor.rgb(found), realisable, rtol=0, atol=1e-4)
+    np.testing.assert_allclose(
+        wide.data.sensor.rgb(found), realisable, rtol=0, atol=1e-4
+    )
 
 
 @pytest.mark.parametrize("mode", EXACT_MODES)
-def test_unrealisable_colours_become_the_nearest_realisable_of_their_hue(wide, colours, mode):
+def test_unrealisable_colours_become_the_nearest_realisable_of_their_hue(
+    wide, colours, mode
+):
     sensor = wide.data.sensor
     outside = colours[~inside(wide, colours)]
     assert len(outside) >= 20
@@ -70,7 +78,9 @@ def test_unrealisable_colours_become_the_nearest_realisable_of_their_hue(wide, c
     assert ((answers >= 0) & (answers <= 1)).all()
     assert np.abs(sensor.rgb(answers) - goal).max() <= 0.02
     assert np.median(np.abs(sensor.rgb(answers) - goal)) <= 1e-4
-    np.testing.assert_allclose(sensor.xyz(goal)[:, 1], sensor.xyz(outside)[:, 1], atol=1e-9)
+    np.testing.assert_allclose(
+        sensor.xyz(goal)[:, 1], sensor.xyz(outside)[:, 1], atol=1e-9
+    )
 
 
 @pytest.mark.parametrize("mode", EXACT_MODES)
@@ -80,7 +90,10 @@ def test_answers_are_continuous_across_the_boundary_of_the_solid(wide, mode):
     assert inside(wide, path).any()
     assert not inside(wide, path).all()
     found = wide.data.sensor.rgb(wide.reflectance(path, mode=mode))
-    assert np.abs(np.diff(found, axis=0)).max() <= 1.5 * np.abs(np.diff(path, axis=0)).max()
+    assert (
+        np.abs(np.diff(found, axis=0)).max()
+        <= 1.5 * np.abs(np.diff(path, axis=0)).max()
+    )
 
 
 def test_weighted_coefficients_are_continuous_across_cells():
@@ -90,17 +103,25 @@ def test_weighted_coefficients_are_continuous_across_cells():
     middle = np.random.default_rng(5).uniform(0, 1, (500, 3))
     middle[:, 0] = np.random.default_rng(6).choice(cube.data.lattice.nodes[1:-1], 500)
     before, after = (middle + np.array([side, 0, 0]) for side in (-1e-9, 1e-9))
-    change = cube.reflectance(after, mode="moments") - cube.reflectance(before, mode="moments")
+    change = cube.reflectance(after, mode="moments") - cube.reflectance(
+        before, mode="moments"
+    )
     assert np.abs(change).max() <= 1e-4
     assert np.abs(cube.coefficients(after) - cube.coefficients(before)).max() <= 1e-4
 
 
 def test_tables_and_the_bulk_query_have_the_same_answers(wide, colours):
-    few = np.concatenate([wide.reflectance(part) for part in np.array_split(colours, 60)])
-    np.testing.assert_allclose(wide.reflectance(colours), few, atol=1e-6)  # unrealisable ones are nearly boxes
+    few = np.concatenate(
+        [wide.reflectance(part) for part in np.array_split(colours, 60)]
+    )
+    np.testing.assert_allclose(
+        wide.reflectance(colours), few, atol=1e-6
+    )  # unrealisable ones are nearly boxes
     sampler = uplift.bulk.spectra(wide)
     np.testing.assert_allclose(sampler(colours), few, atol=2e-6)
-    np.testing.assert_array_equal(pickle.loads(pickle.dumps(sampler))(colours), sampler(colours))
+    np.testing.assert_array_equal(
+        pickle.loads(pickle.dumps(sampler))(colours), sampler(colours)
+    )
 
 
 def test_an_entry_in_an_inexact_cell_keeps_its_spectrum():
@@ -110,5 +131,7 @@ def test_an_entry_in_an_inexact_cell_keeps_its_spectrum():
     near = np.clip(rgb + np.random.default_rng(0).uniform(-0.05, 0.05, (40, 3)), 0, 1)
     assert delta_e(cube, near, cube.reflectance(near)).max() <= 0.001
     np.testing.assert_allclose(
-        cube.reflectance(rgb), cube.data.atlas.spectra.reflectance([0], cube.wavelengths), atol=1e-5
+        cube.reflectance(rgb),
+        cube.data.atlas.spectra.reflectance([0], cube.wavelengths),
+        atol=1e-5,
     )

@@ -29,12 +29,16 @@ def cube(request):
 def test_a_point_has_its_stored_spectrum(cube, mode):
     at = [380.0, 500.0, 612.3, 780.0]
     found = cube.reflectance(cube.data.lattice.points, at, mode)
-    np.testing.assert_allclose(found, stored_spectra(cube.data, np.array(at)), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(
+        found, stored_spectra(cube.data, np.array(at)), rtol=0, atol=1e-12
+    )
 
 
 def test_coefficients_are_those_stored_at_a_point_and_trilinear_in_a_cell(cube):
     nodes, stored = cube.data.lattice.nodes, cube.data.points.coefficients
-    np.testing.assert_allclose(cube.coefficients(cube.data.lattice.points), stored, rtol=1e-15, atol=1e-15)
+    np.testing.assert_allclose(
+        cube.coefficients(cube.data.lattice.points), stored, rtol=1e-15, atol=1e-15
+    )
     low, high = nodes[[3, 5, 2]], nodes[[4, 6, 3]]
     fraction = np.array([0.25, 0.5, 0.9])
     expected = np.zeros(cube.data.model.count)
@@ -51,8 +55,12 @@ def test_refined_spectra_and_multipliers_have_the_colour(small_cube):
     rgb, data = random_colours(200), small_cube.data
     found = data.sensor.rgb(small_cube.reflectance(rgb, mode="refined"))
     np.testing.assert_allclose(found, rgb, rtol=0, atol=2 * TOLERANCE)
-    spectra = data.model.to_reflectance(refined_multipliers(data, rgb) @ data.model.basis(data.sensor.wavelengths).T)
-    np.testing.assert_allclose(data.sensor.rgb(spectra), rgb, rtol=0, atol=2 * TOLERANCE)
+    spectra = data.model.to_reflectance(
+        refined_multipliers(data, rgb) @ data.model.basis(data.sensor.wavelengths).T
+    )
+    np.testing.assert_allclose(
+        data.sensor.rgb(spectra), rgb, rtol=0, atol=2 * TOLERANCE
+    )
 
 
 @pytest.mark.parametrize("mode", ["spectra", "moments", "refined"])
@@ -60,35 +68,56 @@ def test_answers_are_continuous_across_the_faces_of_cells(small_cube, mode):
     nodes = small_cube.data.lattice.nodes
     on = np.array([[nodes[3], 0.4, 0.2], [0.3, nodes[5], 0.7], [0.1, 0.6, nodes[1]]])
     before, after = (
-        small_cube.reflectance(np.where(on == nodes[[3, 5, 1]], on + by, on), mode=mode) for by in (-1e-9, 1e-9)
+        small_cube.reflectance(np.where(on == nodes[[3, 5, 1]], on + by, on), mode=mode)
+        for by in (-1e-9, 1e-9)
     )
     np.testing.assert_allclose(before, after, rtol=0, atol=1e-4)
 
 
 def test_the_nearest_lattice_point_answers_where_no_entry_is_near(plain_cube):
-    rgb, nodes, points = random_colours(200), plain_cube.data.lattice.nodes, plain_cube.data.lattice.points
+    rgb, nodes, points = (
+        random_colours(200),
+        plain_cube.data.lattice.nodes,
+        plain_cube.data.lattice.points,
+    )
     low, fraction = plain_cube.data.lattice.cell(rgb)
     wanted = nodes[low + (fraction > 0.5)]
     rows = [int(np.flatnonzero((points == point).all(axis=1))[0]) for point in wanted]
     expected = stored_spectra(plain_cube.data, plain_cube.data.sensor.wavelengths)[rows]
-    np.testing.assert_allclose(plain_cube.reflectance(rgb, mode="nearest"), expected, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(
+        plain_cube.reflectance(rgb, mode="nearest"), expected, rtol=0, atol=1e-12
+    )
 
 
 def test_nearest_is_the_entry_or_the_point_of_larger_weight(small_cube):
     data = small_cube.data
-    own = reflectance(data.atlas.spectra.model, data.atlas.spectra.coefficients, data.sensor.wavelengths)
+    own = reflectance(
+        data.atlas.spectra.model,
+        data.atlas.spectra.coefficients,
+        data.sensor.wavelengths,
+    )
     _, high = data.entry_boxes.faces
-    near, far = (data.atlas.rgb + share * (high - data.atlas.rgb) for share in (0.1, 0.95))
-    np.testing.assert_allclose(small_cube.reflectance(near, mode="nearest"), own, rtol=0, atol=1e-12)
+    near, far = (
+        data.atlas.rgb + share * (high - data.atlas.rgb) for share in (0.1, 0.95)
+    )
+    np.testing.assert_allclose(
+        small_cube.reflectance(near, mode="nearest"), own, rtol=0, atol=1e-12
+    )
     apart = np.abs(small_cube.reflectance(far, mode="nearest") - own).max(axis=1)
     assert (apart > 1e-3).mean() > 0.7
 
 
 @given(rgb=arrays(float, (5, 3), elements=st.floats(0, 1)))
-def test_weights_are_a_partition_of_unity_and_reproduce_the_colour_including_entries(small_cube, rgb):
+def test_weights_are_a_partition_of_unity_and_reproduce_the_colour_including_entries(
+    small_cube, rgb
+):
     data, nodes = small_cube.data, around(small_cube.data, rgb)
     assert (nodes.weights >= 0).all()
     assert ((nodes.hits.lattice_weight >= 0) & (nodes.hits.lattice_weight <= 1)).all()
-    ones = nodes.weighted_sum(np.ones((data.lattice.size, 1)), np.ones((len(data.atlas.names), 1)))
+    ones = nodes.weighted_sum(
+        np.ones((data.lattice.size, 1)), np.ones((len(data.atlas.names), 1))
+    )
     np.testing.assert_allclose(ones, 1, atol=1e-14)
-    np.testing.assert_allclose(nodes.weighted_sum(data.lattice.points, data.atlas.rgb), rgb, atol=1e-12)
+    np.testing.assert_allclose(
+        nodes.weighted_sum(data.lattice.points, data.atlas.rgb), rgb, atol=1e-12
+    )

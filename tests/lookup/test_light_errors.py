@@ -37,7 +37,12 @@ def halves(request, sensor):
             split = np.array_split(np.random.default_rng(seed).permutation(rows), 2)
             for kept, other in (split, split[::-1]):
                 half = Atlas(tuple(atlas.entries[row] for row in kept))
-                parts.append((uplift.build(half, dim=16, leave_out=[request.param]), measured[other]))
+                parts.append(
+                    (
+                        uplift.build(half, dim=16, leave_out=[request.param]),
+                        measured[other],
+                    )
+                )
     return parts
 
 
@@ -46,14 +51,22 @@ def calibration(halves, sensor, light):
     for cube, measured in halves:
         rgb = np.clip(sensor.rgb(measured), 0, 1)
         actual = delta_e_spectra(light, cube.reflectance(rgb), measured)
-        parts.append((actual, cube.standard_error(rgb, light), cube.error_bound(rgb, light)))
-    return check_calibration(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+        parts.append(
+            (actual, cube.standard_error(rgb, light), cube.error_bound(rgb, light))
+        )
+    return check_calibration(
+        *(np.concatenate(part) for part in zip(*parts, strict=True))
+    )
 
 
 def test_other_halves_are_covered_under_every_light(halves, sensor):
     found = [calibration(halves, sensor, light) for light in LIGHTS]
-    assert np.mean([each.within_error for each in found]) == pytest.approx(0.68, abs=0.05)
-    assert np.mean([each.within_bound for each in found]) == pytest.approx(0.95, abs=0.03)
+    assert np.mean([each.within_error for each in found]) == pytest.approx(
+        0.68, abs=0.05
+    )
+    assert np.mean([each.within_bound for each in found]) == pytest.approx(
+        0.95, abs=0.03
+    )
     for light, each in zip(LIGHTS, found, strict=True):
         assert each.within_error == pytest.approx(0.68, abs=0.12), light.name
         assert each.within_bound == pytest.approx(0.95, abs=0.06), light.name
@@ -82,25 +95,40 @@ def test_the_likely_region_holds_95_percent_of_the_other_halves(halves, sensor):
 
 def test_an_entry_has_its_own_error(small_cube, sensor):
     data, light = small_cube.data, observer.light("FL11")
-    np.testing.assert_allclose(small_cube.standard_error(data.atlas.rgb), data.atlas.error, atol=1e-12)
-    own = delta_e_spectra(light, small_cube.reflectance(data.atlas.rgb), data.atlas.measured)
-    np.testing.assert_allclose(small_cube.standard_error(data.atlas.rgb, light), own, atol=1e-6)
+    np.testing.assert_allclose(
+        small_cube.standard_error(data.atlas.rgb), data.atlas.error, atol=1e-12
+    )
+    own = delta_e_spectra(
+        light, small_cube.reflectance(data.atlas.rgb), data.atlas.measured
+    )
+    np.testing.assert_allclose(
+        small_cube.standard_error(data.atlas.rgb, light), own, atol=1e-6
+    )
 
 
 def test_colours_far_from_all_entries_are_unlike_the_atlas(small_cube, plain_cube):
     assert not small_cube.unlike_atlas(small_cube.data.atlas.rgb).any()
-    assert small_cube.unlike_atlas([[0, 1, 0], [0.2, 0.2, 0.2]]).tolist() == [True, False]
+    assert small_cube.unlike_atlas([[0, 1, 0], [0.2, 0.2, 0.2]]).tolist() == [
+        True,
+        False,
+    ]
     assert plain_cube.unlike_atlas([0.2, 0.2, 0.2])
 
 
-def test_a_cube_of_an_earlier_version_has_errors_under_its_own_light_only(small_cube, tmp_path):
+def test_a_cube_of_an_earlier_version_has_errors_under_its_own_light_only(
+    small_cube, tmp_path
+):
     atlas = dataclasses.replace(small_cube.data.atlas, measured=None, left_out=None)
     write(dataclasses.replace(small_cube.data, atlas=atlas), tmp_path / "old.uplift")
     old = Cube(read(tmp_path / "old.uplift"))
     assert old.data.atlas.left_out is None
-    assert old.standard_error([0.2, 0.3, 0.4]) == small_cube.standard_error([0.2, 0.3, 0.4])
+    assert old.standard_error([0.2, 0.3, 0.4]) == small_cube.standard_error(
+        [0.2, 0.3, 0.4]
+    )
     unrecorded = Cube(dataclasses.replace(old.data, provenance={}))
-    assert unrecorded.error_bound([0.7, 0.3, 0.9]) == 2 * unrecorded.standard_error([0.7, 0.3, 0.9])
+    assert unrecorded.error_bound([0.7, 0.3, 0.9]) == 2 * unrecorded.standard_error(
+        [0.7, 0.3, 0.9]
+    )
     with raises(OptionError, "too-few-entries"):
         old.standard_error([0.2, 0.3, 0.4], "FL11")
     with raises(OptionError, "too-few-entries"):

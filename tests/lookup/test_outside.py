@@ -28,16 +28,29 @@ def test_filling_keeps_present_points_and_has_exact_colours(whole, sparse):
     data, there = full.data, sparse.data.points.present
     assert data.points.present.all()
     assert data.points.distance.max() <= data.threshold
-    np.testing.assert_allclose(full.data.sensor.rgb(full.reflectance(RGB)), RGB, rtol=0, atol=1e-4)
-    np.testing.assert_array_equal(data.points.coefficients[there], whole.data.points.coefficients[there])
-    np.testing.assert_array_equal(data.points.status[there], whole.data.points.status[there])
+    np.testing.assert_allclose(
+        full.data.sensor.rgb(full.reflectance(RGB)), RGB, rtol=0, atol=1e-4
+    )
+    np.testing.assert_array_equal(
+        data.points.coefficients[there], whole.data.points.coefficients[there]
+    )
+    np.testing.assert_array_equal(
+        data.points.status[there], whole.data.points.status[there]
+    )
 
 
 def test_filled_spectra_are_those_of_the_default_cube(plain_cube):
     """At nodes of the same model, up to single precision."""
-    own, full = (uplift.load(), Cube(with_absent_points(plain_cube.data, near_black(plain_cube.data))).fill_missing())
+    own, full = (
+        uplift.load(),
+        Cube(
+            with_absent_points(plain_cube.data, near_black(plain_cube.data))
+        ).fill_missing(),
+    )
     points = full.data.lattice.points[~near_black(plain_cube.data)]
-    np.testing.assert_allclose(full.reflectance(points), own.reflectance(points, mode="refined"), atol=1e-5)
+    np.testing.assert_allclose(
+        full.reflectance(points), own.reflectance(points, mode="refined"), atol=1e-5
+    )
 
 
 def test_only_the_points_that_the_colours_need_are_filled(sparse):
@@ -47,17 +60,23 @@ def test_only_the_points_that_the_colours_need_are_filled(sparse):
     assert 0 < some.data.points.present.sum() - sparse.data.points.present.sum() <= 8
     for mode in MODES:
         np.testing.assert_allclose(
-            some.reflectance(queried, mode=mode), sparse.fill_missing().reflectance(queried, mode=mode), atol=1e-6
+            some.reflectance(queried, mode=mode),
+            sparse.fill_missing().reflectance(queried, mode=mode),
+            atol=1e-6,
         )
 
 
 def test_a_cube_of_another_rgb_space_is_refused(plain_cube):
-    wide = replace(plain_cube.data, sensor=replace(plain_cube.data.sensor, space="ITU-R BT.2020"))
+    wide = replace(
+        plain_cube.data, sensor=replace(plain_cube.data.sensor, space="ITU-R BT.2020")
+    )
     with raises(OptionError, "cubes-of-different-spaces"):
         Cube(with_absent_points(wide, near_black(wide))).fill_missing()
 
 
-def test_the_other_cube_may_be_chosen_and_may_not_cover_the_colour(plain_cube, small_cube):
+def test_the_other_cube_may_be_chosen_and_may_not_cover_the_colour(
+    plain_cube, small_cube
+):
     sparse = Cube(with_absent_points(plain_cube.data, near_black(plain_cube.data)))
     assert sparse.fill_missing([1, 1, 1], small_cube).covers([1, 1, 1])
     with raises(ColourError, "colour-not-in-scene"):

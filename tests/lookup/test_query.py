@@ -30,7 +30,11 @@ def results_of(cube, *rgb, **options):
 
 def xyz(cube, reflectance):
     """XYZ by the integration of colour-science, with Y = 1 for the perfect reflector."""
-    cmfs = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(D65_WAVELENGTHS)
+    cmfs = (
+        colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
+        .copy()
+        .align(D65_WAVELENGTHS)
+    )
     light = colour.SDS_ILLUMINANTS["D65"].copy().align(D65_WAVELENGTHS)
     sd = colour.SpectralDistribution(reflectance, D65_WAVELENGTHS.wavelengths)
     return colour.sd_to_XYZ(sd, cmfs, light, method="Integration") / 100
@@ -43,7 +47,10 @@ def test_cell_and_statuses_are_those_around_the_colour(small_cube):
     found_statuses, nodes = set(), data.lattice.nodes
     for answer in query(small_cube, rgb):
         r, g, b = answer.cell
-        assert ((nodes[[r, g, b]] <= answer.rgb) & (answer.rgb <= nodes[[r + 1, g + 1, b + 1]])).all()
+        assert (
+            (nodes[[r, g, b]] <= answer.rgb)
+            & (answer.rgb <= nodes[[r + 1, g + 1, b + 1]])
+        ).all()
         expected = sorted(set(grid[r : r + 2, g : g + 2, b : b + 2].ravel().tolist()))
         assert [int(status) for status in answer.statuses] == expected
         found_statuses |= set(answer.statuses)
@@ -53,22 +60,35 @@ def test_cell_and_statuses_are_those_around_the_colour(small_cube):
 def test_entries_are_found_at_their_nearest_codes_and_not_two_codes_away(small_cube):
     atlas = small_cube.data.atlas
     nearest = np.round(small_cube.encode(atlas.rgb))
-    assert [answer.entry for answer in query(small_cube, small_cube.decode(nearest))] == list(atlas.names)
-    moved = (nearest + np.concatenate([2 * np.eye(3), -2 * np.eye(3)])[:, None]).reshape(-1, 3)
+    assert [
+        answer.entry for answer in query(small_cube, small_cube.decode(nearest))
+    ] == list(atlas.names)
+    moved = (
+        nearest + np.concatenate([2 * np.eye(3), -2 * np.eye(3)])[:, None]
+    ).reshape(-1, 3)
     moved = moved[((moved >= 0) & (moved <= 255)).all(axis=1)]
     assert len(moved) > 90
-    assert {answer.entry for answer in query(small_cube, small_cube.decode(moved))} == {None}
+    assert {answer.entry for answer in query(small_cube, small_cube.decode(moved))} == {
+        None
+    }
 
 
 @pytest.mark.parametrize("mode", MODES)
 def test_round_trip_and_difference_agree_with_colour_science(small_cube, mode):
-    xy, to_rgb = colour.XYZ_to_xy(xyz(small_cube, np.ones(81))), small_cube.data.sensor.xyz_to_rgb
+    xy, to_rgb = (
+        colour.XYZ_to_xy(xyz(small_cube, np.ones(81))),
+        small_cube.data.sensor.xyz_to_rgb,
+    )
     differences = []
-    for answer in query(small_cube, np.random.default_rng(8).random((10, 3)), mode=mode):
+    for answer in query(
+        small_cube, np.random.default_rng(8).random((10, 3)), mode=mode
+    ):
         back = xyz(small_cube, answer.reflectance)
         np.testing.assert_allclose(answer.round_trip, to_rgb @ back, rtol=0, atol=1e-12)
         queried = colour.XYZ_to_Lab(np.linalg.solve(to_rgb, answer.rgb), xy)
-        differences.append(colour.delta_E(queried, colour.XYZ_to_Lab(back, xy), method="CIE 2000"))
+        differences.append(
+            colour.delta_E(queried, colour.XYZ_to_Lab(back, xy), method="CIE 2000")
+        )
         assert answer.delta_e_2000 == pytest.approx(differences[-1], abs=1e-9)
     assert max(differences) > 0.01 or mode in ("spectra", "refined")
 
@@ -78,7 +98,9 @@ def test_results_are_in_order_across_blocks(small_cube):
     found = list(query(small_cube, rgb, [500.0]))
     np.testing.assert_array_equal([answer.rgb for answer in found], rgb)
     expected = small_cube.reflectance(rgb[-3:], [500.0])
-    np.testing.assert_allclose([answer.reflectance for answer in found[-3:]], expected, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(
+        [answer.reflectance for answer in found[-3:]], expected, rtol=0, atol=1e-12
+    )
 
 
 def test_invalid_queries_are_refused(small_cube):
@@ -92,8 +114,15 @@ def colours_outside(cube, count=200):
     """Return XYZ of smooth band-pass and band-stop reflectances that lie outside the space of a cube."""
     sensor, rng = cube.data.sensor, np.random.default_rng(0)
     nm = sensor.wavelengths
-    edges, width = np.sort(rng.uniform(380, 780, (count, 2, 1)), axis=1), rng.uniform(5, 40, (count, 1))
-    band = 1 / (1 + np.exp(-(nm - edges[:, 0]) / width)) / (1 + np.exp((nm - edges[:, 1]) / width))
+    edges, width = (
+        np.sort(rng.uniform(380, 780, (count, 2, 1)), axis=1),
+        rng.uniform(5, 40, (count, 1)),
+    )
+    band = (
+        1
+        / (1 + np.exp(-(nm - edges[:, 0]) / width))
+        / (1 + np.exp((nm - edges[:, 1]) / width))
+    )
     spectra = 0.02 + 0.96 * np.where(rng.random((count, 1)) < 0.5, band, 1 - band)
     rgb = sensor.rgb(spectra)
     return sensor.xyz(rgb[~in_unit_cube(rgb)])
@@ -105,9 +134,14 @@ def test_realisable_colours_outside_have_their_colour():
     assert len(xyz) > 20
     results = list(query_xyz(cube, xyz))
     spectra = np.array([result.reflectance for result in results])
-    np.testing.assert_allclose(spectra @ cube.data.sensor.light.xyz.T, xyz, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(
+        spectra @ cube.data.sensor.light.xyz.T, xyz, rtol=0, atol=1e-6
+    )
     assert ((spectra >= 0) & (spectra <= 1)).all()
-    assert all(result.delta_e_2000 < 1e-3 and result.standard_error is None for result in results)
+    assert all(
+        result.delta_e_2000 < 1e-3 and result.standard_error is None
+        for result in results
+    )
 
 
 def without_outside(cube):
@@ -120,24 +154,49 @@ def test_an_entry_outside_the_space_has_its_spectrum_and_its_colour(cyan_cube, d
     measured = on_grid(atlas, cyan_cube.wavelengths)[[atlas.names.index("cyan")]]
     colour = xyz(cyan_cube, measured[0]).round(digits)
     (answer,) = query_xyz(cyan_cube, [colour], lights=[light("FL11")])
-    assert (answer.entry, answer.standard_error, answer.error_bound) == ("cyan", *table.error, *table.error)
-    np.testing.assert_allclose(xyz(cyan_cube, answer.reflectance), colour, rtol=0, atol=1e-7)
+    assert (answer.entry, answer.standard_error, answer.error_bound) == (
+        "cyan",
+        *table.error,
+        *table.error,
+    )
+    np.testing.assert_allclose(
+        xyz(cyan_cube, answer.reflectance), colour, rtol=0, atol=1e-7
+    )
     for name in (cyan_cube.data.error_illuminant, "FL11"):
-        stored = cyan_cube.data.atlas.outside.spectra.reflectance(np.array([0]), cyan_cube.wavelengths)
-        own, found = (delta_e_spectra(light(name), each, measured)[0] for each in (stored, answer.reflectance[None]))
+        stored = cyan_cube.data.atlas.outside.spectra.reflectance(
+            np.array([0]), cyan_cube.wavelengths
+        )
+        own, found = (
+            delta_e_spectra(light(name), each, measured)[0]
+            for each in (stored, answer.reflectance[None])
+        )
         assert found == pytest.approx(own, abs=1e-5 if digits == 16 else 0.1)
-    assert answer.standard_errors == answer.error_bounds == {"FL11": pytest.approx(own, abs=1e-6)}
+    assert (
+        answer.standard_errors
+        == answer.error_bounds
+        == {"FL11": pytest.approx(own, abs=1e-6)}
+    )
     assert without_outside(cyan_cube).data.atlas.outside is None
 
 
-def test_files_without_its_measurement_have_its_error_under_their_own_light(cyan_cube, tmp_path):
+def test_files_without_its_measurement_have_its_error_under_their_own_light(
+    cyan_cube, tmp_path
+):
     table = cyan_cube.data.atlas.outside
-    older = replace(cyan_cube.data, atlas=replace(cyan_cube.data.atlas, outside=replace(table, measured=None)))
+    older = replace(
+        cyan_cube.data,
+        atlas=replace(cyan_cube.data.atlas, outside=replace(table, measured=None)),
+    )
     for name, data, lights in (("new", cyan_cube.data, ["FL11"]), ("old", older, [])):
         write(data, tmp_path / name)
         at = data.sensor.xyz(np.array([*table.rgb, [0.2, 0.3, 0.4]]))
-        own, inside = query_xyz(uplift.load(tmp_path / name), at, lights=[light("FL11")])
-        assert (list(own.standard_errors), list(inside.standard_errors)) == (lights, ["FL11"])
+        own, inside = query_xyz(
+            uplift.load(tmp_path / name), at, lights=[light("FL11")]
+        )
+        assert (list(own.standard_errors), list(inside.standard_errors)) == (
+            lights,
+            ["FL11"],
+        )
         assert own.standard_error == table.error[0]
 
 
@@ -145,9 +204,17 @@ def test_answers_change_only_in_the_box_of_an_entry_outside_and_continuously(cya
     sensor, boxes = cyan_cube.data.sensor, cyan_cube.data.outside_boxes
     assert boxes.rgb[0, 0] + boxes.half_width[0] <= 0
     for axis in np.eye(3):
-        for share, is_same in ((0.5, False), (1 - 1e-9, False), (1 + 1e-9, True), (1.5, True)):
+        for share, is_same in (
+            (0.5, False),
+            (1 - 1e-9, False),
+            (1 + 1e-9, True),
+            (1.5, True),
+        ):
             at = sensor.xyz(boxes.rgb - share * boxes.half_width[0] * axis)
-            (found,), (other,) = (list(query_xyz(cube, at)) for cube in (cyan_cube, without_outside(cyan_cube)))
+            (found,), (other,) = (
+                list(query_xyz(cube, at))
+                for cube in (cyan_cube, without_outside(cyan_cube))
+            )
             assert (found.entry, found.standard_error) == (None, None)
             assert np.abs(found.round_trip - found.rgb).max() < 1e-6
             change = np.abs(found.reflectance - other.reflectance).max()
@@ -168,7 +235,9 @@ def test_other_colours_raise():
 def test_colours_are_realisable_if_the_solid_contains_them():
     """Also in cells whose corners are stand-ins that were not fitted, as in cubes of cameras."""
     cube = uplift.build(dim=6, space="camera", observer="Nikon 5100 (NPL)")
-    rgb = np.concatenate([[[0.0051, 0.1433, 0.4522]], np.random.default_rng(8).random((60, 3))])
+    rgb = np.concatenate(
+        [[[0.0051, 0.1433, 0.4522]], np.random.default_rng(8).random((60, 3))]
+    )
     expected = cube.data.solid.contains(rgb)
     assert 0 < expected.sum() < 60
     found = [answer.realisable for answer in query(cube, rgb)]

@@ -33,7 +33,9 @@ def test_difference_of_arc_tangents(change):
     for sign in (1, -1):
         moved = x * (1 + sign * change) + sign * change
         found = arctan_difference(x[None], (moved - x)[None])[0]
-        np.testing.assert_allclose(found, np.arctan(moved) - np.arctan(x), rtol=1e-9, atol=4e-16)
+        np.testing.assert_allclose(
+            found, np.arctan(moved) - np.arctan(x), rtol=1e-9, atol=4e-16
+        )
 
 
 def test_columns_are_independent():
@@ -44,11 +46,24 @@ def test_columns_are_independent():
 
 @pytest.mark.parametrize(
     ("count", "shape"),
-    [(0, (9, 16)), (1, (81, 3)), (10_001, (9, 81)), (5_000, (17, 400)), (3, (2, SINGLE_THREAD_SIZE))],
+    [
+        (0, (9, 16)),
+        (1, (81, 3)),
+        (10_001, (9, 81)),
+        (5_000, (17, 400)),
+        (3, (2, SINGLE_THREAD_SIZE)),
+    ],
 )
 def test_slices_do_not_change_the_product(count, shape):
     rng = np.random.default_rng(count)
     rows, matrix = rng.normal(size=(count, shape[0])), rng.normal(size=shape)
     for one, other in ((rows, matrix), (rows.copy("F"), matrix.copy("F"))):
-        np.testing.assert_allclose(blocked_matmul(one, other), rows @ matrix, rtol=1e-12, atol=1e-12)
-        np.testing.assert_allclose(blocked_matmul_columns(other.T, one.T), (rows @ matrix).T, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(
+            blocked_matmul(one, other), rows @ matrix, rtol=1e-12, atol=1e-12
+        )
+        np.testing.assert_allclose(
+            blocked_matmul_columns(other.T, one.T),
+            (rows @ matrix).T,
+            rtol=1e-12,
+            atol=1e-12,
+        )

@@ -30,7 +30,9 @@ def test_moments_are_their_defining_integrals():
             x = (duality.cosine_basis(np.array([phi]), 4) @ multipliers[0])[0]
             return (0.5 + np.arctan(x) / np.pi) * np.cos(j * phi) / np.pi
 
-        assert moment == pytest.approx(quad(integrand, -np.pi, 0, epsabs=1e-13)[0], abs=1e-12)
+        assert moment == pytest.approx(
+            quad(integrand, -np.pi, 0, epsabs=1e-13)[0], abs=1e-12
+        )
 
 
 def test_black_and_white_are_moved_off_the_boundary():
@@ -38,11 +40,17 @@ def test_black_and_white_are_moved_off_the_boundary():
     moments[1, 0] = 1
     multipliers = duality.multipliers_from_moments(moments)
     assert np.isfinite(multipliers).all()
-    reflectance = 0.5 + np.arctan(multipliers @ duality.cosine_basis(np.linspace(-np.pi, 0, 9), 9).T) / np.pi
+    reflectance = (
+        0.5
+        + np.arctan(multipliers @ duality.cosine_basis(np.linspace(-np.pi, 0, 9), 9).T)
+        / np.pi
+    )
     np.testing.assert_allclose(reflectance, np.repeat([[0], [1]], 9, axis=1), atol=1e-4)
 
 
-@pytest.mark.parametrize("moments", [[[1.0, 1.0, 1.0]], [[0.5, 2.0, 0.0]], [[np.nan, 0, 0]], [[5.0, 0, 0]]])
+@pytest.mark.parametrize(
+    "moments", [[[1.0, 1.0, 1.0]], [[0.5, 2.0, 0.0]], [[np.nan, 0, 0]], [[5.0, 0, 0]]]
+)
 def test_invalid_moments_raise(moments):
     with raises(UpliftError, "invalid-moments"):
         duality.multipliers_from_moments(np.array(moments))
@@ -56,14 +64,25 @@ def test_real_and_complex_arithmetic_agree(count, values):
     expected, valid_on_circle = duality.try_complex_multipliers(moments.astype(complex))
     assert valid.all()
     assert valid_on_circle.all()
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * (1 + np.abs(expected).max()))
+    np.testing.assert_allclose(
+        found, expected, rtol=0, atol=1e-11 * (1 + np.abs(expected).max())
+    )
 
 
 @pytest.mark.parametrize(
-    ("solve", "kind"), [(duality.try_multipliers, float), (duality.try_complex_multipliers, complex)]
+    ("solve", "kind"),
+    [(duality.try_multipliers, float), (duality.try_complex_multipliers, complex)],
 )
 def test_moments_outside_the_moment_space_are_invalid(solve, kind):
-    moments = np.array([[0.5, 0.1, 0.0], [0.5, 0.4, 0.0], [1.5, 0.1, 0.0], [np.nan, 0, 0], [0.0, 0.1, 0.0]])
+    moments = np.array(
+        [
+            [0.5, 0.1, 0.0],
+            [0.5, 0.4, 0.0],
+            [1.5, 0.1, 0.0],
+            [np.nan, 0, 0],
+            [0.0, 0.1, 0.0],
+        ]
+    )
     assert solve(moments.astype(kind))[1].tolist() == [True, False, False, False, False]
 
 
@@ -71,7 +90,9 @@ def test_moments_outside_the_moment_space_are_invalid(solve, kind):
 def test_roots_agree_with_the_trapezoid_rule(count):
     multipliers = np.random.default_rng(count).normal(size=(200, count)) * 5
     found = duality.moments_by_roots(multipliers)
-    np.testing.assert_allclose(found, duality.moments_from_multipliers(multipliers), rtol=0, atol=1e-9)
+    np.testing.assert_allclose(
+        found, duality.moments_from_multipliers(multipliers), rtol=0, atol=1e-9
+    )
 
 
 def test_steps_narrower_than_the_nodes():
@@ -82,9 +103,13 @@ def test_steps_narrower_than_the_nodes():
         x = multipliers[0] @ np.array([1, 2 * np.cos(phi), 2 * np.cos(2 * phi)])
         return (0.5 + np.arctan(x) / np.pi) * np.cos(order * phi) / np.pi
 
-    steps = [np.arccos(y) - np.pi for y in np.roots([1.6e6, 2e6, -1.1e6]).real if abs(y) < 1]
+    steps = [
+        np.arccos(y) - np.pi for y in np.roots([1.6e6, 2e6, -1.1e6]).real if abs(y) < 1
+    ]
     for order, moment in enumerate(duality.moments_by_roots(multipliers)[0]):
-        expected = quad(integrand, -np.pi, 0, args=(order,), points=steps, limit=2000, epsabs=1e-12)[0]
+        expected = quad(
+            integrand, -np.pi, 0, args=(order,), points=steps, limit=2000, epsabs=1e-12
+        )[0]
         assert moment == pytest.approx(expected, abs=1e-9)
 
 
@@ -101,5 +126,8 @@ def test_boxes_survive_a_round_trip():
     stored = duality.moments_from_multipliers(multipliers)
     again = duality.multipliers_from_moments(stored)
     phase = np.linspace(-np.pi, 0, 41)
-    spectra = [0.5 + np.arctan(p @ duality.cosine_basis(phase, 9).T) / np.pi for p in (multipliers, again)]
+    spectra = [
+        0.5 + np.arctan(p @ duality.cosine_basis(phase, 9).T) / np.pi
+        for p in (multipliers, again)
+    ]
     assert np.abs(spectra[0] - spectra[1]).max() < 1e-3

@@ -17,8 +17,17 @@ from uplift.models.moments import WARPS, multipliers_of_rounded
 GRID = np.arange(380.0, 781.0, 5.0)
 LIMIT = 2e-7
 """Linear RGB: about the rounding of RGB itself."""
-MODELS = [Moments(3), Moments(9), Moments(17), Moments(9, warp="vision"), Moments(3, warp="colour"), Sigmoid()]
-each = pytest.mark.parametrize("model", MODELS, ids=lambda model: f"{model.name}{model.count}")
+MODELS = [
+    Moments(3),
+    Moments(9),
+    Moments(17),
+    Moments(9, warp="vision"),
+    Moments(3, warp="colour"),
+    Sigmoid(),
+]
+each = pytest.mark.parametrize(
+    "model", MODELS, ids=lambda model: f"{model.name}{model.count}"
+)
 
 
 def random_multipliers(model, rows, scale=2.0):
@@ -32,22 +41,32 @@ def test_reflectance_is_increasing_bounded_and_odd_about_one_half(model, x):
     y = model.to_reflectance(np.sort(x))
     assert (np.diff(y) >= -1e-16).all()
     assert ((y >= 0) & (y <= 1)).all()
-    np.testing.assert_allclose(model.to_reflectance(x) + model.to_reflectance(-x), 1, atol=1e-15)
-    np.testing.assert_allclose(model.to_reflectance(np.array([-1e9, 1e9])), [0, 1], atol=1e-9)
+    np.testing.assert_allclose(
+        model.to_reflectance(x) + model.to_reflectance(-x), 1, atol=1e-15
+    )
+    np.testing.assert_allclose(
+        model.to_reflectance(np.array([-1e9, 1e9])), [0, 1], atol=1e-9
+    )
 
 
 @each
 @given(y=arrays(float, 5, elements=st.floats(1e-6, 1 - 1e-6)))
 def test_from_reflectance_is_the_inverse(model, y):
-    np.testing.assert_allclose(model.to_reflectance(model.from_reflectance(y)), y, rtol=1e-9)
+    np.testing.assert_allclose(
+        model.to_reflectance(model.from_reflectance(y)), y, rtol=1e-9
+    )
     limits = np.array([0.0, 1.0])
-    np.testing.assert_allclose(model.to_reflectance(model.from_reflectance(limits)), limits, atol=1e-12)
+    np.testing.assert_allclose(
+        model.to_reflectance(model.from_reflectance(limits)), limits, atol=1e-12
+    )
 
 
 @each
 @given(data=st.data())
 def test_all_multipliers_give_reflectances(model, data):
-    multipliers = data.draw(arrays(float, (3, model.count), elements=st.floats(-1e9, 1e9)))
+    multipliers = data.draw(
+        arrays(float, (3, model.count), elements=st.floats(-1e9, 1e9))
+    )
     spectra = evaluate(model, multipliers, GRID)
     assert ((spectra >= 0) & (spectra <= 1)).all()
 
@@ -65,14 +84,18 @@ def test_numpy_and_jax_agree(model):
     x = np.linspace(-5, 5, 11)
     with jax.enable_x64(True):
         for function in (model.to_reflectance, model.derivative):
-            np.testing.assert_allclose(np.asarray(function(jnp.asarray(x))), function(x), rtol=1e-14)
+            np.testing.assert_allclose(
+                np.asarray(function(jnp.asarray(x))), function(x), rtol=1e-14
+            )
 
 
 @each
 def test_storage_round_trip_keeps_spectra(model):
     multipliers = random_multipliers(model, 200)
     back = model.from_storage(model.to_storage(multipliers))
-    np.testing.assert_allclose(evaluate(model, back, GRID), evaluate(model, multipliers, GRID), atol=1e-11)
+    np.testing.assert_allclose(
+        evaluate(model, back, GRID), evaluate(model, multipliers, GRID), atol=1e-11
+    )
 
 
 @each
@@ -91,9 +114,19 @@ def test_sigmoid_agrees_with_colour_science():
     model = Sigmoid()
     c0, c1, c2 = 1.3, -0.7, 0.4
     half, middle = 200.0, 580.0
-    per_nm = [c0 / half**2, c1 / half - 2 * c0 * middle / half**2, c0 * middle**2 / half**2 - c1 * middle / half + c2]
-    theirs = sd_Jakob2019(np.array(per_nm)).align(__import__("colour").SpectralShape(380, 780, 5))
-    np.testing.assert_allclose(model.to_reflectance(model.basis(GRID) @ [c0, c1, c2]), theirs.values, atol=1e-12)
+    per_nm = [
+        c0 / half**2,
+        c1 / half - 2 * c0 * middle / half**2,
+        c0 * middle**2 / half**2 - c1 * middle / half + c2,
+    ]
+    theirs = sd_Jakob2019(np.array(per_nm)).align(
+        __import__("colour").SpectralShape(380, 780, 5)
+    )
+    np.testing.assert_allclose(
+        model.to_reflectance(model.basis(GRID) @ [c0, c1, c2]),
+        theirs.values,
+        atol=1e-12,
+    )
 
 
 @pytest.mark.parametrize("warp", WARPS)
@@ -123,14 +156,19 @@ def test_spectra_are_constant_outside_their_range(model):
 def change_by_rounding(model, multipliers, sensor):
     """Change of linear RGB (n,) when coefficients are rounded to single precision."""
     rounded = model.from_storage(model.to_storage(multipliers).astype(np.float32))
-    before, after = (sensor.rgb(evaluate(model, each, sensor.wavelengths)) for each in (multipliers, rounded))
+    before, after = (
+        sensor.rgb(evaluate(model, each, sensor.wavelengths))
+        for each in (multipliers, rounded)
+    )
     return np.abs(after - before).max(axis=1)
 
 
 @each
 def test_safe_spectra_keep_their_colour_in_single_precision(model, sensor):
     rng = np.random.default_rng(3)
-    multipliers = rng.normal(size=(4000, model.count)) * 10 ** rng.uniform(-2, 2, (4000, 1))
+    multipliers = rng.normal(size=(4000, model.count)) * 10 ** rng.uniform(
+        -2, 2, (4000, 1)
+    )
     safe = model.is_float32_safe(multipliers)
     assert safe.sum() > 500
     assert change_by_rounding(model, multipliers[safe], sensor).max() <= LIMIT
@@ -151,4 +189,6 @@ def test_moments_that_rounding_moved_outside_return():
     assert not model.try_from_storage(rounded)[1].all()
     multipliers, valid = multipliers_of_rounded(model, rounded)
     assert valid.all()
-    np.testing.assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=0.01)
+    np.testing.assert_allclose(
+        model.to_storage(multipliers), moments, rtol=0, atol=0.01
+    )

@@ -30,7 +30,13 @@ def delta_e(cube, rgb, mode):
     return delta_e_rgb(sensor, rgb, back)
 
 
-OPTIONS = [{"dim": 48}, {"model": "sigmoid"}, {"coefficients": 3}, {"coefficients": 17}, {"warp": "vision"}]
+OPTIONS = [
+    {"dim": 48},
+    {"model": "sigmoid"},
+    {"coefficients": 3},
+    {"coefficients": 17},
+    {"warp": "vision"},
+]
 
 
 @pytest.mark.parametrize("atlas", [MACBETH, None], ids=["atlas", "none"])
@@ -38,27 +44,41 @@ OPTIONS = [{"dim": 48}, {"model": "sigmoid"}, {"coefficients": 3}, {"coefficient
 def test_every_point_is_fitted(atlas, options):
     """All nodes are within 1e-4, computed from the stored coefficients only."""
     data = quiet_build(atlas, **{"dim": 12, **options}).data
-    spectra = data.model.to_reflectance(data.model.from_storage(data.points.coefficients) @ data.model.basis(GRID).T)
+    spectra = data.model.to_reflectance(
+        data.model.from_storage(data.points.coefficients) @ data.model.basis(GRID).T
+    )
     assert np.abs(data.sensor.rgb(spectra) - data.lattice.points).max() <= 1e-4
     assert Status.UNFITTED not in data.points.status
 
 
 @pytest.mark.parametrize(
-    ("mode", "mean", "most"), [("spectra", 1e-4, 0.05), ("moments", 0.02, np.inf), ("refined", 1e-3, 0.05)]
+    ("mode", "mean", "most"),
+    [("spectra", 1e-4, 0.05), ("moments", 0.02, np.inf), ("refined", 1e-3, 0.05)],
 )
-def test_20000_random_colours_have_small_round_trip_errors(macbeth_cube, mode, mean, most):
+def test_20000_random_colours_have_small_round_trip_errors(
+    macbeth_cube, mode, mean, most
+):
     apart = delta_e(macbeth_cube, np.random.default_rng(20000).random((20000, 3)), mode)
     assert apart.mean() <= mean
     assert apart.max() <= most
 
 
-def test_entries_have_their_measurements_and_so_better_colours_under_other_lights(macbeth_cube):
+def test_entries_have_their_measurements_and_so_better_colours_under_other_lights(
+    macbeth_cube,
+):
     atlas, spectra = macbeth_cube.data.atlas, read_atlas(MACBETH)
-    measured = on_grid(spectra, GRID)[[spectra.names.index(name) for name in atlas.names]]
-    found, without = (cube.reflectance(atlas.rgb) for cube in (macbeth_cube, uplift.load()))
+    measured = on_grid(spectra, GRID)[
+        [spectra.names.index(name) for name in atlas.names]
+    ]
+    found, without = (
+        cube.reflectance(atlas.rgb) for cube in (macbeth_cube, uplift.load())
+    )
     assert delta_e(macbeth_cube, atlas.rgb, "spectra").max() <= 0.01
     assert np.sqrt(((found - measured) ** 2).mean(axis=1)).mean() <= 0.02
-    error, error_without = (delta_e_spectra(observer.light("A"), each, measured).mean() for each in (found, without))
+    error, error_without = (
+        delta_e_spectra(observer.light("A"), each, measured).mean()
+        for each in (found, without)
+    )
     assert error < 0.2 * error_without
 
 
@@ -79,15 +99,26 @@ def test_an_atlas_outside_the_space_is_refused():
 
 def test_of_entries_of_one_colour_outside_the_space_the_first_is_used():
     cyan = read_atlas(MACBETH)["cyan"]
-    twins = Atlas((Entry("grey", GRID, np.full(81, 0.4)), cyan, Entry("second", cyan.wavelengths, cyan.values)))
+    twins = Atlas(
+        (
+            Entry("grey", GRID, np.full(81, 0.4)),
+            cyan,
+            Entry("second", cyan.wavelengths, cyan.values),
+        )
+    )
     with warns("entry-duplicate") as caught:
         cube = uplift.build(twins, dim=4, coefficients=5)
     assert "'second'" in caught[0].problem
-    assert cube.data.outside_boxes.find(cube.data.atlas.outside.rgb).entry.tolist() == [0, 0]
+    assert cube.data.outside_boxes.find(cube.data.atlas.outside.rgb).entry.tolist() == [
+        0,
+        0,
+    ]
 
 
 def greys(**levels):
-    return Atlas(tuple(Entry(name, GRID, np.full(81, grey)) for name, grey in levels.items()))
+    return Atlas(
+        tuple(Entry(name, GRID, np.full(81, grey)) for name, grey in levels.items())
+    )
 
 
 def test_crowded_entries_are_warned_about_and_exact():
@@ -111,7 +142,9 @@ def test_duplicate_entries_are_warned_about_and_the_first_is_used():
 
 def test_entries_have_more_coefficients_than_nodes():
     """The nodes, and interpolated coefficients, are those of a build with as many."""
-    more, same = (quiet_build(MACBETH, dim=4, entry_coefficients=count).data for count in (17, 9))
+    more, same = (
+        quiet_build(MACBETH, dim=4, entry_coefficients=count).data for count in (17, 9)
+    )
     assert (more.atlas.spectra.model.count, more.model.count) == (17, 9)
     assert same.atlas.spectra.model == same.model
     np.testing.assert_array_equal(more.points.coefficients, same.points.coefficients)
@@ -131,16 +164,26 @@ def in_order():
 def test_the_order_of_the_atlas_changes_only_the_order_of_its_table(in_order, order):
     """Nodes are equal bit by bit, except for the row of their entry; the table is equal up to rounding."""
     spectra = read_atlas(MACBETH)
-    shuffled = quiet_build(Atlas(tuple(spectra.entries[row] for row in order)), dim=5).data
+    shuffled = quiet_build(
+        Atlas(tuple(spectra.entries[row] for row in order)), dim=5
+    ).data
     for name in ("coefficients", "rgb", "distance", "status", "standard_error"):
-        assert getattr(shuffled.points, name).tobytes() == getattr(in_order.points, name).tobytes()
+        assert (
+            getattr(shuffled.points, name).tobytes()
+            == getattr(in_order.points, name).tobytes()
+        )
     assert shuffled.provenance["prior"] == in_order.provenance["prior"]
     row = [shuffled.atlas.names.index(name) for name in in_order.atlas.names]
     for name in ("rgb", "coefficients", "half_width", "error"):
         np.testing.assert_allclose(
-            getattr(shuffled.atlas, name)[row], getattr(in_order.atlas, name), rtol=1e-12, atol=1e-13
+            getattr(shuffled.atlas, name)[row],
+            getattr(in_order.atlas, name),
+            rtol=1e-12,
+            atol=1e-13,
         )
-    np.testing.assert_array_equal(np.append(row, -1)[in_order.points.entry], shuffled.points.entry)
+    np.testing.assert_array_equal(
+        np.append(row, -1)[in_order.points.entry], shuffled.points.entry
+    )
 
 
 def test_builds_do_not_depend_on_batches(monkeypatch):
@@ -153,12 +196,18 @@ def test_builds_do_not_depend_on_batches(monkeypatch):
 
 def test_builds_do_not_depend_on_threads():
     """The atlas is large enough for BLAS to use several threads."""
-    spectra = read_atlas(MACBETH.with_name("cie2017.txt"), MACBETH.with_name("babelcolor.txt"))
+    spectra = read_atlas(
+        MACBETH.with_name("cie2017.txt"), MACBETH.with_name("babelcolor.txt")
+    )
     digests = set()
     for threads in (1, 4):
         with threadpool_limits(threads, user_api="blas"):
             digests.add(digest(quiet_build(spectra, dim=3).data))
-            assert {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"} == {threads}
+            assert {
+                pool["num_threads"]
+                for pool in threadpool_info()
+                if pool["user_api"] == "blas"
+            } == {threads}
     assert len(digests) == 1
 
 
@@ -176,13 +225,21 @@ def test_builds_do_not_depend_on_threads():
         ({"solver": "newton"}, UnknownNameError, "unknown-name"),
         ({"shortest": 299}, OptionError, "option"),
         ({"longest": 830, "step": 10, "shortest": 375}, OptionError, "option"),
-        ({"step": 10, "space": "camera", "observer": "Nikon 5100 (NPL)"}, OptionError, "option"),
+        (
+            {"step": 10, "space": "camera", "observer": "Nikon 5100 (NPL)"},
+            OptionError,
+            "option",
+        ),
         ({"warp": "visions"}, UnknownNameError, "unknown-name"),
         ({"scene": []}, OptionError, "option"),
     ],
 )
-def test_bad_options_are_refused_before_anything_is_fitted(options, error, code, monkeypatch):
-    monkeypatch.setattr("uplift.pipeline.entries.fit_entries", lambda *_, **__: pytest.fail("fitted"))
+def test_bad_options_are_refused_before_anything_is_fitted(
+    options, error, code, monkeypatch
+):
+    monkeypatch.setattr(
+        "uplift.pipeline.entries.fit_entries", lambda *_, **__: pytest.fail("fitted")
+    )
     with raises(error, code):
         uplift.build(MACBETH, **options)
 

@@ -24,21 +24,29 @@ def table(tmp_path_factory):
     camera = observer.find_camera(NIKON)
     rows = np.column_stack([camera.wavelengths, camera.sensitivities]).tolist()
     path = tmp_path_factory.mktemp("camera") / "lens.csv"
-    path.write_text("nm,r,g,b\n" + "".join(",".join(map(repr, row)) + "\n" for row in rows))
+    path.write_text(
+        "nm,r,g,b\n" + "".join(",".join(map(repr, row)) + "\n" for row in rows)
+    )
     return path
 
 
 @pytest.fixture(scope="module")
 def cube(table):
     """Dim 4 of the camera of the file, under A."""
-    return uplift.build(dim=4, coefficients=5, space=CAMERA, observer=str(table), illuminant="A")
+    return uplift.build(
+        dim=4, coefficients=5, space=CAMERA, observer=str(table), illuminant="A"
+    )
 
 
 def test_a_stored_cube_is_read_and_rebuilt_without_its_file(cube, table, tmp_path):
     path = tmp_path / "camera.uplift"
     cube.save(path)
     stored = uplift.load(path)
-    assert (stored.space, stored.observer, stored.illuminant) == ("lens", observer.DEFAULT_OBSERVER, "A")
+    assert (stored.space, stored.observer, stored.illuminant) == (
+        "lens",
+        observer.DEFAULT_OBSERVER,
+        "A",
+    )
     options = stored.data.provenance["options"]
     assert (options["space"], options["observer"]) == (CAMERA, "lens")
     assert stored.data.sensor.matrix.tobytes() == cube.data.sensor.matrix.tobytes()
@@ -55,7 +63,9 @@ def test_a_stored_cube_is_read_and_rebuilt_without_its_file(cube, table, tmp_pat
         ("cmfs", lambda channels: channels * 0),
     ],
 )
-def test_forged_channels_that_depend_on_each_other_are_refused(cube, tmp_path, name, change):
+def test_forged_channels_that_depend_on_each_other_are_refused(
+    cube, tmp_path, name, change
+):
     def forged(tensors, metadata):
         tensors[f"sensor.{name}"] = change(tensors[f"sensor.{name}"])
 
@@ -67,7 +77,9 @@ def test_answers_have_the_raw_values_and_xyz_of_the_spectrum(cube):
     sensor = cube.data.sensor
     for result, raw in zip(query(cube, GREYS, mode="refined"), GREYS, strict=True):
         np.testing.assert_allclose(sensor.rgb(result.reflectance), raw, atol=1e-4)
-        np.testing.assert_allclose(result.xyz, sensor.light.xyz @ result.reflectance, rtol=1e-12)
+        np.testing.assert_allclose(
+            result.xyz, sensor.light.xyz @ result.reflectance, rtol=1e-12
+        )
 
 
 def test_xyz_are_not_taken_for_raw_values(cube, tmp_path):

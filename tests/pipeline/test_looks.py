@@ -14,7 +14,11 @@ from uplift.lookup.query import query
 from uplift.pipeline.rebuild import rebuild
 
 RED = Look("#8a2a20", {"FL11": "#70392a"}, name="brick")
-LOOKS = (RED, Look("#40a060", {"FL11": "#50a050"}), Look([0.5, 0.3, 0.2], {"A": [0.52, 0.295, 0.19]}, 0.5))
+LOOKS = (
+    RED,
+    Look("#40a060", {"FL11": "#50a050"}),
+    Look([0.5, 0.3, 0.2], {"A": [0.52, 0.295, 0.19]}, 0.5),
+)
 IMPOSSIBLE = Look("#4060a0", {"A": "#5060a0"}, name="dusk")
 
 
@@ -34,10 +38,18 @@ def distances(cube, looks):
     """ΔE00 of the answers to the colours of looks from the wishes, computed from the definition."""
     found = []
     for look in looks:
-        rgb = cube.decode(list(bytes.fromhex(look.rgb[1:]))) if isinstance(look.rgb, str) else look.rgb
+        rgb = (
+            cube.decode(list(bytes.fromhex(look.rgb[1:])))
+            if isinstance(look.rgb, str)
+            else look.rgb
+        )
         for name, wish in look.lights.items():
             (screen,) = display_sensors([name], cube.observer)
-            codes = screen.decode(list(bytes.fromhex(wish[1:]))) if isinstance(wish, str) else wish
+            codes = (
+                screen.decode(list(bytes.fromhex(wish[1:])))
+                if isinstance(wish, str)
+                else wish
+            )
             found.append(delta_e_rgb(screen, screen.rgb(cube.reflectance(rgb)), codes))
     return np.array(found)
 
@@ -47,13 +59,23 @@ def test_looks_are_met_and_other_entries_unchanged(cubes):
     assert distances(looked, LOOKS[:2]).max() <= 0.1
     assert distances(plain, LOOKS[:2]).min() > 2
     atlas = plain.data.atlas
-    assert looked.data.atlas.names == (*atlas.names, "brick", "look #40a060", "look 0.5 0.3 0.2")
+    assert looked.data.atlas.names == (
+        *atlas.names,
+        "brick",
+        "look #40a060",
+        "look 0.5 0.3 0.2",
+    )
     for mode in ("spectra", "refined", "moments"):
         np.testing.assert_allclose(
-            looked.reflectance(atlas.rgb, mode=mode), plain.reflectance(atlas.rgb, mode=mode), rtol=0, atol=1e-9
+            looked.reflectance(atlas.rgb, mode=mode),
+            plain.reflectance(atlas.rgb, mode=mode),
+            rtol=0,
+            atol=1e-9,
         )
     rgb = looked.data.atlas.rgb
-    np.testing.assert_allclose(looked.data.sensor.rgb(looked.reflectance(rgb)), rgb, atol=1e-5)
+    np.testing.assert_allclose(
+        looked.data.sensor.rgb(looked.reflectance(rgb)), rgb, atol=1e-5
+    )
 
 
 def test_looks_work_without_an_atlas(bare):
@@ -70,11 +92,17 @@ def test_looks_are_no_evidence_for_errors(cubes):
     rgb = looked.data.atlas.rgb
     count = plain.data.atlas.measured_count
     for kind in (None, light("FL11")):
-        errors = looked.standard_error(rgb) if kind is None else looked.standard_error(rgb, kind)
+        errors = (
+            looked.standard_error(rgb)
+            if kind is None
+            else looked.standard_error(rgb, kind)
+        )
         assert errors[:count].max() < 0.5 < errors[count:].min()
     assert len(light_errors(looked.data, light("HP1")).entries) == count + 3
     np.testing.assert_array_equal(looked.unlike_atlas(rgb), plain.unlike_atlas(rgb))
-    assert [each.entry for each in query(looked, rgb[count:])] == list(looked.data.atlas.names[count:])
+    assert [each.entry for each in query(looked, rgb[count:])] == list(
+        looked.data.atlas.names[count:]
+    )
 
 
 def test_impossible_look_is_reported_and_recorded():
@@ -83,17 +111,26 @@ def test_impossible_look_is_reported_and_recorded():
     (record,) = cube.data.provenance["looks"]
     (at_a,) = record["lights"]
     assert 0.5 < at_a["possible"] <= at_a["delta_e"] < at_a["possible"] + 0.2
-    np.testing.assert_allclose(at_a["delta_e"], distances(cube, [IMPOSSIBLE])[0], atol=1e-5)
+    np.testing.assert_allclose(
+        at_a["delta_e"], distances(cube, [IMPOSSIBLE])[0], atol=1e-5
+    )
     assert "dusk" in str(found[0])
     assert cube.reflectance(cube.data.atlas.rgb).max() <= 1
 
 
 def test_look_that_few_coefficients_miss_is_reported(small_cube):
     screens = display_sensors(["FL11", "A"], small_cube.observer)
-    entry = small_cube.data.atlas.spectra.reflectance(np.array([3]), small_cube.data.sensor.wavelengths)[0]
-    look = Look(small_cube.data.atlas.rgb[3].tolist(), {each.illuminant: each.rgb(entry).tolist() for each in screens})
+    entry = small_cube.data.atlas.spectra.reflectance(
+        np.array([3]), small_cube.data.sensor.wavelengths
+    )[0]
+    look = Look(
+        small_cube.data.atlas.rgb[3].tolist(),
+        {each.illuminant: each.rgb(entry).tolist() for each in screens},
+    )
     with warns("look-not-reached"):
-        cube = uplift.build(dim=2, prior="smooth", coefficients=4, entry_coefficients=4, looks=look)
+        cube = uplift.build(
+            dim=2, prior="smooth", coefficients=4, entry_coefficients=4, looks=look
+        )
     (record,) = cube.data.provenance["looks"]
     assert max(each["delta_e"] for each in record["lights"]) > 0.1
     assert max(each["possible"] for each in record["lights"]) < 0.1
@@ -138,10 +175,14 @@ def test_contradicting_looks_are_refused(looks, code):
 
 def test_look_that_no_reflectance_has_by_day_is_refused():
     with raises(LookError, "look"):
-        uplift.build(dim=2, space="ITU-R BT.2020", looks=Look([0, 1, 0], {"A": "#808080"}))
+        uplift.build(
+            dim=2, space="ITU-R BT.2020", looks=Look([0, 1, 0], {"A": "#808080"})
+        )
 
 
-@pytest.mark.parametrize("options", [{"model": "sigmoid"}, {"coefficients": 3, "entry_coefficients": 3}])
+@pytest.mark.parametrize(
+    "options", [{"model": "sigmoid"}, {"coefficients": 3, "entry_coefficients": 3}]
+)
 def test_models_without_freedom_are_refused(options):
     with raises(LookError, "look"):
         uplift.build(dim=2, looks=RED, **options)
@@ -183,7 +224,9 @@ def read_text(tmp_path):
 
 def test_complete_file(read_text):
     first, second = read_text(COMPLETE)
-    assert first == Look("#8a2a20", {"FL11": "#70392a", "A": [0.27, 0.02, 0.01]}, 0.5, "brick")
+    assert first == Look(
+        "#8a2a20", {"FL11": "#70392a", "A": [0.27, 0.02, 0.01]}, 0.5, "brick"
+    )
     assert (second.name, second.weight) == ("look 0.1 0.2 0.3", 1.0)
     assert list(second.lights) == ["LED-B3", "FL3.1"]
 
@@ -199,7 +242,11 @@ HEAD = '[[look]]\nrgb = "#8a2a20"\n'
         ("[[look]]\nA = '#808080'", "invalid-file", "look[0].rgb"),
         (HEAD + 'A = "#80808"', "colour", "A"),
         (HEAD + 'FL3.1 = "#808080"', "colour", "FL3"),
-        (HEAD + 'A = "#808080"\n\n[[look]]\nrgb = [2, 0, 0]\nA = "#808080"', "look", "rgb"),
+        (
+            HEAD + 'A = "#808080"\n\n[[look]]\nrgb = [2, 0, 0]\nA = "#808080"',
+            "look",
+            "rgb",
+        ),
         (HEAD + "A = #808080", "invalid-file", "line 3"),
     ],
 )

@@ -28,7 +28,10 @@ def leaf(wavelengths):
 def infrared():
     """Cube to 1000 nm of a leaf, and of the same colours cut short at 700 nm, but brighter."""
     short = np.arange(400, 701, 10.0)
-    entries = (Entry("leaf", MEASURED, leaf(MEASURED)), Entry("short", short, 2 * leaf(short)))
+    entries = (
+        Entry("leaf", MEASURED, leaf(MEASURED)),
+        Entry("short", short, 2 * leaf(short)),
+    )
     return quiet_build(Atlas(entries), dim=4, longest=1000)
 
 
@@ -51,7 +54,13 @@ def test_entries_cut_short_continue_as_constants(infrared):
 @pytest.mark.parametrize(("step", "model"), [(1, "sigmoid"), (10, "moments")])
 def test_steps_change_spectra_little_and_all_meet_the_colour(step, model):
     atlas = read_atlas("macbeth")
-    options = {"dim": 3, "model": model, "prior": "smooth", "shortest": 360, "longest": 830}
+    options = {
+        "dim": 3,
+        "model": model,
+        "prior": "smooth",
+        "shortest": 360,
+        "longest": 830,
+    }
     usual, other = (quiet_build(atlas, **options, step=each) for each in (5, step))
     assert len(other.wavelengths) == 470 / step + 1
     assert other.data.points.distance.max() <= 1e-4
@@ -63,7 +72,9 @@ def test_steps_change_spectra_little_and_all_meet_the_colour(step, model):
     assert delta_e_rgb(judge, colours, back).max() < 0.2
 
 
-def test_the_range_survives_the_file_and_spectra_are_constant_outside(infrared, tmp_path):
+def test_the_range_survives_the_file_and_spectra_are_constant_outside(
+    infrared, tmp_path
+):
     infrared.save(tmp_path / "a.uplift")
     found = uplift.load(tmp_path / "a.uplift")
     assert found.data.sensor.range == (380, 1000, 5)
@@ -82,5 +93,7 @@ def test_everything_that_compares_under_lights_takes_the_range():
     assert all(each.range == (360, 830, 10) for each in assessed.lights)
     relit = relight("a", np.full((2, 2, 3), 0.5, np.float32), {"cube": cube}, ("A",))
     np.testing.assert_allclose(relit.renderings[0].colours["cube"], 0.5, atol=0.1)
-    assert set(compare_rebuilt(Path("a"), cube.data, cube.data).measures.values()) == {0}
+    assert set(compare_rebuilt(Path("a"), cube.data, cube.data).measures.values()) == {
+        0
+    }
     assert "<html" in page(cube.data)

@@ -10,7 +10,9 @@ from tests.parts import CC, need
 from uplift.colorimetry import tables
 from uplift.cube import digest
 
-SPACES = sorted({tables.stated_name("RGB space", name) for name in tables.names("RGB space")})
+SPACES = sorted(
+    {tables.stated_name("RGB space", name) for name in tables.names("RGB space")}
+)
 COLOURS = np.random.default_rng(0).random((24, 3), dtype=np.float32).astype(float)
 AT = np.array([385.0, 450.0, 525.0, 600.0, 675.0, 775.0])
 DEEP = 1e-4  # inside the solid, so that spectra are not steps
@@ -30,7 +32,9 @@ def test_a_cube_of_the_space_works(space, tmp_path):
     sensor = cube.data.sensor
     rgb = COLOURS[cube.data.solid.signed_distance(COLOURS) < -DEEP]
     assert len(rgb)
-    np.testing.assert_allclose(sensor.rgb(cube.reflectance(rgb)), rgb, rtol=0, atol=1e-5)
+    np.testing.assert_allclose(
+        sensor.rgb(cube.reflectance(rgb)), rgb, rtol=0, atol=1e-5
+    )
     np.testing.assert_allclose(cube.decode(cube.encode(rgb)), rgb, rtol=0, atol=1e-12)
     need(CC)
     exported = c_reflectances(cube.data, "spectra", rgb, AT)

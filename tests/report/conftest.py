@@ -39,14 +39,23 @@ def crowded_cube(macbeth):
 def lossy_cube(small_cube):
     """Cube of two entries of one colour: no colour returns the second."""
     data, atlas = small_cube.data, small_cube.data.atlas
-    pair = table(("grey", "über"), atlas.rgb[[0, 0]], data.model, atlas.coefficients[:2], np.array([0.5, 0.0]))
+    pair = table(
+        ("grey", "über"),
+        atlas.rgb[[0, 0]],
+        data.model,
+        atlas.coefficients[:2],
+        np.array([0.5, 0.0]),
+    )
     return Cube(dataclasses.replace(data, atlas=pair))
 
 
 @pytest.fixture(scope="session")
 def spoilt(small_cube):
     """The same cube with two nodes over the threshold."""
-    distance, status = small_cube.data.points.distance.copy(), small_cube.data.points.status.copy()
+    distance, status = (
+        small_cube.data.points.distance.copy(),
+        small_cube.data.points.status.copy(),
+    )
     distance[[100, 300]] = 0.01, 0.02
     status[[100, 300]] = Status.UNFITTED
     return Cube(with_points(small_cube.data, distance=distance, status=status))
@@ -57,4 +66,6 @@ def hostile():
     """An atlas whose names are HTML, two entries, one of them outside sRGB."""
     at = np.arange(380.0, 781.0, 5.0)
     laser = np.where(abs(at - 520) < 12, 1.0, 0.0)
-    return Atlas((Entry(HOSTILE, at, np.full(81, 0.4)), Entry("laser" + HOSTILE, at, laser)))
+    return Atlas(
+        (Entry(HOSTILE, at, np.full(81, 0.4)), Entry("laser" + HOSTILE, at, laser))
+    )

@@ -53,7 +53,9 @@ def test_the_node_that_changed_is_the_worst(small_cube, changed):
     assert found.nodes.worst(3)[0] == 210
     assert found.entries.largest.max() == 0
     rgb, nm = small_cube.data.lattice.points[210], small_cube.data.sensor.wavelengths
-    expected = delta_e_spectra(light("A"), small_cube.reflectance(rgb, nm), changed.reflectance(rgb, nm))
+    expected = delta_e_spectra(
+        light("A"), small_cube.reflectance(rgb, nm), changed.reflectance(rgb, nm)
+    )
     assert found.nodes.delta_e[210, 1] == pytest.approx(expected)
     assert not found.is_within(0.9 * found.largest)
     assert found.is_within(found.largest)
@@ -67,12 +69,17 @@ def test_entries_are_compared_by_name(small_cube, plain_cube):
     assert diff_cubes({"a": plain_cube, "b": small_cube}, LIGHTS).pairs.added == names
     # Renamed entries are compared with those that now have their names.
     names = (*reversed(small_cube.data.atlas.names),)
-    renamed = Cube(replace(small_cube.data, atlas=replace(small_cube.data.atlas, names=names)))
+    renamed = Cube(
+        replace(small_cube.data, atlas=replace(small_cube.data.atlas, names=names))
+    )
     found = diff_cubes({"a": small_cube, "b": renamed}, LIGHTS)
     assert found.pairs.names[-1] == "cyan"  # outside the space, and not renamed
     nm = small_cube.data.sensor.wavelengths
     spectra = small_cube.data.atlas.spectra.reflectance(np.arange(len(names)), nm)
-    np.testing.assert_allclose(found.entries.delta_e[:-1, 0], delta_e_spectra(light("D65"), spectra, spectra[::-1]))
+    np.testing.assert_allclose(
+        found.entries.delta_e[:-1, 0],
+        delta_e_spectra(light("D65"), spectra, spectra[::-1]),
+    )
 
 
 def test_lattices_of_other_dims_are_compared_at_the_nodes_of_both(plain_cube):
@@ -88,7 +95,9 @@ def test_images_json_and_page(small_cube, changed):
     assert found.images[0].worst(1).tolist() == [0]
     assert found.images[0].delta_e.shape == (6, 2)
     figures = json.loads(json.dumps(to_json(found, 0.01, 2), allow_nan=False))
-    assert [row["moved"] for row in figures["differences"] if row["set"] == "nodes"][1] >= 1
+    assert [row["moved"] for row in figures["differences"] if row["set"] == "nodes"][
+        1
+    ] >= 1
     assert not figures["passed"]
     assert render_diff(found, {"image.png": image}, 2).count("<svg") >= 4
 
@@ -98,7 +107,11 @@ def test_colours_that_one_cube_lacks_are_counted_and_fail(plain_cube, two_scenes
     for cubes in ({"a": first, "b": plain_cube}, {"a": plain_cube, "b": second}):
         found = diff_cubes(cubes, LIGHTS)
         ((name, lacking, count),) = found.lacking
-        assert (name, lacking, count) == ("nodes", "ab"[cubes["a"] is plain_cube], np.isnan(found.nodes.largest).sum())
+        assert (name, lacking, count) == (
+            "nodes",
+            "ab"[cubes["a"] is plain_cube],
+            np.isnan(found.nodes.largest).sum(),
+        )
         assert not found.is_within(100)
     image = np.array([[[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [1.0, 0.0, 0.0]]])
     found = diff_cubes({"a": first, "b": second}, LIGHTS, {"image": image})
@@ -108,7 +121,10 @@ def test_colours_that_one_cube_lacks_are_counted_and_fail(plain_cube, two_scenes
         ("image", "a and b", 1),
     ]
     assert found.largest == 0
-    assert json.loads(json.dumps(to_json(found, None, 2), allow_nan=False))["differences"] == []
+    assert (
+        json.loads(json.dumps(to_json(found, None, 2), allow_nan=False))["differences"]
+        == []
+    )
     assert "a and b cannot answer" in render_diff(found, {"image": image}, 2)
 
 
@@ -127,4 +143,6 @@ def test_more_nodes_than_memory_are_refused(plain_cube, monkeypatch):
 
 def test_spaces_must_agree(small_cube):
     with raises(OptionError, "cubes-of-different-spaces"):
-        diff_cubes({"a": small_cube, "b": uplift.build(dim=2, space="Display P3")}, LIGHTS)
+        diff_cubes(
+            {"a": small_cube, "b": uplift.build(dim=2, space="Display P3")}, LIGHTS
+        )

@@ -33,7 +33,13 @@ def test_page_fits_and_is_accessible(html, tmp_path):
 
 def test_page_is_complete_and_loads_nothing(html):
     read = Page(html)
-    for heading in ("Build", "Chromaticity diagrams", "Random lights", "Lamps", "No negative power"):
+    for heading in (
+        "Build",
+        "Chromaticity diagrams",
+        "Random lights",
+        "Lamps",
+        "No negative power",
+    ):
         assert heading in read.text
     assert emission_digest(TABLE.data) in read.text
     assert not re.search(r"\b(nan|inf|None)\b", read.text)
@@ -45,7 +51,9 @@ def test_page_is_complete_and_loads_nothing(html):
 def test_the_table_has_all_lamps(html, found):
     rows = Page(html).table("lamp", "colour")
     assert [row[0].parts[0] for row in rows] == list(TABLE.lamp_names)
-    assert [row[-1].value for row in rows] == pytest.approx(found["lamp_errors"], rel=1e-6)
+    assert [row[-1].value for row in rows] == pytest.approx(
+        found["lamp_errors"], rel=1e-6
+    )
 
 
 def test_colours_are_exact_and_powers_are_not_negative(found):
@@ -57,7 +65,9 @@ def test_colours_are_exact_and_powers_are_not_negative(found):
 def test_negative_powers_are_stated_and_names_are_escaped():
     data = TABLE.data
     entries = replace(data.entries, names=(HOSTILE, *data.entries.names[1:]))
-    table = EmissionTable(replace(data, entries=entries, spectra=data.spectra - np.float32(1e-3)))
+    table = EmissionTable(
+        replace(data, entries=entries, spectra=data.spectra - np.float32(1e-3))
+    )
     html = render_light_report(table, HOSTILE, 1)
     assert 'class="bad"><b>Negative power' in html
     assert HOSTILE not in html

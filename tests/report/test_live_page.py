@@ -46,17 +46,24 @@ def test_pixels_equal_those_of_python_under_a_mix_of_lights(page, small_cube):
     need(CHROMIUM)
     with browser() as opened:
         opened.open(page)
-        states = [{"mix": 0, "split": 768, "balance": False}, {"light-b": "FL11", "mix": 40, "split": 0}]
+        states = [
+            {"mix": 0, "split": 768, "balance": False},
+            {"light-b": "FL11", "mix": 40, "split": 0},
+        ]
         pictures = []
         for state in states:
             opened.evaluate(SET.replace("VALUES", str(state).replace("False", "false")))
-            pictures.append(opened.canvas("view")[::37, 1::41, :3].reshape(-1, 3).astype(float))
+            pictures.append(
+                opened.canvas("view")[::37, 1::41, :3].reshape(-1, 3).astype(float)
+            )
         curve = opened.evaluate("document.getElementById('curve').getAttribute('d')")
         assert opened.errors == []
     source, found = pictures
     sensor = small_cube.data.sensor
     rgb = small_cube.decode(source)
-    weights = [sensor.xyz_to_rgb @ light(name, sensor.observer).xyz for name in ("D65", "FL11")]
+    weights = [
+        sensor.xyz_to_rgb @ light(name, sensor.observer).xyz for name in ("D65", "FL11")
+    ]
     linear = small_cube.reflectance(rgb) @ (0.6 * weights[0] + 0.4 * weights[1]).T
     expected = 255 * encode(np.clip(linear, 0, 1))
     np.testing.assert_allclose(found, expected, atol=2)

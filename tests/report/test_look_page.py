@@ -69,7 +69,9 @@ def test_its_spectrum_is_the_answer(html, small_cube, found):
     given = numbers(html)
     start = 1 / (1 + np.exp(-np.array(given["start"])))
     np.testing.assert_allclose(start, found[0].reflectance[0], atol=1e-9)
-    np.testing.assert_allclose(np.array(given["sensor"]) @ start, given["target"], atol=1e-6)
+    np.testing.assert_allclose(
+        np.array(given["sensor"]) @ start, given["target"], atol=1e-6
+    )
     assert np.shape(given["basis"]) == (81, 17)
     assert given["rgb"] == "#8a2a20"
 
@@ -102,7 +104,11 @@ def text(tab, element):
 
 
 def spectrum(tab):
-    return np.array(json.loads(tab.evaluate("document.getElementById('spectrum').dataset.reflectance")))
+    return np.array(
+        json.loads(
+            tab.evaluate("document.getElementById('spectrum').dataset.reflectance")
+        )
+    )
 
 
 def shown_lab(tab, light):
@@ -117,7 +123,9 @@ def expected(spectra):
     return hex_codes(rgb, SRGB)
 
 
-def test_the_page_opens_with_the_answer_and_a_drag_changes_the_spectrum_but_not_the_rgb(opened, red, sensor, found):
+def test_the_page_opens_with_the_answer_and_a_drag_changes_the_spectrum_but_not_the_rgb(
+    opened, red, sensor, found
+):
     before = spectrum(opened)
     np.testing.assert_allclose(before, found[0].reflectance[0], atol=1e-9)
     assert text(opened, "state-1") == "free"
@@ -142,8 +150,12 @@ def test_colours_equal_those_of_python_and_goals_of_two_lights_hold_together(ope
     assert shown == expected(current)
     for number, name in enumerate(LIGHTS):
         light = observer.light(name)
-        assert shown_lab(opened, number) == pytest.approx(lab(light.xyz @ current, light.white), abs=0.051)
-    (look,) = tomllib.loads(opened.evaluate("document.getElementById('toml').value"))["look"]
+        assert shown_lab(opened, number) == pytest.approx(
+            lab(light.xyz @ current, light.white), abs=0.051
+        )
+    (look,) = tomllib.loads(opened.evaluate("document.getElementById('toml').value"))[
+        "look"
+    ]
     assert look == {"rgb": "#8a2a20", **dict(zip(LIGHTS, shown[1:], strict=True))}
     opened.evaluate("document.getElementById('release-0').click()")
     opened.evaluate(SETTLE)
@@ -165,8 +177,12 @@ def test_keys_move_and_release_a_colour(opened, found):
     opened.key("ArrowRight")
     opened.key("ArrowUp", modifiers=8)  # Shift
     opened.evaluate(SETTLE)
-    assert shown_lab(opened, 1)[1:] == pytest.approx([start[1] + 0.5, start[2] + 5], abs=0.11)
-    value = opened.evaluate("document.getElementById('region-1').getAttribute('aria-valuetext')")
+    assert shown_lab(opened, 1)[1:] == pytest.approx(
+        [start[1] + 0.5, start[2] + 5], abs=0.11
+    )
+    value = opened.evaluate(
+        "document.getElementById('region-1').getAttribute('aria-valuetext')"
+    )
     assert value == f"{text(opened, 'lab-1')}, chosen"
     opened.key("0")
     opened.evaluate(SETTLE)

@@ -26,7 +26,14 @@ def test_page_fits_and_is_accessible(html, tmp_path):
 
 def test_page_is_well_formed_and_complete(html, judged):
     read = Page(html)
-    for heading in ("Build", "Failures", "Distributions", "Standard error", "Crowding", "Entries"):
+    for heading in (
+        "Build",
+        "Failures",
+        "Distributions",
+        "Standard error",
+        "Crowding",
+        "Entries",
+    ):
         assert heading in read.text
     for name in judged.entries.names:
         assert name in read.text
@@ -45,7 +52,9 @@ def test_page_loads_nothing(html):
 def test_table_and_spectra_are_sorted_worst_first(html, judged):
     rows = Page(html).table("entry", "worst")
     assert [row[0].parts[0] for row in rows] == list(judged.entries.names)
-    assert [row[1].value for row in rows] == pytest.approx(judged.entries.answers.worst.tolist())
+    assert [row[1].value for row in rows] == pytest.approx(
+        judged.entries.answers.worst.tolist()
+    )
     drawn = re.findall(r'<figcaption><b title="[^"]*">([^<]*)</b>', html)
     assert drawn == list(judged.entries.names[:3])
 
@@ -60,14 +69,22 @@ def test_names_are_escaped(small_cube, hostile):
     assert HOSTILE in read.text
     assert "laser" + HOSTILE in read.text
     assert "which the cube was not built from" in read.text
-    assert "lattice alone" not in read.text.split("Table of entries")[1].split("Crowding")[0]
+    assert (
+        "lattice alone"
+        not in read.text.split("Table of entries")[1].split("Crowding")[0]
+    )
 
 
 def test_points_over_the_threshold_are_listed(spoilt, macbeth):
-    read = Page(render_report(assess(spoilt, "spoilt.uplift", 1, macbeth, ("D65",)), worst=0))
+    read = Page(
+        render_report(assess(spoilt, "spoilt.uplift", 1, macbeth, ("D65",)), worst=0)
+    )
     assert "2 nodes of 512 over the threshold of 0.0001." in read.text
     for point in (100, 300):
-        assert ", ".join(f"{value:.4f}" for value in spoilt.data.lattice.points[point]) in read.text
+        assert (
+            ", ".join(f"{value:.4f}" for value in spoilt.data.lattice.points[point])
+            in read.text
+        )
 
 
 def test_lost_entries_are_named(lossy_cube):
@@ -78,7 +95,10 @@ def test_lost_entries_are_named(lossy_cube):
     )
     values = json.loads(json.dumps(to_json(found), allow_nan=False))["crowding"]
     assert values["lost"] == [{"name": "über", "same_colour": "grey"}]
-    assert {entry["name"]: entry["reach"] for entry in values["entries"]} == {"grey": 0.5, "über": 0}
+    assert {entry["name"]: entry["reach"] for entry in values["entries"]} == {
+        "grey": 0.5,
+        "über": 0,
+    }
 
 
 def test_predicted_and_actual_errors_are_shown(small_cube, repository):
@@ -86,12 +106,19 @@ def test_predicted_and_actual_errors_are_shown(small_cube, repository):
     found = assess(small_cube, "small.uplift", 1, other, ("D65", "FL11"))
     read, values = Page(render_report(found, worst=0)), to_json(found)
     measured, under = found.calibration, found.light_calibrations["FL11"]
-    assert values["standard_error"]["calibration"]["within_bound"] == measured.within_bound
+    assert (
+        values["standard_error"]["calibration"]["within_bound"] == measured.within_bound
+    )
     assert values["standard_error"]["calibrations"]["FL11"]["real"] == under.actual
     assert values["standard_error"]["unlike_atlas"] == found.unlike
     rows = read.table("entry", "worst", "D65", "FL11", "rms", "predicted", "actual")
     assert [[cell.value for cell in row[-2:]] for row in rows] == pytest.approx(
-        np.array([(entry["standard_error"], entry["delta_e_2000_reference"]) for entry in values["entries"]])
+        np.array(
+            [
+                (entry["standard_error"], entry["delta_e_2000_reference"])
+                for entry in values["entries"]
+            ]
+        )
     )
 
 
@@ -110,22 +137,37 @@ def test_histogram_counts_every_value():
 def test_json_holds_the_numbers_of_the_assessment(judged):
     found = json.loads(json.dumps(to_json(judged), allow_nan=False))
     assert [entry["name"] for entry in found["entries"]] == list(judged.entries.names)
-    assert list(found["entries"][0]["delta_e_2000"].values()) == judged.entries.answers.delta_e[0].tolist()
+    assert (
+        list(found["entries"][0]["delta_e_2000"].values())
+        == judged.entries.answers.delta_e[0].tolist()
+    )
     assert found["entries"][0]["srgb"]["A"]["answered"].startswith("#")
     assert found["fitting_distance"]["max"] == judged.distance.max
     crowded = [entry["name"] for entry in found["crowding"]["entries"]]
     assert crowded == list(judged.crowding.entries.names)
     first, entries = found["entries"][0], judged.entries
-    assert list(first["delta_e_2000_lattice"].values()) == entries.lattice.delta_e[0].tolist()
-    assert (first["reach"], first["standard_error"]) == (entries.half_width[0], entries.predicted[0])
+    assert (
+        list(first["delta_e_2000_lattice"].values())
+        == entries.lattice.delta_e[0].tolist()
+    )
+    assert (first["reach"], first["standard_error"]) == (
+        entries.half_width[0],
+        entries.predicted[0],
+    )
 
 
 def test_entries_outside_the_space_are_among_the_entries(cyan_cube, macbeth):
     found = assess(cyan_cube, "cube.uplift", 1, macbeth, ("D65", "A"))
-    assert (len(found.entries.names), found.out_of_gamut, found.failures["left_out"]) == (24, (), ())
+    assert (
+        len(found.entries.names),
+        found.out_of_gamut,
+        found.failures["left_out"],
+    ) == (24, (), ())
     (facts,) = [entry for entry in to_json(found)["entries"] if entry["name"] == "cyan"]
     assert facts["delta_e_2000"]["D65"] < 1e-6
-    assert facts["delta_e_2000"]["A"] == pytest.approx(cyan_cube.data.atlas.outside.error[0], abs=1e-4)
+    assert facts["delta_e_2000"]["A"] == pytest.approx(
+        cyan_cube.data.atlas.outside.error[0], abs=1e-4
+    )
     assert facts["delta_e_2000_lattice"]["A"] > 1
     assert 0 < facts["reach"] < 1
     assert "cyan" not in found.crowding.entries.names

@@ -13,7 +13,12 @@ from uplift.colorimetry.lights import REGRESSION_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.common.errors import CubeFileError
 from uplift.lattice import Lattice, Status
-from uplift.report.regression import LIMITS, EntryChange, RebuildDifference, compare_rebuilt
+from uplift.report.regression import (
+    LIMITS,
+    EntryChange,
+    RebuildDifference,
+    compare_rebuilt,
+)
 
 PATH = Path("cube.uplift")
 
@@ -37,12 +42,18 @@ def test_cube_equals_itself(data):
 
 
 def test_a_rounding_error_passes_and_a_changed_colour_or_status_fails(data):
-    nudged = with_point(data, "coefficients", (300, 4), data.points.coefficients[300, 4] * (1 + 1e-14))
+    nudged = with_point(
+        data, "coefficients", (300, 4), data.points.coefficients[300, 4] * (1 + 1e-14)
+    )
     assert compare_rebuilt(PATH, data, nudged).failures == ()
-    nudged = with_point(data, "rgb", (300, 1), data.points.rgb[300, 1] + 2 * LIMITS["rgb"])
+    nudged = with_point(
+        data, "rgb", (300, 1), data.points.rgb[300, 1] + 2 * LIMITS["rgb"]
+    )
     assert compare_rebuilt(PATH, data, nudged).failures == ("rgb",)
     assert data.points.status[300] != Status.UNFITTED
-    found = compare_rebuilt(PATH, data, with_point(data, "status", 300, Status.UNFITTED))
+    found = compare_rebuilt(
+        PATH, data, with_point(data, "status", 300, Status.UNFITTED)
+    )
     assert found.failures == ("status",)
     assert found.rebuilt_counts["unfitted"] == found.stored_counts["unfitted"] + 1
 
@@ -56,7 +67,10 @@ def test_measures_fail_above_their_limits_and_as_nan(name):
         (float("nan"), (name,)),
         (float("inf"), (name,)),
     ]:
-        assert RebuildDifference(PATH, measures | {name: value}, {}, {}, ()).failures == failures
+        assert (
+            RebuildDifference(PATH, measures | {name: value}, {}, {}, ()).failures
+            == failures
+        )
 
 
 def with_atlas(data, **changes):
@@ -66,10 +80,15 @@ def with_atlas(data, **changes):
 def test_entries_are_compared_by_name(data):
     names = ("new", *data.atlas.names[1:])
     found = compare_rebuilt(PATH, data, with_atlas(data, names=names))
-    assert found.entries == (EntryChange(data.atlas.names[0], "removed"), EntryChange("new", "added"))
+    assert found.entries == (
+        EntryChange(data.atlas.names[0], "removed"),
+        EntryChange("new", "added"),
+    )
     assert found.failures == ("entries",)
     assert max(found.measures.values()) == 0
-    reordered = compare_rebuilt(PATH, data, with_atlas(data, names=data.atlas.names[::-1]))
+    reordered = compare_rebuilt(
+        PATH, data, with_atlas(data, names=data.atlas.names[::-1])
+    )
     assert {entry.change for entry in reordered.entries} == {"moved"}
     assert max(entry.delta_e for entry in reordered.entries) > 1
 
@@ -79,14 +98,21 @@ def test_measures_are_the_largest_and_the_rms(plain_cube):
     other = with_points(data, coefficients=data.points.coefficients[::-1].copy())
     at = data.sensor.wavelengths
     first, second = (
-        data.model.to_reflectance(data.model.from_storage(cube.points.coefficients) @ data.model.basis(at).T)
+        data.model.to_reflectance(
+            data.model.from_storage(cube.points.coefficients) @ data.model.basis(at).T
+        )
         for cube in (data, other)
     )
     measures = compare_rebuilt(PATH, data, other).measures
     assert measures["spectra_max"] == np.abs(first - second).max()
-    assert measures["spectra_rms"] == pytest.approx(np.sqrt(np.mean((first - second) ** 2)), rel=1e-12)
+    assert measures["spectra_rms"] == pytest.approx(
+        np.sqrt(np.mean((first - second) ** 2)), rel=1e-12
+    )
     for name in REGRESSION_LIGHTS:
-        assert measures[f"delta_e_{name}"] == delta_e_spectra(light(name), first, second).max()
+        assert (
+            measures[f"delta_e_{name}"]
+            == delta_e_spectra(light(name), first, second).max()
+        )
 
 
 def with_nodes_moved(data, distance):
@@ -96,7 +122,9 @@ def with_nodes_moved(data, distance):
 
 
 def test_nodes_may_differ_by_rounding_only(data):
-    assert not np.array_equal(with_nodes_moved(data, 1e-15).lattice.nodes, data.lattice.nodes)
+    assert not np.array_equal(
+        with_nodes_moved(data, 1e-15).lattice.nodes, data.lattice.nodes
+    )
     assert compare_rebuilt(PATH, data, with_nodes_moved(data, 1e-15)).failures == ()
     moved = with_nodes_moved(data, 1e-11).lattice.nodes
     for nodes in (moved, np.linspace(0, 1, 8), np.linspace(0, 1, 5)):
@@ -111,15 +139,27 @@ def test_entries_outside_the_space_are_compared(cyan_cube, small_cube):
     outside, spectra = data.atlas.outside, data.atlas.outside.spectra
 
     def changed(**changes):
-        atlas = dataclasses.replace(data.atlas, outside=dataclasses.replace(outside, **changes))
+        atlas = dataclasses.replace(
+            data.atlas, outside=dataclasses.replace(outside, **changes)
+        )
         return dataclasses.replace(data, atlas=atlas)
 
     assert compare_rebuilt(PATH, data, changed()).failures == ()
     other = dataclasses.replace(spectra, coefficients=0.99 * spectra.coefficients)
-    assert [change.name for change in compare_rebuilt(PATH, data, changed(spectra=other)).entries] == ["cyan"]
-    assert compare_rebuilt(PATH, small_cube.data, data).entries == ()  # an earlier version stored its name only
-    renamed = dataclasses.replace(changed(names=("turquoise",)), provenance={"left_out": ["turquoise"]})
-    found = [(change.name, change.change) for change in compare_rebuilt(PATH, data, renamed).entries]
+    assert [
+        change.name
+        for change in compare_rebuilt(PATH, data, changed(spectra=other)).entries
+    ] == ["cyan"]
+    assert (
+        compare_rebuilt(PATH, small_cube.data, data).entries == ()
+    )  # an earlier version stored its name only
+    renamed = dataclasses.replace(
+        changed(names=("turquoise",)), provenance={"left_out": ["turquoise"]}
+    )
+    found = [
+        (change.name, change.change)
+        for change in compare_rebuilt(PATH, data, renamed).entries
+    ]
     assert found == [("cyan", "removed"), ("turquoise", "added")]
 
 

@@ -25,7 +25,9 @@ def picture(small_cube):
 
 @pytest.fixture(scope="module")
 def relit(picture, small_cube, plain_cube):
-    return relight("noise", picture, {"without atlas": plain_cube, "atlas": small_cube}, LIGHTS)
+    return relight(
+        "noise", picture, {"without atlas": plain_cube, "atlas": small_cube}, LIGHTS
+    )
 
 
 @pytest.mark.parametrize("method", [RGB_PRODUCT, "without atlas", "atlas"])
@@ -45,7 +47,9 @@ def test_products_multiply_by_the_rgb_of_the_light(relit, picture, sensor):
     product = picture * (sensor.xyz_to_rgb @ lamp)
     xyz = sensor.xyz(product)
     expected = xyz @ relit.renderings[1].sensor.xyz_to_rgb.T
-    np.testing.assert_allclose(relit.renderings[1].colours[RGB_PRODUCT], expected, atol=1e-5)
+    np.testing.assert_allclose(
+        relit.renderings[1].colours[RGB_PRODUCT], expected, atol=1e-5
+    )
 
 
 def test_atlas_entries_are_relit_as_measured_where_products_fail(macbeth_cube):
@@ -54,7 +58,12 @@ def test_atlas_entries_are_relit_as_measured_where_products_fail(macbeth_cube):
     measured = on_grid(atlas, build.wavelengths)
     rgb = build.rgb(measured)
     inside = in_unit_cube(rgb)
-    relit = relight("chart", rgb[inside][None].astype(np.float32), {"atlas": macbeth_cube}, ("A", "HP1"))
+    relit = relight(
+        "chart",
+        rgb[inside][None].astype(np.float32),
+        {"atlas": macbeth_cube},
+        ("A", "HP1"),
+    )
     for rendering, bounds in zip(relit.renderings, ((0.3, 3), (0.6, 12)), strict=True):
         truth = rendering.sensor.rgb(measured[inside])[None]
         spectra = delta_e_rgb(rendering.sensor, truth, rendering.colours["atlas"])
@@ -65,8 +74,12 @@ def test_atlas_entries_are_relit_as_measured_where_products_fail(macbeth_cube):
 
 def test_the_white_of_a_light_is_white_or_has_its_tint(relit):
     for rendering in relit.renderings:
-        tint = colour.XYZ_to_sRGB(light(rendering.light).white, apply_cctf_encoding=False)
-        codes = 255 * colour.cctf_encoding(np.clip(tint / tint.max(), 0, 1), function="sRGB")
+        tint = colour.XYZ_to_sRGB(
+            light(rendering.light).white, apply_cctf_encoding=False
+        )
+        codes = 255 * colour.cctf_encoding(
+            np.clip(tint / tint.max(), 0, 1), function="sRGB"
+        )
         for method in relit.methods:
             for balanced, expected in ((True, 255), (False, codes)):
                 white = rendering.screen_codes(method, balanced=balanced)[-1, 0]
@@ -75,8 +88,15 @@ def test_the_white_of_a_light_is_white_or_has_its_tint(relit):
 
 def test_lamps_look_white_but_sodium_and_candles_do_not(small_cube):
     white = ("D65", "A", "FL2", "LED-B3", "LED-RGB1", "2700K")
-    relit = relight("grey", np.full((1, 1, 3), 0.5, np.float32), {"a": small_cube}, (*white, "HP1", "1900K"))
-    looks = {rendering.light for rendering in relit.renderings if rendering.is_balanced(None)}
+    relit = relight(
+        "grey",
+        np.full((1, 1, 3), 0.5, np.float32),
+        {"a": small_cube},
+        (*white, "HP1", "1900K"),
+    )
+    looks = {
+        rendering.light for rendering in relit.renderings if rendering.is_balanced(None)
+    }
     assert looks == set(white)
 
 

@@ -30,7 +30,9 @@ def page(relit, tmp_path_factory):
 def test_the_page_is_well_formed_and_holds_its_images(page):
     found = Page(page.read_text(encoding="utf-8"))
     sources = [value for name, value in found.attributes if name == "src"]
-    assert len(sources) == 2 * (1 + 3 * (2 * 3 + 3))  # images, original, lights, methods twice and pairs of them
+    assert len(sources) == 2 * (
+        1 + 3 * (2 * 3 + 3)
+    )  # images, original, lights, methods twice and pairs of them
     assert all(source.startswith("data:image/") for source in sources)
     assert all(text for name, text in found.attributes if name == "alt")
     assert "a & b.png" in found.text
@@ -52,7 +54,9 @@ def tab(page):
 VISIBLE = """[...document.querySelector(".view").querySelectorAll("img")]
   .filter(image => getComputedStyle(image).display !== "none")
   .map(image => [image.dataset.light, image.dataset.shows])"""
-BALANCED = '[balance.checked, document.querySelector("img.first").dataset.balanced === "true"]'
+BALANCED = (
+    '[balance.checked, document.querySelector("img.first").dataset.balanced === "true"]'
+)
 SPLIT = 'getComputedStyle(document.querySelector(".view")).getPropertyValue("--split")'
 CHOOSE = """((light, left, right, asMap) => {
   const form = document.querySelector(".choices");
@@ -66,7 +70,9 @@ def choose(tab, *choices):
     tab.evaluate(f"{CHOOSE}(...{json.dumps(choices)})")
 
 
-def test_the_page_opens_where_the_difference_is_largest_and_choices_change_the_layers(tab):
+def test_the_page_opens_where_the_difference_is_largest_and_choices_change_the_layers(
+    tab,
+):
     assert tab.evaluate(VISIBLE) == [["2", "0"], ["2", "2"]]
     choose(tab, 1, 2, 1, False)
     assert sorted(tab.evaluate(VISIBLE)) == [["1", "1"], ["1", "2"]]
@@ -93,14 +99,19 @@ def test_each_light_keeps_its_white_balance_as_the_switch_was_left(tab):
 
 
 def test_maps_of_a_page_have_one_scale(relit, page):
-    limits = [map_limit([replace(relit, renderings=(rendering,))]) for rendering in relit.renderings]
+    limits = [
+        map_limit([replace(relit, renderings=(rendering,))])
+        for rendering in relit.renderings
+    ]
     assert len(set(limits)) > 1
     assert page.read_text(encoding="utf-8").count(f">{max(limits)} and more<") == 2
 
 
 def test_the_line_moves_by_key_and_by_mouse(tab):
     tab.window(1200, 900)
-    tab.evaluate('document.querySelector(".split").value = 50; document.querySelector(".split").focus()')
+    tab.evaluate(
+        'document.querySelector(".split").value = 50; document.querySelector(".split").focus()'
+    )
     tab.key("ArrowRight")
     assert tab.evaluate(SPLIT) == "51%"
     x, y, width, height = tab.evaluate(

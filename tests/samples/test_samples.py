@@ -18,7 +18,9 @@ def test_samples_are_copied_once(tmp_path):
     times = {path: path.stat().st_mtime_ns for path in copies}
     assert copy_samples(folder) == copies
     assert {path: path.stat().st_mtime_ns for path in copies} == times
-    assert all(path.read_bytes() == sample_path(path.name).read_bytes() for path in copies)
+    assert all(
+        path.read_bytes() == sample_path(path.name).read_bytes() for path in copies
+    )
 
 
 def test_folders_that_cannot_be_made_are_refused(tmp_path):
@@ -29,14 +31,22 @@ def test_folders_that_cannot_be_made_are_refused(tmp_path):
 
 def test_the_still_life_holds_the_colorchecker(sensor):
     """The patches of the chart in the picture have the colours of the atlas, to half a code."""
-    picture = OpenImageIO.ImageBuf(str(sample_path("still-life.png"))).get_pixels(OpenImageIO.FLOAT)
+    picture = OpenImageIO.ImageBuf(str(sample_path("still-life.png"))).get_pixels(
+        OpenImageIO.FLOAT
+    )
     atlas = read_atlas("macbeth")
-    for number, colour in enumerate(np.clip(sensor.rgb(on_grid(atlas, sensor.wavelengths)), 0, 1)):
+    for number, colour in enumerate(
+        np.clip(sensor.rgb(on_grid(atlas, sensor.wavelengths)), 0, 1)
+    ):
         row, column = divmod(number, 6)
-        np.testing.assert_allclose(picture[188 + 22 * row, 352 + 22 * column], encode(colour), atol=0.51 / 255)
+        np.testing.assert_allclose(
+            picture[188 + 22 * row, 352 + 22 * column], encode(colour), atol=0.51 / 255
+        )
 
 
-@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")  # a scale of percent is recognised
+@pytest.mark.filterwarnings(
+    "ignore::uplift.UpliftWarning"
+)  # a scale of percent is recognised
 def test_measurements_in_several_formats_are_the_same():
     """`chart.ti3`, `paints.cxf` and `paints.xlsx` hold patches of `paints.csv`."""
     paints = read_atlas(sample_path("paints.csv"))
@@ -44,4 +54,6 @@ def test_measurements_in_several_formats_are_the_same():
     for name, count in (("paints.cxf", 12), ("paints.xlsx", 12), ("chart.ti3", 6)):
         atlas = read_atlas(sample_path(name))
         grid = atlas[0].wavelengths
-        np.testing.assert_allclose(on_grid(atlas, grid), on_grid(paints[:count], grid), atol=1e-6)
+        np.testing.assert_allclose(
+            on_grid(atlas, grid), on_grid(paints[:count], grid), atol=1e-6
+        )

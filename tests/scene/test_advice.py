@@ -26,12 +26,18 @@ def cube():
 def scene(cube, seed, count=12):
     rng = np.random.default_rng(seed)
     areas = rng.exponential(size=count)
-    return uncertainty(cube, PixelSample(rng.random((count, 3)), areas / areas.sum()), [light(each) for each in LIGHTS])
+    return uncertainty(
+        cube,
+        PixelSample(rng.random((count, 3)), areas / areas.sum()),
+        [light(each) for each in LIGHTS],
+    )
 
 
 @settings(max_examples=15)
 @given(seed=st.integers(0, 1000))
-def test_no_measurement_raises_a_variance_and_each_swatch_has_the_largest_gain(cube, seed):
+def test_no_measurement_raises_a_variance_and_each_swatch_has_the_largest_gain(
+    cube, seed
+):
     before = scene(cube, seed)
     chosen, after = advise(before, 4)
     assert (after.errors <= before.errors + 1e-12).all()
@@ -39,7 +45,10 @@ def test_no_measurement_raises_a_variance_and_each_swatch_has_the_largest_gain(c
         remaining = [before.measured(each) for each in range(len(before.area))]
         brute = before.mean - np.array([each.mean for each in remaining])
         assert brute.max() == pytest.approx(swatch.gain, rel=1e-9)
-        assert all((np.diag(each.covariance) <= np.diag(before.covariance) + 1e-12).all() for each in remaining)
+        assert all(
+            (np.diag(each.covariance) <= np.diag(before.covariance) + 1e-12).all()
+            for each in remaining
+        )
         before = remaining[swatch.colour]
         assert np.diag(before.covariance)[swatch.colour] == pytest.approx(0, abs=1e-12)
         assert before.mean == pytest.approx(swatch.mean_after, rel=1e-12)
@@ -50,7 +59,9 @@ def test_posterior_is_that_of_the_joint_covariance(cube):
     kernel, known = Kernel(12.0, 0.3), cube.data.entry_lab
     lab = known[:3] + 2.0
     both = np.concatenate([known, lab])
-    joint = np.linalg.inv(posterior(kernel, np.zeros((0, 3)), both) * (1 + kernel.noise))
+    joint = np.linalg.inv(
+        posterior(kernel, np.zeros((0, 3)), both) * (1 + kernel.noise)
+    )
     expected = np.linalg.inv(joint[len(known) :, len(known) :]) / (1 + kernel.noise)
     np.testing.assert_allclose(posterior(kernel, known, lab), expected, rtol=1e-9)
     far = posterior(kernel, known, np.array([[50.0, 500.0, 0.0]]))
@@ -59,11 +70,15 @@ def test_posterior_is_that_of_the_joint_covariance(cube):
 
 def test_errors_are_those_of_the_cube_until_something_is_measured(cube):
     rgb = np.random.default_rng(0).random((20, 3))
-    before = uncertainty(cube, PixelSample(rgb, np.full(20, 0.05)), [light(each) for each in LIGHTS])
+    before = uncertainty(
+        cube, PixelSample(rgb, np.full(20, 0.05)), [light(each) for each in LIGHTS]
+    )
     for column, name in enumerate(LIGHTS):
         # Nodes store those under one light, which are interpolated.
         expected = cube.standard_error(rgb, name)
-        np.testing.assert_allclose(before.errors[:, column], expected, rtol=0.05 if name == "A" else 1e-9)
+        np.testing.assert_allclose(
+            before.errors[:, column], expected, rtol=0.05 if name == "A" else 1e-9
+        )
 
 
 def test_areas_are_those_of_the_pixels(cube, tmp_path):
@@ -75,7 +90,9 @@ def test_areas_are_those_of_the_pixels(cube, tmp_path):
     np.testing.assert_allclose(found.share, [0.75, 0.25])
     np.testing.assert_allclose(cube.encode(found.rgb[1]), (200, 60, 20), atol=1e-6)
     noise = tmp_path / "noise.png"
-    matplotlib.image.imsave(noise, np.random.default_rng(0).integers(0, 256, (128, 128, 3), dtype=np.uint8))
+    matplotlib.image.imsave(
+        noise, np.random.default_rng(0).integers(0, 256, (128, 128, 3), dtype=np.uint8)
+    )
     assert len(colour_areas(Images((noise,)), cube.data.sensor).share) == 512
     chosen, after = advise(uncertainty(cube, found, [light("A")]), 100)
     assert len(chosen) <= 2

@@ -45,19 +45,32 @@ def test_rule_is_exact_to_degree_2n_minus_1_and_no_further(order):
 
 def _exact_nodes(points, masses, order):
     """Roots of the orthogonal polynomial from its moments, by elimination in fractions."""
-    moments = [sum(m * Fraction(p) ** k for p, m in zip(points, masses, strict=True)) for k in range(2 * order)]
-    rows = [[moments[i + j] for j in range(order)] + [-moments[i + order]] for i in range(order)]
+    moments = [
+        sum(m * Fraction(p) ** k for p, m in zip(points, masses, strict=True))
+        for k in range(2 * order)
+    ]
+    rows = [
+        [moments[i + j] for j in range(order)] + [-moments[i + order]]
+        for i in range(order)
+    ]
     for i in range(order):
         pivot = next(k for k in range(i, order) if rows[k][i])
         rows[i], rows[pivot] = rows[pivot], rows[i]
         rows[i] = [value / rows[i][i] for value in rows[i]]
         for k in range(order):
             if k != i:
-                rows[k] = [a - rows[k][i] * b for a, b in zip(rows[k], rows[i], strict=True)]
+                rows[k] = [
+                    a - rows[k][i] * b for a, b in zip(rows[k], rows[i], strict=True)
+                ]
     return np.roots([1.0, *(float(row[-1]) for row in reversed(rows))])
 
 
-@given(st.lists(st.integers(-9, 9), min_size=6, max_size=12).filter(lambda m: sum(map(bool, m)) > 4), st.integers(1, 4))
+@given(
+    st.lists(st.integers(-9, 9), min_size=6, max_size=12).filter(
+        lambda m: sum(map(bool, m)) > 4
+    ),
+    st.integers(1, 4),
+)
 def test_nodes_agree_with_elimination_in_fractions(masses, order):
     points = list(range(len(masses)))
     try:
@@ -85,7 +98,9 @@ def test_undefined_order_states_its_reason(masses, order, reason):
     assert reason in caught.value.problem
 
 
-@pytest.mark.parametrize("nodes", [[560.0], [631.4, 490.9, 557.7], np.linspace(400, 700, 12)])
+@pytest.mark.parametrize(
+    "nodes", [[560.0], [631.4, 490.9, 557.7], np.linspace(400, 700, 12)]
+)
 def test_interpolatory_rule_is_exact_below_its_number_of_nodes(nodes):
     rule = interpolatory_rule(nodes, POINTS, BELL)
     np.testing.assert_array_equal(rule.nodes, np.sort(nodes))

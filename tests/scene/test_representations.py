@@ -11,7 +11,11 @@ from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
 from uplift.lab.comparison.compare import make_scene
 from uplift.lab.study.moments import Technique
-from uplift.scene.representations import FACTORIES, all_representations, find_representation
+from uplift.scene.representations import (
+    FACTORIES,
+    all_representations,
+    find_representation,
+)
 from uplift.scene.representations.composite import (
     enhanced_riemann,
     fourier_coefficients,
@@ -44,7 +48,9 @@ def checker():
 @pytest.fixture(scope="session")
 def every(checker):
     """Every representation by name."""
-    return {one.name: one for one in all_representations(checker.powers, checker.surfaces)}
+    return {
+        one.name: one for one in all_representations(checker.powers, checker.surfaces)
+    }
 
 
 @pytest.fixture
@@ -60,7 +66,11 @@ def light_powers(checker):
 
 
 NAMES = [
-    *(f"{family}{count}" for family in ("PS", "PF", "RS", "RE", "GQ") for count in (4, 32)),
+    *(
+        f"{family}{count}"
+        for family in ("PS", "PF", "RS", "RE", "GQ")
+        for count in (4, 32)
+    ),
     *("CS5", "CS15", "TM5", "TM17", "SG3", "LM4", "LM16", "HW4", "HW256"),
 ]
 EXACT = [name for name in NAMES if not name.startswith(("LM", "HW", "PF"))]
@@ -77,14 +87,27 @@ def test_grey_under_constant_light_is_exact(every, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_colour_is_linear_in_the_light_and_products_can_be_multiplied_again(every, checker, light_powers, name):
+def test_colour_is_linear_in_the_light_and_products_can_be_multiplied_again(
+    every, checker, light_powers, name
+):
     one, surfaces = every[name], every[name].encode_surface(checker.surfaces)
-    products = [one.multiply(one.encode_light(factor * light_powers("FL11")), surfaces) for factor in (1, 2)]
-    np.testing.assert_allclose(one.xyz(products[1]), 2 * one.xyz(products[0]), rtol=1e-9)
-    again = one.xyz(one.multiply(one.multiply(one.encode_light(light_powers("A")), surfaces), surfaces))
+    products = [
+        one.multiply(one.encode_light(factor * light_powers("FL11")), surfaces)
+        for factor in (1, 2)
+    ]
+    np.testing.assert_allclose(
+        one.xyz(products[1]), 2 * one.xyz(products[0]), rtol=1e-9
+    )
+    again = one.xyz(
+        one.multiply(
+            one.multiply(one.encode_light(light_powers("A")), surfaces), surfaces
+        )
+    )
     assert np.isfinite(again).all()
     if name in ("PS32", "PF32", "RS32", "RE32", "GQ32", "TM17", "LM16"):
-        np.testing.assert_allclose(again, (light_powers("A") * checker.surfaces**2) @ xyz_weights(), atol=0.01)
+        np.testing.assert_allclose(
+            again, (light_powers("A") * checker.surfaces**2) @ xyz_weights(), atol=0.01
+        )
 
 
 RANDOM = np.random.default_rng(5).random((3, 401))
@@ -95,7 +118,9 @@ def test_point_samples_are_linear_interpolation_both_ways(count):
     samples, places = point_samples(count), np.linspace(380, 780, count)
     assert sample_points(count)[[0, -1]].tolist() == [380, 780]
     taken = samples.encode_light(RANDOM)
-    np.testing.assert_allclose(taken, [np.interp(places, wavelengths(), row) for row in RANDOM], rtol=1e-12)
+    np.testing.assert_allclose(
+        taken, [np.interp(places, wavelengths(), row) for row in RANDOM], rtol=1e-12
+    )
     back = np.array([np.interp(wavelengths(), places, row) for row in taken])
     np.testing.assert_allclose(samples.xyz(taken), back @ xyz_weights(), rtol=1e-12)
 
@@ -107,10 +132,17 @@ def test_quadrature_is_exact_for_polynomials(count):
     for degree in range(count):
         power = np.polynomial.chebyshev.chebval(x, np.eye(degree + 1)[-1])[None]
         # Spectra are linear between dense samples, so the rule is only approximate.
-        np.testing.assert_allclose(rule.xyz(rule.encode_light(power)), power @ xyz_weights(), atol=1e-3)
+        np.testing.assert_allclose(
+            rule.xyz(rule.encode_light(power)), power @ xyz_weights(), atol=1e-3
+        )
 
 
-SOME = [Filter("box", 5), Filter("gaussian", 7, (0.5,)), Filter("mitchell", 19, (-0.4, 1.0)), Filter("hann", 9)]
+SOME = [
+    Filter("box", 5),
+    Filter("gaussian", 7, (0.5,)),
+    Filter("mitchell", 19, (-0.4, 1.0)),
+    Filter("hann", 9),
+]
 
 
 def reference_conversion(taps, up, down, count, spectrum):
@@ -126,7 +158,9 @@ def reference_conversion(taps, up, down, count, spectrum):
 def test_resampling_equals_the_listing_of_the_thesis(low_pass, count, up, down):
     spectrum = np.random.default_rng(8).random(81)
     expected = reference_conversion(low_pass.taps(up), up, down, count, spectrum)
-    np.testing.assert_allclose(resampling_matrix(low_pass, count) @ spectrum, expected, atol=1e-12)
+    np.testing.assert_allclose(
+        resampling_matrix(low_pass, count) @ spectrum, expected, atol=1e-12
+    )
 
 
 TABLES = arrays(float, (2, 81), elements=st.floats(0, 100, width=32))
@@ -158,10 +192,16 @@ def test_fourier_coefficients_equal_equation_4_7(count):
     phase = np.arange(1, 81) * 2 * np.pi / 80
     actual = fourier_coefficients(count).encode_light(dense(table))
     table[:, 80] = (table[:, 0] + table[:, 80]) / 2
-    np.testing.assert_allclose(actual[:, 0], table[:, 1:].mean(axis=1))  # ã_0 / 2 of eq. 4.7
+    np.testing.assert_allclose(
+        actual[:, 0], table[:, 1:].mean(axis=1)
+    )  # ã_0 / 2 of eq. 4.7
     for order in range(1, count // 2 + 1):
         for place, wave in ((2 * order - 1, np.cos), (2 * order, np.sin)):
-            np.testing.assert_allclose(actual[:, place], (table[:, 1:] @ wave(order * phase)) * 2 / 80, atol=1e-12)
+            np.testing.assert_allclose(
+                actual[:, place],
+                (table[:, 1:] @ wave(order * phase)) * 2 / 80,
+                atol=1e-12,
+            )
 
 
 @pytest.mark.parametrize("count", [3, 7])
@@ -181,15 +221,21 @@ def test_spikes_multiply_exactly_on_constant_spectra(make):
     light[0, 40] += 30.0
     surface[0, 60] += 0.5
     surface[0, 40] += 0.6
-    actual = one.multiply(one.encode_light(dense(light)), one.encode_surface(dense(surface)))
+    actual = one.multiply(
+        one.encode_light(dense(light)), one.encode_surface(dense(surface))
+    )
     assert actual.positions.tolist() == [40, 60]
-    np.testing.assert_allclose(one.xyz(actual), dense(light * surface) @ xyz_weights(), rtol=1e-6)
+    np.testing.assert_allclose(
+        one.xyz(actual), dense(light * surface) @ xyz_weights(), rtol=1e-6
+    )
     assert one.storage(actual).tolist() == [7 + 4]
 
 
 def test_moments_equal_the_integrals(checker):
     actual = trigonometric_moments(9).encode_surface(checker.surfaces)
-    exact = Technique(mirrored=True, warped=False).moments(checker.surfaces, wavelengths(), 8)
+    exact = Technique(mirrored=True, warped=False).moments(
+        checker.surfaces, wavelengths(), 8
+    )
     np.testing.assert_allclose(actual, exact, atol=2e-5)
 
 
@@ -217,6 +263,8 @@ def test_hero_wavelengths_are_unbiased_and_variance_falls_with_paths(checker):
         hero = hero_wavelengths(count)
         actual = hero.xyz(hero.encode_light(np.tile(power, (4000, 1))))
         error = actual.std(axis=0) / np.sqrt(len(actual))
-        assert (np.abs(actual.mean(axis=0) - power @ xyz_weights()) < 4 * error + 1e-5).all()
+        assert (
+            np.abs(actual.mean(axis=0) - power @ xyz_weights()) < 4 * error + 1e-5
+        ).all()
         spread.append(actual.std(axis=0).max())
     assert spread[1] < spread[0] / 8**0.5

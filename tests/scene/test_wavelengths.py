@@ -8,7 +8,12 @@ from tests.helpers import raises
 from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.common.errors import OptionError, UnknownNameError, UpliftError
 from uplift.scene.wavelengths import METHODS, choose, fit_weights, grid, make_setup
-from uplift.scene.wavelengths.optimise import MAX_FITTED_PAIRS, FitProblem, fit_at, optimise
+from uplift.scene.wavelengths.optimise import (
+    MAX_FITTED_PAIRS,
+    FitProblem,
+    fit_at,
+    optimise,
+)
 from uplift.scene.wavelengths.sampling import evaluate, midpoints, prefiltered
 
 
@@ -42,9 +47,16 @@ def test_errors_are_those_of_a_renderer_with_count_wavelengths(smooth, method):
                 sampling.powers[light, i] * float(smooth.curves(nm)[material])
                 for i, nm in enumerate(sampling.wavelengths)
             ]
-            found = colour.XYZ_to_Lab(np.array(radiance) @ sampling.to_xyz, colour.XYZ_to_xy(smooth.whites[light]))
-            delta_e = colour.delta_E(smooth.lab[light, material], found, method="CIE 2000")
-            assert choice.errors[light, material] == pytest.approx(delta_e, abs=1e-6), name
+            found = colour.XYZ_to_Lab(
+                np.array(radiance) @ sampling.to_xyz,
+                colour.XYZ_to_xy(smooth.whites[light]),
+            )
+            delta_e = colour.delta_E(
+                smooth.lab[light, material], found, method="CIE 2000"
+            )
+            assert choice.errors[light, material] == pytest.approx(delta_e, abs=1e-6), (
+                name
+            )
 
 
 def test_target_is_met_and_one_wavelength_less_misses_it(spiky):
@@ -71,7 +83,9 @@ def test_invalid_options_raise(smooth, options, kind, code):
 
 def test_metric_is_delta_e_of_close_colours(spiky):
     change = np.random.default_rng(4).normal(0, 1e-6, spiky.xyz.shape)
-    approximate = np.linalg.norm(np.einsum("kmij,kmj->kmi", FitProblem(spiky).factors, change), axis=-1)
+    approximate = np.linalg.norm(
+        np.einsum("kmij,kmj->kmi", FitProblem(spiky).factors, change), axis=-1
+    )
     exact = delta_e_2000(spiky.lab, spiky.to_lab(spiky.xyz + change))
     np.testing.assert_allclose(approximate, exact, rtol=0.02)
 
@@ -82,9 +96,13 @@ def test_jacobian_agrees_with_central_differences(spiky):
     unknowns = small.pack(start)
     result = small.jacobian(unknowns)
     for column, step in enumerate(np.maximum(1e-6 * np.abs(unknowns), 1e-9)):
-        up, down = (unknowns + sign * step * np.eye(len(unknowns))[column] for sign in (1, -1))
+        up, down = (
+            unknowns + sign * step * np.eye(len(unknowns))[column] for sign in (1, -1)
+        )
         slope = (small.residuals(up) - small.residuals(down)) / (2 * step)
-        np.testing.assert_allclose(result[:, column], slope, rtol=1e-4, atol=1e-4 * np.abs(result).max())
+        np.testing.assert_allclose(
+            result[:, column], slope, rtol=1e-4, atol=1e-4 * np.abs(result).max()
+        )
 
 
 @pytest.mark.parametrize("light", ["A", "FL11"])
@@ -92,10 +110,14 @@ def test_prefiltering_keeps_white_and_ramps_exact(checker, light):
     """Both hold even if lines of the light lie between the wavelengths."""
     setup = make_setup(checker, [light])
     sampling = prefiltered(setup, midpoints(6))
-    np.testing.assert_allclose(sampling.powers @ sampling.to_xyz, setup.whites, rtol=1e-12)
+    np.testing.assert_allclose(
+        sampling.powers @ sampling.to_xyz, setup.whites, rtol=1e-12
+    )
     nm = np.clip(setup.wavelengths, midpoints(6)[0], midpoints(6)[-1])
     ramp = setup.powers * (nm - 400) @ setup.cmfs
-    np.testing.assert_allclose(sampling.powers * (midpoints(6) - 400) @ sampling.to_xyz, ramp, rtol=1e-12)
+    np.testing.assert_allclose(
+        sampling.powers * (midpoints(6) - 400) @ sampling.to_xyz, ramp, rtol=1e-12
+    )
 
 
 @pytest.mark.parametrize("count", [1, 4, 9])
@@ -117,13 +139,18 @@ def test_fit_beats_other_methods_on_unseen_materials(smooth, spiky, count):
         unseen = setup.only(odd)
         error = evaluate(unseen, optimise(setup.only(~odd), count)).mean()
         for method in ("meyer", "uniform", "bins"):
-            assert factor * error < choose(unseen, count=count, method=method).errors.mean(), method
+            assert (
+                factor * error
+                < choose(unseen, count=count, method=method).errors.mean()
+            ), method
 
 
 def test_one_material_and_more_materials_than_are_fitted(checker):
     one = choose(make_setup(checker[:1], ["FL11"]), count=4)
     assert one.errors.max() < 0.2
-    shades = np.concatenate([checker * shade for shade in np.linspace(0.05, 1, MAX_FITTED_PAIRS // 24 + 2)])
+    shades = np.concatenate(
+        [checker * shade for shade in np.linspace(0.05, 1, MAX_FITTED_PAIRS // 24 + 2)]
+    )
     many = choose(make_setup(shades, ["D65"]), count=4)
     assert many.errors.shape == (1, len(shades))
     assert len(shades) > MAX_FITTED_PAIRS
@@ -140,7 +167,9 @@ def test_weights_for_given_wavelengths_beat_prefiltering(spiky):
     assert evaluate(spiky, optimise(spiky, 7)).mean() < error < unfitted / 1.5
 
 
-@pytest.mark.parametrize("nm", [[], [500, 500], [300, 500], [500, 800], [[500]], [np.nan]])
+@pytest.mark.parametrize(
+    "nm", [[], [500, 500], [300, 500], [500, 800], [[500]], [np.nan]]
+)
 def test_invalid_wavelengths_raise(smooth, nm):
     with raises(OptionError, "option"):
         fit_weights(smooth, nm)

@@ -22,12 +22,16 @@ def drawn(value):
 
 def test_equal_figures_have_equal_svg_and_others_share_no_identifier():
     assert drawn(1) == drawn(1)
-    first, second = (set(re.findall(r' id="([^"]+)"', drawn(value))) for value in (1, 2))
+    first, second = (
+        set(re.findall(r' id="([^"]+)"', drawn(value))) for value in (1, 2)
+    )
     assert first
     assert not first & second
 
 
-@pytest.mark.parametrize("text", [r"$\frac{A$", "$$", r"a\$b", "_hidden", "a\x00\x1b[2Jb", "\ud800", "{$x$}"])
+@pytest.mark.parametrize(
+    "text", [r"$\frac{A$", "$$", r"a\$b", "_hidden", "a\x00\x1b[2Jb", "\ud800", "{$x$}"]
+)
 def test_text_of_files_is_drawn_as_it_is(text):
     with matplotlib.rc_context(STYLE):
         figure = new_figure(3, 2)

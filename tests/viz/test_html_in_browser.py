@@ -23,7 +23,10 @@ def page(**values):
     headings = [f"a long heading {row}" for row in range(12)]
     chart = to_page_svg(figure, "A line")
     template = _environment().from_string(WIDE_TABLE)
-    return template.render(**{"title": "A page", "lead": "x", "headings": headings, "chart": chart} | values)
+    return template.render(
+        **{"title": "A page", "lead": "x", "headings": headings, "chart": chart}
+        | values
+    )
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +44,9 @@ def test_wide_tables_scroll_by_keys(tab, tmp_path):
     open_page(tab, page(), tmp_path, width=390)
     tab.evaluate("document.querySelector('.scroll').focus()")
     assert tab.evaluate("document.activeElement.className") == "scroll"
-    assert tab.evaluate("(box => box.scrollWidth > box.clientWidth)(document.querySelector('.scroll'))")
+    assert tab.evaluate(
+        "(box => box.scrollWidth > box.clientWidth)(document.querySelector('.scroll'))"
+    )
 
 
 def test_grey_surround_replaces_the_dark_scheme(tab, tmp_path):
@@ -60,14 +65,27 @@ def test_grey_surround_replaces_the_dark_scheme(tab, tmp_path):
 
 
 INTERACTIVE = "viz/templates/interactive.html.j2"
-ATTACK = Markup("<script>document.title = 'attacked'</script><b onclick='document.title = \"attacked\"'>x</b>")
+ATTACK = Markup(
+    "<script>document.title = 'attacked'</script><b onclick='document.title = \"attacked\"'>x</b>"
+)
 
 
 def interactive(**values):
     circle = "<svg viewBox='0 0 9 9'><g id='marker-0-0'><circle r='3' cx='4' cy='4'/></g></svg>"
     tooltips = [{"title": "a point", "family": "one", "lines": [("", "1 ns")]}]
-    page = {"title": "A page", "lead": "x", "families": {"one": "#808080"}, "facts": {}, "sources": []}
-    return render(INTERACTIVE, pictures=[("A panel", Markup(circle))], tooltips=tooltips, **page | values)
+    page = {
+        "title": "A page",
+        "lead": "x",
+        "families": {"one": "#808080"},
+        "facts": {},
+        "sources": [],
+    }
+    return render(
+        INTERACTIVE,
+        pictures=[("A panel", Markup(circle))],
+        tooltips=tooltips,
+        **page | values,
+    )
 
 
 HOVER = """(() => {

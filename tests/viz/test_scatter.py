@@ -28,6 +28,13 @@ def test_labels_of_close_points_do_not_overlap():
 
 
 def test_label_does_not_cover_a_marker():
-    anchors, markers = np.array([[100.0, 100.0]]), np.array([[100.0, 100.0], [120.0, 100.0]])
+    anchors, markers = (
+        np.array([[100.0, 100.0]]),
+        np.array([[100.0, 100.0], [120.0, 100.0]]),
+    )
     (corner,) = place_labels(anchors, np.array([[40.0, 8.0]]), markers, PANEL)
-    assert not ((markers > corner) & (markers < corner + np.array([40, 8]))).all(axis=1).any()
+    assert (
+        not ((markers > corner) & (markers < corner + np.array([40, 8])))
+        .all(axis=1)
+        .any()
+    )

@@ -10,7 +10,16 @@ from matplotlib.image import imread
 
 from tests.cube.hand_made import hand_made
 from uplift.colorimetry.srgb import encode
-from uplift.viz.sheet import BACKGROUND, HIGHLIGHT, RAMP, STATUS, Layout, compose, panels, write_sheet
+from uplift.viz.sheet import (
+    BACKGROUND,
+    HIGHLIGHT,
+    RAMP,
+    STATUS,
+    Layout,
+    compose,
+    panels,
+    write_sheet,
+)
 
 COLOUR, DISTANCE, STATE, ERROR, ROUND = range(5)
 
@@ -32,27 +41,48 @@ def test_every_node_is_at_its_position():
     for position in product(range(4), repeat=3):
         point = data.lattice.index(np.array(position))
         for number, panel in enumerate(shown):
-            np.testing.assert_array_equal(pixel(data, image, number, position), panel.colours[point].astype(np.float32))
+            np.testing.assert_array_equal(
+                pixel(data, image, number, position),
+                panel.colours[point].astype(np.float32),
+            )
 
 
 def test_colours_agree_with_the_legend():
     data = hand_made()
     image = compose(data).image
-    np.testing.assert_array_equal(pixel(data, image, COLOUR, (3, 1, 2)), data.points.rgb[3 * 16 + 1 * 4 + 2])
-    np.testing.assert_array_equal(pixel(data, image, DISTANCE, (0, 0, 0)), HIGHLIGHT[0].astype(np.float32))
+    np.testing.assert_array_equal(
+        pixel(data, image, COLOUR, (3, 1, 2)), data.points.rgb[3 * 16 + 1 * 4 + 2]
+    )
+    np.testing.assert_array_equal(
+        pixel(data, image, DISTANCE, (0, 0, 0)), HIGHLIGHT[0].astype(np.float32)
+    )
     for blue in range(4):
-        np.testing.assert_array_equal(pixel(data, image, STATE, (0, 0, blue)), STATUS[blue].astype("f4"))
-    np.testing.assert_array_equal(pixel(data, image, ROUND, (0, 0, 0)), HIGHLIGHT[0].astype(np.float32))
-    np.testing.assert_array_equal(pixel(data, image, ROUND, (0, 0, 1)), RAMP[0].astype(np.float32))
+        np.testing.assert_array_equal(
+            pixel(data, image, STATE, (0, 0, blue)), STATUS[blue].astype("f4")
+        )
+    np.testing.assert_array_equal(
+        pixel(data, image, ROUND, (0, 0, 0)), HIGHLIGHT[0].astype(np.float32)
+    )
+    np.testing.assert_array_equal(
+        pixel(data, image, ROUND, (0, 0, 1)), RAMP[0].astype(np.float32)
+    )
 
 
 @pytest.mark.parametrize(
     ("distance", "colour"),
-    [(0.0, RAMP[0]), (1e-7, RAMP[0]), (10**-5.5, RAMP[2]), (1e-4, RAMP[-1]), (1.1e-4, HIGHLIGHT[0])],
+    [
+        (0.0, RAMP[0]),
+        (1e-7, RAMP[0]),
+        (10**-5.5, RAMP[2]),
+        (1e-4, RAMP[-1]),
+        (1.1e-4, HIGHLIGHT[0]),
+    ],
 )
 def test_distance_is_logarithmic_up_to_the_threshold(distance, colour):
     panel = panels(hand_made(distance=np.full(64, distance)))[DISTANCE]
-    np.testing.assert_allclose(panel.colours, np.broadcast_to(colour, (64, 3)), atol=1e-9)
+    np.testing.assert_allclose(
+        panel.colours, np.broadcast_to(colour, (64, 3)), atol=1e-9
+    )
 
 
 def test_exr_is_flat_linear_rgb(tmp_path):
@@ -76,13 +106,17 @@ def test_png_is_the_same_in_srgb(tmp_path):
     assert image.shape[1::-1] == Layout(4, 5).size
     for position in ((0, 0, 0), (3, 1, 2), (1, 3, 0)):
         expected = encode(data.points.rgb[data.lattice.index(np.array(position))])
-        np.testing.assert_allclose(pixel(data, image[..., :3], COLOUR, position), expected, atol=0.51 / 255)
+        np.testing.assert_allclose(
+            pixel(data, image[..., :3], COLOUR, position), expected, atol=0.51 / 255
+        )
 
 
 @pytest.mark.parametrize("deficiency", ["Protanomaly", "Deuteranomaly", "Tritanomaly"])
 @pytest.mark.filterwarnings("ignore::colour.utilities.ColourUsageWarning")
 def test_status_colours_differ_for_colour_vision_deficiencies(deficiency):
-    perceived = np.clip(STATUS @ colour.blindness.matrix_cvd_Machado2009(deficiency, 1.0).T, 0, 1)
+    perceived = np.clip(
+        STATUS @ colour.blindness.matrix_cvd_Machado2009(deficiency, 1.0).T, 0, 1
+    )
     labs = colour.XYZ_to_Lab(colour.RGB_to_XYZ(perceived, "sRGB"))
     for one, other in combinations(labs, 2):
         assert colour.difference.delta_E_CIE2000(one, other) >= 16

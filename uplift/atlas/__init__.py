@@ -3,7 +3,13 @@
 from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source, merge
 from uplift.atlas.formats import FORMATS, Format
 from uplift.atlas.resample import Clip, Resampled, on_grid, resample
-from uplift.atlas.sources import ShippedAtlas, from_distributions, read_atlas, shipped_atlases, write_atlas
+from uplift.atlas.sources import (
+    ShippedAtlas,
+    from_distributions,
+    read_atlas,
+    shipped_atlases,
+    write_atlas,
+)
 
 __all__ = [
     "FORMATS",

@@ -84,7 +84,9 @@ class Entry:
             try:
                 samples = np.array(getattr(self, key), dtype=float)
             except (TypeError, ValueError):
-                raise location.error(f"the {key} are not all numbers", "give an array of numbers") from None
+                raise location.error(
+                    f"the {key} are not all numbers", "give an array of numbers"
+                ) from None
             samples.setflags(write=False)
             object.__setattr__(self, key, samples)
         for problem, hint in _faults(self.name, self.wavelengths, self.values):
@@ -133,7 +135,9 @@ def skipped_warning(skipped: Sequence[SkippedEntry], *, code: str) -> UpliftWarn
     if others:
         names = listed([f"'{entry.name}'" for entry in others])
         problem += f"; {len(others)} more are skipped: {names}"
-    return UpliftWarning(problem, code=code, path=first.path, line=first.line, entry=first.name)
+    return UpliftWarning(
+        problem, code=code, path=first.path, line=first.line, entry=first.name
+    )
 
 
 @dataclass(frozen=True)
@@ -195,7 +199,11 @@ class Source:
             ``measured`` and ``missing``, without defaults.
         """
         options = {"measured": self.measured, "missing": self.missing}
-        return {name: value for name, value in options.items() if value not in ("auto", "refuse")}
+        return {
+            name: value
+            for name, value in options.items()
+            if value not in ("auto", "refuse")
+        }
 
 
 @dataclass(frozen=True, repr=False)
@@ -237,10 +245,21 @@ class Atlas:
         for entry in self.entries:
             first = named.setdefault(entry.name, entry)
             if first is not entry:
-                where = "" if first.path is None else f": first used at {first.path}:{first.line}"
+                where = (
+                    ""
+                    if first.path is None
+                    else f": first used at {first.path}:{first.line}"
+                )
                 location = SourceLocation(entry.path, entry.line, entry.name)
-                is_copy = first.wavelengths.shape == entry.wavelengths.shape and np.allclose(first.values, entry.values)
-                hint = "leave out one of the two files" if is_copy else "rename or remove one of the two"
+                is_copy = (
+                    first.wavelengths.shape == entry.wavelengths.shape
+                    and np.allclose(first.values, entry.values)
+                )
+                hint = (
+                    "leave out one of the two files"
+                    if is_copy
+                    else "rename or remove one of the two"
+                )
                 raise location.error(f"the name is taken{where}", hint)
 
     def __len__(self) -> int:
@@ -315,7 +334,10 @@ def merge(parts: Iterable[Atlas]) -> Atlas:
 def _faults(name: str, wavelengths: Array, values: Array) -> Iterator[tuple[str, str]]:
     """Yield problems of a name and of samples (N,) in nm and units of 1, with hints. The first one counts."""
     if name != name.strip() or len(name.splitlines()) != 1 or "\0" in name:
-        yield "the name must be one line of text without surrounding blanks", "give every entry a unique name"
+        yield (
+            "the name must be one line of text without surrounding blanks",
+            "give every entry a unique name",
+        )
     if len(name) > MAX_NAME or name != name.encode(errors="ignore").decode():
         problem = f"the name must have at most {MAX_NAME} characters, all of them valid Unicode"
         yield problem, "give the entry a shorter name"
@@ -323,9 +345,14 @@ def _faults(name: str, wavelengths: Array, values: Array) -> Iterator[tuple[str,
         problem = f"wavelengths and values must have the same shape (N,), got {wavelengths.shape} and {values.shape}"
         yield problem, "give one wavelength for every value"
     if len(wavelengths) < 2:
-        yield f"an entry needs at least 2 samples, got {len(wavelengths)}", "add the missing samples"
+        yield (
+            f"an entry needs at least 2 samples, got {len(wavelengths)}",
+            "add the missing samples",
+        )
     for i in np.flatnonzero(~(np.isfinite(wavelengths) & np.isfinite(values))):
-        problem = f"sample {i + 1} is not finite: {values[i]:g} at {wavelengths[i]:g} nm"
+        problem = (
+            f"sample {i + 1} is not finite: {values[i]:g} at {wavelengths[i]:g} nm"
+        )
         yield problem, "replace it by the measured value or remove the entry"
     first, last = wavelengths[0], wavelengths[-1]
     if first <= 0 or last > LONGEST:

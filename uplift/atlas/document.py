@@ -37,7 +37,9 @@ class SourceLocation:
     def error(self, problem: str, hint: str, *, code: str | None = None) -> AtlasError:
         """Create an error at this location."""
         entry = None if self.entry is None else truncate(self.entry)
-        return AtlasError(problem, code=code, path=self.path, line=self.line, entry=entry, hint=hint)
+        return AtlasError(
+            problem, code=code, path=self.path, line=self.line, entry=entry, hint=hint
+        )
 
 
 @dataclass(frozen=True)
@@ -69,23 +71,34 @@ class Document:
         even, odd = data[:UTF_16_START:2], data[1:UTF_16_START:2]
         if data.startswith((b"\xff\xfe", b"\xfe\xff")):
             encoding = "utf-16"
-        elif len(data) >= UTF_16_START and len(data) % 2 == 0 and any(even) != any(odd) and (all(even) or all(odd)):
+        elif (
+            len(data) >= UTF_16_START
+            and len(data) % 2 == 0
+            and any(even) != any(odd)
+            and (all(even) or all(odd))
+        ):
             encoding = "utf-16-le" if any(even) else "utf-16-be"
         # Every sequence of bytes is valid Latin-1, so this is the last encoding that is tried.
         try:
             text = data.decode(encoding or "utf-8-sig")
         except UnicodeDecodeError:
             if encoding is not None:
-                raise self.location.at(1).error("the UTF-16 text is damaged", hint) from None
+                raise self.location.at(1).error(
+                    "the UTF-16 text is damaged", hint
+                ) from None
             text = data.decode("latin-1")
         if "\0" in text or data.startswith(IMAGES):
             if kind := recognise(data):
                 problem = f"must be a file of spectra, got {kind}"
                 raise self.location.error(problem, "name an atlas", code="not-spectra")
             line = text[: text.index("\0")].count("\n") + 1
-            raise self.location.at(line).error("binary data (a NUL character) instead of text", hint)
+            raise self.location.at(line).error(
+                "binary data (a NUL character) instead of text", hint
+            )
         if not text.strip():
-            raise self.location.error("the file is empty", "name a file that contains atlas entries")
+            raise self.location.error(
+                "the file is empty", "name a file that contains atlas entries"
+            )
         return text.replace("\r\n", "\n").replace("\r", "\n")
 
     @cached_property
@@ -109,10 +122,17 @@ class Document:
             depth -= 1
 
         def doctype(*_: Any) -> None:
-            raise self.location.error("an XML file must not have a document type, which may define entities", EXPORT)
+            raise self.location.error(
+                "an XML file must not have a document type, which may define entities",
+                EXPORT,
+            )
 
         parser = expat.ParserCreate()
-        parser.StartElementHandler, parser.EndElementHandler, parser.StartDoctypeDeclHandler = start, end, doctype
+        (
+            parser.StartElementHandler,
+            parser.EndElementHandler,
+            parser.StartDoctypeDeclHandler,
+        ) = start, end, doctype
         try:
             parser.Parse(self.data, True)
         except AtlasError:
@@ -124,10 +144,17 @@ class Document:
 
 def read_document(path: StrPath) -> Document:
     """Read a file. Raise `AtlasError` if it is missing, unreadable or too large."""
-    data = read_bytes(path, AtlasError, limit=MAX_BYTES, hint="name a file, or an atlas that shipped_atlases() lists")
+    data = read_bytes(
+        path,
+        AtlasError,
+        limit=MAX_BYTES,
+        hint="name a file, or an atlas that shipped_atlases() lists",
+    )
     path = os.fspath(path)
     digest = hashlib.sha256(data).hexdigest()
-    return Document(path, SourceLocation(path), printable(os.path.basename(path)), data, digest)
+    return Document(
+        path, SourceLocation(path), printable(os.path.basename(path)), data, digest
+    )
 
 
 def parse_number(token: str, location: SourceLocation, label: str) -> float:
@@ -135,7 +162,11 @@ def parse_number(token: str, location: SourceLocation, label: str) -> float:
     try:
         return parse_float(token)
     except ValueError:
-        problem = f"{label} '{truncate(token)}' is not a number" if token.strip() else f"{label} is empty"
+        problem = (
+            f"{label} '{truncate(token)}' is not a number"
+            if token.strip()
+            else f"{label} is empty"
+        )
         raise location.error(problem, "write a plain number such as 0.125") from None
 
 

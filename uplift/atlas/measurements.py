@@ -9,7 +9,17 @@ from typing import Literal
 
 import numpy as np
 
-from uplift.atlas.atlas import HIGHEST, LOWEST, SLACK, USED, Atlas, Entry, Header, SkippedEntry, Source
+from uplift.atlas.atlas import (
+    HIGHEST,
+    LOWEST,
+    SLACK,
+    USED,
+    Atlas,
+    Entry,
+    Header,
+    SkippedEntry,
+    Source,
+)
 from uplift.atlas.document import EXPORT, Document, SourceLocation, truncate
 from uplift.atlas.samples import Samples, Spectrum, in_order
 from uplift.atlas.scales import FLOOR, find_scale
@@ -49,31 +59,55 @@ class Measurements:
 
 
 def to_atlas(
-    document: Document, measurements: Measurements, format_name: str, measured: str = "auto", missing: str = "refuse"
+    document: Document,
+    measurements: Measurements,
+    format_name: str,
+    measured: str = "auto",
+    missing: str = "refuse",
 ) -> Atlas:
     """Make entries of the reflectances of a file: in order of wavelength, without missing values, in units of 1."""
     reflectances, skipped = _reflectances(document, measurements)
-    samples = [in_order(spectrum, document.location, missing) for spectrum in reflectances]
+    samples = [
+        in_order(spectrum, document.location, missing) for spectrum in reflectances
+    ]
     kept = [each for each in samples if not each.skipped]
     if kept:
         left_out = [each for each in samples if each.skipped]
         skipped += [
-            SkippedEntry(each.spectrum.name, each.skipped, document.path, each.spectrum.line) for each in left_out
+            SkippedEntry(
+                each.spectrum.name, each.skipped, document.path, each.spectrum.line
+            )
+            for each in left_out
         ]
     else:  # the error of an entry states what is wrong
         kept = samples
     # One scale for all spectra: a dark one alone does not show whether it is in percent.
-    scale, scale_note = find_scale(document.location, measurements.scales, kept, measured)
+    scale, scale_note = find_scale(
+        document.location, measurements.scales, kept, measured
+    )
     entries = [_entry(each, scale, document) for each in kept]
     counts = Counter(note for each in kept for note in each.notes)
-    changes = [f"{count} of {pluralise(len(entries), 'entry')}: {note}" for note, count in counts.items()]
+    changes = [
+        f"{count} of {pluralise(len(entries), 'entry')}: {note}"
+        for note, count in counts.items()
+    ]
     notes = (*measurements.notes, *changes, scale_note) if entries else ()
     safe = tuple(map(printable, notes))
-    source = Source(document.name, document.digest, measurements.header, format_name, measured, safe, missing=missing)
+    source = Source(
+        document.name,
+        document.digest,
+        measurements.header,
+        format_name,
+        measured,
+        safe,
+        missing=missing,
+    )
     return Atlas(tuple(entries), (*measurements.skipped, *skipped), (source,))
 
 
-def _reflectances(document: Document, measurements: Measurements) -> tuple[list[Spectrum], list[SkippedEntry]]:
+def _reflectances(
+    document: Document, measurements: Measurements
+) -> tuple[list[Spectrum], list[SkippedEntry]]:
     """Separate reflectances from other spectra. Raise `AtlasError` if none may be a reflectance."""
     kept, skipped = list[Spectrum](), list[SkippedEntry]()
     refusals = list[AtlasError]()
@@ -83,8 +117,12 @@ def _reflectances(document: Document, measurements: Measurements) -> tuple[list[
             kept.append(spectrum)
         else:
             reason = f"it is {quantity.name}, not reflectance"
-            skipped.append(SkippedEntry(spectrum.name, reason, document.path, spectrum.line))
-            refusals.append(wrong_quantity(quantity, document.location.at(spectrum.line)))
+            skipped.append(
+                SkippedEntry(spectrum.name, reason, document.path, spectrum.line)
+            )
+            refusals.append(
+                wrong_quantity(quantity, document.location.at(spectrum.line))
+            )
     if refusals and not kept:
         raise refusals[0]
     return kept, skipped
@@ -101,10 +139,14 @@ def _entry(samples: Samples, scale: float, document: Document) -> Entry:
         first = np.flatnonzero(invalid & (nm < USED[0])).max(initial=-1) + 1
         last = np.flatnonzero(invalid & (nm > USED[1])).min(initial=len(nm))
         nm, scaled, outside = nm[first:last], scaled[first:last], outside[first:last]
-    if scale != 1 and outside.any():  # an entry would name the scaled value, which is not in the file
+    if (
+        scale != 1 and outside.any()
+    ):  # an entry would name the scaled value, which is not in the file
         at = int(np.argmax(outside))
         limits = f"[{LOWEST * scale:g}, {HIGHEST * scale:g}] on the scale to {scale:g}"
-        problem = f"values must be in {limits}, got {scaled[at] * scale:g} at {nm[at]:g} nm"
+        problem = (
+            f"values must be in {limits}, got {scaled[at] * scale:g} at {nm[at]:g} nm"
+        )
         raise location.error(problem, "correct the value, or the scale")
     stated = {key: getattr(spectrum, key) for key in ("description", "date", "line")}
     return Entry(spectrum.name, nm, scaled, path=document.path, **stated)
@@ -118,9 +160,20 @@ def warn_of_odd(entries: Sequence[Entry]) -> None:
         above = value > ODD * np.maximum(before, after)
         below = value * ODD < np.minimum(before, after)
         is_near = entry.wavelengths[2:] - entry.wavelengths[:-2] <= 2 * COARSE
-        for at in np.flatnonzero((above | below) & is_near & (np.maximum(value, before) > FLOOR))[:1] + 1:
+        for at in (
+            np.flatnonzero(
+                (above | below) & is_near & (np.maximum(value, before) > FLOOR)
+            )[:1]
+            + 1
+        ):
             problem = f"{entry.values[at]:g} at {entry.wavelengths[at]:g} nm is far from both of its neighbours"
-            warning = UpliftWarning(problem, code="odd-value", path=entry.path, line=entry.line, entry=entry.name)
+            warning = UpliftWarning(
+                problem,
+                code="odd-value",
+                path=entry.path,
+                line=entry.line,
+                entry=entry.name,
+            )
             warnings.warn(warning, stacklevel=3)
 
 

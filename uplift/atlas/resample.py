@@ -95,7 +95,10 @@ def on_grid(atlas: Atlas, wavelengths: ArrayLike) -> Array:
     resampled = resample(atlas, wavelengths)
     clips = resampled.clips
     if len(clips) == 1:
-        warnings.warn(UpliftWarning(str(clips[0]), code="entry-clipped", entry=clips[0].name), stacklevel=2)
+        warnings.warn(
+            UpliftWarning(str(clips[0]), code="entry-clipped", entry=clips[0].name),
+            stacklevel=2,
+        )
     elif clips:
         names = listed([f"'{clip.name}'" for clip in clips])
         most = max(clips, key=lambda clip: max(-clip.value, clip.value - 1))
@@ -125,7 +128,9 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
     for rows in alike.values():
         nm = entries[rows[0]].wavelengths
         values = np.stack([entries[row].values for row in rows])
-        raw[rows] = values if np.array_equal(nm, grid) else _interpolate(nm, values, grid)
+        raw[rows] = (
+            values if np.array_equal(nm, grid) else _interpolate(nm, values, grid)
+        )
     clips = [clip for entry in entries if (clip := _clip(entry, grid))]
     return Resampled(np.clip(raw, 0.0, 1.0), tuple(clips))
 
@@ -137,7 +142,13 @@ def _clip(entry: Entry, grid: Array) -> Clip | None:
     excess[(entry.wavelengths < grid.min()) | (entry.wavelengths > grid.max())] = 0
     worst = int(excess.argmax())
     is_noise = excess[worst] <= NOISE
-    return None if is_noise else Clip(entry.name, float(entry.values[worst]), float(entry.wavelengths[worst]))
+    return (
+        None
+        if is_noise
+        else Clip(
+            entry.name, float(entry.values[worst]), float(entry.wavelengths[worst])
+        )
+    )
 
 
 def _step(grid: Array) -> float:
@@ -149,12 +160,16 @@ def _step(grid: Array) -> float:
 
 def _interpolate(nm: Array, values: Array, grid: Array) -> Array:
     """Resample values (E, n) at wavelengths (n,) to a grid (N,): averages over its bands if they are finer."""
-    from scipy.interpolate import PchipInterpolator  # takes as long to import as a small build
+    from scipy.interpolate import (
+        PchipInterpolator,
+    )  # takes as long to import as a small build
 
     curve = PchipInterpolator(nm, values, axis=1)
     step = _step(grid)
     if step and np.median(np.diff(nm)) < step - SLACK:
-        return (_integral(curve, grid + step / 2) - _integral(curve, grid - step / 2)) / step
+        return (
+            _integral(curve, grid + step / 2) - _integral(curve, grid - step / 2)
+        ) / step
     return np.asarray(curve(np.clip(grid, nm[0], nm[-1])))
 
 

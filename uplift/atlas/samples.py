@@ -67,7 +67,11 @@ def in_order(spectrum: Spectrum, location: SourceLocation, missing: str) -> Samp
         return Samples(spectrum, nm, values)  # an entry refuses them
     steps = np.diff(nm)
     if (steps < 0).any():
-        notes.append("descending, reversed" if (steps < 0).all() else "not in order of wavelength, sorted")
+        notes.append(
+            "descending, reversed"
+            if (steps < 0).all()
+            else "not in order of wavelength, sorted"
+        )
         order = np.argsort(nm, kind="stable")
         nm, values = nm[order], values[order]
     absent = is_missing(values)
@@ -85,6 +89,8 @@ def in_order(spectrum: Spectrum, location: SourceLocation, missing: str) -> Samp
             return Samples(spectrum, nm, values, skipped=problem)
         if missing == "refuse":
             hint = "measure it again, or pass missing='interpolate' or missing='skip'"
-            raise location.at(spectrum.line, spectrum.name).error(problem, hint, code="missing-value")
+            raise location.at(spectrum.line, spectrum.name).error(
+                problem, hint, code="missing-value"
+            )
         notes.append("missing values interpolated")
     return Samples(spectrum, nm[~absent], values[~absent], tuple(notes))

@@ -22,11 +22,17 @@ JUMP, FLOOR = 30.0, 0.1
 
 
 def find_scale(
-    location: SourceLocation, stated: Sequence[Scale], samples: Sequence[Samples], measured: str
+    location: SourceLocation,
+    stated: Sequence[Scale],
+    samples: Sequence[Samples],
+    measured: str,
 ) -> tuple[float, str]:
     """Return the divisor of all values, and a note about it. What is stated wins over what the values suggest."""
     if measured != "auto":
-        return PERCENT if measured == "percent" else 1.0, f"scale: {GIVEN[measured]}, as given"
+        return (
+            PERCENT if measured == "percent" else 1.0,
+            f"scale: {GIVEN[measured]}, as given",
+        )
     used = [each.used() for each in samples]
     highest = [float(each.values.max(initial=0)) for each in used]
     top = max(highest, default=0.0)
@@ -36,8 +42,15 @@ def find_scale(
         if stated[0].divisor == PERCENT and top <= DARKEST and samples:
             problem = f"no value exceeds {top:g} percent, as the file states '{text}'"
             hint = "pass measured='fraction' if they are from 0 to 1"
-            warnings.warn(UpliftWarning(problem, code="dark-percent", path=location.path, hint=hint), stacklevel=4)
-        return stated[0].divisor, f"scale: 0 to {stated[0].divisor:g}, as stated: '{text}'"
+            warnings.warn(
+                UpliftWarning(
+                    problem, code="dark-percent", path=location.path, hint=hint
+                ),
+                stacklevel=4,
+            )
+        return stated[
+            0
+        ].divisor, f"scale: 0 to {stated[0].divisor:g}, as stated: '{text}'"
     if HIGHEST < top <= DIM:
         problem = f"values up to {top:g} may be dark samples in percent, or another quantity, and no scale is stated"
         raise location.error(problem, WHICH_SCALE, code="scale-not-stated")
@@ -45,30 +58,44 @@ def find_scale(
         _check_one_scale(location, used, highest)
         problem = f"values up to {top:g} are read as percent and divided by 100"
         entry = used[int(np.argmax(highest))].spectrum.name
-        warnings.warn(UpliftWarning(problem, code="values-in-percent", path=location.path, entry=entry), stacklevel=4)
+        warnings.warn(
+            UpliftWarning(
+                problem, code="values-in-percent", path=location.path, entry=entry
+            ),
+            stacklevel=4,
+        )
         return PERCENT, f"scale: percent, by values up to {top:g}"
     everything = np.concatenate([np.empty(0), *(each.values for each in used)])
     if (everything > 1).sum() * 2 > len(everything):
         problem = f"most values exceed 1, up to {top:g}, and no scale is stated"
         raise location.error(problem, WHICH_SCALE, code="scale-not-stated")
-    return 1.0, f"scale: 0 to 1{ASSUMED}none is stated, and the largest value is {top:g}"
+    return (
+        1.0,
+        f"scale: 0 to 1{ASSUMED}none is stated, and the largest value is {top:g}",
+    )
 
 
-def _check_statements(location: SourceLocation, stated: Sequence[Scale], top: float) -> None:
+def _check_statements(
+    location: SourceLocation, stated: Sequence[Scale], top: float
+) -> None:
     """Raise `AtlasError` if statements contradict each other, or the largest value."""
     first = stated[0]
     text = truncate(first.text)
     others = [scale for scale in stated if scale.divisor != first.divisor]
     problem = ""
     if others:
-        problem = f"the file states two scales: '{text}' and '{truncate(others[0].text)}'"
+        problem = (
+            f"the file states two scales: '{text}' and '{truncate(others[0].text)}'"
+        )
     elif first.divisor == 1 and top > HIGHEST:
         problem = f"the file states '{text}', and has values up to {top:g}"
     if problem:
         raise location.error(problem, WHICH_SCALE, code="scales-contradict")
 
 
-def _check_one_scale(location: SourceLocation, samples: Sequence[Samples], highest: Sequence[float]) -> None:
+def _check_one_scale(
+    location: SourceLocation, samples: Sequence[Samples], highest: Sequence[float]
+) -> None:
     """Raise `AtlasError` for a row in units of 1 among rows in percent, or the reverse, or within one row."""
     problem, odd = "", samples[0].spectrum
     # A row that never exceeds 1, where others are in percent, is in units of 1, or the reverse; the minority is named.
@@ -83,7 +110,9 @@ def _check_one_scale(location: SourceLocation, samples: Sequence[Samples], highe
         # Neighbours that differ by more than JUMP, one of them within [0, 1], and the other one in percent.
         low = np.minimum(each.values[:-1], each.values[1:])
         high = np.maximum(each.values[:-1], each.values[1:])
-        jumps = np.flatnonzero((low <= DARKEST) & (high > HIGHEST) & (high / JUMP > np.maximum(low, FLOOR)))
+        jumps = np.flatnonzero(
+            (low <= DARKEST) & (high > HIGHEST) & (high / JUMP > np.maximum(low, FLOOR))
+        )
         if len(jumps):
             at = jumps[0]
             odd = each.spectrum

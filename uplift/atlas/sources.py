@@ -16,7 +16,14 @@ import numpy as np
 from uplift.atlas.atlas import Atlas, Entry, Header, Source, merge, skipped_warning
 from uplift.atlas.document import Document, SourceLocation, read_document
 from uplift.atlas.formats import art, read_any
-from uplift.atlas.measurements import MEASURED, MISSING, Measured, Missing, to_atlas, warn_of_odd
+from uplift.atlas.measurements import (
+    MEASURED,
+    MISSING,
+    Measured,
+    Missing,
+    to_atlas,
+    warn_of_odd,
+)
 from uplift.common.arrays import StrPath
 from uplift.common.errors import OutputError, UpliftWarning, unknown_name
 from uplift.common.files import write_text
@@ -30,7 +37,9 @@ FORMS = (
 )
 
 
-def read_atlas(*paths: StrPath, measured: Measured = "auto", missing: Missing = "refuse") -> Atlas:
+def read_atlas(
+    *paths: StrPath, measured: Measured = "auto", missing: Missing = "refuse"
+) -> Atlas:
     """Read atlas files into one atlas. The content of a file determines its format, one of `FORMATS`.
 
     Parameters
@@ -77,15 +86,23 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto", missing: Missing = 
     atlases = []
     for document in map(read_named, list(map(find_atlas_file, paths))):
         chosen, found = read_any(document)
-        atlases.append(found if isinstance(found, Atlas) else to_atlas(document, found, chosen.name, measured, missing))
+        atlases.append(
+            found
+            if isinstance(found, Atlas)
+            else to_atlas(document, found, chosen.name, measured, missing)
+        )
     atlas = merge(atlases)
     warn_of_odd(atlas.entries)
     if atlas.skipped:
-        warnings.warn(skipped_warning(atlas.skipped, code="entry-skipped"), stacklevel=2)
+        warnings.warn(
+            skipped_warning(atlas.skipped, code="entry-skipped"), stacklevel=2
+        )
     return atlas
 
 
-def write_atlas(atlas: Atlas, path: StrPath, header: Header | None = None, *, force: bool = True) -> None:
+def write_atlas(
+    atlas: Atlas, path: StrPath, header: Header | None = None, *, force: bool = True
+) -> None:
     """Write an atlas atomically.
 
     Parameters
@@ -109,12 +126,18 @@ def write_atlas(atlas: Atlas, path: StrPath, header: Header | None = None, *, fo
 
     if not atlas.entries:
         problem = "an atlas to write must have entries, got none"
-        raise OutputError(problem, path=path, hint="give an atlas that contains reflectances")
+        raise OutputError(
+            problem, path=path, hint="give an atlas that contains reflectances"
+        )
     if header is None:  # the statements of all sources, each one once
         stated = zip(*(astuple(source.header) for source in atlas.sources), strict=True)
-        header = Header(*("; ".join(filter(None, dict.fromkeys(texts))) for texts in stated))
+        header = Header(
+            *("; ".join(filter(None, dict.fromkeys(texts))) for texts in stated)
+        )
     is_table = os.fspath(path).lower().endswith(".csv")
-    write_text(table.text(atlas) if is_table else art.text(atlas, header), path, force=force)
+    write_text(
+        table.text(atlas) if is_table else art.text(atlas, header), path, force=force
+    )
 
 
 def from_distributions(distributions: Any) -> Atlas:
@@ -145,7 +168,9 @@ def from_distributions(distributions: Any) -> Atlas:
     """
     named = distributions
     if not isinstance(distributions, Mapping):
-        named = {getattr(distributions, "name", type(distributions).__name__): distributions}
+        named = {
+            getattr(distributions, "name", type(distributions).__name__): distributions
+        }
     entries = list[Entry]()
     for name, each in named.items():
         try:
@@ -162,10 +187,13 @@ def from_distributions(distributions: Any) -> Atlas:
             raise SourceLocation().error(problem, "give one column of values per label")
         else:
             entries += [
-                Entry(str(label), nm, column) for label, column in zip(labels, np.transpose(values), strict=True)
+                Entry(str(label), nm, column)
+                for label, column in zip(labels, np.transpose(values), strict=True)
             ]
     # The digest is that of the file that `write_atlas` writes.
-    digest = hashlib.sha256(art.text(Atlas(tuple(entries)), Header()).encode()).hexdigest()
+    digest = hashlib.sha256(
+        art.text(Atlas(tuple(entries)), Header()).encode()
+    ).hexdigest()
     return Atlas(tuple(entries), sources=(Source("distributions", digest),))
 
 
@@ -215,7 +243,16 @@ def shipped_atlases() -> tuple[ShippedAtlas, ...]:
     for name, path in _shipped_paths().items():
         document = read_document(path)
         header = art.read_header(document)
-        found.append(ShippedAtlas(name, header.content, header.copyright, header.licence, path, document.digest))
+        found.append(
+            ShippedAtlas(
+                name,
+                header.content,
+                header.copyright,
+                header.licence,
+                path,
+                document.digest,
+            )
+        )
     return tuple(found)
 
 
@@ -252,7 +289,9 @@ def find_atlas_file(path: StrPath, folder: StrPath = "") -> StrPath:
     if stem in paths:
         if stem != name:
             problem = f"the file does not exist; the shipped atlas '{stem}' is used"
-            warnings.warn(UpliftWarning(problem, code="shipped-atlas", path=path), stacklevel=3)
+            warnings.warn(
+                UpliftWarning(problem, code="shipped-atlas", path=path), stacklevel=3
+            )
         return paths[stem]
     near = difflib.get_close_matches(Path(name).stem.lower(), paths, n=1, cutoff=0.7)
     if near and not os.path.lexists(file):

@@ -18,7 +18,13 @@ def _any(*patterns: str) -> re.Pattern[str]:
 
 
 _TO = r" ?(?:-|–|\.\.\.?|…|to) ?"
-_PERCENT = _any(r"(?<!\d)(?<!\d )%", r"\bpercent(?:age)?\b", r"\bper cent\b", r"\bpct\b", rf"\b0{_TO}100\b")
+_PERCENT = _any(
+    r"(?<!\d)(?<!\d )%",
+    r"\bpercent(?:age)?\b",
+    r"\bper cent\b",
+    r"\bpct\b",
+    rf"\b0{_TO}100\b",
+)
 _FRACTION = _any(
     r"\bfractions?\b(?! ?\d)",
     r"\b(?:reflectance|reflectivity|r)[- ]?factor\b",
@@ -39,7 +45,15 @@ _UNSCALED = _any(
 _ONLY_SCALE = _any(r"\W*(?:in |as )?(?:%|percent(?:age)?|per cent|pct|fractions?)\W*")
 
 _REFLECTANCE = _any(
-    "r[eé]fl", "remission", "remittance", "albedo", r"\br-factor", r"\brefl\b", r"\brfl\b", r"%r\b", r"\br ?[\[(]?%"
+    "r[eé]fl",
+    "remission",
+    "remittance",
+    "albedo",
+    r"\br-factor",
+    r"\brefl\b",
+    r"\brfl\b",
+    r"%r\b",
+    r"\br ?[\[(]?%",
 )
 _MATERIAL = _any(
     "transmi(?:ttance|ssion|ssive|ssivity)", "absor(?:bance|ptance|ption|ptivity)", "extinction", "optical density",
@@ -51,13 +65,19 @@ _LIGHT = _any(
     "luminance(?! factor)", "luminous (?:flux|intensity)", r"\bspd\b", "(?:spectral|relative) power",
     "(?:spectral|photon) flux", r"\bcounts?\b(?!\W*\d)", r"[µμumn]?w ?[/·* ] ?\(?[cm]?m ?\^?(?:[²2]|-2|⁻²)", r"\bcd/m",
 )  # fmt: skip
-_TRANSMITTANCE = _any(r"\W*(?:%?\W*t\W*%\W*|%\W*t|t ?\d{3,4}(?:\D.*)?|trans|t ?nm.*|τ.*)\W*")
+_TRANSMITTANCE = _any(
+    r"\W*(?:%?\W*t\W*%\W*|%\W*t|t ?\d{3,4}(?:\D.*)?|trans|t ?nm.*|τ.*)\W*"
+)
 _ABSORBANCE = _any(r"\W*(?:abs|od)\W*\d*\W*")
 """Short labels of other quantities."""
 _KEYS = "lux|lx|fc|foot-?candles?|cct|tcp|duv|cri|ra|ppfd|tlci|lumens?|lm|colou?r temperature"
-_PHOTOMETRIC = _any(rf"\W*(?:{_KEYS}) ?(?:[([][^)\]]*[)\]])? ?[:=,;]? ?(?:[+-]?[\d.,]+ ?\w*)?\W*")
+_PHOTOMETRIC = _any(
+    rf"\W*(?:{_KEYS}) ?(?:[([][^)\]]*[)\]])? ?[:=,;]? ?(?:[+-]?[\d.,]+ ?\w*)?\W*"
+)
 """A key of light meters, perhaps with its value."""
-_UNCERTAINTY = _any(r"\W*(?:standard deviation|st(?:d|andard)?\.? ?dev(?:iation|\.)?|σ|uncertainty)\W*")
+_UNCERTAINTY = _any(
+    r"\W*(?:standard deviation|st(?:d|andard)?\.? ?dev(?:iation|\.)?|σ|uncertainty)\W*"
+)
 
 _PLAIN = frozenset(
     (
@@ -74,12 +94,17 @@ FEW = 10
 """Numbers that may be wavelengths in micrometres without a statement."""
 _UNITS = (
     (_any(r"(?<![a-z])nm(?![a-z])", "wavelengthnm", "nanomet(?:er|re)s?"), NANOMETRE),
-    (_any(r"(?<![a-zµμ])[µμu]m(?![a-z])", "micromet(?:er|re)s?", r"microns?\b"), MICROMETRE),
+    (
+        _any(r"(?<![a-zµμ])[µμu]m(?![a-z])", "micromet(?:er|re)s?", r"microns?\b"),
+        MICROMETRE,
+    ),
     (_any(r"å(?![a-z])", "[aå]ngstr[oö]ms?", r"[(\[]a[)\]]"), ANGSTROM),
     (_any("1 ?/ ?cm", r"cm ?\^?\(?(?:[-−]1|⁻¹)", "wave ?numbers?"), WAVE_NUMBER),
     (_any(r"[(\[]m[)\]]", r"(?<![a-z])met(?:er|re)s?\b", r"\A\s*m\s*\Z"), METRE),
 )
-_WAVES = _any("wave", r"\bwl\b", r"\bwvl\b", "lambda", "λ", r"\bx ?units?", "abscissa", "wellenl")
+_WAVES = _any(
+    "wave", r"\bwl\b", r"\bwvl\b", "lambda", "λ", r"\bx ?units?", "abscissa", "wellenl"
+)
 """What a remark on the unit of wavelengths is about."""
 
 
@@ -118,7 +143,9 @@ def label_scale(text: str) -> Scale | None:
 
 def remark_scale(text: str) -> Scale | None:
     """Return the scale that a line of text states, if it is about the values."""
-    is_about = _ONLY_SCALE.fullmatch(text) or (_SCALED.search(text) and not _UNSCALED.search(text))
+    is_about = _ONLY_SCALE.fullmatch(text) or (
+        _SCALED.search(text) and not _UNSCALED.search(text)
+    )
     return label_scale(text) if is_about else None
 
 
@@ -146,7 +173,9 @@ def is_photometric(text: str) -> bool:
 
 def name_quantity(text: str) -> Quantity | None:
     """Return the quantity of a row of deviations of the others, which is not a sample."""
-    return Quantity("standard deviation", text) if _UNCERTAINTY.fullmatch(text) else None
+    return (
+        Quantity("standard deviation", text) if _UNCERTAINTY.fullmatch(text) else None
+    )
 
 
 def remark_quantity(texts: Iterable[str]) -> Quantity | None:
@@ -192,7 +221,9 @@ def names_wavelengths(text: str) -> bool:
     """Whether a label is that of wavelengths, and not of one of them, such as 'nm400'."""
     if re.search(r"\d\d", text):
         return False
-    return bool(_WAVES.search(text)) or find_unit(text) is not None or text in ("x", "X")
+    return (
+        bool(_WAVES.search(text)) or find_unit(text) is not None or text in ("x", "X")
+    )
 
 
 def to_nm(numbers: ArrayLike, unit: float) -> Array:

@@ -45,7 +45,11 @@ class Camera:
         wavelengths = np.array(self.wavelengths, dtype=float)
         sensitivities = np.array(self.sensitivities, dtype=float)
         problem = ""
-        if wavelengths.ndim != 1 or len(wavelengths) < 2 or sensitivities.shape != (len(wavelengths), 3):
+        if (
+            wavelengths.ndim != 1
+            or len(wavelengths) < 2
+            or sensitivities.shape != (len(wavelengths), 3)
+        ):
             shapes = f"{wavelengths.shape} and {sensitivities.shape}"
             problem = f"sensitivities need at least 2 wavelengths (N,) and values (N, 3), got {shapes}"
         elif not (np.isfinite(wavelengths).all() and np.isfinite(sensitivities).all()):
@@ -58,12 +62,17 @@ class Camera:
         if problem:
             raise OptionError(problem, hint=LAYOUT)
         object.__setattr__(self, "wavelengths", wavelengths)
-        object.__setattr__(self, "sensitivities", sensitivities / (sensitivities.max() or 1.0))
+        object.__setattr__(
+            self, "sensitivities", sensitivities / (sensitivities.max() or 1.0)
+        )
 
     def at(self, wavelengths: ArrayLike) -> Array:
         """Interpolate the sensitivities (M, 3) linearly at wavelengths (M,) in nm; outside their range they are 0."""
         at = np.asarray(wavelengths, dtype=float)
-        channels = (np.interp(at, self.wavelengths, channel, left=0, right=0) for channel in self.sensitivities.T)
+        channels = (
+            np.interp(at, self.wavelengths, channel, left=0, right=0)
+            for channel in self.sensitivities.T
+        )
         return np.stack(list(channels), axis=1)
 
 
@@ -78,7 +87,9 @@ def camera_sensor(camera: Camera, standard: Sensor) -> Sensor:
     sensitivities = camera.at(nm)
     weights = sensitivities * standard.power[:, None]
     if not (weights.sum(axis=0) > 0).all():
-        problem = f"every channel must respond to {light.name} within {nm[0]:g}–{nm[-1]:g} nm"
+        problem = (
+            f"every channel must respond to {light.name} within {nm[0]:g}–{nm[-1]:g} nm"
+        )
         raise OptionError(problem, hint=LAYOUT)
     # With C the correlation, B the balanced camera and X the weights of XYZ: M = B C Xᵀ (X C Xᵀ)⁻¹.
     balanced = (weights / weights.sum(axis=0)).T
@@ -113,7 +124,9 @@ def read_camera(path: StrPath) -> Camera:
     try:
         return Camera(name, wavelengths, sensitivities)
     except OptionError as error:
-        raise OptionError(error.problem, code=error.code, path=path, hint=error.hint) from error
+        raise OptionError(
+            error.problem, code=error.code, path=path, hint=error.hint
+        ) from error
 
 
 def _read_table(path: StrPath) -> Array:
@@ -126,7 +139,9 @@ def _read_table(path: StrPath) -> Array:
         delimiter = find_delimiter(lines)
         rows = [split_line(line, delimiter) for line in lines]
     except ValueError as error:
-        raise OptionError(f"is not a readable table: {error}", path=path, hint=LAYOUT) from error
+        raise OptionError(
+            f"is not a readable table: {error}", path=path, hint=LAYOUT
+        ) from error
     for line, cells in enumerate(rows, 1):
         is_header = not table and sum(map(is_decimal, cells)) < 2
         if not cells or cells[0].startswith("#") or is_header:
@@ -134,7 +149,9 @@ def _read_table(path: StrPath) -> Array:
         try:
             wavelength, red, green, blue = map(parse_decimal, cells)
         except ValueError as error:
-            problem = f"a row must have four numbers, got {format_value(lines[line - 1])}"
+            problem = (
+                f"a row must have four numbers, got {format_value(lines[line - 1])}"
+            )
             raise OptionError(problem, path=path, line=line, hint=LAYOUT) from error
         table.append([wavelength, red, green, blue])
     numbers = np.array(table).reshape(-1, 4)

@@ -40,22 +40,31 @@ def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
     [100.0, 0.0, 0.0]
     """
     t = np.asarray(xyz, dtype=float) / np.asarray(white, dtype=float)
-    compressed = np.where(t > (6 / 29) ** 3, np.cbrt(t), np.minimum(t, 1.0) * (29 / 6) ** 2 / 3 + 4 / 29)
+    compressed = np.where(
+        t > (6 / 29) ** 3, np.cbrt(t), np.minimum(t, 1.0) * (29 / 6) ** 2 / 3 + 4 / 29
+    )
     return np.asarray(compressed @ OPPONENTS.T - np.array([16.0, 0.0, 0.0]))
 
 
 def lab_to_xyz(lab: ArrayLike, white: ArrayLike) -> Array:
     """Convert CIE 1976 L*a*b* to XYZ, the inverse of `lab`. Shapes: ``lab`` (…, 3), ``white`` (3,) → (…, 3)."""
-    compressed = (np.asarray(lab, dtype=float) + np.array([16.0, 0, 0])) @ np.linalg.inv(OPPONENTS.T)
+    compressed = (
+        np.asarray(lab, dtype=float) + np.array([16.0, 0, 0])
+    ) @ np.linalg.inv(OPPONENTS.T)
     linear = (compressed - 4 / 29) * 3 * (6 / 29) ** 2
-    return np.asarray(np.where(compressed > 6 / 29, compressed**3, linear) * np.asarray(white, dtype=float))
+    return np.asarray(
+        np.where(compressed > 6 / 29, compressed**3, linear)
+        * np.asarray(white, dtype=float)
+    )
 
 
 def lab_jacobian(xyz: ArrayLike, white: ArrayLike) -> Array:
     """Compute the derivative of L*a*b* with respect to XYZ. Shapes: ``xyz`` (…, 3), ``white`` (3,) → (…, 3, 3)."""
     white = np.asarray(white, dtype=float)
     t = np.asarray(xyz, dtype=float) / white
-    root = np.cbrt(np.maximum(t, (6 / 29) ** 3))  # the linear part has the slope of its upper end
+    root = np.cbrt(
+        np.maximum(t, (6 / 29) ** 3)
+    )  # the linear part has the slope of its upper end
     return OPPONENTS * (1 / (3 * root**2 * white))[..., None, :]
 
 
@@ -104,7 +113,9 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     >>> round(float(delta_e_2000([50, 2.6772, -79.7751], [50, 0, -82.7485])), 4)
     2.0425
     """
-    (l1, a1, b1), (l2, a2, b2) = (np.moveaxis(np.asarray(x, dtype=float), -1, 0) for x in (lab_1, lab_2))
+    (l1, a1, b1), (l2, a2, b2) = (
+        np.moveaxis(np.asarray(x, dtype=float), -1, 0) for x in (lab_1, lab_2)
+    )
     # a′ = (1 + G) a, and from it C′ and h′ (eq. 2–7).
     g = 1.5 - 0.5 * _weight_7((np.hypot(a1, b1) + np.hypot(a2, b2)) / 2)
     a1, a2 = g * a1, g * a2
@@ -117,16 +128,35 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     # Means of L′, C′ and h′ (eq. 12–14).
     light, chroma = (l1 + l2) / 2, (c1 + c2) / 2
     total = h1 + h2
-    across = np.where(total < 360, total + 360, total - 360)  # the mean hue lies on the shorter arc
+    across = np.where(
+        total < 360, total + 360, total - 360
+    )  # the mean hue lies on the shorter arc
     hue = np.where(coloured, np.where(np.abs(h1 - h2) <= 180, total, across) / 2, total)
-    terms = (weight * np.cos(np.radians(k * hue + phase)) for weight, k, phase in HUE_TERMS)
+    terms = (
+        weight * np.cos(np.radians(k * hue + phase)) for weight, k, phase in HUE_TERMS
+    )
     tone = sum(terms, start=np.ones_like(hue))
     # Differences over S_L, S_C and S_H, and the rotation R_T for blues (eq. 8–11 and 15–22).
-    delta_l = (l2 - l1) / (1 + 0.015 * (light - 50) ** 2 / np.sqrt(20 + (light - 50) ** 2))
+    delta_l = (l2 - l1) / (
+        1 + 0.015 * (light - 50) ** 2 / np.sqrt(20 + (light - 50) ** 2)
+    )
     delta_c = (c2 - c1) / (1 + 0.045 * chroma)
-    delta_h = 2 * np.sqrt(c1 * c2) * np.sin(np.radians(turn / 2)) / (1 + 0.015 * chroma * tone)
-    rotation = -2 * _weight_7(chroma) * np.sin(np.radians(60 * np.exp(-(((hue - 275) / 25) ** 2))))
-    return np.sqrt(np.maximum(delta_l**2 + delta_c**2 + delta_h**2 + rotation * delta_c * delta_h, 0))
+    delta_h = (
+        2
+        * np.sqrt(c1 * c2)
+        * np.sin(np.radians(turn / 2))
+        / (1 + 0.015 * chroma * tone)
+    )
+    rotation = (
+        -2
+        * _weight_7(chroma)
+        * np.sin(np.radians(60 * np.exp(-(((hue - 275) / 25) ** 2))))
+    )
+    return np.sqrt(
+        np.maximum(
+            delta_l**2 + delta_c**2 + delta_h**2 + rotation * delta_c * delta_h, 0
+        )
+    )
 
 
 def delta_e_2000_weights(lab: ArrayLike) -> Array:
@@ -139,9 +169,17 @@ def delta_e_2000_weights(lab: ArrayLike) -> Array:
     chroma, hue = np.hypot(a, b), np.arctan2(b, a)
     chroma_weight, hue_weight = 1 / (1 + 0.045 * chroma), 1 / (1 + 0.015 * chroma)
     weights = np.zeros((*light.shape, 3, 3))
-    weights[..., 0, 0] = 1 / (1 + 0.015 * (light - 50) ** 2 / np.sqrt(20 + (light - 50) ** 2))
-    weights[..., 1, 1], weights[..., 1, 2] = chroma_weight * np.cos(hue), chroma_weight * np.sin(hue)
-    weights[..., 2, 1], weights[..., 2, 2] = -hue_weight * np.sin(hue), hue_weight * np.cos(hue)
+    weights[..., 0, 0] = 1 / (
+        1 + 0.015 * (light - 50) ** 2 / np.sqrt(20 + (light - 50) ** 2)
+    )
+    weights[..., 1, 1], weights[..., 1, 2] = (
+        chroma_weight * np.cos(hue),
+        chroma_weight * np.sin(hue),
+    )
+    weights[..., 2, 1], weights[..., 2, 2] = (
+        -hue_weight * np.sin(hue),
+        hue_weight * np.cos(hue),
+    )
     return weights
 
 
@@ -159,7 +197,9 @@ def delta_e_spectra(light: Light, first: ArrayLike, second: ArrayLike) -> Array:
     -------
     ndarray, shape (...)
     """
-    xyz = (np.asarray(spectra, dtype=float) @ light.xyz.T for spectra in (first, second))
+    xyz = (
+        np.asarray(spectra, dtype=float) @ light.xyz.T for spectra in (first, second)
+    )
     return delta_e_2000(*(lab(each, light.white) for each in xyz))
 
 

@@ -52,7 +52,11 @@ def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
     if complementary:
         edge, fraction, _ = crossing(outline[:-1], -direction)
     first, second = wavelengths[edge : edge + 2]
-    return DominantWavelength(float(first + fraction * (second - first)), bool(complementary), float(1 / distance))
+    return DominantWavelength(
+        float(first + fraction * (second - first)),
+        bool(complementary),
+        float(1 / distance),
+    )
 
 
 def crossing(path: Array, direction: Array) -> tuple[Any, Array, Array]:
@@ -67,7 +71,15 @@ def crossing(path: Array, direction: Array) -> tuple[Any, Array, Array]:
     determinant = a * v - b * u
     safe = np.where(determinant == 0, 1, determinant)
     distance, fraction = (x * v - y * u) / safe, (x * b - y * a) / safe
-    met = (determinant != 0) & (distance > 0) & (fraction >= -SLACK) & (fraction <= 1 + SLACK)
+    met = (
+        (determinant != 0)
+        & (distance > 0)
+        & (fraction >= -SLACK)
+        & (fraction <= 1 + SLACK)
+    )
     edge = np.where(met, distance, 0).argmax(axis=-1, keepdims=True)
-    place, reach = (np.take_along_axis(each, edge, -1)[..., 0] for each in (fraction, np.where(met, distance, np.inf)))
+    place, reach = (
+        np.take_along_axis(each, edge, -1)[..., 0]
+        for each in (fraction, np.where(met, distance, np.inf))
+    )
     return edge[..., 0], np.clip(place, 0, 1), reach

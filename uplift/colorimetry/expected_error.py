@@ -50,7 +50,9 @@ class ExpectedError:
     def combine(self, sums: Array, nearest: Array) -> Array:
         """Squares (n, K) less `floor` from weighted sums (n, K + 1) of `columns`, and the largest weights (n,)."""
         # v(x) (Σ k e² + n₀ mean e²) / (Σ k + n₀), with v = 1 − k² of the nearest entry
-        spread = (sums[:, :-1] + PRIOR_COUNT * self.columns[:, :-1].mean(axis=0)) / (sums[:, -1:] + PRIOR_COUNT)
+        spread = (sums[:, :-1] + PRIOR_COUNT * self.columns[:, :-1].mean(axis=0)) / (
+            sums[:, -1:] + PRIOR_COUNT
+        )
         return (1 - nearest[:, None] ** 2) * spread
 
     def __call__(self, lab: Array) -> Array:
@@ -63,13 +65,19 @@ class ExpectedError:
 
 
 def expected_error(
-    locations: Array, left_out: Array, kept: Array, products: tuple[Array, Array] | None = None
+    locations: Array,
+    left_out: Array,
+    kept: Array,
+    products: tuple[Array, Array] | None = None,
 ) -> ExpectedError:
     """Learn from the ΔE00 (E,) of entries at L*a*b* (E, 3), when left out and when kept.
 
     What is learnt are the ``products`` (E, K) of errors, in both cases, by default their squares.
     """
-    left_out_products, kept_products = products or (left_out[:, None] ** 2, kept[:, None] ** 2)
+    left_out_products, kept_products = products or (
+        left_out[:, None] ** 2,
+        kept[:, None] ** 2,
+    )
     parts = list(blocks(len(locations), max(BLOCK_NUMBERS // len(locations), 1)))
 
     def others(part: slice) -> Array:
@@ -83,7 +91,9 @@ def expected_error(
     floor, products_floor = (kept**2).mean(), kept_products.mean(axis=0)
     # Part of each square that the other entries explain, per unit of variance: (e² − f) / v e².
     share = np.maximum(1 - floor / np.maximum(left_out**2, TINY), 0) / variance
-    columns = np.column_stack([left_out_products * share[:, None], left_out**2 * share, np.ones(len(share))])
+    columns = np.column_stack(
+        [left_out_products * share[:, None], left_out**2 * share, np.ones(len(share))]
+    )
     # What the other entries let expect: v (Σ k e² + n₀ mean e²) / (Σ k + n₀) + f
     sums = np.concatenate([np.exp(others(part) / -LENGTH) @ columns for part in parts])
     expected = sums[:, :-1] + PRIOR_COUNT * columns[:, :-1].mean(axis=0)
@@ -91,7 +101,13 @@ def expected_error(
     roots = np.sqrt(expected[:, -1] + floor)
     standard, bound = learn_radii(left_out / np.maximum(roots, TINY), COVERAGE)
     columns = np.delete(columns, -2, axis=1)
-    return ExpectedError(locations, columns, products_floor, expected[:, :-1] + products_floor, (standard, bound))
+    return ExpectedError(
+        locations,
+        columns,
+        products_floor,
+        expected[:, :-1] + products_floor,
+        (standard, bound),
+    )
 
 
 def mahalanobis(covariance: Array, difference: Array) -> Array:
@@ -101,7 +117,9 @@ def mahalanobis(covariance: Array, difference: Array) -> Array:
     return np.asarray(np.sqrt((along**2 / np.maximum(values, TINY)).sum(axis=1)))
 
 
-def learn_radii(ratio: Array, coverage: Sequence[tuple[float, float]], components: int = 1) -> list[float]:
+def learn_radii(
+    ratio: Array, coverage: Sequence[tuple[float, float]], components: int = 1
+) -> list[float]:
     """Learn radii that shares of left-out entries stay within, from their errors over the expected ones (E,).
 
     ``coverage`` pairs a share with its radius if errors of that many ``components`` were normal. Errors have heavier
@@ -124,7 +142,9 @@ def nearest_distances(lab: Array, locations: Array) -> Array:
     if not len(locations):
         return np.full(len(lab), np.inf)
     parts = blocks(len(lab), max(BLOCK_NUMBERS // len(locations), 1))
-    return np.concatenate([np.zeros(0), *(distances(lab[part], locations).min(axis=1) for part in parts)])
+    return np.concatenate(
+        [np.zeros(0), *(distances(lab[part], locations).min(axis=1) for part in parts)]
+    )
 
 
 def familiar_distance(locations: Array) -> float:

@@ -40,12 +40,18 @@ class ExtremeSpectra(NamedTuple):
     """(n,) True unless no reflectance has the colour, or rounding prevents a decision."""
 
 
-def extreme_spectra(matrix: Array, rgb: Array, response: Array, basis: Indices | None = None) -> ExtremeSpectra:
+def extreme_spectra(
+    matrix: Array, rgb: Array, response: Array, basis: Indices | None = None
+) -> ExtremeSpectra:
     """Find the reflectances of colours (n, 3) with the largest responses (n, N), from a ``basis`` (n, 3)."""
     start = np.tile(first_basis(matrix), (len(rgb), 1)) if basis is None else basis
-    found = ExtremeSpectra(np.empty(response.shape), start.copy(), np.zeros(len(rgb), dtype=bool))
+    found = ExtremeSpectra(
+        np.empty(response.shape), start.copy(), np.zeros(len(rgb), dtype=bool)
+    )
     for block in blocks(len(rgb), max(BLOCK_NUMBERS // matrix.shape[1], 1)):
-        part = ExtremeSpectra(found.reflectance[block], found.basis[block], found.solved[block])
+        part = ExtremeSpectra(
+            found.reflectance[block], found.basis[block], found.solved[block]
+        )
         _solve(matrix, rgb[block], _perturbed(response[block]), part)
     return found
 
@@ -65,7 +71,9 @@ def _perturbed(response: Array) -> Array:
     """Add distinct numbers, the same for all problems: equal ratios of responses could repeat a basis for ever."""
     count = response.shape[1]
     offsets = (np.arange(1, count + 1) * 0.6180339887498949) % 1 - 0.5
-    return response + PERTURBATION * np.abs(response).max(axis=1, keepdims=True) * offsets
+    return (
+        response + PERTURBATION * np.abs(response).max(axis=1, keepdims=True) * offsets
+    )
 
 
 def _solve(matrix: Array, rgb: Array, response: Array, found: ExtremeSpectra) -> None:
@@ -73,7 +81,9 @@ def _solve(matrix: Array, rgb: Array, response: Array, found: ExtremeSpectra) ->
     pending = np.arange(len(rgb))
     for _ in range(MAX_STEPS):
         basis = found.basis[pending]
-        reduced, inner, inverse, spectra = _state(matrix, rgb[pending], response[pending], basis)
+        reduced, inner, inverse, spectra = _state(
+            matrix, rgb[pending], response[pending], basis
+        )
         violation = np.maximum(inner - 1, -inner)
         worst = violation.argmax(axis=1)
         rows = np.arange(len(pending))
@@ -99,12 +109,16 @@ def _solve(matrix: Array, rgb: Array, response: Array, found: ExtremeSpectra) ->
             return
 
 
-def _state(matrix: Array, rgb: Array, response: Array, basis: Indices) -> tuple[Array, Array, Array, Array]:
+def _state(
+    matrix: Array, rgb: Array, response: Array, basis: Indices
+) -> tuple[Array, Array, Array, Array]:
     """Reduced responses (n, N), reflectances (n, 3) of the basis, inverse (n, 3, 3), reflectances (n, N) at bounds."""
     # λ = c_B W_B⁻¹ for the basis B, u = c − λ W, g = 1 where u > 0, and g_B = W_B⁻¹ (r − W g)
     rows = np.arange(len(basis))[:, None]
     inverse = np.asarray(np.linalg.inv(matrix.T[basis].mT))
-    multipliers = (np.take_along_axis(response, basis, axis=1)[:, None, :] @ inverse)[:, 0]
+    multipliers = (np.take_along_axis(response, basis, axis=1)[:, None, :] @ inverse)[
+        :, 0
+    ]
     reduced = response - multipliers @ matrix
     reduced[rows, basis] = 0
     spectra = (reduced > 0).astype(float)
@@ -112,7 +126,9 @@ def _state(matrix: Array, rgb: Array, response: Array, basis: Indices) -> tuple[
     return reduced, inner, inverse, spectra
 
 
-def _entering(reduced: Array, rate: Array, violation: Array, basis: Indices) -> tuple[Indices, Mask]:
+def _entering(
+    reduced: Array, rate: Array, violation: Array, basis: Indices
+) -> tuple[Indices, Mask]:
     """Choose the wavelengths that enter the basis, and whether (n,) the dual objective ends to fall.
 
     Along the step reduced responses change at ``rate`` (n, N). Each change of sign raises the slope of the objective,

@@ -14,11 +14,18 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry.sensor import as_rgb, format_rgb, in_unit_cube, raise_out_of_gamut
+from uplift.colorimetry.sensor import (
+    as_rgb,
+    format_rgb,
+    in_unit_cube,
+    raise_out_of_gamut,
+)
 from uplift.common.arrays import Array, Mask, Values, blocks
 from uplift.common.errors import ColourError, OptionError, unknown_name
 
-BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
+BRADFORD = np.array(
+    [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]
+)
 """XYZ to the cone responses of Bradford adaptation (Lam 1985; the matrix of ICC.1:2022, annex E)."""
 
 Chromaticity = tuple[float, float]
@@ -91,11 +98,18 @@ class Primaries:
 
     def __post_init__(self) -> None:
         # Equation 4.4: the columns are the chromaticities (x, y, 1 − x − y) times their lengths, and add up to white.
-        *columns, white = np.array([[x, y, 1 - x - y] for x, y in (self.red, self.green, self.blue, self.white)])
+        *columns, white = np.array(
+            [
+                [x, y, 1 - x - y]
+                for x, y in (self.red, self.green, self.blue, self.white)
+            ]
+        )
         with np.errstate(all="ignore"):
             matrix = np.array(columns).T
             regular = abs(np.linalg.det(matrix)) > 1e-6  # False for NaN
-            lengths = np.linalg.solve(matrix, white / white[1]) if regular else np.zeros(3)
+            lengths = (
+                np.linalg.solve(matrix, white / white[1]) if regular else np.zeros(3)
+            )
             if not ((lengths > 0) & np.isfinite(lengths)).all():
                 problem = f"primaries must span a triangle with the white inside, got ({self})"
                 raise OptionError(problem, hint=PRIMARIES)
@@ -123,11 +137,16 @@ class Primaries:
         if len(numbers) != 8:
             problem = f"primaries and white are eight numbers, got {len(numbers)}"
             raise OptionError(problem, hint=PRIMARIES)
-        pairs = [(float(x), float(y)) for x, y in zip(numbers[::2], numbers[1::2], strict=True)]
+        pairs = [
+            (float(x), float(y))
+            for x, y in zip(numbers[::2], numbers[1::2], strict=True)
+        ]
         return cls(*pairs)
 
     def __str__(self) -> str:
-        return " ".join(f"{x:g},{y:g}" for x, y in (self.red, self.green, self.blue, self.white))
+        return " ".join(
+            f"{x:g},{y:g}" for x, y in (self.red, self.green, self.blue, self.white)
+        )
 
 
 SRGB = Primaries((0.64, 0.33), (0.30, 0.60), (0.15, 0.06), (0.3127, 0.3290))
@@ -136,7 +155,9 @@ SRGB = Primaries((0.64, 0.33), (0.30, 0.60), (0.15, 0.06), (0.3127, 0.3290))
 
 def conversion(source: Gamut, target: Gamut) -> Array:
     """Compute the matrix (3, 3) between the linear RGB of two gamuts, with Bradford adaptation of the white."""
-    before, after = (BRADFORD @ gamut.rgb_to_xyz.sum(axis=1) for gamut in (source, target))
+    before, after = (
+        BRADFORD @ gamut.rgb_to_xyz.sum(axis=1) for gamut in (source, target)
+    )
     adapt = np.linalg.solve(BRADFORD, (after / before)[:, None] * BRADFORD)
     matrix = np.linalg.solve(target.rgb_to_xyz, adapt @ source.rgb_to_xyz)
     return np.asarray(matrix / matrix.sum(axis=1, keepdims=True))
@@ -258,7 +279,9 @@ class GamutMapped:
         -------
         float
         """
-        return float(np.abs(self.requested[self.outside] - self.rgb[self.outside]).max(initial=0))
+        return float(
+            np.abs(self.requested[self.outside] - self.rgb[self.outside]).max(initial=0)
+        )
 
 
 def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMapped:
@@ -304,8 +327,12 @@ def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMa
             problem = f"linear RGB {format_rgb(rows[finite.argmin()])} is not finite"
             raise ColourError(problem, hint="fix its source")
         if method != "clip":  # which leaves other channels as they are
-            rows *= np.minimum(1, LARGEST / np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1))
-        mapped = np.concatenate([MAPPINGS[method](rows[block], gamut) for block in blocks(len(rows), BLOCK)])
+            rows *= np.minimum(
+                1, LARGEST / np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1)
+            )
+        mapped = np.concatenate(
+            [MAPPINGS[method](rows[block], gamut) for block in blocks(len(rows), BLOCK)]
+        )
         inside[outside] = np.clip(mapped, 0, 1)  # removes rounding errors
     return GamutMapped(requested, inside, outside)
 

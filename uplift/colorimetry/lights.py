@@ -14,7 +14,13 @@ from numpy.typing import ArrayLike
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 
-COMMON_NAMES = {"daylight": "D65", "tungsten": "A", "fluorescent": "FL2", "led": "LED-B3", "sodium": "HP1"}
+COMMON_NAMES = {
+    "daylight": "D65",
+    "tungsten": "A",
+    "fluorescent": "FL2",
+    "led": "LED-B3",
+    "sodium": "HP1",
+}
 """Names of illuminants for readers who do not know those of the CIE."""
 TEMPERATURES = (1000.0, 25000.0)
 """Range of colour temperatures in K."""
@@ -98,7 +104,10 @@ class Lamp:
     power: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        wavelengths, power = tuple(map(float, self.wavelengths)), tuple(map(float, self.power))
+        wavelengths, power = (
+            tuple(map(float, self.wavelengths)),
+            tuple(map(float, self.power)),
+        )
         problem = ""
         if not len(wavelengths) == len(power) >= 2:
             problem = f"must have at least 2 wavelengths and as many powers, got {len(wavelengths)} and {len(power)}"
@@ -149,11 +158,16 @@ def standard_name(name: str) -> tuple[str, float | None]:
     kelvin = float(found[1])
     if not TEMPERATURES[0] <= kelvin <= TEMPERATURES[1]:
         raise OptionError(
-            f"a colour temperature must be from 1000K to 25000K, got {name}", hint="black bodies end at 4000K"
+            f"a colour temperature must be from 1000K to 25000K, got {name}",
+            hint="black bodies end at 4000K",
         )
     return f"{kelvin:g}K", kelvin
 
 
 def black_body(kelvin: float, wavelengths: Array) -> Array:
     """Compute the relative power of a black body by Planck's law. Shapes: ``wavelengths`` (N,) nm → (N,)."""
-    return np.asarray(wavelengths**-5 / np.expm1(SECOND_RADIATION_CONSTANT / (wavelengths * kelvin)) * 1e15)
+    return np.asarray(
+        wavelengths**-5
+        / np.expm1(SECOND_RADIATION_CONSTANT / (wavelengths * kelvin))
+        * 1e15
+    )

@@ -65,14 +65,22 @@ def sphere(divisions: int) -> Sphere:
     """Divide every triangle of an icosahedron into four, so many times."""
     golden = (1 + 5**0.5) / 2
     signs = np.array([(1, 1), (1, -1), (-1, 1), (-1, -1)]) * (1, golden)
-    corners = np.concatenate([np.roll(np.pad(signs, ((0, 0), (1, 0))), shift, axis=1) for shift in range(3)])
-    triples = np.array(np.meshgrid(*[np.arange(12)] * 3, indexing="ij")).reshape(3, -1).T
+    corners = np.concatenate(
+        [np.roll(np.pad(signs, ((0, 0), (1, 0))), shift, axis=1) for shift in range(3)]
+    )
+    triples = (
+        np.array(np.meshgrid(*[np.arange(12)] * 3, indexing="ij")).reshape(3, -1).T
+    )
     triples = triples[(triples[:, 0] < triples[:, 1]) & (triples[:, 0] < triples[:, 2])]
     a, b, c = (corners[triples[:, column]] for column in range(3))
-    near = [np.isclose(((p - q) ** 2).sum(axis=1), 4) for p, q in ((a, b), (b, c), (c, a))]
+    near = [
+        np.isclose(((p - q) ** 2).sum(axis=1), 4) for p, q in ((a, b), (b, c), (c, a))
+    ]
     outwards = np.einsum("ni,ni->n", np.cross(b - a, c - a), a) > 0
     faces = triples[np.logical_and.reduce([*near, outwards])]
-    found = Sphere(corners / np.linalg.norm(corners, axis=1)[:, None], faces, np.full(12, -1))
+    found = Sphere(
+        corners / np.linalg.norm(corners, axis=1)[:, None], faces, np.full(12, -1)
+    )
     for _ in range(divisions):
         found = _divided(found)
     return found
@@ -84,9 +92,21 @@ def _divided(coarse: Sphere) -> Sphere:
     edges, which = np.unique(edges, axis=0, return_inverse=True)
     middles = coarse.directions[edges].sum(axis=1)
     middles /= np.linalg.norm(middles, axis=1)[:, None]
-    (a, b, c), (ab, bc, ca) = coarse.faces.T, (which.reshape(-1, 3) + len(coarse.directions)).T
-    faces = np.concatenate([np.stack(each, axis=1) for each in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))])
-    return Sphere(np.concatenate([coarse.directions, middles]), faces, np.concatenate([coarse.parents, edges[:, 0]]))
+    (a, b, c), (ab, bc, ca) = (
+        coarse.faces.T,
+        (which.reshape(-1, 3) + len(coarse.directions)).T,
+    )
+    faces = np.concatenate(
+        [
+            np.stack(each, axis=1)
+            for each in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))
+        ]
+    )
+    return Sphere(
+        np.concatenate([coarse.directions, middles]),
+        faces,
+        np.concatenate([coarse.parents, edges[:, 0]]),
+    )
 
 
 RING = np.concatenate([size * sphere(0).directions for size in (0.4, 0.15, 0.05)])
@@ -134,30 +154,49 @@ class MismatchVolumes:
         faces, directions = self.directions.faces, self.directions.directions
         scaled = self.xyz @ np.linalg.inv(self.scale).T
         support = np.einsum("kdi,di->kd", scaled, directions)[:, faces]
-        return np.asarray(np.einsum("fij,kfj->kfi", np.linalg.inv(directions[faces]), support) @ self.scale.T)
+        return np.asarray(
+            np.einsum("fij,kfj->kfi", np.linalg.inv(directions[faces]), support)
+            @ self.scale.T
+        )
 
     def excess(self, xyz: Array) -> Array:
         """Compute by how much (n,) XYZ (n, 3) exceed the body in the direction in which they do so most."""
-        return np.asarray(np.einsum("kdi,di->kd", xyz[:, None] - self.xyz, self.normals).max(axis=1))
+        return np.asarray(
+            np.einsum("kdi,di->kd", xyz[:, None] - self.xyz, self.normals).max(axis=1)
+        )
 
 
-def mismatch_volumes(sensor: Sensor, light: Light, rgb: Array, divisions: int = DIVISIONS) -> MismatchVolumes:
+def mismatch_volumes(
+    sensor: Sensor, light: Light, rgb: Array, divisions: int = DIVISIONS
+) -> MismatchVolumes:
     """Compute the mismatch volumes of colours under a light. Shapes: ``rgb`` (n, 3)."""
     outside = np.flatnonzero(~solid(sensor.matrix).contains(rgb))
     if outside.size:
-        raise _unrealisable(f"no reflectance has the colour {format_rgb(rgb[outside[0]])} under {sensor.illuminant}")
+        raise _unrealisable(
+            f"no reflectance has the colour {format_rgb(rgb[outside[0]])} under {sensor.illuminant}"
+        )
     directions, scale = sphere(divisions), _scale(sensor, light)
     # A direction d of the scaled space S⁻¹ x is maximised by the response dᵀ S⁻¹ X of each wavelength.
     response = directions.directions @ np.linalg.solve(scale, light.xyz)
     xyz = np.empty((len(rgb), len(response), 3))
     basis = np.empty(xyz.shape, dtype=np.intp)
     for block in blocks(len(rgb), max(BLOCK_PROBLEMS // len(response), 1)):
-        _solve(sensor, light, rgb[block], response, directions.parents, xyz[block], basis[block])
+        _solve(
+            sensor,
+            light,
+            rgb[block],
+            response,
+            directions.parents,
+            xyz[block],
+            basis[block],
+        )
     return MismatchVolumes(sensor, light, rgb, directions, scale, xyz, basis)
 
 
 def _unrealisable(problem: str) -> ColourError:
-    return ColourError(problem, code="colour-unrealisable", hint="give a colour with less chroma")
+    return ColourError(
+        problem, code="colour-unrealisable", hint="give a colour with less chroma"
+    )
 
 
 def _scale(sensor: Sensor, light: Light) -> Array:
@@ -171,7 +210,13 @@ def _scale(sensor: Sensor, light: Light) -> Array:
 
 
 def _solve(
-    sensor: Sensor, light: Light, rgb: Array, response: Array, parents: Indices, xyz: Array, basis: Indices
+    sensor: Sensor,
+    light: Light,
+    rgb: Array,
+    response: Array,
+    parents: Indices,
+    xyz: Array,
+    basis: Indices,
 ) -> None:
     """Fill the boundary points (n, D, 3), from coarse to fine: each direction starts at its parent's optimum."""
     basis[:] = first_basis(sensor.matrix)
@@ -179,10 +224,15 @@ def _solve(
         if first >= len(parents):
             break
         start = basis[:, parents[first:last]] if first else basis[:, :last]
-        colours, responses = np.repeat(rgb, last - first, axis=0), np.tile(response[first:last], (len(rgb), 1))
+        colours, responses = (
+            np.repeat(rgb, last - first, axis=0),
+            np.tile(response[first:last], (len(rgb), 1)),
+        )
         found = extreme_spectra(sensor.matrix, colours, responses, start.reshape(-1, 3))
         if not found.solved.all():
-            raise _unrealisable("rounding prevents a decision whether a reflectance has a colour")
+            raise _unrealisable(
+                "rounding prevents a decision whether a reflectance has a colour"
+            )
         xyz[:, first:last] = (found.reflectance @ light.xyz.T).reshape(len(rgb), -1, 3)
         basis[:, first:last] = found.basis.reshape(len(rgb), -1, 3)
 
@@ -207,17 +257,23 @@ def largest_difference(volumes: MismatchVolumes, xyz: Array) -> LargestDifferenc
     sampled = delta_e_2000(volumes.lab, reference[:, None])
     corners = volumes.corners
     outer = delta_e_2000(lab(corners, white), reference[:, None])
-    faces = outer.reshape(len(outer), -1, PARTS).argmax(axis=1) * PARTS + np.arange(PARTS)
+    faces = outer.reshape(len(outer), -1, PARTS).argmax(axis=1) * PARTS + np.arange(
+        PARTS
+    )
     row, faces = np.repeat(np.arange(len(xyz)), PARTS), faces.ravel()
     basis = volumes.basis[row, volumes.directions.faces[faces, 0]]
     search = _Search(volumes, reference)
     slope = search.slope(row, corners[row, faces])
     found = search.ascend(row, slope, basis)
     normals = np.broadcast_to(volumes.normals, volumes.xyz.shape)
-    best = _most_different(len(xyz), _Metamers(sampled, volumes.xyz, normals, volumes.basis), found)
+    best = _most_different(
+        len(xyz), _Metamers(sampled, volumes.xyz, normals, volumes.basis), found
+    )
     for _ in range(REFINEMENTS):
         best = search.around(best)
-    return LargestDifference(best.delta_e, np.maximum(outer.max(axis=1), best.delta_e), best.xyz)
+    return LargestDifference(
+        best.delta_e, np.maximum(outer.max(axis=1), best.delta_e), best.xyz
+    )
 
 
 class _Metamers(NamedTuple):
@@ -236,7 +292,10 @@ def _most_different(count: int, *parts: _Metamers) -> _Metamers:
     delta_e, *others = zip(*parts, strict=True)
     differences = np.concatenate([each.reshape(count, -1) for each in delta_e], axis=1)
     best = np.arange(count), differences.argmax(axis=1)
-    joined = (np.concatenate([each.reshape(count, -1, 3) for each in other], axis=1) for other in others)
+    joined = (
+        np.concatenate([each.reshape(count, -1, 3) for each in other], axis=1)
+        for other in others
+    )
     return _Metamers(differences[best], *(each[best] for each in joined))
 
 
@@ -249,16 +308,28 @@ class _Search:
     def extremes(self, row: Indices, direction: Array, basis: Indices) -> _Metamers:
         """Metamers (m,) of colours (m,) in directions (m, 3) of XYZ."""
         light = self.volumes.light
-        extreme = extreme_spectra(self.volumes.sensor.matrix, self.volumes.rgb[row], direction @ light.xyz, basis)
+        extreme = extreme_spectra(
+            self.volumes.sensor.matrix,
+            self.volumes.rgb[row],
+            direction @ light.xyz,
+            basis,
+        )
         xyz = extreme.reflectance @ light.xyz.T
-        return _Metamers(delta_e_2000(self._lab(xyz), self.reference[row]), xyz, direction, extreme.basis)
+        return _Metamers(
+            delta_e_2000(self._lab(xyz), self.reference[row]),
+            xyz,
+            direction,
+            extreme.basis,
+        )
 
     def ascend(self, row: Indices, slope: Array, basis: Indices) -> _Metamers:
         """Metamers (m,) where the steps from the extremes in the directions (m, 3) end."""
         found = self.extremes(row, slope, basis)
         rises = np.arange(len(row))
         for _ in range(MAX_STEPS):
-            trial = self.extremes(row[rises], self.slope(row[rises], found.xyz[rises]), found.basis[rises])
+            trial = self.extremes(
+                row[rises], self.slope(row[rises], found.xyz[rises]), found.basis[rises]
+            )
             better = trial.delta_e > found.delta_e[rises] + MIN_RISE
             rises = rises[better]
             if not len(rises):
@@ -275,7 +346,9 @@ class _Search:
         middle /= np.linalg.norm(middle, axis=1)[:, None]
         directions = (middle[:, None] + RING) @ np.linalg.inv(scale)
         row = np.repeat(np.arange(count), len(RING))
-        ring = self.extremes(row, directions.reshape(-1, 3), np.repeat(best.basis, len(RING), axis=0))
+        ring = self.extremes(
+            row, directions.reshape(-1, 3), np.repeat(best.basis, len(RING), axis=0)
+        )
         return _most_different(count, best, ring)
 
     def slope(self, row: Indices, xyz: Array) -> Array:
@@ -301,14 +374,23 @@ def outline(points: Array, faces: Indices, angles: int = ANGLES) -> Array:
     """Compute the outline (angles, 2) of a triangle mesh, of ``faces`` (F, 3), with points (D, 2) in a plane."""
     centre = points.mean(axis=0)
     values, axes = np.linalg.eigh(np.cov(points.T))
-    lengths = np.sqrt(np.maximum(values, MIN_ROUNDNESS * values.max() + np.finfo(float).tiny))
+    lengths = np.sqrt(
+        np.maximum(values, MIN_ROUNDNESS * values.max() + np.finfo(float).tiny)
+    )
     round_points = (points - centre) @ axes / lengths
     turns = np.arange(angles) * (2 * np.pi / angles)
-    along, across = (np.stack([np.cos(turns + shift), np.sin(turns + shift)]) for shift in (0.0, np.pi / 2))
-    edges = np.unique(np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
+    along, across = (
+        np.stack([np.cos(turns + shift), np.sin(turns + shift)])
+        for shift in (0.0, np.pi / 2)
+    )
+    edges = np.unique(
+        np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0
+    )
     first, second = (round_points[edges[:, end]] for end in (0, 1))
     side_1, side_2 = first @ across, second @ across
     crosses = (side_1 <= 0) != (side_2 <= 0)
     share = np.divide(side_1, side_1 - side_2, out=np.zeros_like(side_1), where=crosses)
-    radius = np.where(crosses, first @ along + share * ((second - first) @ along), 0).max(axis=0)
+    radius = np.where(
+        crosses, first @ along + share * ((second - first) @ along), 0
+    ).max(axis=0)
     return np.asarray(centre + (radius[:, None] * along.T * lengths) @ axes.T)

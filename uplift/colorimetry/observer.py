@@ -12,7 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry import tables
-from uplift.colorimetry.camera import CAMERA, CAMERA_FILES, Camera, camera_sensor, read_camera
+from uplift.colorimetry.camera import (
+    CAMERA,
+    CAMERA_FILES,
+    Camera,
+    camera_sensor,
+    read_camera,
+)
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, Illuminant, Lamp
 from uplift.colorimetry.sensor import Light, Sensor, in_unit_cube
 from uplift.colorimetry.tables import WAVELENGTHS, samples
@@ -73,14 +79,21 @@ def sensor(
     [0.5, 0.5, 0.5]
     """
     if wavelengths != WAVELENGTHS:
-        return on_range(sensor(space, illuminant, observer), *wavelengths, illuminant=illuminant)
+        return on_range(
+            sensor(space, illuminant, observer), *wavelengths, illuminant=illuminant
+        )
     if space == CAMERA:
         camera = find_camera(observer)
         if tables.rgb_space(camera.name) is not None:
-            raise OptionError(f"a camera must not have the name of an RGB space, got '{camera.name}'")
+            raise OptionError(
+                f"a camera must not have the name of an RGB space, got '{camera.name}'"
+            )
         return camera_sensor(camera, sensor(illuminant=illuminant))
     if isinstance(observer, Camera) or is_camera(observer):
-        raise OptionError("a camera in place of an observer has its own RGB space", hint=f"use space='{CAMERA}'")
+        raise OptionError(
+            "a camera in place of an observer has its own RGB space",
+            hint=f"use space='{CAMERA}'",
+        )
     rgb_space = tables.rgb_space(space)
     if rgb_space is None:
         from uplift.colorimetry.spaces import look_up_space  # names of OpenColorIO
@@ -103,7 +116,14 @@ def sensor(
     )
 
 
-def on_range(sensor: Sensor, start: float, end: float, step: float, *, illuminant: Illuminant | None = None) -> Sensor:
+def on_range(
+    sensor: Sensor,
+    start: float,
+    end: float,
+    step: float,
+    *,
+    illuminant: Illuminant | None = None,
+) -> Sensor:
     """Return a sensor with a range of wavelengths, where the perfect reflector is white again.
 
     ``illuminant`` is that of the sensor, which must be given if it is a lamp.
@@ -115,7 +135,9 @@ def on_range(sensor: Sensor, start: float, end: float, step: float, *, illuminan
     wavelengths = np.arange(start, end + step / 2, step)
     sensitivities = None
     if sensor.sensitivities is not None:
-        sensitivities = Camera(sensor.space, sensor.wavelengths, sensor.sensitivities).at(wavelengths)
+        sensitivities = Camera(
+            sensor.space, sensor.wavelengths, sensor.sensitivities
+        ).at(wavelengths)
     return replace(
         sensor,
         wavelengths=wavelengths,
@@ -133,7 +155,11 @@ def is_camera_file(observer: str) -> bool:
 
 def is_camera(observer: str | Camera) -> bool:
     """Whether an observer is a camera, or the name or file of one."""
-    return isinstance(observer, Camera) or is_camera_file(observer) or observer in tables.names("camera")
+    return (
+        isinstance(observer, Camera)
+        or is_camera_file(observer)
+        or observer in tables.names("camera")
+    )
 
 
 def require_observer(observer: str | Camera, purpose: str) -> None:
@@ -169,7 +195,9 @@ def display_sensors(
     `OptionError` for two lamps of one name.
     """
     check_distinct(illuminants)
-    sensors = (sensor(space, name, observer, (start, end, step)) for name in illuminants)
+    sensors = (
+        sensor(space, name, observer, (start, end, step)) for name in illuminants
+    )
     return tuple({each.illuminant: each for each in sensors}.values())
 
 
@@ -177,13 +205,22 @@ def check_distinct(illuminants: Iterable[Illuminant]) -> None:
     """Check that no two different lamps, nor a lamp and an illuminant, have the same name in results."""
     known: dict[str, Lamp | None] = {}
     for each in illuminants:
-        name, lamp = tables.stated_name("illuminant", each), each if isinstance(each, Lamp) else None
+        name, lamp = (
+            tables.stated_name("illuminant", each),
+            each if isinstance(each, Lamp) else None,
+        )
         if known.setdefault(name, lamp) != lamp:
-            raise OptionError(f"two lights have the name '{name}'", hint="rename one of them")
+            raise OptionError(
+                f"two lights have the name '{name}'", hint="rename one of them"
+            )
 
 
 def light(
-    illuminant: Illuminant, observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
+    illuminant: Illuminant,
+    observer: str = DEFAULT_OBSERVER,
+    start: float = START,
+    end: float = END,
+    step: float = STEP,
 ) -> Light:
     """Create a light, by default on the wavelengths of `grid`.
 
@@ -209,23 +246,32 @@ def light(
     """
     power = samples("illuminant", illuminant, start, end, step)
     weights = samples("observer", observer, start, end, step) * power[:, None]
-    return Light(tables.stated_name("illuminant", illuminant), (weights / weights[:, 1].sum()).T)
+    return Light(
+        tables.stated_name("illuminant", illuminant), (weights / weights[:, 1].sum()).T
+    )
 
 
 def matching_functions(
-    observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
+    observer: str = DEFAULT_OBSERVER,
+    start: float = START,
+    end: float = END,
+    step: float = STEP,
 ) -> Array:
     """Return colour-matching functions. Shape (N, 3)."""
     return samples("observer", observer, start, end, step)
 
 
-def illuminant_spd(illuminant: Illuminant, start: float = START, end: float = END, step: float = STEP) -> Array:
+def illuminant_spd(
+    illuminant: Illuminant, start: float = START, end: float = END, step: float = STEP
+) -> Array:
     """Return the relative spectral power of an illuminant. Shape (N,)."""
     return samples("illuminant", illuminant, start, end, step)
 
 
 def smallest_space(
-    reflectances: ArrayLike, illuminant: Illuminant = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
+    reflectances: ArrayLike,
+    illuminant: Illuminant = DEFAULT_ILLUMINANT,
+    observer: str = DEFAULT_OBSERVER,
 ) -> str | None:
     """Find the smallest of `COMMON_SPACES` that holds all colours of reflectances (…, 81) on `grid`; None if none does.
 
@@ -234,5 +280,7 @@ def smallest_space(
     'sRGB'
     """
     candidates = (sensor(space, illuminant, observer) for space in COMMON_SPACES)
-    holding = (each.space for each in candidates if in_unit_cube(each.rgb(reflectances)).all())
+    holding = (
+        each.space for each in candidates if in_unit_cube(each.rgb(reflectances)).all()
+    )
     return next(holding, None)

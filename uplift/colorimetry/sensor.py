@@ -30,10 +30,15 @@ def as_rgb(rgb: ArrayLike) -> Values:
     try:
         array: Values = np.asarray(rgb) if is_single else np.asarray(rgb, dtype=float)
     except (TypeError, ValueError) as error:
-        raise ColourError(f"a colour is three numbers, got {format_value(rgb)}", hint="pass R, G and B") from error
+        raise ColourError(
+            f"a colour is three numbers, got {format_value(rgb)}",
+            hint="pass R, G and B",
+        ) from error
     if array.ndim == 0 or array.shape[-1] != 3:
         hint = "pass [R, G, B], or colours of shape (…, 3), without alpha"
-        raise ColourError(f"a colour is three numbers, got an array of shape {array.shape}", hint=hint)
+        raise ColourError(
+            f"a colour is three numbers, got an array of shape {array.shape}", hint=hint
+        )
     return array
 
 
@@ -44,15 +49,25 @@ def raise_out_of_gamut(outside: Array) -> NoReturn:
     if not np.isfinite(colour).all():
         raise ColourError(f"{text} is not finite", hint="pass numbers in [0, 1]")
     problem = f"{text} lies outside [0, 1]"
-    if (colour == np.round(colour)).all() and colour.min() >= 0 and MIN_CODE <= colour.max() <= 255:
-        raise ColourError(problem, code="rgb-like-codes", hint="convert 8-bit codes with Cube.decode")
+    if (
+        (colour == np.round(colour)).all()
+        and colour.min() >= 0
+        and MIN_CODE <= colour.max() <= 255
+    ):
+        raise ColourError(
+            problem, code="rgb-like-codes", hint="convert 8-bit codes with Cube.decode"
+        )
     hint = "map it with uplift.colorimetry.gamut.map_to_gamut"
     raise ColourError(problem, code="rgb-out-of-gamut", hint=hint)
 
 
 def format_rgb(rgb: Array) -> str:
     """Format a colour (3,) for a message. Rounding errors of 0 are 0."""
-    return "(" + ", ".join("0" if abs(value) < ROUNDING else f"{value:g}" for value in rgb) + ")"
+    return (
+        "("
+        + ", ".join("0" if abs(value) < ROUNDING else f"{value:g}" for value in rgb)
+        + ")"
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +127,11 @@ class Sensor:
     @property
     def range(self) -> tuple[float, float, float]:
         """First and last wavelength and step in nm."""
-        return (float(self.wavelengths[0]), float(self.wavelengths[-1]), float(np.diff(self.wavelengths[:2])[0]))
+        return (
+            float(self.wavelengths[0]),
+            float(self.wavelengths[-1]),
+            float(np.diff(self.wavelengths[:2])[0]),
+        )
 
     @cached_property
     def light(self) -> Light:

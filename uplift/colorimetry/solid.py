@@ -29,7 +29,15 @@ class Solid:
     def signed_distance(self, rgb: Array) -> Array:
         """Compute the largest signed distance (n,) of linear RGB (n, 3) from the facets: positive outside the solid."""
         blocks = [rgb[first : first + BLOCK] for first in range(0, len(rgb), BLOCK)]
-        return np.concatenate([np.zeros(0), *((block @ self.normals.T - self.offsets).max(axis=1) for block in blocks)])
+        return np.concatenate(
+            [
+                np.zeros(0),
+                *(
+                    (block @ self.normals.T - self.offsets).max(axis=1)
+                    for block in blocks
+                ),
+            ]
+        )
 
     def contains(self, rgb: Array) -> Mask:
         """Test whether (n,) a reflectance with each linear RGB (n, 3) exists."""
@@ -43,7 +51,11 @@ class Solid:
             # On start + f · (end − start), facet i is met at f = (offset_i − n_i · start) / n_i · (end − start).
             margin = np.maximum(self.offsets - start @ self.normals.T, 0)
             speed = (end - start) @ self.normals.T
-            fractions.append(np.divide(margin, speed, out=np.ones_like(margin), where=speed > margin).min(axis=1))
+            fractions.append(
+                np.divide(
+                    margin, speed, out=np.ones_like(margin), where=speed > margin
+                ).min(axis=1)
+            )
         return np.concatenate(fractions)
 
 
@@ -70,7 +82,9 @@ def solid(matrix: Array) -> Solid:
     first, second = np.triu_indices(len(segments), k=1)
     cross = np.cross(segments[first], segments[second])
     length = np.linalg.norm(cross, axis=1)
-    kept = length > 1e-12 * np.linalg.norm(segments[first], axis=1) * np.linalg.norm(segments[second], axis=1)
+    kept = length > 1e-12 * np.linalg.norm(segments[first], axis=1) * np.linalg.norm(
+        segments[second], axis=1
+    )
     normals = cross[kept] / length[kept, None]
     # The farthest colour along n takes every W_k with n · W_k > 0: the offset is Σ_k max(0, n · W_k).
     along = normals @ matrix

@@ -64,11 +64,19 @@ class ImageSpace:
         """Compute the matrix (3, 3) to the linear RGB of a sensor; None if the primaries are equal."""
         sensor.require_xyz()
         matrix = self.matrix(sensor)
-        return None if np.abs(matrix - np.eye(3)).max() <= MAX_PRIMARIES_DIFFERENCE else matrix
+        return (
+            None
+            if np.abs(matrix - np.eye(3)).max() <= MAX_PRIMARIES_DIFFERENCE
+            else matrix
+        )
 
     def agrees_with(self, sensor: Sensor, *, encoded: bool) -> bool:
         """Whether the space is that of a sensor, up to rounding."""
-        if sensor.sensitivities is not None or self.mixes_channels or self.matrix_to(sensor) is not None:
+        if (
+            sensor.sensitivities is not None
+            or self.mixes_channels
+            or self.matrix_to(sensor) is not None
+        ):
             return False
         if not encoded or self.decode is None:
             return True
@@ -114,7 +122,9 @@ class OcioSpace:
                 return ImageSpace(self.name, self, lambda codes: codes)
             # In CIE XYZ, (1, 1, 1) is not white.
             return ImageSpace(self.name, AP0, lambda codes: codes, to_gamut=self.matrix)
-        return ImageSpace(self.name, AP0, self.convert, floats_are_codes=True, mixes_channels=True)
+        return ImageSpace(
+            self.name, AP0, self.convert, floats_are_codes=True, mixes_channels=True
+        )
 
 
 def find_space(text: str) -> ImageSpace:
@@ -141,10 +151,14 @@ def find_space(text: str) -> ImageSpace:
         _check_colours(text)
         spaces = _configuration(BUILT_IN).getColorSpaces()
         names = [space.getName() for space in spaces if not space.isData()]
-        raise unknown_name(text, (*tables.names("RGB space"), *names), "RGB space", ALL_SPACES) from None
+        raise unknown_name(
+            text, (*tables.names("RGB space"), *names), "RGB space", ALL_SPACES
+        ) from None
     is_xyz = np.array_equal(space.primaries, np.eye(3)[:, :2])
     if is_xyz and (found := find_ocio_space(space.name)) is not None:
-        return found.as_image_space()  # colour-science takes the white of CIE XYZ-D65 for that of illuminant E
+        return (
+            found.as_image_space()
+        )  # colour-science takes the white of CIE XYZ-D65 for that of illuminant E
     return ImageSpace(space.name, primaries_of(space), space.cctf_decoding)
 
 
@@ -183,7 +197,9 @@ def _check_colours(name: str) -> None:
 
 def find_ocio_space(name: str, *, built_in: bool = True) -> OcioSpace | None:
     """Find a colour space of OpenColorIO by name, alias or role."""
-    for place in filter(None, (os.environ.get(VARIABLE), BUILT_IN if built_in else None)):
+    for place in filter(
+        None, (os.environ.get(VARIABLE), BUILT_IN if built_in else None)
+    ):
         import PyOpenColorIO
 
         try:
@@ -191,8 +207,12 @@ def find_ocio_space(name: str, *, built_in: bool = True) -> OcioSpace | None:
             space = config.getColorSpace(name) if name.isprintable() else None
             if space is None or space.isData():
                 continue
-            processor = PyOpenColorIO.Config.GetProcessorToBuiltinColorSpace(config, space.getName(), REFERENCE)
-            cpu = processor.getOptimizedCPUProcessor(PyOpenColorIO.OPTIMIZATION_LOSSLESS)
+            processor = PyOpenColorIO.Config.GetProcessorToBuiltinColorSpace(
+                config, space.getName(), REFERENCE
+            )
+            cpu = processor.getOptimizedCPUProcessor(
+                PyOpenColorIO.OPTIMIZATION_LOSSLESS
+            )
         except PyOpenColorIO.Exception as error:
             raise OptionError(
                 f"the configuration of OpenColorIO cannot be used: {' '.join(str(error).split())}",

@@ -36,7 +36,9 @@ def is_json(path: StrPath) -> bool:
     return str(path).casefold().endswith(".json")
 
 
-def read_spectra(path: StrPath, labels: tuple[str, ...], error: type[UpliftError]) -> LabelledSpectra:
+def read_spectra(
+    path: StrPath, labels: tuple[str, ...], error: type[UpliftError]
+) -> LabelledSpectra:
     """Read spectra in the order of ``labels``; raise ``error`` for a file with others, or that is not of rawtoaces."""
     data = read_bytes(path, error, limit=MAX_BYTES, hint=HINT)
     try:
@@ -46,13 +48,19 @@ def read_spectra(path: StrPath, labels: tuple[str, ...], error: type[UpliftError
     try:
         spectra = _parse(table)
     except (AttributeError, KeyError, TypeError, ValueError, OverflowError) as cause:
-        raise error("is not JSON of rawtoaces, with spectral_data by wavelength", path=path, hint=HINT) from cause
+        raise error(
+            "is not JSON of rawtoaces, with spectral_data by wavelength",
+            path=path,
+            hint=HINT,
+        ) from cause
     if sorted(spectra.labels) != sorted(labels):
         problem = f"must have the columns {', '.join(labels)}, got {', '.join(spectra.labels)}"
         raise error(problem, path=path, hint="name a file of another kind")
     columns = [spectra.labels.index(label) for label in labels]
     order = np.argsort(spectra.wavelengths)
-    return LabelledSpectra(labels, spectra.wavelengths[order], spectra.values[order][:, columns])
+    return LabelledSpectra(
+        labels, spectra.wavelengths[order], spectra.values[order][:, columns]
+    )
 
 
 def _parse(table: dict[str, Any]) -> LabelledSpectra:

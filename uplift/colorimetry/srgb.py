@@ -31,7 +31,9 @@ def decode(codes: Array) -> Array:
 def encode(linear: ArrayLike) -> Array:
     """Convert linear values to encoded sRGB in [0, 1], clipping values outside."""
     inside = np.clip(np.asarray(linear, dtype=float), 0, 1)
-    return np.where(inside <= 0.0031308, inside * 12.92, 1.055 * inside ** (1 / 2.4) - 0.055)
+    return np.where(
+        inside <= 0.0031308, inside * 12.92, 1.055 * inside ** (1 / 2.4) - 0.055
+    )
 
 
 def to_display_codes(rgb: ArrayLike, gamut: Gamut) -> Array:
@@ -47,7 +49,10 @@ def hex_codes(rgb: Array, gamut: Gamut = SRGB) -> list[str]:
     >>> hex_codes(np.array([[1.0, 0.5, 0.0]]))
     ['#ffbc00']
     """
-    return ["#" + bytes(code).hex() for code in to_display_codes(rgb, gamut).astype(np.uint8)]
+    return [
+        "#" + bytes(code).hex()
+        for code in to_display_codes(rgb, gamut).astype(np.uint8)
+    ]
 
 
 @dataclass(frozen=True)
@@ -82,4 +87,8 @@ def parse_colour(value: Any) -> WrittenColour:
 
 def is_number(value: object) -> bool:
     """Test whether a value is a finite number, and not absurdly large."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= MAX_NUMBER
+    return (
+        isinstance(value, int | float)
+        and not isinstance(value, bool)
+        and abs(value) <= MAX_NUMBER
+    )

@@ -25,7 +25,10 @@ from uplift.common.errors import OptionError, UnknownNameError, unknown_name
 PATH = Path(__file__).parent / "tables.npz"
 START, END, STEP = WAVELENGTHS = (380.0, 780.0, 5.0)
 """Range and step in nm of the spectra of the file."""
-SPECTRA = {"illuminant": "SDS_ILLUMINANTS", "observer": "colorimetry.MSDS_CMFS_STANDARD_OBSERVER"}
+SPECTRA = {
+    "illuminant": "SDS_ILLUMINANTS",
+    "observer": "colorimetry.MSDS_CMFS_STANDARD_OBSERVER",
+}
 """Tables of colour-science whose spectra the file has, by the kind of their names."""
 TABLES = {
     **SPECTRA,
@@ -59,7 +62,7 @@ class RgbSpace:
     """(3, 2) chromaticities."""
     whitepoint: Array
     """(2,) chromaticity."""
-    matrix_XYZ_to_RGB: Array  # noqa: N815 — the name of colour-science
+    matrix_XYZ_to_RGB: Array
     """(3, 3)."""
     decoding: Array
     """(256,) linear values of the 8-bit codes."""
@@ -92,7 +95,10 @@ def stated_name(kind: str, name: Illuminant) -> str:
     """
     if isinstance(name, Lamp):
         if name.name in names(kind):
-            raise OptionError(f"a lamp must not have the name of an illuminant, got '{name}'", hint="rename the lamp")
+            raise OptionError(
+                f"a lamp must not have the name of an illuminant, got '{name}'",
+                hint="rename the lamp",
+            )
         return name.name
     name, _ = lights.standard_name(name) if kind == "illuminant" else (name, None)
     if name in names(kind):
@@ -101,7 +107,13 @@ def stated_name(kind: str, name: Illuminant) -> str:
 
 
 @functools.cache
-def samples(kind: str, name: Illuminant, start: float = START, end: float = END, step: float = STEP) -> Array:
+def samples(
+    kind: str,
+    name: Illuminant,
+    start: float = START,
+    end: float = END,
+    step: float = STEP,
+) -> Array:
     """Sample spectra by name, or those of a lamp; the result is read-only. Shape (N,) or (N, 3).
 
     Outside its table a spectrum keeps its last value, as CIE 15 has it for lights, and one of `RESPONSES` is 0.
@@ -117,7 +129,9 @@ def samples(kind: str, name: Illuminant, start: float = START, end: float = END,
     elif kind in SPECTRA and (start, end, step) == WAVELENGTHS and name in names(kind):
         values = _file()[f"{kind}: samples"][names(kind).index(name)]
     else:
-        values = np.array(aligned(kind, look_up(kind, name), start, end, step).values, dtype=float)
+        values = np.array(
+            aligned(kind, look_up(kind, name), start, end, step).values, dtype=float
+        )
     values.setflags(write=False)
     return values
 
@@ -132,14 +146,20 @@ def aligned(kind: str, spectra: Any, start: float, end: float, step: float) -> A
 
 def rgb_space(name: str) -> RgbSpace | None:
     """Return an RGB space by a name of colour-science or one of `SHORT_NAMES`, None if it has none of the name."""
-    known, name = names("RGB space"), SHORT_NAMES.get(re.sub(r"[ ._-]", "", name.casefold()), name)
+    known, name = (
+        names("RGB space"),
+        SHORT_NAMES.get(re.sub(r"[ ._-]", "", name.casefold()), name),
+    )
     if name not in known:
         table = colour_science().RGB_COLOURSPACES
         if name not in table:
             return None
         name = table[name].name
     row = known.index(name)
-    parts = (_file()[f"RGB space: {part}"][row] for part in ("primaries", "whitepoint", "matrix", "decoding"))
+    parts = (
+        _file()[f"RGB space: {part}"][row]
+        for part in ("primaries", "whitepoint", "matrix", "decoding")
+    )
     return RgbSpace(stated_name("RGB space", name), *parts)
 
 
@@ -147,7 +167,9 @@ def bradford(source: Array, target: Array) -> Array:
     """Compute the matrix (3, 3) of Bradford's adaptation from one white XYZ (3,) to another."""
     matrix = _file()["bradford"]
     # M⁻¹ diag(M w′ / M w) M
-    return np.linalg.inv(matrix) @ np.diag((matrix @ target) / (matrix @ source)) @ matrix
+    return (
+        np.linalg.inv(matrix) @ np.diag((matrix @ target) / (matrix @ source)) @ matrix
+    )
 
 
 def look_up(kind: str, name: str) -> Any:
@@ -156,16 +178,24 @@ def look_up(kind: str, name: str) -> Any:
     known = list(table)
     if kind == "observer" and name not in table and name in colour_science().MSDS_CMFS:
         hint = "that of CIE 2015 has the cone fundamentals of Stockman & Sharpe as XYZ"
-        raise OptionError(f"observer must have colour-matching functions of XYZ, got '{name}'", hint=hint)
+        raise OptionError(
+            f"observer must have colour-matching functions of XYZ, got '{name}'",
+            hint=hint,
+        )
     if kind == "illuminant":
-        (name, kelvin), known = lights.standard_name(name), [*known, *lights.COMMON_NAMES, "3200K"]
+        (name, kelvin), known = (
+            lights.standard_name(name),
+            [*known, *lights.COMMON_NAMES, "3200K"],
+        )
         if kelvin is not None:
             return _of_temperature(kelvin, name)
     try:
         return table[name]
     except KeyError:
         if kind in FILES and os.path.isfile(name):
-            raise UnknownNameError(f"unknown {kind} '{name}', which is a file", hint=FILES[kind]) from None
+            raise UnknownNameError(
+                f"unknown {kind} '{name}', which is a file", hint=FILES[kind]
+            ) from None
         error = unknown_name(name, known, kind, f"tables.names('{kind}')")
         if kind in FILES and os.path.splitext(name)[1][1:2].isalpha():
             error.problem += ", and no file has this name"
@@ -177,8 +207,12 @@ def _of_temperature(kelvin: float, name: str) -> Any:
     colour = colour_science()
     if kelvin < lights.DAYLIGHT_FROM:
         wavelengths = np.arange(300.0, 1001.0)
-        return colour.SpectralDistribution(lights.black_body(kelvin, wavelengths), wavelengths, name=name)
+        return colour.SpectralDistribution(
+            lights.black_body(kelvin, wavelengths), wavelengths, name=name
+        )
     kelvin = min(kelvin * lights.NOMINAL, lights.TEMPERATURES[1])
-    found = colour.sd_CIE_illuminant_D_series(colour.temperature.CCT_to_xy_CIE_D(kelvin))
+    found = colour.sd_CIE_illuminant_D_series(
+        colour.temperature.CCT_to_xy_CIE_D(kelvin)
+    )
     found.name = name
     return found

@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.errors import StrPath as StrPath  # defined without numpy, which takes long to import
+from uplift.common.errors import (
+    StrPath as StrPath,
+)  # defined without numpy, which takes long to import
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

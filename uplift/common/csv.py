@@ -20,17 +20,28 @@ _DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
-def write_csv(file: Any, rows: Iterable[Iterable[object]], *, quote_text: bool = False) -> None:
+def write_csv(
+    file: Any, rows: Iterable[Iterable[object]], *, quote_text: bool = False
+) -> None:
     """Write rows with LF line ends, each before the next is computed, to a text file or anything else with ``write``.
 
     Floats have all significant digits, None is an empty cell, and text is neutralised. With ``quote_text`` all text is
     quoted, which distinguishes a name such as ``1`` from a number.
     """
-    writer = csv.writer(file, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC if quote_text else csv.QUOTE_MINIMAL)
+    writer = csv.writer(
+        file,
+        lineterminator="\n",
+        quoting=csv.QUOTE_NONNUMERIC if quote_text else csv.QUOTE_MINIMAL,
+    )
     writer.writerows([_safe_cell(cell) for cell in row] for row in rows)
 
 
-def csv_text(header: Sequence[object], rows: Iterable[Sequence[object]], *, quote_text: bool = False) -> str:
+def csv_text(
+    header: Sequence[object],
+    rows: Iterable[Sequence[object]],
+    *,
+    quote_text: bool = False,
+) -> str:
     """Format a table as CSV.
 
     >>> print(csv_text(["name", "value"], [["a, b", 0.1], ["=1+2", None]]), end="")
@@ -89,7 +100,9 @@ def find_delimiter(lines: Iterable[str]) -> str:
     [';', ' ', ',', ',', ',']
     """
     lines = list(lines)
-    present = [each for each in DELIMITERS if any(each in line for line in lines)] or DELIMITERS[:1]
+    present = [
+        each for each in DELIMITERS if any(each in line for line in lines)
+    ] or DELIMITERS[:1]
 
     def score(delimiter: str) -> tuple[int, int]:
         cells = [cell for line in lines for cell in split_line(line, delimiter)]

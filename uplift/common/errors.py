@@ -10,7 +10,7 @@ from uplift.common.text import listed, printable
 StrPath = str | os.PathLike[str]
 
 
-class Diagnostic(Exception):  # noqa: N818
+class Diagnostic(Exception):
     """Fields that errors and warnings share.
 
     Parameters
@@ -51,7 +51,9 @@ class Diagnostic(Exception):  # noqa: N818
     @property
     def where(self) -> str:
         """Location as ``path:line: entry 'name'``, as far as it is known; empty if nothing is."""
-        place = ":".join(str(part) for part in (self.path, self.line) if part is not None)
+        place = ":".join(
+            str(part) for part in (self.path, self.line) if part is not None
+        )
         entry = "" if self.entry is None else f"entry '{self.entry}'"
         return ": ".join(part for part in (place, entry) if part)
 
@@ -66,7 +68,12 @@ class Diagnostic(Exception):  # noqa: N818
 
     def to_json(self) -> dict[str, Any]:
         """``code``, ``where``, ``problem`` and ``hint``, all text, for machines."""
-        return {"code": self.code, "where": self.where, "problem": self.problem, "hint": self.hint}
+        return {
+            "code": self.code,
+            "where": self.where,
+            "problem": self.problem,
+            "hint": self.hint,
+        }
 
 
 class UpliftError(Diagnostic):
@@ -145,7 +152,9 @@ class UpliftWarning(Diagnostic, UserWarning):
     code = "warning"
 
 
-def unknown_name(name: str, known: Iterable[str], kind: str, lister: str = "") -> UnknownNameError:
+def unknown_name(
+    name: str, known: Iterable[str], kind: str, lister: str = ""
+) -> UnknownNameError:
     """Make the error for an unknown name of a ``kind``. Its hint has the nearest names, or the ``lister`` of all.
 
     >>> error = unknown_name("srbg", ("sRGB", "P3-D65"), "RGB space")
@@ -156,9 +165,16 @@ def unknown_name(name: str, known: Iterable[str], kind: str, lister: str = "") -
 
     by_folded = {entry.casefold(): entry for entry in known if entry != name}
     near = difflib.get_close_matches(name.casefold(), by_folded, n=3)
-    everything = f"{lister} lists all" if lister else f"known: {listed(list(by_folded.values()))}"
+    everything = (
+        f"{lister} lists all"
+        if lister
+        else f"known: {listed(list(by_folded.values()))}"
+    )
     choices = ", ".join(f"'{by_folded[entry]}'" for entry in near)
-    return UnknownNameError(f"unknown {kind} '{name}'", hint=f"did you mean {choices}?" if near else everything)
+    return UnknownNameError(
+        f"unknown {kind} '{name}'",
+        hint=f"did you mean {choices}?" if near else everything,
+    )
 
 
 @contextlib.contextmanager

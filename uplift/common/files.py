@@ -36,18 +36,29 @@ def check_regular(path: StrPath, error: type[UpliftError], *, hint: str) -> None
     """
     with _reading(path, error, hint):
         status = os.stat(path)
-    if not stat.S_ISREG(status.st_mode) or (os.path.exists(KERNEL) and status.st_dev == os.stat(KERNEL).st_dev):
+    if not stat.S_ISREG(status.st_mode) or (
+        os.path.exists(KERNEL) and status.st_dev == os.stat(KERNEL).st_dev
+    ):
         kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a device or a pipe"
-        raise error(f"must be a file, got {kind}", code="file-unreadable", path=path, hint=hint)
+        raise error(
+            f"must be a file, got {kind}", code="file-unreadable", path=path, hint=hint
+        )
 
 
-def read_bytes(path: StrPath, error: type[UpliftError], *, limit: int, hint: str) -> bytes:
+def read_bytes(
+    path: StrPath, error: type[UpliftError], *, limit: int, hint: str
+) -> bytes:
     """Read a regular file of at most ``limit`` bytes; raise ``error`` otherwise."""
     check_regular(path, error, hint=hint)
     with _reading(path, error, hint), open(path, "rb") as file:
         data = file.read(limit + 1)
     if len(data) > limit:
-        raise error(f"must not exceed {limit:,} bytes", code="file-unreadable", path=path, hint=hint)
+        raise error(
+            f"must not exceed {limit:,} bytes",
+            code="file-unreadable",
+            path=path,
+            hint=hint,
+        )
     return data
 
 
@@ -75,14 +86,21 @@ def _reading(path: StrPath, error: type[UpliftError], hint: str) -> Iterator[Non
     try:
         yield
     except (FileNotFoundError, NotADirectoryError) as cause:
-        raise error("no such file", code="file-not-found", path=path, hint=hint) from cause
+        raise error(
+            "no such file", code="file-not-found", path=path, hint=hint
+        ) from cause
     except (OSError, ValueError) as cause:  # a null byte in the path is a ValueError
         reason = getattr(cause, "strerror", None) or cause
-        raise error(f"cannot be read: {reason}", code="file-unreadable", path=path, hint=hint) from cause
+        raise error(
+            f"cannot be read: {reason}", code="file-unreadable", path=path, hint=hint
+        ) from cause
 
 
 def check_outputs(
-    paths: Iterable[StrPath | None], *, inputs: Iterable[StrPath | None] = (), force: bool = False
+    paths: Iterable[StrPath | None],
+    *,
+    inputs: Iterable[StrPath | None] = (),
+    force: bool = False,
 ) -> None:
     """Check all outputs of a program before it reads and writes anything, as `check_output`; None are left out."""
     outputs, inputs = [path for path in paths if path is not None], list(inputs)
@@ -102,7 +120,9 @@ def _check_distinct(paths: Iterable[StrPath]) -> None:
         checked[place] = path
 
 
-def check_output(path: StrPath, *, inputs: Iterable[StrPath | None] = (), force: bool = False) -> Path:
+def check_output(
+    path: StrPath, *, inputs: Iterable[StrPath | None] = (), force: bool = False
+) -> Path:
     """Check that a file can be written, before long work rather than after it.
 
     An existing file is accepted with ``force``, one of the ``inputs`` never (``output-is-input``). Names of inputs
@@ -110,20 +130,31 @@ def check_output(path: StrPath, *, inputs: Iterable[StrPath | None] = (), force:
     """
     if os.fspath(path) == "-":
         hint = "give a file name, or ./- for a file of this name"
-        raise OutputError("stands for standard output, which cannot hold a file", path=path, hint=hint)
+        raise OutputError(
+            "stands for standard output, which cannot hold a file", path=path, hint=hint
+        )
     path = Path(path)
     refused = functools.partial(OutputError, path=path, hint="choose another name")
     try:
         status = path.stat()
     except FileNotFoundError:
         status = None
-    except (OSError, ValueError) as error:  # no permission, too long, with NUL, or a loop of links
-        raise refused(f"cannot be written: {getattr(error, 'strerror', None) or error}") from error
+    except (
+        OSError,
+        ValueError,
+    ) as error:  # no permission, too long, with NUL, or a loop of links
+        raise refused(
+            f"cannot be written: {getattr(error, 'strerror', None) or error}"
+        ) from error
     # Compared by inode: links and other spellings of an input are the input.
     if status is not None:
-        existing = (each for each in inputs if each is not None and os.path.exists(each))
+        existing = (
+            each for each in inputs if each is not None and os.path.exists(each)
+        )
         if any(os.path.samestat(status, os.stat(each)) for each in existing):
-            raise refused("is read as input and must not be replaced", code="output-is-input")
+            raise refused(
+                "is read as input and must not be replaced", code="output-is-input"
+            )
         if not stat.S_ISREG(status.st_mode):
             raise refused("is not a regular file")
         if not force:
@@ -133,12 +164,18 @@ def check_output(path: StrPath, *, inputs: Iterable[StrPath | None] = (), force:
     if not folder.is_dir():
         raise refused(f"the folder {folder} does not exist", hint="create it first")
     if not os.access(folder, os.W_OK):
-        raise refused(f"no permission to write in {folder}", hint="choose another folder")
+        raise refused(
+            f"no permission to write in {folder}", hint="choose another folder"
+        )
     return path
 
 
 def check_folder(
-    path: StrPath, names: Iterable[str], *, inputs: Iterable[StrPath | None] = (), force: bool = False
+    path: StrPath,
+    names: Iterable[str],
+    *,
+    inputs: Iterable[StrPath | None] = (),
+    force: bool = False,
 ) -> Path:
     """Check that files with these names can be written to a folder, which `make_folder` creates if necessary."""
     folder = Path(path)
@@ -164,7 +201,9 @@ def make_folder(path: StrPath) -> Path:
     except FileExistsError as error:
         raise _not_a_folder(folder) from error
     except OSError as error:
-        raise OutputError(f"cannot be created: {error.strerror}", path=folder, hint=FOLDER_HINT) from error
+        raise OutputError(
+            f"cannot be created: {error.strerror}", path=folder, hint=FOLDER_HINT
+        ) from error
     return folder
 
 
@@ -193,7 +232,9 @@ def atomic_write(path: StrPath, *, force: bool = False) -> Iterator[Path]:
     """
     path = check_output(path, force=force)
     target = path.resolve()
-    temporary = target.with_name(f"{PREFIX.format(target.name[:40])}{os.urandom(4).hex()}.part")
+    temporary = target.with_name(
+        f"{PREFIX.format(target.name[:40])}{os.urandom(4).hex()}.part"
+    )
     _TEMPORARIES.add(temporary)
     try:
         remove_stale(target)
@@ -209,7 +250,9 @@ def atomic_write(path: StrPath, *, force: bool = False) -> Iterator[Path]:
         raise
     except OSError as error:
         problem = f"cannot be written: {error.strerror or error}"
-        raise OutputError(problem, path=path, hint="an existing file is unchanged") from error
+        raise OutputError(
+            problem, path=path, hint="an existing file is unchanged"
+        ) from error
     finally:
         temporary.unlink(missing_ok=True)
         _TEMPORARIES.discard(temporary)
@@ -219,7 +262,9 @@ def remove_stale(path: StrPath, seconds: float = DAY) -> None:
     """Remove the temporary files of writers to a path that have not changed for so long: their writers were killed."""
     target = Path(path).resolve()
     for entry in os.scandir(target.parent):
-        if entry.name.startswith(PREFIX.format(target.name[:40])) and entry.name.endswith(".part"):
+        if entry.name.startswith(
+            PREFIX.format(target.name[:40])
+        ) and entry.name.endswith(".part"):
             with contextlib.suppress(OSError):
                 if time.time() - entry.stat().st_mtime >= seconds:
                     os.unlink(entry)

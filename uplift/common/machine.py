@@ -25,9 +25,15 @@ def single_threaded_blas() -> Iterator[None]:
     number of threads, which changes the rounding of sums. The threads of XLA are not affected: they distribute rows.
     Only loaded libraries are limited: scipy, which brings its own BLAS, must be imported before.
     """
-    from threadpoolctl import OpenBLASController, ThreadpoolController, threadpool_limits
+    from threadpoolctl import (
+        OpenBLASController,
+        ThreadpoolController,
+        threadpool_limits,
+    )
 
-    per_thread = ThreadpoolController().select(threading_layer="openmp")  # its limits hold for the calling thread
+    per_thread = ThreadpoolController().select(
+        threading_layer="openmp"
+    )  # its limits hold for the calling thread
     with per_thread.limit(limits=1, user_api="blas"):
         # A limit lifted by one caller would hold no longer for the others, so all are kept until the last has left.
         caller = object()
@@ -50,7 +56,10 @@ PROCESS_BYTES = 500_000_000
 """Memory of a build without its lattice."""
 THREADS = 1_200_000_000
 """Addresses that the threads of XLA reserve, which a limit of addresses must leave."""
-CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
+CGROUP_LIMITS = (
+    "/sys/fs/cgroup/memory.max",
+    "/sys/fs/cgroup/memory/memory.limit_in_bytes",
+)
 """Limits of a container, by version of cgroups."""
 
 
@@ -58,7 +67,9 @@ def free_memory() -> int | None:
     """Return the bytes that this process can still have: of the machine, its container, its limit; None if unknown."""
     limits = []
     with contextlib.suppress(OSError, AttributeError):  # on Linux
-        limits.append(1024 * sum(map(int, AVAILABLE.findall(Path("/proc/meminfo").read_text()))))
+        limits.append(
+            1024 * sum(map(int, AVAILABLE.findall(Path("/proc/meminfo").read_text())))
+        )
     with contextlib.suppress(AttributeError, ValueError, OSError):  # not on Windows
         limits.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     # A container has the memory of the machine in sysconf, and its limit in a file.
@@ -70,12 +81,17 @@ def free_memory() -> int | None:
 
         limit, _ = resource.getrlimit(resource.RLIMIT_AS)
         if limit != resource.RLIM_INFINITY:
-            used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+            used = (
+                int(Path("/proc/self/statm").read_text().split()[0])
+                * resource.getpagesize()
+            )
             limits.append(max(limit - used - THREADS, 0))
     return min(limits, default=None)
 
 
-def check_memory(need: float, subject: str, error: type[UpliftError], hint: str) -> None:
+def check_memory(
+    need: float, subject: str, error: type[UpliftError], hint: str
+) -> None:
     """Raise ``error`` (``out-of-memory``) if the subject needs more bytes than are known to be free."""
     free = free_memory()
     if free is not None and need > free:

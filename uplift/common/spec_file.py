@@ -27,9 +27,10 @@ INVALID = "invalid-file"
 """Code of errors in the text of a file: its syntax, its keys, or a value."""
 UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
 """Types of errors: of models, and of dataclasses."""
-TEXTS = {"missing": "required key is missing", **dict.fromkeys(UNKNOWN_KEY, "unknown key")} | dict.fromkeys(
-    ("dict_type", "dataclass_type", "model_type"), "must be a table"
-)
+TEXTS = {
+    "missing": "required key is missing",
+    **dict.fromkeys(UNKNOWN_KEY, "unknown key"),
+} | dict.fromkeys(("dict_type", "dataclass_type", "model_type"), "must be a table")
 """Problems by the type of an error of pydantic, in place of its message."""
 TAG = "~"
 """First character of the tags of discriminated unions, which are not keys of a file."""
@@ -42,13 +43,18 @@ class SpecModel(BaseModel):
     """A table of a spec file: frozen, without other keys than its fields."""
 
     model_config = ConfigDict(
-        extra="forbid", frozen=True, alias_generator=lambda name: name.replace("_", "-"), arbitrary_types_allowed=True
+        extra="forbid",
+        frozen=True,
+        alias_generator=lambda name: name.replace("_", "-"),
+        arbitrary_types_allowed=True,
     )
 
 
 def problem(text: str, hint: str = "", code: str = INVALID) -> PydanticCustomError:
     """Return the error that a validator of a `SpecModel` raises."""
-    return PydanticCustomError("uplift", "{problem}", {"problem": text, "hint": hint, "code": code})
+    return PydanticCustomError(
+        "uplift", "{problem}", {"problem": text, "hint": hint, "code": code}
+    )
 
 
 def resolves(look_up: Callable[[Any], Any]) -> AfterValidator:
@@ -66,9 +72,13 @@ def resolves(look_up: Callable[[Any], Any]) -> AfterValidator:
 
 def check_inside(name: str) -> str:
     """Check that a path lies within the folder of its spec file, which may come from a stranger."""
-    if PureWindowsPath(name).anchor or ".." in PureWindowsPath(name).parts:  # of POSIX, too
+    if (
+        PureWindowsPath(name).anchor or ".." in PureWindowsPath(name).parts
+    ):  # of POSIX, too
         hint = "move the file there, or this file to a folder above both"
-        raise problem(f"must lie in the folder of this file, got {format_value(name)}", hint)
+        raise problem(
+            f"must lie in the folder of this file, got {format_value(name)}", hint
+        )
     return name
 
 
@@ -91,18 +101,29 @@ class SpecFile:
         except ValidationError as caught:
             errors = caught.errors(include_url=False)
             # An unknown key may be a misspelt one, which is missing.
-            error = next((each for each in errors if each["type"] in UNKNOWN_KEY), errors[0])
+            error = next(
+                (each for each in errors if each["type"] in UNKNOWN_KEY), errors[0]
+            )
             context, kind = error.get("ctx", {}), error["type"]
             text = TEXTS.get(kind) or re.sub(r"^\w+ should", "must", error["msg"])
             if kind != "uplift" and text.startswith("must"):
                 text = f"{text}, got {format_value(error['input'])}"
-            self.fail(error["loc"], text, code=context.get("code", INVALID), hint=hint or context.get("hint", ""))
+            self.fail(
+                error["loc"],
+                text,
+                code=context.get("code", INVALID),
+                hint=hint or context.get("hint", ""),
+            )
 
-    def fail(self, keys: Iterable[Key], text: str, *, code: str = INVALID, hint: str = "") -> NoReturn:
+    def fail(
+        self, keys: Iterable[Key], text: str, *, code: str = INVALID, hint: str = ""
+    ) -> NoReturn:
         """Raise the error for the value at a key path such as ``apart[2].light``, empty for the file."""
         # Left out of the path: what pydantic adds for unions and for keys of tables
         parts = [key for key in keys if key != "[key]" and not str(key).startswith(TAG)]
-        place = "".join(f"[{key}]" if isinstance(key, int) else f".{shorten(key)}" for key in parts)
+        place = "".join(
+            f"[{key}]" if isinstance(key, int) else f".{shorten(key)}" for key in parts
+        )
         separator = " " if text.startswith("must ") else ": "
         text = f"{place.removeprefix('.')}{separator}{text}" if place else text
         raise self.error(text, code=code, path=self.path, hint=hint)
@@ -118,14 +139,26 @@ def read_json(path: StrPath, error: type[UpliftError]) -> SpecFile:
     return _read(path, error, "JSON", parse_json)
 
 
-def _read(path: StrPath, error: type[UpliftError], kind: str, parse: Callable[[str], Any]) -> SpecFile:
+def _read(
+    path: StrPath, error: type[UpliftError], kind: str, parse: Callable[[str], Any]
+) -> SpecFile:
     data = read_bytes(path, error, limit=MAX_BYTES, hint="check the path")
     try:
         values = parse(data.decode("utf-8"))
         check_values(values)
-    except (RecursionError, ValueError) as cause:  # of UTF-8, syntax, integers of too many digits, and limits
+    except (
+        RecursionError,
+        ValueError,
+    ) as cause:  # of UTF-8, syntax, integers of too many digits, and limits
         reason = TOO_DEEP if isinstance(cause, RecursionError) else cause
-        raise error(f"not a valid {kind} file: {reason}", code=INVALID, path=path, hint=HINT) from cause
+        raise error(
+            f"not a valid {kind} file: {reason}", code=INVALID, path=path, hint=HINT
+        ) from cause
     if not isinstance(values, dict):
-        raise error(f"not a JSON object: {format_value(values)}", code=INVALID, path=path, hint=HINT)
+        raise error(
+            f"not a JSON object: {format_value(values)}",
+            code=INVALID,
+            path=path,
+            hint=HINT,
+        )
     return SpecFile(Path(path), values, error)

@@ -16,8 +16,13 @@ _UNPRINTABLE = re.compile(
     "\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"  # direction, line breaks, invisible
     "\ud800-\udfff\U000e0000-\U000e007f]"  # no encoding; invisible
 )
-_FLOAT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?(?:inf|infinity|nan)", re.IGNORECASE)
-_WHOLE = re.compile(r"[+-]?[0-9]{1,18}")  # fits into 64 bits; Python takes long to convert thousands of digits
+_FLOAT = re.compile(
+    r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:e[+-]?[0-9]+)?|[+-]?(?:inf|infinity|nan)",
+    re.IGNORECASE,
+)
+_WHOLE = re.compile(
+    r"[+-]?[0-9]{1,18}"
+)  # fits into 64 bits; Python takes long to convert thousands of digits
 
 
 def printable(text: str) -> str:
@@ -28,13 +33,18 @@ def printable(text: str) -> str:
     """
     if text.isprintable():
         return text
-    return _UNPRINTABLE.sub(lambda match: match[0].encode("unicode_escape").decode(), text)
+    return _UNPRINTABLE.sub(
+        lambda match: match[0].encode("unicode_escape").decode(), text
+    )
 
 
 def json_escapes(text: str) -> str:
     """Escape the same characters in JSON text, which keeps its meaning. Line breaks between values stay."""
     # Within strings the encoder has escaped line breaks and tabs.
-    return _UNPRINTABLE.sub(lambda match: match[0] if match[0] in "\n\r\t" else json.dumps(match[0])[1:-1], text)
+    return _UNPRINTABLE.sub(
+        lambda match: match[0] if match[0] in "\n\r\t" else json.dumps(match[0])[1:-1],
+        text,
+    )
 
 
 def format_value(value: object) -> str:
@@ -64,7 +74,11 @@ def round_up(value: float) -> float:
     >>> round_up(1.2301), round_up(0.5)
     (1.3, 0.5)
     """
-    return float(decimal.Context(prec=2, rounding=decimal.ROUND_CEILING).create_decimal_from_float(value))
+    return float(
+        decimal.Context(
+            prec=2, rounding=decimal.ROUND_CEILING
+        ).create_decimal_from_float(value)
+    )
 
 
 def pluralise(count: int, noun: str) -> str:

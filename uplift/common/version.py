@@ -25,7 +25,11 @@ def version() -> str:
     if (ROOT / ".git").exists():
         return VERSION + _count_commits()
     if (ROOT / "PKG-INFO").is_file():
-        stated = re.search("^Version: (.+)$", (ROOT / "PKG-INFO").read_text(encoding="utf-8"), re.MULTILINE)
+        stated = re.search(
+            "^Version: (.+)$",
+            (ROOT / "PKG-INFO").read_text(encoding="utf-8"),
+            re.MULTILINE,
+        )
         return stated[1] if stated else VERSION + UNKNOWN
     if (ROOT / "pyproject.toml").is_file():
         return VERSION + UNKNOWN
@@ -43,7 +47,9 @@ def _count_commits() -> str:
 
     def git(*arguments: str) -> str:
         command = ["git", f"--git-dir={ROOT / '.git'}", *arguments]
-        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+        return subprocess.run(
+            command, capture_output=True, text=True, check=True
+        ).stdout.strip()
 
     try:
         is_shallow = git("rev-parse", "--is-shallow-repository") == "true"
@@ -63,7 +69,9 @@ def is_older(first: str, second: str) -> bool:
 
 def _order(version: str) -> tuple[float, ...]:
     """Return numbers in the order of versions: a release follows its commits, and NaN is neither below nor above."""
-    match = re.fullmatch(r"([0-9]{1,9})\.([0-9]{1,9})\.([0-9]{1,9})(?:\.dev([0-9]{1,9}))?", version)
+    match = re.fullmatch(
+        r"([0-9]{1,9})\.([0-9]{1,9})\.([0-9]{1,9})(?:\.dev([0-9]{1,9}))?", version
+    )
     if match is None:
         return (float("nan"),)
     *release, commits = match.groups(default="inf")

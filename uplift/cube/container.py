@@ -83,7 +83,9 @@ def save(
             ) from error
 
 
-def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Content]) -> Content:
+def load(
+    path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Content]
+) -> Content:
     """Read a file: check its kind, version, features and digest, then ``decode`` its arrays and metadata.
 
     Every error that the content causes is a `CubeFileError` about the file.
@@ -91,11 +93,16 @@ def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Con
     from safetensors import SafetensorError, safe_open
 
     again = f"build the {kind.noun} again"
-    check_regular(path, CubeFileError, hint=f"check the name, or build the {kind.noun} first")
+    check_regular(
+        path, CubeFileError, hint=f"check the name, or build the {kind.noun} first"
+    )
     try:
         with safe_open(path, framework="numpy") as file:
             metadata = parse_json((file.metadata() or {}).get(KEY, "{}"))
-            if any(file.get_slice(name).get_dtype() not in STORED_TYPES for name in file.keys()):  # noqa: SIM118
+            if any(
+                file.get_slice(name).get_dtype() not in STORED_TYPES
+                for name in file.keys()
+            ):
                 raise ValueError("an array of an unknown type")
             tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
     except (SafetensorError, ValueError, TypeError, OSError, MemoryError) as error:
@@ -103,11 +110,15 @@ def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Con
         if not got or got.endswith(kind.noun):
             got = "a damaged or another file"
         problem = f"must be an {kind.format}, got {got}"
-        raise CubeFileError(problem, code=kind.foreign, path=path, hint=again) from error
+        raise CubeFileError(
+            problem, code=kind.foreign, path=path, hint=again
+        ) from error
     stated = metadata.get("format") if isinstance(metadata, dict) else None
     if stated != kind.format:
         got = "" if stated is None else f", got {format_value(stated)}"
-        raise CubeFileError(f"must be an {kind.format}{got}", code=kind.foreign, path=path, hint=again)
+        raise CubeFileError(
+            f"must be an {kind.format}{got}", code=kind.foreign, path=path, hint=again
+        )
     _check_readable(metadata, kind, path)
     if metadata.pop("digest", None) != content_digest(tensors, metadata):
         problem = "is damaged: the content does not match its digest"
@@ -115,8 +126,20 @@ def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Con
     # What follows is for files whose digest was forged.
     try:
         return decode(tensors, metadata)
-    except (AttributeError, KeyError, MemoryError, OverflowError, TypeError, ValueError, UpliftError) as error:
-        reason = error.problem if isinstance(error, CubeFileError) else f"{type(error).__name__}: {str(error)[:200]}"
+    except (
+        AttributeError,
+        KeyError,
+        MemoryError,
+        OverflowError,
+        TypeError,
+        ValueError,
+        UpliftError,
+    ) as error:
+        reason = (
+            error.problem
+            if isinstance(error, CubeFileError)
+            else f"{type(error).__name__}: {str(error)[:200]}"
+        )
         problem = f"is not a valid {kind.noun}: {reason}"
         raise CubeFileError(problem, path=path, hint=again) from error
 
@@ -132,10 +155,17 @@ def _check_readable(metadata: dict[str, Any], kind: Kind, path: Path) -> None:
     """Raise `CubeFileError` for a version or a feature of later, or much earlier, versions of uplift."""
     provenance = metadata.get("provenance")
     writer = provenance.get("uplift") if isinstance(provenance, dict) else None
-    version = f"version {printable(writer)[:40]} of uplift" if isinstance(writer, str) else "the version of uplift"
+    version = (
+        f"version {printable(writer)[:40]} of uplift"
+        if isinstance(writer, str)
+        else "the version of uplift"
+    )
     hint = f"build the {kind.noun} again, or use {version} that wrote it"
     if metadata.get("version") not in kind.readable:
-        versions, version = " or ".join(map(str, kind.readable)), format_value(metadata.get("version"))
+        versions, version = (
+            " or ".join(map(str, kind.readable)),
+            format_value(metadata.get("version")),
+        )
         problem = f"must have format version {versions}, got {version}"
         raise CubeFileError(problem, code="cube-version", path=path, hint=hint)
     features = metadata.get("features")
@@ -158,7 +188,13 @@ def content_digest(tensors: Tensors, metadata: Mapping[str, Any]) -> str:
 
 def _json(metadata: Mapping[str, Any]) -> str:
     try:
-        return json.dumps(metadata, sort_keys=True, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+        return json.dumps(
+            metadata,
+            sort_keys=True,
+            ensure_ascii=False,
+            separators=(",", ":"),
+            allow_nan=False,
+        )
     except (TypeError, ValueError, RecursionError) as error:
         raise CubeFileError(f"the metadata are not JSON values ({error})") from error
 
@@ -169,7 +205,9 @@ def require(condition: bool, problem: str) -> None:
         raise CubeFileError(problem)
 
 
-def check_arrays(tensors: Tensors, schema: Mapping[str, Stored], sizes: Mapping[str, int]) -> None:
+def check_arrays(
+    tensors: Tensors, schema: Mapping[str, Stored], sizes: Mapping[str, int]
+) -> None:
     """Check presence, type, shape and range of all arrays as stored, before anything is computed from them.
 
     ``sizes`` has the lengths that the letters of shapes stand for; other letters are numbers.
@@ -177,7 +215,9 @@ def check_arrays(tensors: Tensors, schema: Mapping[str, Stored], sizes: Mapping[
     for name, stored in schema.items():
         require(name in tensors, f"has no array {name}")
         array, low, high = tensors[name], stored.low, stored.high
-        shape = tuple(sizes[axis] if axis in sizes else int(axis) for axis in stored.shape.split())
+        shape = tuple(
+            sizes[axis] if axis in sizes else int(axis) for axis in stored.shape.split()
+        )
         fits = array.shape == shape and array.dtype.name in stored.types
         require(fits, f"{name} must be {' or '.join(stored.types)} of shape {shape}")
         # NaN fails both comparisons.
@@ -196,22 +236,48 @@ def check_metadata(value: Any, schema: Any, path: str = "metadata") -> None:
     if schema is None:
         return
     if schema is str:
-        fits, expected = isinstance(value, str) and len(value) <= MAX_TEXT, f"text of at most {MAX_TEXT} characters"
+        fits, expected = (
+            isinstance(value, str) and len(value) <= MAX_TEXT,
+            f"text of at most {MAX_TEXT} characters",
+        )
     elif schema is int:
-        fits, expected = type(value) is int and 0 <= value <= MAX_VALUE, "a whole number from 0"
+        fits, expected = (
+            type(value) is int and 0 <= value <= MAX_VALUE,
+            "a whole number from 0",
+        )
     elif isinstance(schema, tuple):
         low, high = schema
-        fits, expected = type(value) in (int, float) and low <= value <= high, f"a number in [{low:g}, {high:g}]"
+        fits, expected = (
+            type(value) in (int, float) and low <= value <= high,
+            f"a number in [{low:g}, {high:g}]",
+        )
     elif isinstance(schema, list):
         item, limit = schema
-        fits, expected = isinstance(value, list) and len(value) <= limit, f"a list of at most {limit:,} items"
-        items = [(each, item, f"{path}[{number}]") for number, each in enumerate(value)] if fits else []
+        fits, expected = (
+            isinstance(value, list) and len(value) <= limit,
+            f"a list of at most {limit:,} items",
+        )
+        items = (
+            [(each, item, f"{path}[{number}]") for number, each in enumerate(value)]
+            if fits
+            else []
+        )
     else:
-        known = {key.removesuffix("?"): each for key, each in schema.items() if key != "*"}
+        known = {
+            key.removesuffix("?"): each for key, each in schema.items() if key != "*"
+        }
         required = {key for key in known if key in schema}
-        fits = isinstance(value, dict) and required <= value.keys() and ("*" in schema or value.keys() <= known.keys())
+        fits = (
+            isinstance(value, dict)
+            and required <= value.keys()
+            and ("*" in schema or value.keys() <= known.keys())
+        )
         expected = f"a table of {', '.join(schema)}"
-        items = [(value[key], known[key], f"{path}.{key}") for key in known if key in value] if fits else []
+        items = (
+            [(value[key], known[key], f"{path}.{key}") for key in known if key in value]
+            if fits
+            else []
+        )
     if not fits:
         raise CubeFileError(f"{path} must be {expected}, got {format_value(value)}")
     for each, item, place in items:

@@ -89,7 +89,14 @@ class AtlasTable:
         stored = [table.spectra.coefficients for table in (self, more)]
         spectra = EntrySpectra(self.spectra.model, np.concatenate(stored))
         names = (*self.names, *more.names)
-        return AtlasTable(names, both("rgb"), both("coefficients"), both("half_width"), both("error"), spectra)
+        return AtlasTable(
+            names,
+            both("rgb"),
+            both("coefficients"),
+            both("half_width"),
+            both("error"),
+            spectra,
+        )
 
     def __repr__(self) -> str:
         return f"AtlasTable({pluralise(len(self.names), 'entry')})"
@@ -113,8 +120,14 @@ class CubeData:
 
     def __repr__(self) -> str:
         sensor, own = self.sensor, self.atlas.spectra.model
-        more = "" if own == self.model else f" with {pluralise(own.count, 'coefficient')}"
-        outside = "" if self.atlas.outside is None else f" and {len(self.atlas.outside.names)} outside"
+        more = (
+            "" if own == self.model else f" with {pluralise(own.count, 'coefficient')}"
+        )
+        outside = (
+            ""
+            if self.atlas.outside is None
+            else f" and {len(self.atlas.outside.names)} outside"
+        )
         return (
             f"CubeData({self.model.name} with {pluralise(self.model.count, 'coefficient')}, dim {self.lattice.dim}, "
             f"{sensor.space} under {sensor.illuminant}, {pluralise(len(self.atlas.names), 'entry')}{more}{outside})"
@@ -159,7 +172,11 @@ class CubeData:
     @cached_property
     def complete_cells(self) -> Mask | None:
         """(n,) True for cells with eight present corners, by the number of the lowest. None if no node is absent."""
-        return None if self.points.present.all() else self.lattice.complete_cells(self.points.present)
+        return (
+            None
+            if self.points.present.all()
+            else self.lattice.complete_cells(self.points.present)
+        )
 
     @cached_property
     def inexact_cells(self) -> Mask | None:
@@ -174,13 +191,19 @@ class CubeData:
     @cached_property
     def inexact_corners(self) -> Mask | None:
         """(n,) True for the corners of `inexact_cells`. None without any."""
-        return None if self.inexact_cells is None else self.lattice.corner_points(self.inexact_cells)
+        return (
+            None
+            if self.inexact_cells is None
+            else self.lattice.corner_points(self.inexact_cells)
+        )
 
     def missing_points(self, rgb: Array | None = None) -> Indices:
         """Return the absent nodes that linear RGB (n, 3) need, or all absent nodes."""
         absent = ~self.points.present
         if rgb is not None:
-            absent &= self.lattice.corner_points(self.lattice.mask(self.entry_boxes.cell(rgb)))
+            absent &= self.lattice.corner_points(
+                self.lattice.mask(self.entry_boxes.cell(rgb))
+            )
         return np.flatnonzero(absent)
 
     def smoothed_multipliers(self, points: Indices) -> Array:
@@ -190,7 +213,9 @@ class CubeData:
         """
         multipliers = self.model.from_storage(self.points.coefficients[points])
         rows = np.flatnonzero(self.points.distance[points] > self.threshold)
-        multipliers[rows] *= np.minimum(1, MAX_SIZE / np.abs(multipliers[rows]).sum(axis=1))[:, None]
+        multipliers[rows] *= np.minimum(
+            1, MAX_SIZE / np.abs(multipliers[rows]).sum(axis=1)
+        )[:, None]
         return multipliers
 
 

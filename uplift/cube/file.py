@@ -27,7 +27,15 @@ from uplift.models import from_description
 
 FORMAT = "uplift cube"
 VERSION = 4
-FEATURES = ("debug", "errors", "left-out", "camera", "sparse", "outside", "outside-measured")
+FEATURES = (
+    "debug",
+    "errors",
+    "left-out",
+    "camera",
+    "sparse",
+    "outside",
+    "outside-measured",
+)
 """Optional parts of a file, in the order in which the metadata list them. Earlier readers refuse a new one."""
 KIND = Kind(FORMAT, (3, VERSION), "cube", foreign="not-a-cube", features=FEATURES)
 """Versions that are read. The entries of version 3 have as many coefficients as the nodes."""
@@ -68,7 +76,10 @@ TABLE = {
     ENTRY_COEFFICIENTS: Stored("E K"),
 }
 """Arrays of an `AtlasTable`: entries in the RGB space, and those outside it, whose colours are not in [0, 1]."""
-OUTSIDE = {name: stored._replace(shape=f"O{stored.shape[1:]}", feature="outside") for name, stored in TABLE.items()}
+OUTSIDE = {
+    name: stored._replace(shape=f"O{stored.shape[1:]}", feature="outside")
+    for name, stored in TABLE.items()
+}
 OUTSIDE["rgb"] = Stored("O 3", feature="outside")
 ARRAYS = {
     "nodes": Stored("D", low=0, high=1),
@@ -87,17 +98,32 @@ NUMBER, POSITIVE = (-1e30, 1e30), (0, 1e30)
 ENTRIES = [str, 1_000_000]
 RGB = [NUMBER, 3]
 FILE = {"name": str, "digest": str}
-LIGHT = {"light": str, "wish": RGB, "answer": RGB, "delta_e": POSITIVE, "possible": POSITIVE}
+LIGHT = {
+    "light": str,
+    "wish": RGB,
+    "answer": RGB,
+    "delta_e": POSITIVE,
+    "possible": POSITIVE,
+}
 PROVENANCE = {
     "uplift?": str,
     "options?": {"*": None},  # which are checked where a build is repeated
     "atlases?": [{**FILE, "measured?": str, "missing?": str}, MAX_FILES],
     "libraries?": [FILE, MAX_FILES],
     "families?": [{"name": str, "relevance": NUMBER}, MAX_FILES],
-    "looks?": [{"name": str, "rgb": RGB, "weight": (0, 1), "lights": [LIGHT, MAX_LIGHTS]}, MAX_FILES],
+    "looks?": [
+        {"name": str, "rgb": RGB, "weight": (0, 1), "lights": [LIGHT, MAX_LIGHTS]},
+        MAX_FILES,
+    ],
     "left_out?": ENTRIES,
     "skipped?": ENTRIES,
-    "prior?": {"length?": POSITIVE, "nugget?": POSITIVE, "noise?": POSITIVE, "error_bound?": POSITIVE, "*": None},
+    "prior?": {
+        "length?": POSITIVE,
+        "nugget?": POSITIVE,
+        "noise?": POSITIVE,
+        "error_bound?": POSITIVE,
+        "*": None,
+    },
     "improvements?": [{"step": str, "tried": int, "mended": int}, MAX_FILES],
     "scene?": [{"*": None}, MAX_FILES],
     "filled?": {"points": int, "cube": str},
@@ -154,18 +180,40 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
     }
     for prefix, table in (("atlas", atlas), ("outside", atlas.outside)):
         if table is not None:
-            spectra = None if table.spectra.model == data.model else table.spectra.coefficients
-            columns = table.rgb, table.coefficients, table.half_width, table.error, spectra, table.measured
-            arrays |= {f"{prefix}.{name}": column for name, column in zip((*TABLE, "measured"), columns, strict=True)}
+            spectra = (
+                None
+                if table.spectra.model == data.model
+                else table.spectra.coefficients
+            )
+            columns = (
+                table.rgb,
+                table.coefficients,
+                table.half_width,
+                table.error,
+                spectra,
+                table.measured,
+            )
+            arrays |= {
+                f"{prefix}.{name}": column
+                for name, column in zip((*TABLE, "measured"), columns, strict=True)
+            }
     tensors = {}
     for name, array in arrays.items():
-        if array is not None:  # in a type that its file may have: its own, or else the most precise one
+        if (
+            array is not None
+        ):  # in a type that its file may have: its own, or else the most precise one
             types = ARRAYS[name].types
-            tensors[name] = np.ascontiguousarray(array, array.dtype if array.dtype.name in types else types[-1])
+            tensors[name] = np.ascontiguousarray(
+                array, array.dtype if array.dtype.name in types else types[-1]
+            )
     present = data.points.present
     if not present.all():
         # A sparse file has the rows of the present nodes, and their numbers.
-        tensors |= {name: np.ascontiguousarray(tensors[name][present]) for name in POINTS if name in tensors}
+        tensors |= {
+            name: np.ascontiguousarray(tensors[name][present])
+            for name in POINTS
+            if name in tensors
+        }
         tensors["points"] = np.flatnonzero(present).astype(np.uint32)
     announced = {ARRAYS[name].feature for name in tensors}
     metadata = {
@@ -192,25 +240,55 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
     if metadata["version"] < VERSION:
         metadata["entry_model"] = metadata.get("model")
     check_metadata(metadata, METADATA)
-    model, entry_model = (from_description(metadata[key]) for key in ("model", "entry_model"))
-    alike = metadata["model"] | {"count": None} == metadata["entry_model"] | {"count": None}
-    require(alike and entry_model.count >= model.count, "the model of the entries must extend that of the nodes")
-    names, looks = tuple(metadata["entries"]), len(metadata["provenance"].get("looks", ()))
+    model, entry_model = (
+        from_description(metadata[key]) for key in ("model", "entry_model")
+    )
+    alike = metadata["model"] | {"count": None} == metadata["entry_model"] | {
+        "count": None
+    }
+    require(
+        alike and entry_model.count >= model.count,
+        "the model of the entries must extend that of the nodes",
+    )
+    names, looks = (
+        tuple(metadata["entries"]),
+        len(metadata["provenance"].get("looks", ())),
+    )
     outside = tuple(metadata["provenance"].get("left_out", ()))
-    schema = {name: stored for name, stored in ARRAYS.items() if stored.feature in ("", *metadata["features"])}
+    schema = {
+        name: stored
+        for name, stored in ARRAYS.items()
+        if stored.feature in ("", *metadata["features"])
+    }
     if entry_model == model:
-        schema = {name: stored for name, stored in schema.items() if not name.endswith(ENTRY_COEFFICIENTS)}
-    sizes = {"C": model.count, "K": entry_model.count, "E": len(names), "M": len(names) - looks, "O": len(outside)}
+        schema = {
+            name: stored
+            for name, stored in schema.items()
+            if not name.endswith(ENTRY_COEFFICIENTS)
+        }
+    sizes = {
+        "C": model.count,
+        "K": entry_model.count,
+        "E": len(names),
+        "M": len(names) - looks,
+        "O": len(outside),
+    }
     for axis, name in (("D", "nodes"), ("n", "status"), ("N", "sensor.wavelengths")):
         sizes[axis] = tensors[name].size
     check_arrays(tensors, schema, sizes)
     arrays: dict[str, Any] = {name: tensors[name] for name in schema}
 
     def table(names: tuple[str, ...], prefix: str, **others: Any) -> AtlasTable:
-        rgb, coefficients, half_width, error = (arrays[f"{prefix}.{name}"] for name in list(TABLE)[:-1])
-        spectra = EntrySpectra(entry_model, arrays.get(f"{prefix}.{ENTRY_COEFFICIENTS}", coefficients))
+        rgb, coefficients, half_width, error = (
+            arrays[f"{prefix}.{name}"] for name in list(TABLE)[:-1]
+        )
+        spectra = EntrySpectra(
+            entry_model, arrays.get(f"{prefix}.{ENTRY_COEFFICIENTS}", coefficients)
+        )
         measured = arrays.get(f"{prefix}.measured")
-        return AtlasTable(names, rgb, coefficients, half_width, error, spectra, measured, **others)
+        return AtlasTable(
+            names, rgb, coefficients, half_width, error, spectra, measured, **others
+        )
 
     data = CubeData(
         model=model,
@@ -219,7 +297,11 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
             metadata["space"],
             metadata["illuminant"],
             metadata["observer"],
-            **{name: arrays[f"sensor.{name}"] for name in SENSOR if f"sensor.{name}" in arrays},
+            **{
+                name: arrays[f"sensor.{name}"]
+                for name in SENSOR
+                if f"sensor.{name}" in arrays
+            },
         ),
         threshold=float(metadata["threshold"]),
         error_illuminant=metadata["reference"],
@@ -233,10 +315,18 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
         provenance=metadata["provenance"],
         points=PointTable(**{name: arrays[name] for name in POINTS if name in arrays}),
     )
-    require(metadata["dim"] == data.lattice.dim, f"dim must be {data.lattice.dim}, the number of nodes")
+    require(
+        metadata["dim"] == data.lattice.dim,
+        f"dim must be {data.lattice.dim}, the number of nodes",
+    )
     _check(data)
     if "points" in arrays:
-        data = replace(data, points=_expand(data.points, arrays["points"].astype(np.int64), data.lattice))
+        data = replace(
+            data,
+            points=_expand(
+                data.points, arrays["points"].astype(np.int64), data.lattice
+            ),
+        )
     size, count = data.lattice.size, data.points.status.size
     require(count == size, f"there must be {pluralise(size, 'node')}, got {count}")
     return data
@@ -250,32 +340,66 @@ def _check(data: CubeData) -> None:
     with np.errstate(all="ignore"):
         basis = data.model.basis(sensor.wavelengths)
         white = sensor.matrix.sum(axis=1)
-        regular = all(map(_has_three_channels, (sensor.xyz_to_rgb, sensor.light.xyz, sensor.matrix)))
-    has_basis = basis.shape == (len(sensor.wavelengths), data.model.count) and bool(np.isfinite(basis).all())
+        regular = all(
+            map(
+                _has_three_channels,
+                (sensor.xyz_to_rgb, sensor.light.xyz, sensor.matrix),
+            )
+        )
+    has_basis = basis.shape == (len(sensor.wavelengths), data.model.count) and bool(
+        np.isfinite(basis).all()
+    )
     for condition_met, problem in (
         (len(set(names)) == len(names), "the names of entries must be unique"),
-        (looks == atlas.names[len(atlas.names) - atlas.looks :], "the looks must be the last entries, by their names"),
-        (atlas.left_out is None or atlas.looks < len(atlas.names), "left-out spectra need entries"),
+        (
+            looks == atlas.names[len(atlas.names) - atlas.looks :],
+            "the looks must be the last entries, by their names",
+        ),
+        (
+            atlas.left_out is None or atlas.looks < len(atlas.names),
+            "left-out spectra need entries",
+        ),
         (has_basis, "the model must have a range of wavelengths"),
         ((nodes[0], nodes[-1]) == (0, 1), "the nodes must run from 0 to 1"),
-        (data.points.entry.max(initial=-1) < len(atlas.names), "every entry must be in the atlas table"),
-        ((np.abs(white - 1) <= 1e-6).all(), "the perfect reflector must have RGB (1, 1, 1)"),
-        (regular, "observer, RGB space and camera must have three independent channels"),
-        ((np.diff(sensor.wavelengths) > 0).all(), "the wavelengths of the sensor must ascend"),
-        ((np.diff(sensor.decoding) >= 0).all(), "the decoding of 8-bit codes must not decrease"),
+        (
+            data.points.entry.max(initial=-1) < len(atlas.names),
+            "every entry must be in the atlas table",
+        ),
+        (
+            (np.abs(white - 1) <= 1e-6).all(),
+            "the perfect reflector must have RGB (1, 1, 1)",
+        ),
+        (
+            regular,
+            "observer, RGB space and camera must have three independent channels",
+        ),
+        (
+            (np.diff(sensor.wavelengths) > 0).all(),
+            "the wavelengths of the sensor must ascend",
+        ),
+        (
+            (np.diff(sensor.decoding) >= 0).all(),
+            "the decoding of 8-bit codes must not decrease",
+        ),
     ):
         require(bool(condition_met), problem)
 
 
 def _has_three_channels(matrix: Array) -> bool:
     """Return whether the rows (3, …) of a matrix are independent of each other."""
-    return bool(np.isfinite(matrix).all()) and bool(np.linalg.cond(matrix) < MAX_CONDITION)
+    return bool(np.isfinite(matrix).all()) and bool(
+        np.linalg.cond(matrix) < MAX_CONDITION
+    )
 
 
 def _expand(points: PointTable, numbers: Indices, lattice: Lattice) -> PointTable:
     """Expand the rows (m, …) of the nodes ``numbers`` (m,) to those of the lattice, (n, …)."""
     size = lattice.size
-    valid = 0 < len(numbers) < size <= MAX_POINTS and bool((np.diff(numbers) > 0).all()) and bool(numbers[-1] < size)
+    valid = (
+        0 < len(numbers) < size <= MAX_POINTS
+        and bool((np.diff(numbers) > 0).all())
+        and bool(numbers[-1] < size)
+    )
     require(valid, "point numbers must ascend within the lattice, with some missing")
     # A query needs all corners of a cell.
     low = numbers[(lattice.position(numbers) < lattice.dim - 1).all(axis=-1)]
@@ -303,7 +427,9 @@ def summarise(data: CubeData) -> dict[str, Any]:
         "worst_distance": float(points.distance.max()),
         "mean_distance": float(points.distance[present].mean(dtype=np.float64)),
         "reference": data.error_illuminant,
-        "mean_standard_error": None if errors is None else float(errors[present].mean(dtype=np.float64)),
+        "mean_standard_error": None
+        if errors is None
+        else float(errors[present].mean(dtype=np.float64)),
         "status": points.counts(),
         "entries": list(data.atlas.names),
         "outside": [] if data.atlas.outside is None else list(data.atlas.outside.names),

@@ -73,7 +73,9 @@ class Base:
             return self.model.to_storage(_grey(self.model, rgb))
         # s(x) = k s(x / k), as moments are linear in the spectrum
         factor = self.brightness(rgb)
-        return factor * weighted_sum(self.nodes, *TABLE.corners(np.minimum(rgb / factor, 1)))
+        return factor * weighted_sum(
+            self.nodes, *TABLE.corners(np.minimum(rgb / factor, 1))
+        )
 
     def brightness(self, rgb: Array) -> Array:
         """Factor k = max(x)^½ (n, 1) between a colour and the brightened one."""
@@ -84,9 +86,14 @@ def smooth_table(problem: Problem, goal: Array) -> Base:
     """Smooth spectra of colours ``goal`` (17³, 3): those in `FILE`, if it has the model and sensor, or solved."""
     sensor = problem.sensor
     if problem.model == Moments():
-        with (files(__package__) / FILE).open("rb") as file, np.load(file, allow_pickle=False) as stored:
+        with (
+            (files(__package__) / FILE).open("rb") as file,
+            np.load(file, allow_pickle=False) as stored,
+        ):
             for number, matrix in enumerate(stored["matrices"]):
-                if sensor.matrix.shape == matrix.shape and np.allclose(sensor.matrix, matrix, rtol=0, atol=SAME_SENSOR):
+                if sensor.matrix.shape == matrix.shape and np.allclose(
+                    sensor.matrix, matrix, rtol=0, atol=SAME_SENSOR
+                ):
                     return Base(problem.model, stored[f"smooth{number}"])
     return smooth(problem.model, problem.forward, goal)
 
@@ -107,7 +114,9 @@ def _grey(model: Model, rgb: Array) -> Array:
 
 
 def learn_base(
-    problem: Problem, families: Sequence[Family] = (), entries: FittedEntries | None = None
+    problem: Problem,
+    families: Sequence[Family] = (),
+    entries: FittedEntries | None = None,
 ) -> tuple[Base, tuple[float, ...]]:
     """Learn the base from families, and the relevance of each, 0 to 4, from atlas entries; 1 without an atlas.
 
@@ -122,7 +131,10 @@ def learn_base(
     model, sensor = problem.model, problem.sensor
     if not families or plain.nodes is None or not isinstance(model, Moments):
         return plain, (1.0,) * len(families)
-    kriging = krige_families(families, [_samples(plain, problem, family.measured, entries) for family in families])
+    kriging = krige_families(
+        families,
+        [_samples(plain, problem, family.measured, entries) for family in families],
+    )
 
     relevance = np.ones(len(families))
     if entries is not None:
@@ -132,24 +144,38 @@ def learn_base(
         locations = rgb_to_lab(sensor, rgb)
         expected = reflectance(model, plain.coefficients(rgb), sensor.wavelengths)
         parts = kriging.contributions(locations) * plain.brightness(rgb)
-        relevance = learn_relevance(problem.lights, locations, expected, parts, entries.measured[order])
+        relevance = learn_relevance(
+            problem.lights, locations, expected, parts, entries.measured[order]
+        )
 
     # s(x′) + d(x) / k at the nodes x′ of the table, inside (0, 1), as coefficients, where x = x′ max(x′)
     spectra = reflectance(model, plain.nodes, sensor.wavelengths)
-    colours = bright * bright.max(axis=1, keepdims=True) ** (BRIGHTENING / (1 - BRIGHTENING))
+    colours = bright * bright.max(axis=1, keepdims=True) ** (
+        BRIGHTENING / (1 - BRIGHTENING)
+    )
     deviations = kriging(rgb_to_lab(sensor, colours), relevance)
     deviations = deviations * np.minimum(bright.max(axis=1, keepdims=True) / DIMMEST, 1)
     goal = np.clip(spectra + deviations, BOUND * spectra, 1 - BOUND * (1 - spectra))
     # Spectra are matched at their actual brightness. Where the result cannot be brightened, as no reflectance has such
     # moments, the brightened spectrum is matched instead.
     factor = plain.brightness(colours)
-    nodes = to_storage(model, match_spectra(model, sensor.wavelengths, goal * factor, problem.lights)) / factor
+    nodes = (
+        to_storage(
+            model,
+            match_spectra(model, sensor.wavelengths, goal * factor, problem.lights),
+        )
+        / factor
+    )
     _, valid = model.try_from_storage(nodes)
-    nodes[~valid] = to_storage(model, match_spectra(model, sensor.wavelengths, goal[~valid], problem.lights))
+    nodes[~valid] = to_storage(
+        model, match_spectra(model, sensor.wavelengths, goal[~valid], problem.lights)
+    )
     return replace(plain, nodes=nodes), tuple(relevance.tolist())
 
 
-def _samples(plain: Base, problem: Problem, measured: Array, entries: FittedEntries | None) -> Points:
+def _samples(
+    plain: Base, problem: Problem, measured: Array, entries: FittedEntries | None
+) -> Points:
     """Deviations of the spectra (E, N) from smooth ones, brightened, without those of atlas entries."""
     sensor = problem.sensor
     rgb = sensor.rgb(measured)
@@ -158,23 +184,36 @@ def _samples(plain: Base, problem: Problem, measured: Array, entries: FittedEntr
     locations = rgb_to_lab(sensor, rgb)
     if entries is not None:
         close = distances(locations, rgb_to_lab(sensor, entries.rgb)) <= SAME_COLOUR
-        apart = [((entries.measured[near] - own) ** 2).mean(axis=1) for near, own in zip(close, measured, strict=True)]
-        new = [row for row, squares in enumerate(apart) if squares.min(initial=np.inf) > SAME_SPECTRUM**2]
+        apart = [
+            ((entries.measured[near] - own) ** 2).mean(axis=1)
+            for near, own in zip(close, measured, strict=True)
+        ]
+        new = [
+            row
+            for row, squares in enumerate(apart)
+            if squares.min(initial=np.inf) > SAME_SPECTRUM**2
+        ]
         rgb, measured, locations = rgb[new], measured[new], locations[new]
     expected = reflectance(plain.model, plain.coefficients(rgb), sensor.wavelengths)
     deviations = (measured - expected) / plain.brightness(rgb)
     return average_close(locations, deviations)
 
 
-def match_spectra(model: Moments, wavelengths: Array, reflectances: Array, lights: Sequence[Light]) -> Array:
+def match_spectra(
+    model: Moments, wavelengths: Array, reflectances: Array, lights: Sequence[Light]
+) -> Array:
     """Multipliers (n, C) of spectra near reflectances (n, N) in (0, 1), with nearly their colours under several lights.
 
     The wavelengths (N,) are evenly spaced over the range of the model. The moments of a detailed reflectance lose its
     colour under other lights if they are few. One Gauss–Newton step of the objective (6) restores it; spectra that it
     would not bring nearer stay.
     """
-    goal = objective(model, model.basis(wavelengths), lights, COLOUR_WEIGHT, smoothness=None)
-    multipliers = model.from_storage(blocked_matmul(reflectances, moment_matrix(model, wavelengths)))
+    goal = objective(
+        model, model.basis(wavelengths), lights, COLOUR_WEIGHT, smoothness=None
+    )
+    multipliers = model.from_storage(
+        blocked_matmul(reflectances, moment_matrix(model, wavelengths))
+    )
     for block in blocks(len(multipliers), MATCH_ROWS):
         p, measured = multipliers[block], reflectances[block]
         colours = goal.colours(measured)
@@ -184,7 +223,9 @@ def match_spectra(model: Moments, wavelengths: Array, reflectances: Array, light
         damping = DAMPING * np.trace(matrix, axis1=1, axis2=2) / model.count
         matrix += damping[:, None, None] * np.eye(model.count)
         trial = p - np.linalg.solve(matrix, slope[..., None])[..., 0]
-        better = (goal.residuals(trial, measured, colours) ** 2).sum(axis=1) < (residual**2).sum(axis=1)
+        better = (goal.residuals(trial, measured, colours) ** 2).sum(axis=1) < (
+            residual**2
+        ).sum(axis=1)
         p[better] = trial[better]
     return multipliers
 
@@ -193,7 +234,12 @@ def moment_matrix(model: Moments, wavelengths: Array) -> Array:
     """Weights (N, C) that turn reflectances (n, N), linear between the wavelengths, into moments."""
     phase = -np.pi * (np.arange(MATCH_NODES) + 0.5) / MATCH_NODES
     at = np.interp(phase, model.phase(wavelengths), np.arange(len(wavelengths)))
-    samples = np.stack([np.interp(at, np.arange(len(wavelengths)), row) for row in np.eye(len(wavelengths))])
+    samples = np.stack(
+        [
+            np.interp(at, np.arange(len(wavelengths)), row)
+            for row in np.eye(len(wavelengths))
+        ]
+    )
     # c_j = (1/π) ∫ g(φ) cos jφ dφ by midpoints
     weights = cosine_basis(phase, model.count) / MATCH_NODES
     weights[:, 1:] /= 2

@@ -29,7 +29,9 @@ CONVERGED = 1e-6
 """For lattices: moments differ by some 1e-9 at most, a sixtieth of the rounding to single precision."""
 
 jax.tree_util.register_dataclass(
-    ForwardMap, ["basis", "sensor", "root", "inverse_root", "jacobian_basis"], meta_fields=["model"]
+    ForwardMap,
+    ["basis", "sensor", "root", "inverse_root", "jacobian_basis"],
+    meta_fields=["model"],
 )
 
 
@@ -46,37 +48,60 @@ def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any) -> A
         run = _program(function, chunk, devices)
         for rows in blocks(total, devices * width):
             # Chunks beyond the counts are not computed.
-            counts = np.clip(rows.stop - rows.start - width * np.arange(devices), 0, width)
-            given = jax.tree.map(lambda array, rows=rows: _padded(array[rows], devices * width), arrays)
+            counts = np.clip(
+                rows.stop - rows.start - width * np.arange(devices), 0, width
+            )
+            given = jax.tree.map(
+                lambda array, rows=rows: _padded(array[rows], devices * width), arrays
+            )
             parts.append(run(constants, counts, given))
         return jax.tree.map(lambda *joined: np.concatenate(joined)[:total], *parts)
 
 
 def _padded(array: Array, count: int) -> Array:
     """Repeat the last row, so that there are ``count``."""
-    return array if len(array) == count else array.take(np.arange(count), axis=0, mode="clip")
+    return (
+        array
+        if len(array) == count
+        else array.take(np.arange(count), axis=0, mode="clip")
+    )
 
 
 @cache
-def _program(function: Callable[..., Any], chunk: int, devices: int) -> Callable[..., Any]:
+def _program(
+    function: Callable[..., Any], chunk: int, devices: int
+) -> Callable[..., Any]:
     """Compile the loop over the chunks of a batch on each device."""
     traced_once = jax.jit(function)
 
     def run(constants: Any, counts: jax.Array, arrays: Any) -> Any:
         def compute(first: Any) -> Any:
             rows = jax.tree.map(
-                lambda array: lax.dynamic_slice_in_dim(array, first, chunk, allow_negative_indices=False), arrays
+                lambda array: lax.dynamic_slice_in_dim(
+                    array, first, chunk, allow_negative_indices=False
+                ),
+                arrays,
             )
             return traced_once(constants, *rows)
 
         def advance(carry: Any) -> Any:
             first, results = carry
-            update = partial(lax.dynamic_update_slice_in_dim, start_index=first, axis=0, allow_negative_indices=False)
+            update = partial(
+                lax.dynamic_update_slice_in_dim,
+                start_index=first,
+                axis=0,
+                allow_negative_indices=False,
+            )
             return first + chunk, jax.tree.map(update, results, compute(first))
 
         width = len(jax.tree.leaves(arrays)[0])
-        empty = jax.tree.map(lambda some: jnp.zeros((width, *some.shape[1:]), some.dtype), jax.eval_shape(compute, 0))
-        return lax.while_loop(lambda carry: carry[0] < counts[0], advance, (jnp.asarray(0), empty))[1]
+        empty = jax.tree.map(
+            lambda some: jnp.zeros((width, *some.shape[1:]), some.dtype),
+            jax.eval_shape(compute, 0),
+        )
+        return lax.while_loop(
+            lambda carry: carry[0] < counts[0], advance, (jnp.asarray(0), empty)
+        )[1]
 
     if devices == 1:
         return jax.jit(run)
@@ -101,8 +126,14 @@ def _integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
     for first in range(0, nodes, PART_NODES):
         # Each part is as large as the first rule, which has two sets of moments: the rest has no weight.
         part = slice(first, first + PART_NODES)
-        points, weights = np.zeros((count, PART_NODES)), np.zeros((PART_NODES, 2 * count))
-        points[:, : nodes - first], weights[: nodes - first, :columns] = synthesis[:, part], analysis[part]
+        points, weights = (
+            np.zeros((count, PART_NODES)),
+            np.zeros((PART_NODES, 2 * count)),
+        )
+        points[:, : nodes - first], weights[: nodes - first, :columns] = (
+            synthesis[:, part],
+            analysis[part],
+        )
         moments += map_batches(_weighted, (points, weights), multipliers)[:, :columns]
     return moments
 

@@ -24,7 +24,14 @@ def solve_bounded(matrix: Array, values: Array, low: Array, high: Array) -> Arra
     from scipy.optimize import lsq_linear
 
     with single_threaded_blas():  # also of scipy, as it is loaded
-        result = lsq_linear(matrix, values, (low, high), method="bvls", tol=TOLERANCE, max_iter=MAX_ITERATIONS)
+        result = lsq_linear(
+            matrix,
+            values,
+            (low, high),
+            method="bvls",
+            tol=TOLERANCE,
+            max_iter=MAX_ITERATIONS,
+        )
     if not result.success:
         text = f"the solver stopped after {MAX_ITERATIONS} iterations: colours may be slightly off"
         warnings.warn(UpliftWarning(text, code="design-not-converged"), stacklevel=3)

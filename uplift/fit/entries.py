@@ -15,7 +15,13 @@ from uplift.colorimetry.delta_e import delta_e_spectra, lab, lab_jacobian
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Mask
 from uplift.fit.problem import Problem
-from uplift.fit.solver import BatchSolver, Options, Stepped, iterate_rows, solve_in_numpy
+from uplift.fit.solver import (
+    BatchSolver,
+    Options,
+    Stepped,
+    iterate_rows,
+    solve_in_numpy,
+)
 from uplift.models.model import Model
 
 LIGHTS_WEIGHT, SMOOTHNESS = 0.03, 1e-3
@@ -53,7 +59,9 @@ class Objective:
     @cached_property
     def basis_products(self) -> Array:
         """B_kj B_kl (N, C²)."""
-        return np.einsum("kj,kl->kjl", self.basis, self.basis).reshape(len(self.basis), -1)
+        return np.einsum("kj,kl->kjl", self.basis, self.basis).reshape(
+            len(self.basis), -1
+        )
 
     @cached_property
     def light_basis(self) -> Array:
@@ -83,21 +91,36 @@ class Objective:
             axis=-1,
         )
 
-    def normal_equations(self, multipliers: Array, residuals: Array) -> tuple[Array, Array]:
+    def normal_equations(
+        self, multipliers: Array, residuals: Array
+    ) -> tuple[Array, Array]:
         """JᵀJ (n, C, C) and Jᵀf (n, C) of residuals f (n, N + 3 L + C), J = ∂f/∂p, at multipliers p (n, C).
 
         J itself, which has a row for each residual, is not formed.
         """
-        x, shape = multipliers @ self.basis.T, (*multipliers.shape, multipliers.shape[1])
-        spectra, lights, own = np.split(residuals, [len(self.basis), residuals.shape[1] - shape[1]], axis=1)
+        x, shape = (
+            multipliers @ self.basis.T,
+            (*multipliers.shape, multipliers.shape[1]),
+        )
+        spectra, lights, own = np.split(
+            residuals, [len(self.basis), residuals.shape[1] - shape[1]], axis=1
+        )
         # g = S(B p), so ∂g/∂p = S′(B p) B, and ∂XYZ/∂p = M ∂g/∂p of each light
         change = self.model.derivative(x)
-        xyz_change = (change @ self.light_basis).reshape(len(x), *self.lights.shape[:2], -1)
-        colours = lab_jacobian(self.xyz(self.model.to_reflectance(x)), self.whites) @ xyz_change
+        xyz_change = (change @ self.light_basis).reshape(
+            len(x), *self.lights.shape[:2], -1
+        )
+        colours = (
+            lab_jacobian(self.xyz(self.model.to_reflectance(x)), self.whites)
+            @ xyz_change
+        )
         colours = self.weight * colours.reshape(len(x), -1, shape[1])
         gram = self.values**2 * (change**2 @ self.basis_products).reshape(shape)
         gram += colours.mT @ colours + np.diag(self.multipliers**2)
-        slope = self.values * (change * spectra) @ self.basis + (colours.mT @ lights[..., None])[..., 0]
+        slope = (
+            self.values * (change * spectra) @ self.basis
+            + (colours.mT @ lights[..., None])[..., 0]
+        )
         return gram, slope + self.multipliers * own
 
 
@@ -112,13 +135,18 @@ def objective(
 
     ``weight`` is that of a unit of CIE L*a*b*, ``smoothness`` that of the multipliers; None leaves them free.
     """
-    xyz, whites = (np.stack([getattr(light, name) for light in lights]) for name in ("xyz", "white"))
+    xyz, whites = (
+        np.stack([getattr(light, name) for light in lights])
+        for name in ("xyz", "white")
+    )
     own = np.zeros(model.count)
     if smoothness is not None:
         # M = diag(1 + j²), but the constant multiplier is left to the measurement.
         smooth = np.maximum(smoothness * np.sqrt(model.metric_diagonal()), FLATNESS)
         own = np.where(model.constant() > 0, FLATNESS, smooth)
-    return Objective(model, basis, float(np.sqrt(1 / len(basis))), xyz, whites, weight, own)
+    return Objective(
+        model, basis, float(np.sqrt(1 / len(basis))), xyz, whites, weight, own
+    )
 
 
 class MarquardtState(NamedTuple):
@@ -144,32 +172,58 @@ class Marquardt(BatchSolver):
     rtol: float = PRECISION
     atol: float = 0.0
 
-    def init(self, fn: Any, y: Any, args: Any, options: Options, *rest: Any) -> MarquardtState:
+    def init(
+        self, fn: Any, y: Any, args: Any, options: Options, *rest: Any
+    ) -> MarquardtState:
         """Evaluate the residuals at ``y`` (n, C)."""
         count = len(y)
-        return MarquardtState(fn(y, args)[0], np.zeros(count), np.full(count, 2.0), np.zeros(count, dtype=bool))
+        return MarquardtState(
+            fn(y, args)[0],
+            np.zeros(count),
+            np.full(count, 2.0),
+            np.zeros(count, dtype=bool),
+        )
 
-    def step(self, fn: Any, y: Any, args: Any, options: Options, state: MarquardtState, *rest: Any) -> Stepped:
+    def step(
+        self,
+        fn: Any,
+        y: Any,
+        args: Any,
+        options: Options,
+        state: MarquardtState,
+        *rest: Any,
+    ) -> Stepped:
         """Take one step in every fit that has not ended; no sum of squares increases."""
         gram, slope = options["normal_equations"](y, state.residual)
         diagonal = gram.diagonal(axis1=-2, axis2=-1).max(axis=-1)
         damping = np.where(state.damping > 0, state.damping, FIRST_DAMPING * diagonal)
         # (JᵀJ + μ I) Δy = −Jᵀ f
-        change = -np.linalg.solve(gram + damping[:, None, None] * np.eye(y.shape[-1]), slope[..., None])[..., 0]
+        change = -np.linalg.solve(
+            gram + damping[:, None, None] * np.eye(y.shape[-1]), slope[..., None]
+        )[..., 0]
         residual, aux = fn(y + change, args)
         before, after = ((each**2).sum(axis=-1) for each in (state.residual, residual))
         # ϱ: the reduction of the squares over that of the linear model
         expected = (change * (damping[:, None] * change - slope)).sum(axis=-1)
         gain = (before - after) / np.maximum(expected, np.finfo(float).tiny)
         better = gain > 0
-        small = np.linalg.norm(change, axis=-1) <= self.rtol * np.linalg.norm(y, axis=-1)
-        ended = small | (better & (before - after <= self.rtol * before) & (expected <= self.rtol * before))
+        small = np.linalg.norm(change, axis=-1) <= self.rtol * np.linalg.norm(
+            y, axis=-1
+        )
+        ended = small | (
+            better
+            & (before - after <= self.rtol * before)
+            & (expected <= self.rtol * before)
+        )
         accept = (better & ~state.done)[:, None]
         return (
             np.where(accept, y + change, y),
             MarquardtState(
                 np.where(accept, residual, state.residual),
-                damping * np.where(better, np.maximum(1 / 3, 1 - (2 * gain - 1) ** 3), state.growth),
+                damping
+                * np.where(
+                    better, np.maximum(1 / 3, 1 - (2 * gain - 1) ** 3), state.growth
+                ),
                 np.where(better, 2.0, 2 * state.growth),
                 state.done | ended,
             ),
@@ -209,7 +263,9 @@ class FittedEntries(NamedTuple):
         return FittedEntries(*(column[rows] for column in self))
 
 
-def fit_entries(problem: Problem, measured: Array, rgb: Array, **weights: float) -> FittedEntries:
+def fit_entries(
+    problem: Problem, measured: Array, rgb: Array, **weights: float
+) -> FittedEntries:
     """Fit measured reflectances (E, N) by the spectrum model, and meet their linear RGB (E, 3) to the tolerance.
 
     ``weights`` are the keyword arguments of `objective`. The order of the entries does not change the rounding of sums.
@@ -219,12 +275,20 @@ def fit_entries(problem: Problem, measured: Array, rgb: Array, **weights: float)
     measured, rgb = measured[order], rgb[order]
     near = minimise(goal, measured)
     # The minimum has nearly the colour; minimum-norm steps from there reach it.
-    multipliers = solve_in_numpy(problem.forward, near, rgb, problem.tolerance, MAX_STEPS)
-    spectra = np.asarray(problem.model.to_reflectance(multipliers @ problem.forward.basis.T))
-    error = delta_e_spectra(problem.error_light or problem.sensor.light, spectra, measured)
+    multipliers = solve_in_numpy(
+        problem.forward, near, rgb, problem.tolerance, MAX_STEPS
+    )
+    spectra = np.asarray(
+        problem.model.to_reflectance(multipliers @ problem.forward.basis.T)
+    )
+    error = delta_e_spectra(
+        problem.error_light or problem.sensor.light, spectra, measured
+    )
     return FittedEntries(rgb, measured, multipliers, error).rows(np.argsort(order))
 
 
 def join_entries(*parts: FittedEntries) -> FittedEntries:
     """Put entries after one another."""
-    return FittedEntries(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+    return FittedEntries(
+        *(np.concatenate(columns) for columns in zip(*parts, strict=True))
+    )

@@ -63,10 +63,15 @@ def shipped_library(leave_out: Collection[str] = ()) -> tuple[Family, ...]:
 
     Some may be left out by name, for tests on them. Raises `UnknownNameError` for an unknown name.
     """
-    with (files(__package__) / FILE).open("rb") as file, np.load(file, allow_pickle=False) as table:
+    with (
+        (files(__package__) / FILE).open("rb") as file,
+        np.load(file, allow_pickle=False) as table,
+    ):
         measured = np.cumsum(table["steps"], axis=1, dtype=np.int64) / STEPS
         rows = np.split(measured, np.cumsum(table["counts"])[:-1])
-        named = zip(table["names"].tolist(), rows, table["spreads"].tolist(), strict=True)
+        named = zip(
+            table["names"].tolist(), rows, table["spreads"].tolist(), strict=True
+        )
         families = {name: Family(name, *rest) for name, *rest in named}
     for name in leave_out:
         if name not in families:
@@ -81,7 +86,10 @@ def families_with(measured: Array) -> tuple[str, ...]:
     if not len(measured):
         return ()
     tree, limit = cKDTree(measured), SAME_RMS * np.sqrt(measured.shape[1])
-    nearest = {family.name: tree.query(family.measured)[0].min() for family in shipped_library()}
+    nearest = {
+        family.name: tree.query(family.measured)[0].min()
+        for family in shipped_library()
+    }
     return tuple(name for name, distance in nearest.items() if distance <= limit)
 
 
@@ -100,17 +108,30 @@ class FamilyKriging:
     def contributions(self, lab: Array) -> Array:
         """Contributions (F, n, N) at L*a*b* (n, 3)."""
         rows = [np.flatnonzero(self.family == number) for number in range(self.count)]
-        return np.stack([_kernel_sum(lab, self.locations[some], self.weights[some]) for some in rows])
+        return np.stack(
+            [
+                _kernel_sum(lab, self.locations[some], self.weights[some])
+                for some in rows
+            ]
+        )
 
     def __call__(self, lab: Array, relevance: Array) -> Array:
         """Sum of the contributions (n, N) at L*a*b* (n, 3), each times the relevance (F,) of its family."""
-        return _kernel_sum(lab, self.locations, self.weights * relevance[self.family][:, None])
+        return _kernel_sum(
+            lab, self.locations, self.weights * relevance[self.family][:, None]
+        )
 
 
-def krige_families(families: Sequence[Family], samples: Sequence[Points]) -> FamilyKriging:
+def krige_families(
+    families: Sequence[Family], samples: Sequence[Points]
+) -> FamilyKriging:
     """Fit the kriging of families to their deviations at L*a*b*, of which each family may have any number, also 0."""
-    number = np.repeat(np.arange(len(families)), [len(points.counts) for points in samples])
-    locations, deviations, counts, _ = (np.concatenate(columns) for columns in zip(*samples, strict=True))
+    number = np.repeat(
+        np.arange(len(families)), [len(points.counts) for points in samples]
+    )
+    locations, deviations, counts, _ = (
+        np.concatenate(columns) for columns in zip(*samples, strict=True)
+    )
     spread = np.array([family.spread for family in families])
     related = np.array([family.related for family in families])
     # Covariance of samples i, j: (1 + spread_f) k_ij within a family, k_ij between families, noise on the diagonal.
@@ -128,7 +149,10 @@ def krige_families(families: Sequence[Family], samples: Sequence[Points]) -> Fam
 def _kernel_sum(lab: Array, locations: Array, weights: Array) -> Array:
     """Sums (n, N) of weights (E, N) at L*a*b* (n, 3)."""
     sums = np.zeros((len(lab), weights.shape[1]))
-    for block in blocks(len(lab) if len(locations) else 0, max(BLOCK_NUMBERS // max(len(locations), 1), 1)):
+    for block in blocks(
+        len(lab) if len(locations) else 0,
+        max(BLOCK_NUMBERS // max(len(locations), 1), 1),
+    ):
         sums[block] = _matern(lab[block], locations) @ weights
     return sums
 
@@ -142,7 +166,13 @@ def _matern(first: Array, second: Array) -> Array:
     return kernel
 
 
-def learn_relevance(lights: Sequence[Light], locations: Array, plain: Array, parts: Array, measured: Array) -> Array:
+def learn_relevance(
+    lights: Sequence[Light],
+    locations: Array,
+    plain: Array,
+    parts: Array,
+    measured: Array,
+) -> Array:
     """Learn relevances (F,) of families by bounded generalised least squares, which shrinks them towards 1.
 
     Entries at L*a*b* (n, 3) have ``measured`` reflectances (n, N). Without families ``plain`` (n, N) are expected, and
@@ -152,9 +182,14 @@ def learn_relevance(lights: Sequence[Light], locations: Array, plain: Array, par
     assumed = np.ones(len(parts))
     if not len(measured):
         return assumed
-    matrices, whites = (np.stack([getattr(light, name) for light in lights]) for name in ("xyz", "white"))
+    matrices, whites = (
+        np.stack([getattr(light, name) for light in lights])
+        for name in ("xyz", "white")
+    )
     expected = np.clip(plain + parts.sum(axis=0), 0, 1)
-    to_lab = LIGHTS_WEIGHT * lab_jacobian((expected @ matrices.mT).swapaxes(0, 1), whites)
+    to_lab = LIGHTS_WEIGHT * lab_jacobian(
+        (expected @ matrices.mT).swapaxes(0, 1), whites
+    )
     shared = np.exp(distances(locations, locations) / -CORRELATED.length)
     covariance = shared + CORRELATED.noise * np.eye(len(locations))
     root = np.linalg.cholesky(covariance / (1 + CORRELATED.noise))
@@ -185,4 +220,6 @@ def learn_relevance(lights: Sequence[Light], locations: Array, plain: Array, par
         return unbounded
     from scipy.optimize import lsq_linear
 
-    return np.asarray(lsq_linear(r, q.T @ goal, bounds=(0, MAX_RELEVANCE), method="bvls").x)
+    return np.asarray(
+        lsq_linear(r, q.T @ goal, bounds=(0, MAX_RELEVANCE), method="bvls").x
+    )

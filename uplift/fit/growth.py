@@ -37,7 +37,13 @@ NUDGE = 0.5
 """Change of a multiplier in the improvement pass."""
 EXTREME = 100.0
 """Linear part of a nearly white (+) or nearly black (−) spectrum."""
-STEPS = ("more iterations", "from grey", "constant multiplier nudged", "all multipliers nudged", "from white or black")
+STEPS = (
+    "more iterations",
+    "from grey",
+    "constant multiplier nudged",
+    "all multipliers nudged",
+    "from white or black",
+)
 """More iterations fix nearly every realisable node, grey those whose neighbours were black or white, where the gradient
 vanishes. The steps of the thesis, which moves Ceres out of minima in moment space, remain for the rest."""
 THESIS_STEPS = (
@@ -61,11 +67,19 @@ class Growth:
     fitted, −1 if none did or the improvement pass did, and ``done`` counts the nodes that rounds fitted.
     """
 
-    def __init__(self, problem: Problem, nodes: Nodes, progress: ProgressCallback) -> None:
+    def __init__(
+        self, problem: Problem, nodes: Nodes, progress: ProgressCallback
+    ) -> None:
         self.problem, self.nodes, self.progress = problem, nodes, progress
         size = nodes.lattice.size
-        self.multipliers, self.distance = np.zeros((size, problem.model.count)), np.full(size, np.inf)
-        self.rgb, self.round = np.zeros((size, 3), dtype=np.float32), np.full(size, NOT_FITTED, dtype=np.int16)
+        self.multipliers, self.distance = (
+            np.zeros((size, problem.model.count)),
+            np.full(size, np.inf),
+        )
+        self.rgb, self.round = (
+            np.zeros((size, 3), dtype=np.float32),
+            np.full(size, NOT_FITTED, dtype=np.int16),
+        )
         self.done = 0
 
     def waiting_blocks(self) -> list[Indices]:
@@ -90,21 +104,35 @@ class Growth:
         solution = self.problem.solve(goal, start, max_passes, prior)
         better = solution.distance < self.distance[points]
         kept = points[better]
-        self.multipliers[kept], self.distance[kept] = solution.multipliers[better], solution.distance[better]
+        self.multipliers[kept], self.distance[kept] = (
+            solution.multipliers[better],
+            solution.distance[better],
+        )
         self.rgb[kept] = (goal - solution.residual)[better]
-        fitted = (self.round[points] == NOT_FITTED) & (solution.distance <= self.problem.threshold)
+        fitted = (self.round[points] == NOT_FITTED) & (
+            solution.distance <= self.problem.threshold
+        )
         numbers = np.broadcast_to(number, points.shape)
         self.round[points[fitted]] = numbers[fitted]
         last = int(numbers.max(initial=NOT_FITTED))
         if last != NOT_FITTED:
             self.done += int(fitted.sum())
             detail = f"round {last}: {len(points)} tried"
-            self.progress(Progress("fit", self.done, len(self.nodes.points), step=last, detail=detail))
+            self.progress(
+                Progress(
+                    "fit", self.done, len(self.nodes.points), step=last, detail=detail
+                )
+            )
         return solution
 
     def is_smooth(self, correction: Array) -> Mask:
         """Whether corrections (k, C) are small enough to expect similar ones nearby: |R⁻¹ (p − p₀)|∞."""
-        return largest(np.abs(blocked_matmul(correction, self.problem.forward.inverse_root.T))) <= MAX_CORRECTION
+        return (
+            largest(
+                np.abs(blocked_matmul(correction, self.problem.forward.inverse_root.T))
+            )
+            <= MAX_CORRECTION
+        )
 
 
 def retry(growth: Growth, number: int) -> None:
@@ -117,11 +145,16 @@ def retry(growth: Growth, number: int) -> None:
         for block in growth.waiting_blocks():
             neighbours, inside = lattice.neighbours(block)
             adjacent = (inside & is_fresh[neighbours]).any(axis=1)
-            neighbours, known = neighbours[adjacent], inside[adjacent] & fitted[neighbours[adjacent]]
+            neighbours, known = (
+                neighbours[adjacent],
+                inside[adjacent] & fitted[neighbours[adjacent]],
+            )
             # Column by column: all 26 neighbours at once would take 26 times the memory.
             total = np.zeros((len(neighbours), multipliers.shape[1]))
             for column in range(neighbours.shape[1]):
-                total += np.where(known[:, column, None], multipliers[neighbours[:, column]], 0)
+                total += np.where(
+                    known[:, column, None], multipliers[neighbours[:, column]], 0
+                )
             points.append(block[adjacent])
             means.append(total / np.maximum(known.sum(axis=1), 1)[:, None])
         tried = np.concatenate(points)
@@ -146,15 +179,20 @@ def improve(growth: Growth, steps: Sequence[str] = STEPS) -> list[tuple[str, int
             break
         # A linear part of +1 for goals nearer to white, −1 for those nearer to black, at all wavelengths.
         sign = np.where(growth.nodes.goal(points).mean(axis=1) >= 0.5, 1.0, -1.0)
-        best, extreme = growth.multipliers[points], sign[:, None] * problem.model.constant()
+        best, extreme = (
+            growth.multipliers[points],
+            sign[:, None] * problem.model.constant(),
+        )
         start = {
             "more iterations": best,
             "from grey": np.zeros_like(best),
             "constant multiplier nudged": best + NUDGE * extreme,
             "all multipliers nudged": best + alternating,
             "from white or black": EXTREME * extreme,
-            "from white or black, constant multiplier nudged": (EXTREME - NUDGE) * extreme,
-            "from white or black, all multipliers nudged": EXTREME * extreme + alternating,
+            "from white or black, constant multiplier nudged": (EXTREME - NUDGE)
+            * extreme,
+            "from white or black, all multipliers nudged": EXTREME * extreme
+            + alternating,
         }[step]
         growth.attempt(points, start, NOT_FITTED, max_passes=IMPROVEMENT_PASSES)
         fixed = int((growth.distance[points] <= problem.threshold).sum())

@@ -16,28 +16,42 @@ ALL = 1 - 1e-9
 
 def strides(dim: int) -> list[int]:
     """Lattice steps between the nodes of each round: powers of two down to 1."""
-    return [1 << power for power in reversed(range(max((dim // MIN_CELLS).bit_length(), 1)))]
+    return [
+        1 << power for power in reversed(range(max((dim // MIN_CELLS).bit_length(), 1)))
+    ]
 
 
 def grow_coarse_to_fine(
-    problem: Problem, nodes: Nodes, expected: Expected, seeds: Indices, progress: ProgressCallback
+    problem: Problem,
+    nodes: Nodes,
+    expected: Expected,
+    seeds: Indices,
+    progress: ProgressCallback,
 ) -> Growth:
     """Fit nodes from the prior. Seeds (S,) are fitted in the first round, and give and take no correction."""
     growth, lattice = Growth(problem, nodes, progress), nodes.lattice
     waiting, seeded = lattice.mask(nodes.points), lattice.mask(seeds)
     # Corrections p − p₀ at every second node, whose last column is the weight of a known one, and the rows of nodes.
     half, numbers = lattice.thinned(2)
-    corrections, row = np.zeros((half.size, problem.model.count + 1)), np.full(lattice.size, -1, dtype=np.int32)
+    corrections, row = (
+        np.zeros((half.size, problem.model.count + 1)),
+        np.full(lattice.size, -1, dtype=np.int32),
+    )
     row[numbers] = np.arange(half.size)
     row[seeds] = -1
 
-    def fit(points: Indices, start: Array, prior: Array, number: int, max_passes: int) -> tuple[Indices, Array, Array]:
+    def fit(
+        points: Indices, start: Array, prior: Array, number: int, max_passes: int
+    ) -> tuple[Indices, Array, Array]:
         """Fit nodes, store their corrections, and return those that are not solved."""
         solution = growth.attempt(points, start, number, prior, max_passes)
         correction = solution.multipliers - prior
         stored = row[points] >= 0
         rows = row[points[stored]]
-        corrections[rows, :-1], corrections[rows, -1] = correction[stored], growth.is_smooth(correction[stored])
+        corrections[rows, :-1], corrections[rows, -1] = (
+            correction[stored],
+            growth.is_smooth(correction[stored]),
+        )
         unsolved = solution.distance > problem.tolerance
         return points[unsolved], solution.multipliers[unsolved], prior[unsolved]
 
@@ -57,9 +71,19 @@ def grow_coarse_to_fine(
             prior = expected(some, nodes.goal(some))
             sums = weighted_sum(known, *level.corners(lattice.target(some)))
             smooth = (sums[:, -1:] > ALL) & ~seeded[some, None]
-            rest.append(fit(some, prior + np.where(smooth, sums[:, :-1], 0), prior, number, max_passes=1))
+            rest.append(
+                fit(
+                    some,
+                    prior + np.where(smooth, sums[:, :-1], 0),
+                    prior,
+                    number,
+                    max_passes=1,
+                )
+            )
         # What the first pass leaves is fitted at the end of the round, all at once.
-        points, start, prior = (np.concatenate(parts) for parts in zip(*rest, strict=True))
+        points, start, prior = (
+            np.concatenate(parts) for parts in zip(*rest, strict=True)
+        )
         fit(points, start, prior, number, MAX_PASSES)
     retry(growth, len(rounds))
     return growth

@@ -14,7 +14,11 @@ from uplift.lattice import Lattice
 
 
 def grow_outward(
-    problem: Problem, nodes: Nodes, expected: Expected, seeds: Indices, progress: ProgressCallback
+    problem: Problem,
+    nodes: Nodes,
+    expected: Expected,
+    seeds: Indices,
+    progress: ProgressCallback,
 ) -> Growth:
     """Fit nodes from the prior, in the order of their distance from the seeds (S,), or from the middle without any.
 
@@ -38,13 +42,22 @@ def grow_outward(
             near, far = toward[points], toward[toward[points]]
             one = known[near] & (distance[near] < number)
             two = one & known[far] & (distance[far] < distance[near])
-            change = np.add(one, two, dtype=np.float32)[:, None] * corrections.take(near, axis=0)
+            change = np.add(one, two, dtype=np.float32)[:, None] * corrections.take(
+                near, axis=0
+            )
             change -= two[:, None] * corrections.take(far, axis=0)
-            solution = growth.attempt(points, prior + change, number, prior, max_passes=1)
+            solution = growth.attempt(
+                points, prior + change, number, prior, max_passes=1
+            )
             found = solution.multipliers - prior
-            corrections[points], known[points] = found, growth.is_smooth(found) & ~seeded[points]
+            corrections[points], known[points] = (
+                found,
+                growth.is_smooth(found) & ~seeded[points],
+            )
             unsolved = solution.distance > problem.tolerance
-            rest.append((points[unsolved], solution.multipliers[unsolved], prior[unsolved]))
+            rest.append(
+                (points[unsolved], solution.multipliers[unsolved], prior[unsolved])
+            )
     # What one step leaves is fitted at the end, all at once.
     points, start, prior = (np.concatenate(parts) for parts in zip(*rest, strict=True))
     growth.attempt(points, start, distance[points], prior)
@@ -52,7 +65,9 @@ def grow_outward(
     return growth
 
 
-def shells(lattice: Lattice, seeds: Indices) -> tuple[NDArray[np.int16], NDArray[np.int32]]:
+def shells(
+    lattice: Lattice, seeds: Indices
+) -> tuple[NDArray[np.int16], NDArray[np.int32]]:
     """Distances (n,) of nodes from the nearest seed, in steps to any of 26 neighbours, and nodes (n,) nearer to a seed.
 
     The latter are one step along each axis towards the seed that is nearest by the sum of the steps along the axes.
@@ -65,7 +80,9 @@ def shells(lattice: Lattice, seeds: Indices) -> tuple[NDArray[np.int16], NDArray
     while not reached.all():
         distance += ~reached
         for axis in range(3):
-            grown, old = (np.moveaxis(each, axis, 0) for each in (reached.copy(), reached))
+            grown, old = (
+                np.moveaxis(each, axis, 0) for each in (reached.copy(), reached)
+            )
             grown[1:] |= old[:-1]
             grown[:-1] |= old[1:]
             reached = np.moveaxis(grown, 0, axis)
@@ -74,7 +91,9 @@ def shells(lattice: Lattice, seeds: Indices) -> tuple[NDArray[np.int16], NDArray
     for axis in range(3):
         along = np.moveaxis(steps, axis, -1)
         before = np.minimum.accumulate(along - ramp, axis=-1) + ramp
-        after = np.minimum.accumulate((along + ramp)[..., ::-1], axis=-1)[..., ::-1] - ramp
+        after = (
+            np.minimum.accumulate((along + ramp)[..., ::-1], axis=-1)[..., ::-1] - ramp
+        )
         steps = np.moveaxis(np.minimum(before, after), -1, axis)
     toward = np.arange(lattice.size, dtype=np.int32).reshape(lattice.shape)
     for axis, stride in enumerate((dim * dim, dim, 1)):

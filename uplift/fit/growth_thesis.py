@@ -16,7 +16,11 @@ NUDGES = (0.5, -0.5)
 
 
 def grow_from_neighbours(
-    problem: Problem, nodes: Nodes, expected: Expected, seeds: Indices, progress: ProgressCallback
+    problem: Problem,
+    nodes: Nodes,
+    expected: Expected,
+    seeds: Indices,
+    progress: ProgressCallback,
 ) -> Growth:
     """Fit nodes that can be reached from seeds (S,).
 
@@ -27,7 +31,9 @@ def grow_from_neighbours(
     if seeds.size:
         start = expected(seeds, nodes.goal(seeds))
     else:
-        away = np.abs(2 * lattice.position(nodes.points) - (lattice.dim - 1)).sum(axis=1)
+        away = np.abs(2 * lattice.position(nodes.points) - (lattice.dim - 1)).sum(
+            axis=1
+        )
         seeds = nodes.points[[int(away.argmin())]]
         start = growth.multipliers[seeds]
     # Shell by shell: waiting neighbours of the nodes that the last round fitted.
@@ -35,13 +41,18 @@ def grow_from_neighbours(
     number = 1
     while fresh.size:
         is_fresh = lattice.mask(fresh)
-        tried = [_try_neighbours(growth, block, is_fresh, number) for block in growth.waiting_blocks()]
+        tried = [
+            _try_neighbours(growth, block, is_fresh, number)
+            for block in growth.waiting_blocks()
+        ]
         fresh = np.concatenate([fresh[:0], *tried])
         number += 1
     return growth
 
 
-def _try_neighbours(growth: Growth, points: Indices, is_fresh: Mask, number: int) -> Indices:
+def _try_neighbours(
+    growth: Growth, points: Indices, is_fresh: Mask, number: int
+) -> Indices:
     """Try waiting nodes from each of their fresh neighbours in turn, and return those that are fitted now."""
     neighbours, inside = growth.nodes.lattice.neighbours(points)
     known = inside & is_fresh[neighbours]

@@ -51,7 +51,10 @@ class Kernel(NamedTuple):
 
 DEFAULT = Kernel(length=12.0, noise=0.3)
 """Kernel of atlases that are too small to learn one."""
-KERNELS = tuple(Kernel(*pair) for pair in product((6.0, 12.0, 24.0, 48.0), (0.01, 0.03, 0.1, 0.3, 1.0, 3.0)))
+KERNELS = tuple(
+    Kernel(*pair)
+    for pair in product((6.0, 12.0, 24.0, 48.0), (0.01, 0.03, 0.1, 0.3, 1.0, 3.0))
+)
 
 
 class Points(NamedTuple):
@@ -69,15 +72,22 @@ def average_close(locations: Array, deviations: Array) -> Points:
     With cells of the largest edge more may remain.
     """
     if len(locations) <= MAX_POINTS:
-        return Points(locations, deviations, np.ones(len(locations)), np.arange(len(locations)))
+        return Points(
+            locations, deviations, np.ones(len(locations)), np.arange(len(locations))
+        )
     for edge in CELLS:
-        _, point, counts = np.unique(np.floor(locations / edge), axis=0, return_inverse=True, return_counts=True)
+        _, point, counts = np.unique(
+            np.floor(locations / edge), axis=0, return_inverse=True, return_counts=True
+        )
         if len(counts) <= MAX_POINTS:
             break
     point = point.ravel()
     order = np.argsort(point, kind="stable")
     starts = np.cumsum(counts) - counts
-    location, deviation = (np.add.reduceat(each[order], starts) / counts[:, None] for each in (locations, deviations))
+    location, deviation = (
+        np.add.reduceat(each[order], starts) / counts[:, None]
+        for each in (locations, deviations)
+    )
     return Points(location, deviation, counts.astype(float), point)
 
 
@@ -97,18 +107,26 @@ class Kriging:
     def __call__(self, lab: Array) -> Array:
         """Deviation (n, C) at L*a*b* (n, 3)."""
         own = np.sqrt(self.kernel.noise * self.noise)
-        return kernel_sums(lab * METRIC, self.locations, self.weights, self.kernel.length, own)[0]
+        return kernel_sums(
+            lab * METRIC, self.locations, self.weights, self.kernel.length, own
+        )[0]
 
 
-def krige(lab: Array, deviations: Array, kernel: Kernel, variances: Array | None = None) -> tuple[Kriging, Array]:
+def krige(
+    lab: Array, deviations: Array, kernel: Kernel, variances: Array | None = None
+) -> tuple[Kriging, Array]:
     """Fit the kriging of deviations (E, C) at L*a*b* (E, 3); with it, return its leave-one-out errors (E, C).
 
     ``variances`` (E,) are those of the noise of the entries, relative to that of the kernel, 1 by default.
     """
-    return _krige(average_close(lab * METRIC, deviations), deviations, kernel, variances)
+    return _krige(
+        average_close(lab * METRIC, deviations), deviations, kernel, variances
+    )
 
 
-def _krige(points: Points, deviations: Array, kernel: Kernel, variances: Array | None = None) -> tuple[Kriging, Array]:
+def _krige(
+    points: Points, deviations: Array, kernel: Kernel, variances: Array | None = None
+) -> tuple[Kriging, Array]:
     variances = np.ones(len(deviations)) if variances is None else variances
     noise = kernel.noise * np.bincount(points.point, variances) / points.counts
     distance, spread = distances(points.locations, points.locations), np.sqrt(noise)
@@ -118,12 +136,18 @@ def _krige(points: Points, deviations: Array, kernel: Kernel, variances: Array |
     weights = precision @ points.deviations
     # A point of n entries answers its mean less w ν v u / n, where u is its weight, and gives the part h / n of the
     # deviation of an entry to this entry, h = 1 − w ν v K⁻¹_ii / n: without itself, its error is r / (1 − h / n).
-    residuals = deviations - (points.deviations - white[:, None] * weights)[points.point]
+    residuals = (
+        deviations - (points.deviations - white[:, None] * weights)[points.point]
+    )
     others = 1 - (1 - white * np.diag(precision)) / points.counts
-    return Kriging(kernel, points.locations, weights, noise, variances), residuals / others[points.point, None]
+    return Kriging(
+        kernel, points.locations, weights, noise, variances
+    ), residuals / others[points.point, None]
 
 
-def learn_kriging(lab: Array, deviations: Array, visible: Array) -> tuple[Kriging, Array]:
+def learn_kriging(
+    lab: Array, deviations: Array, visible: Array
+) -> tuple[Kriging, Array]:
     """Return the kriging with the least mean visible error of left-out entries, and its errors, as `krige` does.
 
     The entries have L*a*b* (E, 3) and deviations (E, C), whose `visible_change` is (E, L, 3, C). Few entries lean
@@ -134,13 +158,20 @@ def learn_kriging(lab: Array, deviations: Array, visible: Array) -> tuple[Krigin
         return _krige(points, deviations, DEFAULT)
 
     def changes(errors: Array) -> Array:
-        return np.linalg.norm(np.einsum("elkc,ec->elk", visible, errors), axis=-1).mean(axis=1) + INVISIBLE
+        return (
+            np.linalg.norm(np.einsum("elkc,ec->elk", visible, errors), axis=-1).mean(
+                axis=1
+            )
+            + INVISIBLE
+        )
 
     def loss(kernel: Kernel) -> float:
         # Visible leave-one-out error, and the surprise at a kernel that is not the default
         doublings, quadruplings = np.log2(np.divide(kernel, DEFAULT)) / (1, 2)
         error = changes(_krige(points, deviations, kernel)[1]).mean()
-        return float(np.log(error) + DOUBT / len(lab) * (doublings**2 + quadruplings**2))
+        return float(
+            np.log(error) + DOUBT / len(lab) * (doublings**2 + quadruplings**2)
+        )
 
     # Entries vary as they deviate: weights 1 / v of squares |e|² with v = |e| minimise the sum of |e|, a median.
     kernel = min(KERNELS, key=loss)
@@ -148,7 +179,9 @@ def learn_kriging(lab: Array, deviations: Array, visible: Array) -> tuple[Krigin
     for _ in range(MEDIAN_STEPS):
         missed = changes(errors)
         missed += DOUBTFUL * missed.mean()
-        kriging, errors = _krige(points, deviations, kernel, missed / np.exp(np.log(missed).mean()))
+        kriging, errors = _krige(
+            points, deviations, kernel, missed / np.exp(np.log(missed).mean())
+        )
     return kriging, errors
 
 
@@ -161,16 +194,26 @@ def posterior(kernel: Kernel, known: Array, lab: Array) -> Array:
 
     def covariance(first: Array, second: Array) -> Array:
         distance = distances(first, second)
-        return np.asarray(_shared(distance, kernel.length) + kernel.noise * _own(distance))
+        return np.asarray(
+            _shared(distance, kernel.length) + kernel.noise * _own(distance)
+        )
 
     white, across = WHITE * kernel.noise, covariance(at, points.locations)
-    between = covariance(points.locations, points.locations) + np.diag(white / points.counts)
+    between = covariance(points.locations, points.locations) + np.diag(
+        white / points.counts
+    )
     # K(x, x) − K(x, X) K(X, X)⁻¹ K(X, x) (eq. 2.26)
-    remaining = covariance(at, at) + white * np.eye(len(at)) - across @ np.linalg.solve(between, across.T)
+    remaining = (
+        covariance(at, at)
+        + white * np.eye(len(at))
+        - across @ np.linalg.solve(between, across.T)
+    )
     return remaining / (1 + kernel.noise)
 
 
-def kernel_sums(at: Array, locations: Array, columns: Array, length: float, own: Array) -> tuple[Array, Array]:
+def kernel_sums(
+    at: Array, locations: Array, columns: Array, length: float, own: Array
+) -> tuple[Array, Array]:
     """Sums (n, K) of columns (P, K) weighted by the kernel at locations (n, 3), and the largest weight (n,).
 
     ``own`` (P,) weigh the part of the noise that is not white.
@@ -180,18 +223,28 @@ def kernel_sums(at: Array, locations: Array, columns: Array, length: float, own:
     with jax.enable_x64(True):
         for block in blocks(len(at), rows):
             count = block.stop - block.start
-            some = at[block] if count == rows else np.resize(at[block], (rows, 3))  # one shape is compiled
+            some = (
+                at[block] if count == rows else np.resize(at[block], (rows, 3))
+            )  # one shape is compiled
             arrays = _kernel_block(length, own, some, locations, columns)
-            sums[block], nearest[block] = (np.asarray(array)[:count] for array in arrays)
+            sums[block], nearest[block] = (
+                np.asarray(array)[:count] for array in arrays
+            )
     return sums, nearest
 
 
 @jax.jit
 def _kernel_block(
-    length: float, own: jax.Array, at: jax.Array, locations: jax.Array, columns: jax.Array
+    length: float,
+    own: jax.Array,
+    at: jax.Array,
+    locations: jax.Array,
+    columns: jax.Array,
 ) -> tuple[jax.Array, jax.Array]:
     # By components: three times faster than a sum over an axis of three
-    distance = jnp.sqrt(sum((at[:, axis, None] - locations[:, axis]) ** 2 for axis in range(3)))
+    distance = jnp.sqrt(
+        sum((at[:, axis, None] - locations[:, axis]) ** 2 for axis in range(3))
+    )
     weights = _shared(distance, length) + own * _own(distance)
     return weights @ columns, weights.max(axis=1)
 
@@ -214,14 +267,21 @@ def visible_change(problem: Problem, measured: Array) -> Array:
     Lightness, chroma and hue difference change once the colour of the build is exact again. Moments are linear in the
     spectrum, which they determine up to its roughest parts: their basis approximates the change of the spectrum.
     """
-    basis, sensor = problem.forward.basis, problem.forward.sensor @ problem.forward.basis
+    basis, sensor = (
+        problem.forward.basis,
+        problem.forward.sensor @ problem.forward.basis,
+    )
     # Of changes of the coefficients, only the part remains that a smooth change of the same colour does not undo:
     # I − M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ J with J = W B.
     smooth = sensor.T / problem.model.metric_diagonal()[:, None]
-    metameric = np.eye(problem.model.count) - smooth @ np.linalg.solve(sensor @ smooth, sensor)
+    metameric = np.eye(problem.model.count) - smooth @ np.linalg.solve(
+        sensor @ smooth, sensor
+    )
     changes = []
     for light in problem.lights:
         xyz = measured @ light.xyz.T
-        to_delta_e = delta_e_2000_weights(lab(xyz, light.white)) @ lab_jacobian(xyz, light.white)
+        to_delta_e = delta_e_2000_weights(lab(xyz, light.white)) @ lab_jacobian(
+            xyz, light.white
+        )
         changes.append(to_delta_e @ (light.xyz @ basis @ metameric))
     return np.stack(changes, axis=1)

@@ -11,7 +11,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_weights, lab, lab_jacobian
+from uplift.colorimetry.delta_e import (
+    delta_e_2000,
+    delta_e_2000_weights,
+    lab,
+    lab_jacobian,
+)
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.fit.bounded_least_squares import solve_bounded
@@ -55,11 +60,18 @@ class LookGoal:
     def delta_e(self, reflectance: Array) -> Array:
         """ΔE00 (L,) between the colours of a reflectance (N,) and the targets."""
         pairs = zip(self.lights, self.colours(reflectance), self.xyz, strict=True)
-        return np.array([delta_e_2000(lab(xyz, light.white), lab(target, light.white)) for light, xyz, target in pairs])
+        return np.array(
+            [
+                delta_e_2000(lab(xyz, light.white), lab(target, light.white))
+                for light, xyz, target in pairs
+            ]
+        )
 
     def softened(self, expected: Array, weight: float) -> "LookGoal":
         """Move the targets towards the colours of an expected reflectance (N,), on a straight line in XYZ."""
-        return replace(self, xyz=weight * self.xyz + (1 - weight) * self.colours(expected))
+        return replace(
+            self, xyz=weight * self.xyz + (1 - weight) * self.colours(expected)
+        )
 
 
 def design_reflectance(sensor: Sensor, goal: LookGoal, expected: Array) -> Array:
@@ -71,7 +83,10 @@ def design_reflectance(sensor: Sensor, goal: LookGoal, expected: Array) -> Array
     for weight in SHAPES:
         shape = weight * _shape(sensor.wavelengths)
         for _ in range(MAX_TURNS):
-            before, design = design, _linear_design(sensor, goal, expected, design, shape)
+            before, design = (
+                design,
+                _linear_design(sensor, goal, expected, design, shape),
+            )
             if goal.delta_e(design).max() <= ENOUGH:
                 return design
             if np.abs(design - before).max() <= ENOUGH / EXACT:
@@ -86,32 +101,50 @@ def _shape(wavelengths: Array) -> Array:
     return np.concatenate([np.eye(count), slope]) / np.sqrt(count)
 
 
-def _linear_design(sensor: Sensor, goal: LookGoal, expected: Array, near: Array, shape: Array) -> Array:
+def _linear_design(
+    sensor: Sensor, goal: LookGoal, expected: Array, near: Array, shape: Array
+) -> Array:
     """Reflectance (N,) of least squares, with L*a*b* linearised at the colours of the reflectance ``near``."""
     # |E (W g − rgb)|² + Σ_lights |ΔE00|² + |shape (g − expected)|² in the change of the reflectance g, 0 ≤ g ≤ 1
-    rows, values = [EXACT * sensor.matrix], [EXACT * (goal.rgb - sensor.matrix @ expected)]
-    for light, target, xyz in zip(goal.lights, goal.xyz, goal.colours(near), strict=True):
+    rows, values = (
+        [EXACT * sensor.matrix],
+        [EXACT * (goal.rgb - sensor.matrix @ expected)],
+    )
+    for light, target, xyz in zip(
+        goal.lights, goal.xyz, goal.colours(near), strict=True
+    ):
         requested, current = lab(target, light.white), lab(xyz, light.white)
         weights = delta_e_2000_weights(requested)
         derivative = weights @ lab_jacobian(xyz, light.white) @ light.xyz
         rows.append(derivative)
         values.append(weights @ (requested - current) + derivative @ (near - expected))
-    matrix, goals = np.concatenate([*rows, shape]), np.concatenate([*values, np.zeros(len(shape))])
+    matrix, goals = (
+        np.concatenate([*rows, shape]),
+        np.concatenate([*values, np.zeros(len(shape))]),
+    )
     change = solve_bounded(matrix, goals, -expected, 1 - expected)
     return np.clip(expected + change, 0, 1)
 
 
-def fit_designs(problem: Problem, goals: Sequence[LookGoal], designs: Array) -> FittedEntries:
+def fit_designs(
+    problem: Problem, goals: Sequence[LookGoal], designs: Array
+) -> FittedEntries:
     """Fit designed reflectances (k, N) by the spectrum model, each with the lights of its goal."""
-    return join_entries(*(_fit_design(problem, *each) for each in zip(goals, designs, strict=True)))
+    return join_entries(
+        *(_fit_design(problem, *each) for each in zip(goals, designs, strict=True))
+    )
 
 
 def _fit_design(problem: Problem, goal: LookGoal, design: Array) -> FittedEntries:
     """Fit a reflectance (N,) with the first weights that reach its colours, or the last."""
-    own = replace(problem, lights=(problem.sensor.light, *goal.lights), method=LeastChange)
+    own = replace(
+        problem, lights=(problem.sensor.light, *goal.lights), method=LeastChange
+    )
     for weights in FIT_WEIGHTS:
         fitted = fit_entries(own, design[None], goal.rgb[None], **weights)
-        answer = evaluate(problem.model, fitted.multipliers, problem.sensor.wavelengths)[0]
+        answer = evaluate(
+            problem.model, fitted.multipliers, problem.sensor.wavelengths
+        )[0]
         if (goal.delta_e(answer) <= goal.delta_e(design) + REACHED).all():
             break
     return fitted

@@ -14,7 +14,16 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask, largest
 from uplift.fit.base import NO_FREEDOM, Base, learn_base, moment_matrix
 from uplift.fit.entries import FittedEntries
-from uplift.fit.kriging import DEFAULT, MIN_ENTRIES, Kernel, Kriging, kernel_sums, krige, learn_kriging, visible_change
+from uplift.fit.kriging import (
+    DEFAULT,
+    MIN_ENTRIES,
+    Kernel,
+    Kriging,
+    kernel_sums,
+    krige,
+    learn_kriging,
+    visible_change,
+)
 from uplift.fit.problem import Problem
 from uplift.lattice import Lattice
 from uplift.models import Moments, evaluate, reflectance
@@ -62,7 +71,9 @@ class Prior:
         if self.kriging is None:
             return self.model.from_storage(coefficients)
         # c = s(x) + k d(x), as multipliers
-        deviation = self.base.brightness(rgb) * self.kriging(rgb_to_lab(self.sensor, rgb))
+        deviation = self.base.brightness(rgb) * self.kriging(
+            rgb_to_lab(self.sensor, rgb)
+        )
         return _bounded(self.model, coefficients, deviation)
 
     def at_nodes(self, lattice: Lattice, rgb: Array) -> Array:
@@ -71,11 +82,16 @@ class Prior:
         if self.shares is None:
             return multipliers
         chroma = np.hypot(*rgb_to_lab(self.sensor, rgb)[:, 1:].T)
-        weight = np.maximum(np.interp(chroma, FLAT_CHROMA, (1, 0)), np.ptp(lattice.to_steps(rgb), axis=1) < 1.5)
+        weight = np.maximum(
+            np.interp(chroma, FLAT_CHROMA, (1, 0)),
+            np.ptp(lattice.to_steps(rgb), axis=1) < 1.5,
+        )
         near, grey = weight > 0, np.clip(self.sensor.grey(rgb), *FLAT_LEVELS)
         # y + Σ (x_i − y) b_i with Σ b_i = 1, of the grey y of x: flat for greys, linear in x and so flat between nodes
         flat = grey[near, :1] * self.model.constant()
-        own = _bounded(self.model, flat, (rgb - grey)[near] @ self.shares, MAX_MULTIPLIER)
+        own = _bounded(
+            self.model, flat, (rgb - grey)[near] @ self.shares, MAX_MULTIPLIER
+        )
         multipliers[near] = blended(self.model, own, multipliers[near], weight[near])
         return multipliers
 
@@ -86,9 +102,13 @@ class Prior:
         """
         if self.model.count == NO_FREEDOM or not isinstance(self.model, Moments):
             return self
-        primaries = reflectance(self.model, self.base.coefficients(np.eye(3)), self.sensor.wavelengths)
+        primaries = reflectance(
+            self.model, self.base.coefficients(np.eye(3)), self.sensor.wavelengths
+        )
         shares = primaries / primaries.sum(axis=0)
-        return replace(self, shares=shares @ moment_matrix(self.model, self.sensor.wavelengths))
+        return replace(
+            self, shares=shares @ moment_matrix(self.model, self.sensor.wavelengths)
+        )
 
     def standard_error(self, rgb: Array) -> Array | None:
         """ΔE00 (n,) within which 68 % of measurements are expected to lie from answers to linear RGB (n, 3).
@@ -101,7 +121,9 @@ class Prior:
         used = self.errors.columns.shape[1]
         columns = np.pad(self.errors.columns, ((0, 0), (0, self.model.count - used)))
         none = np.zeros(len(columns))
-        sums, nearest = kernel_sums(rgb_to_lab(self.sensor, rgb), self.errors.locations, columns, LENGTH, none)
+        sums, nearest = kernel_sums(
+            rgb_to_lab(self.sensor, rgb), self.errors.locations, columns, LENGTH, none
+        )
         # Expected square v(x) Σ k e² / Σ k + f, and the learnt radius of 68 % in its root
         squares = self.errors.combine(sums[:, :used], nearest)[:, 0] + self.errors.floor
         standard, _ = self.errors.radii
@@ -120,11 +142,15 @@ class Prior:
         if self.kriging is not None:
             kernel, variances = self.kriging.kernel, self.kriging.variances
         variances = np.append(variances, np.full(looks, LOOK_VARIANCE))
-        kriging, _ = krige(rgb_to_lab(self.sensor, entries.rgb[order]), deviations, kernel, variances)
+        kriging, _ = krige(
+            rgb_to_lab(self.sensor, entries.rgb[order]), deviations, kernel, variances
+        )
         return replace(self, kriging=kriging)
 
 
-def fit_prior(problem: Problem, entries: FittedEntries, base: Base | None = None) -> Prior:
+def fit_prior(
+    problem: Problem, entries: FittedEntries, base: Base | None = None
+) -> Prior:
     """Fit the prior to atlas entries; the base is that of smooth spectra by default.
 
     The order of the entries does not change the rounding of sums.
@@ -135,7 +161,10 @@ def fit_prior(problem: Problem, entries: FittedEntries, base: Base | None = None
         return Prior(model, sensor, base)
     order = np.lexsort(entries.rgb.T)
     entries = entries.rows(order)
-    locations, (deviations, expected) = rgb_to_lab(sensor, entries.rgb), _deviations(model, base, entries)
+    locations, (deviations, expected) = (
+        rgb_to_lab(sensor, entries.rgb),
+        _deviations(model, base, entries),
+    )
     if model.count == NO_FREEDOM:
         kriging, errors = krige(locations, deviations, DETERMINED)
     else:
@@ -145,18 +174,28 @@ def fit_prior(problem: Problem, entries: FittedEntries, base: Base | None = None
     if len(entries.rgb) < MIN_ENTRIES:
         return Prior(model, sensor, base, kriging)
     # Each entry as the others predict it: its deviation less its leave-one-out error, moved to its exact colour.
-    start = _bounded(model, expected, base.brightness(entries.rgb) * (deviations - errors))
+    start = _bounded(
+        model, expected, base.brightness(entries.rgb) * (deviations - errors)
+    )
     left_out = problem.solve(entries.rgb, start, MAX_PASSES).multipliers
     spectra = evaluate(model, left_out, sensor.wavelengths)
-    missed = delta_e_spectra(problem.error_light or problem.sensor.light, spectra, entries.measured)
+    missed = delta_e_spectra(
+        problem.error_light or problem.sensor.light, spectra, entries.measured
+    )
     expected_errors = expected_error(locations, missed, entries.error)
-    return Prior(model, sensor, base, kriging, expected_errors, spectra[np.argsort(order)])
+    return Prior(
+        model, sensor, base, kriging, expected_errors, spectra[np.argsort(order)]
+    )
 
 
-def _deviations(model: Model, base: Base, entries: FittedEntries) -> tuple[Array, Array]:
+def _deviations(
+    model: Model, base: Base, entries: FittedEntries
+) -> tuple[Array, Array]:
     """Deviations d_i = (c_i − s(x_i)) / k(x_i) (E, C), relative to the brightening as those of families, and s(x_i)."""
     expected = base.coefficients(entries.rgb)
-    return (model.to_storage(entries.multipliers) - expected) / base.brightness(entries.rgb), expected
+    return (model.to_storage(entries.multipliers) - expected) / base.brightness(
+        entries.rgb
+    ), expected
 
 
 def blended(model: Model, own: Array, expected: Array, weight: Array) -> Array:
@@ -164,12 +203,16 @@ def blended(model: Model, own: Array, expected: Array, weight: Array) -> Array:
     multipliers = np.where(weight[:, None] == 1, own, expected)
     mixed = (weight > 0) & (weight < 1)
     part = weight[mixed, None]
-    coefficients = part * model.to_storage(own[mixed]) + (1 - part) * model.to_storage(expected[mixed])
+    coefficients = part * model.to_storage(own[mixed]) + (1 - part) * model.to_storage(
+        expected[mixed]
+    )
     multipliers[mixed] = model.from_storage(coefficients)
     return multipliers
 
 
-def _bounded(model: Model, expected: Array, deviation: Array, steep: float = STEEP) -> Array:
+def _bounded(
+    model: Model, expected: Array, deviation: Array, steep: float = STEEP
+) -> Array:
     """Multipliers (n, C) of expected coefficients plus their deviation (n, C), shrunk as little as is necessary."""
 
     def convert(coefficients: Array) -> tuple[Array, Mask]:
@@ -182,7 +225,9 @@ def _bounded(model: Model, expected: Array, deviation: Array, steep: float = STE
     shrunk = expected[rows, None] + FRACTIONS[:, None] * deviation[rows, None]
     found, kept = convert(shrunk.reshape(-1, model.count))
     kept = kept.reshape(shrunk.shape[:2])
-    multipliers[rows] = found.reshape(shrunk.shape)[np.arange(len(rows)), kept.argmax(axis=1)]
+    multipliers[rows] = found.reshape(shrunk.shape)[
+        np.arange(len(rows)), kept.argmax(axis=1)
+    ]
     none = rows[~kept.any(axis=1)]
     multipliers[none] = model.from_storage(expected[none])
     return multipliers

@@ -45,9 +45,13 @@ class Problem:
         """Residual at which solvers stop: the last steps converge quadratically and cost little."""
         return self.threshold / 100
 
-    def solve(self, target: Array, start: Array, max_passes: int, prior: Array | None = None) -> Solution:
+    def solve(
+        self, target: Array, start: Array, max_passes: int, prior: Array | None = None
+    ) -> Solution:
         """Find multipliers (n, C) of linear RGB (n, 3); see `uplift.fit.solver.solve`."""
-        return solve(self.forward, start, target, self.tolerance, max_passes, prior, self.method)
+        return solve(
+            self.forward, start, target, self.tolerance, max_passes, prior, self.method
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -55,13 +55,18 @@ def outside_half_widths(lattice: Lattice, rgb: Array) -> Array:
     A box ends at [0, 1].
     """
     steps = rgb * (lattice.dim - 1)
-    return np.minimum(half_widths(steps), np.abs(steps - np.clip(steps, 0, lattice.dim - 1)).max(axis=1))
+    return np.minimum(
+        half_widths(steps),
+        np.abs(steps - np.clip(steps, 0, lattice.dim - 1)).max(axis=1),
+    )
 
 
 def _apart(some: Array, others: Array) -> Array:
     """Largest differences (n, m) of a component between positions (n, 3) and (m, 3)."""
     apart = np.zeros((len(some), len(others)))
-    for one, other in zip(some.T, others.T, strict=True):  # faster than a maximum over an axis of three
+    for one, other in zip(
+        some.T, others.T, strict=True
+    ):  # faster than a maximum over an axis of three
         difference = np.subtract.outer(one, other)
         np.maximum(apart, np.abs(difference, out=difference), out=apart)
     return apart
@@ -95,16 +100,26 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
     nearest = np.take_along_axis(distance, by_distance, axis=1)[:, 0]
     order = np.lexsort([*rgb.T, nearest])
     owner: dict[int, int] = {}
-    crowded = [int(entry) for entry in order if owner.setdefault(int(queue[entry, 0]), int(entry)) != entry]
+    crowded = [
+        int(entry)
+        for entry in order
+        if owner.setdefault(int(queue[entry, 0]), int(entry)) != entry
+    ]
     # Then the corners of the cells, one for every entry in turn, nearest first.
     primaries = len(owner)
     for _ in CORNERS:
         for entry in order:
-            free = next((int(point) for point in queue[entry] if point not in owner), None)
+            free = next(
+                (int(point) for point in queue[entry] if point not in owner), None
+            )
             if free is not None:
                 owner[free] = int(entry)
-    points, entries = (np.array(list(each), dtype=np.int64) for each in (owner, owner.values()))
-    return Seeds(lattice, rgb, points, entries, np.arange(len(owner)) < primaries, tuple(crowded))
+    points, entries = (
+        np.array(list(each), dtype=np.int64) for each in (owner, owner.values())
+    )
+    return Seeds(
+        lattice, rgb, points, entries, np.arange(len(owner)) < primaries, tuple(crowded)
+    )
 
 
 Blend = tuple[float, float]
@@ -122,23 +137,42 @@ FULL_ENTRY: Blend = (1.0, 1.0)
 """Tódová 2020, section 3.1.2."""
 
 
-def initial_guess(points: Indices, rgb: Array, prior: Prior, seeds: Seeds, entries: Array, blend: Blend) -> Array:
+def initial_guess(
+    points: Indices,
+    rgb: Array,
+    prior: Prior,
+    seeds: Seeds,
+    entries: Array,
+    blend: Blend,
+) -> Array:
     """Multipliers (k, C) that nodes (k,), which are fitted to linear RGB (k, 3), start from.
 
     The primary node of an entry starts from its multipliers in ``entries`` (E, C), the other corners of its cell from a
     blend of these with the prior, and all other nodes from the prior.
     """
     multipliers = prior.at_nodes(seeds.lattice, rgb)
-    _, seeded, row = np.intersect1d(points, seeds.points, assume_unique=True, return_indices=True)
+    _, seeded, row = np.intersect1d(
+        points, seeds.points, assume_unique=True, return_indices=True
+    )
     entry = seeds.entry[row]
-    node_lab, entry_lab = (rgb_to_lab(prior.sensor, colours) for colours in (rgb[seeded], seeds.rgb))
+    node_lab, entry_lab = (
+        rgb_to_lab(prior.sensor, colours) for colours in (rgb[seeded], seeds.rgb)
+    )
     near = np.interp(delta_e_1976(node_lab, entry_lab[entry]), (NEAR, FAR), blend)
     weight = np.where(seeds.primary[row], 1.0, near)
-    multipliers[seeded] = blended(prior.model, entries[entry], multipliers[seeded], weight)
+    multipliers[seeded] = blended(
+        prior.model, entries[entry], multipliers[seeded], weight
+    )
     return multipliers
 
 
-def lattice_error(problem: Problem, lattice: Lattice, prior: Prior, blend: Blend, entries: FittedEntries) -> Array:
+def lattice_error(
+    problem: Problem,
+    lattice: Lattice,
+    prior: Prior,
+    blend: Blend,
+    entries: FittedEntries,
+) -> Array:
     """Largest ΔE00 (E,) under the lights between each entry's fitted spectrum and the lattice at its colour.
 
     Only the corners of the entries' cells are fitted. Entry boxes are not used.
@@ -155,11 +189,17 @@ def lattice_error(problem: Problem, lattice: Lattice, prior: Prior, blend: Blend
     # What the interpolation of the lattice answers at the colours of the entries
     corners, weights = lattice.corners(entries.rgb)
     answers = weighted_sum(spectra, np.searchsorted(points, corners), weights)
-    return np.max([delta_e_spectra(light, answers, own) for light in problem.lights], axis=0)
+    return np.max(
+        [delta_e_spectra(light, answers, own) for light in problem.lights], axis=0
+    )
 
 
 def choose_lattice(
-    problem: Problem, prior: Prior, blend: Blend, entries: FittedEntries, max_error: float
+    problem: Problem,
+    prior: Prior,
+    blend: Blend,
+    entries: FittedEntries,
+    max_error: float,
 ) -> tuple[str, int, int]:
     """Choose the smallest lattice that keeps every entry within ``max_error`` or, if none does, keeps the most.
 
@@ -168,7 +208,9 @@ def choose_lattice(
     trials = []
     for dim in DIMS:
         for axis in AXES:
-            errors = lattice_error(problem, Lattice(axis_nodes(axis, dim)), prior, blend, entries)
+            errors = lattice_error(
+                problem, Lattice(axis_nodes(axis, dim)), prior, blend, entries
+            )
             trials.append((int((errors > max_error).sum()), dim, axis))
         lost, dim, axis = min(trials, key=lambda trial: trial[:2])
         if not lost:

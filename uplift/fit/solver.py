@@ -45,17 +45,23 @@ Stepped = tuple[Any, Any, Any]
 class BatchSolver(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
     """A solver of optimistix for a batch of problems: ``y`` and the arrays of its state have a row for each."""
 
-    norm: Callable[[Any], Any] = equinox.field(static=True, default=optimistix.max_norm, kw_only=True)
+    norm: Callable[[Any], Any] = equinox.field(
+        static=True, default=optimistix.max_norm, kw_only=True
+    )
 
     @abc.abstractmethod
     def done(self, state: Any) -> Any:
         """Whether (n,) each problem is solved, or given up."""
 
-    def terminate(self, fn: Any, y: Any, args: Any, options: Options, state: Any, *rest: Any) -> tuple[Any, Any]:
+    def terminate(
+        self, fn: Any, y: Any, args: Any, options: Options, state: Any, *rest: Any
+    ) -> tuple[Any, Any]:
         """Whether all problems are done."""
         return self.done(state).all(), optimistix.RESULTS.successful
 
-    def postprocess(self, fn: Any, y: Any, aux: Any, *rest: Any) -> tuple[Any, Any, dict[str, Any]]:
+    def postprocess(
+        self, fn: Any, y: Any, aux: Any, *rest: Any
+    ) -> tuple[Any, Any, dict[str, Any]]:
         """Return the solution as it is."""
         return y, aux, {}
 
@@ -105,13 +111,25 @@ class LeastChange(BatchSolver):
     atol: Any
     rtol: float = 0.0
 
-    def init(self, fn: Any, y: Any, args: Any, options: Options, *rest: Any) -> LeastChangeState:
+    def init(
+        self, fn: Any, y: Any, args: Any, options: Options, *rest: Any
+    ) -> LeastChangeState:
         """Evaluate the residuals at multipliers ``y`` (n, C)."""
         given = self.options(y, y) | options
         displacement = blocked_matmul(y - given["prior"], self.forward.inverse_root.T)
-        return LeastChangeState(fn(y, args)[0], displacement, given["damping"], given["anchor_weight"])
+        return LeastChangeState(
+            fn(y, args)[0], displacement, given["damping"], given["anchor_weight"]
+        )
 
-    def step(self, fn: Any, y: Any, args: Any, options: Options, state: LeastChangeState, *rest: Any) -> Stepped:
+    def step(
+        self,
+        fn: Any,
+        y: Any,
+        args: Any,
+        options: Options,
+        state: LeastChangeState,
+        *rest: Any,
+    ) -> Stepped:
         """Take one step in every problem whose distance exceeds the tolerance; no squared residual increases."""
         where = y.__array_namespace__().where
         # Δx = A⁺ (t − r + A d) − d, and p changes by R Δx.
@@ -120,7 +138,9 @@ class LeastChange(BatchSolver):
         trial = y + blocked_matmul(change, self.forward.root.T)
         left, aux = fn(trial, args)
         # A step is accepted where it reduces the squared residual; μ follows the success of the linearisation.
-        better = ((left**2).sum(axis=1) < (state.residual**2).sum(axis=1)) & (abs(trial).max(axis=1) <= MAX_MULTIPLIER)
+        better = ((left**2).sum(axis=1) < (state.residual**2).sum(axis=1)) & (
+            abs(trial).max(axis=1) <= MAX_MULTIPLIER
+        )
         accept = (better & ~self.done(state))[:, None]
         after = LeastChangeState(
             residual=where(accept, left, state.residual),
@@ -141,7 +161,10 @@ class LeastChange(BatchSolver):
     def options(start: Array, prior: Array | None) -> Options:
         """Change the prior least, or without one the current multipliers in each step."""
         count = len(start)
-        given = {"damping": np.full(count, FIRST_DAMPING), "anchor_weight": np.full(count, float(prior is not None))}
+        given = {
+            "damping": np.full(count, FIRST_DAMPING),
+            "anchor_weight": np.full(count, float(prior is not None)),
+        }
         return {"prior": start if prior is None else prior, **given}
 
     @staticmethod
@@ -180,7 +203,9 @@ def solve(
     """
     count, advance = len(start), _advance(method)  # type: ignore[arg-type]
     unknown = np.full((count, 3), np.inf)
-    solution = Solution(start.copy(), unknown, unknown[:, 0].copy(), np.zeros(count, dtype=np.int64))
+    solution = Solution(
+        start.copy(), unknown, unknown[:, 0].copy(), np.zeros(count, dtype=np.int64)
+    )
     rows: Any = slice(None)
     stale, options = np.zeros(count, dtype=np.int64), method.options(start, prior)
     for steps in islice(method.schedule(), max_passes):
@@ -188,15 +213,20 @@ def solve(
             break
         before = Solution(*(column[rows] for column in solution))
         given = (before.multipliers, target[rows], options)
-        y, residual, taken, changed = map_batches(advance, (forward, tolerance, steps), *given)
+        y, residual, taken, changed = map_batches(
+            advance, (forward, tolerance, steps), *given
+        )
         # Sums by columns, whose rounding is the same on every processor
         closer = reduce(np.add, residual.T**2) <= reduce(np.add, before.residual.T**2)
         distance = np.where(closer, largest(np.abs(residual)), before.distance)
         stale = np.where(distance > (1 - MIN_GAIN) * before.distance, stale + 1, 0)
         y, residual = (
-            np.where(closer[:, None], *pair) for pair in ((y, before.multipliers), (residual, before.residual))
+            np.where(closer[:, None], *pair)
+            for pair in ((y, before.multipliers), (residual, before.residual))
         )
-        for column, values in zip(solution, (y, residual, distance, before.steps + taken), strict=True):
+        for column, values in zip(
+            solution, (y, residual, distance, before.steps + taken), strict=True
+        ):
             column[rows] = values
         # Converged and abandoned problems leave the batch.
         kept = (distance > tolerance) & (stale < PATIENCE)
@@ -205,7 +235,9 @@ def solve(
     return solution
 
 
-def residuals(forward: ForwardMap, multipliers: Array, target: Array, method: Method) -> Array:
+def residuals(
+    forward: ForwardMap, multipliers: Array, target: Array, method: Method
+) -> Array:
     """Target minus RGB (n, 3), by the program that is compiled for `solve`."""
     given = (multipliers, target, method.options(multipliers, None))
     found: Array = map_batches(_advance(method), (forward, 0.0, 0), *given)[1]  # type: ignore[arg-type]
@@ -216,18 +248,32 @@ def residuals(forward: ForwardMap, multipliers: Array, target: Array, method: Me
 def _advance(method: Method) -> Callable[..., Any]:
     """Make the function that takes up to a number of steps in a chunk of rows; the options go on from there."""
 
-    def advance(constants: Any, y: jax.Array, target: jax.Array, options: Options) -> Any:
+    def advance(
+        constants: Any, y: jax.Array, target: jax.Array, options: Options
+    ) -> Any:
         forward, tolerance, max_steps = constants
         solver, residual = method(forward, tolerance), jax.jit(ForwardMap.residual)
         y, state, steps = iterate(
-            solver, lambda p, goal: (residual(forward, p, goal), None), y, target, options, max_steps
+            solver,
+            lambda p, goal: (residual(forward, p, goal), None),
+            y,
+            target,
+            options,
+            max_steps,
         )
-        return y, state.residual, jnp.full(len(y), steps), solver.resume(options, y, state)
+        return (
+            y,
+            state.residual,
+            jnp.full(len(y), steps),
+            solver.resume(options, y, state),
+        )
 
     return advance
 
 
-def iterate(solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps: Any) -> tuple[Any, Any, Any]:
+def iterate(
+    solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps: Any
+) -> tuple[Any, Any, Any]:
     """Step a solver of optimistix by hand until it terminates, as its documentation shows for interactive use.
 
     Returns the last ``y``, the state and the number of steps. `optimistix.least_squares` takes the same steps, but
@@ -238,12 +284,16 @@ def iterate(solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps
 
     def step(carry: Any) -> Any:
         count, y, arrays = carry
-        y, state, _ = solver.step(fn, y, args, options, equinox.combine(arrays, static), NO_TAGS)
+        y, state, _ = solver.step(
+            fn, y, args, options, equinox.combine(arrays, static), NO_TAGS
+        )
         return count + 1, y, equinox.filter(state, equinox.is_array)
 
     def unfinished(carry: Any) -> Any:
         count, y, arrays = carry
-        done, _ = solver.terminate(fn, y, args, options, equinox.combine(arrays, static), NO_TAGS)
+        done, _ = solver.terminate(
+            fn, y, args, options, equinox.combine(arrays, static), NO_TAGS
+        )
         return (count < max_steps) & ~done
 
     count, y, arrays = jax.lax.while_loop(unfinished, step, (jnp.asarray(0), y, arrays))
@@ -266,15 +316,22 @@ def iterate_rows(
         rows = np.arange(block.start, block.stop)
         state = solver.init(fn, found[rows], rows, options(block), None, None, NO_TAGS)
         for _ in range(max_steps):
-            found[rows], state, _ = solver.step(fn, found[rows], rows, options(block), state, NO_TAGS)
+            found[rows], state, _ = solver.step(
+                fn, found[rows], rows, options(block), state, NO_TAGS
+            )
             kept = ~solver.done(state)
-            rows, state = rows[kept], jax.tree.map(lambda each, kept=kept: each[kept], state)
+            rows, state = (
+                rows[kept],
+                jax.tree.map(lambda each, kept=kept: each[kept], state),
+            )
             if not rows.size:
                 break
     return found
 
 
-def solve_in_numpy(forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int) -> Array:
+def solve_in_numpy(
+    forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int
+) -> Array:
     """Find multipliers (n, C) of linear RGB (n, 3) by minimum-norm steps from ``start`` (n, C), without compiling."""
 
     return iterate_rows(

@@ -52,7 +52,10 @@ class RowByRow:
 
     def options(self, start: Array, prior: Array | None) -> Options:
         """Stay close to the prior, or without one to the start."""
-        return {"prior": start if prior is None else prior, "closeness": np.full(len(start), CLOSENESS)}
+        return {
+            "prior": start if prior is None else prior,
+            "closeness": np.full(len(start), CLOSENESS),
+        }
 
     def schedule(self) -> Iterator[int]:
         """Yield the steps of each pass: solvers start again in each."""
@@ -63,7 +66,11 @@ class RowByRow:
 def stock_solver(name: str, tolerance: float) -> RowByRow:
     """Return a stock solver that stops at a residual in linear RGB."""
     small = tolerance * SMALL_STEP
-    return RowByRow(STOCK[name](rtol=small, atol=small, linear_solver=lineax.Normal(lineax.Cholesky())))
+    return RowByRow(
+        STOCK[name](
+            rtol=small, atol=small, linear_solver=lineax.Normal(lineax.Cholesky())
+        )
+    )
 
 
 class EachRowState(NamedTuple):
@@ -85,18 +92,30 @@ class EachRow(BatchSolver):
     rtol: float = 0.0
     atol: float = 0.0
 
-    def init(self, fn: Any, y: Any, args: Any, options: Options, *rest: Any) -> EachRowState:
+    def init(
+        self, fn: Any, y: Any, args: Any, options: Options, *rest: Any
+    ) -> EachRowState:
         """Start the solver in every row, at multipliers ``y`` (n, C)."""
 
         def begin(x: Any, row: Any) -> Any:
             problem = self._problem(fn)
-            return self.solver.init(problem, x, row, {}, *jax.eval_shape(problem, x, row), NO_TAGS)
+            return self.solver.init(
+                problem, x, row, {}, *jax.eval_shape(problem, x, row), NO_TAGS
+            )
 
         x, rows = self._rows(y, args, options)
         inner = equinox.filter_vmap(begin)(x, rows)
         return EachRowState(inner, fn(y, args)[0], jnp.zeros(len(y), dtype=bool))
 
-    def step(self, fn: Any, y: Any, args: Any, options: Options, state: EachRowState, *rest: Any) -> Stepped:
+    def step(
+        self,
+        fn: Any,
+        y: Any,
+        args: Any,
+        options: Options,
+        state: EachRowState,
+        *rest: Any,
+    ) -> Stepped:
         """Take a step in every row that has not terminated."""
 
         def advance(x: Any, row: Any, inner: Any, done: Any) -> Any:
@@ -105,15 +124,27 @@ class EachRow(BatchSolver):
             ended, result = self.solver.terminate(problem, after, row, {}, new, NO_TAGS)
             arrays, static = equinox.partition((after, new), equinox.is_array)
             before, _ = equinox.partition((x, inner), equinox.is_array)
-            kept = jax.tree.map(lambda old, now: jnp.where(done, old, now), before, arrays)
-            ended = ended | (result != optimistix.RESULTS.successful) | ~jnp.isfinite(after).all()
+            kept = jax.tree.map(
+                lambda old, now: jnp.where(done, old, now), before, arrays
+            )
+            ended = (
+                ended
+                | (result != optimistix.RESULTS.successful)
+                | ~jnp.isfinite(after).all()
+            )
             return *equinox.combine(kept, static), done | ended
 
         x, rows = self._rows(y, args, options)
         x, inner, done = equinox.filter_vmap(advance)(x, rows, state.inner, state.done)
         y = x @ self.forward.root.T
         residual, aux = fn(y, args)
-        return y, EachRowState(inner, jnp.where(jnp.isfinite(residual), residual, jnp.inf), done), aux
+        return (
+            y,
+            EachRowState(
+                inner, jnp.where(jnp.isfinite(residual), residual, jnp.inf), done
+            ),
+            aux,
+        )
 
     def done(self, state: EachRowState) -> Any:
         return state.done
@@ -124,7 +155,9 @@ class EachRow(BatchSolver):
 
     def _rows(self, y: Any, args: Any, options: Options) -> tuple[Any, Any]:
         """Coordinates (n, C) of multipliers, and what the problem of each row is given."""
-        x, prior = (each @ self.forward.inverse_root.T for each in (y, options["prior"]))
+        x, prior = (
+            each @ self.forward.inverse_root.T for each in (y, options["prior"])
+        )
         return x, (prior, options["closeness"], args)
 
     def _problem(self, fn: Any) -> Callable[[Any, Any], tuple[Any, None]]:

@@ -25,22 +25,32 @@ def store(growth: Growth, seeds: Seeds, prior: Prior) -> PointTable:
 
     Unrealisable nodes are fitted to a realisable colour of less chroma; their distance is measured from their own.
     """
-    nodes, lattice, threshold = growth.nodes, growth.nodes.lattice, growth.problem.threshold
+    nodes, lattice, threshold = (
+        growth.nodes,
+        growth.nodes.lattice,
+        growth.problem.threshold,
+    )
     coefficients, distance, standard_error = _store_coefficients(growth, prior)
     # The entry that a node started from, and its status: later lines overrule earlier ones.
     entry = np.full(lattice.size, NO_ENTRY, dtype=np.int32)
     entry[seeds.points] = seeds.entry
     status = np.full(lattice.size, Status.REGULAR, dtype=np.uint8)
-    status[seeds.points] = np.where(seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)
+    status[seeds.points] = np.where(
+        seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER
+    )
     status[growth.round == NOT_FITTED] = Status.IMPROVED
     outside = nodes.unrealisable
     status[outside] = Status.UNREALISABLE
     status[distance > threshold] = Status.UNFITTED
-    distance[outside] = np.abs(lattice.target(outside) - growth.rgb[outside]).max(axis=1)
+    distance[outside] = np.abs(lattice.target(outside) - growth.rgb[outside]).max(
+        axis=1
+    )
     status[outside[distance[outside] <= threshold]] = Status.REGULAR
     absent = ~lattice.mask(nodes.points)
     status[absent], entry[absent] = Status.ABSENT, NO_ENTRY
-    return PointTable(coefficients, growth.rgb, distance, status, entry, growth.round, standard_error)
+    return PointTable(
+        coefficients, growth.rgb, distance, status, entry, growth.round, standard_error
+    )
 
 
 def _store_coefficients(
@@ -53,7 +63,10 @@ def _store_coefficients(
     the rounded coefficients. They overwrite the multipliers, as memory for both may not suffice.
     """
     problem, nodes, kind = growth.problem, growth.nodes, SINGLE
-    coefficients, distance = growth.multipliers, np.zeros(len(growth.rgb), dtype=np.float32)
+    coefficients, distance = (
+        growth.multipliers,
+        np.zeros(len(growth.rgb), dtype=np.float32),
+    )
     standard_error = None if prior.errors is None else np.zeros_like(distance)
 
     def evaluate(points: Indices) -> None:
@@ -61,7 +74,10 @@ def _store_coefficients(
             multipliers = problem.model.from_storage(coefficients[points].astype(kind))
             goal = nodes.goal(points)
             residual = residuals(problem.forward, multipliers, goal, problem.method)
-            growth.rgb[points], distance[points] = goal - residual, largest(np.abs(residual))
+            growth.rgb[points], distance[points] = (
+                goal - residual,
+                largest(np.abs(residual)),
+            )
 
     # Block by block; once a block loses too much in single precision, all sensitive nodes so far are evaluated again.
     sensitive = []

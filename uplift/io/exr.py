@@ -35,7 +35,9 @@ def attributes(data: CubeData) -> dict[str, Any]:
         "chromaticities": chromaticities(data.sensor),
         "uplift.cube": digest(data),
         "uplift.dim": data.lattice.dim,
-        "uplift.model": json.dumps(data.model.describe(), sort_keys=True, allow_nan=False),
+        "uplift.model": json.dumps(
+            data.model.describe(), sort_keys=True, allow_nan=False
+        ),
         "uplift.space": data.sensor.space,
         "uplift.illuminant": data.sensor.illuminant,
         "uplift.observer": data.sensor.observer,
@@ -44,7 +46,9 @@ def attributes(data: CubeData) -> dict[str, Any]:
     }
 
 
-def make_part(name: str, header: Mapping[str, Any], channels: Mapping[str, Values]) -> Any:
+def make_part(
+    name: str, header: Mapping[str, Any], channels: Mapping[str, Values]
+) -> Any:
     """Make an `OpenEXR.Part` of channels (height, width). Raises `OutputError` for NaN."""
     import OpenEXR
 
@@ -68,13 +72,17 @@ def _float32(channel: str, plane: Values) -> Floats:
     """Convert to float32. Integers up to 2²⁴ are exact; numbers that are too large become the largest float."""
     if np.isnan(plane).any():
         raise OutputError(f"channel '{channel}' contains NaN", hint="rebuild the cube")
-    return np.ascontiguousarray(np.clip(plane, -MAX_FLOAT32, MAX_FLOAT32), dtype=np.float32)
+    return np.ascontiguousarray(
+        np.clip(plane, -MAX_FLOAT32, MAX_FLOAT32), dtype=np.float32
+    )
 
 
 def chromaticities(gamut: Gamut) -> tuple[float, ...]:
     """Return x, y of red, green, blue and white, of a sensor under the build illuminant, in the order of OpenEXR."""
     primaries = np.vstack([np.eye(3), np.ones(3)]) @ gamut.rgb_to_xyz.T
-    return tuple(map(float, (primaries / primaries.sum(axis=1, keepdims=True))[:, :2].ravel()))
+    return tuple(
+        map(float, (primaries / primaries.sum(axis=1, keepdims=True))[:, :2].ravel())
+    )
 
 
 def write_slices(data: CubeData, path: StrPath, *, force: bool = False) -> None:
@@ -119,7 +127,9 @@ def channels(data: CubeData) -> dict[str, Values]:
         **_rgb("lattice.", data.points.rgb),
         **_rgb("target.", target),
         "distance": data.points.distance,
-        "deltaE2000": np.where(data.points.present, delta_e_rgb(data.sensor, target, data.points.rgb), 0),
+        "deltaE2000": np.where(
+            data.points.present, delta_e_rgb(data.sensor, target, data.points.rgb), 0
+        ),
         "status": data.points.status,
         "entry": data.points.entry,
     }
@@ -127,17 +137,25 @@ def channels(data: CubeData) -> dict[str, Values]:
         values["round"] = data.points.round
     if data.points.standard_error is not None:
         values["standardError"] = data.points.standard_error
-    return values | {f"coefficient.{i:02}": column for i, column in enumerate(data.points.coefficients.T)}
+    return values | {
+        f"coefficient.{i:02}": column
+        for i, column in enumerate(data.points.coefficients.T)
+    }
 
 
 def _parts(data: CubeData) -> Iterator[Any]:
     common = {**attributes(data), "comments": COMMENTS}
-    slices = {name: blue_slices(values, data.lattice.dim) for name, values in channels(data).items()}
+    slices = {
+        name: blue_slices(values, data.lattice.dim)
+        for name, values in channels(data).items()
+    }
     digits = len(str(data.lattice.dim - 1))
     for blue, value in enumerate(map(float, data.lattice.nodes)):
         header = {**common, "uplift.blueIndex": blue, "uplift.blueValue": value}
         name = f"blue {blue:0{max(digits, 2)}} ({value:.4f})"
-        yield make_part(name, header, {channel: stack[blue] for channel, stack in slices.items()})
+        yield make_part(
+            name, header, {channel: stack[blue] for channel, stack in slices.items()}
+        )
 
 
 def _rgb(layer: str, rgb: Values) -> dict[str, Values]:

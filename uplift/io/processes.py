@@ -19,7 +19,9 @@ class ChildError(Exception):
     """A child process crashed, or did not answer in time; the text states which."""
 
 
-def call_in_child(function: Callable[..., Result], *arguments: Any, seconds: float) -> Result:
+def call_in_child(
+    function: Callable[..., Result], *arguments: Any, seconds: float
+) -> Result:
     """Call a function in a separate process, whose crash or hang leaves this process unharmed.
 
     The function and its arguments are pickled. Its exceptions are raised here; a child that crashes, or has no answer
@@ -38,10 +40,14 @@ def call_in_child(function: Callable[..., Result], *arguments: Any, seconds: flo
         raise ChildError(f"no answer within {seconds:g} s") from None
     except BrokenExecutor as lost:
         code = child.exitcode or 0
-        raise ChildError(f"crashed: signal {-code}" if code < 0 else f"crashed: exit code {code}") from lost
+        raise ChildError(
+            f"crashed: signal {-code}" if code < 0 else f"crashed: exit code {code}"
+        ) from lost
 
 
-def _call_silently(function: Callable[..., Result], arguments: tuple[object, ...]) -> Result:
+def _call_silently(
+    function: Callable[..., Result], arguments: tuple[object, ...]
+) -> Result:
     """Call a function whose output and warnings are dropped."""
     warnings.simplefilter("ignore")
     # Libraries of other languages write to the descriptors, not to sys.stdout.
@@ -57,9 +63,14 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
 
     They are new ones, as JAX cannot be forked, and load no module from the working folder in place of one of Python's.
     """
-    others, before = set(multiprocessing.active_children()), os.environ.get("PYTHONSAFEPATH", "")
+    others, before = (
+        set(multiprocessing.active_children()),
+        os.environ.get("PYTHONSAFEPATH", ""),
+    )
     os.environ["PYTHONSAFEPATH"] = "1"
-    pool = ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn"), initializer=_tie)
+    pool = ProcessPoolExecutor(
+        count, mp_context=multiprocessing.get_context("spawn"), initializer=_tie
+    )
     try:
         yield pool
     # Work that is not finished is not waited for: a signal ends the workers, which remove their temporary files.
@@ -75,7 +86,9 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
 def _tie() -> None:
     """End this worker with its parent, and not by the Ctrl-C that the terminal sends to all processes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    for name in {"SIGTERM", "SIGHUP"} & {each.name for each in signal.Signals}:  # SIGHUP is not on Windows
+    for name in {"SIGTERM", "SIGHUP"} & {
+        each.name for each in signal.Signals
+    }:  # SIGHUP is not on Windows
         signal.signal(signal.Signals[name], lambda number, frame: _end(128 + number))
     threading.Thread(target=_wait, daemon=True).start()
 

@@ -16,7 +16,12 @@ from uplift.common.errors import OptionError, TextureError
 from uplift.common.files import file_digest
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.io.texture.channels import coloured_parts
-from uplift.io.texture.colours import Counts, check_encoding, make_decoder, space_warnings
+from uplift.io.texture.colours import (
+    Counts,
+    check_encoding,
+    make_decoder,
+    space_warnings,
+)
 from uplift.io.texture.image import open_image
 from uplift.lattice import CORNERS, EntryBoxes, Lattice
 from uplift.lattice.entry_boxes import MARGIN
@@ -49,10 +54,13 @@ class Images:
         check_method(self.out_of_gamut)
         if not self.paths:
             raise OptionError(
-                "a scene must have at least one image, got none", hint="name one, or build without a scene"
+                "a scene must have at least one image, got none",
+                hint="name one, or build without a scene",
             )
 
-    def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
+    def required_points(
+        self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback
+    ) -> Mask:
         """Return the mask (dim³,) of the nodes that answer the colours of the images; see `SceneLike`.
 
         Raises `TextureError`, and `ColourError` with ``out_of_gamut="error"``. Warns of images in another RGB space.
@@ -68,24 +76,35 @@ class Images:
         """Return name and digest of each image, and how it was decoded, as JSON values."""
         decoding = {"encoding": self.encoding, "out_of_gamut": self.out_of_gamut}
         decoding |= {} if self.space is None else {"space": self.space}
-        return [{"name": path.name, "digest": file_digest(path), **decoding} for path in self.paths]
+        return [
+            {"name": path.name, "digest": file_digest(path), **decoding}
+            for path in self.paths
+        ]
 
     def colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
         """Yield the colours of an image, linear RGB (n, 3) in [0, 1] of a sensor, block by block."""
         return (rgb for rgb, _ in self.blocks(path, sensor))
 
-    def blocks(self, path: Path, sensor: Sensor, step: int = 1) -> Iterator[tuple[Array, Counts]]:
+    def blocks(
+        self, path: Path, sensor: Sensor, step: int = 1
+    ) -> Iterator[tuple[Array, Counts]]:
         """Yield the colours of every pixel of this ``step``, as `colours`, and counts of those that had to change."""
         space = None if self.space is None else find_space(self.space)
         with open_image(path) as image:
             for warning in space_warnings(image, sensor, space):
                 warnings.warn(warning, stacklevel=6)
             for part, channels in coloured_parts(image):
-                decode = make_decoder(sensor, part, self.encoding, self.out_of_gamut, space)
+                decode = make_decoder(
+                    sensor, part, self.encoding, self.out_of_gamut, space
+                )
                 for _, band in image.bands(part):
                     pixels = band.reshape(-1, band.shape[-1])
                     for first in range(0, len(pixels), BLOCK_PIXELS * step):
-                        rgb, counts = decode(channels.straight(pixels[first : first + BLOCK_PIXELS * step : step]))
+                        rgb, counts = decode(
+                            channels.straight(
+                                pixels[first : first + BLOCK_PIXELS * step : step]
+                            )
+                        )
                         yield rgb.astype(float), counts
 
 
@@ -93,7 +112,9 @@ def cells_touched(lattice: Lattice, rgb: Array) -> Indices:
     """Return the numbers (m,) of the cells around linear RGB (n, 3), and of those within rounding error of them."""
     (low, _), (high, _) = lattice.cell(rgb - MARGIN), lattice.cell(rgb + MARGIN)
     on_face = (low != high).any(axis=1)
-    adjacent = np.where(CORNERS[:, None, :] == 1, high[on_face], low[on_face]).reshape(-1, 3)
+    adjacent = np.where(CORNERS[:, None, :] == 1, high[on_face], low[on_face]).reshape(
+        -1, 3
+    )
     return np.concatenate([lattice.index(low), lattice.index(adjacent)])
 
 
@@ -103,9 +124,13 @@ class ColourSet:
 
     rgb: Array
 
-    def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
+    def required_points(
+        self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback
+    ) -> Mask:
         """Nodes (dim³,) that the colours need."""
-        return boxes.required_points(boxes.lattice.mask(cells_touched(boxes.lattice, self.rgb)))
+        return boxes.required_points(
+            boxes.lattice.mask(cells_touched(boxes.lattice, self.rgb))
+        )
 
     def describe(self) -> list[dict[str, Any]]:
         """An empty list: colours have no source files."""
@@ -148,11 +173,17 @@ def sample_colours(
     counts = [_pixel_count(path) for path in images.paths]
     total, size = map(sum, zip(*counts, strict=True))
     if not total:
-        raise TextureError("images must have pixels, got none", hint="name an image with pixels")
+        raise TextureError(
+            "images must have pixels, got none", hint="name an image with pixels"
+        )
     step = -(-total // MAX_PIXELS)
     first = sizes[0] * step / total
     last = first + sizes[1] * step / total
-    rng, bins, few = np.random.default_rng(0), np.full((BINS**3, 3), np.nan), np.empty((0, 3))
+    rng, bins, few = (
+        np.random.default_rng(0),
+        np.full((BINS**3, 3), np.nan),
+        np.empty((0, 3)),
+    )
     samples: tuple[list[Array], list[Array]] = [], []
     for done, path in enumerate(images.paths):
         progress(Progress("textures", done, len(images.paths)))
@@ -168,16 +199,25 @@ def sample_colours(
         for warning in changed.warnings(path=path):
             warnings.warn(warning, stacklevel=4)
     occupied = bins[~np.isnan(bins[:, 0])]
-    predicting, confirming = (_distinct(np.concatenate(each), occupied) for each in samples)
+    predicting, confirming = (
+        _distinct(np.concatenate(each), occupied) for each in samples
+    )
     is_few = step == 1 and len(few) <= MAX_LIST
-    return SampledColours(predicting, confirming, occupied, total, size, few if is_few else None)
+    return SampledColours(
+        predicting, confirming, occupied, total, size, few if is_few else None
+    )
 
 
 def _pixel_count(path: Path) -> tuple[int, int]:
     """Pixels of the parts of an image that have colour channels, and the bytes of their RGB."""
     with open_image(path) as image:
-        parts = [(part.window.width * part.window.height, part) for part, _ in coloured_parts(image)]
-    return sum(count for count, _ in parts), sum(3 * count * TYPE_BYTES.get(part.types[0], 4) for count, part in parts)
+        parts = [
+            (part.window.width * part.window.height, part)
+            for part, _ in coloured_parts(image)
+        ]
+    return sum(count for count, _ in parts), sum(
+        3 * count * TYPE_BYTES.get(part.types[0], 4) for count, part in parts
+    )
 
 
 def bin_index(sensor: Sensor, rgb: Array) -> Any:
@@ -189,5 +229,7 @@ def bin_index(sensor: Sensor, rgb: Array) -> Any:
 
 def _distinct(sample: Array, occupied: Array) -> PixelSample:
     """Each sampled colour once; the colours of the bins for an empty sample."""
-    rgb, counts = np.unique(sample if len(sample) else occupied, axis=0, return_counts=True)
+    rgb, counts = np.unique(
+        sample if len(sample) else occupied, axis=0, return_counts=True
+    )
     return PixelSample(rgb, counts / counts.sum())

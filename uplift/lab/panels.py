@@ -9,7 +9,17 @@ import numpy as np
 from markupsafe import Markup
 
 from uplift.common.arrays import Array, StrPath
-from uplift.viz.figure import GREY, INK, OTHER, figure_text, new_figure, style_axes, styled, to_page_svg, write_png
+from uplift.viz.figure import (
+    GREY,
+    INK,
+    OTHER,
+    figure_text,
+    new_figure,
+    style_axes,
+    styled,
+    to_page_svg,
+    write_png,
+)
 from uplift.viz.scatter import LEGEND, Label, draw_labels, style_title
 
 CLEAR_RATIO = 0.99
@@ -56,7 +66,10 @@ class Panel:
 def family_colours(families: Iterable[str], known: Mapping[str, str]) -> dict[str, str]:
     """``#rrggbb`` of families in the order of the known ones; others are dark grey."""
     present = dict.fromkeys(families)
-    return {name: known.get(name, OTHER) for name in sorted(present, key=[*known, *sorted(present)].index)}
+    return {
+        name: known.get(name, OTHER)
+        for name in sorted(present, key=[*known, *sorted(present)].index)
+    }
 
 
 def pareto_front(points: Sequence[tuple[float, float]]) -> list[int]:
@@ -84,7 +97,10 @@ def write_panels(
 def page_panel(panel: Panel, number: int) -> Markup:
     """Draw a panel for a page, whose titles are in its text. The artists are named ``marker-<number>-<row>`` etc."""
     with styled():
-        return to_page_svg(panel_figure([panel], 1, titles=False, first=number), f"{panel.title}, over {panel.axis}")
+        return to_page_svg(
+            panel_figure([panel], 1, titles=False, first=number),
+            f"{panel.title}, over {panel.axis}",
+        )
 
 
 def panel_figure(
@@ -110,9 +126,16 @@ def panel_figure(
     if legend:
         legend = {**legend, "Pareto front": {**FRONT_LINE, "linestyle": "-"}}
         handles = [
-            Line2D([], [], **{"linestyle": "", "color": GREY, "marker": "o", **style}) for style in legend.values()
+            Line2D([], [], **{"linestyle": "", "color": GREY, "marker": "o", **style})
+            for style in legend.values()
         ]
-        figure.legend(handles, map(figure_text, legend), loc="outside lower left", ncols=2 * columns, **LEGEND)
+        figure.legend(
+            handles,
+            map(figure_text, legend),
+            loc="outside lower left",
+            ncols=2 * columns,
+            **LEGEND,
+        )
     # Labels are placed where there is room, once the axes have their positions.
     FigureCanvasAgg(figure)
     figure.draw_without_rendering()
@@ -130,7 +153,9 @@ def _draw_panel(axes: Any, panel: Panel, number: int) -> None:
         members = [point for point in panel.points if point.group == group]
         line = np.transpose([(point.cost, point.error) for point in members])
         gid = f"whisker-{number}-{members[0].row}"
-        axes.plot(*line, gid=gid, color=members[0].colour, linewidth=0.8, alpha=0.45, zorder=1)
+        axes.plot(
+            *line, gid=gid, color=members[0].colour, linewidth=0.8, alpha=0.45, zorder=1
+        )
     front = _front(panel)
     for point in panel.points:
         style = {
@@ -142,7 +167,11 @@ def _draw_panel(axes: Any, panel: Panel, number: int) -> None:
             "markeredgewidth": 1.2 if point.hollow else 0.5,
         }
         axes.plot(
-            point.cost, point.error, gid=f"marker-{number}-{point.row}", zorder=3 if point in front else 2, **style
+            point.cost,
+            point.error,
+            gid=f"marker-{number}-{point.row}",
+            zorder=3 if point in front else 2,
+            **style,
         )
     axes.margins(0.06)
     for axis, text in ((axes.xaxis, panel.format), (axes.yaxis, "{:g}".format)):
@@ -155,17 +184,24 @@ def _set_ticks(axis: Any, text: Callable[[float], str]) -> None:
     from matplotlib.ticker import LogLocator
 
     low, high = sorted(axis.get_view_interval())
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 1000 * low else (1,), numticks=40))
+    axis.set_major_locator(
+        LogLocator(subs=(1, 2, 5) if high < 1000 * low else (1,), numticks=40)
+    )
     axis.set_major_formatter(lambda value, _: text(value))
 
 
 def _front(panel: Panel) -> list[Point]:
-    return [panel.points[row] for row in pareto_front([(point.cost, point.error) for point in panel.points])]
+    return [
+        panel.points[row]
+        for row in pareto_front([(point.cost, point.error) for point in panel.points])
+    ]
 
 
 def _staircase(axes: Any, panel: Panel) -> Array:
     """Corners (2 k, 2) of the Pareto front, up to the right end of the axes."""
-    front = np.array([(point.cost, point.error) for point in _front(panel)]).reshape(-1, 2)
+    front = np.array([(point.cost, point.error) for point in _front(panel)]).reshape(
+        -1, 2
+    )
     x = np.append(front[:, 0].repeat(2)[1:], axes.get_xlim()[1])[: 2 * len(front)]
     return np.stack([x, front[:, 1].repeat(2)], axis=1)
 
@@ -173,9 +209,17 @@ def _staircase(axes: Any, panel: Panel) -> Array:
 def _label_panel(axes: Any, panel: Panel, number: int) -> None:
     front = _front(panel)
     labels = [
-        Label(point.label, (point.cost, point.error), point.colour, point in front, f"label-{number}-{point.row}")
+        Label(
+            point.label,
+            (point.cost, point.error),
+            point.colour,
+            point in front,
+            f"label-{number}-{point.row}",
+        )
         for point in panel.points
         if point.named or point in front
     ]
-    markers = np.array([(point.cost, point.error) for point in panel.points]).reshape(-1, 2)
+    markers = np.array([(point.cost, point.error) for point in panel.points]).reshape(
+        -1, 2
+    )
     draw_labels(axes, labels, markers, _staircase(axes, panel))

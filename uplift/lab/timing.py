@@ -20,10 +20,19 @@ from uplift.common.csv import csv_text
 from uplift.common.version import version
 
 PACKAGES = ("numpy", "scipy", "jax", "colour-science", "safetensors")
-ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+ONE_THREAD = {
+    "OPENBLAS_NUM_THREADS": "1",
+    "MKL_NUM_THREADS": "1",
+    "OMP_NUM_THREADS": "1",
+}
 """Environment variables, read when numpy is imported. Matrices here are small: with more threads colour-science took
 twice as long."""
-CODE = (":/uplift", ":/cli", ":/benchmarks", ":(top,exclude)uplift/lab/chart/measured.csv")
+CODE = (
+    ":/uplift",
+    ":/cli",
+    ":/benchmarks",
+    ":(top,exclude)uplift/lab/chart/measured.csv",
+)
 """Files that measurements depend on: the code, without the measurements that are part of the package."""
 SOURCES = Path(__file__).parents[1]
 MIN_RUNS, MAX_LAPS = 3, 75
@@ -44,7 +53,9 @@ class TimingStats:
 
     def scaled(self, factor: float) -> "TimingStats":
         """Multiply all values by a factor."""
-        return TimingStats(self.median * factor, self.min * factor, self.max * factor, self.runs)
+        return TimingStats(
+            self.median * factor, self.min * factor, self.max * factor, self.runs
+        )
 
 
 def timing_stats(values: list[float]) -> TimingStats:
@@ -52,7 +63,9 @@ def timing_stats(values: list[float]) -> TimingStats:
     return TimingStats(statistics.median(values), min(values), max(values), len(values))
 
 
-def time_calls(function: Callable[[], object], runs: int) -> tuple[TimingStats, TimingStats]:
+def time_calls(
+    function: Callable[[], object], runs: int
+) -> tuple[TimingStats, TimingStats]:
     """Measure wall and CPU seconds of repeated calls.
 
     The caller has called the function once to warm up. Asynchronous results must be complete when it returns.
@@ -87,13 +100,17 @@ def time_laps(function: Callable[[], object], lap: float, runs: int) -> TimingSt
     return time_calls(run, min(affordable, runs))[1].scaled(1 / calls)
 
 
-def time_process(command: list[str], runs: int, variables: dict[str, str] | None = None) -> tuple[TimingStats, float]:
+def time_process(
+    command: list[str], runs: int, variables: dict[str, str] | None = None
+) -> tuple[TimingStats, float]:
     """Measure the wall seconds of a process, and its peak memory in MB (Linux counts in kB)."""
     wall, peak = [], 0
     for _ in range(runs):
         begin = time.perf_counter()
         quiet = subprocess.DEVNULL
-        child = subprocess.Popen(command, env=os.environ | (variables or {}), stdout=quiet, stderr=quiet)
+        child = subprocess.Popen(
+            command, env=os.environ | (variables or {}), stdout=quiet, stderr=quiet
+        )
         _, status, usage = os.wait4(child.pid, 0)
         wall.append(time.perf_counter() - begin)
         peak = max(peak, usage.ru_maxrss)
@@ -107,8 +124,20 @@ def environment() -> dict[str, str]:
     cpu = platform.processor() or platform.machine()
     with contextlib.suppress(OSError):
         lines = Path("/proc/cpuinfo").read_text().splitlines()
-        cpu = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), cpu)
-    packages = ", ".join([*(f"{name} {metadata.version(name)}" for name in PACKAGES), f"uplift {version()}"])
+        cpu = next(
+            (
+                line.split(":")[1].strip()
+                for line in lines
+                if line.startswith("model name")
+            ),
+            cpu,
+        )
+    packages = ", ".join(
+        [
+            *(f"{name} {metadata.version(name)}" for name in PACKAGES),
+            f"uplift {version()}",
+        ]
+    )
     return {
         "machine": f"{cpu}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}",
         "versions": f"Python {sys.version.split()[0]}, {packages}",
@@ -125,13 +154,21 @@ def commit() -> str:
         return "unknown"
     base = _git("merge-base", "HEAD", "main") or "HEAD"
     changed = _git("diff", "--name-only", base, "--", *CODE)
-    return _git("log", "-1", "--format=%h", "--abbrev=12", base, "--", *CODE) + (" with changes" if changed else "")
+    return _git("log", "-1", "--format=%h", "--abbrev=12", base, "--", *CODE) + (
+        " with changes" if changed else ""
+    )
 
 
 def _git(*arguments: str) -> str:
     """Output of git in the source folder, empty without git."""
     try:
-        done = subprocess.run(["git", *arguments], cwd=SOURCES, capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            ["git", *arguments],
+            cwd=SOURCES,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
     except OSError:
         return ""
     return done.stdout.strip()

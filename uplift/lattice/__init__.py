@@ -2,7 +2,13 @@
 
 from uplift.lattice.entry_boxes import BoxHits, EntryBoxes, Nodes, OutsideBoxes
 from uplift.lattice.lattice import AXES, CORNERS, Lattice, axis_nodes, weighted_sum
-from uplift.lattice.point_table import ABSENT_VALUES, NO_ENTRY, NOT_FITTED, PointTable, Status
+from uplift.lattice.point_table import (
+    ABSENT_VALUES,
+    NO_ENTRY,
+    NOT_FITTED,
+    PointTable,
+    Status,
+)
 
 __all__ = [
     "ABSENT_VALUES",

@@ -59,14 +59,18 @@ class Nodes:
 
     def weighted_sum(self, lattice: Values, atlas: Values) -> Values:
         """Σ w · values of the lattice (dim³, K), mixed with those of the entries (E, K): (n, K), in their type."""
-        return self.hits.mix(weighted_sum(lattice, self.points, self.weights), atlas[self.hits.entry])
+        return self.hits.mix(
+            weighted_sum(lattice, self.points, self.weights), atlas[self.hits.entry]
+        )
 
     def nearest(self) -> tuple[Indices, Indices, Indices]:
         """Return the corners of largest weight (n,), and the rows and entries (m,) where an entry weighs more."""
         best = self.weights.argmax(axis=1)[:, None]
         points = np.take_along_axis(self.points, best, axis=1)[:, 0]
         weights = np.take_along_axis(self.weights, best, axis=1)[:, 0]
-        is_entry = self.hits.lattice_weight * (1 + weights[self.hits.rows]) <= 1  # 1 − t ≥ t · w
+        is_entry = (
+            self.hits.lattice_weight * (1 + weights[self.hits.rows]) <= 1
+        )  # 1 − t ≥ t · w
         return points, self.hits.rows[is_entry], self.hits.entry[is_entry]
 
     def lattice_rgb(self, rgb: Array) -> Array:
@@ -97,17 +101,31 @@ class EntryBoxes:
 
         Where an entry is within `MARGIN` of the edge, the face lies beyond: between the two, rounding would decide.
         """
-        rgb, steps, half = self.rgb, self.lattice.to_steps(self.rgb), self.half_width[:, None]
-        low, high = self.lattice.from_steps(steps - half), self.lattice.from_steps(steps + half)
-        at_start, at_end = rgb < self.lattice.nodes[0] + MARGIN, rgb > self.lattice.nodes[-1] - MARGIN
-        return np.where(at_start, 2 * rgb - high, low), np.where(at_end, 2 * rgb - low, high)
+        rgb, steps, half = (
+            self.rgb,
+            self.lattice.to_steps(self.rgb),
+            self.half_width[:, None],
+        )
+        low, high = (
+            self.lattice.from_steps(steps - half),
+            self.lattice.from_steps(steps + half),
+        )
+        at_start, at_end = (
+            rgb < self.lattice.nodes[0] + MARGIN,
+            rgb > self.lattice.nodes[-1] - MARGIN,
+        )
+        return np.where(at_start, 2 * rgb - high, low), np.where(
+            at_end, 2 * rgb - low, high
+        )
 
     @cached_property
     def cells(self) -> tuple[Indices, Indices]:
         """Numbers of the cells that boxes touch, ascending, and the entry of each of these boxes."""
         low, high = (self.lattice.cell(face)[0][:, None] for face in self.faces)
         cells = self.lattice.cell(self.rgb)[0][:, None] + CELL_BLOCK
-        touched = ((cells >= low) & (cells <= high)).all(axis=-1) & (self.half_width > 0)[:, None]
+        touched = ((cells >= low) & (cells <= high)).all(axis=-1) & (
+            self.half_width > 0
+        )[:, None]
         entry, _ = np.nonzero(touched)
         number = self.lattice.index(cells[touched])
         order = np.argsort(number, kind="stable")
@@ -131,7 +149,9 @@ class EntryBoxes:
         low, _ = self.lattice.cell(self.faces[0] - MARGIN)
         high, _ = self.lattice.cell(self.faces[1] + MARGIN)
         for entry in np.flatnonzero(self.half_width > 0):
-            box = tuple(slice(low[entry, axis], high[entry, axis] + 1) for axis in range(3))
+            box = tuple(
+                slice(low[entry, axis], high[entry, axis] + 1) for axis in range(3)
+            )
             if requested[box].any():
                 required[box] = True
         return self.lattice.corner_points(required.ravel())
@@ -160,7 +180,10 @@ class EntryBoxes:
         # Boxes that touch the cell of a colour are tested in turn.
         rows = np.flatnonzero(self.touched_cells[cell])
         entry = np.full(len(rows), NO_ENTRY)
-        first, last = (np.searchsorted(numbers, cell[rows], side=side) for side in ("left", "right"))
+        first, last = (
+            np.searchsorted(numbers, cell[rows], side=side)
+            for side in ("left", "right")
+        )
         for turn in range(int((last - first).max(initial=0))):
             near = np.flatnonzero(first + turn < last)
             candidate, colour = entries[first[near] + turn], rgb[rows[near]]
@@ -173,9 +196,13 @@ class EntryBoxes:
         low, high = (face[entry] for face in self.faces)
         # x = (1 − t) e + t y: t is the largest fraction, over the axes, of the way from e to the face that x moves to.
         room = np.where(ray > 0, high - centre, centre - low)
-        weight = np.divide(np.abs(ray), room, out=np.zeros_like(ray), where=ray != 0).max(axis=1)
+        weight = np.divide(
+            np.abs(ray), room, out=np.zeros_like(ray), where=ray != 0
+        ).max(axis=1)
         exit_rgb, moved = rgb[rows], weight > 0
-        exit_rgb[moved] = np.clip(centre[moved] + ray[moved] / weight[moved, None], 0, 1)
+        exit_rgb[moved] = np.clip(
+            centre[moved] + ray[moved] / weight[moved, None], 0, 1
+        )
         return BoxHits(rows, entry, weight, exit_rgb)
 
 
@@ -190,16 +217,30 @@ class OutsideBoxes:
     half_width: Array
 
     def __repr__(self) -> str:
-        return f"OutsideBoxes({pluralise(int(np.count_nonzero(self.half_width)), 'box')})"
+        return (
+            f"OutsideBoxes({pluralise(int(np.count_nonzero(self.half_width)), 'box')})"
+        )
 
     def find(self, rgb: Values) -> BoxHits:
         """Find which of the linear RGB (n, 3) lie in boxes."""
-        rows = np.flatnonzero((rgb < 0).any(axis=1) | (rgb > 1).any(axis=1)) if len(self.rgb) else NO_ROWS
+        rows = (
+            np.flatnonzero((rgb < 0).any(axis=1) | (rgb > 1).any(axis=1))
+            if len(self.rgb)
+            else NO_ROWS
+        )
         entry, distance = np.full(len(rows), NO_ENTRY), np.ones(len(rows))
         for box in np.flatnonzero(self.half_width > 0):
             from_centre = np.abs(rgb[rows] - self.rgb[box]).max(axis=1)
             inside = from_centre < self.half_width[box]
-            entry[inside], distance[inside] = box, from_centre[inside] / self.half_width[box]
+            entry[inside], distance[inside] = (
+                box,
+                from_centre[inside] / self.half_width[box],
+            )
         hit = entry != NO_ENTRY
         # The weight is 0 in the core of the box, and rises linearly to 1 on its faces.
-        return BoxHits(rows[hit], entry[hit], np.maximum(distance[hit] - CORE, 0) / (1 - CORE), rgb[rows[hit]])
+        return BoxHits(
+            rows[hit],
+            entry[hit],
+            np.maximum(distance[hit] - CORE, 0) / (1 - CORE),
+            rgb[rows[hit]],
+        )

@@ -64,7 +64,9 @@ class Lattice:
     def index(self, position: Indices) -> Indices:
         """Numbers (...) of the nodes at positions (..., 3)."""
         # n = (r dim + g) dim + b
-        return (position[..., 0] * self.dim + position[..., 1]) * self.dim + position[..., 2]
+        return (position[..., 0] * self.dim + position[..., 1]) * self.dim + position[
+            ..., 2
+        ]
 
     def position(self, index: Indices) -> Indices:
         """Positions (..., 3) of nodes (...), 0 to dim − 1; the inverse of `index`."""
@@ -82,7 +84,9 @@ class Lattice:
         """Find the cells around linear RGB (n, 3): positions (n, 3), 0 to dim − 2, of their lowest corners,
         and fractions (n, 3) of the way across them. Colours outside the lattice belong to the nearest cell.
         """
-        low = np.clip(np.searchsorted(self.nodes, rgb, side="right") - 1, 0, self.dim - 2)
+        low = np.clip(
+            np.searchsorted(self.nodes, rgb, side="right") - 1, 0, self.dim - 2
+        )
         start = self.nodes[low]
         return low, (rgb - start) / (self.nodes[low + 1] - start)
 
@@ -95,8 +99,12 @@ class Lattice:
         # The weight of a corner is the product of t or 1 − t along the three axes.
         along = np.ascontiguousarray(fraction.T)
         r, g, b = np.stack([1 - along, along], axis=1)
-        weights = (r[:, None, None] * g[None, :, None] * b[None, None, :]).reshape(8, -1)
-        return self.index(low)[:, None] + self.index(CORNERS), np.ascontiguousarray(weights.T)
+        weights = (r[:, None, None] * g[None, :, None] * b[None, None, :]).reshape(
+            8, -1
+        )
+        return self.index(low)[:, None] + self.index(CORNERS), np.ascontiguousarray(
+            weights.T
+        )
 
     def mask(self, points: Indices) -> Mask:
         """Set (dim³,) of nodes (k,)."""
@@ -108,7 +116,9 @@ class Lattice:
         """Nodes that are corners of cells."""
         points = np.zeros(self.shape, dtype=bool)
         for r, g, b in CORNERS:
-            inside = cells.reshape(self.shape)[: self.dim - r, : self.dim - g, : self.dim - b]
+            inside = cells.reshape(self.shape)[
+                : self.dim - r, : self.dim - g, : self.dim - b
+            ]
             points[r:, g:, b:] |= inside
         return points.ravel()
 
@@ -117,18 +127,24 @@ class Lattice:
         cells = np.zeros(self.shape, dtype=bool)
         cells[:-1, :-1, :-1] = True
         for r, g, b in CORNERS:
-            cells[: self.dim - r, : self.dim - g, : self.dim - b] &= points.reshape(self.shape)[r:, g:, b:]
+            cells[: self.dim - r, : self.dim - g, : self.dim - b] &= points.reshape(
+                self.shape
+            )[r:, g:, b:]
         return cells.ravel()
 
     def cells_around(self, points: Mask) -> Mask:
         """Cells with a corner in a set of nodes."""
-        return self.complete_cells(np.ones(self.size, dtype=bool)) & ~self.complete_cells(~points)
+        return self.complete_cells(
+            np.ones(self.size, dtype=bool)
+        ) & ~self.complete_cells(~points)
 
     def thinned(self, stride: int) -> tuple["Lattice", Indices]:
         """Return the coarser lattice of every ``stride``-th node and the last, and its nodes (m,) in this lattice."""
         kept = np.append(np.arange(0, self.dim - 1, stride), self.dim - 1)
         grid = np.meshgrid(kept, kept, kept, indexing="ij")
-        return Lattice(self.nodes[kept]), self.index(np.stack(grid, axis=-1).reshape(-1, 3))
+        return Lattice(self.nodes[kept]), self.index(
+            np.stack(grid, axis=-1).reshape(-1, 3)
+        )
 
     def neighbours(self, index: Indices) -> tuple[Indices, Mask]:
         """Neighbours (n, 26) of nodes (n,), diagonal ones included, and which of them lie inside the lattice."""
@@ -160,7 +176,10 @@ def axis_nodes(spacing: str, dim: int) -> Array:
     if spacing == "linear":
         return even
     # The transfer curve of IEC 61966-2-1: c / 12.92 near black, else ((c + 0.055) / 1.055)^2.4
-    context, exponent = decimal.Context(prec=POWER_DIGITS), decimal.Decimal.from_float(2.4)
+    context, exponent = (
+        decimal.Context(prec=POWER_DIGITS),
+        decimal.Decimal.from_float(2.4),
+    )
     bases = ((even + 0.055) / 1.055).tolist()
     powers = [float(context.power(decimal.Decimal(base), exponent)) for base in bases]
     return np.where(even <= 0.04045, even / 12.92, powers)

@@ -80,7 +80,11 @@ class PointTable:
         for name, rows in self.columns.items():
             shape, absent = (size, *rows.shape[1:]), ABSENT_VALUES.get(name)
             # Pages of zeros take no memory before they are written.
-            columns[name] = np.zeros(shape, rows.dtype) if absent is None else np.full(shape, absent, rows.dtype)
+            columns[name] = (
+                np.zeros(shape, rows.dtype)
+                if absent is None
+                else np.full(shape, absent, rows.dtype)
+            )
             columns[name][numbers] = rows
         return PointTable(**columns)
 
@@ -94,12 +98,21 @@ class PointTable:
 
         Coefficients become float64 if those of the rows are.
         """
-        columns, present = self.columns, np.flatnonzero(self.present)  # the others take no memory
+        columns, present = (
+            self.columns,
+            np.flatnonzero(self.present),
+        )  # the others take no memory
         for name, column in self.columns.items():
             added = rows.get(name, np.full(len(points), ABSENT_VALUES.get(name, 0)))
-            kind = np.result_type(column, added) if name == "coefficients" else column.dtype
+            kind = (
+                np.result_type(column, added)
+                if name == "coefficients"
+                else column.dtype
+            )
             columns[name] = np.concatenate([column[present], added]).astype(kind)
-        return PointTable(**columns).spread(np.concatenate([present, points]), len(self.status))
+        return PointTable(**columns).spread(
+            np.concatenate([present, points]), len(self.status)
+        )
 
     def counts(self) -> dict[str, int]:
         """Count the nodes of each status, by `Status.label`."""

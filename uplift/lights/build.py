@@ -110,18 +110,28 @@ def build_emission(
     surfaces = on_grid(read_atlas(SURFACES), observers.grid())
 
     prior, left_out = fit_lamp_prior(lamps, surfaces, radiometry, len(exact))
-    lattice, locus = locus_lattice(radiometry, white, int(knots), np.linspace(0, 1, int(rings)))
+    lattice, locus = locus_lattice(
+        radiometry, white, int(knots), np.linspace(0, 1, int(rings))
+    )
     uv = lattice.nodes[:, :-1].reshape(-1, 2)
-    inner = mix_with_locus(nearest_lights(prior(uv), uv, radiometry), uv, lattice, locus, radiometry)
-    nodes = np.concatenate([inner.reshape(len(locus), -1, inner.shape[1]), locus[:, None]], axis=1)
+    inner = mix_with_locus(
+        nearest_lights(prior(uv), uv, radiometry), uv, lattice, locus, radiometry
+    )
+    nodes = np.concatenate(
+        [inner.reshape(len(locus), -1, inner.shape[1]), locus[:, None]], axis=1
+    )
     left_out_errors = relit_delta_e(lamps, left_out, surfaces, radiometry).mean(axis=1)
 
     entries, duplicates = lamp_entries(exact, others, lattice, radiometry)
     if duplicates:
         pairs = listed([f"'{name}' that of '{other}'" for name, other in duplicates])
         omitted = pluralise(len(duplicates), "lamp")
-        problem = f"{omitted} left out, with the chromaticity of an earlier one: {pairs}"
-        warnings.warn(UpliftWarning(problem, code="entry-duplicate"), stacklevel=STACK_LEVEL)
+        problem = (
+            f"{omitted} left out, with the chromaticity of an earlier one: {pairs}"
+        )
+        warnings.warn(
+            UpliftWarning(problem, code="entry-duplicate"), stacklevel=STACK_LEVEL
+        )
     return EmissionTable(
         EmissionData(
             space=sensor.space,
@@ -135,7 +145,11 @@ def build_emission(
             entries=entries,
             provenance={
                 "uplift": version(),
-                "options": {"knots": int(knots), "rings": int(rings), "without": sorted(without)},
+                "options": {
+                    "knots": int(knots),
+                    "rings": int(rings),
+                    "without": sorted(without),
+                },
                 "atlases": [_record(source) for source in sources],
                 "left_out": [name for name, _ in duplicates],
                 "prior": asdict(prior.kernel),
@@ -156,7 +170,9 @@ def _choose_lamps(
         is_standard = np.isin(known.names, STANDARD_ILLUMINANTS)
         return _rows(known, is_standard), _rows(known, ~is_standard), ()
     if not isinstance(atlas, Atlas):
-        atlas = read_lamps(*([atlas] if isinstance(atlas, str | os.PathLike) else atlas))
+        atlas = read_lamps(
+            *([atlas] if isinstance(atlas, str | os.PathLike) else atlas)
+        )
     if not len(atlas):
         raise OptionError("an atlas of lamps must have lamps, got none")
     power = on_grid(atlas, wavelengths)
@@ -166,7 +182,8 @@ def _choose_lamps(
         raise OptionError(f"a lamp must have visible power, got none of '{dark}'")
     exact = Lamps(atlas.names, power / luminance[:, None])
     is_other = [
-        name not in exact.names and np.abs(exact.power - row).max(axis=1).min() > SAME_LAMP * row.max()
+        name not in exact.names
+        and np.abs(exact.power - row).max(axis=1).min() > SAME_LAMP * row.max()
         for name, row in zip(known.names, known.power, strict=True)
     ]
     return exact, _rows(known, np.array(is_other)), atlas.sources
@@ -176,7 +193,9 @@ def _rows(lamps: Lamps, kept: NDArray[np.bool_]) -> Lamps:
     return Lamps(tuple(np.array(lamps.names)[kept].tolist()), lamps.power[kept])
 
 
-def _expected_error(errors: Array, prior: LampPrior, lattice: ChromaticityLattice) -> NDArray[np.float32]:
+def _expected_error(
+    errors: Array, prior: LampPrior, lattice: ChromaticityLattice
+) -> NDArray[np.float32]:
     """ΔE00 (K, R) of the ColorChecker lit by an answer.
 
     Errors (L,) of left-out lamps, in units of the standard deviation of the prior there, are averaged by distance.
@@ -184,8 +203,12 @@ def _expected_error(errors: Array, prior: LampPrior, lattice: ChromaticityLattic
     units = errors / prior.left_out_deviation()
     uv = lattice.nodes.reshape(-1, 2)
     weights = LampKernel(ERROR_LENGTH, 0.0)(uv, prior.uv)
-    unit = (weights @ units + FAR_SHARE * units.mean()) / (weights.sum(axis=1) + FAR_SHARE)
-    return np.asarray((unit * prior.standard_deviation(uv)).reshape(lattice.shape), dtype=np.float32)
+    unit = (weights @ units + FAR_SHARE * units.mean()) / (
+        weights.sum(axis=1) + FAR_SHARE
+    )
+    return np.asarray(
+        (unit * prior.standard_deviation(uv)).reshape(lattice.shape), dtype=np.float32
+    )
 
 
 def _record(source: Source) -> dict[str, str]:
@@ -195,5 +218,11 @@ def _record(source: Source) -> dict[str, str]:
 
 
 def _check_count(name: str, value: Any, most: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 3 <= value <= most:
-        raise OptionError(f"{name} must be a whole number from 3 to {most}, got {format_value(value)}")
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, int | np.integer)
+        or not 3 <= value <= most
+    ):
+        raise OptionError(
+            f"{name} must be a whole number from 3 to {most}, got {format_value(value)}"
+        )

@@ -85,9 +85,17 @@ class LampEntries:
         rows, entry, radius = rows[inside], entry[inside], radius[inside]
         offset, distance = offset[inside], distance[inside]
         direction = np.divide(
-            offset, distance[:, None], out=np.tile([1.0, 0.0], (len(rows), 1)), where=distance[:, None] > 0
+            offset,
+            distance[:, None],
+            out=np.tile([1.0, 0.0], (len(rows), 1)),
+            where=distance[:, None] > 0,
         )
-        return DiscHits(rows, entry, 1 - distance / radius, self.uv[entry] + direction * radius[:, None])
+        return DiscHits(
+            rows,
+            entry,
+            1 - distance / radius,
+            self.uv[entry] + direction * radius[:, None],
+        )
 
     @cached_property
     def _candidates(self) -> tuple[Indices, Indices]:
@@ -117,29 +125,49 @@ def lamp_entries(
     kept: list[int] = []
     duplicates: list[tuple[str, str]] = []
     for row, name in enumerate(constraints.names):
-        twins = [other for other in kept if np.linalg.norm(uv[row] - uv[other]) <= SAME_CHROMATICITY]
+        twins = [
+            other
+            for other in kept
+            if np.linalg.norm(uv[row] - uv[other]) <= SAME_CHROMATICITY
+        ]
         if twins:
             duplicates.append((name, constraints.names[twins[0]]))
         else:
             kept.append(row)
     more, more_uv = _unit(others.power, radiometry)
-    clear = np.flatnonzero(distances(more_uv, uv[kept]).min(axis=1, initial=np.inf) > CLEARANCE)
-    names = (*(constraints.names[row] for row in kept), *(others.names[row] for row in clear))
+    clear = np.flatnonzero(
+        distances(more_uv, uv[kept]).min(axis=1, initial=np.inf) > CLEARANCE
+    )
+    names = (
+        *(constraints.names[row] for row in kept),
+        *(others.names[row] for row in clear),
+    )
     uv = np.concatenate([uv[kept], more_uv[clear]])
     spectra = np.concatenate([power[kept], more[clear]])
     apart = distances(uv, uv) + np.diag(np.full(len(uv), np.inf))
     radius = np.minimum(apart.min(axis=1) / 2, MAX_RADIUS)
     radius = np.minimum(radius, _to_rim(uv, lattice))
-    resolved = np.flatnonzero((np.arange(len(names)) < len(kept)) | (radius >= MIN_RADIUS))
-    entries = LampEntries(tuple(names[row] for row in resolved), uv[resolved], spectra[resolved], radius[resolved])
+    resolved = np.flatnonzero(
+        (np.arange(len(names)) < len(kept)) | (radius >= MIN_RADIUS)
+    )
+    entries = LampEntries(
+        tuple(names[row] for row in resolved),
+        uv[resolved],
+        spectra[resolved],
+        radius[resolved],
+    )
     return entries, tuple(duplicates)
 
 
-def touched_bins(uv: Array, radius: Array, count: int) -> dict[tuple[int, int], list[int]]:
+def touched_bins(
+    uv: Array, radius: Array, count: int
+) -> dict[tuple[int, int], list[int]]:
     """Return the numbers of the discs that reach into each of ``count``² bins, by the bin along v′ and u′."""
     low, high = (_bins(uv + sign * radius[:, None], count).tolist() for sign in (-1, 1))
     found: dict[tuple[int, int], list[int]] = {}
-    for number, ((left, bottom), (right, top)) in enumerate(zip(low, high, strict=True)):
+    for number, ((left, bottom), (right, top)) in enumerate(
+        zip(low, high, strict=True)
+    ):
         for place in product(range(bottom, top + 1), range(left, right + 1)):
             found.setdefault(place, []).append(number)
     return found

@@ -8,7 +8,13 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Indices
 from uplift.fit.solver import solve
-from uplift.lights.lattice import DENOMINATOR, LOCUS_TOLERANCE, ChromaticityLattice, chromaticity, unit_xyz
+from uplift.lights.lattice import (
+    DENOMINATOR,
+    LOCUS_TOLERANCE,
+    ChromaticityLattice,
+    chromaticity,
+    unit_xyz,
+)
 from uplift.models.minimum_norm import forward_map
 from uplift.models.model import Model
 
@@ -32,7 +38,9 @@ class Exponential(Model):
     name = "exponential"
 
     def basis(self, wavelengths: ArrayLike) -> Array:
-        return np.cos(np.pi * np.arange(self.count) * np.asarray(wavelengths)[..., None])
+        return np.cos(
+            np.pi * np.arange(self.count) * np.asarray(wavelengths)[..., None]
+        )
 
     def to_reflectance(self, x: Any) -> Any:
         return x.__array_namespace__().exp(x)
@@ -50,7 +58,9 @@ class Exponential(Model):
         return np.asarray(1.0 + np.arange(self.count) ** 2)
 
 
-def locus_lattice(radiometry: Array, white: Array, knots: int, rings: Array) -> tuple[ChromaticityLattice, Array]:
+def locus_lattice(
+    radiometry: Array, white: Array, knots: int, rings: Array
+) -> tuple[ChromaticityLattice, Array]:
     """Create a lattice that ends at the spectral locus, the polygon of the chromaticities of single wavelengths.
 
     Every corner of the polygon is a knot; the others divide its longest edges, as white views them, until there are
@@ -68,9 +78,16 @@ def locus_lattice(radiometry: Array, white: Array, knots: int, rings: Array) -> 
     locus[np.arange(len(corners)), visible[corners]] = 1 / size[visible[corners]]
     places = uv[corners]
     while len(places) < knots:
-        edge = int(np.argmax(_angles(places - white, np.roll(places, -1, axis=0) - white)))
+        edge = int(
+            np.argmax(_angles(places - white, np.roll(places, -1, axis=0) - white))
+        )
         places, locus = (
-            np.insert(array, edge + 1, (array[edge] + array[(edge + 1) % len(array)]) / 2, axis=0)
+            np.insert(
+                array,
+                edge + 1,
+                (array[edge] + array[(edge + 1) % len(array)]) / 2,
+                axis=0,
+            )
             for array in (places, locus)
         )
     return ChromaticityLattice(white, places, rings), locus
@@ -81,13 +98,21 @@ def _corners(uv: Array, white: Array) -> Indices:
     from scipy.spatial import ConvexHull
 
     hull = ConvexHull(uv).vertices
-    length = ChromaticityLattice(white, uv[hull], np.array([0.0, 1.0])).polar(uv - white)[2]
+    length = ChromaticityLattice(white, uv[hull], np.array([0.0, 1.0])).polar(
+        uv - white
+    )[2]
     corners = list(hull)
     for row in np.flatnonzero(length >= 1 - LOCUS_TOLERANCE):
-        apart = np.abs(_angles(uv[corners] - white, np.broadcast_to(uv[row] - white, (len(corners), 2))))
+        apart = np.abs(
+            _angles(
+                uv[corners] - white, np.broadcast_to(uv[row] - white, (len(corners), 2))
+            )
+        )
         if apart.min() >= MIN_ANGLE:
             corners.append(row)
-    turn = _angles(np.broadcast_to(uv[hull[0]] - white, (len(corners), 2)), uv[corners] - white) % (2 * np.pi)
+    turn = _angles(
+        np.broadcast_to(uv[hull[0]] - white, (len(corners), 2)), uv[corners] - white
+    ) % (2 * np.pi)
     return np.array(corners)[np.argsort(turn)]
 
 
@@ -108,7 +133,9 @@ def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
     basis = model.basis(wavelengths)
     positive = np.maximum(prior, FAINTEST * prior.mean(axis=1, keepdims=True))
     positive = positive / (positive @ radiometry @ DENOMINATOR)[:, None]
-    multipliers = np.asarray(np.linalg.solve(basis, model.from_reflectance(positive).T).T, dtype=float)
+    multipliers = np.asarray(
+        np.linalg.solve(basis, model.from_reflectance(positive).T).T, dtype=float
+    )
     found = solve(
         forward_map(model, wavelengths, radiometry.T),
         multipliers,
@@ -121,7 +148,13 @@ def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
     return np.asarray(power / (power @ radiometry @ DENOMINATOR)[:, None])
 
 
-def mix_with_locus(power: Array, uv: Array, lattice: ChromaticityLattice, locus: Array, radiometry: Array) -> Array:
+def mix_with_locus(
+    power: Array,
+    uv: Array,
+    lattice: ChromaticityLattice,
+    locus: Array,
+    radiometry: Array,
+) -> Array:
     """Remove the last differences of power (n, N) from chromaticities (n, 2) by adding a little light of the locus.
 
     `locus` (K, N) is the power at the knots; it, `power` and the result have unit X + 15 Y + 3 Z.
@@ -132,12 +165,16 @@ def mix_with_locus(power: Array, uv: Array, lattice: ChromaticityLattice, locus:
     # Where rays from the chromaticity that was reached through the wanted one leave the polygon: the solutions of
     # reached + length (uv − reached) = knot + along edge, for all rays and edges.
     direction = uv - reached
-    denominator = direction[:, None, 0] * edges[:, 1] - direction[:, None, 1] * edges[:, 0]
+    denominator = (
+        direction[:, None, 0] * edges[:, 1] - direction[:, None, 1] * edges[:, 0]
+    )
     offset = knots - reached[:, None]
     valid = np.abs(denominator) > 0
     safe = np.where(valid, denominator, 1.0)
     length = (offset[..., 0] * edges[:, 1] - offset[..., 1] * edges[:, 0]) / safe
-    along = (offset[..., 0] * direction[:, None, 1] - offset[..., 1] * direction[:, None, 0]) / safe
+    along = (
+        offset[..., 0] * direction[:, None, 1] - offset[..., 1] * direction[:, None, 0]
+    ) / safe
     inside = valid & (length > 0) & (along >= -1e-9) & (along <= 1 + 1e-9)
     length = np.where(inside, length, np.inf)
     rows, sector = np.arange(len(uv)), length.argmin(axis=1)

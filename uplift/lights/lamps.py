@@ -14,7 +14,13 @@ from uplift.atlas.samples import is_missing
 from uplift.atlas.sources import find_atlas_file, read_named
 from uplift.colorimetry import tables
 from uplift.colorimetry.lights import Illuminant, Lamp
-from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, matching_functions
+from uplift.colorimetry.observer import (
+    DEFAULT_OBSERVER,
+    END,
+    START,
+    STEP,
+    matching_functions,
+)
 from uplift.colorimetry.spectra_json import POWER, is_json, read_spectra
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import AtlasError, UnknownNameError, UpliftError, unknown_name
@@ -27,7 +33,12 @@ SAME_LAMP = 1e-3
 """Difference, as a fraction of the largest power, below which two lamps are one."""
 
 
-def known_lamps(observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP) -> Lamps:
+def known_lamps(
+    observer: str = DEFAULT_OBSERVER,
+    start: float = START,
+    end: float = END,
+    step: float = STEP,
+) -> Lamps:
     """Return the lights of colour-science: CIE illuminants and measured lamps.
 
     Lights that are measured on less than 400–700 nm, and lights with the spectrum of an earlier one, are left out.
@@ -41,7 +52,10 @@ def known_lamps(observer: str = DEFAULT_OBSERVER, start: float = START, end: flo
                 continue
             power = np.maximum(tables.samples(kind, name, start, end, step), 0.0)
             power = power * (luminance.sum() / (power @ luminance))
-            if all(np.abs(power - other).max() > SAME_LAMP * other.max() for other in found.values()):
+            if all(
+                np.abs(power - other).max() > SAME_LAMP * other.max()
+                for other in found.values()
+            ):
                 found[name] = power
     return Lamps(tuple(found), np.array(list(found.values())))
 
@@ -95,7 +109,10 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
     if name is None and len(lamps) != 1:
         names = listed([f"'{each}'" for each in lamps.names])
         problem = f"a light is one lamp, got a file of {len(lamps)}: {names}"
-        raise location.error(problem, f"name one of them, as in '{file}:{lamps.names[0]}'" if len(lamps) else "")
+        raise location.error(
+            problem,
+            f"name one of them, as in '{file}:{lamps.names[0]}'" if len(lamps) else "",
+        )
     entry = lamps[0] if name is None else lamps[name]
     short = os.path.splitext(file)[0] if len(lamps) == 1 else entry.name
     long = file if len(lamps) == 1 else f"{file}:{entry.name}"
@@ -134,8 +151,12 @@ def _read_json(path: StrPath) -> Atlas:
     powers = spectra.values[:, 0]
     stem = os.path.splitext(os.path.basename(path))[0]
     if not powers.max(initial=0) > 0:
-        raise SourceLocation(os.fspath(path)).error("a lamp must have power, got none above 0", "name another file")
-    return Atlas((Entry(stem, spectra.wavelengths, powers / powers.max(), path=os.fspath(path)),))
+        raise SourceLocation(os.fspath(path)).error(
+            "a lamp must have power, got none above 0", "name another file"
+        )
+    return Atlas(
+        (Entry(stem, spectra.wavelengths, powers / powers.max(), path=os.fspath(path)),)
+    )
 
 
 def is_illuminant(name: str) -> bool:
@@ -152,7 +173,11 @@ def _read(document: Document) -> Atlas:
     if isinstance(found, Atlas):
         raise _not_a_lamp("reflectance spectrum", document)
     stated = [spectrum.quantity or found.quantity for spectrum in found.spectra]
-    of_material = [quantity for quantity in stated if quantity is not None and not quantity.of_light]
+    of_material = [
+        quantity
+        for quantity in stated
+        if quantity is not None and not quantity.of_light
+    ]
     if of_material and len(of_material) == len(stated):
         raise _not_a_lamp(of_material[0].text, document)
     return to_atlas(document, _scaled(document, found), chosen.name, "fraction")
@@ -160,7 +185,9 @@ def _read(document: Document) -> Atlas:
 
 def _not_a_lamp(stated: str, document: Document) -> AtlasError:
     problem = f"the file states '{truncate(stated)}', not the power of a lamp"
-    return document.location.error(problem, "give spectral powers, such as a CSV table", code="not-a-lamp")
+    return document.location.error(
+        problem, "give spectral powers, such as a CSV table", code="not-a-lamp"
+    )
 
 
 def _scaled(document: Document, measurements: Measurements) -> Measurements:

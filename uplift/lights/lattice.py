@@ -62,10 +62,20 @@ class ChromaticityLattice:
     rings: Array
 
     def __post_init__(self) -> None:
-        shapes = self.white.shape == (2,) and self.knots.shape == (len(self.knots), 2) and self.rings.ndim == 1
+        shapes = (
+            self.white.shape == (2,)
+            and self.knots.shape == (len(self.knots), 2)
+            and self.rings.ndim == 1
+        )
         if not shapes or len(self.knots) < 3 or len(self.rings) < 2:
-            raise _error(f"must have 3 knots and 2 rings or more, got {self.knots.shape}, {self.rings.shape}")
-        if not (self.rings[0] == 0 and self.rings[-1] == 1 and (np.diff(self.rings) > 0).all()):
+            raise _error(
+                f"must have 3 knots and 2 rings or more, got {self.knots.shape}, {self.rings.shape}"
+            )
+        if not (
+            self.rings[0] == 0
+            and self.rings[-1] == 1
+            and (np.diff(self.rings) > 0).all()
+        ):
             raise _error("must have rings that increase from 0 to 1")
         first, second = self._spokes, np.roll(self._spokes, -1, axis=0)
         turns_left = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0] > 0
@@ -136,7 +146,11 @@ class ChromaticityLattice:
     def cells(self, sector: Indices, along: Array, length: Array) -> Cells:
         """Find the cells of offsets that `polar` has described."""
         length = np.minimum(length, 1.0)
-        ring = np.clip(np.searchsorted(self.rings, length, side="right") - 1, 0, len(self.rings) - 2)
+        ring = np.clip(
+            np.searchsorted(self.rings, length, side="right") - 1,
+            0,
+            len(self.rings) - 2,
+        )
         across = (length - self.rings[ring]) / (self.rings[ring + 1] - self.rings[ring])
         return Cells(sector, ring, along, across)
 

@@ -14,7 +14,13 @@ from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import weighted_sum
 from uplift.lights.lattice import DENOMINATOR, LOCUS_TOLERANCE, Cells
 from uplift.lights.table import EmissionData, read_emission, write_emission
-from uplift.lookup.blocks import Function, as_float_type, as_thread_count, as_wavelengths, blockwise
+from uplift.lookup.blocks import (
+    Function,
+    as_float_type,
+    as_thread_count,
+    as_wavelengths,
+    blockwise,
+)
 from uplift.lookup.cube import find_file
 from uplift.models.arithmetic import blocked_matmul
 
@@ -171,17 +177,23 @@ class EmissionTable:
         """Spectral power (..., N) of colours (..., 3), whose rows are converted to XYZ block by block."""
         if outside not in OUTSIDE:
             raise OptionError(
-                f"unknown treatment of colours outside '{outside}'", hint=f"use one of {', '.join(OUTSIDE)}"
+                f"unknown treatment of colours outside '{outside}'",
+                hint=f"use one of {', '.join(OUTSIDE)}",
             )
         at = as_wavelengths(wavelengths, self.wavelengths)
         kind, count = as_float_type(dtype), as_thread_count(threads)
         nodes, entries = (
             _resample(spectra, self.wavelengths, at).astype(kind, copy=False)
-            for spectra in (self.data.spectra.reshape(-1, len(self.wavelengths)), self.data.entries.spectra)
+            for spectra in (
+                self.data.spectra.reshape(-1, len(self.wavelengths)),
+                self.data.entries.spectra,
+            )
         )
 
         def power(rows: Array) -> NDArray[Any]:
-            return _power(self.data, nodes, entries, convert(rows), clip=outside == "clip")
+            return _power(
+                self.data, nodes, entries, convert(rows), clip=outside == "clip"
+            )
 
         return blockwise(power, as_rgb(colours), len(at), kind, count)
 
@@ -236,7 +248,9 @@ class EmissionTable:
         ndarray, shape (..., 3)
             Linear RGB.
         """
-        return np.asarray(np.asarray(xyz, dtype=float) @ np.linalg.inv(self.data.rgb_to_xyz).T)
+        return np.asarray(
+            np.asarray(xyz, dtype=float) @ np.linalg.inv(self.data.rgb_to_xyz).T
+        )
 
     def contains(self, rgb: ArrayLike) -> Mask:
         """Test whether a light can have the colours: black, or a chromaticity within the spectral locus.
@@ -283,7 +297,9 @@ class EmissionTable:
         def errors(xyz: Array) -> Array:
             cells, _ = _cells(self.data, xyz, *_chromaticities(xyz), clip=False)
             corners = self.data.lattice.corners(cells)
-            return weighted_sum(self.data.error.reshape(-1, 1).astype(float), corners, cells.weights)
+            return weighted_sum(
+                self.data.error.reshape(-1, 1).astype(float), corners, cells.weights
+            )
 
         return blockwise(errors, self.xyz(rgb), 1)[..., 0]
 
@@ -341,7 +357,9 @@ def _checked(colours: NDArray[Any]) -> Array:
     """Convert to float64 (n, 3); `ColourError` if a value is not finite or too large to be squared."""
     array = colours.astype(float, copy=False)
     if not (np.abs(array) <= MAX_VALUE).all():
-        raise ColourError(f"colours of lights must be finite, and at most {MAX_VALUE:g}")
+        raise ColourError(
+            f"colours of lights must be finite, and at most {MAX_VALUE:g}"
+        )
     return array
 
 
@@ -349,13 +367,17 @@ def _resample(spectra: Values, grid: Array, wavelengths: Array) -> Values:
     """Interpolate spectra (n, M) on a grid (M,) linearly at wavelengths (N,), constant outside the grid."""
     if np.array_equal(wavelengths, grid):
         return spectra
-    place = np.clip(np.interp(wavelengths, grid, np.arange(len(grid))), 0, len(grid) - 1)
+    place = np.clip(
+        np.interp(wavelengths, grid, np.arange(len(grid))), 0, len(grid) - 1
+    )
     low = np.minimum(place.astype(int), len(grid) - 2)
     share = place - low
     return np.asarray(spectra[:, low] * (1 - share) + spectra[:, low + 1] * share)
 
 
-def _power(data: EmissionData, nodes: Values, entries: Values, xyz: Array, *, clip: bool) -> NDArray[Any]:
+def _power(
+    data: EmissionData, nodes: Values, entries: Values, xyz: Array, *, clip: bool
+) -> NDArray[Any]:
     """Power (n, N) of lights of XYZ (n, 3), in the type of the spectra of the nodes (K · R, N) and lamps (E, N)."""
     uv, size = _chromaticities(xyz)
     discs = data.entries.locate(uv)
@@ -363,7 +385,9 @@ def _power(data: EmissionData, nodes: Values, entries: Values, xyz: Array, *, cl
     cells, size = _cells(data, xyz, uv, size, clip=clip)
     entry_size = size[discs.rows] * discs.share
     size[discs.rows] -= entry_size
-    power = weighted_sum(nodes, data.lattice.corners(cells), cells.weights * size[:, None])
+    power = weighted_sum(
+        nodes, data.lattice.corners(cells), cells.weights * size[:, None]
+    )
     power[discs.rows] += entry_size[:, None].astype(power.dtype) * entries[discs.entry]
     return power
 
@@ -380,7 +404,9 @@ def _chromaticities(xyz: Array) -> tuple[Array, Array]:
     return np.clip(uv, -FAR, FAR, out=uv).T, size
 
 
-def _cells(data: EmissionData, xyz: Array, uv: Array, size: Array, *, clip: bool) -> tuple[Cells, Array]:
+def _cells(
+    data: EmissionData, xyz: Array, uv: Array, size: Array, *, clip: bool
+) -> tuple[Cells, Array]:
     """Cells of chromaticities (n, 2), and X + 15 Y + 3 Z (n,); those that no light has are clipped or an error."""
     lattice = data.lattice
     sector, along, length = lattice.polar(uv - lattice.white)
@@ -403,7 +429,9 @@ def _polar(data: EmissionData, xyz: Array) -> tuple[Array, Array, Array]:
 
 def _is_light(xyz: Array, size: Array, length: Array) -> Mask:
     """Test whether XYZ (n, 3) are black or within the spectral locus, beyond which `LOCUS_TOLERANCE` is allowed."""
-    return np.asarray(((size > 0) & (length <= size * (1 + LOCUS_TOLERANCE))) | (xyz == 0).all(axis=1))
+    return np.asarray(
+        ((size > 0) & (length <= size * (1 + LOCUS_TOLERANCE))) | (xyz == 0).all(axis=1)
+    )
 
 
 def _to_locus(data: EmissionData, xyz: Array, *, clip: bool) -> tuple[Array, Array]:
@@ -423,5 +451,7 @@ def _to_locus(data: EmissionData, xyz: Array, *, clip: bool) -> tuple[Array, Arr
     white = np.maximum(xyz[:, 1], 0.0) * 9 / data.lattice.white[1]
     reach = length + white - size
     step = np.divide(white, reach, out=np.zeros_like(reach), where=reach > 0)
-    rim = np.divide(offset, length[:, None], out=np.zeros_like(offset), where=length[:, None] > 0)
+    rim = np.divide(
+        offset, length[:, None], out=np.zeros_like(offset), where=length[:, None] > 0
+    )
     return data.lattice.white + rim, step * length

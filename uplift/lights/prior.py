@@ -66,10 +66,14 @@ class LampPrior:
 
     def left_out_deviation(self) -> Array:
         """Standard deviation (L,) of each lamp, as the others predict it; see `standard_deviation`."""
-        return np.asarray(np.sqrt(1 / np.diag(self.precision) / (1 + self.kernel.nugget)))
+        return np.asarray(
+            np.sqrt(1 / np.diag(self.precision) / (1 + self.kernel.nugget))
+        )
 
 
-def fit_lamp_prior(power: Array, surfaces: Array, radiometry: Array, exact: int = 0) -> tuple[LampPrior, Array]:
+def fit_lamp_prior(
+    power: Array, surfaces: Array, radiometry: Array, exact: int = 0
+) -> tuple[LampPrior, Array]:
     """Fit the prior to lamps (L, N) of any scale, with the kernel that predicts left-out lamps best.
 
     Predictions are judged by the colours of `surfaces` (P, N). The expected lights nearly reach the first `exact`
@@ -84,16 +88,26 @@ def fit_lamp_prior(power: Array, surfaces: Array, radiometry: Array, exact: int 
     def predict(kernel: LampKernel) -> tuple[Array, Array, Array]:
         # Left-out predictions of all lamps from one inverse: Rasmussen & Williams 2006, "Gaussian processes for machine
         # learning", eq. 5.12.
-        inverse = np.asarray(np.linalg.inv(kernel(uv, uv) + np.diag(kernel.nugget * own_share)))
+        inverse = np.asarray(
+            np.linalg.inv(kernel(uv, uv) + np.diag(kernel.nugget * own_share))
+        )
         weights = inverse @ (power - smooth)
-        return inverse, weights, _bounded(power - weights / np.diag(inverse)[:, None], smooth)
+        return (
+            inverse,
+            weights,
+            _bounded(power - weights / np.diag(inverse)[:, None], smooth),
+        )
 
     def error(kernel: LampKernel) -> float:
-        return float(relit_delta_e(power, predict(kernel)[2], surfaces, radiometry).mean())
+        return float(
+            relit_delta_e(power, predict(kernel)[2], surfaces, radiometry).mean()
+        )
 
     best = min((LampKernel(*pair) for pair in product(LENGTHS, NUGGETS)), key=error)
     precision, weights, expected = predict(best)
-    return LampPrior(uv, weights, precision, best, radiometry), nearest_lights(expected, uv, radiometry)
+    return LampPrior(uv, weights, precision, best, radiometry), nearest_lights(
+        expected, uv, radiometry
+    )
 
 
 def smoothest_lights(uv: Array, radiometry: Array) -> Array:
@@ -106,12 +120,16 @@ def _bounded(power: Array, smooth: Array) -> Array:
     return np.maximum(power, SMOOTHEST_SHARE * smooth)
 
 
-def relit_delta_e(lamps: Array, estimates: Array, reflectances: Array, radiometry: Array) -> Array:
+def relit_delta_e(
+    lamps: Array, estimates: Array, reflectances: Array, radiometry: Array
+) -> Array:
     """Compare surfaces (P, N) lit by lamps (L, N) with the same surfaces lit by estimates of the lamps.
 
     Returns ΔE00 (L, P) between CIE L*a*b* relative to the white of the respective light. Powers have any scale.
     """
-    first, second = (_relit_lab(power, reflectances, radiometry) for power in (lamps, estimates))
+    first, second = (
+        _relit_lab(power, reflectances, radiometry) for power in (lamps, estimates)
+    )
     return delta_e_2000(first, second)
 
 
@@ -121,8 +139,14 @@ def _relit_lab(power: Array, reflectances: Array, radiometry: Array) -> Array:
     For the 10° observer sodium light has no Z. Z relative to white is then the ratio of luminances, as it is for all
     single wavelengths.
     """
-    weights = (reflectances[:, :, None] * radiometry).transpose(1, 0, 2).reshape(len(radiometry), -1)
+    weights = (
+        (reflectances[:, :, None] * radiometry)
+        .transpose(1, 0, 2)
+        .reshape(len(radiometry), -1)
+    )
     xyz = (power @ weights).reshape(len(power), -1, 3)
     white = (power @ radiometry)[:, None]
     missing = white <= 0
-    return lab(np.where(missing, xyz[..., 1:2], xyz), np.where(missing, white[..., 1:2], white))
+    return lab(
+        np.where(missing, xyz[..., 1:2], xyz), np.where(missing, white[..., 1:2], white)
+    )

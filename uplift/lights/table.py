@@ -29,7 +29,12 @@ from uplift.lights.discs import LampEntries
 from uplift.lights.lattice import ChromaticityLattice, chromaticity
 
 VERSION = 1
-KIND = Kind("uplift emission table", (VERSION,), "emission table", foreign="not-an-emission-table")
+KIND = Kind(
+    "uplift emission table",
+    (VERSION,),
+    "emission table",
+    foreign="not-an-emission-table",
+)
 MAX_OFFSET = 1e-4
 """Largest distance in u′v′ between a stored spectrum and its place; single precision keeps 1e-6."""
 MAX_RADIUS = 0.1
@@ -47,7 +52,14 @@ ARRAYS = {
     "entries.spectra": Stored("E N", low=0),
     "entries.radius": Stored("E", low=0),
 }
-METADATA = {"format": str, "version": int, "space": str, "observer": str, "entries": ENTRIES, "provenance": PROVENANCE}
+METADATA = {
+    "format": str,
+    "version": int,
+    "space": str,
+    "observer": str,
+    "entries": ENTRIES,
+    "provenance": PROVENANCE,
+}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -89,7 +101,9 @@ class EmissionData:
         return np.asarray(self.cmfs / self.cmfs[:, 1].sum())
 
 
-def write_emission(data: EmissionData, path: str | os.PathLike[str], *, force: bool = False) -> None:
+def write_emission(
+    data: EmissionData, path: str | os.PathLike[str], *, force: bool = False
+) -> None:
     """Write an emission table, atomically; `OutputError` if the file exists and `force` is false, or cannot be written.
 
     The new file is read back before it replaces an existing one.
@@ -113,7 +127,10 @@ def emission_digest(data: EmissionData) -> str:
 def _tensors(data: EmissionData) -> Tensors:
     places = {name: f"lattice.{name}" for name in ("white", "knots", "rings")}
     arrays = {name: attrgetter(places.get(name, name))(data) for name in ARRAYS}
-    return {name: np.ascontiguousarray(arrays[name], dtype=stored.types[0]) for name, stored in ARRAYS.items()}
+    return {
+        name: np.ascontiguousarray(arrays[name], dtype=stored.types[0])
+        for name, stored in ARRAYS.items()
+    }
 
 
 def _metadata(data: EmissionData) -> dict[str, Any]:
@@ -132,15 +149,26 @@ def _decode(tensors: Tensors, metadata: Mapping[str, Any]) -> EmissionData:
     names = tuple(metadata["entries"])
     require(len(set(names)) == len(names), "the names of entries must be unique")
     require(set(tensors) == set(ARRAYS), f"the arrays must be {', '.join(ARRAYS)}")
-    sizes = {"K": len(tensors["knots"]), "R": tensors["rings"].size, "N": tensors["wavelengths"].size}
+    sizes = {
+        "K": len(tensors["knots"]),
+        "R": tensors["rings"].size,
+        "N": tensors["wavelengths"].size,
+    }
     check_arrays(tensors, ARRAYS, {**sizes, "E": len(names)})
     data = EmissionData(
         space=metadata["space"],
         observer=metadata["observer"],
-        lattice=ChromaticityLattice(tensors["white"], tensors["knots"], tensors["rings"]),
-        entries=LampEntries(names, *(tensors[f"entries.{name}"] for name in ("uv", "spectra", "radius"))),
+        lattice=ChromaticityLattice(
+            tensors["white"], tensors["knots"], tensors["rings"]
+        ),
+        entries=LampEntries(
+            names, *(tensors[f"entries.{name}"] for name in ("uv", "spectra", "radius"))
+        ),
         provenance=metadata["provenance"],
-        **{name: tensors[name] for name in ("rgb_to_xyz", "wavelengths", "cmfs", "spectra", "error")},
+        **{
+            name: tensors[name]
+            for name in ("rgb_to_xyz", "wavelengths", "cmfs", "spectra", "error")
+        },
     )
     _check(data)
     return data
@@ -151,10 +179,15 @@ def _check(data: EmissionData) -> None:
     steps = np.diff(data.wavelengths)
     even = len(steps) > 0 and bool((steps > 0).all()) and float(np.ptp(steps)) < 1e-6
     require(even, "the wavelengths must ascend evenly")
-    require(float(data.cmfs[:, 1].sum()) > 0, "the colour-matching functions must respond")
+    require(
+        float(data.cmfs[:, 1].sum()) > 0, "the colour-matching functions must respond"
+    )
     condition = float(np.linalg.cond(data.rgb_to_xyz))
     require(condition < MAX_CONDITION, "the RGB space must have three primaries")
-    places = ((data.spectra, data.lattice.nodes), (data.entries.spectra, data.entries.uv))
+    places = (
+        (data.spectra, data.lattice.nodes),
+        (data.entries.spectra, data.entries.uv),
+    )
     for spectra, uv in places:
         xyz = spectra @ data.radiometry
         unit = np.abs(xyz @ (1.0, 15.0, 3.0) - 1).max(initial=0) <= MAX_OFFSET
@@ -180,7 +213,11 @@ def summarise(data: EmissionData) -> dict[str, Any]:
         "nodes": knots * rings,
         "space": data.space,
         "observer": data.observer,
-        "wavelengths": {"first": first, "last": float(data.wavelengths[-1]), "step": second - first},
+        "wavelengths": {
+            "first": first,
+            "last": float(data.wavelengths[-1]),
+            "step": second - first,
+        },
         "mean_expected_error": float(data.error.mean(dtype=np.float64)),
         "largest_expected_error": float(data.error.max()),
         "lamps": list(data.entries.names),

@@ -8,7 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from uplift.colorimetry.sensor import SLACK, Sensor, as_rgb, in_unit_cube, raise_out_of_gamut
+from uplift.colorimetry.sensor import (
+    SLACK,
+    Sensor,
+    as_rgb,
+    in_unit_cube,
+    raise_out_of_gamut,
+)
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, OptionError
 from uplift.cube import CubeData
@@ -21,7 +27,12 @@ Function = Callable[[Array], NDArray[Any]]
 
 
 def blockwise(
-    function: Function, rows: Array, width: int, dtype: DTypeLike = np.float64, threads: int = 1, block: int = BLOCK
+    function: Function,
+    rows: Array,
+    width: int,
+    dtype: DTypeLike = np.float64,
+    threads: int = 1,
+    block: int = BLOCK,
 ) -> NDArray[Any]:
     """Apply a function, from rows (k, K) to rows (k, width), to rows (…, K) block by block: (…, width).
 
@@ -77,7 +88,11 @@ def as_float_type(dtype: DTypeLike) -> np.dtype[Any]:
 
 def as_thread_count(threads: int) -> int:
     """Convert to a whole number from 1; `OptionError` for anything else."""
-    if isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 1:
+    if (
+        isinstance(threads, bool)
+        or not isinstance(threads, int | np.integer)
+        or threads < 1
+    ):
         raise OptionError(f"threads must be a whole number from 1, got {threads!r}")
     return int(threads)
 
@@ -98,7 +113,9 @@ def decode_codes(sensor: Sensor, codes: ArrayLike) -> Array:
     try:
         array = np.asarray(codes, dtype=float)
     except (TypeError, ValueError) as error:
-        raise ColourError("8-bit codes must be numbers", code="invalid-codes") from error
+        raise ColourError(
+            "8-bit codes must be numbers", code="invalid-codes"
+        ) from error
     outside = array[~((array >= 0) & (array <= 255))]
     if outside.size:
         raise ColourError(

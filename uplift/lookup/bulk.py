@@ -19,7 +19,13 @@ from uplift.common.arrays import Array, Floats, Indices
 from uplift.common.machine import require_memory_of_xla
 from uplift.common.text import pluralise
 from uplift.lattice import EntryBoxes, Lattice
-from uplift.lookup.blocks import as_coefficient_count, as_colours, as_thread_count, as_wavelengths, blockwise
+from uplift.lookup.blocks import (
+    as_coefficient_count,
+    as_colours,
+    as_thread_count,
+    as_wavelengths,
+    blockwise,
+)
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import require_covered
 from uplift.lookup.node_table import Exact, NodeTable, tabulate, tabulate_coefficients
@@ -86,7 +92,9 @@ def _bins(lattice: Lattice) -> tuple[Places, int]:
 def _candidates(boxes: EntryBoxes) -> Places:
     cells, entries = boxes.cells
     numbers, first, count = np.unique(cells, return_index=True, return_counts=True)
-    candidates = np.full((count.max(initial=0), boxes.lattice.size), len(boxes.rgb), dtype=np.int32)
+    candidates = np.full(
+        (count.max(initial=0), boxes.lattice.size), len(boxes.rgb), dtype=np.int32
+    )
     for turn, row in enumerate(candidates):
         more: Indices = np.flatnonzero(count > turn)
         row[numbers[more]] = entries[first[more] + turn]
@@ -96,7 +104,8 @@ def _candidates(boxes: EntryBoxes) -> Places:
 def _boxes(boxes: EntryBoxes) -> Array:
     low, high = boxes.faces
     below, above = (
-        np.divide(1, room, out=np.zeros_like(room), where=room > 0) for room in (boxes.rgb - low, high - boxes.rgb)
+        np.divide(1, room, out=np.zeros_like(room), where=room > 0)
+        for room in (boxes.rgb - low, high - boxes.rgb)
     )
     none = np.array([[[-1.0] * 3, [1.0] * 3, [1.0] * 3]])
     return np.concatenate([np.stack([boxes.rgb, below, above], axis=1), none])
@@ -130,14 +139,18 @@ def _number(grid: Grid, position: jax.Array) -> jax.Array:
 def _with_entries(grid: Grid, rgb: jax.Array) -> jax.Array:
     """Interpolate the lattice and, in the box of an entry, the entry (`uplift.lattice.entry_boxes`)."""
     exit_rgb, entry, weight = _box_hits(grid, rgb)
-    return weight[:, None] * _trilinear(grid, exit_rgb) + (1 - weight)[:, None] * _rows(grid.atlas, entry)
+    return weight[:, None] * _trilinear(grid, exit_rgb) + (1 - weight)[:, None] * _rows(
+        grid.atlas, entry
+    )
 
 
 def _box_hits(grid: Grid, rgb: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
     """Colours (n, 3) at which to evaluate the lattice, the entry (n,) of each, and the weight (n,) of the lattice."""
     cell = _number(grid, _cell(grid, rgb))
 
-    def turn(count: jax.Array, best: tuple[jax.Array, jax.Array]) -> tuple[jax.Array, jax.Array]:
+    def turn(
+        count: jax.Array, best: tuple[jax.Array, jax.Array]
+    ) -> tuple[jax.Array, jax.Array]:
         entry, weight = best
         candidate = _rows(grid.candidates[count], cell)
         centre, below, above = jnp.moveaxis(_rows(grid.boxes, candidate), 1, 0)
@@ -149,7 +162,9 @@ def _box_hits(grid: Grid, rgb: jax.Array) -> tuple[jax.Array, jax.Array, jax.Arr
 
     # Boxes do not overlap, so that at most one candidate contains a colour.
     none = jnp.full(len(rgb), len(grid.atlas) - 1, dtype=jnp.int32)
-    entry, weight = jax.lax.fori_loop(0, len(grid.candidates), turn, (none, jnp.ones(len(rgb))))
+    entry, weight = jax.lax.fori_loop(
+        0, len(grid.candidates), turn, (none, jnp.ones(len(rgb)))
+    )
     centre = _rows(grid.boxes[:, 0], entry)
     moved = (weight > 0) & (weight < 1)
     ray = (rgb - centre) / jnp.where(moved, weight, 1)[:, None]
@@ -198,11 +213,18 @@ class Sampler:
     def __call__(self, rgb: ArrayLike) -> Floats:
         """Interpolate values (…, N) at linear RGB (…, 3) in [0, 1]; `ColourError` as in `Cube.reflectance`."""
         width = self.grid.lattice.shape[1]
-        return blockwise(self._chunk, as_rgb(rgb), width, np.float32, self.threads, CHUNKS[0])
+        return blockwise(
+            self._chunk, as_rgb(rgb), width, np.float32, self.threads, CHUNKS[0]
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle arrays of numpy: JAX would restore those of float64 as float32."""
-        return _on_device, (self.sensor, Grid(*map(np.asarray, self.grid)), self.threads, self.exact)
+        return _on_device, (
+            self.sensor,
+            Grid(*map(np.asarray, self.grid)),
+            self.threads,
+            self.exact,
+        )
 
     @property
     def nbytes(self) -> int:
@@ -225,7 +247,9 @@ class Sampler:
         return values
 
 
-def spectra(cube: Cube, wavelengths: ArrayLike | None = None, *, threads: int = 2) -> Sampler:
+def spectra(
+    cube: Cube, wavelengths: ArrayLike | None = None, *, threads: int = 2
+) -> Sampler:
     """Prepare a cube for reflectances in mode ``spectra``, accurate to 1e-6.
 
     The table takes 4 · dim³ · N bytes. A colour reads eight of its rows (32 · N bytes), in an entry box one more.
@@ -245,7 +269,12 @@ def spectra(cube: Cube, wavelengths: ArrayLike | None = None, *, threads: int = 
         From linear RGB (..., 3) to reflectances (..., N).
     """
     count = as_thread_count(threads)
-    return _sampler(tabulate(cube.data, as_wavelengths(wavelengths, cube.wavelengths), np.float32, count), count)
+    return _sampler(
+        tabulate(
+            cube.data, as_wavelengths(wavelengths, cube.wavelengths), np.float32, count
+        ),
+        count,
+    )
 
 
 def coefficients(cube: Cube, count: int | None = None, *, threads: int = 2) -> Sampler:
@@ -266,10 +295,14 @@ def coefficients(cube: Cube, count: int | None = None, *, threads: int = 2) -> S
         From linear RGB (..., 3) to coefficients (..., count).
     """
     width, threads = as_coefficient_count(count, cube.data), as_thread_count(threads)
-    return _sampler(tabulate_coefficients(cube.data, width, np.float32, threads), threads)
+    return _sampler(
+        tabulate_coefficients(cube.data, width, np.float32, threads), threads
+    )
 
 
-def _on_device(sensor: Sensor, grid: Grid, threads: int, exact: Exact | None) -> Sampler:
+def _on_device(
+    sensor: Sensor, grid: Grid, threads: int, exact: Exact | None
+) -> Sampler:
     require_memory_of_xla()
     with jax.enable_x64(True):
         return Sampler(sensor, jax.device_put(grid), threads, exact)

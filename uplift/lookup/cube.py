@@ -18,7 +18,12 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import unknown_name
 from uplift.cube import CubeData, read, write
 from uplift.lookup import blocks
-from uplift.lookup.interpolate import MODES, coefficients, extended_coefficients, node_errors
+from uplift.lookup.interpolate import (
+    MODES,
+    coefficients,
+    extended_coefficients,
+    node_errors,
+)
 
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Light
@@ -113,7 +118,12 @@ class Cube:
         return () if self.data.atlas.outside is None else self.data.atlas.outside.names
 
     def coefficients(
-        self, rgb: ArrayLike, count: int | None = None, *, dtype: DTypeLike = np.float64, threads: int = 1
+        self,
+        rgb: ArrayLike,
+        count: int | None = None,
+        *,
+        dtype: DTypeLike = np.float64,
+        threads: int = 1,
     ) -> NDArray[Any]:
         """Interpolate the coefficients of the model between nodes and atlas entries.
 
@@ -191,7 +201,9 @@ class Cube:
         kind, count = blocks.as_float_type(dtype), blocks.as_thread_count(threads)
         colours = blocks.as_colours(rgb, self.data.sensor)
         function: blocks.Function = partial(MODES[mode], self.data, wavelengths=at)
-        if mode in TABULATED and self._is_table_worthwhile(colours, len(at) * kind.itemsize):
+        if mode in TABULATED and self._is_table_worthwhile(
+            colours, len(at) * kind.itemsize
+        ):
             from uplift.lookup.node_table import tabulate
 
             function = getattr(tabulate(self.data, at, kind, count), mode)
@@ -200,7 +212,10 @@ class Cube:
     def _is_table_worthwhile(self, colours: Array, row_bytes: int) -> bool:
         """Whether to compute the spectra of all nodes once, instead of repeatedly per block."""
         points = self.data.points.present
-        return bool(points.size * row_bytes <= MAX_TABLE_BYTES and colours.size // 3 >= np.count_nonzero(points))
+        return bool(
+            points.size * row_bytes <= MAX_TABLE_BYTES
+            and colours.size // 3 >= np.count_nonzero(points)
+        )
 
     def covers(self, rgb: ArrayLike) -> Mask:
         """Test whether the cube can answer colours in [0, 1]: all of them, unless it was built for a scene.
@@ -218,9 +233,17 @@ class Cube:
         colours = blocks.as_colours(rgb, self.data.sensor)
         if self.data.complete_cells is None:
             return np.ones(colours.shape[:-1], dtype=bool)
-        return self.data.complete_cells[self.data.entry_boxes.cell(colours.reshape(-1, 3))].reshape(colours.shape[:-1])
+        return self.data.complete_cells[
+            self.data.entry_boxes.cell(colours.reshape(-1, 3))
+        ].reshape(colours.shape[:-1])
 
-    def fill_missing(self, rgb: ArrayLike | None = None, other: Cube | None = None, *, threads: int = 1) -> Cube:
+    def fill_missing(
+        self,
+        rgb: ArrayLike | None = None,
+        other: Cube | None = None,
+        *,
+        threads: int = 1,
+    ) -> Cube:
         """Add missing nodes of a sparse cube: spectra of its model, fitted to those of another, with exact colours.
 
         Parameters
@@ -239,14 +262,24 @@ class Cube:
         """
         from uplift.lookup.outside import fill_missing
 
-        colours = None if rgb is None else blocks.as_colours(rgb, self.data.sensor).reshape(-1, 3)
+        colours = (
+            None
+            if rgb is None
+            else blocks.as_colours(rgb, self.data.sensor).reshape(-1, 3)
+        )
         points = self.data.missing_points(colours)
         if not points.size:
             return self
         source = load() if other is None else other
-        return Cube(fill_missing(self.data, points, source.data, blocks.as_thread_count(threads)))
+        return Cube(
+            fill_missing(
+                self.data, points, source.data, blocks.as_thread_count(threads)
+            )
+        )
 
-    def standard_error(self, rgb: ArrayLike, light: Illuminant | Light | None = None) -> Array | None:
+    def standard_error(
+        self, rgb: ArrayLike, light: Illuminant | Light | None = None
+    ) -> Array | None:
         """Estimate the difference that 68 % of measurements stay within, as learnt from left-out atlas entries.
 
         It holds for materials like those of the atlas, which colours alone do not identify; see `unlike_atlas`.
@@ -267,7 +300,9 @@ class Cube:
         errors = expected_errors(self, rgb, light)
         return None if errors is None else errors[..., 0]
 
-    def error_bound(self, rgb: ArrayLike, light: Illuminant | Light | None = None) -> Array | None:
+    def error_bound(
+        self, rgb: ArrayLike, light: Illuminant | Light | None = None
+    ) -> Array | None:
         """Estimate the difference that 95 % of measurements stay within, which is learnt separately.
 
         Parameters
@@ -330,7 +365,9 @@ class Cube:
         ndarray, shape (...)
             Codes from 0 to 255, with fractions.
         """
-        return np.interp(np.asarray(rgb, dtype=float), self.data.sensor.decoding, np.arange(256))
+        return np.interp(
+            np.asarray(rgb, dtype=float), self.data.sensor.decoding, np.arange(256)
+        )
 
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """Write the cube file, atomically.
@@ -367,7 +404,9 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
     return Cube(read(DEFAULT if path is None else find_file(path)))
 
 
-def expected_errors(cube: Cube, rgb: ArrayLike, light: Illuminant | Light | None = None) -> Array | None:
+def expected_errors(
+    cube: Cube, rgb: ArrayLike, light: Illuminant | Light | None = None
+) -> Array | None:
     """Standard errors and error bounds (…, 2) of a cube that has estimates. Those of nodes are under one light."""
     data = cube.data
     if data.points.standard_error is None:
@@ -383,7 +422,9 @@ def expected_errors(cube: Cube, rgb: ArrayLike, light: Illuminant | Light | None
     return blocks.blockwise(function, blocks.as_colours(rgb, data.sensor), 2)
 
 
-def find_file(path: str | os.PathLike[str], packaged: dict[str, Path] = PACKAGED) -> str | os.PathLike[str]:
+def find_file(
+    path: str | os.PathLike[str], packaged: dict[str, Path] = PACKAGED
+) -> str | os.PathLike[str]:
     """Return the packaged file that a name, in any case, stands for, or else the path. A file takes precedence."""
     found = packaged.get(os.fsdecode(path).casefold())
     return path if found is None or os.path.lexists(path) else found

@@ -96,7 +96,9 @@ def fading_share(data: CubeData, rgb: Array) -> Array:
     if data.inexact_corners is None:
         return np.zeros(len(rgb))
     nodes = around(data, rgb)
-    return np.minimum((data.inexact_corners[nodes.points] * nodes.weights).sum(axis=1), 1)
+    return np.minimum(
+        (data.inexact_corners[nodes.points] * nodes.weights).sum(axis=1), 1
+    )
 
 
 def mixed_moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
@@ -111,7 +113,10 @@ def mixed_refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the weighted coefficients of the lattice and of entries, moved to their colours."""
     nodes = around(data, rgb)
     lattice = evaluate(data.model, _exact_lattice(data, nodes, rgb), wavelengths)
-    return nodes.hits.mix(lattice, evaluate(data.atlas.spectra.model, _exact_entries(data, nodes), wavelengths))
+    return nodes.hits.mix(
+        lattice,
+        evaluate(data.atlas.spectra.model, _exact_entries(data, nodes), wavelengths),
+    )
 
 
 def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
@@ -131,13 +136,22 @@ def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     return weighted_sum(values, row.reshape(corners.shape), weights)
 
 
-spectra, moments, refined = (partial(exact, mix) for mix in (mixed_spectra, mixed_moments, mixed_refined))
-MODES: dict[str, Mode] = {"spectra": spectra, "moments": moments, "refined": refined, "nearest": nearest}
+spectra, moments, refined = (
+    partial(exact, mix) for mix in (mixed_spectra, mixed_moments, mixed_refined)
+)
+MODES: dict[str, Mode] = {
+    "spectra": spectra,
+    "moments": moments,
+    "refined": refined,
+    "nearest": nearest,
+}
 
 
 def coefficients(data: CubeData, rgb: Array) -> Array:
     """Weighted coefficients (n, C) of the nodes around linear RGB (n, 3) in [0, 1], as `exact_coefficients`."""
-    return exact_coefficients(data, data.model, rgb, weighted_coefficients(data, rgb), refined_multipliers)
+    return exact_coefficients(
+        data, data.model, rgb, weighted_coefficients(data, rgb), refined_multipliers
+    )
 
 
 def extended_coefficients(data: CubeData, rgb: Array) -> Array:
@@ -147,24 +161,34 @@ def extended_coefficients(data: CubeData, rgb: Array) -> Array:
     lattice = extend_coefficients(data, data.points.coefficients[points])
     nodes = replace(nodes, points=row.reshape(nodes.points.shape))
     weighted = nodes.weighted_sum(lattice, data.atlas.spectra.coefficients)
-    return exact_coefficients(data, data.atlas.spectra.model, rgb, weighted, extended_multipliers)
+    return exact_coefficients(
+        data, data.atlas.spectra.model, rgb, weighted, extended_multipliers
+    )
 
 
 def exact_coefficients(
-    data: CubeData, model: Model, rgb: Array, weighted: Array, multipliers: Callable[[CubeData, Array], Array]
+    data: CubeData,
+    model: Model,
+    rgb: Array,
+    weighted: Array,
+    multipliers: Callable[[CubeData, Array], Array],
 ) -> Array:
     """Move coefficients (n, K), where nodes have not their own colours, to those of exact ``multipliers``."""
     share = fading_share(data, rgb)
     rows = np.flatnonzero(share)
     if rows.size:
         moved = model.to_storage(multipliers(data, rgb[rows]))
-        weighted[rows] = (1 - share[rows, None]) * weighted[rows] + share[rows, None] * moved
+        weighted[rows] = (1 - share[rows, None]) * weighted[rows] + share[
+            rows, None
+        ] * moved
     return weighted
 
 
 def weighted_coefficients(data: CubeData, rgb: Array) -> Array:
     """Weighted coefficients (n, C) of the nodes around linear RGB (n, 3) in [0, 1]."""
-    return around(data, rgb).weighted_sum(data.points.coefficients, data.atlas.coefficients)
+    return around(data, rgb).weighted_sum(
+        data.points.coefficients, data.atlas.coefficients
+    )
 
 
 def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
@@ -173,14 +197,18 @@ def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
     Multipliers followed by zeros are those of the same spectrum, which has more moments.
     """
     # B p is the same with zeros for further multipliers; the moments c_j = (1/π) ∫ g cos jφ dφ of g follow for any j.
-    extended = data.atlas.spectra.model.to_storage(_append_zeros(data, data.model.from_storage(coefficients)))
+    extended = data.atlas.spectra.model.to_storage(
+        _append_zeros(data, data.model.from_storage(coefficients))
+    )
     extended[:, : data.model.count] = coefficients
     return extended
 
 
 def refined_multipliers(data: CubeData, rgb: Array) -> Array:
     """Multipliers (n, C) that start from the weighted coefficients and have exactly the colours (n, 3)."""
-    return refine_to_rgb(data, data.model, data.model.from_storage(weighted_coefficients(data, rgb)), rgb)
+    return refine_to_rgb(
+        data, data.model, data.model.from_storage(weighted_coefficients(data, rgb)), rgb
+    )
 
 
 def extended_multipliers(data: CubeData, rgb: Array) -> Array:
@@ -191,8 +219,13 @@ def extended_multipliers(data: CubeData, rgb: Array) -> Array:
     nodes, model = around(data, rgb), data.atlas.spectra.model
     extended = _append_zeros(data, _exact_lattice(data, nodes, rgb))
     inside = nodes.hits._replace(rows=np.arange(len(nodes.hits.rows)))
-    mixed = inside.mix(model.to_storage(extended[nodes.hits.rows]), model.to_storage(_exact_entries(data, nodes)))
-    extended[nodes.hits.rows] = refine_to_rgb(data, model, model.from_storage(mixed), rgb[nodes.hits.rows])
+    mixed = inside.mix(
+        model.to_storage(extended[nodes.hits.rows]),
+        model.to_storage(_exact_entries(data, nodes)),
+    )
+    extended[nodes.hits.rows] = refine_to_rgb(
+        data, model, model.from_storage(mixed), rgb[nodes.hits.rows]
+    )
     return extended
 
 
@@ -209,24 +242,37 @@ def node_errors(data: CubeData, rgb: Array) -> Array:
 def _exact_lattice(data: CubeData, nodes: Nodes, rgb: Array) -> Array:
     """Multipliers (n, C) of the lattice that have exactly its share of the colours (n, 3)."""
     # The mean moments nearly have the mean colour: a step or two of Δx = A⁺ (t − r) suffice (5).
-    start = data.model.from_storage(weighted_sum(data.points.coefficients, nodes.points, nodes.weights))
+    start = data.model.from_storage(
+        weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
+    )
     return refine_to_rgb(data, data.model, start, nodes.lattice_rgb(rgb))
 
 
 def _exact_entries(data: CubeData, nodes: Nodes) -> Array:
     """Multipliers (k, K) of the entry of each colour in a box, that have exactly the colour of the entry."""
     atlas, (entries, row) = data.atlas, np.unique(nodes.hits.entry, return_inverse=True)
-    return refine_to_rgb(data, atlas.spectra.model, atlas.spectra.multipliers[entries], atlas.rgb[entries])[row]
+    return refine_to_rgb(
+        data,
+        atlas.spectra.model,
+        atlas.spectra.multipliers[entries],
+        atlas.rgb[entries],
+    )[row]
 
 
 def _append_zeros(data: CubeData, multipliers: Array) -> Array:
     """Multipliers (m, K) in the model of the entries of the spectra with multipliers (m, C)."""
-    return np.pad(multipliers, ((0, 0), (0, data.atlas.spectra.model.count - data.model.count)))
+    return np.pad(
+        multipliers, ((0, 0), (0, data.atlas.spectra.model.count - data.model.count))
+    )
 
 
-def _mix_entries(data: CubeData, nodes: Nodes, lattice: Array, wavelengths: Array) -> Array:
+def _mix_entries(
+    data: CubeData, nodes: Nodes, lattice: Array, wavelengths: Array
+) -> Array:
     """Reflectance (n, N) of the lattice, mixed with the spectra of entries in their boxes."""
     if not nodes.hits.rows.size:
         return lattice
     entries, row = np.unique(nodes.hits.entry, return_inverse=True)
-    return nodes.hits.mix(lattice, data.atlas.spectra.reflectance(entries, wavelengths)[row])
+    return nodes.hits.mix(
+        lattice, data.atlas.spectra.reflectance(entries, wavelengths)[row]
+    )

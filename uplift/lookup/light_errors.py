@@ -11,7 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry.delta_e import delta_e_spectra, lab, rgb_to_lab
-from uplift.colorimetry.expected_error import ExpectedError, expected_error, learn_radii, mahalanobis
+from uplift.colorimetry.expected_error import (
+    ExpectedError,
+    expected_error,
+    learn_radii,
+    mahalanobis,
+)
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
@@ -53,10 +58,14 @@ def light_errors(data: CubeData, light: Light) -> LightErrors:
     measured, left_out = _evidence(data)
     at, rows = data.sensor.wavelengths, np.arange(len(measured))
     missed = delta_e_spectra(light, left_out, measured)
-    plain = delta_e_spectra(light, reflectance(data.model, data.atlas.coefficients[rows], at), measured)
+    plain = delta_e_spectra(
+        light, reflectance(data.model, data.atlas.coefficients[rows], at), measured
+    )
     stored = delta_e_spectra(light, data.atlas.spectra.reflectance(rows, at), measured)
     expected = expected_error(data.entry_lab, missed, plain)
-    entries = np.tile(np.array(expected.radii) * np.sqrt(expected.floor), (len(data.atlas.names), 1))
+    entries = np.tile(
+        np.array(expected.radii) * np.sqrt(expected.floor), (len(data.atlas.names), 1)
+    )
     entries[rows] = stored[:, None]
     return LightErrors(data, expected, entries)
 
@@ -70,7 +79,9 @@ def outside_errors(data: CubeData, light: Light | None) -> Array:
         return table.error
     if table.measured is None:
         return np.full(len(table.names), np.nan)
-    stored = table.spectra.reflectance(np.arange(len(table.names)), data.sensor.wavelengths)
+    stored = table.spectra.reflectance(
+        np.arange(len(table.names)), data.sensor.wavelengths
+    )
     return delta_e_spectra(light, stored, table.measured)
 
 
@@ -91,20 +102,37 @@ class LabErrors:
         """
         expected = self.expected(rgb_to_lab(self.data.sensor, np.clip(rgb, 0, 1)))
         hits = self.data.outside_boxes.find(rgb)
-        expected[hits.rows] *= hits.lattice_weight[:, None] ** 2  # the share of the answer that no entry gives
-        return (self.expected.scale**2 * (expected + self.expected.floor)).reshape(-1, 3, 3)
+        expected[hits.rows] *= (
+            hits.lattice_weight[:, None] ** 2
+        )  # the share of the answer that no entry gives
+        return (self.expected.scale**2 * (expected + self.expected.floor)).reshape(
+            -1, 3, 3
+        )
 
 
 def lab_errors(data: CubeData, light: Light) -> LabErrors:
     """Learn the covariances in CIE L*a*b* under a light; `OptionError` without left-out entries."""
     measured, left_out = _evidence(data)
-    spectra = (left_out, reflectance(data.model, data.atlas.coefficients[: len(measured)], data.sensor.wavelengths))
+    spectra = (
+        left_out,
+        reflectance(
+            data.model,
+            data.atlas.coefficients[: len(measured)],
+            data.sensor.wavelengths,
+        ),
+    )
     missed, kept = (delta_e_spectra(light, each, measured) for each in spectra)
     measured_lab = lab(measured @ light.xyz.T, light.white)
-    differences = [measured_lab - lab(each @ light.xyz.T, light.white) for each in spectra]
+    differences = [
+        measured_lab - lab(each @ light.xyz.T, light.white) for each in spectra
+    ]
     # Products (E, 9) of the components
-    left_out_products, kept_products = ((each[:, :, None] * each[:, None, :]).reshape(-1, 9) for each in differences)
-    expected = expected_error(data.entry_lab, missed, kept, (left_out_products, kept_products))
+    left_out_products, kept_products = (
+        (each[:, :, None] * each[:, None, :]).reshape(-1, 9) for each in differences
+    )
+    expected = expected_error(
+        data.entry_lab, missed, kept, (left_out_products, kept_products)
+    )
     # d² = eᵀ Σ⁻¹ e of each entry, by the covariance Σ that the other entries let expect
     own = expected.scale**2 * expected.left_out.reshape(-1, 3, 3)
     distances = mahalanobis(own[:, 1:, 1:], differences[0][:, 1:])

@@ -50,7 +50,9 @@ class Bounds:
 
     def outline(self, row: int) -> Array:
         """Compute the outline (M, 2) in a* and b* of all colours that the reflectances of colour ``row`` can have."""
-        return mismatch.outline(self.volumes.lab[row, :, 1:], self.volumes.directions.faces)
+        return mismatch.outline(
+            self.volumes.lab[row, :, 1:], self.volumes.directions.faces
+        )
 
     def likely(self, row: int) -> Array | None:
         """Compute the ellipse (M, 2) in a* and b* that holds `LIKELY` of the materials like the atlas, if known."""
@@ -60,10 +62,19 @@ class Bounds:
         # With Σ = V Λ Vᵀ, the ellipse is μ + radius · V √Λ (cos, sin).
         turn = np.linspace(0, 2 * np.pi, 73)[:-1]
         circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        return np.asarray(self.lab[row, 1:] + self.likely_radius * (circle * np.sqrt(np.maximum(values, 0))) @ axes.T)
+        return np.asarray(
+            self.lab[row, 1:]
+            + self.likely_radius * (circle * np.sqrt(np.maximum(values, 0))) @ axes.T
+        )
 
 
-def bounds(cube: Cube, rgb: Array, light: Light, mode: str = "spectra", divisions: int = mismatch.DIVISIONS) -> Bounds:
+def bounds(
+    cube: Cube,
+    rgb: Array,
+    light: Light,
+    mode: str = "spectra",
+    divisions: int = mismatch.DIVISIONS,
+) -> Bounds:
     """Compute bounds of the answers to linear RGB (n, 3) under a light at the wavelengths of the sensor.
 
     Colours outside [0, 1] are answered by `reflectance_anywhere`; ``divisions`` (0 to 4) sets the number of boundary
@@ -72,7 +83,9 @@ def bounds(cube: Cube, rgb: Array, light: Light, mode: str = "spectra", division
     """
     data = cube.data
     volumes = mismatch.mismatch_volumes(data.sensor, light, rgb, divisions)
-    spectra = reflectance_anywhere(data, rgb, data.sensor.wavelengths, mode, ~in_unit_cube(rgb))
+    spectra = reflectance_anywhere(
+        data, rgb, data.sensor.wavelengths, mode, ~in_unit_cube(rgb)
+    )
     xyz = spectra @ light.xyz.T
     largest, covariance, radius = mismatch.largest_difference(volumes, xyz), None, None
     if data.atlas.left_out is not None:

@@ -32,7 +32,12 @@ class NodeTable:
 
     @classmethod
     def of_present_points(
-        cls, data: CubeData, points: Values, atlas: Values, exact: Exact, dtype: DTypeLike
+        cls,
+        data: CubeData,
+        points: Values,
+        atlas: Values,
+        exact: Exact,
+        dtype: DTypeLike,
     ) -> "NodeTable":
         """Make a table of a type from values (m, K) of the present nodes."""
         lattice, atlas = (each.astype(dtype, copy=False) for each in (points, atlas))
@@ -54,7 +59,9 @@ class NodeTable:
 
     def values(self, rgb: Array) -> Values:
         """Weighted values (n, K) of the nodes."""
-        values = interpolate.around(self.data, rgb).weighted_sum(self.lattice, self.atlas)
+        values = interpolate.around(self.data, rgb).weighted_sum(
+            self.lattice, self.atlas
+        )
         if self.exact is not None:
             rows, moved = self.exact(rgb)
             values[rows] = moved
@@ -66,12 +73,18 @@ def _exact(share: Function, values: Function, rgb: Array) -> tuple[Indices, Arra
     return rows, values(rgb[rows])
 
 
-def prepare_products(data: CubeData, wavelengths: Array, matrix: Array, threads: int = 1) -> Callable[..., Values]:
+def prepare_products(
+    data: CubeData, wavelengths: Array, matrix: Array, threads: int = 1
+) -> Callable[..., Values]:
     """Prepare products (…, K) of a matrix (K, N) and reflectances in mode ``spectra`` at linear RGB (…, 3), float32."""
     # (Σ w g) Mᵀ = Σ w (g Mᵀ): interpolation is linear, and is faster of fewer numbers.
     table = tabulate(data, wavelengths, np.float32, threads)
-    lattice, atlas = ((each @ matrix.T).astype(each.dtype) for each in (table.lattice, table.atlas))
-    products = NodeTable(data, lattice, atlas, table.exact and partial(_product, table.exact, matrix))
+    lattice, atlas = (
+        (each @ matrix.T).astype(each.dtype) for each in (table.lattice, table.atlas)
+    )
+    products = NodeTable(
+        data, lattice, atlas, table.exact and partial(_product, table.exact, matrix)
+    )
     return partial(_sample, products, threads)
 
 
@@ -84,26 +97,45 @@ def _sample(table: NodeTable, threads: int, rgb: ArrayLike) -> Values:
     def work(rows: Array) -> Values:
         return table.values(as_colours(rows, table.data.sensor))
 
-    return blockwise(work, as_rgb(rgb), table.lattice.shape[1], table.lattice.dtype, threads)
+    return blockwise(
+        work, as_rgb(rgb), table.lattice.shape[1], table.lattice.dtype, threads
+    )
 
 
-def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1) -> NodeTable:
+def tabulate(
+    data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1
+) -> NodeTable:
     """Compute the reflectances of all nodes at wavelengths (N,) in nm: dim³ × N numbers."""
     evaluate_rows = partial(reflectance, data.model, wavelengths=wavelengths)
     stored = data.points.coefficients[data.points.present]
     present = blockwise(evaluate_rows, stored, len(wavelengths), dtype, threads)
-    entries = data.atlas.spectra.reflectance(np.arange(len(data.atlas.names)), wavelengths)
+    entries = data.atlas.spectra.reflectance(
+        np.arange(len(data.atlas.names)), wavelengths
+    )
     spectra = partial(interpolate.spectra, data, wavelengths=wavelengths)
     exact = partial(_exact, partial(interpolate.is_inexact, data), spectra)
     return NodeTable.of_present_points(data, present, entries, exact, dtype)
 
 
-def tabulate_coefficients(data: CubeData, count: int, dtype: DTypeLike = np.float64, threads: int = 1) -> NodeTable:
+def tabulate_coefficients(
+    data: CubeData, count: int, dtype: DTypeLike = np.float64, threads: int = 1
+) -> NodeTable:
     """Tabulate the coefficients of all nodes, ``count`` each: as many as the nodes or the entries have."""
     present = data.points.coefficients[data.points.present]
     entries, coefficients = data.atlas.coefficients, interpolate.coefficients
     if count != data.model.count:
-        present = blockwise(partial(interpolate.extend_coefficients, data), present, count, dtype, threads)
-        entries, coefficients = data.atlas.spectra.coefficients, interpolate.extended_coefficients
-    exact = partial(_exact, partial(interpolate.fading_share, data), partial(coefficients, data))
+        present = blockwise(
+            partial(interpolate.extend_coefficients, data),
+            present,
+            count,
+            dtype,
+            threads,
+        )
+        entries, coefficients = (
+            data.atlas.spectra.coefficients,
+            interpolate.extended_coefficients,
+        )
+    exact = partial(
+        _exact, partial(interpolate.fading_share, data), partial(coefficients, data)
+    )
     return NodeTable.of_present_points(data, present, entries, exact, dtype)

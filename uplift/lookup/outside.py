@@ -41,11 +41,18 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
         )
     # Start from the nearest colour inside, and near an entry outside from its spectrum, unless that answers alone.
     # A cube without entries outside has no boxes there, and no hits.
-    hits, entries = data.outside_boxes.find(rgb), (data.atlas.outside or data.atlas).spectra
+    hits, entries = (
+        data.outside_boxes.find(rgb),
+        (data.atlas.outside or data.atlas).spectra,
+    )
     has_lattice = ~np.isin(np.arange(len(rgb)), hits.rows[hits.lattice_weight == 0])
-    start = data.model.from_storage(coefficients(data, map_to_gamut(rgb[has_lattice], data.sensor, MAPPING).rgb))
+    start = data.model.from_storage(
+        coefficients(data, map_to_gamut(rgb[has_lattice], data.sensor, MAPPING).rgb)
+    )
     multipliers = refine_to_rgb(data, data.model, start, rgb[has_lattice])
-    own = refine_to_rgb(data, entries.model, entries.multipliers[hits.entry], rgb[hits.rows])
+    own = refine_to_rgb(
+        data, entries.model, entries.multipliers[hits.entry], rgb[hits.rows]
+    )
 
     def spectra(wavelengths: Array) -> Array:
         found = np.zeros((len(rgb), len(wavelengths)))
@@ -63,7 +70,9 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
     return spectra(at)
 
 
-def reflectance_anywhere(data: CubeData, rgb: Array, at: Array, mode: str, outside: Mask) -> Array:
+def reflectance_anywhere(
+    data: CubeData, rgb: Array, at: Array, mode: str, outside: Mask
+) -> Array:
     """Compute reflectances (n, N) at wavelengths (N,) in nm, of linear RGB (n, 3) that may be ``outside`` (n,)."""
     spectra = np.empty((len(rgb), len(at)))
     spectra[~outside] = MODES[mode](data, np.clip(rgb[~outside], 0, 1), at)
@@ -72,25 +81,38 @@ def reflectance_anywhere(data: CubeData, rgb: Array, at: Array, mode: str, outsi
     return spectra
 
 
-def fill_missing(data: CubeData, points: Indices, other: CubeData, threads: int = 1) -> CubeData:
+def fill_missing(
+    data: CubeData, points: Indices, other: CubeData, threads: int = 1
+) -> CubeData:
     """Return the cube with absent nodes ``points`` (k,) fitted to the answers of another cube of the same RGB space.
 
     Their standard error is the largest of the cube, as their distance from measurements is unknown.
     """
     common_sensor([data, other])
     target, table = data.lattice.target(points), data.points
-    multipliers = blockwise(partial(_fit_to_other, data, other), target, data.model.count, threads=threads)
+    multipliers = blockwise(
+        partial(_fit_to_other, data, other), target, data.model.count, threads=threads
+    )
     stored = data.model.to_storage(multipliers)
     for values in (stored.astype(table.coefficients.dtype), stored):
         rgb = data.sensor.rgb(reflectance(data.model, values, data.sensor.wavelengths))
         distance = np.abs(target - rgb).max(axis=1)
         if (distance <= data.threshold).all():
             break  # single precision is accurate enough
-    rows: dict[str, NDArray[Any]] = {"coefficients": values, "rgb": rgb, "distance": distance}
-    rows["status"] = np.where(distance > data.threshold, Status.UNFITTED, Status.REGULAR)
+    rows: dict[str, NDArray[Any]] = {
+        "coefficients": values,
+        "rgb": rgb,
+        "distance": distance,
+    }
+    rows["status"] = np.where(
+        distance > data.threshold, Status.UNFITTED, Status.REGULAR
+    )
     if table.standard_error is not None:
         rows["standard_error"] = np.full(len(points), table.standard_error.max())
-    provenance = {**data.provenance, "filled": {"points": len(points), "cube": digest(other)}}
+    provenance = {
+        **data.provenance,
+        "filled": {"points": len(points), "cube": digest(other)},
+    }
     return replace(data, provenance=provenance, points=table.filled(points, rows))
 
 
@@ -98,6 +120,10 @@ def _fit_to_other(data: CubeData, other: CubeData, rgb: Array) -> Array:
     """Multipliers (n, C) of the cube's model: close to the spectra of ``other``, with exactly the colours (n, 3)."""
     spectra = refined(other, rgb, data.sensor.wavelengths)
     # min |B p − S⁻¹(g)|, and from this p by steps to the exact colour
-    linear = data.model.from_reflectance(np.clip(spectra, MIN_REFLECTANCE, 1 - MIN_REFLECTANCE))
-    start = np.linalg.lstsq(data.model.basis(data.sensor.wavelengths), linear.T, rcond=None)[0].T
+    linear = data.model.from_reflectance(
+        np.clip(spectra, MIN_REFLECTANCE, 1 - MIN_REFLECTANCE)
+    )
+    start = np.linalg.lstsq(
+        data.model.basis(data.sensor.wavelengths), linear.T, rcond=None
+    )[0].T
     return refine_to_rgb(data, data.model, np.ascontiguousarray(start), rgb)

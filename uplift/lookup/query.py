@@ -80,7 +80,9 @@ def query(
     beyond = np.zeros(len(rgb), dtype=bool) if outside is None else outside
     for start in range(0, len(rgb), BLOCK):
         block = slice(start, start + BLOCK)
-        yield from _block(cube, rgb[block], requested[block], beyond[block], at, mode, lights)
+        yield from _block(
+            cube, rgb[block], requested[block], beyond[block], at, mode, lights
+        )
 
 
 def query_xyz(
@@ -107,11 +109,19 @@ def query_xyz(
     rgb = np.asarray(values @ sensor.xyz_to_rgb.T)
     mapped = map_to_gamut(rgb, sensor, MAPPING)
     requested = np.where(mapped.outside[:, None], rgb, mapped.rgb)
-    yield from query(cube, mapped.rgb, wavelengths, mode, requested, lights, mapped.outside)
+    yield from query(
+        cube, mapped.rgb, wavelengths, mode, requested, lights, mapped.outside
+    )
 
 
 def _block(
-    cube: Cube, rgb: Array, requested: Array, outside: Mask, at: Array, mode: str, lights: Sequence[Light]
+    cube: Cube,
+    rgb: Array,
+    requested: Array,
+    outside: Mask,
+    at: Array,
+    mode: str,
+    lights: Sequence[Light],
 ) -> Iterator[QueryResult]:
     data, sensor = cube.data, cube.data.sensor
     count = len(sensor.wavelengths)
@@ -133,19 +143,33 @@ def _block(
     if data.atlas.outside is not None:
         found = data.outside_boxes.find(answered)
         alone = found.lattice_weight == 0
-        entries = dict(zip(found.rows[alone].tolist(), found.entry[alone].tolist(), strict=True))
+        entries = dict(
+            zip(found.rows[alone].tolist(), found.entry[alone].tolist(), strict=True)
+        )
     # Standard errors and error bounds (n, 2) under the light of the cube's errors and under each light, by name.
     wanted = [(None, None), *((light.name, light) for light in lights)]
     has_errors = data.points.standard_error is not None
-    errors = {name: _errors(cube, rgb, outside, entries, light) for name, light in wanted if has_errors}
-    unlike = cube.unlike_atlas(rgb) & ~outside if has_errors else np.zeros(len(rgb), dtype=bool)
+    errors = {
+        name: _errors(cube, rgb, outside, entries, light)
+        for name, light in wanted
+        if has_errors
+    }
+    unlike = (
+        cube.unlike_atlas(rgb) & ~outside
+        if has_errors
+        else np.zeros(len(rgb), dtype=bool)
+    )
     # A colour is that of an entry if their 8-bit codes are close.
     codes, entry_codes = cube.encode(rgb), cube.encode(data.atlas.rgb)
     low, fraction = data.lattice.cell(rgb)
     statuses = data.points.status[data.lattice.cell_corners(low, fraction)[0]]
     realisable = data.solid.contains(answered)
     for row, cell in enumerate(low.tolist()):
-        known = {name: each[row].tolist() for name, each in errors.items() if not np.isnan(each[row, 0])}
+        known = {
+            name: each[row].tolist()
+            for name, each in errors.items()
+            if not np.isnan(each[row, 0])
+        }
         own = known.pop(None, (None, None))
         difference = np.abs(entry_codes - codes[row]).max(axis=1)
         is_entry = difference.min(initial=np.inf) <= CODE_TOLERANCE and not outside[row]
@@ -165,20 +189,32 @@ def _block(
             entry=entry,
             standard_error=own[0],
             error_bound=own[1],
-            standard_errors={name: each[0] for name, each in known.items() if name is not None},
-            error_bounds={name: each[1] for name, each in known.items() if name is not None},
+            standard_errors={
+                name: each[0] for name, each in known.items() if name is not None
+            },
+            error_bounds={
+                name: each[1] for name, each in known.items() if name is not None
+            },
             light_xyz={name: each[row] for name, each in relit.items()},
             unlike_atlas=bool(unlike[row]),
             realisable=bool(realisable[row]),
         )
 
 
-def _errors(cube: Cube, rgb: Array, outside: Mask, entries: Mapping[int, int], light: Light | None = None) -> Array:
+def _errors(
+    cube: Cube,
+    rgb: Array,
+    outside: Mask,
+    entries: Mapping[int, int],
+    light: Light | None = None,
+) -> Array:
     """Standard errors and error bounds (n, 2) of a cube that has them, NaN ``outside`` (n,) where no entry answers."""
     errors = np.full((len(rgb), 2), np.nan)
     errors[~outside] = expected_errors(cube, rgb[~outside], light)
     if entries:
         from uplift.lookup.light_errors import outside_errors
 
-        errors[list(entries)] = outside_errors(cube.data, light)[list(entries.values())][:, None]
+        errors[list(entries)] = outside_errors(cube.data, light)[
+            list(entries.values())
+        ][:, None]
     return errors

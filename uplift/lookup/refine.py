@@ -13,7 +13,12 @@ from uplift.common.arrays import Array, Indices, Values
 from uplift.cube import CubeData
 from uplift.models.arithmetic import blocked_matmul_columns
 from uplift.models.duality import MAX_MULTIPLIER
-from uplift.models.minimum_norm import ForwardMap, forward_map, minimum_norm_step, solve_damped
+from uplift.models.minimum_norm import (
+    ForwardMap,
+    forward_map,
+    minimum_norm_step,
+    solve_damped,
+)
 from uplift.models.model import Model
 
 TOLERANCE = 1e-8
@@ -52,8 +57,13 @@ def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Arr
     failed = np.flatnonzero(distance > data.threshold)
     if failed.size:
         goal = within_solid(data, rgb[failed])
-        for again in (np.array(start[failed].T, order="C"), np.zeros((model.count, failed.size))):
-            before = np.abs(forward.residual(multipliers[:, failed].T, goal)).max(axis=1)
+        for again in (
+            np.array(start[failed].T, order="C"),
+            np.zeros((model.count, failed.size)),
+        ):
+            before = np.abs(forward.residual(multipliers[:, failed].T, goal)).max(
+                axis=1
+            )
             better = _descend(forward, again, np.array(goal.T, order="C")) < before
             multipliers[:, failed[better]] = again[:, better]
     return multipliers.T
@@ -73,15 +83,25 @@ def pull(sensor: Sensor) -> tuple[Array, Array, Array]:
     return scale @ sensor.matrix, scale @ shapes.T, scale
 
 
-def with_colours(data: CubeData, spectra: Values, at_sensor: Array, rgb: Array, wavelengths: Array) -> Values:
+def with_colours(
+    data: CubeData, spectra: Values, at_sensor: Array, rgb: Array, wavelengths: Array
+) -> Values:
     """Move mixtures to their colours (n, 3), or to realisable ones of less chroma (docs/mathematics.md, 9).
 
     ``spectra`` (n, N) are reflectances in [0, 1] at any wavelengths (N,) in nm, ``at_sensor`` (n, M) the same at those
     of the sensor. They need not be of the model. Those that have their colour stay to the last bit.
     """
-    model, (weights, shapes, scale), moved = data.model, pull(data.sensor), spectra.copy()
-    shapes_at = np.array([np.interp(wavelengths, data.sensor.wavelengths, shape) for shape in shapes])
-    pending = np.flatnonzero(np.abs(data.sensor.rgb(at_sensor) - rgb).max(axis=1) > TOLERANCE)
+    model, (weights, shapes, scale), moved = (
+        data.model,
+        pull(data.sensor),
+        spectra.copy(),
+    )
+    shapes_at = np.array(
+        [np.interp(wavelengths, data.sensor.wavelengths, shape) for shape in shapes]
+    )
+    pending = np.flatnonzero(
+        np.abs(data.sensor.rgb(at_sensor) - rgb).max(axis=1) > TOLERANCE
+    )
     for first in range(0, pending.size, BLOCK_COLUMNS):
         rows = pending[first : first + BLOCK_COLUMNS]
         goal = scale @ within_solid(data, rgb[rows]).T
@@ -95,7 +115,9 @@ def with_colours(data: CubeData, spectra: Values, at_sensor: Array, rgb: Array, 
     return moved
 
 
-def _pull(model: Model, weights: Array, shapes: Array, linear: Array, goal: Array) -> Array:
+def _pull(
+    model: Model, weights: Array, shapes: Array, linear: Array, goal: Array
+) -> Array:
     """Find y (3, n) with W S(x + Kᵀ y) = goal (3, n), from linear parts x (N, n).
 
     As S increases, this is the minimum of a convex function Φ, whose gradient is the negative residual, and Newton's
@@ -103,9 +125,14 @@ def _pull(model: Model, weights: Array, shapes: Array, linear: Array, goal: Arra
     unless it goes too far: to where Φ rises more than half as steeply as it fell, or where it is much flatter.
     It changes no x by more than `REACH` (1 + |x|).
     """
-    products = np.array([weights[a] * shapes[b] for a in range(3) for b in range(a + 1)])
+    products = np.array(
+        [weights[a] * shapes[b] for a in range(3) for b in range(a + 1)]
+    )
     found, length = np.zeros_like(goal), np.ones(goal.shape[1])
-    gram, residual = products @ model.derivative(linear), goal - weights @ model.to_reflectance(linear)
+    gram, residual = (
+        products @ model.derivative(linear),
+        goal - weights @ model.to_reflectance(linear),
+    )
     for _ in range(MAX_PULLS):
         pending = np.flatnonzero(np.abs(residual).max(axis=0) > PULLED)
         if not pending.size:
@@ -134,7 +161,9 @@ def within_solid(data: CubeData, rgb: Array) -> Array:
     Half of the threshold inside the object-colour solid, on the line to the grey of the same luminance.
     """
     margin = data.threshold / 2
-    return toward_grey(data.solid, np.clip(data.sensor.grey(rgb), margin, 1 - margin), rgb, margin)
+    return toward_grey(
+        data.solid, np.clip(data.sensor.grey(rgb), margin, 1 - margin), rgb, margin
+    )
 
 
 def _descend(forward: ForwardMap, multipliers: Array, target: Array) -> Array:
@@ -160,7 +189,12 @@ def _descend(forward: ForwardMap, multipliers: Array, target: Array) -> Array:
 
 
 def _move(
-    forward: ForwardMap, multipliers: Array, residual: Array, damping: Array, columns: slice | Indices, linear: Array
+    forward: ForwardMap,
+    multipliers: Array,
+    residual: Array,
+    damping: Array,
+    columns: slice | Indices,
+    linear: Array,
 ) -> None:
     """Take one step of some columns with linear part (N, k); steps that do not reduce the residual are rejected.
 
@@ -170,7 +204,9 @@ def _move(
     with np.errstate(over="ignore", invalid="ignore"):  # overflowing steps are rejected
         change = minimum_norm_step(forward, linear, off, mu)
         trial = current + change
-        difference = forward.model.reflectance_change(linear, blocked_matmul_columns(forward.basis, change))
+        difference = forward.model.reflectance_change(
+            linear, blocked_matmul_columns(forward.basis, change)
+        )
         trial_off = off - blocked_matmul_columns(forward.sensor, difference)
     # Damped as by Levenberg and Marquardt: μ falls after a step that helped, and rises after one that did not.
     better = (trial_off**2).sum(axis=0) < (off**2).sum(axis=0)

@@ -79,7 +79,9 @@ def arctan_difference(x: Array, change: Array) -> Array:
         difference *= z
         difference += z
     if far.any():
-        difference[:, far] = np.arctan(x[:, far] + change[:, far]) - np.arctan(x[:, far])
+        difference[:, far] = np.arctan(x[:, far] + change[:, far]) - np.arctan(
+            x[:, far]
+        )
     return difference
 
 
@@ -91,7 +93,9 @@ def blocked_matmul(rows: Any, matrix: Any) -> Any:
     size = max(SINGLE_THREAD_SIZE // matrix.size, 1)
     full = len(rows) // size * size
     np.matmul(
-        rows[:full].reshape(-1, size, rows.shape[1]), matrix, out=product[:full].reshape(-1, size, matrix.shape[1])
+        rows[:full].reshape(-1, size, rows.shape[1]),
+        matrix,
+        out=product[:full].reshape(-1, size, matrix.shape[1]),
     )
     np.matmul(rows[full:], matrix, out=product[full:])
     return product
@@ -102,7 +106,10 @@ def blocked_matmul_columns(matrix: Array, columns: Array) -> Array:
     product = np.empty((len(matrix), columns.shape[1]))
     size = max(SINGLE_THREAD_SIZE // matrix.size, 1)
     full = columns.shape[1] // size * size
-    slices, targets = (array[:, :full].reshape(len(array), -1, size).swapaxes(0, 1) for array in (columns, product))
+    slices, targets = (
+        array[:, :full].reshape(len(array), -1, size).swapaxes(0, 1)
+        for array in (columns, product)
+    )
     np.matmul(matrix, slices, out=targets)
     np.matmul(matrix, columns[:, full:], out=product[:, full:])
     return product

@@ -43,12 +43,16 @@ def integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
     """Integrate spectra of multipliers (n, C) to (n, M): samples by ``synthesis`` (C, K), times ``analysis`` (K, M)."""
     moments = np.empty((len(multipliers), analysis.shape[1]))
     for block in blocks(len(multipliers), max(_SAMPLES // len(analysis), 1)):
-        moments[block] = (0.5 + arctan(multipliers[block] @ synthesis) / np.pi) @ analysis
+        moments[block] = (
+            0.5 + arctan(multipliers[block] @ synthesis) / np.pi
+        ) @ analysis
     return moments
 
 
 def moments_from_multipliers(
-    multipliers: Array, integrate: Callable[[Array, Array, Array], Array] = integrate, converged: float = CONVERGED
+    multipliers: Array,
+    integrate: Callable[[Array, Array, Array], Array] = integrate,
+    converged: float = CONVERGED,
 ) -> Array:
     """Moments (n, C) of the spectra of multipliers (n, C), by the trapezoid rule over the phase.
 
@@ -67,7 +71,9 @@ def moments_from_multipliers(
         nodes *= 2
         if not pending.size or nodes >= _MAX_NODES:
             break
-        change = (integrate(multipliers[pending], *_rule(nodes, count)) - moments[pending]) / 2
+        change = (
+            integrate(multipliers[pending], *_rule(nodes, count)) - moments[pending]
+        ) / 2
     if pending.size:
         moments[pending] = moments_by_roots(multipliers[pending])
     return moments
@@ -78,18 +84,26 @@ def _rule(nodes: int, count: int, with_trapezoid: bool = False) -> tuple[Array, 
 
     With the trapezoid rule, of 2 K + 1 nodes and 2 C moments: those of the trapezoid rule, then those of the midpoints.
     """
-    phase, weights = -np.pi * (np.arange(nodes) + 0.5) / nodes, np.full(nodes, 1 / nodes)
+    phase, weights = (
+        -np.pi * (np.arange(nodes) + 0.5) / nodes,
+        np.full(nodes, 1 / nodes),
+    )
     if with_trapezoid:
         ends = np.full(nodes + 1, 1 / nodes)
         ends[[0, -1]] /= 2
-        phase, weights = np.append(np.linspace(-np.pi, 0, nodes + 1), phase), np.append(ends, weights)
+        phase, weights = (
+            np.append(np.linspace(-np.pi, 0, nodes + 1), phase),
+            np.append(ends, weights),
+        )
     table = cosine_basis(phase, count)
     # c_j = (1/π) ∫ g cos jφ dφ over [−π, 0]
     analysis = weights[:, None] * table
     analysis[:, 1:] /= 2
     if with_trapezoid:
         midpoint = np.arange(len(phase))[:, None] > nodes
-        analysis = np.concatenate([np.where(midpoint, 0, analysis), np.where(midpoint, analysis, 0)], axis=1)
+        analysis = np.concatenate(
+            [np.where(midpoint, 0, analysis), np.where(midpoint, analysis, 0)], axis=1
+        )
     return table.T, analysis
 
 
@@ -106,7 +120,9 @@ def moments_by_roots(multipliers: Array) -> Array:
     series[:, 0] = limited[:, 0] - 1j
     largest = np.abs(series).max(axis=1)
     lead = series[:, -1]
-    series[:, -1] = np.where(np.abs(lead) < MIN_LEADING * largest, MIN_LEADING * largest, lead)
+    series[:, -1] = np.where(
+        np.abs(lead) < MIN_LEADING * largest, MIN_LEADING * largest, lead
+    )
     y = np.linalg.eigvals(_colleague(series))
     root = np.sqrt(y - 1) * np.sqrt(y + 1)
     outer = np.where(np.abs(y + root) >= np.abs(y - root), y + root, y - root)
@@ -161,7 +177,9 @@ def try_multipliers(moments: Array) -> tuple[Array, Mask]:
             polynomials *= np.sqrt(np.stack([tangent, 1 / tangent]) / (2 * scale))
             # p_l is the coefficient of x at lag l.
             for lag, row in enumerate(multipliers[block].T):
-                first_part, second_part = np.einsum("kpn,kpn->pn", polynomials[lag:], polynomials[: len(orders) - lag])
+                first_part, second_part = np.einsum(
+                    "kpn,kpn->pn", polynomials[lag:], polynomials[: len(orders) - lag]
+                )
                 row[:] = first_part - second_part
         valid[block] = bounded & positive & np.isfinite(multipliers[block]).all(axis=1)
     return multipliers, valid
@@ -177,7 +195,9 @@ def _series(moments: Array) -> tuple[Array, Array]:
     parts = np.empty((count, 2, spectra))
     parts[0, 0], parts[0, 1] = 1, 0
     for order in range(1, count):
-        np.einsum("kn,kpn->pn", slopes[order:0:-1], parts[:order, ::-1], out=parts[order])
+        np.einsum(
+            "kn,kpn->pn", slopes[order:0:-1], parts[:order, ::-1], out=parts[order]
+        )
         parts[order, 0] /= -order
         parts[order, 1] /= order
     cosine, sine = parts[:, 0], parts[:, 1]
@@ -204,7 +224,9 @@ def _recursion(upper: Array, lower: Array) -> tuple[Array, Array, Mask]:
     return polynomials, scale, positive
 
 
-def multipliers_from_moments(moments: Any, solve: Callable[[Any], tuple[Any, Mask]] = try_multipliers) -> Any:
+def multipliers_from_moments(
+    moments: Any, solve: Callable[[Any], tuple[Any, Mask]] = try_multipliers
+) -> Any:
     """Multipliers (n, C) of the bounded maximum-entropy spectra with moments (n, C), by `try_multipliers` or its like.
 
     Near the boundary of the moment space the recursion breaks down. Such moments are blended with those of grey, with
@@ -252,7 +274,9 @@ def try_complex_multipliers(moments: Complex) -> tuple[Complex, Mask]:
         q, scale, positive = levinson(column)
         n = np.stack([(h[: k + 1] * q[k::-1]).sum(axis=0) for k in range(len(h))])
         mirror = q.conj() / (1j * scale)
-        multipliers = np.stack([(n[lag:] * mirror[: len(n) - lag]).sum(axis=0) for lag in range(len(n))])
+        multipliers = np.stack(
+            [(n[lag:] * mirror[: len(n) - lag]).sum(axis=0) for lag in range(len(n))]
+        )
         multipliers[0] = multipliers[0].real
     return multipliers.T, bounded & positive & np.isfinite(multipliers).all(axis=0)
 

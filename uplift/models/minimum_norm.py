@@ -46,10 +46,23 @@ def forward_map(model: Model, wavelengths: ArrayLike, sensor: Array) -> ForwardM
     basis = model.basis(wavelengths)
     root = np.linalg.cholesky(np.diag(1 / model.metric_diagonal()))
     jacobian_basis = sensor.T[:, :, None] * (basis @ root)[:, None, :]
-    return ForwardMap(model, basis, sensor, root, np.linalg.inv(root), jacobian_basis.reshape(len(basis), -1))
+    return ForwardMap(
+        model,
+        basis,
+        sensor,
+        root,
+        np.linalg.inv(root),
+        jacobian_basis.reshape(len(basis), -1),
+    )
 
 
-def anchored_step(forward: ForwardMap, multipliers: Any, residual: Any, damping: Any, displacement: Any) -> Any:
+def anchored_step(
+    forward: ForwardMap,
+    multipliers: Any,
+    residual: Any,
+    damping: Any,
+    displacement: Any,
+) -> Any:
     """Change Δx (n, C) that cancels residuals (n, 3) to first order, nearest to the prior; R Δx is that of multipliers.
 
     ``damping`` (n,) is μ, ``displacement`` (n, C) the difference d of x from the prior, 0 for the minimum-norm step.
@@ -57,7 +70,9 @@ def anchored_step(forward: ForwardMap, multipliers: Any, residual: Any, damping:
     """
     # A = W diag(S′(B p)) B R
     derivative = forward.model.derivative(blocked_matmul(multipliers, forward.basis.T))
-    jacobian = blocked_matmul(derivative, forward.jacobian_basis).reshape(-1, 3, forward.basis.shape[1])
+    jacobian = blocked_matmul(derivative, forward.jacobian_basis).reshape(
+        -1, 3, forward.basis.shape[1]
+    )
     # y = (A Aᵀ + μ tr I)⁻¹ (t − r + A d), Δx = Aᵀ y − d
     gram = jacobian @ jacobian.mT
     lower = [[gram[:, a, b] for b in range(a + 1)] for a in range(3)]
@@ -67,20 +82,33 @@ def anchored_step(forward: ForwardMap, multipliers: Any, residual: Any, damping:
     return (y[:, None, :] @ jacobian)[:, 0, :] - displacement
 
 
-def minimum_norm_step(forward: ForwardMap, linear: Array, residual: Array, damping: Array) -> Array:
+def minimum_norm_step(
+    forward: ForwardMap, linear: Array, residual: Array, damping: Array
+) -> Array:
     """Change R Δx (C, n) of multipliers that cancels residuals (3, n) to first order, from the linear part (N, n).
 
     Spectra are columns of numpy arrays here, so that all arithmetic runs along contiguous memory.
     """
     # Aᵀ = Rᵀ Bᵀ diag(S′(x)) Wᵀ, by columns; Δx = Aᵀ (A Aᵀ + μ tr I)⁻¹ (t − r)
-    jacobian = blocked_matmul_columns(forward.jacobian_basis.T, forward.model.derivative(linear))
+    jacobian = blocked_matmul_columns(
+        forward.jacobian_basis.T, forward.model.derivative(linear)
+    )
     jacobian = jacobian.reshape(3, len(forward.root), -1)
-    lower = [[np.einsum("cn,cn->n", jacobian[a], jacobian[b]) for b in range(a + 1)] for a in range(3)]
+    lower = [
+        [np.einsum("cn,cn->n", jacobian[a], jacobian[b]) for b in range(a + 1)]
+        for a in range(3)
+    ]
     y = solve_damped(lower, damping, residual)
-    return np.asarray(blocked_matmul_columns(forward.root, np.einsum("an,acn->cn", np.stack(y), jacobian)))
+    return np.asarray(
+        blocked_matmul_columns(
+            forward.root, np.einsum("an,acn->cn", np.stack(y), jacobian)
+        )
+    )
 
 
-def solve_damped(gram: Sequence[Sequence[Any]], damping: Any, right: Any) -> tuple[Any, Any, Any]:
+def solve_damped(
+    gram: Sequence[Sequence[Any]], damping: Any, right: Any
+) -> tuple[Any, Any, Any]:
     """Solve (G + μ tr(G) I) y = b for n symmetric positive G by L D Lᵀ; all elements are arrays (n,).
 
     ``gram`` is the lower half of G, row by row. A pivot that rounding made zero or negative is replaced by a millionth

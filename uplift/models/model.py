@@ -67,7 +67,9 @@ class Model(ABC):
 
     def try_from_storage(self, coefficients: Array) -> tuple[Array, Mask]:
         """Convert coefficients (n, C) to multipliers (n, C), arbitrary where not valid (n,): of no reflectance."""
-        return np.array(coefficients, dtype=float), np.ones(len(coefficients), dtype=bool)
+        return np.array(coefficients, dtype=float), np.ones(
+            len(coefficients), dtype=bool
+        )
 
     def is_float32_safe(self, multipliers: Array) -> Mask:
         """Return which spectra (n,) keep linear RGB to 2e-7 if their coefficients are rounded to single precision.
@@ -118,4 +120,6 @@ def evaluate(model: Model, multipliers: Array, wavelengths: ArrayLike) -> Array:
     ndarray, shape (n, N)
         Reflectance in [0, 1].
     """
-    return np.asarray(model.to_reflectance(blocked_matmul(multipliers, model.basis(wavelengths).T)))
+    return np.asarray(
+        model.to_reflectance(blocked_matmul(multipliers, model.basis(wavelengths).T))
+    )

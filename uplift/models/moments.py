@@ -47,7 +47,11 @@ one for green and red, fitted to the colours of the shipped atlases at three coe
 def warped(name: str, wavelengths: Any, tanh: Callable[[Any], Any] = np.tanh) -> Any:
     """Return w(λ) of a warp at wavelengths in nm, by the hyperbolic tangent of their array library."""
     terms = WARPS[name]
-    return sum(a * tanh(k * (wavelengths - m)) for a, k, m in terms) if terms else wavelengths
+    return (
+        sum(a * tanh(k * (wavelengths - m)) for a, k, m in terms)
+        if terms
+        else wavelengths
+    )
 
 
 @dataclass(frozen=True)
@@ -95,7 +99,9 @@ class Moments(Model):
         if self.warp not in WARPS:
             raise unknown_name(str(self.warp), WARPS, "warp")
         if not 0 < self.start < self.end < np.inf:
-            raise OptionError(f"a phase needs 0 < start < end < inf, got start {self.start} and end {self.end}")
+            raise OptionError(
+                f"a phase needs 0 < start < end < inf, got start {self.start} and end {self.end}"
+            )
         if not MIN_COUNT <= self.count <= MAX_COUNT:
             raise OptionError(
                 f"coefficients of the moments model must be in [{MIN_COUNT}, {MAX_COUNT}], "
@@ -119,7 +125,9 @@ class Moments(Model):
         # φ = π (w(λ) − w(λ₀)) / (w(λ₁) − w(λ₀)) − π
         low, high = warped(self.warp, np.array([self.start, self.end]))
         inside = np.clip(np.asarray(wavelengths, dtype=float), self.start, self.end)
-        return np.asarray(np.pi * (warped(self.warp, inside) - low) / (high - low) - np.pi)
+        return np.asarray(
+            np.pi * (warped(self.warp, inside) - low) / (high - low) - np.pi
+        )
 
     def basis(self, wavelengths: ArrayLike) -> Array:
         # B p = p₀ + 2 Σ p_l cos lφ
@@ -148,11 +156,15 @@ class Moments(Model):
 
     def to_storage(self, multipliers: ArrayLike) -> Array:
         rows = np.asarray(multipliers, dtype=float)
-        return duality.moments_from_multipliers(rows.reshape(-1, rows.shape[-1])).reshape(rows.shape)
+        return duality.moments_from_multipliers(
+            rows.reshape(-1, rows.shape[-1])
+        ).reshape(rows.shape)
 
     def from_storage(self, coefficients: ArrayLike) -> Array:
         rows = np.asarray(coefficients, dtype=float)
-        return np.asarray(duality.multipliers_from_moments(rows.reshape(-1, rows.shape[-1]))).reshape(rows.shape)
+        return np.asarray(
+            duality.multipliers_from_moments(rows.reshape(-1, rows.shape[-1]))
+        ).reshape(rows.shape)
 
     def try_from_storage(self, coefficients: Array) -> tuple[Array, Mask]:
         return duality.try_multipliers(coefficients)

@@ -71,7 +71,9 @@ class Sigmoid(Model):
 
 def evaluate_unscaled(coefficients: Array, wavelengths: Array) -> Array:
     """Evaluate eq. 5 of Jakob & Hanika 2019 for coefficients (n, 3), at wavelengths (N,) in nm that are not scaled."""
-    x = coefficients @ np.stack([wavelengths**2, wavelengths, np.ones_like(wavelengths)])
+    x = coefficients @ np.stack(
+        [wavelengths**2, wavelengths, np.ones_like(wavelengths)]
+    )
     return 0.5 + x / (2 * np.sqrt(1 + x * x))
 
 
@@ -79,4 +81,10 @@ def unscaled(model: Sigmoid, multipliers: Array) -> Array:
     """Convert multipliers (n, 3) to the coefficients of `evaluate_unscaled`."""
     middle, half = (model.start + model.end) / 2, (model.end - model.start) / 2
     square, linear, constant = (multipliers / half ** np.array([2, 1, 0])).T
-    return np.column_stack([square, linear - 2 * middle * square, constant + middle * (middle * square - linear)])
+    return np.column_stack(
+        [
+            square,
+            linear - 2 * middle * square,
+            constant + middle * (middle * square - linear),
+        ]
+    )

@@ -13,7 +13,12 @@ import numpy as np
 
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.camera import Camera
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS, Illuminant
+from uplift.colorimetry.lights import (
+    DEFAULT_ILLUMINANT,
+    ERROR_ILLUMINANT,
+    SCENE_LIGHTS,
+    Illuminant,
+)
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import OptionError
@@ -54,7 +59,9 @@ if TYPE_CHECKING:
     class SceneLike(Protocol):
         """Colours that restrict a build to the nodes that they require."""
 
-        def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
+        def required_points(
+            self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback
+        ) -> Mask:
             """Return the mask (dim³,) of the required nodes, and report events of stage ``"images"``."""
             ...
 
@@ -212,23 +219,33 @@ def build(
     recorded["solver"] = solver if isinstance(solver, str) else CUSTOM
     options = Options(**recorded)
     if isinstance(scene, str | os.PathLike | Sequence):
-        from uplift.io.scene_colours import Images  # a build without images needs no image code
+        from uplift.io.scene_colours import (
+            Images,
+        )  # a build without images needs no image code
 
-        scene = Images(tuple(map(Path, [scene] if isinstance(scene, str | os.PathLike) else scene)))
+        scene = Images(
+            tuple(map(Path, [scene] if isinstance(scene, str | os.PathLike) else scene))
+        )
     check_memory(options)
     options, problem = problem_of(options, observer, solver)
     return build_stages(atlas, options, problem, library, looks, scene, progress)
 
 
-def problem_of(options: Options, observer: str | Camera, solver: str | Solver) -> tuple[Options, Problem]:
+def problem_of(
+    options: Options, observer: str | Camera, solver: str | Solver
+) -> tuple[Options, Problem]:
     """Return the problem of a build, and options with the names of the space and of a camera, not aliases or files."""
     # r = W g, on the wavelengths of the build (docs/mathematics.md, 1)
     wavelengths = options.shortest, options.longest, options.step
     sensor = observers.sensor(options.space, options.illuminant, observer, wavelengths)
     names = (*options.lights, ERROR_ILLUMINANT)
     observers.check_distinct(options.lights)
-    *lights, error_light = (observers.light(name, sensor.observer, *sensor.range) for name in names)
-    problem = Problem(sensor, options.spectrum_model(), tuple(lights), error_light, options.threshold)
+    *lights, error_light = (
+        observers.light(name, sensor.observer, *sensor.range) for name in names
+    )
+    problem = Problem(
+        sensor, options.spectrum_model(), tuple(lights), error_light, options.threshold
+    )
     if solver != SOLVERS[0]:
         from uplift.fit import stock_solvers
 
@@ -237,17 +254,27 @@ def problem_of(options: Options, observer: str | Camera, solver: str | Solver) -
         elif isinstance(solver, str) and solver != CUSTOM:
             method = stock_solvers.stock_solver(solver, problem.tolerance)
         else:
-            raise OptionError(f"solver must be a name or a solver of optimistix, got {format_value(solver)}")
+            raise OptionError(
+                f"solver must be a name or a solver of optimistix, got {format_value(solver)}"
+            )
         problem = replace(problem, method=method)
-    named: dict[str, Any] = {"space" if sensor.sensitivities is None else "observer": sensor.space}
+    named: dict[str, Any] = {
+        "space" if sensor.sensitivities is None else "observer": sensor.space
+    }
     return replace(options, **named), problem
 
 
 def _choose_lattice(
-    options: Options, problem: Problem, constraints: Constraints, prior: Prior, blend: seeds.Blend
+    options: Options,
+    problem: Problem,
+    constraints: Constraints,
+    prior: Prior,
+    blend: seeds.Blend,
 ) -> Options:
     """Replace ``dim="auto"`` by the smallest lattice that keeps every entry, if it fits into memory."""
-    axis, dim, lost = seeds.choose_lattice(problem, prior, blend, constraints.at_nodes, options.auto_tolerance)
+    axis, dim, lost = seeds.choose_lattice(
+        problem, prior, blend, constraints.at_nodes, options.auto_tolerance
+    )
     if lost:
         entries.warn(
             f"no dim up to {seeds.DIMS[-1]} keeps every entry within ΔE00 {options.auto_tolerance:g}: "
@@ -263,7 +290,12 @@ Learnt = tuple[Constraints, Prior, tuple[float, ...]]
 """Fitted entries, the prior, and the relevance of the families: they do not depend on the lattice."""
 
 
-def learn(problem: Problem, entry_model: Model, measured: MeasuredEntries, families: Sequence[Family]) -> Learnt:
+def learn(
+    problem: Problem,
+    entry_model: Model,
+    measured: MeasuredEntries,
+    families: Sequence[Family],
+) -> Learnt:
     """Fit the entries and the prior."""
     # Entries p_i: min ‖g − m‖² + Σ |w ΔL*a*b*|² subject to r(p) = t (docs/mathematics.md, 6).
     # Prior c(x) = s(x) + d(x): smooth spectra, what families deviate from them, and kriging of the entries (7).
@@ -284,7 +316,11 @@ def build_stages(
     learn: Callable[..., Learnt] = learn,
 ) -> Cube:
     """Build a cube from checked options and the problem that they describe; builds may share what they ``learn``."""
-    sensor, model, entry_model = problem.sensor, problem.model, options.spectrum_model(options.entry_coefficients)
+    sensor, model, entry_model = (
+        problem.sensor,
+        problem.model,
+        options.spectrum_model(options.entry_coefficients),
+    )
     neighbours = options.growth == "neighbours"
 
     # The spectra: families of the library, entries of the atlas, and looks, which become further entries.
@@ -309,21 +345,36 @@ def build_stages(
     is_chosen = options.dim == AUTO
     if is_chosen:
         options = _choose_lattice(options, problem, constraints, prior, blend)
-    lattice, rgb = Lattice(axis_nodes(options.axis, int(options.dim))), constraints.at_nodes.rgb
+    lattice, rgb = (
+        Lattice(axis_nodes(options.axis, int(options.dim))),
+        constraints.at_nodes.rgb,
+    )
     boxes = EntryBoxes(lattice, rgb, seeds.half_widths(lattice.to_steps(rgb)))
     seeded = seeds.seed(lattice, rgb)
-    crowded = () if is_chosen else seeded.crowded  # the choice of the lattice has counted those that none keeps
+    crowded = (
+        () if is_chosen else seeded.crowded
+    )  # the choice of the lattice has counted those that none keeps
     entries.warn_of_close(constraints.names, boxes.half_width, crowded)
-    own = constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers
+    own = (
+        constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers
+    )
 
     # The nodes that a scene needs, or all, grow from the seeds: min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7),
     # where t is the nearest colour that some reflectance has (9). They are improved and stored as coefficients.
-    kept = None if scene is None else np.flatnonzero(scene.required_points(boxes, sensor, progress))
+    kept = (
+        None
+        if scene is None
+        else np.flatnonzero(scene.required_points(boxes, sensor, progress))
+    )
     nodes = nodes_of(lattice, sensor, None if neighbours else kept)
 
-    expected = partial(seeds.initial_guess, prior=prior, seeds=seeded, entries=own, blend=blend)
+    expected = partial(
+        seeds.initial_guess, prior=prior, seeds=seeded, entries=own, blend=blend
+    )
     grown = GROWTH[options.growth](problem, nodes, expected, seeded.points, progress)
-    improvements = growth.improve(grown, growth.THESIS_STEPS if neighbours else growth.STEPS)
+    improvements = growth.improve(
+        grown, growth.THESIS_STEPS if neighbours else growth.STEPS
+    )
     points = store(grown, seeded, prior)
     if options.solver != SOLVERS[0] and (unfitted := points.counts()["unfitted"]):
         problem_text = f"{pluralise(unfitted, 'node')} over the threshold with the solver '{options.solver}'"
@@ -332,7 +383,10 @@ def build_stages(
 
     # Entries outside the RGB space constrain no node: their spectra answer XYZ and textures of other spaces.
     # Errors are learnt from measured reflectances, and from those expected without each of them.
-    known = [None if prior.left_out is None else each.reflectances.astype(np.float32) for each in (measured, outside)]
+    known = [
+        None if prior.left_out is None else each.reflectances.astype(np.float32)
+        for each in (measured, outside)
+    ]
     table = constraints.table(model, boxes.half_width, known[0])
     if prior.left_out is not None:
         table = replace(table, left_out=prior.left_out.astype(np.float32))
@@ -350,15 +404,24 @@ def build_stages(
         "uplift": version(),
         "options": options.record(),
         "atlases": [
-            {"name": source.name, "digest": source.digest, **source.changed_options()} for source in atlas.sources
+            {"name": source.name, "digest": source.digest, **source.changed_options()}
+            for source in atlas.sources
         ],
         "left_out": list(outside.names),
         "skipped": [entry.name for entry in atlas.skipped],
         "prior": learnt,
-        "improvements": [{"step": step, "tried": tried, "mended": fixed} for step, tried, fixed in improvements],
+        "improvements": [
+            {"step": step, "tried": tried, "mended": fixed}
+            for step, tried, fixed in improvements
+        ],
         **({} if scene is None else {"scene": scene.describe()}),
-        "libraries": [{"name": source.name, "digest": source.digest} for source, _ in libraries],
-        "families": [{"name": each.name, "relevance": part} for each, part in zip(families, relevance, strict=True)],
+        "libraries": [
+            {"name": source.name, "digest": source.digest} for source, _ in libraries
+        ],
+        "families": [
+            {"name": each.name, "relevance": part}
+            for each, part in zip(families, relevance, strict=True)
+        ],
         **({} if targets is None else targets.describe(table, model, sensor)),
     }
     return Cube(

@@ -57,17 +57,33 @@ class Constraints:
         """
         if self.at_entries is self.at_nodes or not len(self.names):
             return self.at_nodes.multipliers
-        stored = self.entry_model.to_storage(self.at_entries.multipliers)  # c_j = (1/π) ∫ g cos jφ dφ for any count
+        stored = self.entry_model.to_storage(
+            self.at_entries.multipliers
+        )  # c_j = (1/π) ∫ g cos jφ dφ for any count
         return model.from_storage(stored[:, : model.count])
 
-    def table(self, model: Model, half_width: Array, measured: NDArray[np.float32] | None) -> AtlasTable:
+    def table(
+        self, model: Model, half_width: Array, measured: NDArray[np.float32] | None
+    ) -> AtlasTable:
         """Return the part of a cube that records the constraints; entries with more coefficients have them there."""
         coefficients = model.to_storage(self.at_nodes.multipliers)
         spectra = EntrySpectra(model, coefficients)
         if self.at_entries is not self.at_nodes and len(self.names):
-            spectra = EntrySpectra(self.entry_model, self.entry_model.to_storage(self.at_entries.multipliers))
+            spectra = EntrySpectra(
+                self.entry_model,
+                self.entry_model.to_storage(self.at_entries.multipliers),
+            )
         rgb, error = self.at_nodes.rgb, self.at_entries.error
-        return AtlasTable(self.names, rgb, coefficients, half_width, error, spectra, measured, looks=self.looks)
+        return AtlasTable(
+            self.names,
+            rgb,
+            coefficients,
+            half_width,
+            error,
+            spectra,
+            measured,
+            looks=self.looks,
+        )
 
 
 def as_atlas(atlas: AtlasLike) -> Atlas:
@@ -77,14 +93,18 @@ def as_atlas(atlas: AtlasLike) -> Atlas:
     return read_atlas(*([atlas] if isinstance(atlas, str | os.PathLike) else atlas))
 
 
-def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, MeasuredEntries]:
+def split_by_gamut(
+    atlas: Atlas, sensor: Sensor
+) -> tuple[MeasuredEntries, MeasuredEntries]:
     """Return the entries in the RGB space, and those outside; all outside are an error."""
     measured = on_grid(atlas, sensor.wavelengths)
     # t = W m of measured reflectances m
     rgb = sensor.rgb(measured)
     inside = in_unit_cube(rgb)
     if (atlas.entries or atlas.skipped) and not inside.any():
-        space = smallest_space(resample(atlas, grid()).values, sensor.illuminant, sensor.observer)
+        space = smallest_space(
+            resample(atlas, grid()).values, sensor.illuminant, sensor.observer
+        )
         problem = f"no entry of the atlas is within {sensor.space}: {len(atlas)} outside, {len(atlas.skipped)} skipped"
         hint = f"none of {', '.join(COMMON_SPACES)} holds all entries"
         if space is not None:
@@ -92,28 +112,42 @@ def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, Measu
         raise AtlasError(problem, code="atlas-out-of-gamut", hint=hint)
     names = np.array(atlas.names, dtype=object)
     return (
-        MeasuredEntries(tuple(names[inside]), np.clip(rgb[inside], 0, 1), measured[inside]),
+        MeasuredEntries(
+            tuple(names[inside]), np.clip(rgb[inside], 0, 1), measured[inside]
+        ),
         MeasuredEntries(tuple(names[~inside]), rgb[~inside], measured[~inside]),
     )
 
 
-def fit_constraints(problem: Problem, entry_model: Model, entries: MeasuredEntries) -> Constraints:
+def fit_constraints(
+    problem: Problem, entry_model: Model, entries: MeasuredEntries
+) -> Constraints:
     """Fit measured entries by the models of nodes and of entries, which may be the same."""
     at_nodes = at_entries = fit_entries(problem, entries.reflectances, entries.rgb)
     if entry_model != problem.model:
-        at_entries = fit_entries(replace(problem, model=entry_model), entries.reflectances, entries.rgb)
+        at_entries = fit_entries(
+            replace(problem, model=entry_model), entries.reflectances, entries.rgb
+        )
     return Constraints(entries.names, entry_model, at_nodes, at_entries)
 
 
-def warn_of_close(names: Sequence[str], half_width: Array, crowded: Sequence[int] = ()) -> None:
+def warn_of_close(
+    names: Sequence[str], half_width: Array, crowded: Sequence[int] = ()
+) -> None:
     """Warn of entries of the same colour, and of ``crowded`` ones, whose nearest node a closer entry owns."""
     if duplicates := np.flatnonzero(half_width == 0).tolist():
-        problem = "left out: an earlier entry has the same colour, which has only one answer"
+        problem = (
+            "left out: an earlier entry has the same colour, which has only one answer"
+        )
         warn(f"{_listed(names, duplicates)} {problem}", code="entry-duplicate")
     if near := [row for row in crowded if half_width[row]]:
         problem = "crowded: closer entries own the nearest node. Queries at the entries' own colours stay exact"
         hint = 'use dim="auto" for a lattice that is large enough, or see the report of the cube'
-        warn(f"{_listed(names, near)} {problem}, queries near them are less accurate", code="entry-crowded", hint=hint)
+        warn(
+            f"{_listed(names, near)} {problem}, queries near them are less accurate",
+            code="entry-crowded",
+            hint=hint,
+        )
 
 
 def _listed(names: Sequence[str], rows: Sequence[int]) -> str:
@@ -122,13 +156,23 @@ def _listed(names: Sequence[str], rows: Sequence[int]) -> str:
     return f"entry {shown} is" if len(rows) == 1 else f"entries {shown} are"
 
 
-def read_libraries(library: Atlas | StrPath | Sequence[StrPath]) -> tuple[tuple[Source, Atlas], ...]:
+def read_libraries(
+    library: Atlas | StrPath | Sequence[StrPath],
+) -> tuple[tuple[Source, Atlas], ...]:
     """Read libraries, a family per file, or spectra given as an atlas; the digest of these is empty."""
-    atlases = map(as_atlas, [library] if isinstance(library, Atlas | str | os.PathLike) else library)
-    return tuple((each.sources[0] if len(each.sources) == 1 else Source("library", ""), each) for each in atlases)
+    atlases = map(
+        as_atlas,
+        [library] if isinstance(library, Atlas | str | os.PathLike) else library,
+    )
+    return tuple(
+        (each.sources[0] if len(each.sources) == 1 else Source("library", ""), each)
+        for each in atlases
+    )
 
 
-def families_of(options: Options, libraries: Sequence[tuple[Source, Atlas]], sensor: Sensor) -> tuple[Family, ...]:
+def families_of(
+    options: Options, libraries: Sequence[tuple[Source, Atlas]], sensor: Sensor
+) -> tuple[Family, ...]:
     """Return the families that shape the prior: the shipped library, then those of the user; none for smooth spectra.
 
     Shipped families are constant outside 380–780 nm. Warns of each library that is not used as measured.
@@ -144,7 +188,15 @@ def families_of(options: Options, libraries: Sequence[tuple[Source, Atlas]], sen
         return ()
     if not np.array_equal(sensor.wavelengths, grid()):
         shipped = tuple(
-            replace(family, measured=np.array([np.interp(sensor.wavelengths, grid(), row) for row in family.measured]))
+            replace(
+                family,
+                measured=np.array(
+                    [
+                        np.interp(sensor.wavelengths, grid(), row)
+                        for row in family.measured
+                    ]
+                ),
+            )
             for family in shipped
         )
     own = []
@@ -163,4 +215,7 @@ def families_of(options: Options, libraries: Sequence[tuple[Source, Atlas]], sen
 
 def warn(problem: str, *, code: str, entry: str | None = None, hint: str = "") -> None:
     """Warn the caller of `uplift.build` from a function that `build` calls."""
-    warnings.warn(UpliftWarning(problem, code=code, entry=entry, hint=hint), stacklevel=STACK_LEVEL)
+    warnings.warn(
+        UpliftWarning(problem, code=code, entry=entry, hint=hint),
+        stacklevel=STACK_LEVEL,
+    )

@@ -58,22 +58,36 @@ class Look:
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
-            raise LookError(f"the name of a look must be text, got {format_value(self.name)}", path=self.path)
+            raise LookError(
+                f"the name of a look must be text, got {format_value(self.name)}",
+                path=self.path,
+            )
         object.__setattr__(self, "name", self.name or f"look {format_rgb(self.rgb)}")
         if not self.lights:
-            raise look_error(self, "must name at least one light", hint="add FL11 = '#70392a'")
+            raise look_error(
+                self, "must name at least one light", hint="add FL11 = '#70392a'"
+            )
         if not is_number(self.weight) or not 0 < self.weight <= 1:
-            problem = f"weight must be above 0 and at most 1, got {format_value(self.weight)}"
+            problem = (
+                f"weight must be above 0 and at most 1, got {format_value(self.weight)}"
+            )
             raise look_error(self, problem, hint="leave it out for 1")
-        targets = [(light, target, -MAX_TARGET, MAX_TARGET) for light, target in self.lights.items()]
+        targets = [
+            (light, target, -MAX_TARGET, MAX_TARGET)
+            for light, target in self.lights.items()
+        ]
         for key, value, low, high in [("rgb", self.rgb, 0, 1), *targets]:
             try:
                 linear = parse_colour(value).linear
             except UpliftError as error:
-                raise look_error(self, f"{key} {error.problem}", error.code, error.hint) from error
+                raise look_error(
+                    self, f"{key} {error.problem}", error.code, error.hint
+                ) from error
             if any(not low <= number <= high for number in linear):
                 problem = f"{key} must be linear RGB in [{low:g}, {high:g}], got {format_value(list(linear))}"
-                raise look_error(self, problem, hint="write '#rrggbb' for encoded values")
+                raise look_error(
+                    self, problem, hint="write '#rrggbb' for encoded values"
+                )
 
 
 LooksLike = StrPath | Look | Sequence[Look]
@@ -81,18 +95,26 @@ LooksLike = StrPath | Look | Sequence[Look]
 
 def about(look: Look, problem: str) -> str:
     """Put the name of a look in front of a problem; that of a look without a name begins with "look" itself."""
-    label = look.name if look.name.startswith("look ") else f"look '{shorten(look.name)}'"
+    label = (
+        look.name if look.name.startswith("look ") else f"look '{shorten(look.name)}'"
+    )
     return f"{label}: {problem}"
 
 
-def look_error(look: Look, problem: str, code: str | None = None, hint: str = "") -> LookError:
+def look_error(
+    look: Look, problem: str, code: str | None = None, hint: str = ""
+) -> LookError:
     """Make an error with the name and location of a look."""
     return LookError(about(look, problem), code=code, path=look.path, hint=hint)
 
 
 def format_rgb(rgb: WrittenRgb) -> str:
     """Return a colour as written on one line: ``#8a2a20`` or ``0.25 0.02 0.01``."""
-    return rgb if isinstance(rgb, str) else " ".join(f"{value:.4g}" for value in np.ravel(rgb).tolist())
+    return (
+        rgb
+        if isinstance(rgb, str)
+        else " ".join(f"{value:.4g}" for value in np.ravel(rgb).tolist())
+    )
 
 
 def as_looks(looks: LooksLike) -> tuple[Look, ...]:
@@ -138,13 +160,21 @@ def read_looks(path: StrPath) -> tuple[Look, ...]:
 
     file = read_toml(path, LookError)
     tables = file.values.get(TABLE, [])
-    is_list = isinstance(tables, list) and all(isinstance(each, dict) for each in tables)
+    is_list = isinstance(tables, list) and all(
+        isinstance(each, dict) for each in tables
+    )
     if set(file.values) != {TABLE} or not is_list or not 0 < len(tables) <= MAX_LOOKS:
-        file.fail((), f"must have 1 to {MAX_LOOKS} [[look]] tables and no other keys", hint=EXAMPLE)
+        file.fail(
+            (),
+            f"must have 1 to {MAX_LOOKS} [[look]] tables and no other keys",
+            hint=EXAMPLE,
+        )
     looks = []
     for number, table in enumerate(tables):
         if "rgb" not in table:
             file.fail((TABLE, number, "rgb"), "required key is missing", hint=EXAMPLE)
-        options = {key: table.pop(key) for key in ("rgb", "weight", "name") if key in table}
+        options = {
+            key: table.pop(key) for key in ("rgb", "weight", "name") if key in table
+        }
         looks.append(Look(lights=table, **options, path=file.path))
     return tuple(looks)

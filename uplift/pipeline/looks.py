@@ -23,7 +23,14 @@ from uplift.fit.solver import solve_in_numpy
 from uplift.models import evaluate
 from uplift.models.model import Model
 from uplift.pipeline.entries import STACK_LEVEL, Constraints, MeasuredEntries
-from uplift.pipeline.look import Look, LooksLike, about, as_looks, format_rgb, look_error
+from uplift.pipeline.look import (
+    Look,
+    LooksLike,
+    about,
+    as_looks,
+    format_rgb,
+    look_error,
+)
 
 SAME_CODE = 0.5
 """Colours whose 8-bit codes differ by at most this are the same: a query of one would return the other."""
@@ -43,7 +50,9 @@ class LookTargets:
     goals: tuple[LookGoal, ...]
     designs: Array
 
-    def fit(self, problem: Problem, entries: Constraints, prior: Prior) -> tuple["LookTargets", Constraints, Prior]:
+    def fit(
+        self, problem: Problem, entries: Constraints, prior: Prior
+    ) -> tuple["LookTargets", Constraints, Prior]:
         """Design reflectances that differ as little as possible from those expected, and add them to the entries.
 
         The spectra of colours near a look deviate as that of the look. Kernel and standard errors of the prior stay, as
@@ -51,32 +60,62 @@ class LookTargets:
         """
         # The target becomes w y + (1 − w) y₀ in XYZ, with the colours y₀ of the spectrum p₀ that is expected at x.
         rgb = np.array([goal.rgb for goal in self.goals])
-        expected = solve_in_numpy(problem.forward, prior(rgb), rgb, problem.tolerance, MAX_STEPS)
+        expected = solve_in_numpy(
+            problem.forward, prior(rgb), rgb, problem.tolerance, MAX_STEPS
+        )
         expected = evaluate(problem.model, expected, problem.sensor.wavelengths)
         parts = list(zip(self.looks, self.goals, expected, strict=True))
-        goals = tuple(goal.softened(spectrum, look.weight) for look, goal, spectrum in parts)
-        designs = np.array([design_reflectance(problem.sensor, *each) for each in zip(goals, expected, strict=True)])
+        goals = tuple(
+            goal.softened(spectrum, look.weight) for look, goal, spectrum in parts
+        )
+        designs = np.array(
+            [
+                design_reflectance(problem.sensor, *each)
+                for each in zip(goals, expected, strict=True)
+            ]
+        )
 
         errors = prior.standard_error(rgb)
         errors = np.zeros(len(rgb)) if errors is None else errors
-        at_nodes = join_entries(entries.at_nodes, fit_designs(problem, goals, designs)._replace(error=errors))
+        at_nodes = join_entries(
+            entries.at_nodes,
+            fit_designs(problem, goals, designs)._replace(error=errors),
+        )
         at_entries = at_nodes
         if entries.entry_model != problem.model:
-            fitted = fit_designs(replace(problem, model=entries.entry_model), goals, designs)
+            fitted = fit_designs(
+                replace(problem, model=entries.entry_model), goals, designs
+            )
             at_entries = join_entries(entries.at_entries, fitted._replace(error=errors))
         names = (*entries.names, *(look.name for look in self.looks))
-        constraints = Constraints(names, entries.entry_model, at_nodes, at_entries, len(self.looks))
-        return replace(self, goals=goals, designs=designs), constraints, prior.with_entries(at_nodes, len(self.looks))
+        constraints = Constraints(
+            names, entries.entry_model, at_nodes, at_entries, len(self.looks)
+        )
+        return (
+            replace(self, goals=goals, designs=designs),
+            constraints,
+            prior.with_entries(at_nodes, len(self.looks)),
+        )
 
-    def describe(self, table: AtlasTable, model: Model, sensor: Sensor) -> dict[str, Any]:
+    def describe(
+        self, table: AtlasTable, model: Model, sensor: Sensor
+    ) -> dict[str, Any]:
         """Return what a cube records of its looks, in JSON values, and warn of those that its answers miss."""
-        answers = table.spectra.reflectance(np.arange(table.measured_count, len(table.names)), sensor.wavelengths)
+        answers = table.spectra.reflectance(
+            np.arange(table.measured_count, len(table.names)), sensor.wavelengths
+        )
         records = []
         for look, screens, goal, design, answer in zip(
             self.looks, self.screens, self.goals, self.designs, answers, strict=True
         ):
             # Per light: target and answer in linear sRGB, ΔE00 of the answer, and the least that is possible
-            rows = zip(screens, look.lights.values(), goal.delta_e(answer), goal.delta_e(design), strict=True)
+            rows = zip(
+                screens,
+                look.lights.values(),
+                goal.delta_e(answer),
+                goal.delta_e(design),
+                strict=True,
+            )
             lights = [
                 {
                     "light": screen.illuminant,
@@ -88,13 +127,24 @@ class LookTargets:
                 for screen, target, delta_e, possible in rows
             ]
             weight = float(look.weight)
-            records.append({"name": look.name, "rgb": goal.rgb.tolist(), "weight": weight, "lights": lights})
+            records.append(
+                {
+                    "name": look.name,
+                    "rgb": goal.rgb.tolist(),
+                    "weight": weight,
+                    "lights": lights,
+                }
+            )
         _warn_of_missed(self.looks, records)
         return {"looks": records}
 
 
 def targets_of(
-    looks: LooksLike, model: Model, sensor: Sensor, atlas_names: Sequence[str], entries: MeasuredEntries
+    looks: LooksLike,
+    model: Model,
+    sensor: Sensor,
+    atlas_names: Sequence[str],
+    entries: MeasuredEntries,
 ) -> LookTargets | None:
     """Return looks in the colours of a sensor, whose entries have a spectrum model; None without any.
 
@@ -110,14 +160,23 @@ def targets_of(
             hint='use model="moments" with entry_coefficients of 4 to 17',
         )
     screens = tuple(_screens(look, sensor) for look in looks)
-    goals = tuple(_goal(look, sensor, each) for look, each in zip(looks, screens, strict=True))
+    goals = tuple(
+        _goal(look, sensor, each) for look, each in zip(looks, screens, strict=True)
+    )
     taken = dict.fromkeys(atlas_names, "an atlas entry")
-    codes = np.interp([*entries.rgb, *(goal.rgb for goal in goals)], sensor.decoding, np.arange(256.0))
+    codes = np.interp(
+        [*entries.rgb, *(goal.rgb for goal in goals)], sensor.decoding, np.arange(256.0)
+    )
     known = list(entries.names)
     for look in looks:
         if look.name in taken:
-            raise look_error(look, f"its name is that of {taken[look.name]}", hint="rename the look")
-        same = np.abs(codes[: len(known)] - codes[len(known)]).max(axis=1, initial=0) <= SAME_CODE
+            raise look_error(
+                look, f"its name is that of {taken[look.name]}", hint="rename the look"
+            )
+        same = (
+            np.abs(codes[: len(known)] - codes[len(known)]).max(axis=1, initial=0)
+            <= SAME_CODE
+        )
         if same.any():
             other = known[int(same.argmax())]
             raise look_error(
@@ -151,7 +210,9 @@ def _goal(look: Look, sensor: Sensor, screens: Sequence[Sensor]) -> LookGoal:
         raise look_error(look, problem, hint="choose one of less chroma")
     # Targets y in XYZ, of colours of sRGB whose white is that of the light
     targets = zip(look.lights.values(), screens, strict=True)
-    xyz = np.array([screen.xyz(parse_colour(target).rgb(screen)) for target, screen in targets])
+    xyz = np.array(
+        [screen.xyz(parse_colour(target).rgb(screen)) for target, screen in targets]
+    )
     return LookGoal(rgb, tuple(screen.light for screen in screens), xyz)
 
 
@@ -164,7 +225,9 @@ def recorded_looks(provenance: Mapping[str, Any]) -> tuple[Look, ...]:
     return tuple(looks)
 
 
-def _warn_of_missed(looks: Sequence[Look], records: Sequence[Mapping[str, Any]]) -> None:
+def _warn_of_missed(
+    looks: Sequence[Look], records: Sequence[Mapping[str, Any]]
+) -> None:
     """Warn once of the looks with impossible targets, and once of those that the model does not reach."""
     impossible, unreached = [], []
     for look, record in zip(looks, records, strict=True):
@@ -175,22 +238,37 @@ def _warn_of_missed(looks: Sequence[Look], records: Sequence[Mapping[str, Any]])
             unreached.append((look, missed))
     _warn_of_worst(impossible, "no reflectance meets it", code="look-impossible")
     problem = "the coefficients of its spectrum do not reach it"
-    _warn_of_worst(unreached, problem, code="look-not-reached", hint="use more entry_coefficients")
+    _warn_of_worst(
+        unreached, problem, code="look-not-reached", hint="use more entry_coefficients"
+    )
 
 
 def _warn_of_worst(
-    missed: Sequence[tuple[Look, Sequence[Mapping[str, Any]]]], problem: str, *, code: str, hint: str = ""
+    missed: Sequence[tuple[Look, Sequence[Mapping[str, Any]]]],
+    problem: str,
+    *,
+    code: str,
+    hint: str = "",
 ) -> None:
     """Warn of looks and the lights under which they are missed, by the one that is missed by most."""
     if not missed:
         return
-    look, lights = max(missed, key=lambda pair: max(light["delta_e"] for light in pair[1]))
+    look, lights = max(
+        missed, key=lambda pair: max(light["delta_e"] for light in pair[1])
+    )
     shown = []
     for light in lights:
         answer, target = hex_codes(np.array([light["answer"], light["wish"]]))
-        least = f" (at least {light['possible']:.2f})" if light["possible"] > MET else ""
-        shown.append(f"under {light['light']} it is {answer}, ΔE00 {light['delta_e']:.2f} from {target}{least}")
+        least = (
+            f" (at least {light['possible']:.2f})" if light["possible"] > MET else ""
+        )
+        shown.append(
+            f"under {light['light']} it is {answer}, ΔE00 {light['delta_e']:.2f} from {target}{least}"
+        )
     text = about(look, f"{problem}: {', '.join(shown)}")
     if len(missed) > 1:
         text += f", and {len(missed) - 1} other looks are missed by less"
-    warnings.warn(UpliftWarning(text, code=code, hint=hint, path=look.path), stacklevel=STACK_LEVEL + 1)
+    warnings.warn(
+        UpliftWarning(text, code=code, hint=hint, path=look.path),
+        stacklevel=STACK_LEVEL + 1,
+    )

@@ -88,12 +88,20 @@ class Options:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            object.__setattr__(self, field.name, _plain(field.name, field.type, getattr(self, field.name)))
+            object.__setattr__(
+                self,
+                field.name,
+                _plain(field.name, field.type, getattr(self, field.name)),
+            )
         for problem, hint in self._faults():
             raise OptionError(problem, hint=hint)
         for option, names in CHOICES.items():
             if getattr(self, option) not in names:
-                raise unknown_name(getattr(self, option), [name for name in names if name != CUSTOM], option)
+                raise unknown_name(
+                    getattr(self, option),
+                    [name for name in names if name != CUSTOM],
+                    option,
+                )
         self.spectrum_model()  # which checks the coefficients
 
     def _faults(self) -> Iterator[tuple[str, str]]:
@@ -106,10 +114,16 @@ class Options:
         steps = [step for step in STEPS if step <= STEP or self.space != CAMERA]
         if self.step not in steps:
             allowed = ", ".join(f"{step:g}" for step in steps)
-            yield f"step of {self.space} must be one of {allowed} nm, got {self.step:g}", "use 5"
+            yield (
+                f"step of {self.space} must be one of {allowed} nm, got {self.step:g}",
+                "use 5",
+            )
         if (self.longest - self.shortest) % self.step != 0:
             multiple = f"the range must be a multiple of the step of {self.step:g} nm"
-            yield f"{multiple}, got {self.shortest:g} to {self.longest:g}", "use a step of 1"
+            yield (
+                f"{multiple}, got {self.shortest:g} to {self.longest:g}",
+                "use a step of 1",
+            )
         if self.neutral == "flat" and self.growth == "neighbours":
             problem = "neutral 'flat' does not apply to growth 'neighbours', whose nodes start from their neighbours"
             yield problem, "use another growth"
@@ -118,17 +132,28 @@ class Options:
         entries = self.entry_coefficients if self.model == Moments.name else MAX_COUNT
         for name, value, least, most in (
             ("number of lights", len(self.lights), 1, MAX_LIGHTS),
-            ("entry_coefficients", entries, min(self.coefficients, MAX_COUNT), MAX_COUNT),
+            (
+                "entry_coefficients",
+                entries,
+                min(self.coefficients, MAX_COUNT),
+                MAX_COUNT,
+            ),
             ("threshold", self.threshold, MIN_THRESHOLD, MAX_THRESHOLD),
             ("auto_tolerance", self.auto_tolerance, 0, MAX_AUTO_TOLERANCE),
         ):
             if not least <= value <= most:
-                yield f"{name} must be in [{least:g}, {most:g}], got {format_value(value)}", ""
+                yield (
+                    f"{name} must be in [{least:g}, {most:g}], got {format_value(value)}",
+                    "",
+                )
 
     def record(self) -> dict[str, Any]:
         """Return the options as JSON can record them; `recorded_options` reads them. Lamps are recorded with power."""
         values = asdict(self)
-        return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
+        return {
+            name: list(value) if isinstance(value, tuple) else value
+            for name, value in values.items()
+        }
 
     def spectrum_model(self, coefficients: int | None = None) -> Model:
         """Create the spectrum model, from `shortest` to `longest` nm, of the nodes or of other moments."""
@@ -145,8 +170,15 @@ def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
         current["growth"] = "coarse-to-fine"
     if "coefficients" in current:  # up to file version 3 entries had as many
         current.setdefault("entry_coefficients", current["coefficients"])
-    current = {"prior": "smooth", "leave_out": (), **current}  # the defaults up to file version 3
-    current = {name: tuple(value) if isinstance(value, list) else value for name, value in current.items()}
+    current = {
+        "prior": "smooth",
+        "leave_out": (),
+        **current,
+    }  # the defaults up to file version 3
+    current = {
+        name: tuple(value) if isinstance(value, list) else value
+        for name, value in current.items()
+    }
     if isinstance(current.get("lights"), tuple):
         current["lights"] = tuple(map(_recorded_light, current["lights"]))
     return current
@@ -157,9 +189,13 @@ def _recorded_light(value: Any) -> Any:
     if not isinstance(value, dict):
         return value
     try:
-        return Lamp(str(value["name"]), tuple(value["wavelengths"]), tuple(value["power"]))
+        return Lamp(
+            str(value["name"]), tuple(value["wavelengths"]), tuple(value["power"])
+        )
     except (KeyError, TypeError, ValueError) as error:
-        raise OptionError("a recorded lamp must have a name, wavelengths and power") from error
+        raise OptionError(
+            "a recorded lamp must have a name, wavelengths and power"
+        ) from error
 
 
 def _plain(name: str, kind: Any, value: Any) -> Any:
@@ -171,15 +207,23 @@ def _plain(name: str, kind: Any, value: Any) -> Any:
             raise OptionError(f"{name} must be names, got {format_value(value)}")
         values = [value] if isinstance(value, str) else value
         return tuple(
-            each if isinstance(each, Lamp) and name == "lights" else _plain(name, str, each) for each in values
+            each
+            if isinstance(each, Lamp) and name == "lights"
+            else _plain(name, str, each)
+            for each in values
         )
     if isinstance(value, Lamp):
         hint = "build under an illuminant of colour-science, and give the lamp as one of the lights"
-        raise OptionError(f"{name} must be a name, which a cube records, got the lamp '{value}'", hint=hint)
+        raise OptionError(
+            f"{name} must be a name, which a cube records, got the lamp '{value}'",
+            hint=hint,
+        )
     if name == "dim" and isinstance(value, str) and value == AUTO:
         return AUTO
     accepted, recorded, label = TYPES[kind]
-    if not isinstance(value, accepted) or (isinstance(value, bool) and recorded is not bool):
+    if not isinstance(value, accepted) or (
+        isinstance(value, bool) and recorded is not bool
+    ):
         raise OptionError(f"{name} must be {label}, got {format_value(value)}")
     try:
         return recorded(value)
@@ -193,7 +237,15 @@ def check_memory(options: Options) -> None:
         return
     # Peak memory of a node: multipliers, and coefficients in single precision, and the other arrays.
     node = 16 * options.spectrum_model().count + 60
-    largest = int(max(((machine.free_memory() or 0) - machine.PROCESS_BYTES) / node, 8) ** (1 / 3))
-    hint = f"use dim={largest} or less" if largest > 2 else "use a machine with more memory"
-    need = machine.PROCESS_BYTES + min(options.dim, 10**90) ** 3 * node  # a float overflows for absurd values of dim
+    largest = int(
+        max(((machine.free_memory() or 0) - machine.PROCESS_BYTES) / node, 8) ** (1 / 3)
+    )
+    hint = (
+        f"use dim={largest} or less"
+        if largest > 2
+        else "use a machine with more memory"
+    )
+    need = (
+        machine.PROCESS_BYTES + min(options.dim, 10**90) ** 3 * node
+    )  # a float overflows for absurd values of dim
     machine.check_memory(need, "a lattice of this dim", OptionError, hint)

@@ -13,7 +13,13 @@ from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.observer import is_camera_file
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Mask, StrPath
-from uplift.common.errors import CubeFileError, LookError, OptionError, UnknownNameError, UpliftWarning
+from uplift.common.errors import (
+    CubeFileError,
+    LookError,
+    OptionError,
+    UnknownNameError,
+    UpliftWarning,
+)
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.common.version import is_older, version
@@ -44,10 +50,14 @@ class StoredScene:
 
     data: CubeData
 
-    def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
+    def required_points(
+        self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback
+    ) -> Mask:
         """Return the nodes that are present in the cube; see `SceneLike`."""
         if self.data.lattice.dim != boxes.lattice.dim:
-            raise OptionError(f"a stored scene of dim {self.data.lattice.dim} needs it, got {boxes.lattice.dim}")
+            raise OptionError(
+                f"a stored scene of dim {self.data.lattice.dim} needs it, got {boxes.lattice.dim}"
+            )
         return self.data.points.present
 
     def describe(self) -> list[dict[str, Any]]:
@@ -56,7 +66,11 @@ class StoredScene:
 
 
 def rebuild(
-    stored: Cube, path: StrPath, folders: Sequence[StrPath] = (), *, progress: ProgressCallback = ignore_progress
+    stored: Cube,
+    path: StrPath,
+    folders: Sequence[StrPath] = (),
+    *,
+    progress: ProgressCallback = ignore_progress,
 ) -> Cube:
     """Build a cube, read from ``path``, again. Warnings of the first build are not repeated.
 
@@ -67,14 +81,18 @@ def rebuild(
     options = _read_options(stored.data, path)
     if "filled" in stored.data.provenance:
         raise CubeFileError(
-            "was filled from another cube and cannot be rebuilt", path=path, hint="rebuild the cube that was filled"
+            "was filled from another cube and cannot be rebuilt",
+            path=path,
+            hint="rebuild the cube that was filled",
         )
     atlases = _find_all(stored.data, path, "atlases", folders)
     libraries = _find_all(stored.data, path, "libraries", folders)
     writer = stored.data.provenance.get("uplift", "")
     if is_older(writer, version()):
         problem = f"was written by version {writer} of uplift, older than this one, {version()}"
-        warnings.warn(UpliftWarning(problem, code="older-version", path=path), stacklevel=2)
+        warnings.warn(
+            UpliftWarning(problem, code="older-version", path=path), stacklevel=2
+        )
     for file in (*atlases, *libraries):
         if file.warning:
             warnings.warn(file.warning, stacklevel=2)
@@ -84,19 +102,30 @@ def rebuild(
     given = asdict(options) | {"lights": options.lights}
     sensor = stored.data.sensor
     if sensor.sensitivities is not None:
-        given["observer"] = Camera(sensor.space, sensor.wavelengths, sensor.sensitivities)
+        given["observer"] = Camera(
+            sensor.space, sensor.wavelengths, sensor.sensitivities
+        )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         try:
             looks = recorded_looks(stored.data.provenance)
-            return build(atlas, library=library, looks=looks, scene=scene, progress=progress, **given)
+            return build(
+                atlas,
+                library=library,
+                looks=looks,
+                scene=scene,
+                progress=progress,
+                **given,
+            )
         except (LookError, OptionError, UnknownNameError) as error:
             if error.code == "out-of-memory":
                 raise
             raise _unknown_options(error, path) from error
 
 
-def recorded_atlas(data: CubeData, path: StrPath, folders: Sequence[StrPath] = ()) -> Atlas | None:
+def recorded_atlas(
+    data: CubeData, path: StrPath, folders: Sequence[StrPath] = ()
+) -> Atlas | None:
     """Read the atlas that a cube, read from ``path``, was built from; None for a cube without one.
 
     The files are those of `recorded_files`. Warnings of the build are not repeated. A shipped atlas of another name
@@ -109,7 +138,9 @@ def recorded_atlas(data: CubeData, path: StrPath, folders: Sequence[StrPath] = (
     return _read(data, files)
 
 
-def recorded_files(data: CubeData, path: StrPath, folders: Sequence[StrPath] = ()) -> tuple[Path, ...]:
+def recorded_files(
+    data: CubeData, path: StrPath, folders: Sequence[StrPath] = ()
+) -> tuple[Path, ...]:
     """Find the files of the atlas that a cube, read from ``path``, was built from.
 
     The first file of the recorded name decides, in ``folders``, in the folder of the cube, and in folders ``atlases``
@@ -119,12 +150,16 @@ def recorded_files(data: CubeData, path: StrPath, folders: Sequence[StrPath] = (
     return tuple(file.path for file in _unchanged_files(data, path, folders))
 
 
-def _unchanged_files(data: CubeData, path: StrPath, folders: Sequence[StrPath]) -> list[RecordedFile]:
+def _unchanged_files(
+    data: CubeData, path: StrPath, folders: Sequence[StrPath]
+) -> list[RecordedFile]:
     """Find the files of the atlas of a cube; raise `CubeFileError` for one that has changed."""
     files = _find_all(data, path, "atlases", folders)
     for file in files:
         if file.warning and file.warning.code == "atlas-changed":
-            raise CubeFileError(file.warning.problem, code="atlas-changed", path=path, hint=SEARCH)
+            raise CubeFileError(
+                file.warning.problem, code="atlas-changed", path=path, hint=SEARCH
+            )
     return files
 
 
@@ -139,7 +174,9 @@ def _read(data: CubeData, files: Sequence[RecordedFile]) -> Atlas | None:
     return merge(atlases) if atlases else None
 
 
-def _find_all(data: CubeData, path: StrPath, kind: str, folders: Sequence[StrPath]) -> list[RecordedFile]:
+def _find_all(
+    data: CubeData, path: StrPath, kind: str, folders: Sequence[StrPath]
+) -> list[RecordedFile]:
     """Find the recorded files of a kind. Only a plain name is searched in folders, no path on any system."""
     if kind == "atlases" and kind not in data.provenance:
         raise _missing_provenance(path)
@@ -152,15 +189,28 @@ def _find_all(data: CubeData, path: StrPath, kind: str, folders: Sequence[StrPat
     for source in sources:
         name, digest = source["name"], source["digest"]
         is_plain = not set(name) & set("/\\:")
-        named = [folder / name for folder in searched if is_plain and os.path.isfile(folder / name)]
-        file = _first_of_name(path, named, digest, digests - {digest}) or _shipped(path, name, digest)
+        named = [
+            folder / name
+            for folder in searched
+            if is_plain and os.path.isfile(folder / name)
+        ]
+        file = _first_of_name(path, named, digest, digests - {digest}) or _shipped(
+            path, name, digest
+        )
         if file is None:
-            raise CubeFileError(f"its atlas '{name}' was not found", code="atlas-not-found", path=path, hint=SEARCH)
+            raise CubeFileError(
+                f"its atlas '{name}' was not found",
+                code="atlas-not-found",
+                path=path,
+                hint=SEARCH,
+            )
         files.append(file)
     return files
 
 
-def _first_of_name(path: StrPath, named: Sequence[Path], digest: str, others: Set[str]) -> RecordedFile | None:
+def _first_of_name(
+    path: StrPath, named: Sequence[Path], digest: str, others: Set[str]
+) -> RecordedFile | None:
     """Return the first file whose content is not one of the ``others``."""
     for file in named:
         content = read_document(file).digest
@@ -168,7 +218,9 @@ def _first_of_name(path: StrPath, named: Sequence[Path], digest: str, others: Se
             return RecordedFile(file)
         if content not in others:
             problem = f"its atlas '{file.name}' has changed ({file})"
-            return RecordedFile(file, UpliftWarning(problem, code="atlas-changed", path=path))
+            return RecordedFile(
+                file, UpliftWarning(problem, code="atlas-changed", path=path)
+            )
     return None
 
 
@@ -180,7 +232,9 @@ def _shipped(path: StrPath, name: str, digest: str) -> RecordedFile | None:
     if atlas.path.name == name:
         return RecordedFile(atlas.path)
     problem = f"its atlas '{name}' was not found; the shipped atlas '{atlas.name}' has its content"
-    return RecordedFile(atlas.path, UpliftWarning(problem, code="shipped-atlas", path=path))
+    return RecordedFile(
+        atlas.path, UpliftWarning(problem, code="shipped-atlas", path=path)
+    )
 
 
 def _read_options(data: CubeData, path: StrPath) -> Options:
@@ -212,4 +266,8 @@ def _missing_provenance(path: StrPath) -> CubeFileError:
 
 
 def _unknown_options(error: Exception, path: StrPath) -> CubeFileError:
-    return CubeFileError(f"records options that this version does not have ({error})", path=path, hint=REBUILD)
+    return CubeFileError(
+        f"records options that this version does not have ({error})",
+        path=path,
+        hint=REBUILD,
+    )

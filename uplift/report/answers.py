@@ -53,7 +53,12 @@ def read_answers(path: StrPath) -> StoredAnswers:
     finite = np.isfinite(values).all(axis=1)
     if not finite.all():
         line = int(finite.argmin()) + 2
-        raise ColourError("each column needs a finite number", path=path, line=line, hint="correct the row")
+        raise ColourError(
+            "each column needs a finite number",
+            path=path,
+            line=line,
+            hint="correct the row",
+        )
     return StoredAnswers(values[:, :3], np.array(sorted(at)), values[:, 3:])
 
 

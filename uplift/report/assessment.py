@@ -30,21 +30,33 @@ class Assessment:
     size: int  # Bytes of the file
     data: CubeData  # The cube
     facts: dict[str, Any]  # The result of `summarise`
-    failures: dict[str, Any]  # Nodes over the threshold and missing entries: `collect_failures`
+    failures: dict[
+        str, Any
+    ]  # Nodes over the threshold and missing entries: `collect_failures`
     distance: Histogram  # Fitting distance of the nodes, max |linear RGB|
-    round_trips: dict[str, Histogram]  # ΔE00 of random colours under the cube's illuminant, by mode of lookup
+    round_trips: dict[
+        str, Histogram
+    ]  # ΔE00 of random colours under the cube's illuminant, by mode of lookup
     # Standard errors of the nodes, ΔE00 under ``data.error_illuminant``; None if the cube has none
     standard_error: Histogram | None
     smoothness: Histogram  # rms difference of reflectance between neighbouring nodes
     steepest: Array  # (2, 3) Linear RGB of the two neighbours that differ most
-    lights: tuple[Sensor, ...]  # Display sensors of the lights under which entries are compared
+    lights: tuple[
+        Sensor, ...
+    ]  # Display sensors of the lights under which entries are compared
     sources: tuple[str, ...]  # Names of the files that the measured spectra come from
     own: bool  # Whether the cube was built from these files
-    entries: EntryErrors | None  # Errors of the entries; None without a measured spectrum to compare with
-    alternatives: dict[str, Answers]  # Those of other methods at the colours of ``entries``; empty without entries
+    entries: (
+        EntryErrors | None
+    )  # Errors of the entries; None without a measured spectrum to compare with
+    alternatives: dict[
+        str, Answers
+    ]  # Those of other methods at the colours of ``entries``; empty without entries
     delta_e: dict[str, Histogram]  # ΔE00 of the entries by name of the light
     out_of_gamut: tuple[str, ...]  # Entries of ``sources`` outside the cube's RGB space
-    not_covered: tuple[str, ...]  # Entries of ``sources`` for which a sparse cube has no nodes
+    not_covered: tuple[
+        str, ...
+    ]  # Entries of ``sources`` for which a sparse cube has no nodes
     # Actual against predicted errors; None if the cube was built from the entries or has no standard errors
     calibration: Calibration | None
     # The same under the other of ``lights``, by their names; empty without ``calibration``, and for cubes of
@@ -58,7 +70,11 @@ class Assessment:
 
 
 def assess(
-    cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequence[Illuminant] = REPORT_LIGHTS
+    cube: Cube,
+    name: str,
+    size: int,
+    atlas: Atlas | None,
+    lights: Sequence[Illuminant] = REPORT_LIGHTS,
 ) -> Assessment:
     """Assess a cube by its own lattice and, if given, by measured spectra."""
     data = cube.data
@@ -67,16 +83,24 @@ def assess(
     in_gamut: tuple[str, ...] = ()
     errors = None
     if atlas is not None and atlas.entries:
-        query = fidelity.from_own_atlas(data, atlas) if own else fidelity.from_other_atlas(data, atlas)
+        query = (
+            fidelity.from_own_atlas(data, atlas)
+            if own
+            else fidelity.from_other_atlas(data, atlas)
+        )
         in_gamut, query = query.names, query.answerable_by(cube)
         errors = fidelity.entry_errors(cube, query, sensors) if query.names else None
     unseen = None if own else errors
     calibration = None
     if unseen is not None:
-        calibration = check_calibration(unseen.actual, unseen.predicted, cube.error_bound(unseen.rgb))
+        calibration = check_calibration(
+            unseen.actual, unseen.predicted, cube.error_bound(unseen.rgb)
+        )
     points, (differences, steepest) = data.points, measures.compute_smoothness(data)
     distances = points.distance[points.present]
-    standard_errors = None if points.standard_error is None else points.standard_error[points.present]
+    standard_errors = (
+        None if points.standard_error is None else points.standard_error[points.present]
+    )
     return Assessment(
         name=name,
         size=size,
@@ -84,7 +108,10 @@ def assess(
         facts=summarise(data),
         failures=measures.collect_failures(data),
         distance=make_histogram(distances, log_edges(distances, MIN_ERROR)),
-        round_trips=_comparable(measures.round_trip_errors(cube), lambda values: log_edges(values, MIN_ERROR)),
+        round_trips=_comparable(
+            measures.round_trip_errors(cube),
+            lambda values: log_edges(values, MIN_ERROR),
+        ),
         standard_error=None
         if standard_errors is None
         else make_histogram(standard_errors, linear_edges(standard_errors)),
@@ -94,13 +121,21 @@ def assess(
         sources=() if atlas is None else tuple(source.name for source in atlas.sources),
         own=own,
         entries=errors,
-        alternatives={} if errors is None else fidelity.find_alternatives(data, errors, sensors),
-        delta_e={} if errors is None else _comparable(_by_light(errors, sensors), linear_edges),
+        alternatives={}
+        if errors is None
+        else fidelity.find_alternatives(data, errors, sensors),
+        delta_e={}
+        if errors is None
+        else _comparable(_by_light(errors, sensors), linear_edges),
         out_of_gamut=() if atlas is None else _missing(atlas.names, in_gamut),
         not_covered=_missing(in_gamut, () if errors is None else errors.names),
         calibration=calibration,
-        light_calibrations=_light_calibrations(cube, unseen, sensors) if unseen and calibration else {},
-        unlike=float(cube.unlike_atlas(unseen.rgb).mean()) if unseen and calibration else 0.0,
+        light_calibrations=_light_calibrations(cube, unseen, sensors)
+        if unseen and calibration
+        else {},
+        unlike=float(cube.unlike_atlas(unseen.rgb).mean())
+        if unseen and calibration
+        else 0.0,
         crowding=_crowding(cube, errors if own else None, sensors),
     )
 
@@ -110,7 +145,9 @@ def _missing(names: Sequence[str], present: Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in names if name not in found)
 
 
-def _light_calibrations(cube: Cube, errors: EntryErrors, lights: tuple[Sensor, ...]) -> dict[str, Calibration]:
+def _light_calibrations(
+    cube: Cube, errors: EntryErrors, lights: tuple[Sensor, ...]
+) -> dict[str, Calibration]:
     """Calibrations under lights other than that of `Assessment.calibration`, and that of the build."""
     data = cube.data
     if data.atlas.left_out is None:
@@ -118,30 +155,44 @@ def _light_calibrations(cube: Cube, errors: EntryErrors, lights: tuple[Sensor, .
     found = {}
     for light, actual in _by_light(errors, lights).items():
         if light not in (data.error_illuminant, data.sensor.illuminant):
-            predicted, bound = cube.standard_error(errors.rgb, light), cube.error_bound(errors.rgb, light)
+            predicted, bound = (
+                cube.standard_error(errors.rgb, light),
+                cube.error_bound(errors.rgb, light),
+            )
             found[light] = check_calibration(actual, predicted, bound)
     return {light: each for light, each in found.items() if each is not None}
 
 
 def _built_from(data: CubeData, atlas: Atlas) -> bool:
     """Return whether the cube records the digests of all files of the atlas."""
-    recorded = {str(source.get("digest")) for source in data.provenance.get("atlases", ())}
+    recorded = {
+        str(source.get("digest")) for source in data.provenance.get("atlases", ())
+    }
     given = {source.digest for source in atlas.sources}
     return bool(given) and given <= recorded
 
 
-def _crowding(cube: Cube, measured: EntryErrors | None, lights: tuple[Sensor, ...]) -> Crowding | None:
+def _crowding(
+    cube: Cube, measured: EntryErrors | None, lights: tuple[Sensor, ...]
+) -> Crowding | None:
     stored = fidelity.from_stored_entries(cube.data).answerable_by(cube)
     if not stored.names:
         return None
-    return fidelity.find_crowding(cube.data, measured or fidelity.entry_errors(cube, stored, lights))
+    return fidelity.find_crowding(
+        cube.data, measured or fidelity.entry_errors(cube, stored, lights)
+    )
 
 
 def _by_light(errors: EntryErrors, lights: tuple[Sensor, ...]) -> dict[str, Array]:
-    return {sensor.illuminant: errors.answers.delta_e[:, column] for column, sensor in enumerate(lights)}
+    return {
+        sensor.illuminant: errors.answers.delta_e[:, column]
+        for column, sensor in enumerate(lights)
+    }
 
 
-def _comparable(values: dict[str, Array], edges: Callable[[Array], Array]) -> dict[str, Histogram]:
+def _comparable(
+    values: dict[str, Array], edges: Callable[[Array], Array]
+) -> dict[str, Histogram]:
     """Histograms with common edges."""
     common = edges(np.concatenate(list(values.values())))
     return {name: make_histogram(array, common) for name, array in values.items()}

@@ -8,7 +8,15 @@ from markupsafe import Markup
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Indices
-from uplift.viz.figure import ACCENT, BAND, INK, new_figure, style_axes, styled, to_page_svg
+from uplift.viz.figure import (
+    ACCENT,
+    BAND,
+    INK,
+    new_figure,
+    style_axes,
+    styled,
+    to_page_svg,
+)
 from uplift.viz.format import format_power_of_ten
 
 SIZE = (3.3, 1.75)  # inches at 72 dpi; the page scales charts to its columns
@@ -19,7 +27,11 @@ REFLECTANCE_LIMITS = (0.1, 0.25, 0.5, 1.0)
 
 
 def histogram_chart(
-    values: "Histogram", label: str, *, top: int | None = None, threshold: float | None = None
+    values: "Histogram",
+    label: str,
+    *,
+    top: int | None = None,
+    threshold: float | None = None,
 ) -> Markup:
     """Draw counts over ``label``; the axis holds counts up to ``top``, a dashed line marks the threshold."""
     with styled():
@@ -42,16 +54,29 @@ def histogram_chart(
         return to_page_svg(figure, f"Histogram of {label}")
 
 
-def spectra_chart(wavelengths: Array, measured: Array, answered: Array, lattice: Array | None) -> Markup:
+def spectra_chart(
+    wavelengths: Array, measured: Array, answered: Array, lattice: Array | None
+) -> Markup:
     """Draw reflectances (N,) over wavelengths (N,) in nm: the measured one as a broad band, the others as lines."""
     curves = [measured, answered] if lattice is None else [measured, answered, lattice]
     highest = max(float(curve.max()) for curve in curves)
-    top = next((limit for limit in REFLECTANCE_LIMITS if highest <= limit), REFLECTANCE_LIMITS[-1])
+    top = next(
+        (limit for limit in REFLECTANCE_LIMITS if highest <= limit),
+        REFLECTANCE_LIMITS[-1],
+    )
     with styled():
         figure, axes = _new_axes(WITHOUT_LABEL)
-        axes.plot(wavelengths, measured, color=BAND, linewidth=4, solid_capstyle="round")
+        axes.plot(
+            wavelengths, measured, color=BAND, linewidth=4, solid_capstyle="round"
+        )
         if lattice is not None:
-            axes.plot(wavelengths, lattice, color=INK, linewidth=1.1, linestyle=(0, (1.2, 1.6)))
+            axes.plot(
+                wavelengths,
+                lattice,
+                color=INK,
+                linewidth=1.1,
+                linestyle=(0, (1.2, 1.6)),
+            )
         axes.plot(wavelengths, answered, color=ACCENT, linewidth=1.1)
         axes.set(
             xlim=(wavelengths[0], wavelengths[-1]),
@@ -100,7 +125,14 @@ def make_histogram(values: ArrayLike, edges: Array) -> Histogram:
     array = np.asarray(values, dtype=float)
     counts, _ = np.histogram(np.clip(array, edges[0], edges[-1]), edges)
     median, p95 = np.quantile(array, (0.5, 0.95)).tolist()
-    return Histogram(float(array.mean()), median, p95, float(array.max()), edges, counts.astype(np.int64))
+    return Histogram(
+        float(array.mean()),
+        median,
+        p95,
+        float(array.max()),
+        edges,
+        counts.astype(np.int64),
+    )
 
 
 def log_edges(values: ArrayLike, floor: float) -> Array:
@@ -115,5 +147,9 @@ def linear_edges(values: ArrayLike) -> Array:
     """Choose edges (B + 1,) of linear bins with round widths."""
     target = max(float(np.max(values)), 1e-12) / LINEAR_BINS
     decade = 10.0 ** np.floor(np.log10(target))
-    width = decade * next(step for step in STEPS if step * decade >= target * (1 - 1e-9))
-    return width * np.arange(int(np.ceil(np.max(values) / width)) + 2)[: LINEAR_BINS + 1]
+    width = decade * next(
+        step for step in STEPS if step * decade >= target * (1 - 1e-9)
+    )
+    return (
+        width * np.arange(int(np.ceil(np.max(values) / width)) + 2)[: LINEAR_BINS + 1]
+    )

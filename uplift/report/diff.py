@@ -75,9 +75,14 @@ def pair_entries(first: CubeData, second: CubeData) -> EntryPairs:
     tables = first.atlas.with_outside, second.atlas.with_outside
     row_of = [{name: row for row, name in enumerate(table.names)} for table in tables]
     shared = tuple(name for name in row_of[0] if name in row_of[1])
-    rows = [np.array([each[name] for name in shared], dtype=np.int64) for each in row_of]
+    rows = [
+        np.array([each[name] for name in shared], dtype=np.int64) for each in row_of
+    ]
     wavelengths = first.sensor.wavelengths
-    one, other = (table.spectra.reflectance(row, wavelengths) for table, row in zip(tables, rows, strict=True))
+    one, other = (
+        table.spectra.reflectance(row, wavelengths)
+        for table, row in zip(tables, rows, strict=True)
+    )
     return EntryPairs(
         names=shared,
         rgb=tables[0].rgb[rows[0]],
@@ -104,14 +109,24 @@ class CubeDiff:
     @property
     def sets(self) -> tuple[Changes, ...]:
         """All sets of colours that were compared."""
-        return tuple(each for each in (self.nodes, self.entries, *self.images) if len(each.rgb))
+        return tuple(
+            each for each in (self.nodes, self.entries, *self.images) if len(each.rgb)
+        )
 
     @property
     def lacking(self) -> tuple[tuple[str, str, int], ...]:
         """Colours without an answer: their set, the cubes that lack them, and their number."""
         cubes = ("", *self.names, " and ".join(self.names))
-        counts = [(each.name, np.bincount(each.lacking, minlength=4).tolist()) for each in self.sets]
-        return tuple((name, cubes[code], count[code]) for name, count in counts for code in (1, 2, 3) if count[code])
+        counts = [
+            (each.name, np.bincount(each.lacking, minlength=4).tolist())
+            for each in self.sets
+        ]
+        return tuple(
+            (name, cubes[code], count[code])
+            for name, count in counts
+            for code in (1, 2, 3)
+            if count[code]
+        )
 
     @property
     def largest(self) -> float:
@@ -120,13 +135,17 @@ class CubeDiff:
 
     def is_within(self, tolerance: float) -> bool:
         """Whether both cubes have the same entries and colours, and none differs by more than ΔE00 ``tolerance``."""
-        has_same_colours = not any(np.isin(each.lacking, (1, 2)).any() for each in self.sets)
+        has_same_colours = not any(
+            np.isin(each.lacking, (1, 2)).any() for each in self.sets
+        )
         has_same_entries = not (self.pairs.removed or self.pairs.added)
         return has_same_colours and has_same_entries and self.largest <= tolerance
 
 
 def diff_cubes(
-    cubes: Mapping[str, Cube], lights: Sequence[Illuminant], images: Mapping[str, Array] | None = None
+    cubes: Mapping[str, Cube],
+    lights: Sequence[Illuminant],
+    images: Mapping[str, Array] | None = None,
 ) -> CubeDiff:
     """Compare two cubes, by name, at the nodes of both, at their entries, and at the colours of images.
 
@@ -139,18 +158,31 @@ def diff_cubes(
     under = [light(name, sensor.observer, *sensor.range) for name in lights]
 
     size = sum(cube.data.lattice.size for cube in cubes.values())
-    check_memory(size * NODE_BYTES, pluralise(size, "node"), OptionError, "use cubes of a smaller dim")
+    check_memory(
+        size * NODE_BYTES,
+        pluralise(size, "node"),
+        OptionError,
+        "use cubes of a smaller dim",
+    )
     nodes, others = (cube.data.lattice.points for cube in (first, second))
     nodes = nodes if np.array_equal(nodes, others) else np.concatenate([nodes, others])
-    colours = {NODES: nodes, **{name: rgb.reshape(-1, 3) for name, rgb in (images or {}).items()}}
+    colours = {
+        NODES: nodes,
+        **{name: rgb.reshape(-1, 3) for name, rgb in (images or {}).items()},
+    }
 
     def difference(rgb: Array) -> Array:
-        answers = [cube.reflectance(rgb, sensor.wavelengths) for cube in (first, second)]
+        answers = [
+            cube.reflectance(rgb, sensor.wavelengths) for cube in (first, second)
+        ]
         return delta_e_under(under, *answers)
 
     changes = []
     for name, rgb in colours.items():
-        delta_e, lacking = np.full((len(rgb), len(under)), np.nan), ~first.covers(rgb) + 2 * ~second.covers(rgb)
+        delta_e, lacking = (
+            np.full((len(rgb), len(under)), np.nan),
+            ~first.covers(rgb) + 2 * ~second.covers(rgb),
+        )
         delta_e[lacking == 0] = blockwise(difference, rgb[lacking == 0], len(under))
         changes.append(Changes(name, rgb, delta_e, lacking))
 
@@ -162,7 +194,12 @@ def diff_cubes(
         lights=tuple(each.name for each in under),
         nodes=changes[0],
         pairs=pairs,
-        entries=Changes(ENTRIES, pairs.rgb, delta_e_under(under, *pairs.spectra), np.zeros(len(pairs.names), np.int64)),
+        entries=Changes(
+            ENTRIES,
+            pairs.rgb,
+            delta_e_under(under, *pairs.spectra),
+            np.zeros(len(pairs.names), np.int64),
+        ),
         images=tuple(changes[1:]),
     )
 
@@ -186,7 +223,11 @@ def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, ob
     return {
         "cubes": list(diff.names),
         "largest": diff.largest,
-        **({} if tolerance is None else {"tolerance": tolerance, "passed": diff.is_within(tolerance)}),
+        **(
+            {}
+            if tolerance is None
+            else {"tolerance": tolerance, "passed": diff.is_within(tolerance)}
+        ),
         "differences": sorted(differences, key=lambda row: row["max"] < INVISIBLE),
         "worst": [
             {
@@ -201,5 +242,8 @@ def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, ob
         ],
         "entries_removed": list(diff.pairs.removed),
         "entries_added": list(diff.pairs.added),
-        "lacking": [{"set": name, "cubes": cubes, "colours": count} for name, cubes, count in diff.lacking],
+        "lacking": [
+            {"set": name, "cubes": cubes, "colours": count}
+            for name, cubes, count in diff.lacking
+        ],
     }

@@ -12,7 +12,15 @@ from uplift.common.arrays import Array
 from uplift.io.exr import blue_slices
 from uplift.report.charts import spectra_chart
 from uplift.report.diff import Changes, CubeDiff, to_json
-from uplift.viz.figure import PALE, RAMP, colour_map, new_figure, show_image, styled, to_page_svg
+from uplift.viz.figure import (
+    PALE,
+    RAMP,
+    colour_map,
+    new_figure,
+    show_image,
+    styled,
+    to_page_svg,
+)
 from uplift.viz.html import render
 
 MIN_LIMIT, SHARE = 1.0, 0.99
@@ -25,7 +33,11 @@ WIDTH = 10.5
 def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
     """Render a comparison, with the images (height, width, 3) in linear RGB that it was made for."""
     worst_of = diff.nodes.compared.max(axis=1)
-    limit = max(MIN_LIMIT, math.ceil(np.quantile(worst_of, SHARE))) if worst_of.size else MIN_LIMIT
+    limit = (
+        max(MIN_LIMIT, math.ceil(np.quantile(worst_of, SHARE)))
+        if worst_of.size
+        else MIN_LIMIT
+    )
     dim = diff.cubes[0].data.lattice.dim
     nodes = blue_slices(diff.nodes.largest[: dim**3], dim)
     return render(
@@ -36,9 +48,15 @@ def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
         figures=to_json(diff, None, worst),
         limit=limit,
         ramp=RAMP,
-        lattice=_map(mosaic(nodes), limit, "ΔE00 over the lattice, a tile for each blue"),
+        lattice=_map(
+            mosaic(nodes), limit, "ΔE00 over the lattice, a tile for each blue"
+        ),
         images=[_image(diff, each, images[each.name], limit) for each in diff.images],
-        spectra=[_spectra(diff, each, int(row)) for each in diff.sets for row in each.worst(worst)],
+        spectra=[
+            _spectra(diff, each, int(row))
+            for each in diff.sets
+            for row in each.worst(worst)
+        ],
     )
 
 
@@ -54,23 +72,38 @@ def mosaic(slices: Array) -> Array:
     return sheet
 
 
-def _map(values: Array, limit: float, label: str, picture: NDArray[np.uint8] | None = None) -> Markup:
+def _map(
+    values: Array, limit: float, label: str, picture: NDArray[np.uint8] | None = None
+) -> Markup:
     """Draw a map of ΔE00 (height, width), next to a picture of 8-bit codes if one is given."""
     with styled():
         panels = 1 if picture is None else 2
-        figure = new_figure(WIDTH, 0.94 * WIDTH * values.shape[0] / values.shape[1] / panels)
+        figure = new_figure(
+            WIDTH, 0.94 * WIDTH * values.shape[0] / values.shape[1] / panels
+        )
         grid = figure.subplots(1, panels, squeeze=False)[0]
         if picture is not None:
             show_image(grid[0], picture, interpolation="antialiased")
-        show_image(grid[-1], values, cmap=colour_map(), vmin=0, vmax=limit, interpolation="nearest")
+        show_image(
+            grid[-1],
+            values,
+            cmap=colour_map(),
+            vmin=0,
+            vmax=limit,
+            interpolation="nearest",
+        )
         grid[-1].set_facecolor(PALE)
         return to_page_svg(figure, label)
 
 
-def _image(diff: CubeDiff, changes: Changes, rgb: Array, limit: float) -> tuple[str, Markup]:
+def _image(
+    diff: CubeDiff, changes: Changes, rgb: Array, limit: float
+) -> tuple[str, Markup]:
     codes = to_display_codes(rgb, diff.cubes[0].data.sensor).astype(np.uint8)
     values = changes.largest.reshape(rgb.shape[:2])
-    return changes.name, _map(values, limit, f"{changes.name}, and ΔE00 of its pixels", codes)
+    return changes.name, _map(
+        values, limit, f"{changes.name}, and ΔE00 of its pixels", codes
+    )
 
 
 def _spectra(diff: CubeDiff, changes: Changes, row: int) -> dict[str, object]:
@@ -78,7 +111,10 @@ def _spectra(diff: CubeDiff, changes: Changes, row: int) -> dict[str, object]:
     sensor, rgb = diff.cubes[0].data.sensor, changes.rgb[row]
     wavelengths = sensor.wavelengths
     if changes is diff.entries:
-        name, answers = diff.pairs.names[row], [each[row] for each in diff.pairs.spectra]
+        name, answers = (
+            diff.pairs.names[row],
+            [each[row] for each in diff.pairs.spectra],
+        )
     else:
         name, answers = "", [cube.reflectance(rgb, wavelengths) for cube in diff.cubes]
     (code,) = hex_codes(rgb[None], sensor)

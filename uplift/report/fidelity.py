@@ -29,7 +29,9 @@ class EntryQuery:
     names: tuple[str, ...]  # Names of E entries
     rgb: Array  # (E, 3) Linear RGB, outside [0, 1] for the cube's entries outside its space
     target: Array  # (E, N) Reflectances at the sensor's wavelengths
-    rows: Indices | None  # (E,) Rows of the table of all entries of the cube; None for other entries
+    rows: (
+        Indices | None
+    )  # (E,) Rows of the table of all entries of the cube; None for other entries
 
     def answerable_by(self, cube: Cube) -> "EntryQuery":
         """Keep the entries that a cube has nodes for: a sparse one lacks some."""
@@ -69,14 +71,18 @@ class EntryErrors:
     target: Array  # (E, N) Reflectances as measured or, without measurements, as stored
     answers: Answers  # Those of the cube
     actual: Array  # (E,) ΔE00 between answer and ``target`` under the cube's error illuminant
-    predicted: Array | None  # (E,) Standard error of the cube at ``rgb``; None if it has none
+    predicted: (
+        Array | None
+    )  # (E,) Standard error of the cube at ``rgb``; None if it has none
     cells: Indices  # (E, 3) Position of the lowest corner of the cell along the axes
     # Interpolated from the lattice without the entries. This and all further fields are None for entries that the
     # cube was not built from
     lattice: Answers | None = None
     # (E,) Lattice steps from the entry to the faces of its box; 0 if no colour returns the entry
     half_width: Array | None = None
-    half_width_codes: Array | None = None  # (E,) The same in 8-bit codes, to the nearest pair of faces
+    half_width_codes: Array | None = (
+        None  # (E,) The same in 8-bit codes, to the nearest pair of faces
+    )
 
 
 Rows = TypeVar("Rows", EntryQuery, Answers, EntryErrors)
@@ -93,7 +99,9 @@ def take(table: Rows, rows: ArrayLike) -> Rows:
             return value[order]
         return None if value is None else take(value, order)
 
-    return replace(table, **{each.name: part(getattr(table, each.name)) for each in fields(table)})
+    return replace(
+        table, **{each.name: part(getattr(table, each.name)) for each in fields(table)}
+    )
 
 
 def from_own_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
@@ -103,35 +111,53 @@ def from_own_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
     known = [row for row, name in enumerate(atlas.names) if name in row_of]
     names = tuple(atlas.names[row] for row in known)
     rows = np.array([row_of[name] for name in names], dtype=np.int64)
-    return EntryQuery(names, table.rgb[rows], resample(atlas, data.sensor.wavelengths).values[known], rows)
+    return EntryQuery(
+        names,
+        table.rgb[rows],
+        resample(atlas, data.sensor.wavelengths).values[known],
+        rows,
+    )
 
 
 def from_other_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
     """Query entries that the cube was not built from, as far as they lie in its RGB space."""
     measured = resample(atlas, data.sensor.wavelengths).values
     rgb = data.sensor.rgb(measured)
-    return take(EntryQuery(atlas.names, np.clip(rgb, 0, 1), measured, None), np.flatnonzero(in_unit_cube(rgb)))
+    return take(
+        EntryQuery(atlas.names, np.clip(rgb, 0, 1), measured, None),
+        np.flatnonzero(in_unit_cube(rgb)),
+    )
 
 
 def from_stored_entries(data: CubeData) -> EntryQuery:
     """Query the cube's own entries; without measurements, targets are the stored spectra."""
     table = data.atlas.with_outside
     rows, spectra = np.arange(len(table.names)), table.spectra
-    return EntryQuery(table.names, table.rgb, spectra.reflectance(rows, data.sensor.wavelengths), rows)
+    return EntryQuery(
+        table.names, table.rgb, spectra.reflectance(rows, data.sensor.wavelengths), rows
+    )
 
 
-def entry_errors(cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]) -> EntryErrors:
+def entry_errors(
+    cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]
+) -> EntryErrors:
     """Compare the answers of a cube in its default mode with the targets of a query."""
     data, target = cube.data, query.target
     inside = _inside(data, query.rgb)
-    spectra = reflectance_anywhere(data, query.rgb, data.sensor.wavelengths, "spectra", ~in_unit_cube(query.rgb))
+    spectra = reflectance_anywhere(
+        data, query.rgb, data.sensor.wavelengths, "spectra", ~in_unit_cube(query.rgb)
+    )
     answers = compare_spectra(spectra, target, [sensor.light for sensor in lights])
     errors = EntryErrors(
         names=query.names,
         rgb=query.rgb,
         target=target,
         answers=answers,
-        actual=delta_e_spectra(light(data.error_illuminant, data.sensor.observer, *data.sensor.range), spectra, target),
+        actual=delta_e_spectra(
+            light(data.error_illuminant, data.sensor.observer, *data.sensor.range),
+            spectra,
+            target,
+        ),
         predicted=cube.standard_error(inside),
         cells=data.lattice.cell(inside)[0],
     )
@@ -140,13 +166,22 @@ def entry_errors(cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]) -> E
     return take(errors, np.lexsort((-answers.rms, -answers.worst)))
 
 
-def _with_lattice_errors(cube: Cube, errors: EntryErrors, rows: Indices, lights: tuple[Sensor, ...]) -> EntryErrors:
+def _with_lattice_errors(
+    cube: Cube, errors: EntryErrors, rows: Indices, lights: tuple[Sensor, ...]
+) -> EntryErrors:
     """Add the fields that only the cube's own entries have; ``rows`` (E,) are those of all its entries."""
     data, table = cube.data, cube.data.atlas.with_outside
     boxes, reach = data.outside_boxes, data.outside_boxes.half_width[:, None]
     lower, upper = data.entry_boxes.faces
-    faces = np.concatenate([lower, boxes.rgb - reach]), table.rgb, np.concatenate([upper, boxes.rgb + reach])
-    low, centre, high = (np.sign(rgb) * cube.encode(np.abs(rgb)) for rgb in (each[rows] for each in faces))
+    faces = (
+        np.concatenate([lower, boxes.rgb - reach]),
+        table.rgb,
+        np.concatenate([upper, boxes.rgb + reach]),
+    )
+    low, centre, high = (
+        np.sign(rgb) * cube.encode(np.abs(rgb))
+        for rgb in (each[rows] for each in faces)
+    )
     is_outside = rows >= len(data.atlas.names)
     return replace(
         errors,
@@ -155,7 +190,9 @@ def _with_lattice_errors(cube: Cube, errors: EntryErrors, rows: Indices, lights:
             errors.target,
             [sensor.light for sensor in lights],
         ),
-        predicted=None if errors.predicted is None else np.where(is_outside, table.error[rows], errors.predicted),
+        predicted=None
+        if errors.predicted is None
+        else np.where(is_outside, table.error[rows], errors.predicted),
         half_width=table.half_width[rows],
         half_width_codes=np.maximum(high - centre, centre - low).min(axis=1),
     )
@@ -175,11 +212,19 @@ def compare_spectra(spectra: Array, target: Array, lights: Iterable[Light]) -> A
 WITHOUT_ATLAS, JAKOB_HANIKA = "without atlas", "Jakob & Hanika"
 
 
-def find_alternatives(data: CubeData, errors: EntryErrors, lights: tuple[Sensor, ...]) -> dict[str, Answers]:
+def find_alternatives(
+    data: CubeData, errors: EntryErrors, lights: tuple[Sensor, ...]
+) -> dict[str, Answers]:
     """Compute the answers of other methods at the colours of entries, by the name of the method."""
-    spectra = {WITHOUT_ATLAS: _without_atlas(errors.target, data.sensor), JAKOB_HANIKA: _sigmoid(data, errors.rgb)}
+    spectra = {
+        WITHOUT_ATLAS: _without_atlas(errors.target, data.sensor),
+        JAKOB_HANIKA: _sigmoid(data, errors.rgb),
+    }
     under = [sensor.light for sensor in lights]
-    return {name: compare_spectra(each, errors.target, under) for name, each in spectra.items()}
+    return {
+        name: compare_spectra(each, errors.target, under)
+        for name, each in spectra.items()
+    }
 
 
 def _without_atlas(target: Array, assessed: Sensor) -> Array:
@@ -201,7 +246,9 @@ def _sigmoid(data: CubeData, rgb: Array) -> Array:
     return np.where((distance <= data.threshold)[:, None], answer, np.nan)
 
 
-MAX_DISTANCE = 1 + 1e-9  # lattice steps; two entries of one cell are never farther apart
+MAX_DISTANCE = (
+    1 + 1e-9
+)  # lattice steps; two entries of one cell are never farther apart
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,13 +267,18 @@ def find_crowding(data: CubeData, entries: EntryErrors) -> Crowding:
     names = data.atlas.names
     nearest, distances = _nearest(data.lattice.to_steps(data.atlas.rgb))
     row_of = {name: row for row, name in enumerate(names)}
-    entries = take(entries, [row for row, name in enumerate(entries.names) if name in row_of])
+    entries = take(
+        entries, [row for row, name in enumerate(entries.names) if name in row_of]
+    )
     assert entries.lattice is not None
     rows = np.array([row_of[name] for name in entries.names])
     order = np.argsort(-entries.lattice.worst, kind="stable")
     kept = order[distances[rows[order]] <= MAX_DISTANCE]
     return Crowding(
-        take(entries, kept), tuple(names[other] for other in nearest[rows[kept]]), distances[rows[kept]], _lost(data)
+        take(entries, kept),
+        tuple(names[other] for other in nearest[rows[kept]]),
+        distances[rows[kept]],
+        _lost(data),
     )
 
 
@@ -238,10 +290,15 @@ def _nearest(steps: Array) -> tuple[Indices, Array]:
         return np.zeros(len(steps), dtype=np.int64), np.full(len(steps), np.inf)
     distances, rows = KDTree(steps).query(steps, k=2, p=np.inf)
     # The first of the two is the row itself, unless another has the same colour.
-    return np.where(rows[:, 0] == np.arange(len(steps)), rows[:, 1], rows[:, 0]), distances[:, 1]
+    return np.where(
+        rows[:, 0] == np.arange(len(steps)), rows[:, 1], rows[:, 0]
+    ), distances[:, 1]
 
 
 def _lost(data: CubeData) -> tuple[tuple[str, str], ...]:
     names, rows = data.atlas.names, np.flatnonzero(data.atlas.half_width == 0)
     hits = data.entry_boxes.find(data.atlas.rgb[rows])
-    return tuple((names[rows[row]], names[other]) for row, other in zip(hits.rows, hits.entry, strict=True))
+    return tuple(
+        (names[rows[row]], names[other])
+        for row, other in zip(hits.rows, hits.entry, strict=True)
+    )

@@ -10,7 +10,12 @@ from uplift.colorimetry.srgb import hex_codes
 from uplift.lights.lattice import chromaticity
 from uplift.lights.lookup import EmissionTable
 from uplift.lights.table import summarise
-from uplift.report.charts import histogram_chart, linear_edges, log_edges, make_histogram
+from uplift.report.charts import (
+    histogram_chart,
+    linear_edges,
+    log_edges,
+    make_histogram,
+)
 from uplift.report.measures import COLOURS, SEED
 from uplift.viz.chromaticity import draw_colours, draw_errors, draw_lamps
 from uplift.viz.figure import styled, to_page_svg
@@ -23,8 +28,14 @@ PANEL = (4.2, 4.05)  # inches of a diagram; the page scales it to its columns
 MARGINS = {"left": 0.11, "right": 0.98, "bottom": 0.11, "top": 0.98}
 # How each diagram is drawn, and what it shows, by its title.
 DIAGRAMS = {
-    "Colours": (draw_colours, "Chromaticity diagram of the colours of lights, with the exact lamps"),
-    "Expected error": (draw_errors, "Chromaticity diagram of the expected error of surfaces"),
+    "Colours": (
+        draw_colours,
+        "Chromaticity diagram of the colours of lights, with the exact lamps",
+    ),
+    "Expected error": (
+        draw_errors,
+        "Chromaticity diagram of the expected error of surfaces",
+    ),
     "Lamps": (draw_lamps, "Chromaticity diagram of the exact lamps and their discs"),
 }
 
@@ -37,9 +48,14 @@ def assess_lights(table: EmissionTable) -> dict[str, Any]:
     those expected of another lamp of the chromaticity of an exact one, which has ``lamp_rgb`` (E, 3) at luminance 1.
     """
     radiometry = table.data.radiometry
-    xyz = np.random.default_rng(SEED).random((COLOURS, len(radiometry))) ** PEAKS @ radiometry
+    xyz = (
+        np.random.default_rng(SEED).random((COLOURS, len(radiometry))) ** PEAKS
+        @ radiometry
+    )
     power = table.spectrum_of_xyz(xyz)
-    distance = np.linalg.norm(chromaticity(power @ radiometry) - chromaticity(xyz), axis=1)
+    distance = np.linalg.norm(
+        chromaticity(power @ radiometry) - chromaticity(xyz), axis=1
+    )
     expected = table.expected_error(table.rgb_of_xyz(xyz))
     lamps = table.data.entries.spectra @ radiometry
     lamp_rgb = table.rgb_of_xyz(lamps / lamps[:, 1:2])
@@ -66,8 +82,20 @@ def render_light_report(table: EmissionTable, name: str, size: int) -> str:
         facts=summarise(table.data),
         provenance=table.data.provenance,
         count=COLOURS,
-        diagrams=[(title, _diagram(draw, label, table)) for title, (draw, label) in DIAGRAMS.items()],
-        lamps=list(zip(entries.names, codes, entries.uv, entries.radius, assessment["lamp_errors"], strict=True)),
+        diagrams=[
+            (title, _diagram(draw, label, table))
+            for title, (draw, label) in DIAGRAMS.items()
+        ],
+        lamps=list(
+            zip(
+                entries.names,
+                codes,
+                entries.uv,
+                entries.radius,
+                assessment["lamp_errors"],
+                strict=True,
+            )
+        ),
         histogram_chart=histogram_chart,
     )
 

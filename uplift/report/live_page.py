@@ -14,7 +14,15 @@ from uplift.io.export.program import cube_program
 from uplift.io.export.table import COLUMNS, check_complete, make_table
 from uplift.viz.html import Markup, render, resource
 
-LIGHTS = ("D65", "A", "D50", "FL2", "FL11", "HP1", "LED-B3")  # illuminants to choose from
+LIGHTS = (
+    "D65",
+    "A",
+    "D50",
+    "FL2",
+    "FL11",
+    "HP1",
+    "LED-B3",
+)  # illuminants to choose from
 GROUP = 4  # wavelengths of one call of the program
 SPACE = "sRGB"
 
@@ -59,6 +67,9 @@ def _weights(data: CubeData) -> tuple[Array, dict[str, Array]]:
     sensor, at = data.sensor, data.sensor.wavelengths
     missing = -len(at) % GROUP
     return np.pad(at, (0, missing), mode="edge"), {
-        name: np.pad(sensor.xyz_to_rgb @ light(name, sensor.observer, *sensor.range).xyz, ((0, 0), (0, missing)))
+        name: np.pad(
+            sensor.xyz_to_rgb @ light(name, sensor.observer, *sensor.range).xyz,
+            ((0, 0), (0, missing)),
+        )
         for name in dict.fromkeys((sensor.illuminant, *LIGHTS))
     }

@@ -34,11 +34,14 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
     if not found or len(found[0].xyz) != 1:
         count = len(found[0].xyz) if found else 0
         raise OptionError(
-            f"a page shows one colour under some lights, got {pluralise(count, 'colour')}", hint="give a single colour"
+            f"a page shows one colour under some lights, got {pluralise(count, 'colour')}",
+            hint="give a single colour",
         )
     sensor, rgb = cube.data.sensor, found[0].volumes.rgb[0]
     written = _written(cube, rgb)
-    screens = display_sensors([each.light.name for each in found], cube.observer, *sensor.range)
+    screens = display_sensors(
+        [each.light.name for each in found], cube.observer, *sensor.range
+    )
     lights = [_light(each, screen) for each, screen in zip(found, screens, strict=True)]
     return render(
         "report/templates/look_page.html.j2",
@@ -51,7 +54,10 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
         lights=lights,
         likely=f"{LIKELY:.0%}",
         numbers=_model(sensor, found[0].reflectance[0], rgb)
-        | {"build": _view(sensor.light, conversion(sensor, SRGB) @ sensor.xyz_to_rgb), "lights": lights}
+        | {
+            "build": _view(sensor.light, conversion(sensor, SRGB) @ sensor.xyz_to_rgb),
+            "lights": lights,
+        }
         | {"rgb": written, "luminance": SRGB.rgb_to_xyz[1].tolist()},
         script=resource("viz/draw.js", "report/look_page.js"),
     )
@@ -82,7 +88,12 @@ def _light(found: Bounds, screen: Sensor) -> dict[str, Any]:
 
 
 def _view(light: Light, to_rgb: Array) -> dict[str, Any]:
-    return {"name": light.name, "xyz": _rounded(light.xyz), "white": _rounded(light.white), "toRgb": _rounded(to_rgb)}
+    return {
+        "name": light.name,
+        "xyz": _rounded(light.xyz),
+        "white": _rounded(light.white),
+        "toRgb": _rounded(to_rgb),
+    }
 
 
 def _written(cube: Cube, rgb: Array) -> str | list[float]:

@@ -23,7 +23,11 @@ def delta_e_under(lights: Iterable[Light], first: Array, second: Array) -> Array
 
 def mean_p95_max(delta_e: Array) -> dict[str, float]:
     """Summarise ΔE00 by the mean, the value that 95 % stay within, and the largest value."""
-    return {"mean": float(delta_e.mean()), "p95": float(np.quantile(delta_e, 0.95)), "max": float(delta_e.max())}
+    return {
+        "mean": float(delta_e.mean()),
+        "p95": float(np.quantile(delta_e, 0.95)),
+        "max": float(delta_e.max()),
+    }
 
 
 MAX_LISTED = 24  # nodes over the threshold that a report lists
@@ -38,12 +42,22 @@ def collect_failures(data: CubeData) -> dict[str, Any]:
     failed = np.isin(points.status, (Status.UNFITTED, Status.UNREALISABLE))
     rows = np.flatnonzero(failed | ~(points.distance <= data.threshold))
     worst = rows[np.argsort(-points.distance[rows], kind="stable")][:MAX_LISTED]
-    columns = zip(data.lattice.points[worst], points.rgb[worst], points.distance[worst], strict=True)
+    columns = zip(
+        data.lattice.points[worst],
+        points.rgb[worst],
+        points.distance[worst],
+        strict=True,
+    )
     return {
         "over_threshold": len(rows),
-        "worst": [dict(zip(("rgb", "lattice_rgb", "distance"), row, strict=True)) for row in columns],
+        "worst": [
+            dict(zip(("rgb", "lattice_rgb", "distance"), row, strict=True))
+            for row in columns
+        ],
         "improvements": tuple(recorded.get("improvements", ())),
-        "left_out": tuple(recorded.get("left_out", ())) if data.atlas.outside is None else (),
+        "left_out": tuple(recorded.get("left_out", ()))
+        if data.atlas.outside is None
+        else (),
         "skipped": tuple(recorded.get("skipped", ())),
     }
 
@@ -54,14 +68,22 @@ def compute_smoothness(data: CubeData) -> tuple[NDArray[np.float32], Array]:
     The lattice is processed by planes of equal red: spectra of two planes are in memory at a time.
     """
     dim, wavelengths, parts = data.lattice.dim, data.sensor.wavelengths, []
-    none = spectra = np.full((dim, dim, len(wavelengths)), np.nan)  # of a plane; NaN for absent nodes
+    none = spectra = np.full(
+        (dim, dim, len(wavelengths)), np.nan
+    )  # of a plane; NaN for absent nodes
     for first in range(0, dim**3, dim**2):
-        before, spectra, nodes = spectra, none, first + np.arange(dim**2).reshape(dim, dim)
+        before, spectra, nodes = (
+            spectra,
+            none,
+            first + np.arange(dim**2).reshape(dim, dim),
+        )
         present = data.points.present[nodes]
         if not present.any():
             continue
         spectra = none.copy()
-        spectra[present] = reflectance(data.model, data.points.coefficients[nodes[present]], wavelengths)
+        spectra[present] = reflectance(
+            data.model, data.points.coefficients[nodes[present]], wavelengths
+        )
         for low, second, high, step in (
             (spectra[:, :-1], spectra[:, 1:], nodes[:, 1:], 1),  # along blue
             (spectra[:-1], spectra[1:], nodes[1:], dim),  # along green
@@ -83,7 +105,10 @@ def round_trip_errors(cube: Cube) -> dict[str, Array]:
     """Compute ΔE00 (n,) between random colours and those of their spectra, by mode of lookup."""
     rgb, sensor = _random_rgb(cube.data), cube.data.sensor
     rgb = rgb[cube.covers(rgb)]
-    return {mode: delta_e_rgb(sensor, rgb, sensor.rgb(cube.reflectance(rgb, mode=mode))) for mode in MODES}
+    return {
+        mode: delta_e_rgb(sensor, rgb, sensor.rgb(cube.reflectance(rgb, mode=mode)))
+        for mode in MODES
+    }
 
 
 def _random_rgb(data: CubeData) -> Array:
@@ -92,8 +117,12 @@ def _random_rgb(data: CubeData) -> Array:
     rgb = random.random((COLOURS, 3))
     if data.complete_cells is None:
         return rgb
-    low = data.lattice.position(random.choice(np.flatnonzero(data.complete_cells), COLOURS))
-    return data.lattice.nodes[low] + rgb * (data.lattice.nodes[low + 1] - data.lattice.nodes[low])
+    low = data.lattice.position(
+        random.choice(np.flatnonzero(data.complete_cells), COLOURS)
+    )
+    return data.lattice.nodes[low] + rgb * (
+        data.lattice.nodes[low + 1] - data.lattice.nodes[low]
+    )
 
 
 TOLERANCE = 1.25  # largest factor, in both directions, between actual and predicted errors that counts as agreement
@@ -104,9 +133,13 @@ class Calibration:
     """Actual errors of entries against predicted ones, ΔE00 under the cube's error illuminant."""
 
     count: int  # Number of entries
-    actual: float  # Mean that they should have had, so that 68 % of the entries were within
+    actual: (
+        float  # Mean that they should have had, so that 68 % of the entries were within
+    )
     predicted: float  # Mean of the standard errors
-    within_error: float  # Fraction of the entries whose error is at most its standard error
+    within_error: (
+        float  # Fraction of the entries whose error is at most its standard error
+    )
     within_bound: float  # The same of its error bound
 
     @property
@@ -127,11 +160,16 @@ class Calibration:
         }
 
 
-def check_calibration(actual: Array, predicted: Array | None, bound: Array | None) -> Calibration | None:
+def check_calibration(
+    actual: Array, predicted: Array | None, bound: Array | None
+) -> Calibration | None:
     """Compare actual errors (n,) with standard errors and error bounds (n,); None if the cube has none."""
     if predicted is None or bound is None:
         return None
-    mean, ratio = float(predicted.mean()), actual / np.maximum(predicted, np.finfo(float).tiny)
+    mean, ratio = (
+        float(predicted.mean()),
+        actual / np.maximum(predicted, np.finfo(float).tiny),
+    )
     return Calibration(
         count=len(actual),
         actual=mean * float(np.quantile(ratio, COVERAGE[0][0])),

@@ -34,11 +34,16 @@ def to_json(assessment: Assessment) -> dict[str, Any]:
             "standard_error": {
                 "light": data.error_illuminant,
                 "delta_e_2000": assessment.standard_error,
-                "calibration": assessment.calibration and assessment.calibration.to_json(),
-                "calibrations": {light: each.to_json() for light, each in assessment.light_calibrations.items()},
+                "calibration": assessment.calibration
+                and assessment.calibration.to_json(),
+                "calibrations": {
+                    light: each.to_json()
+                    for light, each in assessment.light_calibrations.items()
+                },
                 "unlike_atlas": assessment.unlike,
             },
-            "smoothness": vars(assessment.smoothness) | {"steepest": assessment.steepest},
+            "smoothness": vars(assessment.smoothness)
+            | {"steepest": assessment.steepest},
             "lights": [sensor.illuminant for sensor in assessment.lights],
             "atlas": {
                 "files": assessment.sources,
@@ -47,7 +52,9 @@ def to_json(assessment: Assessment) -> dict[str, Any]:
                 "absent": assessment.not_covered,
             },
             "delta_e_2000": assessment.delta_e,
-            "entries": [] if assessment.entries is None else _entries(assessment.entries, assessment.lights),
+            "entries": []
+            if assessment.entries is None
+            else _entries(assessment.entries, assessment.lights),
             "alternatives": [
                 {"name": name, "delta_e_2000": _by_light(other, assessment.lights)}
                 for name, other in assessment.alternatives.items()
@@ -62,7 +69,11 @@ def to_json(assessment: Assessment) -> dict[str, Any]:
 
 def swatches(errors: EntryErrors, sensor: Sensor) -> list[tuple[str, ...]]:
     """``#rrggbb`` of every entry under a light: target, answer and, for the cube's own entries, the lattice."""
-    spectra = [errors.target, errors.answers.spectra, *([errors.lattice.spectra] if errors.lattice else [])]
+    spectra = [
+        errors.target,
+        errors.answers.spectra,
+        *([errors.lattice.spectra] if errors.lattice else []),
+    ]
     return list(zip(*(hex_codes(sensor.rgb(each)) for each in spectra), strict=True))
 
 
@@ -75,7 +86,9 @@ def _crowding(assessment: Assessment) -> dict[str, Any] | None:
         "lost": [{"name": name, "same_colour": other} for name, other in crowding.lost],
         "entries": [
             entry | {"nearest": other, "apart": distance}
-            for entry, other, distance in zip(entries, crowding.nearest, crowding.distances, strict=True)
+            for entry, other, distance in zip(
+                entries, crowding.nearest, crowding.distances, strict=True
+            )
         ],
     }
 
@@ -94,7 +107,8 @@ def _entries(errors: EntryErrors, lights: tuple[Sensor, ...]) -> list[dict[str, 
             "rgb": errors.rgb[row],
             "cell": errors.cells[row],
             "delta_e_2000": dict(zip(names, answers.delta_e[row], strict=True)),
-            "delta_e_2000_lattice": lattice and dict(zip(names, lattice.delta_e[row], strict=True)),
+            "delta_e_2000_lattice": lattice
+            and dict(zip(names, lattice.delta_e[row], strict=True)),
             "rms": answers.rms[row],
             "rms_lattice": lattice and lattice.rms[row],
             "delta_e_2000_reference": errors.actual[row],
@@ -102,7 +116,9 @@ def _entries(errors: EntryErrors, lights: tuple[Sensor, ...]) -> list[dict[str, 
             "reach": at(errors.half_width, row),
             "reach_codes": at(errors.half_width_codes, row),
             "srgb": {
-                light: dict(zip(("wanted", "answered", "lattice"), each[row], strict=False))
+                light: dict(
+                    zip(("wanted", "answered", "lattice"), each[row], strict=False)
+                )
                 for light, each in codes.items()
             },
         }
@@ -112,14 +128,26 @@ def _entries(errors: EntryErrors, lights: tuple[Sensor, ...]) -> list[dict[str, 
 
 def _by_light(other: Answers, lights: tuple[Sensor, ...]) -> dict[str, Any]:
     """Errors of another method, in the order of the entries."""
-    columns = zip(lights, other.answered.mean(axis=0), other.answered.max(axis=0), other.delta_e.T, strict=True)
-    return {sensor.illuminant: {"mean": mean, "max": most, "entries": each} for sensor, mean, most, each in columns}
+    columns = zip(
+        lights,
+        other.answered.mean(axis=0),
+        other.answered.max(axis=0),
+        other.delta_e.T,
+        strict=True,
+    )
+    return {
+        sensor.illuminant: {"mean": mean, "max": most, "entries": each}
+        for sensor, mean, most, each in columns
+    }
 
 
 Swatch = tuple[str, float | None]
 """``#rrggbb`` of an answer under a light, or nothing, and its ΔE00."""
 
-VISIBLE, LARGE = 1.0, 3.0  # ΔE00: the difference that is just visible side by side, and one that is obvious
+VISIBLE, LARGE = (
+    1.0,
+    3.0,
+)  # ΔE00: the difference that is just visible side by side, and one that is obvious
 
 
 def render_report(assessment: Assessment, worst: int) -> str:
@@ -138,9 +166,13 @@ def render_report(assessment: Assessment, worst: int) -> str:
         describe=_describe,
         histogram_chart=histogram_chart,
         spectra_chart=spectra_chart,
-        codes_by_light=lambda errors: [swatches(errors, sensor) for sensor in assessment.lights],
+        codes_by_light=lambda errors: [
+            swatches(errors, sensor) for sensor in assessment.lights
+        ],
         compared=list(_compared(assessment, worst)),
-        largest_count=max((int(each.counts.max()) for each in assessment.delta_e.values()), default=0),
+        largest_count=max(
+            (int(each.counts.max()) for each in assessment.delta_e.values()), default=0
+        ),
         severity=_severity,
         visible=VISIBLE,
         large=LARGE,
@@ -155,16 +187,29 @@ def _severity(delta_e: float) -> str | None:
 def _looks(assessment: Assessment) -> Iterator[dict[str, Any]]:
     """Name, colour and weight of each look, and a row for each of its lights."""
     for look in assessment.data.provenance.get("looks", ()):
-        rows = [{**each, "codes": hex_codes(np.array([each["wish"], each["answer"]]))} for each in look["lights"]]
+        rows = [
+            {**each, "codes": hex_codes(np.array([each["wish"], each["answer"]]))}
+            for each in look["lights"]
+        ]
         (code,) = hex_codes(np.array([look["rgb"]]), assessment.data.sensor)
-        yield {"name": look["name"], "code": code, "weight": look["weight"], "rows": rows}
+        yield {
+            "name": look["name"],
+            "code": code,
+            "weight": look["weight"],
+            "rows": rows,
+        }
 
 
 def _failed_points(assessment: Assessment) -> Iterator[dict[str, Any]]:
     for each in assessment.failures["worst"]:
         target, actual = each["rgb"], each["lattice_rgb"].astype(float)
         codes = hex_codes(np.array([target, actual]), assessment.data.sensor)
-        yield {"codes": codes, "target": target, "actual": actual, "distance": float(each["distance"])}
+        yield {
+            "codes": codes,
+            "target": target,
+            "actual": actual,
+            "distance": float(each["distance"]),
+        }
 
 
 def _compared(assessment: Assessment, count: int) -> Iterator[dict[str, list[Swatch]]]:
@@ -175,12 +220,15 @@ def _compared(assessment: Assessment, count: int) -> Iterator[dict[str, list[Swa
     for row in range(min(count, len(entries.names))):
         measured = _cells(assessment.lights, entries.target[row], None)
         cells = {
-            name: _cells(assessment.lights, each.spectra[row], each.delta_e[row]) for name, each in answers.items()
+            name: _cells(assessment.lights, each.spectra[row], each.delta_e[row])
+            for name, each in answers.items()
         }
         yield {"measured": measured} | cells
 
 
-def _cells(lights: tuple[Sensor, ...], answer: Array, errors: Array | None) -> list[Swatch]:
+def _cells(
+    lights: tuple[Sensor, ...], answer: Array, errors: Array | None
+) -> list[Swatch]:
     """Colour and ΔE00 of a spectrum (N,) under each light; an empty colour for an unknown spectrum."""
     if np.isnan(answer).any():
         return [("", None)] * len(lights)
@@ -193,7 +241,9 @@ def _describe(value: Any) -> str:
     """Text of nested JSON values: names and values, separated by commas; the key ``name`` is omitted."""
     if isinstance(value, Mapping):
         return ", ".join(
-            _describe(inner) if key == "name" or isinstance(inner, Mapping) else f"{key} {_describe(inner)}"
+            _describe(inner)
+            if key == "name" or isinstance(inner, Mapping)
+            else f"{key} {_describe(inner)}"
             for key, inner in value.items()
         )
     if isinstance(value, list | tuple):

@@ -48,45 +48,84 @@ class RebuildDifference:
     # Largest differences by the names in `LIMITS`, over the entries and the nodes whose spectra are well
     # determined
     measures: dict[str, float]
-    stored_counts: dict[str, int]  # Number of these nodes by status, and of all unfitted nodes
-    rebuilt_counts: dict[str, int]  # Number of these nodes by status, and of all unfitted nodes
+    stored_counts: dict[
+        str, int
+    ]  # Number of these nodes by status, and of all unfitted nodes
+    rebuilt_counts: dict[
+        str, int
+    ]  # Number of these nodes by status, and of all unfitted nodes
     entries: tuple[EntryChange, ...]  # Entries that differ
 
     @property
     def failures(self) -> tuple[str, ...]:
         """Return the measures over their limits or NaN, ``status`` if the counts differ, and ``entries`` likewise."""
-        over = [name for name, value in self.measures.items() if not value <= LIMITS[name]]
+        over = [
+            name for name, value in self.measures.items() if not value <= LIMITS[name]
+        ]
         status = ["status"] if self.stored_counts != self.rebuilt_counts else []
         return (*over, *status, *(["entries"] if self.entries else []))
 
 
-def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildDifference:
+def compare_rebuilt(
+    path: Path, stored: CubeData, rebuilt: CubeData
+) -> RebuildDifference:
     """Compare a stored cube with a rebuilt one."""
     nodes, other = stored.lattice.nodes, rebuilt.lattice.nodes
     if nodes.shape != other.shape or (np.abs(nodes - other) > NODE_TOLERANCE).any():
-        raise CubeFileError("its lattice is not the one of its options", path=path, hint="build the cube again")
-    compared = _well_determined(stored) & (stored.points.present | rebuilt.points.present)
+        raise CubeFileError(
+            "its lattice is not the one of its options",
+            path=path,
+            hint="build the cube again",
+        )
+    compared = _well_determined(stored) & (
+        stored.points.present | rebuilt.points.present
+    )
     pairs = pair_entries(stored, rebuilt)
     first, second = (
-        np.concatenate([reflectance(data.model, data.points.coefficients[compared], stored.sensor.wavelengths), own])
+        np.concatenate(
+            [
+                reflectance(
+                    data.model,
+                    data.points.coefficients[compared],
+                    stored.sensor.wavelengths,
+                ),
+                own,
+            ]
+        )
         for data, own in zip((stored, rebuilt), pairs.spectra, strict=True)
     )
     difference = np.abs(first - second)
-    lights = [light(name, stored.sensor.observer, *stored.sensor.range) for name in REGRESSION_LIGHTS]
+    lights = [
+        light(name, stored.sensor.observer, *stored.sensor.range)
+        for name in REGRESSION_LIGHTS
+    ]
     delta_e = delta_e_under(lights, first, second)
     measures = {
-        "rgb": float(np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[compared].max(initial=0)),
+        "rgb": float(
+            np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[compared].max(
+                initial=0
+            )
+        ),
         "spectra_max": float(difference.max(initial=0)),
         "spectra_rms": float(np.sqrt((difference**2).sum() / max(difference.size, 1))),
     } | dict(
-        zip((f"delta_e_{name}" for name in REGRESSION_LIGHTS), delta_e.max(axis=0, initial=0).tolist(), strict=True)
+        zip(
+            (f"delta_e_{name}" for name in REGRESSION_LIGHTS),
+            delta_e.max(axis=0, initial=0).tolist(),
+            strict=True,
+        )
     )
     moved = delta_e[np.count_nonzero(compared) :].max(axis=1)
     # Cubes of earlier versions have the names of entries outside their RGB space only.
     old, new = (data.provenance.get("left_out", ()) for data in (stored, rebuilt))
-    changes = [EntryChange(name, "removed") for name in pairs.removed if name not in new]
+    changes = [
+        EntryChange(name, "removed") for name in pairs.removed if name not in new
+    ]
     changes += [EntryChange(name, "added") for name in pairs.added if name not in old]
-    changes += [EntryChange(pairs.names[row], "moved", float(moved[row])) for row in np.flatnonzero(moved > MOVED)]
+    changes += [
+        EntryChange(pairs.names[row], "moved", float(moved[row]))
+        for row in np.flatnonzero(moved > MOVED)
+    ]
     before, after = (_counts(data, compared) for data in (stored, rebuilt))
     return RebuildDifference(path, measures, before, after, tuple(changes))
 
@@ -99,10 +138,15 @@ def _well_determined(data: CubeData) -> Mask:
     unrealisable = data.points.status == Status.UNREALISABLE
     if not unrealisable.any():
         return np.ones(data.lattice.size, dtype=bool)
-    inside = np.asarray(solid(data.sensor.matrix).signed_distance(data.lattice.points) < -BOUNDARY_MARGIN)
+    inside = np.asarray(
+        solid(data.sensor.matrix).signed_distance(data.lattice.points)
+        < -BOUNDARY_MARGIN
+    )
     return inside if inside.any() else ~unrealisable
 
 
 def _counts(data: CubeData, compared: Mask) -> dict[str, int]:
     counts = replace(data.points, status=data.points.status[compared]).counts()
-    return counts | {Status.UNFITTED.label: int((data.points.status == Status.UNFITTED).sum())}
+    return counts | {
+        Status.UNFITTED.label: int((data.points.status == Status.UNFITTED).sum())
+    }

@@ -30,11 +30,23 @@ from uplift.io.texture.image import read_error, utf8_name
 from uplift.lookup import Cube
 from uplift.lookup.node_table import prepare_products
 from uplift.report.measures import mean_p95_max
-from uplift.viz.figure import GREY, INK, RAMP, colour_map, figure_text, new_figure, ramp_codes, show_image, write_figure
+from uplift.viz.figure import (
+    GREY,
+    INK,
+    RAMP,
+    colour_map,
+    figure_text,
+    new_figure,
+    ramp_codes,
+    show_image,
+    write_figure,
+)
 from uplift.viz.html import render, resource
 
 RGB_PRODUCT = "RGB × light"  # name of the method that multiplies the RGB of the image by those of the light
-MIN_MAP_LIMIT = 4  # smallest ΔE00 at the dark end of maps: invisible differences stay pale
+MIN_MAP_LIMIT = (
+    4  # smallest ΔE00 at the dark end of maps: invisible differences stay pale
+)
 MAP_EXPONENT = 0.5  # maps are darker by the root of ΔE00, so that one scale serves daylight and sodium lamps
 # Share of the largest linear sRGB component of a light below which its smallest is that of a colour, not of a white:
 # lamps from 2500 K on are above, sodium lamps and candles below.
@@ -65,8 +77,14 @@ class Rendering:
     @cached_property
     def differences(self) -> dict[tuple[str, str], Array]:
         """ΔE00 (height, width) between two methods, relative to the white of the light, for all pairs of them."""
-        lab = {method: rgb_to_lab(self.sensor, colours) for method, colours in self.colours.items()}
-        return {pair: delta_e_2000(*map(lab.__getitem__, pair)) for pair in combinations(lab, 2)}
+        lab = {
+            method: rgb_to_lab(self.sensor, colours)
+            for method, colours in self.colours.items()
+        }
+        return {
+            pair: delta_e_2000(*map(lab.__getitem__, pair))
+            for pair in combinations(lab, 2)
+        }
 
     @property
     def looks_white(self) -> bool:
@@ -96,7 +114,9 @@ class Relit:
 
     name: str  # Name of the image
     reduction: int  # Pixels of the image per pixel of the colours, along each side
-    original: NDArray[np.uint8]  # 8-bit sRGB codes (height, width, 3) of the image itself
+    original: NDArray[
+        np.uint8
+    ]  # 8-bit sRGB codes (height, width, 3) of the image itself
     renderings: tuple[Rendering, ...]  # One for each light
 
     @property
@@ -140,7 +160,10 @@ def relight(
     """
     sensor = common_sensor(cube.data for cube in cubes.values())
     screens = display_sensors(lights, sensor.observer, *sensor.range)
-    by_spectra = {method: _by_spectra(cube, rgb, screens, threads) for method, cube in cubes.items()}
+    by_spectra = {
+        method: _by_spectra(cube, rgb, screens, threads)
+        for method, cube in cubes.items()
+    }
     weight = np.float32(1) if opacity is None else opacity
     original = to_display_codes(rgb * weight, sensor).astype(np.uint8)
     to_srgb = conversion(sensor, SRGB) @ sensor.xyz_to_rgb
@@ -148,7 +171,10 @@ def relight(
         Rendering(
             screen,
             {RGB_PRODUCT: _by_product(sensor, rgb, screen) * weight}
-            | {method: colours[number] * weight for method, colours in by_spectra.items()},
+            | {
+                method: colours[number] * weight
+                for method, colours in by_spectra.items()
+            },
             tint=to_srgb @ screen.rgb_to_xyz,
         )
         for number, screen in enumerate(screens)
@@ -163,7 +189,9 @@ def _by_product(sensor: Sensor, rgb: Floats, screen: Sensor) -> Floats:
     return np.asarray((rgb * light) @ to_screen.T, dtype=np.float32)
 
 
-def _by_spectra(cube: Cube, rgb: Floats, screens: Sequence[Sensor], threads: int) -> list[Floats]:
+def _by_spectra(
+    cube: Cube, rgb: Floats, screens: Sequence[Sensor], threads: int
+) -> list[Floats]:
     """Integrate the spectra of all pixels under each light."""
     matrix = np.concatenate([screen.matrix for screen in screens])
     colours = prepare_products(cube.data, screens[0].wavelengths, matrix, threads)(rgb)
@@ -175,25 +203,45 @@ DPI = 140
 LABELS = 0.3  # height in inches of the texts of a row
 
 
-def write_relit_sheet(relit: Sequence[Relit], path: StrPath, *, adapt: bool | None = None, force: bool = False) -> None:
+def write_relit_sheet(
+    relit: Sequence[Relit],
+    path: StrPath,
+    *,
+    adapt: bool | None = None,
+    force: bool = False,
+) -> None:
     """Write relit images as one figure: PNG, SVG or PDF, by the suffix of its file.
 
     With ``adapt`` the white of each light is shown as white; by default if it `looks_white`.
     """
     rows = [(image, rendering) for image in relit for rendering in image.renderings]
     first, second = map(figure_text, relit[0].shown_pair)
-    titles = [*map(figure_text, relit[0].methods), f"ΔE00 between {first}\nand {second}"]
-    heights = [image.original.shape[0] / image.original.shape[1] * PANEL + LABELS for image, _ in rows]
+    titles = [
+        *map(figure_text, relit[0].methods),
+        f"ΔE00 between {first}\nand {second}",
+    ]
+    heights = [
+        image.original.shape[0] / image.original.shape[1] * PANEL + LABELS
+        for image, _ in rows
+    ]
     figure = new_figure(len(titles) * (PANEL + 0.06) + 0.7, sum(heights) + 0.5)
     figure.set_dpi(DPI)
     figure.get_layout_engine().set(w_pad=0.03, h_pad=0.03, wspace=0, hspace=0)
     grid = figure.subplots(len(rows), len(titles), squeeze=False, height_ratios=heights)
     limit = map_limit(relit)
     for axes, (image, rendering) in zip(grid, rows, strict=True):
-        drawn = _draw_row(axes, image, rendering, limit, balanced=rendering.is_balanced(adapt))
+        drawn = _draw_row(
+            axes, image, rendering, limit, balanced=rendering.is_balanced(adapt)
+        )
     for axes, title in zip(grid[0], titles, strict=True):
         axes.set_title(title, fontsize=11, color=INK, pad=6)
-    style = {"fraction": 0.04, "pad": 0.02, "aspect": 15 * len(rows), "extend": "max", "format": "%d"}
+    style = {
+        "fraction": 0.04,
+        "pad": 0.02,
+        "aspect": 15 * len(rows),
+        "extend": "max",
+        "format": "%d",
+    }
     bar = figure.colorbar(drawn, ax=list(grid[:, -1]), ticks=_ticks(limit), **style)
     bar.outline.set_visible(False)
     write_figure(figure, path, force=force)
@@ -204,7 +252,14 @@ def _ticks(limit: int) -> tuple[int, int, int]:
     return 0, limit // 4, limit
 
 
-def _draw_row(axes: Sequence[Any], image: Relit, rendering: Rendering, limit: float, *, balanced: bool) -> Any:
+def _draw_row(
+    axes: Sequence[Any],
+    image: Relit,
+    rendering: Rendering,
+    limit: float,
+    *,
+    balanced: bool,
+) -> Any:
     """Draw an image under one light; return the map."""
     from matplotlib.colors import PowerNorm
 
@@ -216,10 +271,14 @@ def _draw_row(axes: Sequence[Any], image: Relit, rendering: Rendering, limit: fl
             text = f"ΔE00 from RGB × light: mean {found['mean']:.1f}, 95 % {found['p95']:.1f}"
             panel.set_xlabel(text, fontsize=9, color=GREY)
     state = "white-balanced" if balanced else "tinted"
-    axes[0].set_ylabel(f"{rendering.light_label}\n{state}", fontsize=10, color=INK, labelpad=6)
+    axes[0].set_ylabel(
+        f"{rendering.light_label}\n{state}", fontsize=10, color=INK, labelpad=6
+    )
     axes[0].set_xlabel(figure_text(image.name), fontsize=9, color=GREY)
     difference = rendering.differences[image.shown_pair]
-    return show_image(axes[-1], difference, cmap=colour_map(), norm=PowerNorm(MAP_EXPONENT, 0, limit))
+    return show_image(
+        axes[-1], difference, cmap=colour_map(), norm=PowerNorm(MAP_EXPONENT, 0, limit)
+    )
 
 
 def relit_page(relit: Sequence[Relit], *, adapt: bool | None = None) -> str:
@@ -230,7 +289,9 @@ def relit_page(relit: Sequence[Relit], *, adapt: bool | None = None) -> str:
     first = relit[0]
     changes = []
     for number in range(len(first.renderings)):
-        differences = [image.renderings[number].differences[image.shown_pair] for image in relit]
+        differences = [
+            image.renderings[number].differences[image.shown_pair] for image in relit
+        ]
         changes.append(np.mean([difference.mean() for difference in differences]))
     limit = map_limit(relit)
     return render(
@@ -262,13 +323,21 @@ def _section(image: Relit, limit: float) -> dict[str, Any]:
                 label = f"{image.name} under {rendering.light}, {name}"
                 label += ", white-balanced" if balanced else ""
                 codes = rendering.screen_codes(name, balanced=balanced)
-                layers.append(_layer(label, codes, light=number, shows=str(method), balanced=balanced))
+                layers.append(
+                    _layer(
+                        label, codes, light=number, shows=str(method), balanced=balanced
+                    )
+                )
         for (left, first), (right, second) in combinations(enumerate(image.methods), 2):
             difference = rendering.differences[first, second]
-            label = f"ΔE00 map of {image.name} under {rendering.light}: {first}, {second}"
+            label = (
+                f"ΔE00 map of {image.name} under {rendering.light}: {first}, {second}"
+            )
             shade = np.clip(difference / limit, 0, 1) ** MAP_EXPONENT
             codes = ramp_codes(np.rint(255 * shade) / 255)
-            layers.append(_layer(label, codes, light=number, shows=f"{left}-{right}", kind="png"))
+            layers.append(
+                _layer(label, codes, light=number, shows=f"{left}-{right}", kind="png")
+            )
             errors = (f"{value:.2f}" for value in mean_p95_max(difference).values())
             rows.append((rendering.light, first, second, *errors))
     height, width, _ = image.original.shape
@@ -286,7 +355,13 @@ def _layer(
     kind: str = "jpeg",
 ) -> dict[str, Any]:
     source = _encoded(codes, kind)
-    return {"label": label, "source": source, "light": light, "shows": shows, "balanced": balanced}
+    return {
+        "label": label,
+        "source": source,
+        "light": light,
+        "shows": shows,
+        "balanced": balanced,
+    }
 
 
 def _encoded(codes: NDArray[np.uint8], kind: str) -> str:
@@ -300,7 +375,13 @@ def _encoded(codes: NDArray[np.uint8], kind: str) -> str:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"image.{kind}"
         image = OpenImageIO.ImageOutput.create(kind)
-        if not (image and image.open(utf8_name(path, OutputError), spec) and image.write_image(codes)):
+        if not (
+            image
+            and image.open(utf8_name(path, OutputError), spec)
+            and image.write_image(codes)
+        ):
             raise OSError(read_error(image or OpenImageIO))
         image.close()
-        return f"data:image/{kind};base64,{base64.b64encode(path.read_bytes()).decode()}"
+        return (
+            f"data:image/{kind};base64,{base64.b64encode(path.read_bytes()).decode()}"
+        )

@@ -30,7 +30,9 @@ def copy_samples(folder: StrPath, *, force: bool = False) -> tuple[Path, ...]:
     nothing is copied then.
     """
     copies = {Path(folder) / name: sample_path(name) for name in sample_names()}
-    missing = {copy: sample for copy, sample in copies.items() if not _is_equal(copy, sample)}
+    missing = {
+        copy: sample for copy, sample in copies.items() if not _is_equal(copy, sample)
+    }
     check_folder(folder, [copy.name for copy in missing], force=force)
     make_folder(folder)
     for copy, sample in missing.items():

@@ -46,10 +46,16 @@ def colour_areas(images: Images, sensor: Sensor) -> PixelSample:
             index = bin_index(sensor, rgb)
             sums += [np.bincount(index, values, BINS**3) for values in (*rgb.T, None)]
     if not sums.any():
-        raise OptionError("images must have pixels, got none", hint="name an image with pixels")
+        raise OptionError(
+            "images must have pixels, got none", hint="name an image with pixels"
+        )
     for step in STEPS:
         size = BINS // step
-        totals = sums.reshape(4, size, step, size, step, size, step).sum(axis=(2, 4, 6)).reshape(4, -1)
+        totals = (
+            sums.reshape(4, size, step, size, step, size, step)
+            .sum(axis=(2, 4, 6))
+            .reshape(4, -1)
+        )
         found = totals[:, totals[3] > 0]
         if found.shape[1] <= MAX_COLOURS:
             break
@@ -80,7 +86,9 @@ class Uncertainty:
 
     def by_light(self) -> list[dict[str, float]]:
         """Return the mean error under each light, and the error that 95 % of the area stays within."""
-        p95 = np.quantile(self.errors, 0.95, axis=0, weights=self.area, method="inverted_cdf")
+        p95 = np.quantile(
+            self.errors, 0.95, axis=0, weights=self.area, method="inverted_cdf"
+        )
         pairs = zip((self.area @ self.errors).tolist(), p95.tolist(), strict=True)
         return [{"mean": mean, "p95": bound} for mean, bound in pairs]
 
@@ -90,31 +98,46 @@ class Uncertainty:
         found = np.empty(len(variance))
         for rows in blocks(len(found), BLOCK_ROWS):
             # c(x) − c(x, s)² / c(s)
-            known = self.covariance[rows] ** 2 / np.maximum(variance[rows], TINY)[:, None]
+            known = (
+                self.covariance[rows] ** 2 / np.maximum(variance[rows], TINY)[:, None]
+            )
             found[rows] = self._errors(variance - known).mean(axis=-1) @ self.area
         return np.maximum(self.mean - found, 0)
 
     def measured(self, colour: int) -> "Uncertainty":
         """Return what remains once a colour, by its number, is measured."""
         row = self.covariance[colour]
-        return replace(self, covariance=self.covariance - np.outer(row, row / max(row[colour], TINY)))
+        return replace(
+            self,
+            covariance=self.covariance - np.outer(row, row / max(row[colour], TINY)),
+        )
 
     def _errors(self, variance: Array) -> Array:
-        return np.asarray(np.sqrt(np.maximum(variance, 0)[..., None] * self.unknown + self.rest))
+        return np.asarray(
+            np.sqrt(np.maximum(variance, 0)[..., None] * self.unknown + self.rest)
+        )
 
 
 @single_threaded_blas()
-def uncertainty(cube: Cube, colours: PixelSample, lights: Sequence[Light]) -> Uncertainty:
+def uncertainty(
+    cube: Cube, colours: PixelSample, lights: Sequence[Light]
+) -> Uncertainty:
     """Return the errors of a cube at the colours of a scene. Raises `OptionError` if it has no left-out entries."""
     data, prior = cube.data, cube.data.provenance.get("prior", {})
-    kernel = Kernel(prior.get("length", DEFAULT.length), prior.get("noise", DEFAULT.noise))
+    kernel = Kernel(
+        prior.get("length", DEFAULT.length), prior.get("noise", DEFAULT.noise)
+    )
     errors = [light_errors(data, light) for light in lights]
     squares = np.stack([each(colours.rgb)[:, 0] ** 2 for each in errors], axis=1)
-    floors = np.concatenate([each.expected.radii[0] ** 2 * each.expected.floor for each in errors])
+    floors = np.concatenate(
+        [each.expected.radii[0] ** 2 * each.expected.floor for each in errors]
+    )
     rest = np.minimum(floors, squares)
     covariance = posterior(kernel, data.entry_lab, rgb_to_lab(data.sensor, colours.rgb))
     variance = np.maximum(np.diag(covariance), TINY)
-    return Uncertainty(colours.share, covariance, (squares - rest) / variance[:, None], rest)
+    return Uncertainty(
+        colours.share, covariance, (squares - rest) / variance[:, None], rest
+    )
 
 
 @dataclass(frozen=True)
@@ -145,30 +168,55 @@ def advise(scene: Uncertainty, count: int) -> tuple[list[Swatch], Uncertainty]:
         if not gains[best] > 0:
             break
         scene = scene.measured(best)
-        chosen.append(Swatch(best, float(scene.area[best]), float(errors[best]), float(gains[best]), scene.mean))
+        chosen.append(
+            Swatch(
+                best,
+                float(scene.area[best]),
+                float(errors[best]),
+                float(gains[best]),
+                scene.mean,
+            )
+        )
     return chosen, scene
 
 
 def draw_advice(
-    cube: Cube, pictures: Mapping[str, Values], lights: Sequence[Light], swatches: Sequence[tuple[str, Array]]
+    cube: Cube,
+    pictures: Mapping[str, Values],
+    lights: Sequence[Light],
+    swatches: Sequence[tuple[str, Array]],
 ) -> Any:
     """Draw images, linear RGB (height, width, 3) by path, their mean standard errors, and numbered swatches.
 
     The swatches are linear RGB (3,) and the text below each. Their numbers stand at the pixels of the nearest colours.
     """
-    sensor, estimates = cube.data.sensor, [light_errors(cube.data, light) for light in lights]
+    sensor, estimates = (
+        cube.data.sensor,
+        [light_errors(cube.data, light) for light in lights],
+    )
     flat = {name: rgb.reshape(-1, 3).astype(float) for name, rgb in pictures.items()}
-    maps = {name: np.mean([estimate(rgb)[:, 0] for estimate in estimates], axis=0) for name, rgb in flat.items()}
+    maps = {
+        name: np.mean([estimate(rgb)[:, 0] for estimate in estimates], axis=0)
+        for name, rgb in flat.items()
+    }
     largest = max(float(np.quantile(each, 0.99)) for each in maps.values())
     heights = [3.5 * rgb.shape[0] / rgb.shape[1] + 0.3 for rgb in pictures.values()]
     figure = new_figure(7.6, sum(heights) + 1.5)
-    *rows, last = figure.subfigures(len(pictures) + 1, 1, height_ratios=[*heights, 1.5], squeeze=False)[:, 0]
+    *rows, last = figure.subfigures(
+        len(pictures) + 1, 1, height_ratios=[*heights, 1.5], squeeze=False
+    )[:, 0]
     chips, panels = last.subplots(1, max(len(swatches), MIN_CHIPS)), {}
     for row, (name, rgb) in zip(rows, pictures.items(), strict=True):
         panels[name], errors = row.subplots(1, 2)
         show_image(panels[name], to_display_codes(rgb, sensor) / 255)
         panels[name].set_title(figure_text(Path(name).name), fontsize=9, loc="left")
-        shown = show_image(errors, maps[name].reshape(rgb.shape[:2]), cmap=colour_map(), vmin=0, vmax=largest)
+        shown = show_image(
+            errors,
+            maps[name].reshape(rgb.shape[:2]),
+            cmap=colour_map(),
+            vmin=0,
+            vmax=largest,
+        )
         names = ", ".join(light.name for light in lights)
         title = f"expected ΔE00 between answer and measurement\naveraged over {names}; dark: large"
         errors.set_title(title, fontsize=9, loc="left")
@@ -176,11 +224,16 @@ def draw_advice(
     box = {"boxstyle": "circle", "facecolor": "white", "edgecolor": ACCENT}
     labs = {name: rgb_to_lab(sensor, rgb) for name, rgb in flat.items()}
     for number, (text, rgb) in enumerate(swatches):
-        away = {name: distances(lab, rgb_to_lab(sensor, rgb[None]))[:, 0] for name, lab in labs.items()}
+        away = {
+            name: distances(lab, rgb_to_lab(sensor, rgb[None]))[:, 0]
+            for name, lab in labs.items()
+        }
         name = min(away, key=lambda name: away[name].min())
         like = np.flatnonzero(away[name] <= away[name].min() + ALIKE)
         y, x = divmod(int(like[len(like) // 2]), pictures[name].shape[1])
-        panels[name].text(x, y, str(number + 1), ha="center", va="center", fontsize=7, bbox=box)
+        panels[name].text(
+            x, y, str(number + 1), ha="center", va="center", fontsize=7, bbox=box
+        )
         show_image(chips[number], to_display_codes(rgb[None, None], sensor) / 255)
         chips[number].set_title(f"{number + 1}", fontsize=8, pad=2)
         chips[number].set_xlabel(text, fontsize=7)

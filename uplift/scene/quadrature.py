@@ -65,19 +65,28 @@ def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRu
     nodes = (points[0] + points[-1] + unit * (points[-1] - points[0])) / 2
     outside = nodes[np.abs(unit) > 1 + NODE_TOLERANCE]
     if len(outside):
-        raise _undefined(f"a node lies at {outside[0]:.1f}, outside {points[0]:g} to {points[-1]:g}")
+        raise _undefined(
+            f"a node lies at {outside[0]:.1f}, outside {points[0]:g} to {points[-1]:g}"
+        )
     # An eigenvector vanishes at all nodes but its own; the first polynomial of the basis is the constant 1/√Σ|masses|.
     products = gram @ vectors
-    return QuadratureRule(nodes, np.abs(masses).sum() * products[0] ** 2 / (vectors * products).sum(axis=0))
+    return QuadratureRule(
+        nodes,
+        np.abs(masses).sum() * products[0] ** 2 / (vectors * products).sum(axis=0),
+    )
 
 
-def interpolatory_rule(nodes: ArrayLike, points: Array, masses: Array) -> QuadratureRule:
+def interpolatory_rule(
+    nodes: ArrayLike, points: Array, masses: Array
+) -> QuadratureRule:
     """Compute the rule at distinct nodes (n,) that is exact for polynomials of degree below their number."""
     nodes = np.sort(np.asarray(nodes, dtype=float))
     degree = len(nodes) - 1
     values = chebyshev.chebvander(_to_unit(nodes, points), degree)
     moments = masses @ chebyshev.chebvander(_to_unit(points, points), degree)
-    return QuadratureRule(nodes, np.asarray(np.linalg.solve(values.T, moments), dtype=float))
+    return QuadratureRule(
+        nodes, np.asarray(np.linalg.solve(values.T, moments), dtype=float)
+    )
 
 
 def _undefined(reason: str) -> OptionError:
@@ -100,4 +109,6 @@ def _orthonormal_basis(x: Array, masses: Array, count: int) -> Array:
 
 def _to_unit(x: Array, points: Array) -> Array:
     """Map the range of the points to [−1, 1], which keeps powers well scaled."""
-    return (2 * x - points[0] - points[-1]) / max(points[-1] - points[0], np.finfo(float).tiny)
+    return (2 * x - points[0] - points[-1]) / max(
+        points[-1] - points[0], np.finfo(float).tiny
+    )

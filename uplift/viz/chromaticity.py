@@ -22,7 +22,14 @@ WAVELENGTHS = (460, 480, 490, 500, 510, 520, 540, 560, 580, 600, 620, 700)
 MAX_NAMES = 12  # lamps that are named; the report lists all
 FADED = 0.35  # opacity of colours below names
 MARGIN = 0.012  # u′v′ between the lamps and the edge of their window
-LAMP: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 4.5, "mfc": "white", "mec": INK, "mew": 0.8}
+LAMP: dict[str, Any] = {
+    "linestyle": "none",
+    "marker": "o",
+    "markersize": 4.5,
+    "mfc": "white",
+    "mec": INK,
+    "mew": 0.8,
+}
 
 
 @dataclass(frozen=True)
@@ -57,7 +64,13 @@ def draw_colours(axes: Any, table: EmissionTable) -> None:
     """Draw the colours of lights, the triangle of the RGB space and the wavelengths of the spectral locus."""
     _draw_map(axes, table, ALL, _codes(table, ALL))
     corners = chromaticity(table.xyz(np.eye(3)[[0, 1, 2, 0]]))
-    axes.plot(*corners.T, color=INK, linewidth=0.9, linestyle=(0, (4, 2)), label=f"{table.space} primaries")
+    axes.plot(
+        *corners.T,
+        color=INK,
+        linewidth=0.9,
+        linestyle=(0, (4, 2)),
+        label=f"{table.space} primaries",
+    )
     _draw_wavelengths(axes, table)
     _draw_lamp_marks(axes, table)
     axes.legend(loc="lower right", **LEGEND)
@@ -85,12 +98,16 @@ def draw_lamps(axes: Any, table: EmissionTable) -> None:
     entries, window = table.data.entries, lamp_window(table)
     _draw_map(axes, table, window, _codes(table, window), alpha=FADED)
     for uv, radius in zip(entries.uv, entries.radius, strict=True):
-        axes.add_patch(Circle(tuple(uv), radius, fill=False, edgecolor=GREY, linewidth=0.5))
+        axes.add_patch(
+            Circle(tuple(uv), radius, fill=False, edgecolor=GREY, linewidth=0.5)
+        )
     _draw_lamp_marks(axes, table)
     is_standard = np.isin(entries.names, STANDARD_ILLUMINANTS)
     order = np.lexsort([-entries.radius, ~is_standard])
     labels = [
-        Label(entries.names[row], tuple(entries.uv[row]), INK, bool(is_standard[row]), "")
+        Label(
+            entries.names[row], tuple(entries.uv[row]), INK, bool(is_standard[row]), ""
+        )
         for row in order[:MAX_NAMES].tolist()
     ]
     draw_labels(axes, labels, entries.uv, np.empty((0, 2)))
@@ -109,7 +126,10 @@ def lamp_window(table: EmissionTable) -> Window:
 def _pixels(table: EmissionTable, window: Window) -> Array:
     """Linear RGB (H, W, 3) of luminance 1 at the pixels of a window, v′ upwards; outside the locus that of its edge."""
     step = (window.u[1] - window.u[0]) / PIXELS
-    u, v = (low + step * (np.arange(round((high - low) / step)) + 0.5) for low, high in (window.u, window.v))
+    u, v = (
+        low + step * (np.arange(round((high - low) / step)) + 0.5)
+        for low, high in (window.u, window.v)
+    )
     lattice = table.data.lattice
     offset = np.stack(np.meshgrid(u, v[::-1]), axis=-1) - lattice.white
     length = lattice.polar(offset.reshape(-1, 2))[2].reshape(offset.shape[:2])
@@ -124,14 +144,25 @@ def _codes(table: EmissionTable, window: Window) -> NDArray[np.uint8]:
     return np.asarray(to_display_codes(brightest, table), dtype=np.uint8)
 
 
-def _draw_map(axes: Any, table: EmissionTable, window: Window, values: NDArray[Any], **style: Any) -> Any:
+def _draw_map(
+    axes: Any, table: EmissionTable, window: Window, values: NDArray[Any], **style: Any
+) -> Any:
     """Draw values (H, W) or codes (H, W, 3) of a window within the spectral locus."""
     from matplotlib.patches import Polygon
 
-    edge = Polygon(table.data.lattice.knots, closed=True, fill=False, edgecolor=GREY, linewidth=1)
+    edge = Polygon(
+        table.data.lattice.knots, closed=True, fill=False, edgecolor=GREY, linewidth=1
+    )
     axes.add_patch(edge)
     extent = (*window.u, *window.v)
-    image = axes.imshow(values, extent=extent, interpolation="bilinear", aspect="equal", zorder=0, **style)
+    image = axes.imshow(
+        values,
+        extent=extent,
+        interpolation="bilinear",
+        aspect="equal",
+        zorder=0,
+        **style,
+    )
     image.set_clip_path(edge)
     axes.set(xlim=window.u, ylim=window.v, xlabel="u′", ylabel="v′")
     axes.spines[["top", "right"]].set_visible(False)
@@ -144,7 +175,9 @@ def _draw_lamp_marks(axes: Any, table: EmissionTable) -> None:
 
 def _draw_wavelengths(axes: Any, table: EmissionTable) -> None:
     """Name wavelengths outside the locus, away from white."""
-    places = {float(at): uv for at, uv in zip(table.wavelengths, _locus(table), strict=True)}
+    places = {
+        float(at): uv for at, uv in zip(table.wavelengths, _locus(table), strict=True)
+    }
     white = table.data.lattice.white
     for wavelength in WAVELENGTHS:
         if wavelength not in places:
@@ -152,7 +185,15 @@ def _draw_wavelengths(axes: Any, table: EmissionTable) -> None:
         uv = places[wavelength]
         outward = (uv - white) / np.linalg.norm(uv - white)
         axes.plot(*uv, marker="o", markersize=2, color=GREY)
-        axes.annotate(f"{wavelength}", uv, 9 * outward, textcoords="offset points", ha="center", va="center", color=INK)
+        axes.annotate(
+            f"{wavelength}",
+            uv,
+            9 * outward,
+            textcoords="offset points",
+            ha="center",
+            va="center",
+            color=INK,
+        )
 
 
 def _locus(table: EmissionTable) -> Array:

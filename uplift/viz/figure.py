@@ -54,7 +54,9 @@ PAGE_COLOURS = {
 _COLOUR = re.compile(r"(?<=: )#[0-9a-f]{6}\b")
 _NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 # Names of groups, comments, and a style sheet that would apply to the whole page.
-_UNUSED = re.compile(r' id="[\w.]+_\d+"|<!--.*?-->|<defs>\s*<style.*?</style>\s*</defs>', re.DOTALL)
+_UNUSED = re.compile(
+    r' id="[\w.]+_\d+"|<!--.*?-->|<defs>\s*<style.*?</style>\s*</defs>', re.DOTALL
+)
 _IDENTIFIER = re.compile(r'(id="|#)([mp][0-9a-f]{10})(?=["\)])')
 
 
@@ -81,7 +83,9 @@ def figure_text(text: str) -> str:
     return f"{HAIR_SPACE}{shown}" if shown.startswith("_") else shown
 
 
-def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Any:
+def new_figure(
+    width: float, height: float, layout: Literal["constrained"] | None = "constrained"
+) -> Any:
     """Create an empty figure without a window. Raises `OutputError` without matplotlib."""
     matplotlib()
     from matplotlib.figure import Figure
@@ -110,7 +114,9 @@ def show_image(axes: Any, image: NDArray[Any], **options: Any) -> Any:
     return axes.imshow(image, **options)
 
 
-def write_png(figure: Any, path: str | os.PathLike[str], *, force: bool = False) -> None:
+def write_png(
+    figure: Any, path: str | os.PathLike[str], *, force: bool = False
+) -> None:
     """Write a figure as PNG."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -130,13 +136,19 @@ def check_suffix(path: str | os.PathLike[str]) -> str:
     """Return the format of a figure's file, by its suffix. Raises `OutputError`, also without matplotlib."""
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in SUFFIXES:
-        problem = f"the suffix of a plot must be one of {', '.join(SUFFIXES)}, got '{suffix}'"
-        raise OutputError(problem, path=path, hint="name the file accordingly, such as plot.svg")
+        problem = (
+            f"the suffix of a plot must be one of {', '.join(SUFFIXES)}, got '{suffix}'"
+        )
+        raise OutputError(
+            problem, path=path, hint="name the file accordingly, such as plot.svg"
+        )
     matplotlib()
     return suffix
 
 
-def write_figure(figure: Any, path: str | os.PathLike[str], *, force: bool = False) -> None:
+def write_figure(
+    figure: Any, path: str | os.PathLike[str], *, force: bool = False
+) -> None:
     """Write a figure as PNG, SVG or PDF, by the suffix of its file. Equal figures give equal files."""
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
     from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -150,7 +162,9 @@ def write_figure(figure: Any, path: str | os.PathLike[str], *, force: bool = Fal
         if suffix == ".svg":
             FigureCanvasSVG(figure).print_svg(content, metadata=_NO_METADATA)
         else:
-            FigureCanvasPdf(figure).print_pdf(content, metadata={"CreationDate": None, "Producer": None})
+            FigureCanvasPdf(figure).print_pdf(
+                content, metadata={"CreationDate": None, "Producer": None}
+            )
     _write(content, path, force)
 
 
@@ -179,7 +193,9 @@ def to_page_svg(figure: Any, label: str = "") -> Markup:
     """
     for background in (figure.patch, *(axes.patch for axes in figure.axes)):
         background.set_visible(False)
-    return Markup(_COLOUR.sub(lambda found: _page_colour(found[0]), to_svg(figure, label)))
+    return Markup(
+        _COLOUR.sub(lambda found: _page_colour(found[0]), to_svg(figure, label))
+    )
 
 
 def _page_colour(colour: str) -> str:

@@ -75,7 +75,9 @@ def capitalise(text: str) -> str:
 
 
 def _with_unit(value: float, units: Sequence[tuple[float, str]]) -> str:
-    factor, unit = next((pair for pair in units if value >= pair[0] * 0.9995), units[-1])
+    factor, unit = next(
+        (pair for pair in units if value >= pair[0] * 0.9995), units[-1]
+    )
     number = value / factor
     return f"{number:.3g} {unit}" if number < 999.5 else f"{number:,.0f} {unit}"
 

@@ -42,7 +42,11 @@ def render(template: str, /, **values: Any) -> str:
 
 def resource(*paths: str) -> Markup:
     """Read style sheets or scripts to be inlined in a page."""
-    return Markup("".join(files("uplift").joinpath(path).read_text(encoding="utf-8") for path in paths))
+    return Markup(
+        "".join(
+            files("uplift").joinpath(path).read_text(encoding="utf-8") for path in paths
+        )
+    )
 
 
 def content_security_policy(script: str) -> str:
@@ -66,7 +70,10 @@ def _environment() -> jinja2.Environment:
         lstrip_blocks=True,
     )
     environment.policies["json.dumps_function"] = _json
-    environment.globals |= {"resource": resource, "content_security_policy": content_security_policy}
+    environment.globals |= {
+        "resource": resource,
+        "content_security_policy": content_security_policy,
+    }
     environment.filters |= {name: getattr(formats, name) for name in formats.__all__}
     environment.filters["fixed"] = _fixed
     return environment
@@ -80,7 +87,9 @@ def _finalize(value: Any) -> Any:
 
 
 def _json(values: Any, **options: Any) -> str:
-    return json_escapes(json.dumps(values, **options | {"ensure_ascii": False, "allow_nan": False}))
+    return json_escapes(
+        json.dumps(values, **options | {"ensure_ascii": False, "allow_nan": False})
+    )
 
 
 def _fixed(value: float, digits: int) -> str:

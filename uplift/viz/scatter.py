@@ -20,7 +20,9 @@ LEGEND: dict[str, Any] = {
 }
 FONT_MARGIN = 1.06  # share by which the font of a reader may be wider
 _POINTS_PER_INCH = 72
-_MAX_DISTANCE = 14  # points between a marker and its label without a line that joins them
+_MAX_DISTANCE = (
+    14  # points between a marker and its label without a line that joins them
+)
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,9 @@ class Label:
     gid: str
 
 
-def new_panels(rows: int, columns: int, panel: tuple[float, float], margins: Mapping[str, float]) -> tuple[Any, Any]:
+def new_panels(
+    rows: int, columns: int, panel: tuple[float, float], margins: Mapping[str, float]
+) -> tuple[Any, Any]:
     """Create a figure with a renderer, so that positions are known at once, and its axes (rows, columns).
 
     ``panel`` is the size of a panel in inches, ``margins`` are those of ``subplots_adjust``.
@@ -52,15 +56,24 @@ def style_title(axes: Any, title: str) -> None:
     axes.set_title(title, loc="left", fontsize=11, fontweight="bold", color=INK)
 
 
-def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array, fontsize: float = 7.5) -> None:
+def draw_labels(
+    axes: Any,
+    labels: Sequence[Label],
+    markers: Array,
+    line: Array,
+    fontsize: float = 7.5,
+) -> None:
     """Write the labels that have room next to the ``markers`` (M, 2) and the ``line`` (k, 2), bold ones first."""
     if not labels:
         return
     labels = sorted(labels, key=lambda label: not label.bold)
     scale = _POINTS_PER_INCH / axes.figure.dpi
-    line = np.concatenate([np.empty((0, 2)), *(np.geomspace(*pair, 40) for pair in pairwise(line))])
+    line = np.concatenate(
+        [np.empty((0, 2)), *(np.geomspace(*pair, 40) for pair in pairwise(line))]
+    )
     anchors, markers, line = (
-        scale * axes.transData.transform(points) for points in ([label.point for label in labels], markers, line)
+        scale * axes.transData.transform(points)
+        for points in ([label.point for label in labels], markers, line)
     )
     texts = [
         axes.annotate(
@@ -75,7 +88,11 @@ def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array,
         for label in labels
     ]
     renderer = axes.figure.canvas.get_renderer()
-    sizes = scale * np.array([text.get_window_extent(renderer).size for text in texts]) * (FONT_MARGIN, 1)
+    sizes = (
+        scale
+        * np.array([text.get_window_extent(renderer).size for text in texts])
+        * (FONT_MARGIN, 1)
+    )
     panel = scale * axes.get_window_extent(renderer).extents
     corners = place_labels(anchors, sizes, np.concatenate([markers, line]), panel)
     for text, corner, size, anchor in zip(texts, corners, sizes, anchors, strict=True):
@@ -90,13 +107,17 @@ def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array,
         nearest = np.clip(anchor, corner, corner + size)
         if np.linalg.norm(nearest - anchor) > _MAX_DISTANCE:
             style = {"arrowstyle": "-", "color": GREY, "linewidth": 0.5}
-            axes.annotate("", nearest, anchor, "figure points", "figure points", style, zorder=1)
+            axes.annotate(
+                "", nearest, anchor, "figure points", "figure points", style, zorder=1
+            )
 
 
 DISTANCES = (6.0, 9.0, 14.0, 20.0, 28.0, 38.0)  # points between a marker and its label
 CLEARANCE = (4.5, 2.5)  # points that labels keep from markers, sideways and upwards
 _SIDES = [(x, y) for x in (1.0, -1.0) for y in (0.0, 0.5, -0.5, 1.0, -1.0)]
-DIRECTIONS = np.array([*_SIDES, *((x, y) for y in (1.0, -1.0) for x in (0.0, 0.5, -0.5))])
+DIRECTIONS = np.array(
+    [*_SIDES, *((x, y) for y in (1.0, -1.0) for x in (0.0, 0.5, -0.5))]
+)
 
 
 def place_labels(anchors: Array, sizes: Array, markers: Array, panel: Array) -> Array:
@@ -107,9 +128,14 @@ def place_labels(anchors: Array, sizes: Array, markers: Array, panel: Array) -> 
     placed = np.empty((0, 4))
     corners = np.full_like(anchors, np.nan)
     for row, (anchor, size) in enumerate(zip(anchors, sizes, strict=True)):
-        options = np.concatenate([_corners_around(anchor, size, distance) for distance in DISTANCES])
+        options = np.concatenate(
+            [_corners_around(anchor, size, distance) for distance in DISTANCES]
+        )
         boxes = np.concatenate([options, options + size], axis=1)
-        over_label, over_marker = (each.any(axis=1) for each in (_overlaps(boxes, placed), _contains(boxes, markers)))
+        over_label, over_marker = (
+            each.any(axis=1)
+            for each in (_overlaps(boxes, placed), _contains(boxes, markers))
+        )
         outside = ((boxes[:, :2] < panel[:2]) | (boxes[:, 2:] > panel[2:])).any(axis=1)
         taken = outside | over_label | over_marker
         if not taken.all():
@@ -121,7 +147,9 @@ def place_labels(anchors: Array, sizes: Array, markers: Array, panel: Array) -> 
 
 def _corners_around(anchor: Array, size: Array, distance: float) -> Array:
     """Corners (16, 2) of a label at a distance from its anchor, in all directions."""
-    return np.asarray(anchor + distance * DIRECTIONS + size * (np.sign(DIRECTIONS) - 1) / 2)
+    return np.asarray(
+        anchor + distance * DIRECTIONS + size * (np.sign(DIRECTIONS) - 1) / 2
+    )
 
 
 def _overlaps(boxes: Array, others: Array) -> Mask:
@@ -131,5 +159,7 @@ def _overlaps(boxes: Array, others: Array) -> Mask:
 
 
 def _contains(boxes: Array, points: Array) -> Mask:
-    near = (points > boxes[:, None, :2] - CLEARANCE) & (points < boxes[:, None, 2:] + CLEARANCE)
+    near = (points > boxes[:, None, :2] - CLEARANCE) & (
+        points < boxes[:, None, 2:] + CLEARANCE
+    )
     return np.asarray(near.all(axis=-1))

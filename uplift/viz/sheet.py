@@ -29,7 +29,12 @@ from uplift.viz.figure import figure_text, matplotlib
 TEXT_GREY = 0.75  # linear grey of the text
 DPI = 64  # A power of two: division is exact, so the canvas of the text has the size of the sheet
 # The font comes with matplotlib.
-STYLE: dict[str, Any] = {"family": "DejaVu Sans", "va": "center_baseline", "usetex": False, "parse_math": False}
+STYLE: dict[str, Any] = {
+    "family": "DejaVu Sans",
+    "va": "center_baseline",
+    "usetex": False,
+    "parse_math": False,
+}
 
 Image = NDArray[np.float32]
 
@@ -46,7 +51,9 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
     image = _draw_text(sheet.image, sheet.labels)
     if Path(path).suffix.lower() == ".exr":
         channels = {letter: image[..., i] for i, letter in enumerate("RGB")}
-        exr.write_parts([exr.make_part("sheet", exr.attributes(data), channels)], path, force=force)
+        exr.write_parts(
+            [exr.make_part("sheet", exr.attributes(data), channels)], path, force=force
+        )
         return
     matplotlib()
     from matplotlib.image import imsave
@@ -60,7 +67,10 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
 def check_sheet(path: StrPath) -> None:
     """Check the suffix of a contact sheet, which needs matplotlib."""
     if Path(path).suffix.lower() not in (".exr", ".png"):
-        problem, hint = "the name of a sheet must end in .exr or .png", "name the file .exr or .png"
+        problem, hint = (
+            "the name of a sheet must end in .exr or .png",
+            "name the file .exr or .png",
+        )
         raise OutputError(problem, path=path, hint=hint)
     matplotlib()
 
@@ -74,7 +84,9 @@ def _draw_text(image: Image, labels: tuple["Label", ...]) -> Image:
     height, width = image.shape[:2]
     figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="none")
     for label in labels:
-        text = figure.text(label.x / width, 1 - label.y / height, figure_text(label.text), **STYLE)
+        text = figure.text(
+            label.x / width, 1 - label.y / height, figure_text(label.text), **STYLE
+        )
         text.set_fontsize(label.size * 72 / DPI)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
@@ -118,9 +130,14 @@ class Layout:
             self.columns * self.pitch - GAP,
             self.rows * self.pitch - GAP,
         )  # width and height of a panel's tiles
-        self.em = max(13, self.panel[0] // 48)  # height of the text; all spacing around it is a multiple
+        self.em = max(
+            13, self.panel[0] // 48
+        )  # height of the text; all spacing around it is a multiple
         # Distance from panel to panel: title, tiles, legend and spacing
-        self.block = self.panel[0] + 3 * self.em, self.panel[1] + (5 + 2 * LINES) * self.em
+        self.block = (
+            self.panel[0] + 3 * self.em,
+            self.panel[1] + (5 + 2 * LINES) * self.em,
+        )
         self.across = PANELS_PER_ROW[panels]
         self.size = (
             self.across * self.block[0] + self.em,
@@ -142,7 +159,10 @@ class Layout:
         """Yield the top left pixels of keys below a panel: the left column, then the right one."""
         x, y = self.origin(panel)
         for half, line in product(range(2), range(LINES)):
-            yield x + half * self.panel[0] // 2, y + self.panel[1] + (1 + 2 * line) * self.em
+            yield (
+                x + half * self.panel[0] // 2,
+                y + self.panel[1] + (1 + 2 * line) * self.em,
+            )
 
 
 def compose(data: CubeData) -> Sheet:
@@ -159,7 +179,9 @@ def compose(data: CubeData) -> Sheet:
         x, y = layout.origin(number)
         labels.append(Label(x, y - em, panel.title, 1.2 * em))
         for key, (left, top) in zip(panel.keys, layout.keys(number), strict=False):
-            width = em if len(key.colours) == 1 else 6 * em  # a square, or a strip for a ramp
+            width = (
+                em if len(key.colours) == 1 else 6 * em
+            )  # a square, or a strip for a ramp
             strip = key.colours[np.arange(width) * len(key.colours) // width]
             _paint(image, (left, top), np.broadcast_to(strip, (em, width, 3)))
             labels.append(Label(left + width + 0.6 * em, top + em / 2, key.text, em))
@@ -174,7 +196,11 @@ def _paint(image: NDArray[np.float32], corner: tuple[int, int], patch: Array) ->
 
 def _heading(data: CubeData, layout: Layout) -> Label:
     model, sensor, points = data.model, data.sensor, data.points
-    present = "" if data.complete_cells is None else f"{np.count_nonzero(points.present):,} of "
+    present = (
+        ""
+        if data.complete_cells is None
+        else f"{np.count_nonzero(points.present):,} of "
+    )
     facts = (
         f"{present}{data.lattice.dim}³ nodes",
         f"{model.name}, {pluralise(model.count, 'coefficient')}",
@@ -223,17 +249,31 @@ def panels(data: CubeData) -> tuple[Panel, ...]:
     """Return panels of lattice RGB, fitting distance and status, and of standard error and round if available."""
     quantities = [_rgb_panel(data), _distance_panel(data), _status_panel(data)]
     if data.points.standard_error is not None:
-        quantities.append(_error_panel(data.points.standard_error, data.error_illuminant))
+        quantities.append(
+            _error_panel(data.points.standard_error, data.error_illuminant)
+        )
     if data.points.round is not None:
-        quantities.append(_round_panel(data.points.round, data.points.round[data.points.present] < 0))
+        quantities.append(
+            _round_panel(data.points.round, data.points.round[data.points.present] < 0)
+        )
     present = data.points.present[:, None]
-    background = [np.where(present, each.colours, each.colours.dtype.type(BACKGROUND)) for each in quantities]
-    return tuple(replace(panel, colours=colours) for panel, colours in zip(quantities, background, strict=True))
+    background = [
+        np.where(present, each.colours, each.colours.dtype.type(BACKGROUND))
+        for each in quantities
+    ]
+    return tuple(
+        replace(panel, colours=colours)
+        for panel, colours in zip(quantities, background, strict=True)
+    )
 
 
 def _rgb_panel(data: CubeData) -> Panel:
     ramps = KEY_STEPS[:, None, None] * np.eye(3)
-    directions = ("red rises to the right", "green rises upwards", "blue rises from tile to tile")
+    directions = (
+        "red rises to the right",
+        "green rises upwards",
+        "blue rises from tile to tile",
+    )
     keys = tuple(Key(ramps[:, i], direction) for i, direction in enumerate(directions))
     return Panel("Lattice RGB", data.points.rgb, keys)
 
@@ -243,14 +283,24 @@ def _distance_panel(data: CubeData) -> Panel:
     over = data.points.distance > data.threshold
     low, high = data.threshold / 10**DECADES, data.threshold
     exceeding = f"over the threshold: {_count(over)}; largest distance {data.points.distance.max():.2g}"
-    keys = Key(_ramp(KEY_STEPS), f"{low:g} or less to {high:g}, logarithmic"), Key(HIGHLIGHT, exceeding)
-    return Panel("Fitting distance", _highlight_where(over, 1 + np.log10(within) / DECADES), keys)
+    keys = (
+        Key(_ramp(KEY_STEPS), f"{low:g} or less to {high:g}, logarithmic"),
+        Key(HIGHLIGHT, exceeding),
+    )
+    return Panel(
+        "Fitting distance", _highlight_where(over, 1 + np.log10(within) / DECADES), keys
+    )
 
 
 def _status_panel(data: CubeData) -> Panel:
     counts = data.points.counts().items()
-    keys = (Key(colour[None], f"{label}: {count:,}") for colour, (label, count) in zip(STATUS, counts, strict=False))
-    return Panel("Status", np.append(STATUS, STATUS[:1], axis=0)[data.points.status], tuple(keys))
+    keys = (
+        Key(colour[None], f"{label}: {count:,}")
+        for colour, (label, count) in zip(STATUS, counts, strict=False)
+    )
+    return Panel(
+        "Status", np.append(STATUS, STATUS[:1], axis=0)[data.points.status], tuple(keys)
+    )
 
 
 def _error_panel(errors: NDArray[np.float32], light: str) -> Panel:
@@ -260,7 +310,10 @@ def _error_panel(errors: NDArray[np.float32], light: str) -> Panel:
 
 def _round_panel(rounds: NDArray[np.int16], not_fitted: Mask) -> Panel:
     none, last = rounds < 0, max(int(rounds.max()), 0)
-    keys = Key(_ramp(KEY_STEPS), f"0 to {last}"), Key(HIGHLIGHT, f"fitted in no round: {_count(not_fitted)}")
+    keys = (
+        Key(_ramp(KEY_STEPS), f"0 to {last}"),
+        Key(HIGHLIGHT, f"fitted in no round: {_count(not_fitted)}"),
+    )
     return Panel("Round", _highlight_where(none, rounds / max(last, 1)), keys)
 
 
@@ -275,4 +328,6 @@ def _highlight_where(mask: Mask, position: Array) -> Array:
 def _ramp(position: Array) -> Array:
     """Return linear RGB (n, 3) for positions (n,) from dark, 0, to light, 1."""
     anchors = np.linspace(0, 1, len(RAMP))
-    return np.stack([np.interp(position, anchors, column) for column in RAMP.T], axis=-1)
+    return np.stack(
+        [np.interp(position, anchors, column) for column in RAMP.T], axis=-1
+    )

@@ -37,4 +37,8 @@ def paint(rng):
 def paints(small_cube):
     """Linear RGB (3,) of the ColorChecker's coloured patches, by name."""
     atlas = small_cube.data.atlas
-    return {name: rgb for name, rgb in zip(atlas.names, atlas.rgb, strict=True) if np.ptp(rgb) > 0.1 * rgb.max()}
+    return {
+        name: rgb
+        for name, rgb in zip(atlas.names, atlas.rgb, strict=True)
+        if np.ptp(rgb) > 0.1 * rgb.max()
+    }

@@ -22,9 +22,14 @@ def test_lights_add_up_and_areas_are_averaged(spectra, parts):
 def test_reflectance_on_a_ground_is_the_sum_of_all_reflections():
     layer = Layer(np.array([0.2, 0.5, 0.0]), np.array([0.7, 0.1, 1.0]))
     ground = np.array([0.9, 1.0, 0.5])
-    passes = (layer.transmittance**2 * ground * (layer.reflectance * ground) ** bounce for bounce in range(2000))
+    passes = (
+        layer.transmittance**2 * ground * (layer.reflectance * ground) ** bounce
+        for bounce in range(2000)
+    )
     np.testing.assert_allclose(layer.over(ground), layer.reflectance + sum(passes))
-    assert Layer(np.ones(1), np.zeros(1)).over(1.0) == 1, "mirrors face to face give no NaN"
+    assert Layer(np.ones(1), np.zeros(1)).over(1.0) == 1, (
+        "mirrors face to face give no NaN"
+    )
 
 
 def integrated(n):
@@ -57,12 +62,17 @@ def test_saunderson_round_trip(incidence, n):
     np.testing.assert_allclose(surface.remove(measured), internal, atol=1e-12)
     assert (np.diff(measured) > 0).all()
     assert measured[0] == surface.outside
-    assert measured[-1] == pytest.approx(1)  # perfect white stays white, as nothing absorbs
+    assert measured[-1] == pytest.approx(
+        1
+    )  # perfect white stays white, as nothing absorbs
 
 
 @pytest.mark.parametrize(
     ("make", "values"),
-    [*((Surface.of_index, (each,)) for each in (0.9, np.nan, np.inf)), (Surface.of_index, (1.5, "oblique"))]
+    [
+        *((Surface.of_index, (each,)) for each in (0.9, np.nan, np.inf)),
+        (Surface.of_index, (1.5, "oblique")),
+    ]
     + [(Surface, each) for each in ((1, 0), (0, 1), (-0.1, 0), (np.nan, 0))],
 )
 def test_invalid_surfaces_raise(make, values):

@@ -15,7 +15,10 @@ EXAMPLES = ("metamers", "vanish", "light", "constant")
 
 @pytest.fixture(scope="module")
 def examples(model):
-    return {name: design(read_palette(sample_path(f"{name}.toml")), model) for name in EXAMPLES}
+    return {
+        name: design(read_palette(sample_path(f"{name}.toml")), model)
+        for name in EXAMPLES
+    }
 
 
 def delta_e(found, first, second, light):
@@ -37,18 +40,30 @@ def test_the_python_code_of_the_page_runs():
 
 def test_the_infeasible_example_is_missed_because_of_its_bounds(model, tmp_path):
     page = (ROOT / "docs" / "palette.md").read_text(encoding="utf-8")
-    text = next(text for text in re.findall(r"```toml\n(.*?)```", page, re.DOTALL) if "soot" in text)
+    text = next(
+        text
+        for text in re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+        if "soot" in text
+    )
     (tmp_path / "soot.toml").write_text(text, encoding="utf-8")
     unmet = unmet_goals(design(read_palette(tmp_path / "soot.toml"), model))
-    assert [(each.goal.material, each.goal.light) for each in unmet] == [("soot", "day"), ("soot", "lamp")]
+    assert [(each.goal.material, each.goal.light) for each in unmet] == [
+        ("soot", "day"),
+        ("soot", "lamp"),
+    ]
     assert [each.delta_e for each in unmet] == pytest.approx([2.10, 22.65], abs=0.01)
     assert unmet[1].relaxations[0][0] == "the bounds of soot"
 
 
-def test_metamers_differ_under_the_second_light_and_the_figure_vanishes_on_its_ground(examples):
+def test_metamers_differ_under_the_second_light_and_the_figure_vanishes_on_its_ground(
+    examples,
+):
     metamers, light = examples["metamers"], examples["light"]
     assert delta_e(metamers, "fox", "moss", "day") <= 0.1
-    assert delta_e(metamers, "fox", "moss", "lamp") >= metamers.palette.min_differences[0].delta_e
+    assert (
+        delta_e(metamers, "fox", "moss", "lamp")
+        >= metamers.palette.min_differences[0].delta_e
+    )
     assert delta_e(light, "figure", "ground", "day") > 20
     assert delta_e(light, "figure", "ground", "veil") < 0.5
     assert light.powers.min() >= 0
@@ -80,7 +95,9 @@ def engine(model):
 
 
 @pytest.mark.parametrize(("kind", "alike"), [("full", 0.2), ("drawn", 4)])
-def test_engine_parts_match_by_day_and_differ_under_the_lamp(engine, sensor, kind, alike):
+def test_engine_parts_match_by_day_and_differ_under_the_lamp(
+    engine, sensor, kind, alike
+):
     found = engine[kind]
     assert (delta_e_rgb(sensor, found[BLOCK:, DAY], found[BLOCK, DAY]) < alike).all()
     assert delta_e_rgb(sensor, found[BLOCK, DAY], found[BLOCK, LAMP]) < alike

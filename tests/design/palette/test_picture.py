@@ -29,9 +29,21 @@ def exr(path, **planes):
     ("pixels", "labels", "weights"),
     [
         ([SKIN, BONE, BLACK], LABELS, [[1, 0], [0, 1], [0, 0]]),  # black is empty
-        ([SKIN, BLACK], {**LABELS, "bone": "#000000"}, [[1, 0], [0, 1]]),  # unless it is a label
-        ([(0, 0, 0), (1, 1, 1), (2, 2, 2)], None, [[0, 0], [1, 0], [0, 1]]),  # greys in order by default
-        ([(*SKIN, 255), (*SKIN, 51), (*BONE, 0), (9, 9, 9, 0)], LABELS, [[1, 0], [0.2, 0], [0, 0], [0, 0]]),  # alpha
+        (
+            [SKIN, BLACK],
+            {**LABELS, "bone": "#000000"},
+            [[1, 0], [0, 1]],
+        ),  # unless it is a label
+        (
+            [(0, 0, 0), (1, 1, 1), (2, 2, 2)],
+            None,
+            [[0, 0], [1, 0], [0, 1]],
+        ),  # greys in order by default
+        (
+            [(*SKIN, 255), (*SKIN, 51), (*BONE, 0), (9, 9, 9, 0)],
+            LABELS,
+            [[1, 0], [0.2, 0], [0, 0], [0, 0]],
+        ),  # alpha
     ],
 )
 def test_colours_are_labels_and_alpha_is_the_weight(tmp_path, pixels, labels, weights):
@@ -61,7 +73,9 @@ def test_channels_named_after_materials_are_their_weights(tmp_path):
         (None, None, TextureError),
     ],
 )
-def test_unusable_pictures_and_labels_are_refused(tmp_path, monkeypatch, content, labels, error):
+def test_unusable_pictures_and_labels_are_refused(
+    tmp_path, monkeypatch, content, labels, error
+):
     monkeypatch.setattr(picture, "MAX_PIXELS", 10)
     path = tmp_path / ("a.exr" if isinstance(content, dict) else "a.png")
     if isinstance(content, dict):

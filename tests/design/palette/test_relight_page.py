@@ -23,7 +23,9 @@ DISC = 84
 def arbitrary(lights=3, materials=4, m=7, size=(40, 56), title="Arbitrary"):
     """Relighting with empty rows of pixels, and with colours inside and outside the display gamut."""
     draw = np.random.default_rng(lights + 10 * materials + 100 * m)
-    weights = draw.dirichlet(np.full(materials, 0.3), size) * draw.uniform(0, 1, (*size, 1))
+    weights = draw.dirichlet(np.full(materials, 0.3), size) * draw.uniform(
+        0, 1, (*size, 1)
+    )
     weights[:5] = 0
     power = draw.uniform(0.2, 1.5, (lights, 21))
     return Relighting(
@@ -68,14 +70,23 @@ def opened(tab, tmp_path):
 
 def position(tab):
     """(x, y) of the handle, in radii of the dial."""
-    tab.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
+    tab.evaluate(
+        "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))"
+    )
     value = tab.evaluate("document.getElementById('handle').getAttribute('transform')")
-    return np.array(value.removeprefix("translate(").removesuffix(")").split(), dtype=float) / DISC
+    return (
+        np.array(
+            value.removeprefix("translate(").removesuffix(")").split(), dtype=float
+        )
+        / DISC
+    )
 
 
 def box(tab, selector):
     """x, y, width and height of an element in the window."""
-    value = tab.evaluate(f"document.querySelector('{selector}').getBoundingClientRect().toJSON()")
+    value = tab.evaluate(
+        f"document.querySelector('{selector}').getBoundingClientRect().toJSON()"
+    )
     return [value[name] for name in ("x", "y", "width", "height")]
 
 
@@ -115,19 +126,27 @@ def largest_difference(tab, view, gains=1.0, stops=0.0):
 
 
 def script(text, name):
-    return re.search(rf'<script type="[^"]*" id="{name}">(.*?)</script>', text, re.DOTALL)[1]
+    return re.search(
+        rf'<script type="[^"]*" id="{name}">(.*?)</script>', text, re.DOTALL
+    )[1]
 
 
 def unpacked(text, kind):
     """Inverse of packing, as in the script of the page."""
     planes = np.frombuffer(zlib.decompress(base64.b64decode(text)), np.uint8)
-    return np.ascontiguousarray(planes.reshape(np.dtype(kind).itemsize, -1).T).view(kind).ravel()
+    return (
+        np.ascontiguousarray(planes.reshape(np.dtype(kind).itemsize, -1).T)
+        .view(kind)
+        .ravel()
+    )
 
 
 def test_the_numbers_of_the_page_give_the_picture(view):
     text = page(view)
     numbers = json.loads(script(text, "numbers"))
-    coefficients = unpacked(script(text, "pixels"), "<f2").reshape(*view.weights.shape[:2], -1)
+    coefficients = unpacked(script(text, "pixels"), "<f2").reshape(
+        *view.weights.shape[:2], -1
+    )
     mix = [0.2, 0.5, 0.3]
     light = np.array(mix) @ np.array(numbers["light"])
     pixels = codes((coefficients.astype(float) * light) @ np.array(numbers["toRgb"]).T)
@@ -140,7 +159,10 @@ def test_the_numbers_of_the_page_give_the_picture(view):
 def test_the_picture_agrees_with_full_spectra(model, sensor, small_cube):
     """Under smooth lights they differ by the small error of the factor model."""
     colours = {"red": (0.5, 0.1, 0.1), "leaf": (0.1, 0.3, 0.05), "sky": (0.2, 0.4, 0.7)}
-    materials = [SpectrumSpec(name, small_cube.reflectance(rgb, sensor.wavelengths)) for name, rgb in colours.items()]
+    materials = [
+        SpectrumSpec(name, small_cube.reflectance(rgb, sensor.wavelengths))
+        for name, rgb in colours.items()
+    ]
     lights = [SpectrumSpec(name, illuminant(sensor, name)) for name in ("D65", "A")]
     palette = Palette(sensor, tuple(lights), tuple(materials), (), {})
     found = relighting("three", design(palette, model), cutaway(3, size=64))
@@ -171,17 +193,27 @@ def slide(tab, slider, value):
 
 
 @pytest.mark.parametrize(("lights", "materials", "m"), [(1, 1, 3), (5, 9, 12)])
-def test_the_picture_initially_shows_the_light_that_separates_materials(opened, lights, materials, m):
+def test_the_picture_initially_shows_the_light_that_separates_materials(
+    opened, lights, materials, m
+):
     view = arbitrary(lights, materials, m, size=(31, 17))
     tab = opened(view)
-    assert np.abs(tab.canvas("picture")[..., :3] - expected_codes(view, np.eye(lights)[view.start_light])).max() <= 1
+    assert (
+        np.abs(
+            tab.canvas("picture")[..., :3]
+            - expected_codes(view, np.eye(lights)[view.start_light])
+        ).max()
+        <= 1
+    )
 
 
 def test_the_page_fits_and_is_accessible(view, tmp_path):
     check_page(page(view), tmp_path)
 
 
-def test_dragging_by_mouse_and_touch_moves_the_dial_and_relights_the_picture(opened, view):
+def test_dragging_by_mouse_and_touch_moves_the_dial_and_relights_the_picture(
+    opened, view
+):
     tab = opened(view)
     drag(tab, (30, 18))
     radius = box(tab, "#dial .rim")[2] / 2
@@ -191,8 +223,16 @@ def test_dragging_by_mouse_and_touch_moves_the_dial_and_relights_the_picture(ope
     assert position(tab) == pytest.approx([0.8, -0.6], abs=1e-6)
     assert largest_difference(tab, view) <= 1
     x, y = centre(tab, "#dial .rim")
-    for kind, offsets in (("touchStart", [(0, 0)]), ("touchMove", [(-40, 8)]), ("touchEnd", [])):
-        tab.call("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x + dx, "y": y + dy} for dx, dy in offsets])
+    for kind, offsets in (
+        ("touchStart", [(0, 0)]),
+        ("touchMove", [(-40, 8)]),
+        ("touchEnd", []),
+    ):
+        tab.call(
+            "Input.dispatchTouchEvent",
+            type=kind,
+            touchPoints=[{"x": x + dx, "y": y + dy} for dx, dy in offsets],
+        )
     assert position(tab) == pytest.approx(np.array([-40, 8]) / radius, abs=0.02)
     assert largest_difference(tab, view) <= 1
     assert tab.errors == []
@@ -201,17 +241,28 @@ def test_dragging_by_mouse_and_touch_moves_the_dial_and_relights_the_picture(ope
 def test_keys_move_the_dial(opened, view):
     tab = opened(view)
     tab.evaluate("document.getElementById('dial').focus()")
-    for key, at in (("0", (0, 0)), ("ArrowLeft", (-0.02, 0)), ("ArrowDown", (-0.02, 0.02))):
+    for key, at in (
+        ("0", (0, 0)),
+        ("ArrowLeft", (-0.02, 0)),
+        ("ArrowDown", (-0.02, 0.02)),
+    ):
         tab.key(key)
         assert position(tab) == pytest.approx(at, abs=1e-9)
     tab.key("ArrowRight", modifiers=8)  # shift
     assert position(tab) == pytest.approx((0.18, 0.02), abs=1e-9)
     tab.key("2")
     assert largest_difference(tab, view) <= 1
-    text = tab.evaluate("document.getElementById('dial').getAttribute('aria-valuetext')")
+    text = tab.evaluate(
+        "document.getElementById('dial').getAttribute('aria-valuetext')"
+    )
     assert text == "light 0 0 %, light 1 100 %, light 2 0 %"
-    assert tab.evaluate("document.getElementById('share-1').textContent") == "100 % of the mix"
-    assert "%" not in tab.evaluate("document.getElementById('gain-0-text').value")  # not the share of the mix
+    assert (
+        tab.evaluate("document.getElementById('share-1').textContent")
+        == "100 % of the mix"
+    )
+    assert "%" not in tab.evaluate(
+        "document.getElementById('gain-0-text').value"
+    )  # not the share of the mix
 
 
 def test_sliders_scale_their_light_exposure_scales_all_and_reset_restores(opened, view):
@@ -230,5 +281,11 @@ def test_sliders_scale_their_light_exposure_scales_all_and_reset_restores(opened
     text = tab.evaluate("document.getElementById('clipped').textContent")
     assert float(text.split()[1]) == pytest.approx(100 * clipped, abs=0.1)
     tab.evaluate("document.getElementById('reset').click()")
-    assert np.abs(tab.canvas("picture")[..., :3] - expected_codes(view, np.eye(3)[view.start_light])).max() <= 1
+    assert (
+        np.abs(
+            tab.canvas("picture")[..., :3]
+            - expected_codes(view, np.eye(3)[view.start_light])
+        ).max()
+        <= 1
+    )
     assert tab.errors == []

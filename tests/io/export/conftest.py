@@ -14,9 +14,19 @@ from uplift.models import Moments
 def warped_cube(small_cube, request) -> Cube:
     """Cube of five of nine moments, reinterpreted with another wavelength range and warp."""
     data = small_cube.data
-    model, coefficients = Moments(5, 400, 700, request.param), data.atlas.coefficients[:, :5]
-    atlas = replace(data.atlas, coefficients=coefficients, spectra=EntrySpectra(model, coefficients))
-    return Cube(with_points(replace(data, model=model, atlas=atlas), coefficients=data.points.coefficients[:, :5]))
+    model, coefficients = (
+        Moments(5, 400, 700, request.param),
+        data.atlas.coefficients[:, :5],
+    )
+    atlas = replace(
+        data.atlas, coefficients=coefficients, spectra=EntrySpectra(model, coefficients)
+    )
+    return Cube(
+        with_points(
+            replace(data, model=model, atlas=atlas),
+            coefficients=data.points.coefficients[:, :5],
+        )
+    )
 
 
 @pytest.fixture(scope="session")

@@ -104,7 +104,9 @@ WEBGL = """(() => {
 
 def c(path, rgb, wavelengths, form="header", compiler=("cc", "-std=c99")):
     load = LOAD_FILE if form == "file" else ""
-    return _compiled(path, rgb, wavelengths, compiler, "rgb, wavelengths, 4, found", load)
+    return _compiled(
+        path, rgb, wavelengths, compiler, "rgb, wavelengths, 4, found", load
+    )
 
 
 def cpp(path, rgb, wavelengths, form="header"):
@@ -115,7 +117,9 @@ def cuda(path, rgb, wavelengths, form="file"):
     """On the host, where the same functions are C++."""
     load = LOAD.format(size=path.with_suffix(".bin").stat().st_size // 4)
     compiler = ("c++", "-std=c++11", "-x", "c++")
-    return _compiled(path, rgb, wavelengths, compiler, "table, rgb, wavelengths, found", load)
+    return _compiled(
+        path, rgb, wavelengths, compiler, "table, rgb, wavelengths, found", load
+    )
 
 
 def ptx(path):
@@ -123,19 +127,32 @@ def ptx(path):
     need(NVCC)
     path.with_suffix(".cu").write_text(KERNEL.format(header=path.name))
     options = ("-ptx", "-Werror", "all-warnings")
-    subprocess.run(["nvcc", *options, path.with_suffix(".cu"), "-o", path.with_suffix(".ptx")], check=True)
+    subprocess.run(
+        ["nvcc", *options, path.with_suffix(".cu"), "-o", path.with_suffix(".ptx")],
+        check=True,
+    )
     return path.with_suffix(".ptx").read_text()
 
 
 def _compiled(path, rgb, wavelengths, compiler, call, load):
     need({"cc": CC, "c++": CXX}[compiler[0]])
     folder = path.parent
-    text = HOST.format(header=path.name, wavelengths=listed(wavelengths), call=call, load=load)
+    text = HOST.format(
+        header=path.name, wavelengths=listed(wavelengths), call=call, load=load
+    )
     (folder / "main.c").write_text(text)
     casts = ["-Wold-style-cast"] if compiler[0] == "c++" else []
-    subprocess.run([*compiler, *STRICT, *casts, "main.c", "-o", "main", "-lm"], cwd=folder, check=True)
+    subprocess.run(
+        [*compiler, *STRICT, *casts, "main.c", "-o", "main", "-lm"],
+        cwd=folder,
+        check=True,
+    )
     done = subprocess.run(
-        [folder / "main"], cwd=folder, input=rgb.astype(np.float32).tobytes(), capture_output=True, check=True
+        [folder / "main"],
+        cwd=folder,
+        input=rgb.astype(np.float32).tobytes(),
+        capture_output=True,
+        check=True,
     )
     return np.frombuffer(done.stdout, np.float32).reshape(-1, 4)
 
@@ -177,15 +194,32 @@ def _by_webgl(path, rgba, wavelengths):
     with browser() as opened:
         opened.open(page)
         found = opened.evaluate(WEBGL.replace("DATA", json.dumps(data)))
-    return None if found is None else np.frombuffer(base64.b64decode(found), np.float32).reshape(-1, 4)
+    return (
+        None
+        if found is None
+        else np.frombuffer(base64.b64decode(found), np.float32).reshape(-1, 4)
+    )
 
 
 def hlsl(path, rgb, wavelengths, form="file"):
     """Compiled to SPIR-V, and by Vulkan: needs glslangValidator and wgpu."""
     need(GLSLANG, VULKAN)
     folder, count = path.parent, -(-len(rgb) // 64) * 64
-    (folder / "main.hlsl").write_text(PIXEL.format(code=path.read_text(), wavelengths=listed(wavelengths)))
-    command = ["glslangValidator", "-D", "-V", "-S", "comp", "-e", "main", "main.hlsl", "-o", "main.spv"]
+    (folder / "main.hlsl").write_text(
+        PIXEL.format(code=path.read_text(), wavelengths=listed(wavelengths))
+    )
+    command = [
+        "glslangValidator",
+        "-D",
+        "-V",
+        "-S",
+        "comp",
+        "-e",
+        "main",
+        "main.hlsl",
+        "-o",
+        "main.spv",
+    ]
     subprocess.run(command, cwd=folder, check=True, capture_output=True)
     return call_in_child(_by_vulkan, path, rgb, count, seconds=60)
 
@@ -197,15 +231,22 @@ def _by_vulkan(path, rgb, count):
     device = vulkan_device()
     storage, source = wgpu.BufferUsage.STORAGE, wgpu.BufferUsage.COPY_SRC
     colours = padded(rgb, count)
-    table = device.create_buffer_with_data(data=path.with_suffix(".bin").read_bytes(), usage=storage)
+    table = device.create_buffer_with_data(
+        data=path.with_suffix(".bin").read_bytes(), usage=storage
+    )
     given = device.create_buffer_with_data(data=colours.tobytes(), usage=storage)
     found = device.create_buffer(size=colours.nbytes, usage=storage | source)
     module = device.create_shader_module(code=path.with_name("main.spv").read_bytes())
     compute = {"module": module, "entry_point": "main"}
     pipeline = device.create_compute_pipeline(layout="auto", compute=compute)
     buffers = enumerate((table, given, found))
-    entries = [{"binding": k, "resource": {"buffer": each, "offset": 0, "size": each.size}} for k, each in buffers]
-    group = device.create_bind_group(layout=pipeline.get_bind_group_layout(0), entries=entries)
+    entries = [
+        {"binding": k, "resource": {"buffer": each, "offset": 0, "size": each.size}}
+        for k, each in buffers
+    ]
+    group = device.create_bind_group(
+        layout=pipeline.get_bind_group_layout(0), entries=entries
+    )
     commands = device.create_command_encoder()
     work = commands.begin_compute_pass()
     work.set_pipeline(pipeline)
@@ -213,4 +254,6 @@ def _by_vulkan(path, rgb, count):
     work.dispatch_workgroups(count // 64)
     work.end()
     device.queue.submit([commands.finish()])
-    return np.frombuffer(device.queue.read_buffer(found), np.float32).reshape(-1, 4)[: len(rgb)]
+    return np.frombuffer(device.queue.read_buffer(found), np.float32).reshape(-1, 4)[
+        : len(rgb)
+    ]

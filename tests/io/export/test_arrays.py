@@ -33,19 +33,35 @@ def test_npz_has_all_arrays_and_multipliers_of_the_spectra(small_cube, tmp_path)
         assert tuple(arrays["atlas.names"]) == data.atlas.names
         assert json.loads(str(arrays["metadata"]))["model"] == data.model.describe()
         lattice = evaluate(data.model, arrays["multipliers"], [450, 650])
-        atlas = evaluate(data.atlas.spectra.model, arrays["atlas.multipliers"], [450, 650])
-    np.testing.assert_allclose(lattice, reflectance(data.model, data.points.coefficients, [450, 650]), atol=1e-9)
-    np.testing.assert_allclose(atlas, small_cube.reflectance(data.atlas.rgb, [450, 650]), atol=1e-9)
+        atlas = evaluate(
+            data.atlas.spectra.model, arrays["atlas.multipliers"], [450, 650]
+        )
+    np.testing.assert_allclose(
+        lattice,
+        reflectance(data.model, data.points.coefficients, [450, 650]),
+        atol=1e-9,
+    )
+    np.testing.assert_allclose(
+        atlas, small_cube.reflectance(data.atlas.rgb, [450, 650]), atol=1e-9
+    )
 
 
 def test_npz_has_the_entries_outside_the_space(cyan_cube, tmp_path):
     write_npz(cyan_cube.data, tmp_path / "cube.npz")
     with np.load(tmp_path / "cube.npz", allow_pickle=False) as arrays:
         assert arrays["outside.names"].tolist() == ["cyan"]
-        np.testing.assert_array_equal(arrays["outside.rgb"], cyan_cube.data.atlas.outside.rgb)
-        found = evaluate(cyan_cube.data.atlas.spectra.model, arrays["outside.multipliers"], [450, 650])
+        np.testing.assert_array_equal(
+            arrays["outside.rgb"], cyan_cube.data.atlas.outside.rgb
+        )
+        found = evaluate(
+            cyan_cube.data.atlas.spectra.model,
+            arrays["outside.multipliers"],
+            [450, 650],
+        )
     np.testing.assert_allclose(
-        found, cyan_cube.data.atlas.outside.spectra.reflectance(np.array([0]), [450, 650]), atol=1e-9
+        found,
+        cyan_cube.data.atlas.outside.spectra.reflectance(np.array([0]), [450, 650]),
+        atol=1e-9,
     )
 
 
@@ -72,9 +88,13 @@ def test_csv_has_a_line_per_node_in_full_precision(tmp_path, monkeypatch):
         ("c0", "c1", "c2"): data.points.coefficients,
     }.items():
         np.testing.assert_array_equal(column(rows, *names), expected)
-    assert [row["status"] for row in rows] == [Status(status).label for status in data.points.status]
+    assert [row["status"] for row in rows] == [
+        Status(status).label for status in data.points.status
+    ]
     names = [*data.atlas.names, ""]
-    assert [row["entry"] for row in rows] == [names[entry] for entry in data.points.entry]
+    assert [row["entry"] for row in rows] == [
+        names[entry] for entry in data.points.entry
+    ]
     write_csv(hand_made(round=None, standard_error=None), tmp_path / "fewer.csv")
     assert not {"round", "standard_error"} & set(read(tmp_path / "fewer.csv")[0])
 
@@ -82,8 +102,12 @@ def test_csv_has_a_line_per_node_in_full_precision(tmp_path, monkeypatch):
 def test_present_nodes_of_a_sparse_cube(sparse, tmp_path):
     present = np.flatnonzero(sparse.points.present)
     assert write_csv(sparse, tmp_path / "cube.csv") == len(present)
-    expected = np.column_stack([sparse.lattice.points, sparse.points.coefficients[:, 0]])[present]
-    np.testing.assert_allclose(column(read(tmp_path / "cube.csv"), "r", "g", "b", "c0"), expected, rtol=1e-6)
+    expected = np.column_stack(
+        [sparse.lattice.points, sparse.points.coefficients[:, 0]]
+    )[present]
+    np.testing.assert_allclose(
+        column(read(tmp_path / "cube.csv"), "r", "g", "b", "c0"), expected, rtol=1e-6
+    )
     write_npz(sparse, tmp_path / "cube.npz")
     arrays = np.load(tmp_path / "cube.npz")
     np.testing.assert_array_equal(arrays["points"], present)

@@ -13,7 +13,12 @@ import pytest
 
 from tests.parts import CXX, MITSUBA, need
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.observer import DEFAULT_OBSERVER, illuminant_spd, matching_functions, on_range
+from uplift.colorimetry.observer import (
+    DEFAULT_OBSERVER,
+    illuminant_spd,
+    matching_functions,
+    on_range,
+)
 from uplift.colorimetry.observer import sensor as make_sensor
 from uplift.colorimetry.srgb import decode, encode
 from uplift.io.export import coeff, write_coeff
@@ -41,13 +46,19 @@ def table(tmp_path_factory, small_cube):
     return path
 
 
-def test_the_stated_error_is_the_largest_of_interpolated_colours(small_cube, sensor, tmp_path):
+def test_the_stated_error_is_the_largest_of_interpolated_colours(
+    small_cube, sensor, tmp_path
+):
     """Of random codes, as colour-science interpolates them."""
     stated = write_coeff(small_cube.data, tmp_path / "a.coeff", res=8)
     reader = colour.recovery.LUT3D_Jakob2019()
     reader.read(str(tmp_path / "a.coeff"))
-    rgb = decode(np.vstack([np.random.default_rng(1).random((4000, 3)), encode(stated.worst)]))
-    found = sensor.rgb(evaluate_unscaled(reader.RGB_to_coefficients(rgb), sensor.wavelengths))
+    rgb = decode(
+        np.vstack([np.random.default_rng(1).random((4000, 3)), encode(stated.worst)])
+    )
+    found = sensor.rgb(
+        evaluate_unscaled(reader.RGB_to_coefficients(rgb), sensor.wavelengths)
+    )
     errors = delta_e_rgb(sensor, found, rgb)
     assert errors[:-1].max() < stated.largest
     np.testing.assert_allclose(errors[-1], stated.largest, rtol=0.02)
@@ -62,8 +73,12 @@ def test_every_number_is_at_its_documented_offset(table, sensor):
     scale = struct.unpack_from(f"<{RES}f", content, 8)
     assert (scale[0], scale[-1]) == (0, 1)
     at = 8 + 4 * RES
-    for largest, level, second, first in product(range(3), scale, range(RES), range(RES)):
-        rgb = np.roll([level, first / (RES - 1) * level, second / (RES - 1) * level], largest)
+    for largest, level, second, first in product(
+        range(3), scale, range(RES), range(RES)
+    ):
+        rgb = np.roll(
+            [level, first / (RES - 1) * level, second / (RES - 1) * level], largest
+        )
         coefficients = np.array([struct.unpack_from("<3f", content, at)])
         at += 12
         found = sensor.rgb(evaluate_unscaled(coefficients, sensor.wavelengths))[0]
@@ -98,33 +113,55 @@ def test_colour_science_and_mitsuba_read_it(table, sensor):
     """Mitsuba finds data/srgb.coeff by its file resolver, in the folder prepended here first."""
     need(MITSUBA)
     level = struct.unpack_from(f"<{RES}f", table.read_bytes(), 8)[3]
-    rgb = np.vstack([level * np.array([[1, 0.25, 0.5], [0.75, 1, 0]]), np.repeat([GREYS], 3, axis=0).T])
+    rgb = np.vstack(
+        [
+            level * np.array([[1, 0.25, 0.5], [0.75, 1, 0]]),
+            np.repeat([GREYS], 3, axis=0).T,
+        ]
+    )
 
     def fetch(folder):
         args = [sys.executable, "-c", FETCH, str(folder), json.dumps(rgb.tolist())]
         done = subprocess.run(args, capture_output=True, text=True, check=True)
-        return np.array([line.split() for line in done.stdout.splitlines()], dtype=float)
+        return np.array(
+            [line.split() for line in done.stdout.splitlines()], dtype=float
+        )
 
     ours, default = fetch(table.parents[1]), fetch(table.parent)
     assert not np.allclose(ours[:2], default[:2], rtol=1e-4)
     greys = ours[2:]
     assert not np.isnan(greys).any()
     assert (np.diff(greys[:, 3]) > 0).all()
-    np.testing.assert_allclose(greys[:, 4:], np.repeat(greys[:, 3:4], 4, axis=1), atol=1e-3)
+    np.testing.assert_allclose(
+        greys[:, 4:], np.repeat(greys[:, 3:4], 4, axis=1), atol=1e-3
+    )
     reader = colour.recovery.LUT3D_Jakob2019()
     reader.read(table)
-    np.testing.assert_allclose(ours[:2, :3], reader.RGB_to_coefficients(rgb[:2]), rtol=1e-4)
+    np.testing.assert_allclose(
+        ours[:2, :3], reader.RGB_to_coefficients(rgb[:2]), rtol=1e-4
+    )
     found = sensor.rgb(evaluate_unscaled(ours[:2, :3], sensor.wavelengths))
     np.testing.assert_allclose(found, rgb[:2], rtol=0, atol=1e-4)
 
 
 def test_the_largest_reflectance_is_at_an_end_or_where_the_polynomial_turns(table):
     """MaxValue of pbrt: a closed form, of which samples at every 0.01 nm come short by little."""
-    content = np.frombuffer(table.read_bytes(), "<f4", 9 * RES**3, 8 + 4 * RES).reshape(-1, 3).astype(float)
+    content = (
+        np.frombuffer(table.read_bytes(), "<f4", 9 * RES**3, 8 + 4 * RES)
+        .reshape(-1, 3)
+        .astype(float)
+    )
     square, linear, _ = content.T
-    turn = np.divide(-linear, 2 * square, out=np.full_like(linear, 360), where=square < 0)
-    places = np.stack([np.full_like(turn, 360), np.full_like(turn, 830), np.clip(turn, 360, 830)], axis=-1)
-    t = np.stack([(content * np.stack([x**2, x, x**0], axis=-1)).sum(axis=-1) for x in places.T])
+    turn = np.divide(
+        -linear, 2 * square, out=np.full_like(linear, 360), where=square < 0
+    )
+    places = np.stack(
+        [np.full_like(turn, 360), np.full_like(turn, 830), np.clip(turn, 360, 830)],
+        axis=-1,
+    )
+    t = np.stack(
+        [(content * np.stack([x**2, x, x**0], axis=-1)).sum(axis=-1) for x in places.T]
+    )
     largest = (0.5 + t / (2 * np.sqrt(1 + t**2))).max(axis=0)
     samples = evaluate_unscaled(content, np.linspace(360, 830, 4701)).max(axis=1)
     assert ((turn > 360) & (turn < 830)).sum() > RES**2
@@ -138,22 +175,37 @@ WAVELENGTHS = np.arange(360.0, 831.0)
 def spectra_of(data, rgb):
     """Spectra of RGB (n, 3) by a full table, of which only the directions around them are fitted."""
     res, largest, rows = coeff.RES, rgb.argmax(axis=1), np.arange(len(rgb))
-    at = [np.minimum((rgb[rows, (largest + k) % 3] / rgb.max(axis=1) * (res - 1)).astype(int), res - 2) for k in (2, 1)]
+    at = [
+        np.minimum(
+            (rgb[rows, (largest + k) % 3] / rgb.max(axis=1) * (res - 1)).astype(int),
+            res - 2,
+        )
+        for k in (2, 1)
+    ]
     used = np.zeros((3, res, res), dtype=bool)
     for dy, dx in product((0, 1), repeat=2):
         used[largest, at[0] + dy, at[1] + dx] = True
     scale, table = coeff._scale(res), np.full((res, 3, res, res, 3), np.nan, np.float32)
     fitted_to = on_range(data.sensor, coeff.START, coeff.END, coeff.STEP)
-    table[:, used] = coeff._fit(data, fitted_to, scale, coeff._directions(res)[used.ravel()])
-    return evaluate_unscaled(coeff._interpolated(scale, table.swapaxes(0, 1), rgb), WAVELENGTHS)
+    table[:, used] = coeff._fit(
+        data, fitted_to, scale, coeff._directions(res)[used.ravel()]
+    )
+    return evaluate_unscaled(
+        coeff._interpolated(scale, table.swapaxes(0, 1), rgb), WAVELENGTHS
+    )
 
 
 def pbrt_rgb(space, light, spectra):
     """Linear RGB as pbrt computes them: sums at 1 nm, and a matrix from the primaries and the white of the light."""
-    weights = matching_functions(DEFAULT_OBSERVER, 360, 830, 1) * illuminant_spd(light, 360, 830, 1)[:, None]
+    weights = (
+        matching_functions(DEFAULT_OBSERVER, 360, 830, 1)
+        * illuminant_spd(light, 360, 830, 1)[:, None]
+    )
     xyz = spectra @ weights / weights[:, 1].sum()
     white = weights.sum(axis=0)
-    matrix = colour.normalised_primary_matrix(colour.RGB_COLOURSPACES[space].primaries, white[:2] / white.sum())
+    matrix = colour.normalised_primary_matrix(
+        colour.RGB_COLOURSPACES[space].primaries, white[:2] / white.sum()
+    )
     return np.linalg.solve(matrix, xyz.T).T
 
 
@@ -175,7 +227,11 @@ def test_round_trips_of_pbrt(small_cube, space, light, low, high, also):
 
 def test_greys_have_constant_spectra(small_cube):
     levels = np.repeat([GREYS[1:]], 3, axis=0).T
-    np.testing.assert_allclose(spectra_of(small_cube.data, levels), np.repeat(levels[:, :1], 471, axis=1), atol=1e-3)
+    np.testing.assert_allclose(
+        spectra_of(small_cube.data, levels),
+        np.repeat(levels[:, :1], 471, axis=1),
+        atol=1e-3,
+    )
 
 
 def test_dark_colours_are_dark_at_every_wavelength(small_cube):
@@ -197,7 +253,10 @@ int main() {{
 
 @pytest.mark.parametrize(
     ("layout", "namespace", "name", "width", "space", "light"),
-    [("pbrt", "pbrt", "ACES2065_1", 3, "ACES2065-1", "D60"), ("luisa", "luisa::render", "sRGB", 4, "sRGB", "D65")],
+    [
+        ("pbrt", "pbrt", "ACES2065_1", 3, "ACES2065-1", "D60"),
+        ("luisa", "luisa::render", "sRGB", 4, "sRGB", "D65"),
+    ],
 )
 def test_sources_compile_to_the_numbers_of_the_table(
     small_cube, tmp_path, layout, namespace, name, width, space, light
@@ -206,11 +265,26 @@ def test_sources_compile_to_the_numbers_of_the_table(
     data, res = replace(small_cube.data, sensor=make_sensor(space, light)), 3
     write_coeff(data, tmp_path / "table.coeff", res=res)
     write_coeff(data, tmp_path / "table.cpp", layout=layout, res=res)
-    (tmp_path / "main.cpp").write_text(PRINT.format(space=namespace, name=name, width=width, res=res))
-    command = ["c++", "-std=c++17", "-Wall", "-Werror", "table.cpp", "main.cpp", "-o", "main"]
+    (tmp_path / "main.cpp").write_text(
+        PRINT.format(space=namespace, name=name, width=width, res=res)
+    )
+    command = [
+        "c++",
+        "-std=c++17",
+        "-Wall",
+        "-Werror",
+        "table.cpp",
+        "main.cpp",
+        "-o",
+        "main",
+    ]
     subprocess.run(command, cwd=tmp_path, check=True)
-    done = subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [tmp_path / "main"], capture_output=True, text=True, check=True
+    )
     found = np.array(done.stdout.split(), dtype=np.float32).reshape(-1, width)
-    expected = np.frombuffer((tmp_path / "table.coeff").read_bytes(), "<f4", 9 * res**3, 8 + 4 * res).reshape(-1, 3)
+    expected = np.frombuffer(
+        (tmp_path / "table.coeff").read_bytes(), "<f4", 9 * res**3, 8 + 4 * res
+    ).reshape(-1, 3)
     np.testing.assert_array_equal(found[:, :3], expected)
     assert not found[:, 3:].any()

@@ -5,11 +5,19 @@ import tomllib
 import numpy as np
 from scipy.ndimage import map_coordinates
 
-from uplift.colorimetry.observer import DEFAULT_OBSERVER, grid, illuminant_spd, matching_functions
+from uplift.colorimetry.observer import (
+    DEFAULT_OBSERVER,
+    grid,
+    illuminant_spd,
+    matching_functions,
+)
 from uplift.io.export import write_film
 from uplift.io.export.film import SHARE
 
-WEIGHTS = matching_functions(DEFAULT_OBSERVER) / matching_functions(DEFAULT_OBSERVER)[:, 1].sum()
+WEIGHTS = (
+    matching_functions(DEFAULT_OBSERVER)
+    / matching_functions(DEFAULT_OBSERVER)[:, 1].sum()
+)
 
 
 def power(name):
@@ -23,7 +31,10 @@ def read(path, xyz):
     total = xyz.sum(axis=1)
     x, y = (xyz[:, :2] / total[:, None]).T
     places = np.array([(1 - x) ** 2, y / (1 - x)]) * (len(table) - 1)
-    bands = [map_coordinates(table[..., band], places, order=1) for band in range(table.shape[-1])]
+    bands = [
+        map_coordinates(table[..., band], places, order=1)
+        for band in range(table.shape[-1])
+    ]
     return np.array(bands).T * total[:, None]
 
 
@@ -37,15 +48,25 @@ def test_a_table_of_reflectances_has_the_spectra_of_the_cube(small_cube, tmp_pat
     assert described["file"] == "paint.npy"
     assert described["kind"] == "reflectance"
     sizes = {"lut_size": 192, "bands": 81, "spectral_shape": [380.0, 780.0, 5.0]}
-    assert described["array"] == {**sizes, "dtype": "float16", "observer": DEFAULT_OBSERVER}
-    assert described["reflectance"] == {"scene_illuminant": "D65", "midgray": 0.184, "bounded": False}
+    assert described["array"] == {
+        **sizes,
+        "dtype": "float16",
+        "observer": DEFAULT_OBSERVER,
+    }
+    assert described["reflectance"] == {
+        "scene_illuminant": "D65",
+        "midgray": 0.184,
+        "bounded": False,
+    }
     rgb = np.random.default_rng(3).uniform(0.1, 0.3, (200, 3))
     xyz = rgb @ small_cube.data.sensor.rgb_to_xyz.T
     reflectance = read(path, xyz)
     np.testing.assert_allclose(reflectance * power("D65") @ WEIGHTS, xyz, atol=2e-3)
     greys = np.array([[SHARE] * 3])
     found = read(path, greys @ small_cube.data.sensor.rgb_to_xyz.T)
-    np.testing.assert_allclose(found, small_cube.reflectance(greys, grid()), atol=0.02)  # of a neighbouring luminance
+    np.testing.assert_allclose(
+        found, small_cube.reflectance(greys, grid()), atol=0.02
+    )  # of a neighbouring luminance
 
 
 def test_a_table_of_lights_has_unit_sums_and_no_gaps(small_cube, tmp_path):

@@ -66,7 +66,9 @@ def test_codes_have_the_colours_of_srgb(three, folder):
     requested = np.array(list(product(nodes, repeat=3)))
     moments = decode(codes / 255) @ lut._to_moments(three.data).T
     found = sensor.rgb(reflectance(three.data.model, moments, sensor.wavelengths))
-    errors = delta_e_rgb(sensor, found, sensor.rgb(three.reflectance(decode(requested), mode="moments")))
+    errors = delta_e_rgb(
+        sensor, found, sensor.rgb(three.reflectance(decode(requested), mode="moments"))
+    )
     assert errors.mean() < 0.3
     assert np.abs(codes - 255 * requested).mean() < 15
     greys = codes[:: 3 * (LEVEL**4 + LEVEL**2 + 1)]  # at nodes of the cube
@@ -76,23 +78,33 @@ def test_codes_have_the_colours_of_srgb(three, folder):
 def test_the_table_has_the_codes_of_the_image(folder):
     lines = (folder / "table.cube").read_text().splitlines()
     assert lines[2] == "LUT_3D_SIZE 9"
-    table = np.array([line.split() for line in lines[3:]], dtype=float).reshape(9, 9, 9, 3)  # by blue, green, red
+    table = np.array([line.split() for line in lines[3:]], dtype=float).reshape(
+        9, 9, 9, 3
+    )  # by blue, green, red
     codes = hald(folder / "hald.png")
     for corner in product((0, 1), repeat=3):
         red, green, blue = (-axis for axis in corner)
-        np.testing.assert_allclose(255 * table[blue, green, red], codes[red, green, blue], atol=0.51)
+        np.testing.assert_allclose(
+            255 * table[blue, green, red], codes[red, green, blue], atol=0.51
+        )
 
 
 def test_the_shader_evaluates_the_spectra(three, folder):
     """As C++, with filtered colours; components that no spectrum has keep to [0, 1]."""
     need(CXX)
     (folder / "main.cpp").write_text(HARNESS.format(name="hald"))
-    subprocess.run(["c++", "-std=c++17", "main.cpp", "-o", "main"], cwd=folder, check=True)
+    subprocess.run(
+        ["c++", "-std=c++17", "main.cpp", "-o", "main"], cwd=folder, check=True
+    )
 
     def shader(colours):
-        rows = [(*colour, nm) for colour in colours.tolist() for nm in WAVELENGTHS.tolist()]
+        rows = [
+            (*colour, nm) for colour in colours.tolist() for nm in WAVELENGTHS.tolist()
+        ]
         text = "\n".join(" ".join(map(repr, row)) for row in rows)
-        done = subprocess.run([folder / "main"], input=text, capture_output=True, text=True, check=True)
+        done = subprocess.run(
+            [folder / "main"], input=text, capture_output=True, text=True, check=True
+        )
         return np.array(done.stdout.split(), dtype=float).reshape(len(colours), -1)
 
     codes = hald(folder / "hald.png")
@@ -109,5 +121,9 @@ def test_the_shader_compiles(folder):
     need(GLSLANG)
     text = (folder / "hald.glsl").read_text()
     call = "hald_reflectance(hald_multipliers(vec3(0.5)), 500.0)"
-    (folder / "a.frag").write_text(f"#version 430\n{text}out vec4 o; void main() {{ o = vec4({call}); }}\n")
-    subprocess.run(["glslangValidator", "a.frag"], cwd=folder, check=True, capture_output=True)
+    (folder / "a.frag").write_text(
+        f"#version 430\n{text}out vec4 o; void main() {{ o = vec4({call}); }}\n"
+    )
+    subprocess.run(
+        ["glslangValidator", "a.frag"], cwd=folder, check=True, capture_output=True
+    )

@@ -18,7 +18,9 @@ COLOURS = [[0.8, 0.2, 0.1], [0.1, 0.2, 0.8]]
 
 def code(section, language):
     """Return the only code block of a section in a language."""
-    (text,) = re.findall(rf"^## {section}\n(.*?)(?=^## |\Z)", PAGE, re.DOTALL | re.MULTILINE)
+    (text,) = re.findall(
+        rf"^## {section}\n(.*?)(?=^## |\Z)", PAGE, re.DOTALL | re.MULTILINE
+    )
     (block,) = re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
     return block
 
@@ -34,20 +36,31 @@ def folder(repository, tmp_path, monkeypatch):
 def test_python(folder, small_cube):
     names = {}
     exec(compile(code("Python", "python"), "integrate.md", "exec"), names)
-    expected = small_cube.reflectance(names["texels"][2, 3:4], names["hero"], mode="moments")
+    expected = small_cube.reflectance(
+        names["texels"][2, 3:4], names["hero"], mode="moments"
+    )
     np.testing.assert_allclose(names["reflectance"], expected, atol=1e-12)
 
 
-@pytest.mark.parametrize(("compiler", "language", "part"), [("cc", "c", CC), ("c++", "c++", CXX)])
+@pytest.mark.parametrize(
+    ("compiler", "language", "part"), [("cc", "c", CC), ("c++", "c++", CXX)]
+)
 def test_c_and_cpp(folder, small_cube, compiler, language, part):
     need(part, SANITIZERS)
     write_program(small_cube.data, folder / "paints.h")
     (folder / "main.c").write_text(code("C and C\\+\\+", "c"))
-    subprocess.run([compiler, "-x", language, "-O1", *SANITIZED, "main.c", "-o", "main", "-lm"], check=True)
+    subprocess.run(
+        [compiler, "-x", language, "-O1", *SANITIZED, "main.c", "-o", "main", "-lm"],
+        check=True,
+    )
     done = subprocess.run(["./main"], capture_output=True, text=True, check=True)
-    wavelengths, *found = np.array([line.split() for line in done.stdout.splitlines()], dtype=float).T
+    wavelengths, *found = np.array(
+        [line.split() for line in done.stdout.splitlines()], dtype=float
+    ).T
     assert len(wavelengths) == 7
-    expected = small_cube.reflectance([COLOURS[0], *COLOURS], wavelengths, mode="spectra")
+    expected = small_cube.reflectance(
+        [COLOURS[0], *COLOURS], wavelengths, mode="spectra"
+    )
     np.testing.assert_allclose(found, expected, atol=2e-5)
 
 
@@ -60,5 +73,7 @@ def test_mitsuba(folder, small_cube):
     image = np.array(names["image"])
     assert image.shape == (64, 64, 3)
     assert mi.variant() == "scalar_spectral"
-    np.testing.assert_allclose(image[30:34, 30:34].mean(axis=(0, 1)), COLOURS[0], atol=0.05)
+    np.testing.assert_allclose(
+        image[30:34, 30:34].mean(axis=(0, 1)), COLOURS[0], atol=0.05
+    )
     np.testing.assert_allclose(image[:4, :4].mean(axis=(0, 1)), 1, atol=0.05)

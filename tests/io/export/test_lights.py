@@ -27,7 +27,9 @@ def colours(table):
     rgb[2000:4000] = rng.normal(size=(2000, 3)) + 0.5
     entries = table.data.entries
     lamps = table.rgb(entries.spectra[entries.radius >= MIN_RADIUS])
-    rgb[4000:] = np.resize(lamps, (2000, 3)) * (1 + np.repeat([0, 0.003, 0.03, 0.1], 500)[:, None])
+    rgb[4000:] = np.resize(lamps, (2000, 3)) * (
+        1 + np.repeat([0, 0.003, 0.03, 0.1], 500)[:, None]
+    )
     rgb[5000:] += 0.01 * rng.normal(size=(1000, 3))
     rgb[:3] = [[0, 0, 0], [1, 1, 1], [-1, -1, -1]]
     return rgb.astype(np.float32).astype(float)
@@ -49,7 +51,9 @@ def worst(tmp_path, table):
     return measure
 
 
-@pytest.mark.parametrize(("style", "form"), [("c", "header"), ("c", "file"), ("glsl", "file")])
+@pytest.mark.parametrize(
+    ("style", "form"), [("c", "header"), ("c", "file"), ("glsl", "file")]
+)
 def test_six_thousand_colours_equal_those_of_python(colours, worst, style, form):
     assert worst(style, colours, form) < WITHIN
 

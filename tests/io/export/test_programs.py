@@ -29,12 +29,25 @@ def colours(data):
     rgb[1000:2000, 1] = np.round(rgb[1000:2000, 1])
     if len(data.atlas.rgb):
         around = np.tile(data.atlas.rgb, (200, 1))[:4000]
-        spread = np.repeat([0, 1e-3, 0.02, 0.1], len(around) // 4 + 1)[: len(around), None]
-        rgb[2000 : 2000 + len(around)] = np.clip(around + spread * rng.normal(size=around.shape), 0, 1)
+        spread = np.repeat([0, 1e-3, 0.02, 0.1], len(around) // 4 + 1)[
+            : len(around), None
+        ]
+        rgb[2000 : 2000 + len(around)] = np.clip(
+            around + spread * rng.normal(size=around.shape), 0, 1
+        )
         low, high = data.entry_boxes.faces
-        face = np.where(rng.random((1000, 3)) < 0.5, np.resize(low, (1000, 3)), np.resize(high, (1000, 3)))
-        along = np.resize(data.atlas.rgb, (1000, 3)) + (2 * rng.random((1000, 3)) - 1) * 0.01
-        rgb[6000:7000] = np.where(np.eye(3)[rng.integers(3, size=1000)] > 0, face, np.clip(along, 0, 1))
+        face = np.where(
+            rng.random((1000, 3)) < 0.5,
+            np.resize(low, (1000, 3)),
+            np.resize(high, (1000, 3)),
+        )
+        along = (
+            np.resize(data.atlas.rgb, (1000, 3))
+            + (2 * rng.random((1000, 3)) - 1) * 0.01
+        )
+        rgb[6000:7000] = np.where(
+            np.eye(3)[rng.integers(3, size=1000)] > 0, face, np.clip(along, 0, 1)
+        )
     return rgb.astype(np.float32).astype(float)
 
 
@@ -48,7 +61,10 @@ def check(tmp_path):
 
     def check(cube, style, mode, rgb, form=None, within=WITHIN):
         language = LANGUAGE.get(style, style)
-        path, form = tmp_path / f"cube{LANGUAGES[language].suffix}", form or LANGUAGES[language].forms[0]
+        path, form = (
+            tmp_path / f"cube{LANGUAGES[language].suffix}",
+            form or LANGUAGES[language].forms[0],
+        )
         write_program(cube.data, path, style=language, mode=mode, form=form, force=True)
         found = getattr(run_program, style)(path, rgb, WAVELENGTHS, form)
         clipped = np.clip(np.nan_to_num(rgb, posinf=1), 0, 1)
@@ -59,13 +75,20 @@ def check(tmp_path):
 
 
 @pytest.mark.parametrize("mode", ["spectra", "moments"])
-@pytest.mark.parametrize(("style", "form"), [(style, form) for style in LANGUAGES for form in LANGUAGES[style].forms])
-def test_ten_thousand_colours_equal_those_of_python(small_cube, check, style, form, mode):
+@pytest.mark.parametrize(
+    ("style", "form"),
+    [(style, form) for style in LANGUAGES for form in LANGUAGES[style].forms],
+)
+def test_ten_thousand_colours_equal_those_of_python(
+    small_cube, check, style, form, mode
+):
     check(small_cube, style, mode, colours(small_cube.data), form)
 
 
 @pytest.mark.parametrize("mode", ["spectra", "moments"])
-def test_plain_and_sigmoid_cubes_and_other_phases(plain_cube, sigmoid_cube, warped_cube, check, mode):
+def test_plain_and_sigmoid_cubes_and_other_phases(
+    plain_cube, sigmoid_cube, warped_cube, check, mode
+):
     for cube, within in ((plain_cube, 1), (sigmoid_cube, 1), (warped_cube, 5)):
         check(cube, "c", mode, colours(cube.data), within=within * WITHIN)
 
@@ -73,8 +96,13 @@ def test_plain_and_sigmoid_cubes_and_other_phases(plain_cube, sigmoid_cube, warp
 @pytest.fixture(scope="module")
 def wide():
     """Cubes with unrealisable nodes, by model."""
-    atlas = uplift.Atlas((uplift.Entry("paint", np.array([380.0, 780.0]), np.array([0.1, 0.6])),))
-    return {model: uplift.build(atlas, dim=4, space="ITU-R BT.2020", model=model) for model in ("moments", "sigmoid")}
+    atlas = uplift.Atlas(
+        (uplift.Entry("paint", np.array([380.0, 780.0]), np.array([0.1, 0.6])),)
+    )
+    return {
+        model: uplift.build(atlas, dim=4, space="ITU-R BT.2020", model=model)
+        for model in ("moments", "sigmoid")
+    }
 
 
 BOTH = [("spectra", "moments"), ("moments", "sigmoid")]
@@ -82,7 +110,13 @@ BOTH = [("spectra", "moments"), ("moments", "sigmoid")]
 
 @pytest.mark.parametrize(
     ("style", "mode", "model"),
-    [*(("c", *each) for each in [*BOTH, ("moments", "moments"), ("spectra", "sigmoid")]), ("cuda", *BOTH[0])]
+    [
+        *(
+            ("c", *each)
+            for each in [*BOTH, ("moments", "moments"), ("spectra", "sigmoid")]
+        ),
+        ("cuda", *BOTH[0]),
+    ]
     + [("glsl", *each) for each in BOTH]
     + [("hlsl", "spectra", "sigmoid"), ("hlsl", "moments", "moments")],
 )
@@ -90,14 +124,26 @@ def test_realisable_colours_around_unrealisable_nodes(wide, check, style, mode, 
     """They are moved to their colours as in Python: without it, reflectances differ by up to 0.9."""
     rgb = colours(wide[model].data)[:3000]
     rgb = rgb[wide[model].data.solid.signed_distance(rgb) < -2e-3]
-    check(wide[model], style, mode, rgb, within=(2 if style in ("c", "cuda") else 50) * WITHIN)
+    check(
+        wide[model],
+        style,
+        mode,
+        rgb,
+        within=(2 if style in ("c", "cuda") else 50) * WITHIN,
+    )
 
 
 def test_mixtures_that_start_from_flat_spectra(check):
     """White weights are moved to strong colours, where Newton's steps are longer than numbers can be (seed 104)."""
     cube = uplift.build(dim=5, space="ACES2065-1", model="sigmoid")
-    rgb = np.concatenate([[[0.75587261, 0.82532507, 0.21911287]], colours(cube.data)[2000:3000]])
-    rgb = rgb[cube.data.solid.signed_distance(rgb) < -2e-3].astype(np.float32).astype(float)
+    rgb = np.concatenate(
+        [[[0.75587261, 0.82532507, 0.21911287]], colours(cube.data)[2000:3000]]
+    )
+    rgb = (
+        rgb[cube.data.solid.signed_distance(rgb) < -2e-3]
+        .astype(np.float32)
+        .astype(float)
+    )
     check(cube, "c", "moments", rgb, within=2 * WITHIN)
 
 
@@ -118,14 +164,18 @@ def test_colours_outside_are_clipped_and_nan_is_0(small_cube, check, style):
 
 
 @pytest.mark.parametrize("mode", ["spectra", "moments"])
-def test_what_single_precision_changes_is_a_bound(small_cube, sigmoid_cube, warped_cube, wide, mode):
+def test_what_single_precision_changes_is_a_bound(
+    small_cube, sigmoid_cube, warped_cube, wide, mode
+):
     """At every wavelength, of colours whose answers are not moved."""
     need(CC)
     for cube in (small_cube, sigmoid_cube, warped_cube, *wide.values()):
         rgb = colours(cube.data)[:4000:2]
         rgb = rgb[stay(cube.data, mode, rgb)]
         found = c_reflectances(cube.data, mode, rgb, EVERY)
-        assert np.abs(found - cube.reflectance(rgb, EVERY, mode)).max(initial=0) < rounding_error(cube.data, mode)
+        assert np.abs(found - cube.reflectance(rgb, EVERY, mode)).max(
+            initial=0
+        ) < rounding_error(cube.data, mode)
 
 
 def test_programs_of_one_cube_share_a_table(small_cube, plain_cube, tmp_path):
@@ -176,15 +226,25 @@ ROW = (np.arange(63, dtype=np.float32) * 7 % 33 / 32).reshape(21, 3)
 def run_c(code, folder, *options, compiler="cc"):
     need({"cc": CC, "clang": CLANG}[compiler])
     (folder / "main.c").write_text(code)
-    subprocess.run([compiler, *run_program.STRICT, *options, "main.c", "-o", "main", "-lm"], cwd=folder, check=True)
-    return subprocess.run([folder / "main"], cwd=folder, capture_output=True, check=True).stdout
+    subprocess.run(
+        [compiler, *run_program.STRICT, *options, "main.c", "-o", "main", "-lm"],
+        cwd=folder,
+        check=True,
+    )
+    return subprocess.run(
+        [folder / "main"], cwd=folder, capture_output=True, check=True
+    ).stdout
 
 
 @pytest.mark.parametrize(("mode", "count"), [("spectra", 2), ("moments", 3)])
-def test_many_colours_at_any_number_of_wavelengths_and_stored_multipliers(small_cube, tmp_path, mode, count):
+def test_many_colours_at_any_number_of_wavelengths_and_stored_multipliers(
+    small_cube, tmp_path, mode, count
+):
     write_program(small_cube.data, tmp_path / "cube.h", mode=mode)
     need(SANITIZERS)
-    found = np.frombuffer(run_c(MANY, tmp_path, *SANITIZED), np.float32).reshape(count, 21, 21)
+    found = np.frombuffer(run_c(MANY, tmp_path, *SANITIZED), np.float32).reshape(
+        count, 21, 21
+    )
     expected = small_cube.reflectance(ROW, 400 + 15.0 * np.arange(21), mode=mode)
     np.testing.assert_allclose(found, [expected] * count, rtol=0, atol=WITHIN)
 
@@ -197,8 +257,15 @@ def test_clang_is_silent_at_every_level(sigmoid_cube, tmp_path, level):
 
 
 def test_names_in_a_cube_cannot_end_a_comment(small_cube, check):
-    sensor = replace(small_cube.data.sensor, space="*/ #error äöü\n /*", illuminant="*//* ${table}")
-    check(replace(small_cube, data=replace(small_cube.data, sensor=sensor)), "c", "spectra", np.full((1, 3), 0.5))
+    sensor = replace(
+        small_cube.data.sensor, space="*/ #error äöü\n /*", illuminant="*//* ${table}"
+    )
+    check(
+        replace(small_cube, data=replace(small_cube.data, sensor=sensor)),
+        "c",
+        "spectra",
+        np.full((1, 3), 0.5),
+    )
 
 
 LOADING = r"""

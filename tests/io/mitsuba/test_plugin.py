@@ -18,20 +18,32 @@ COLOUR = [0.5, 0.25, 0.1]
 WAVELENGTHS = np.arange(362.5, 830, 50)
 
 
-@pytest.mark.parametrize("rgb", [COLOUR, np.array(COLOUR), "0.5, 0.25, 0.1", "0.5 0.25 0.1"])
+@pytest.mark.parametrize(
+    "rgb", [COLOUR, np.array(COLOUR), "0.5, 0.25, 0.1", "0.5 0.25 0.1"]
+)
 @pytest.mark.parametrize("is_default", [True, False])
-def test_a_colour_has_the_spectrum_of_the_cube(mi, cube_path, spectrum, small_cube, rgb, is_default):
-    texture = mi.load_dict({"type": "uplift", "rgb": rgb, **({} if is_default else {"cube": cube_path})})
+def test_a_colour_has_the_spectrum_of_the_cube(
+    mi, cube_path, spectrum, small_cube, rgb, is_default
+):
+    texture = mi.load_dict(
+        {"type": "uplift", "rgb": rgb, **({} if is_default else {"cube": cube_path})}
+    )
     expected = (load() if is_default else small_cube).reflectance(COLOUR, WAVELENGTHS)
-    np.testing.assert_allclose(spectrum(texture, (0, 0), WAVELENGTHS), expected, rtol=0, atol=1e-4)
+    np.testing.assert_allclose(
+        spectrum(texture, (0, 0), WAVELENGTHS), expected, rtol=0, atol=1e-4
+    )
 
 
 @pytest.mark.parametrize("tag", ["rgb", "string"])
-def test_scenes_can_be_xml_and_cubes_are_found_by_the_file_resolver(mi, repository, tag):
+def test_scenes_can_be_xml_and_cubes_are_found_by_the_file_resolver(
+    mi, repository, tag
+):
     mi.file_resolver().prepend(str(repository / "cubes"))
     colour = f'<{tag} name="rgb" value="0.5, 0.25, 0.1"/><string name="cube" value="moments-8.uplift"/>'
     texture = f'<texture type="uplift" name="reflectance">{colour}</texture>'
-    scene = mi.load_string(f'<scene version="3.0.0"><bsdf type="diffuse">{texture}</bsdf></scene>')
+    scene = mi.load_string(
+        f'<scene version="3.0.0"><bsdf type="diffuse">{texture}</bsdf></scene>'
+    )
     assert "RegularSpectrum" in str(scene)
 
 
@@ -46,7 +58,10 @@ def test_scenes_can_be_xml_and_cubes_are_found_by_the_file_resolver(mi, reposito
         ({"filename": "missing.png"}, "No such file"),
         ({"type": "uplift_envmap"}, "must have one of filename, bitmap"),
         ({"emission": True, "rgb": "-3, 1, -2"}, "no light has the colour"),
-        ({"emission": True, "rgb": "1, 1, 1", "cube": "missing.uplift"}, "missing.uplift"),
+        (
+            {"emission": True, "rgb": "1, 1, 1", "cube": "missing.uplift"},
+            "missing.uplift",
+        ),
     ],
 )
 def test_invalid_properties_raise(mi, properties, message):
@@ -105,24 +120,36 @@ def radiance(mi):
 
 
 def environment(mi, rgb, **properties):
-    return mi.load_dict({"type": "uplift_envmap", "bitmap": mi.Bitmap(rgb), **properties})
+    return mi.load_dict(
+        {"type": "uplift_envmap", "bitmap": mi.Bitmap(rgb), **properties}
+    )
 
 
 def test_colours_have_the_spectra_of_the_table(mi, table, sky, spectrum):
     light = mi.load_dict({"type": "uplift", "emission": True, "rgb": list(SUNSET)})
     exact = 450.0, 520.0, 600.0
-    np.testing.assert_allclose(spectrum(light, (0.5, 0.5), exact), table.spectrum(SUNSET, exact), rtol=1e-5)
+    np.testing.assert_allclose(
+        spectrum(light, (0.5, 0.5), exact), table.spectrum(SUNSET, exact), rtol=1e-5
+    )
     light = mi.load_dict({"type": "uplift", "emission": True, "bitmap": mi.Bitmap(sky)})
     for row, column in ((0, 0), (2, 3), (7, 15)):
         found = spectrum(light, ((column + 0.5) / 16, (row + 0.5) / 8), SAMPLED)
-        np.testing.assert_allclose(found, table.spectrum(sky[row, column], SAMPLED), rtol=1e-4)
+        np.testing.assert_allclose(
+            found, table.spectrum(sky[row, column], SAMPLED), rtol=1e-4
+        )
 
 
 def test_images_and_spectral_images_agree(mi, table, sky, spectrum, tmp_path):
     source = write_exr(tmp_path / "sky.exr", planes(sky))
-    texture.convert(texture.prepare_lights(table, threads=1), source, tmp_path / "spectral.exr")
+    texture.convert(
+        texture.prepare_lights(table, threads=1), source, tmp_path / "spectral.exr"
+    )
     found = [
-        spectrum(mi.load_dict({"type": "uplift", "emission": True, "filename": str(path)}), (0.2, 0.3), SAMPLED)
+        spectrum(
+            mi.load_dict({"type": "uplift", "emission": True, "filename": str(path)}),
+            (0.2, 0.3),
+            SAMPLED,
+        )
         for path in (source, tmp_path / "spectral.exr")
     ]
     np.testing.assert_allclose(*found, rtol=1e-5)
@@ -131,14 +158,23 @@ def test_images_and_spectral_images_agree(mi, table, sky, spectrum, tmp_path):
 @pytest.mark.parametrize("degrees", [0, 70])
 def test_an_environment_lies_as_mitsubas_does(mi, radiance, degrees):
     """Both show the same ramp; the shapes of their white spectra differ."""
-    ramp = (1 + np.arange(8 * 16, dtype=np.float32).reshape(8, 16, 1)) * np.ones(3, np.float32)
+    ramp = (1 + np.arange(8 * 16, dtype=np.float32).reshape(8, 16, 1)) * np.ones(
+        3, np.float32
+    )
     to_world = mi.ScalarTransform4f().rotate([1, 2, 3], degrees)
     ours = environment(mi, ramp, to_world=to_world, scale=2.0)
-    theirs = mi.load_dict({"type": "envmap", "bitmap": mi.Bitmap(ramp), "to_world": to_world})
+    theirs = mi.load_dict(
+        {"type": "envmap", "bitmap": mi.Bitmap(ramp), "to_world": to_world}
+    )
     rng = np.random.default_rng(0)
     directions = rng.normal(size=(12, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    levels = np.array([[radiance(each, list(way), [560.0])[0] for each in (ours, theirs)] for way in directions])
+    levels = np.array(
+        [
+            [radiance(each, list(way), [560.0])[0] for each in (ours, theirs)]
+            for way in directions
+        ]
+    )
     ratios = levels[:, 0] / levels[:, 1]
     np.testing.assert_allclose(ratios, ratios.mean(), rtol=1e-3)
     assert levels[:, 0].max() > 2 * levels[:, 0].min()
@@ -149,7 +185,9 @@ def test_samples_are_radiance_over_density(mi, sky, radiance, monkeypatch):
 
     # Mitsuba keeps the names of a variant that was set earlier, which refuse emitters of scalar variants.
     monkeypatch.setattr(mi, "EmitterPtr", None, raising=False)
-    scene = mi.load_dict({"type": "scene", "sky": environment(mi, sky), "ball": {"type": "sphere"}})
+    scene = mi.load_dict(
+        {"type": "scene", "sky": environment(mi, sky), "ball": {"type": "sphere"}}
+    )
     (emitter,) = scene.emitters()
     it = drjit.zeros(mi.SurfaceInteraction3f)
     it.wavelengths, it.wi = mi.Spectrum(550.0), mi.Vector3f(0, 0, 1)
@@ -158,7 +196,11 @@ def test_samples_are_radiance_over_density(mi, sky, radiance, monkeypatch):
         expected = radiance(emitter, ds.d, [550.0])[0]
         np.testing.assert_allclose(weight[0] * ds.pdf, expected, rtol=1e-4)
         np.testing.assert_allclose(emitter.pdf_direction(it, ds), ds.pdf, rtol=1e-3)
-        np.testing.assert_allclose(emitter.eval_direction(it, ds)[0], expected, rtol=1e-4)
+        np.testing.assert_allclose(
+            emitter.eval_direction(it, ds)[0], expected, rtol=1e-4
+        )
         wavelengths, weight = emitter.sample_wavelengths(it, sample[0])
         expected = radiance(emitter, [0, 0, -1], list(wavelengths))
-        np.testing.assert_allclose(weight * mi.pdf_rgb_spectrum(wavelengths), expected, rtol=1e-4)
+        np.testing.assert_allclose(
+            weight * mi.pdf_rgb_spectrum(wavelengths), expected, rtol=1e-4
+        )

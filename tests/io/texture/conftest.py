@@ -19,7 +19,9 @@ def channels(path, part=0):
     """Read every channel (h, w) of a part."""
     return {
         name: channel.pixels
-        for name, channel in OpenEXR.File(str(path), separate_channels=True).parts[part].channels.items()
+        for name, channel in OpenEXR.File(str(path), separate_channels=True)
+        .parts[part]
+        .channels.items()
     }
 
 
@@ -37,9 +39,13 @@ def write_exr(path, planes, **header):
 
 def write_image(path, values, **attributes):
     """Write values (h, w, n) in the format of the suffix. An attribute is a value, or a type and a value."""
-    spec = OpenImageIO.ImageSpec(values.shape[1], values.shape[0], values.shape[2], str(values.dtype))
+    spec = OpenImageIO.ImageSpec(
+        values.shape[1], values.shape[0], values.shape[2], str(values.dtype)
+    )
     for name, value in attributes.items():
-        spec.attribute(name, *value) if isinstance(value, tuple) else spec.attribute(name, value)
+        spec.attribute(name, *value) if isinstance(value, tuple) else spec.attribute(
+            name, value
+        )
     image = OpenImageIO.ImageOutput.create(str(path))
     assert image.open(str(path), spec)
     assert image.write_image(values)
@@ -48,7 +54,10 @@ def write_image(path, values, **attributes):
 
 
 def planes(rgb):
-    return {letter: np.ascontiguousarray(rgb[..., place]) for place, letter in enumerate("RGB")}
+    return {
+        letter: np.ascontiguousarray(rgb[..., place])
+        for place, letter in enumerate("RGB")
+    }
 
 
 def small_tiles():
@@ -61,7 +70,9 @@ def small_tiles():
 @pytest.fixture(scope="session")
 def spectral(small_cube):
     """Uplifter for nine wavelengths, as many as coefficients, so that both share one compilation."""
-    return texture.prepare(small_cube, texture.Spectrum(WAVELENGTHS), depth="float", threads=1)
+    return texture.prepare(
+        small_cube, texture.Spectrum(WAVELENGTHS), depth="float", threads=1
+    )
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,9 @@ def attribute(name: bytes, kind: bytes, value: bytes) -> bytes:
 
 
 def exr_bytes(
-    channels: Sequence[bytes] = (b"B", b"G", b"R"), extra: bytes = b"", size: tuple[int, int] = (WIDTH, HEIGHT)
+    channels: Sequence[bytes] = (b"B", b"G", b"R"),
+    extra: bytes = b"",
+    size: tuple[int, int] = (WIDTH, HEIGHT),
 ) -> bytes:
     """An image of half-float zeros, uncompressed, with further attributes; its pixels end after `HEIGHT` rows."""
     width, height = size
@@ -20,7 +22,11 @@ def exr_bytes(
     half = struct.pack("<iBBBBii", 1, 0, 0, 0, 0, 1, 1)
     header = struct.pack("<ii", 20000630, 2 | 0x400) + b"".join(
         (
-            attribute(b"channels", b"chlist", b"".join(name + b"\0" + half for name in channels) + b"\0"),
+            attribute(
+                b"channels",
+                b"chlist",
+                b"".join(name + b"\0" + half for name in channels) + b"\0",
+            ),
             attribute(b"compression", b"compression", b"\0"),
             attribute(b"dataWindow", b"box2i", box),
             attribute(b"displayWindow", b"box2i", box),
@@ -36,4 +42,8 @@ def exr_bytes(
     row = 2 * len(channels) * min(width, WIDTH)
     start = len(header) + 8 * rows
     offsets = b"".join(struct.pack("<Q", start + y * (8 + row)) for y in range(rows))
-    return header + offsets + b"".join(struct.pack("<ii", y, row) + bytes(row) for y in range(rows))
+    return (
+        header
+        + offsets
+        + b"".join(struct.pack("<ii", y, row) + bytes(row) for y in range(rows))
+    )

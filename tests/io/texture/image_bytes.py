@@ -14,7 +14,12 @@ BT2020 = (0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290)
 
 def png_chunk(kind, data):
     """A chunk with its length and checksum."""
-    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    return (
+        struct.pack(">I", len(data))
+        + kind
+        + data
+        + struct.pack(">I", zlib.crc32(kind + data))
+    )
 
 
 def gama(value):
@@ -45,10 +50,18 @@ def png_bytes(codes, *chunks, after=b""):
     """A PNG file of codes (h, w, channels), uint8 or uint16, with chunks before its pixels."""
     height, width, channels = codes.shape
     depth = 8 * codes.dtype.itemsize
-    head = struct.pack(">IIBBBBB", width, height, depth, COLOUR_TYPES[channels], 0, 0, 0)
+    head = struct.pack(
+        ">IIBBBBB", width, height, depth, COLOUR_TYPES[channels], 0, 0, 0
+    )
     rows = codes.astype(codes.dtype.newbyteorder(">"))
     data = b"".join(b"\0" + row.tobytes() for row in rows)
-    parts = (png_chunk(b"IHDR", head), *chunks, png_chunk(b"IDAT", zlib.compress(data)), after, png_chunk(b"IEND", b""))
+    parts = (
+        png_chunk(b"IHDR", head),
+        *chunks,
+        png_chunk(b"IDAT", zlib.compress(data)),
+        after,
+        png_chunk(b"IEND", b""),
+    )
     return SIGNATURE + b"".join(parts)
 
 
@@ -60,16 +73,29 @@ EXIF, INTEROPERABILITY = 0x8769, 0xA005
 def tiff_bytes(codes, tags, order="<", exif=None, interoperability=None):
     """A TIFF file of codes (h, w, channels), or directories alone without; ``tags`` are type and values by number."""
     tags = dict(tags)
-    body = bytearray((b"II" if order == "<" else b"MM") + struct.pack(order + "HI", 42, 0))
+    body = bytearray(
+        (b"II" if order == "<" else b"MM") + struct.pack(order + "HI", 42, 0)
+    )
     if interoperability is not None:
-        exif = (exif or {}) | {INTEROPERABILITY: (4, [_directory(body, interoperability, order)])}
+        exif = (exif or {}) | {
+            INTEROPERABILITY: (4, [_directory(body, interoperability, order)])
+        }
     if exif is not None:
         tags[EXIF] = (4, [_directory(body, exif, order)])
     if codes is not None:
         height, width, channels = codes.shape
         pixels = codes.astype(codes.dtype.newbyteorder(order)).tobytes()
-        tags |= {256: (4, [width]), 257: (4, [height]), 258: (3, [8 * codes.dtype.itemsize] * channels)}
-        tags |= {259: (3, [1]), 262: (3, [2 if channels > 2 else 1]), 277: (3, [channels]), 278: (4, [height])}
+        tags |= {
+            256: (4, [width]),
+            257: (4, [height]),
+            258: (3, [8 * codes.dtype.itemsize] * channels),
+        }
+        tags |= {
+            259: (3, [1]),
+            262: (3, [2 if channels > 2 else 1]),
+            277: (3, [channels]),
+            278: (4, [height]),
+        }
         tags |= {273: (4, [len(body)]), 279: (4, [len(pixels)])}
         tags |= {339: (3, [3 if codes.dtype.kind == "f" else 1] * channels)}
         body += pixels
@@ -88,7 +114,9 @@ def _directory(body, tags, order):
             offset = len(body)
             body += data
             data = struct.pack(order + "I", offset)
-        entries.append(struct.pack(order + "HHI", tag, kind, count) + data.ljust(4, b"\0"))
+        entries.append(
+            struct.pack(order + "HHI", tag, kind, count) + data.ljust(4, b"\0")
+        )
     body += b"\0" * (len(body) % 2)
     offset = len(body)
     body += struct.pack(order + "H", len(entries)) + b"".join(entries) + b"\0" * 4
@@ -101,7 +129,13 @@ def _packed(kind, values, order):
         return values, len(values)
     form = TIFF_FORMATS[kind] * len(values)
     if kind == 5:
-        values = np.stack([np.rint(np.multiply(values, 1e6)), np.full(len(values), 1e6)], axis=-1).astype(int).ravel()
+        values = (
+            np.stack(
+                [np.rint(np.multiply(values, 1e6)), np.full(len(values), 1e6)], axis=-1
+            )
+            .astype(int)
+            .ravel()
+        )
     return struct.pack(order + form, *values), len(form) // len(TIFF_FORMATS[kind])
 
 

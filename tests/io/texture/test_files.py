@@ -31,7 +31,9 @@ def test_the_same_image_gives_the_same_bytes(spectral, source, tmp_path, monkeyp
     assert (tmp_path / "a.exr").read_bytes() == (tmp_path / "b.exr").read_bytes()
 
 
-def test_a_disk_that_is_too_small_is_reported_at_the_first_rows(spectral, source, tmp_path, monkeypatch):
+def test_a_disk_that_is_too_small_is_reported_at_the_first_rows(
+    spectral, source, tmp_path, monkeypatch
+):
     rows = []
     monkeypatch.setattr(writer, "MAX_BAND_BYTES", 1)
     Usage = namedtuple("Usage", "free")
@@ -45,11 +47,15 @@ def test_a_disk_that_is_too_small_is_reported_at_the_first_rows(spectral, source
 
 
 @pytest.mark.parametrize("name", ["in.exr", "in.png", "in.jpg", "in.tif"])
-def test_a_damaged_image_raises_and_leaves_nothing(name, spectral, source, colours, tmp_path, capfd):
+def test_a_damaged_image_raises_and_leaves_nothing(
+    name, spectral, source, colours, tmp_path, capfd
+):
     if name != "in.exr":
         source.unlink()
         source = tmp_path / name
-        Image.fromarray((255 * np.tile(colours, (4, 4, 1))).astype(np.uint8)).save(source)
+        Image.fromarray((255 * np.tile(colours, (4, 4, 1))).astype(np.uint8)).save(
+            source
+        )
     data = source.read_bytes()
     source.write_bytes(data[: len(data) // 2])
     with pytest.raises(TextureError) as caught:
@@ -75,11 +81,16 @@ def write_parts(path, count, rows=HEIGHT):
     """Write parts of noise, which ZIP stores as it is, and zeros, and only some rows of the last part."""
     window = Window(0, 0, WIDTH, HEIGHT, (0, 0, WIDTH, HEIGHT), 1.0)
     names = [f"part {number}" if count > 1 else "" for number in range(count)]
-    parts = [OutputPart(name, window, ("Z",), ("float",), {}, "2000:01:01 00:00:00") for name in names]
+    parts = [
+        OutputPart(name, window, ("Z",), ("float",), {}, "2000:01:01 00:00:00")
+        for name in names
+    ]
     with open_writer(path, parts) as opened:
         for number in range(count):
             opened.start_part(number)
-            values = np.random.default_rng(number).random((HEIGHT, WIDTH, 1), dtype=np.float32)
+            values = np.random.default_rng(number).random(
+                (HEIGHT, WIDTH, 1), dtype=np.float32
+            )
             values[32:] = 0
             opened.write_rows(0, values[:rows])
 
@@ -94,8 +105,17 @@ def test_the_checksum_is_that_of_the_bytes_and_finds_every_change(count, tmp_pat
     assert f"{zlib.crc32(data.replace(stored.encode(), b'0' * 8)):08x}" == stored
     assert exr_file.is_intact(path)
     places = np.linspace(0, len(data) - 1, 60).astype(int)
-    damaged = [data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :] for place in places]
-    for changed in (*damaged, b"", data[:4], data[: len(data) // 2], data[:-1], data + b"\0"):
+    damaged = [
+        data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :] for place in places
+    ]
+    for changed in (
+        *damaged,
+        b"",
+        data[:4],
+        data[: len(data) // 2],
+        data[:-1],
+        data + b"\0",
+    ):
         path.write_bytes(changed)
         assert not exr_file.is_intact(path)
 
@@ -116,12 +136,25 @@ def many(count):
     [
         (exr_bytes(many(1_000_000)), "texture"),
         (exr_bytes(many(exr_file.MAX_CHANNELS + 1)), "texture"),
-        (exr_bytes(extra=b"".join(attribute(name, b"int", bytes(4)) for name in many(200_000))), "texture"),
+        (
+            exr_bytes(
+                extra=b"".join(
+                    attribute(name, b"int", bytes(4)) for name in many(200_000)
+                )
+            ),
+            "texture",
+        ),
         (exr_bytes([b"B", b"G", b"R", b"\xff\xfe"]), "texture"),
         (exr_bytes()[:60], "file-unreadable"),
         (exr_bytes(extra=b"a" * 300), "file-unreadable"),
-        (exr_bytes(extra=attribute(b"a", b"int", b"")[:-4] + b"\xff\xff\xff\x7f"), "file-unreadable"),
-        (exr_bytes(extra=attribute(b"a", b"int", b"")[:-4] + b"\xff\xff\xff\xff"), "file-unreadable"),
+        (
+            exr_bytes(extra=attribute(b"a", b"int", b"")[:-4] + b"\xff\xff\xff\x7f"),
+            "file-unreadable",
+        ),
+        (
+            exr_bytes(extra=attribute(b"a", b"int", b"")[:-4] + b"\xff\xff\xff\xff"),
+            "file-unreadable",
+        ),
         (exr_bytes([b"B", b"G", b"R", *many(exr_file.MAX_CHANNELS - 3)]), None),
         (exr_bytes(extra=attribute(b"capDate", b"string", b"\xff\xfe")), None),
         (exr_bytes(extra=attribute(b"chromaticities", b"string", b"abc")), None),
@@ -155,9 +188,14 @@ def test_files_of_no_known_format_are_not_tried_by_all_decoders(tmp_path):
         pass
 
 
-@pytest.mark.parametrize("change", [lambda data: data.swapcase(), lambda data: data.replace(b"IDAT", b"XDAT")])
+@pytest.mark.parametrize(
+    "change",
+    [lambda data: data.swapcase(), lambda data: data.replace(b"IDAT", b"XDAT")],
+)
 def test_changed_png_is_refused_without_a_line_by_libpng(tmp_path, capfd, change):
-    content = write_image(tmp_path / "whole.png", np.full((4, 4, 3), 100, np.uint8)).read_bytes()
+    content = write_image(
+        tmp_path / "whole.png", np.full((4, 4, 3), 100, np.uint8)
+    ).read_bytes()
     start = content.index(b"IDAT")
     (tmp_path / "damaged.png").write_bytes(content[:start] + change(content[start:]))
     with raises(TextureError, "file-unreadable"), open_image(tmp_path / "damaged.png"):

@@ -25,7 +25,10 @@ def jobs(repository, colours, tmp_path):
     for frame, name in enumerate(names):
         write_exr(tmp_path / name, planes(np.roll(colours, frame, axis=0)))
     (tmp_path / names[1]).write_text("no image")
-    return [texture.Job(settings, tmp_path / name, tmp_path / "out" / name) for name in names]
+    return [
+        texture.Job(settings, tmp_path / name, tmp_path / "out" / name)
+        for name in names
+    ]
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -34,10 +37,17 @@ def test_processes_and_a_dask_cluster(workers, jobs, small_cube, colours):
     with contextlib.ExitStack() as stack:
         options = {"processes": workers}
         if workers == "dask":
-            settings = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+            settings = {
+                "n_workers": 1,
+                "threads_per_worker": 1,
+                "processes": False,
+                "dashboard_address": None,
+            }
             cluster = pytest.importorskip("distributed").LocalCluster(**settings)
             options = {"scheduler": stack.enter_context(cluster).scheduler_address}
-        results = sorted(texture.convert_all(jobs, **options), key=lambda result: result.source)
+        results = sorted(
+            texture.convert_all(jobs, **options), key=lambda result: result.source
+        )
     assert [result.source for result in results] == [job.source for job in jobs]
     assert isinstance(results[1], texture.Failure)
     assert (results[1].error.code, results[1].error.path) == ("texture", jobs[1].source)
@@ -45,7 +55,9 @@ def test_processes_and_a_dask_cluster(workers, jobs, small_cube, colours):
     names = [f"moment.{index:02}" for index in range(9)]
     for frame in (0, 2):
         expected = small_cube.coefficients(np.roll(colours, frame, axis=0))
-        np.testing.assert_allclose(read_channels(jobs[frame].target, names), expected, rtol=0, atol=1e-6)
+        np.testing.assert_allclose(
+            read_channels(jobs[frame].target, names), expected, rtol=0, atol=1e-6
+        )
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -60,7 +72,9 @@ def test_processes_and_a_dask_cluster(workers, jobs, small_cube, colours):
 def test_impossible_workers_raise(options, code, monkeypatch):
     distributed = pytest.importorskip("distributed")
     client = distributed.Client
-    monkeypatch.setattr(distributed, "Client", lambda address, timeout: client(address, timeout="0.2s"))
+    monkeypatch.setattr(
+        distributed, "Client", lambda address, timeout: client(address, timeout="0.2s")
+    )
     with raises(OptionError, code):
         list(texture.convert_all([], **options))
 
@@ -83,7 +97,11 @@ def test_resume_leaves_out_complete_textures(jobs):
 
     data = target.read_bytes()
     middle = bytes([data[len(data) // 2] ^ 1])
-    for damaged in (data[:-100], data[: len(data) // 2] + middle + data[len(data) // 2 + 1 :], b"no texture"):
+    for damaged in (
+        data[:-100],
+        data[: len(data) // 2] + middle + data[len(data) // 2 + 1 :],
+        b"no texture",
+    ):
         target.write_bytes(damaged)
         with raises(OutputError, "texture-differs"):
             texture.pending([resumed])
@@ -91,7 +109,13 @@ def test_resume_leaves_out_complete_textures(jobs):
 
 
 @pytest.mark.parametrize(
-    "change", [{"depth": "half"}, {"encoding": "linear"}, {"pixel_encoding": texture.Multipliers()}, {"cubes": (None,)}]
+    "change",
+    [
+        {"depth": "half"},
+        {"encoding": "linear"},
+        {"pixel_encoding": texture.Multipliers()},
+        {"cubes": (None,)},
+    ],
 )
 def test_textures_of_other_settings_are_no_textures_to_resume_from(jobs, change):
     run(jobs[0])
@@ -135,7 +159,10 @@ def test_two_images_with_one_target_raise(jobs):
 
 @pytest.mark.parametrize("count", [1, 2])
 def test_closing_the_iterator_ends_the_conversions(jobs, count, tmp_path):
-    many = [replace(jobs[0], target=tmp_path / "out" / f"{number}.exr") for number in range(50)]
+    many = [
+        replace(jobs[0], target=tmp_path / "out" / f"{number}.exr")
+        for number in range(50)
+    ]
     results = texture.convert_all(many, processes=count)
     next(results)
     results.close()

@@ -8,7 +8,9 @@ from uplift.lab.chart.method import Effort, Method, PreparedMethod, make_task
 from uplift.lab.chart.table import FACTS, REQUIRED, TEXTS, Chart, MethodResult, State
 
 BATCHES = (1, 64)
-HASTE = Effort(seconds_per_error=0.05, runs=3, lap=0.001, batches=BATCHES, longest=0.05, builds=1)
+HASTE = Effort(
+    seconds_per_error=0.05, runs=3, lap=0.001, batches=BATCHES, longest=0.05, builds=1
+)
 
 
 @pytest.fixture(scope="session")
@@ -20,18 +22,40 @@ def small_task():
 def method_of(uplift, prepare=None, **fields):
     """Make a method from a function of RGB and wavelengths."""
     texts = {"method": "test", "title": "Test", "family": "Tests", "source": "a test"}
-    return Method(**texts, prepare=prepare or (lambda task: PreparedMethod(uplift, 8)), **fields)
+    return Method(
+        **texts, prepare=prepare or (lambda task: PreparedMethod(uplift, 8)), **fields
+    )
 
 
 def row_of(name, time, error, **fields):
     """Make a result in which all errors are equal."""
-    numbers = dict.fromkeys(REQUIRED, error) | {"time_ns": time, "bytes": 1e4, "build_s": 1.0, "load_s": 0.5}
-    numbers |= {"setup_s": 1.5, "round_trip_colours": 16, "unseen_spectra": 12, "own_spectra": 12}
+    numbers = dict.fromkeys(REQUIRED, error) | {
+        "time_ns": time,
+        "bytes": 1e4,
+        "build_s": 1.0,
+        "load_s": 0.5,
+    }
+    numbers |= {
+        "setup_s": 1.5,
+        "round_trip_colours": 16,
+        "unseen_spectra": 12,
+        "own_spectra": 12,
+    }
     for batch, each in zip(BATCHES, (10 * time, time), strict=True):
         key = f"ns_{batch}"
-        numbers |= {key: each, f"{key}_least": each, f"{key}_most": 2 * each, f"{key}_colours": batch}
+        numbers |= {
+            key: each,
+            f"{key}_least": each,
+            f"{key}_most": 2 * each,
+            f"{key}_colours": batch,
+        }
     texts = dict.fromkeys(TEXTS, "") | dict.fromkeys(("method", "label", "title"), name)
-    plain = {"family": "Mallett 2019", "source": "a test", "state": State.MEASURED, "numbers": numbers}
+    plain = {
+        "family": "Mallett 2019",
+        "source": "a test",
+        "state": State.MEASURED,
+        "numbers": numbers,
+    }
     return MethodResult(**(texts | plain | fields))
 
 

@@ -49,11 +49,23 @@ def unprepared(task):
         (lambda rgb, at: 1.1 + grey(rgb, at), {}, "0 to 1 are claimed"),
         (lambda rgb, at: grey(rgb, at) - 0.2, {}, "0 to 1 are claimed"),
         (grey, {"claimed_error": 0.01}, "0.01 is claimed"),
-        (lambda rgb, at: grey(rgb, at)[:, :-1], {}, "spectra have shape (1, 80) instead of (1, 81)"),
+        (
+            lambda rgb, at: grey(rgb, at)[:, :-1],
+            {},
+            "spectra have shape (1, 80) instead of (1, 81)",
+        ),
         (lambda rgb, at: grey(rgb, at).squeeze(), {}, "shape (81,) instead of (1, 81)"),
         (fail, {}, "raises ZeroDivisionError: by the last of these"),
-        (lambda rgb, at: grey(rgb.astype(float), at), {"dtype": "float32"}, "spectra are float64 instead of float32"),
-        (None, {"prepare": unprepared}, "cannot be prepared: OSError: libLLVM.so: cannot open"),
+        (
+            lambda rgb, at: grey(rgb.astype(float), at),
+            {"dtype": "float32"},
+            "spectra are float64 instead of float32",
+        ),
+        (
+            None,
+            {"prepare": unprepared},
+            "cannot be prepared: OSError: libLLVM.so: cannot open",
+        ),
     ],
 )
 def test_broken_answer_is_reported_and_not_timed(small_task, uplift, fields, why):
@@ -74,12 +86,20 @@ def test_errors_are_those_of_the_holdout_study(small_task):
     numbers = measure_method(method_of(grey), small_task).numbers
     for prefix, measured in (("", small_task.unseen), ("own_", small_task.own)):
         errors = spectrum_errors(
-            grey(small_task.sensor.rgb(measured), small_task.sensor.wavelengths), measured, CHART_LIGHTS
+            grey(small_task.sensor.rgb(measured), small_task.sensor.wavelengths),
+            measured,
+            CHART_LIGHTS,
         )
         for column, light in enumerate(CHART_LIGHTS):
-            assert numbers[f"{prefix}{light}_mean"] == pytest.approx(errors.delta_e[:, column].mean())
-            assert numbers[f"{prefix}{light}_max"] == pytest.approx(errors.delta_e[:, column].max())
-        assert numbers[f"{prefix}rms_p99"] == pytest.approx(np.quantile(errors.rms, 0.99))
+            assert numbers[f"{prefix}{light}_mean"] == pytest.approx(
+                errors.delta_e[:, column].mean()
+            )
+            assert numbers[f"{prefix}{light}_max"] == pytest.approx(
+                errors.delta_e[:, column].max()
+            )
+        assert numbers[f"{prefix}rms_p99"] == pytest.approx(
+            np.quantile(errors.rms, 0.99)
+        )
         assert numbers[f"{prefix}lights_mean"] == pytest.approx(errors.delta_e.mean())
 
 
@@ -93,7 +113,11 @@ def test_each_number_of_colours_is_timed_in_the_type_of_the_method(small_task):
     numbers = measure_method(method_of(uplift, dtype="float32"), small_task).numbers
     for batch in BATCHES:
         assert (batch, np.dtype("float32")) in calls
-        assert numbers[f"ns_{batch}_least"] <= numbers[f"ns_{batch}"] <= numbers[f"ns_{batch}_most"]
+        assert (
+            numbers[f"ns_{batch}_least"]
+            <= numbers[f"ns_{batch}"]
+            <= numbers[f"ns_{batch}_most"]
+        )
         assert numbers[f"ns_{batch}_colours"] == batch
     assert numbers["time_ns"] == numbers["ns_64"]
     assert {dtype for _, dtype in calls} == {np.dtype("float32")}
@@ -126,7 +150,9 @@ def test_set_up_is_charged(small_task, build):
         calls.append(1)
         return grey(rgb, wavelengths)
 
-    method = method_of(None, lambda task: PreparedMethod(uplift, 8, build_s=build, load_s=2.0))
+    method = method_of(
+        None, lambda task: PreparedMethod(uplift, 8, build_s=build, load_s=2.0)
+    )
     numbers = measure_method(method, small_task).numbers
     assert numbers.get("build_s") == build
     assert 2.03 < numbers["load_s"] < 2.5
@@ -138,10 +164,22 @@ def test_reference_sensor_is_the_stated_sensor_at_1_nm(small_task):
     weights = np.linalg.pinv(ours().matrix)
 
     def exact(rgb, wavelengths):
-        return rgb @ weights.T if len(wavelengths) == len(ours().wavelengths) else grey(rgb, wavelengths)
+        return (
+            rgb @ weights.T
+            if len(wavelengths) == len(ours().wavelengths)
+            else grey(rgb, wavelengths)
+        )
 
     free = {"claimed_range": (-10, 10)}
-    numbers = measure_method(method_of(exact, reference_sensor=ours, **free), small_task).numbers
+    numbers = measure_method(
+        method_of(exact, reference_sensor=ours, **free), small_task
+    ).numbers
     assert numbers["round_trip_max"] < 1e-6
     assert numbers["coarse_round_trip_mean"] > 1
-    assert 1e-3 < measure_method(method_of(exact, **free), small_task).numbers["round_trip_mean"] < 0.1
+    assert (
+        1e-3
+        < measure_method(method_of(exact, **free), small_task).numbers[
+            "round_trip_mean"
+        ]
+        < 0.1
+    )

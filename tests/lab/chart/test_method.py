@@ -27,18 +27,31 @@ def test_every_second_entry_builds_and_the_others_test(repository):
     # The first atlas has an odd number of entries; counting starts again with each atlas.
     atlases = shipped(repository, "vs", "macbeth")
     found = make_task(atlases, 16)
-    names = [entry.name for spectra in atlases.values() for entry in spectra.entries[::2]]
+    names = [
+        entry.name for spectra in atlases.values() for entry in spectra.entries[::2]
+    ]
     assert list(found.kept.names) == names
     rows = {tuple(row) for row in found.own.round(12)}
     assert not rows & {tuple(row) for row in found.unseen.round(12)}
     every = on_grid(merge(atlases.values()), found.sensor.wavelengths)
-    assert len(found.own) + len(found.unseen) == in_unit_cube(found.sensor.rgb(every)).sum()
+    assert (
+        len(found.own) + len(found.unseen)
+        == in_unit_cube(found.sensor.rgb(every)).sum()
+    )
 
 
 def test_edges_contain_every_corner_and_grey_once():
     found = edges()
     assert len(np.unique(found, axis=0)) == len(found)
-    assert ((found == 0) | (found == 1) | (found == found[:, :1]).all(axis=1, keepdims=True)).any(axis=1).all()
+    assert (
+        (
+            (found == 0)
+            | (found == 1)
+            | (found == found[:, :1]).all(axis=1, keepdims=True)
+        )
+        .any(axis=1)
+        .all()
+    )
     corners = found[((found == 0) | (found == 1)).all(axis=1)]
     assert len(corners) == 8
     assert (np.ptp(found, axis=1) == 0).sum() == 9
@@ -48,7 +61,9 @@ def test_too_few_colours_or_entries_are_an_error(repository):
     with raises(OptionError, "option"):
         make_task(shipped(repository, "macbeth"), 15)
     at = np.arange(380.0, 781.0, 10.0)
-    two = Atlas(tuple(Entry(name, at, np.full(len(at), 0.5)) for name in ("one", "other")))
+    two = Atlas(
+        tuple(Entry(name, at, np.full(len(at), 0.5)) for name in ("one", "other"))
+    )
     with raises(AtlasError, "too-few-entries"):
         make_task({"two": two}, 16)
 
@@ -60,12 +75,17 @@ def prepared(name, task):
 
 @pytest.fixture(scope="module")
 def colours():
-    return np.concatenate([np.random.default_rng(4).random((20, 3)), np.eye(3), [[0, 0, 0], [1, 1, 1]]])
+    return np.concatenate(
+        [np.random.default_rng(4).random((20, 3)), np.eye(3), [[0, 0, 0], [1, 1, 1]]]
+    )
 
 
 def test_methods_are_selected_by_pattern():
     assert select_methods() == list(METHODS)
-    assert [method.method for method in select_methods(("mallett2019", "sm*9"))] == ["mallett2019", "smits1999"]
+    assert [method.method for method in select_methods(("mallett2019", "sm*9"))] == [
+        "mallett2019",
+        "smits1999",
+    ]
     with raises(OptionError, "option") as caught:
         select_methods(("mallett2019", "malet"))
     assert "'malet'" in caught.value.problem
@@ -73,14 +93,23 @@ def test_methods_are_selected_by_pattern():
 
 def test_smits_and_mallett_match_colour_science(small_task, colours):
     at = small_task.sensor.wavelengths
-    for name, theirs in (("smits1999", RGB_to_sd_Smits1999), ("mallett2019", RGB_to_sd_Mallett2019)):
-        expected = [np.interp(at, sd.wavelengths, sd.values) for sd in map(theirs, colours)]
-        np.testing.assert_allclose(prepared(name, small_task).uplift(colours, at), expected, atol=1e-12)
+    for name, theirs in (
+        ("smits1999", RGB_to_sd_Smits1999),
+        ("mallett2019", RGB_to_sd_Mallett2019),
+    ):
+        expected = [
+            np.interp(at, sd.wavelengths, sd.values) for sd in map(theirs, colours)
+        ]
+        np.testing.assert_allclose(
+            prepared(name, small_task).uplift(colours, at), expected, atol=1e-12
+        )
 
 
 def test_jakob_fit_has_the_colour(small_task):
     rgb = np.array([[0.5, 0.4, 0.3]])
-    found = prepared("jakob2019-direct", small_task).uplift(rgb, small_task.sensor.wavelengths)
+    found = prepared("jakob2019-direct", small_task).uplift(
+        rgb, small_task.sensor.wavelengths
+    )
     np.testing.assert_allclose(small_task.sensor.rgb(found), rgb, atol=2e-3)
 
 
@@ -91,7 +120,9 @@ def test_missing_mitsuba_is_not_installed(small_task, monkeypatch):
             prepared(name, small_task)
 
 
-@pytest.mark.parametrize("name", ["mallett2019", "smits1999", "moments9-32-spectra", "sigmoid-32-moments"])
+@pytest.mark.parametrize(
+    "name", ["mallett2019", "smits1999", "moments9-32-spectra", "sigmoid-32-moments"]
+)
 def test_both_types_give_the_same_spectra(small_task, colours, name):
     at = small_task.sensor.wavelengths
     double, single = prepared(name, small_task), prepared(f"{name}-float32", small_task)
@@ -102,7 +133,9 @@ def test_both_types_give_the_same_spectra(small_task, colours, name):
 
 def vectorised_and_table(task, colours):
     """Reflectances by Mitsuba's vectorised variant and by its table, for one colour and for many."""
-    compiled, table = (prepared(name, task).uplift for name in ("mitsuba3-llvm", "mitsuba3-table"))
+    compiled, table = (
+        prepared(name, task).uplift for name in ("mitsuba3-llvm", "mitsuba3-table")
+    )
     at, some = task.sensor.wavelengths, (colours[:1], colours)
     drjit = import_module("drjit")
     threads = drjit.thread_count()
@@ -113,7 +146,9 @@ def vectorised_and_table(task, colours):
 
 def test_vectorised_mitsuba_gives_the_reflectances_of_its_table(small_task, colours):
     need(LLVM)
-    found, expected = call_in_child(vectorised_and_table, small_task, colours, seconds=120)
+    found, expected = call_in_child(
+        vectorised_and_table, small_task, colours, seconds=120
+    )
     for compiled, table in zip(found, expected, strict=True):
         np.testing.assert_allclose(compiled, table, atol=1e-4)
 

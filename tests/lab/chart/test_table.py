@@ -81,28 +81,41 @@ times, errors = st.sampled_from([1.0, 10.0, 11.0, 100.0, 1e5]), st.floats(1e-6, 
 
 @given(st.lists(st.tuples(times, errors), min_size=1, max_size=12))
 def test_front_is_clearly_more_accurate_than_all_faster_methods(points):
-    rows = [row_of(str(number), time, error) for number, (time, error) in enumerate(points)]
+    rows = [
+        row_of(str(number), time, error) for number, (time, error) in enumerate(points)
+    ]
     front = ROUND_TRIP.front(chart_of(*rows))
-    points_of = {row: (row.numbers["ns_64"], max(row.numbers["round_trip_mean"], MIN_ERROR)) for row in rows}
+    points_of = {
+        row: (row.numbers["ns_64"], max(row.numbers["round_trip_mean"], MIN_ERROR))
+        for row in rows
+    }
     for one, other in pairwise(front):
         assert points_of[one][0] < points_of[other][0]
         assert points_of[other][1] < CLEAR_RATIO * points_of[one][1]
     for row in set(rows) - set(front):
         time, error = points_of[row]
-        assert any(points_of[other][0] <= time and CLEAR_RATIO * points_of[other][1] <= error for other in front)
+        assert any(
+            points_of[other][0] <= time and CLEAR_RATIO * points_of[other][1] <= error
+            for other in front
+        )
 
 
 @pytest.mark.parametrize(
     ("points", "front"),
     [
-        ([(20, 0.5), (10, 0.501), (10, 0.9)], [1]),  # 1 % is noise, ties go to the more accurate
+        (
+            [(20, 0.5), (10, 0.501), (10, 0.9)],
+            [1],
+        ),  # 1 % is noise, ties go to the more accurate
         ([(20, 1e-9), (10, 5e-5)], [1]),  # invisible errors are equal
         ([], []),
     ],
 )
 def test_fronts_leave_out_small_gains(points, front):
     rows = [row_of(str(number), *point) for number, point in enumerate(points)]
-    assert [row.method for row in ROUND_TRIP.front(chart_of(*rows))] == [str(number) for number in front]
+    assert [row.method for row in ROUND_TRIP.front(chart_of(*rows))] == [
+        str(number) for number in front
+    ]
 
 
 def test_set_up_is_part_of_the_time_of_a_call():
@@ -140,17 +153,27 @@ def test_fastest_accurate_enough_or_most_accurate_in_time(requirement, name):
 def test_smallest_cube_and_cube_without_an_atlas():
     small = row_of("small", 900, 0.9, build="uplift build --dim 4")
     small = replace(small, numbers=dict(small.numbers) | {"bytes": 1.0})
-    chart = chart_of(row_of("atlas", 10, 0.1, build="uplift build --atlas FILE"), *CUBES.results, small)
+    chart = chart_of(
+        row_of("atlas", 10, 0.1, build="uplift build --atlas FILE"),
+        *CUBES.results,
+        small,
+    )
     assert recommend_cube(chart, Requirement(delta_e=1)).method == "atlas"
     assert recommend_cube(chart, Requirement(delta_e=1, plain=True)).method == "good"
-    assert recommend_cube(chart, Requirement(delta_e=1, plain=True, smallest=True)).method == "small"
+    assert (
+        recommend_cube(chart, Requirement(delta_e=1, plain=True, smallest=True)).method
+        == "small"
+    )
 
 
 @pytest.mark.parametrize(
     ("requirement", "closest"),
     [
         (Requirement(time_ns=10), "the fastest, rough, takes 50 ns"),
-        (Requirement(delta_e=0.1, light="A"), "the most accurate, no better, has 0.199"),
+        (
+            Requirement(delta_e=0.1, light="A"),
+            "the most accurate, no better, has 0.199",
+        ),
         (Requirement(delta_e=0.3, time_ns=100), "the most accurate, good, has 0.5"),
     ],
 )
@@ -163,7 +186,14 @@ def test_unmet_requirement_names_the_closest_cube(requirement, closest):
 
 
 @pytest.mark.parametrize(
-    "limits", [{}, {"time_ns": 0}, {"delta_e": -1}, {"time_ns": float("nan")}, {"time_ns": 1, "delta_e": float("inf")}]
+    "limits",
+    [
+        {},
+        {"time_ns": 0},
+        {"delta_e": -1},
+        {"time_ns": float("nan")},
+        {"time_ns": 1, "delta_e": float("inf")},
+    ],
 )
 def test_limits_are_required_and_positive(limits):
     with raises(OptionError, "option"):
@@ -202,23 +232,39 @@ HOSTILE = "</script><b>$x</b>"
 def test_page_has_markers_of_measured_methods_fits_and_is_accessible(tmp_path):
     rows = [
         row_of(HOSTILE, 80, 0.4),
-        row_of("9 · 32³", 900, 0.02, build="uplift build", mode="refined", family="of another version"),
-        row_of("alone", 1e6, 0.1, numbers=row_of("one", 1e6, 0.1).numbers | {"ns_64_colours": 3}),
+        row_of(
+            "9 · 32³",
+            900,
+            0.02,
+            build="uplift build",
+            mode="refined",
+            family="of another version",
+        ),
+        row_of(
+            "alone",
+            1e6,
+            0.1,
+            numbers=row_of("one", 1e6, 0.1).numbers | {"ns_64_colours": 3},
+        ),
         row_of("wrong", 1, 1e-9, state=State.BROKEN, why=HOSTILE, numbers={}),
     ]
     chart = chart_of(*rows)
     text = render_chart(chart)
     panels = range(len(chart.batches) * len(criteria(64)))
     markers = re.findall(r'id="marker-(\d+)-(\d+)"', text)
-    assert sorted(markers) == sorted((str(panel), row) for panel in panels for row in "012")
+    assert sorted(markers) == sorted(
+        (str(panel), row) for panel in panels for row in "012"
+    )
     assert HOSTILE not in text
     assert external_links(text) == []
     page = Page(text)
     assert HOSTILE in page.text
-    assert [[cell.text for cell in row] for row in page.table("method", "state", "reason")] == [
-        ["wrong", "broken", HOSTILE]
-    ]
-    (data,) = re.findall(r'<script type="application/json" id="rows">(.*?)</script>', text, re.DOTALL)
+    assert [
+        [cell.text for cell in row] for row in page.table("method", "state", "reason")
+    ] == [["wrong", "broken", HOSTILE]]
+    (data,) = re.findall(
+        r'<script type="application/json" id="rows">(.*?)</script>', text, re.DOTALL
+    )
     first, *_, last = json.loads(data)
     assert (first["title"], last["lines"]) == (HOSTILE, [])
     assert ["memory", "10 kB"] in first["lines"]

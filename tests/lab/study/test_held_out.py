@@ -14,7 +14,13 @@ from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import AtlasError
 from uplift.common.progress import Progress
 from uplift.lab.study import held_out
-from uplift.lab.study.held_out import HoldoutSplit, halves_both_ways, holdout, local_linear, split_records
+from uplift.lab.study.held_out import (
+    HoldoutSplit,
+    halves_both_ways,
+    holdout,
+    local_linear,
+    split_records,
+)
 from uplift.pipeline.build import build
 from uplift.report.fidelity import Answers
 
@@ -25,7 +31,12 @@ GRID = observer.grid()
 def family():
     """24 spectra of similar colours that share ripples which a smooth spectrum does not have."""
     ripple = np.cos((GRID - 380) / 400 * 6 * np.pi)
-    return Atlas(tuple(Entry(f"{level:.3f}", GRID, level * (1 + 0.3 * ripple)) for level in np.linspace(0.3, 0.6, 24)))
+    return Atlas(
+        tuple(
+            Entry(f"{level:.3f}", GRID, level * (1 + 0.3 * ripple))
+            for level in np.linspace(0.3, 0.6, 24)
+        )
+    )
 
 
 def test_half_an_atlas_of_similar_spectra_predicts_the_other(family):
@@ -41,7 +52,9 @@ def test_half_an_atlas_of_similar_spectra_predicts_the_other(family):
 
 
 def test_every_row_is_queried_once_per_split():
-    for (known, queried), (other, back) in zip(*[halves_both_ways(np.arange(3, 10), 4)] * 2, strict=True):
+    for (known, queried), (other, back) in zip(
+        *[halves_both_ways(np.arange(3, 10), 4)] * 2, strict=True
+    ):
         assert sorted([*known, *queried]) == list(range(3, 10))
         assert (known.tolist(), queried.tolist()) == (back.tolist(), other.tolist())
 
@@ -62,11 +75,17 @@ def test_the_prior_does_not_know_the_atlas(monkeypatch):
 
 def test_records_pool_splits_with_standard_errors():
     errors = {"": Answers(np.zeros((2, 81)), np.zeros((2, 7)), np.ones(2))}
-    known = HoldoutSplit(errors, np.array([1.0, 3.0]), np.array([2.0, 2.0]), np.array([5.0, 5.0]))
+    known = HoldoutSplit(
+        errors, np.array([1.0, 3.0]), np.array([2.0, 2.0]), np.array([5.0, 5.0])
+    )
     unknown = HoldoutSplit(errors, np.array([5.0, 9.0]), None, None)
     (record,) = split_records([known, unknown])
     found = record["standard_error"]
-    assert (found["stated"], found["within_error"], found["within_bound"]) == (2, 0.5, 1)
+    assert (found["stated"], found["within_error"], found["within_bound"]) == (
+        2,
+        0.5,
+        1,
+    )
     assert found["real"] == pytest.approx(2 * (0.5 + 0.68))
     assert (record["rms"], record["FL11"]) == (1, 0)
     assert split_records([unknown])[0]["standard_error"] is None
@@ -89,12 +108,18 @@ def known(sensor):
 
 
 def test_local_linear_reproduces_spectra_that_are_linear_in_rgb(data):
-    spectra = 0.5 + np.random.default_rng(0).uniform(-2, 2, (45, 3)) @ observer.light("A").xyz
+    spectra = (
+        0.5 + np.random.default_rng(0).uniform(-2, 2, (45, 3)) @ observer.light("A").xyz
+    )
     known, queried = spectra[:40], spectra[40:]
-    np.testing.assert_allclose(local_linear(data, known, data.sensor.rgb(queried)), queried, atol=1e-3)
+    np.testing.assert_allclose(
+        local_linear(data, known, data.sensor.rgb(queried)), queried, atol=1e-3
+    )
 
 
-def test_local_linear_has_the_least_leave_one_out_error_and_the_queried_colours(data, known, monkeypatch):
+def test_local_linear_has_the_least_leave_one_out_error_and_the_queried_colours(
+    data, known, monkeypatch
+):
     """Compared with leaving out one by one."""
     monkeypatch.setattr(held_out, "BANDWIDTHS", (10.0, 40.0))
     monkeypatch.setattr(held_out, "RIDGES", (1e-6, 1e-2))
@@ -102,7 +127,9 @@ def test_local_linear_has_the_least_leave_one_out_error_and_the_queried_colours(
     colours = data.sensor.rgb(some)
 
     def predict(known, rgb, smoothing):
-        spectra = np.clip(held_out.regress(data.sensor, known, rgb, *smoothing), 1e-4, 1 - 1e-4)
+        spectra = np.clip(
+            held_out.regress(data.sensor, known, rgb, *smoothing), 1e-4, 1 - 1e-4
+        )
         return held_out.with_least_change(data, spectra, rgb)
 
     def slow(smoothing):
@@ -110,9 +137,16 @@ def test_local_linear_has_the_least_leave_one_out_error_and_the_queried_colours(
             predict(some[rest], colours[row : row + 1], smoothing)[0]
             for row, rest in enumerate(~np.eye(len(some), dtype=bool))
         ]
-        return np.mean([delta_e_spectra(observer.light(name), np.array(found), some) for name in SCENE_LIGHTS])
+        return np.mean(
+            [
+                delta_e_spectra(observer.light(name), np.array(found), some)
+                for name in SCENE_LIGHTS
+            ]
+        )
 
-    best = min([(width, ridge) for width in (10.0, 40.0) for ridge in (1e-6, 1e-2)], key=slow)
+    best = min(
+        [(width, ridge) for width in (10.0, 40.0) for ridge in (1e-6, 1e-2)], key=slow
+    )
     rgb = data.sensor.rgb(some.mean(axis=0)[None]) * [[0.9, 1.0, 1.1]]
     found = local_linear(data, some, rgb)
     np.testing.assert_allclose(found, predict(some, rgb, best), atol=1e-12)

@@ -25,11 +25,17 @@ def bumps(rows: int, wavelengths: np.ndarray) -> np.ndarray:
     rng = np.random.default_rng(2020)
     slope, wave, shift = rng.normal(size=(3, rows, 1))
     t = (wavelengths - 380) / 400
-    return 0.5 + np.arctan(3 * slope * (t - 0.5) + 2 * wave * np.cos(7 * t + 3 * shift)) / np.pi
+    return (
+        0.5
+        + np.arctan(3 * slope * (t - 0.5) + 2 * wave * np.cos(7 * t + 3 * shift))
+        / np.pi
+    )
 
 
 def by_label(techniques):
-    return pytest.mark.parametrize("technique", techniques, ids=lambda technique: technique.short)
+    return pytest.mark.parametrize(
+        "technique", techniques, ids=lambda technique: technique.short
+    )
 
 
 @by_label(TECHNIQUES)
@@ -44,10 +50,14 @@ def test_moments_equal_the_integrals(technique):
         def part(phi, function, j=j):
             return np.interp(phi, phase, values[0]) * function(-j * phi) / np.ptp(phase)
 
-        real = quad(part, phase[0], phase[-1], (np.cos,), points=phase[1:-1], epsabs=1e-13)[0]
+        real = quad(
+            part, phase[0], phase[-1], (np.cos,), points=phase[1:-1], epsabs=1e-13
+        )[0]
         assert moment.real == pytest.approx(real, abs=1e-12)
         if not technique.mirrored:
-            imaginary = quad(part, phase[0], phase[-1], (np.sin,), points=phase[1:-1], epsabs=1e-13)[0]
+            imaginary = quad(
+                part, phase[0], phase[-1], (np.sin,), points=phase[1:-1], epsabs=1e-13
+            )[0]
             assert moment.imag == pytest.approx(imaginary, abs=1e-12)
 
 
@@ -58,9 +68,13 @@ def test_reconstruction_has_its_complex_moments(technique, count):
     moments = technique.moments(bumps(20, wavelengths()), wavelengths(), count)
     circle = -np.pi + 2 * np.pi * np.arange(1 << 14) / (1 << 14)
     waves = duality.fourier_basis(circle, count + 1)
-    multipliers = duality.multipliers_from_moments(moments, duality.try_complex_multipliers)
+    multipliers = duality.multipliers_from_moments(
+        moments, duality.try_complex_multipliers
+    )
     reflectance = 0.5 + np.arctan((multipliers @ waves.T).real) / np.pi
-    again = reflectance @ np.exp(-1j * circle[:, None] * np.arange(count + 1)) / len(circle)
+    again = (
+        reflectance @ np.exp(-1j * circle[:, None] * np.arange(count + 1)) / len(circle)
+    )
     np.testing.assert_allclose(again, moments, rtol=0, atol=1e-10)
 
 
@@ -77,13 +91,19 @@ def test_mirrored_moments_are_those_of_cubes(technique, count):
         rtol=0,
         atol=1e-12,
     )
-    np.testing.assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=1e-10)
+    np.testing.assert_allclose(
+        model.to_storage(multipliers), moments, rtol=0, atol=1e-10
+    )
 
 
 @by_label(TECHNIQUES)
 def test_black_white_and_a_step_are_reconstructed(technique):
-    extremes = np.stack([np.zeros(401), np.ones(401), (wavelengths() > 580).astype(float)])
-    actual = technique.reconstruct(technique.moments(extremes, wavelengths(), 15), observer.grid())
+    extremes = np.stack(
+        [np.zeros(401), np.ones(401), (wavelengths() > 580).astype(float)]
+    )
+    actual = technique.reconstruct(
+        technique.moments(extremes, wavelengths(), 15), observer.grid()
+    )
     assert ((actual >= 0) & (actual <= 1)).all()
     np.testing.assert_allclose(actual[:2], [[0] * 81, [1] * 81], atol=1e-4)
 
@@ -93,24 +113,38 @@ def study(repository):
     """Study of all shipped atlases."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
-        return study_moments({path.stem: read_atlas(path) for path in sorted((repository / "atlases").glob("*.txt"))})
+        return study_moments(
+            {
+                path.stem: read_atlas(path)
+                for path in sorted((repository / "atlases").glob("*.txt"))
+            }
+        )
 
 
 @by_label(TECHNIQUES)
 def test_error_falls_with_moments(study, technique):
-    means = np.array([study.result(technique, count, "macbeth").mean for count in range(16)])
+    means = np.array(
+        [study.result(technique, count, "macbeth").mean for count in range(16)]
+    )
     assert (means[15] < means[4]).all()
     assert (means[8] < means[4]).all()
     assert (means[4] < means[2]).all()
     assert (np.diff(means[:9, 0]) < 0).all()
     grey = study.errors[technique.warped ^ 1, 0]  # mirrored or not
-    np.testing.assert_allclose(study.errors[TECHNIQUES.index(technique), 0], grey, rtol=1e-6)
+    np.testing.assert_allclose(
+        study.errors[TECHNIQUES.index(technique), 0], grey, rtol=1e-6
+    )
 
 
 @pytest.mark.parametrize("group", ["macbeth", ALL_ATLASES])
 def test_mirrored_techniques_have_the_least_error(study, group):
     for floats in FLOATS:
-        means = np.array([study.result(one, max_moments(one, floats), group).mean for one in TECHNIQUES])
+        means = np.array(
+            [
+                study.result(one, max_moments(one, floats), group).mean
+                for one in TECHNIQUES
+            ]
+        )
         assert means[:2, 0].min() < means[2:, 0].min(), floats
         if floats >= 9:
             assert means[2:, -1].min() > 2.5 * means[:2, -1].min(), floats

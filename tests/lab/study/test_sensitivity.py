@@ -25,7 +25,9 @@ LIGHT = observer.light("FL11")
 def test_answers_change_in_proportion_to_the_query(small_cube):
     moves = perturb(small_cube, LIGHT, 200)
     assert [move["mode"] for move in moves[::3]] == list(CONTINUOUS_MODES)
-    for wide, narrow, rounding in zip(moves[::3], moves[1::3], moves[2::3], strict=True):
+    for wide, narrow, rounding in zip(
+        moves[::3], moves[1::3], moves[2::3], strict=True
+    ):
         assert wide["rms_mean"] == pytest.approx(4 * narrow["rms_mean"], rel=0.1)
         assert wide["own_mean"] == pytest.approx(4 * narrow["own_mean"], rel=0.05)
         assert 0 < rounding["rms_most"] < 1e-5
@@ -58,10 +60,16 @@ def test_jumps_are_found_and_only_those():
 
 
 def test_otsu_2018_jumps_and_others_do_not(small_cube):
-    mallett, otsu = (perturb_method(method, LIGHT, 300) for method in select_methods(("otsu2018", "mallett2019")))
+    mallett, otsu = (
+        perturb_method(method, LIGHT, 300)
+        for method in select_methods(("otsu2018", "mallett2019"))
+    )
     assert otsu[0]["mode"] == "Otsu 2018"
     assert otsu[0]["light_most"] >= otsu[0]["jump"] > 2
-    assert max(move["jump"] for move in (*mallett, *perturb(small_cube, LIGHT, 300))) < 2e-3
+    assert (
+        max(move["jump"] for move in (*mallett, *perturb(small_cube, LIGHT, 300)))
+        < 2e-3
+    )
     assert mallett[0]["own_mean"] == pytest.approx(4 * mallett[1]["own_mean"], rel=0.05)
 
 
@@ -69,10 +77,21 @@ def test_changed_atlases_and_their_effect(repository):
     """Far nodes move a little: the weights of the families of spectra are learnt from the whole atlas."""
     entries = read_atlas(repository / "atlases" / "tcs.txt").entries
     before, name = rebuild(entries, {"dim": 8}), entries[0].name
-    changes = {description: changed for description, _, changed in changed_atlases(entries, [name])}
-    assert list(changes) == [*(f"noise, draw {seed}" for seed in range(3)), f"{name} wrong", f"{name} left out"]
-    noisy, wrong, left_out = (changes[key] for key in ("noise, draw 0", f"{name} wrong", f"{name} left out"))
-    noise = np.array([one.values - other.values for one, other in zip(noisy, entries, strict=True)])
+    changes = {
+        description: changed
+        for description, _, changed in changed_atlases(entries, [name])
+    }
+    assert list(changes) == [
+        *(f"noise, draw {seed}" for seed in range(3)),
+        f"{name} wrong",
+        f"{name} left out",
+    ]
+    noisy, wrong, left_out = (
+        changes[key] for key in ("noise, draw 0", f"{name} wrong", f"{name} left out")
+    )
+    noise = np.array(
+        [one.values - other.values for one, other in zip(noisy, entries, strict=True)]
+    )
     assert noise.std() == pytest.approx(0.002, rel=0.1)
     np.testing.assert_array_equal(wrong[0].values, entries[0].values[::-1])
     assert wrong[1:] == left_out == list(entries[1:])
@@ -82,7 +101,9 @@ def test_changed_atlases_and_their_effect(repository):
     assert (removed.delta_e[nearest] > 0).all()
     far = lab_distance > 60
     assert far.sum() > 100
-    assert removed.delta_e[far].mean() < 0.15 * removed.delta_e[lab_distance < 20].mean()
+    assert (
+        removed.delta_e[far].mean() < 0.15 * removed.delta_e[lab_distance < 20].mean()
+    )
     record = removed.record()
     assert 0 < record["moved"] < 0.02
     assert 0 < record["lab_radius"] < 80
@@ -91,6 +112,11 @@ def test_changed_atlases_and_their_effect(repository):
 
 def test_moved_share_and_radius_by_hand():
     delta_e = np.array([0.1, 0.6, 2, 0.5])
-    record = Change("", np.zeros(4), delta_e, np.array([[0.0, 1, 2, 3], [9, 5, 4, 9]])).record()
+    record = Change(
+        "", np.zeros(4), delta_e, np.array([[0.0, 1, 2, 3], [9, 5, 4, 9]])
+    ).record()
     assert (record["moved"], record["rgb_radius"], record["lab_radius"]) == (0.5, 2, 5)
-    assert Change("", np.zeros(1), np.zeros(1), np.ones((2, 1))).record()["rgb_radius"] == 0
+    assert (
+        Change("", np.zeros(1), np.zeros(1), np.ones((2, 1))).record()["rgb_radius"]
+        == 0
+    )

@@ -10,7 +10,13 @@ from uplift.colorimetry.solid import solid
 from uplift.common.errors import UnknownNameError
 from uplift.common.progress import Progress
 from uplift.lab.study import stability
-from uplift.lab.study.stability import SYNTHETIC_ATLASES, DesignSpace, RunConfig, run, study_stability
+from uplift.lab.study.stability import (
+    SYNTHETIC_ATLASES,
+    DesignSpace,
+    RunConfig,
+    run,
+    study_stability,
+)
 from uplift.lattice import Lattice, axis_nodes
 
 
@@ -18,16 +24,25 @@ def test_build_is_evaluated_over_its_realisable_nodes():
     result = run(RunConfig(dim=4, space="ITU-R BT.2020"), {})
     sensor, lattice = observer.sensor("ITU-R BT.2020"), Lattice(axis_nodes("srgb", 4))
     assert result["points"] == 64
-    assert result["realisable"] == solid(sensor.matrix).contains(lattice.points).sum() < 64
+    assert (
+        result["realisable"] == solid(sensor.matrix).contains(lattice.points).sum() < 64
+    )
     assert (result["unfitted"], result["stand_ins"], result["success"]) == (0, 0, 1)
     assert result["worst"] <= result["threshold"]
     assert lattice.points.tolist().count([result["r"], result["g"], result["b"]]) == 1
 
 
 def test_study_runs_every_configuration_once_ordered_by_model(monkeypatch):
-    configs = [RunConfig(dim=8), RunConfig("sigmoid", 3), RunConfig(dim=4), RunConfig(dim=8)]
+    configs = [
+        RunConfig(dim=8),
+        RunConfig("sigmoid", 3),
+        RunConfig(dim=4),
+        RunConfig(dim=8),
+    ]
     runs, events = [], []
-    monkeypatch.setattr(stability, "run", lambda config, atlases: runs.append(config) or {})
+    monkeypatch.setattr(
+        stability, "run", lambda config, atlases: runs.append(config) or {}
+    )
     result = study_stability(configs, {}, events.append)
     assert list(result) == runs == [configs[2], configs[0], configs[1]]
     assert events == [Progress("builds", done, 3) for done in (1, 2, 3)]
@@ -56,8 +71,13 @@ def test_sample_covers_every_value_of_every_axis():
 
 
 def test_atlases_are_crowded_spiky_and_noisy(sensor):
-    crowded, spiky, noisy = (np.array([entry.values for entry in make()]) for make in SYNTHETIC_ATLASES.values())
-    for values, make in zip((crowded, spiky, noisy), SYNTHETIC_ATLASES.values(), strict=True):
+    crowded, spiky, noisy = (
+        np.array([entry.values for entry in make()])
+        for make in SYNTHETIC_ATLASES.values()
+    )
+    for values, make in zip(
+        (crowded, spiky, noisy), SYNTHETIC_ATLASES.values(), strict=True
+    ):
         np.testing.assert_array_equal(values, [entry.values for entry in make()])
     lab = rgb_to_lab(sensor, sensor.rgb(crowded))
     distance = np.linalg.norm(lab[:, None] - lab, axis=-1) + 1e3 * np.eye(len(lab))

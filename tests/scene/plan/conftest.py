@@ -28,7 +28,9 @@ LIGHTS = ("D65", "FL11")
 def painted():
     """(20, 20, 3) linear RGB: shades of four paints."""
     rng = np.random.default_rng(3)
-    paints = np.array([[0.5, 0.2, 0.1], [0.1, 0.3, 0.2], [0.2, 0.2, 0.5], [0.6, 0.6, 0.5]])
+    paints = np.array(
+        [[0.5, 0.2, 0.1], [0.1, 0.3, 0.2], [0.2, 0.2, 0.5], [0.6, 0.6, 0.5]]
+    )
     shades = rng.uniform(0.3, 1, (20, 20, 1)) * paints[rng.integers(0, 4, (20, 20))]
     return shades.astype(np.float32)
 
@@ -41,7 +43,8 @@ def kitchen(tmp_path_factory):
     shutil.copy(MACBETH, folder)
     path = folder / "kitchen.toml"
     path.write_text(
-        'textures = "wood.exr"\natlases = ["macbeth.txt"]\nlights = ["D65", "FL11"]\ntolerance = 3\n', encoding="utf-8"
+        'textures = "wood.exr"\natlases = ["macbeth.txt"]\nlights = ["D65", "FL11"]\ntolerance = 3\n',
+        encoding="utf-8",
     )
     return path
 

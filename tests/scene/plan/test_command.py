@@ -1,4 +1,3 @@
-# ruff: noqa: F811
 """``uplift plan``, ``uplift build --plan``, and the command lines of a plan."""
 
 import dataclasses
@@ -10,7 +9,7 @@ import click
 import pytest
 from uplift_cli.main import main
 
-from tests.cli.conftest import home, refuse, run, shown  # noqa: F401
+from tests.cli.conftest import home, refuse, run, shown
 from uplift.cube import read
 from uplift.scene.plan.candidates import PIXELS
 from uplift.scene.plan.files import cube_name
@@ -32,26 +31,43 @@ def here(home, kitchen, planned, monkeypatch):
 def test_a_plan_is_printed_written_and_built(run, here):
     result = run("plan", "kitchen.toml")
     assert result.stdout.startswith("  uplift build --plan kitchen.plan.json\n")
-    assert max(map(len, result.stdout.partition("kitchen.toml: ")[2].splitlines())) <= 80
+    assert (
+        max(map(len, result.stdout.partition("kitchen.toml: ")[2].splitlines())) <= 80
+    )
     assert "kitchen.plan.json" in result.stderr
     values = json.loads((here / "kitchen.plan.json").read_text(encoding="utf-8"))
-    assert json.loads(run("plan", "kitchen.toml", "--format", "json", "--force").stdout) == values
+    assert (
+        json.loads(run("plan", "kitchen.toml", "--format", "json", "--force").stdout)
+        == values
+    )
     built = run("build", "--plan", "kitchen.plan.json", "-v")
     assert "kitchen.uplift: " in built.stdout
     data = read(here / "kitchen.uplift")
-    assert (data.lattice.dim, data.model.count) == (values["build"]["dim"], values["build"]["coefficients"])
-    error = run("build", "--plan", "kitchen.plan.json", "--dim", 4, "--light", "A", code=2).stderr
+    assert (data.lattice.dim, data.model.count) == (
+        values["build"]["dim"],
+        values["build"]["coefficients"],
+    )
+    error = run(
+        "build", "--plan", "kitchen.plan.json", "--dim", 4, "--light", "A", code=2
+    ).stderr
     assert "leave out --dim, --light." in error
 
 
-def test_a_plan_outside_the_folder_of_its_scene_is_refused_before_the_search(run, here, monkeypatch):
+def test_a_plan_outside_the_folder_of_its_scene_is_refused_before_the_search(
+    run, here, monkeypatch
+):
     monkeypatch.setattr("uplift.scene.plan.plan", None)
     (here / "empty").mkdir()
     error = run("plan", "kitchen.toml", "-o", "empty/a.plan.json", code=2).stderr
-    assert "must lie in the folder of wood.exr, or above it; write for example kitchen.plan.json" in error
+    assert (
+        "must lie in the folder of wood.exr, or above it; write for example kitchen.plan.json"
+        in error
+    )
 
 
-@pytest.mark.parametrize("pixel", PIXELS, ids=lambda pixel: f"{pixel.form}-{pixel.depth}{pixel.mode}")
+@pytest.mark.parametrize(
+    "pixel", PIXELS, ids=lambda pixel: f"{pixel.form}-{pixel.depth}{pixel.mode}"
+)
 def test_command_lines_are_accepted(planned, tmp_path, pixel):
     found, path = planned[0], tmp_path / "my plan.plan.json"
     assert cube_name(path) == "my plan.uplift"
@@ -60,4 +76,6 @@ def test_command_lines_are_accepted(planned, tmp_path, pixel):
         program, name, *arguments = shlex.split(line)
         assert program == "uplift"
         with click.Context(main, **main.context_settings) as context:
-            main.get_command(context, name).make_context(name, arguments, parent=context)
+            main.get_command(context, name).make_context(
+                name, arguments, parent=context
+            )

@@ -38,46 +38,70 @@ def weighted_quantile(values, weights, share):
 
 
 def test_errors_agree_with_a_slow_oracle(tests):
-    spectra = np.clip(tests.setup.reflectances + np.random.default_rng(1).normal(0, 0.02, (47, 81)), 0, 1)
+    spectra = np.clip(
+        tests.setup.reflectances + np.random.default_rng(1).normal(0, 0.02, (47, 81)),
+        0,
+        1,
+    )
     error = tests.error(tests.xyz(spectra))
     assert len(error.parts) == 4
     for part in error.parts:
         rows = ROWS[part.group]
-        delta_e = delta_e_spectra(observer.light(part.light), tests.setup.reflectances[rows], spectra[rows])
-        assert part.quantile == pytest.approx(weighted_quantile(delta_e, tests.weights[rows], 0.8), rel=1e-9)
-        assert part.mean == pytest.approx(np.average(delta_e, weights=tests.weights[rows]), rel=1e-9)
+        delta_e = delta_e_spectra(
+            observer.light(part.light), tests.setup.reflectances[rows], spectra[rows]
+        )
+        assert part.quantile == pytest.approx(
+            weighted_quantile(delta_e, tests.weights[rows], 0.8), rel=1e-9
+        )
+        assert part.mean == pytest.approx(
+            np.average(delta_e, weights=tests.weights[rows]), rel=1e-9
+        )
         assert part.largest == pytest.approx(delta_e.max(), rel=1e-9)
     assert error.quantile == max(part.quantile for part in error.parts)
 
 
-def test_other_representations_cost_less_or_are_more_accurate_than_fitted_wavelengths(tests):
+def test_other_representations_cost_less_or_are_more_accurate_than_fitted_wavelengths(
+    tests,
+):
     """Each of them against all others, by its own numbers; the fitted ones are as without."""
 
     def numbers(each):
-        return np.array([each.samples, each.operations, each.surface, each.error.quantile])
+        return np.array(
+            [each.samples, each.operations, each.surface, each.error.quantile]
+        )
 
     counts, floor = (3, 16), 1e-3
     fitted = renderings(counts, tests, floor, ignore_progress, None)
     found = renderings(counts, tests, floor, ignore_progress, observer.DEFAULT_OBSERVER)
     others = found[len(fitted) :]
-    assert [each.name for each in found[: len(fitted)]] == [each.name for each in fitted]
+    assert [each.name for each in found[: len(fitted)]] == [
+        each.name for each in fitted
+    ]
     assert any(each.sampling is None for each in others)
     for row, each in enumerate(others, start=len(fitted)):
-        assert not any((numbers(before) <= numbers(each)).all() for before in found[:row])
+        assert not any(
+            (numbers(before) <= numbers(each)).all() for before in found[:row]
+        )
 
 
 def test_reference_spectra_have_no_error_and_nan_has_the_largest(tests):
-    assert tests.error(tests.xyz(tests.setup.reflectances)).quantile == pytest.approx(0, abs=1e-9)
+    assert tests.error(tests.xyz(tests.setup.reflectances)).quantile == pytest.approx(
+        0, abs=1e-9
+    )
     broken = tests.setup.reflectances.copy()
     broken[3] = np.nan
     error = tests.error(tests.xyz(broken))
-    assert {part.largest for part in error.parts if part.group == "textures"} == {WORST_DELTA_E}
+    assert {part.largest for part in error.parts if part.group == "textures"} == {
+        WORST_DELTA_E
+    }
 
 
 @pytest.fixture
 def image(tmp_path):
     """A file of linear RGB (h, w, 3)."""
-    return lambda rgb, name="a.exr": write_exr(tmp_path / name, planes(np.asarray(rgb, np.float32)))
+    return lambda rgb, name="a.exr": write_exr(
+        tmp_path / name, planes(np.asarray(rgb, np.float32))
+    )
 
 
 def sample(paths, sensor, sizes):
@@ -85,10 +109,14 @@ def sample(paths, sensor, sizes):
 
 
 def test_small_textures_are_sampled_completely(image, sensor):
-    rgb = np.array([[[0.1, 0.2, 0.3], [0.1, 0.2, 0.3], [0.5, 0.5, 0.5], [0.1, 0.2, 0.3]]])
+    rgb = np.array(
+        [[[0.1, 0.2, 0.3], [0.1, 0.2, 0.3], [0.5, 0.5, 0.5], [0.1, 0.2, 0.3]]]
+    )
     found = sample([image(rgb), image(rgb, "b.exr")], sensor, (4, 6))
     for each in (found.predicting, found.confirming):
-        np.testing.assert_allclose(each.rgb, [[0.1, 0.2, 0.3], [0.5, 0.5, 0.5]], rtol=1e-6)
+        np.testing.assert_allclose(
+            each.rgb, [[0.1, 0.2, 0.3], [0.5, 0.5, 0.5]], rtol=1e-6
+        )
         np.testing.assert_allclose(each.share, [0.75, 0.25])
     assert len(found.colour_bins) == len(found.few) == 2
     assert (found.pixels, found.size) == (8, 8 * 12)
@@ -98,15 +126,22 @@ def test_the_two_samples_of_a_large_texture_are_disjoint(image, sensor):
     rgb = np.random.default_rng(1).random((100, 90, 3))
     path = image(rgb)
     found = sample([path], sensor, (300, 600))
-    first, second = (set(map(tuple, each.rgb.tolist())) for each in (found.predicting, found.confirming))
+    first, second = (
+        set(map(tuple, each.rgb.tolist()))
+        for each in (found.predicting, found.confirming)
+    )
     assert not first & second
     assert 240 < len(first) < 360
     assert 500 < len(second) < 700
-    assert first | second <= set(map(tuple, rgb.astype(np.float32).reshape(-1, 3).astype(float).tolist()))
+    assert first | second <= set(
+        map(tuple, rgb.astype(np.float32).reshape(-1, 3).astype(float).tolist())
+    )
     assert found.few is None
     for each in (found.predicting, found.confirming):
         assert each.share.sum() == pytest.approx(1)
-        np.testing.assert_allclose(each.share @ each.rgb, 0.5, atol=0.06)  # equal probability
+        np.testing.assert_allclose(
+            each.share @ each.rgb, 0.5, atol=0.06
+        )  # equal probability
     again = sample([path], sensor, (300, 600))
     np.testing.assert_array_equal(again.predicting.rgb, found.predicting.rgb)
 
@@ -139,11 +174,15 @@ def test_images_without_pixels_are_refused(image, sensor, monkeypatch):
         sample([image([[[0.1, 0.2, 0.3]]])], sensor, (5, 5))
 
 
-def test_the_best_matrices_map_rgb_under_the_light_of_the_space_exactly(sensor, plain_cube):
+def test_the_best_matrices_map_rgb_under_the_light_of_the_space_exactly(
+    sensor, plain_cube
+):
     spectra = np.random.default_rng(4).random((30, 81)) ** 2
     rgb = spectra @ sensor.matrix.T
     setup = make_setup(spectra, ("D65", "A"), wavelengths=observer.grid())
-    tests = EvaluationSet(plain_cube, setup, rgb, np.full(30, 1 / 30), {"textures": slice(0, 30)}, 0.9)
+    tests = EvaluationSet(
+        plain_cube, setup, rgb, np.full(30, 1 / 30), {"textures": slice(0, 30)}, 0.9
+    )
     matrices = tests.matrices()
     np.testing.assert_allclose(matrices[0], np.linalg.inv(sensor.xyz_to_rgb), atol=1e-9)
     fitted = tests.error(rgb @ matrices.mT)

@@ -68,8 +68,12 @@ FORMATS = (
 def read_any(document: Document) -> tuple[Format, Measurements | Atlas]:
     """Read a document by the first format whose pattern it has, and return both. Raise `AtlasError`."""
     for each in FORMATS:
-        content: Any = document.data if isinstance(each.pattern, bytes) else document.text
-        is_library = LIBRARY in each.suffixes and document.path.lower().endswith(LIBRARY)
+        content: Any = (
+            document.data if isinstance(each.pattern, bytes) else document.text
+        )
+        is_library = LIBRARY in each.suffixes and document.path.lower().endswith(
+            LIBRARY
+        )
         if is_library or re.search(each.pattern, content):
             break  # the last one has every document
     return each, import_module(f"{__name__}.{each.module}").read(document)

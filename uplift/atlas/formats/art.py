@@ -13,7 +13,15 @@ from typing import NamedTuple
 import numpy as np
 
 from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source
-from uplift.atlas.document import Document, SourceLocation, check_scale, one_line, parse_number, truncate, without_unit
+from uplift.atlas.document import (
+    Document,
+    SourceLocation,
+    check_scale,
+    one_line,
+    parse_number,
+    truncate,
+    without_unit,
+)
 from uplift.common.arrays import Array
 from uplift.common.text import parse_float
 
@@ -26,7 +34,11 @@ OTHER_TYPES = (
     "emission spectrum", "transmission spectrum", "colourimetric matching function", "colour matching function",
     "colorimetric matching function", "color matching function", "index of refraction",
 )  # fmt: skip
-HEADER = {"content": "Archive content", "copyright": "Archive copyright", "licence": "Archive license"}
+HEADER = {
+    "content": "Archive content",
+    "copyright": "Archive copyright",
+    "licence": "Archive license",
+}
 STATEMENTS = {
     "description": "Description",
     "additional_description": "Additional description",
@@ -36,7 +48,10 @@ STATEMENTS = {
 }
 """Fields by the attributes of `Header` and `Entry`."""
 SCALE = "Maximum sample value"
-SAMPLINGS = {"regular": ("Type", "Start", "Increment", SCALE), "point sampled": ("Type", SCALE)}
+SAMPLINGS = {
+    "regular": ("Type", "Start", "Increment", SCALE),
+    "point sampled": ("Type", SCALE),
+}
 """Fields of the sampling section, per type of sampling."""
 NOT_STATED = "not stated"
 """Placeholder of a header line without a value: other readers require a value in every line."""
@@ -77,7 +92,9 @@ class Fields:
         """Return a required value and its location. Raise `AtlasError` if it is missing."""
         value = self.text(key)
         if not value:
-            raise self.location.error(f"the field '{key}' is missing", f"add a line '{key} : …' to the entry")
+            raise self.location.error(
+                f"the field '{key}' is missing", f"add a line '{key} : …' to the entry"
+            )
         return value, self.location.at(self.lines[key.lower()].number)
 
     def check_known(self, known: Iterable[str]) -> None:
@@ -85,8 +102,12 @@ class Fields:
         names = {name.lower(): name for name in known}
         for key, line in self.lines.items():
             if key not in names:
-                hint = "the fields are " + ", ".join(f"'{name}'" for name in names.values())
-                raise self.location.at(line.number).error(f"unknown field '{truncate(key)}'", hint)
+                hint = "the fields are " + ", ".join(
+                    f"'{name}'" for name in names.values()
+                )
+                raise self.location.at(line.number).error(
+                    f"unknown field '{truncate(key)}'", hint
+                )
 
 
 def read(document: Document) -> Atlas:
@@ -96,10 +117,13 @@ def read(document: Document) -> Atlas:
     starts = [index for index, line in enumerate(lines) if line.key == ENTRY]
     if not starts:
         hint = "add entries, each beginning with a line 'Entry ID: …'"
-        raise document.location.at(len(document.lines)).error("an archive needs at least one entry", hint)
+        raise document.location.at(len(document.lines)).error(
+            "an archive needs at least one entry", hint
+        )
     # An entry ends where the next one begins.
     entries = [
-        _read_entry(document, lines[start:end]) for start, end in zip(starts, [*starts[1:], len(lines)], strict=True)
+        _read_entry(document, lines[start:end])
+        for start, end in zip(starts, [*starts[1:], len(lines)], strict=True)
     ]
     return Atlas(
         tuple(item for item in entries if isinstance(item, Entry)),
@@ -110,17 +134,23 @@ def read(document: Document) -> Atlas:
 
 def read_header(document: Document) -> Header:
     """Read the statements of an archive about itself. Raise `AtlasError`."""
-    lines = list(itertools.takewhile(lambda line: line.key != ENTRY, _content(document.lines)))
+    lines = list(
+        itertools.takewhile(lambda line: line.key != ENTRY, _content(document.lines))
+    )
     if lines and lines[0].key.startswith(MAGIC.lower()):
         number, text, _ = lines.pop(0)
         version = text.split()[-1]
         if not version.startswith("1."):
             problem = f"unknown archive version '{truncate(version)}'"
-            raise document.location.at(number).error(problem, "write the archive as version 1.0, 1.1 or 1.2")
+            raise document.location.at(number).error(
+                problem, "write the archive as version 1.0, 1.1 or 1.2"
+            )
     fields = _fields(lines, document.location)
     fields.check_known(HEADER.values())
     values = {name: fields.text(key) for name, key in HEADER.items()}
-    return Header(**{name: "" if value == NOT_STATED else value for name, value in values.items()})
+    return Header(
+        **{name: "" if value == NOT_STATED else value for name, value in values.items()}
+    )
 
 
 def _content(lines: Iterable[str], first: int = 1) -> list[Line]:
@@ -153,10 +183,15 @@ def _read_entry(document: Document, lines: list[Line]) -> Entry | SkippedEntry:
     keys = [line.key for line in lines]
     for title in TITLES:
         if title.lower() not in keys:
-            raise location.at(lines[-1].number).error(f"the section '{title}' is missing", COMPLETE_ENTRY)
+            raise location.at(lines[-1].number).error(
+                f"the section '{title}' is missing", COMPLETE_ENTRY
+            )
     # Fields of the entry, fields of its sampling, samples
     middle, end = (keys.index(title.lower()) for title in TITLES)
-    fields, sampling = _fields(lines[1:middle], location), _fields(lines[middle + 1 : end], location)
+    fields, sampling = (
+        _fields(lines[1:middle], location),
+        _fields(lines[middle + 1 : end], location),
+    )
     samples, start = _sample_list(document, lines[end + 1 :], location)
     reason = _why_skipped(fields, sampling)
     if reason:
@@ -167,7 +202,9 @@ def _read_entry(document: Document, lines: list[Line]) -> Entry | SkippedEntry:
         if quoted := QUOTED.fullmatch(statements[attribute]):
             statements[attribute] = quoted[1]
     wavelengths, values = _sampled(sampling, samples, start)
-    return Entry(name, wavelengths, values, path=document.path, line=location.line, **statements)
+    return Entry(
+        name, wavelengths, values, path=document.path, line=location.line, **statements
+    )
 
 
 def _why_skipped(fields: Fields, sampling: Fields) -> str:
@@ -177,20 +214,32 @@ def _why_skipped(fields: Fields, sampling: Fields) -> str:
         return f"its type is '{kind}', not '{REFLECTANCE}'"
     if one_line(kind).casefold() != REFLECTANCE:
         known = ", ".join(f"'{name}'" for name in (REFLECTANCE, *OTHER_TYPES[:4]))
-        raise location.error(f"unknown type '{truncate(kind)}'", f"the types are {known}")
-    answer = "yes" if sampling.text("Reflectance start") else "no"  # the section is specific to the kind
+        raise location.error(
+            f"unknown type '{truncate(kind)}'", f"the types are {known}"
+        )
+    answer = (
+        "yes" if sampling.text("Reflectance start") else "no"
+    )  # the section is specific to the kind
     if "fluorescence data" in fields.lines:
         answer, location = fields.required("Fluorescence data")
     if answer.casefold() not in ("yes", "no"):
         problem = f"'Fluorescence data' must be 'yes' or 'no', got '{truncate(answer)}'"
         raise location.error(problem, "write 'yes' or 'no'")
-    return "it is fluorescent (bispectral), not a plain reflectance" if answer.casefold() == "yes" else ""
+    return (
+        "it is fluorescent (bispectral), not a plain reflectance"
+        if answer.casefold() == "yes"
+        else ""
+    )
 
 
-def _sample_list(document: Document, lines: list[Line], location: SourceLocation) -> tuple[str, SourceLocation]:
+def _sample_list(
+    document: Document, lines: list[Line], location: SourceLocation
+) -> tuple[str, SourceLocation]:
     """Return the text between the braces that open on the first line with content, and the location of that line."""
     if not lines or not lines[0].text.startswith("{"):
-        raise location.error("the sample list, opened by '{', is missing", COMPLETE_ENTRY)
+        raise location.error(
+            "the sample list, opened by '{', is missing", COMPLETE_ENTRY
+        )
     first, last = lines[0].number, lines[-1].number
     start = location.at(first)
     text = "\n".join(document.lines[first - 1 : last]).strip()
@@ -200,28 +249,42 @@ def _sample_list(document: Document, lines: list[Line], location: SourceLocation
     # Only rules may follow the list.
     after = _content(text[found.end() :].split("\n"), first + found[0].count("\n"))
     if after:
-        raise start.at(after[0].number).error("unexpected text after the sample list", "end the entry with '}'")
+        raise start.at(after[0].number).error(
+            "unexpected text after the sample list", "end the entry with '}'"
+        )
     return found[1], start
 
 
-def _sampled(sampling: Fields, samples: str, start: SourceLocation) -> tuple[Array, Array]:
+def _sampled(
+    sampling: Fields, samples: str, start: SourceLocation
+) -> tuple[Array, Array]:
     """Return wavelengths (N,) in nm and reflectances (N,) in units of 1."""
     kind, location = sampling.required("Type")
     known = SAMPLINGS.get(one_line(kind).casefold())
     if known is None:
-        raise location.error(f"unknown sampling type '{truncate(kind)}'", "write 'regular' or 'point sampled'")
+        raise location.error(
+            f"unknown sampling type '{truncate(kind)}'",
+            "write 'regular' or 'point sampled'",
+        )
     sampling.check_known(known)
     stated = {key: sampling.required(key) for key in known if key != "Type"}
-    numbers = {key: parse_number(without_unit(text), at, f"'{key}'") for key, (text, at) in stated.items()}
+    numbers = {
+        key: parse_number(without_unit(text), at, f"'{key}'")
+        for key, (text, at) in stated.items()
+    }
     scale = check_scale(numbers[SCALE], f"'{SCALE}'", stated[SCALE][1])
-    with np.errstate(over="ignore", invalid="ignore"):  # Entry reports values that are not finite
+    with np.errstate(
+        over="ignore", invalid="ignore"
+    ):  # Entry reports values that are not finite
         if "Start" not in known:
             wavelengths, values = np.array(_pairs(samples, start)).T
         else:
             if "{" in samples or "}" in samples:
                 raise start.error("braces within a regular sample list", WRITE_VALUES)
             values = np.array(_numbers(samples, 0, len(samples), start))
-            wavelengths = numbers["Start"] + numbers["Increment"] * np.arange(len(values), dtype=np.float64)
+            wavelengths = numbers["Start"] + numbers["Increment"] * np.arange(
+                len(values), dtype=np.float64
+            )
         return wavelengths, values / scale
 
 
@@ -234,7 +297,9 @@ def _pairs(samples: str, start: SourceLocation) -> list[list[float]]:
             break
         end = match.end()
     if samples[end:].strip() or not pairs:
-        raise _below(start, samples[:end]).error("the samples are not in pairs", WRITE_PAIRS)
+        raise _below(start, samples[:end]).error(
+            "the samples are not in pairs", WRITE_PAIRS
+        )
     return pairs
 
 
@@ -246,7 +311,9 @@ def _numbers(samples: str, first: int, last: int, start: SourceLocation) -> list
             numbers.append(parse_float(token))
         except ValueError:  # the error names its line
             blanks = token[: len(token) - len(token.lstrip())]
-            numbers.append(parse_number(token, _below(start, samples[:first] + blanks), "sample"))
+            numbers.append(
+                parse_number(token, _below(start, samples[:first] + blanks), "sample")
+            )
         first += len(token) + 1
     return numbers
 
@@ -263,8 +330,13 @@ def text(atlas: Atlas, header: Header) -> str:
     """
     version = "1.2" if any(entry.additional_description for entry in atlas) else "1.1"
     lines = [f"{MAGIC} version {version}", ""]
-    lines += (f"{key}: {one_line(getattr(header, name)) or NOT_STATED}" for name, key in HEADER.items())
-    return "\n".join([*lines, "", *(line for entry in atlas for line in _entry_lines(entry))])
+    lines += (
+        f"{key}: {one_line(getattr(header, name)) or NOT_STATED}"
+        for name, key in HEADER.items()
+    )
+    return "\n".join(
+        [*lines, "", *(line for entry in atlas for line in _entry_lines(entry))]
+    )
 
 
 def _entry_lines(entry: Entry) -> Iterator[str]:
@@ -276,7 +348,11 @@ def _entry_lines(entry: Entry) -> Iterator[str]:
         value = one_line(getattr(entry, name))
         if name == "device":
             yield from (field("Type", REFLECTANCE), field("Fluorescence data", "no"))
-        if name.endswith("description") and len(value) > 1 and value[0] == value[-1] == '"':
+        if (
+            name.endswith("description")
+            and len(value) > 1
+            and value[0] == value[-1] == '"'
+        ):
             value = f'"{value}"'  # the reader removes one pair of quotes
         if value or name != "additional_description":
             yield field(key, value)
@@ -285,7 +361,10 @@ def _entry_lines(entry: Entry) -> Iterator[str]:
     step, values = _exact_step(entry.wavelengths), entry.values.tolist()
     if step is None:
         yield field("Type", "point sampled")
-        samples = [f"{{{x!r}, {y!r}}}" for x, y in zip(entry.wavelengths.tolist(), values, strict=True)]
+        samples = [
+            f"{{{x!r}, {y!r}}}"
+            for x, y in zip(entry.wavelengths.tolist(), values, strict=True)
+        ]
     else:
         yield field("Type", "regular")
         yield field("Start", f"{float(entry.wavelengths[0])!r} nm")
@@ -299,7 +378,11 @@ def _exact_step(wavelengths: Array) -> float | None:
     """Return the step that gives exactly these wavelengths in the reader, None if there is none."""
     n = len(wavelengths)
     first, last = wavelengths[0], wavelengths[-1]
-    for step in (wavelengths[1] - first, (last - first) / (n - 1), round((last - first) / (n - 1), 9)):
+    for step in (
+        wavelengths[1] - first,
+        (last - first) / (n - 1),
+        round((last - first) / (n - 1), 9),
+    ):
         if np.array_equal(first + step * np.arange(n), wavelengths):
             return float(step)
     return None

@@ -32,15 +32,30 @@ def read(document: Document) -> Measurements:
     preamble, rows = _parse(document)
     if not any(parse_label(cell.text) for cell in rows[0]):
         problem = "the CGATS file has no spectral fields"
-        raise location.at(rows[0][0].line).error(problem, "export the spectra with the colours")
-    keywords = {match[1]: match[2] or match[3] or "" for line in preamble if (match := KEYWORD.match(line))}
-    found = _with_exact_wavelengths(read_grid(Grid(rows, location, preamble), document.stem), keywords)
+        raise location.at(rows[0][0].line).error(
+            problem, "export the spectra with the colours"
+        )
+    keywords = {
+        match[1]: match[2] or match[3] or ""
+        for line in preamble
+        if (match := KEYWORD.match(line))
+    }
+    found = _with_exact_wavelengths(
+        read_grid(Grid(rows, location, preamble), document.stem), keywords
+    )
     if "SPECTRAL_NORM" in keywords:  # of ArgyllCMS: the value of a perfect reflector
         norm = parse_number(keywords["SPECTRAL_NORM"], location, "SPECTRAL_NORM")
         stated = f"SPECTRAL_NORM {keywords['SPECTRAL_NORM']}"
-        found = replace(found, scales=(Scale(check_scale(norm, "SPECTRAL_NORM", location), stated),))
+        found = replace(
+            found, scales=(Scale(check_scale(norm, "SPECTRAL_NORM", location), stated),)
+        )
     if light := LIGHT_SOURCES.search("\n".join(preamble)):
-        found = replace(found, quantity=Quantity("the light of a display", light[0].strip(), of_light=True))
+        found = replace(
+            found,
+            quantity=Quantity(
+                "the light of a display", light[0].strip(), of_light=True
+            ),
+        )
     return replace(found, header=Header(one_line(keywords.get("DESCRIPTOR"))))
 
 
@@ -61,42 +76,61 @@ def _parse(document: Document) -> tuple[list[str], list[Row]]:
         elif section == FORMAT:
             fields += [Cell(token, line) for token in _tokens(text, None)]
         elif section == DATA:
-            sets.append(tuple(Cell(token, line) for token in _tokens(text, len(fields))))
+            sets.append(
+                tuple(Cell(token, line) for token in _tokens(text, len(fields)))
+            )
         elif not sets:
             preamble.append(text)
     if not fields or not sets:
-        raise document.location.at(len(document.lines)).error("a CGATS file must have fields and sets of data", EXPORT)
+        raise document.location.at(len(document.lines)).error(
+            "a CGATS file must have fields and sets of data", EXPORT
+        )
     return preamble, [tuple(fields), *sets]
 
 
 def _lines(document: Document) -> list[str]:
     """Return the lines; those that a spreadsheet saved with commas or semicolons have tabs in their place."""
-    labels = next((after for line, after in itertools.pairwise(document.lines) if FORMAT in line), "")
+    labels = next(
+        (after for line, after in itertools.pairwise(document.lines) if FORMAT in line),
+        "",
+    )
     delimiter = next((mark for mark in ",;" if mark in labels), None)
     if delimiter is None or "\t" in labels:
         return document.lines
     try:
         return ["\t".join(split_line(line, delimiter)) for line in document.lines]
     except ValueError as error:
-        raise document.location.error(f"not a readable table: {error}", EXPORT) from None
+        raise document.location.error(
+            f"not a readable table: {error}", EXPORT
+        ) from None
 
 
 def _tokens(text: str, count: int | None) -> list[str]:
     """Split a line at tabs if that gives ``count`` tokens, or else at blanks outside of quotes."""
-    by_tabs = [token.strip().strip('"') for token in text.strip("\n").strip(" ").split("\t")]
+    by_tabs = [
+        token.strip().strip('"') for token in text.strip("\n").strip(" ").split("\t")
+    ]
     while by_tabs and not by_tabs[-1]:
         by_tabs.pop()
-    by_blanks = [match[1].replace('""', '"') if match[2] is None else match[2] for match in TOKEN.finditer(text)]
+    by_blanks = [
+        match[1].replace('""', '"') if match[2] is None else match[2]
+        for match in TOKEN.finditer(text)
+    ]
     # tokens between tabs are labels of fields only if they are single words; those of a set can be any text
-    words = count == len(by_tabs) or (count is None and not any(" " in token for token in by_tabs))
+    words = count == len(by_tabs) or (
+        count is None and not any(" " in token for token in by_tabs)
+    )
     return by_tabs if "\t" in text and words else by_blanks
 
 
-def _with_exact_wavelengths(found: Measurements, keywords: dict[str, str]) -> Measurements:
+def _with_exact_wavelengths(
+    found: Measurements, keywords: dict[str, str]
+) -> Measurements:
     """Replace wavelengths that ArgyllCMS rounds in labels, such as SPEC_383, by those of the keywords."""
     try:
         start, end, bands = (
-            parse_float(keywords.get(f"SPECTRAL_{key}", "")) for key in ("START_NM", "END_NM", "BANDS")
+            parse_float(keywords.get(f"SPECTRAL_{key}", ""))
+            for key in ("START_NM", "END_NM", "BANDS")
         )
     except ValueError:
         return found
@@ -105,4 +139,6 @@ def _with_exact_wavelengths(found: Measurements, keywords: dict[str, str]) -> Me
     exact = np.linspace(start, end, len(labels))
     if len(labels) != bands or np.abs(exact - labels).max() > 1:
         return found
-    return replace(found, spectra=tuple(replace(each, wavelengths=exact) for each in found.spectra))
+    return replace(
+        found, spectra=tuple(replace(each, wavelengths=exact) for each in found.spectra)
+    )

@@ -31,17 +31,28 @@ def read(document: Document) -> Measurements:
         from xsdata.formats.dataclass.parsers.config import ParserConfig
 
         # elements and attributes that the schema does not have are ignored
-        lenient = ParserConfig(fail_on_unknown_properties=False, fail_on_unknown_attributes=False)
-        found = _content(XmlParser(config=lenient).from_bytes(document.data, cxf3.CxF), document.path)
+        lenient = ParserConfig(
+            fail_on_unknown_properties=False, fail_on_unknown_attributes=False
+        )
+        found = _content(
+            XmlParser(config=lenient).from_bytes(document.data, cxf3.CxF), document.path
+        )
     if not found.spectra and not found.skipped:
-        problem, hint = "has no object with a spectrum", "export the spectra with the colours"
+        problem, hint = (
+            "has no object with a spectrum",
+            "export the spectra with the colours",
+        )
         raise document.location.error(problem, hint, code="not-an-atlas")
     return found
 
 
 def _content(cxf: Any, path: str) -> Measurements:
     resources, information = cxf.resources, cxf.file_information
-    objects = resources.object_collection.object_value if resources and resources.object_collection else []
+    objects = (
+        resources.object_collection.object_value
+        if resources and resources.object_collection
+        else []
+    )
     specifications = _measurements(resources)
     spectra, skipped, colours = list[Spectrum](), list[SkippedEntry](), set[str]()
     conditions = set[str]()
@@ -49,44 +60,76 @@ def _content(cxf: Any, path: str) -> Measurements:
         name = (each.name or each.id or "").strip()
         choices = each.color_values.choice if each.color_values else []
         types = [type(choice).__name__ for choice in choices]
-        reflectances = [choice for choice, kind in zip(choices, types, strict=True) if kind == REFLECTANCE]
+        reflectances = [
+            choice
+            for choice, kind in zip(choices, types, strict=True)
+            if kind == REFLECTANCE
+        ]
         stated = [_condition(choice, specifications) for choice in reflectances]
         conditions.update(filter(None, stated))
         kinds = [
-            condition or choice.color_specification for condition, choice in zip(stated, reflectances, strict=True)
+            condition or choice.color_specification
+            for condition, choice in zip(stated, reflectances, strict=True)
         ]
         if len(set(kinds)) < len(kinds):
-            kinds = [choice.name or str(number) for number, choice in enumerate(reflectances, 1)]
+            kinds = [
+                choice.name or str(number)
+                for number, choice in enumerate(reflectances, 1)
+            ]
         for kind, choice in zip(kinds, reflectances, strict=True):
             label = name if len(reflectances) == 1 else f"{name} {kind}"
             spectra.append(_spectrum(label, choice, specifications))
         others = [OTHER_SPECTRA[kind] for kind in types if kind in OTHER_SPECTRA]
         if others and not reflectances:
-            skipped.append(SkippedEntry(name, f"it is {others[0]}, not reflectance", path))
+            skipped.append(
+                SkippedEntry(name, f"it is {others[0]}, not reflectance", path)
+            )
         colours.update(kind for kind in types if kind.startswith("Color"))
     header = Header(one_line(information.description) if information else "")
     # the schema has values in (−0.1, 3); some programs write percent
-    is_of_schema = all(-0.1 < value < 3 for spectrum in spectra for value in spectrum.values)
+    is_of_schema = all(
+        -0.1 < value < 3 for spectrum in spectra for value in spectrum.values
+    )
     scales = (Scale(1.0, "the schema of CxF3"),) if is_of_schema else ()
     measured_as = tuple[str, ...]()
     if conditions:
-        alike = "; the entries of an object are nearly the same" if len(conditions) > 1 else ""
+        alike = (
+            "; the entries of an object are nearly the same"
+            if len(conditions) > 1
+            else ""
+        )
         measured_as = (f"measurement conditions: {listed(sorted(conditions))}{alike}",)
-    notes = ("layout: an object per spectrum", *measured_as, *not_used_note(sorted(colours)))
-    return Measurements(tuple(spectra), skipped=tuple(skipped), scales=scales, header=header, notes=notes)
+    notes = (
+        "layout: an object per spectrum",
+        *measured_as,
+        *not_used_note(sorted(colours)),
+    )
+    return Measurements(
+        tuple(spectra),
+        skipped=tuple(skipped),
+        scales=scales,
+        header=header,
+        notes=notes,
+    )
 
 
 def _measurements(resources: Any) -> dict[str, Any]:
     """Return how spectra were measured by the identifier of the colour specification."""
     collection = resources.color_specification_collection if resources else None
     specifications = collection.color_specification if collection else []
-    return {each.id: each.measurement_spec for each in specifications if each.measurement_spec}
+    return {
+        each.id: each.measurement_spec
+        for each in specifications
+        if each.measurement_spec
+    }
 
 
 def _condition(choice: Any, specifications: dict[str, Any]) -> str:
     """Return the measurement condition of ISO 13655, such as M1; empty if none is stated."""
     measured = specifications.get(choice.color_specification)
-    light = measured.device.device_illumination if measured and measured.device else None
+    light = (
+        measured.device.device_illumination if measured and measured.device else None
+    )
     stated = f"{light.value.value if light and light.value else ''} {choice.color_specification or ''}"
     found = CONDITION.search(stated)
     return found[0] if found else ""
@@ -100,4 +143,10 @@ def _spectrum(name: str, choice: Any, specifications: dict[str, Any]) -> Spectru
     first = start if choice.start_wl is None else choice.start_wl
     values = [float(value) for value in choice.value]
     nm = [float(first + step * index) for index in range(len(values))]
-    return Spectrum(name, nm, values, date=one_line(choice.measure_date), quantity=Quantity("reflectance", REFLECTANCE))
+    return Spectrum(
+        name,
+        nm,
+        values,
+        date=one_line(choice.measure_date),
+        quantity=Quantity("reflectance", REFLECTANCE),
+    )

@@ -6,10 +6,24 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.atlas.document import MAX_BYTES, Document, SourceLocation, check_scale, one_line, stated_unit
+from uplift.atlas.document import (
+    MAX_BYTES,
+    Document,
+    SourceLocation,
+    check_scale,
+    one_line,
+    stated_unit,
+)
 from uplift.atlas.measurements import Measurements, parsed_by
 from uplift.atlas.samples import Spectrum
-from uplift.atlas.statements import Quantity, Scale, remark_quantity, remark_scale, to_nm, unit_by_values
+from uplift.atlas.statements import (
+    Quantity,
+    Scale,
+    remark_quantity,
+    remark_scale,
+    to_nm,
+    unit_by_values,
+)
 from uplift.common.errors import AtlasError
 from uplift.common.files import read_bytes
 from uplift.common.text import pluralise
@@ -34,36 +48,59 @@ def read(document: Document) -> Measurements:
 
         fields = envi.read_envi_header(os.fspath(header))
         if fields.get("file type") != FILE_TYPE:
-            raise location.error("is an ENVI image, not a spectral library", HINT, code="not-an-atlas")
+            raise location.error(
+                "is an ENVI image, not a spectral library", HINT, code="not-an-atlas"
+            )
         # The library allocates what the header states: samples are wavelengths, lines are spectra.
         count = int(fields["samples"]) * int(fields["lines"])
-        if count <= 0 or count > data.stat().st_size or int(fields.get("header offset", 0)) != 0:
+        if (
+            count <= 0
+            or count > data.stat().st_size
+            or int(fields.get("header offset", 0)) != 0
+        ):
             problem = f"the header states {pluralise(count, 'value')}, which the file {data.name} does not hold"
             raise location.error(problem, HINT)
         library = envi.open(os.fspath(header), os.fspath(data))
         names = list(map(one_line, library.names))
-        centers, values = library.bands.centers, np.asarray(library.spectra, dtype=float)
+        centers, values = (
+            library.bands.centers,
+            np.asarray(library.spectra, dtype=float),
+        )
         scales = tuple(_scale(fields, location))
         if IGNORED in fields:
-            values[np.isclose(values, float(fields[IGNORED]), rtol=1e-6, atol=0)] = np.nan
+            values[np.isclose(values, float(fields[IGNORED]), rtol=1e-6, atol=0)] = (
+                np.nan
+            )
     if centers is None:
         raise location.error("the header has no wavelengths", HINT)
     unit = one_line(fields.get("wavelength units"))
-    nm = to_nm(centers, stated_unit(unit, location) if unit.lower() not in UNSPECIFIED else unit_by_values(centers))
-    spectra = tuple(Spectrum(name, nm, row) for name, row in zip(names, values, strict=True))
+    nm = to_nm(
+        centers,
+        stated_unit(unit, location)
+        if unit.lower() not in UNSPECIFIED
+        else unit_by_values(centers),
+    )
+    spectra = tuple(
+        Spectrum(name, nm, row) for name, row in zip(names, values, strict=True)
+    )
     texts = [one_line(fields.get(key)) for key in TEXTS]
     return Measurements(
         spectra,
         scales=scales or tuple(filter(None, map(remark_scale, texts))),
         notes=(f"layout: {data.name} with its header",),
-        quantity=Quantity("reflectance", FACTOR) if FACTOR in fields else remark_quantity(texts),
+        quantity=Quantity("reflectance", FACTOR)
+        if FACTOR in fields
+        else remark_quantity(texts),
     )
 
 
 def _scale(fields: dict[str, str], location: SourceLocation) -> Iterator[Scale]:
     """Yield the scale that a header states."""
     if FACTOR in fields:
-        yield Scale(check_scale(float(fields[FACTOR]), f"the {FACTOR}", location), f"{FACTOR} = {fields[FACTOR]}")
+        yield Scale(
+            check_scale(float(fields[FACTOR]), f"the {FACTOR}", location),
+            f"{FACTOR} = {fields[FACTOR]}",
+        )
 
 
 def _pair(document: Document) -> tuple[Path, Path]:
@@ -71,12 +108,24 @@ def _pair(document: Document) -> tuple[Path, Path]:
     path = Path(document.path)
     is_header = document.data.lstrip().startswith(MAGIC)
     if is_header:
-        candidates = [path.with_suffix(""), path.with_suffix(LIBRARY), path.with_suffix(LIBRARY.upper())]
+        candidates = [
+            path.with_suffix(""),
+            path.with_suffix(LIBRARY),
+            path.with_suffix(LIBRARY.upper()),
+        ]
     else:
-        candidates = [path.with_suffix(HEADER), path.with_suffix(HEADER.upper()), Path(f"{path}{HEADER}")]
-    other = next((each for each in candidates if each.is_file() and each != path), candidates[0])
+        candidates = [
+            path.with_suffix(HEADER),
+            path.with_suffix(HEADER.upper()),
+            Path(f"{path}{HEADER}"),
+        ]
+    other = next(
+        (each for each in candidates if each.is_file() and each != path), candidates[0]
+    )
     hint = f"put {other.name} next to it: an ENVI library has two files"
     content = read_bytes(other, AtlasError, limit=MAX_BYTES, hint=hint)
     if not is_header and not content.lstrip().startswith(MAGIC):
-        raise SourceLocation(os.fspath(other)).error("is not an ENVI header", HINT, code="not-an-atlas")
+        raise SourceLocation(os.fspath(other)).error(
+            "is not an ENVI header", HINT, code="not-an-atlas"
+        )
     return (path, other) if is_header else (other, path)

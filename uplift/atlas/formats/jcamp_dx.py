@@ -13,11 +13,16 @@ from uplift.atlas.statements import Quantity, Scale, label_quantity, label_scale
 from uplift.common.text import pluralise
 
 POINTS = re.compile(r"^##\s*NPOINTS\s*=\s*(\S+)", re.IGNORECASE | re.MULTILINE)
-DATA = re.compile(r"^##\s*XY(?:DATA|POINTS)\s*=.*\n([^#]*)", re.IGNORECASE | re.MULTILINE)
+DATA = re.compile(
+    r"^##\s*XY(?:DATA|POINTS)\s*=.*\n([^#]*)", re.IGNORECASE | re.MULTILINE
+)
 """Lines of numbers."""
 COMMA = re.compile(r"(?<![\d.,])([+-]?\d+),(\d+)(?![\d.,])")
 """A number with a decimal comma, or two numbers."""
-FIRST = re.compile(r"^##\s*(?:FIRST|LAST|DELTA|MIN|MAX)[XY]\s*=\s*[+-]?\d+,\d", re.IGNORECASE | re.MULTILINE)
+FIRST = re.compile(
+    r"^##\s*(?:FIRST|LAST|DELTA|MIN|MAX)[XY]\s*=\s*[+-]?\d+,\d",
+    re.IGNORECASE | re.MULTILINE,
+)
 """A single number with a decimal comma."""
 MAX_POINTS = 1_000_000
 REFLECTANCES = ("", "%r", "r", "arbitrary units")
@@ -29,15 +34,22 @@ def read(document: Document) -> Measurements:
     # The library allocates what the file states.
     for count in POINTS.findall(document.text):
         if not re.fullmatch(r"\d{1,7}(\.0*)?", count) or float(count) > MAX_POINTS:
-            raise document.location.error(f"NPOINTS must be at most {MAX_POINTS:,}, got {truncate(count)}", EXPORT)
-    with parsed_by("jcamp", "JCAMP-DX files", document), contextlib.redirect_stdout(io.StringIO()) as printed:
+            raise document.location.error(
+                f"NPOINTS must be at most {MAX_POINTS:,}, got {truncate(count)}", EXPORT
+            )
+    with (
+        parsed_by("jcamp", "JCAMP-DX files", document),
+        contextlib.redirect_stdout(io.StringIO()) as printed,
+    ):
         import jcamp
 
         content = jcamp.read(_with_points(document.text).splitlines())
         blocks = content.get("children") or [content]
     # It prints, and does not raise, that check values disagree with the data.
     if "failed" in printed.getvalue() or "Mismatch" in printed.getvalue():
-        problem = f"the data contradict their check values: {truncate(printed.getvalue())}"
+        problem = (
+            f"the data contradict their check values: {truncate(printed.getvalue())}"
+        )
         raise document.location.error(problem, EXPORT)
     spectra = list[Spectrum]()
     scales = list[Scale]()
@@ -48,9 +60,15 @@ def read(document: Document) -> Measurements:
         quantity = label_quantity(f"{unit} {block.get('data type', '')}")
         if quantity is None and unit.lower() not in REFLECTANCES:
             quantity = Quantity("another quantity", f"YUNITS={unit}")
-        nm = to_nm(block.get("x", ()), stated_unit(one_line(block.get("xunits")), location))
+        nm = to_nm(
+            block.get("x", ()), stated_unit(one_line(block.get("xunits")), location)
+        )
         values = np.asarray(block.get("y", ()), dtype=float)
-        spectra.append(Spectrum(name, nm, values, date=str(block.get("date", "")), quantity=quantity))
+        spectra.append(
+            Spectrum(
+                name, nm, values, date=str(block.get("date", "")), quantity=quantity
+            )
+        )
         scales += filter(None, [label_scale(unit)])
     notes = (f"layout: {pluralise(len(blocks), 'block')}",)
     return Measurements(tuple(spectra), scales=tuple(scales), notes=notes)
@@ -60,7 +78,9 @@ def _with_points(text: str) -> str:
     """Return a text with points in place of decimal commas. Commas between the numbers of pairs stay."""
     pairs = [match for data in DATA.findall(text) for match in COMMA.finditer(data)]
     wavelengths = [float(match[1]) for match in pairs]
-    are_pairs = wavelengths == sorted(wavelengths) or wavelengths == sorted(wavelengths, reverse=True)
+    are_pairs = wavelengths == sorted(wavelengths) or wavelengths == sorted(
+        wavelengths, reverse=True
+    )
     if not FIRST.search(text) and (are_pairs or not pairs):
         return text
     return COMMA.sub(r"\1.\2", text)

@@ -38,7 +38,10 @@ def read(document: Document) -> Measurements:
     problem = document.location.error(NO_TABLE, HINT, code="not-an-atlas")
     for name in names:
         try:
-            found = read_grid(Grid(_rows(book, name, document), document.location, [name]), document.stem)
+            found = read_grid(
+                Grid(_rows(book, name, document), document.location, [name]),
+                document.stem,
+            )
             return replace(found, notes=(f"sheet: {name}", *found.notes))
         except AtlasError as error:
             if error.code != problem.code:
@@ -53,14 +56,21 @@ def _rows(book: Any, name: str, document: Document) -> list[Row]:
         _check_cells(sheet.height, sheet.width, document)
         start = sheet.start[0] if sheet.start else 0
         lines = sheet.to_python(skip_empty_area=True)
-    rows = [trimmed(Cell(_text(value), line) for value in values) for line, values in enumerate(lines, start + 1)]
+    rows = [
+        trimmed(Cell(_text(value), line) for value in values)
+        for line, values in enumerate(lines, start + 1)
+    ]
     return [row for row in rows if row and not row[0].text.startswith("#")]
 
 
 def _text(value: Any) -> str:
     """Return the text of a cell; numbers with all their digits."""
     if isinstance(value, float):
-        return repr(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+        return (
+            repr(int(value))
+            if value.is_integer() and abs(value) < 1e15
+            else repr(value)
+        )
     return plain_cell(one_line(value))
 
 
@@ -69,19 +79,28 @@ def _check_content(document: Document) -> None:
     if document.data.startswith(OLE):
         return
     left = MAX_CONTENT
-    with parsed_by("zipfile", "spreadsheets", document), zipfile.ZipFile(io.BytesIO(document.data)) as archive:
+    with (
+        parsed_by("zipfile", "spreadsheets", document),
+        zipfile.ZipFile(io.BytesIO(document.data)) as archive,
+    ):
         for member in archive.infolist():
             with archive.open(member) as file:
-                content = file.read(left + 1)  # the size that an archive states may be wrong
+                content = file.read(
+                    left + 1
+                )  # the size that an archive states may be wrong
             left -= len(content)
             if left < 0:
-                raise document.location.error(f"its content must not exceed {MAX_CONTENT:,} bytes", HINT)
+                raise document.location.error(
+                    f"its content must not exceed {MAX_CONTENT:,} bytes", HINT
+                )
             _check_cells(*_extent(content), document)
 
 
 def _check_cells(height: int, width: int, document: Document) -> None:
     if height * width > MAX_CELLS:
-        problem = f"a sheet must have at most {MAX_CELLS:,} cells, got {height} × {width}"
+        problem = (
+            f"a sheet must have at most {MAX_CELLS:,} cells, got {height} × {width}"
+        )
         raise document.location.error(problem, HINT)
 
 
@@ -95,7 +114,9 @@ def _extent(content: bytes) -> tuple[int, int]:
             continue
         if place:
             row = int(place[2])
-            column = functools.reduce(lambda sum, letter: 26 * sum + letter - 64, place[1].upper(), 0)
+            column = functools.reduce(
+                lambda sum, letter: 26 * sum + letter - 64, place[1].upper(), 0
+            )
         else:
             column += 1
         if not text.endswith(b"/"):  # a format without a value

@@ -31,21 +31,29 @@ WAVELENGTHS = "*[Ww]avelength*.txt"
 
 def read(document: Document) -> Measurements:
     """Read the entries of a table, whose lines that begin with ``#`` are comments."""
-    comments = [line.strip("# \t") for line in document.lines if line.lstrip().startswith("#")]
+    comments = [
+        line.strip("# \t") for line in document.lines if line.lstrip().startswith("#")
+    ]
     try:
         rows = list(_split(document, _delimiter(document)))
     except (csv.Error, ValueError) as error:
-        raise document.location.error(f"not a readable table: {error}", LAYOUT) from None
+        raise document.location.error(
+            f"not a readable table: {error}", LAYOUT
+        ) from None
     numbers = [row for row in rows if is_value(row[0].text)]
     if len(numbers) < 2 or max(map(len, numbers)) > 1:
         return read_grid(Grid(rows, document.location, comments), document.stem)
-    title = next((text for text in line_texts(rows) if not is_value(text)), document.stem)
+    title = next(
+        (text for text in line_texts(rows) if not is_value(text)), document.stem
+    )
     name, rows = _with_wavelengths(document, title, numbers)
     found = read_grid(Grid(rows, document.location, comments), document.stem)
     return replace(found, notes=(*found.notes, f"wavelengths: those of {name}"))
 
 
-def _with_wavelengths(document: Document, title: str, values: Sequence[Row]) -> tuple[str, list[Row]]:
+def _with_wavelengths(
+    document: Document, title: str, values: Sequence[Row]
+) -> tuple[str, list[Row]]:
     """Join values, one a line, with the wavelengths of another file, as the library of the USGS has them.
 
     Return the name of this file, and the rows.
@@ -54,11 +62,16 @@ def _with_wavelengths(document: Document, title: str, values: Sequence[Row]) -> 
     for path in sorted(Path(document.path).parent.glob(WAVELENGTHS)):
         head, *lines = read_document(path).text.strip().split("\n")
         if len(lines) == len(values) and path != Path(document.path):
-            rows = [(Cell(line.strip(), row[0].line), *row) for line, row in zip(lines, values, strict=True)]
+            rows = [
+                (Cell(line.strip(), row[0].line), *row)
+                for line, row in zip(lines, values, strict=True)
+            ]
             labels = Cell(f"Wavelengths: {head}", 1), Cell(title, 1)
             found.append((path.name, [labels, *rows]))
     if len(found) != 1:
-        problem = f"has {pluralise(len(values), 'value')} without wavelengths, one a line"
+        problem = (
+            f"has {pluralise(len(values), 'value')} without wavelengths, one a line"
+        )
         hint = "put the file of their wavelengths, with 'Wavelengths' in its name and as many lines, next to it"
         raise document.location.error(problem, hint, code="not-an-atlas")
     return found[0]
@@ -70,7 +83,10 @@ def text(atlas: Atlas) -> str:
     for entry in atlas:
         if not np.array_equal(entry.wavelengths, first.wavelengths):
             problem = f"entries '{first.name}' and '{entry.name}' are sampled at different wavelengths"
-            raise OutputError(problem, hint="write atlas text, which keeps each sampling, or separate tables")
+            raise OutputError(
+                problem,
+                hint="write atlas text, which keeps each sampling, or separate tables",
+            )
     rows = ([entry.name, *entry.values.tolist()] for entry in atlas)
     return csv_text(["name", *first.wavelengths.tolist()], rows, quote_text=True)
 
@@ -86,16 +102,24 @@ def _split(document: Document, delimiter: str) -> Iterator[Row]:
     """Yield the rows that are neither blank nor comments."""
     line = 1
     lines = list(io.StringIO(document.text, newline=""))
-    reader = csv.reader(lines, delimiter=delimiter, skipinitialspace=delimiter == BLANKS)
+    reader = csv.reader(
+        lines, delimiter=delimiter, skipinitialspace=delimiter == BLANKS
+    )
     for cells in reader:
         # A row of csv may span several lines; `line` is its first one.
         is_comment = lines[line - 1].lstrip().startswith("#")  # a quoted "#" is a name
-        if cells and not is_comment and not (line == 1 and SEPARATOR.match(cells[0].lstrip())):
+        if (
+            cells
+            and not is_comment
+            and not (line == 1 and SEPARATOR.match(cells[0].lstrip()))
+        ):
             texts = [plain_cell(cell.strip()) for cell in cells]
             if delimiter == BLANKS:
                 texts = list(filter(None, texts))
                 words = re.split(r"\s{2,}", lines[line - 1].strip())
-                if len(words) > 1 and not any(map(is_value, texts)):  # labels of several words, in columns
+                if len(words) > 1 and not any(
+                    map(is_value, texts)
+                ):  # labels of several words, in columns
                     texts = words
             if row := trimmed(Cell(text, line) for text in texts):
                 yield row

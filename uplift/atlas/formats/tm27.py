@@ -19,11 +19,20 @@ def read(document: Document) -> Measurements:
     with parsed_by("colour-science", "IES TM-27 files", document):
         found = colour.SpectralDistribution_IESTM2714(document.path).read()
         quantity = one_line(found.spectral_quantity).lower()
-        described, date = one_line(found.header.description), one_line(found.header.report_date)
+        described, date = (
+            one_line(found.header.description),
+            one_line(found.header.report_date),
+        )
         nm, values = found.wavelengths.tolist(), found.values.tolist()
     name = "reflectance" if quantity in REFLECTANCES else quantity
     return Measurements(
-        (Spectrum(described or document.stem, nm, values, description=described, date=date),),
+        (
+            Spectrum(
+                described or document.stem, nm, values, description=described, date=date
+            ),
+        ),
         notes=(f"layout: one spectrum, quantity '{quantity}'",),
-        quantity=Quantity(name, quantity, of_light=quantity not in MATERIALS) if quantity else None,
+        quantity=Quantity(name, quantity, of_light=quantity not in MATERIALS)
+        if quantity
+        else None,
     )

@@ -15,7 +15,23 @@ from uplift.common.text import parse_float
 
 SHORTEST = 100.0
 """Wavelength in nm that distinguishes a row of wavelengths from a wavelength and its values."""
-MISSING = frozenset(("", "-", "--", "---", "n/a", "#n/a", "na", "n.a.", "nan", "null", "none", "#div/0!", "#value!"))
+MISSING = frozenset(
+    (
+        "",
+        "-",
+        "--",
+        "---",
+        "n/a",
+        "#n/a",
+        "na",
+        "n.a.",
+        "nan",
+        "null",
+        "none",
+        "#div/0!",
+        "#value!",
+    )
+)
 """Texts for a value that is missing, in lower case."""
 LABEL = re.compile(
     r"([^\d.,+-]{0,40}?)[\s_([]*(\d{1,5}(?:[.,]\d{1,8})?)\s*[([]?\s*(nm|[µμu]m|microns?|å|1/cm)?\s*[)\]]?",
@@ -94,11 +110,18 @@ def parse_label(text: str) -> Label | None:
     """
     number = parse_cell(text)
     if number is not None:
-        return Label("", number, None) if np.isfinite(number) and not text.endswith("%") else None
+        return (
+            Label("", number, None)
+            if np.isfinite(number) and not text.endswith("%")
+            else None
+        )
     match = LABEL.fullmatch(text.strip())
     if match is None:
         return None
-    prefix, unit = re.sub(r"[^a-zλρτ%]", "", match[1].casefold()), find_unit(match[3] or "")
+    prefix, unit = (
+        re.sub(r"[^a-zλρτ%]", "", match[1].casefold()),
+        find_unit(match[3] or ""),
+    )
     # Without a unit, R9 is a colour and R400 a wavelength.
     if unit is None and len(re.split("[.,]", match[2])[0]) not in (3, 4):
         return None
@@ -125,7 +148,10 @@ def runs(cells: Sequence[Cell]) -> Iterator[Run]:
         members = list(group)
         numbers = [label.number for label in members if label is not None]
         if kind is not None and len(numbers) > 1:
-            unit = next((label.unit for label in members if label is not None and label.unit), None)
+            unit = next(
+                (label.unit for label in members if label is not None and label.unit),
+                None,
+            )
             yield Run(first, first + len(numbers), kind[0], numbers, unit)
         first += len(members)
 

@@ -8,8 +8,25 @@ import numpy as np
 
 from uplift.atlas.atlas import SkippedEntry
 from uplift.atlas.measurements import not_used_note
-from uplift.atlas.statements import NANOMETRE, find_unit, is_plain, names_wavelengths, to_nm, unit_by_values
-from uplift.atlas.tables.cells import SHORTEST, Cell, Row, Run, is_value, is_visible, parse_cell, parse_label, runs
+from uplift.atlas.statements import (
+    NANOMETRE,
+    find_unit,
+    is_plain,
+    names_wavelengths,
+    to_nm,
+    unit_by_values,
+)
+from uplift.atlas.tables.cells import (
+    SHORTEST,
+    Cell,
+    Row,
+    Run,
+    is_value,
+    is_visible,
+    parse_cell,
+    parse_label,
+    runs,
+)
 from uplift.atlas.tables.grid import MAX_AXIS, Grid, Series, Table, cell_at
 from uplift.common.arrays import Array
 
@@ -41,7 +58,11 @@ class Block:
     def heads(self) -> Sequence[Row]:
         """Rows of labels, from top to bottom."""
         first = last = self.run.first
-        while last - first < MAX_HEADS and first and self._is_head(self.grid.rows[first - 1]):
+        while (
+            last - first < MAX_HEADS
+            and first
+            and self._is_head(self.grid.rows[first - 1])
+        ):
             first -= 1
         return self.grid.rows[first:last]
 
@@ -58,7 +79,9 @@ class Block:
         if stated is not None:
             return stated
         # The lines around may be about another range.
-        if self.grid.unit is not None and is_visible(to_nm(self.run.numbers, self.grid.unit)):
+        if self.grid.unit is not None and is_visible(
+            to_nm(self.run.numbers, self.grid.unit)
+        ):
             return self.grid.unit
         if names_wavelengths(label):  # in any order
             return unit_by_values(np.unique(self.run.numbers))
@@ -71,7 +94,9 @@ class Block:
 
     def labels(self, column: int) -> list[Cell]:
         """Return the labels above a column, from top to bottom."""
-        return [cell for row in self.heads for cell in row[column : column + 1] if cell.text]
+        return [
+            cell for row in self.heads for cell in row[column : column + 1] if cell.text
+        ]
 
     def cells(self, column: int) -> Row:
         """Return a column; the ends of short rows are empty."""
@@ -79,10 +104,14 @@ class Block:
 
     def _is_head(self, row: Row) -> bool:
         """Whether a row has labels: those of columns of text, or of numbers next to a label of wavelengths."""
-        if not self.column < len(row) <= self.width or row[self.column].text.endswith(":"):
+        if not self.column < len(row) <= self.width or row[self.column].text.endswith(
+            ":"
+        ):
             return False
         corner = row[self.column].text
-        labels = [cell.text for cell in row if cell.text and cell is not row[self.column]]
+        labels = [
+            cell.text for cell in row if cell.text and cell is not row[self.column]
+        ]
         has_numbers = any(map(is_value, labels))
         if names_wavelengths(corner):
             return bool(labels) or len(corner.split()) == 1
@@ -119,7 +148,9 @@ def spectra_of(block: Block, others: Sequence[Block]) -> Table:
             unused.append(label)
             continue
         if axis != block.column:  # the name may stand above the wavelengths
-            labels = [cell for cell in block.labels(axis) if not names_wavelengths(cell.text)] + labels
+            labels = [
+                cell for cell in block.labels(axis) if not names_wavelengths(cell.text)
+            ] + labels
         if block.heads and not labels:
             problem = f"column {column + 1} has values and no label"
             hint = "label it, and use another separator than the decimal comma"
@@ -127,8 +158,17 @@ def spectra_of(block: Block, others: Sequence[Block]) -> Table:
         known = np.flatnonzero(np.isfinite(axes[axis])).tolist()
         values = tuple(cells[row] for row in known)
         series.append(Series(label, axes[axis][known].tolist(), values, _name(labels)))
-    layout = "layout: wavelength and value" if block.width == 2 else "layout: a column per spectrum"
-    return Table(series, block.remarks, (layout, *not_used_note(unused)), tuple(map(_skipped, others)))
+    layout = (
+        "layout: wavelength and value"
+        if block.width == 2
+        else "layout: a column per spectrum"
+    )
+    return Table(
+        series,
+        block.remarks,
+        (layout, *not_used_note(unused)),
+        tuple(map(_skipped, others)),
+    )
 
 
 def _name(labels: Sequence[Cell]) -> Cell | None:
@@ -151,7 +191,9 @@ def _axes(block: Block) -> dict[int, Array]:
     for column in range(block.column + 1, block.width):
         labels = [cell.text for cell in block.labels(column)]
         if labels and (labels == own_labels or any(map(names_wavelengths, labels))):
-            numbers = np.array([parse_cell(cell.text) for cell in block.cells(column)], dtype=float)
+            numbers = np.array(
+                [parse_cell(cell.text) for cell in block.cells(column)], dtype=float
+            )
             nm = to_nm(numbers, find_unit(" ".join(labels)) or block.unit)
             if (nm >= SHORTEST).any():
                 axes[column] = nm
@@ -161,11 +203,17 @@ def _axes(block: Block) -> dict[int, Array]:
 def _pairs(block: Block) -> Series | None:
     """Return the spectrum whose wavelengths go on from pair to pair in equal steps, and then to the next line."""
     labels = [cell.text for head in block.heads for cell in head]
-    is_labelled = not all(is_plain(label) or names_wavelengths(label) for label in labels)
+    is_labelled = not all(
+        is_plain(label) or names_wavelengths(label) for label in labels
+    )
     wavelengths = [parse_label(cell.text) for row in block.rows for cell in row[::2]]
     cells = tuple(cell for row in block.rows for cell in row[1::2])
     numbers = [label.number for label in wavelengths if label is not None]
-    if block.width < 4 or is_labelled or not len(numbers) == len(wavelengths) == len(cells):
+    if (
+        block.width < 4
+        or is_labelled
+        or not len(numbers) == len(wavelengths) == len(cells)
+    ):
         return None
     nm = to_nm(numbers, block.unit)
     return None if np.ptp(np.diff(nm)) > EQUAL else Series("", nm.tolist(), cells, None)

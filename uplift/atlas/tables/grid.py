@@ -57,7 +57,10 @@ class Grid:
 
     def column(self, column: int) -> Row:
         """Return a column; rows that do not reach it have a text there."""
-        return tuple(row[column] if column < len(row) else Cell("short", row[0].line) for row in self.rows)
+        return tuple(
+            row[column] if column < len(row) else Cell("short", row[0].line)
+            for row in self.rows
+        )
 
     def remarks(self, first: int, last: int | None = None) -> list[str]:
         """Return the comments, and the lines before row ``first`` and from row ``last`` on."""

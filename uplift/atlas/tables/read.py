@@ -18,9 +18,25 @@ from uplift.atlas.statements import (
     remark_scale,
     to_nm,
 )
-from uplift.atlas.tables.cells import SHORTEST, Cell, Row, is_value, line_texts, parse_cell, runs
+from uplift.atlas.tables.cells import (
+    SHORTEST,
+    Cell,
+    Row,
+    is_value,
+    line_texts,
+    parse_cell,
+    runs,
+)
 from uplift.atlas.tables.columns import blocks, spectra_of
-from uplift.atlas.tables.grid import LAYOUT, MAX_AXIS, MAX_PREAMBLE, NAME_LABELS, Grid, Table, plain_label
+from uplift.atlas.tables.grid import (
+    LAYOUT,
+    MAX_AXIS,
+    MAX_PREAMBLE,
+    NAME_LABELS,
+    Grid,
+    Table,
+    plain_label,
+)
 from uplift.atlas.tables.rows import find_samples, headers, spectra_below
 from uplift.common.errors import AtlasError
 from uplift.common.text import pluralise
@@ -38,14 +54,20 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
     spectra = list[Spectrum]()
     for series in table.series:
         first = series.cells[0]
-        name = series.name or Cell(stem if len(nameless) == 1 else series.label, first.line)
+        name = series.name or Cell(
+            stem if len(nameless) == 1 else series.label, first.line
+        )
         quantity = label_quantity(series.label) or name_quantity(name.text)
         if not name.text and series.name is None:
-            raise grid.location.at(first.line).error("the header row is missing", LAYOUT)
+            raise grid.location.at(first.line).error(
+                "the header row is missing", LAYOUT
+            )
         values, percent = _values(series.cells, grid.location.at(entry=name.text))
         if quantity is None or quantity.is_reflectance:
             scales += [label_scale(series.label), remark_scale(name.text), percent]
-        spectra.append(Spectrum(name.text, series.nm, values, line=name.line, quantity=quantity))
+        spectra.append(
+            Spectrum(name.text, series.nm, values, line=name.line, quantity=quantity)
+        )
     stated = [scale for scale in scales if scale is not None]
     return Measurements(
         tuple(spectra),
@@ -64,13 +86,17 @@ def _values(cells: Row, location: SourceLocation) -> tuple[list[float], Scale | 
         value = parse_cell(cell.text)
         if value is None:
             problem = f"value '{truncate(cell.text)}' is not a number"
-            raise location.at(cell.line).error(problem, "write a plain number such as 0.125")
+            raise location.at(cell.line).error(
+                problem, "write a plain number such as 0.125"
+            )
         values.append(value)
     if not percents:
         return values, None
     if len(percents) < (~is_missing(values)).sum():
         problem = f"{len(percents)} of {pluralise(len(cells), 'value')} are in percent, such as '{percents[0]}'"
-        raise location.at(cells[0].line).error(problem, "give all or none in percent", code="mixed-scales")
+        raise location.at(cells[0].line).error(
+            problem, "give all or none in percent", code="mixed-scales"
+        )
     return values, Scale(PERCENT, percents[0])
 
 
@@ -84,13 +110,19 @@ def _rows_or_columns(grid: Grid) -> Table:
             raise _no_table(grid)
         return spectra_below(grid, header)
     if header is None or header.at != block.run.first - 1:
-        others = [other for other in found if other.column == block.column and other is not block]
+        others = [
+            other
+            for other in found
+            if other.column == block.column and other is not block
+        ]
         return spectra_of(block, others)
     corner = grid.rows[header.at][block.column]
     if plain_label(corner.text) in NAME_LABELS:
         return spectra_below(grid, header)
     problem = "the first row and the first column may both be wavelengths"
-    raise grid.location.at(corner.line).error(problem, "label the names 'name', or give them letters")
+    raise grid.location.at(corner.line).error(
+        problem, "label the names 'name', or give them letters"
+    )
 
 
 def _no_table(grid: Grid) -> AtlasError:
@@ -106,7 +138,10 @@ def _no_table(grid: Grid) -> AtlasError:
                 hint = "add the missing wavelengths, or state their unit in a label, such as 'Wavelength (µm)'"
                 return grid.location.at(cells[run.first].line).error(problem, hint)
     # A line with numbers was meant to be understood.
-    first = next((row for row in grid.rows if any(is_value(cell.text) for cell in row)), grid.rows[0])
+    first = next(
+        (row for row in grid.rows if any(is_value(cell.text) for cell in row)),
+        grid.rows[0],
+    )
     text = truncate(line_texts([first])[0])
     problem = f"{NO_TABLE}; read as a table, this line has {pluralise(len(first), 'cell')}: '{text}'"
     return grid.location.at(first[0].line).error(problem, LAYOUT, code="not-an-atlas")

@@ -29,7 +29,15 @@ from uplift.atlas.tables.cells import (
     parse_label,
     runs,
 )
-from uplift.atlas.tables.grid import MAX_PREAMBLE, NAME_LABELS, Grid, Series, Table, cell_at, plain_label
+from uplift.atlas.tables.grid import (
+    MAX_PREAMBLE,
+    NAME_LABELS,
+    Grid,
+    Series,
+    Table,
+    cell_at,
+    plain_label,
+)
 from uplift.common.arrays import Array
 from uplift.common.text import pluralise
 
@@ -46,12 +54,31 @@ def headers(grid: Grid) -> Iterator[Header]:
     """Yield the indices of rows with wavelengths in nm, and numbers in the row below."""
     for index, row in enumerate(grid.rows[:MAX_PREAMBLE]):
         for run in runs(row):
-            nm = to_nm(run.numbers, run.unit or grid.unit or (METRE if max(run.numbers) < 1e-5 else NANOMETRE))
-            below = grid.rows[index + 1][run.first : run.last] if index + 1 < len(grid.rows) else ()
-            numbers = [value for cell in below if (value := parse_cell(cell.text)) is not None]
-            has_values = bool(numbers) and not (len(numbers) > 1 and is_visible(np.array(numbers)))
-            is_named = run.first == 1 and plain_label(row[0].text) in NAME_LABELS and covers_visible(nm)
-            if has_values and (is_visible(nm) or is_named or (run.prefix and len(nm) > 2)):
+            nm = to_nm(
+                run.numbers,
+                run.unit
+                or grid.unit
+                or (METRE if max(run.numbers) < 1e-5 else NANOMETRE),
+            )
+            below = (
+                grid.rows[index + 1][run.first : run.last]
+                if index + 1 < len(grid.rows)
+                else ()
+            )
+            numbers = [
+                value for cell in below if (value := parse_cell(cell.text)) is not None
+            ]
+            has_values = bool(numbers) and not (
+                len(numbers) > 1 and is_visible(np.array(numbers))
+            )
+            is_named = (
+                run.first == 1
+                and plain_label(row[0].text) in NAME_LABELS
+                and covers_visible(nm)
+            )
+            if has_values and (
+                is_visible(nm) or is_named or (run.prefix and len(nm) > 2)
+            ):
                 yield Header(index, run, nm)
 
 
@@ -82,14 +109,21 @@ def spectra_below(grid: Grid, wavelengths: Header) -> Table:
     remarks += filter(is_photometric, unused)
     if column is not None:
         remarks.append(header[column].text)
-    return Table(series, remarks, ("layout: a row per spectrum", *not_used_note(unused)))
+    return Table(
+        series, remarks, ("layout: a row per spectrum", *not_used_note(unused))
+    )
 
 
 def _name_column(header: Row, body: Sequence[Row], others: Sequence[int]) -> int | None:
     """Return the column of the names: that of a usual label whose texts differ, or else the first one."""
     # Labels that state a name come before those of numbers, unless they repeat a name.
     labels = {index: plain_label(header[index].text) for index in others}
-    known = [index for wanted in NAME_LABELS for index, label in labels.items() if label == wanted]
+    known = [
+        index
+        for wanted in NAME_LABELS
+        for index, label in labels.items()
+        if label == wanted
+    ]
     for index in known:
         names = [row[index].text for row in body]
         if all(names) and len(set(names)) == len(names):
@@ -112,10 +146,14 @@ def find_samples(grid: Grid) -> Table | None:
 
 def _first(header: Row, is_wanted: Callable[[str], bool]) -> int | None:
     """Return the first column whose label is wanted."""
-    return next((column for column, cell in enumerate(header) if is_wanted(cell.text)), None)
+    return next(
+        (column for column, cell in enumerate(header) if is_wanted(cell.text)), None
+    )
 
 
-def _sample_table(grid: Grid, index: int, columns: tuple[int, int, int]) -> Table | None:
+def _sample_table(
+    grid: Grid, index: int, columns: tuple[int, int, int]
+) -> Table | None:
     """Return a spectrum for each name in the first of three columns; the header is the row of an index."""
     header = grid.rows[index]
     remarks = grid.remarks(index)
@@ -127,7 +165,9 @@ def _sample_table(grid: Grid, index: int, columns: tuple[int, int, int]) -> Tabl
             found.setdefault(name.text, []).append((label.number, value))
         elif is_value(value.text):
             problem = f"wavelength '{truncate(wavelength.text)}' is not a number"
-            raise grid.location.at(row[0].line, name.text).error(problem, "write a plain number such as 400")
+            raise grid.location.at(row[0].line, name.text).error(
+                problem, "write a plain number such as 400"
+            )
         else:
             remarks += line_texts([row])
     are_measured = any(is_value(name) and not name.isdigit() for name in found)
@@ -135,10 +175,16 @@ def _sample_table(grid: Grid, index: int, columns: tuple[int, int, int]) -> Tabl
         return None
     numbers = [number for samples in found.values() for number, _ in samples]
     _, wavelength_column, value_column = columns
-    unit = find_unit(header[wavelength_column].text) or grid.unit or unit_by_values(np.unique(numbers))
+    unit = (
+        find_unit(header[wavelength_column].text)
+        or grid.unit
+        or unit_by_values(np.unique(numbers))
+    )
     series = list[Series]()
     for text, samples in found.items():
         nm = to_nm([number for number, _ in samples], unit).tolist()
         cells = tuple(cell for _, cell in samples)
-        series.append(Series(header[value_column].text, nm, cells, Cell(text, cells[0].line)))
+        series.append(
+            Series(header[value_column].text, nm, cells, Cell(text, cells[0].line))
+        )
     return Table(series, remarks, ("layout: a row per sample",))

@@ -9,4 +9,12 @@ from uplift.design.mixing.coats import Ingredients, Medium, make_coat, mix, over
 from uplift.design.mixing.optics import Surface
 from uplift.design.mixing.pigments import dispersive
 
-__all__ = ["Ingredients", "Medium", "Surface", "dispersive", "make_coat", "mix", "overpainter"]
+__all__ = [
+    "Ingredients",
+    "Medium",
+    "Surface",
+    "dispersive",
+    "make_coat",
+    "mix",
+    "overpainter",
+]

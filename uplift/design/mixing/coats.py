@@ -52,7 +52,9 @@ class Coat:
     def over(self, ground: ArrayLike) -> Array:
         """Return the reflectance (..., N) on a ground (..., N), both surface included."""
         beneath = _beneath(self.surface, ground)
-        return self.surface.apply(self.layer.over(beneath), self.layer.diffuse.over(beneath))
+        return self.surface.apply(
+            self.layer.over(beneath), self.layer.diffuse.over(beneath)
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +101,9 @@ class Medium:
     plate: bool = False
 
 
-def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium) -> Coat:
+def make_coat(
+    kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium
+) -> Coat:
     """Make a coat of pigments or dyes.
 
     Parameters
@@ -127,34 +131,58 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
         No pigment has the given reflectances on white and on black.
     """
     if kind not in COATS:
-        raise OptionError(f"a coat cannot be of kind '{kind}'", hint=f"use {' or '.join(COATS)}")
+        raise OptionError(
+            f"a coat cannot be of kind '{kind}'", hint=f"use {' or '.join(COATS)}"
+        )
     if medium.thickness is not None and not 0 <= medium.thickness <= MAX_THICKNESS:
         problem = f"thickness must be in [0, {MAX_THICKNESS:g}], got {medium.thickness}"
         raise OptionError(problem, hint="1 is the unit")
     if medium.plate and kind != "dye":
-        raise OptionError(f"a plate must be of kind 'dye', got '{kind}'", hint="what scatters has no free plate")
+        raise OptionError(
+            f"a plate must be of kind 'dye', got '{kind}'",
+            hint="what scatters has no free plate",
+        )
     thickness = 1.0 if medium.thickness is None else medium.thickness
     if kind == "duntley":
         constants = ingredients.spectra
-        mixed = optics.weighted_sum(constants.reshape(len(constants), -1), optics.as_shares(parts))
+        mixed = optics.weighted_sum(
+            constants.reshape(len(constants), -1), optics.as_shares(parts)
+        )
         fluxes = np.moveaxis(mixed.reshape(*mixed.shape[:-1], 6, -1), -2, 0)
-        return Coat(pigments.duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), thickness), medium.surface)
-    surface, spectra = medium.surface, [*ingredients.spectra, *ingredients.measured_on_black]
+        return Coat(
+            pigments.duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), thickness),
+            medium.surface,
+        )
+    surface, spectra = (
+        medium.surface,
+        [*ingredients.spectra, *ingredients.measured_on_black],
+    )
     dark = sum(bool((surface.remove(one) < -SLACK).any()) for one in spectra)
     if dark:
         problem = f"{dark} of {pluralise(len(spectra), 'colour')} partly darker than the surface alone: black there"
         warnings.warn(UpliftWarning(problem), stacklevel=2)
     if kind == "dye":
         if ingredients.measured_on_black:
-            raise OptionError("dyes must not have a colour on black", hint="pass their colour on white only")
-        absorption = optics.weighted_sum(dye_absorption(ingredients.spectra, surface), optics.as_shares(parts))
+            raise OptionError(
+                "dyes must not have a colour on black",
+                hint="pass their colour on white only",
+            )
+        absorption = optics.weighted_sum(
+            dye_absorption(ingredients.spectra, surface), optics.as_shares(parts)
+        )
         transmittance = dye_transmittance(absorption, thickness)
         if medium.plate:
             return Coat(optics.plate(transmittance, surface.outside))
         return Coat(Layer(np.zeros_like(transmittance), transmittance), surface)
     on_black = ingredients.on_black or (None,) * len(ingredients.spectra)
-    paints = [_pigment(*pair, medium) for pair in zip(ingredients.spectra, on_black, strict=True)]
-    stacked = Pigment(np.stack([one.absorption for one in paints]), np.stack([one.scattering for one in paints]))
+    paints = [
+        _pigment(*pair, medium)
+        for pair in zip(ingredients.spectra, on_black, strict=True)
+    ]
+    stacked = Pigment(
+        np.stack([one.absorption for one in paints]),
+        np.stack([one.scattering for one in paints]),
+    )
     mixture = stacked.mix(parts)
     if medium.thickness is not None:
         return Coat(mixture.layer(medium.thickness), surface)
@@ -162,7 +190,13 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
     return Coat(Layer(reflectance, np.zeros_like(reflectance)), surface)
 
 
-def mix(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, ground: ArrayLike) -> Array:
+def mix(
+    kind: str,
+    ingredients: Ingredients,
+    parts: ArrayLike,
+    medium: Medium,
+    ground: ArrayLike,
+) -> Array:
     """Mix components.
 
     Parameters
@@ -191,12 +225,22 @@ def mix(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, g
     if kind in COATS:
         return make_coat(kind, ingredients, parts, medium).over(ground)
     if kind not in KINDS:
-        raise OptionError(f"unknown kind of mixture '{kind}'", hint=f"use one of {', '.join(KINDS)}")
+        raise OptionError(
+            f"unknown kind of mixture '{kind}'", hint=f"use one of {', '.join(KINDS)}"
+        )
     usual = (None, optics.NO_SURFACE, False)
-    if (medium.thickness, medium.surface, medium.plate) != usual or ingredients.measured_on_black:
+    if (
+        medium.thickness,
+        medium.surface,
+        medium.plate,
+    ) != usual or ingredients.measured_on_black:
         problem = f"{kind}s must not have a thickness, a surface, a plate or a colour on black"
-        raise OptionError(problem, hint="leave them out; parts of filters are their thickness")
-    return (optics.stack_filters if kind == "filter" else optics.add_lights)(ingredients.spectra, parts)
+        raise OptionError(
+            problem, hint="leave them out; parts of filters are their thickness"
+        )
+    return (optics.stack_filters if kind == "filter" else optics.add_lights)(
+        ingredients.spectra, parts
+    )
 
 
 def ramp(parts: ArrayLike, steps: int) -> Array:
@@ -208,7 +252,9 @@ def ramp(parts: ArrayLike, steps: int) -> Array:
     [[2.0, 0.0], [1.0, 0.5], [0.0, 1.0]]
     """
     if steps < 2:
-        raise OptionError(f"a ramp must have at least 2 steps, got {steps}", hint="use 2 or more")
+        raise OptionError(
+            f"a ramp must have at least 2 steps, got {steps}", hint="use 2 or more"
+        )
     ends = np.diag(optics.as_amounts(parts))
     if len(ends) < 2:
         return np.empty((0, len(ends)))
@@ -221,7 +267,9 @@ def dye_transmittance(absorption: ArrayLike, thickness: float) -> Array:
     return np.exp(-thickness * np.asarray(absorption, dtype=float))
 
 
-def dye_absorption(reflectance: ArrayLike, surface: Surface = optics.NO_SURFACE) -> Array:
+def dye_absorption(
+    reflectance: ArrayLike, surface: Surface = optics.NO_SURFACE
+) -> Array:
     """Return the absorption (..., N) of a dye, one unit thick, from its reflectance on perfect white (eq. 9.7, 9.5)."""
     transmittance = np.sqrt(_beneath(surface, reflectance))
     return -np.log(np.clip(transmittance, DARKEST, 1))
@@ -230,10 +278,14 @@ def dye_absorption(reflectance: ArrayLike, surface: Surface = optics.NO_SURFACE)
 def _pigment(spectrum: Array, on_black: Array | None, medium: Medium) -> Pigment:
     internal = _beneath(medium.surface, spectrum)
     if on_black is not None:
-        return pigments.from_black_and_white(_beneath(medium.surface, on_black), internal)
+        return pigments.from_black_and_white(
+            _beneath(medium.surface, on_black), internal
+        )
     if medium.scattering is None:
         problem = "one colour does not determine the scattering of a pigment"
-        raise OptionError(problem, hint="set the scattering of the medium, or give a colour on black")
+        raise OptionError(
+            problem, hint="set the scattering of the medium, or give a colour on black"
+        )
     return pigments.from_opaque(internal, medium.scattering)
 
 
@@ -246,12 +298,16 @@ class Overpainter(Converter):
     """Converter that lays a coat over images, made by `overpainter`. The gamut is mapped before and after painting."""
 
     coat: Coat  # at the wavelengths of the sensor
-    reflectance: Callable[[Floats], Floats]  # from linear RGB (..., 3) to reflectances (..., N)
+    reflectance: Callable[
+        [Floats], Floats
+    ]  # from linear RGB (..., 3) to reflectances (..., N)
     threads: int  # that share a band
 
     def paint(self, rgb: Floats) -> Floats:
         """Lay the coat over linear RGB (..., 3) in [0, 1]; the result may be outside."""
-        return blockwise(self._paint_block, rgb.astype(float), 3, np.float32, self.threads)
+        return blockwise(
+            self._paint_block, rgb.astype(float), 3, np.float32, self.threads
+        )
 
     def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
         """Lay the coat over a block of colours (..., 3) and map the result to the gamut, counting pixels outside."""

@@ -33,14 +33,18 @@ def as_shares(parts: ArrayLike) -> Array:
     array = as_amounts(parts)
     largest = array.max(axis=-1, keepdims=True)
     if not (largest > 0).all():
-        raise OptionError("some part of a mixture must be greater than 0", hint="raise one of them")
+        raise OptionError(
+            "some part of a mixture must be greater than 0", hint="raise one of them"
+        )
     relative = array / largest  # a sum of huge parts would overflow
     return np.asarray(relative / relative.sum(axis=-1, keepdims=True))
 
 
 def weighted_sum(spectra: ArrayLike, weights: Array) -> Array:
     """Return the sum (…, N) of spectra (…, n, N) with weights (…, n)."""
-    return np.asarray((weights[..., None, :] @ np.asarray(spectra, dtype=float))[..., 0, :])
+    return np.asarray(
+        (weights[..., None, :] @ np.asarray(spectra, dtype=float))[..., 0, :]
+    )
 
 
 def add_lights(spectra: ArrayLike, strengths: ArrayLike) -> Array:
@@ -94,7 +98,10 @@ class DirectedLayer(Layer):
         """Return the reflectance (..., N) of a beam on a ground (..., N): R + T g τ Σ (r g)^i."""
         ground = np.asarray(ground, dtype=float)
         escaping = np.maximum(1 - self.inner.reflectance * ground, TINY)
-        return self.reflectance + self.transmittance * ground * self.inner.transmittance / escaping
+        return (
+            self.reflectance
+            + self.transmittance * ground * self.inner.transmittance / escaping
+        )
 
 
 def plate(transmittance: ArrayLike, rho: float) -> Layer:
@@ -104,7 +111,9 @@ def plate(transmittance: ArrayLike, rho: float) -> Layer:
     """
     once = np.asarray(transmittance, dtype=float)
     rest = 1 - (rho * once) ** 2
-    return Layer(rho + rho * ((1 - rho) * once) ** 2 / rest, (1 - rho) ** 2 * once / rest)
+    return Layer(
+        rho + rho * ((1 - rho) * once) ** 2 / rest, (1 - rho) ** 2 * once / rest
+    )
 
 
 def fresnel_reflectance(index: float) -> float:
@@ -179,7 +188,10 @@ class Surface:
             problem = f"refractive index must be finite and at least 1, got {index}"
             raise OptionError(problem, hint="linseed oil has 1.5")
         if incidence not in INCIDENCES:
-            raise OptionError(f"unknown incidence '{incidence}'", hint=f"use {' or '.join(INCIDENCES)}")
+            raise OptionError(
+                f"unknown incidence '{incidence}'",
+                hint=f"use {' or '.join(INCIDENCES)}",
+            )
         return cls(INCIDENCES[incidence](index), internal_reflectance(index))
 
     def apply(self, internal: ArrayLike, diffuse: ArrayLike | None = None) -> Array:

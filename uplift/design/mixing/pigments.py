@@ -41,7 +41,13 @@ from uplift.atlas.formats import read_any
 from uplift.colorimetry import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError
-from uplift.design.mixing.optics import TINY, DirectedLayer, Layer, as_shares, weighted_sum
+from uplift.design.mixing.optics import (
+    TINY,
+    DirectedLayer,
+    Layer,
+    as_shares,
+    weighted_sum,
+)
 
 DARKEST = 1e-4  # smallest reflectance that K and S are derived from; K diverges at 0
 SLACK = 1e-3  # contradiction between measurements on two grounds that is accepted as rounding
@@ -51,7 +57,14 @@ REACH = 40.0  # distance in nm at which the weight of absorption in h falls to 1
 DARKEST_DISPERSED = 0.01
 # Relative difference of μ and γ below which the mean of both sides is taken; its error is the square of this.
 MIN_RELATIVE_GAP = 1e-5
-CONSTANTS = ("K'", "B'", "F'", "K", "B", "F")  # of Duntley's eight, those that the others are sums of
+CONSTANTS = (
+    "K'",
+    "B'",
+    "F'",
+    "K",
+    "B",
+    "F",
+)  # of Duntley's eight, those that the others are sums of
 
 # From reflectances (..., N) in (0, 1] to S (..., N), greater than 0, of which white has 1.
 Scattering = Callable[[Array], Array]
@@ -75,7 +88,9 @@ class Dispersive:
     """S = Y^exponent exp(weight · h), made by `dispersive`."""
 
     luminance: Array  # (N,) weights of Y, of sum 1
-    imbalance: Array  # (N, N) from √(K/S) to h; rows sum to 0, so that a grey paint has h = 0
+    imbalance: (
+        Array  # (N, N) from √(K/S) to h; rows sum to 0, so that a grey paint has h = 0
+    )
     exponent: float = 0.75
     weight: float = 0.25
 
@@ -102,12 +117,16 @@ def dispersive(sensor: Sensor, further: ArrayLike = ()) -> Dispersive:
         The scattering of spectra (..., N + n).
     """
     inner = sensor.wavelengths
-    outer = np.concatenate([inner, np.clip(np.asarray(further, dtype=float), inner[0], inner[-1])])
+    outer = np.concatenate(
+        [inner, np.clip(np.asarray(further, dtype=float), inner[0], inner[-1])]
+    )
     distance = outer[:, None] - inner
     weights = np.exp(-np.abs(distance) / REACH)
     below, above = weights * (distance >= 0), weights * (distance <= 0)
     imbalance = np.zeros((len(outer), len(outer)))
-    imbalance[:, : len(inner)] = below / below.sum(axis=1)[:, None] - above / above.sum(axis=1)[:, None]
+    imbalance[:, : len(inner)] = (
+        below / below.sum(axis=1)[:, None] - above / above.sum(axis=1)[:, None]
+    )
     luminance = np.zeros(len(outer))
     luminance[: len(inner)] = sensor.cmfs[:, 1] / sensor.cmfs[:, 1].sum()
     return Dispersive(luminance, imbalance)
@@ -128,7 +147,10 @@ class Pigment:
     def mix(self, parts: ArrayLike) -> "Pigment":
         """Mix the pigments along the last axis but one by parts (..., n) (eq. 10.7)."""
         weights = as_shares(parts)
-        return Pigment(weighted_sum(self.absorption, weights), weighted_sum(self.scattering, weights))
+        return Pigment(
+            weighted_sum(self.absorption, weights),
+            weighted_sum(self.scattering, weights),
+        )
 
     def opaque_reflectance(self) -> Array:
         """Return the reflectance (..., N) of opaque paint, the limit X → ∞ (eq. 10.5)."""
@@ -210,12 +232,19 @@ def duntley_layer(beam: Flux, diffuse: Flux, thickness: float) -> DirectedLayer:
         # A beam that is not scattered feeds nothing.
         P = np.where(S1 > 0, ((K - K1) * B1 + (B - B1) * S1) / safe, 0)
         Q = np.where(S1 > 0, ((K + K1) * F1 + (B + F1) * S1) / safe, 0)
-        return np.stack([Q * r + P * unscattered * tau - P, Q * tau + P * unscattered * r - (Q - 1) * unscattered])
+        return np.stack(
+            [
+                Q * r + P * unscattered * tau - P,
+                Q * tau + P * unscattered * r - (Q - 1) * unscattered,
+            ]
+        )
 
     mu = beam.absorption + S1
     step = MIN_RELATIVE_GAP * np.maximum(mu, gamma)
     offset = np.where(np.abs(mu - gamma) < step, 2 * step, 0.0)
-    reflectance, transmittance = (one_side(beam.absorption + offset) + one_side(beam.absorption - offset)) / 2
+    reflectance, transmittance = (
+        one_side(beam.absorption + offset) + one_side(beam.absorption - offset)
+    ) / 2
     return DirectedLayer(reflectance, transmittance, layer)
 
 
@@ -227,19 +256,32 @@ def read_constants(path: StrPath, wavelengths: Array) -> Array:
     document = read_document(path)
     (_, found), samples = read_any(document), {}
     for spectrum in () if isinstance(found, Atlas) else found.spectra:
-        nm, values = np.asarray(spectrum.wavelengths, dtype=float), np.asarray(spectrum.values, dtype=float)
+        nm, values = (
+            np.asarray(spectrum.wavelengths, dtype=float),
+            np.asarray(spectrum.values, dtype=float),
+        )
         if not (np.isfinite(values) & (values >= 0)).all():
             location = document.location.at(spectrum.line, spectrum.name)
-            raise location.error("constants of a paint must be finite and at least 0", "correct the table")
+            raise location.error(
+                "constants of a paint must be finite and at least 0",
+                "correct the table",
+            )
         order = np.argsort(nm)
         samples[spectrum.name] = np.interp(wavelengths, nm[order], values[order])
     missing = [name for name in CONSTANTS if name not in samples]
     if missing:
         problem = f"a table of Duntley's constants must have {', '.join(CONSTANTS)}; {', '.join(missing)} missing"
-        raise document.location.error(problem, "write a column for each, and one of wavelengths in nm")
+        raise document.location.error(
+            problem, "write a column for each, and one of wavelengths in nm"
+        )
     for total, parts in (("S'", ("B'", "F'")), ("S", ("B", "F"))):
-        if total in samples and not np.allclose(samples[total], sum(samples[part] for part in parts), rtol=1e-3):
-            raise document.location.error(f"{total} must be {' + '.join(parts)}", f"correct {total} or leave it out")
+        if total in samples and not np.allclose(
+            samples[total], sum(samples[part] for part in parts), rtol=1e-3
+        ):
+            raise document.location.error(
+                f"{total} must be {' + '.join(parts)}",
+                f"correct {total} or leave it out",
+            )
     return np.stack([samples[name] for name in CONSTANTS])
 
 

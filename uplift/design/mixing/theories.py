@@ -25,11 +25,19 @@ from uplift.colorimetry.tables import samples
 from uplift.common.arrays import Array
 from uplift.design.mixing import pigments
 from uplift.design.mixing.coats import dye_absorption, dye_transmittance
-from uplift.design.mixing.optics import Surface, as_shares, average_areas, stack_filters, weighted_sum
+from uplift.design.mixing.optics import (
+    Surface,
+    as_shares,
+    average_areas,
+    stack_filters,
+    weighted_sum,
+)
 from uplift.design.mixing.pigments import Pigment, Scattering
 from uplift.lookup import Cube
 
-Mix = Callable[[Array, Array], Array]  # from components (..., n, K) and parts (..., n) to the mixture (..., K)
+Mix = Callable[
+    [Array, Array], Array
+]  # from components (..., n, K) and parts (..., n) to the mixture (..., K)
 CRT = "Typical CRT Brainard 1997"
 """Phosphors of a cathode-ray tube, measured by D. H. Brainard."""
 OIL = Surface.of_index(1.5)
@@ -55,12 +63,17 @@ def mixers(cube: Cube) -> tuple[Mixer, ...]:
     def uplifted(mix: Mix) -> Mix:
         return lambda rgb, parts: sensor.rgb(mix(cube.reflectance(rgb), parts))
 
-    spectral = (Mixer(name, title, uplifted(mix)) for name, (title, mix) in spectral_models(sensor).items())
+    spectral = (
+        Mixer(name, title, uplifted(mix))
+        for name, (title, mix) in spectral_models(sensor).items()
+    )
     return (
         *spectral,
         Mixer("average", "average of RGB", average_areas),  # Fishkin 1983, eq. 8.3
         Mixer("product", "product of RGB", stack_filters),  # eq. 9.2
-        Mixer("ryb", "RYB-HSL", lambda rgb, parts: mix_ryb(np.clip(rgb, 0, 1), parts)),  # section 10.4
+        Mixer(
+            "ryb", "RYB-HSL", lambda rgb, parts: mix_ryb(np.clip(rgb, 0, 1), parts)
+        ),  # section 10.4
         Mixer("phosphors", "phosphor curves", mix_phosphors),  # chapter 7
     )
 
@@ -72,25 +85,42 @@ def spectral_models(sensor: Sensor) -> dict[str, tuple[str, Mix]]:
         "pigments": ("Kubelka–Munk", paints),
         "pigments in oil": (
             "Kubelka–Munk, in oil (index 1.5)",
-            lambda spectra, parts: OIL.apply(paints(np.clip(OIL.remove(spectra), 0, 1), parts)),
+            lambda spectra, parts: OIL.apply(
+                paints(np.clip(OIL.remove(spectra), 0, 1), parts)
+            ),
         ),
         "pigments, S = √R": ("Kubelka–Munk, S = √R", _paints(pigments.SQUARE_ROOT)),
         "pigments, S = 1": ("Kubelka–Munk, S = 1", _paints(pigments.CONSTANT)),
-        "pigments, Amy": ("Amy's approximation", _paints(pigments.dispersive(sensor), Pigment.amy_opaque_reflectance)),
+        "pigments, Amy": (
+            "Amy's approximation",
+            _paints(pigments.dispersive(sensor), Pigment.amy_opaque_reflectance),
+        ),
         "pigments, Duntley": (
             "Duntley, in directed light",
-            lambda spectra, parts: pigments.diffuse_to_beam(paints(pigments.beam_to_diffuse(spectra), parts)),
+            lambda spectra, parts: pigments.diffuse_to_beam(
+                paints(pigments.beam_to_diffuse(spectra), parts)
+            ),
         ),
         "dyes": (
             "dyes on white",
-            lambda spectra, parts: dye_transmittance(weighted_sum(dye_absorption(spectra), as_shares(parts)), 1.0) ** 2,
+            lambda spectra, parts: (
+                dye_transmittance(
+                    weighted_sum(dye_absorption(spectra), as_shares(parts)), 1.0
+                )
+                ** 2
+            ),
         ),
         "filters": ("filters", stack_filters),
     }
 
 
-def _paints(scattering: Scattering, reflectance: Callable[[Pigment], Array] = Pigment.opaque_reflectance) -> Mix:
-    return lambda spectra, parts: reflectance(pigments.from_opaque(spectra, scattering).mix(parts))
+def _paints(
+    scattering: Scattering,
+    reflectance: Callable[[Pigment], Array] = Pigment.opaque_reflectance,
+) -> Mix:
+    return lambda spectra, parts: reflectance(
+        pigments.from_opaque(spectra, scattering).mix(parts)
+    )
 
 
 def hsl_to_rgb(hsl: ArrayLike) -> Array:
@@ -100,7 +130,11 @@ def hsl_to_rgb(hsl: ArrayLike) -> Array:
     the sixth of the hue circle that contains the hue is computed (Fishkin 1983, 5.3.5).
     """
     hue, saturation, lightness = np.moveaxis(np.asarray(hsl, dtype=float), -1, 0)
-    largest = np.where(lightness <= 0.5, lightness * (1 + saturation), lightness + saturation - lightness * saturation)
+    largest = np.where(
+        lightness <= 0.5,
+        lightness * (1 + saturation),
+        lightness + saturation - lightness * saturation,
+    )
     smallest = 2 * lightness - largest
     position = 6 * (hue % 1)
     sextant = np.minimum(position.astype(int), 5)  # −1e-17 % 1 is 1
@@ -122,8 +156,12 @@ def rgb_to_hsl(rgb: ArrayLike) -> Array:
         [(green - blue) / safe % 6, (blue - red) / safe + 2],
         (red - green) / safe + 4,
     )
-    saturation = np.where(max_chroma > 0, chroma / np.where(max_chroma > 0, max_chroma, 1), 0)
-    return np.stack([np.where(chroma > 0, position / 6 % 1, 0), saturation, lightness], axis=-1)
+    saturation = np.where(
+        max_chroma > 0, chroma / np.where(max_chroma > 0, max_chroma, 1), 0
+    )
+    return np.stack(
+        [np.where(chroma > 0, position / 6 % 1, 0), saturation, lightness], axis=-1
+    )
 
 
 def mix_ryb(rgb: ArrayLike, parts: ArrayLike) -> Array:
@@ -133,19 +171,25 @@ def mix_ryb(rgb: ArrayLike, parts: ArrayLike) -> Array:
     hue, _, lightness = np.moveaxis(rgb_to_hsl(rgb), -1, 0)
     angle = 2 * np.pi * np.interp(hue, RGB_WHEEL, RYB_WHEEL)
     chroma = rgb.max(axis=-1) - rgb.min(axis=-1)
-    cone = np.stack([chroma * np.cos(angle), chroma * np.sin(angle), lightness], axis=-1)
+    cone = np.stack(
+        [chroma * np.cos(angle), chroma * np.sin(angle), lightness], axis=-1
+    )
     # The centroid, and back.
     x, y, lightness = np.moveaxis(weighted_sum(cone, as_shares(parts)), -1, 0)
     hue = np.interp(np.arctan2(y, x) / (2 * np.pi) % 1, RYB_WHEEL, RGB_WHEEL)
     max_chroma = np.minimum(2 * lightness, 2 - 2 * lightness)
-    saturation = np.where(max_chroma > 0, np.hypot(x, y) / np.where(max_chroma > 0, max_chroma, 1), 0)
+    saturation = np.where(
+        max_chroma > 0, np.hypot(x, y) / np.where(max_chroma > 0, max_chroma, 1), 0
+    )
     return hsl_to_rgb(np.stack([hue, np.minimum(saturation, 1), lightness], axis=-1))
 
 
 def mix_phosphors(rgb: ArrayLike, thickness: ArrayLike) -> Array:
     """Mix linear RGB (..., n, 3) as filters of a thickness (..., n) with phosphor curves."""
     curves, to_rgb = phosphor_curves()
-    return np.maximum(stack_filters(np.asarray(rgb, dtype=float) @ curves, thickness) @ to_rgb.T, 0)
+    return np.maximum(
+        stack_filters(np.asarray(rgb, dtype=float) @ curves, thickness) @ to_rgb.T, 0
+    )
 
 
 @cache
@@ -159,4 +203,6 @@ def phosphor_curves() -> tuple[Array, Array]:
     white = observer.light(DEFAULT_ILLUMINANT).white
     curves = phosphors * np.linalg.solve((phosphors @ matching).T, white)[:, None]
     curves /= curves.sum(axis=0).max()
-    return curves, np.asarray(np.linalg.solve((curves @ matching).T, matching.T), dtype=float)
+    return curves, np.asarray(
+        np.linalg.solve((curves @ matching).T, matching.T), dtype=float
+    )

@@ -8,4 +8,12 @@ from uplift.design.palette.design import design, matrix, unmet_goals, write_desi
 from uplift.design.palette.factor import standard_model
 from uplift.design.palette.spec import read_palette
 
-__all__ = ["design", "illuminant", "matrix", "read_palette", "standard_model", "unmet_goals", "write_designed"]
+__all__ = [
+    "design",
+    "illuminant",
+    "matrix",
+    "read_palette",
+    "standard_model",
+    "unmet_goals",
+    "write_designed",
+]

@@ -11,8 +11,13 @@ from uplift.common.errors import OptionError
 
 MID_GREY = 0.18  # luminance to which single colours are exposed, so that dark colours have the weight of bright ones
 C2 = 1.438776877e7  # second radiation constant in nm K (CODATA 2018)
-MIN_KELVIN, MAX_KELVIN = 500.0, 1e6  # below, a black body has no visible power; above, its colour no longer changes
-REFERENCE_NM = 560.0  # wavelength of unit power before scaling, which keeps all powers near 1
+MIN_KELVIN, MAX_KELVIN = (
+    500.0,
+    1e6,
+)  # below, a black body has no visible power; above, its colour no longer changes
+REFERENCE_NM = (
+    560.0  # wavelength of unit power before scaling, which keeps all powers near 1
+)
 
 
 def screen_matrix(sensor: Sensor) -> Array:
@@ -53,13 +58,17 @@ def illuminant(sensor: Sensor, name: Illuminant) -> Array:
     """
     start, end = sensor.wavelengths[[0, -1]]
     step = sensor.wavelengths[1] - start
-    return _scale(sensor, observer.illuminant_spd(name, float(start), float(end), float(step)))
+    return _scale(
+        sensor, observer.illuminant_spd(name, float(start), float(end), float(step))
+    )
 
 
 def planck(sensor: Sensor, kelvin: float) -> Array:
     """Return the power (N,) of a black body (Bergner, eq. 25), of luminance 1."""
     if not MIN_KELVIN <= kelvin <= MAX_KELVIN:
-        problem = f"temperature must be in [{MIN_KELVIN:g}, {MAX_KELVIN:g}] K, got {kelvin:g}"
+        problem = (
+            f"temperature must be in [{MIN_KELVIN:g}, {MAX_KELVIN:g}] K, got {kelvin:g}"
+        )
         raise OptionError(problem, hint="give the temperature in kelvin")
     nm = sensor.wavelengths
     ratio = np.expm1(C2 / (REFERENCE_NM * kelvin)) / np.expm1(C2 / (nm * kelvin))

@@ -17,7 +17,12 @@ from uplift.common.text import listed, pluralise
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.equations import equations, solve, unknowns
 from uplift.design.palette.factor import FactorModel
-from uplift.design.palette.palette import ColourGoal, MinDifference, Palette, SpectrumSpec
+from uplift.design.palette.palette import (
+    ColourGoal,
+    MinDifference,
+    Palette,
+    SpectrumSpec,
+)
 
 VISIBLE = 0.5  # ΔE00 above which a goal is missed: about half of a difference that is visible side by side
 MAX_REMAINING = 0.8  # fraction of the ΔE00 that a useful relaxation may leave
@@ -56,7 +61,10 @@ def design(palette: Palette, model: FactorModel) -> Design:
         If both light and material of a goal are open.
     """
     for goal in palette.goals:
-        if palette.material(goal.material).designed and palette.light(goal.light).designed:
+        if (
+            palette.material(goal.material).designed
+            and palette.light(goal.light).designed
+        ):
             raise PaletteError(
                 f"light or material of a goal must be given, got {goal}, both to be designed",
                 hint="give one of them, or remove the goal",
@@ -64,10 +72,21 @@ def design(palette: Palette, model: FactorModel) -> Design:
     where, x = unknowns(palette), solve(equations(palette, model))
 
     def spectra(kind: str, specs: tuple[SpectrumSpec, ...]) -> Array:
-        return np.array([x[where[kind, spec.name]] if spec.samples is None else spec.samples for spec in specs])
+        return np.array(
+            [
+                x[where[kind, spec.name]] if spec.samples is None else spec.samples
+                for spec in specs
+            ]
+        )
 
     free = {name: x[where["free", name]] for name in palette.free}
-    return Design(palette, model, spectra("light", palette.lights), spectra("material", palette.materials), free)
+    return Design(
+        palette,
+        model,
+        spectra("light", palette.lights),
+        spectra("material", palette.materials),
+        free,
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,17 +117,26 @@ def matrix(design: Design) -> Matrix:
     palette, model = design.palette, design.model
     screen = screen_matrix(palette.sensor)
     obtained = (design.reflectances[:, None] * design.powers) @ screen.T
-    surfaces, lights = model.reflectance(design.reflectances), model.light(design.powers)
+    surfaces, lights = (
+        model.reflectance(design.reflectances),
+        model.light(design.powers),
+    )
     factor = model.rgb(model.product(surfaces[:, None], lights))
     target = np.full_like(obtained, np.nan)
     for goal in palette.goals:
         # The target of a free colour is the value that the design chose.
-        target[palette.cell(goal.material, goal.light)] = design.free[goal.free] if goal.free else goal.rgb
+        target[palette.cell(goal.material, goal.light)] = (
+            design.free[goal.free] if goal.free else goal.rgb
+        )
     return Matrix(
         target,
         obtained,
         factor,
-        delta_e_rgb(palette.sensor, target, factor if palette.fit == "factor-model" else obtained),
+        delta_e_rgb(
+            palette.sensor,
+            target,
+            factor if palette.fit == "factor-model" else obtained,
+        ),
         delta_e_rgb(palette.sensor, obtained, factor),
         design.powers @ screen.T,
     )
@@ -130,7 +158,9 @@ class UnmetGoal:
                 f"{first} and {second} under {self.goal.light}: ΔE00 must be at least {self.goal.delta_e:g}, "
                 f"got {self.delta_e:.2f}; choose colours that differ more"
             )
-        criteria = ", ".join(f"{name} (then {remaining:.2f})" for name, remaining in self.relaxations)
+        criteria = ", ".join(
+            f"{name} (then {remaining:.2f})" for name, remaining in self.relaxations
+        )
         hint = f"relax {criteria}" if criteria else "no single criterion is responsible"
         return f"{self.goal}: missed by ΔE00 {self.delta_e:.2f}; {hint}"
 
@@ -150,17 +180,39 @@ def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
     """
     colours, palette = matrix(found), found.palette
     fitted = colours.factor if palette.fit == "factor-model" else colours.obtained
-    errors = {goal: float(colours.delta_e[palette.cell(goal.material, goal.light)]) for goal in palette.goals}
+    errors = {
+        goal: float(colours.delta_e[palette.cell(goal.material, goal.light)])
+        for goal in palette.goals
+    }
     missed = [goal for goal in palette.goals if goal.weight and errors[goal] > VISIBLE]
-    relaxed = [(name, matrix(design(each, found.model)).delta_e) for name, each in _relaxed(palette)] if missed else []
+    relaxed = (
+        [
+            (name, matrix(design(each, found.model)).delta_e)
+            for name, each in _relaxed(palette)
+        ]
+        if missed
+        else []
+    )
     unmet = []
     for goal in missed:
         cell = palette.cell(goal.material, goal.light)
-        remaining = [(name, float(delta_e[cell])) for name, delta_e in relaxed if name != _weight_of(goal)]
+        remaining = [
+            (name, float(delta_e[cell]))
+            for name, delta_e in relaxed
+            if name != _weight_of(goal)
+        ]
         useful = [each for each in remaining if each[1] < MAX_REMAINING * errors[goal]]
-        unmet.append(UnmetGoal(goal, errors[goal], tuple(sorted(useful, key=lambda each: each[1])[:MAX_RELAXATIONS])))
+        unmet.append(
+            UnmetGoal(
+                goal,
+                errors[goal],
+                tuple(sorted(useful, key=lambda each: each[1])[:MAX_RELAXATIONS]),
+            )
+        )
     for pair in palette.min_differences:
-        first, second = (fitted[palette.cell(material, pair.light)] for material in pair.materials)
+        first, second = (
+            fitted[palette.cell(material, pair.light)] for material in pair.materials
+        )
         delta_e = float(delta_e_rgb(palette.sensor, first, second))
         if delta_e < pair.delta_e:
             unmet.append(UnmetGoal(pair, delta_e))
@@ -179,17 +231,27 @@ def _relaxed(palette: Palette) -> Iterator[tuple[str, Palette]]:
         yield "model-error", dataclasses.replace(palette, model_error=0.0)
     for name in palette.free:
         unbounded = (np.full(3, -np.inf), np.full(3, np.inf))
-        yield f"the range of {name}", dataclasses.replace(palette, free={**palette.free, name: unbounded})
+        yield (
+            f"the range of {name}",
+            dataclasses.replace(palette, free={**palette.free, name: unbounded}),
+        )
     for spec in (*palette.lights, *palette.materials):
         if spec.designed and (math.isfinite(spec.low) or math.isfinite(spec.high)):
             free = dataclasses.replace(spec, low=-math.inf, high=math.inf)
             lights, materials = (
-                tuple(free if each is spec else each for each in specs) for specs in (palette.lights, palette.materials)
+                tuple(free if each is spec else each for each in specs)
+                for specs in (palette.lights, palette.materials)
             )
-            yield f"the bounds of {spec.name}", dataclasses.replace(palette, lights=lights, materials=materials)
+            yield (
+                f"the bounds of {spec.name}",
+                dataclasses.replace(palette, lights=lights, materials=materials),
+            )
     for goal in palette.goals:
         if goal.weight:
-            others = (dataclasses.replace(each, weight=0.0) if each is goal else each for each in palette.goals)
+            others = (
+                dataclasses.replace(each, weight=0.0) if each is goal else each
+                for each in palette.goals
+            )
             yield _weight_of(goal), dataclasses.replace(palette, goals=tuple(others))
 
 
@@ -216,22 +278,50 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
         If no material can be written.
     """
     entries, skipped = [], []
-    for material, values in zip(design.palette.materials, design.reflectances, strict=True):
+    for material, values in zip(
+        design.palette.materials, design.reflectances, strict=True
+    ):
         if not material.designed:
             continue
         if values.min() < LOWEST or values.max() > HIGHEST:
-            skipped.append(f"'{material.name}' has {values.min():.3g} to {values.max():.3g}")
+            skipped.append(
+                f"'{material.name}' has {values.min():.3g} to {values.max():.3g}"
+            )
             continue
-        lights = [goal.light for goal in design.palette.goals if goal.material == material.name and goal.weight]
-        description = f"designed for its colours under {', '.join(lights)}" if lights else "designed"
-        entries.append(Entry(material.name, design.palette.sensor.wavelengths, values, description=description))
+        lights = [
+            goal.light
+            for goal in design.palette.goals
+            if goal.material == material.name and goal.weight
+        ]
+        description = (
+            f"designed for its colours under {', '.join(lights)}"
+            if lights
+            else "designed"
+        )
+        entries.append(
+            Entry(
+                material.name,
+                design.palette.sensor.wavelengths,
+                values,
+                description=description,
+            )
+        )
     if skipped:
         materials = pluralise(len(skipped), "material")
         text = f"{materials} left out of the atlas: reflectance must be in [{LOWEST:g}, {HIGHEST:g}]"
-        warnings.warn(UpliftWarning(f"{text}, but {listed(skipped)}", code="material-skipped"), stacklevel=2)
+        warnings.warn(
+            UpliftWarning(f"{text}, but {listed(skipped)}", code="material-skipped"),
+            stacklevel=2,
+        )
     if not entries:
         raise PaletteError(
-            "no designed material has reflectances that an atlas can hold", hint="design one with bounds within [0, 1]"
+            "no designed material has reflectances that an atlas can hold",
+            hint="design one with bounds within [0, 1]",
         )
-    write_atlas(Atlas(tuple(entries)), path, Header(content="Reflectances designed by uplift palette"), force=force)
+    write_atlas(
+        Atlas(tuple(entries)),
+        path,
+        Header(content="Reflectances designed by uplift palette"),
+        force=force,
+    )
     return len(entries)

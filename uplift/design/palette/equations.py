@@ -20,7 +20,9 @@ from uplift.fit.bounded_least_squares import solve_bounded
 
 SPACING = 10.0  # sample distance in nm that the weights of the paper refer to
 
-Unknowns = dict[tuple[str, str], slice]  # positions in x by kind ("free", "light" or "material") and name
+Unknowns = dict[
+    tuple[str, str], slice
+]  # positions in x by kind ("free", "light" or "material") and name
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,15 +48,24 @@ def unknowns(palette: Palette) -> Unknowns:
     samples = len(palette.sensor.wavelengths)
     sizes = {("free", name): 3 for name in palette.free}
     sizes |= {("light", spec.name): samples for spec in palette.lights if spec.designed}
-    sizes |= {("material", spec.name): samples for spec in palette.materials if spec.designed}
+    sizes |= {
+        ("material", spec.name): samples for spec in palette.materials if spec.designed
+    }
     ends = np.cumsum([0, *sizes.values()])
-    return {key: slice(int(a), int(b)) for key, a, b in zip(sizes, ends[:-1], ends[1:], strict=True)}
+    return {
+        key: slice(int(a), int(b))
+        for key, a, b in zip(sizes, ends[:-1], ends[1:], strict=True)
+    }
 
 
 def equations(palette: Palette, model: FactorModel) -> Equations:
     """Stack all criteria of non-zero weight (eq. 22), with the bounds of the unknowns."""
     where = unknowns(palette)
-    rows = [*_colours(palette, model, where), *_smoothness(palette, where), *_model_error(palette, model, where)]
+    rows = [
+        *_colours(palette, model, where),
+        *_smoothness(palette, where),
+        *_model_error(palette, model, where),
+    ]
     count = max((position.stop for position in where.values()), default=0)
     matrix = np.zeros((sum(len(part.values) for part in rows), count))
     values = np.concatenate([part.values for part in rows]) if rows else np.zeros(0)
@@ -67,7 +78,11 @@ def equations(palette: Palette, model: FactorModel) -> Equations:
     specs = {("light", spec.name): spec for spec in palette.lights}
     specs |= {("material", spec.name): spec for spec in palette.materials}
     for key, position in where.items():
-        low[position], high[position] = palette.free[key[1]] if key[0] == "free" else (specs[key].low, specs[key].high)
+        low[position], high[position] = (
+            palette.free[key[1]]
+            if key[0] == "free"
+            else (specs[key].low, specs[key].high)
+        )
     return Equations(matrix, values, low, high)
 
 
@@ -95,9 +110,14 @@ def _independent_blocks(matrix: Array) -> Iterator[tuple[Indices, Indices]]:
 
     entries = csr_array(matrix != 0)
     rows = matrix.shape[0]
-    count, labels = connected_components(block_array([[None, entries], [entries.T, None]]), directed=False)
+    count, labels = connected_components(
+        block_array([[None, entries], [entries.T, None]]), directed=False
+    )
     for label in range(count):
-        yield np.flatnonzero(labels[:rows] == label), np.flatnonzero(labels[rows:] == label)
+        yield (
+            np.flatnonzero(labels[:rows] == label),
+            np.flatnonzero(labels[rows:] == label),
+        )
 
 
 def _colours(palette: Palette, model: FactorModel, where: Unknowns) -> Iterator[Rows]:
@@ -124,7 +144,9 @@ def _smoothness(palette: Palette, where: Unknowns) -> Iterator[Rows]:
         return
     wavelengths = palette.sensor.wavelengths
     count = len(wavelengths) - 2
-    differences = -np.diff(np.eye(len(wavelengths)), 2, axis=0) / (np.sqrt(count) * np.sqrt(6))
+    differences = -np.diff(np.eye(len(wavelengths)), 2, axis=0) / (
+        np.sqrt(count) * np.sqrt(6)
+    )
     step = wavelengths[1] - wavelengths[0]
     block = palette.smoothness * (SPACING / step) ** 2 * differences
     for (kind, _), position in where.items():
@@ -132,13 +154,17 @@ def _smoothness(palette: Palette, where: Unknowns) -> Iterator[Rows]:
             yield Rows(((position, block),), np.zeros(count))
 
 
-def _model_error(palette: Palette, model: FactorModel, where: Unknowns) -> Iterator[Rows]:
+def _model_error(
+    palette: Palette, model: FactorModel, where: Unknowns
+) -> Iterator[Rows]:
     """Colours of the factor model less those of full spectra, for every product with a designed spectrum (eq. 20)."""
     weight = palette.model_error / np.sqrt(3)
     for material, light in product(palette.materials, palette.lights) if weight else ():
         for key, by_spectra, by_model in _colour_maps(palette, model, material, light):
             if key in where:
-                yield Rows(((where[key], weight * (by_spectra - by_model)),), np.zeros(3))
+                yield Rows(
+                    ((where[key], weight * (by_spectra - by_model)),), np.zeros(3)
+                )
 
 
 def _colour_maps(
@@ -150,6 +176,14 @@ def _colour_maps(
     """
     screen = screen_matrix(palette.sensor)
     if (power := light.samples) is not None:
-        yield ("material", material.name), screen * power, model.matrix * model.light(power) @ model.projection
+        yield (
+            ("material", material.name),
+            screen * power,
+            model.matrix * model.light(power) @ model.projection,
+        )
     elif (values := material.samples) is not None:
-        yield ("light", light.name), screen * values, model.matrix * model.reflectance(values) @ model.light_projection
+        yield (
+            ("light", light.name),
+            screen * values,
+            model.matrix * model.reflectance(values) @ model.light_projection,
+        )

@@ -32,7 +32,9 @@ class FactorModel:
     wavelengths: Array  # (N,) in nm
     basis: Array  # (N, m)
     transform: Array  # (m, m) from coefficients of the principal basis to those of the sharpened one
-    projection: Array  # (m, N) from spectra to coefficients, which are 1 for the flat spectrum
+    projection: (
+        Array  # (m, N) from spectra to coefficients, which are 1 for the flat spectrum
+    )
     light_projection: Array  # (m, N) from powers to the coefficients that tint reflectances as the power does
     matrix: Array  # (3, m) from coefficients to linear RGB (eq. 17)
 
@@ -91,7 +93,9 @@ def standard_model(sensor: Sensor, count: int = 7) -> FactorModel:
     return factor_model(sensor, reflectances, lights, count)
 
 
-def factor_model(sensor: Sensor, reflectances: Array, lights: Array, count: int = 7) -> FactorModel:
+def factor_model(
+    sensor: Sensor, reflectances: Array, lights: Array, count: int = 7
+) -> FactorModel:
     """Fit a factor model of ``count`` coefficients to materials (E, N) and lights (L, N).
 
     Smooth lights give the better model for spiky ones too. A spike would take a basis function away from the other
@@ -136,7 +140,9 @@ def _principal_basis(sensor: Sensor, signals: Array, count: int) -> tuple[Array,
     return (axes / weights).T, axes * weights
 
 
-def _light_projection(sensor: Sensor, surfaces: Array, projection: Array, matrix: Array) -> Array:
+def _light_projection(
+    sensor: Sensor, surfaces: Array, projection: Array, matrix: Array
+) -> Array:
     """Return least squares (m, N) over surfaces (n, N): matrix · (e * s) against the colour of the full product."""
     weights = lab_per_rgb(sensor, surfaces @ screen_matrix(sensor).T)
     factor = np.einsum("nij,jm,nm->nim", weights, matrix, surfaces @ projection.T)

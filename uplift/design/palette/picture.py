@@ -30,8 +30,12 @@ BEADS, BEAD, SPAN, STEP = -0.79, 0.135, 1.76, 0.42
 AMBIENT = 0.22
 # Directions of two lights (x right, y up, z to the viewer), and their strengths.
 KEY, FILL = (np.array([-0.55, 0.57, 0.61]), 0.68), (np.array([0.75, 0.05, 0.66]), 0.22)
-YAW, PITCH = np.radians([40, 27])  # rotation of the removed octant x, y, z > 0 towards the viewer
-CORNER = 0.16  # width of the darkening along inner edges of the cut, relative to the radius
+YAW, PITCH = np.radians(
+    [40, 27]
+)  # rotation of the removed octant x, y, z > 0 towards the viewer
+CORNER = (
+    0.16  # width of the darkening along inner edges of the cut, relative to the radius
+)
 OFFSETS = (-0.25, 0.25)  # subpixel positions, four samples per pixel
 
 
@@ -82,10 +86,16 @@ def _intersect_sphere(
     dx, dy = (x - centre[0]) / radius, (y - centre[1]) / radius
     square = 1 - dx**2 - dy[:, None] ** 2
     rows, columns = np.nonzero(square > 0)
-    return rows, columns, np.stack([dx[columns], dy[rows], np.sqrt(square[rows, columns])], axis=1)
+    return (
+        rows,
+        columns,
+        np.stack([dx[columns], dy[rows], np.sqrt(square[rows, columns])], axis=1),
+    )
 
 
-def _intersect_opened(points: Array) -> tuple[NDArray[np.bool_], Array, Array, NDArray[np.bool_]]:
+def _intersect_opened(
+    points: Array,
+) -> tuple[NDArray[np.bool_], Array, Array, NDArray[np.bool_]]:
     """Intersect the sphere without its octant. Rays that enter there reach a wall, or leave it (mask False).
 
     For the other rays, return positions in radii from the centre, normals, and whether they lie on the cut.
@@ -109,12 +119,15 @@ def cut_axes() -> Array:
 def _shade(normals: Array) -> Array:
     """Return the brightness of a matt surface, at most 1."""
     key, fill = (
-        power * np.maximum(normals @ (direction / np.linalg.norm(direction)), 0) for direction, power in (KEY, FILL)
+        power * np.maximum(normals @ (direction / np.linalg.norm(direction)), 0)
+        for direction, power in (KEY, FILL)
     )
     return np.minimum(AMBIENT + key + fill, 1)
 
 
-def read_weights(path: StrPath, names: Sequence[str], labels: Mapping[str, str] | None = None) -> Weights:
+def read_weights(
+    path: StrPath, names: Sequence[str], labels: Mapping[str, str] | None = None
+) -> Weights:
     """Read the amounts (H, W, n) of n materials in each pixel of an image.
 
     Float channels are weights by name. In an 8-bit image each colour is a label of a material, by default the greys 1,
@@ -126,7 +139,9 @@ def read_weights(path: StrPath, names: Sequence[str], labels: Mapping[str, str] 
         part = image.parts[0]
         width, height = part.window.width, part.window.height
         if width * height > MAX_PIXELS:
-            problem = f"image must have at most {MAX_PIXELS:,} pixels, got {width} × {height}"
+            problem = (
+                f"image must have at most {MAX_PIXELS:,} pixels, got {width} × {height}"
+            )
             raise TextureError(problem, hint="scale it down without interpolation")
         values = np.concatenate([band for _, band in image.bands(part)])
         if part.max_code:
@@ -151,13 +166,24 @@ def _parse_labels(names: Sequence[str], labels: Mapping[str, str]) -> dict[int, 
     return codes
 
 
-def _weights_of_labels(part: Part, values: Values, codes: Mapping[int, int], count: int) -> Weights:
+def _weights_of_labels(
+    part: Part, values: Values, codes: Mapping[int, int], count: int
+) -> Weights:
     channels = colour_channels(part)
     if channels is None or part.max_code != 255:
-        raise TextureError("an image of labels must have 8-bit colours", hint="convert it to an 8-bit PNG")
-    red, green, blue = (values[..., channel].astype(np.int32) for channel in channels.rgb)
+        raise TextureError(
+            "an image of labels must have 8-bit colours",
+            hint="convert it to an 8-bit PNG",
+        )
+    red, green, blue = (
+        values[..., channel].astype(np.int32) for channel in channels.rgb
+    )
     pixels = (red << 16) | (green << 8) | blue
-    alpha = values[..., part.channels.index("A")] / 255 if "A" in part.channels else np.ones(pixels.shape)
+    alpha = (
+        values[..., part.channels.index("A")] / 255
+        if "A" in part.channels
+        else np.ones(pixels.shape)
+    )
     alpha = np.where((pixels == 0) & (0 not in codes), 0, alpha)
     colours, counts = np.unique(pixels[alpha > 0], return_counts=True)
     unknown = ~np.isin(colours, list(codes))
@@ -186,5 +212,7 @@ def _weights_of_channels(part: Part, values: Values, names: Sequence[str]) -> We
     for row in present:
         weights[..., row] = values[..., part.channels.index(names[row])]
     if not (np.isfinite(weights).all() and weights.min() >= 0):
-        raise TextureError("weights must be finite and not negative", hint="correct the image")
+        raise TextureError(
+            "weights must be finite and not negative", hint="correct the image"
+        )
     return weights

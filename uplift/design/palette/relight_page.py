@@ -25,7 +25,9 @@ class Relighting:
     """A picture of n materials rendered without light, which is applied last, and L lights for it."""
 
     title: str
-    weights: NDArray[np.float32]  # (H, W, n) amount of each material in each pixel, including shading; 0 or more
+    weights: NDArray[
+        np.float32
+    ]  # (H, W, n) amount of each material in each pixel, including shading; 0 or more
     materials: tuple[str, ...]
     material_coefficients: Array  # (n, m) of the factor model
     colours: Array  # (n, L, 3) linear sRGB of the materials under each light, by full spectra
@@ -44,13 +46,19 @@ class Relighting:
     @property
     def labels(self) -> NDArray[np.uint8]:
         """Predominant material of each pixel (H, W), counted from 1; 0 for none."""
-        return np.where(self.weights.any(axis=-1), 1 + self.weights.argmax(axis=-1), 0).astype(np.uint8)
+        return np.where(
+            self.weights.any(axis=-1), 1 + self.weights.argmax(axis=-1), 0
+        ).astype(np.uint8)
 
     @property
     def start_light(self) -> int:
         """Light that the page starts with: the one under which the materials look most different."""
         colours = self.colours.clip(0, 1) ** DISPLAY_EXPONENT
-        return int(np.linalg.norm(colours - colours.mean(axis=0), axis=-1).mean(axis=0).argmax())
+        return int(
+            np.linalg.norm(colours - colours.mean(axis=0), axis=-1)
+            .mean(axis=0)
+            .argmax()
+        )
 
     def rgb(self, mix: ArrayLike) -> Array:
         """Light the picture by weights (L,) of the lights: linear sRGB (H, W, 3), not clipped."""
@@ -62,7 +70,9 @@ def relighting(title: str, design: Design, weights: NDArray[np.float32]) -> Reli
     """Prepare a picture, weights (H, W, n), of a palette's materials to be lit by its lights."""
     palette, model, colours = design.palette, design.model, matrix(design)
     if len(palette.materials) > MAX_MATERIALS:
-        raise OptionError(f"a picture must have at most {MAX_MATERIALS} materials, got {len(palette.materials)}")
+        raise OptionError(
+            f"a picture must have at most {MAX_MATERIALS} materials, got {len(palette.materials)}"
+        )
     return Relighting(
         title=title,
         weights=weights,
@@ -81,7 +91,9 @@ def relighting(title: str, design: Design, weights: NDArray[np.float32]) -> Reli
 def page(view: Relighting) -> str:
     """Render the page of a relighting. Equal values give equal text."""
     height, width = view.weights.shape[:2]
-    modelled = view.material_coefficients[:, None] * view.light_coefficients @ view.to_rgb.T
+    modelled = (
+        view.material_coefficients[:, None] * view.light_coefficients @ view.to_rgb.T
+    )
     patches = [  # for every material under every light the colours by full spectra and by the factor model
         list(zip(hex_codes(full), hex_codes(factor), strict=True))
         for full, factor in zip(view.colours, modelled, strict=True)
@@ -126,5 +138,10 @@ def _numbers(view: Relighting) -> dict[str, Any]:
 
 def pack(values: NDArray[Any]) -> str:
     """Deflate an array byte plane by byte plane, which makes half-precision numbers a third smaller, as base64."""
-    planes = np.ascontiguousarray(values).reshape(-1).view(np.uint8).reshape(-1, values.itemsize)
+    planes = (
+        np.ascontiguousarray(values)
+        .reshape(-1)
+        .view(np.uint8)
+        .reshape(-1, values.itemsize)
+    )
     return base64.b64encode(zlib.compress(planes.T.tobytes(), 9)).decode("ascii")

@@ -30,10 +30,15 @@ def make_light_paths(reflectances: Array, lights: Array) -> Array:
     paths = []
     for light in lights:
         power = np.broadcast_to(light, reflectances.shape)
-        others = [reflectances[rng.permutation(len(reflectances))] for _ in range(MAX_REFLECTIONS - 1)]
+        others = [
+            reflectances[rng.permutation(len(reflectances))]
+            for _ in range(MAX_REFLECTIONS - 1)
+        ]
         surfaces = [reflectances, *others]
         for count in range(1, MAX_REFLECTIONS + 1):
-            paths.append([power, *surfaces[:count], *[white] * (MAX_REFLECTIONS - count)])
+            paths.append(
+                [power, *surfaces[:count], *[white] * (MAX_REFLECTIONS - count)]
+            )
     return np.concatenate(paths, axis=1)
 
 
@@ -99,9 +104,13 @@ class SharpeningProblem:
         inverse = np.linalg.inv(transform)
         sharp = self.factors @ transform.T
         # Products of all factors but one, without division, as coefficients may be 0.
-        others = np.stack([np.delete(sharp, k, axis=0).prod(axis=0) for k in range(len(sharp))])
+        others = np.stack(
+            [np.delete(sharp, k, axis=0).prod(axis=0) for k in range(len(sharp))]
+        )
         principal = sharp.prod(axis=0) @ inverse.T
-        by_transform = -principal[:, None, :] + np.einsum("kna,knb->nab", others, self.factors)
+        by_transform = -principal[:, None, :] + np.einsum(
+            "kna,knb->nab", others, self.factors
+        )
         lab = self.weights @ (self.to_rgb @ inverse)
         jacobian = np.einsum("nia,nac->niac", lab, by_transform @ self.free)
         return jacobian.reshape(3 * len(principal), self.free.size)

@@ -8,7 +8,15 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, PlainValidator, Tag, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Discriminator,
+    Field,
+    PlainValidator,
+    Tag,
+    model_validator,
+)
 
 from uplift import lookup
 from uplift.atlas import Atlas, on_grid, read_atlas
@@ -18,11 +26,26 @@ from uplift.colorimetry.sensor import format_rgb, in_unit_cube
 from uplift.colorimetry.srgb import MAX_NUMBER, WrittenColour, is_number, parse_colour
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError, PaletteError, unknown_name
-from uplift.common.spec_file import InsidePath, Key, SpecFile, SpecModel, check_inside, problem, read_toml, resolves
+from uplift.common.spec_file import (
+    InsidePath,
+    Key,
+    SpecFile,
+    SpecModel,
+    check_inside,
+    problem,
+    read_toml,
+    resolves,
+)
 from uplift.common.text import format_value
 from uplift.design.palette.colours import MAX_KELVIN, MIN_KELVIN, illuminant, planck
 from uplift.design.palette.factor import COUNTS
-from uplift.design.palette.palette import ColourGoal, Fit, MinDifference, Palette, SpectrumSpec
+from uplift.design.palette.palette import (
+    ColourGoal,
+    Fit,
+    MinDifference,
+    Palette,
+    SpectrumSpec,
+)
 from uplift.lights.lamps import find_light, is_illuminant, lamp_file
 
 NAME = re.compile(r"[^\W_][\w .+-]*(?<! )")  # names appear in tables, plots and atlases
@@ -51,8 +74,16 @@ def read_palette(path: StrPath) -> Palette:
     sensor, folder = observer.sensor(), file.path.parent
     for number, difference in enumerate(table.apart):
         for material in difference.materials:
-            _check_known(file, ("apart", number, "materials"), material, table.materials, "material")
-        _check_known(file, ("apart", number, "light"), difference.light, table.lights, "light")
+            _check_known(
+                file,
+                ("apart", number, "materials"),
+                material,
+                table.materials,
+                "material",
+            )
+        _check_known(
+            file, ("apart", number, "light"), difference.light, table.lights, "light"
+        )
     goals = tuple(_goals(file, table, sensor))
     free = dict(table.free)
     for goal in goals:
@@ -61,18 +92,36 @@ def read_palette(path: StrPath) -> Palette:
     named = (*table.materials.values(), *table.lights.values())
     return Palette(
         sensor=sensor,
-        lights=tuple(light.spectrum(name, sensor, folder) for name, light in table.lights.items()),
-        materials=tuple(each.spectrum(name, sensor, folder) for name, each in table.materials.items()),
+        lights=tuple(
+            light.spectrum(name, sensor, folder) for name, light in table.lights.items()
+        ),
+        materials=tuple(
+            each.spectrum(name, sensor, folder)
+            for name, each in table.materials.items()
+        ),
         goals=goals,
-        free={name: _free_range(file, name, colours, sensor) for name, colours in free.items()},
+        free={
+            name: _free_range(file, name, colours, sensor)
+            for name, colours in free.items()
+        },
         min_differences=tuple(
-            MinDifference((each.materials[0], each.materials[1]), each.light, each.delta_e) for each in table.apart
+            MinDifference(
+                (each.materials[0], each.materials[1]), each.light, each.delta_e
+            )
+            for each in table.apart
         ),
         smoothness=table.smoothness,
         model_error=table.model_error,
         count=int(table.coefficients),
         fit=table.fit,
-        sources=(file.path, *(Path(lamp_file(str(folder / each.file))) for each in named if each.file is not None)),
+        sources=(
+            file.path,
+            *(
+                Path(lamp_file(str(folder / each.file)))
+                for each in named
+                if each.file is not None
+            ),
+        ),
     )
 
 
@@ -95,10 +144,14 @@ def _parse_bounds(value: Any) -> tuple[float, float]:
     if value is False:
         return -math.inf, math.inf
     is_pair = isinstance(value, list) and len(value) == 2
-    if not is_pair or not all(is_number(each) or each in (-math.inf, math.inf) for each in value):
+    if not is_pair or not all(
+        is_number(each) or each in (-math.inf, math.inf) for each in value
+    ):
         raise problem(f"must be [low, high] or false, got {format_value(value)}")
     if not value[0] < value[1]:
-        raise problem(f"must be ascending, got {format_value(value)}", "swap the numbers")
+        raise problem(
+            f"must be ascending, got {format_value(value)}", "swap the numbers"
+        )
     return float(value[0]), float(value[1])
 
 
@@ -109,9 +162,15 @@ def _check_name(name: str) -> str:
     return name
 
 
-_NonNegative = Annotated[float, Field(strict=True, ge=0, le=MAX_NUMBER, allow_inf_nan=False)]
-_Kelvin = Annotated[float, Field(strict=True, ge=MIN_KELVIN, le=MAX_KELVIN, allow_inf_nan=False)]
-_Count = Annotated[float, Field(strict=True, ge=COUNTS[0], le=COUNTS[-1], multiple_of=1)]
+_NonNegative = Annotated[
+    float, Field(strict=True, ge=0, le=MAX_NUMBER, allow_inf_nan=False)
+]
+_Kelvin = Annotated[
+    float, Field(strict=True, ge=MIN_KELVIN, le=MAX_KELVIN, allow_inf_nan=False)
+]
+_Count = Annotated[
+    float, Field(strict=True, ge=COUNTS[0], le=COUNTS[-1], multiple_of=1)
+]
 _Name = Annotated[str, AfterValidator(_check_name)]
 _Colour = Annotated[WrittenColour, PlainValidator(_parse_colour)]
 _Bounds = Annotated[tuple[float, float], PlainValidator(_parse_bounds)]
@@ -129,7 +188,9 @@ class _KnownLight(SpecModel):
     @model_validator(mode="after")
     def _scaled_once(self) -> Self:
         if self.luminance is not None and self.norm is not None:
-            raise problem("a light has a luminance or a norm, not both", "remove one of them")
+            raise problem(
+                "a light has a luminance or a norm, not both", "remove one of them"
+            )
         return self
 
     @property
@@ -146,7 +207,9 @@ class _KnownLight(SpecModel):
         power = self.power(sensor, folder)
         if self.norm is not None:
             return SpectrumSpec(name, power * (self.norm / np.sqrt(np.mean(power**2))))
-        return SpectrumSpec(name, power * (1.0 if self.luminance is None else self.luminance))
+        return SpectrumSpec(
+            name, power * (1.0 if self.luminance is None else self.luminance)
+        )
 
 
 class _IlluminantLight(_KnownLight):
@@ -159,7 +222,12 @@ class _IlluminantLight(_KnownLight):
         return None if is_illuminant(self.illuminant) else self.illuminant
 
     def power(self, sensor: Sensor, folder: Path) -> Array:
-        return illuminant(sensor, self.illuminant if self.file is None else find_light(str(folder / self.file)))
+        return illuminant(
+            sensor,
+            self.illuminant
+            if self.file is None
+            else find_light(str(folder / self.file)),
+        )
 
 
 class _BlackBodyLight(_KnownLight):
@@ -213,8 +281,13 @@ class _RgbMaterial(SpecModel):
         cube = lookup.load(None if self.cube is None else folder / self.cube)
         rgb = self.rgb.rgb(cube.data.sensor)
         if not in_unit_cube(rgb):
-            problem = f"rgb of the material '{name}' must be in [0, 1], got {format_rgb(rgb)}"
-            raise PaletteError(problem, hint="write linear RGB from 0 to 1, or '#rrggbb' for 8-bit codes")
+            problem = (
+                f"rgb of the material '{name}' must be in [0, 1], got {format_rgb(rgb)}"
+            )
+            raise PaletteError(
+                problem,
+                hint="write linear RGB from 0 to 1, or '#rrggbb' for 8-bit codes",
+            )
         return SpectrumSpec(name, cube.reflectance(rgb, sensor.wavelengths))
 
 
@@ -278,7 +351,13 @@ def _tag(*kinds: str) -> Callable[[Any], str]:
 
 
 def _goal_tag(value: Any) -> str:
-    return "~colour" if not isinstance(value, dict) else "~free" if "free" in value else "~rgb"
+    return (
+        "~colour"
+        if not isinstance(value, dict)
+        else "~free"
+        if "free" in value
+        else "~rgb"
+    )
 
 
 _Light = Annotated[
@@ -296,7 +375,9 @@ _Material = Annotated[
     _check_kind("atlas", "rgb", "design"),
 ]
 _Goal = Annotated[
-    Annotated[_Colour, Tag("~colour")] | Annotated[_RgbGoal, Tag("~rgb")] | Annotated[_FreeGoal, Tag("~free")],
+    Annotated[_Colour, Tag("~colour")]
+    | Annotated[_RgbGoal, Tag("~rgb")]
+    | Annotated[_FreeGoal, Tag("~free")],
     Discriminator(_goal_tag),
 ]
 
@@ -313,20 +394,28 @@ class _PaletteTable(SpecModel):
     fit: Fit = Palette.fit
 
 
-def _goals(file: SpecFile, table: _PaletteTable, sensor: Sensor) -> Iterator[ColourGoal]:
+def _goals(
+    file: SpecFile, table: _PaletteTable, sensor: Sensor
+) -> Iterator[ColourGoal]:
     for material, goals in table.colours.items():
         _check_known(file, ("colours", material), material, table.materials, "material")
         for light, goal in goals.items():
-            _check_known(file, ("colours", material, light), light, table.lights, "light")
+            _check_known(
+                file, ("colours", material, light), light, table.lights, "light"
+            )
             if isinstance(goal, WrittenColour):
                 yield ColourGoal(material, light, rgb=goal.rgb(sensor))
             elif isinstance(goal, _FreeGoal):
                 yield ColourGoal(material, light, free=goal.free, weight=goal.weight)
             else:
-                yield ColourGoal(material, light, rgb=goal.rgb.rgb(sensor), weight=goal.weight)
+                yield ColourGoal(
+                    material, light, rgb=goal.rgb.rgb(sensor), weight=goal.weight
+                )
 
 
-def _free_range(file: SpecFile, name: str, colours: _FreeRange, sensor: Sensor) -> tuple[Array, Array]:
+def _free_range(
+    file: SpecFile, name: str, colours: _FreeRange, sensor: Sensor
+) -> tuple[Array, Array]:
     low, high = colours.low.rgb(sensor), colours.high.rgb(sensor)
     if not (low < high).all():
         text = f"must have low < high in every channel, got {low.round(4).tolist()} and {high.round(4).tolist()}"
@@ -334,7 +423,13 @@ def _free_range(file: SpecFile, name: str, colours: _FreeRange, sensor: Sensor) 
     return low, high
 
 
-def _check_known(file: SpecFile, keys: tuple[Key, ...], name: str, known: Mapping[str, object], kind: str) -> None:
+def _check_known(
+    file: SpecFile,
+    keys: tuple[Key, ...],
+    name: str,
+    known: Mapping[str, object],
+    kind: str,
+) -> None:
     if name not in known:
         error = unknown_name(name, known, kind)
         file.fail(keys, error.problem, code=error.code, hint=error.hint)

@@ -24,7 +24,9 @@ def write_npz(data: CubeData, path: StrPath, *, force: bool = False) -> int:
     """
     tensors, metadata = contents(data)
     arrays = tensors | {
-        "multipliers": data.model.from_storage(data.points.coefficients[data.points.present]),
+        "multipliers": data.model.from_storage(
+            data.points.coefficients[data.points.present]
+        ),
         "metadata": np.array(json.dumps(metadata, ensure_ascii=False, allow_nan=False)),
     }
     for prefix, table in (("atlas", data.atlas), ("outside", data.atlas.outside)):
@@ -47,7 +49,9 @@ def write_csv(data: CubeData, path: StrPath, *, force: bool = False) -> int:
         **dict(zip("rgb", data.lattice.points.T, strict=True)),
         **dict(zip(("lattice_r", "lattice_g", "lattice_b"), points.rgb.T, strict=True)),
         "distance": points.distance,
-        "status": np.array([Status(status).label for status in points.status], dtype=object),
+        "status": np.array(
+            [Status(status).label for status in points.status], dtype=object
+        ),
         "entry": np.array([*data.atlas.names, ""], dtype=object)[points.entry],
         "round": points.round,
         "standard_error": points.standard_error,
@@ -58,7 +62,9 @@ def write_csv(data: CubeData, path: StrPath, *, force: bool = False) -> int:
     rows = (
         row
         for block in blocks(len(nodes), BLOCK)
-        for row in zip(*(column[nodes[block]].tolist() for column in arrays.values()), strict=True)
+        for row in zip(
+            *(column[nodes[block]].tolist() for column in arrays.values()), strict=True
+        )
     )
     write_text(csv_text(list(arrays), rows), path, force=force)
     return len(nodes)

@@ -48,7 +48,13 @@ from grey; above, ε falls with the level. Very dark colours of high purity woul
 eye hardly responds."""
 FAINT = 1e-6
 """Reflectance of black, and 1 minus that of white, whose multipliers are infinite."""
-FIRST_DAMPING, MAX_DAMPING, MAX_STEPS, SMALL_GAIN, SMALL_PART = 1e-6, 1e6, 200, 1e-2, 1e-4
+FIRST_DAMPING, MAX_DAMPING, MAX_STEPS, SMALL_GAIN, SMALL_PART = (
+    1e-6,
+    1e6,
+    200,
+    1e-2,
+    1e-4,
+)
 BLOCK = 1 << 10
 """Points of a level that are fitted at a time."""
 START, END, STEP = 360.0, 830.0, 5.0
@@ -62,12 +68,21 @@ SYMBOLS = {
     ("ACES2065-1", "D60"): "ACES2065_1",
 }
 """Names of the tables of pbrt by space and illuminant."""
-LAYOUTS = {"coeff": {"", *SYMBOLS.values()}, "pbrt": set(SYMBOLS.values()), "luisa": {"sRGB"}}
+LAYOUTS = {
+    "coeff": {"", *SYMBOLS.values()},
+    "pbrt": set(SYMBOLS.values()),
+    "luisa": {"sRGB"},
+}
 """Tables that a layout can hold; that of rgb2spec has those without a name as well."""
 
 
 def write_coeff(
-    data: CubeData, path: StrPath, *, layout: str = "coeff", res: int = RES, force: bool = False
+    data: CubeData,
+    path: StrPath,
+    *,
+    layout: str = "coeff",
+    res: int = RES,
+    force: bool = False,
 ) -> TableError:
     """Write a cube as a table of sigmoid spectra with ``res`` points along each axis, 2 to 256.
 
@@ -78,19 +93,34 @@ def write_coeff(
     """
     data.sensor.require_xyz()
     if not MIN_RES <= res <= MAX_RES:
-        raise OptionError(f"res must be from {MIN_RES} to {MAX_RES}, got {res}", hint=f"{RES} is the default")
+        raise OptionError(
+            f"res must be from {MIN_RES} to {MAX_RES}, got {res}",
+            hint=f"{RES} is the default",
+        )
     sensor = on_range(data.sensor, START, END, STEP)
     name = SYMBOLS.get((sensor.space, sensor.illuminant), "")
     if name not in LAYOUTS[layout]:
-        known = [f"{space} under {light}" for (space, light), symbol in SYMBOLS.items() if symbol in LAYOUTS[layout]]
+        known = [
+            f"{space} under {light}"
+            for (space, light), symbol in SYMBOLS.items()
+            if symbol in LAYOUTS[layout]
+        ]
         raise OptionError(
             f"a {layout} table needs {' or '.join(known)}, got {sensor.space} under {sensor.illuminant}",
             hint="build a cube of this space and illuminant",
         )
     with atomic_write(path, force=force) as temporary:
         scale = _scale(res)
-        table = _fit(data, sensor, scale, _directions(res)).reshape(res, 3, res, res, 3).swapaxes(0, 1)
-        content = _binary(sensor, scale, table) if layout == "coeff" else _source(layout, name, scale, table).encode()
+        table = (
+            _fit(data, sensor, scale, _directions(res))
+            .reshape(res, 3, res, res, 3)
+            .swapaxes(0, 1)
+        )
+        content = (
+            _binary(sensor, scale, table)
+            if layout == "coeff"
+            else _source(layout, name, scale, table).encode()
+        )
         temporary.write_bytes(content)
     return _errors(data, sensor, scale, table)
 
@@ -99,13 +129,21 @@ def _binary(sensor: Sensor, scale: Array, table: Floats) -> bytes:
     at = (sensor.wavelengths - START) / (END - START)
     forward = (at, sensor.matrix, sensor.rgb_to_xyz, sensor.xyz(np.ones(3)))
     sizes = (struct.pack("<I", len(each)) for each in (scale, at))
-    numbers = (b"".join(each.astype("<f4").tobytes() for each in part) for part in ((scale, table), forward))
+    numbers = (
+        b"".join(each.astype("<f4").tobytes() for each in part)
+        for part in ((scale, table), forward)
+    )
     return MAGIC + b"".join(map(bytes.__add__, sizes, numbers))
 
 
 def _source(layout: str, name: str, scale: Array, table: Floats) -> str:
     numbers = np.pad(table, [(0, 0)] * 4 + [(0, 1)]) if layout == "luisa" else table
-    words = {"name": name, "res": str(len(scale)), "scale": _rows(scale), "data": _rows(numbers)}
+    words = {
+        "name": name,
+        "res": str(len(scale)),
+        "scale": _rows(scale),
+        "data": _rows(numbers),
+    }
     return Template(read_source(f"{layout}.cpp")).substitute(words)
 
 
@@ -127,7 +165,9 @@ def _directions(res: int) -> Array:
     share = np.linspace(0, 1, res)
     second, first = np.meshgrid(share, share, indexing="ij")
     shares = np.stack([np.ones_like(first), first, second], axis=-1)
-    return np.stack([np.roll(shares, largest, axis=-1) for largest in range(3)]).reshape(-1, 3)
+    return np.stack(
+        [np.roll(shares, largest, axis=-1) for largest in range(3)]
+    ).reshape(-1, 3)
 
 
 def _fit(data: CubeData, sensor: Sensor, scale: Array, directions: Array) -> Floats:
@@ -144,26 +184,40 @@ def _fit(data: CubeData, sensor: Sensor, scale: Array, directions: Array) -> Flo
             multipliers = start
             for level in levels:
                 target = _targets(data, scale[level] * directions[rows])
-                multipliers = _nearest_to_grey(sensor, multipliers, target, scale[level])
+                multipliers = _nearest_to_grey(
+                    sensor, multipliers, target, scale[level]
+                )
                 if level == middle:
                     start = multipliers
                 table[level, rows] = unscaled(MODEL, multipliers)
     return table
 
 
-def _nearest_to_grey(sensor: Sensor, start: Array, target: Array, level: float) -> Array:
+def _nearest_to_grey(
+    sensor: Sensor, start: Array, target: Array, level: float
+) -> Array:
     """Minimise |t − r(p)|² / ε² + |p − g|² / s² over p (n, 3) from a start, by damped Gauss-Newton steps.
 
     g are the multipliers of the grey of this level, and s their size, at least 1.
     """
     grey = MODEL.from_reflectance(np.clip(level, FAINT, 1 - FAINT)) * MODEL.constant()
-    size, unit = np.maximum(np.abs(grey).max(), 1), DARK_COLOUR * DARK / max(level, DARK)
-    p, rows, damping = start.copy(), np.arange(len(start)), np.full(len(start), FIRST_DAMPING)
+    size, unit = (
+        np.maximum(np.abs(grey).max(), 1),
+        DARK_COLOUR * DARK / max(level, DARK),
+    )
+    p, rows, damping = (
+        start.copy(),
+        np.arange(len(start)),
+        np.full(len(start), FIRST_DAMPING),
+    )
     left, jacobian = _linearised(sensor, p, target, unit)
     cost = (left**2).sum(axis=0) + (((grey - p) / size) ** 2).sum(axis=1)
     for _ in range(MAX_STEPS):
         # (JᵀJ + I / s² + μ tr I) Δ = Jᵀ (t − r) / ε + (g − p) / s²
-        products = np.einsum("abn,acn->bcn", jacobian, jacobian) + np.eye(3)[:, :, None] / size**2
+        products = (
+            np.einsum("abn,acn->bcn", jacobian, jacobian)
+            + np.eye(3)[:, :, None] / size**2
+        )
         goal = np.einsum("abn,an->bn", jacobian, left) + (grey - p[rows]).T / size**2
         lower = [products[row, : row + 1] for row in range(3)]
         change = np.stack(solve_damped(lower, damping[rows], goal), axis=-1)
@@ -174,21 +228,30 @@ def _nearest_to_grey(sensor: Sensor, start: Array, target: Array, level: float) 
         better = gain > 0
         p[rows[better]], cost[rows[better]] = trial[better], reached[better]
         damping[rows] *= np.where(better, 1 / 4, 4)
-        left, jacobian = np.where(better, after, left), np.where(better, there, jacobian)
-        going = ~better & (damping[rows] < MAX_DAMPING) | (gain > SMALL_GAIN + SMALL_PART * reached)
+        left, jacobian = (
+            np.where(better, after, left),
+            np.where(better, there, jacobian),
+        )
+        going = ~better & (damping[rows] < MAX_DAMPING) | (
+            gain > SMALL_GAIN + SMALL_PART * reached
+        )
         rows, left, jacobian = rows[going], left[:, going], jacobian[:, :, going]
         if not rows.size:
             break
     return p
 
 
-def _linearised(sensor: Sensor, p: Array, target: Array, unit: float) -> tuple[Array, Array]:
+def _linearised(
+    sensor: Sensor, p: Array, target: Array, unit: float
+) -> tuple[Array, Array]:
     """Return (t − r(p)) / ε, (3, n), and the Jacobian of r / ε, (3, 3, n)."""
     basis = MODEL.basis(sensor.wavelengths)
     x = blocked_matmul_columns(basis, p.T)
     products = (sensor.matrix[:, None, :] * basis.T).reshape(-1, len(basis))
     jacobian = blocked_matmul_columns(products, MODEL.derivative(x)).reshape(3, 3, -1)
-    return (target.T - blocked_matmul_columns(sensor.matrix, MODEL.to_reflectance(x))) / unit, jacobian / unit
+    return (
+        target.T - blocked_matmul_columns(sensor.matrix, MODEL.to_reflectance(x))
+    ) / unit, jacobian / unit
 
 
 def _targets(data: CubeData, rgb: Array) -> Array:
@@ -199,7 +262,9 @@ def _targets(data: CubeData, rgb: Array) -> Array:
 def _errors(data: CubeData, sensor: Sensor, scale: Array, table: Floats) -> TableError:
     def error(codes: Array) -> Array:
         rgb = decode(codes)
-        spectra = evaluate_unscaled(_interpolated(scale, table, rgb), sensor.wavelengths)
+        spectra = evaluate_unscaled(
+            _interpolated(scale, table, rgb), sensor.wavelengths
+        )
         return delta_e_rgb(sensor, sensor.rgb(spectra), _targets(data, rgb))
 
     return find_errors(error, data.atlas.rgb)
@@ -209,11 +274,19 @@ def _interpolated(scale: Array, table: Floats, rgb: Array) -> Array:
     """Return coefficients (n, 3) as rgb2spec interpolates them: linearly between the eight points around a colour."""
     from scipy.interpolate import RegularGridInterpolator
 
-    largest, rows, even = rgb.argmax(axis=1), np.arange(len(rgb)), np.linspace(0, 1, len(scale))
+    largest, rows, even = (
+        rgb.argmax(axis=1),
+        np.arange(len(rgb)),
+        np.linspace(0, 1, len(scale)),
+    )
     level = np.maximum(rgb[rows, largest], np.finfo(float).tiny)  # of black
-    places = np.stack([level, *(rgb[rows, (largest + step) % 3] / level for step in (2, 1))], axis=-1)
+    places = np.stack(
+        [level, *(rgb[rows, (largest + step) % 3] / level for step in (2, 1))], axis=-1
+    )
     found = np.zeros((len(rgb), 3))
     for axis in range(3):
         own = largest == axis
-        found[own] = RegularGridInterpolator((scale, even, even), table[axis])(places[own])
+        found[own] = RegularGridInterpolator((scale, even, even), table[axis])(
+            places[own]
+        )
     return found

@@ -24,7 +24,15 @@ import numpy as np
 
 from uplift.colorimetry.dominant import crossing
 from uplift.colorimetry.lights import Illuminant
-from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, grid, illuminant_spd, matching_functions
+from uplift.colorimetry.observer import (
+    DEFAULT_OBSERVER,
+    END,
+    START,
+    STEP,
+    grid,
+    illuminant_spd,
+    matching_functions,
+)
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import solid
 from uplift.colorimetry.srgb import decode
@@ -53,7 +61,13 @@ BAND = 10.0
 """Standard deviation of the narrow bands in nm."""
 WEAKEST = 0.05
 """Bands at the ends of the spectrum are left out where the eye has less than this fraction of its largest response."""
-CAT16 = np.array([[0.401288, 0.650173, -0.051461], [-0.250268, 1.204414, 0.045854], [-0.002079, 0.048952, 0.953127]])
+CAT16 = np.array(
+    [
+        [0.401288, 0.650173, -0.051461],
+        [-0.250268, 1.204414, 0.045854],
+        [-0.002079, 0.048952, 0.953127],
+    ]
+)
 
 
 @dataclass(frozen=True)
@@ -84,7 +98,9 @@ def write_film(
     sensor = cube.data.sensor
     sensor.require_xyz()
     if sensor.observer != DEFAULT_OBSERVER:
-        raise OptionError(f"a film table needs the {DEFAULT_OBSERVER}, got a cube of {sensor.observer}")
+        raise OptionError(
+            f"a film table needs the {DEFAULT_OBSERVER}, got a cube of {sensor.observer}"
+        )
     if not MIN_SIZE <= res <= MAX_SIZE or not 0 < share < 1:
         raise OptionError(
             f"res must be from {MIN_SIZE} to {MAX_SIZE} and share in (0, 1), got {res} and {share:g}",
@@ -95,8 +111,14 @@ def write_film(
     scene = _scene(sensor, light)
     unit = _chromaticities(res)
     spectra, inside = _spectra(cube, scene, unit, share)
-    table = (spectra if light else spectra / scene.power).reshape(res, res, -1).astype("<f2")
-    described = _description(Path(path), scene.name, "irradiance" if light else "reflectance", res)
+    table = (
+        (spectra if light else spectra / scene.power)
+        .reshape(res, res, -1)
+        .astype("<f2")
+    )
+    described = _description(
+        Path(path), scene.name, "irradiance" if light else "reflectance", res
+    )
     with atomic_write(path, force=force) as temporary, temporary.open("wb") as file:
         np.save(file, table, allow_pickle=False)
         write_text(described, files[1], force=force)
@@ -131,21 +153,36 @@ def _scene(sensor: Sensor, light: Illuminant | None) -> Scene:
 def _chromaticities(size: int) -> Array:
     """Return XYZ (size², 3) with X + Y + Z = 1 of the table's points, row by row."""
     first, second = np.meshgrid(*[np.linspace(0, 1, size)] * 2, indexing="ij")
-    x, y = 1 - np.sqrt(first), second * np.sqrt(first)  # the inverse of ((1 − x)², y / (1 − x))
+    x, y = (
+        1 - np.sqrt(first),
+        second * np.sqrt(first),
+    )  # the inverse of ((1 − x)², y / (1 − x))
     return np.stack([x, y, 1 - x - y], axis=-1).reshape(-1, 3)
 
 
-def _spectra(cube: Cube, scene: Scene, unit: Array, share: float) -> tuple[Array, float]:
+def _spectra(
+    cube: Cube, scene: Scene, unit: Array, share: float
+) -> tuple[Array, float]:
     """Return spectra (n, N) of lights with the unit XYZ (n, 3), and the fraction of real ones that the cube answers."""
     white = scene.white / scene.white.sum()
     # white + f (c − white) leaves the gamut of the cube at f = inside, and that of lights of narrow bands at f = real.
     start, change = scene.xyz_to_rgb @ white, (unit - white) @ scene.xyz_to_rgb.T
-    room = np.divide((1 - MARGIN) * start, -change, out=np.full_like(change, np.inf), where=change < 0)
-    inside, (real, outer) = room.min(axis=1), _outer_lights(scene.xyz, white, unit - white)
+    room = np.divide(
+        (1 - MARGIN) * start,
+        -change,
+        out=np.full_like(change, np.inf),
+        where=change < 0,
+    )
+    inside, (real, outer) = (
+        room.min(axis=1),
+        _outer_lights(scene.xyz, white, unit - white),
+    )
     edge = np.minimum(np.minimum(inside, real), 1)
     rgb = start + edge[:, None] * change
     # The brightest reflectance of a direction r is t r, on the surface of the solid; steps of 15 nm are enough for t.
-    coarse = np.add.reduceat(cube.data.sensor.matrix, range(0, len(cube.data.sensor.wavelengths), 3), axis=1)
+    coarse = np.add.reduceat(
+        cube.data.sensor.matrix, range(0, len(cube.data.sensor.wavelengths), 3), axis=1
+    )
     brightest = REACH * solid(coarse).ray_fraction(np.zeros_like(rgb), REACH * rgb)
     rgb *= np.minimum(share * brightest, 1 / rgb.max(axis=1))[:, None]
     lights = _unit_sum(cube.reflectance(rgb, grid()) * scene.power, scene.xyz)
@@ -166,7 +203,9 @@ def _outer_lights(xyz: Array, white: Array, change: Array) -> tuple[Array, Array
     bands = _unit_sum(bands[sums >= WEAKEST * sums.max()], xyz)
     ring = np.concatenate([bands, bands[:1]])
     edge, fraction, reach = crossing((ring @ xyz - white)[:, :2], change[:, :2])
-    return reach, (1 - fraction)[:, None] * ring[edge] + fraction[:, None] * ring[edge + 1]
+    return reach, (1 - fraction)[:, None] * ring[edge] + fraction[:, None] * ring[
+        edge + 1
+    ]
 
 
 def _unit_sum(power: Array, xyz: Array) -> Array:
@@ -185,14 +224,31 @@ def _stops(cube: Cube, scene: Scene, table: Array) -> float:
     x, y, _ = (xyz / xyz.sum(axis=1, keepdims=True)).T
     layers = np.exp(-0.5 * ((grid()[:, None] - LAYERS) / LAYER_WIDTH) ** 2)
     axis = np.linspace(0, 1, len(table))
-    read = RegularGridInterpolator((axis, axis), table @ layers)(np.clip([(1 - x) ** 2, y / (1 - x)], 0, 1).T)
-    return float(np.abs(np.log2(xyz.sum(axis=1, keepdims=True) * read / (power @ layers))).mean())
+    read = RegularGridInterpolator((axis, axis), table @ layers)(
+        np.clip([(1 - x) ** 2, y / (1 - x)], 0, 1).T
+    )
+    return float(
+        np.abs(np.log2(xyz.sum(axis=1, keepdims=True) * read / (power @ layers))).mean()
+    )
 
 
 def _description(path: Path, light: str, kind: str, size: int) -> str:
     """Return the text of the TOML file; lights have no section of their reflectance."""
     text = Template(read_source("film.toml")).substitute(
-        {"stem": path.stem, "file": path.name, "kind": kind, "light": light, "observer": DEFAULT_OBSERVER},
-        **{"size": size, "bands": len(grid()), "start": START, "end": END, "step": STEP, "midgray": MIDGRAY},
+        {
+            "stem": path.stem,
+            "file": path.name,
+            "kind": kind,
+            "light": light,
+            "observer": DEFAULT_OBSERVER,
+        },
+        **{
+            "size": size,
+            "bands": len(grid()),
+            "start": START,
+            "end": END,
+            "step": STEP,
+            "midgray": MIDGRAY,
+        },
     )
     return text if kind == "reflectance" else text.partition("\n[reflectance]")[0]

@@ -21,11 +21,19 @@ PER_LINE = 27
 
 
 def write_light_program(
-    data: EmissionData, path: StrPath, *, style: str = "c", form: str | None = None, force: bool = False
+    data: EmissionData,
+    path: StrPath,
+    *,
+    style: str = "c",
+    form: str | None = None,
+    force: bool = False,
 ) -> list[Path]:
     """Write an emission table as a program in C or GLSL, as `uplift.io.export.write_program` does for a cube."""
     if style not in STYLES:
-        raise OptionError(f"emission tables cannot be written in '{style}'", hint=f"use {' or '.join(STYLES)}")
+        raise OptionError(
+            f"emission tables cannot be written in '{style}'",
+            hint=f"use {' or '.join(STYLES)}",
+        )
     path, form, table = Path(path), check_form(style, form), make_light_table(data)
     words = {
         "digest": emission_digest(data),
@@ -60,13 +68,22 @@ def make_light_table(data: EmissionData) -> Table:
     )
     at = data.wavelengths
     sizes = {"KNOTS": knots, "RINGS": rings, "SAMPLES": len(at), "BIN_COUNT": BIN_COUNT}
-    return Table(numbers, {**sizes, **offsets, "START": float(at[0]), "STEP": float(at[1] - at[0])})
+    return Table(
+        numbers,
+        {**sizes, **offsets, "START": float(at[0]), "STEP": float(at[1] - at[0])},
+    )
 
 
 def _matrix(data: EmissionData) -> Array:
     """Return rows from linear RGB to u′ and v′ from white times the size, the size X + 15 Y + 3 Z, and white's size."""
     white = data.lattice.white
-    rows = np.array([[4, 0, 0] - white[0] * DENOMINATOR, [0, 9, 0] - white[1] * DENOMINATOR, DENOMINATOR])
+    rows = np.array(
+        [
+            [4, 0, 0] - white[0] * DENOMINATOR,
+            [0, 9, 0] - white[1] * DENOMINATOR,
+            DENOMINATOR,
+        ]
+    )
     luminance = np.array([[0, 9 / white[1], 0]])
     return np.asarray(np.concatenate([rows, luminance]) @ data.rgb_to_xyz)
 

@@ -49,7 +49,13 @@ FOURIER_COUNT, LEVEL = 3, 16
 
 
 def write_lut(
-    cube: Cube, light: Illuminant, path: StrPath, *, res: int = SIZE, adapt: bool = True, force: bool = False
+    cube: Cube,
+    light: Illuminant,
+    path: StrPath,
+    *,
+    res: int = SIZE,
+    adapt: bool = True,
+    force: bool = False,
 ) -> TableError:
     """Write the colours of reflectances under a light as a table of ``res``³ nodes, 2 to 129, ``.clf`` or ``.cube``.
 
@@ -57,46 +63,67 @@ def write_lut(
     errors with OpenColorIO's interpolation. The cube of a camera is a `ColourError`.
     """
     if not MIN_SIZE <= res <= MAX_SIZE:
-        raise OptionError(f"res must be from {MIN_SIZE} to {MAX_SIZE}, got {res}", hint=f"{SIZE} is usual")
+        raise OptionError(
+            f"res must be from {MIN_SIZE} to {MAX_SIZE}, got {res}",
+            hint=f"{SIZE} is usual",
+        )
     own = cube.data.sensor
     own.require_xyz()
     (lit,) = display_sensors([light], own.observer, *own.range, space=own.space)
     # RGB = M XYZ: M adapted to the white of the light, or that of the cube's own illuminant.
     screen = lit if adapt else replace(lit, xyz_to_rgb=own.xyz_to_rgb)
     codes = np.linspace(0, 1, res)
-    nodes = np.stack(np.meshgrid(codes, codes, codes, indexing="ij"), axis=-1).reshape(-1, 3)  # blue varies fastest
+    nodes = np.stack(np.meshgrid(codes, codes, codes, indexing="ij"), axis=-1).reshape(
+        -1, 3
+    )  # blue varies fastest
     table = _encode(_relit(cube, nodes, screen)).astype(np.float32)
     transform = _linear_to_linear(table, res)
     title = f"uplift: {own.space} under {own.illuminant} to {screen.illuminant}"
     is_clf = os.fspath(path).lower().endswith(".clf")
-    write_text(_clf(transform, title) if is_clf else cube_text(table, title, res), path, force=force)
+    write_text(
+        _clf(transform, title) if is_clf else cube_text(table, title, res),
+        path,
+        force=force,
+    )
     return _errors(cube, transform, screen)
 
 
 def _relit(cube: Cube, codes: Array, screen: Sensor) -> Array:
     """Return linear RGB (n, 3) under the light of colours in encoded RGB (n, 3)."""
-    return blockwise(lambda rows: cube.reflectance(decode(rows), screen.wavelengths) @ screen.matrix.T, codes, 3)
+    return blockwise(
+        lambda rows: (
+            cube.reflectance(decode(rows), screen.wavelengths) @ screen.matrix.T
+        ),
+        codes,
+        3,
+    )
 
 
 def _encode(linear: Array) -> Array:
     """Encode by the sRGB curve: below 0 its line goes on, above 1 its power."""
-    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 0.0031308) ** (1 / 2.4) - 0.055)
+    return np.where(
+        linear <= 0.0031308,
+        12.92 * linear,
+        1.055 * np.maximum(linear, 0.0031308) ** (1 / 2.4) - 0.055,
+    )
 
 
 def _linear_to_linear(table: Values, size: int) -> Any:
     """Return the table between the sRGB curve and its inverse, as a transform of OpenColorIO."""
-    import PyOpenColorIO as ocio  # noqa: N813
+    import PyOpenColorIO as ocio
 
     lut = ocio.Lut3DTransform(gridSize=size)
     lut.setData(table.ravel())
     lut.setInterpolation(ocio.INTERP_TETRAHEDRAL)
     decoding = ocio.ExponentWithLinearTransform(**CURVE)
-    encoding = ocio.ExponentWithLinearTransform(**CURVE, direction=ocio.TRANSFORM_DIR_INVERSE)
+    encoding = ocio.ExponentWithLinearTransform(
+        **CURVE, direction=ocio.TRANSFORM_DIR_INVERSE
+    )
     return ocio.GroupTransform([encoding, lut, decoding])
 
 
 def _clf(transform: Any, title: str) -> str:
-    import PyOpenColorIO as ocio  # noqa: N813
+    import PyOpenColorIO as ocio
 
     transform.getFormatMetadata().addChildElement("Description", title)
     return str(transform.write(formatName=CLF, config=ocio.Config.CreateRaw()))
@@ -105,12 +132,14 @@ def _clf(transform: Any, title: str) -> str:
 def cube_text(table: Values, title: str, size: int) -> str:
     """Return the text of a ``.cube`` file, in which red varies fastest."""
     rows = table.reshape(size, size, size, 3).transpose(2, 1, 0, 3).reshape(-1, 3)
-    lines = "\n".join(" ".join(f"{value:.7g}" for value in row) for row in rows.tolist())
+    lines = "\n".join(
+        " ".join(f"{value:.7g}" for value in row) for row in rows.tolist()
+    )
     return f"# {title}\n# sRGB-encoded components in and out\nLUT_3D_SIZE {size}\n{lines}\n"
 
 
 def _errors(cube: Cube, transform: Any, screen: Sensor) -> TableError:
-    import PyOpenColorIO as ocio  # noqa: N813
+    import PyOpenColorIO as ocio
 
     processor = ocio.Config.CreateRaw().getProcessor(transform).getDefaultCPUProcessor()
 
@@ -122,7 +151,9 @@ def _errors(cube: Cube, transform: Any, screen: Sensor) -> TableError:
     return find_errors(error, cube.data.atlas.rgb)
 
 
-def write_fourier(cube: Cube, path: StrPath, *, res: int | None = None, force: bool = False) -> TableError:
+def write_fourier(
+    cube: Cube, path: StrPath, *, res: int | None = None, force: bool = False
+) -> TableError:
     """Write the table from sRGB to Fourier sRGB, and the shader of its spectra as a ``.glsl`` file.
 
     The cube has three moments, and sRGB or another space with its curve; `OptionError` otherwise. A ``.cube`` file has
@@ -131,12 +162,19 @@ def write_fourier(cube: Cube, path: StrPath, *, res: int | None = None, force: b
     """
     data, path = cube.data, Path(path)
     if not isinstance(data.model, Moments) or data.model.count != FOURIER_COUNT:
-        raise OptionError("Fourier sRGB needs a cube of three moments", hint="build one with coefficients=3")
+        raise OptionError(
+            "Fourier sRGB needs a cube of three moments",
+            hint="build one with coefficients=3",
+        )
     if np.abs(data.sensor.decoding - decode(np.arange(256) / 255)).max() > 1e-6:
-        raise OptionError(f"Fourier sRGB needs the curve of sRGB, got {data.sensor.space}")
+        raise OptionError(
+            f"Fourier sRGB needs the curve of sRGB, got {data.sensor.space}"
+        )
     is_image = path.suffix.lower() == ".png"
     if res is not None and (is_image or not MIN_SIZE <= res <= MAX_SIZE):
-        raise OptionError(f"res must be from {MIN_SIZE} to {MAX_SIZE}, and of a .cube table, got {res}")
+        raise OptionError(
+            f"res must be from {MIN_SIZE} to {MAX_SIZE}, and of a .cube table, got {res}"
+        )
     files = output_files(path, "fourier")
     check_outputs(files, force=force)
     size = LEVEL**2 if is_image else res or SIZE
@@ -147,7 +185,11 @@ def write_fourier(cube: Cube, path: StrPath, *, res: int | None = None, force: b
             _write_image(table, temporary)
         else:
             title = f"uplift: {data.sensor.space} to Fourier sRGB"
-            temporary.write_text(cube_text(table.transpose(2, 1, 0, 3), title, size), encoding="utf-8", newline="\n")
+            temporary.write_text(
+                cube_text(table.transpose(2, 1, 0, 3), title, size),
+                encoding="utf-8",
+                newline="\n",
+            )
         write_text(_shader(data.model, matrix, path.stem), files[1], force=force)
     return _fourier_errors(cube, table, matrix)
 
@@ -158,12 +200,17 @@ def _to_moments(data: CubeData) -> Array:
     Its inverse takes c to c₀ + S (c₁, c₂), where S minimises the distance to the RGB of the nodes. Rows of S are scaled
     down so that all nodes are in [0, 1].
     """
-    moments, rgb = data.points.coefficients[data.points.present], data.points.rgb[data.points.present]
+    moments, rgb = (
+        data.points.coefficients[data.points.present],
+        data.points.rgb[data.points.present],
+    )
     slopes = np.linalg.lstsq(moments[:, 1:], rgb - moments[:, :1])[0]
     chroma = moments[:, 1:] @ slopes
     room = np.where(chroma < 0, moments[:, :1], 1 - moments[:, :1])
     size = np.abs(chroma)
-    fraction = np.divide(room, size, out=np.ones_like(size), where=size > room).min(axis=0)
+    fraction = np.divide(room, size, out=np.ones_like(size), where=size > room).min(
+        axis=0
+    )
     return np.asarray(np.linalg.inv(np.vstack([np.ones(3), slopes * fraction]).T))
 
 
@@ -182,7 +229,9 @@ def _fourier_table(cube: Cube, nodes: Array, matrix: Array) -> Floats:
 def _write_image(table: Floats, path: Path) -> None:
     import OpenImageIO
 
-    image = OpenImageIO.ImageBuf(_codes(table).astype(np.uint8).reshape(LEVEL**3, LEVEL**3, 3))
+    image = OpenImageIO.ImageBuf(
+        _codes(table).astype(np.uint8).reshape(LEVEL**3, LEVEL**3, 3)
+    )
     if not image.write(str(path), "uint8", "png"):
         raise TextureError(image.geterror(), path=path)
 
@@ -192,11 +241,22 @@ def _codes(numbers: Values) -> Values:
 
 
 def _shader(model: Moments, matrix: Array, stem: str) -> str:
-    rows = {f"row_{k}": ", ".join(map(literal, row)) for k, row in enumerate(matrix.tolist())}
-    constants = {name.lower(): literal(float(value)) for name, value in model_constants(model).items()}
-    terms = [f"{literal(a)} * tanh({literal(k)} * (wavelength - {literal(m)}))" for a, k, m in WARPS[model.warp]]
+    rows = {
+        f"row_{k}": ", ".join(map(literal, row))
+        for k, row in enumerate(matrix.tolist())
+    }
+    constants = {
+        name.lower(): literal(float(value))
+        for name, value in model_constants(model).items()
+    }
+    terms = [
+        f"{literal(a)} * tanh({literal(k)} * (wavelength - {literal(m)}))"
+        for a, k, m in WARPS[model.warp]
+    ]
     warp = " + ".join(terms) or "wavelength"
-    return Template(read_source("fourier.glsl")).substitute(rows, **constants, name=identifier(stem), warp=warp)
+    return Template(read_source("fourier.glsl")).substitute(
+        rows, **constants, name=identifier(stem), warp=warp
+    )
 
 
 def _fourier_errors(cube: Cube, table: Floats, matrix: Array) -> TableError:

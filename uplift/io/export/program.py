@@ -20,7 +20,13 @@ from uplift.common.files import atomic_write, check_outputs, write_text
 from uplift.common.version import version
 from uplift.cube import CubeData, digest
 from uplift.io.export.outputs import output_files
-from uplift.io.export.table import COLUMNS, PROGRAM_MODES, Table, check_complete, make_table
+from uplift.io.export.table import (
+    COLUMNS,
+    PROGRAM_MODES,
+    Table,
+    check_complete,
+    make_table,
+)
 
 LARGE = 16_000_000
 """Size in bytes above which compilation of a header is slow."""
@@ -81,15 +87,22 @@ def write_program(
     check_complete(data, "a program")
     path, form, table = Path(path), check_form(style, form), make_table(data, mode)
     text = cube_program(data, table, style, mode, path.stem, form)
-    written = write_files(text, table, path, form, per_line=table.constants["STRIDE"], force=force)
+    written = write_files(
+        text, table, path, form, per_line=table.constants["STRIDE"], force=force
+    )
     size = path.stat().st_size
     if size > LARGE:
         problem = f"the header has {size / 1e6:.0f} MB and is slow to compile"
-        warnings.warn(UpliftWarning(problem, path=path, hint="use a cube of smaller dim"), stacklevel=2)
+        warnings.warn(
+            UpliftWarning(problem, path=path, hint="use a cube of smaller dim"),
+            stacklevel=2,
+        )
     return written
 
 
-def cube_program(data: CubeData, table: Table, style: str, mode: str, stem: str, form: str) -> str:
+def cube_program(
+    data: CubeData, table: Table, style: str, mode: str, stem: str, form: str
+) -> str:
     """Return the program of a cube, with ``${numbers}`` in place of the numbers of a header."""
     sensor = data.sensor
     words = {
@@ -107,27 +120,39 @@ def check_form(style: str, form: str | None) -> str:
     """Return the form of the table, the default of the language if None; raise `OptionError` if it has no such form."""
     forms = LANGUAGES[style].forms
     if form is not None and form not in forms:
-        raise OptionError(f"a program in {style} has no table of the form '{form}'", hint=f"use {' or '.join(forms)}")
+        raise OptionError(
+            f"a program in {style} has no table of the form '{form}'",
+            hint=f"use {' or '.join(forms)}",
+        )
     return form or forms[0]
 
 
-def compose(kind: str, table: Table, style: str, stem: str, form: str, words: dict[str, Any]) -> str:
+def compose(
+    kind: str, table: Table, style: str, stem: str, form: str, words: dict[str, Any]
+) -> str:
     """Return the program of ``kind``, "cube" or "lights", with ``${numbers}`` in place of the numbers of a header.
 
     ``up_`` and ``UP_`` in the source become the name of the program.
     """
     language, name, image = LANGUAGES[style], identifier(stem), table.image()
     text = read_source(f"{kind}.c")
-    text = text.replace("${macros}", "".join(read_source(each) for each in language.macros))
+    text = text.replace(
+        "${macros}", "".join(read_source(each) for each in language.macros)
+    )
     calls = read_source(f"{kind}_calls{language.calls}")
     overview, _, calls = calls.partition(" */\n")
     text = text.replace("${calls}", calls)
-    text = text.replace("${overview}", overview.removeprefix("/* ").replace("UP_VEC", language.vector))
+    text = text.replace(
+        "${overview}", overview.removeprefix("/* ").replace("UP_VEC", language.vector)
+    )
     text = text.replace("${table}", read_source(f"table_{form}.c"))
     text = _unroll(text, {f"UP_{key}": value for key, value in table.constants.items()})
     text = re.sub(r"\bup_", f"{name}_", text)
     text = re.sub(r"\bUP_", f"{name.upper()}_", text)
-    constants = (f"#define {name.upper()}_{key} {literal(value)}" for key, value in table.constants.items())
+    constants = (
+        f"#define {name.upper()}_{key} {literal(value)}"
+        for key, value in table.constants.items()
+    )
     shared = {
         "version": version(),
         "stem": comment(stem),
@@ -141,7 +166,9 @@ def compose(kind: str, table: Table, style: str, stem: str, form: str, words: di
     return Template(text).safe_substitute(shared | words)
 
 
-def write_files(text: str, table: Table, path: Path, form: str, *, per_line: int, force: bool) -> list[Path]:
+def write_files(
+    text: str, table: Table, path: Path, form: str, *, per_line: int, force: bool
+) -> list[Path]:
     """Write a program, and its table to a file of the same stem unless it is a header; return the files."""
     files = output_files(path, form)
     check_outputs(files, force=True)
@@ -161,7 +188,11 @@ def write_files(text: str, table: Table, path: Path, form: str, *, per_line: int
 
 def _holds(path: Path, content: bytes) -> bool:
     """Whether a file exists and has this content."""
-    return path.exists() and path.stat().st_size == len(content) and path.read_bytes() == content
+    return (
+        path.exists()
+        and path.stat().st_size == len(content)
+        and path.read_bytes() == content
+    )
 
 
 def _check_table(table: Path, image: bytes, program: Path, *, force: bool) -> None:
@@ -173,7 +204,9 @@ def _check_table(table: Path, image: bytes, program: Path, *, force: bool) -> No
         return
     others = (program.with_suffix(language.suffix) for language in LANGUAGES.values())
     existing = [path for path in others if path != program and path.exists()]
-    readers = [path.name for path in existing if table.name.encode() in path.read_bytes()]
+    readers = [
+        path.name for path in existing if table.name.encode() in path.read_bytes()
+    ]
     if not force:
         owner = f"of {' and '.join(readers)}" if readers else "of another program"
         problem = f"exists already with other numbers, {owner}"
@@ -181,7 +214,9 @@ def _check_table(table: Path, image: bytes, program: Path, *, force: bool) -> No
         raise OutputError(problem, path=table, code="file-exists", hint=hint)
     if readers:
         problem = f"replaced; {' and '.join(readers)} can no longer read it"
-        warnings.warn(UpliftWarning(problem, path=table, hint="export them again"), stacklevel=4)
+        warnings.warn(
+            UpliftWarning(problem, path=table, hint="export them again"), stacklevel=4
+        )
 
 
 def identifier(stem: str) -> str:
@@ -192,7 +227,13 @@ def identifier(stem: str) -> str:
 
 def comment(text: str) -> str:
     """Return text that cannot end a comment; names in a cube file are arbitrary."""
-    return text.encode("ascii", "replace").decode().replace("*", "").replace("\n", " ").replace("$", "")
+    return (
+        text.encode("ascii", "replace")
+        .decode()
+        .replace("*", "")
+        .replace("\n", " ")
+        .replace("$", "")
+    )
 
 
 def read_source(name: str) -> str:
@@ -203,9 +244,17 @@ def _unroll(text: str, constants: dict[str, Any]) -> str:
     """Write out loops marked by ``UP_UNROLL``, outer ones first: few compilers of shaders unroll, none all loops."""
 
     def copies(loop: re.Match[str]) -> str:
-        bounds = (eval(each.replace("/", "//"), {}, constants) for each in (loop["start"], loop["stop"]))
-        numbered = (re.sub(rf"\b{loop['name']}\b", str(value), loop["body"]) for value in range(*bounds))
-        return _unroll("".join(f"{loop['indent']}{body}" for body in numbered), constants)
+        bounds = (
+            eval(each.replace("/", "//"), {}, constants)
+            for each in (loop["start"], loop["stop"])
+        )
+        numbered = (
+            re.sub(rf"\b{loop['name']}\b", str(value), loop["body"])
+            for value in range(*bounds)
+        )
+        return _unroll(
+            "".join(f"{loop['indent']}{body}" for body in numbered), constants
+        )
 
     return LOOP.sub(copies, text)
 

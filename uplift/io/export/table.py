@@ -48,8 +48,12 @@ class Table:
 def check_complete(data: CubeData, name: str) -> None:
     """Raise `OptionError` for a cube that was built for a scene: programs, and pages with one, need all nodes."""
     if data.complete_cells is not None:
-        problem = f"{name} needs all nodes, but the cube was built for the colours of a scene"
-        raise OptionError(problem, code="sparse-cube", hint="pass cube.fill_missing().data")
+        problem = (
+            f"{name} needs all nodes, but the cube was built for the colours of a scene"
+        )
+        raise OptionError(
+            problem, code="sparse-cube", hint="pass cube.fill_missing().data"
+        )
 
 
 def make_table(data: CubeData, mode: str) -> Table:
@@ -62,7 +66,10 @@ def make_table(data: CubeData, mode: str) -> Table:
     lists, tags = _lists(data, mode)
     stored = [data.points.coefficients, data.atlas.coefficients]
     if mode == "spectra":
-        stored = [data.smoothed_multipliers(np.arange(size)), model.from_storage(data.atlas.coefficients)]
+        stored = [
+            data.smoothed_multipliers(np.arange(size)),
+            model.from_storage(data.atlas.coefficients),
+        ]
     rows = np.zeros((size + len(data.atlas.names), stride), dtype=np.float32)
     rows[:, : model.count] = np.concatenate(stored)
     rows[:size, model.count] = tags
@@ -132,7 +139,11 @@ def _mixing_error(data: CubeData, wavelengths: Array) -> float:
     """
     random = np.random.default_rng(SEED)
     rgb = random.random((SAMPLES, 3)) ** random.uniform(1, 4, (SAMPLES, 1))
-    level = np.where(random.random(rgb.shape) < 0.5, random.choice(data.lattice.nodes, rgb.shape), rgb)
+    level = np.where(
+        random.random(rgb.shape) < 0.5,
+        random.choice(data.lattice.nodes, rgb.shape),
+        rgb,
+    )
     rgb = np.concatenate([rgb, level])
     points = around(data, rgb[fading_share(data, rgb) == 0])
     corners = data.points.coefficients[points.points].astype(float)
@@ -140,7 +151,9 @@ def _mixing_error(data: CubeData, wavelengths: Array) -> float:
     least = 1.0 if isinstance(data.model, Moments) else 0.0
     unit = np.maximum(np.abs(corners).max(axis=1), least) / 2**24
     changed = mixed + unit * random.choice([-1, 1], mixed.shape)
-    change = reflectance(data.model, changed, wavelengths) - reflectance(data.model, mixed, wavelengths)
+    change = reflectance(data.model, changed, wavelengths) - reflectance(
+        data.model, mixed, wavelengths
+    )
     return float(np.abs(change).max(initial=0))
 
 
@@ -185,7 +198,9 @@ def _lists(data: CubeData, mode: str) -> tuple[Floats, Floats]:
     tags = np.zeros(data.lattice.size, dtype=np.float32)
     numbers, first, count = np.unique(cells, return_index=True, return_counts=True)
     lists = [0.0] if data.inexact_cells is None else [0.0, 0.0]
-    for cell, start, length in zip(numbers.tolist(), first.tolist(), count.tolist(), strict=True):
+    for cell, start, length in zip(
+        numbers.tolist(), first.tolist(), count.tolist(), strict=True
+    ):
         tags[cell] = len(lists)
         lists += [length, *entries[start : start + length].tolist()]
     tags = np.where(moved_cells(data, mode), -np.maximum(tags, 1), tags)
@@ -209,8 +224,20 @@ def _moving(data: CubeData) -> tuple[dict[str, Values], dict[str, Any]]:
         "FACETS": np.column_stack([data.solid.normals[:half], width]),
     }
     first, _, step = sensor.range
-    how = {"SAMPLES": len(sensor.wavelengths), "FIRST": first, "STEP": step, "FACET_COUNT": half}
-    moves = {"MARGIN": data.threshold / 2, "LEAST": LEAST, "SLOPE": SLOPE, "MOST": MOST, "STEEP": STEEP, "REACH": REACH}
+    how = {
+        "SAMPLES": len(sensor.wavelengths),
+        "FIRST": first,
+        "STEP": step,
+        "FACET_COUNT": half,
+    }
+    moves = {
+        "MARGIN": data.threshold / 2,
+        "LEAST": LEAST,
+        "SLOPE": SLOPE,
+        "MOST": MOST,
+        "STEEP": STEEP,
+        "REACH": REACH,
+    }
     return sections, how | moves
 
 
@@ -218,10 +245,13 @@ def _boxes(boxes: EntryBoxes) -> Floats:
     """Return centres, the rest that they round off, and reciprocals of distances to the faces, (E, 12); 0 for none."""
     low, high = boxes.faces
     below, above = (
-        np.divide(1, room, out=np.zeros_like(room), where=room > 0) for room in (boxes.rgb - low, high - boxes.rgb)
+        np.divide(1, room, out=np.zeros_like(room), where=room > 0)
+        for room in (boxes.rgb - low, high - boxes.rgb)
     )
     centre = boxes.rgb.astype(np.float32)
-    return np.concatenate([centre, boxes.rgb - centre, below, above], axis=1).astype(np.float32)
+    return np.concatenate([centre, boxes.rgb - centre, below, above], axis=1).astype(
+        np.float32
+    )
 
 
 def model_constants(model: object) -> dict[str, float]:
@@ -231,6 +261,18 @@ def model_constants(model: object) -> dict[str, float]:
     assert isinstance(model, Moments)
     low, high = warped(model.warp, np.array([model.start, model.end])).tolist()
     terms = [number for term in WARPS[model.warp] for number in term]
-    warp = {f"WARP_{number}": value for number, value in enumerate((*terms, 0.0, 0.0, 0.0)[:6])} if terms else {}
-    constants = {"SIGMOIDS": 0, "WARPED": int(bool(terms)), "START": model.start, "END": model.end}
+    warp = (
+        {
+            f"WARP_{number}": value
+            for number, value in enumerate((*terms, 0.0, 0.0, 0.0)[:6])
+        }
+        if terms
+        else {}
+    )
+    constants = {
+        "SIGMOIDS": 0,
+        "WARPED": int(bool(terms)),
+        "START": model.start,
+        "END": model.end,
+    }
     return constants | warp | {"LOW": low, "SCALE": 1 / (high - low)}

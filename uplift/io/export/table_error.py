@@ -48,12 +48,18 @@ def find_errors(error: ErrorFunction, atlas: Array) -> TableError:
     starts = np.argsort(-errors)[:STARTS]
     codes, errors = codes[starts], errors[starts]
     for step in STEPS:
-        codes, errors = _climb(error, codes, errors, random.uniform(-step, step, (TRIALS, STARTS, 3)))
+        codes, errors = _climb(
+            error, codes, errors, random.uniform(-step, step, (TRIALS, STARTS, 3))
+        )
     worst = errors.argmax()
-    return TableError(float(even_errors.mean()), float(errors[worst]), decode(codes[worst]))
+    return TableError(
+        float(even_errors.mean()), float(errors[worst]), decode(codes[worst])
+    )
 
 
-def _climb(error: ErrorFunction, codes: Array, errors: Array, changes: Array) -> tuple[Array, Array]:
+def _climb(
+    error: ErrorFunction, codes: Array, errors: Array, changes: Array
+) -> tuple[Array, Array]:
     """Return codes (n, 3) moved by one of changes (t, n, 3), or not, to the largest error, and the errors (n,)."""
     trials = np.clip(codes + changes, 0, 1)
     trial_errors = error(trials.reshape(-1, 3)).reshape(trials.shape[:2])

@@ -11,7 +11,14 @@ import numpy as np
 from uplift.colorimetry.gamut import METHODS, map_to_gamut
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, Values
-from uplift.common.errors import ColourError, CubeFileError, OptionError, UpliftError, UpliftWarning, needs_package
+from uplift.common.errors import (
+    ColourError,
+    CubeFileError,
+    OptionError,
+    UpliftError,
+    UpliftWarning,
+    needs_package,
+)
 from uplift.io.mitsuba import texels
 from uplift.io.texture.colours import Counts
 from uplift.io.texture.exr_file import is_exr
@@ -25,8 +32,14 @@ START, END = 360, 830
 IMAGES = ("filename", "bitmap")
 SOURCES = ("rgb", *IMAGES)
 HINTS = {
-    (CubeFileError, "file-not-found"): "set the property cube to a cube, or add its folder to Mitsuba's file resolver",
-    (ColourError, "rgb-out-of-gamut"): f"set the property out_of_gamut to {', '.join(METHODS[1:])}",
+    (
+        CubeFileError,
+        "file-not-found",
+    ): "set the property cube to a cube, or add its folder to Mitsuba's file resolver",
+    (
+        ColourError,
+        "rgb-out-of-gamut",
+    ): f"set the property out_of_gamut to {', '.join(METHODS[1:])}",
 }
 """Hints in terms of Mitsuba's properties, by class and code; the library's own name parameters of Python."""
 
@@ -76,8 +89,14 @@ def _make(props: Any) -> Any:
         if cube.data.outside_boxes.find(rgb[None]).rows.size:
             uplifter = texels.prepare_texels(cube, method, of_entries=True)
             (_, multipliers), _ = uplifter.convert(rgb[None].astype(np.float32))
-            return _constant(evaluate(cube.data.atlas.spectra.model, multipliers.astype(float), at)[0])
-        return _constant(cube.reflectance(map_to_gamut(rgb, cube.data.sensor, method).rgb, at))
+            return _constant(
+                evaluate(cube.data.atlas.spectra.model, multipliers.astype(float), at)[
+                    0
+                ]
+            )
+        return _constant(
+            cube.reflectance(map_to_gamut(rgb, cube.data.sensor, method).rgb, at)
+        )
     spectra, placement = _texels(props, is_light=is_light), texels.Placement.read(props)
     _warn_in_scalar_variants("texture")
     return make_texture(props, spectra, placement)
@@ -96,13 +115,20 @@ def _warn_in_scalar_variants(name: str) -> None:
 
     if mitsuba.variant().startswith("scalar"):
         problem = f"the {name} calls Python for every ray in scalar variants"
-        warnings.warn(UpliftWarning(problem, code="texture-in-python", hint="set llvm_ad_spectral"), stacklevel=3)
+        warnings.warn(
+            UpliftWarning(
+                problem, code="texture-in-python", hint="set llvm_ad_spectral"
+            ),
+            stacklevel=3,
+        )
 
 
 def _source(props: Any, names: tuple[str, ...]) -> str:
     sources = [name for name in names if name in props]
     if len(sources) != 1:
-        problem = f"an uplift texture must have one of {', '.join(names)}, got {len(sources)}"
+        problem = (
+            f"an uplift texture must have one of {', '.join(names)}, got {len(sources)}"
+        )
         raise OptionError(problem, hint="pass one of them")
     return sources[0]
 
@@ -122,7 +148,9 @@ def _texels(props: Any, *, is_light: bool) -> texels.Texels:
         if path is None:
             rgb = _linear(decode, props["bitmap"])
         else:
-            rgb, counts, found = texels.read_colours(path, prepare_lights(table, threads=texels.THREADS))
+            rgb, counts, found = texels.read_colours(
+                path, prepare_lights(table, threads=texels.THREADS)
+            )
         spectra = texels.light_texels(table, rgb.astype(float))
     else:
         cube, method = _cube(props), str(props.get("out_of_gamut", method))
@@ -131,7 +159,9 @@ def _texels(props: Any, *, is_light: bool) -> texels.Texels:
             rgb, counts, found = texels.read_colours(path, uplifter)
         else:
             bitmap = props["bitmap"] if path is None else mitsuba.Bitmap(str(path))
-            rgb, counts = uplifter.mapped(_linear(lambda codes: cube.decode(255 * codes), bitmap))
+            rgb, counts = uplifter.mapped(
+                _linear(lambda codes: cube.decode(255 * codes), bitmap)
+            )
         spectra, converted = texels.uplift_texels(uplifter, rgb)
         counts += converted
     for warning in (*found, *counts.warnings(method, path)):
@@ -168,7 +198,10 @@ def _parse_rgb(value: Any) -> Array:
         words = value.replace(",", " ").split() if isinstance(value, str) else value
         red, green, blue = (float(word) for word in words)
     except (TypeError, ValueError) as error:
-        raise OptionError(f"rgb must be three numbers, got {value!r}", hint="for example '0.8, 0.2, 0.1'") from error
+        raise OptionError(
+            f"rgb must be three numbers, got {value!r}",
+            hint="for example '0.8, 0.2, 0.1'",
+        ) from error
     return np.array([red, green, blue])
 
 
@@ -176,7 +209,14 @@ def _constant(values: Array) -> Any:
     import mitsuba
 
     text = ", ".join(f"{value:.9g}" for value in values)
-    return mitsuba.load_dict({"type": "regular", "wavelength_min": START, "wavelength_max": END, "values": text})
+    return mitsuba.load_dict(
+        {
+            "type": "regular",
+            "wavelength_min": START,
+            "wavelength_max": END,
+            "values": text,
+        }
+    )
 
 
 def _linear(decoding: Callable[[Array], Array], bitmap: Any) -> Array:

@@ -80,7 +80,13 @@ def uplift_texels(uplifter: Uplifter, rgb: Floats) -> tuple[Texels, Counts]:
     that of its nodes.
     """
     data, colours = uplifter.cube.data, rgb.reshape(-1, 3).astype(float)
-    if any(found.rows.size for found in (data.entry_boxes.find(colours.clip(0, 1)), data.outside_boxes.find(colours))):
+    if any(
+        found.rows.size
+        for found in (
+            data.entry_boxes.find(colours.clip(0, 1)),
+            data.outside_boxes.find(colours),
+        )
+    ):
         uplifter = prepare_texels(uplifter.cube, uplifter.out_of_gamut, of_entries=True)
     assert uplifter.model is not None
     (_, multipliers), counts = uplifter.convert(rgb)
@@ -89,7 +95,13 @@ def uplift_texels(uplifter: Uplifter, rgb: Floats) -> tuple[Texels, Counts]:
 
 def model_texels(model: Model, multipliers: Values) -> Texels:
     """Return texels of multipliers (h, w, C)."""
-    means = blockwise(lambda rows: evaluate(model, rows, MEAN_WAVELENGTHS).mean(axis=1, keepdims=True), multipliers, 1)
+    means = blockwise(
+        lambda rows: evaluate(model, rows, MEAN_WAVELENGTHS).mean(
+            axis=1, keepdims=True
+        ),
+        multipliers,
+        1,
+    )
     return Texels(model, multipliers, float(means.mean()))
 
 
@@ -100,7 +112,11 @@ def light_texels(table: EmissionTable, rgb: Array) -> Texels:
     """
     at = table.wavelengths
     power = table.spectrum(rgb, outside="clip", dtype=np.float32, threads=THREADS)
-    return Texels(Samples(float(at[0]), float(at[-1]), len(at)), power, float(power.mean(dtype=float)))
+    return Texels(
+        Samples(float(at[0]), float(at[-1]), len(at)),
+        power,
+        float(power.mean(dtype=float)),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,14 +130,23 @@ class Placement:
     @staticmethod
     def read(props: Any) -> "Placement":
         """Read the properties ``filter_type``, ``wrap_mode`` and ``to_uv``. Raises `UnknownNameError`."""
-        matrix = np.array(props["to_uv"].matrix, dtype=float) if "to_uv" in props else np.eye(3)
+        matrix = (
+            np.array(props["to_uv"].matrix, dtype=float)
+            if "to_uv" in props
+            else np.eye(3)
+        )
         axes = [0, 1, len(matrix) - 1]  # Mitsuba also accepts (4, 4)
-        chosen = _choice(props, "filter_type", FILTERS), _choice(props, "wrap_mode", tuple(WRAPS))
+        chosen = (
+            _choice(props, "filter_type", FILTERS),
+            _choice(props, "wrap_mode", tuple(WRAPS)),
+        )
         return Placement(*chosen, matrix[np.ix_(axes, axes)])
 
     def pad(self, numbers: Floats) -> Floats:
         """Return numbers (h, w, C) with `PADDING` texels around them, so that no lookup needs to wrap."""
-        return np.pad(numbers, ((PADDING, PADDING), (PADDING, PADDING), (0, 0)), WRAPS[self.wrap])  # type: ignore[call-overload]
+        return np.pad(
+            numbers, ((PADDING, PADDING), (PADDING, PADDING), (0, 0)), WRAPS[self.wrap]
+        )  # type: ignore[call-overload]
 
 
 def _choice(props: Any, name: str, choices: tuple[str, ...]) -> str:
@@ -142,22 +167,34 @@ def read_texels(path: Path) -> Texels | None:
         return None
     with open_image(path) as image:
         channels = image.parts[0].channels
-        spectral = next(filter(None, (_spectral_channels(channels, each) for each in QUANTITIES)), None)
+        spectral = next(
+            filter(None, (_spectral_channels(channels, each) for each in QUANTITIES)),
+            None,
+        )
         if spectral:
             wavelengths = np.array(sorted(spectral))
             numbers = _numbers(image, [spectral[each] for each in wavelengths])
-            return Texels(_samples(wavelengths), numbers, float(numbers.mean(dtype=float)))
+            return Texels(
+                _samples(wavelengths), numbers, float(numbers.mean(dtype=float))
+            )
         numbered = sorted(name for name in channels if NUMBERED.fullmatch(name))
         if not numbered:
             return None
-        model, numbers = _model(image.header_text("uplift.model"), len(numbered)), _numbers(image, numbered)
+        model, numbers = (
+            _model(image.header_text("uplift.model"), len(numbered)),
+            _numbers(image, numbered),
+        )
         if numbered[0].startswith("moment"):
             assert isinstance(model, Moments)
-            numbers = blockwise(partial(_multipliers, model), numbers, model.count, np.float32, THREADS)
+            numbers = blockwise(
+                partial(_multipliers, model), numbers, model.count, np.float32, THREADS
+            )
         return model_texels(model, numbers)
 
 
-def read_colours(path: Path, converter: Converter) -> tuple[Floats, Counts, tuple[UpliftWarning, ...]]:
+def read_colours(
+    path: Path, converter: Converter
+) -> tuple[Floats, Counts, tuple[UpliftWarning, ...]]:
     """Read linear RGB (h, w, 3) of an image as `uplift.io.texture.convert` does, with counts and warnings of its space.
 
     The first part with colours counts, other channels do not. Raises `TextureError`, `ColourError` and `OptionError`.
@@ -165,23 +202,42 @@ def read_colours(path: Path, converter: Converter) -> tuple[Floats, Counts, tupl
     with open_image(path) as image:
         part, found = coloured_parts(image)[0]
         channels, decode = converter.colour_channels(found), converter.decoder(part)
-        bands, counts = zip(*(decode(channels.straight(rows)) for _, rows in image.bands(part)), strict=True)
-        return np.concatenate(bands), sum(counts, Counts()), space_warnings(image, converter.sensor)
+        bands, counts = zip(
+            *(decode(channels.straight(rows)) for _, rows in image.bands(part)),
+            strict=True,
+        )
+        return (
+            np.concatenate(bands),
+            sum(counts, Counts()),
+            space_warnings(image, converter.sensor),
+        )
 
 
 def _spectral_channels(channels: tuple[str, ...], quantity: str) -> dict[float, str]:
     """Return the names of the channels of a quantity by wavelength in nm."""
-    ends = {name: WAVELENGTH.fullmatch(name.removeprefix(f"{quantity}.")) for name in channels}
-    return {float(f"{end[1]}.{end[2] or 0}"): name for name, end in ends.items() if end and name[0] == quantity[0]}
+    ends = {
+        name: WAVELENGTH.fullmatch(name.removeprefix(f"{quantity}."))
+        for name in channels
+    }
+    return {
+        float(f"{end[1]}.{end[2] or 0}"): name
+        for name, end in ends.items()
+        if end and name[0] == quantity[0]
+    }
 
 
 def _numbers(image: Image, names: list[str]) -> Values:
     """Return the channels (h, w, C) of these names."""
     part = image.parts[0]
     places = [part.channels.index(name) for name in names]
-    numbers = np.concatenate([rows[..., places].astype(np.float32) for _, rows in image.bands(part)])
+    numbers = np.concatenate(
+        [rows[..., places].astype(np.float32) for _, rows in image.bands(part)]
+    )
     if not np.isfinite(numbers).all():
-        raise TextureError("numbers of a texture must be finite", hint="write it again with 'uplift texture'")
+        raise TextureError(
+            "numbers of a texture must be finite",
+            hint="write it again with 'uplift texture'",
+        )
     return numbers
 
 

@@ -14,11 +14,22 @@ from uplift.models.model import Model
 from uplift.models.moments import warped
 
 HASH_ROUNDS = 3
-ARCTAN = (0.49999966, -0.318291775, 0.249550106, -0.207882832, 0.16639951, -0.10996833, 0.048598712, -0.010096807)
+ARCTAN = (
+    0.49999966,
+    -0.318291775,
+    0.249550106,
+    -0.207882832,
+    0.16639951,
+    -0.10996833,
+    0.048598712,
+    -0.010096807,
+)
 """arccos(c) / (π √(1 − c²)) on [0, 1] as a polynomial of c, lowered by its error to keep reflectances in [0, 1]."""
 
 
-def blend(model: Model, multipliers: Sequence[Any], weights: Sequence[Any], wavelengths: Any) -> Any:
+def blend(
+    model: Model, multipliers: Sequence[Any], weights: Sequence[Any], wavelengths: Any
+) -> Any:
     """Return the weighted sum of spectra at ``wavelengths``, a Mitsuba spectrum; each has C multipliers."""
     first, *functions = _basis(model, wavelengths)
     total = dr.zeros(type(wavelengths))
@@ -96,9 +107,16 @@ def _texture_class(variant: str) -> type:
             height, width, _ = self.numbers.shape
             uv = place * mi.Vector2f(1 / width, 1 / height)
             if self.placement.filter != "bilinear":
-                return blend(self.texels.model, [self.numbers.eval(uv)], [mi.Float(1)], si.wavelengths)
+                return blend(
+                    self.texels.model,
+                    [self.numbers.eval(uv)],
+                    [mi.Float(1)],
+                    si.wavelengths,
+                )
             texels = self.numbers.eval_fetch(uv)
-            return blend(self.texels.model, texels, _bilinear_weights(place), si.wavelengths)
+            return blend(
+                self.texels.model, texels, _bilinear_weights(place), si.wavelengths
+            )
 
         def _texel(self, uv: Any) -> Any:
             """Return the place of coordinates in the padded image, in texels; centres of texels are at ½."""
@@ -116,7 +134,9 @@ def _texture_class(variant: str) -> type:
 
             Textures have no sampler: pseudo-random numbers are hashed from coordinates and wavelengths.
             """
-            u, v, wavelength = (_bits(each) for each in (si.uv.x, si.uv.y, si.wavelengths[0]))
+            u, v, wavelength = (
+                _bits(each) for each in (si.uv.x, si.uv.y, si.wavelengths[0])
+            )
             first, second = mi.sample_tea_32(u ^ wavelength, v, HASH_ROUNDS)
             return mi.Vector2f(mi.Float(first), mi.Float(second)) * 2.0**-32 - 0.5
 
@@ -128,8 +148,15 @@ def _texture_class(variant: str) -> type:
                 place = dr.floor(place) + 0.5
             uv = place * mi.Vector2f(1 / width, 1 / height)
             steps = (model.count - 1) / (model.end - model.start)
-            samples = (dr.clip(wavelengths, model.start, model.end) - model.start) * steps + 0.5
-            return type(wavelengths)(*(self.numbers.eval(mi.Point3f(each / depth, uv.x, uv.y))[0] for each in samples))
+            samples = (
+                dr.clip(wavelengths, model.start, model.end) - model.start
+            ) * steps + 0.5
+            return type(wavelengths)(
+                *(
+                    self.numbers.eval(mi.Point3f(each / depth, uv.x, uv.y))[0]
+                    for each in samples
+                )
+            )
 
         def mean(self) -> Any:
             return mi.Float(self.texels.mean)
@@ -161,12 +188,16 @@ def _environment_class(variant: str) -> type:
             super().__init__(props)
             self.scale = float(props.get("scale", 1.0))
             transform = props.get("to_world", mi.ScalarTransform4f())
-            self.to_local = mi.Transform4f(np.array(transform.inverse().matrix, dtype=np.float32))
+            self.to_local = mi.Transform4f(
+                np.array(transform.inverse().matrix, dtype=np.float32)
+            )
             placement = Placement("bilinear", "repeat", np.eye(3))
             self.texture = make_texture(mi.Properties("uplift"), texels, placement)
             grey = np.repeat(texels.numbers.mean(axis=2, keepdims=True), 3, axis=2)
             bitmap = mi.Bitmap(np.ascontiguousarray(grey))
-            self.sampler = mi.load_dict({"type": "envmap", "bitmap": bitmap, "to_world": transform})
+            self.sampler = mi.load_dict(
+                {"type": "envmap", "bitmap": bitmap, "to_world": transform}
+            )
             self.m_flags = self.sampler.flags()
 
         def set_scene(self, scene: Any) -> None:
@@ -189,9 +220,18 @@ def _environment_class(variant: str) -> type:
         def pdf_direction(self, it: Any, ds: Any, active: Any = True) -> Any:
             return self.sampler.pdf_direction(it, ds, active)
 
-        def sample_ray(self, time: Any, sample1: Any, sample2: Any, sample3: Any, active: Any = True) -> Any:
+        def sample_ray(
+            self,
+            time: Any,
+            sample1: Any,
+            sample2: Any,
+            sample3: Any,
+            active: Any = True,
+        ) -> Any:
             """Sample a ray into the scene, and return it with power over density."""
-            ray, weight = self.sampler.sample_ray(time, sample1, sample2, sample3, active)
+            ray, weight = self.sampler.sample_ray(
+                time, sample1, sample2, sample3, active
+            )
             si = dr.zeros(mi.SurfaceInteraction3f)
             si.wavelengths, si.wi = ray.wavelengths, ray.d
             grey = self.sampler.eval(si, active)
@@ -208,12 +248,17 @@ def _environment_class(variant: str) -> type:
             return self.sampler.bbox()
 
         def to_string(self) -> str:
-            return self.texture.to_string().replace("UpliftTexture", "UpliftEnvironment")
+            return self.texture.to_string().replace(
+                "UpliftTexture", "UpliftEnvironment"
+            )
 
         def _radiance(self, direction: Any, wavelengths: Any, active: Any) -> Any:
             """Return the radiance from a direction, with the layout of Mitsuba's ``envmap``."""
             local = self.to_local @ direction
-            u, v = dr.atan2(local.x, -local.z) / (2 * dr.pi), dr.safe_acos(local.y) / dr.pi
+            u, v = (
+                dr.atan2(local.x, -local.z) / (2 * dr.pi),
+                dr.safe_acos(local.y) / dr.pi,
+            )
             height = self.texture.texels.numbers.shape[0]
             si = dr.zeros(mi.SurfaceInteraction3f)
             # The first and the last row lie at the poles.

@@ -16,8 +16,21 @@ from uplift.io.texture.conversion import Conversion, convert
 from uplift.io.texture.lights import prepare_lights
 from uplift.io.texture.mask import prepare_masked
 from uplift.io.texture.relighter import prepare_relighter
-from uplift.io.texture.sequence import Failure, Job, Skipped, TextureSettings, convert_all, pending
-from uplift.io.texture.uplifter import PIXEL_ENCODINGS, Moments, Multipliers, Spectrum, prepare
+from uplift.io.texture.sequence import (
+    Failure,
+    Job,
+    Skipped,
+    TextureSettings,
+    convert_all,
+    pending,
+)
+from uplift.io.texture.uplifter import (
+    PIXEL_ENCODINGS,
+    Moments,
+    Multipliers,
+    Spectrum,
+    prepare,
+)
 
 __all__ = [
     "PIXEL_ENCODINGS",

@@ -15,7 +15,8 @@ BRIGHTEST = 65504.0
 HALF_ROUNDING = 1e-3
 """Linear RGB by which half floats, converted or divided by one another, can leave [0, 1] by rounding."""
 VECTORS = re.compile(
-    r"(.*[._ ])?(n|ns|ng|p|po|pos|pref|uv)|.*(normal|position|vector|velocity|motion|tangent|world).*", re.I
+    r"(.*[._ ])?(n|ns|ng|p|po|pos|pref|uv)|.*(normal|position|vector|velocity|motion|tangent|world).*",
+    re.I,
 )
 """Names of layers of renderers whose X, Y and Z are vectors, not CIE XYZ."""
 XYZ, CHROMA = {"X", "Y", "Z"}, {"RY", "BY"}
@@ -60,7 +61,9 @@ class ColourChannels:
         if self.alpha is None:
             return None
         alpha = values[..., [self.alpha]]
-        scale = np.iinfo(alpha.dtype).max if np.issubdtype(alpha.dtype, np.integer) else 1
+        scale = (
+            np.iinfo(alpha.dtype).max if np.issubdtype(alpha.dtype, np.integer) else 1
+        )
         with np.errstate(invalid="ignore"):  # signalling NaN
             opacity = np.clip(np.nan_to_num(alpha / scale, nan=0.0), 0, 1)
         return np.where(self._is_light(values), 1, opacity).astype(np.float32)
@@ -86,7 +89,9 @@ def without_rounding(rgb: Values, tolerance: float = HALF_ROUNDING) -> Values:
 
 def all_inside(colours: Values) -> bool:
     """Return whether there are colours, and all are in [0, 1]."""
-    return bool(colours.size and colours.min() >= 0 and colours.max() <= 1)  # NaN fails both
+    return bool(
+        colours.size and colours.min() >= 0 and colours.max() <= 1
+    )  # NaN fails both
 
 
 def colour_channels(part: Part) -> ColourChannels | None:
@@ -99,13 +104,19 @@ def colour_channels(part: Part) -> ColourChannels | None:
     if not names:
         return None
     first, second, third = map(part.channels.index, names)
-    if types := {part.types[channel] for channel in (first, second, third)} - COLOUR_TYPES:
+    if (
+        types := {part.types[channel] for channel in (first, second, third)}
+        - COLOUR_TYPES
+    ):
         raise TextureError(
-            f"colour channels must be 8-bit, 16-bit, half or float, got {min(types)}", hint="convert them"
+            f"colour channels must be 8-bit, 16-bit, half or float, got {min(types)}",
+            hint="convert them",
         )
     is_multiplied = part.has_associated_alpha and alpha in part.channels
     multiplier = part.channels.index(alpha) if is_multiplied else None
-    return ColourChannels((first, second, third), multiplier, is_xyz=names[0].endswith("X"))
+    return ColourChannels(
+        (first, second, third), multiplier, is_xyz=names[0].endswith("X")
+    )
 
 
 def _colour_names(part: Part) -> tuple[list[str], str]:
@@ -114,7 +125,10 @@ def _colour_names(part: Part) -> tuple[list[str], str]:
         layers = _layers(part, letters)
         if len(layers) > 1:
             found = ", ".join(layer[:-1] for layer in layers)
-            raise TextureError(f"a part must have one layer of colour, got {found}", hint="write each layer as a part")
+            raise TextureError(
+                f"a part must have one layer of colour, got {found}",
+                hint="write each layer as a part",
+            )
         if layers:
             return [layers[0] + letter for letter in letters], layers[0] + "A"
     is_grey = "Y" in part.channels and not (XYZ - {"Y"} | CHROMA) & set(part.channels)
@@ -125,10 +139,18 @@ def _layers(part: Part, letters: str) -> list[str]:
     """Return the layers with channels of these letters, ``foo.`` for ``foo.R``; only "" if the part itself has them."""
     names = set(part.channels)
     first, others = letters[0], letters[1:]
-    ends = [name[:-1] for name in part.channels if name == first or name.endswith(f".{first}")]
-    layers = [layer for layer in ends if all(layer + letter in names for letter in others)]
+    ends = [
+        name[:-1]
+        for name in part.channels
+        if name == first or name.endswith(f".{first}")
+    ]
+    layers = [
+        layer for layer in ends if all(layer + letter in names for letter in others)
+    ]
     if letters == "XYZ":
-        layers = [layer for layer in layers if not VECTORS.fullmatch(layer.removesuffix("."))]
+        layers = [
+            layer for layer in layers if not VECTORS.fullmatch(layer.removesuffix("."))
+        ]
     return [""] if "" in layers else layers
 
 
@@ -147,4 +169,8 @@ def colour_channels_by_part(image: Image) -> list[tuple[Part, ColourChannels | N
 
 def coloured_parts(image: Image) -> list[tuple[Part, ColourChannels]]:
     """Return the parts that have colours, at least one. Raises `TextureError`."""
-    return [(part, colours) for part, colours in colour_channels_by_part(image) if colours is not None]
+    return [
+        (part, colours)
+        for part, colours in colour_channels_by_part(image)
+        if colours is not None
+    ]

@@ -35,9 +35,9 @@ XYZ_TO_HLG = "DISPLAY - CIE-XYZ-D65_to_REC.2100-HLG-1000nit"
 
 def _decode_bt709(codes: Array) -> Array:
     """Invert the transfer function of ITU-R BT.709, which BT.2020 shares."""
-    return np.where(codes < 0.081, codes / 4.5, (np.maximum(codes, 0.081) + 0.099) / 1.099) ** np.where(
-        codes < 0.081, 1, 1 / 0.45
-    )
+    return np.where(
+        codes < 0.081, codes / 4.5, (np.maximum(codes, 0.081) + 0.099) / 1.099
+    ) ** np.where(codes < 0.081, 1, 1 / 0.45)
 
 
 def power(gamma: float) -> Curve:
@@ -57,12 +57,14 @@ def _hlg_to_xyz(codes: Array) -> Array:
 
 def _built_in(name: str, *, is_inverse: bool = False) -> OcioSpace:
     """Return a transform of OpenColorIO."""
-    import PyOpenColorIO as ocio  # noqa: N813
+    import PyOpenColorIO as ocio
 
     direction = ocio.TRANSFORM_DIR_INVERSE if is_inverse else ocio.TRANSFORM_DIR_FORWARD
     transform = ocio.BuiltinTransform(name, direction)
     processor = ocio.Config.CreateRaw().getProcessor(transform)
-    return OcioSpace(name, False, processor.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS))
+    return OcioSpace(
+        name, False, processor.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS)
+    )
 
 
 TRANSFERS: dict[int, Curve] = {

@@ -26,7 +26,9 @@ ROUNDING = 1e-6
 SRGB_SPACE = ImageSpace("sRGB", SRGB, decode)
 """Space of 8-bit and 16-bit images that state none."""
 ADOBE = ImageSpace(
-    "Adobe RGB (1998)", Primaries((0.64, 0.33), (0.21, 0.71), (0.15, 0.06), SRGB.white), code_points.power(563 / 256)
+    "Adobe RGB (1998)",
+    Primaries((0.64, 0.33), (0.21, 0.71), (0.15, 0.06), SRGB.white),
+    code_points.power(563 / 256),
 )
 EXIF_SRGB, EXIF_ADOBE = 1, 2
 """Values of the EXIF tag ColorSpace. The standard has the first, and cameras write the second."""
@@ -54,8 +56,13 @@ def read_profile(spec: Any, header: Mapping[str, Any]) -> Profile | None:
     ``spec`` is an `OpenImageIO.ImageSpec`, and ``header`` has the statements that it lacks.
     """
     unusable: list[str] = []
-    if CMYK in (spec.get_string_attribute("tiff:ColorSpace"), spec.get_string_attribute("jpeg:ColorSpace")):
-        return Profile(CMYK, None, (CMYK,))  # OpenImageIO converts it to RGB without a profile
+    if CMYK in (
+        spec.get_string_attribute("tiff:ColorSpace"),
+        spec.get_string_attribute("jpeg:ColorSpace"),
+    ):
+        return Profile(
+            CMYK, None, (CMYK,)
+        )  # OpenImageIO converts it to RGB without a profile
     for statement in _statements(spec, header):
         if statement.space is not None:
             return replace(statement, unusable=tuple(unusable))
@@ -73,7 +80,10 @@ def _statements(spec: Any, header: Mapping[str, Any]) -> Iterator[Profile]:
     if (points := header.get("cICP", spec.getattribute("CICP"))) is not None:
         yield _by_code_points(points, CODE_BITS.get(str(spec.format), 8))
     if (data := spec.getattribute("ICCProfile")) is not None:
-        name = spec.get_string_attribute("ICCProfile:profile_description") or "an ICC profile without a name"
+        name = (
+            spec.get_string_attribute("ICCProfile:profile_description")
+            or "an ICC profile without a name"
+        )
         is_bytes = isinstance(data, np.ndarray) and data.dtype == np.uint8
         yield Profile(name, _icc_space(name, data.tobytes()) if is_bytes else None)
     elif "iCCP" in header:
@@ -144,17 +154,25 @@ def _tiff_tags(header: Mapping[str, Any]) -> Iterator[Profile]:
     """Yield the space of the tags TransferFunction, WhitePoint and PrimaryChromaticities of TIFF."""
     gamut: Primaries | None = SRGB
     curve: code_points.Curve | None = decode
-    names = [name for name in ("TransferFunction", "PrimaryChromaticities", "WhitePoint") if name in header]
+    names = [
+        name
+        for name in ("TransferFunction", "PrimaryChromaticities", "WhitePoint")
+        if name in header
+    ]
     if "TransferFunction" in header:
         curve = _table_curve(header["TransferFunction"])
     if names and names != ["TransferFunction"]:
         # One without the other is not a gamut.
-        gamut = _primaries((*header.get("PrimaryChromaticities", ()), *header.get("WhitePoint", ())))
+        gamut = _primaries(
+            (*header.get("PrimaryChromaticities", ()), *header.get("WhitePoint", ()))
+        )
     if names:
         yield _by_parts(" and ".join(names), gamut, curve)
 
 
-def _by_parts(name: str, gamut: Primaries | None, curve: code_points.Curve | None) -> Profile:
+def _by_parts(
+    name: str, gamut: Primaries | None, curve: code_points.Curve | None
+) -> Profile:
     if gamut is None or curve is None:
         return Profile(name, None)
     return Profile(name, ImageSpace(name, gamut, curve))
@@ -163,18 +181,26 @@ def _by_parts(name: str, gamut: Primaries | None, curve: code_points.Curve | Non
 def _table_curve(numbers: tuple[float, ...]) -> code_points.Curve | None:
     """Return the curve of one or three tables of 16-bit numbers; None for others."""
     tables = np.array(numbers, dtype=float) / 65535
-    tables = tables.reshape(3, -1) if len(tables) in (3 << 8, 3 << 16) else np.tile(tables, (3, 1))
+    tables = (
+        tables.reshape(3, -1)
+        if len(tables) in (3 << 8, 3 << 16)
+        else np.tile(tables, (3, 1))
+    )
     count = tables.shape[1]
     if count not in (1 << 8, 1 << 16) or not (np.diff(tables) >= 0).all():
         return None
     at = np.linspace(0, 1, count)
-    return lambda codes: np.stack([np.interp(codes[..., k], at, tables[k]) for k in range(3)], axis=-1)
+    return lambda codes: np.stack(
+        [np.interp(codes[..., k], at, tables[k]) for k in range(3)], axis=-1
+    )
 
 
 def _exif_adobe(header: Mapping[str, Any]) -> Iterator[Profile]:
     """Yield Adobe RGB if the EXIF tag ColorSpace or the interoperability index states it."""
     number = header.get("ColorSpace")
-    is_index = number != EXIF_SRGB and header.get("InteroperabilityIndex") == ADOBE_INDEX
+    is_index = (
+        number != EXIF_SRGB and header.get("InteroperabilityIndex") == ADOBE_INDEX
+    )
     if number == EXIF_ADOBE or is_index:
         yield Profile(ADOBE.name, ADOBE)
 
@@ -198,7 +224,7 @@ def _primaries(numbers: Any) -> Primaries | None:
 
 def _icc_space(name: str, data: bytes) -> ImageSpace | None:
     """Return the space of a matrix profile by OpenColorIO; None for others, and for damaged ones."""
-    import PyOpenColorIO as ocio  # noqa: N813
+    import PyOpenColorIO as ocio
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "image.icc"
@@ -208,12 +234,20 @@ def _icc_space(name: str, data: bytes) -> ImageSpace | None:
             processor = ocio.Config.CreateRaw().getProcessor(transform)
         except ocio.Exception:
             return None
-    to_xyz = OcioSpace(name, False, processor.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS))
+    to_xyz = OcioSpace(
+        name, False, processor.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS)
+    )
     corners = to_xyz.convert(np.vstack([np.eye(3), np.ones(3)]))
     gamut = _primaries((corners / corners.sum(axis=1, keepdims=True))[:, :2].ravel())
     if gamut is None:
         return None
     to_linear = np.linalg.inv(to_xyz.matrix).T
     values = to_xyz.convert(np.linspace([0.0] * 3, [1.0] * 3, 256)) @ to_linear
-    is_plausible = np.isfinite(values).all() and (np.diff(values, axis=0) >= -ROUNDING).all()
-    return ImageSpace(name, gamut, lambda codes: to_xyz.convert(codes) @ to_linear) if is_plausible else None
+    is_plausible = (
+        np.isfinite(values).all() and (np.diff(values, axis=0) >= -ROUNDING).all()
+    )
+    return (
+        ImageSpace(name, gamut, lambda codes: to_xyz.convert(codes) @ to_linear)
+        if is_plausible
+        else None
+    )

@@ -12,7 +12,12 @@ from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Array, Floats, StrPath, Values
 from uplift.common.errors import OptionError, TextureError, UpliftWarning, unknown_name
 from uplift.common.text import pluralise
-from uplift.io.texture.channels import HALF_ROUNDING, all_inside, colour_channels, without_rounding
+from uplift.io.texture.channels import (
+    HALF_ROUNDING,
+    all_inside,
+    colour_channels,
+    without_rounding,
+)
 from uplift.io.texture.colour_profile import SRGB_SPACE
 from uplift.io.texture.image import Image, Part
 from uplift.lattice.entry_boxes import NO_ROWS, OutsideBoxes
@@ -66,22 +71,40 @@ class Counts:
     """
 
     pixels: int = 0
-    outside: int = _counted("pixels-out-of-gamut", "outside [0, 1]: {mapped}, a component by up to {change:.3g}")
-    not_finite: int = _counted("pixels-not-finite", "not finite: NaN is replaced by 0, infinity is clamped")
-    unrealisable: int = _counted("pixels-unrealisable", "of unrealisable colours: their spectra have less chroma")
-    max_change: float = 0.0
-    painted_outside: int = _counted("painted-pixels-out-of-gamut", "outside [0, 1] after painting: {mapped}")
-    not_lights: int = _counted(
-        "pixels-not-lights", "of colours that no light has: moved towards white of the same luminance"
+    outside: int = _counted(
+        "pixels-out-of-gamut",
+        "outside [0, 1]: {mapped}, a component by up to {change:.3g}",
     )
-    too_bright: int = _counted("pixels-too-bright", "brighter than half floats can store: clamped; use 32-bit channels")
+    not_finite: int = _counted(
+        "pixels-not-finite", "not finite: NaN is replaced by 0, infinity is clamped"
+    )
+    unrealisable: int = _counted(
+        "pixels-unrealisable", "of unrealisable colours: their spectra have less chroma"
+    )
+    max_change: float = 0.0
+    painted_outside: int = _counted(
+        "painted-pixels-out-of-gamut", "outside [0, 1] after painting: {mapped}"
+    )
+    not_lights: int = _counted(
+        "pixels-not-lights",
+        "of colours that no light has: moved towards white of the same luminance",
+    )
+    too_bright: int = _counted(
+        "pixels-too-bright",
+        "brighter than half floats can store: clamped; use 32-bit channels",
+    )
 
     def __add__(self, other: "Counts") -> "Counts":
         """Counts of both."""
-        sums = {each.name: getattr(self, each.name) + getattr(other, each.name) for each in fields(self)}
+        sums = {
+            each.name: getattr(self, each.name) + getattr(other, each.name)
+            for each in fields(self)
+        }
         return Counts(**sums | {"max_change": max(self.max_change, other.max_change)})
 
-    def warnings(self, method: str = "clip", path: StrPath | None = None) -> tuple[UpliftWarning, ...]:
+    def warnings(
+        self, method: str = "clip", path: StrPath | None = None
+    ) -> tuple[UpliftWarning, ...]:
         """Return a warning for every count of changed pixels above 0.
 
         Parameters
@@ -97,14 +120,18 @@ class Counts:
             The warnings. They are not emitted.
         """
         words = {"mapped": PAST_TENSE[method], "change": self.max_change}
-        found = [each for each in fields(self) if each.metadata and getattr(self, each.name)]
+        found = [
+            each for each in fields(self) if each.metadata and getattr(self, each.name)
+        ]
         return tuple(
             UpliftWarning(
                 f"{getattr(self, each.name):,} of {pluralise(self.pixels, 'pixel')} "
                 f"{each.metadata['text'].format(**words)}",
                 code=each.metadata["code"],
                 path=path,
-                hint=LIGHTS if each.name == "outside" and self.max_change > BRIGHT else "",
+                hint=LIGHTS
+                if each.name == "outside" and self.max_change > BRIGHT
+                else "",
             )
             for each in found
         )
@@ -116,7 +143,9 @@ def is_xyz(part: Part) -> bool:
     return channels is not None and channels.is_xyz
 
 
-def source_space(part: Part, sensor: Sensor, chosen: ImageSpace | None = None) -> ImageSpace | None:
+def source_space(
+    part: Part, sensor: Sensor, chosen: ImageSpace | None = None
+) -> ImageSpace | None:
     """Return the space of the colours of a part, None if it is that of the sensor.
 
     The one that the caller names comes first, then the statement of the file, then sRGB for codes and the space of the
@@ -125,20 +154,29 @@ def source_space(part: Part, sensor: Sensor, chosen: ImageSpace | None = None) -
     if is_xyz(part):
         if chosen is not None and chosen.to_gamut is None:
             raise TextureError(
-                f"channels X, Y and Z are CIE XYZ, not RGB of '{chosen.name}'", hint="leave out the space"
+                f"channels X, Y and Z are CIE XYZ, not RGB of '{chosen.name}'",
+                hint="leave out the space",
             )
         return chosen or part.xyz
     stated = None if part.profile is None else part.profile.space
     space = chosen or stated or (SRGB_SPACE if part.max_code else None)
-    return None if space is None or space.agrees_with(sensor, encoded=bool(part.max_code)) else space
+    return (
+        None
+        if space is None or space.agrees_with(sensor, encoded=bool(part.max_code))
+        else space
+    )
 
 
-def space_warnings(image: Image, sensor: Sensor, chosen: ImageSpace | None = None) -> tuple[UpliftWarning, ...]:
+def space_warnings(
+    image: Image, sensor: Sensor, chosen: ImageSpace | None = None
+) -> tuple[UpliftWarning, ...]:
     """Return warnings about parts whose space is not known: unusable statements, and assumptions."""
     found: dict[str, UpliftWarning] = {}
     for part in image.parts if chosen is None else ():
         if problem := _space_problem(part, sensor):
-            found[problem] = UpliftWarning(problem, code="colour-space-assumed", path=image.path)
+            found[problem] = UpliftWarning(
+                problem, code="colour-space-assumed", path=image.path
+            )
     return tuple(found.values())
 
 
@@ -154,7 +192,11 @@ def _space_problem(part: Part, sensor: Sensor) -> str:
     if stated is not None and stated.unusable:
         names = ", ".join(stated.unusable)
         return f"the image states a colour space that cannot be used ({names}); its colours are read as {read_as}"
-    if stated is None and not is_xyz(part) and not SRGB_SPACE.agrees_with(sensor, encoded=False):
+    if (
+        stated is None
+        and not is_xyz(part)
+        and not SRGB_SPACE.agrees_with(sensor, encoded=False)
+    ):
         return f"the image states no colour space; its colours are read as {read_as}"
     return ""
 
@@ -205,11 +247,15 @@ class Decoder:
             return colours, 0
         finite = np.asarray(np.isfinite(colours).all(axis=-1))
         if self.method != "error":
-            clamped = np.clip(np.nan_to_num(colours, nan=0.0, posinf=1.0, neginf=0.0), 0, 1)
+            clamped = np.clip(
+                np.nan_to_num(colours, nan=0.0, posinf=1.0, neginf=0.0), 0, 1
+            )
             colours = np.where(finite[..., None], colours, clamped)
         return colours, int((~finite).sum())
 
-    def _mapped(self, colours: Values, boxes: OutsideBoxes | None = None) -> tuple[Values, int, float]:
+    def _mapped(
+        self, colours: Values, boxes: OutsideBoxes | None = None
+    ) -> tuple[Values, int, float]:
         """Return colours in [0, 1] or in boxes, the number of those that were moved, and the largest change."""
         if all_inside(colours):
             return colours, 0, 0.0
@@ -262,7 +308,16 @@ def make_decoder(
         raise OptionError("CIE XYZ must be linear", hint="leave out encoding='encoded'")
     function = linear_reader(sensor, part, encoding, source)
     rounding = _rounding(part, matrix)
-    return Decoder(function, bool(part.max_code), is_encoded, matrix, sensor, method, outside, rounding)
+    return Decoder(
+        function,
+        bool(part.max_code),
+        is_encoded,
+        matrix,
+        sensor,
+        method,
+        outside,
+        rounding,
+    )
 
 
 def _rounding(part: Part, matrix: Array | None) -> float:
@@ -281,11 +336,17 @@ def reads_codes(part: Part, source: ImageSpace | None) -> bool:
     return bool(part.max_code) or (source is not None and source.floats_are_codes)
 
 
-def linear_reader(sensor: Sensor, part: Part, encoding: str, source: ImageSpace | None) -> Callable[[Values], Values]:
+def linear_reader(
+    sensor: Sensor, part: Part, encoding: str, source: ImageSpace | None
+) -> Callable[[Values], Values]:
     """Return the function from the numbers (…, 3) of a part to linear values of its space, None for the sensor's."""
     to_linear = (source and source.decode) or (lambda codes: sensor.decode(255 * codes))
     if not part.max_code:
-        return to_linear if encoding == "encoded" or reads_codes(part, source) else np.asarray
+        return (
+            to_linear
+            if encoding == "encoded" or reads_codes(part, source)
+            else np.asarray
+        )
     if source is not None and source.mixes_channels and encoding != "linear":
         return lambda codes: to_linear(codes / part.max_code)
     # A table, as channels are independent.
@@ -294,4 +355,6 @@ def linear_reader(sensor: Sensor, part: Part, encoding: str, source: ImageSpace 
     if (table == table[:, :1]).all():
         curve = table[:, 0].copy()
         return lambda codes: curve[codes]
-    return lambda codes: np.stack([table[:, k][codes[..., k]] for k in range(3)], axis=-1)
+    return lambda codes: np.stack(
+        [table[:, k][codes[..., k]] for k in range(3)], axis=-1
+    )

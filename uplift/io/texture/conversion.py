@@ -97,20 +97,37 @@ def convert(
     made_of = {SOURCE: source_stamp(source)}
     with open_image(source) as image, converter.opened(image) as convert_rows:
         parts = colour_channels_by_part(image)
-        layouts = [_layout(converter, image, part, colours, made_of) for part, colours in parts]
+        layouts = [
+            _layout(converter, image, part, colours, made_of) for part, colours in parts
+        ]
         total = sum(layout.part.window.height for layout in layouts)
         counts, done = Counts(), 0
-        with open_writer(target, [each.output for each in layouts], force=force) as writer:
+        with open_writer(
+            target, [each.output for each in layouts], force=force
+        ) as writer:
             for layout in layouts:
                 writer.start_part(layout.part.number)
                 for first, band in _bands(image, layout):
-                    counts += _write_band(converter, convert_rows, layout, writer, first, band)
+                    counts += _write_band(
+                        converter, convert_rows, layout, writer, first, band
+                    )
                     done += len(band)
                     progress(Progress("rows", done, total))
         notes = space_warnings(image, converter.sensor, converter.space)
     warnings = (*counts.warnings(converter.out_of_gamut, source), *notes)
-    spaces = tuple(dict.fromkeys(_space_name(converter, each.part) for each in layouts if each.colours))
-    return Conversion(Path(source), Path(target), counts, warnings, time.perf_counter() - begin, spaces)
+    spaces = tuple(
+        dict.fromkeys(
+            _space_name(converter, each.part) for each in layouts if each.colours
+        )
+    )
+    return Conversion(
+        Path(source),
+        Path(target),
+        counts,
+        warnings,
+        time.perf_counter() - begin,
+        spaces,
+    )
 
 
 def source_stamp(source: StrPath) -> str:
@@ -123,7 +140,9 @@ def _space_name(converter: Converter, part: Part) -> str:
     space = source_space(part, converter.sensor, converter.space)
     if space is not None:
         return space.name
-    return converter.sensor.space if part.max_code else f"linear {converter.sensor.space}"
+    return (
+        converter.sensor.space if part.max_code else f"linear {converter.sensor.space}"
+    )
 
 
 LOSSLESS = {"half": "half", "uint": "uint", "uint8": "half"}
@@ -142,7 +161,11 @@ class _Layout:
 
 
 def _layout(
-    converter: Converter, image: Image, part: Part, found: ColourChannels | None, made_of: Mapping[str, str]
+    converter: Converter,
+    image: Image,
+    part: Part,
+    found: ColourChannels | None,
+    made_of: Mapping[str, str],
 ) -> _Layout:
     colours = None if found is None else converter.colour_channels(found)
     rgb = () if colours is None else colours.rgb
@@ -156,10 +179,22 @@ def _layout(
                 f"channel '{min(duplicates)}' exists next to the colour and would be written twice",
                 hint="remove that channel",
             )
-        names, types = (*converted, *names), (*(converter.depth,) * len(converted), *types)
-    modified = time.strftime("%Y:%m:%d %H:%M:%S", time.gmtime(image.path.stat().st_mtime))  # as EXIF writes it
-    header = {**part.metadata, **converter.header, **converter.part_header(part), **made_of}
-    output = OutputPart(part.name, part.window, names, types, header, part.date or modified)
+        names, types = (
+            (*converted, *names),
+            (*(converter.depth,) * len(converted), *types),
+        )
+    modified = time.strftime(
+        "%Y:%m:%d %H:%M:%S", time.gmtime(image.path.stat().st_mtime)
+    )  # as EXIF writes it
+    header = {
+        **part.metadata,
+        **converter.header,
+        **converter.part_header(part),
+        **made_of,
+    }
+    output = OutputPart(
+        part.name, part.window, names, types, header, part.date or modified
+    )
     return _Layout(part, colours, others, converter.decoder(part), output)
 
 
@@ -172,7 +207,12 @@ def _bands(image: Image, layout: _Layout) -> Iterator[tuple[int, Values]]:
 
 
 def _write_band(
-    converter: Converter, convert_rows: ConvertRows, layout: _Layout, writer: Writer, first: int, band: Values
+    converter: Converter,
+    convert_rows: ConvertRows,
+    layout: _Layout,
+    writer: Writer,
+    first: int,
+    band: Values,
 ) -> Counts:
     """Convert and write a band. Its arrays are gone before those of the next, which halves the memory."""
     others, counts = band[..., layout.others], Counts()

@@ -58,13 +58,20 @@ def check_size(path: Path) -> None:
             if not 0 <= size <= end - value:
                 raise _damaged()
             if kind == b"chlist":
-                while channels <= MAX_CHANNELS and file.tell() < value + size and _name(file):
+                while (
+                    channels <= MAX_CHANNELS
+                    and file.tell() < value + size
+                    and _name(file)
+                ):
                     file.seek(CHANNEL_BYTES, os.SEEK_CUR)
                     channels += 1
             file.seek(value + size)
             if attributes > MAX_ATTRIBUTES or channels > MAX_CHANNELS:
                 problem = f"an image must have at most {MAX_CHANNELS} channels and {MAX_ATTRIBUTES} attributes"
-                raise TextureError(problem, hint="write the channels to several files, or remove attributes")
+                raise TextureError(
+                    problem,
+                    hint="write the channels to several files, or remove attributes",
+                )
 
 
 def seal(path: Path) -> None:
@@ -126,5 +133,7 @@ def _read(file: BinaryIO, size: int) -> bytes:
 
 def _damaged() -> TextureError:
     return TextureError(
-        "the OpenEXR file is damaged or incomplete", code="file-unreadable", hint="write the file again"
+        "the OpenEXR file is damaged or incomplete",
+        code="file-unreadable",
+        hint="write the file again",
     )

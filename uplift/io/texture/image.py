@@ -30,7 +30,16 @@ UINT32_SCALE = 2**32 - 1
 MAX_EXACT_INTEGER = 1 << 24
 """Integers up to this number pass through 32-bit floats."""
 UNKNOWN_PROBLEM = "the image cannot be read"
-SIGNATURES = (exr_file.MAGIC, hdr_file.MAGIC, png_file.SIGNATURE, b"\xff\xd8", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+SIGNATURES = (
+    exr_file.MAGIC,
+    hdr_file.MAGIC,
+    png_file.SIGNATURE,
+    b"\xff\xd8",
+    b"II*\0",
+    b"MM\0*",
+    b"II+\0",
+    b"MM\0+",
+)
 """First bytes of the formats."""
 PNG_INTERLACE = 28
 """Offset of the byte that marks an interlaced PNG file, which can only be decoded in one piece."""
@@ -102,7 +111,11 @@ class Part:
     def max_code(self) -> int:
         """Largest value if all channels are 8-bit or all are 16-bit integers, else 0."""
         types = set(self.types)
-        return {"uint8": 255, "uint16": 65535}.get(types.pop(), 0) if len(types) == 1 else 0
+        return (
+            {"uint8": 255, "uint16": 65535}.get(types.pop(), 0)
+            if len(types) == 1
+            else 0
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,9 +130,14 @@ class Image:
         """Yield row numbers and rows (k, width, channels): integers if all channels are, else floats."""
         window = part.window
         row = window.width * len(part.channels) * 4
-        step = part.rows_per_block * max(1, MAX_BAND_BYTES // (row * part.rows_per_block))
+        step = part.rows_per_block * max(
+            1, MAX_BAND_BYTES // (row * part.rows_per_block)
+        )
         for first in range(0, window.height, step):
-            yield window.y + first, self.rows(part, first, min(step, window.height - first))
+            yield (
+                window.y + first,
+                self.rows(part, first, min(step, window.height - first)),
+            )
 
     def rows(self, part: Part, first: int, count: int) -> Values:
         """Read rows (count, width, channels) from row ``first`` of the window, as `bands` does."""
@@ -144,11 +162,15 @@ class Image:
         """Return a text attribute of the first part, empty if it is missing."""
         return str(self.handle.spec(0).get_string_attribute(name))
 
-    def _read(self, part: Part, first: int, end: int, dtype: str, channel: int | None = None) -> Values:
+    def _read(
+        self, part: Part, first: int, end: int, dtype: str, channel: int | None = None
+    ) -> Values:
         import OpenImageIO
 
         window, kind = part.window, OpenImageIO.TypeDesc(dtype)
-        channels = (0, len(part.channels)) if channel is None else (channel, channel + 1)
+        channels = (
+            (0, len(part.channels)) if channel is None else (channel, channel + 1)
+        )
         if part.is_tiled:
             columns = (window.x, window.x + window.width)
             rows = self.handle.read_tiles(*columns, first, end, 0, 1, *channels, kind)
@@ -176,8 +198,12 @@ def open_image(path: StrPath) -> Iterator[Image]:
 
     path, config, handle = Path(path), OpenImageIO.ImageSpec(), None
     header: Mapping[str, Any] = {}
-    config["oiio:UnassociatedAlpha"] = 1  # keep colours as stored, not multiplied by alpha
-    OpenImageIO.attribute("limits:imagesize_MB", 0)  # bands are read, which are compared with memory
+    config["oiio:UnassociatedAlpha"] = (
+        1  # keep colours as stored, not multiplied by alpha
+    )
+    OpenImageIO.attribute(
+        "limits:imagesize_MB", 0
+    )  # bands are read, which are compared with memory
     try:
         start = _read_start(path)
         if start.startswith(exr_file.MAGIC):
@@ -197,11 +223,25 @@ def open_image(path: StrPath) -> Iterator[Image]:
         for part in parts:
             for name in (part.name, *part.channels):
                 if not _is_text(name):
-                    raise TextureError(f"names of parts and channels must be UTF-8, got {name!a}", hint="rename it")
-            is_interlaced = start.startswith(png_file.SIGNATURE) and start[PNG_INTERLACE:] == b"\1"
-            rows = part.window.height if is_interlaced else min(part.rows_per_block, part.window.height)
+                    raise TextureError(
+                        f"names of parts and channels must be UTF-8, got {name!a}",
+                        hint="rename it",
+                    )
+            is_interlaced = (
+                start.startswith(png_file.SIGNATURE) and start[PNG_INTERLACE:] == b"\1"
+            )
+            rows = (
+                part.window.height
+                if is_interlaced
+                else min(part.rows_per_block, part.window.height)
+            )
             need = rows * part.window.width * len(part.channels) * 4
-            check_memory(need, f"a block of {pluralise(rows, 'row')}, decoded together,", TextureError, MEMORY_HINT)
+            check_memory(
+                need,
+                f"a block of {pluralise(rows, 'row')}, decoded together,",
+                TextureError,
+                MEMORY_HINT,
+            )
         yield Image(path, parts, handle)
     except (TextureError, ColourError) as error:
         error.path = path if error.path is None else error.path
@@ -217,15 +257,23 @@ def _read_start(path: Path) -> bytes:
         with path.open("rb") as file:
             start = file.read(PNG_INTERLACE + 1)
     except OSError as error:
-        raise TextureError(f"cannot be read: {error.strerror}", code="file-unreadable", hint=FORMAT_HINT) from error
-    if not start.startswith(SIGNATURES):  # OpenImageIO would try all its formats, for minutes if the file is large
+        raise TextureError(
+            f"cannot be read: {error.strerror}",
+            code="file-unreadable",
+            hint=FORMAT_HINT,
+        ) from error
+    if not start.startswith(
+        SIGNATURES
+    ):  # OpenImageIO would try all its formats, for minutes if the file is large
         raise TextureError("unsupported image format", hint=FORMAT_HINT)
     return start
 
 
 def _parts(handle: Any, header: Mapping[str, Any]) -> Iterator[Part]:
     if handle.format_name() not in FORMATS:
-        raise TextureError(f"unsupported image format {handle.format_name()}", hint=FORMAT_HINT)
+        raise TextureError(
+            f"unsupported image format {handle.format_name()}", hint=FORMAT_HINT
+        )
     number = 0
     while handle.seek_subimage(number, 0):
         yield _part(handle.spec(), number, header)
@@ -238,7 +286,9 @@ def _part(spec: Any, number: int, header: Mapping[str, Any]) -> Part:
     if spec.deep or spec.depth > 1:
         raise TextureError("an image must have one value per pixel", hint="flatten it")
     if spec.get_int_attribute("tiff:PhotometricInterpretation") in OTHER_COLOURS:
-        raise TextureError("the colours of a TIFF must be RGB, grey or CMYK", hint="convert it to RGB")
+        raise TextureError(
+            "the colours of a TIFF must be RGB, grey or CMYK", hint="convert it to RGB"
+        )
     formats = spec.channelformats or (spec.format,) * spec.nchannels
     display = (spec.full_x, spec.full_y, spec.full_width, spec.full_height)
     aspect = spec.get_float_attribute("PixelAspectRatio", 1.0)
@@ -249,7 +299,8 @@ def _part(spec: Any, number: int, header: Mapping[str, Any]) -> Part:
         window=Window(spec.x, spec.y, spec.width, spec.height, display, aspect),
         channels=tuple(spec.channelnames),
         types=tuple(map(str, formats)),
-        rows_per_block=spec.tile_height or max(spec.get_int_attribute("oiio:RowsPerChunk", 1), 1),
+        rows_per_block=spec.tile_height
+        or max(spec.get_int_attribute("oiio:RowsPerChunk", 1), 1),
         is_tiled=bool(spec.tile_width),
         profile=read_profile(spec, header),
         date=date if _is_text(date) and date else None,
@@ -262,7 +313,10 @@ def _part(spec: Any, number: int, header: Mapping[str, Any]) -> Part:
 def _metadata(spec: Any) -> dict[str, Attribute]:
     """Return the attributes that are not about how the image is stored."""
     kept = (each for each in spec.extra_attribs if _is_kept(each.name, each.value))
-    return {each.name: Attribute(each.type, each.value) for each in itertools.islice(kept, MAX_METADATA)}
+    return {
+        each.name: Attribute(each.type, each.value)
+        for each in itertools.islice(kept, MAX_METADATA)
+    }
 
 
 def _is_kept(name: str, value: Any) -> bool:
@@ -275,7 +329,11 @@ def _is_kept(name: str, value: Any) -> bool:
 def _is_kept_value(value: Any) -> bool:
     """Return whether a value is text, a number, or a tuple of either, and neither empty nor long. Bytes are not."""
     if isinstance(value, str | tuple):
-        parts = all(map(_is_kept_value, value)) if isinstance(value, tuple) else _is_text(value)
+        parts = (
+            all(map(_is_kept_value, value))
+            if isinstance(value, tuple)
+            else _is_text(value)
+        )
         return 0 < len(value) <= MAX_METADATA_LENGTH and parts
     return isinstance(value, int | float)
 
@@ -299,5 +357,7 @@ def utf8_name(path: Path, error: type[UpliftError]) -> str:
     try:
         name.encode()
     except UnicodeEncodeError as cause:
-        raise error("the file name is not UTF-8", path=path, hint="rename the file") from cause
+        raise error(
+            "the file name is not UTF-8", path=path, hint="rename the file"
+        ) from cause
     return name

@@ -52,18 +52,33 @@ class LightUplifter(uplifter.Converter):
             if matrix is not None:
                 rgb = rgb @ matrix.T
             changed = int((~usable.all(axis=-1)).sum())
-            return rgb.astype(np.float32, copy=False), colours.Counts(numbers.size // 3, not_finite=changed)
+            return rgb.astype(np.float32, copy=False), colours.Counts(
+                numbers.size // 3, not_finite=changed
+            )
 
         return read
 
     def convert(self, rgb: Floats) -> uplifter.Converted:
-        lights, limit = rgb.astype(float), np.finfo(np.float16 if self.depth == "half" else np.float32).max
+        lights, limit = (
+            rgb.astype(float),
+            np.finfo(np.float16 if self.depth == "half" else np.float32).max,
+        )
         wrong = ~self.table.contains(lights)
-        lights[wrong] = self.table.rgb(self.table.spectrum(lights[wrong], outside="clip"))
-        power = self.table.spectrum(lights, self.wavelengths, outside="clip", dtype=np.float32, threads=self.threads)
+        lights[wrong] = self.table.rgb(
+            self.table.spectrum(lights[wrong], outside="clip")
+        )
+        power = self.table.spectrum(
+            lights,
+            self.wavelengths,
+            outside="clip",
+            dtype=np.float32,
+            threads=self.threads,
+        )
         values = lights.astype(np.float32), power
         bright = (np.abs(values[0]) > limit).any(axis=-1) | (power > limit).any(axis=-1)
-        counts = colours.Counts(not_lights=int(wrong.sum()), too_bright=int(bright.sum()))
+        counts = colours.Counts(
+            not_lights=int(wrong.sum()), too_bright=int(bright.sum())
+        )
         return (np.clip(values[0], -limit, limit), np.clip(values[1], 0, limit)), counts
 
 
@@ -116,7 +131,12 @@ def prepare_lights(
     colours.check_encoding(encoding)
     at = as_wavelengths(wavelengths, table.wavelengths)
     channels = uplifter.spectral_channels("S0", at)
-    settings = {"as": "emission", "wavelengths": at.tolist(), "depth": depth, "encoding": encoding}
+    settings = {
+        "as": "emission",
+        "wavelengths": at.tolist(),
+        "depth": depth,
+        "encoding": encoding,
+    }
     settings |= {} if space is None else {"space": space}
     colour_space = sensor(table.space)
     header = {
@@ -129,4 +149,15 @@ def prepare_lights(
         "emissiveUnits": UNITS,
     }
     chosen = None if space is None else find_space(space)
-    return LightUplifter(colour_space, depth, encoding, "clip", channels, header, table, at, threads, space=chosen)
+    return LightUplifter(
+        colour_space,
+        depth,
+        encoding,
+        "clip",
+        channels,
+        header,
+        table,
+        at,
+        threads,
+        space=chosen,
+    )

@@ -36,7 +36,9 @@ ReadWeights = Callable[[int, int], Floats]
 
 
 @contextlib.contextmanager
-def open_mask(path: StrPath, cubes: int, window: tuple[int, int]) -> Iterator[ReadWeights]:
+def open_mask(
+    path: StrPath, cubes: int, window: tuple[int, int]
+) -> Iterator[ReadWeights]:
     """Open a mask of at least two cubes, for an image of this width and height.
 
     Its rows are read once to find out what its numbers are. Raises `TextureError` for a file that cannot be read or has
@@ -51,30 +53,51 @@ def open_mask(path: StrPath, cubes: int, window: tuple[int, int]) -> Iterator[Re
                 hint="scale the mask",
             )
         found = colour_channels(part)
-        if (found is None and len(part.channels) > 1) or (found is not None and found.is_xyz):
-            raise TextureError(f"no mask among the channels {', '.join(part.channels)}", hint=HINT)
+        if (found is None and len(part.channels) > 1) or (
+            found is not None and found.is_xyz
+        ):
+            raise TextureError(
+                f"no mask among the channels {', '.join(part.channels)}", hint=HINT
+            )
         rgb = (0, 0, 0) if found is None else found.rgb
         to_weights = _interpret(image, part, rgb, cubes)
         yield lambda first, count: to_weights(image.rows(part, first, count)[..., rgb])
 
 
-def _interpret(image: Image, part: Part, rgb: tuple[int, int, int], cubes: int) -> Callable[[Values], Floats]:
+def _interpret(
+    image: Image, part: Part, rgb: tuple[int, int, int], cubes: int
+) -> Callable[[Values], Floats]:
     """Return the function from the numbers (…, 3) of a mask to weights (…, n). Raises `TextureError` for others."""
     low, high, is_grey, has_black = np.inf, -np.inf, True, False
     for _, band in image.bands(part):
         colours = band[..., rgb]
-        low, high = min(low, np.min(colours)), max(high, np.max(colours))  # NaN remains NaN
+        low, high = (
+            min(low, np.min(colours)),
+            max(high, np.max(colours)),
+        )  # NaN remains NaN
         is_grey &= bool((colours == colours[..., :1]).all())
         has_black |= bool((colours == 0).all(axis=-1).any())
     is_integer, white = part.max_code > 0, part.max_code or 1
     is_weight = low >= 0 and high <= white
     if is_integer and is_grey and high < cubes:
-        return lambda numbers: np.asarray(numbers[..., :1] == np.arange(cubes), dtype=np.float32)
-    if is_weight and is_grey and cubes == 2 and (not is_integer or high >= MIN_WHITE * white):
-        return lambda numbers: _pair(np.asarray(numbers[..., 0] / np.float32(white), dtype=np.float32))
+        return lambda numbers: np.asarray(
+            numbers[..., :1] == np.arange(cubes), dtype=np.float32
+        )
+    if (
+        is_weight
+        and is_grey
+        and cubes == 2
+        and (not is_integer or high >= MIN_WHITE * white)
+    ):
+        return lambda numbers: _pair(
+            np.asarray(numbers[..., 0] / np.float32(white), dtype=np.float32)
+        )
     if is_weight and not is_grey and cubes == 3 and not has_black:
         return _normalised
-    meanings = {2: "0 and 1, or weights up to white", 3: "0 to 2, or weights in R, G and B that are not all 0"}
+    meanings = {
+        2: "0 and 1, or weights up to white",
+        3: "0 to 2, or weights in R, G and B that are not all 0",
+    }
     raise TextureError(
         f"a mask of {pluralise(cubes, 'cube')} must hold {meanings.get(cubes, f'0 to {cubes - 1}')}, "
         f"got {'grey' if is_grey else 'coloured'} values from {low:g} to {high:g}",
@@ -100,12 +123,24 @@ class MaskedUplifter(Converter):
 
     @contextlib.contextmanager
     def opened(self, image: Image) -> Iterator[ConvertRows]:
-        sizes = dict.fromkeys((part.window.width, part.window.height) for part, _ in coloured_parts(image))
-        with contextlib.ExitStack() as stack:  # a mask that fits one size only is an error for the other
-            weights, *_ = [stack.enter_context(open_mask(self.mask, len(self.uplifters), size)) for size in sizes]
+        sizes = dict.fromkeys(
+            (part.window.width, part.window.height) for part, _ in coloured_parts(image)
+        )
+        with (
+            contextlib.ExitStack() as stack
+        ):  # a mask that fits one size only is an error for the other
+            weights, *_ = [
+                stack.enter_context(open_mask(self.mask, len(self.uplifters), size))
+                for size in sizes
+            ]
             try:
-                yield lambda part, first, rgb: self.mix(rgb, weights(first - part.window.y, len(rgb)))
-            except (ColourError, TextureError) as error:  # of the image, not of the mask
+                yield lambda part, first, rgb: self.mix(
+                    rgb, weights(first - part.window.y, len(rgb))
+                )
+            except (
+                ColourError,
+                TextureError,
+            ) as error:  # of the image, not of the mask
                 error.path = error.path or image.path
                 raise
 
@@ -115,7 +150,12 @@ class MaskedUplifter(Converter):
     @property
     def boxes(self) -> OutsideBoxes:
         every = [each.boxes for each in self.uplifters]
-        return OutsideBoxes(*(np.concatenate([getattr(one, name) for one in every]) for name in ("rgb", "half_width")))
+        return OutsideBoxes(
+            *(
+                np.concatenate([getattr(one, name) for one in every])
+                for name in ("rgb", "half_width")
+            )
+        )
 
     def mix(self, rgb: Floats, weights: Floats) -> Converted:
         """Uplift linear RGB (k, width, 3) of the decoder by the cubes, with weights (k, width, n) of sum 1.
@@ -123,13 +163,17 @@ class MaskedUplifter(Converter):
         A colour in the box of an entry outside [0, 1] is answered so by the cube that has the entry, and mapped by the
         others. The colours of these answers are mixed likewise.
         """
-        is_mixed: Mask = np.all(weights < (1 if self.uplifters[0].model else 0), axis=-1)
+        is_mixed: Mask = np.all(
+            weights < (1 if self.uplifters[0].model else 0), axis=-1
+        )
         is_outside: Mask = np.any((rgb < 0) | (rgb > 1), axis=-1)
         answered = np.where(is_outside[..., None], 0, rgb)
         values = np.zeros((*rgb.shape[:2], len(self.channels)), dtype=np.float32)
         moments = np.zeros((np.count_nonzero(is_mixed), len(self.channels)))
         counts = Counts()
-        for uplifter, weight in zip(self.uplifters, np.moveaxis(weights, -1, 0), strict=True):
+        for uplifter, weight in zip(
+            self.uplifters, np.moveaxis(weights, -1, 0), strict=True
+        ):
             rows = weight > 0
             if not rows.any():
                 continue
@@ -137,19 +181,27 @@ class MaskedUplifter(Converter):
             (colours, found), counted = uplifter.convert(requested)
             counts += counted + replace(changed, pixels=0)
             kept = is_outside[rows]
-            answered[rows & is_outside] += weight[rows & is_outside][:, None] * colours[kept]
+            answered[rows & is_outside] += (
+                weight[rows & is_outside][:, None] * colours[kept]
+            )
             mixed, shared = is_mixed[rows], rows[is_mixed]
-            values[rows & ~is_mixed] += weight[rows & ~is_mixed][:, None] * found[~mixed]
+            values[rows & ~is_mixed] += (
+                weight[rows & ~is_mixed][:, None] * found[~mixed]
+            )
             if mixed.any():
                 parts = uplifter.cube.data.model.to_storage(found[mixed].astype(float))
                 moments[shared] += weight[is_mixed][shared][:, None] * parts
         if len(moments):
             data = self.uplifters[0].cube.data
             start = data.model.from_storage(moments)
-            values[is_mixed] = refine_to_rgb(data, data.model, start, answered[is_mixed].astype(float))
+            values[is_mixed] = refine_to_rgb(
+                data, data.model, start, answered[is_mixed].astype(float)
+            )
         return (answered, values), counts
 
-    def multiply(self, values: tuple[Floats, ...], opacity: Floats) -> tuple[Floats, ...]:
+    def multiply(
+        self, values: tuple[Floats, ...], opacity: Floats
+    ) -> tuple[Floats, ...]:
         return self.uplifters[0].multiply(values, opacity)
 
 
@@ -184,17 +236,34 @@ def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
     first = uplifters[0]
     common_sensor(each.cube.data for each in uplifters)
     is_model_stored = first.channels[0][:1].islower()
-    models = {json.dumps(each.cube.data.model.describe(), sort_keys=True) for each in uplifters}
-    if len({each.channels for each in uplifters}) > 1 or (is_model_stored and len(models) > 1):
+    models = {
+        json.dumps(each.cube.data.model.describe(), sort_keys=True)
+        for each in uplifters
+    }
+    if len({each.channels for each in uplifters}) > 1 or (
+        is_model_stored and len(models) > 1
+    ):
         raise OptionError(
             "cubes of one texture must have the same wavelengths or, for moments and multipliers, the same model",
             hint="write spectra at given wavelengths, or build the cubes with the same options",
         )
     if first.errors:
-        raise OptionError("a texture of several cubes has no standard errors", hint="write one of each cube")
+        raise OptionError(
+            "a texture of several cubes has no standard errors",
+            hint="write one of each cube",
+        )
     mask_digest = file_digest(mask, TextureError)
     digests = [each.header["uplift.cube"] for each in uplifters]
-    description = json.loads(first.header["uplift.texture"]) | {"cubes": digests, "mask": mask_digest}
-    header = {**first.header, "uplift.cube": ", ".join(digests), "uplift.texture": json.dumps(description)}
+    description = json.loads(first.header["uplift.texture"]) | {
+        "cubes": digests,
+        "mask": mask_digest,
+    }
+    header = {
+        **first.header,
+        "uplift.cube": ", ".join(digests),
+        "uplift.texture": json.dumps(description),
+    }
     settings = {each.name: getattr(first, each.name) for each in fields(Converter)}
-    return MaskedUplifter(**settings | {"header": header}, uplifters=tuple(uplifters), mask=mask)
+    return MaskedUplifter(
+        **settings | {"header": header}, uplifters=tuple(uplifters), mask=mask
+    )

@@ -9,7 +9,12 @@ from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Floats, StrPath, Values
 from uplift.common.errors import UpliftWarning
 from uplift.io.texture.channels import coloured_parts
-from uplift.io.texture.colours import Counts, check_encoding, make_decoder, space_warnings
+from uplift.io.texture.colours import (
+    Counts,
+    check_encoding,
+    make_decoder,
+    space_warnings,
+)
 from uplift.io.texture.image import Part, open_image
 
 
@@ -54,7 +59,10 @@ def read_picture(
                 opacities.add(first - part.window.y, opacity)
             mean.add(first - part.window.y, rgb if opacity is None else rgb * opacity)
             counts += decoded
-        warnings = (*counts.warnings(out_of_gamut, path), *space_warnings(image, sensor, space))
+        warnings = (
+            *counts.warnings(out_of_gamut, path),
+            *space_warnings(image, sensor, space),
+        )
     if channels.alpha is None:
         return Picture(mean.result(), None, mean.step, warnings)
     weights = opacities.result()
@@ -80,4 +88,6 @@ class _Reducer:
 
     def result(self) -> Floats:
         """Return the means (height, width, channels)."""
-        return (self._total / (self._rows[:, None, None] * self._widths[:, None])).astype(np.float32)
+        return (
+            self._total / (self._rows[:, None, None] * self._widths[:, None])
+        ).astype(np.float32)

@@ -84,4 +84,8 @@ def _read(file: BinaryIO, size: int) -> bytes:
 
 
 def _damaged() -> TextureError:
-    return TextureError("the PNG file is damaged or incomplete", code="file-unreadable", hint="write the file again")
+    return TextureError(
+        "the PNG file is damaged or incomplete",
+        code="file-unreadable",
+        hint="write the file again",
+    )

@@ -15,7 +15,13 @@ from uplift.common.arrays import Floats
 from uplift.io import exr
 from uplift.io.texture.colours import Counts, source_space
 from uplift.io.texture.image import Image, Part
-from uplift.io.texture.uplifter import Converted, Converter, ConvertRows, Sampler, channel_name
+from uplift.io.texture.uplifter import (
+    Converted,
+    Converter,
+    ConvertRows,
+    Sampler,
+    channel_name,
+)
 from uplift.lookup import Cube
 from uplift.lookup.node_table import prepare_products
 
@@ -28,11 +34,18 @@ class Relighter(Converter):
 
     def part_header(self, part: Part) -> dict[str, object]:
         space = source_space(part, self.sensor, self.space)
-        return {"chromaticities": exr.chromaticities(self.sensor if space is None else space.gamut)}
+        return {
+            "chromaticities": exr.chromaticities(
+                self.sensor if space is None else space.gamut
+            )
+        }
 
     @contextlib.contextmanager
     def opened(self, image: Image) -> Iterator[ConvertRows]:
-        yield lambda part, first, rgb: ((self._to_space(part, self.sample(rgb)),), Counts())
+        yield lambda part, first, rgb: (
+            (self._to_space(part, self.sample(rgb)),),
+            Counts(),
+        )
 
     def convert(self, rgb: Floats) -> Converted:
         return (self.sample(rgb),), Counts()
@@ -43,7 +56,9 @@ class Relighter(Converter):
         if space is None or space.matrix_to(self.sensor) is None:
             return lit
         to_sensor = conversion(space.gamut, self.sensor)
-        return (lit.reshape(-1, 3) @ np.linalg.inv(to_sensor).T.astype(lit.dtype)).reshape(lit.shape)
+        return (
+            lit.reshape(-1, 3) @ np.linalg.inv(to_sensor).T.astype(lit.dtype)
+        ).reshape(lit.shape)
 
 
 def prepare_relighter(
@@ -85,14 +100,27 @@ def prepare_relighter(
         A light or the RGB space is unknown.
     """
     sensor = cube.data.sensor
-    screens = display_sensors(lights, sensor.observer, *sensor.range, space=sensor.space)
+    screens = display_sensors(
+        lights, sensor.observer, *sensor.range, space=sensor.space
+    )
     names = [screen.illuminant for screen in screens]
     if not adapt:
-        screens = tuple(replace(screen, xyz_to_rgb=sensor.xyz_to_rgb) for screen in screens)
+        screens = tuple(
+            replace(screen, xyz_to_rgb=sensor.xyz_to_rgb) for screen in screens
+        )
     layers = map(channel_name, names[1:])
-    settings: dict[str, object] = {"as": "relit", "lights": names, "encoding": encoding, "out_of_gamut": out_of_gamut}
+    settings: dict[str, object] = {
+        "as": "relit",
+        "lights": names,
+        "encoding": encoding,
+        "out_of_gamut": out_of_gamut,
+    }
     settings |= {} if adapt else {"adapt": False}
-    header = {**exr.attributes(cube.data), "uplift.texture": json.dumps(settings), "uplift.lights": ", ".join(names)}
+    header = {
+        **exr.attributes(cube.data),
+        "uplift.texture": json.dumps(settings),
+        "uplift.lights": ", ".join(names),
+    }
     return Relighter(
         sensor,
         "half",
@@ -101,7 +129,10 @@ def prepare_relighter(
         tuple(f"{layer}.{letter}" for layer in layers for letter in "RGB"),
         header,
         sample=prepare_products(
-            cube.data, cube.wavelengths, np.concatenate([screen.matrix for screen in screens]), threads
+            cube.data,
+            cube.wavelengths,
+            np.concatenate([screen.matrix for screen in screens]),
+            threads,
         ),
         space=None if space is None else find_space(space),
     )

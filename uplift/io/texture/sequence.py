@@ -11,7 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from uplift.colorimetry.lights import Illuminant
-from uplift.common.errors import OptionError, OutputError, StrPath, TextureError, UpliftError, needs_package
+from uplift.common.errors import (
+    OptionError,
+    OutputError,
+    StrPath,
+    TextureError,
+    UpliftError,
+    needs_package,
+)
 from uplift.common.files import check_folder, make_folder, remove_stale
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
@@ -79,16 +86,27 @@ class TextureSettings:
         Converter
             The converter to pass to `convert`.
         """
-        shared: dict[str, Any] = {name: getattr(self, name) for name in ("depth", "encoding", "space", "threads")}
+        shared: dict[str, Any] = {
+            name: getattr(self, name)
+            for name in ("depth", "encoding", "space", "threads")
+        }
         if self.emission:
-            at = self.pixel_encoding.wavelengths if isinstance(self.pixel_encoding, Spectrum) else None
+            at = (
+                self.pixel_encoding.wavelengths
+                if isinstance(self.pixel_encoding, Spectrum)
+                else None
+            )
             return prepare_lights(load_emission(self.cubes[0]), at, **shared)
         cubes = [load(path) for path in self.cubes]
         if self.fill_missing:
             cubes = [cube.fill_missing(threads=self.threads) for cube in cubes]
         shared |= {"out_of_gamut": self.out_of_gamut, "errors": self.errors}
         uplifters = [prepare(cube, self.pixel_encoding, **shared) for cube in cubes]
-        return uplifters[0] if self.mask is None else prepare_masked(uplifters, Path(self.mask))
+        return (
+            uplifters[0]
+            if self.mask is None
+            else prepare_masked(uplifters, Path(self.mask))
+        )
 
 
 @dataclass(frozen=True)
@@ -156,7 +174,12 @@ def run(job: Job, progress: ProgressCallback = ignore_progress) -> Outcome:
     except UpliftError as error:
         return Failure(job.source, error)
     except MemoryError:
-        return Failure(job.source, TextureError("not enough memory", path=job.source, hint="use fewer processes"))
+        return Failure(
+            job.source,
+            TextureError(
+                "not enough memory", path=job.source, hint="use fewer processes"
+            ),
+        )
 
 
 def _run(job: Job, progress: ProgressCallback) -> Outcome:
@@ -165,14 +188,22 @@ def _run(job: Job, progress: ProgressCallback) -> Outcome:
     if job.resume and is_complete(job):
         return Skipped(job.source)
     try:
-        return convert(converter_for(job.settings), job.source, job.target, force=job.force, progress=progress)
+        return convert(
+            converter_for(job.settings),
+            job.source,
+            job.target,
+            force=job.force,
+            progress=progress,
+        )
     except OutputError as error:
         if job.resume and error.code == "file-exists" and is_complete(job):
             return Skipped(job.source)
         raise
 
 
-def convert_all(jobs: Iterable[Job], *, processes: int = 1, scheduler: str | None = None) -> Generator[Outcome]:
+def convert_all(
+    jobs: Iterable[Job], *, processes: int = 1, scheduler: str | None = None
+) -> Generator[Outcome]:
     """Convert images one after the other, in several processes, or on a Dask cluster.
 
     An exception and closing the iterator end the conversions. Unfinished files are removed, also when this process
@@ -201,14 +232,21 @@ def convert_all(jobs: Iterable[Job], *, processes: int = 1, scheduler: str | Non
         remains.
     """
     if processes < 1:
-        raise OptionError(f"the number of processes must be at least 1, got {processes}", hint="use 1 or more")
+        raise OptionError(
+            f"the number of processes must be at least 1, got {processes}",
+            hint="use 1 or more",
+        )
     jobs = list(jobs)
     if scheduler is None and processes == 1:
         yield from map(run, jobs)
         return
     finished: list[Path] = []
     try:
-        with tied_processes(processes) if scheduler is None else _dask_executor(scheduler) as executor:
+        with (
+            tied_processes(processes)
+            if scheduler is None
+            else _dask_executor(scheduler) as executor
+        ):
             for future in as_completed([executor.submit(run, job) for job in jobs]):
                 result = future.result()
                 if isinstance(result, Conversion):
@@ -216,7 +254,10 @@ def convert_all(jobs: Iterable[Job], *, processes: int = 1, scheduler: str | Non
                 yield result
     except Exception as error:
         is_of_dask = type(error).__module__.partition(".")[0] == "distributed"
-        if not (is_of_dask or isinstance(error, BrokenExecutor | CancelledError | TimeoutError)):
+        if not (
+            is_of_dask
+            or isinstance(error, BrokenExecutor | CancelledError | TimeoutError)
+        ):
             raise
         raise _workers_lost(jobs, finished) from error
 
@@ -245,7 +286,9 @@ def _dask_executor(address: str) -> Iterator[Executor]:
     """Connect to a cluster. Raises `OptionError`."""
     distributed = import_distributed()
     with contextlib.ExitStack() as stack:
-        for handler in logging.getLogger("distributed").handlers:  # lost connections are raised as errors
+        for handler in logging.getLogger(
+            "distributed"
+        ).handlers:  # lost connections are raised as errors
             stack.callback(handler.setLevel, handler.level)
             handler.setLevel(logging.CRITICAL + 1)
         try:
@@ -281,14 +324,22 @@ def pending(jobs: Iterable[Job]) -> list[Job]:
         A texture from which a job could resume was written otherwise (``texture-differs``).
     """
     jobs = list(jobs)
-    inputs = [path for job in jobs for path in (job.source, *job.settings.cubes, job.settings.mask)]
+    inputs = [
+        path
+        for job in jobs
+        for path in (job.source, *job.settings.cubes, job.settings.mask)
+    ]
     _check_targets([job.target for job in jobs], inputs, force=True)
     remaining = [job for job in jobs if not (job.resume and is_complete(job))]
-    _check_targets([job.target for job in remaining if not job.force], inputs, force=False)
+    _check_targets(
+        [job.target for job in remaining if not job.force], inputs, force=False
+    )
     return remaining
 
 
-def _check_targets(targets: list[Path], inputs: Iterable[StrPath | None], *, force: bool) -> None:
+def _check_targets(
+    targets: list[Path], inputs: Iterable[StrPath | None], *, force: bool
+) -> None:
     """Check textures by their folders, which `run` creates."""
     for folder in dict.fromkeys(target.parent for target in targets):
         names = [target.name for target in targets if target.parent == folder]
@@ -305,7 +356,9 @@ def is_complete(job: Job) -> bool:
     problem = _difference(job)
     if problem and not job.force:
         hint = "pass force=True to convert the image again, or choose another name"
-        raise OutputError(f"exists, but {problem}", code="texture-differs", path=job.target, hint=hint)
+        raise OutputError(
+            f"exists, but {problem}", code="texture-differs", path=job.target, hint=hint
+        )
     return not problem
 
 

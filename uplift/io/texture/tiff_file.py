@@ -9,7 +9,12 @@ import struct
 from pathlib import Path
 from typing import Any, BinaryIO
 
-TAGS = {301: "TransferFunction", 318: "WhitePoint", 319: "PrimaryChromaticities", 0xA001: "ColorSpace"}
+TAGS = {
+    301: "TransferFunction",
+    318: "WhitePoint",
+    319: "PrimaryChromaticities",
+    0xA001: "ColorSpace",
+}
 """Names of the tags that are read."""
 EXIF, INTEROPERABILITY = 0x8769, 0xA005
 """Tags with the offsets of further directories."""
@@ -70,7 +75,9 @@ def _tags(file: BinaryIO) -> dict[str, Any]:
     return found
 
 
-def _subdirectory(file: BinaryIO, order: str, parent: dict[int, Any], tag: int, is_big: bool) -> dict[int, Any]:
+def _subdirectory(
+    file: BinaryIO, order: str, parent: dict[int, Any], tag: int, is_big: bool
+) -> dict[int, Any]:
     return _directory(file, order, parent[tag][0], is_big) if tag in parent else {}
 
 

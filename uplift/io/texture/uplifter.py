@@ -26,7 +26,11 @@ from uplift.io.texture.image import Image, Part
 from uplift.lattice.entry_boxes import BoxHits, OutsideBoxes
 from uplift.lookup import Cube
 from uplift.lookup.blocks import as_wavelengths, blockwise
-from uplift.lookup.interpolate import extended_multipliers, is_inexact, refined_multipliers
+from uplift.lookup.interpolate import (
+    extended_multipliers,
+    is_inexact,
+    refined_multipliers,
+)
 from uplift.lookup.light_errors import LightErrors, light_errors
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models.model import Model
@@ -63,7 +67,9 @@ class Converter(ABC):
     def convert(self, rgb: Floats) -> Converted:
         """Arrays that make R, G, B and the channels (…, 3 + N) side by side, for linear RGB (…, 3) of `decoder`."""
 
-    def multiply(self, values: tuple[Floats, ...], opacity: Floats) -> tuple[Floats, ...]:
+    def multiply(
+        self, values: tuple[Floats, ...], opacity: Floats
+    ) -> tuple[Floats, ...]:
         """Multiply the arrays of `convert`, which are not changed, by alpha (…, 1)."""
         return tuple(each * opacity for each in values)
 
@@ -78,11 +84,15 @@ class Converter(ABC):
 
     def decoder(self, part: Part) -> ReadColours:
         """Conversion of the numbers of a part to linear RGB, by default in [0, 1] or in `boxes`."""
-        return make_decoder(self.sensor, part, self.encoding, self.out_of_gamut, self.space, self.boxes)
+        return make_decoder(
+            self.sensor, part, self.encoding, self.out_of_gamut, self.space, self.boxes
+        )
 
     def mapped(self, rgb: Values) -> tuple[Floats, Counts]:
         """Return linear RGB (…, 3) in [0, 1] or in `boxes`, as `decoder` does for parts, and the changed ones."""
-        return Decoder(np.asarray, False, False, None, self.sensor, self.out_of_gamut, self.boxes)(rgb)
+        return Decoder(
+            np.asarray, False, False, None, self.sensor, self.out_of_gamut, self.boxes
+        )(rgb)
 
     def part_header(self, part: Part) -> Mapping[str, Any]:
         """Attributes of one part in addition to ``header``, by default none."""
@@ -146,10 +156,15 @@ class Spectrum(PixelEncoding):
     def pixels(self, cube: Cube, threads: int) -> Pixels:
         from uplift.lookup import bulk
 
-        at, entries = as_wavelengths(self.wavelengths, cube.wavelengths), cube.data.atlas.outside
+        at, entries = (
+            as_wavelengths(self.wavelengths, cube.wavelengths),
+            cube.data.atlas.outside,
+        )
         channels, outside = spectral_channels("T", at), None
         if entries is not None:
-            outside = entries.spectra.reflectance(np.arange(len(entries.names)), at).astype(np.float32)
+            outside = entries.spectra.reflectance(
+                np.arange(len(entries.names)), at
+            ).astype(np.float32)
         sample = bulk.spectra(cube, self.wavelengths, threads=threads)
         return Pixels(channels, sample, outside, details={"wavelengths": at.tolist()})
 
@@ -166,7 +181,10 @@ class Moments(PixelEncoding):
 
         model, entries = cube.data.model, cube.data.atlas.outside
         if not isinstance(model, models.Moments):
-            raise OptionError(f"moments need a moments cube, got a {model.name} cube", hint="write multipliers")
+            raise OptionError(
+                f"moments need a moments cube, got a {model.name} cube",
+                hint="write multipliers",
+            )
         outside = None if entries is None else entries.coefficients.astype(np.float32)
         channels = tuple(f"moment.{index:02}" for index in range(model.count))
         return Pixels(channels, bulk.coefficients(cube, threads=threads), outside)
@@ -192,19 +210,37 @@ class Multipliers(PixelEncoding):
         data, entries = cube.data, cube.data.atlas.outside
         function, model, outside = partial(refined_multipliers, data), data.model, None
         if self.of_entries:
-            function, model = partial(extended_multipliers, data), data.atlas.spectra.model
+            function, model = (
+                partial(extended_multipliers, data),
+                data.atlas.spectra.model,
+            )
         if entries is not None:
-            own = entries.spectra.multipliers if self.of_entries else data.model.from_storage(entries.coefficients)
+            own = (
+                entries.spectra.multipliers
+                if self.of_entries
+                else data.model.from_storage(entries.coefficients)
+            )
             outside = own.astype(np.float32)
 
         def sample(rgb: Floats) -> Floats:
-            colours, rows = _different(rgb)  # images have few: a colour takes long, and has the same answer each time
-            return blockwise(function, colours.astype(float), model.count, np.float32, threads)[rows]
+            colours, rows = _different(
+                rgb
+            )  # images have few: a colour takes long, and has the same answer each time
+            return blockwise(
+                function, colours.astype(float), model.count, np.float32, threads
+            )[rows]
 
-        return Pixels(tuple(f"multiplier.{index:02}" for index in range(model.count)), sample, outside, model)
+        return Pixels(
+            tuple(f"multiplier.{index:02}" for index in range(model.count)),
+            sample,
+            outside,
+            model,
+        )
 
 
-PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {each.name: each for each in (Spectrum, Moments, Multipliers)}
+PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {
+    each.name: each for each in (Spectrum, Moments, Multipliers)
+}
 """Pixel encodings with their defaults, by name."""
 
 
@@ -212,7 +248,9 @@ def _different(rgb: Floats) -> tuple[Floats, Indices]:
     """Return the different colours (n, 3) of an image (…, 3), and the row (…) of each pixel among them."""
     flat = np.ascontiguousarray(rgb, dtype=np.float32).reshape(-1, 3)
     words = flat.view(np.uint32).astype(np.uint64)
-    keys = (words[:, 0] << 32 | words[:, 1]) * np.uint64(0x9E3779B97F4A7C15) ^ words[:, 2]
+    keys = (words[:, 0] << 32 | words[:, 1]) * np.uint64(0x9E3779B97F4A7C15) ^ words[
+        :, 2
+    ]
     _, first, rows = np.unique(keys, return_index=True, return_inverse=True)
     if (flat[first][rows] != flat).any():  # two colours have one key
         return flat, np.arange(len(flat)).reshape(rgb.shape[:-1])
@@ -225,7 +263,10 @@ def spectral_channels(quantity: str, wavelengths: Array) -> tuple[str, ...]:
     The layout is that of Fichet et al. 2021: the quantity is T, reflectance, or S0, power that is not polarised. Raises
     `OptionError` for wavelengths that do not ascend.
     """
-    names = tuple(f"{quantity}." + f"{wavelength:.6f}nm".replace(".", ",") for wavelength in wavelengths)
+    names = tuple(
+        f"{quantity}." + f"{wavelength:.6f}nm".replace(".", ",")
+        for wavelength in wavelengths
+    )
     if (np.diff(wavelengths) <= 0).any() or len(set(names)) < len(names):
         raise OptionError(
             "wavelengths of a spectral image must ascend in steps of at least 1e-6 nm",
@@ -255,11 +296,16 @@ class Uplifter(Converter):
 
     def convert(self, rgb: Floats) -> Converted:
         values, counts = self._convert(rgb)
-        return ((*values, self._standard_errors(rgb)) if self.errors else values), counts
+        return (
+            (*values, self._standard_errors(rgb)) if self.errors else values
+        ), counts
 
     def _standard_errors(self, rgb: Floats) -> Floats:
         colours, rows = _different(np.clip(rgb, 0, 1))
-        found = [blockwise(each, colours.astype(float), 2, np.float32)[:, 0] for each in self.errors]
+        found = [
+            blockwise(each, colours.astype(float), 2, np.float32)[:, 0]
+            for each in self.errors
+        ]
         errors = np.stack(found, axis=-1)[rows]
         hits = self.boxes.find(rgb.reshape(-1, 3))
         errors.reshape(-1, len(found))[hits.rows] *= hits.lattice_weight[:, None]
@@ -272,13 +318,23 @@ class Uplifter(Converter):
                 return self._convert_outside(rgb, hits, self.outside)
         data, colours = self.cube.data, rgb.reshape(-1, 3).astype(float)
         near = colours[is_inexact(data, colours)]
-        is_off = data.solid.signed_distance(near) > data.threshold if near.size else near
-        return (rgb, self.sample(rgb)), Counts(unrealisable=int(np.count_nonzero(is_off)))
+        is_off = (
+            data.solid.signed_distance(near) > data.threshold if near.size else near
+        )
+        return (rgb, self.sample(rgb)), Counts(
+            unrealisable=int(np.count_nonzero(is_off))
+        )
 
-    def _convert_outside(self, rgb: Floats, hits: BoxHits, entries: Floats) -> Converted:
+    def _convert_outside(
+        self, rgb: Floats, hits: BoxHits, entries: Floats
+    ) -> Converted:
         """Mix the answers to mapped colours with those of entries, as their colours: t · mapped + (1 − t) · entry."""
         data, colours = self.cube.data, rgb.reshape(-1, 3).copy()
-        requested, is_mixed, weight = colours[hits.rows], hits.lattice_weight > 0, hits.lattice_weight[:, None]
+        requested, is_mixed, weight = (
+            colours[hits.rows],
+            hits.lattice_weight > 0,
+            hits.lattice_weight[:, None],
+        )
         # With the method "error", only the core of a box is answered.
         map_to_gamut(requested[is_mixed], self.sensor, self.out_of_gamut)
         method = "clip" if self.out_of_gamut == "error" else self.out_of_gamut
@@ -288,13 +344,19 @@ class Uplifter(Converter):
         (_, found), counts = self._convert(colours.reshape(rgb.shape))
         numbers = found.reshape(len(colours), -1)
         own = weight * numbers[hits.rows] + (1 - weight) * entries[hits.entry]
-        numbers[hits.rows] = own if self.model is None else refine_to_rgb(data, self.model, own, mixed)
+        numbers[hits.rows] = (
+            own if self.model is None else refine_to_rgb(data, self.model, own, mixed)
+        )
         colours[hits.rows] = mixed
-        change = float(np.abs(mixed - requested).max(where=is_mixed[:, None], initial=0))
+        change = float(
+            np.abs(mixed - requested).max(where=is_mixed[:, None], initial=0)
+        )
         counts += Counts(outside=int(is_mixed.sum()), max_change=change)
         return (colours.reshape(rgb.shape), numbers.reshape(found.shape)), counts
 
-    def multiply(self, values: tuple[Floats, ...], opacity: Floats) -> tuple[Floats, ...]:
+    def multiply(
+        self, values: tuple[Floats, ...], opacity: Floats
+    ) -> tuple[Floats, ...]:
         rgb, numbers, *errors = super().multiply(values, opacity)
         return rgb, numbers if self.model is None else values[1], *errors
 
@@ -350,14 +412,23 @@ def prepare(
     check_encoding(encoding)
     check_method(out_of_gamut)
     pixels = kind.pixels(cube, threads)
-    settings: dict[str, Any] = {"depth": depth, "encoding": encoding, "out_of_gamut": out_of_gamut}
+    settings: dict[str, Any] = {
+        "depth": depth,
+        "encoding": encoding,
+        "out_of_gamut": out_of_gamut,
+    }
     settings |= {} if space is None else {"space": space}
     check_distinct(errors)
-    lights = [light(name, cube.observer, *cube.data.sensor.range) for name in dict.fromkeys(errors)]
+    lights = [
+        light(name, cube.observer, *cube.data.sensor.range)
+        for name in dict.fromkeys(errors)
+    ]
     settings |= {"errors": [each.name for each in lights]} if lights else {}
     lamps = [asdict(each) for each in errors if isinstance(each, Lamp)]
     settings |= {"lamps": lamps} if lamps else {}
-    description = json.dumps({"as": kind.name, **pixels.details, **settings}, allow_nan=False)
+    description = json.dumps(
+        {"as": kind.name, **pixels.details, **settings}, allow_nan=False
+    )
     header = {**exr.attributes(cube.data), "uplift.texture": description, **kind.header}
     return Uplifter(
         cube.data.sensor,
@@ -383,5 +454,8 @@ def channel_name(light: str) -> str:
 def resolve_depth(depth: str | None, depths: tuple[str, ...], name: str) -> str:
     """Return the depth, by default the first of ``depths``. Raises `OptionError` for others."""
     if depth is not None and depth not in depths:
-        raise OptionError(f"depth of {name} must be {' or '.join(depths)}, got '{depth}'", hint="others are imprecise")
+        raise OptionError(
+            f"depth of {name} must be {' or '.join(depths)}, got '{depth}'",
+            hint="others are imprecise",
+        )
     return depth or depths[0]

@@ -49,7 +49,9 @@ class OutputPart:
         import OpenImageIO
 
         window = self.window
-        spec = OpenImageIO.ImageSpec(window.width, window.height, len(self.channels), self.types[0])
+        spec = OpenImageIO.ImageSpec(
+            window.width, window.height, len(self.channels), self.types[0]
+        )
         spec.channelnames = self.channels
         if len(set(self.types)) > 1:
             spec.channelformats = tuple(map(OpenImageIO.TypeDesc, self.types))
@@ -57,7 +59,9 @@ class OutputPart:
         spec.full_x, spec.full_y, spec.full_width, spec.full_height = window.display
         spec.attribute("PixelAspectRatio", window.aspect)
         spec.attribute("compression", COMPRESSION)
-        spec.attribute("DateTime", self.date)  # the default is now, which makes every file different
+        spec.attribute(
+            "DateTime", self.date
+        )  # the default is now, which makes every file different
         if self.name:
             spec.attribute("oiio:subimagename", self.name)
         for name, value in self.header.items():
@@ -78,11 +82,18 @@ class Writer:
 
         self._path, self._specs = path, [part.spec() for part in parts]
         self._specs[0].attribute(exr_file.CHECKSUM, exr_file.NO_CHECKSUM)
-        self._total = sum(part.window.height * part.window.width * len(part.channels) for part in parts)
+        self._total = sum(
+            part.window.height * part.window.width * len(part.channels)
+            for part in parts
+        )
         self._written = 0
         specs = tuple(self._specs) if len(self._specs) > 1 else self._specs[0]
-        with _compression_threads(max(part.rows_per_band for part in parts) // ROWS_PER_CHUNK):
-            self._handle: Any = OpenImageIO.ImageOutput.create("openexr")  # takes the number of threads
+        with _compression_threads(
+            max(part.rows_per_band for part in parts) // ROWS_PER_CHUNK
+        ):
+            self._handle: Any = OpenImageIO.ImageOutput.create(
+                "openexr"
+            )  # takes the number of threads
             if self._handle is None:
                 raise OSError(read_error(OpenImageIO))
             self._check(self._handle.open(utf8_name(path, OutputError), specs))
@@ -90,11 +101,19 @@ class Writer:
     def start_part(self, number: int) -> None:
         """Start a part."""
         if number:
-            self._check(self._handle.open(os.fspath(self._path), self._specs[number], "AppendSubimage"))
+            self._check(
+                self._handle.open(
+                    os.fspath(self._path), self._specs[number], "AppendSubimage"
+                )
+            )
 
     def write_rows(self, first: int, values: Values) -> None:
         """Write rows (k, width, channels) from row ``first``. Raises `OSError`, and `OutputError` as `_check_space`."""
-        self._check(self._handle.write_scanlines(first, first + len(values), 0, np.ascontiguousarray(values)))
+        self._check(
+            self._handle.write_scanlines(
+                first, first + len(values), 0, np.ascontiguousarray(values)
+            )
+        )
         self._written += values.size
         self._check_space()
 
@@ -118,7 +137,9 @@ class Writer:
                 for part in image.parts:
                     image.rows(part, part.window.height - 1, 1)
         except TextureError as error:
-            raise OutputError("the file is incomplete", hint="free space on the disk") from error
+            raise OutputError(
+                "the file is incomplete", hint="free space on the disk"
+            ) from error
 
     def _check_space(self) -> None:
         """Raise `OutputError` at the first rows if the rest of the image will not fit on the disk."""
@@ -147,7 +168,9 @@ def _compression_threads(chunks: int) -> Iterator[None]:
 
     name = "exr_threads"
     before = OpenImageIO.get_int_attribute(name)
-    OpenImageIO.attribute(name, min(before if before > 0 else os.cpu_count() or 1, chunks))
+    OpenImageIO.attribute(
+        name, min(before if before > 0 else os.cpu_count() or 1, chunks)
+    )
     try:
         yield
     finally:
@@ -155,7 +178,9 @@ def _compression_threads(chunks: int) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def open_writer(path: StrPath, parts: Sequence[OutputPart], *, force: bool = False) -> Iterator[Writer]:
+def open_writer(
+    path: StrPath, parts: Sequence[OutputPart], *, force: bool = False
+) -> Iterator[Writer]:
     """Open a writer. The file appears under its name once all rows are written. Raises `OutputError`."""
     with atomic_write(path, force=force) as temporary:
         writer = Writer(temporary, parts)

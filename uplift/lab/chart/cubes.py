@@ -19,7 +19,16 @@ import numpy as np
 from uplift.common.arrays import Array, Values
 from uplift.cube import CubeData
 from uplift.io.export import write_program
-from uplift.lab.chart.method import Method, NotInstalledError, PreparedMethod, Task, Uplift, nbytes, ours, stopwatch
+from uplift.lab.chart.method import (
+    Method,
+    NotInstalledError,
+    PreparedMethod,
+    Task,
+    Uplift,
+    nbytes,
+    ours,
+    stopwatch,
+)
 from uplift.lookup import Cube, load
 from uplift.models import Moments
 from uplift.pipeline.options import ModelName
@@ -49,7 +58,11 @@ class CubeOptions:
     @property
     def command(self) -> str:
         """Return the command that builds the cube."""
-        model = f"--coefficients {self.count}" if self.model == Moments.name else f"--model {self.model}"
+        model = (
+            f"--coefficients {self.count}"
+            if self.model == Moments.name
+            else f"--model {self.model}"
+        )
         return f"uplift build {'--atlas FILE ' if self.atlas else ''}--dim {self.dim} {model}"
 
 
@@ -60,7 +73,11 @@ def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
     from uplift.pipeline.build import build
 
     atlas, unknown = task.kept if options.atlas else None, families_with(task.unseen)
-    model: dict[str, Any] = {"dim": options.dim, "model": options.model, "coefficients": options.count}
+    model: dict[str, Any] = {
+        "dim": options.dim,
+        "model": options.model,
+        "coefficients": options.count,
+    }
     for _ in range(task.effort.builds):
         cube, seconds = stopwatch(lambda: build(atlas, leave_out=unknown, **model))
     with tempfile.TemporaryDirectory() as folder:
@@ -74,15 +91,24 @@ def within(cube: Cube, wavelengths: Array) -> Array:
     return np.clip(wavelengths, *cube.wavelengths[[0, -1]])
 
 
-def prepare_lookup(task: Task, options: CubeOptions, mode: str, dtype: str) -> PreparedMethod:
+def prepare_lookup(
+    task: Task, options: CubeOptions, mode: str, dtype: str
+) -> PreparedMethod:
     """Prepare `Cube.reflectance` in a mode."""
     cube, seconds, loading = built_cube(task, options)
 
     def uplift(rgb: Values, wavelengths: Array) -> Values:
-        return np.asarray(cube.reflectance(rgb, within(cube, wavelengths), mode, dtype=dtype))
+        return np.asarray(
+            cube.reflectance(rgb, within(cube, wavelengths), mode, dtype=dtype)
+        )
 
     data = cube.data
-    size = nbytes(data.points.coefficients, data.lattice.nodes, data.atlas.rgb, data.atlas.spectra.coefficients)
+    size = nbytes(
+        data.points.coefficients,
+        data.lattice.nodes,
+        data.atlas.rgb,
+        data.atlas.spectra.coefficients,
+    )
     return PreparedMethod(uplift, size, seconds, loading)
 
 
@@ -100,15 +126,31 @@ def prepare_bulk(task: Task, options: CubeOptions) -> PreparedMethod:
 
     def uplift(rgb: Values, wavelengths: Array) -> Values:
         usual = np.array_equal(wavelengths, at)
-        return np.asarray((sampler if usual else bulk.spectra(cube, within(cube, wavelengths), threads=1))(rgb))
+        return np.asarray(
+            (
+                sampler
+                if usual
+                else bulk.spectra(cube, within(cube, wavelengths), threads=1)
+            )(rgb)
+        )
 
-    return PreparedMethod(uplift, sampler.nbytes, seconds, loading + preparing + compiling)
+    return PreparedMethod(
+        uplift, sampler.nbytes, seconds, loading + preparing + compiling
+    )
 
 
 COMPILER = "a C compiler, cc: apt install gcc"
 SECONDS = 60
 """Time limit of the compiler."""
-FLAGS = ("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-shared", "-fPIC")
+FLAGS = (
+    "-std=c99",
+    "-O3",
+    "-march=native",
+    "-fno-math-errno",
+    "-fno-trapping-math",
+    "-shared",
+    "-fPIC",
+)
 SOURCE = """#include "cube.h"
 void uplift_colours(const float *rgb, const float *wavelengths, int width, long colours, float *reflectances)
 {
@@ -122,10 +164,14 @@ def prepare_c(task: Task, options: CubeOptions, mode: str) -> PreparedMethod:
     """Build the cube, export and compile it, and load the library."""
     cube, seconds, _ = built_cube(task, options)
     with tempfile.TemporaryDirectory() as folder:
-        library, compiling = stopwatch(lambda: compile_cube(cube.data, mode, Path(folder)))
+        library, compiling = stopwatch(
+            lambda: compile_cube(cube.data, mode, Path(folder))
+        )
         uplift, loading = stopwatch(lambda: load_library(library))
         # The file may go: the loaded library stays in memory, except on Windows, which has no cc.
-        return PreparedMethod(uplift, library.stat().st_size, seconds + compiling, loading)
+        return PreparedMethod(
+            uplift, library.stat().st_size, seconds + compiling, loading
+        )
 
 
 def compile_cube(data: CubeData, mode: str, folder: Path) -> Path:
@@ -135,7 +181,9 @@ def compile_cube(data: CubeData, mode: str, folder: Path) -> Path:
     write_program(data, folder / "cube.h", mode=mode)
     (folder / "cube.c").write_text(SOURCE)
     command = ["cc", *FLAGS, "cube.c", "-o", "cube.so", "-lm"]
-    subprocess.run(command, cwd=folder, check=True, capture_output=True, timeout=SECONDS)
+    subprocess.run(
+        command, cwd=folder, check=True, capture_output=True, timeout=SECONDS
+    )
     return folder / "cube.so"
 
 
@@ -149,7 +197,13 @@ def load_library(path: Path) -> Uplift:
     def uplift(rgb: Values, wavelengths: Array) -> Values:
         reflectances = np.empty((len(rgb), len(wavelengths)), np.float32)
         colours = np.ascontiguousarray(rgb, np.float32)
-        function(colours, wavelengths.astype(np.float32), len(wavelengths), len(rgb), reflectances)
+        function(
+            colours,
+            wavelengths.astype(np.float32),
+            len(wavelengths),
+            len(rgb),
+            reflectances,
+        )
         return reflectances
 
     return uplift
@@ -183,27 +237,62 @@ JOBS = {
 def _method(options: CubeOptions, lookup: str) -> Method:
     mode = lookup.removeprefix("c-").removesuffix(FLOAT32)
     # Nodes of all modes are exact; colours between them are not in ``moments`` and ``nearest``, and refined sigmoids.
-    exact = mode in ("spectra", "bulk") or (mode == "refined" and options.model == Moments.name)
-    fields: dict[str, Any] = {"dtype": "float64" if lookup == mode and mode != "bulk" else "float32"}
-    name, title = f"{options.name}-{lookup}", f"{options.title}, {lookup.replace('-', ', ')}"
+    exact = mode in ("spectra", "bulk") or (
+        mode == "refined" and options.model == Moments.name
+    )
+    fields: dict[str, Any] = {
+        "dtype": "float64" if lookup == mode and mode != "bulk" else "float32"
+    }
+    name, title = (
+        f"{options.name}-{lookup}",
+        f"{options.title}, {lookup.replace('-', ', ')}",
+    )
     label = f"{options.count} · {options.dim}³ {mode}"
     family = f"uplift, {options.model}{' with atlas' if options.atlas else ''}"
     prepare: Callable[..., PreparedMethod]
     if lookup.startswith("c-"):
-        name, title, label = f"c-{options.name}-{mode}", f"C, {options.title}, {mode}", f"C {label}"
+        name, title, label = (
+            f"c-{options.name}-{mode}",
+            f"C, {options.title}, {mode}",
+            f"C {label}",
+        )
         family, prepare = "uplift, C export", partial(prepare_c, mode=mode)
         call = f"uplift export CUBE -o cube.h --mode {mode}; cube_reflectances(rgb, wavelengths, count, out)"
-        fields |= {"note": f"cc {' '.join(FLAGS[:5])}, called by ctypes", "needs": COMPILER}
+        fields |= {
+            "note": f"cc {' '.join(FLAGS[:5])}, called by ctypes",
+            "needs": COMPILER,
+        }
     elif mode == "bulk":
-        label, prepare, call = f"{label} f32", prepare_bulk, "uplift.bulk.spectra(cube)(rgb)"
+        label, prepare, call = (
+            f"{label} f32",
+            prepare_bulk,
+            "uplift.bulk.spectra(cube)(rgb)",
+        )
     else:
         of_dtype = ', dtype="float32"' if lookup.endswith(FLOAT32) else ""
         label += " f32" if of_dtype else ""
         prepare = partial(prepare_lookup, mode=mode, dtype=fields["dtype"])
         call = f'cube.reflectance(rgb, mode="{mode}"{of_dtype})'
-    fields |= {"method": name, "title": title, "label": label, "family": family, "mode": mode, "call": call}
-    fields |= {"build": options.command, "reference_sensor": ours, "claimed_error": 0.01 if exact else None}
-    return Method(source="this package", prepare=partial(prepare, options=options), **fields)
+    fields |= {
+        "method": name,
+        "title": title,
+        "label": label,
+        "family": family,
+        "mode": mode,
+        "call": call,
+    }
+    fields |= {
+        "build": options.command,
+        "reference_sensor": ours,
+        "claimed_error": 0.01 if exact else None,
+    }
+    return Method(
+        source="this package", prepare=partial(prepare, options=options), **fields
+    )
 
 
-METHODS = tuple(_method(options, lookup) for options, lookups in JOBS.items() for lookup in lookups.split())
+METHODS = tuple(
+    _method(options, lookup)
+    for options, lookups in JOBS.items()
+    for lookup in lookups.split()
+)

@@ -38,8 +38,20 @@ from uplift.lab.timing import TimingStats, environment, time_laps
 
 METHODS = (*published.METHODS, *mitsuba3.METHODS, *cubes.METHODS)
 QUICK_METHODS = (
-    *("jakob2019-*", "mallett2019", "otsu2018", "smits1999", "mitsuba3-llvm", "c-sigmoid-32-moments"),
-    *("moments9-16*-spectra", "moments9-16*-moments", "moments9-64-spectra", "moments9-64-moments"),
+    *(
+        "jakob2019-*",
+        "mallett2019",
+        "otsu2018",
+        "smits1999",
+        "mitsuba3-llvm",
+        "c-sigmoid-32-moments",
+    ),
+    *(
+        "moments9-16*-spectra",
+        "moments9-16*-moments",
+        "moments9-64-spectra",
+        "moments9-64-moments",
+    ),
 )
 """Patterns of the methods of a quick run."""
 
@@ -50,20 +62,34 @@ def select_methods(patterns: Sequence[str] = ()) -> list[Method]:
         if not any(fnmatchcase(method.method, pattern) for method in METHODS):
             hint = "names are 'mallett2019', 'moments9-32-spectra' and others; '*' matches any characters"
             raise OptionError(f"no method matches '{pattern}'", hint=hint)
-    return [method for method in METHODS if any(fnmatchcase(method.method, pattern) for pattern in patterns or "*")]
+    return [
+        method
+        for method in METHODS
+        if any(fnmatchcase(method.method, pattern) for pattern in patterns or "*")
+    ]
 
 
-def perturb_method(method: Method, light: Light, count: int = COLOURS) -> list[dict[str, Any]]:
+def perturb_method(
+    method: Method, light: Light, count: int = COLOURS
+) -> list[dict[str, Any]]:
     """Perturb queries of a method, in sRGB under D65, as `uplift.lab.study.sensitivity`. Raises `OptionError`."""
     task = make_task({"macbeth": read_atlas("macbeth")})
     grid, lights = task.sensor.wavelengths, (light, task.sensor.light)
-    with warnings.catch_warnings(action="ignore"):  # colour-science reports how it aligns wavelengths
+    with warnings.catch_warnings(
+        action="ignore"
+    ):  # colour-science reports how it aligns wavelengths
         try:
             uplift = method.prepare(task).uplift
         except NotInstalledError as error:
-            raise OptionError(f"{method.method} {error}", code="extra-not-installed") from error
+            raise OptionError(
+                f"{method.method} {error}", code="extra-not-installed"
+            ) from error
         return perturb_answers(
-            method.title, lambda rgb: uplift(rgb, grid), lambda codes: decode(codes / 255), lights, count
+            method.title,
+            lambda rgb: uplift(rgb, grid),
+            lambda codes: decode(codes / 255),
+            lights,
+            count,
         )
 
 
@@ -86,15 +112,28 @@ def call_times(uplift: UpliftRgb, dtype: str, effort: Effort) -> dict[str, float
             count = affordable(uplift, dtype, size, effort.longest)
             ns = _time_batch(uplift, dtype, count, effort)
         last = size
-        values = {"": ns.median, "_least": ns.min, "_most": ns.max, "_runs": ns.runs, "_colours": count}
+        values = {
+            "": ns.median,
+            "_least": ns.min,
+            "_most": ns.max,
+            "_runs": ns.runs,
+            "_colours": count,
+        }
         numbers |= {f"ns_{size}{suffix}": value for suffix, value in values.items()}
-    reference = max((size for size in effort.batches if size <= REFERENCE), default=effort.batches[0])
+    reference = max(
+        (size for size in effort.batches if size <= REFERENCE),
+        default=effort.batches[0],
+    )
     return numbers | {"time_ns": numbers[f"ns_{reference}"]}
 
 
-def _time_batch(uplift: UpliftRgb, dtype: str, count: int, effort: Effort) -> TimingStats:
+def _time_batch(
+    uplift: UpliftRgb, dtype: str, count: int, effort: Effort
+) -> TimingStats:
     inputs = cycle(_colours(max(1, min(INPUTS, INPUT_COLOURS // count)), count, dtype))
-    return time_laps(lambda: uplift(next(inputs)), effort.lap, effort.runs).scaled(1e9 / count)
+    return time_laps(lambda: uplift(next(inputs)), effort.lap, effort.runs).scaled(
+        1e9 / count
+    )
 
 
 def affordable(uplift: UpliftRgb, dtype: str, size: int, longest: float) -> int:
@@ -126,9 +165,16 @@ class BrokenError(Exception):
     """An answer is wrong; the text gives the reason."""
 
 
-def measure_methods(methods: Sequence[Method], task: Task, progress: ProgressCallback = ignore_progress) -> Chart:
+def measure_methods(
+    methods: Sequence[Method], task: Task, progress: ProgressCallback = ignore_progress
+) -> Chart:
     """Measure methods at a task."""
-    results, begin, machine, effort = [], time.perf_counter(), environment(), task.effort
+    results, begin, machine, effort = (
+        [],
+        time.perf_counter(),
+        environment(),
+        task.effort,
+    )
     for method in methods:
         results.append(measure_method(method, task))
         progress(Progress("methods", len(results), len(methods)))
@@ -147,15 +193,25 @@ def measure_method(method: Method, task: Task) -> MethodResult:
         # Other packages warn, and so do cubes about the entries that all of them leave out.
         with warnings.catch_warnings(action="ignore"):
             if method.needs:
-                numbers = call_in_child(_numbers, method, task, seconds=task.effort.limit)
+                numbers = call_in_child(
+                    _numbers, method, task, seconds=task.effort.limit
+                )
             else:
                 numbers = _numbers(method, task)
     except NotInstalledError as error:
         state, why = State.MISSING, str(error)
     except (BrokenError, ChildError) as error:
-        state, why = State.BROKEN, f"{error}; it needs {method.needs}" if method.needs else str(error)
+        state, why = (
+            State.BROKEN,
+            f"{error}; it needs {method.needs}" if method.needs else str(error),
+        )
     texts = {field.name: getattr(method, field.name) for field in fields(Description)}
-    return MethodResult(**texts | {"label": method.label or method.title}, state=state, why=why, numbers=numbers)
+    return MethodResult(
+        **texts | {"label": method.label or method.title},
+        state=state,
+        why=why,
+        numbers=numbers,
+    )
 
 
 def _numbers(method: Method, task: Task) -> dict[str, float]:
@@ -171,10 +227,17 @@ def _numbers(method: Method, task: Task) -> dict[str, float]:
     load = prepared.load_s + max(first - second, 0.0)
     build = {} if prepared.build_s is None else {"build_s": prepared.build_s}
     set_up = {**build, "load_s": load, "setup_s": sum(build.values()) + load}
-    errors = _round_trips(method, prepared, uplift, task) | _errors(method, uplift, task)
+    errors = _round_trips(method, prepared, uplift, task) | _errors(
+        method, uplift, task
+    )
     if method.batch:
         _check_batch(uplift, method.dtype, task.effort)
-    return {"bytes": prepared.bytes, **set_up, **errors, **call_times(uplift, method.dtype, task.effort)}
+    return {
+        "bytes": prepared.bytes,
+        **set_up,
+        **errors,
+        **call_times(uplift, method.dtype, task.effort),
+    }
 
 
 def _guarded(method: Method, prepared: PreparedMethod, wavelengths: Array) -> UpliftRgb:
@@ -186,7 +249,9 @@ def _guarded(method: Method, prepared: PreparedMethod, wavelengths: Array) -> Up
         except Exception as error:  # code of other packages may raise anything
             raise BrokenError(f"raises {_text(error)}") from error
         if spectra.shape != (len(rgb), len(wavelengths)):
-            raise BrokenError(f"spectra have shape {spectra.shape} instead of ({len(rgb)}, {len(wavelengths)})")
+            raise BrokenError(
+                f"spectra have shape {spectra.shape} instead of ({len(rgb)}, {len(wavelengths)})"
+            )
         if spectra.dtype != method.dtype:
             raise BrokenError(f"spectra are {spectra.dtype} instead of {method.dtype}")
         return spectra
@@ -198,21 +263,39 @@ def _text(error: Exception) -> str:
     return f"{type(error).__name__}: {str(error)[:80]}"
 
 
-def _round_trips(method: Method, prepared: PreparedMethod, uplift: UpliftRgb, task: Task) -> dict[str, float]:
+def _round_trips(
+    method: Method, prepared: PreparedMethod, uplift: UpliftRgb, task: Task
+) -> dict[str, float]:
     """Judge at 1 nm with the stated white and matrix, and with the tables that cubes are fitted to."""
     sensor = method.reference_sensor()
-    rgb, spectra = _spectra(method, _guarded(method, prepared, sensor.wavelengths), task, task.rgb)
-    errors, claimed = delta_e_rgb(sensor, rgb, sensor.rgb(spectra)), method.claimed_error
+    rgb, spectra = _spectra(
+        method, _guarded(method, prepared, sensor.wavelengths), task, task.rgb
+    )
+    errors, claimed = (
+        delta_e_rgb(sensor, rgb, sensor.rgb(spectra)),
+        method.claimed_error,
+    )
     if claimed is not None and errors.mean() > MAX_CLAIM_RATIO * claimed:
-        raise BrokenError(f"mean round-trip ΔE00 is {errors.mean():.3g}, {claimed:g} is claimed")
+        raise BrokenError(
+            f"mean round-trip ΔE00 is {errors.mean():.3g}, {claimed:g} is claimed"
+        )
     fitted = delta_e_rgb(task.sensor, rgb, task.sensor.rgb(uplift(rgb).astype(float)))
-    return _summary("round_trip", errors) | _summary("coarse_round_trip", fitted) | {"round_trip_colours": len(rgb)}
+    return (
+        _summary("round_trip", errors)
+        | _summary("coarse_round_trip", fitted)
+        | {"round_trip_colours": len(rgb)}
+    )
 
 
 def _errors(method: Method, uplift: UpliftRgb, task: Task) -> dict[str, float]:
     numbers: dict[str, float] = {}
-    for prefix, name, measured in (("", "unseen", task.unseen), ("own_", "own", task.own)):
-        rgb, spectra = _spectra(method, uplift, task, np.clip(task.sensor.rgb(measured), 0, 1))
+    for prefix, name, measured in (
+        ("", "unseen", task.unseen),
+        ("own_", "own", task.own),
+    ):
+        rgb, spectra = _spectra(
+            method, uplift, task, np.clip(task.sensor.rgb(measured), 0, 1)
+        )
         errors = spectrum_errors(spectra, measured[: len(rgb)], CHART_LIGHTS)
         values = dict(zip(CHART_LIGHTS, errors.delta_e.T, strict=True))
         values |= {"lights": errors.delta_e.mean(axis=1), "rms": errors.rms}
@@ -222,7 +305,9 @@ def _errors(method: Method, uplift: UpliftRgb, task: Task) -> dict[str, float]:
     return numbers
 
 
-def _spectra(method: Method, uplift: UpliftRgb, task: Task, rgb: Array) -> tuple[Array, Array]:
+def _spectra(
+    method: Method, uplift: UpliftRgb, task: Task, rgb: Array
+) -> tuple[Array, Array]:
     """As many of the colours as time allows, (k, 3), and their spectra (k, N) in float64."""
     uplift(rgb[:1])
     step = len(rgb) if method.batch else SLOW_STEP
@@ -243,7 +328,9 @@ def _spectra(method: Method, uplift: UpliftRgb, task: Task, rgb: Array) -> tuple
 
 def _check_batch(uplift: UpliftRgb, dtype: str, effort: Effort) -> None:
     """Large batches are timed; check that they give the same spectra as small ones, whose errors are measured."""
-    count = affordable(uplift, dtype, min(effort.batches[-1], REFERENCE), effort.longest)
+    count = affordable(
+        uplift, dtype, min(effort.batches[-1], REFERENCE), effort.longest
+    )
     rgb = np.random.default_rng(4).random((count, 3))
     rows = np.linspace(0, count - 1, SAMPLE, dtype=int)
     difference = np.abs(uplift(rgb)[rows] - uplift(rgb[rows])).max()
@@ -254,5 +341,9 @@ def _check_batch(uplift: UpliftRgb, dtype: str, effort: Effort) -> None:
 
 
 def _summary(name: str, values: Array) -> dict[str, float]:
-    statistics = {"mean": values.mean(), "p99": np.quantile(values, 0.99), "max": values.max()}
+    statistics = {
+        "mean": values.mean(),
+        "p99": np.quantile(values, 0.99),
+        "max": values.max(),
+    }
     return {f"{name}_{key}": float(value) for key, value in statistics.items()}

@@ -32,7 +32,9 @@ def at_1_nm(sensor: Sensor) -> Sensor:
 
 def stated_sensor(xyz_to_rgb: Array, illuminant: str = DEFAULT_ILLUMINANT) -> Sensor:
     """Return the sensor on `RANGE` of a stated matrix. Shapes: ``xyz_to_rgb`` (3, 3)."""
-    return replace(at_1_nm(observer.sensor(illuminant=illuminant)), xyz_to_rgb=xyz_to_rgb)
+    return replace(
+        at_1_nm(observer.sensor(illuminant=illuminant)), xyz_to_rgb=xyz_to_rgb
+    )
 
 
 @cache
@@ -74,7 +76,15 @@ class Effort:
     limit: float = 900.0
 
 
-QUICK = Effort(seconds_per_error=0.3, runs=3, lap=0.002, batches=(1, 1000, 65_536), longest=0.1, builds=1, limit=120.0)
+QUICK = Effort(
+    seconds_per_error=0.3,
+    runs=3,
+    lap=0.002,
+    batches=(1, 1000, 65_536),
+    longest=0.1,
+    builds=1,
+    limit=120.0,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +106,9 @@ class Task:
     facts: Mapping[str, str]
 
 
-def make_task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effort | None = None) -> Task:
+def make_task(
+    atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effort | None = None
+) -> Task:
     """Make a task from measured spectra: of each atlas the first, third, … entry builds cubes, the others test them.
 
     Raises `OptionError`, `AtlasError`.
@@ -105,14 +117,24 @@ def make_task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effo
         raise OptionError(f"colours must be at least {MIN_COLOURS}, got {colours}")
     sensor = observer.sensor()
     kept, others = (
-        merge(Atlas(atlas.entries[start::2], (), atlas.sources) for atlas in atlases.values()) for start in (0, 1)
+        merge(
+            Atlas(atlas.entries[start::2], (), atlas.sources)
+            for atlas in atlases.values()
+        )
+        for start in (0, 1)
     )
     measured = [resample(part, sensor.wavelengths).values for part in (kept, others)]
     own, unseen = (spectra[in_unit_cube(sensor.rgb(spectra))] for spectra in measured)
     if min(len(own), len(unseen)) < MIN_SPECTRA:
-        problem = f"at least {MIN_SPECTRA} entries within sRGB must build and test cubes each"
+        problem = (
+            f"at least {MIN_SPECTRA} entries within sRGB must build and test cubes each"
+        )
         hint = "give an atlas of 8 or more entries"
-        raise AtlasError(f"{problem}, got {len(own)} and {len(unseen)}", code="too-few-entries", hint=hint)
+        raise AtlasError(
+            f"{problem}, got {len(own)} and {len(unseen)}",
+            code="too-few-entries",
+            hint=hint,
+        )
     rng = np.random.default_rng(SEED)
     rgb = np.concatenate([rng.random((colours, 3)), edges()])
     facts = {
@@ -127,7 +149,9 @@ def make_task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effo
 def edges() -> Array:
     """Return linear RGB (n, 3) along the edges and the grey diagonal of the RGB cube, each once."""
     along = np.linspace(0, 1, EDGE_STEPS)
-    grid = np.stack(np.meshgrid(along, along, along, indexing="ij"), axis=-1).reshape(-1, 3)
+    grid = np.stack(np.meshgrid(along, along, along, indexing="ij"), axis=-1).reshape(
+        -1, 3
+    )
     at_ends = ((grid == 0) | (grid == 1)).sum(axis=1)
     return grid[(at_ends >= 2) | (np.ptp(grid, axis=1) == 0)]
 

@@ -19,13 +19,24 @@ import numpy as np
 
 from uplift.colorimetry import Sensor
 from uplift.common.arrays import Array
-from uplift.lab.chart.method import Method, NotInstalledError, PreparedMethod, Task, stated_sensor, stopwatch
+from uplift.lab.chart.method import (
+    Method,
+    NotInstalledError,
+    PreparedMethod,
+    Task,
+    stated_sensor,
+    stopwatch,
+)
 from uplift.models.sigmoid import evaluate_unscaled
 
 VARIANT, COMPILED = "scalar_spectral", "llvm_ad_spectral"
 """The spectral variant that does not need LLVM, and the vectorised one."""
 XYZ_TO_RGB = np.array(
-    [[3.240479, -1.53715, -0.498535], [-0.969256, 1.875991, 0.041556], [0.055648, -0.204043, 1.057311]]
+    [
+        [3.240479, -1.53715, -0.498535],
+        [-0.969256, 1.875991, 0.041556],
+        [0.055648, -0.204043, 1.057311],
+    ]
 )
 """From XYZ to linear sRGB, in rgb2spec, the program that fitted the table."""
 AT_ONCE = 4
@@ -70,10 +81,14 @@ def spectra(rgb: Array, wavelengths: Array) -> Array:
 def prepare_compiled(task: Task) -> PreparedMethod:
     """Load Mitsuba's vectorised variant, without the kernels of earlier calls."""
     size, drjit = table_file().stat().st_size, import_module("drjit")
-    if not drjit.has_backend(drjit.JitBackend.LLVM):  # true does not mean that LLVM works
+    if not drjit.has_backend(
+        drjit.JitBackend.LLVM
+    ):  # true does not mean that LLVM works
         raise NotInstalledError(f"needs {LLVM}")
     drjit.flush_kernel_cache()
-    _, seconds = stopwatch(lambda: compiled_spectra(task.rgb[:1], task.sensor.wavelengths))
+    _, seconds = stopwatch(
+        lambda: compiled_spectra(task.rgb[:1], task.sensor.wavelengths)
+    )
     return PreparedMethod(compiled_spectra, size, None, seconds)
 
 
@@ -92,9 +107,13 @@ def _evaluate(mitsuba: Any, drjit: Any, rgb: Array, wavelengths: Array) -> Array
     side = math.isqrt(len(rgb) - 1) + 1
     texels = np.zeros((side * side, 3), np.float32)
     texels[: len(rgb)] = rgb
-    bitmap = mitsuba.Bitmap(texels.reshape(side, side, 3), mitsuba.Bitmap.PixelFormat.RGB)
+    bitmap = mitsuba.Bitmap(
+        texels.reshape(side, side, 3), mitsuba.Bitmap.PixelFormat.RGB
+    )
     bitmap.set_srgb_gamma(False)
-    texture = mitsuba.load_dict({"type": "bitmap", "bitmap": bitmap, "filter_type": "nearest"})
+    texture = mitsuba.load_dict(
+        {"type": "bitmap", "bitmap": bitmap, "filter_type": "nearest"}
+    )
     at = drjit.zeros(mitsuba.SurfaceInteraction3f, len(rgb))
     index = drjit.arange(mitsuba.UInt32, len(rgb))
     at.uv = (mitsuba.Point2f(index % side, index // side) + 0.5) / side

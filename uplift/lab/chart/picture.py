@@ -8,7 +8,14 @@ import numpy as np
 
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.arrays import StrPath
-from uplift.lab.chart.table import REFERENCE, Chart, Criterion, MethodResult, State, criteria
+from uplift.lab.chart.table import (
+    REFERENCE,
+    Chart,
+    Criterion,
+    MethodResult,
+    State,
+    criteria,
+)
 from uplift.lab.panels import Panel, Point, family_colours, page_panel, pareto_front
 from uplift.viz.figure import ACCENT, GREY, OTHER, PALE, new_figure, styled, write_png
 from uplift.viz.format import format_build_time, format_error, format_size, format_time
@@ -65,7 +72,11 @@ def drawn_results(criterion: Criterion, chart: Chart) -> list[MethodResult]:
             groups.setdefault((result.family, result.mode), {})[result] = point
         elif point is not None:
             others.append(result)
-    ours = [list(group)[row] for group in groups.values() for row in pareto_front(list(group.values()))]
+    ours = [
+        list(group)[row]
+        for group in groups.values()
+        for row in pareto_front(list(group.values()))
+    ]
     return [*ours, *others]
 
 
@@ -77,7 +88,9 @@ def panel(criterion: Criterion, chart: Chart) -> Panel:
         style = COLOURS.get(result.family, OTHER), MODES.get(result.mode, "*")
         is_part = result.numbers[f"ns_{criterion.batch}_colours"] < criterion.batch
         is_named = not result.build and not result.method.endswith("-float32")
-        points.append(Point(row, result.label, *place, *style, hollow=is_part, named=is_named))
+        points.append(
+            Point(row, result.label, *place, *style, hollow=is_part, named=is_named)
+        )
     title = f"{criterion.title}\n{criterion.unit}, {criterion.colours}"
     return Panel(title, criterion.axis, format_time, points)
 
@@ -93,15 +106,24 @@ def draw_picture(chart: Chart) -> Any:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     unseen, own = (criteria(reference_batch(chart))[panel] for panel in (1, 4))
-    results = [result for result in chart.measured if result.method in NAMES] or list(chart.measured)
-    drawn = [(NAMES.get(each.method, each.title), point, "") for each in results if (point := unseen.point(each))]
+    results = [result for result in chart.measured if result.method in NAMES] or list(
+        chart.measured
+    )
+    drawn = [
+        (NAMES.get(each.method, each.title), point, "")
+        for each in results
+        if (point := unseen.point(each))
+    ]
     for result in chart.measured:
         if result.method == ATLAS and (point := own.point(result)):
             drawn.append((OURS, point, " with the atlas, its own materials"))
     figure = new_figure(9, 5.2)
     figure.set_dpi(130)
     axes = figure.subplots()
-    axes.set(xscale="log", ylim=(-0.02, 1.12 * max([1.0, *(error for _, (_, error), _ in drawn)])))
+    axes.set(
+        xscale="log",
+        ylim=(-0.02, 1.12 * max([1.0, *(error for _, (_, error), _ in drawn)])),
+    )
     axes.set_xlabel(f"{unseen.axis}, {unseen.colours}", fontsize=11)
     axes.set_ylabel(f"mean {unseen.unit} of unseen materials", fontsize=11)
     axes.tick_params(labelsize=11)
@@ -109,22 +131,52 @@ def draw_picture(chart: Chart) -> Any:
     axes.spines[["top", "right"]].set_visible(False)
     axes.xaxis.set_major_formatter(lambda value, _: format_time(value))
     axes.axhspan(0, 1, color=PALE, alpha=0.45, linewidth=0)
-    pinned: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "top"}
+    pinned: dict[str, Any] = {
+        "xycoords": ("axes fraction", "data"),
+        "ha": "right",
+        "va": "top",
+    }
     axes.annotate("just visible: 1", (0.99, 1), color=GREY, size=11, **pinned)
     labels = []
     for name, place, what in drawn:
         colour, face = (ACCENT if name == OURS else GREY), ("white" if what else None)
-        axes.plot(*place, "o", color=colour, markerfacecolor=face, markersize=9, markeredgewidth=2, clip_on=False)
+        axes.plot(
+            *place,
+            "o",
+            color=colour,
+            markerfacecolor=face,
+            markersize=9,
+            markeredgewidth=2,
+            clip_on=False,
+        )
         text = f" {name}{what}  {place[1]:.2f} "  # blanks, as markers are large
         labels.append(Label(text, place, colour, name == OURS, ""))
     axes.margins(x=0.09)
-    best = sorted((error, name, format_time(time)) for name, (time, error), what in drawn if not what)[:2]
-    title = "\nthe next: ".join(f"{name}, {error:.2f} in {time}" for error, name, time in best)
-    axes.set_title(f"Smallest error on unseen materials: {title}", loc="left", fontsize=13, fontweight="bold", pad=12)
+    best = sorted(
+        (error, name, format_time(time))
+        for name, (time, error), what in drawn
+        if not what
+    )[:2]
+    title = "\nthe next: ".join(
+        f"{name}, {error:.2f} in {time}" for error, name, time in best
+    )
+    axes.set_title(
+        f"Smallest error on unseen materials: {title}",
+        loc="left",
+        fontsize=13,
+        fontweight="bold",
+        pad=12,
+    )
     FigureCanvasAgg(figure)
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
-    draw_labels(axes, labels, np.array([label.point for label in labels]).reshape(-1, 2), np.empty((0, 2)), fontsize=12)
+    draw_labels(
+        axes,
+        labels,
+        np.array([label.point for label in labels]).reshape(-1, 2),
+        np.empty((0, 2)),
+        fontsize=12,
+    )
     return figure
 
 
@@ -136,7 +188,10 @@ def reference_batch(chart: Chart) -> int:
 def render_chart(chart: Chart) -> str:
     """Render the page of a chart."""
     compared = [criterion for batch in chart.batches for criterion in criteria(batch)]
-    pictures = [(criterion, page_panel(panel(criterion, chart), number)) for number, criterion in enumerate(compared)]
+    pictures = [
+        (criterion, page_panel(panel(criterion, chart), number))
+        for number, criterion in enumerate(compared)
+    ]
     return render(
         "lab/chart/templates/page.html.j2",
         title=TITLE,
@@ -144,22 +199,40 @@ def render_chart(chart: Chart) -> str:
         pictures=pictures,
         families=family_colours((result.family for result in chart.measured), COLOURS),
         tooltips=[_tooltip(chart, result) for result in chart.results],
-        sources=list(dict.fromkeys(f"{result.family}: {result.source}" for result in chart.results)),
+        sources=list(
+            dict.fromkeys(
+                f"{result.family}: {result.source}" for result in chart.results
+            )
+        ),
         chosen=reference_batch(chart),
         errors=ERRORS,
-        not_measured=[result for result in chart.results if result.state != State.MEASURED],
+        not_measured=[
+            result for result in chart.results if result.state != State.MEASURED
+        ],
     )
 
 
 def _tooltip(chart: Chart, result: MethodResult) -> Tooltip:
     numbers, lines = result.numbers, []
     if result.state == State.MEASURED:
-        times = {size: numbers[f"ns_{size}"] for size in chart.batches if f"ns_{size}" in numbers}
-        lines = [(f"{size:,} per call", f"{format_time(time)} each") for size, time in times.items()]
-        lines += [("set-up", format_build_time(numbers["setup_s"])), ("memory", format_size(numbers["bytes"]))]
+        times = {
+            size: numbers[f"ns_{size}"]
+            for size in chart.batches
+            if f"ns_{size}" in numbers
+        }
+        lines = [
+            (f"{size:,} per call", f"{format_time(time)} each")
+            for size, time in times.items()
+        ]
+        lines += [
+            ("set-up", format_build_time(numbers["setup_s"])),
+            ("memory", format_size(numbers["bytes"])),
+        ]
         lines.append(("errors", "mean / 99 % / largest"))
         for error, name in ERRORS.items():
             values = (numbers[f"{error}_{kind}"] for kind in ("mean", "p99", "max"))
             lines.append((name, " / ".join(map(format_error, values))))
-        lines += [("", text) for text in (result.build, result.call, result.note) if text]
+        lines += [
+            ("", text) for text in (result.build, result.call, result.note) if text
+        ]
     return {"title": result.title, "family": result.family, "lines": lines}

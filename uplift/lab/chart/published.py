@@ -24,7 +24,15 @@ from uplift.colorimetry.tables import aligned, look_up
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science
 from uplift.lab.chart import mitsuba3
-from uplift.lab.chart.method import Method, PreparedMethod, Task, nbytes, published_srgb, stated_sensor, stopwatch
+from uplift.lab.chart.method import (
+    Method,
+    PreparedMethod,
+    Task,
+    nbytes,
+    published_srgb,
+    stated_sensor,
+    stopwatch,
+)
 from uplift.models.sigmoid import evaluate_unscaled
 
 MENG_STEP = 10.0
@@ -32,7 +40,9 @@ MENG_STEP = 10.0
 OTSU_GRID = (380.0, 730.0, 10.0)
 
 
-def prepare_one_by_one(task: Task, name: str, grid: tuple[float, float, float] = (START, END, STEP)) -> PreparedMethod:
+def prepare_one_by_one(
+    task: Task, name: str, grid: tuple[float, float, float] = (START, END, STEP)
+) -> PreparedMethod:
     """Prepare a function of colour-science from one XYZ, an observer and an illuminant to a spectrum."""
     recovery = colour_science().recovery
     convert = getattr(recovery, name)
@@ -41,10 +51,19 @@ def prepare_one_by_one(task: Task, name: str, grid: tuple[float, float, float] =
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         spectra = (convert(xyz, cmfs, light) for xyz in published_srgb().xyz(rgb))
-        return np.stack([np.interp(wavelengths, spectrum.wavelengths, spectrum.values) for spectrum in spectra])
+        return np.stack(
+            [
+                np.interp(wavelengths, spectrum.wavelengths, spectrum.values)
+                for spectrum in spectra
+            ]
+        )
 
     otsu = recovery.otsu2018
-    clusters = (otsu.BASIS_FUNCTIONS_OTSU2018, otsu.CLUSTER_MEANS_OTSU2018, otsu.SELECTOR_ARRAY_OTSU2018)
+    clusters = (
+        otsu.BASIS_FUNCTIONS_OTSU2018,
+        otsu.CLUSTER_MEANS_OTSU2018,
+        otsu.SELECTOR_ARRAY_OTSU2018,
+    )
     tables = clusters if grid == OTSU_GRID else (cmfs.values, light.values)
     return PreparedMethod(uplift, nbytes(*tables))
 
@@ -56,13 +75,18 @@ def prepare_jakob_table(task: Task) -> PreparedMethod:
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         # For one colour the coefficients have no axis of colours.
-        return evaluate_unscaled(table.RGB_to_coefficients(rgb).reshape(-1, 3), wavelengths)
+        return evaluate_unscaled(
+            table.RGB_to_coefficients(rgb).reshape(-1, 3), wavelengths
+        )
 
     return PreparedMethod(uplift, table.coefficients.nbytes, None, seconds)
 
 
 def prepare_basis(
-    task: Task, read: Callable[[], tuple[Array, Array]], weights: Callable[[Values], Values], dtype: str = "float64"
+    task: Task,
+    read: Callable[[], tuple[Array, Array]],
+    weights: Callable[[Values], Values],
+    dtype: str = "float64",
 ) -> PreparedMethod:
     """Prepare a method whose spectra are sums of K basis spectra; ``weights`` has shapes (n, 3) to (n, K)."""
     (centres, basis), seconds = stopwatch(read)
@@ -103,9 +127,22 @@ def smits_sensor() -> Sensor:
     return stated_sensor(space.matrix_XYZ_to_RGB, space.whitepoint_name)
 
 
-def _method(name: str, title: str, source: str, prepare: Callable[..., PreparedMethod], **fields: Any) -> Method:
+def _method(
+    name: str,
+    title: str,
+    source: str,
+    prepare: Callable[..., PreparedMethod],
+    **fields: Any,
+) -> Method:
     family = title.partition(",")[0]
-    return Method(method=name, title=title, family=family, source=source, prepare=prepare, **fields)
+    return Method(
+        method=name,
+        title=title,
+        family=family,
+        source=source,
+        prepare=prepare,
+        **fields,
+    )
 
 
 def _in_single(method: Method) -> Method:
@@ -164,7 +201,9 @@ METHODS = (
         "meng2015",
         "Meng 2015",
         "Meng, Simon, Hanika & Dachsbacher, Physically meaningful rendering using tristimulus colours, CGF 34(4), 2015",
-        partial(prepare_one_by_one, name="XYZ_to_sd_Meng2015", grid=(START, END, MENG_STEP)),
+        partial(
+            prepare_one_by_one, name="XYZ_to_sd_Meng2015", grid=(START, END, MENG_STEP)
+        ),
         claimed_error=0.5,
         claimed_range=(0, 1000),
         batch=False,

@@ -23,7 +23,9 @@ MAX_BYTES = 16 << 20
 MAX_NUMBER = 1e30
 ERRORS = ("round_trip", "coarse_round_trip", *CHART_LIGHTS, "lights", "rms")
 REQUIRED = {"bytes", "time_ns", "setup_s", "round_trip_colours", "unseen_spectra"} | {
-    f"{name}_{kind}" for name in (*ERRORS, *(f"own_{name}" for name in ERRORS[2:])) for kind in ("mean", "p99", "max")
+    f"{name}_{kind}"
+    for name in (*ERRORS, *(f"own_{name}" for name in ERRORS[2:]))
+    for kind in ("mean", "p99", "max")
 }
 """Numbers of every method that was measured."""
 BATCH = re.compile(r"ns_([1-9]\d{0,8})")
@@ -74,34 +76,47 @@ class Chart:
     @property
     def measured(self) -> tuple[MethodResult, ...]:
         """Return the results of the methods that were measured."""
-        return tuple(result for result in self.results if result.state == State.MEASURED)
+        return tuple(
+            result for result in self.results if result.state == State.MEASURED
+        )
 
     @property
     def batches(self) -> tuple[int, ...]:
         """Return the numbers of colours per call that were timed, ascending."""
         names = {name for result in self.measured for name in result.numbers}
-        return tuple(sorted(int(match[1]) for name in names if (match := BATCH.fullmatch(name))))
+        return tuple(
+            sorted(int(match[1]) for name in names if (match := BATCH.fullmatch(name)))
+        )
 
 
 def chart_csv(chart: Chart) -> str:
     """Convert a chart to CSV."""
-    names = list(dict.fromkeys(name for result in chart.results for name in result.numbers))
+    names = list(
+        dict.fromkeys(name for result in chart.results for name in result.numbers)
+    )
     facts = [chart.facts.get(name, "") for name in FACTS]
     rows = []
     for result in chart.results:
-        numbers = (f"{result.numbers[name]:.9g}" if name in result.numbers else "" for name in names)
+        numbers = (
+            f"{result.numbers[name]:.9g}" if name in result.numbers else ""
+            for name in names
+        )
         rows.append([*(getattr(result, name) for name in TEXTS), *numbers, *facts])
     return csv_text([*TEXTS, *names, *FACTS], rows)
 
 
 def read_chart(path: StrPath) -> Chart:
     """Read the CSV file of a chart. Raises `ChartFileError`."""
-    return parse_chart(read_bytes(path, ChartFileError, limit=MAX_BYTES, hint=HINT), path)
+    return parse_chart(
+        read_bytes(path, ChartFileError, limit=MAX_BYTES, hint=HINT), path
+    )
 
 
 def shipped_chart() -> Chart:
     """Return the chart of docs/speed.md, which is part of the package."""
-    return parse_chart(files("uplift.lab.chart").joinpath(MEASURED).read_bytes(), MEASURED)
+    return parse_chart(
+        files("uplift.lab.chart").joinpath(MEASURED).read_bytes(), MEASURED
+    )
 
 
 def parse_chart(data: bytes, path: StrPath) -> Chart:
@@ -112,7 +127,9 @@ def parse_chart(data: bytes, path: StrPath) -> Chart:
             raise ValueError("it contains no methods")
         results = tuple(map(_result, lines))
     except ValueError as error:
-        raise ChartFileError(f"is not the table of a chart: {error}", path=path, hint=HINT) from error
+        raise ChartFileError(
+            f"is not the table of a chart: {error}", path=path, hint=HINT
+        ) from error
     return Chart({name: lines[0][name] for name in FACTS}, results)
 
 
@@ -120,9 +137,15 @@ def _result(line: dict[str, str]) -> MethodResult:
     if not {*TEXTS, *FACTS} <= line.keys():
         raise ValueError("columns are missing")
     texts = {name: line[name] for name in TEXTS if name != "state"}
-    numbers = {name: _number(name, line[name]) for name in line if name not in (*TEXTS, *FACTS) and line[name].strip()}
+    numbers = {
+        name: _number(name, line[name])
+        for name in line
+        if name not in (*TEXTS, *FACTS) and line[name].strip()
+    }
     state = State(line["state"])
-    required = REQUIRED | {f"{name}_{part}" for name in filter(BATCH.fullmatch, numbers) for part in SPREAD}
+    required = REQUIRED | {
+        f"{name}_{part}" for name in filter(BATCH.fullmatch, numbers) for part in SPREAD
+    }
     if state == State.MEASURED and (missing := required - numbers.keys()):
         raise ValueError(f"{format_value(line['method'])} has no {min(missing)}")
     return MethodResult(**texts, state=state, numbers=numbers)
@@ -131,7 +154,9 @@ def _result(line: dict[str, str]) -> MethodResult:
 def _number(name: str, text: str) -> float:
     value = parse_float(text.strip())
     if not 0 <= value <= MAX_NUMBER:
-        raise ValueError(f"{shorten(name)} must be in [0, {MAX_NUMBER:g}], got {format_value(text)}")
+        raise ValueError(
+            f"{shorten(name)} must be in [0, {MAX_NUMBER:g}], got {format_value(text)}"
+        )
     return value
 
 
@@ -176,15 +201,25 @@ class Criterion:
     def point(self, result: MethodResult) -> tuple[float, float] | None:
         """Return time and mean error, None if either is unknown."""
         time, error = self.time(result), result.numbers.get(f"{self.error}_mean")
-        return None if time is None or error is None else (max(time, MIN_TIME), max(error, MIN_ERROR))
+        return (
+            None
+            if time is None or error is None
+            else (max(time, MIN_TIME), max(error, MIN_ERROR))
+        )
 
     def labels(self, result: MethodResult) -> tuple[str, str]:
         """Return time and mean error as text."""
-        return format_time(self.time(result) or 0.0), format_error(result.numbers[f"{self.error}_mean"])
+        return format_time(self.time(result) or 0.0), format_error(
+            result.numbers[f"{self.error}_mean"]
+        )
 
     def front(self, chart: Chart) -> tuple[MethodResult, ...]:
         """Return the Pareto front, fastest first: each is clearly more accurate than all faster methods."""
-        points = {result: point for result in chart.measured if (point := self.point(result)) is not None}
+        points = {
+            result: point
+            for result in chart.measured
+            if (point := self.point(result)) is not None
+        }
         return tuple(list(points)[row] for row in pareto_front(list(points.values())))
 
 
@@ -198,7 +233,12 @@ def criteria(batch: int) -> tuple[Criterion, ...]:
         Criterion(UNSEEN, "lights", "ΔE00", batch),
         Criterion(f"{UNSEEN}, with set-up", "lights", "ΔE00", batch, whole=True),
         Criterion("Unseen materials, the spectrum", "rms", "rms of reflectance", batch),
-        Criterion("Materials of the atlas itself, mean of five lights", "own_lights", "ΔE00", batch),
+        Criterion(
+            "Materials of the atlas itself, mean of five lights",
+            "own_lights",
+            "ΔE00",
+            batch,
+        ),
     )
 
 
@@ -225,9 +265,13 @@ class Requirement:
         limits = [limit for limit in (self.time_ns, self.delta_e) if limit is not None]
         if not limits or not all(0 < limit < float("inf") for limit in limits):
             got = ", ".join(f"{limit:g}" for limit in limits) or "neither"
-            raise OptionError(f"time_ns, delta_e or both must be given as positive numbers, got {got}")
+            raise OptionError(
+                f"time_ns, delta_e or both must be given as positive numbers, got {got}"
+            )
         if self.light not in (None, DEFAULT_ILLUMINANT, *CHART_LIGHTS):
-            raise unknown_name(str(self.light), (DEFAULT_ILLUMINANT, *CHART_LIGHTS), "light")
+            raise unknown_name(
+                str(self.light), (DEFAULT_ILLUMINANT, *CHART_LIGHTS), "light"
+            )
 
     @property
     def error(self) -> str:
@@ -247,7 +291,9 @@ class Requirement:
 
 SITUATIONS = {
     "no measurements": Requirement(delta_e=1.0, plain=True),
-    "no measurements, little memory": Requirement(delta_e=1.0, plain=True, smallest=True),
+    "no measurements, little memory": Requirement(
+        delta_e=1.0, plain=True, smallest=True
+    ),
     "an atlas whose materials must look right": Requirement(delta_e=0.05, own=True),
     "such an atlas, little memory": Requirement(delta_e=0.05, own=True, smallest=True),
 }
@@ -257,23 +303,39 @@ SITUATIONS = {
 def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
     """Choose the fastest or smallest cube within the limits, or the most accurate in time. Raises `OptionError`."""
     name, longest, largest = requirement.error, requirement.time_ns, requirement.delta_e
-    cubes = [result for result in chart.measured if result.build and name in result.numbers]
-    cubes = [cube for cube in cubes if not (requirement.plain and "--atlas" in cube.build)]
+    cubes = [
+        result for result in chart.measured if result.build and name in result.numbers
+    ]
+    cubes = [
+        cube for cube in cubes if not (requirement.plain and "--atlas" in cube.build)
+    ]
     if not cubes:
         raise _unmet(f"the chart has no cube with {name}", "measure a chart with cubes")
-    times = {cube: cube.numbers["time_ns"] for cube in cubes if longest is None or cube.numbers["time_ns"] <= longest}
+    times = {
+        cube: cube.numbers["time_ns"]
+        for cube in cubes
+        if longest is None or cube.numbers["time_ns"] <= longest
+    }
     if not times:
         fastest = min(cubes, key=lambda cube: cube.numbers["time_ns"])
         took = format_time(fastest.numbers["time_ns"])
-        raise _unmet(f"no cube takes at most {longest:g} ns per RGB", f"the fastest, {fastest.method}, takes {took}")
+        raise _unmet(
+            f"no cube takes at most {longest:g} ns per RGB",
+            f"the fastest, {fastest.method}, takes {took}",
+        )
     best = min(times, key=lambda cube: cube.numbers[name])
     smallest = best.numbers[name]
     limit = smallest / CLEAR_RATIO if largest is None else largest
     sufficient = [cube for cube in times if cube.numbers[name] <= limit]
     if not sufficient:
         problem = f"no cube has at most ΔE00 {largest:g} {requirement.description}"
-        raise _unmet(problem, f"the most accurate, {best.method}, has {format_error(smallest)}")
-    return min(sufficient, key=lambda cube: (cube.numbers["bytes"] * requirement.smallest, times[cube]))
+        raise _unmet(
+            problem, f"the most accurate, {best.method}, has {format_error(smallest)}"
+        )
+    return min(
+        sufficient,
+        key=lambda cube: (cube.numbers["bytes"] * requirement.smallest, times[cube]),
+    )
 
 
 def _unmet(problem: str, hint: str) -> OptionError:

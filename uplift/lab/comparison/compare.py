@@ -67,15 +67,26 @@ class Scene:
 
     def thinned(self, count: int = QUICK_SURFACES) -> "Scene":
         """Select at most ``count`` surfaces, evenly spaced."""
-        kept = np.unique(np.linspace(0, len(self.surfaces) - 1, count).round().astype(np.intp))
-        return Scene(tuple(replace(each, reflectances=each.reflectances[kept]) for each in self.sets))
+        kept = np.unique(
+            np.linspace(0, len(self.surfaces) - 1, count).round().astype(np.intp)
+        )
+        return Scene(
+            tuple(
+                replace(each, reflectances=each.reflectances[kept])
+                for each in self.sets
+            )
+        )
 
 
-def make_scene(atlases: Mapping[str, Atlas], lights: Sequence[Illuminant] = ()) -> Scene:
+def make_scene(
+    atlases: Mapping[str, Atlas], lights: Sequence[Illuminant] = ()
+) -> Scene:
     """Combine the entries of atlases with sets of lights. Raises `AtlasError`, `UnknownNameError`."""
     merged = merge(atlases.values())
     if not merged.entries:
-        raise AtlasError("the atlases have no entries", hint="give an atlas of reflectances")
+        raise AtlasError(
+            "the atlases have no entries", hint="give an atlas of reflectances"
+        )
     observer.check_distinct(lights)
     given: dict[str, tuple[Illuminant, ...]] = {NAMED_SET: tuple(dict.fromkeys(lights))}
     named = given if lights else KMENT_LIGHTS
@@ -83,9 +94,17 @@ def make_scene(atlases: Mapping[str, Atlas], lights: Sequence[Illuminant] = ()) 
     surfaces = on_grid(merged, nm)
 
     def light_set(name: str, members: tuple[Illuminant, ...]) -> LightSet:
-        powers = np.stack([observer.illuminant_spd(member, step=samples.STEP) for member in members])
+        powers = np.stack(
+            [observer.illuminant_spd(member, step=samples.STEP) for member in members]
+        )
         return LightSet(
-            nm, surfaces, tuple(map(str, members)), powers / (powers @ weights[:, 1:2]), weights, members, name
+            nm,
+            surfaces,
+            tuple(map(str, members)),
+            powers / (powers @ weights[:, 1:2]),
+            weights,
+            members,
+            name,
         )
 
     return Scene(tuple(light_set(*each) for each in named.items()))
@@ -110,8 +129,12 @@ class Statistics(NamedTuple):
 def compute_statistics(errors: ArrayLike) -> Statistics:
     """Compute the statistics of errors."""
     values = np.asarray(errors, dtype=float).ravel()
-    low, first, median, third, high = np.quantile(values, (0.025, 0.25, 0.5, 0.75, 0.975)).tolist()
-    return Statistics(float(values.mean()), float(values.std()), median, low, first, third, high)
+    low, first, median, third, high = np.quantile(
+        values, (0.025, 0.25, 0.5, 0.75, 0.975)
+    ).tolist()
+    return Statistics(
+        float(values.mean()), float(values.std()), median, low, first, third, high
+    )
 
 
 @dataclass(frozen=True)
@@ -156,17 +179,31 @@ def compare(
     sets, results = {light_set.name: light_set.title for light_set in scene.sets}, []
     for done, representation in enumerate(representations, 1):
         for light_set in scene.sets:
-            light_floats, floats = representation.numbers(light_set.powers, scene.surfaces)
-            errors, ns = error_statistics(representation, light_set), _time(representation, light_set, quick)
+            light_floats, floats = representation.numbers(
+                light_set.powers, scene.surfaces
+            )
+            errors, ns = (
+                error_statistics(representation, light_set),
+                _time(representation, light_set, quick),
+            )
             names = representation.name, representation.family, light_set.name
-            results.append(RepresentationResult(*names, errors, floats, light_floats, ns))
+            results.append(
+                RepresentationResult(*names, errors, floats, light_floats, ns)
+            )
         progress(Progress("representations", done, len(representations)))
-    results.sort(key=lambda result: (list(sets).index(result.lights), result.statistics.mean))
-    facts = {**environment(), "products": f"{pluralise(len(scene.surfaces), 'surface')} under each light"}
+    results.sort(
+        key=lambda result: (list(sets).index(result.lights), result.statistics.mean)
+    )
+    facts = {
+        **environment(),
+        "products": f"{pluralise(len(scene.surfaces), 'surface')} under each light",
+    }
     return Comparison(facts, sets, tuple(results))
 
 
-def represent(representation: Representation, scene: Scene, names: Sequence[str]) -> tuple[Atlas, Atlas]:
+def represent(
+    representation: Representation, scene: Scene, names: Sequence[str]
+) -> tuple[Atlas, Atlas]:
     """Return the surfaces of a scene, with ``names``, and its lights as a representation stores them.
 
     The largest power of a light is 1. Spectra that leave [0, 1], as those of lines after a filter with negative lobes,
@@ -182,9 +219,13 @@ def represent(representation: Representation, scene: Scene, names: Sequence[str]
             problem = f"{outside} of {len(names)} spectra leave [0, 1] as {representation.name} and are clipped"
             warnings.warn(UpliftWarning(problem, code="entry-clipped"), stacklevel=3)
         pairs = zip(names, clipped, strict=True)
-        return Atlas(tuple(Entry(name, samples.wavelengths(), values) for name, values in pairs))
+        return Atlas(
+            tuple(Entry(name, samples.wavelengths(), values) for name, values in pairs)
+        )
 
-    return atlas(names, surfaces), atlas(lights, powers / powers.max(axis=1, keepdims=True))
+    return atlas(names, surfaces), atlas(
+        lights, powers / powers.max(axis=1, keepdims=True)
+    )
 
 
 def error_statistics(representation: Representation, light_set: LightSet) -> Statistics:
@@ -192,16 +233,23 @@ def error_statistics(representation: Representation, light_set: LightSet) -> Sta
     xyz = representation.reflected(light_set.powers, light_set.reflectances)
     errors = delta_e_2000(light_set.to_lab(xyz), light_set.lab)
     if not np.isfinite(errors).all():
-        raise UpliftError(f"{representation.name} returns values that are not finite under {light_set.title}")
+        raise UpliftError(
+            f"{representation.name} returns values that are not finite under {light_set.title}"
+        )
     return compute_statistics(errors)
 
 
-def _time(representation: Representation, light_set: LightSet, quick: bool) -> TimingStats:
+def _time(
+    representation: Representation, light_set: LightSet, quick: bool
+) -> TimingStats:
     """CPU time of a product, in ns: each light of a set in turn, with many surfaces per call."""
     rows, lap, runs = QUICK_TIMING if quick else TIMING
     spectra = np.resize(light_set.reflectances, (rows, len(light_set.wavelengths)))
     surfaces = representation.encode_surface(spectra)
-    lights = [representation.encode_light(np.broadcast_to(power, spectra.shape)) for power in light_set.powers]
+    lights = [
+        representation.encode_light(np.broadcast_to(power, spectra.shape))
+        for power in light_set.powers
+    ]
 
     def multiply() -> None:
         for light in lights:
@@ -217,7 +265,9 @@ def check_target(target: float) -> float:
     return target
 
 
-def cheapest(comparison: Comparison, lights: str, target: float) -> RepresentationResult | None:
+def cheapest(
+    comparison: Comparison, lights: str, target: float
+) -> RepresentationResult | None:
     """Choose the representation that stores least among those accurate enough under a set of lights.
 
     Of equally small ones the smaller light, then the smaller error decides. Times are not considered: among
@@ -225,8 +275,16 @@ def cheapest(comparison: Comparison, lights: str, target: float) -> Representati
     """
     check_target(target)
     return min(
-        (result for result in comparison.of(lights) if result.statistics.q97_5 <= target),
-        key=lambda result: (result.floats, result.light_floats, result.statistics.q97_5),
+        (
+            result
+            for result in comparison.of(lights)
+            if result.statistics.q97_5 <= target
+        ),
+        key=lambda result: (
+            result.floats,
+            result.light_floats,
+            result.statistics.q97_5,
+        ),
         default=None,
     )
 
@@ -234,14 +292,20 @@ def cheapest(comparison: Comparison, lights: str, target: float) -> Representati
 def pareto(comparison: Comparison, lights: str) -> list[RepresentationResult]:
     """Return the results that no other dominates in floats of a surface, floats of a light, and error of 97.5 %."""
     results = comparison.of(lights)
-    rows = np.array([(row.floats, row.light_floats, row.statistics.q97_5) for row in results])
+    rows = np.array(
+        [(row.floats, row.light_floats, row.statistics.q97_5) for row in results]
+    )
     return [results[row] for row in sorted(front(rows))]
 
 
 def records(comparison: Comparison) -> list[dict[str, Any]]:
     """Convert the results of a comparison to records."""
     return [
-        {"lights": result.lights, "representation": result.name, "family": result.family}
+        {
+            "lights": result.lights,
+            "representation": result.name,
+            "family": result.family,
+        }
         | result.statistics._asdict()
         | {"floats": result.floats, "light_floats": result.light_floats}
         | {"ns": result.ns.median, "ns_least": result.ns.min, "ns_most": result.ns.max}
@@ -271,14 +335,25 @@ class TunedFilter:
         """Return the filter's parameters as text."""
         if self.low_pass is None:
             return ""
-        named = zip(filters.KINDS[self.kind].choices, self.low_pass.parameters, strict=True)
-        return ", ".join([f"extent {self.low_pass.extent}", *(f"{key} {value:g}" for key, value in named)])
+        named = zip(
+            filters.KINDS[self.kind].choices, self.low_pass.parameters, strict=True
+        )
+        return ", ".join(
+            [
+                f"extent {self.low_pass.extent}",
+                *(f"{key} {value:g}" for key, value in named),
+            ]
+        )
 
 
 def candidates(kind: str, stride: int = FINE_STRIDE) -> list[Filter]:
     """Filters of a kind for a grid search over every ``stride``-th choice of each parameter."""
     choices = [values[::stride] for values in filters.KINDS[kind].choices.values()]
-    return [Filter(kind, extent, values) for extent in filters.EXTENTS[::stride] for values in product(*choices)]
+    return [
+        Filter(kind, extent, values)
+        for extent in filters.EXTENTS[::stride]
+        for values in product(*choices)
+    ]
 
 
 def tune_filters(
@@ -299,7 +374,9 @@ def tune_filters(
         encoders = [filters.resampling_matrix(low_pass, count).T for low_pass in tried]
         for light_set in scene.sets:
             best = tried[int(_mean_errors(light_set, count, encoders).argmin())]
-            errors = error_statistics(filters.filtered_point_samples(count, best), light_set)
+            errors = error_statistics(
+                filters.filtered_point_samples(count, best), light_set
+            )
             results.append(TunedFilter(kind, count, light_set.name, best, errors))
         progress(Progress("filters", done, len(tasks)))
     return tuple(results)
@@ -307,16 +384,31 @@ def tune_filters(
 
 def _mean_errors(light_set: LightSet, count: int, encoders: Iterable[Array]) -> Array:
     """Mean ΔE00 of encoders (81, count) of the 5 nm table, faster than `error_statistics`."""
-    surfaces, lights = (each[:, :: samples.TABLE_STRIDE] for each in (light_set.reflectances, light_set.powers))
+    surfaces, lights = (
+        each[:, :: samples.TABLE_STRIDE]
+        for each in (light_set.reflectances, light_set.powers)
+    )
     to_xyz = samples.point_samples(count).xyz
-    products = ((lights @ encoder)[:, None] * (surfaces @ encoder) for encoder in encoders)
-    return np.array([delta_e_2000(light_set.to_lab(to_xyz(each)), light_set.lab).mean() for each in products])
+    products = (
+        (lights @ encoder)[:, None] * (surfaces @ encoder) for encoder in encoders
+    )
+    return np.array(
+        [
+            delta_e_2000(light_set.to_lab(to_xyz(each)), light_set.lab).mean()
+            for each in products
+        ]
+    )
 
 
 def filter_records(tuned: Iterable[TunedFilter]) -> list[dict[str, Any]]:
     """Convert tuned filters to records."""
     return [
-        {"lights": each.lights, "samples": each.count, "filter": each.kind, "parameters": each.parameters}
+        {
+            "lights": each.lights,
+            "samples": each.count,
+            "filter": each.kind,
+            "parameters": each.parameters,
+        }
         | each.statistics._asdict()
         for each in tuned
     ]

@@ -59,7 +59,9 @@ def _factors(scene: Scene) -> Iterator[Representation]:
     sensor, step = observer.sensor(), samples.TABLE_STRIDE
 
     def of_size(count: int) -> Representation:
-        model = factor_model(sensor, scene.surfaces[:, ::step], scene.powers[:, ::step], count)
+        model = factor_model(
+            sensor, scene.surfaces[:, ::step], scene.powers[:, ::step], count
+        )
         return Representation(
             f"BF{count}",
             "factor model",
@@ -75,10 +77,18 @@ def _factors(scene: Scene) -> Iterator[Representation]:
 def _moments(scene: Scene) -> Iterator[Representation]:
     """Moments of the surfaces, fitted to their spectra, their colours under the lights, and RGB."""
     sensor = observer.sensor()
-    lights = tuple(observer.light(light) for light_set in scene.sets for light in light_set.illuminants)
+    lights = tuple(
+        observer.light(light)
+        for light_set in scene.sets
+        for light in light_set.illuminants
+    )
     measured = scene.surfaces[:, :: samples.TABLE_STRIDE]
     for count in MOMENTS:
         model = Moments(count)
-        fitted = fit_entries(Problem(sensor, model, lights), measured, sensor.rgb(measured))
-        encode = partial(_known_rows, scene.surfaces, model.to_storage(fitted.multipliers))
+        fitted = fit_entries(
+            Problem(sensor, model, lights), measured, sensor.rgb(measured)
+        )
+        encode = partial(
+            _known_rows, scene.surfaces, model.to_storage(fitted.multipliers)
+        )
         yield tabulated(f"CM{count}", "moments of cubes", model, encode)

@@ -7,9 +7,22 @@ from typing import Any
 from markupsafe import Markup
 
 from uplift.common.arrays import StrPath
-from uplift.lab.comparison.compare import HEADINGS, Comparison, RepresentationResult, TunedFilter
+from uplift.lab.comparison.compare import (
+    HEADINGS,
+    Comparison,
+    RepresentationResult,
+    TunedFilter,
+)
 from uplift.lab.panels import Panel, Point, family_colours, page_panel, write_panels
-from uplift.viz.figure import INK, OTHER, new_figure, style_axes, styled, to_page_svg, write_png
+from uplift.viz.figure import (
+    INK,
+    OTHER,
+    new_figure,
+    style_axes,
+    styled,
+    to_page_svg,
+    write_png,
+)
 from uplift.viz.format import capitalise, format_error, format_time
 from uplift.viz.html import Tooltip, render
 from uplift.viz.scatter import style_title
@@ -32,7 +45,9 @@ COLOURS = {
 """Colours of families; others are dark grey."""
 MIN_ERROR = 1e-3
 """Smaller ΔE00 are not visible and are drawn here."""
-COSTS: dict[str, tuple[Callable[[RepresentationResult], float], Callable[[float], str]]] = {
+COSTS: dict[
+    str, tuple[Callable[[RepresentationResult], float], Callable[[float], str]]
+] = {
     "CPU time of a product": (lambda result: max(result.ns.median, 1.0), format_time),
     "floats stored of a surface": (lambda result: result.floats, "{:g}".format),
 }
@@ -60,11 +75,23 @@ def cost_panels(comparison: Comparison) -> list[Panel]:
     rows = names(comparison)
 
     def point(result: RepresentationResult, cost: float) -> Point:
-        error, colour = max(result.statistics.q97_5, MIN_ERROR), COLOURS.get(result.family, OTHER)
-        return Point(rows.index(result.name), result.name, cost, error, colour, group=result.family)
+        error, colour = (
+            max(result.statistics.q97_5, MIN_ERROR),
+            COLOURS.get(result.family, OTHER),
+        )
+        return Point(
+            rows.index(result.name),
+            result.name,
+            cost,
+            error,
+            colour,
+            group=result.family,
+        )
 
     panels = []
-    for (name, title), (axis, (cost, text)) in product(comparison.sets.items(), COSTS.items()):
+    for (name, title), (axis, (cost, text)) in product(
+        comparison.sets.items(), COSTS.items()
+    ):
         results = sorted(comparison.of(name), key=lambda result: result.floats)
         points = [point(result, cost(result)) for result in results]
         panels.append(Panel(f"{capitalise(title)}, ΔE00 of 97.5 %", axis, text, points))
@@ -88,24 +115,47 @@ def page_boxes(comparison: Comparison) -> list[tuple[str, Markup]]:
     """Draw the box plots of each set of lights for a page."""
     with styled():
         return [
-            (capitalise(title), to_page_svg(draw_boxes(comparison, [name], titles=False), f"Box plots under {title}"))
+            (
+                capitalise(title),
+                to_page_svg(
+                    draw_boxes(comparison, [name], titles=False),
+                    f"Box plots under {title}",
+                ),
+            )
             for name, title in comparison.sets.items()
         ]
 
 
-def draw_boxes(comparison: Comparison, sets: Sequence[str], *, titles: bool = True) -> Any:
+def draw_boxes(
+    comparison: Comparison, sets: Sequence[str], *, titles: bool = True
+) -> Any:
     """Return the matplotlib figure of sets of lights side by side: quartiles, median, and 2.5 to 97.5 %."""
     width, height = BOX_SIZE
     figure = new_figure(width * len(sets), height * len(names(comparison)) + 0.9)
-    for axes, name in zip(figure.subplots(1, len(sets), squeeze=False)[0], sets, strict=True):
+    for axes, name in zip(
+        figure.subplots(1, len(sets), squeeze=False)[0], sets, strict=True
+    ):
         for row, result in enumerate(comparison.of(name)):
             values, colour = result.statistics, COLOURS.get(result.family, OTHER)
-            axes.hlines(row, max(values.q2_5, MIN_ERROR), values.q97_5, color=colour, linewidth=1)
-            axes.barh(row, values.q75 - values.q25, left=values.q25, height=0.62, color=colour)
-            axes.vlines(values.median, row - 0.31, row + 0.31, color="white", linewidth=1.4)
+            axes.hlines(
+                row,
+                max(values.q2_5, MIN_ERROR),
+                values.q97_5,
+                color=colour,
+                linewidth=1,
+            )
+            axes.barh(
+                row, values.q75 - values.q25, left=values.q25, height=0.62, color=colour
+            )
+            axes.vlines(
+                values.median, row - 0.31, row + 0.31, color="white", linewidth=1.4
+            )
         axes.axvline(VISIBLE, color=INK, linewidth=0.8, linestyle=(0, (3, 2)), zorder=0)
         axes.set(xscale="log", xlabel="ΔE00")
-        axes.set_yticks(range(len(comparison.of(name))), [result.name for result in comparison.of(name)])
+        axes.set_yticks(
+            range(len(comparison.of(name))),
+            [result.name for result in comparison.of(name)],
+        )
         axes.margins(y=0.01)
         axes.invert_yaxis()
         axes.xaxis.set_major_formatter("{x:g}")
@@ -124,9 +174,14 @@ def render_comparison(comparison: Comparison, tuned: Sequence[TunedFilter] = ())
         "lab/comparison/templates/page.html.j2",
         title=TITLE,
         comparison=comparison,
-        pictures=[(f"{panel.title}, over {panel.axis}", page_panel(panel, number)) for number, panel in panels],
+        pictures=[
+            (f"{panel.title}, over {panel.axis}", page_panel(panel, number))
+            for number, panel in panels
+        ],
         boxes=page_boxes(comparison),
-        families=family_colours((result.family for result in comparison.results), COLOURS),
+        families=family_colours(
+            (result.family for result in comparison.results), COLOURS
+        ),
         tooltips=[_tooltip(name, comparison) for name in names(comparison)],
         sources=SOURCES,
         statistics=HEADINGS,

@@ -50,14 +50,20 @@ class HoldoutSplit:
 
 
 def holdout(
-    atlas: Atlas, splits: int = 3, progress: ProgressCallback = ignore_progress, **options: Any
+    atlas: Atlas,
+    splits: int = 3,
+    progress: ProgressCallback = ignore_progress,
+    **options: Any,
 ) -> tuple[HoldoutSplit, ...]:
     """Divide an atlas in random halves, and predict each half by a cube of the other one: two results per split.
 
     By default the prior does not know the families that contain spectra of the atlas.
     """
     total = 2 + 2 * splits
-    options = {"leave_out": families_with(resample(atlas, observer.grid()).values), **options}
+    options = {
+        "leave_out": families_with(resample(atlas, observer.grid()).values),
+        **options,
+    }
     settings = Options(**options)
     sensor = problem_of(settings, settings.observer, settings.solver)[1].sensor
     measured = resample(atlas, sensor.wavelengths).values
@@ -66,12 +72,17 @@ def holdout(
         problem = f"a split needs at least {MIN_ENTRIES} entries within {sensor.space}, got {len(inside)}"
         raise AtlasError(problem, code="too-few-entries", hint="use a larger atlas")
     with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-        others = {NO_ATLAS: build(**options), SIGMOID: build(**{**options, "model": "sigmoid"})}
+        others = {
+            NO_ATLAS: build(**options),
+            SIGMOID: build(**{**options, "model": "sigmoid"}),
+        }
         progress(Progress("builds", 2, total))
         results: list[HoldoutSplit] = []
         for kept, other in halves_both_ways(inside, splits):
             cube = build(Atlas(tuple(atlas.entries[row] for row in kept)), **options)
-            results.append(_evaluate({HALF: cube, **others}, measured[kept], measured[other]))
+            results.append(
+                _evaluate({HALF: cube, **others}, measured[kept], measured[other])
+            )
             progress(Progress("builds", 2 + len(results), total))
     return tuple(results)
 
@@ -96,14 +107,20 @@ def _evaluate(cubes: dict[str, Cube], known: Array, measured: Array) -> HoldoutS
     sensor = cube.data.sensor
     rgb = np.clip(sensor.rgb(measured), 0, 1)
     predicted = {name: other.reflectance(rgb) for name, other in cubes.items()}
-    errors = {name: spectrum_errors(spectra, measured) for name, spectra in predicted.items()}
+    errors = {
+        name: spectrum_errors(spectra, measured) for name, spectra in predicted.items()
+    }
     light = observer.light(cube.data.error_illuminant, sensor.observer)
-    errors[LOCAL_LINEAR] = spectrum_errors(local_linear(cube.data, known, rgb), measured)
+    errors[LOCAL_LINEAR] = spectrum_errors(
+        local_linear(cube.data, known, rgb), measured
+    )
     actual = delta_e_spectra(light, predicted[HALF], measured)
     return HoldoutSplit(errors, actual, cube.standard_error(rgb), cube.error_bound(rgb))
 
 
-def spectrum_errors(predicted: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS) -> Answers:
+def spectrum_errors(
+    predicted: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS
+) -> Answers:
     """Compare predicted with measured reflectances (n, N)."""
     return compare_spectra(predicted, measured, map(observer.light, lights))
 
@@ -112,12 +129,22 @@ def split_records(splits: Sequence[HoldoutSplit]) -> list[dict[str, Any]]:
     """Return mean errors over the splits by method; that of the cube with half the atlas has its calibration too."""
     records: list[dict[str, Any]] = []
     for method in splits[0].errors:
-        means = np.mean([split.errors[method].means() for split in splits], axis=0).tolist()
+        means = np.mean(
+            [split.errors[method].means() for split in splits], axis=0
+        ).tolist()
         named = dict(zip(("rms", *HELD_OUT_LIGHTS), means, strict=True))
         records.append({"cube": method, "colours": len(splits[0].actual)} | named)
     # Over all splits together; small atlases have no standard errors.
-    parts = [(split.actual, split.predicted, split.bound) for split in splits if split.predicted is not None]
-    found = check_calibration(*(np.concatenate(part) for part in zip(*parts, strict=True))) if parts else None
+    parts = [
+        (split.actual, split.predicted, split.bound)
+        for split in splits
+        if split.predicted is not None
+    ]
+    found = (
+        check_calibration(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+        if parts
+        else None
+    )
     records[0]["standard_error"] = found and found.to_json()
     return records
 
@@ -136,16 +163,27 @@ def local_linear(data: CubeData, known: Array, rgb: Array) -> Array:
     Bandwidth and ridge have the least mean leave-one-out ΔE00 of the known materials under the lights of a build.
     Predictions are moved to their colours. Cleveland & Devlin 1988, "Locally weighted regression", JASA 83(403).
     """
-    lights = [observer.light(name, data.sensor.observer, *data.sensor.range) for name in SCENE_LIGHTS]
+    lights = [
+        observer.light(name, data.sensor.observer, *data.sensor.range)
+        for name in SCENE_LIGHTS
+    ]
     colours = np.clip(data.sensor.rgb(known), 0, 1)
 
-    def predict(queries: Array, width: float, ridge: float, leave_out: bool = False) -> Array:
-        spectra = np.clip(regress(data.sensor, known, queries, width, ridge, leave_out), LOWEST, 1 - LOWEST)
+    def predict(
+        queries: Array, width: float, ridge: float, leave_out: bool = False
+    ) -> Array:
+        spectra = np.clip(
+            regress(data.sensor, known, queries, width, ridge, leave_out),
+            LOWEST,
+            1 - LOWEST,
+        )
         return with_least_change(data, spectra, queries)
 
     def error(smoothing: tuple[float, float]) -> float:
         spectra = predict(colours, *smoothing, leave_out=True)
-        return float(np.mean([delta_e_spectra(light, spectra, known) for light in lights]))
+        return float(
+            np.mean([delta_e_spectra(light, spectra, known) for light in lights])
+        )
 
     return predict(rgb, *min(product(BANDWIDTHS, RIDGES), key=error))
 
@@ -157,23 +195,38 @@ def with_least_change(data: CubeData, spectra: Array, rgb: Array) -> Array:
     linear, damping = model.from_reflectance(spectra.T), np.zeros(len(rgb))
     missed = rgb.T - sensor.matrix @ spectra.T
     for _ in range(MAX_STEPS):
-        with np.errstate(over="ignore", invalid="ignore"):  # overflowing steps are rejected
-            trial = linear + forward.basis @ minimum_norm_step(forward, linear, missed, damping)
+        with np.errstate(
+            over="ignore", invalid="ignore"
+        ):  # overflowing steps are rejected
+            trial = linear + forward.basis @ minimum_norm_step(
+                forward, linear, missed, damping
+            )
             left = rgb.T - sensor.matrix @ model.to_reflectance(trial)
         # As by Levenberg and Marquardt: the damping falls after a step that helped, and rises after one that did not.
         better = (left**2).sum(axis=0) < (missed**2).sum(axis=0)
         linear, missed = np.where(better, trial, linear), np.where(better, left, missed)
-        damping = np.where(better, damping / 10, np.maximum(10 * damping, FIRST_DAMPING))
+        damping = np.where(
+            better, damping / 10, np.maximum(10 * damping, FIRST_DAMPING)
+        )
     return np.asarray(model.to_reflectance(linear).T)
 
 
-def regress(sensor: Sensor, known: Array, rgb: Array, width: float, ridge: float, leave_out: bool = False) -> Array:
+def regress(
+    sensor: Sensor,
+    known: Array,
+    rgb: Array,
+    width: float,
+    ridge: float,
+    leave_out: bool = False,
+) -> Array:
     """Local-linear predictions (n, N) at linear RGB (n, 3); ``leave_out`` gives no weight to a query's own row."""
     colours = np.clip(sensor.rgb(known), 0, 1)
     squares = cdist(rgb_to_lab(sensor, rgb), rgb_to_lab(sensor, colours), "sqeuclidean")
     if leave_out:
         np.fill_diagonal(squares, np.inf)
-    squares -= squares.min(axis=1, keepdims=True)  # far queries keep the weight of the nearest colour
+    squares -= squares.min(
+        axis=1, keepdims=True
+    )  # far queries keep the weight of the nearest colour
     weights = np.exp(-squares / (2 * width**2))
     weights /= weights.sum(axis=1, keepdims=True)
     offsets = colours[None] - rgb[:, None]

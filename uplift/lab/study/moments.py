@@ -54,7 +54,9 @@ class Technique:
         half = Moments(warp=self.warp if self.warped else "none").phase(wavelengths)
         return half if self.mirrored else 2 * half + np.pi
 
-    def moments(self, reflectance: Array, wavelengths: ArrayLike, moments: int) -> Complex | Array:
+    def moments(
+        self, reflectance: Array, wavelengths: ArrayLike, moments: int
+    ) -> Complex | Array:
         """Moments (n, moments + 1) of reflectances (n, N), exact for the interpolant that is linear in the phase.
 
         Samples within [0, 1] have moments of a reflectance.
@@ -68,19 +70,29 @@ class Technique:
         slopes = np.diff(reflectance, axis=1) / np.diff(phase)
         integrals = np.empty((len(reflectance), moments + 1), dtype=complex)
         integrals[:, 0] = np.trapezoid(reflectance, phase, axis=1)
-        integrals[:, 1:] = 1j * ends / orders + slopes @ np.diff(turn, axis=0) / orders**2
+        integrals[:, 1:] = (
+            1j * ends / orders + slopes @ np.diff(turn, axis=0) / orders**2
+        )
         on_circle = integrals / np.ptp(phase)
         return np.ascontiguousarray(on_circle.real) if self.mirrored else on_circle
 
     def reconstruct(self, moments: Complex | Array, wavelengths: ArrayLike) -> Array:
         """Bounded maximum-entropy reflectances (n, N) of moments (n, C)."""
-        solve = duality.try_multipliers if self.mirrored else duality.try_complex_multipliers
+        solve = (
+            duality.try_multipliers
+            if self.mirrored
+            else duality.try_complex_multipliers
+        )
         multipliers = duality.multipliers_from_moments(moments, solve)
         waves = duality.fourier_basis(self.phase(wavelengths), moments.shape[1])
         return np.asarray(0.5 + np.arctan((multipliers @ waves.T).real) / np.pi)
 
 
-TECHNIQUES = tuple(Technique(mirrored, warped) for mirrored in (True, False) for warped in (True, False))
+TECHNIQUES = tuple(
+    Technique(mirrored, warped)
+    for mirrored in (True, False)
+    for warped in (True, False)
+)
 """All techniques, in the order of the tables of the thesis."""
 
 
@@ -126,44 +138,81 @@ class MomentsStudy:
 
     def rows(self, group: str = ALL_ATLASES) -> Indices:
         """Entries of a group."""
-        return np.array([row for row, atlas in enumerate(self.atlases) if group in (ALL_ATLASES, atlas)])
+        return np.array(
+            [
+                row
+                for row, atlas in enumerate(self.atlases)
+                if group in (ALL_ATLASES, atlas)
+            ]
+        )
 
-    def result(self, technique: Technique, moments: int, group: str = ALL_ATLASES) -> MomentsResult:
+    def result(
+        self, technique: Technique, moments: int, group: str = ALL_ATLASES
+    ) -> MomentsResult:
         """Summarise the errors of a group for one technique and number of moments."""
         rows = self.rows(group)
         errors = self.errors[TECHNIQUES.index(technique), moments, rows]
-        return MomentsResult(errors.mean(axis=0), errors.max(axis=0), int(rows[errors[:, 0].argmax()]))
+        return MomentsResult(
+            errors.mean(axis=0), errors.max(axis=0), int(rows[errors[:, 0].argmax()])
+        )
 
     def curves(self) -> dict[Technique, Array]:
         """Numbers stored, mean and largest ΔE76 (max_moments + 1, 3) of all entries together, by technique."""
-        floats = [[technique.floats(n) for n in range(self.max_moments + 1)] for technique in TECHNIQUES]
+        floats = [
+            [technique.floats(n) for n in range(self.max_moments + 1)]
+            for technique in TECHNIQUES
+        ]
         errors = self.errors[..., 0]
         curves = np.stack([floats, errors.mean(axis=2), errors.max(axis=2)], axis=-1)
         return dict(zip(TECHNIQUES, curves, strict=True))
 
     def records(self) -> list[dict[str, Any]]:
         """Return a flat record for every group, technique and count, with mean and maximum of every measure."""
-        return [self._record(*each) for each in product(self.groups, TECHNIQUES, range(self.max_moments + 1))]
+        return [
+            self._record(*each)
+            for each in product(self.groups, TECHNIQUES, range(self.max_moments + 1))
+        ]
 
     def _record(self, group: str, technique: Technique, moments: int) -> dict[str, Any]:
         result = self.result(technique, moments, group)
         mapping = {"mirrored": technique.mirrored, "warped": technique.warped}
         size = {"moments": moments, "floats": technique.floats(moments)}
         names = [f"{name}_{kind}" for name in MEASURES for kind in ("mean", "max")]
-        errors = dict(zip(names, np.stack([result.mean, result.max], axis=1).ravel().tolist(), strict=True))
+        errors = dict(
+            zip(
+                names,
+                np.stack([result.mean, result.max], axis=1).ravel().tolist(),
+                strict=True,
+            )
+        )
         worst = self.names[result.worst]
-        return {"atlas": group, "entries": len(self.rows(group)), **mapping, **size, **errors, "worst": worst}
+        return {
+            "atlas": group,
+            "entries": len(self.rows(group)),
+            **mapping,
+            **size,
+            **errors,
+            "worst": worst,
+        }
 
 
 def study_moments(
-    atlases: Mapping[str, Atlas], max_moments: int = DEFAULT_MAX_MOMENTS, progress: ProgressCallback = ignore_progress
+    atlases: Mapping[str, Atlas],
+    max_moments: int = DEFAULT_MAX_MOMENTS,
+    progress: ProgressCallback = ignore_progress,
 ) -> MomentsStudy:
     """Reduce every entry to 0 … ``max_moments`` moments, and reconstruct it, by all four techniques."""
     if not 0 <= max_moments <= MAX_MOMENTS:
-        raise OptionError(f"max_moments must be in [0, {MAX_MOMENTS}], got {max_moments}")
+        raise OptionError(
+            f"max_moments must be in [0, {MAX_MOMENTS}], got {max_moments}"
+        )
     atlas = merge(atlases.values())
     if not atlas.entries:
-        raise AtlasError("the atlases have no entries", code="too-few-entries", hint="name an atlas with reflectances")
+        raise AtlasError(
+            "the atlases have no entries",
+            code="too-few-entries",
+            hint="name an atlas with reflectances",
+        )
     measured = on_grid(atlas, samples.wavelengths())
     original = measured[:, :: samples.TABLE_STRIDE]
     lights = [observer.light(name) for name in REPORT_LIGHTS]
@@ -177,9 +226,21 @@ def study_moments(
         moments = technique.moments(measured, samples.wavelengths(), max_moments)
         for count in range(counts):
             spectra = technique.reconstruct(moments[:, : count + 1], observer.grid())
-            actual, rms = labs(spectra), np.sqrt(((spectra - original) ** 2).mean(axis=1))
-            delta_e = [delta_e_1976(actual[0], expected[0]), *map(delta_e_2000, actual, expected)]
+            actual, rms = (
+                labs(spectra),
+                np.sqrt(((spectra - original) ** 2).mean(axis=1)),
+            )
+            delta_e = [
+                delta_e_1976(actual[0], expected[0]),
+                *map(delta_e_2000, actual, expected),
+            ]
             errors[row, count] = np.stack([*delta_e, rms], axis=1)
-            progress(Progress("reconstructions", row * counts + count + 1, len(TECHNIQUES) * counts))
+            progress(
+                Progress(
+                    "reconstructions",
+                    row * counts + count + 1,
+                    len(TECHNIQUES) * counts,
+                )
+            )
     origins = tuple(name for name, each in atlases.items() for _ in each.entries)
     return MomentsStudy(atlas.names, origins, measured, errors)

@@ -32,10 +32,16 @@ WARPED, UNWARPED = TECHNIQUES[:2]
 COLOURS = {WARPED: "#d1495b", UNWARPED: "#1f6fb4"}
 LINE: dict[str, Any] = {"linewidth": 1.6, "markersize": 3.5}
 WARPED_STYLE: dict[str, Any] = {"linestyle": "-", "marker": "o"}
-UNWARPED_STYLE: dict[str, Any] = {"linestyle": (0, (3, 1.5)), "marker": "s", "markerfacecolor": "white"}
+UNWARPED_STYLE: dict[str, Any] = {
+    "linestyle": (0, (3, 1.5)),
+    "marker": "s",
+    "markerfacecolor": "white",
+}
 
 
-def plot_errors(rows: Mapping[str, Mapping[Technique, Array]], path: StrPath, *, force: bool = False) -> None:
+def plot_errors(
+    rows: Mapping[str, Mapping[Technique, Array]], path: StrPath, *, force: bool = False
+) -> None:
     """Write mean and largest ΔE76 over the numbers stored as PNG, a row of panels per name.
 
     Each technique has an array (n, 3) of numbers stored, mean and largest error, as of `MomentsStudy.curves`.
@@ -47,7 +53,14 @@ def plot_errors(rows: Mapping[str, Mapping[Technique, Array]], path: StrPath, *,
             for technique, curve in curves.items():
                 style = WARPED_STYLE if technique.warped else UNWARPED_STYLE
                 colour = "#1f6fb4" if technique.mirrored else "#d98200"
-                axes.plot(curve[:, 0], curve[:, column], color=colour, label=technique.label, **LINE, **style)
+                axes.plot(
+                    curve[:, 0],
+                    curve[:, column],
+                    color=colour,
+                    label=technique.label,
+                    **LINE,
+                    **style,
+                )
             axes.set_yscale("log")
             axes.yaxis.set_major_formatter("{x:g}")
             axes.set_title(figure_text(f"{name}: {title}"), loc="left", fontsize=10)
@@ -56,41 +69,62 @@ def plot_errors(rows: Mapping[str, Mapping[Technique, Array]], path: StrPath, *,
         axes.set_ylabel("ΔE76 under D65")
     for axes in panels[-1]:
         axes.set_xlabel("numbers stored per spectrum")
-    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False)
+    figure.legend(
+        *panels[0, 0].get_legend_handles_labels(),
+        loc="outside upper center",
+        ncols=4,
+        frameon=False,
+    )
     write_png(figure, path, force=force)
 
 
 def plot_patches(study: MomentsStudy, path: StrPath, *, force: bool = False) -> None:
     """Write the patches of the thesis, or the first entries of other atlases, as PNG."""
     patches = [study.names.index(name) for name in PATCHES if name in study.names]
-    _plot_spectra(study, [patches or range(min(2, len(study.names)))], path, force=force)
+    _plot_spectra(
+        study, [patches or range(min(2, len(study.names)))], path, force=force
+    )
 
 
 def plot_worst(study: MomentsStudy, path: StrPath, *, force: bool = False) -> None:
     """Write the worst two entries of mirroring, warped (top) and unwarped, as PNG."""
     errors = study.errors[: len(COLOURS), _drawn_moments(study), :, 0]
-    _plot_spectra(study, [np.argsort(row)[::-1][:2] for row in errors], path, force=force)
+    _plot_spectra(
+        study, [np.argsort(row)[::-1][:2] for row in errors], path, force=force
+    )
 
 
 def _drawn_moments(study: MomentsStudy) -> int:
     return min(FLOATS - 1, study.max_moments)
 
 
-def _plot_spectra(study: MomentsStudy, rows: Sequence[Iterable[int]], path: StrPath, *, force: bool) -> None:
+def _plot_spectra(
+    study: MomentsStudy, rows: Sequence[Iterable[int]], path: StrPath, *, force: bool
+) -> None:
     """Draw a panel for every entry, measured and reconstructed; all rows have equal lengths."""
     entries, moments = [list(row) for row in rows], _drawn_moments(study)
     figure = new_figure(9.0, 3.6 * len(entries))
     panels = figure.subplots(len(entries), len(entries[0]), squeeze=False)
     for axes, entry in zip(panels.flat, itertools.chain(*entries), strict=True):
         measured = study.measured[entry : entry + 1]
-        axes.plot(samples.wavelengths(), measured[0], color="0.15", linewidth=3.0, alpha=0.35, label="measured")
+        axes.plot(
+            samples.wavelengths(),
+            measured[0],
+            color="0.15",
+            linewidth=3.0,
+            alpha=0.35,
+            label="measured",
+        )
         for technique, colour in COLOURS.items():
             found = technique.reconstruct(
-                technique.moments(measured, samples.wavelengths(), moments), samples.wavelengths()
+                technique.moments(measured, samples.wavelengths(), moments),
+                samples.wavelengths(),
             )[0]
             error = study.errors[TECHNIQUES.index(technique), moments, entry, 0]
             label = f"{'warped' if technique.warped else 'unwarped'}, ΔE76 {error:.2f}"
-            axes.plot(samples.wavelengths(), found, color=colour, linewidth=1.5, label=label)
+            axes.plot(
+                samples.wavelengths(), found, color=colour, linewidth=1.5, label=label
+            )
         style_spectrum_axes(axes)
         # Dark entries fill their panel, with room for the legend above.
         axes.set_ylim(0, min(1.02, 1.5 * measured.max() + 0.02))
@@ -110,29 +144,56 @@ RATIOS = (1e-3, 3.0)
 """Range of that figure: largest residual over the threshold; smaller ones are drawn at its left end."""
 
 
-def plot_map(runs: Sequence[Mapping[str, Any]], path: StrPath, *, force: bool = False) -> None:
+def plot_map(
+    runs: Sequence[Mapping[str, Any]], path: StrPath, *, force: bool = False
+) -> None:
     """Write the largest residual of realisable nodes over the threshold as PNG: a dot for each build, in every panel.
 
     Dots to the right of the line are failures, hollow ones builds with failed stand-ins of unrealisable nodes. ``runs``
     are records of `uplift.lab.study.stability.run`.
     """
-    names = [each["model"] if each["model"] == Sigmoid.name else f"moments {each['coefficients']:2}" for each in runs]
+    names = [
+        each["model"]
+        if each["model"] == Sigmoid.name
+        else f"moments {each['coefficients']:2}"
+        for each in runs
+    ]
     runs = [{**each, "model": name} for each, name in zip(runs, names, strict=True)]
     ratios = np.clip([each["worst"] / each["threshold"] for each in runs], *RATIOS)
     faces = ["white" if each["stand_ins"] else ACCENT for each in runs]
     figure = new_figure(11.0, 2.9)
-    for axes, option in zip(figure.subplots(1, len(PANELS), sharex=True), PANELS, strict=True):
-        values = sorted({each[option] for each in runs}, key=lambda value: (str(type(value)), value))
+    for axes, option in zip(
+        figure.subplots(1, len(PANELS), sharex=True), PANELS, strict=True
+    ):
+        values = sorted(
+            {each[option] for each in runs}, key=lambda value: (str(type(value)), value)
+        )
         rows = [values.index(each[option]) for each in runs]
         axes.axvline(1, color=HIGHLIGHT, linewidth=1)
-        axes.scatter(ratios, rows, s=22, facecolors=faces, edgecolors=ACCENT, linewidths=0.8, alpha=0.6, clip_on=False)
-        ticks = [f"{value:.0e}" if option == "threshold" else str(value).removeprefix("ITU-R ") for value in values]
+        axes.scatter(
+            ratios,
+            rows,
+            s=22,
+            facecolors=faces,
+            edgecolors=ACCENT,
+            linewidths=0.8,
+            alpha=0.6,
+            clip_on=False,
+        )
+        ticks = [
+            f"{value:.0e}"
+            if option == "threshold"
+            else str(value).removeprefix("ITU-R ")
+            for value in values
+        ]
         axes.set_yticks(range(len(ticks)), map(figure_text, ticks), fontsize=9)
         axes.set(xscale="log", xlim=RATIOS, ylim=(len(ticks) - 0.5, -0.5))
         axes.xaxis.set_major_formatter("{x:g}")
         axes.set_title(option, loc="left", fontsize=10)
         style_axes(axes)
-    figure.supxlabel("largest residual / threshold; 1 would be a failure", fontsize=9, color=GREY)
+    figure.supxlabel(
+        "largest residual / threshold; 1 would be a failure", fontsize=9, color=GREY
+    )
     write_png(figure, path, force=force)
 
 
@@ -143,19 +204,31 @@ BINS = 40
 """Bins of distance for maximum and median."""
 
 
-def plot_locality(changes: Sequence[Change], path: StrPath, *, force: bool = False) -> None:
+def plot_locality(
+    changes: Sequence[Change], path: StrPath, *, force: bool = False
+) -> None:
     """Write the changes of nodes by an entry left out, over the distance from it, as PNG."""
     changes = [change for change in changes if change.description.endswith("left out")]
     figure = new_figure(10.0, 4.0)
     panels = figure.subplots(1, 2, sharey=True)
-    delta_e = np.maximum(np.concatenate([change.delta_e for change in changes]), MIN_DELTA_E)
-    distances = np.concatenate([change.distance for change in changes if change.distance is not None], axis=1)
-    for axes, distance, unit in zip(panels, distances, ("linear RGB", "ΔE*ab"), strict=True):
+    delta_e = np.maximum(
+        np.concatenate([change.delta_e for change in changes]), MIN_DELTA_E
+    )
+    distances = np.concatenate(
+        [change.distance for change in changes if change.distance is not None], axis=1
+    )
+    for axes, distance, unit in zip(
+        panels, distances, ("linear RGB", "ΔE*ab"), strict=True
+    ):
         _scatter(axes, distance, delta_e)
         axes.set(xlabel=f"distance from the entry, {unit}")
     panels[0].set(ylabel=f"ΔE00 change of a node, {NARROW_BAND_LIGHT}")
     panels[1].legend(frameon=False, fontsize=9, loc="upper right")
-    figure.suptitle(f"{pluralise(len(changes), 'entry')}, removed one at a time", fontsize=9, color="0.35")
+    figure.suptitle(
+        f"{pluralise(len(changes), 'entry')}, removed one at a time",
+        fontsize=9,
+        color="0.35",
+    )
     write_png(figure, path, force=force)
 
 
@@ -165,17 +238,37 @@ def _scatter(axes: Any, distance: Array, delta_e: Array) -> None:
     farthest = float(distance[visible].max(initial=0.1))
     highest = max(float(delta_e.max()), 2 * MOVED_DELTA_E)
     extent = (0, farthest, np.log10(MIN_DELTA_E), np.log10(highest))
-    style: dict[str, Any] = {"gridsize": (60, 34), "cmap": colour_map(), "linewidths": 0, "mincnt": 1}
-    axes.hexbin(distance[visible], delta_e[visible], yscale="log", bins="log", extent=extent, **style)
+    style: dict[str, Any] = {
+        "gridsize": (60, 34),
+        "cmap": colour_map(),
+        "linewidths": 0,
+        "mincnt": 1,
+    }
+    axes.hexbin(
+        distance[visible],
+        delta_e[visible],
+        yscale="log",
+        bins="log",
+        extent=extent,
+        **style,
+    )
     edges = np.linspace(0, farthest, BINS + 1)
     bin_of = np.digitize(distance, edges[1:-1])
     used = np.unique(bin_of)
     centres = (edges[1:] + edges[:-1])[used] / 2
-    for label, colour, statistic in (("maximum", HIGHLIGHT, np.max), ("median", "#111111", np.median)):
+    for label, colour, statistic in (
+        ("maximum", HIGHLIGHT, np.max),
+        ("median", "#111111", np.median),
+    ):
         values = [statistic(delta_e[bin_of == bin]) for bin in used]
         axes.plot(centres, values, color=colour, linewidth=1.6, label=label)
     axes.axhline(MOVED_DELTA_E, color="0.4", linewidth=0.8, linestyle=(0, (4, 3)))
-    place: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "bottom", "fontsize": 8}
+    place: dict[str, Any] = {
+        "xycoords": ("axes fraction", "data"),
+        "ha": "right",
+        "va": "bottom",
+        "fontsize": 8,
+    }
     axes.annotate(f"ΔE00 {MOVED_DELTA_E:g}", (1, MOVED_DELTA_E), **place)
     axes.yaxis.set_major_formatter("{x:g}")
     axes.set_xlim(0, 1.05 * farthest)

@@ -62,14 +62,25 @@ class Change:
 
     def record(self) -> Record:
         """Convert to JSON values; the radii are the largest distances of moved nodes, 0 if no node moved."""
-        radii = [None, None] if self.distance is None else self.distance[:, self.moved].max(axis=1, initial=0).tolist()
+        radii = (
+            [None, None]
+            if self.distance is None
+            else self.distance[:, self.moved].max(axis=1, initial=0).tolist()
+        )
         record: Record = {"change": self.description, "moved": float(self.moved.mean())}
         record |= dict(zip(("rgb_radius", "lab_radius"), radii, strict=True))
-        return record | _mean_and_most("delta_e", self.delta_e) | _mean_and_most("rms", self.rms)
+        return (
+            record
+            | _mean_and_most("delta_e", self.delta_e)
+            | _mean_and_most("rms", self.rms)
+        )
 
 
 def study_sensitivity(
-    cube: Cube, atlas: Atlas | None, entries: int, progress: ProgressCallback = ignore_progress
+    cube: Cube,
+    atlas: Atlas | None,
+    entries: int,
+    progress: ProgressCallback = ignore_progress,
 ) -> tuple[list[Record], list[Change]]:
     """Perturb queries, and rebuild the cube with changes of its atlas, ``entries`` of them one at a time.
 
@@ -87,7 +98,9 @@ def study_sensitivity(
         kept = [entry for entry in atlas.entries if entry.name in before.atlas.names]
         jobs = list(changed_atlases(kept, before.atlas.names[:entries]))
         for number, (description, name, changed) in enumerate(jobs, 1):
-            changes.append(compare(before, rebuild(changed, options), light, description, name))
+            changes.append(
+                compare(before, rebuild(changed, options), light, description, name)
+            )
             progress(Progress("builds", number, len(jobs)))
     return perturb(cube, light), changes
 
@@ -104,12 +117,18 @@ def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Record]:
     lights = light, cube.data.sensor.light
     moves: list[Record] = []
     for mode in CONTINUOUS_MODES:
-        moves += perturb_answers(mode, partial(cube.reflectance, mode=mode), cube.decode, lights, count)
+        moves += perturb_answers(
+            mode, partial(cube.reflectance, mode=mode), cube.decode, lights, count
+        )
     return moves
 
 
 def perturb_answers(
-    mode: str, answer: Answer, decode: Answer, lights: tuple[Light, Light], count: int = COLOURS
+    mode: str,
+    answer: Answer,
+    decode: Answer,
+    lights: tuple[Light, Light],
+    count: int = COLOURS,
 ) -> list[Record]:
     """Perturb the queries of a function, as `perturb` does; of two lights the second one defines its RGB."""
     rng = np.random.default_rng(5)
@@ -123,10 +142,17 @@ def perturb_answers(
         after = answer(colours)
         delta_e = delta_e_spectra(lights[0], before, after)
         largest = np.argsort(delta_e)[-HALVED:]
-        move: Record = {"mode": mode, "step": step} | _mean_and_most("rms", _rms(after - before))
-        move |= {"largest": float(np.abs(after - before).max())} | _mean_and_most("light", delta_e)
+        move: Record = {"mode": mode, "step": step} | _mean_and_most(
+            "rms", _rms(after - before)
+        )
+        move |= {"largest": float(np.abs(after - before).max())} | _mean_and_most(
+            "light", delta_e
+        )
         move |= _mean_and_most("own", delta_e_spectra(lights[1], before, after))
-        found.append(move | {"jump": _largest_jump(answer, lights[0], rgb[largest], colours[largest])})
+        found.append(
+            move
+            | {"jump": _largest_jump(answer, lights[0], rgb[largest], colours[largest])}
+        )
     return found
 
 
@@ -136,13 +162,24 @@ def _largest_jump(answer: Answer, light: Light, first: Array, second: Array) -> 
     for _ in range(HALVINGS):
         middle = (first + second) / 2
         between = answer(middle)
-        is_first = (delta_e_spectra(light, before, between) > delta_e_spectra(light, between, after))[:, None]
-        first, second = np.where(is_first, first, middle), np.where(is_first, middle, second)
-        before, after = np.where(is_first, before, between), np.where(is_first, between, after)
+        is_first = (
+            delta_e_spectra(light, before, between)
+            > delta_e_spectra(light, between, after)
+        )[:, None]
+        first, second = (
+            np.where(is_first, first, middle),
+            np.where(is_first, middle, second),
+        )
+        before, after = (
+            np.where(is_first, before, between),
+            np.where(is_first, between, after),
+        )
     return float(delta_e_spectra(light, before, after).max())
 
 
-def changed_atlases(entries: Sequence[Entry], names: Sequence[str]) -> Iterator[tuple[str, str, list[Entry]]]:
+def changed_atlases(
+    entries: Sequence[Entry], names: Sequence[str]
+) -> Iterator[tuple[str, str, list[Entry]]]:
     """Yield descriptions of changes, the changed entry, empty if all changed, and the changed entries.
 
     Changes are `NOISE` on all entries, an entry with its wavelengths in reverse order, as an example of a wrong
@@ -150,25 +187,53 @@ def changed_atlases(entries: Sequence[Entry], names: Sequence[str]) -> Iterator[
     """
     for seed in range(NOISE_DRAWS):
         rng = np.random.default_rng(seed)
-        noisy = [(each, each.values + rng.normal(0, NOISE, len(each.values))) for each in entries]
-        changed = [replace(each, values=np.clip(values, LOWEST, HIGHEST)) for each, values in noisy]
+        noisy = [
+            (each, each.values + rng.normal(0, NOISE, len(each.values)))
+            for each in entries
+        ]
+        changed = [
+            replace(each, values=np.clip(values, LOWEST, HIGHEST))
+            for each, values in noisy
+        ]
         yield f"noise, draw {seed}", "", changed
     for name in names:
-        reverse = [replace(each, values=each.values[::-1]) if each.name == name else each for each in entries]
+        reverse = [
+            replace(each, values=each.values[::-1]) if each.name == name else each
+            for each in entries
+        ]
         yield f"{name} wrong", name, reverse
     for name in names:
         yield f"{name} left out", name, [each for each in entries if each.name != name]
 
 
-def compare(before: CubeData, after: CubeData, light: Light, description: str, name: str = "") -> Change:
+def compare(
+    before: CubeData, after: CubeData, light: Light, description: str, name: str = ""
+) -> Change:
     """Compare the nodes of a cube with those after a change of its atlas, of all entries or of a named one."""
-    spectra = [reflectance(data.model, data.points.coefficients, data.sensor.wavelengths) for data in (before, after)]
+    spectra = [
+        reflectance(data.model, data.points.coefficients, data.sensor.wavelengths)
+        for data in (before, after)
+    ]
     atlases, points, distance = (before.atlas, after.atlas), before.lattice.points, None
     if name:
-        rgb = np.array([atlas.rgb[atlas.names.index(name)] for atlas in atlases if name in atlas.names])
-        spaces = (points, rgb), [rgb_to_lab(before.sensor, colours) for colours in (points, rgb)]
+        rgb = np.array(
+            [
+                atlas.rgb[atlas.names.index(name)]
+                for atlas in atlases
+                if name in atlas.names
+            ]
+        )
+        spaces = (
+            (points, rgb),
+            [rgb_to_lab(before.sensor, colours) for colours in (points, rgb)],
+        )
         distance = np.array([cdist(*pair).min(axis=1) for pair in spaces])
-    return Change(description, _rms(spectra[1] - spectra[0]), delta_e_spectra(light, *spectra), distance)
+    return Change(
+        description,
+        _rms(spectra[1] - spectra[0]),
+        delta_e_spectra(light, *spectra),
+        distance,
+    )
 
 
 def rebuild(entries: Sequence[Entry], options: Record) -> CubeData:

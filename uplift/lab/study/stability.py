@@ -39,7 +39,13 @@ def crowded() -> Atlas:
     """Make 120 smooth spectra of one paint, whose colours differ by about 1 ΔE."""
     rng = np.random.default_rng(1)
     slope = np.tanh((observer.grid() - 580) / 60)
-    return _atlas("crowded", [0.3 + 0.15 * slope + _smooth_deviation(rng, 0.01) for _ in range(CROWDED_ENTRIES)])
+    return _atlas(
+        "crowded",
+        [
+            0.3 + 0.15 * slope + _smooth_deviation(rng, 0.01)
+            for _ in range(CROWDED_ENTRIES)
+        ],
+    )
 
 
 def spiky() -> Atlas:
@@ -57,21 +63,34 @@ def noisy() -> Atlas:
     rng, spectra = np.random.default_rng(3), []
     for level in np.linspace(0.05, 0.95, ENTRIES):
         noise = rng.normal(0, ATLAS_NOISE, len(observer.grid()))
-        spectra.append(np.clip(level + _smooth_deviation(rng, 0.1) + noise, LOWEST, HIGHEST))
+        spectra.append(
+            np.clip(level + _smooth_deviation(rng, 0.1) + noise, LOWEST, HIGHEST)
+        )
     return _atlas("noisy", spectra)
 
 
-SYNTHETIC_ATLASES: dict[str, Callable[[], Atlas]] = {"crowded": crowded, "spiky": spiky, "noisy": noisy}
+SYNTHETIC_ATLASES: dict[str, Callable[[], Atlas]] = {
+    "crowded": crowded,
+    "spiky": spiky,
+    "noisy": noisy,
+}
 
 
 def _smooth_deviation(rng: np.random.Generator, amplitude: float) -> Array:
     """Random sum (N,) of the first four cosines over the range."""
     phase = np.linspace(0, np.pi, len(observer.grid()))
-    return np.asarray(np.cos(phase[:, None] * np.arange(1, 5)) @ rng.normal(0, amplitude, 4))
+    return np.asarray(
+        np.cos(phase[:, None] * np.arange(1, 5)) @ rng.normal(0, amplitude, 4)
+    )
 
 
 def _atlas(name: str, spectra: list[Array]) -> Atlas:
-    return Atlas(tuple(Entry(f"{name} {number}", observer.grid(), row) for number, row in enumerate(spectra, 1)))
+    return Atlas(
+        tuple(
+            Entry(f"{name} {number}", observer.grid(), row)
+            for number, row in enumerate(spectra, 1)
+        )
+    )
 
 
 NO_ATLAS = "none"
@@ -92,11 +111,17 @@ class RunConfig:
     @property
     def model_label(self) -> str:
         """Model with its number of coefficients, such as ``moments 9``."""
-        return self.model if self.model == Sigmoid.name else f"{self.model} {self.coefficients}"
+        return (
+            self.model
+            if self.model == Sigmoid.name
+            else f"{self.model} {self.coefficients}"
+        )
 
 
 def study_stability(
-    configs: Iterable[RunConfig], atlases: Mapping[str, Atlas], progress: ProgressCallback = ignore_progress
+    configs: Iterable[RunConfig],
+    atlases: Mapping[str, Atlas],
+    progress: ProgressCallback = ignore_progress,
 ) -> dict[RunConfig, Record]:
     """Run every configuration once, ordered by model so that compiled functions are reused."""
     ordered = sorted(set(configs))
@@ -125,7 +150,9 @@ def run(config: RunConfig, atlases: Mapping[str, Atlas]) -> Record:
     atlas = atlases.get(options.pop("atlas"))
     start = time.perf_counter()
     with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-        data = build(atlas, progress=lambda progress: steps.append(progress.step), **options).data
+        data = build(
+            atlas, progress=lambda progress: steps.append(progress.step), **options
+        ).data
     seconds = time.perf_counter() - start
     realisable = solid(data.sensor.matrix).contains(data.lattice.points)
     distance = np.where(realisable, data.points.distance, -1)
@@ -171,11 +198,17 @@ class DesignSpace:
     @property
     def variants(self) -> tuple[RunConfig, ...]:
         """A configuration for every model and number of coefficients."""
-        return (*(RunConfig("moments", count) for count in self.coefficients), RunConfig("sigmoid", Sigmoid.count))
+        return (
+            *(RunConfig("moments", count) for count in self.coefficients),
+            RunConfig("sigmoid", Sigmoid.count),
+        )
 
     def grids(self) -> Iterator[RunConfig]:
         """Yield every variant at the values of one axis, the others fixed."""
-        usual, small = (min(self.dims, key=lambda dim: abs(dim - size)) for size in (RunConfig.dim, SMALL_DIM))
+        usual, small = (
+            min(self.dims, key=lambda dim: abs(dim - size))
+            for size in (RunConfig.dim, SMALL_DIM)
+        )
         grids: tuple[tuple[str, tuple[Any, ...], dict[str, Any]], ...] = (
             ("space", self.spaces, {"dim": usual}),
             ("threshold", self.thresholds, {"dim": usual}),
@@ -197,8 +230,12 @@ class DesignSpace:
         rows = hypercube.random(self.samples) * [len(axis) for axis in axes]
         drawn = []
         for row in rows.astype(int):
-            variant, dim, space, threshold, atlas = (axis[i] for axis, i in zip(axes, row, strict=True))
-            drawn.append(replace(variant, dim=dim, space=space, threshold=threshold, atlas=atlas))
+            variant, dim, space, threshold, atlas = (
+                axis[i] for axis, i in zip(axes, row, strict=True)
+            )
+            drawn.append(
+                replace(variant, dim=dim, space=space, threshold=threshold, atlas=atlas)
+            )
         return tuple(drawn)
 
     def configs(self) -> tuple[RunConfig, ...]:
@@ -207,5 +244,9 @@ class DesignSpace:
 
 
 QUICK_DESIGN = DesignSpace(
-    dims=(4, 9), coefficients=(3, 9), spaces=(SPACES[0], SPACES[-1]), thresholds=(1e-3, 1e-4, 1e-5), samples=4
+    dims=(4, 9),
+    coefficients=(3, 9),
+    spaces=(SPACES[0], SPACES[-1]),
+    thresholds=(1e-3, 1e-4, 1e-5),
+    samples=4,
 )

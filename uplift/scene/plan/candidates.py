@@ -48,11 +48,21 @@ class SearchGrid:
 
 
 QUICK = SearchGrid(
-    {"none": (5, 9, 13, 17)}, (8, 16, 32, 48), AXES[:1], (3, 5, 6, 7, 8, 10), 64, 400, 1000, others=False
+    {"none": (5, 9, 13, 17)},
+    (8, 16, 32, 48),
+    AXES[:1],
+    (3, 5, 6, 7, 8, 10),
+    64,
+    400,
+    1000,
+    others=False,
 )
 """Fewer candidates and pixels: seconds."""
 
-DEPTHS: dict[str, np.dtype[Any]] = {"half": np.dtype(np.float16), "float": np.dtype(np.float32)}
+DEPTHS: dict[str, np.dtype[Any]] = {
+    "half": np.dtype(np.float16),
+    "float": np.dtype(np.float32),
+}
 RGB, INDEX = "rgb", "index"
 """Forms of pixels without a pixel encoding: colours, and numbers of a list of spectra."""
 
@@ -73,7 +83,9 @@ class Cost(NamedTuple):
     def ranked(self, minimise: Minimised) -> tuple[float, ...]:
         """Sort key: the minimised cost, and the product of all three where that is equal."""
         product = prod(self)
-        return (product,) if minimise == "balance" else (getattr(self, minimise), product)
+        return (
+            (product,) if minimise == "balance" else (getattr(self, minimise), product)
+        )
 
 
 @dataclass(frozen=True)
@@ -91,7 +103,13 @@ class Pixel:
     @property
     def name(self) -> str:
         """Short text."""
-        return f"RGB, lookup of {self.mode}" if self.mode else f"{self.form}, {self.depth}" if self.depth else self.form
+        return (
+            f"RGB, lookup of {self.mode}"
+            if self.mode
+            else f"{self.form}, {self.depth}"
+            if self.depth
+            else self.form
+        )
 
     def size(self, count: int, samples: int) -> int:
         """Bytes of a pixel of a texture for a cube of ``count`` coefficients, 0 for the numbers of the image itself."""
@@ -122,18 +140,28 @@ class Pixel:
         """
         kind = DEPTHS[self.depth or "float"]
         if self.mode or self.form in (texture.Spectrum.name, INDEX):
-            return cube.reflectance(rgb, nm, self.mode or "spectra").astype(kind).astype(float)
+            return (
+                cube.reflectance(rgb, nm, self.mode or "spectra")
+                .astype(kind)
+                .astype(float)
+            )
         if self.form == texture.Multipliers.name:
             values = refined_multipliers(cube.data, rgb).astype(kind)
             return evaluate(cube.data.model, values.astype(float), nm)
         try:
-            return reflectance(cube.data.model, cube.coefficients(rgb).astype(kind).astype(float), nm)
+            return reflectance(
+                cube.data.model, cube.coefficients(rgb).astype(kind).astype(float), nm
+            )
         except UpliftError:
             return np.full((len(rgb), len(nm)), np.nan)
 
 
 PIXELS = (
-    *(Pixel(name, depth) for name, form in texture.PIXEL_ENCODINGS.items() for depth in form().depths),
+    *(
+        Pixel(name, depth)
+        for name, form in texture.PIXEL_ENCODINGS.items()
+        for depth in form().depths
+    ),
     *(Pixel(RGB, mode=mode) for mode in ("spectra", "moments")),
 )
 """Pixels that need a cube."""
@@ -160,9 +188,20 @@ class Candidate:
         """Short text, with all that differs from the defaults; empty without a cube."""
         if self.cube is None:
             return ""
-        spectra = self.cube.model if self.cube.model == Sigmoid.name else self.cube.coefficients
-        others = [value for value in (self.cube.warp, self.cube.axis) if value not in (Options.warp, Options.axis)]
-        return ", ".join([f"{self.cube.dim}³ × {spectra}", *others]) + " sparse" * self.sparse
+        spectra = (
+            self.cube.model
+            if self.cube.model == Sigmoid.name
+            else self.cube.coefficients
+        )
+        others = [
+            value
+            for value in (self.cube.warp, self.cube.axis)
+            if value not in (Options.warp, Options.axis)
+        ]
+        return (
+            ", ".join([f"{self.cube.dim}³ × {spectra}", *others])
+            + " sparse" * self.sparse
+        )
 
     @property
     def traced(self) -> str:
@@ -179,7 +218,9 @@ Measure = Callable[[Options | None, Sequence[Candidate]], list[Candidate]]
 """Builds the cube that candidates share, and measures their errors."""
 
 
-def explore(candidates: Iterable[Candidate], measure: Measure, floor: float) -> list[Candidate]:
+def explore(
+    candidates: Iterable[Candidate], measure: Measure, floor: float
+) -> list[Candidate]:
     """Measure the candidates that may be on the Pareto front, by branch and bound, cubes of few bytes first.
 
     Candidates that share a cube are measured together, as they cost one build. One is left out if a measured one
@@ -190,9 +231,13 @@ def explore(candidates: Iterable[Candidate], measure: Measure, floor: float) -> 
     for candidate in candidates:
         groups[candidate.cube].append(candidate)
     measured, best = list[Candidate](), np.empty((0, 4))
-    for cube in sorted(groups, key=lambda cube: min(each.cost.memory for each in groups[cube])):
+    for cube in sorted(
+        groups, key=lambda cube: min(each.cost.memory for each in groups[cube])
+    ):
         rows = np.array([(*each.cost, max(each.bound, floor)) for each in groups[cube]])
-        promising = [groups[cube][row] for row in np.flatnonzero(~dominated(rows, best))]
+        promising = [
+            groups[cube][row] for row in np.flatnonzero(~dominated(rows, best))
+        ]
         if promising:
             measured += measure(cube, promising)
             best = positions(pareto_front(measured), floor)
@@ -202,7 +247,9 @@ def explore(candidates: Iterable[Candidate], measure: Measure, floor: float) -> 
 def front(rows: Array) -> list[int]:
     """Numbers of the rows (m, k) that no other dominates, smallest rows first; of equal rows the first."""
     kept: list[int] = []
-    for row in np.lexsort(rows.T[::-1]).tolist():  # what dominates a row comes before it
+    for row in np.lexsort(
+        rows.T[::-1]
+    ).tolist():  # what dominates a row comes before it
         if not dominated(rows[[row]], rows[kept])[0]:
             kept.append(row)
     return kept
@@ -210,23 +257,39 @@ def front(rows: Array) -> list[int]:
 
 def positions(measured: Sequence[Candidate], floor: float = 0.0) -> Array:
     """Costs and errors (m, 4) of candidates."""
-    return np.array([(*each.cost, max(each.error.quantile, floor)) for each in measured]).reshape(-1, 4)
+    return np.array(
+        [(*each.cost, max(each.error.quantile, floor)) for each in measured]
+    ).reshape(-1, 4)
 
 
 def pareto_front(measured: Sequence[Candidate]) -> list[Candidate]:
     """Candidates that no other dominates in cost and error, by ascending error; one of equal ones."""
-    return sorted((measured[row] for row in front(positions(measured))), key=lambda each: each.error.quantile)
+    return sorted(
+        (measured[row] for row in front(positions(measured))),
+        key=lambda each: each.error.quantile,
+    )
 
 
-def cheapest_first(measured: Iterable[Candidate], minimise: Minimised) -> list[Candidate]:
+def cheapest_first(
+    measured: Iterable[Candidate], minimise: Minimised
+) -> list[Candidate]:
     """Candidates by cost, then by error."""
-    return sorted(measured, key=lambda each: (each.cost.ranked(minimise), each.error.quantile))
+    return sorted(
+        measured, key=lambda each: (each.cost.ranked(minimise), each.error.quantile)
+    )
 
 
 def sufficient(
-    measured: Iterable[Candidate], tolerance: float, minimise: Minimised, limits: Mapping[CostName, float]
+    measured: Iterable[Candidate],
+    tolerance: float,
+    minimise: Minimised,
+    limits: Mapping[CostName, float],
 ) -> list[Candidate]:
     """Candidates within the tolerance and the limits of costs, cheapest first."""
     found = (each for each in measured if each.error.quantile <= tolerance)
-    allowed = (each for each in found if all(getattr(each.cost, key) <= limits[key] for key in limits))
+    allowed = (
+        each
+        for each in found
+        if all(getattr(each.cost, key) <= limits[key] for key in limits)
+    )
     return cheapest_first(allowed, minimise)

@@ -85,9 +85,21 @@ class Rendering:
         """Return the rendering with the wavelengths of a sampling, rounded to `DIGITS` and all distinct."""
         count = len(sampling)
         steps = np.arange(count) / 10**DIGITS
-        nm = np.round(np.maximum.accumulate(np.round(sampling.wavelengths, DIGITS) - steps) + steps, DIGITS)
+        nm = np.round(
+            np.maximum.accumulate(np.round(sampling.wavelengths, DIGITS) - steps)
+            + steps,
+            DIGITS,
+        )
         rounded = replace(sampling, wavelengths=nm)
-        return cls(f"{count} {name}", count, SAMPLE_OPERATIONS * count, count, nm, rounded.xyz, rounded)
+        return cls(
+            f"{count} {name}",
+            count,
+            SAMPLE_OPERATIONS * count,
+            count,
+            nm,
+            rounded.xyz,
+            rounded,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +127,9 @@ class EvaluationSet:
         for rows in self.groups.values():
             drawn, size = np.arange(rows.start, rows.stop), rows.stop - rows.start
             if size > count:
-                steps = np.searchsorted(np.cumsum(self.weights[rows]), (np.arange(count) + 0.5) / count)
+                steps = np.searchsorted(
+                    np.cumsum(self.weights[rows]), (np.arange(count) + 0.5) / count
+                )
                 drawn = drawn[np.unique(np.minimum(steps, size - 1))]
             found.append(drawn)
         return np.concatenate(found)
@@ -128,8 +142,18 @@ class EvaluationSet:
             delta_e = np.where(np.isfinite(difference), difference, WORST_DELTA_E)
             for name, rows in self.groups.items():
                 errors, weights = delta_e[rows], self.weights[rows]
-                quantile = np.quantile(errors, self.quantile, weights=weights, method="inverted_cdf")
-                parts.append(GroupError(name, light, float(errors @ weights), float(quantile), float(errors.max())))
+                quantile = np.quantile(
+                    errors, self.quantile, weights=weights, method="inverted_cdf"
+                )
+                parts.append(
+                    GroupError(
+                        name,
+                        light,
+                        float(errors @ weights),
+                        float(quantile),
+                        float(errors.max()),
+                    )
+                )
         return ErrorSummary(tuple(parts))
 
     def matrices(self) -> Array:
@@ -138,14 +162,22 @@ class EvaluationSet:
         # ΔE00 ≈ |F (M r − x)|
         factors = delta_e_2000_weights(self.setup.lab) @ lab_jacobian(xyz, whites)
         factors *= np.sqrt(self.weights)[:, None, None]
-        designs = np.einsum("knij,nl->knijl", factors, self.rgb).reshape(len(xyz), -1, 9)
+        designs = np.einsum("knij,nl->knijl", factors, self.rgb).reshape(
+            len(xyz), -1, 9
+        )
         targets = np.einsum("knij,knj->kni", factors, xyz).reshape(len(xyz), -1)
         pairs = zip(designs, targets, strict=True)
-        return np.stack([np.linalg.lstsq(*pair, rcond=None)[0].reshape(3, 3) for pair in pairs])
+        return np.stack(
+            [np.linalg.lstsq(*pair, rcond=None)[0].reshape(3, 3) for pair in pairs]
+        )
 
 
 def renderings(
-    counts: Sequence[int], tests: EvaluationSet, floor: float, progress: ProgressCallback, others: str | None
+    counts: Sequence[int],
+    tests: EvaluationSet,
+    floor: float,
+    progress: ProgressCallback,
+    others: str | None,
 ) -> list[Rendering]:
     """Fit wavelengths, of ``counts`` in ascending order, up to an error of ``floor``; all of them if none reaches it.
 
@@ -154,10 +186,25 @@ def renderings(
     """
 
     def measured(each: Rendering) -> Rendering:
-        return replace(each, error=tests.error(each.xyz(tests.reference.reflectance(tests.rgb, each.wavelengths))))
+        return replace(
+            each,
+            error=tests.error(
+                each.xyz(tests.reference.reflectance(tests.rgb, each.wavelengths))
+            ),
+        )
 
     def numbers(*of: Rendering) -> Array:
-        return np.array([(each.samples, each.operations, each.surface, max(each.error.quantile, floor)) for each in of])
+        return np.array(
+            [
+                (
+                    each.samples,
+                    each.operations,
+                    each.surface,
+                    max(each.error.quantile, floor),
+                )
+                for each in of
+            ]
+        )
 
     setup = tests.setup.only(tests.subsample(FEW))
     full = Sampling(setup.wavelengths, setup.cmfs, setup.lights, setup.powers)
@@ -183,7 +230,9 @@ def dominated(rows: Array, by: Array) -> Mask:
     return np.asarray((by[:, None] <= rows).all(axis=2).any(axis=0))
 
 
-def _others(setup: RenderSetup, tests: EvaluationSet, observer_name: str) -> Iterator[Rendering]:
+def _others(
+    setup: RenderSetup, tests: EvaluationSet, observer_name: str
+) -> Iterator[Rendering]:
     """Meyer's wavelengths, and representations, which are defined for one observer."""
     for count in range(4, MAX_MEYER + 1):
         with contextlib.suppress(OptionError):  # no rule of this order
@@ -191,17 +240,33 @@ def _others(setup: RenderSetup, tests: EvaluationSet, observer_name: str) -> Ite
             yield Rendering.of_sampling("wavelengths of Meyer", sampling)
     if observer_name != DEFAULT_OBSERVER:
         return
-    powers = np.stack([illuminant_spd(light, step=samples.STEP) for light in setup.illuminants])
+    powers = np.stack(
+        [illuminant_spd(light, step=samples.STEP) for light in setup.illuminants]
+    )
     powers /= powers @ samples.xyz_weights()[:, 1:2]
-    surfaces = interp_curves(samples.wavelengths(), setup.wavelengths, setup.reflectances)
+    surfaces = interp_curves(
+        samples.wavelengths(), setup.wavelengths, setup.reflectances
+    )
     for each in all_representations(powers, surfaces):
         if each.name[:2] in FAMILIES:
             light, surface = each.numbers(powers, surfaces)
             xyz = partial(_represented_xyz, each, powers, tests)
-            yield Rendering(each.name, light, surface + 6 * light, surface, samples.wavelengths(), xyz)
+            yield Rendering(
+                each.name,
+                light,
+                surface + 6 * light,
+                surface,
+                samples.wavelengths(),
+                xyz,
+            )
 
 
-def _represented_xyz(representation: Representation, powers: Array, tests: EvaluationSet, reflectances: Array) -> Array:
+def _represented_xyz(
+    representation: Representation,
+    powers: Array,
+    tests: EvaluationSet,
+    reflectances: Array,
+) -> Array:
     """XYZ (K, n, 3) of dense reflectances (n, 401): those of the 5 nm table, and what the representation changes."""
     found = representation.reflected(powers, reflectances)
     exact = (powers[:, None] * reflectances) @ samples.xyz_weights()

@@ -11,10 +11,24 @@ from pydantic import BeforeValidator, ConfigDict, Field
 from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS, Illuminant, Lamp
 from uplift.common.arrays import StrPath
-from uplift.common.errors import OptionError, PlanFileError, UnknownNameError, UpliftError, unknown_name
+from uplift.common.errors import (
+    OptionError,
+    PlanFileError,
+    UnknownNameError,
+    UpliftError,
+    unknown_name,
+)
 from uplift.common.files import file_digest
 from uplift.common.progress import ProgressCallback, ignore_progress
-from uplift.common.spec_file import SpecFile, SpecModel, check_inside, problem, read_json, read_toml, resolves
+from uplift.common.spec_file import (
+    SpecFile,
+    SpecModel,
+    check_inside,
+    problem,
+    read_json,
+    read_toml,
+    resolves,
+)
 from uplift.common.text import format_value
 from uplift.io.scene_colours import Images
 from uplift.io.texture.colours import check_encoding
@@ -65,9 +79,13 @@ def _refuse_key(value: Any) -> Any:
 
 
 Paths = Annotated[
-    tuple[Annotated[Path, BeforeValidator(_check_path)], ...], BeforeValidator(_as_list), Field(min_length=1)
+    tuple[Annotated[Path, BeforeValidator(_check_path)], ...],
+    BeforeValidator(_as_list),
+    Field(min_length=1),
 ]
-Lights = Annotated[tuple[Annotated[Any, BeforeValidator(_check_light)], ...], BeforeValidator(_as_list)]
+Lights = Annotated[
+    tuple[Annotated[Any, BeforeValidator(_check_light)], ...], BeforeValidator(_as_list)
+]
 Observer = Annotated[str, resolves(observer.matching_functions)]
 
 
@@ -110,10 +128,16 @@ class SceneFile:
     textures: Paths
     atlases: Paths = ()
     lights: Annotated[Lights, Field(min_length=1)] = SCENE_LIGHTS
-    tolerance: Annotated[float, Field(strict=True, ge=0.01, le=100, allow_inf_nan=False)] = 1.0
-    quantile: Annotated[float, Field(strict=True, ge=0.5, le=1, allow_inf_nan=False)] = 0.975
+    tolerance: Annotated[
+        float, Field(strict=True, ge=0.01, le=100, allow_inf_nan=False)
+    ] = 1.0
+    quantile: Annotated[
+        float, Field(strict=True, ge=0.5, le=1, allow_inf_nan=False)
+    ] = 0.975
     minimise: Minimised = "balance"
-    limits: dict[CostName, Annotated[float, Field(gt=0, allow_inf_nan=False)]] = field(default_factory=dict)
+    limits: dict[CostName, Annotated[float, Field(gt=0, allow_inf_nan=False)]] = field(
+        default_factory=dict
+    )
     sparse: bool = True
     encoding: Annotated[str, resolves(check_encoding)] = "auto"
     space: Annotated[str, resolves(observer.sensor)] = "sRGB"
@@ -153,19 +177,35 @@ def read_scene_file(path: StrPath) -> SceneFile:
     file = read_toml(path, PlanFileError)
     # No value of a TOML file is a path: the key is refused there.
     scene = replace(file, values={"path": file.path, **file.values}).validate(SceneFile)
-    textures, atlases = _expand(file, "textures", scene.textures), _expand(file, "atlases", scene.atlases)
+    textures, atlases = (
+        _expand(file, "textures", scene.textures),
+        _expand(file, "atlases", scene.atlases),
+    )
     lights, lamp_files = _read_lights(file, scene.lights)
-    return replace(scene, textures=textures, atlases=atlases, lights=lights, lamp_files=lamp_files)
+    return replace(
+        scene, textures=textures, atlases=atlases, lights=lights, lamp_files=lamp_files
+    )
 
 
-def _read_lights(file: SpecFile, names: tuple[str, ...]) -> tuple[tuple[Illuminant, ...], tuple[Path, ...]]:
+def _read_lights(
+    file: SpecFile, names: tuple[str, ...]
+) -> tuple[tuple[Illuminant, ...], tuple[Path, ...]]:
     """Return each light once, with lamps read from the folder of the scene file, and the files of the lamps."""
     lights, files = list[Illuminant](), list[Path]()
     for number, name in enumerate(dict.fromkeys(names)):
         try:
-            lights.append(name if is_illuminant(name) else find_light(str(file.path.parent / name)))
+            lights.append(
+                name
+                if is_illuminant(name)
+                else find_light(str(file.path.parent / name))
+            )
         except UnknownNameError as error:
-            file.fail(("lights", number), f"unknown illuminant {format_value(name)}", code=error.code, hint=error.hint)
+            file.fail(
+                ("lights", number),
+                f"unknown illuminant {format_value(name)}",
+                code=error.code,
+                hint=error.hint,
+            )
         except UpliftError as error:
             file.fail(("lights", number), str(error), code=error.code)
         if isinstance(lights[-1], Lamp):
@@ -185,7 +225,12 @@ def _expand(file: SpecFile, key: str, names: tuple[Path, ...]) -> tuple[Path, ..
         paths = sorted(glob.glob(name, root_dir=folder)) if is_pattern else [name]
         if not paths or not all(os.path.isfile(folder / each) for each in paths):
             text = f"no file named {format_value(name)}"
-            file.fail((key, number), text, code="file-not-found", hint="paths start in the folder of this file")
+            file.fail(
+                (key, number),
+                text,
+                code="file-not-found",
+                hint="paths start in the folder of this file",
+            )
         found += (folder / each for each in paths)
     return tuple(found)
 
@@ -205,10 +250,17 @@ class PlanFile:
     sparse: bool
     options: dict[str, Any]
 
-    def build(self, *, debug: bool = False, progress: ProgressCallback = ignore_progress) -> Cube:
+    def build(
+        self, *, debug: bool = False, progress: ProgressCallback = ignore_progress
+    ) -> Cube:
         """Build the planned cube, with the warnings and errors of `uplift.build`."""
         scene = self.images if self.sparse else None
-        return build(self.atlases or None, scene=scene, progress=progress, **self.options | {"debug": debug})
+        return build(
+            self.atlases or None,
+            scene=scene,
+            progress=progress,
+            **self.options | {"debug": debug},
+        )
 
 
 class _Source(SpecModel):
@@ -249,19 +301,35 @@ def read_plan(path: StrPath) -> PlanFile:
     file = read_json(path, PlanFileError)
     table = file.validate(_PlanTable, hint=HINT)
     if table.build is None:
-        file.fail(("build",), "the plan needs no cube", hint="render as its key 'rendering' describes")
-    textures, atlases = (_check_sources(file, key, getattr(table.scene, key)) for key in ("textures", "atlases"))
+        file.fail(
+            ("build",),
+            "the plan needs no cube",
+            hint="render as its key 'rendering' describes",
+        )
+    textures, atlases = (
+        _check_sources(file, key, getattr(table.scene, key))
+        for key in ("textures", "atlases")
+    )
     images = Images(textures, table.scene.encoding)
-    return PlanFile(images, atlases, table.cells == "sparse", recorded_options(table.build))
+    return PlanFile(
+        images, atlases, table.cells == "sparse", recorded_options(table.build)
+    )
 
 
-def _check_sources(file: SpecFile, key: str, sources: list[_Source]) -> tuple[Path, ...]:
+def _check_sources(
+    file: SpecFile, key: str, sources: list[_Source]
+) -> tuple[Path, ...]:
     paths = [file.path.parent / source.path for source in sources]
     for number, (source, path) in enumerate(zip(sources, paths, strict=True)):
         keys = "scene", key, number, "path"
         if not os.path.isfile(path):
             hint = f"restore it, or {HINT}"
-            file.fail(keys, f"no file named {format_value(source.path)}", code="file-not-found", hint=hint)
+            file.fail(
+                keys,
+                f"no file named {format_value(source.path)}",
+                code="file-not-found",
+                hint=hint,
+            )
         if file_digest(path) != source.digest:
             text = f"{format_value(source.path)} has changed since the plan was made"
             file.fail(keys, text, code="source-changed", hint=HINT)

@@ -8,7 +8,15 @@ import numpy as np
 from uplift.common.arrays import Array
 from uplift.common.errors import PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.scene.plan.candidates import INDEX, Candidate, Cost, SearchGrid, explore, pareto_front, sufficient
+from uplift.scene.plan.candidates import (
+    INDEX,
+    Candidate,
+    Cost,
+    SearchGrid,
+    explore,
+    pareto_front,
+    sufficient,
+)
 from uplift.scene.plan.evaluation import ErrorSummary
 from uplift.scene.plan.files import SceneFile
 from uplift.scene.plan.space import CandidateSpace
@@ -80,10 +88,21 @@ class Plan:
         Candidate or None
             The cheapest measured candidate within it and the limits of the scene.
         """
-        return next(iter(sufficient(self.measured, tolerance, self.scene.minimise, self.scene.limits)), None)
+        return next(
+            iter(
+                sufficient(
+                    self.measured, tolerance, self.scene.minimise, self.scene.limits
+                )
+            ),
+            None,
+        )
 
 
-def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCallback = ignore_progress) -> Plan:
+def plan(
+    scene: SceneFile,
+    grid: SearchGrid | None = None,
+    progress: ProgressCallback = ignore_progress,
+) -> Plan:
     """Search the cheapest sufficient cube, wavelengths and texture format for a scene, or less.
 
     Parameters
@@ -114,10 +133,18 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         raise no_candidate(scene, measured)
     chosen, confirmed = _confirm(space, finalists)
     textures, few = space.colours.predicting, space.colours.few
-    known = (space.tests.reference.standard_error(textures.rgb, light) for light in scene.lights)
+    known = (
+        space.tests.reference.standard_error(textures.rgb, light)
+        for light in scene.lights
+    )
     spectra = None
     if chosen.pixel.form == INDEX and chosen.rendering is not None and few is not None:
-        spectra = few, space.cube(few, space.reference).reflectance(few, chosen.rendering.wavelengths)
+        spectra = (
+            few,
+            space.cube(few, space.reference).reflectance(
+                few, chosen.rendering.wavelengths
+            ),
+        )
     return Plan(
         scene=scene,
         measured=tuple(measured),
@@ -127,23 +154,34 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         matrices=space.matrices,
         without_spectra=space.without_spectra,
         spectra=spectra,
-        expected_error=max((float(each @ textures.share) for each in known if each is not None), default=None),
+        expected_error=max(
+            (float(each @ textures.share) for each in known if each is not None),
+            default=None,
+        ),
     )
 
 
-def _confirm(space: CandidateSpace, finalists: Sequence[Candidate]) -> tuple[Candidate, ErrorSummary]:
+def _confirm(
+    space: CandidateSpace, finalists: Sequence[Candidate]
+) -> tuple[Candidate, ErrorSummary]:
     """The first finalist within the tolerance on other pixels, or else the one of the smallest error there."""
     space.progress(Progress("confirmation", 0, 1))
     tests = space.evaluation_set(space.colours.confirming)
     tried: list[tuple[Candidate, ErrorSummary]] = []
     for each in finalists:
-        if tried and each.error.quantile > CLEARLY_SMALLER * tried[-1][0].error.quantile:
+        if (
+            tried
+            and each.error.quantile > CLEARLY_SMALLER * tried[-1][0].error.quantile
+        ):
             continue
         cube = space.cube(tests.rgb, each.cube) if each.cube else tests.reference
         tried.append((each, space.errors(cube, [each], tests)[0].error))
         if tried[-1][1].quantile <= space.scene.tolerance or len(tried) == FINALISTS:
             break
-    return min(tried, key=lambda each: (each[1].quantile > space.scene.tolerance, each[1].quantile))
+    return min(
+        tried,
+        key=lambda each: (each[1].quantile > space.scene.tolerance, each[1].quantile),
+    )
 
 
 def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileError:
@@ -151,8 +189,13 @@ def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileErr
     enough = sufficient(measured, scene.tolerance, scene.minimise, {})
     if enough:
         cost, allowance = enough[0].cost, enough[0].cost._replace(**scene.limits)
-        over = [key for key, limit in scene.limits.items() if getattr(cost, key) > limit]
-        needs, allowed = (" and ".join(cost_text(each, key) for key in over) for each in (cost, allowance))
+        over = [
+            key for key, limit in scene.limits.items() if getattr(cost, key) > limit
+        ]
+        needs, allowed = (
+            " and ".join(cost_text(each, key) for key in over)
+            for each in (cost, allowance)
+        )
         problem = f"the cheapest within {scene.tolerance:g} needs {needs}; limits allow {allowed}"
         hint = f"raise limits.{over[0]} or the tolerance"
     else:
@@ -160,10 +203,16 @@ def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileErr
         found = f"the smallest error is ΔE00 {format_error(best.quantile)}, of {best.group} under {best.light}"
         problem = f"{found}; tolerance allows {scene.tolerance:g}"
         hint = f"set tolerance = {np.ceil(best.quantile * 110) / 100:g} or more"
-    return PlanFileError(f"no candidate: {problem}", code="no-candidate", path=scene.path, hint=hint)
+    return PlanFileError(
+        f"no candidate: {problem}", code="no-candidate", path=scene.path, hint=hint
+    )
 
 
 def cost_text(cost: Cost, key: str) -> str:
     """A cost with its unit."""
     value = getattr(cost, key)
-    return format_size(value) if key == "memory" else f"{value:,.0f} {'operations' if key == 'time' else key}"
+    return (
+        format_size(value)
+        if key == "memory"
+        else f"{value:,.0f} {'operations' if key == 'time' else key}"
+    )

@@ -20,7 +20,13 @@ from uplift.common.progress import Progress, ProgressCallback
 from uplift.cube.file import POINTS, contents
 from uplift.fit.problem import Problem
 from uplift.io import texture
-from uplift.io.scene_colours import ColourSet, Images, PixelSample, cells_touched, sample_colours
+from uplift.io.scene_colours import (
+    ColourSet,
+    Images,
+    PixelSample,
+    cells_touched,
+    sample_colours,
+)
 from uplift.lattice import Lattice, axis_nodes
 from uplift.lookup import Cube
 from uplift.models import Sigmoid
@@ -28,8 +34,22 @@ from uplift.models.model import Model
 from uplift.pipeline.build import Learnt, build_stages, learn, problem_of
 from uplift.pipeline.entries import split_by_gamut
 from uplift.pipeline.options import Options
-from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, Pixel, SearchGrid
-from uplift.scene.plan.evaluation import SAMPLE_OPERATIONS, ErrorSummary, EvaluationSet, Rendering, renderings
+from uplift.scene.plan.candidates import (
+    INDEX,
+    PIXELS,
+    RGB,
+    Candidate,
+    Cost,
+    Pixel,
+    SearchGrid,
+)
+from uplift.scene.plan.evaluation import (
+    SAMPLE_OPERATIONS,
+    ErrorSummary,
+    EvaluationSet,
+    Rendering,
+    renderings,
+)
 from uplift.scene.plan.files import SceneFile
 from uplift.scene.wavelengths import make_setup
 
@@ -51,16 +71,28 @@ class CandidateSpace:
     ``materials`` are the atlas entries within the RGB space. Raises `AtlasError`, `TextureError`, `PlanFileError`.
     """
 
-    def __init__(self, scene: SceneFile, grid: SearchGrid, progress: ProgressCallback) -> None:
-        self.scene, self.grid, self.progress, self.sensor = scene, grid, progress, scene.sensor()
+    def __init__(
+        self, scene: SceneFile, grid: SearchGrid, progress: ProgressCallback
+    ) -> None:
+        self.scene, self.grid, self.progress, self.sensor = (
+            scene,
+            grid,
+            progress,
+            scene.sensor(),
+        )
         self.atlas = read_atlas(*scene.atlases) if scene.atlases else None
         # `uplift build --plan` repeats the warnings, also those of trial builds.
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
             self.materials, _ = split_by_gamut(self.atlas or Atlas(), self.sensor)
-        images, sizes = Images(scene.textures, scene.encoding), (grid.predicting, grid.confirming)
+        images, sizes = (
+            Images(scene.textures, scene.encoding),
+            (grid.predicting, grid.confirming),
+        )
         self.colours = sample_colours(images, self.sensor, sizes, progress)
         self.learnt: dict[tuple[Model, Model], Learnt] = {}
-        self.floor, self.ceiling = (share * scene.tolerance for share in (FLOOR, CEILING))
+        self.floor, self.ceiling = (
+            share * scene.tolerance for share in (FLOOR, CEILING)
+        )
         # Entries hold under the scene's lights and the illuminant of the RGB space.
         self.reference = Options(
             dim=grid.reference,
@@ -78,8 +110,14 @@ class CandidateSpace:
         self.tests, self.matrices = tests, tests.matrices()
         self.base = self._xyz(self.reference)
         arrays = contents(tests.reference.data)[0]
-        self.row_bytes = sum(arrays[name][0].nbytes for name in POINTS if name in arrays and name != "coefficients")
-        self.other_bytes = sum(array.nbytes for name, array in arrays.items() if name not in POINTS)
+        self.row_bytes = sum(
+            arrays[name][0].nbytes
+            for name in POINTS
+            if name in arrays and name != "coefficients"
+        )
+        self.other_bytes = sum(
+            array.nbytes for name, array in arrays.items() if name not in POINTS
+        )
 
     def cube(self, rgb: Array, options: Options) -> Cube:
         """Build a sparse cube for linear RGB (n, 3)."""
@@ -92,19 +130,29 @@ class CandidateSpace:
 
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
             options, problem = problem_of(options, options.observer, options.solver)
-            return build_stages(self.atlas, options, problem, scene=ColourSet(rgb), learn=shared)
+            return build_stages(
+                self.atlas, options, problem, scene=ColourSet(rgb), learn=shared
+            )
 
     def evaluation_set(self, sample: PixelSample) -> EvaluationSet:
         """Pixels with the spectra of a reference cube for them, and the materials as measured."""
         rgb = np.concatenate([sample.rgb, self.materials.rgb])
         reference = self.cube(rgb, self.reference)
-        spectra = np.concatenate([reference.reflectance(sample.rgb), self.materials.reflectances])
+        spectra = np.concatenate(
+            [reference.reflectance(sample.rgb), self.materials.reflectances]
+        )
         pixels, count = len(sample.rgb), len(self.materials.rgb)
         weights = np.concatenate([sample.share, np.full(count, 1 / max(count, 1))])
-        groups = {"textures": slice(0, pixels)} | ({"materials": slice(pixels, pixels + count)} if count else {})
+        groups = {"textures": slice(0, pixels)} | (
+            {"materials": slice(pixels, pixels + count)} if count else {}
+        )
         nm, observer_name = self.sensor.wavelengths, self.sensor.observer
-        setup = make_setup(spectra, self.scene.lights, wavelengths=nm, observer_name=observer_name)
-        return EvaluationSet(reference, setup, rgb, weights, groups, self.scene.quantile)
+        setup = make_setup(
+            spectra, self.scene.lights, wavelengths=nm, observer_name=observer_name
+        )
+        return EvaluationSet(
+            reference, setup, rgb, weights, groups, self.scene.quantile
+        )
 
     def candidates(self) -> list[Candidate]:
         """All candidates with their costs and the lower bounds of their errors; RGB alone is the first.
@@ -117,21 +165,35 @@ class CandidateSpace:
         if colours.few is not None:
             for each in self.renderings:
                 if each.sampling is not None:
-                    cost = Cost(colours.pixels + 2 * len(colours.few) * each.surface, each.operations, each.samples)
+                    cost = Cost(
+                        colours.pixels + 2 * len(colours.few) * each.surface,
+                        each.operations,
+                        each.samples,
+                    )
                     found.append(Candidate(Pixel(INDEX, "half"), cost, each))
         self.considered = len(found)
         if colours.few is None and self.without_spectra.quantile > self.floor:
             found += self._with_cubes()
         return found
 
-    def measure(self, choice: Options | None, candidates: Sequence[Candidate]) -> list[Candidate]:
+    def measure(
+        self, choice: Options | None, candidates: Sequence[Candidate]
+    ) -> list[Candidate]:
         """Build the cube that candidates share, and measure their errors."""
         self.progress(Progress(candidates[0].name, 0, 1))
-        return self.errors(self._cube(choice) if choice else self.tests.reference, candidates, self.tests)
+        return self.errors(
+            self._cube(choice) if choice else self.tests.reference,
+            candidates,
+            self.tests,
+        )
 
-    def errors(self, cube: Cube, candidates: Sequence[Candidate], tests: EvaluationSet) -> list[Candidate]:
+    def errors(
+        self, cube: Cube, candidates: Sequence[Candidate], tests: EvaluationSet
+    ) -> list[Candidate]:
         """Measure the errors of candidates that share a cube, or need none."""
-        traced = list(dict.fromkeys(each.rendering for each in candidates if each.rendering))
+        traced = list(
+            dict.fromkeys(each.rendering for each in candidates if each.rendering)
+        )
         needed = [each.wavelengths for each in traced]
         nm, ends = np.concatenate([[], *needed]), np.cumsum([0, *map(len, needed)])
         columns = dict(zip(traced, map(slice, ends, ends[1:]), strict=False))
@@ -149,20 +211,28 @@ class CandidateSpace:
         base = _quantiles(self.tests.error(self.base))
         lattices, models = self._lattices(), self._models()
         points = {lattice: self._points(lattice) for lattice in lattices}
-        for (model, by_model), (lattice, by_lattice) in product(models.items(), lattices.items()):
+        for (model, by_model), (lattice, by_lattice) in product(
+            models.items(), lattices.items()
+        ):
             choice = replace(model, dim=lattice.dim, axis=lattice.axis)
             of_cube = _quantiles(self.tests.error(self.base + by_model + by_lattice))
             for rendering in self.renderings:
                 # Errors of independent choices add in squares; both include that of the reference.
                 squares = of_cube**2 + _quantiles(rendering.error) ** 2 - base**2
                 bound = MARGIN * float(np.sqrt(squares.max()))
-                candidates = list(self._with_pixels(choice, points[lattice], rendering, bound))
+                candidates = list(
+                    self._with_pixels(choice, points[lattice], rendering, bound)
+                )
                 self.considered += len(candidates)
                 if bound <= self.ceiling:
                     yield from candidates
 
     def _with_pixels(
-        self, choice: Options, points: tuple[int, int], rendering: Rendering, bound: float
+        self,
+        choice: Options,
+        points: tuple[int, int],
+        rendering: Rendering,
+        bound: float,
     ) -> Iterator[Candidate]:
         """Candidates of a cube, of ``points`` nodes with all cells and with those of the textures, and a rendering."""
         colours, count = self.colours, round(rendering.surface)
@@ -171,11 +241,26 @@ class CandidateSpace:
                 continue
             if rendering.sampling is None and pixel.form != texture.Spectrum.name:
                 continue  # a texture has the numbers of the representation
-            row = self.row_bytes + POINT_NUMBER * sparse + LEAST_BYTES * choice.coefficients
-            texels = colours.pixels * pixel.size(choice.coefficients, count) if pixel.depth else colours.size
+            row = (
+                self.row_bytes
+                + POINT_NUMBER * sparse
+                + LEAST_BYTES * choice.coefficients
+            )
+            texels = (
+                colours.pixels * pixel.size(choice.coefficients, count)
+                if pixel.depth
+                else colours.size
+            )
             memory = self.other_bytes + points[sparse] * row + texels
             time = pixel.operations(choice, count) + rendering.operations
-            yield Candidate(pixel, Cost(memory, time, rendering.samples), rendering, choice, sparse, bound)
+            yield Candidate(
+                pixel,
+                Cost(memory, time, rendering.samples),
+                rendering,
+                choice,
+                sparse,
+                bound,
+            )
 
     def _models(self) -> dict[Options, Array]:
         """Changes of XYZ (K, n, 3) by models of spectra, on a fine lattice: the sigmoid, and moments of each warp."""
@@ -190,10 +275,15 @@ class CandidateSpace:
     def _lattices(self) -> dict[Options, Array]:
         """Changes of XYZ (K, n, 3) by lattices, with `PROBE` coefficients: more and more nodes along each axis."""
         probe = replace(self.reference, coefficients=PROBE)
-        series = [[replace(probe, dim=dim, axis=axis) for dim in self.grid.dims] for axis in self.grid.axes]
+        series = [
+            [replace(probe, dim=dim, axis=axis) for dim in self.grid.dims]
+            for axis in self.grid.axes
+        ]
         return self._changes("lattices", series, probe)
 
-    def _changes(self, stage: str, series: Sequence[Sequence[Options]], finest: Options) -> dict[Options, Array]:
+    def _changes(
+        self, stage: str, series: Sequence[Sequence[Options]], finest: Options
+    ) -> dict[Options, Array]:
         """Changes of XYZ from the ``finest``, of each series up to the first below the floor."""
         found, reference = dict[Options, Array](), self._xyz(finest)
         for done, choices in enumerate(series):
@@ -216,7 +306,9 @@ class CandidateSpace:
     def _points(self, choice: Options) -> tuple[int, int]:
         """Numbers of the nodes of a lattice, and of those around one colour of every bin of the textures."""
         lattice = Lattice(axis_nodes(choice.axis, int(choice.dim)))
-        needed = lattice.corner_points(lattice.mask(cells_touched(lattice, self.colours.colour_bins)))
+        needed = lattice.corner_points(
+            lattice.mask(cells_touched(lattice, self.colours.colour_bins))
+        )
         return lattice.size, int(needed.sum())
 
 

@@ -39,14 +39,21 @@ def front_rows(plan: Plan) -> list[Candidate]:
 
 def front_row(measured: Candidate) -> tuple[str, ...]:
     """Texts of a candidate in the order of `HEADINGS`."""
-    cost, words = measured.cost, (measured.cube_name, measured.traced, measured.pixel.name)
+    cost, words = (
+        measured.cost,
+        (measured.cube_name, measured.traced, measured.pixel.name),
+    )
     costs = (format_size(cost.memory), f"{cost.time:,.0f}", f"{cost.samples:g}")
     return format_error(measured.error.quantile), *costs, *words
 
 
 def verdict(plan: Plan) -> str:
     """Errors and tolerance in one phrase."""
-    end = "" if plan.within_tolerance else "; the tolerance is EXCEEDED: plan for a smaller one"
+    end = (
+        ""
+        if plan.within_tolerance
+        else "; the tolerance is EXCEEDED: plan for a smaller one"
+    )
     return (
         f"ΔE00 {format_error(plan.chosen.error.quantile)} predicted, {format_error(plan.confirmed.quantile)} confirmed "
         f"on other pixels, tolerance {plan.scene.tolerance:g}{end}"
@@ -57,14 +64,24 @@ def notes(plan: Plan) -> list[str]:
     """What the choice costs, whether the scene needs spectra, and what its colours are worth."""
     found = [f"It costs {_costs(plan.chosen)}."]
     if plan.chosen.rendering is None:
-        found.append("This scene needs no spectra: RGB and a 3 × 3 matrix per light suffice.")
+        found.append(
+            "This scene needs no spectra: RGB and a 3 × 3 matrix per light suffice."
+        )
     else:
         rgb = format_error(plan.without_spectra.quantile)
-        found.append(f"Without spectra, by RGB and the best 3 × 3 matrix per light, ΔE00 is {rgb}.")
+        found.append(
+            f"Without spectra, by RGB and the best 3 × 3 matrix per light, ΔE00 is {rgb}."
+        )
     if plan.chosen.pixel.form == INDEX and plan.spectra is not None:
-        found.append(f"The textures have {pluralise(len(plan.spectra[0]), 'colour')}: a list of spectra suffices.")
-    if (known := plan.expected_error) is not None:  # RGB alone does not identify a material
-        found.append(f"Your colours are known within ΔE00 {known:.2g}; this plan adds {plan.confirmed.quantile:.2g}.")
+        found.append(
+            f"The textures have {pluralise(len(plan.spectra[0]), 'colour')}: a list of spectra suffices."
+        )
+    if (
+        known := plan.expected_error
+    ) is not None:  # RGB alone does not identify a material
+        found.append(
+            f"Your colours are known within ΔE00 {known:.2g}; this plan adds {plan.confirmed.quantile:.2g}."
+        )
         cheaper = plan.cheapest(known)
         if cheaper is not None and plan.confirmed.quantile <= SHARE * known:
             found.append(f"With tolerance {known:.2g} it would need {_costs(cheaper)}.")
@@ -96,7 +113,9 @@ def check_path(scene: SceneFile, path: Path) -> None:
     for source in (*scene.textures, *scene.atlases):
         if not Path(os.path.abspath(source)).is_relative_to(folder):
             hint = f"write for example {scene.path.with_suffix(SUFFIX)}"
-            raise OutputError(f"must lie in the folder of {source}, or above it", path=path, hint=hint)
+            raise OutputError(
+                f"must lie in the folder of {source}, or above it", path=path, hint=hint
+            )
 
 
 def to_json(plan: Plan, path: Path) -> dict[str, Any]:
@@ -122,7 +141,10 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
         "texture": asdict(chosen.pixel),
         "rendering": _rendering_json(plan),
         "spectra": plan.spectra
-        and [{"rgb": rgb.tolist(), "reflectance": row.tolist()} for rgb, row in zip(*plan.spectra, strict=True)],
+        and [
+            {"rgb": rgb.tolist(), "reflectance": row.tolist()}
+            for rgb, row in zip(*plan.spectra, strict=True)
+        ],
         "error": {
             "predicted": asdict(chosen.error.worst) | asdict(chosen.error),
             "confirmed": asdict(plan.confirmed.worst) | asdict(plan.confirmed),
@@ -134,7 +156,11 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
         "search": {"considered": plan.considered, "measured": len(plan.measured)},
         "front": [
             {"name": each.name, "rendering": each.traced, "pixel": asdict(each.pixel)}
-            | {"cube": each.cube and {key: getattr(each.cube, key) for key in CUBE_KEYS}, "sparse": each.sparse}
+            | {
+                "cube": each.cube
+                and {key: getattr(each.cube, key) for key in CUBE_KEYS},
+                "sparse": each.sparse,
+            }
             | {**each.cost._asdict(), "error": asdict(each.error.worst)}
             for each in plan.front
         ],
@@ -145,16 +171,28 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
 def _rendering_json(plan: Plan) -> dict[str, Any]:
     """Wavelengths and their weights, the name of a representation, or matrices of RGB."""
     if plan.chosen.rendering is None:
-        return {"rgb_to_xyz": dict(zip(map(str, plan.scene.lights), plan.matrices.tolist(), strict=True))}
+        return {
+            "rgb_to_xyz": dict(
+                zip(map(str, plan.scene.lights), plan.matrices.tolist(), strict=True)
+            )
+        }
     if (sampling := plan.chosen.rendering.sampling) is None:
         return {"representation": plan.chosen.rendering.name}
     powers = dict(zip(sampling.lights, sampling.powers.tolist(), strict=True))
-    return {"wavelengths": sampling.wavelengths.tolist(), "to_xyz": sampling.to_xyz.tolist(), "powers": powers}
+    return {
+        "wavelengths": sampling.wavelengths.tolist(),
+        "to_xyz": sampling.to_xyz.tolist(),
+        "powers": powers,
+    }
 
 
 def _sources(paths: Iterable[Path], plan: Path) -> list[dict[str, str]]:
     return [
-        {"path": Path(os.path.relpath(path, plan.parent)).as_posix(), "digest": file_digest(path)} for path in paths
+        {
+            "path": Path(os.path.relpath(path, plan.parent)).as_posix(),
+            "digest": file_digest(path),
+        }
+        for path in paths
     ]
 
 
@@ -165,13 +203,34 @@ def commands(plan: Plan, path: Path) -> tuple[str, ...]:
         return ()
     build, cube = f"uplift build --plan {shlex.quote(str(path))}", cube_name(path)
     if pixel.mode:
-        return build, shlex.join(["uplift", "export", cube, "--format", "c", "--mode", pixel.mode])
-    target = f"{scene.textures[0].stem}-uplifted.exr" if len(scene.textures) == 1 else "uplifted"
-    words = ["uplift", "texture", *map(str, scene.textures), "-o", target, "--cube", cube]
+        return build, shlex.join(
+            ["uplift", "export", cube, "--format", "c", "--mode", pixel.mode]
+        )
+    target = (
+        f"{scene.textures[0].stem}-uplifted.exr"
+        if len(scene.textures) == 1
+        else "uplifted"
+    )
+    words = [
+        "uplift",
+        "texture",
+        *map(str, scene.textures),
+        "-o",
+        target,
+        "--cube",
+        cube,
+    ]
     words += ["--representation", pixel.form, "--depth", pixel.depth]
     rendering = plan.chosen.rendering
-    if pixel.form == Spectrum.name and rendering is not None and rendering.sampling is not None:
-        words += ["--wavelengths", ",".join(f"{each:g}" for each in rendering.wavelengths)]
+    if (
+        pixel.form == Spectrum.name
+        and rendering is not None
+        and rendering.sampling is not None
+    ):
+        words += [
+            "--wavelengths",
+            ",".join(f"{each:g}" for each in rendering.wavelengths),
+        ]
     if scene.encoding != SceneFile.encoding:
         words += ["--encoding", scene.encoding]
     return build, shlex.join(words)

@@ -13,7 +13,13 @@ from uplift.common.text import format_value, parse_float, parse_whole
 from uplift.scene.representations import composite, filters, models, samples
 from uplift.scene.representations.samples import Representation
 
-__all__ = ["COMPONENTS", "FACTORIES", "Representation", "all_representations", "find_representation"]
+__all__ = [
+    "COMPONENTS",
+    "FACTORIES",
+    "Representation",
+    "all_representations",
+    "find_representation",
+]
 
 SIZES = (4, 8, 16, 32)
 """Numbers of samples."""
@@ -27,9 +33,15 @@ FACTORIES: Mapping[str, tuple[Callable[[int], Representation], tuple[int, ...]]]
     "PF": (filters.mitchell_point_samples, SIZES),
     "RS": (samples.riemann_sums, SIZES),
     "RE": (composite.enhanced_riemann, SIZES),
-    "CS": (composite.sun_composite, (5, 7, 11, 15)),  # Fourier coefficients in the thesis
+    "CS": (
+        composite.sun_composite,
+        (5, 7, 11, 15),
+    ),  # Fourier coefficients in the thesis
     "GQ": (samples.gauss_samples, SIZES),
-    "TM": (models.trigonometric_moments, (5, 9, 13, 17)),  # moments that cubes may store
+    "TM": (
+        models.trigonometric_moments,
+        (5, 9, 13, 17),
+    ),  # moments that cubes may store
     "SG": (models.sigmoid_coefficients, (3,)),
     "HW": (models.hero_wavelengths, (4, 16, 64, 256)),  # wavelengths per pixel
 }
@@ -39,7 +51,10 @@ FACTORIES: Mapping[str, tuple[Callable[[int], Representation], tuple[int, ...]]]
 def all_representations(lights: Array, surfaces: Array) -> tuple[Representation, ...]:
     """Every registered representation, and the linear models of a scene of lights (L, 401) and surfaces (E, 401)."""
     registered = (make(size) for make, sizes in FACTORIES.values() for size in sizes)
-    return (*registered, *(models.linear_model(count, lights, surfaces) for count in COMPONENTS))
+    return (
+        *registered,
+        *(models.linear_model(count, lights, surfaces) for count in COMPONENTS),
+    )
 
 
 def find_representation(text: str) -> Representation:
@@ -56,10 +71,16 @@ def find_representation(text: str) -> Representation:
             return make(count)
         kind, extent, *parameters = low_pass
         values = tuple(map(parse_float, parameters))
-        is_filter = parse_whole(extent) in filters.EXTENTS and len(values) == len(filters.KINDS[kind].choices)
+        is_filter = parse_whole(extent) in filters.EXTENTS and len(values) == len(
+            filters.KINDS[kind].choices
+        )
         if name[:2] != "PS" or not is_filter or not all(map(math.isfinite, values)):
             raise ValueError
-        return filters.filtered_point_samples(count, filters.Filter(kind, int(extent), values))
+        return filters.filtered_point_samples(
+            count, filters.Filter(kind, int(extent), values)
+        )
     except (KeyError, ValueError) as error:
         hint = "write for example PF16, RS32 or TM9; a filter as PS16:gaussian:7:0.5, with an odd extent from 3 to 21"
-        raise OptionError(f"unknown representation {format_value(text)}", hint=hint) from error
+        raise OptionError(
+            f"unknown representation {format_value(text)}", hint=hint
+        ) from error

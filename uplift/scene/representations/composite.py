@@ -55,7 +55,11 @@ def split_spikes(spectra: Array, threshold: float) -> CompositeCode:
     heights = table - smooth
     heights[heights < NOISE * highest[:, None]] = 0
     positions = np.flatnonzero(heights.any(axis=0))
-    return CompositeCode((table - heights) @ samples.hat_functions(observer.grid()), positions, heights[:, positions])
+    return CompositeCode(
+        (table - heights) @ samples.hat_functions(observer.grid()),
+        positions,
+        heights[:, positions],
+    )
 
 
 @functools.cache
@@ -64,7 +68,9 @@ def spike_xyz() -> Array:
     return samples.hat_functions(observer.grid()) @ samples.xyz_weights()
 
 
-def composite(name: str, family: str, smooth: Representation, decoder: Array, threshold: float) -> Representation:
+def composite(
+    name: str, family: str, smooth: Representation, decoder: Array, threshold: float
+) -> Representation:
     """Smooth part in another representation, and spikes steeper than a threshold.
 
     ``code @ decoder`` (C, 81) is the smooth part at 5 nm. ``threshold`` is the largest relative gradient of the smooth
@@ -79,13 +85,19 @@ def composite(name: str, family: str, smooth: Representation, decoder: Array, th
     def multiply(light: CompositeCode, surface: CompositeCode) -> CompositeCode:
         positions = np.union1d(light.positions, surface.positions)
         of_light, of_surface = light.at(positions), surface.at(positions)
-        below_light, below_surface = (code.smooth @ decoder[:, positions] for code in (light, surface))
+        below_light, below_surface = (
+            code.smooth @ decoder[:, positions] for code in (light, surface)
+        )
         heights = of_light * (below_surface + of_surface) + below_light * of_surface
-        return CompositeCode(smooth.multiply(light.smooth, surface.smooth), positions, heights)
+        return CompositeCode(
+            smooth.multiply(light.smooth, surface.smooth), positions, heights
+        )
 
     def storage(code: CompositeCode) -> Array:
         # A spike is a position and a height.
-        return smooth.storage(code.smooth) + 2 * (code.heights != 0).sum(axis=1, dtype=float)
+        return smooth.storage(code.smooth) + 2 * (code.heights != 0).sum(
+            axis=1, dtype=float
+        )
 
     def xyz(light: CompositeCode) -> Array:
         return smooth.xyz(light.smooth) + light.heights @ spike_xyz()[light.positions]
@@ -104,7 +116,10 @@ def fourier_coefficients(count: int) -> Representation:
     """
     if count < 1 or count % 2 == 0:
         hint = "a mean and pairs of cosine and sine are an odd number"
-        raise OptionError(f"number of Fourier coefficients must be odd and positive, got {count}", hint=hint)
+        raise OptionError(
+            f"number of Fourier coefficients must be odd and positive, got {count}",
+            hint=hint,
+        )
     dense, product = waves(count), _waves(np.pi * np.arange(2 * count) / count, count)
 
     def encode(power: Array) -> Array:
@@ -118,13 +133,21 @@ def fourier_coefficients(count: int) -> Representation:
         encode,
         encode,
         lambda light: light @ (dense @ samples.xyz_weights()),
-        lambda light, surface: _analyse((light @ product) * (surface @ product), product),
+        lambda light, surface: _analyse(
+            (light @ product) * (surface @ product), product
+        ),
     )
 
 
 def waves(count: int) -> Array:
     """Fourier basis (count, 401) at the dense wavelengths."""
-    return _waves(2 * np.pi * (samples.wavelengths() - observer.START) / (observer.END - observer.START), count)
+    return _waves(
+        2
+        * np.pi
+        * (samples.wavelengths() - observer.START)
+        / (observer.END - observer.START),
+        count,
+    )
 
 
 def _waves(phase: Array, count: int) -> Array:
@@ -141,11 +164,22 @@ def _analyse(values: Array, waves: Array) -> Array:
 
 def sun_composite(count: int, threshold: float = SUN_THRESHOLD) -> Representation:
     """Sun's composite model (CS): spikes, and ``count`` Fourier coefficients of the smooth part."""
-    smooth, decoder = fourier_coefficients(count), waves(count)[:, :: samples.TABLE_STRIDE]
+    smooth, decoder = (
+        fourier_coefficients(count),
+        waves(count)[:, :: samples.TABLE_STRIDE],
+    )
     return composite(f"CS{count}", "Sun's composite", smooth, decoder, threshold)
 
 
-def enhanced_riemann(count: int, threshold: float = ENHANCED_THRESHOLD) -> Representation:
+def enhanced_riemann(
+    count: int, threshold: float = ENHANCED_THRESHOLD
+) -> Representation:
     """Enhanced Riemann sums (RE): spikes, which meet the mean of their cell, and Riemann sums of the smooth part."""
     decoder = samples.cell_overlaps(count)[:, :: samples.TABLE_STRIDE]
-    return composite(f"RE{count}", "enhanced Riemann sums", samples.riemann_sums(count), decoder, threshold)
+    return composite(
+        f"RE{count}",
+        "enhanced Riemann sums",
+        samples.riemann_sums(count),
+        decoder,
+        threshold,
+    )

@@ -63,7 +63,11 @@ def resampling_matrix(low_pass: Filter, count: int) -> Array:
     rate = Fraction(count - 1, size - 1)
     taps = low_pass.taps(rate.numerator)
     # Sample i is at L i, and result j at M j, of the upsampled table; the taps are centred there.
-    offsets = rate.denominator * np.arange(count)[:, None] - rate.numerator * np.arange(size) + len(taps) // 2
+    offsets = (
+        rate.denominator * np.arange(count)[:, None]
+        - rate.numerator * np.arange(size)
+        + len(taps) // 2
+    )
     inside = (offsets >= 0) & (offsets < len(taps))
     return np.where(inside, rate.numerator * taps[np.where(inside, offsets, 0)], 0)
 
@@ -71,7 +75,13 @@ def resampling_matrix(low_pass: Filter, count: int) -> Array:
 def _mitchell(x: Array, b: float, c: float) -> Array:
     x = 2 * np.abs(x)
     near = (12 - 9 * b - 6 * c) * x**3 + (-18 + 12 * b + 6 * c) * x**2 + 6 - 2 * b
-    far = (-b - 6 * c) * x**3 + (6 * b + 30 * c) * x**2 + (-12 * b - 48 * c) * x + 8 * b + 24 * c
+    far = (
+        (-b - 6 * c) * x**3
+        + (6 * b + 30 * c) * x**2
+        + (-12 * b - 48 * c) * x
+        + 8 * b
+        + 24 * c
+    )
     return np.where(x < 1, near, far) / 6
 
 
@@ -83,9 +93,13 @@ KINDS: dict[str, FilterKind] = {
     "box": FilterKind(np.ones_like, {}),
     "tent": FilterKind(lambda x: 1 - np.abs(x), {}),
     "welch": FilterKind(lambda x: 1 - x**2, {}),
-    "gaussian": FilterKind(lambda x, a: np.exp(-4 * a * x**2) - np.exp(-4 * a), {"α": _ALPHA}),
+    "gaussian": FilterKind(
+        lambda x, a: np.exp(-4 * a * x**2) - np.exp(-4 * a), {"α": _ALPHA}
+    ),
     "mitchell": FilterKind(_mitchell, {"b": _CUBIC, "c": _CUBIC}),
-    "lanczos": FilterKind(lambda x, cycles: np.sinc(cycles * x) * np.sinc(x), {"τ": _TAU}),
+    "lanczos": FilterKind(
+        lambda x, cycles: np.sinc(cycles * x) * np.sinc(x), {"τ": _TAU}
+    ),
     "hann": FilterKind(lambda x: 0.5 + 0.5 * np.cos(np.pi * x), {}),
     "hamming": FilterKind(lambda x: 0.54 + 0.46 * np.cos(np.pi * x), {}),
 }
@@ -98,7 +112,9 @@ def filtered_point_samples(count: int, low_pass: Filter) -> Representation:
     encoder[:: samples.TABLE_STRIDE] = resampling_matrix(low_pass, count).T
     hats = samples.hat_functions(samples.sample_points(count))
     name = f"PS{count} {low_pass.name}"
-    return samples.linear(name, "point sampling, filtered", encoder, hats @ samples.xyz_weights(), hats)
+    return samples.linear(
+        name, "point sampling, filtered", encoder, hats @ samples.xyz_weights(), hats
+    )
 
 
 def mitchell_point_samples(count: int) -> Representation:

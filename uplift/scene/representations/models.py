@@ -27,7 +27,9 @@ STEEPNESS, CENTRE = 0.0072, 538.0
 """Parameters of the density 1 / cosh²(0.0072 (λ − 538)), λ in nm."""
 
 
-def tabulated(name: str, family: str, model: Model, encode: Callable[[Array], Array]) -> Representation:
+def tabulated(
+    name: str, family: str, model: Model, encode: Callable[[Array], Array]
+) -> Representation:
     """Representation by a model of reflectance: lights and products are 5 nm tables (n, 81).
 
     A product evaluates the model at the 81 wavelengths of the light. It is not encoded again: no renderer does so, and
@@ -58,7 +60,12 @@ def trigonometric_moments(count: int) -> Representation:
     analysis = cosine_basis(phase, count) * np.gradient(phase)[:, None] / np.pi
     analysis[:, 1:] /= 2
     analysis[[0, -1]] /= 2
-    return tabulated(f"TM{count}", "trigonometric moments", model, lambda spectra: blocked_matmul(spectra, analysis))
+    return tabulated(
+        f"TM{count}",
+        "trigonometric moments",
+        model,
+        lambda spectra: blocked_matmul(spectra, analysis),
+    )
 
 
 def sigmoid_coefficients(count: int = 3) -> Representation:
@@ -72,18 +79,31 @@ def fit_sigmoids(spectra: Array) -> Array:
     The objective is the colour under D65. Values at 5 nm, with a small weight, determine the fit where the colour does
     not or cannot be met.
     """
-    model, table, light = Sigmoid(), spectra[:, :: samples.TABLE_STRIDE], observer.light(DEFAULT_ILLUMINANT)
+    model, table, light = (
+        Sigmoid(),
+        spectra[:, :: samples.TABLE_STRIDE],
+        observer.light(DEFAULT_ILLUMINANT),
+    )
     basis = model.basis(observer.grid())
-    measurement = np.concatenate([light.xyz / light.white[:, None], SHAPE_WEIGHT * np.eye(len(basis))])
+    measurement = np.concatenate(
+        [light.xyz / light.white[:, None], SHAPE_WEIGHT * np.eye(len(basis))]
+    )
 
     def residuals(coefficients: Array, rows: Indices) -> tuple[Array, None]:
-        return (evaluate(model, coefficients, observer.grid()) - table[rows]) @ measurement.T, None
+        return (
+            evaluate(model, coefficients, observer.grid()) - table[rows]
+        ) @ measurement.T, None
 
     def normal_equations(coefficients: Array, residuals: Array) -> tuple[Array, Array]:
-        jacobian = measurement @ (model.derivative(coefficients @ basis.T)[:, :, None] * basis)
+        jacobian = measurement @ (
+            model.derivative(coefficients @ basis.T)[:, :, None] * basis
+        )
         return jacobian.mT @ jacobian, (jacobian.mT @ residuals[..., None])[..., 0]
 
-    start, options = np.zeros((len(table), model.count)), {"normal_equations": normal_equations}
+    start, options = (
+        np.zeros((len(table), model.count)),
+        {"normal_equations": normal_equations},
+    )
     return iterate_rows(Marquardt(), residuals, start, lambda _: options, MAX_STEPS)
 
 
@@ -111,7 +131,9 @@ def linear_model(count: int, lights: Array, surfaces: Array) -> Representation:
         f"LM{count}",
         "linear model (PCA)",
         lambda power: power @ basis,
-        lambda surface: np.einsum("ik,ni,il->nkl", basis, surface, basis, optimize=True),
+        lambda surface: np.einsum(
+            "ik,ni,il->nkl", basis, surface, basis, optimize=True
+        ),
         lambda light: light @ (basis.T @ samples.xyz_weights()),
         lambda light, surface: (surface @ light[:, :, None])[:, :, 0],
     )
@@ -128,25 +150,43 @@ def hero_wavelengths(count: int) -> Representation:
     """
     paths, rest = divmod(count, WAVELENGTHS_PER_PATH)
     if rest or not paths:
-        raise OptionError(f"number of hero wavelengths must be a positive multiple of four, got {count}")
+        raise OptionError(
+            f"number of hero wavelengths must be a positive multiple of four, got {count}"
+        )
     low, high = np.tanh(STEEPNESS * (np.array([observer.START, observer.END]) - CENTRE))
 
     def draw(pixels: int) -> Array:
         """Wavelengths (pixels, 4 · paths) in nm, by the inverse of the density's antiderivative."""
         rng = np.random.default_rng(SEED)
         heroes = (np.arange(paths) + rng.random((pixels, paths))) / paths
-        rotated = (heroes[:, :, None] + np.arange(WAVELENGTHS_PER_PATH) / WAVELENGTHS_PER_PATH) % 1
+        rotated = (
+            heroes[:, :, None] + np.arange(WAVELENGTHS_PER_PATH) / WAVELENGTHS_PER_PATH
+        ) % 1
         drawn = CENTRE + np.arctanh(low + (high - low) * rotated) / STEEPNESS
-        return np.asarray(np.clip(drawn, observer.START, observer.END).reshape(pixels, -1))
+        return np.asarray(
+            np.clip(drawn, observer.START, observer.END).reshape(pixels, -1)
+        )
 
     def encode(spectra: Array) -> Array:
         pairs = zip(draw(len(spectra)), spectra, strict=True)
-        return np.stack([np.interp(at, samples.wavelengths(), row) for at, row in pairs])
+        return np.stack(
+            [np.interp(at, samples.wavelengths(), row) for at, row in pairs]
+        )
 
     def xyz(light: Array) -> Array:
         drawn = draw(len(light))
-        estimate = light * np.cosh(STEEPNESS * (drawn - CENTRE)) ** 2 * (high - low) / STEEPNESS
-        weights = (np.interp(drawn, samples.wavelengths(), column) for column in samples.xyz_weights().T)
-        return np.stack([(estimate * weight).mean(axis=1) for weight in weights], axis=1)
+        estimate = (
+            light
+            * np.cosh(STEEPNESS * (drawn - CENTRE)) ** 2
+            * (high - low)
+            / STEEPNESS
+        )
+        weights = (
+            np.interp(drawn, samples.wavelengths(), column)
+            for column in samples.xyz_weights().T
+        )
+        return np.stack(
+            [(estimate * weight).mean(axis=1) for weight in weights], axis=1
+        )
 
     return Representation(f"HW{count}", "hero wavelengths", encode, encode, xyz)

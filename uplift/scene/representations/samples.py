@@ -36,7 +36,9 @@ def xyz_weights() -> Array:
 
 def hat_functions(points: Sequence[float] | Array) -> Array:
     """Basis (n, 401) of linear interpolation between ascending ``points`` (n,) nm."""
-    return np.stack([np.interp(wavelengths(), points, row) for row in np.eye(len(points))])
+    return np.stack(
+        [np.interp(wavelengths(), points, row) for row in np.eye(len(points))]
+    )
 
 
 def interpolation_matrix(points: Array) -> Array:
@@ -65,7 +67,9 @@ class Representation:
     encode_surface: Callable[[Array], Any]
     xyz: Callable[[Any], Array]
     multiply: Callable[[Any, Any], Any] = mul
-    storage: Callable[[Any], Array] = lambda code: np.full(len(code), float(code[0].size))
+    storage: Callable[[Any], Array] = lambda code: np.full(
+        len(code), float(code[0].size)
+    )
     decode_light: Callable[[Any], Array] | None = None
     decode_surface: Callable[[Any], Array] | None = None
 
@@ -77,18 +81,28 @@ class Representation:
     def reflected(self, powers: Array, reflectances: Array) -> Array:
         """Return XYZ (K, n, 3) of every surface under every light."""
         surfaces = self.encode_surface(reflectances)
-        lights = (self.encode_light(np.broadcast_to(power, reflectances.shape)) for power in powers)
+        lights = (
+            self.encode_light(np.broadcast_to(power, reflectances.shape))
+            for power in powers
+        )
         return np.stack([self.xyz(self.multiply(light, surfaces)) for light in lights])
 
     def stored(self, powers: Array, reflectances: Array) -> tuple[Array, Array]:
         """Return lights and surfaces (n, 401) as their codes stand for them. Raises `OptionError` if they do not."""
         if self.decode_light is None:
-            raise OptionError(f"{self.name} does not determine a spectrum", hint="use PS, PF, RS, TM or SG")
+            raise OptionError(
+                f"{self.name} does not determine a spectrum",
+                hint="use PS, PF, RS, TM or SG",
+            )
         surface = self.encode_surface(reflectances)
-        return self.decode_light(self.encode_light(powers)), (self.decode_surface or self.decode_light)(surface)
+        return self.decode_light(self.encode_light(powers)), (
+            self.decode_surface or self.decode_light
+        )(surface)
 
 
-def linear(name: str, family: str, encoder: Array, weights: Array, decoder: Array | None = None) -> Representation:
+def linear(
+    name: str, family: str, encoder: Array, weights: Array, decoder: Array | None = None
+) -> Representation:
     """Representation whose codes are linear in the spectra, the same for lights and surfaces.
 
     ``spectra @ encoder`` (401, n) is the code, and ``code @ weights`` (n, 3) the XYZ of a light. ``code @ decoder``
@@ -96,7 +110,9 @@ def linear(name: str, family: str, encoder: Array, weights: Array, decoder: Arra
     """
     encode = functools.partial(blocked_matmul, matrix=encoder)
     decode = None if decoder is None else lambda code: code @ decoder
-    return Representation(name, family, encode, encode, lambda light: light @ weights, decode_light=decode)
+    return Representation(
+        name, family, encode, encode, lambda light: light @ weights, decode_light=decode
+    )
 
 
 def sample_points(count: int) -> Array:
@@ -113,7 +129,13 @@ def point_samples(count: int) -> Representation:
     """
     points = sample_points(count)
     hats = hat_functions(points)
-    return linear(f"PS{count}", "point sampling", interpolation_matrix(points), hats @ xyz_weights(), hats)
+    return linear(
+        f"PS{count}",
+        "point sampling",
+        interpolation_matrix(points),
+        hats @ xyz_weights(),
+        hats,
+    )
 
 
 def riemann_sums(count: int) -> Representation:
@@ -124,7 +146,9 @@ def riemann_sums(count: int) -> Representation:
     """
     overlaps = cell_overlaps(count)
     means = overlaps / overlaps.sum(axis=1, keepdims=True)
-    return linear(f"RS{count}", "Riemann sums", means.T, overlaps @ xyz_weights(), overlaps)
+    return linear(
+        f"RS{count}", "Riemann sums", means.T, overlaps @ xyz_weights(), overlaps
+    )
 
 
 def cell_overlaps(count: int) -> Array:
@@ -146,5 +170,13 @@ def gauss_samples(count: int) -> Representation:
     function has its own weights at the same nodes, exact for degree n − 1.
     """
     rule = gauss_rule(wavelengths(), xyz_weights().sum(axis=1), count)
-    weights = [interpolatory_rule(rule.nodes, wavelengths(), masses).weights for masses in xyz_weights().T]
-    return linear(f"GQ{count}", "Gaussian quadrature", interpolation_matrix(rule.nodes), np.stack(weights, axis=1))
+    weights = [
+        interpolatory_rule(rule.nodes, wavelengths(), masses).weights
+        for masses in xyz_weights().T
+    ]
+    return linear(
+        f"GQ{count}",
+        "Gaussian quadrature",
+        interpolation_matrix(rule.nodes),
+        np.stack(weights, axis=1),
+    )

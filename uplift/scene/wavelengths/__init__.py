@@ -24,7 +24,16 @@ from uplift.scene.wavelengths import meyer, optimise
 from uplift.scene.wavelengths import sampling as setups
 from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, grid, make_setup
 
-__all__ = ["METHODS", "Choice", "Sampling", "choose", "choose_orders", "fit_weights", "grid", "make_setup"]
+__all__ = [
+    "METHODS",
+    "Choice",
+    "Sampling",
+    "choose",
+    "choose_orders",
+    "fit_weights",
+    "grid",
+    "make_setup",
+]
 
 METHODS: Mapping[str, Callable[[RenderSetup, int], Sampling]] = {
     "optimised": optimise.optimise,
@@ -101,11 +110,19 @@ def choose(
     if measure not in setups.MEASURES:
         raise unknown_name(measure, setups.MEASURES, "measure")
     if (count is None) == (target is None):
-        raise OptionError("exactly one of count and target is required", hint="give one of them")
+        raise OptionError(
+            "exactly one of count and target is required", hint="give one of them"
+        )
     if count is not None and not 1 <= count <= MAX_COUNT:
-        raise OptionError(f"count must be in [1, {MAX_COUNT}], got {count}", hint="tables at 10 nm have 40")
+        raise OptionError(
+            f"count must be in [1, {MAX_COUNT}], got {count}",
+            hint="tables at 10 nm have 40",
+        )
     if target is not None and not target > 0:
-        raise OptionError(f"target must be positive, got {target:g}", hint="give a tolerated ΔE00, such as 1")
+        raise OptionError(
+            f"target must be positive, got {target:g}",
+            hint="give a tolerated ΔE00, such as 1",
+        )
     for number in range(1, MAX_COUNT + 1) if count is None else (count,):
         try:
             choice = _judged(method, setup, METHODS[method](setup, number))
@@ -118,7 +135,9 @@ def choose(
             return choice
     missed = f"no count up to {MAX_COUNT} meets a {measure} ΔE00 of {target:g} by method '{method}'"
     reached = f"{pluralise(len(choice.sampling), 'wavelength')} reach {error:.3g}"
-    raise OptionError(f"{missed}; {reached}", hint="raise the target or choose another method")
+    raise OptionError(
+        f"{missed}; {reached}", hint="raise the target or choose another method"
+    )
 
 
 def fit_weights(setup: RenderSetup, wavelengths: ArrayLike) -> Choice:
@@ -144,7 +163,9 @@ def fit_weights(setup: RenderSetup, wavelengths: ArrayLike) -> Choice:
     return _judged("given", setup, optimise.fit_at(setup, wavelengths))
 
 
-def choose_orders(setup: RenderSetup, orders: tuple[int, int, int], channels: str = "opponent") -> Choice:
+def choose_orders(
+    setup: RenderSetup, orders: tuple[int, int, int], channels: str = "opponent"
+) -> Choice:
     """Apply Meyer's quadrature with a given order for each channel.
 
     Meyer 1988, section 4.1: tables 1a and 1b have the rules of the opponent channels, figure 6 compares the spaces.

@@ -14,7 +14,13 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
 from uplift.scene.quadrature import QuadratureRule, gauss_rule, interpolatory_rule
-from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, balanced, evaluate, interp_curves
+from uplift.scene.wavelengths.sampling import (
+    RenderSetup,
+    Sampling,
+    balanced,
+    evaluate,
+    interp_curves,
+)
 
 CONFUSION_POINTS = np.array([[0.171, -0.003], [1.14, -0.14], [0.735, 0.265]])
 """Chromaticities xy at which the confusion lines of tritanopes, deuteranopes and protanopes meet. They belong to the
@@ -83,7 +89,9 @@ def channel_functions(space: Array, wavelengths: Array, cmfs: Array) -> Array:
     return (POINTS[1] - POINTS[0]) * space @ interp_curves(POINTS, wavelengths, cmfs.T)
 
 
-def quadrature_rules(space: Array, wavelengths: Array, cmfs: Array) -> list[dict[int, QuadratureRule | str]]:
+def quadrature_rules(
+    space: Array, wavelengths: Array, cmfs: Array
+) -> list[dict[int, QuadratureRule | str]]:
     """Rules of orders 1 to `MAX_ORDER` for each channel of a space, or why there is none (tables 1a and 1b)."""
 
     def rule(masses: Array, order: int) -> QuadratureRule | str:
@@ -93,14 +101,26 @@ def quadrature_rules(space: Array, wavelengths: Array, cmfs: Array) -> list[dict
             return error.problem
 
     functions = channel_functions(space, wavelengths, cmfs)
-    return [{order: rule(masses, order) for order in range(1, MAX_ORDER + 1)} for masses in functions]
+    return [
+        {order: rule(masses, order) for order in range(1, MAX_ORDER + 1)}
+        for masses in functions
+    ]
 
 
-def allocations(setup: RenderSetup, space: Array, count: int | None = None) -> Iterator[Rules]:
+def allocations(
+    setup: RenderSetup, space: Array, count: int | None = None
+) -> Iterator[Rules]:
     """Yield every combination of defined rules, or only those of ``count`` wavelengths in total."""
     rules = quadrature_rules(space, setup.wavelengths, setup.cmfs)
-    defined = [[rule for rule in channel.values() if isinstance(rule, QuadratureRule)] for channel in rules]
-    return (each for each in itertools.product(*defined) if count is None or sum(map(len, each)) == count)
+    defined = [
+        [rule for rule in channel.values() if isinstance(rule, QuadratureRule)]
+        for channel in rules
+    ]
+    return (
+        each
+        for each in itertools.product(*defined)
+        if count is None or sum(map(len, each)) == count
+    )
 
 
 def four_wavelength_rule(functions: Array) -> Rules:
@@ -109,11 +129,16 @@ def four_wavelength_rule(functions: Array) -> Rules:
     A also has the middle node of the rule of order 3, and C2 has one node. ``functions`` (3, 101) are the
     `channel_functions` of the space. Raises `OptionError` where the observer has no such rules.
     """
-    a, c1, c2 = (gauss_rule(POINTS, masses, order) for masses, order in zip(functions, (3, 2, 1), strict=True))
+    a, c1, c2 = (
+        gauss_rule(POINTS, masses, order)
+        for masses, order in zip(functions, (3, 2, 1), strict=True)
+    )
     return interpolatory_rule([*c1.nodes, a.nodes[1]], POINTS, functions[0]), c1, c2
 
 
-def combine_rules(setup: RenderSetup, space: Array, rules: Sequence[QuadratureRule]) -> Sampling:
+def combine_rules(
+    setup: RenderSetup, space: Array, rules: Sequence[QuadratureRule]
+) -> Sampling:
     """Sample the lights at the nodes of all channels, with weights that map the channels to XYZ."""
     nm = np.unique(np.concatenate([rule.nodes for rule in rules]))
     weights = np.zeros((len(nm), 3))
@@ -121,7 +146,9 @@ def combine_rules(setup: RenderSetup, space: Array, rules: Sequence[QuadratureRu
         weights[np.searchsorted(nm, rule.nodes), channel] = rule.weights
     step = setup.wavelengths[1] - setup.wavelengths[0]
     to_xyz = weights @ np.linalg.inv(space).T / step
-    return Sampling(nm, to_xyz, setup.lights, interp_curves(nm, setup.wavelengths, setup.powers))
+    return Sampling(
+        nm, to_xyz, setup.lights, interp_curves(nm, setup.wavelengths, setup.powers)
+    )
 
 
 def meyer_orders(setup: RenderSetup, orders: Sequence[int], space: Array) -> Sampling:
@@ -130,7 +157,10 @@ def meyer_orders(setup: RenderSetup, orders: Sequence[int], space: Array) -> Sam
         problem = f"orders must be in [1, {MAX_ORDER}], got {orders}"
         raise OptionError(problem, hint="the paper tabulates orders 1 to 10")
     functions = channel_functions(space, setup.wavelengths, setup.cmfs)
-    rules = [gauss_rule(POINTS, masses, order) for masses, order in zip(functions, orders, strict=True)]
+    rules = [
+        gauss_rule(POINTS, masses, order)
+        for masses, order in zip(functions, orders, strict=True)
+    ]
     return balanced(combine_rules(setup, space, rules))
 
 
@@ -143,9 +173,17 @@ def meyer(setup: RenderSetup, count: int) -> Sampling:
     space, _ = opponent_space(setup.wavelengths, setup.cmfs)
     candidates = list(allocations(setup, space, count))
     if count == 4:
-        candidates.append(four_wavelength_rule(channel_functions(space, setup.wavelengths, setup.cmfs)))
+        candidates.append(
+            four_wavelength_rule(
+                channel_functions(space, setup.wavelengths, setup.cmfs)
+            )
+        )
     if not candidates:
         problem = f"method 'meyer' has no rule of {pluralise(count, 'wavelength')}"
-        raise OptionError(problem, code="undefined-rule", hint="give a count in [4, 30]")
-    samplings = (balanced(combine_rules(setup, space, allocation)) for allocation in candidates)
+        raise OptionError(
+            problem, code="undefined-rule", hint="give a count in [4, 30]"
+        )
+    samplings = (
+        balanced(combine_rules(setup, space, allocation)) for allocation in candidates
+    )
     return min(samplings, key=lambda sampling: evaluate(setup, sampling).mean())

@@ -11,7 +11,14 @@ from uplift.colorimetry.delta_e import delta_e_2000, lab_jacobian
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
-from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, evaluate, midpoints, ordered, prefiltered
+from uplift.scene.wavelengths.sampling import (
+    RenderSetup,
+    Sampling,
+    evaluate,
+    midpoints,
+    ordered,
+    prefiltered,
+)
 
 STEP = 1e-3
 """Length of the finite differences, in units of L*a*b*."""
@@ -44,44 +51,62 @@ class FitProblem:
         # G with dᵀ G d ≈ ΔE00² for small differences d of L*a*b*
         diagonal, (i, j) = squared(steps), np.tril_indices(3, -1)
         form = diagonal[..., None] * np.eye(3)
-        form[..., i, j] = (squared(steps[i] + steps[j]) - diagonal[..., i] - diagonal[..., j]) / 2
+        form[..., i, j] = (
+            squared(steps[i] + steps[j]) - diagonal[..., i] - diagonal[..., j]
+        ) / 2
         values, vectors = np.linalg.eigh(form)  # of the lower triangle
         root = np.sqrt(np.maximum(values, MIN_EIGENVALUE))[..., None] * vectors.mT
-        return np.asarray(root @ lab_jacobian(self.setup.xyz, self.setup.whites[:, None]))
+        return np.asarray(
+            root @ lab_jacobian(self.setup.xyz, self.setup.whites[:, None])
+        )
 
     @staticmethod
     def pack(sampling: Sampling) -> Array:
         """Concatenate the unknowns of a sampling."""
-        return np.concatenate([sampling.wavelengths, sampling.to_xyz.ravel(), sampling.powers.ravel()])
+        return np.concatenate(
+            [sampling.wavelengths, sampling.to_xyz.ravel(), sampling.powers.ravel()]
+        )
 
     def unpack(self, unknowns: Array) -> Sampling:
         """Invert `pack`."""
         lights = self.setup.lights
         count = len(unknowns) // (4 + len(lights))
         nm, weights, powers = np.split(unknowns, [count, 4 * count])
-        return Sampling(nm, weights.reshape(-1, 3), lights, powers.reshape(len(lights), -1))
+        return Sampling(
+            nm, weights.reshape(-1, 3), lights, powers.reshape(len(lights), -1)
+        )
 
     def residuals(self, unknowns: Array) -> Array:
         """Differences (K · M · 3,) from the colours of the full grid; the length of each triple is ΔE00."""
         sampling = self.unpack(unknowns)
-        difference = sampling.xyz(self.setup.curves(sampling.wavelengths)) - self.setup.xyz
+        difference = (
+            sampling.xyz(self.setup.curves(sampling.wavelengths)) - self.setup.xyz
+        )
         return np.einsum("kmij,kmj->kmi", self.factors, difference).ravel()
 
     def jacobian(self, unknowns: Array) -> Array:
         """Derivative (K · M · 3, (4 + K) n) of the residuals."""
         sampling = self.unpack(unknowns)
-        values, slopes = (self.setup.curves(sampling.wavelengths, order) for order in (0, 1))
+        values, slopes = (
+            self.setup.curves(sampling.wavelengths, order) for order in (0, 1)
+        )
         weighted = np.einsum("kmij,nj->kmin", self.factors, sampling.to_xyz)
         radiance = sampling.powers[:, None, :] * values
         blocks = (
             weighted * (sampling.powers[:, None, :] * slopes)[:, :, None, :],
             radiance[:, :, None, :, None] * self.factors[:, :, :, None, :],
-            np.einsum("kmin,mn,kl->kmiln", weighted, values, np.eye(len(sampling.lights))),
+            np.einsum(
+                "kmin,mn,kl->kmiln", weighted, values, np.eye(len(sampling.lights))
+            ),
         )
-        return np.concatenate([block.reshape(self.setup.xyz.size, -1) for block in blocks], axis=1)
+        return np.concatenate(
+            [block.reshape(self.setup.xyz.size, -1) for block in blocks], axis=1
+        )
 
 
-def local_fit(problem: FitProblem, start: Sampling, *, fix_wavelengths: bool = False) -> Sampling:
+def local_fit(
+    problem: FitProblem, start: Sampling, *, fix_wavelengths: bool = False
+) -> Sampling:
     """Find the local minimum nearest to ``start`` with weights and powers of at least 0."""
     count, unknowns = len(start), problem.pack(start)
     low, high = np.zeros_like(unknowns), np.full_like(unknowns, np.inf)
@@ -106,8 +131,13 @@ def local_fit(problem: FitProblem, start: Sampling, *, fix_wavelengths: bool = F
 def optimise(setup: RenderSetup, count: int) -> Sampling:
     """Fit ``count`` wavelengths, their weights and powers, all at least 0, for the least mean ΔE00."""
     problem = FitProblem(_thinned(setup))
-    starts = (prefiltered(problem.setup, midpoints(count, *span)) for span in START_RANGES)
-    fits = [_with_nearby_powers(problem.setup, ordered(local_fit(problem, start))) for start in starts]
+    starts = (
+        prefiltered(problem.setup, midpoints(count, *span)) for span in START_RANGES
+    )
+    fits = [
+        _with_nearby_powers(problem.setup, ordered(local_fit(problem, start)))
+        for start in starts
+    ]
     return min(fits, key=lambda sampling: evaluate(setup, sampling).mean())
 
 
@@ -115,7 +145,12 @@ def fit_at(setup: RenderSetup, wavelengths: ArrayLike) -> Sampling:
     """Fit weights and powers at given wavelengths (n,) nm. Raises `OptionError`."""
     nm = np.sort(np.asarray(wavelengths, dtype=float))
     first, last = setup.wavelengths[[0, -1]]
-    if nm.ndim != 1 or not len(nm) or np.any(np.diff(nm) <= 0) or not first <= nm[0] <= nm[-1] <= last:
+    if (
+        nm.ndim != 1
+        or not len(nm)
+        or np.any(np.diff(nm) <= 0)
+        or not first <= nm[0] <= nm[-1] <= last
+    ):
         text = f"wavelengths must be distinct and within [{first:g}, {last:g}] nm"
         raise OptionError(text, hint="give each wavelength once")
     problem = FitProblem(_thinned(setup))
@@ -131,11 +166,20 @@ def _with_nearby_powers(setup: RenderSetup, sampling: Sampling) -> Sampling:
     nearby = prefiltered(setup, sampling.wavelengths).powers.sum(axis=0)
     fitted = sampling.powers.sum(axis=0)
     factor = np.where(fitted > 0, nearby / np.where(fitted > 0, fitted, 1), 1.0)
-    return replace(sampling, to_xyz=sampling.to_xyz / factor[:, None], powers=sampling.powers * factor)
+    return replace(
+        sampling,
+        to_xyz=sampling.to_xyz / factor[:, None],
+        powers=sampling.powers * factor,
+    )
 
 
 def _thinned(setup: RenderSetup) -> RenderSetup:
     """Thin the materials to `MAX_FITTED_PAIRS` and append the perfect reflector, which keeps white neutral."""
     limit = max(MAX_FITTED_PAIRS // len(setup.lights), MIN_FITTED)
-    thinned = setup.only(np.unique(np.linspace(0, len(setup.reflectances) - 1, limit).astype(int)))
-    return replace(thinned, reflectances=np.vstack([thinned.reflectances, np.ones(len(setup.wavelengths))]))
+    thinned = setup.only(
+        np.unique(np.linspace(0, len(setup.reflectances) - 1, limit).astype(int))
+    )
+    return replace(
+        thinned,
+        reflectances=np.vstack([thinned.reflectances, np.ones(len(setup.wavelengths))]),
+    )

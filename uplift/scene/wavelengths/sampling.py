@@ -19,7 +19,11 @@ START, END, STEP = 380.0, 770.0, 1.0
 """Visible range of Meyer 1988 in nm, with a step that resolves the lines of fluorescent lamps."""
 MIN_SAMPLES = 16
 """Fewest samples of a wavelength grid."""
-MEASURES: Mapping[str, Callable[[Array], Any]] = {"mean": np.mean, "p95": partial(np.quantile, q=0.95), "max": np.max}
+MEASURES: Mapping[str, Callable[[Array], Any]] = {
+    "mean": np.mean,
+    "p95": partial(np.quantile, q=0.95),
+    "max": np.max,
+}
 """Statistics of ΔE00 by name."""
 UNIFORM_START, UNIFORM_END = 400.0, 700.0
 """Range in nm for which even spacing has the least error with few wavelengths."""
@@ -116,25 +120,47 @@ def make_setup(
     nm = grid() if wavelengths is None else np.asarray(wavelengths, dtype=float)
     materials = np.asarray(reflectances, dtype=float)
     steps = np.diff(nm)
-    if nm.ndim != 1 or len(nm) < MIN_SAMPLES or not np.allclose(steps, steps[0], rtol=1e-6) or steps[0] <= 0:
-        problem = f"wavelengths must be at least {MIN_SAMPLES}, ascending and evenly spaced"
+    if (
+        nm.ndim != 1
+        or len(nm) < MIN_SAMPLES
+        or not np.allclose(steps, steps[0], rtol=1e-6)
+        or steps[0] <= 0
+    ):
+        problem = (
+            f"wavelengths must be at least {MIN_SAMPLES}, ascending and evenly spaced"
+        )
         raise OptionError(problem, hint="give a grid such as 380, 381, …, 770 nm")
     if materials.ndim != 2 or not len(materials) or materials.shape[1] != len(nm):
         problem = f"reflectances must have shape (M, {len(nm)}) with M > 0, got {materials.shape}"
         raise OptionError(problem, hint="give one row per material")
     if not np.isfinite(materials).all() or materials.min() < 0:
-        raise OptionError("reflectances must be finite and at least 0", hint="give values from 0 to 1")
+        raise OptionError(
+            "reflectances must be finite and at least 0", hint="give values from 0 to 1"
+        )
     lights = tuple(dict.fromkeys(lights))
     if not lights:
-        raise OptionError("lights must not be empty", hint="name at least one, such as D65")
+        raise OptionError(
+            "lights must not be empty", hint="name at least one, such as D65"
+        )
     observer.check_distinct(lights)
     # The tables have steps of whole nanometres; the grid may have any step.
     step = steps[0] if (nm % 1 == 0).all() else 1.0
     shape = np.floor(nm[0]), np.ceil(nm[-1]), step
     table = np.arange(shape[0], shape[1] + step / 2, step)
-    cmfs = interp_curves(nm, table, observer.matching_functions(observer_name, *shape).T).T
-    powers = interp_curves(nm, table, np.stack([observer.illuminant_spd(each, *shape) for each in lights]))
-    return RenderSetup(nm, materials, tuple(map(str, lights)), powers / (powers @ cmfs[:, 1])[:, None], cmfs, lights)
+    cmfs = interp_curves(
+        nm, table, observer.matching_functions(observer_name, *shape).T
+    ).T
+    powers = interp_curves(
+        nm, table, np.stack([observer.illuminant_spd(each, *shape) for each in lights])
+    )
+    return RenderSetup(
+        nm,
+        materials,
+        tuple(map(str, lights)),
+        powers / (powers @ cmfs[:, 1])[:, None],
+        cmfs,
+        lights,
+    )
 
 
 def interp_curves(wavelengths: Array, known: Array, curves: Array) -> Array:
@@ -202,14 +228,19 @@ class Sampling:
 
 def balanced(sampling: Sampling) -> Sampling:
     """Scale every light so that the perfect reflector has Y = 1."""
-    return replace(sampling, powers=sampling.powers / (sampling.powers @ sampling.to_xyz[:, 1])[:, None])
+    return replace(
+        sampling,
+        powers=sampling.powers / (sampling.powers @ sampling.to_xyz[:, 1])[:, None],
+    )
 
 
 def ordered(sampling: Sampling) -> Sampling:
     """Sort the wavelengths and scale the weights so that equal energy has Y = 1; colours stay."""
     order, scale = np.argsort(sampling.wavelengths), sampling.to_xyz[:, 1].sum()
     weights, powers = sampling.to_xyz[order] / scale, sampling.powers[:, order] * scale
-    return replace(sampling, wavelengths=sampling.wavelengths[order], to_xyz=weights, powers=powers)
+    return replace(
+        sampling, wavelengths=sampling.wavelengths[order], to_xyz=weights, powers=powers
+    )
 
 
 def evaluate(setup: RenderSetup, sampling: Sampling) -> Array:
@@ -223,7 +254,9 @@ def statistics(errors: Array) -> dict[str, float]:
     return {name: float(compute(errors)) for name, compute in MEASURES.items()}
 
 
-def midpoints(count: int, start: float = UNIFORM_START, end: float = UNIFORM_END) -> Array:
+def midpoints(
+    count: int, start: float = UNIFORM_START, end: float = UNIFORM_END
+) -> Array:
     """Midpoints (count,) of equal parts of ``start`` to ``end`` nm."""
     return start + (np.arange(count) + 0.5) * (end - start) / count
 
@@ -232,7 +265,14 @@ def uniform(setup: RenderSetup, count: int) -> Sampling:
     """Point sample the lights and the colour-matching functions at even spacing; whites balanced."""
     nm = midpoints(count)
     weights = interp_curves(nm, setup.wavelengths, setup.cmfs.T).T
-    return balanced(Sampling(nm, weights, setup.lights, interp_curves(nm, setup.wavelengths, setup.powers)))
+    return balanced(
+        Sampling(
+            nm,
+            weights,
+            setup.lights,
+            interp_curves(nm, setup.wavelengths, setup.powers),
+        )
+    )
 
 
 def prefiltered(setup: RenderSetup, wavelengths: Array) -> Sampling:
