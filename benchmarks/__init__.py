@@ -1,4 +1,6 @@
-"""Measurements shown in docs/, one file per page: ``make measure PAGE=name`` runs one and renders the pages."""
+"""Measurements shown in docs/, one file per page: ``make measure PAGE=name`` runs one
+and renders the pages.
+"""
 
 import csv
 import sys
@@ -29,7 +31,9 @@ def measure(page: str) -> None:
 
 
 def record(page: str, data: str = "", **figures: Any) -> None:
-    """Write the figures of a page to docs/data/PAGE.json, or to DATA.json if the page has several."""
+    """Write the figures of a page to docs/data/PAGE.json, or to DATA.json if the page
+    has several.
+    """
     write_record(DATA / f"{data or page}.json", f"make measure PAGE={page}", **figures)
 
 
@@ -39,6 +43,8 @@ def show(progress: Progress) -> None:
 
 
 def read_reference(name: str) -> list[dict[str, str]]:
-    """Return the rows of a published table in tests/reference, whose comments begin with '#'."""
+    """Return the rows of a published table in tests/reference, whose comments begin
+    with '#'.
+    """
     with (REFERENCE / name).open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(line for line in file if not line.startswith("#")))

@@ -1,8 +1,8 @@
 """Measure pages, or list them: ``python -m benchmarks [PAGE ...]``.
 
-Each page is measured in a process with BLAS on one thread, and all pages are rendered at the end. ``all`` names the
-pages whose figures are not of the last commit of the code, so that an interrupted run continues. A page that fails does
-not stop the others.
+Each page is measured in a process with BLAS on one thread, and all pages are rendered
+at the end. ``all`` names the pages whose figures are not of the last commit of the
+code, so that an interrupted run continues. A page that fails does not stop the others.
 """
 
 import ast
@@ -17,7 +17,9 @@ from uplift.lab.timing import ONE_THREAD, commit
 
 
 def pages() -> dict[str, str]:
-    """Return the first line about each page, by its name: modules with a function ``main``."""
+    """Return the first line about each page, by its name: modules with a function
+    ``main``.
+    """
     found = {}
     for path in sorted(Path(__file__).parent.glob("[!_]*.py")):
         module = ast.parse(path.read_text(encoding="utf-8"))

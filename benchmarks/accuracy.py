@@ -130,7 +130,9 @@ def fit_quality(cube: Cube) -> Row:
 
 
 def round_trip(cube: Cube, sensor: Sensor, mode: str = "spectra") -> list[float]:
-    """Return the mean and the largest ΔE00 between requested colours and those of the spectra, by a sensor."""
+    """Return the mean and the largest ΔE00 between requested colours and those of the
+    spectra, by a sensor.
+    """
 
     def error(rgb: Array) -> Array:
         spectra = cube.reflectance(rgb, sensor.wavelengths, mode)
@@ -159,7 +161,9 @@ def largest(error: Callable[[Array], Array], rgb: Array) -> float:
 
 
 def at_range(shortest: int, longest: int, step: int) -> Row:
-    """Build the ColorChecker at a range; return errors at 1 nm, and those of the spectra of its entries."""
+    """Build the ColorChecker at a range; return errors at 1 nm, and those of the
+    spectra of its entries.
+    """
     cube, atlas = (
         uplift.build(MACBETH, shortest=shortest, longest=longest, step=step),
         uplift.read_atlas(MACBETH),
@@ -186,7 +190,9 @@ def draw_rounds() -> None:
 
 
 def growth(name: str, space: str) -> Row:
-    """Build in an order of growth, and compare answers for materials that neither atlas nor library contains."""
+    """Build in an order of growth, and compare answers for materials that neither atlas
+    nor library contains.
+    """
     build = partial(
         uplift.build,
         MACBETH,
@@ -218,7 +224,9 @@ def growth(name: str, space: str) -> Row:
 
 
 def share_outward(cube: Cube) -> float:
-    """Return the share of nodes whose round is their distance from the nearest seed, in steps to 26 neighbours."""
+    """Return the share of nodes whose round is their distance from the nearest seed, in
+    steps to 26 neighbours.
+    """
     points, lattice = cube.data.points, cube.data.lattice
     seeds = np.flatnonzero(
         np.isin(points.status, (Status.ATLAS_PRIMARY, Status.ATLAS_CORNER))

@@ -1,4 +1,6 @@
-"""Materials that `uplift advise` chooses to measure, against random choice, for docs/guides/measuring.md."""
+"""Materials that `uplift advise` chooses to measure, against random choice, for
+docs/guides/measuring.md.
+"""
 
 from typing import Any
 
@@ -18,7 +20,9 @@ from uplift.scene.advice import advise, uncertainty
 
 SETS = ("rawtoaces", "cie2017")
 SCENES, KNOWN, MATERIALS = 6, 10, 60
-"""Scenes of each set, entries that are known at first, and hidden ones that the scene has at most."""
+"""Scenes of each set, entries that are known at first, and hidden ones that the scene
+has at most.
+"""
 COUNTS = (3, 6, 12, 24)
 DRAWS = 2
 """Random choices of each kind."""
@@ -26,7 +30,9 @@ ADVICE, PIXELS, COLOURS = "advice", "random pixels", "random colours"
 
 
 def run_scene(entries: Atlas, measured: Array, seed: int) -> list[dict[str, Any]]:
-    """Return mean ΔE00 of a scene whose areas are exponentially distributed, by choice and number of swatches."""
+    """Return mean ΔE00 of a scene whose areas are exponentially distributed, by choice
+    and number of swatches.
+    """
     rng, sensor = np.random.default_rng(seed), observer.sensor()
     known, hidden = np.split(
         rng.permutation(len(measured))[: KNOWN + MATERIALS], [KNOWN]

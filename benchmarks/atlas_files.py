@@ -1,4 +1,6 @@
-"""Formats of atlas files, and how closely files in the layouts of instruments are read, for docs/atlas-files.md."""
+"""Formats of atlas files, and how closely files in the layouts of instruments are read,
+for docs/atlas-files.md.
+"""
 
 import tempfile
 import warnings
@@ -16,7 +18,9 @@ UPLIFT = "uplift"
 
 
 def largest_difference(vendor: Vendor, atlas: Atlas) -> float:
-    """Return the largest difference between the values that were written and those that are read."""
+    """Return the largest difference between the values that were written and those that
+    are read.
+    """
     with tempfile.TemporaryDirectory() as folder:
         path = vendor.save(atlas[: vendor.count], Path(folder))
         with warnings.catch_warnings():

@@ -1,4 +1,5 @@
-"""Headless Chromium, controlled through two pipes by the DevTools protocol: input, screenshots and console errors.
+"""Headless Chromium, controlled through two pipes by the DevTools protocol: input,
+screenshots and console errors.
 
 https://chromedevtools.github.io/devtools-protocol/
 """
@@ -61,7 +62,9 @@ Answer = dict[str, Any]
 
 
 class Browser:
-    """One tab. ``errors`` are what its console complained of, and uncaught exceptions."""
+    """One tab. ``errors`` are what its console complained of, and uncaught
+    exceptions.
+    """
 
     def __init__(self, write: int, read: int) -> None:
         self._write, self._read, self._rest = write, read, b""
@@ -74,7 +77,9 @@ class Browser:
             self.call(f"{domain}.enable")
 
     def call(self, method: str, **params: Any) -> Answer:
-        """Call a method of the tab and wait for its answer. Raises `RuntimeError`, `TimeoutError`."""
+        """Call a method of the tab and wait for its answer. Raises `RuntimeError`,
+        `TimeoutError`.
+        """
         number = next(self._numbers)
         message = {"id": number, "method": method, "params": params} | self._session
         os.write(self._write, json.dumps(message).encode() + b"\0")
@@ -85,7 +90,9 @@ class Browser:
         return dict(answer["result"])
 
     def evaluate(self, code: str) -> Any:
-        """The value of an expression in the page, waited for if it is a promise. Raises `RuntimeError`."""
+        """The value of an expression in the page, waited for if it is a promise. Raises
+        `RuntimeError`.
+        """
         answer = self.call(
             "Runtime.evaluate", expression=code, awaitPromise=True, returnByValue=True
         )
@@ -96,7 +103,9 @@ class Browser:
         return answer["result"].get("value")
 
     def open(self, path: Path) -> None:
-        """Show a page and wait until its ``main`` is busy no more. Raises `TimeoutError`."""
+        """Show a page and wait until its ``main`` is busy no more. Raises
+        `TimeoutError`.
+        """
         self.errors.clear()
         self.call("Page.navigate", url=path.resolve().as_uri())
         end = time.monotonic() + PATIENCE
@@ -108,7 +117,9 @@ class Browser:
             time.sleep(0.02)
 
     def canvas(self, name: str) -> NDArray[np.uint8]:
-        """(H, W, 4) red, green, blue and alpha of the canvas with this id, after the frame that is due."""
+        """(H, W, 4) red, green, blue and alpha of the canvas with this id, after the
+        frame that is due.
+        """
         width, height, text = self.evaluate(CANVAS.replace("NAME", name))
         return np.frombuffer(base64.b64decode(text), np.uint8).reshape(height, width, 4)
 
@@ -192,7 +203,9 @@ class Browser:
 
 @contextlib.contextmanager
 def browser() -> Iterator[Browser]:
-    """A browser, which is ended with the block. Raises `RuntimeError` where there is none."""
+    """A browser, which is ended with the block. Raises `RuntimeError` where there is
+    none.
+    """
     path = next(filter(None, map(shutil.which, NAMES)), None)
     if path is None:
         raise RuntimeError(f"none of {', '.join(NAMES)} is installed")

@@ -1,4 +1,6 @@
-"""Raw values of cameras to XYZ on held-out patches, by cubes and by matrices, for docs/guides/cameras.md."""
+"""Raw values of cameras to XYZ on held-out patches, by cubes and by matrices, for
+docs/guides/cameras.md.
+"""
 
 from collections.abc import Callable
 from typing import Any
@@ -35,7 +37,8 @@ def xyz_matrix(raw: Array, xyz: Array) -> Array:
 
 
 def lab_matrix(raw: Array, xyz: Array, white: Array) -> Array:
-    """Fit the matrix (3, 3) from raw values to XYZ by least squares of L*a*b*, with (1, 1, 1) as ``white``.
+    """Fit the matrix (3, 3) from raw values to XYZ by least squares of L*a*b*, with (1,
+    1, 1) as ``white``.
 
     RAW to ACES 1.0 (Dyer et al. 2017) fits its matrices so, with six free numbers.
     """
@@ -55,7 +58,9 @@ def lab_matrix(raw: Array, xyz: Array, white: Array) -> Array:
 def methods(
     atlas: Atlas, training: Indices, sensor: Sensor, plain: Cube
 ) -> dict[str, ToXyz]:
-    """Return the methods, each trained on the entries of an atlas in rows ``training``, ``plain`` on none."""
+    """Return the methods, each trained on the entries of an atlas in rows ``training``,
+    ``plain`` on none.
+    """
     measured = on_grid(atlas, sensor.wavelengths)
     library = np.concatenate(
         [family.measured for family in shipped_library(families_with(measured))]
@@ -87,7 +92,9 @@ def methods(
 
 
 def _build(entries: Atlas | None, sensor: Sensor, measured: Array) -> Cube:
-    """Build a cube whose prior does not know the families of measured reflectances (E, N)."""
+    """Build a cube whose prior does not know the families of measured reflectances (E,
+    N).
+    """
     options = {
         "observer": sensor.space,
         "illuminant": sensor.illuminant,
@@ -97,7 +104,9 @@ def _build(entries: Atlas | None, sensor: Sensor, measured: Array) -> Cube:
 
 
 def realisable_share(sensor: Sensor, dim: int = DIM) -> float:
-    """Return the share of raw values in [0, 1]³ that a reflectance has, from the nodes of a lattice."""
+    """Return the share of raw values in [0, 1]³ that a reflectance has, from the nodes
+    of a lattice.
+    """
     nodes = Lattice(axis_nodes("srgb", dim)).points
     return float(solid(sensor.matrix).contains(nodes).mean())
 

@@ -1,4 +1,6 @@
-"""Speed and accuracy of all methods, for docs/speed.md and its pictures, and for ``uplift chart --recommend``."""
+"""Speed and accuracy of all methods, for docs/speed.md and its pictures, and for
+``uplift chart --recommend``.
+"""
 
 from typing import Any
 
@@ -57,7 +59,9 @@ def publish(chart: Chart) -> None:
 
 
 def fronts(chart: Chart) -> list[dict[str, Any]]:
-    """Return the Pareto front of every panel, fastest first; the panel is named in its first row. Times in ns."""
+    """Return the Pareto front of every panel, fastest first; the panel is named in its
+    first row. Times in ns.
+    """
     rows = []
     for criterion in (
         criterion for batch in chart.batches for criterion in criteria(batch)
@@ -77,7 +81,9 @@ def fronts(chart: Chart) -> list[dict[str, Any]]:
 
 
 def method_record(row: MethodResult, batches: tuple[int, ...]) -> dict[str, Any]:
-    """Return the figures of a method; ``mark_N`` marks calls with fewer than N colours, ``total_N`` has the set-up."""
+    """Return the figures of a method; ``mark_N`` marks calls with fewer than N colours,
+    ``total_N`` has the set-up.
+    """
     numbers = row.numbers
     record = {
         "name": row.method,

@@ -1,4 +1,6 @@
-"""The ColorChecker: measured spectra and painted RGB, as a picture and as a Mitsuba scene."""
+"""The ColorChecker: measured spectra and painted RGB, as a picture and as a Mitsuba
+scene.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -21,7 +23,8 @@ COLUMNS, ROWS = 6, 4
 BACKGROUND = 0.03
 """Reflectance between the patches."""
 INSET = 0.3
-"""Margin around the reference square in the middle of a patch, as a share of its width."""
+"""Margin around the reference square in the middle of a patch, as a share of its width.
+"""
 VARIANT = "scalar_spectral"
 """The spectral variant that does not need LLVM."""
 OF_SURFACES = {"type": "direct", "bsdf_samples": 1, "emitter_samples": 0}
@@ -37,7 +40,8 @@ Reflectances = list[dict[str, Any]]
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """24 patches: ``measured`` (24, N) reflectances at ``wavelengths`` (N,) nm, ``painted`` (24, 3) linear sRGB.
+    """24 patches: ``measured`` (24, N) reflectances at ``wavelengths`` (N,) nm,
+    ``painted`` (24, 3) linear sRGB.
 
     ``outside`` (24,) marks the colours outside sRGB, which are painted clipped.
     """
@@ -65,7 +69,9 @@ def chart() -> Chart:
 
 @dataclass(frozen=True)
 class Layout:
-    """Patches of ``patch`` pixels with ``gap`` between and around them, in reading order."""
+    """Patches of ``patch`` pixels with ``gap`` between and around them, in reading
+    order.
+    """
 
     patch: int
     gap: int
@@ -84,7 +90,9 @@ class Layout:
                 yield self.gap + column * pitch, self.gap + row * pitch
 
     def patches(self, inset: int = 0) -> Iterator[Place]:
-        """Yield the rows and columns of each patch, without ``inset`` pixels along its edges."""
+        """Yield the rows and columns of each patch, without ``inset`` pixels along its
+        edges.
+        """
         for x, y in self.corners():
             yield (
                 slice(y + inset, y + self.patch - inset),
@@ -104,7 +112,9 @@ class Layout:
         ]
 
     def paint(self, colours: Array, background: Array) -> Array:
-        """Return an image (height, width, 3) of patches (24, 3) before a background (3,)."""
+        """Return an image (height, width, 3) of patches (24, 3) before a background
+        (3,).
+        """
         width, height = self.size
         image = np.tile(background, (height, width, 1))
         for place, colour in zip(self.patches(), colours, strict=True):
@@ -125,9 +135,11 @@ def draw(
     path: Path,
     size: tuple[float, float],
 ) -> None:
-    """Draw XYZ ``images`` by light and method; the first method is shown in the places ``reference`` of all.
+    """Draw XYZ ``images`` by light and method; the first method is shown in the places
+    ``reference`` of all.
 
-    ``delta_e`` has the errors of the patches, ``to_screen`` the matrices (3, 3) from XYZ to linear sRGB by light.
+    ``delta_e`` has the errors of the patches, ``to_screen`` the matrices (3, 3) from
+    XYZ to linear sRGB by light.
     """
     figure = new_figure(*size)
     figure.set_dpi(DPI)
@@ -204,7 +216,9 @@ def render(
     spp: int,
     seed: int,
 ) -> Array:
-    """Return XYZ (height, width, 3) of the chart under an emitter, from straight above, a unit a pixel."""
+    """Return XYZ (height, width, 3) of the chart under an emitter, from straight above,
+    a unit a pixel.
+    """
     import mitsuba as mi
 
     transform, (width, height) = mi.ScalarTransform4f, layout.size

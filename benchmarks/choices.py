@@ -1,6 +1,8 @@
-"""Choices of the design, and the sets of measured materials whose errors they were made with.
+"""Choices of the design, and the sets of measured materials whose errors they were made
+with.
 
-A figure is *optimistic* if a choice behind its method was made with the set that it is measured on.
+A figure is *optimistic* if a choice behind its method was made with the set that it is
+measured on.
 """
 
 from collections.abc import Iterable
@@ -19,7 +21,9 @@ MARK = " ○"
 
 @dataclass(frozen=True)
 class Choice:
-    """A choice of the design, the sets whose errors it was made with, and the methods that depend on it."""
+    """A choice of the design, the sets whose errors it was made with, and the methods
+    that depend on it.
+    """
 
     choice: str
     sets: tuple[str, ...]
@@ -66,5 +70,7 @@ def is_optimistic(sets: Iterable[str], method: str) -> bool:
 
 
 def mark(sets: Iterable[str], method: str) -> str:
-    """Return the mark of a figure of a method on the sets, empty if it is not optimistic."""
+    """Return the mark of a figure of a method on the sets, empty if it is not
+    optimistic.
+    """
     return MARK if is_optimistic(sets, method) else ""

@@ -1,7 +1,8 @@
 """Reproducibility of builds, for docs/stability.md.
 
-Threads, cores and devices must not change a byte. Instruction sets must not change where the nodes lie. They may change
-spectra; the largest difference is what `uplift check` has to allow between machines (`uplift.report.regression`).
+Threads, cores and devices must not change a byte. Instruction sets must not change
+where the nodes lie. They may change spectra; the largest difference is what `uplift
+check` has to allow between machines (`uplift.report.regression`).
 """
 
 import os
@@ -30,7 +31,9 @@ CASES: dict[str, tuple[tuple[str, ...], Row]] = {
 }
 """Atlases and options of the cubes."""
 NUMPY_SSE4 = {"NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR"}
-"""numpy at its baseline. A feature is disabled by its own name only, those above it must be named too."""
+"""numpy at its baseline. A feature is disabled by its own name only, those above it
+must be named too.
+"""
 NUMPY_AVX2 = {"NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR"}
 XLA_SSE4, XLA_AVX2 = (
     {"XLA_FLAGS": f"--xla_cpu_max_isa={name}"} for name in ("SSE4_2", "AVX2")
@@ -69,7 +72,10 @@ PREFIXES = {"one core": ("taskset", "-c", "0")}
 """Commands before that of a setting."""
 
 
-BUILD = "import sys; from benchmarks.determinism import build_cubes; build_cubes(sys.argv[1])"
+BUILD = (
+    "import sys; from benchmarks.determinism import build_cubes; "
+    "build_cubes(sys.argv[1])"
+)
 
 
 def main() -> None:
@@ -90,7 +96,8 @@ def main() -> None:
     failed = [row["setting"] for row in same if row["different"]]
     failed += [row["setting"] for row in apart if row["different_nodes"]]
     print(
-        f"settings that change bytes, or nodes across instruction sets: {', '.join(failed) or 'none'}"
+        "settings that change bytes, or nodes across instruction sets: "
+        f"{', '.join(failed) or 'none'}"
     )
     raise SystemExit(bool(failed))
 
@@ -121,7 +128,9 @@ def run(name: str, variables: dict[str, str], folder: Path) -> Path:
 
 
 def measure(name: str, variables: dict[str, str], folder: Path) -> Row:
-    """Build the cubes under a setting, and compare them with those of the default one."""
+    """Build the cubes under a setting, and compare them with those of the
+    default one.
+    """
     into = run(name, variables, folder)
     files = [
         (folder / "default" / f"{number}.uplift", into / f"{number}.uplift")

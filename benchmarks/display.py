@@ -1,4 +1,6 @@
-"""Gamut mapping of Munsell chips outside sRGB, for docs/guides/acescg.md and its picture."""
+"""Gamut mapping of Munsell chips outside sRGB, for docs/guides/acescg.md and its
+picture.
+"""
 
 import warnings
 from collections import defaultdict
@@ -26,14 +28,18 @@ WHITE = SRGB.rgb_to_xyz.sum(axis=1)
 
 @dataclass(frozen=True, eq=False)
 class Chips:
-    """Linear sRGB (n, 3) and hues (n,) of the chips outside; x, y (k, 2) by hue and value, from grey outwards."""
+    """Linear sRGB (n, 3) and hues (n,) of the chips outside; x, y (k, 2) by hue and
+    value, from grey outwards.
+    """
 
     rgb: Array
     hues: tuple[str, ...]
     lines: dict[tuple[str, float], Array]
 
     def hue_shift(self, mapped: Array) -> Array:
-        """Return ΔE00 (n,) between mapped linear sRGB (n, 3) and the nearest colour of the hue at equal luminance."""
+        """Return ΔE00 (n,) between mapped linear sRGB (n, 3) and the nearest colour of
+        the hue at equal luminance.
+        """
         light = (mapped @ SRGB.rgb_to_xyz.T)[:, 1]
         values = np.clip(colour.notation.munsell_value_ASTMD1535(100 * light), 1, 9)
         nearest = [
@@ -45,7 +51,9 @@ class Chips:
         return np.array(nearest)
 
     def _line(self, hue: str, value: float) -> Array:
-        """Interpolate between the lines of the values below and above, at equal chroma."""
+        """Interpolate between the lines of the values below and above, at
+        equal chroma.
+        """
         low = min(int(value), 8)
         below, above = self.lines[hue, low], self.lines[hue, low + 1]
         count = min(len(below), len(above))
@@ -53,7 +61,9 @@ class Chips:
 
 
 def chips() -> Chips:
-    """Return the chips outside sRGB; illuminant C is adapted to the white of the screen (Bradford)."""
+    """Return the chips outside sRGB; illuminant C is adapted to the white of the screen
+    (Bradford).
+    """
     c = tuple(colour.CCS_ILLUMINANTS["CIE 1931 2 Degree Standard Observer"]["C"])
     to_srgb = conversion(Primaries(SRGB.red, SRGB.green, SRGB.blue, c), SRGB)
     from_xyz = to_srgb @ np.linalg.inv(
@@ -110,7 +120,9 @@ MAPPINGS = tuple(method for method in METHODS if method != "error")
 
 
 def draw(path: Path) -> None:
-    """Write the picture: the hues of Rec. 2020 as each method maps them, dark below, up to three times white above."""
+    """Write the picture: the hues of Rec. 2020 as each method maps them, dark below, up
+    to three times white above.
+    """
     figure = new_figure(15, 2.25)
     hue = np.linspace(0, 6, 360)
     pure = np.clip(np.abs((hue[:, None] + [3, 1, 5]) % 6 - 3) - 1, 0, 1)

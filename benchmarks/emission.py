@@ -1,4 +1,6 @@
-"""Emission tables: lamps left out, exactness, expected errors and cost, for docs/guides/lights.md."""
+"""Emission tables: lamps left out, exactness, expected errors and cost, for
+docs/guides/lights.md.
+"""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -118,7 +120,8 @@ def unknown_lamps(
 def predict(
     lamps: Lamps, unknown: Mapping[str, Mask], **size: int
 ) -> dict[str, tuple[Array, Array]]:
-    """Predict lamps by tables that are built without those that each prediction must not know (L, L).
+    """Predict lamps by tables that are built without those that each prediction must
+    not know (L, L).
 
     Returns power (L, N) and expected errors (L,) by rule.
     """
@@ -143,7 +146,9 @@ def predict(
 
 
 def by_nearest(lamps: Lamps, unknown: Mask, radiometry: Array) -> dict[str, Array]:
-    """Return the power (L, N) of the nearest known lamp and the mean of the nearest ones, moved to the colours."""
+    """Return the power (L, N) of the nearest known lamp and the mean of the nearest
+    ones, moved to the colours.
+    """
     uv = chromaticity(lamps.power @ radiometry)
     apart = np.where(unknown, np.inf, np.linalg.norm(uv[:, None] - uv, axis=-1))
     known = lamps.power[np.argsort(apart, axis=1, kind="stable")[:, :NEAREST]]
@@ -157,16 +162,19 @@ def by_nearest(lamps: Lamps, unknown: Mask, radiometry: Array) -> dict[str, Arra
 
 
 PBRT_SCALE = 2.0
-"""Largest component of RGB relative to that of the colour which the sigmoid of pbrt-v4 has."""
+"""Largest component of RGB relative to that of the colour which the sigmoid of pbrt-v4
+has.
+"""
 
 
 def sigmoid_times_d65(power: Array, table: EmissionTable, d65: Array) -> Array:
     """Return lights with the RGB of others (n, N) as pbrt-v4 makes them.
 
-    RGB is divided by twice its largest component; a sigmoid reflectance has that colour under D65 (N,).
+    RGB is divided by twice its largest component; a sigmoid reflectance has that colour
+    under D65 (N,).
 
-    Pharr, Jakob & Humphreys 2023, "Physically based rendering", 4th edition, section 4.6.6, RGBIlluminantSpectrum.
-    Jakob & Hanika 2019, eq. 5.
+    Pharr, Jakob & Humphreys 2023, "Physically based rendering", 4th edition, section
+    4.6.6, RGBIlluminantSpectrum. Jakob & Hanika 2019, eq. 5.
     """
     radiometry = table.data.radiometry
     sensor = table.rgb_of_xyz(radiometry * (d65 / (d65 @ radiometry[:, 1]))[:, None]).T
@@ -185,15 +193,19 @@ def sigmoid_times_d65(power: Array, table: EmissionTable, d65: Array) -> Array:
 
 
 MIREDS = np.linspace(20, 1000, 981)
-"""Reciprocal temperatures in 1/MK among which the nearest Planckian radiator is looked up."""
+"""Reciprocal temperatures in 1/MK among which the nearest Planckian radiator is looked
+up.
+"""
 SECOND_RADIATION_CONSTANT = 1.438776877e-2
 """c₂ in m K."""
 
 
 def planck(uv: Array, radiometry: Array, wavelengths: Array) -> Array:
-    """Return the Planckian radiators of the correlated colour temperatures, moved to the chromaticities (n, 2).
+    """Return the Planckian radiators of the correlated colour temperatures, moved to
+    the chromaticities (n, 2).
 
-    CIE 015:2018, 9.5: the correlated colour temperature, by the distance in CIE 1960 uv.
+    CIE 015:2018, 9.5: the correlated colour temperature, by the distance in CIE 1960
+    uv.
     """
     metres = wavelengths * 1e-9
     radiators = metres**-5 / np.expm1(
@@ -211,7 +223,9 @@ def summaries(
     surfaces: dict[str, Array],
     radiometry: Array,
 ) -> Iterator[Row]:
-    """Yield mean, median and 95th percentile over the lamps of the mean ΔE00, by rule, method and surfaces."""
+    """Yield mean, median and 95th percentile over the lamps of the mean ΔE00, by rule,
+    method and surfaces.
+    """
     for rule, methods in lights.items():
         for method, power in methods.items():
             row: Row = {"rule": rule, "method": method}
@@ -225,7 +239,9 @@ def summaries(
 
 
 def spokes(table: EmissionTable, directions: int, steps: int) -> Array:
-    """Return u′v′ (directions · steps, 2) from white to the spectral locus, both included."""
+    """Return u′v′ (directions · steps, 2) from white to the spectral locus, both
+    included.
+    """
     angle = np.arange(directions) * 2 * np.pi / directions
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     locus = direction / table.data.lattice.polar(direction)[2][:, None]
@@ -236,7 +252,9 @@ def spokes(table: EmissionTable, directions: int, steps: int) -> Array:
 
 
 def exactness(table: EmissionTable, uv: Array) -> Iterator[Row]:
-    """Yield the largest difference in u′v′ and the smallest power at chromaticities (n, 2), by type."""
+    """Yield the largest difference in u′v′ and the smallest power at chromaticities (n,
+    2), by type.
+    """
     for dtype in ("float64", "float32"):
         power = table.spectrum_of_xyz(unit_xyz(uv), dtype=dtype)
         apart = np.linalg.norm(
@@ -251,7 +269,9 @@ def exactness(table: EmissionTable, uv: Array) -> Iterator[Row]:
 
 
 def lookups(count: int, runs: int) -> Iterator[Row]:
-    """Yield nanoseconds per colour of lights and of reflectances, and the ratio of their medians, by type."""
+    """Yield nanoseconds per colour of lights and of reflectances, and the ratio of
+    their medians, by type.
+    """
     rgb = np.random.default_rng(1).random((count, 3))
     table, cube = uplift.load_emission(), uplift.load()
     for at, dtype in product(

@@ -1,4 +1,6 @@
-"""Spectra of cubes compared with measured spectra, for docs/materials.md and docs/prior.md."""
+"""Spectra of cubes compared with measured spectra, for docs/materials.md and
+docs/prior.md.
+"""
 
 from collections.abc import Iterator
 from dataclasses import asdict
@@ -131,7 +133,9 @@ def main() -> None:
 
 
 def at_entries(name: str) -> Iterator[Row]:
-    """Yield the errors of cubes at the colours of their entries, and the size of the cubes' arrays."""
+    """Yield the errors of cubes at the colours of their entries, and the size of the
+    cubes' arrays.
+    """
     some = materials(name)
     cubes = {
         f"9 coefficients, entries {count}": build(
@@ -155,12 +159,16 @@ def at_entries(name: str) -> Iterator[Row]:
 
 
 def pooled(splits: tuple[held_out.HoldoutSplit, ...], method: str) -> Array:
-    """Mean rms, then mean ΔE00 under each light, over the splits; splits of one set differ by one entry at most."""
+    """Mean rms, then mean ΔE00 under each light, over the splits; splits of one set
+    differ by one entry at most.
+    """
     return np.mean([split.errors[method].means() for split in splits], axis=0)
 
 
 def stated(pairs: Pairs, light: Light) -> tuple[Array, Array]:
-    """Return errors (3, n), actual, standard and bounds, and the shares (n, 2) that the latter two cover."""
+    """Return errors (3, n), actual, standard and bounds, and the shares (n, 2) that the
+    latter two cover.
+    """
     parts = [
         np.array(
             [
@@ -190,7 +198,9 @@ def coverage(label: str, count: int, pairs: Pairs) -> Row:
 
 
 def covered(pairs: Pairs) -> dict[str, Array]:
-    """Return, by light, the shares of errors within the standard error and within the error bound."""
+    """Return, by light, the shares of errors within the standard error and within the
+    error bound.
+    """
     return {
         name: stated(pairs, observer.light(name))[1].mean(axis=0)
         for name in HELD_OUT_LIGHTS
@@ -198,7 +208,9 @@ def covered(pairs: Pairs) -> dict[str, Array]:
 
 
 def compare_methods(name: str) -> Row:
-    """Return the errors of all methods on the held-out halves of a set, and how they compare."""
+    """Return the errors of all methods on the held-out halves of a set, and how they
+    compare.
+    """
     learnt = held_out.holdout(spectra(name), SPLITS)
     smooth = held_out.holdout(spectra(name), SPLITS, prior="smooth", leave_out=())
     found = {
@@ -227,7 +239,9 @@ def compare_methods(name: str) -> Row:
 
 
 def learning_curve(parts: int) -> Row:
-    """Return the errors at each part of the mixture of cubes that know the other ones: what more measurements give."""
+    """Return the errors at each part of the mixture of cubes that know the other ones:
+    what more measurements give.
+    """
     some, left_out, found = materials(MIXTURE), shipped_families(MIXTURE), []
     rows = np.arange(len(some.rgb))
     for seed in range(SPLITS):
@@ -287,7 +301,9 @@ def means(answers: Cube | Array, some: Materials) -> Array:
 
 
 def unseen(name: str, count: int) -> Row:
-    """Return the errors without an atlas where the prior does not know the family, relative to other methods."""
+    """Return the errors without an atlas where the prior does not know the family,
+    relative to other methods.
+    """
     some = materials(name)
     learnt = means(build(dim=COARSE, coefficients=count, leave_out=family(name)), some)
     others = {
@@ -309,7 +325,9 @@ def unseen(name: str, count: int) -> Row:
 
 
 def with_atlas(name: str) -> Row:
-    """Return the mean error over the lights of ColorChecker cubes, queried for a set that the prior does not know."""
+    """Return the mean error over the lights of ColorChecker cubes, queried for a set
+    that the prior does not know.
+    """
     some, left_out = materials(name), [*family(name), "checker"]
     found = {
         "smooth": means(build("macbeth", dim=COARSE, prior="smooth"), some),
@@ -322,7 +340,9 @@ def with_atlas(name: str) -> Row:
 
 
 def with_library(name: str) -> Iterator[Row]:
-    """Yield the errors at one half of a set, relative to smooth spectra, with the other half as a library."""
+    """Yield the errors at one half of a set, relative to smooth spectra, with the other
+    half as a library.
+    """
     entries = spectra(name).entries
     atlas = Atlas(
         tuple(

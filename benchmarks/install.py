@@ -1,4 +1,6 @@
-"""Sizes of installations: `pip install .`, and with the extra ``plots``, by distribution."""
+"""Sizes of installations: `pip install .`, and with the extra ``plots``, by
+distribution.
+"""
 
 import importlib.metadata
 import subprocess
@@ -15,7 +17,9 @@ OF_PIP = {"pip", "setuptools"}
 
 
 def sizes(requirement: str) -> dict[str, int]:
-    """Install into an empty environment and return bytes by distribution, compiled modules included."""
+    """Install into an empty environment and return bytes by distribution, compiled
+    modules included.
+    """
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([sys.executable, "-m", "venv", folder], check=True)
         python = Path(folder) / "bin" / "python"
@@ -34,7 +38,9 @@ def sizes(requirement: str) -> dict[str, int]:
 
 
 def main() -> None:
-    """Measure and store. Distributions that an extra adds are the difference of two ways."""
+    """Measure and store. Distributions that an extra adds are the difference of two
+    ways.
+    """
     found = {way: sizes(requirement) for way, requirement in WAYS.items()}
     ways: list[dict[str, Any]] = [
         {"way": way, "distributions": len(each), "megabytes": sum(each.values()) / 1e6}

@@ -1,8 +1,9 @@
-"""Bounds of the ColorChecker under other lights, and cubes with looks, for docs/looks.md and its pictures.
+"""Bounds of the ColorChecker under other lights, and cubes with looks, for
+docs/looks.md and its pictures.
 
-Largest ΔE00 and share of each colour, the cost of many colours, how much more a search from 16 times as many directions
-finds, the share of held-out materials in the likely region, and a screenshot of the page. Cubes with looks, and a
-scene of two cubes.
+Largest ΔE00 and share of each colour, the cost of many colours, how much more a search
+from 16 times as many directions finds, the share of held-out materials in the likely
+region, and a screenshot of the page. Cubes with looks, and a scene of two cubes.
 """
 
 import tempfile
@@ -42,10 +43,14 @@ PAGE_DIVISIONS, FINE_DIVISIONS = 3, 4
 MANY, RUNS = 1000, 3
 """Colours that are timed."""
 LIKELY_LIGHTS, COEFFICIENTS = ("FL11", "A", "HP1"), 9
-"""Lights of the share of held-out materials, and coefficients of the cubes that do not know them."""
+"""Lights of the share of held-out materials, and coefficients of the cubes that do not
+know them.
+"""
 SCREENSHOT, WINDOW, SCALE = DOCS / "looks" / "page.jpg", (1440, 1400), 0.85
 CHOICE = (("region-1", "ArrowLeft", 6), ("region-1", "ArrowDown", 2))
-"""Keys that are pressed for the screenshot, with Shift, and how often: 30 less a*, 10 less b* under FL11."""
+"""Keys that are pressed for the screenshot, with Shift, and how often: 30 less a*, 10
+less b* under FL11.
+"""
 LOOKS_ATLAS, DIM = "macbeth", 32
 IMPOSSIBLE = (
     ("#4060a0", "A", "#5060a0"),
@@ -195,7 +200,9 @@ def impossible(rgb: str, light: str, wish: str) -> Row:
 
 
 def render(plain: Cube, looked: Cube) -> Row:
-    """Render two balls of one RGB, of two cubes, under daylight and under the light of a look, and draw them."""
+    """Render two balls of one RGB, of two cubes, under daylight and under the light of
+    a look, and draw them.
+    """
     version, look = start_mitsuba(), looked.data.provenance["looks"][0]
     lamps, found = ("D65", look["lights"][0]["light"]), {}
     figure = new_figure(4.5, 4.3)
@@ -223,7 +230,9 @@ def render(plain: Cube, looked: Cube) -> Row:
 
 
 def balls(cubes: Sequence[str], rgb: Sequence[float], lamp: str) -> Array:
-    """Return XYZ (height, width, 3) of two balls on the ground, left and right, each of its cube."""
+    """Return XYZ (height, width, 3) of two balls on the ground, left and right, each of
+    its cube.
+    """
     import mitsuba as mi
 
     transform = mi.ScalarTransform4f

@@ -18,12 +18,16 @@ from uplift.lab.study.held_out import halves_both_ways, spectrum_errors
 from uplift.lookup import Cube
 
 MUNSELL = ROOT / "out" / "munsell.csv"
-"""The 1,269 chips of the Munsell book, if `make munsell` has fetched them: they cannot be redistributed."""
+"""The 1,269 chips of the Munsell book, if `make munsell` has fetched them: they cannot
+be redistributed.
+"""
 LARGE = ("rawtoaces", "cie2017", *(["munsell"] if MUNSELL.exists() else []))
 """Atlases that are large enough to split."""
 SHIPPED = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017", "tcs", "vs")
 MIXTURE = "all sets"
-"""The shipped sets, and all of them as one: a mixture of families, several of which have materials of one colour."""
+"""The shipped sets, and all of them as one: a mixture of families, several of which
+have materials of one colour.
+"""
 SENSOR = observer.sensor()
 SPLITS = 3
 
@@ -73,12 +77,16 @@ def materials(name: str) -> Materials:
 
 
 def shipped_families(name: str) -> tuple[str, ...]:
-    """Return the shipped families that must not shape a prior that is tested on a set."""
+    """Return the shipped families that must not shape a prior that is
+    tested on a set.
+    """
     return tuple(families_with(materials(name).measured))
 
 
 def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:
-    """Return cubes of random halves of a set, and the other halves: every material is queried equally often."""
+    """Return cubes of random halves of a set, and the other halves: every material is
+    queried equally often.
+    """
     some, left_out = materials(name), shipped_families(name)
     return [
         (some.take(kept).cube(leave_out=left_out, **options), some.take(queried))

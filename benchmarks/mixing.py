@@ -1,4 +1,6 @@
-"""Mixing models: criteria, assumed scattering, times and pictures, for docs/mixing.md."""
+"""Mixing models: criteria, assumed scattering, times and pictures, for
+docs/mixing.md.
+"""
 
 import itertools
 from collections.abc import Iterable, Iterator
@@ -52,7 +54,8 @@ DRAWN = (
     "pigments", "pigments in oil", "pigments, S = √R", "pigments, S = 1", "dyes", "average", "ryb", "phosphors",
     "product",
 )  # fmt: skip
-"""Shares are the thickness of filters and products, so that a ramp ends at its colours."""
+"""Shares are the thickness of filters and products, so that a ramp ends at its colours.
+"""
 
 # --- criteria ---
 
@@ -71,15 +74,19 @@ CRITERIA = {
     "with its complement: grey": 10.0,  # worst C*ab
     "blue and yellow: green": -0.01,  # max(R, B) − G at best
 }
-"""Criteria of painters (Fishkin 1983, 10.4), and the largest value of each that passes, in the order of `evaluate`.
+"""Criteria of painters (Fishkin 1983, 10.4), and the largest value of each that passes,
+in the order of `evaluate`.
 
-The thesis requires tints to maintain chromaticity, too. White, however, moves every chromaticity towards its own.
-A tint can only keep its hue, the direction from white in the CIE 1976 u'v' diagram. A shade can keep both.
+The thesis requires tints to maintain chromaticity, too. White, however, moves every
+chromaticity towards its own. A tint can only keep its hue, the direction from white in
+the CIE 1976 u'v' diagram. A shade can keep both.
 """
 
 
 def evaluate(mixer: Mixer, sensor: Sensor, colours: Array) -> tuple[float, ...]:
-    """Measure a mixing model by every criterion, the first five with linear RGB (n, 3) without greys."""
+    """Measure a mixing model by every criterion, the first five with linear RGB (n, 3)
+    without greys.
+    """
 
     def chromaticities(rgb: Array) -> Array:
         """CIE 1976 u', v' (…, 2). Black, which has none, gets those of white."""
@@ -122,7 +129,9 @@ def evaluate(mixer: Mixer, sensor: Sensor, colours: Array) -> tuple[float, ...]:
 
 
 def criteria(cube: Cube) -> Row:
-    """Evaluate every mixer by every criterion on the coloured patches of the cube's atlas."""
+    """Evaluate every mixer by every criterion on the coloured patches of the cube's
+    atlas.
+    """
     atlas = cube.data.atlas.rgb
     coloured = atlas[np.ptp(atlas, axis=1) > 0.1 * atlas.max(axis=1)]
     rows = []
@@ -159,8 +168,8 @@ class Mixtures:
 def acrylics(first: tuple[str, ...] = (), second: str = "") -> Mixtures:
     """Return the mixtures of paint_mixtures.csv.
 
-    Only those of a paint whose name starts with one of ``first`` with a paint whose name ends in ``second``; by default
-    all.
+    Only those of a paint whose name starts with one of ``first`` with a paint whose
+    name ends in ``second``; by default all.
     """
 
     def wanted(one: str, other: str) -> bool:
@@ -188,7 +197,9 @@ def acrylics(first: tuple[str, ...] = (), second: str = "") -> Mixtures:
 
 
 def three_bands(name: str) -> Mixtures:
-    """Return the mixtures of all pairs of a set of paints_rgb.csv, whose three bands are taken as linear RGB."""
+    """Return the mixtures of all pairs of a set of paints_rgb.csv, whose three bands
+    are taken as linear RGB.
+    """
     rows = [row for row in read_reference("paints_rgb.csv") if row["set"] == name]
     K, S = (
         np.array([_numbers(row, columns) for row in rows])
@@ -240,7 +251,9 @@ def _shares(rows: list[dict[str, str]]) -> Array:
 
 
 def mix(cube: Cube, mixtures: Mixtures, rule: Scattering | None) -> Array:
-    """Return the colours (n, 3) of mixtures from those of their paints, in linear RGB in [0, 1]; None averages RGB."""
+    """Return the colours (n, 3) of mixtures from those of their paints, in linear RGB
+    in [0, 1]; None averages RGB.
+    """
     if rule is None:
         return np.asarray(
             (mixtures.shares[:, None] @ mixtures.paints[mixtures.pairs])[:, 0]
@@ -255,7 +268,8 @@ def mix(cube: Cube, mixtures: Mixtures, rule: Scattering | None) -> Array:
 
 
 def compare_scattering(smooth: Cube, atlas: Cube) -> Row:
-    """Compare rules for S on the measured sets and on published mixtures, uplifted by ``smooth``.
+    """Compare rules for S on the measured sets and on published mixtures, uplifted by
+    ``smooth``.
 
     ``atlas`` is the cube that uplifts the ColorChecker's blue and yellow.
     """
@@ -314,7 +328,9 @@ def _greens(cube: Cube, pair: Array, rule: Scattering | None) -> Iterator[Row]:
 
 
 def draw(cube: Cube, smooth: Cube, folder: Path) -> None:
-    """Write a picture for each pair of colours, and one that compares other tools, by ``smooth``."""
+    """Write a picture for each pair of colours, and one that compares other tools, by
+    ``smooth``.
+    """
     folder.mkdir(exist_ok=True)
     by_name, parts = (
         {mixer.name: mixer for mixer in mixers(cube)},
@@ -340,7 +356,9 @@ def _plot(cube: Cube, strips: dict[str, Array], path: Path) -> None:
 
 
 def _tools(cube: Cube) -> dict[str, Array]:
-    """Return the ramp of two artists' paints by RGB, by us, and as other tools publish it."""
+    """Return the ramp of two artists' paints by RGB, by us, and as other tools publish
+    it.
+    """
     steps, mixbox = published("coloraide", cube), published("mixbox", cube).expected[:1]
     ends = steps.paints[:2]
     parts = np.concatenate([[[1, 0]], steps.shares, [[0, 1]]])

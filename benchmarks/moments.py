@@ -1,4 +1,6 @@
-"""Reconstruction of spectra from moments, compared with Tódová 2020, for docs/reproductions.md and its pictures."""
+"""Reconstruction of spectra from moments, compared with Tódová 2020, for
+docs/reproductions.md and its pictures.
+"""
 
 from collections.abc import Mapping
 from typing import Any
@@ -149,7 +151,9 @@ def under_lights(
 
 
 def warp_errors(measured: Array, warp: str, floats: int) -> dict[str, Any]:
-    """Return ΔE76 under D65 and the rms difference of reflectances (E, 401) from those of their mirrored moments."""
+    """Return ΔE76 under D65 and the rms difference of reflectances (E, 401) from those
+    of their mirrored moments.
+    """
     technique, light = (
         Technique(mirrored=True, warped=warp != "none", warp=warp),
         observer.light("D65"),
@@ -172,7 +176,9 @@ def warp_errors(measured: Array, warp: str, floats: int) -> dict[str, Any]:
 
 
 def cube_errors(atlases: Mapping[str, Atlas], warp: str, count: int) -> dict[str, Any]:
-    """Return mean ΔE00 under each light of a ColorChecker cube, at the entries of all other atlases in sRGB."""
+    """Return mean ΔE00 under each light of a ColorChecker cube, at the entries of all
+    other atlases in sRGB.
+    """
     cube = uplift.build(
         MACBETH, dim=CUBE_DIM, coefficients=count, entry_coefficients=count, warp=warp
     )

@@ -1,4 +1,6 @@
-"""Accuracy of the palette's factor model, and pictures of the examples, for docs/palette.md."""
+"""Accuracy of the palette's factor model, and pictures of the examples, for
+docs/palette.md.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -33,14 +35,18 @@ Product = Callable[[Array, Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class LightPaths:
-    """``powers`` (N,) by light, and the ``reflectances`` (n, k, N) along paths by number of reflections k."""
+    """``powers`` (N,) by light, and the ``reflectances`` (n, k, N) along paths by
+    number of reflections k.
+    """
 
     sensor: Sensor
     powers: dict[str, Array]
     reflectances: dict[int, Array]
 
     def errors(self, product: Product, light: str, bounces: int) -> Array:
-        """Return ΔE00 (n,) between a product's colours and those of complete spectra, both exposed to mid-grey."""
+        """Return ΔE00 (n,) between a product's colours and those of complete spectra,
+        both exposed to mid-grey.
+        """
         power, met = self.powers[light], self.reflectances[bounces]
         full = (power * met.prod(axis=1)) @ screen_matrix(self.sensor).T
         gain = exposure(self.sensor, full)[:, None]
@@ -57,7 +63,9 @@ def light_paths(sensor: Sensor) -> LightPaths:
 
 
 def by_rgb(sensor: Sensor) -> Product:
-    """Return RGB products with the surfaces' RGB under a flat white (Bergner et al. 2004, eq. 9–12)."""
+    """Return RGB products with the surfaces' RGB under a flat white (Bergner et al.
+    2004, eq. 9–12).
+    """
     screen = screen_matrix(sensor)
     white = screen.sum(axis=1)
     return lambda power, met: ((met @ screen.T) / white).prod(axis=1) * (screen @ power)
@@ -83,7 +91,9 @@ def unsharpened(model: FactorModel) -> Product:
 
 
 def by_matrices(model: FactorModel) -> Product:
-    """Return products of the Λ model; the light is the first factor, within the span."""
+    """Return products of the Λ model; the light is the first factor, within
+    the span.
+    """
     return lambda power, met: model.rgb(
         linear_product(
             model, model.reflectance(power), *np.moveaxis(model.reflectance(met), 1, 0)
@@ -124,7 +134,9 @@ def main() -> None:
 
 
 def by_bounces(paths: LightPaths, products: dict[str, Product]) -> list[dict[str, Any]]:
-    """Return mean ΔE00 and 95th percentile by number of reflections, and the gain over RGB."""
+    """Return mean ΔE00 and 95th percentile by number of reflections, and the gain over
+    RGB.
+    """
     rows = []
     for name, product in products.items():
         errors = {

@@ -1,11 +1,14 @@
-"""Pictures of the relighting viewer in Chromium, for docs/palette.md, and a scan to relight.
+"""Pictures of the relighting viewer in Chromium, for docs/palette.md, and a scan to
+relight.
 
-``python -m benchmarks.palette_dial engine.exr`` writes the weights of a synthetic computer tomogram of an engine, for
-``uplift palette engine.toml --html engine.html --image engine.exr``.
+``python -m benchmarks.palette_dial engine.exr`` writes the weights of a synthetic
+computer tomogram of an engine, for ``uplift palette engine.toml --html engine.html
+--image engine.exr``.
 
-After Bergner, Möller & Drew 2004, 5.1, whose scan of an engine is not free. The scan has the densities of its parts,
-blurred and noisy as a scanner's. A transfer function assigns each density to a material of engine.toml, and rays
-accumulate the materials from the eye on, as a volume renderer does. The picture is without light.
+After Bergner, Möller & Drew 2004, 5.1, whose scan of an engine is not free. The scan
+has the densities of its parts, blurred and noisy as a scanner's. A transfer function
+assigns each density to a material of engine.toml, and rays accumulate the materials
+from the eye on, as a volume renderer does. The picture is without light.
 """
 
 import sys
@@ -40,7 +43,9 @@ WIDTH = 0.11
 BLUR, NOISE = 0.7, 0.012
 """Blur in voxels and standard deviation of the noise of the scanner."""
 EDGE = 0.05
-"""Gradient per voxel at which half of a voxel counts as boundary, whose density is that of no material."""
+"""Gradient per voxel at which half of a voxel counts as boundary, whose density is that
+of no material.
+"""
 SMOOTHING = 0.01
 """Blur of the normals, in widths of the scan."""
 YAW, PITCH = np.radians([-35, 28])
@@ -96,7 +101,9 @@ def write_weights(weights: Array, path: Path) -> None:
 
 
 def scan(voxels: int = VOXELS) -> Array:
-    """Return the densities (n, n, n) over x right, y up and z to the viewer, from −1 to 1."""
+    """Return the densities (n, n, n) over x right, y up and z to the viewer, from −1 to
+    1.
+    """
     axis = (np.arange(voxels) + 0.5) * 2 / voxels - 1
     x, y, z = np.meshgrid(axis, axis, axis, indexing="ij", sparse=True)
     density = np.zeros((voxels,) * 3)
@@ -119,7 +126,9 @@ def scan(voxels: int = VOXELS) -> Array:
 
 
 def cast(density: Array, side: int = SIDE) -> Array:
-    """Cast parallel rays through densities (n, n, n); return the amount (side, side, 4) of each material."""
+    """Cast parallel rays through densities (n, n, n); return the amount (side, side, 4)
+    of each material.
+    """
     turned = _turn(density, side)
     smooth = gaussian_filter(turned, SMOOTHING * side)
     weights = np.zeros((side, side, len(DENSITIES)), dtype=np.float32)
@@ -137,7 +146,9 @@ def cast(density: Array, side: int = SIDE) -> Array:
 
 
 def _opacities(layer: Array) -> Array:
-    """Transfer function: opacity (side, side, 4) per voxel of each material, of densities (side, side)."""
+    """Transfer function: opacity (side, side, 4) per voxel of each material, of
+    densities (side, side).
+    """
     return np.stack(
         [
             OPACITIES[name] * np.sqrt(np.maximum(1 - abs(layer - level) / WIDTH, 0))
@@ -148,7 +159,9 @@ def _opacities(layer: Array) -> Array:
 
 
 def _surface(slab: Array, magnification: float) -> tuple[Array, Array]:
-    """Return the shading, and how little a boundary each sample of the middle of three layers is."""
+    """Return the shading, and how little a boundary each sample of the middle of three
+    layers is.
+    """
     slopes = (*np.gradient(slab[:, :, 1]), (slab[:, :, 2] - slab[:, :, 0]) / 2)
     steep = np.sqrt(sum(slope**2 for slope in slopes)) + np.finfo(np.float32).tiny
     light = LIGHT / np.linalg.norm(LIGHT)
@@ -161,7 +174,9 @@ def _surface(slab: Array, magnification: float) -> tuple[Array, Array]:
 
 
 def _turn(density: Array, side: int) -> Array:
-    """Resample densities (n, n, n) to a grid (side, side, side) turned towards the viewer."""
+    """Resample densities (n, n, n) to a grid (side, side, side) turned towards the
+    viewer.
+    """
     (a, b), (c, d) = (np.cos(YAW), np.sin(YAW)), (np.cos(PITCH), np.sin(PITCH))
     yaw = np.array([[a, 0, b], [0, 1, 0], [-b, 0, a]])
     pitch = np.array([[1, 0, 0], [0, c, -d], [0, d, c]])

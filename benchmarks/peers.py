@@ -1,7 +1,9 @@
-"""Other tools on the task of a build: CPU time per fitted node and accuracy, for docs/speed.md.
+"""Other tools on the task of a build: CPU time per fitted node and accuracy, for
+docs/speed.md.
 
-The task is the lattice of linear sRGB under D65, without an atlas. Answers are checked before they are timed. The other
-tools must be installed: a record without them would replace one that has them.
+The task is the lattice of linear sRGB under D65, without an atlas. Answers are checked
+before they are timed. The other tools must be installed: a record without them would
+replace one that has them.
 """
 
 import json
@@ -27,7 +29,9 @@ from uplift.models import Moments, Sigmoid, evaluate, reflectance
 from uplift.models.sigmoid import evaluate_unscaled
 
 THRESHOLD = 1e-4
-"""Largest |linear RGB| between a fitted spectrum and its colour: the threshold of cubes."""
+"""Largest |linear RGB| between a fitted spectrum and its colour: the threshold of
+cubes.
+"""
 DIM = 16
 SENSOR, LATTICE = observer.sensor(), Lattice(axis_nodes("srgb", DIM))
 """CIE 1931 observer, D65, linear sRGB; nodes of Ceres, spaced as sRGB."""
@@ -50,7 +54,8 @@ RUNS, LIMIT = 3, 3600
 
 @dataclass(frozen=True)
 class Peer:
-    """CPU time in µs per node (all threads) of a tool, share of nodes within `THRESHOLD`, and largest residual.
+    """CPU time in µs per node (all threads) of a tool, share of nodes within
+    `THRESHOLD`, and largest residual.
 
     ``model`` is 'sigmoid' or 'moments', ``count`` its number of coefficients.
     """
@@ -66,7 +71,9 @@ class Peer:
 
 
 def main() -> None:
-    """Time each tool in a process without the compiled code or settings of the others, and store."""
+    """Time each tool in a process without the compiled code or settings of the others,
+    and store.
+    """
     tools = (ceres, rgb2spec, ours)  # what may be missing comes first
     solvers, tables, builds = (
         call_in_child(tool, RUNS, seconds=LIMIT) for tool in tools
@@ -75,10 +82,11 @@ def main() -> None:
 
 
 def check_answers(rgb: Array, target: Array, *, least: float) -> dict[str, float]:
-    """Compare linear RGB (n, 3) with ``target`` (n, 3): the share within `THRESHOLD`, and the largest residual.
+    """Compare linear RGB (n, 3) with ``target`` (n, 3): the share within `THRESHOLD`,
+    and the largest residual.
 
-    Raises `RuntimeError` if fewer than the share ``least`` come within `THRESHOLD`: some tools leave a few nodes
-    unfitted, with more a time means nothing.
+    Raises `RuntimeError` if fewer than the share ``least`` come within `THRESHOLD`:
+    some tools leave a few nodes unfitted, with more a time means nothing.
     """
     residual = np.nan_to_num(
         np.abs(rgb - target).max(axis=1), nan=np.inf, posinf=np.inf
@@ -86,13 +94,16 @@ def check_answers(rgb: Array, target: Array, *, least: float) -> dict[str, float
     share = float((residual <= THRESHOLD).mean())
     if share < least:
         raise RuntimeError(
-            f"wrong answer, not timed: {share:.1%} of the nodes are within {THRESHOLD:g}"
+            f"wrong answer, not timed: {share:.1%} of the nodes are within "
+            f"{THRESHOLD:g}"
         )
     return {"share": share, "worst": float(residual.max())}
 
 
 def _install(needs: str, *commands: list[str | Path]) -> None:
-    """Run the commands that compile a tool. Raises `RuntimeError` with what it needs if one of them fails."""
+    """Run the commands that compile a tool. Raises `RuntimeError` with what it needs if
+    one of them fails.
+    """
     try:
         for command in commands:
             subprocess.run(command, capture_output=True, check=True)
@@ -132,7 +143,9 @@ def ours(runs: int) -> list[Peer]:
 CERES_SOURCE, CERES_BUILT = ROOT / "benchmarks" / "ceres", ROOT / "out" / "ceres"
 CERES_NEEDS = "install Ceres, cmake and a C++ compiler: libceres-dev, cmake, g++"
 CERES_STEPS = 12
-"""Iterations from each start. The default of Ceres, 50, doubles the time for moments and fits no more of them."""
+"""Iterations from each start. The default of Ceres, 50, doubles the time for moments
+and fits no more of them.
+"""
 CERES_JOBS = (
     ("sigmoid", 3, "sigmoid", 0.99),
     ("moments", 9, "moments", 0.5),
@@ -143,7 +156,8 @@ UNKNOWNS = {"sigmoid": "", "moments": "in c, ", "multipliers": "in p, "}
 
 
 def ceres(runs: int) -> list[Peer]:
-    """Time the solver of the thesis with numeric differences (`benchmarks/ceres/fit.cpp`).
+    """Time the solver of the thesis with numeric differences
+    (`benchmarks/ceres/fit.cpp`).
 
     It grows from the middle of the lattice, every node from its fitted neighbours.
     """
@@ -169,7 +183,10 @@ def _ceres_row(
     )
     cpu = timing_stats([each["cpu"] for _, each in done]).scaled(1e6 / len(points))
     starts = facts["solves"] / len(points)
-    notes = f"{DIM}³, {UNKNOWNS[unknowns]}numeric differences, C++; grown from the middle, {starts:.1f} starts a point"
+    notes = (
+        f"{DIM}³, {UNKNOWNS[unknowns]}numeric differences, C++; grown from the "
+        f"middle, {starts:.1f} starts a point"
+    )
     return Peer(
         f"Ceres {facts['ceres']}", name, count, len(points), cpu, **answer, notes=notes
     )
@@ -196,7 +213,8 @@ def _run_ceres(
             str(count),
             str(CERES_STEPS),
         ]
-        # Ceres logs every step outside the moments of reflectances, which would be timed too.
+        # Ceres logs every step outside the moments of reflectances, which would be
+        # timed too.
         quiet = os.environ | {"GLOG_minloglevel": "3"}
         done = subprocess.run(
             command,
@@ -222,13 +240,19 @@ RGB2SPEC_VERSIONS = (
 )
 """Commit, method, and the minimum share of nodes that must be fitted."""
 RGB2SPEC_FLAGS = ("-O3 -DNDEBUG", "-O3 -DNDEBUG -march=native -ffast-math")
-"""Those of its CMakeLists.txt for a release, and the fastest: -Ofast, -funroll-loops and -flto gain nothing more."""
+"""Those of its CMakeLists.txt for a release, and the fastest: -Ofast, -funroll-loops
+and -flto gain nothing more.
+"""
 RGB2SPEC_COMPILES = ("-std=c++11", "-include", "algorithm", "-pthread")
-"""Its standard, a header that the older version relies on others to include, and the threads of the newer one."""
+"""Its standard, a header that the older version relies on others to include, and the
+threads of the newer one.
+"""
 
 
 def rgb2spec(runs: int) -> list[Peer]:
-    """Time the program that fits the tables of Jakob & Hanika 2019, with its own flags and with the fastest."""
+    """Time the program that fits the tables of Jakob & Hanika 2019, with its own flags
+    and with the fastest.
+    """
     rows = []
     for (commit, method, least), flags in product(RGB2SPEC_VERSIONS, RGB2SPEC_FLAGS):
         program, source = (
@@ -264,7 +288,9 @@ def rgb2spec(runs: int) -> list[Peer]:
 
 
 def table_sensor() -> Sensor:
-    """Return the sensor of rgb2spec: tables at 5 nm, linear between, by Simpson's 3/8 rule, and a rounded matrix."""
+    """Return the sensor of rgb2spec: tables at 5 nm, linear between, by Simpson's 3/8
+    rule, and a rounded matrix.
+    """
     wide = observer.sensor(wavelengths=(360, 830, 5))
     wavelengths = np.linspace(360, 830, 3 * (len(wide.wavelengths) - 1) + 1)
     weights = np.full(len(wavelengths), 3.0)
@@ -280,7 +306,9 @@ def table_sensor() -> Sensor:
 
 
 def table_colours(path: Path) -> tuple[Array, Array]:
-    """Return the linear RGB (n, 3) of the spectra in a table of rgb2spec, and those of its nodes."""
+    """Return the linear RGB (n, 3) of the spectra in a table of rgb2spec, and those of
+    its nodes.
+    """
     data = (
         path.read_bytes()
     )  # "SPEC", u32 dim, f32 scale[dim], f32 data[3][dim][dim][dim][3]
@@ -298,7 +326,8 @@ def table_colours(path: Path) -> tuple[Array, Array]:
     found = [
         sensor.rgb(evaluate_unscaled(plane, sensor.wavelengths)) for plane in planes
     ]
-    # In table l component l is the level; components l + 2 and l + 1 (modulo 3) are even fractions of it.
+    # In table l component l is the level; components l + 2 and l + 1 (modulo 3) are
+    # even fractions of it.
     largest, last, middle = np.meshgrid(level, even, even, indexing="ij")
     target = np.stack([largest, middle * largest, last * largest], axis=-1)
     return np.concatenate(found), np.concatenate(

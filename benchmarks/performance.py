@@ -1,4 +1,5 @@
-"""Times of builds, processes, `uplift.bulk` and the exported C header, for docs/speed.md.
+"""Times of builds, processes, `uplift.bulk` and the exported C header, for
+docs/speed.md.
 
 Results are checked before they are timed.
 """
@@ -34,7 +35,8 @@ PROGRAM_COLOURS, MAX_DIFFERENCE = 400_000, 1e-3
 
 def main() -> None:
     """Time everything and store."""
-    # First: a process started from a large one counts the memory of its parent as its own.
+    # First: a process started from a large one counts the memory of its parent as its
+    # own.
     processes = time_processes()
     cube = _build(dim=32)
     record(
@@ -104,7 +106,9 @@ def time_build(model: str, count: int, dim: int, runs: int) -> Row:
 
 
 def time_atlas(count: int) -> Row:
-    """Time a build from mixtures of shipped spectra: arithmetic or geometric means of two or three."""
+    """Time a build from mixtures of shipped spectra: arithmetic or geometric means of
+    two or three.
+    """
     import uplift
     from benchmarks.materials import SENSOR, materials
     from uplift.atlas import Atlas, Entry, shipped_atlases
@@ -217,7 +221,9 @@ def time_bulk(cube: Any) -> list[Row]:
 
 
 def time_header(cube: Any, mode: str, colours: Any) -> Row:
-    """Compile the C header, check its reflectances, and return its rates on one core, in million colours per second."""
+    """Compile the C header, check its reflectances, and return its rates on one core,
+    in million colours per second.
+    """
     from uplift.colorimetry import delta_e_rgb
 
     data = cube.data
@@ -244,7 +250,9 @@ def time_header(cube: Any, mode: str, colours: Any) -> Row:
 def run_header(
     cube: Any, mode: str, colours: Any, runs: int
 ) -> tuple[Any, list[float]]:
-    """Return reflectances (CHECKED, N) of the first colours by the C header, and the CPU seconds of its functions."""
+    """Return reflectances (CHECKED, N) of the first colours by the C header, and the
+    CPU seconds of its functions.
+    """
     from uplift.io.export import write_program
 
     source = ROOT / "benchmarks" / "rates.c"

@@ -27,7 +27,9 @@ class Picture:
     package: str
 
     def linear(self) -> Array:
-        """Return linear sRGB (h, w, 3), by OpenEXR, or by Pillow and the sRGB curve of colour-science."""
+        """Return linear sRGB (h, w, 3), by OpenEXR, or by Pillow and the sRGB curve of
+        colour-science.
+        """
         if self.path.suffix == ".exr":
             import OpenEXR
 
@@ -40,7 +42,9 @@ class Picture:
 
 
 def pictures() -> Iterator[Picture]:
-    """Yield the images; raise `FileNotFoundError` unless `make pictures` installed them."""
+    """Yield the images; raise `FileNotFoundError` unless `make pictures` installed
+    them.
+    """
     if not INSTALLED.is_dir():
         raise FileNotFoundError(f"{INSTALLED}: run 'make pictures'")
     for name in ("astronaut.png", "coffee.png", "chelsea.png", "ihc.png", "rocket.jpg"):

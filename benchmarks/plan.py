@@ -1,4 +1,6 @@
-"""Sparse cubes for real images, and plans for these and the sample kitchen, for docs/plan.md and its picture."""
+"""Sparse cubes for real images, and plans for these and the sample kitchen, for
+docs/plan.md and its picture.
+"""
 
 import json
 import shlex
@@ -53,7 +55,10 @@ class Case:
         """Return the text of the scene file."""
         atlas = f'atlases = "{self.atlas}"\n' if self.atlas else ""
         textures, lights = json.dumps(self.pictures), json.dumps(self.lights)
-        return f"textures = {textures}\n{atlas}lights = {lights}\ntolerance = {self.tolerance}\n"
+        return (
+            f"textures = {textures}\n{atlas}lights = {lights}\ntolerance = "
+            f"{self.tolerance}\n"
+        )
 
 
 CASES = (
@@ -190,7 +195,9 @@ def sparse_cubes() -> None:
 
 
 def measure(images: list[Picture], space: str, dim: int) -> dict[str, Any]:
-    """Compare the complete cube with a sparse cube for each image, and for all images."""
+    """Compare the complete cube with a sparse cube for each image, and for
+    all images.
+    """
     complete = build(space, dim, [])
     rows = [compare("complete cube", complete, complete)]
     for picture in images:
@@ -240,7 +247,8 @@ def compare(name: str, sparse: Measured, complete: Measured) -> dict[str, Any]:
 def largest_difference(sparse: Cube, complete: Cube, picture: Picture) -> float:
     """Return the largest ΔE00 between the answers of two cubes under the lights.
 
-    The colours are those of an image, as scenes read it: decoders of JPEG differ by a code value.
+    The colours are those of an image, as scenes read it: decoders of JPEG differ by a
+    code value.
     """
     sensor = sparse.data.sensor
     colours = np.concatenate(

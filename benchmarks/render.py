@@ -1,7 +1,9 @@
-"""The ColorChecker rendered with several methods, and rates of textures in Mitsuba, for docs/scene.md and its picture.
+"""The ColorChecker rendered with several methods, and rates of textures in Mitsuba, for
+docs/scene.md and its picture.
 
-Rates of every variant are measured in a child process, as an LLVM too old for Mitsuba ends it. All textures take turns
-in every round; a ratio is that of the CPU times of one round.
+Rates of every variant are measured in a child process, as an LLVM too old for Mitsuba
+ends it. All textures take turns in every round; a ratio is that of the CPU times of one
+round.
 """
 
 import sys
@@ -50,7 +52,9 @@ PLAIN_CUBE, ATLAS_CUBE = (
 
 @dataclass(frozen=True, eq=False)
 class Renders:
-    """XYZ images by light and method, and ΔE00 (24,) of their patches from the reference."""
+    """XYZ images by light and method, and ΔE00 (24,) of their patches from the
+    reference.
+    """
 
     images: dict[tuple[str, str], Array]
     delta_e: dict[tuple[str, str], Array]
@@ -85,7 +89,9 @@ def main() -> None:
 
 
 def methods(painted: Chart, folder: Path, dim: int) -> dict[str, Reflectances]:
-    """Return the reflectances of the patches by method; cubes are built in ``folder``."""
+    """Return the reflectances of the patches by method; cubes are built in
+    ``folder``.
+    """
     colours = painted.painted.tolist()
 
     def cube(name: str, *atlas: Path, **options: Any) -> Reflectances:
@@ -103,7 +109,9 @@ def methods(painted: Chart, folder: Path, dim: int) -> dict[str, Reflectances]:
 
 
 def render(methods: dict[str, Reflectances], layout: Layout, spp: int) -> Renders:
-    """Render all methods under all lights with one seed, and the reference with another seed too."""
+    """Render all methods under all lights with one seed, and the reference with another
+    seed too.
+    """
     images, delta_e = {}, {}
     for name in LIGHTS:
         emitter, white = checker.constant_light(name), light(name).white
@@ -126,7 +134,9 @@ def render(methods: dict[str, Reflectances], layout: Layout, spp: int) -> Render
 
 
 def figures(painted: Chart, renders: Renders) -> dict[str, Any]:
-    """Return the errors by method and by patch; means are over all patches, and over those inside sRGB."""
+    """Return the errors by method and by patch; means are over all patches, and over
+    those inside sRGB.
+    """
     errors = renders.delta_e
 
     def means(name: str, method: str) -> list[float]:

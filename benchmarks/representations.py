@@ -1,4 +1,6 @@
-"""Spectral representations compared with Kment 2011, for docs/scene.md and its pictures."""
+"""Spectral representations compared with Kment 2011, for docs/scene.md and its
+pictures.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -76,7 +78,9 @@ def printed_tables() -> dict[tuple[str, str], Printed]:
 
 
 def printed_filters() -> dict[tuple[str, int, str], Printed]:
-    """Return tables A.1 and A.2 of the thesis, by lights, samples and kind of filter."""
+    """Return tables A.1 and A.2 of the thesis, by lights, samples and kind
+    of filter.
+    """
     return {
         (row["lights"], int(row["samples"]), row["filter"]): Printed(
             float(row["mean"]), parameters=row["parameters"].replace(";", ",")
@@ -86,7 +90,9 @@ def printed_filters() -> dict[tuple[str, int, str], Printed]:
 
 
 def advice(comparison: Comparison) -> Iterator[Row]:
-    """Yield the cheapest representation for each set of lights and target, with and without tables of lights."""
+    """Yield the cheapest representation for each set of lights and target, with and
+    without tables of lights.
+    """
     without = tuple(row for row in comparison.results if row.light_floats < TABLE)
     kinds = {
         "cheapest": comparison,
@@ -111,7 +117,9 @@ def advice(comparison: Comparison) -> Iterator[Row]:
 def ranking(
     comparison: Comparison, thesis: Mapping[tuple[str, str], Printed]
 ) -> Iterator[Row]:
-    """Yield the errors and costs of every representation under each set of lights, smallest mean first."""
+    """Yield the errors and costs of every representation under each set of lights,
+    smallest mean first.
+    """
     names = ("mean", "std", "median", "p2_5", "p25", "p75", "p97_5")
     for row in comparison.results:
         printed = thesis.get((row.lights, row.name))
@@ -130,7 +138,9 @@ def ranking(
 def filter_rows(
     tuned: Sequence[TunedFilter], thesis: Mapping[tuple[str, int, str], Printed]
 ) -> list[Row]:
-    """Return the best filter of each kind; ``change`` is relative to no filter, None for that row."""
+    """Return the best filter of each kind; ``change`` is relative to no filter, None
+    for that row.
+    """
     unfiltered = {
         (one.lights, one.count): one.statistics.mean
         for one in tuned
@@ -168,7 +178,8 @@ def filter_rows(
 
 
 def riemann_rows(scene: Scene, thesis: Mapping[tuple[str, str], Printed]) -> list[Row]:
-    """Return mean ΔE00 of plain and enhanced sums with disjoint and with closed cells, and of the thesis.
+    """Return mean ΔE00 of plain and enhanced sums with disjoint and with closed cells,
+    and of the thesis.
 
     Closed cells are the literal reading of eq. 5.3: samples on a border count twice.
     """
@@ -190,7 +201,9 @@ def riemann_rows(scene: Scene, thesis: Mapping[tuple[str, str], Printed]) -> lis
 
 
 def closed(count: int) -> Representation:
-    """Return means over closed cells; XYZ by the colour-matching functions at 5 nm, shared between cells."""
+    """Return means over closed cells; XYZ by the colour-matching functions at 5 nm,
+    shared between cells.
+    """
     inside = _cells(count)
     encoder = np.zeros((len(samples.wavelengths()), count))
     encoder[:: samples.TABLE_STRIDE] = (inside / inside.sum(axis=1, keepdims=True)).T
@@ -201,7 +214,9 @@ def closed(count: int) -> Representation:
 
 
 def enhanced(count: int) -> Representation:
-    """Return enhanced sums over the same cells; a spike on a border is multiplied by the mean of both."""
+    """Return enhanced sums over the same cells; a spike on a border is multiplied by
+    the mean of both.
+    """
     inside, family = _cells(count), "enhanced Riemann sums, closed cells"
     return composite(
         f"RE{count}",

@@ -54,13 +54,19 @@ SESSION = (
     "cd uplift-samples",
     "uplift relight -o relit.html",
     "uplift build --atlas macbeth --dim 32",
-    "uplift query --cube macbeth-32.uplift '#da7b2a' --wavelengths 400:700:50 --plot orange.png",
+    (
+        "uplift query --cube macbeth-32.uplift '#da7b2a' --wavelengths 400:700:50 "
+        "--plot "
+        "orange.png"
+    ),
 )
 """Commands of the README."""
 
 
 def main() -> None:
-    """Draw the charts, the still life and the film, and store the errors of the charts."""
+    """Draw the charts, the still life and the film, and store the errors of
+    the charts.
+    """
     FOLDER.mkdir(exist_ok=True)
     cubes = {PLAIN: uplift.load(), ATLAS: uplift.build("macbeth", dim=DIM)}
     means = draw_charts(cubes)
@@ -70,7 +76,9 @@ def main() -> None:
 
 
 def session() -> list[dict[str, str]]:
-    """Run the commands of the README in an empty folder, each in its process, and return all that they print."""
+    """Run the commands of the README in an empty folder, each in its process, and
+    return all that they print.
+    """
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         package = unpack(build_wheel(folder / "wheel"), folder / "package")
@@ -159,7 +167,9 @@ def draw_still_life(cubes: Cubes) -> None:
 
 
 def expose_film(cubes: Cubes) -> None:
-    """Expose the chart on a film by tables, draw the layers as red, green and blue, and store the errors in stops."""
+    """Expose the chart on a film by tables, draw the layers as red, green and blue, and
+    store the errors in stops.
+    """
     painted, daylight, luminous = (
         chart(),
         light(FILM_LIGHT),
@@ -174,7 +184,8 @@ def expose_film(cubes: Cubes) -> None:
         with tempfile.TemporaryDirectory() as folder:
             stated = write_film(cube, Path(folder) / "film.npy", light=FILM_LIGHT).stops
             table = np.load(Path(folder) / "film.npy").astype(float) @ layers
-        # As readers do: adapt to the light of the film, look up the chromaticity, scale by X + Y + Z.
+        # As readers do: adapt to the light of the film, look up the chromaticity, scale
+        # by X + Y + Z.
         gain = (CAT16 @ daylight.white) / (CAT16 @ cube.data.sensor.light.white)
         xyz = np.linalg.solve(
             CAT16, gain[:, None] * (CAT16 @ cube.data.sensor.xyz(painted.painted).T)

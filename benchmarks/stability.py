@@ -1,4 +1,6 @@
-"""Failures of fits, sensitivity of stored cubes, and exported programs, for docs/stability.md and its pictures."""
+"""Failures of fits, sensitivity of stored cubes, and exported programs, for
+docs/stability.md and its pictures.
+"""
 
 from typing import Any
 
@@ -38,7 +40,9 @@ STORED = (
     "moments-8",
     "sigmoid-8",
 )
-"""Stored cubes; the page lists the first two, and the atlas of the second one is changed."""
+"""Stored cubes; the page lists the first two, and the atlas of the second one is
+changed.
+"""
 ENTRIES = 24
 PUBLISHED = ("otsu2018", "mallett2019", "smits1999")
 KINDS = {
@@ -77,7 +81,9 @@ def main() -> None:
 
 
 def published() -> None:
-    """Measure how the packaged cube and published methods answer moved queries, and store it."""
+    """Measure how the packaged cube and published methods answer moved queries, and
+    store it.
+    """
     light = observer.light(NARROW_BAND_LIGHT)
     ours = [
         move | {"mode": "packaged cube"}
@@ -111,7 +117,9 @@ def failure_map() -> list[dict[str, Any]]:
 
 
 def cube_sensitivity(name: str) -> dict[str, Any]:
-    """Measure the sensitivity of a stored cube, and plot the effect of entries that are left out."""
+    """Measure the sensitivity of a stored cube, and plot the effect of entries that are
+    left out.
+    """
     path = CUBES / f"{name}.uplift"
     cube = uplift.load(path)
     atlas = recorded_atlas(cube.data, path) if name == CONSTRAINED else None
@@ -172,7 +180,9 @@ def exports() -> None:
 
 
 def realisable(cube: Cube) -> Array:
-    """Return random colours (CHECKED, 3), float32, farther inside the solid than the threshold."""
+    """Return random colours (CHECKED, 3), float32, farther inside the solid than the
+    threshold.
+    """
     rgb = np.random.default_rng(0).uniform(0, 1, (4 * CHECKED, 3)).astype(np.float32)
     return rgb[
         cube.data.solid.signed_distance(rgb.astype(float)) < -cube.data.threshold
@@ -180,7 +190,9 @@ def realisable(cube: Cube) -> Array:
 
 
 def difference(cube: Cube, mode: str, rgb: Array) -> Row:
-    """Return the largest and mean difference of reflectances of each colour, and the share of visible ones."""
+    """Return the largest and mean difference of reflectances of each colour, and the
+    share of visible ones.
+    """
     found, _ = run_header(cube, mode, rgb, 0)
     error = np.abs(found - cube.reflectance(rgb.astype(float), mode=mode)).max(axis=1)
     return {

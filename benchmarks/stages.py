@@ -1,4 +1,6 @@
-"""CPU time of the stages of commands, imports and tracing included, for docs/speed.md."""
+"""CPU time of the stages of commands, imports and tracing included, for
+docs/speed.md.
+"""
 
 import functools
 import importlib
@@ -41,7 +43,8 @@ TEXTURE = {
     "uplift.io.texture.sequence:converter_for": "encoding",
     "uplift.io.texture:convert": "rows of pixels",
 }
-"""Functions by the stage that they are; what one of them calls is counted there alone."""
+"""Functions by the stage that they are; what one of them calls is counted there alone.
+"""
 PROGRAMS = ("uplift.fit.batch:_program", "uplift.fit.kriging:_kernel_block")
 """Functions that JAX traces; the first returns one."""
 
@@ -94,7 +97,9 @@ def main() -> None:
 
 
 def run(arguments: list[str], stages: dict[str, str]) -> dict[str, float]:
-    """Run a command in this process with a clock around its stages, and return their CPU seconds."""
+    """Run a command in this process with a clock around its stages, and return their
+    CPU seconds.
+    """
     from uplift_cli.startup import enable_jit_cache, prepare_process
 
     prepare_process()

@@ -45,7 +45,9 @@ GRIDS = (
 def round_trips(
     cube: Cube, images: list[Picture], target: Path
 ) -> Iterator[dict[str, Any]]:
-    """Yield ΔE00 between each image and its textures, read by OpenEXR and, where spectral, by colour-science."""
+    """Yield ΔE00 between each image and its textures, read by OpenEXR and, where
+    spectral, by colour-science.
+    """
     uplifters = [
         (name, form, texture.prepare(cube, form, depth=depth))
         for name, form, depth in FORMS
@@ -110,7 +112,9 @@ def _rgb_by_colour_science(path: Path) -> Array:
 def fewer_wavelengths(
     cube: Cube, images: list[Picture], target: Path, first: int, last: int, step: int
 ) -> dict[str, Any]:
-    """Return ΔE00 of half-float spectra at first:last:step nm, converted back by colour-science."""
+    """Return ΔE00 of half-float spectra at first:last:step nm, converted back by
+    colour-science.
+    """
     wavelengths = tuple(
         float(wavelength) for wavelength in range(first, last + 1, step)
     )
@@ -146,7 +150,9 @@ JOBS: tuple[tuple[int, tuple[str, ...], int], ...] = (
 
 
 def _write(path: Path, size: int) -> None:
-    """Write a photograph tiled to size² pixels as 8-bit PNG, with noise so that the tiles do not compress."""
+    """Write a photograph tiled to size² pixels as 8-bit PNG, with noise so that the
+    tiles do not compress.
+    """
     import OpenImageIO
     from PIL import Image
 
@@ -198,7 +204,8 @@ def time_textures(
 
 def main() -> None:
     """Measure and store."""
-    # First: a process started from a large one counts the memory of its parent as its own.
+    # First: a process started from a large one counts the memory of its parent as its
+    # own.
     speed = [time_textures(CUBES / "moments-16-macbeth.uplift", *job) for job in JOBS]
     cube, images = uplift.build(MACBETH, dim=32), list(pictures())
     with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,6 @@
-"""Selection of wavelengths, and reproduction of Meyer 1988, for docs/scene.md and its pictures."""
+"""Selection of wavelengths, and reproduction of Meyer 1988, for docs/scene.md and its
+pictures.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -40,7 +42,8 @@ LIGHTS = (("A", "B", "C", "D65"), ("FL2", "FL7", "FL11"))
 """Smooth ones, and spiky ones."""
 COLOURS = ("#20509a", "#d1495b", "#2e8b57", "#c98a1b", "#7fa3d9")
 CORNERS = np.array([[0.5, np.sqrt(0.75)], [0.0, 0.0], [1.0, 0.0]])
-"""Corners of figure 7, where the first, second and third channel have all wavelengths."""
+"""Corners of figure 7, where the first, second and third channel have all wavelengths.
+"""
 PICTURES = DOCS / "wavelengths"
 Nodes = tuple[Array, Array]
 """Wavelengths (n,) and weights (n,)."""
@@ -49,7 +52,9 @@ Nodes = tuple[Array, Array]
 
 
 def printed_rules(table: str, key: str) -> dict[tuple[str, str], Nodes]:
-    """Return the rules of a table of the paper, by channel and value of the column ``key``."""
+    """Return the rules of a table of the paper, by channel and value of the column
+    ``key``.
+    """
     lines = read_reference(table)
     found = {}
     for name in dict.fromkeys((row["channel"], row[key]) for row in lines):
@@ -66,8 +71,9 @@ def mean_error(
 ) -> float:
     """Mean ΔE76 of an allocation: a rule for each channel.
 
-    The white of L*a*b* is the perfect reflector, sampled at the same wavelengths as the materials. The paper uses the
-    light itself. So it comes close to the printed errors; sampled at all wavelengths it does not.
+    The white of L*a*b* is the perfect reflector, sampled at the same wavelengths as the
+    materials. The paper uses the light itself. So it comes close to the printed errors;
+    sampled at all wavelengths it does not.
     """
     channels = []
     for rule in allocation:
@@ -92,7 +98,9 @@ def mean_error(
 
 
 def run_trials(setup: RenderSetup, space: Array) -> tuple[Array, Array]:
-    """Evaluate every allocation of defined orders up to 10: numbers of wavelengths (T, 3) and mean ΔE76 (T,)."""
+    """Evaluate every allocation of defined orders up to 10: numbers of wavelengths (T,
+    3) and mean ΔE76 (T,).
+    """
     candidates = list(paper.allocations(setup, space))
     counts = [[len(rule) for rule in allocation] for allocation in candidates]
     return np.array(counts), np.array(
@@ -181,7 +189,9 @@ def matrices(setup: RenderSetup, spaces: Mapping[str, Array]) -> list[Row]:
 def node_row(
     channel: str, order: int, rule: QuadratureRule | str, expected: Nodes | None
 ) -> Row:
-    """Return the wavelengths of an order in tables 1a and 1b; ``undefined`` is why it has none."""
+    """Return the wavelengths of an order in tables 1a and 1b; ``undefined`` is why it
+    has none.
+    """
     row: Row = {"channel": channel, "order": order}
     if isinstance(rule, QuadratureRule):
         return row | compared(expected[0], rule.nodes) | {"undefined": None}
@@ -236,10 +246,12 @@ Errors = Mapping[tuple[str, int], Array]
 
 
 def compare_methods(materials: Array, lights: tuple[str, ...]) -> dict[str, Errors]:
-    """Evaluate all methods with every number of wavelengths under several lights at once, by materials of the test.
+    """Evaluate all methods with every number of wavelengths under several lights at
+    once, by materials of the test.
 
-    ``unseen``: fitted to the even ones, tested on the odd ones; methods that are not fitted get the latter, which
-    favours Meyer's allocation. ``all``: fitted to and tested on all.
+    ``unseen``: fitted to the even ones, tested on the odd ones; methods that are not
+    fitted get the latter, which favours Meyer's allocation. ``all``: fitted to and
+    tested on all.
     """
     setup = make_setup(materials, lights)
     odd = np.arange(len(materials)) % 2 == 1
@@ -258,10 +270,11 @@ def compare_methods(materials: Array, lights: tuple[str, ...]) -> dict[str, Erro
 def tables(
     lights: tuple[str, ...], comparison: Mapping[str, Errors]
 ) -> Iterator[tuple[Row, list[Row]]]:
-    """Yield the summary of a test and its rows: [mean, 95th percentile, largest] ΔE00 of every method.
+    """Yield the summary of a test and its rows: [mean, 95th percentile, largest] ΔE00
+    of every method.
 
-    ``gain`` is the ratio of the best other method's mean to the optimised one's. ``needed`` are the fewest wavelengths
-    for a mean of 1; None if 16 do not reach it.
+    ``gain`` is the ratio of the best other method's mean to the optimised one's.
+    ``needed`` are the fewest wavelengths for a mean of 1; None if 16 do not reach it.
     """
     for materials, errors in comparison.items():
         means = {
@@ -305,7 +318,9 @@ def spread(ratios: Array) -> Row:
 
 
 def figure_6(trials: Mapping[str, tuple[Array, Array]]) -> Any:
-    """Plot the mean over all allocations, and the best of them, over the number of wavelengths."""
+    """Plot the mean over all allocations, and the best of them, over the number of
+    wavelengths.
+    """
     figure = new_figure(7.2, 3.6)
     axes = figure.subplots()
     for (name, (counts, errors)), colour in zip(trials.items(), COLOURS, strict=False):
@@ -325,10 +340,13 @@ def figure_6(trials: Mapping[str, tuple[Array, Array]]) -> Any:
 
 
 def figure_7(counts: Array, errors: Array, divisions: int = 10) -> Any:
-    """Plot the mean error over the shares of the channels as small triangles, darker for larger errors."""
+    """Plot the mean error over the shares of the channels as small triangles, darker
+    for larger errors.
+    """
     from matplotlib.collections import PolyCollection
 
-    # A trial on a line between small triangles belongs to one side of it, regardless of rounding.
+    # A trial on a line between small triangles belongs to one side of it, regardless of
+    # rounding.
     floors = np.floor(
         divisions * counts / counts.sum(axis=1, keepdims=True) + 1e-9
     ).astype(int)

@@ -4,7 +4,8 @@ import gc
 import sys
 
 COLLECT_AFTER = 1_000_000
-"""New objects between searches for garbage: imports create a million, which all stay."""
+"""New objects between searches for garbage: imports create a million, which all stay.
+"""
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells report it."""
 

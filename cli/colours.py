@@ -1,4 +1,6 @@
-"""Colours from arguments, files and standard input as linear RGB. All functions raise `ColourError`."""
+"""Colours from arguments, files and standard input as linear RGB. All functions raise
+`ColourError`.
+"""
 
 from __future__ import annotations
 
@@ -25,11 +27,16 @@ if TYPE_CHECKING:
     from uplift.common.arrays import Array
 
 AMBIGUOUS = re.compile(r"(?:[01](?:,\d+)?,){2}[01](?:,\d+)?", re.ASCII)
-"""Whole numbers between commas that may be three numbers from 0 to 1 with decimal commas."""
+"""Whole numbers between commas that may be three numbers from 0 to 1 with decimal
+commas.
+"""
 RGBA = re.compile(r"[01](?:,[01]){3}")
 DECIMAL = re.compile(r"[+-]?\d+(?:,\d+)?", re.ASCII)
 """A whole number, or one with a decimal comma."""
-DECIMALS = "write decimal points, or separate numbers with decimal commas by semicolons: '0,2;0,3;0,4'"
+DECIMALS = (
+    "write decimal points, or separate numbers with decimal commas by semicolons: "
+    "'0,2;0,3;0,4'"
+)
 HEX = re.compile(r"#?([0-9a-fA-F]{6})|#([0-9a-fA-F]{3})")
 STATED_DELIMITER = re.compile(r"\s*\"?sep=.\"?\s*", re.IGNORECASE)
 """First line that states the delimiter to spreadsheets."""
@@ -47,10 +54,11 @@ Colour = tuple[list[float], bool]
 
 @dataclass(frozen=True)
 class ColourSource:
-    """Colours in words, or in the file of a ``path``, '-' for standard input, or one by XYZ.
+    """Colours in words, or in the file of a ``path``, '-' for standard input, or one by
+    XYZ.
 
-    Numbers are codes from 0 to 255 if ``encoded``, else linear RGB. Colours are in ``space``, or in that of the sensor
-    whose linear RGB they are converted to.
+    Numbers are codes from 0 to 255 if ``encoded``, else linear RGB. Colours are in
+    ``space``, or in that of the sensor whose linear RGB they are converted to.
     """
 
     words: tuple[str, ...] = ()
@@ -67,7 +75,9 @@ class ColourSource:
         )
 
     def blocks(self, sensor: Sensor, *, bounded: bool = False) -> Iterable[Array]:
-        """Return blocks of linear RGB (n, 3) from the words or the file, which must lie in [0, 1] if ``bounded``."""
+        """Return blocks of linear RGB (n, 3) from the words or the file, which must lie
+        in [0, 1] if ``bounded``.
+        """
         if self.path is not None:
             return self._read(self.path, sensor, bounded)
         colours = _parse_words(self.words)
@@ -91,10 +101,12 @@ class ColourSource:
     def parse_table(
         self, file: IO[bytes], name: str, sensor: Sensor, bounded: bool = False
     ) -> Iterator[Array]:
-        """Parse lines of 'r,g,b' or hex colours into blocks of linear RGB (n, 3), as the lines come.
+        """Parse lines of 'r,g,b' or hex colours into blocks of linear RGB (n, 3), as
+        the lines come.
 
-        Cells are separated by commas, semicolons, tabs or blanks, and numbers may have decimal commas. A first line
-        without numbers is a header. Further columns are ignored.
+        Cells are separated by commas, semicolons, tabs or blanks, and numbers may have
+        decimal commas. A first line without numbers is a header. Further columns are
+        ignored.
         """
         empty, width = True, 0  # cells of the header
         for rows in _row_blocks(file, name):
@@ -171,13 +183,16 @@ def find_colours(
     encoded: bool,
     input_space: str | None,
 ) -> ColourSource:
-    """Return the source that the values of `options.colours` name. Raises click's error for none or several."""
+    """Return the source that the values of `options.colours` name. Raises click's error
+    for none or several.
+    """
     space = None if input_space is None else find_input_space(input_space)
     if colour == ("-",):
         colour, input_path = (), input_path or "-"
     if (xy is None) != (luminance is None) or (xyz is not None and xy is not None):
         raise click.UsageError(
-            "--xy X Y and --luminance Y require each other, and --xyz is an alternative."
+            "--xy X Y and --luminance Y require each other, and --xyz is an "
+            "alternative."
         )
     if xy is not None and luminance is not None:
         x, y = xy
@@ -195,7 +210,9 @@ def find_colours(
 def _row_blocks(
     file: IO[bytes], name: str
 ) -> Iterator[list[tuple[int, str, list[str]]]]:
-    """Yield line numbers, texts and cells in blocks, each as soon as it can be read: a stream may never end."""
+    """Yield line numbers, texts and cells in blocks, each as soon as it can be read: a
+    stream may never end.
+    """
     decoder = io.IncrementalNewlineDecoder(
         codecs.getincrementaldecoder("utf-8-sig")(), translate=True
     )
@@ -226,7 +243,9 @@ def _row_blocks(
 
 
 def _cells(text: str, name: str, line: int) -> list[str]:
-    """Return the cells of a line; none of an empty line, and of one that states the delimiter."""
+    """Return the cells of a line; none of an empty line, and of one that states the
+    delimiter.
+    """
     if not text.strip("".join(DELIMITERS)) or (
         line == 1 and STATED_DELIMITER.match(text)
     ):
@@ -238,7 +257,9 @@ def _cells(text: str, name: str, line: int) -> list[str]:
 
 
 def _is_header(row: Sequence[str]) -> bool:
-    """Whether the cells of a line are neither numbers nor a hex colour, not even a misspelt one."""
+    """Whether the cells of a line are neither numbers nor a hex colour, not even a
+    misspelt one.
+    """
     return (
         re.match(r"#\w", row[0]) is None
         and _parse(row[:1]) is None
@@ -247,7 +268,9 @@ def _is_header(row: Sequence[str]) -> bool:
 
 
 def _is_ambiguous(text: str) -> bool:
-    """Whether a text between commas may be three numbers with decimal commas; not red, green, blue and alpha."""
+    """Whether a text between commas may be three numbers with decimal commas; not red,
+    green, blue and alpha.
+    """
     text = re.sub(r"\s", "", text)
     return (
         text.count(",") > 2
@@ -268,7 +291,8 @@ def _parse(parts: Sequence[str]) -> Colour | None:
 def _parse_words(words: Sequence[str]) -> list[Colour]:
     """Parse colours 'R G B', 'R,G,B' and '#rrggbb', one after the other.
 
-    Three numbers of which one has a decimal comma, such as '0,2 0,3 1' or '0,2;0,3;1', are a colour too.
+    Three numbers of which one has a decimal comma, such as '0,2 0,3 1' or '0,2;0,3;1',
+    are a colour too.
     """
     given = words
     words = [word for text in given for word in re.split(r"[;\s]+", text) if word]
@@ -304,7 +328,10 @@ def _warn_of_fractions(colours: Sequence[Colour]) -> None:
             [
                 UpliftWarning(
                     problem,
-                    hint=f"for encoded numbers from 0 to 1 give 255 times as much: {codes}",
+                    hint=(
+                        "for encoded numbers from 0 to 1 give 255 times as much: "
+                        f"{codes}"
+                    ),
                 )
             ]
         )

@@ -1,4 +1,6 @@
-"""Ingredients of a mixture: '2:#1f3a93', 'yellow', '1:0.2,0.1,0.6' or '3:#c8342a/#5a120e'."""
+"""Ingredients of a mixture: '2:#1f3a93', 'yellow', '1:0.2,0.1,0.6' or
+'3:#c8342a/#5a120e'.
+"""
 
 from __future__ import annotations
 
@@ -26,9 +28,11 @@ CONSTANT_SPECTRA = {"white": 1.0, "black": 0.0}
 
 @dataclass(frozen=True, eq=False)
 class SpectrumResolver:
-    """Spectra at ``wavelengths`` (N,) of colours, by a cube, and of named entries, by the cube and an atlas.
+    """Spectra at ``wavelengths`` (N,) of colours, by a cube, and of named entries, by
+    the cube and an atlas.
 
-    Colours are in ``space``, or in that of the cube. Those outside [0, 1] are mapped into the gamut by ``method``.
+    Colours are in ``space``, or in that of the cube. Those outside [0, 1] are mapped
+    into the gamut by ``method``.
     """
 
     cube: Cube
@@ -40,10 +44,12 @@ class SpectrumResolver:
     def ingredient(
         self, word: str, kind: str = "pigment"
     ) -> tuple[str, float, Array, Array | None]:
-        """Return name, parts, spectrum (N,), and spectrum on black (N,) if one is given.
+        """Return name, parts, spectrum (N,), and spectrum on black (N,) if one is
+        given.
 
-        Of the kind 'duntley' the name is a file of constants, which replace the spectrum (6, N). Raises `ColourError`
-        for unknown names, `OptionError` for parts that are not positive, `AtlasError` for files.
+        Of the kind 'duntley' the name is a file of constants, which replace the
+        spectrum (6, N). Raises `ColourError` for unknown names, `OptionError` for parts
+        that are not positive, `AtlasError` for files.
         """
         from uplift.design.mixing.pigments import read_constants
 
@@ -66,7 +72,9 @@ class SpectrumResolver:
         return name, parts, on_white, on_black
 
     def spectrum(self, text: str) -> Array:
-        """Return the spectrum (N,) of a colour, 'white', 'black' or an entry. Raises `ColourError`."""
+        """Return the spectrum (N,) of a colour, 'white', 'black' or an entry. Raises
+        `ColourError`.
+        """
         import numpy as np
 
         from uplift.atlas import Atlas, on_grid
@@ -89,13 +97,19 @@ class SpectrumResolver:
         except ColourError as error:
             if error.code == "ambiguous-numbers":
                 raise
-            hint = "write '#rrggbb', 'r,g,b' in linear RGB, or an entry of the cube's atlas or of --atlas"
+            hint = (
+                "write '#rrggbb', 'r,g,b' in linear RGB, or an entry of the cube's "
+                "atlas or of --atlas"
+            )
             raise ColourError(
                 f"{error.problem} and not an atlas entry", hint=hint
             ) from error
         mapped = map_to_gamut(rgb, self.cube.data.sensor, self.method)
         if mapped.count:
-            problem = f"{format_value(text)} lies outside [0, 1]: mapped into the gamut ({self.method})"
+            problem = (
+                f"{format_value(text)} lies outside [0, 1]: mapped into the gamut "
+                f"({self.method})"
+            )
             warn([UpliftWarning(problem)])
         return self.cube.reflectance(mapped.rgb, self.wavelengths)
 

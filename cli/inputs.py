@@ -1,4 +1,6 @@
-"""Inputs that several commands name alike: atlases, images, wavelengths and RGB spaces. All raise `UpliftError`."""
+"""Inputs that several commands name alike: atlases, images, wavelengths and RGB spaces.
+All raise `UpliftError`.
+"""
 
 from __future__ import annotations
 
@@ -47,7 +49,9 @@ def atlas_files(files: Sequence[str | Path]) -> Sequence[str | Path]:
 
 
 def read_atlases(files: Sequence[str | Path]) -> dict[str, Atlas]:
-    """Return atlases by the stems of their file names; without files, the default ones."""
+    """Return atlases by the stems of their file names; without files, the
+    default ones.
+    """
     from uplift.atlas import read_atlas
 
     atlases: dict[str, Atlas] = {}
@@ -64,9 +68,11 @@ def read_atlases(files: Sequence[str | Path]) -> dict[str, Atlas]:
 
 
 def expand_patterns(sources: Sequence[str]) -> list[str]:
-    """Return the paths of images and patterns, in order. A pattern may hold the number of a UDIM tile.
+    """Return the paths of images and patterns, in order. A pattern may hold the number
+    of a UDIM tile.
 
-    Raises `TextureError` for a path that is not a file, and for a pattern that matches none.
+    Raises `TextureError` for a path that is not a file, and for a pattern that matches
+    none.
     """
     paths = [path for source in sources for path in _expand(source)]
     for path in paths:
@@ -88,7 +94,9 @@ def _expand(source: str) -> list[str]:
 def read_pictures(
     paths: Sequence[str], sensor: Sensor, *, space: str | None = None, **options: str
 ) -> list[Picture]:
-    """Return images, reduced to `MAX_SIDE`, with the options of `options.pixels`, and emit their warnings."""
+    """Return images, reduced to `MAX_SIDE`, with the options of `options.pixels`, and
+    emit their warnings.
+    """
     from uplift.io.texture.picture import read_picture
 
     found = None if space is None else find_input_space(space)
@@ -121,14 +129,18 @@ def parse_wavelengths(text: str) -> Array:
 
 
 def find_input_space(name: str) -> ImageSpace:
-    """Return the space of a name or of chromaticities. The tables take a second to load."""
+    """Return the space of a name or of chromaticities. The tables take a second to
+    load.
+    """
     from uplift.colorimetry.spaces import find_space
 
     return find_space(name)
 
 
 def find_light(text: str) -> Illuminant:
-    """Return the name of an illuminant, or the lamp of a file. Without a file of this name no reader is imported."""
+    """Return the name of an illuminant, or the lamp of a file. Without a file of this
+    name no reader is imported.
+    """
     from uplift.colorimetry import tables
 
     if text in tables.names("illuminant") or (
@@ -168,7 +180,9 @@ def check_plot(path: str) -> None:
 
 
 def check_range(wavelengths: Array, own: Array) -> None:
-    """Check that wavelengths (N,) lie in the range of a cube or a table; the library continues spectra."""
+    """Check that wavelengths (N,) lie in the range of a cube or a table; the library
+    continues spectra.
+    """
     first, last = own[[0, -1]]
     outside = [each for each in wavelengths if not first <= each <= last]
     if outside:

@@ -1,4 +1,6 @@
-"""``uplift``: find the command, run it, and print errors and warnings on one line each."""
+"""``uplift``: find the command, run it, and print errors and warnings on
+one line each.
+"""
 
 import contextlib
 import importlib
@@ -89,7 +91,9 @@ class LazyGroup(Group):
                 )
 
     def main(self, *args: Any, **options: Any) -> Any:
-        """Run the command line and exit with one of the codes of `uplift help exit-codes`."""
+        """Run the command line and exit with one of the codes of `uplift help
+        exit-codes`.
+        """
         code: Any
         try:
             code = super().main(*args, **options | {"standalone_mode": False})
@@ -122,7 +126,8 @@ class LazyGroup(Group):
             warnings.showwarning = show_warning
             try:
                 result = super().invoke(ctx)
-                flush_stdout()  # a full disk must be noticed while errors can still be reported
+                # a full disk must be noticed while errors can still be reported
+                flush_stdout()
             except (
                 click.ClickException,
                 click.exceptions.Exit,

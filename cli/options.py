@@ -1,4 +1,5 @@
-"""Options that several commands share, the types of their values, and the names that a shell completes.
+"""Options that several commands share, the types of their values, and the names that a
+shell completes.
 
 Commands import this module and write ``@options.cube``.
 """
@@ -31,7 +32,9 @@ NEGATIVE_NUMBER = re.compile(r"-\.?\d")
 HELP_ALL = "uplift.help-all"
 """Key of the context's ``meta`` while the whole help is printed."""
 INPUTS = "uplift.inputs"
-"""Key of the context's ``meta`` under which files of lamps are kept: those that name no file do no harm."""
+"""Key of the context's ``meta`` under which files of lamps are kept: those that name no
+file do no harm.
+"""
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
 
@@ -39,8 +42,9 @@ OUTPUT_FORMAT = "uplift.output-format"
 class Command(click.Command):
     """A command with many options, which reads '-0.1' as a number, not as an option.
 
-    ``--help`` shows the options of every day, by the names of their parameters, and the text before a form feed.
-    ``--help-all`` shows everything. ``no_arguments`` is stated where a command without arguments is given some.
+    ``--help`` shows the options of every day, by the names of their parameters, and the
+    text before a form feed. ``--help-all`` shows everything. ``no_arguments`` is stated
+    where a command without arguments is given some.
     """
 
     def __init__(
@@ -146,7 +150,9 @@ class Number(click.ParamType):  # type: ignore[type-arg]
 
 
 class Whole(click.IntRange):
-    """A whole number in ASCII digits that fits into 64 bits, in a range, or a ``word`` in place of it."""
+    """A whole number in ASCII digits that fits into 64 bits, in a range, or a ``word``
+    in place of it.
+    """
 
     def __init__(
         self, min: int | None = None, max: int | None = None, *, word: str = ""
@@ -176,7 +182,9 @@ class Whole(click.IntRange):
 
 
 class Parsed(click.ParamType):  # type: ignore[type-arg]
-    """A text that a function of `uplift_cli.inputs` parses, which may raise `UpliftError`."""
+    """A text that a function of `uplift_cli.inputs` parses, which may raise
+    `UpliftError`.
+    """
 
     name = "text"
 
@@ -202,7 +210,9 @@ class Checked(Parsed):
 
 
 class Light(Parsed):
-    """The name of an illuminant, or a file of a lamp, which is kept among the inputs of the command."""
+    """The name of an illuminant, or a file of a lamp, which is kept among the inputs of
+    the command.
+    """
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
@@ -230,7 +240,8 @@ def completion(
 ) -> Callable[..., list[CompletionItem]]:
     """Complete names, and the names of ``files``.
 
-    Sources are tuples or functions of the library with their arguments: 'module:name', 'module:name:argument'.
+    Sources are tuples or functions of the library with their arguments: 'module:name',
+    'module:name:argument'.
     """
 
     def complete(
@@ -340,7 +351,10 @@ def choice(
 encoding = choice(
     "--encoding",
     *("auto", "linear", "encoded"),
-    help="Encoding of images. auto: whole numbers have the transfer function of the cube's space, floats are linear.",
+    help=(
+        "Encoding of images. auto: whole numbers have the transfer function of the "
+        "cube's space, floats are linear."
+    ),
 )
 
 
@@ -354,7 +368,8 @@ def input_space(
         metavar="NAME",
         type=INPUT_SPACE,
         shell_complete=complete_space,
-        help=f"RGB space of {subject}: a name of OpenColorIO or colour-science such as ACEScg or lin_rec2020, or x,y "
+        help=f"RGB space of {subject}: a name of OpenColorIO or colour-science such as "
+        "ACEScg or lin_rec2020, or x,y "
         f"of red, green, blue and white. [default: {default}]",
     )
 
@@ -366,9 +381,14 @@ PIXELS = "clip", "as images often have a few, which are counted"
 def out_of_gamut(
     default: str, why: str, subject: str = "colours", name: str = "method"
 ) -> Decorator:
-    """``--out-of-gamut``: names of `uplift.colorimetry.gamut.METHODS`, which is not imported here."""
+    """``--out-of-gamut``: names of `uplift.colorimetry.gamut.METHODS`, which is not
+    imported here.
+    """
     methods = ("error", "clip", "scale", "desaturate", "desaturate-oklab")
-    text = f"Treatment of {subject} outside [0, 1]; 'uplift help gamut' describes it. [default: {default}, {why}]"
+    text = (
+        f"Treatment of {subject} outside [0, 1]; 'uplift help gamut' describes it. "
+        f"[default: {default}, {why}]"
+    )
     return choice(
         "--out-of-gamut",
         *methods,
@@ -380,7 +400,9 @@ def out_of_gamut(
 
 
 def pixels() -> Decorator:
-    """``--encoding``, ``--input-space`` and ``--out-of-gamut`` of images, as `uplift.io.texture` names them."""
+    """``--encoding``, ``--input-space`` and ``--out-of-gamut`` of images, as
+    `uplift.io.texture` names them.
+    """
     return stacked(
         encoding,
         input_space("the images", name="space"),
@@ -408,7 +430,8 @@ def _remember_format(ctx: click.Context, param: click.Parameter, value: str) -> 
 
 
 def plot(help: str, option: str = "--plot", name: str = "plot_path") -> Decorator:
-    """An option for the file of a plot, as ``name``. A suffix other than .png, .svg and .pdf is an error at once.
+    """An option for the file of a plot, as ``name``. A suffix other than .png, .svg and
+    .pdf is an error at once.
 
     At the end of a command it needs no FILE.
     """
@@ -431,16 +454,22 @@ def page(help: str, type: OutputFile = PAGE) -> Decorator:
 
 
 def wavelengths(help: str) -> Decorator:
-    """``--wavelengths`` as an array in nm, or None; `uplift_cli.inputs.check_range` checks their range."""
+    """``--wavelengths`` as an array in nm, or None; `uplift_cli.inputs.check_range`
+    checks their range.
+    """
     text = f"Wavelengths in nm as START:END:STEP or a list such as 450,550,650{help}"
     return click.option("--wavelengths", metavar="NM", type=WAVELENGTHS, help=text)
 
 
 cube_argument = click.argument("cube", metavar="CUBE", shell_complete=complete_cube)
-scale = choice(  # names of uplift.atlas.measurements.MEASURED, which is not imported here
+# names of uplift.atlas.measurements.MEASURED, which is not imported here
+scale = choice(
     "--scale",
     *("auto", "percent", "fraction"),
-    help="Scale of measured values. auto: as the atlas file states, or else by its values.",
+    help=(
+        "Scale of measured values. auto: as the atlas file states, or else by its "
+        "values."
+    ),
 )
 missing = choice(  # names of uplift.atlas.measurements.MISSING
     "--missing",
@@ -476,7 +505,9 @@ table = click.option(
 
 
 def colours(xyz: str, space: str) -> Decorator:
-    """COLOUR and the other sources of colours, for `uplift_cli.colours.find_colours`."""
+    """COLOUR and the other sources of colours, for
+    `uplift_cli.colours.find_colours`.
+    """
     return stacked(
         click.argument("colour", metavar="[COLOUR]...", nargs=-1),
         click.option(
@@ -536,7 +567,10 @@ verbose = click.option(
 
 def space(camera: str = "") -> Decorator:
     """``--space``: the space of what is built or listed."""
-    text = f"RGB space by its name in colour-science or OpenColorIO, such as ACEScg{camera}."
+    text = (
+        "RGB space by its name in colour-science or OpenColorIO, such as "
+        f"ACEScg{camera}."
+    )
     return click.option(
         "--space", default="sRGB", help=text, shell_complete=complete_space
     )
@@ -562,11 +596,16 @@ sensor = stacked(
         metavar="NAME|FILE",
         type=LIGHT,
         default="D65",
-        help="Illuminant under which RGB are defined; a cube needs a name, other commands read the file of a lamp.",
+        help=(
+            "Illuminant under which RGB are defined; a cube needs a name, other "
+            "commands read the file of a lamp."
+        ),
         shell_complete=complete_light,
     ),
     observer(
-        ", or with --space camera a camera: name or FILE of sensitivities (CSV, or JSON of rawtoaces)"
+        ", or with --space camera a camera: name or FILE of sensitivities (CSV, or "
+        "JSON of rawtoaces)"
     ),
 )
-"""``space``, ``illuminant`` and ``observer``, for `uplift.colorimetry.observer.sensor`."""
+"""``space``, ``illuminant`` and ``observer``, for `uplift.colorimetry.observer.sensor`.
+"""

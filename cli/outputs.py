@@ -1,4 +1,6 @@
-"""Files that a command writes: compared with all that it reads, before it computes anything."""
+"""Files that a command writes: compared with all that it reads, before it computes
+anything.
+"""
 
 from collections.abc import Callable, Iterable, Sequence
 
@@ -14,10 +16,11 @@ Paths = Iterable[StrPath | None]
 
 
 def check_outputs(*paths: StrPath | None, inputs: Paths = ()) -> None:
-    """Check that files can be written, are not there without ``--force``, and are not read by the current command.
+    """Check that files can be written, are not there without ``--force``, and are not
+    read by the current command.
 
-    It reads the files that its parameters name, and further ``inputs``, which patterns or files name. None are left
-    out.
+    It reads the files that its parameters name, and further ``inputs``, which patterns
+    or files name. None are left out.
     """
     files.check_outputs(paths, inputs=[*stated_inputs(), *inputs], force=_is_forced())
 
@@ -25,7 +28,9 @@ def check_outputs(*paths: StrPath | None, inputs: Paths = ()) -> None:
 def check_folder(
     path: StrPath | None, names: Sequence[str], inputs: Paths = ()
 ) -> None:
-    """Check the files of a folder as `check_outputs`, and that PNG can be drawn; `write_files` creates the folder."""
+    """Check the files of a folder as `check_outputs`, and that PNG can be drawn;
+    `write_files` creates the folder.
+    """
     if path is None:
         return
     if any(name.endswith(".png") for name in names):
@@ -52,7 +57,9 @@ def _is_forced() -> bool:
 
 
 def stated_inputs() -> list[str]:
-    """Return the texts of all parameters but outputs, and files of lamps: those that name no file do no harm."""
+    """Return the texts of all parameters but outputs, and files of lamps: those that
+    name no file do no harm.
+    """
     context = click.get_current_context()
     outputs = [
         param.name

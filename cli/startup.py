@@ -1,4 +1,6 @@
-"""Settings of the process: streams, signals, and variables that must precede the import of JAX or numpy."""
+"""Settings of the process: streams, signals, and variables that must precede the import
+of JAX or numpy.
+"""
 
 import codecs
 import contextlib
@@ -31,7 +33,9 @@ _CACHES: set[Path] = set()
 
 
 def prepare_process() -> None:
-    """Prepare streams, signals and matplotlib for a command that has the process for itself."""
+    """Prepare streams, signals and matplotlib for a command that has the process for
+    itself.
+    """
     _open_closed_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -44,7 +48,8 @@ def prepare_process() -> None:
             signal.signal(number, _end)
     if os.name == "posix":
         _watch_signals()
-    # Commands have workers of their own; threads of numpy's BLAS and of XLA wait for work by spinning.
+    # Commands have workers of their own; threads of numpy's BLAS and of XLA wait for
+    # work by spinning.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("PJRT_NPROC", "1")
     os.environ["MPLBACKEND"] = "agg"  # which needs no display
@@ -57,7 +62,7 @@ def prepare_process() -> None:
     if os.path.lexists("matplotlibrc"):  # matplotlib would obey it
         hide_drawing_notes()
         with contextlib.chdir(os.sep), contextlib.suppress(ImportError):
-            import matplotlib
+            import matplotlib  # noqa: F401
     sys.warnoptions.append(
         "ignore:resource_tracker:UserWarning"
     )  # of multiprocessing, about a process that was ended
@@ -76,26 +81,32 @@ codecs.register_error(_respell.__name__, _respell)
 
 
 def _open_closed_streams() -> None:
-    """Open the null device in place of streams that the caller closed: another file would take their descriptors.
+    """Open the null device in place of streams that the caller closed: another file
+    would take their descriptors.
 
-    It is opened such that each use of standard input and output is an error: nothing is lost without notice.
+    It is opened such that each use of standard input and output is an error: nothing is
+    lost without notice.
     """
     if sys.stdin is None:
-        sys.stdin = open(os.open(os.devnull, os.O_WRONLY))
+        sys.stdin = open(os.open(os.devnull, os.O_WRONLY))  # noqa: SIM115
     if sys.stdout is None:
-        sys.stdout = open(os.open(os.devnull, os.O_RDONLY), "w", encoding="utf-8")
+        sys.stdout = open(os.open(os.devnull, os.O_RDONLY), "w", encoding="utf-8")  # noqa: SIM115
     if sys.stderr is None:
-        sys.stderr = open(os.devnull, "w", encoding="utf-8")
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
 
 
 def _end(number: int, frame: object = None) -> None:
-    """End the process at once: an exception might be dropped, in an import or a callback of JAX."""
+    """End the process at once: an exception might be dropped, in an import or a
+    callback of JAX.
+    """
     remove_temporaries()
     os._exit(128 + number)  # as shells report the signal
 
 
 def _watch_signals() -> None:
-    """End the process from a thread: Python's handlers wait for compiled code, which may decode a file for minutes."""
+    """End the process from a thread: Python's handlers wait for compiled code, which
+    may decode a file for minutes.
+    """
     reader, writer = os.pipe()
     os.set_blocking(writer, False)
     signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
@@ -119,9 +130,11 @@ def hide_drawing_notes() -> None:
 
 
 def enable_jit_cache() -> None:
-    """Keep compiled JAX code in the user's cache folder, so that later commands do not compile it again.
+    """Keep compiled JAX code in the user's cache folder, so that later commands do not
+    compile it again.
 
-    JAX runs the code that it finds there. A folder that other users can change or replace is not used, with a warning.
+    JAX runs the code that it finds there. A folder that other users can change or
+    replace is not used, with a warning.
     """
     if "JAX_COMPILATION_CACHE_DIR" in os.environ:
         return
@@ -142,8 +155,14 @@ def enable_jit_cache() -> None:
             "not UTF-8" if isinstance(error, UnicodeError) else "loop of links"
         )
     if problem:
-        hint = "correct or remove the folder, or name another one by JAX_COMPILATION_CACHE_DIR"
-        text = f"compiled code is not kept, which costs seconds each time: {printable(str(folder))}: {problem}"
+        hint = (
+            "correct or remove the folder, or name another one by "
+            "JAX_COMPILATION_CACHE_DIR"
+        )
+        text = (
+            "compiled code is not kept, which costs seconds each time: "
+            f"{printable(str(folder))}: {problem}"
+        )
         warnings.warn(UpliftWarning(text, hint=hint), stacklevel=2)
         return
     _CACHES.add(folder)
@@ -153,7 +172,9 @@ def enable_jit_cache() -> None:
 
 
 def _exposure(folder: Path) -> str | None:
-    """Return how other users could change the files of a folder, or put another folder in its place; None if not."""
+    """Return how other users could change the files of a folder, or put another folder
+    in its place; None if not.
+    """
     user, status = os.getuid(), folder.stat()
     if status.st_uid != user or status.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
         return "other users can write to it"
@@ -181,9 +202,11 @@ def _is_private(group: int) -> bool:
 
 
 def remove_compiled_code() -> bool:
-    """Remove the compiled code that `enable_jit_cache` keeps, and return whether there was any.
+    """Remove the compiled code that `enable_jit_cache` keeps, and return whether there
+    was any.
 
-    JAX never replaces an entry, also if it cannot read it, or if it is the code of another function.
+    JAX never replaces an entry, also if it cannot read it, or if it is the code of
+    another function.
     """
     entries = [entry for folder in _CACHES for entry in folder.glob("*-cache")]
     for entry in entries:

@@ -1,4 +1,6 @@
-"""Configuration of the documentation site: ``make site`` builds it from docs/ with Sphinx."""
+"""Configuration of the documentation site: ``make site`` builds it from docs/ with
+Sphinx.
+"""
 
 import os
 
@@ -20,14 +22,16 @@ default_role = "py:obj"
 smartquotes = False  # they would change --options
 myst_heading_anchors = 4
 
-# The Python reference comes from docstrings in numpydoc's format. Annotations would repeat them.
+# The Python reference comes from docstrings in numpydoc's format. Annotations would
+# repeat them.
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 autodoc_default_options = {"members": True}
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 
-# Notebooks are stored with their output, and run again while the site is built, in an empty folder.
+# Notebooks are stored with their output, and run again while the site is built, in an
+# empty folder.
 nb_execution_mode = "force"
 nb_execution_in_temp = True
 nb_execution_raise_on_error = True
@@ -49,7 +53,8 @@ OUTSIDE = {
     "../CHANGELOG.md": "project/changelog.md",
     "../CONTRIBUTING.md": "project/contributing.md",
 }
-"""Files outside docs/ that pages link to, and the pages of the site that include them."""
+"""Files outside docs/ that pages link to, and the pages of the site that include them.
+"""
 
 
 def setup(app: Sphinx) -> None:
@@ -59,7 +64,9 @@ def setup(app: Sphinx) -> None:
 
 
 def complete_source(app: Sphinx, name: str, source: list[str]) -> None:
-    """Redirect links to files outside docs/, and append the help of all commands to their page."""
+    """Redirect links to files outside docs/, and append the help of all commands to
+    their page.
+    """
     for path, page in OUTSIDE.items():
         source[0] = source[0].replace(f"]({path})", f"]({page})")
     if name == "reference/commands":

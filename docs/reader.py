@@ -1,4 +1,5 @@
-"""A reader of cube files, written from cube-file.md alone: numpy, and nothing of uplift.
+"""A reader of cube files, written from cube-file.md alone: numpy, and nothing of
+uplift.
 
     python reader.py CUBE R G B [NM …]
 
@@ -101,13 +102,16 @@ class Cube:
         self.luminance = np.linalg.inv(to_rgb)[1]
 
     def reflectance(self, rgb, wavelengths):
-        """Reflectances at wavelengths in nm: a mixture, moved to its colour where nodes have not theirs."""
+        """Reflectances at wavelengths in nm: a mixture, moved to its colour where nodes
+        have not theirs.
+        """
         rgb, sensor = np.asarray(rgb, float), self.arrays["sensor.wavelengths"]
         mixed, is_exact = self.mixture(rgb, np.asarray(wavelengths, float))
         at_sensor, _ = self.mixture(rgb, sensor)
         if is_exact or np.abs(self.matrix @ at_sensor - rgb).max() <= 1e-8:
             return mixed
-        # g′ = S(x + K y) with W g′ = t, by Newton's steps, which are shortened where they go too far
+        # g′ = S(x + K y) with W g′ = t, by Newton's steps, which are shortened where
+        # they go too far
         goal, y, part = self.realisable(rgb), np.zeros(3), 1.0
         scale = np.linalg.inv(np.linalg.cholesky(self.matrix @ self.curves))
         least = min(
@@ -133,7 +137,9 @@ class Cube:
         return self.squash(self.linear(mixed, least) + y @ curves)
 
     def mixture(self, rgb, wavelengths):
-        """Weighted reflectances of nodes and entry, and whether all nodes have their own colours."""
+        """Weighted reflectances of nodes and entry, and whether all nodes have their
+        own colours.
+        """
         entry, share, at = self.box(rgb)
         low = np.clip(
             np.searchsorted(self.nodes, at, side="right") - 1, 0, len(self.nodes) - 2
@@ -159,7 +165,9 @@ class Cube:
         return value, is_exact.all()
 
     def box(self, rgb):
-        """The entry in whose box a colour lies, the weight of the lattice, and the colour at which it is evaluated."""
+        """The entry in whose box a colour lies, the weight of the lattice, and the
+        colour at which it is evaluated.
+        """
         steps = np.arange(len(self.nodes))
         for entry, (centre, reach) in enumerate(
             zip(self.arrays["atlas.rgb"], self.arrays["atlas.reach"], strict=True)
@@ -184,7 +192,9 @@ class Cube:
         return None, 1.0, rgb
 
     def spectra(self, coefficients, wavelengths, limits=np.inf):
-        """Reflectances (n, N) of coefficients (n, C), with multipliers Σ |p| up to a limit."""
+        """Reflectances (n, N) of coefficients (n, C), with multipliers Σ |p| up to a
+        limit.
+        """
         model = self.meta["model"]
         first, last = (
             model.get(key, model.get("phase", {}).get(key)) for key in ("start", "end")
@@ -224,7 +234,9 @@ class Cube:
 
     @cached_property
     def solid(self):
-        """The colours r of all reflectances, n · r ≤ d: unit normals n (F, 3) and distances d (F,) of the facets."""
+        """The colours r of all reflectances, n · r ≤ d: unit normals n (F, 3) and
+        distances d (F,) of the facets.
+        """
         one, other = np.triu_indices(self.matrix.shape[1], 1)
         normals = np.cross(self.matrix.T[one], self.matrix.T[other])
         length = np.linalg.norm(normals, axis=1)
@@ -233,7 +245,9 @@ class Cube:
         return normals, np.maximum(normals @ self.matrix, 0).sum(axis=1)
 
     def realisable(self, rgb):
-        """The colour, or the nearest one towards its grey that a reflectance has, half of the threshold inside."""
+        """The colour, or the nearest one towards its grey that a reflectance has, half
+        of the threshold inside.
+        """
         margin, (normals, room) = self.threshold / 2, self.solid
         if (normals @ rgb - room).max() <= -2 * margin:
             return rgb

@@ -1,6 +1,8 @@
-"""Pages in Chromium as readers see them: on a phone in the light scheme, on a desk in the dark one.
+"""Pages in Chromium as readers see them: on a phone in the light scheme, on a desk in
+the dark one.
 
-Widths change the layout and schemes the colours, never both: two states show what four would.
+Widths change the layout and schemes the colours, never both: two states show what four
+would.
 """
 
 import atexit
@@ -65,7 +67,9 @@ def shared_tab():
 
 
 def check_page(html, folder):
-    """Fail if a page is too wide, has errors or violates rules; skip what the machine lacks."""
+    """Fail if a page is too wide, has errors or violates rules; skip what the machine
+    lacks.
+    """
     tab = shared_tab()
     for width, scheme in zip(WIDTHS, SCHEMES, strict=True):
         open_page(tab, html, folder, width, scheme)

@@ -1,4 +1,6 @@
-"""Fixtures of many tests. Builds are slow, so cubes are built once per run or read from ``cubes/``."""
+"""Fixtures of many tests. Builds are slow, so cubes are built once per run or read from
+``cubes/``.
+"""
 
 import os
 from collections import Counter
@@ -26,8 +28,9 @@ os.environ.pop(
     "PYTHONUNBUFFERED", None
 )  # with it, commands hold nothing back that could be lost at their end
 
-# Compiled JAX code of this worker and the processes that it starts, kept between runs. JAX does not write entries at
-# once, so workers that share a folder may read half of one.
+# Compiled JAX code of this worker and the processes that it starts, kept between runs.
+# JAX does not write entries at once, so workers that share a folder may read half of
+# one.
 CACHE = ROOT / "out" / "cache"
 COMPILED = CACHE / "compiled" / os.environ.get("PYTEST_XDIST_WORKER", "main")
 COMPILED.mkdir(parents=True, exist_ok=True)

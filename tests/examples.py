@@ -1,7 +1,9 @@
-"""Every ``uplift`` line of the README, the documentation and the help texts, run where a reader would run it.
+"""Every ``uplift`` line of the README, the documentation and the help texts, run where
+a reader would run it.
 
-``python -m tests.examples [PAGE...]`` (``make examples``) runs them from a wheel, unpacked outside the clone, each page
-in a new folder with the sample files, and exits with 1 if one fails; ``tests/test_package.py`` runs a few.
+``python -m tests.examples [PAGE...]`` (``make examples``) runs them from a wheel,
+unpacked outside the clone, each page in a new folder with the sample files, and exits
+with 1 if one fails; ``tests/test_package.py`` runs a few.
 """
 
 import json
@@ -23,11 +25,18 @@ ROOT = Path(__file__).parents[1]
 BLOCKS = re.compile(r"^```(\S*)[^\n]*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 SHELLS = ("", "console", "bash", "sh")
 CUBE = "uplift build --atlas macbeth --dim 32"
-"""Command of the cube that help texts use. A page of the documentation that uses it has this line."""
+"""Command of the cube that help texts use. A page of the documentation that uses it has
+this line.
+"""
 TUTORIAL = "docs/tutorial.md"
-"""The page whose commands and Python tests/test_docs.py runs together, in a separate folder."""
+"""The page whose commands and Python tests/test_docs.py runs together, in a separate
+folder.
+"""
 ELSEWHERE = {
-    "uplift texture 'shot.*.exr' -o many --cube macbeth-32.uplift --scheduler tcp://10.0.0.5:8786",
+    (
+        "uplift texture 'shot.*.exr' -o many --cube macbeth-32.uplift --scheduler "
+        "tcp://10.0.0.5:8786"
+    ),
     "uplift texture 'shot.*.exr' -o spectra --scheduler tcp://10.0.0.5:8786",
     "uplift texture shot.*.exr -o uplifted --scheduler tcp://10.0.0.5:8786",
 }
@@ -42,7 +51,9 @@ def examples() -> list[str]:
 
 
 def examples_by_page() -> dict[str, list[str]]:
-    """Return the examples of each page of the documentation and of each help text, in reading order."""
+    """Return the examples of each page of the documentation and of each help text, in
+    reading order.
+    """
     paths = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md"))]
     texts = {
         path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
@@ -56,7 +67,9 @@ def examples_by_page() -> dict[str, list[str]]:
 
 
 def page_examples(text: str) -> list[str]:
-    """Return the examples of a page: lines that begin with ``uplift``, ``mkdir -p`` or ``cd`` in its code blocks."""
+    """Return the examples of a page: lines that begin with ``uplift``, ``mkdir -p`` or
+    ``cd`` in its code blocks.
+    """
     lines = []
     for language, block in BLOCKS.findall(text):
         for line in (
@@ -68,7 +81,9 @@ def page_examples(text: str) -> list[str]:
 
 
 def help_examples() -> dict[str, list[str]]:
-    """Return the examples of the help of every command, with those of its subcommands, once each."""
+    """Return the examples of the help of every command, with those of its subcommands,
+    once each.
+    """
     listed = {}
     with click.Context(main, **main.context_settings) as context:
         for name in COMMANDS:
@@ -129,7 +144,9 @@ def unpack(wheel: Path, folder: Path) -> Path:
 def run_lines(
     lines: Sequence[str], package: Path, folder: Path
 ) -> list[dict[str, Any]]:
-    """Run command lines of the unpacked package in a folder, one after the other, and return their outcomes."""
+    """Run command lines of the unpacked package in a folder, one after the other, and
+    return their outcomes.
+    """
     package = package.resolve()
     environment = os.environ | {"PYTHONPATH": str(package), "UPLIFT_FROM": str(package)}
     command = [sys.executable, Path(__file__).parent / "run_lines.py"]
@@ -146,7 +163,9 @@ def run_lines(
 
 
 def run_all(names: Sequence[str]) -> int:
-    """Run the examples of pages, all by default, each page in its folder, and print those that fail."""
+    """Run the examples of pages, all by default, each page in its folder, and print
+    those that fail.
+    """
     listed = {
         name: lines
         for name, lines in examples_by_page().items()

@@ -1,4 +1,6 @@
-"""Assertions on errors and warnings by their stable codes; quiet builds; cubes with changed or absent nodes."""
+"""Assertions on errors and warnings by their stable codes; quiet builds; cubes with
+changed or absent nodes.
+"""
 
 import contextlib
 import warnings
@@ -19,7 +21,9 @@ from uplift.lookup import Cube
 
 @contextlib.contextmanager
 def raises(kind: type[UpliftError], code: str = "") -> Iterator[Any]:
-    """Expect an error of ``kind``, with ``code`` if it is given; yields pytest's ``ExceptionInfo``."""
+    """Expect an error of ``kind``, with ``code`` if it is given; yields pytest's
+    ``ExceptionInfo``.
+    """
     with pytest.raises(kind) as caught:
         yield caught
     assert not code or caught.value.code == code, f"{caught.value.code}: {caught.value}"
@@ -27,7 +31,9 @@ def raises(kind: type[UpliftError], code: str = "") -> Iterator[Any]:
 
 @contextlib.contextmanager
 def warns(*codes: str) -> Iterator[list[UpliftWarning]]:
-    """Expect exactly the `UpliftWarning` codes given, in any order; yields the list that the block fills."""
+    """Expect exactly the `UpliftWarning` codes given, in any order; yields the list
+    that the block fills.
+    """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         found: list[UpliftWarning] = []
@@ -51,7 +57,9 @@ def with_points(data: CubeData, **arrays: Any) -> CubeData:
 
 
 def with_absent_points(data: CubeData, present: np.ndarray) -> CubeData:
-    """Return the cube with the nodes ``present`` (dim³,) only, as a build for a scene returns it."""
+    """Return the cube with the nodes ``present`` (dim³,) only, as a build for a scene
+    returns it.
+    """
     arrays = {name: getattr(data.points, name) for name in POINTS}
     arrays = {name: array.copy() for name, array in arrays.items() if array is not None}
     for name, array in arrays.items():

@@ -9,7 +9,9 @@ VOID_ELEMENTS = ("br", "img", "input", "meta")
 
 @dataclass
 class Cell:
-    """A table cell: its tag, attributes and texts; ``parts`` are the texts of its innermost elements."""
+    """A table cell: its tag, attributes and texts; ``parts`` are the texts of its
+    innermost elements.
+    """
 
     tag: str
     attributes: dict
@@ -28,8 +30,8 @@ class Cell:
 class Page(HTMLParser):
     """A page that must be well formed: every element ends where it should.
 
-    ``tags`` and ``attributes`` list those of all elements, ``tables`` the rows of every table, ``text`` is the visible
-    text.
+    ``tags`` and ``attributes`` list those of all elements, ``tables`` the rows of every
+    table, ``text`` is the visible text.
     """
 
     def __init__(self, html):

@@ -1,4 +1,5 @@
-"""Parts that a machine may lack or have broken. Each is used in a child process before a test relies on it.
+"""Parts that a machine may lack or have broken. Each is used in a child process before
+a test relies on it.
 
 A part that is there need not work: Dr.Jit finds any LLVM and aborts with an old one.
 """
@@ -26,7 +27,9 @@ EMPTY_SHADER = "#version 430\nlayout(local_size_x = 1) in;\nvoid main() {}\n"
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a machine, how to install it, and a trial that raises an error or crashes unless it works."""
+    """A part of a machine, how to install it, and a trial that raises an error or
+    crashes unless it works.
+    """
 
     name: str
     installation: str
@@ -79,7 +82,9 @@ def _open_tab() -> None:
 
 
 def vulkan_device():
-    """Return a device of Vulkan: by OpenGL, wgpu's translation of SPIR-V gives other numbers."""
+    """Return a device of Vulkan: by OpenGL, wgpu's translation of SPIR-V gives other
+    numbers.
+    """
     import wgpu
 
     adapters = wgpu.gpu.enumerate_adapters_sync()

@@ -1,4 +1,6 @@
-"""What a process has once: the environment, the working folder and the variant of Mitsuba."""
+"""What a process has once: the environment, the working folder and the variant of
+Mitsuba.
+"""
 
 import contextlib
 import os
@@ -8,12 +10,16 @@ from collections.abc import Iterator
 from uplift.lab.timing import ONE_THREAD
 
 SET_BY_COMMANDS = (*ONE_THREAD, "MPLBACKEND", "PJRT_NPROC")
-"""Variables that are removed if they are new. Libraries set others while they are imported, and need them later."""
+"""Variables that are removed if they are new. Libraries set others while they are
+imported, and need them later.
+"""
 
 
 @contextlib.contextmanager
 def kept_process_state() -> Iterator[None]:
-    """Restore it after the block. A variant of Mitsuba cannot be unset: the first one stays."""
+    """Restore it after the block. A variant of Mitsuba cannot be unset: the first one
+    stays.
+    """
     environment, folder, variant = dict(os.environ), os.getcwd(), _variant()
     try:
         yield

@@ -1,8 +1,8 @@
 """Run command lines one after the other in this process and folder, as a shell would.
 
-Standard input is a JSON list of lines, standard output a JSON list of outcomes. Knows quotes, patterns, ``> FILE``,
-``mkdir -p FOLDER``, ``cd FOLDER`` and ``| jq .KEY``, which checks for the key. The package must come from the folder
-UPLIFT_FROM.
+Standard input is a JSON list of lines, standard output a JSON list of outcomes. Knows
+quotes, patterns, ``> FILE``, ``mkdir -p FOLDER``, ``cd FOLDER`` and ``| jq .KEY``,
+which checks for the key. The package must come from the folder UPLIFT_FROM.
 """
 
 import glob
@@ -56,7 +56,9 @@ def main() -> None:
 
 
 def parse(line: str) -> tuple[list[str], str | None, str | None]:
-    """Return the words of a command, the file that its output goes to, and the key that is read from it."""
+    """Return the words of a command, the file that its output goes to, and the key that
+    is read from it.
+    """
     line, _, pipe = line.partition(" | jq .")
     line, _, target = line.partition(" > ")
     words = []

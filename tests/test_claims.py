@@ -1,4 +1,6 @@
-"""Numbers in the prose of the documentation: each is listed in docs/data/claims.toml and agrees with its source."""
+"""Numbers in the prose of the documentation: each is listed in docs/data/claims.toml
+and agrees with its source.
+"""
 
 import importlib
 import inspect
@@ -17,7 +19,10 @@ CLAIMS = tomllib.loads((ROOT / "docs/data/claims.toml").read_text(encoding="utf-
     "claim"
 ]
 SOURCES = ("code", "data", "test", "printed", "meaning")
-UNIT = r" ?%|-?fold| times\b| ?(?:ms|µs|ns|kB|MB|GB)\b| (?:s|seconds|minutes|hours)\b| million\b"
+UNIT = (
+    r" ?%|-?fold| times\b| ?(?:ms|µs|ns|kB|MB|GB)\b| (?:s|seconds|minutes|hours)\b| "
+    r"million\b"
+)
 NUMBER = re.compile(
     rf"(?<![\w.,:/#§-])\d[\d,]*(?:\.\d+)?(?={UNIT})"
     r"|(?<![\w.])(?:\d*\.\d+|\d+(?:\.\d+)?e[-−]?\d+|10⁻[⁰¹²³⁴-⁹]+)(?!\w|\.\d)"
@@ -25,17 +30,22 @@ NUMBER = re.compile(
 )
 """Numbers that a measurement may have given: with a unit, a fraction or an exponent."""
 PLACES = re.compile(
-    r"(?:[Ss]ections?|eq\.|equations?|[Tt]ables?|[Ff]igures?|chapters?|Tódová(?: 2020)?,(?: section)?|Prague 2020,"
-    r"|Fishkin|thesis|2006,) \(?[\d.]+(?:(?:–|, | and )[\d.]+)*|\(\d{1,2}(?:\.\d{1,2})+(?:, \d{1,2}(?:\.\d{1,2})+)*\)"
+    r"(?:[Ss]ections?|eq\.|equations?|[Tt]ables?|[Ff]igures?|chapters?|Tódová(?: "
+    r"2020)?,(?: section)?|Prague 2020,"
+    r"|Fishkin|thesis|2006,) \(?[\d.]+(?:(?:–|, | and "
+    r")[\d.]+)*|\(\d{1,2}(?:\.\d{1,2})+(?:, \d{1,2}(?:\.\d{1,2})+)*\)"
 )
 """Sections, equations and figures of a source."""
 VERSIONS = re.compile(
-    r"(?:Python|Mitsuba|Blender|GLSL \(|ES|colour-science\]?,?|uplift) [\d.]+|GLSL \([\d.]+|\bES [\d.]+"
+    r"(?:Python|Mitsuba|Blender|GLSL \(|ES|colour-science\]?,?|uplift) [\d.]+|GLSL "
+    r"\([\d.]+|\bES [\d.]+"
 )
 
 
 def prose(path):
-    """Text of a page with code, tables, addresses, and what a template fills in, blanked."""
+    """Text of a page with code, tables, addresses, and what a template fills in,
+    blanked.
+    """
     text = path.read_text(encoding="utf-8")
     for pattern in (r"```.*?```", r"\{% call.*?endcall %\}"):
         text = re.sub(pattern, "", text, flags=re.DOTALL)
@@ -59,7 +69,9 @@ def sources():
 
 
 def spans(text, claims):
-    """Places of the numbers of claims in a text; a claim that does not occur has none."""
+    """Places of the numbers of claims in a text; a claim that does not
+    occur has none.
+    """
     found = []
     for claim in claims:
         before, number, after = re.split("[«»]", claim["text"])

@@ -1,4 +1,6 @@
-"""The documentation is valid: its commands and options exist, its Python runs, its links resolve."""
+"""The documentation is valid: its commands and options exist, its Python runs, its
+links resolve.
+"""
 
 import contextlib
 import fnmatch
@@ -61,7 +63,9 @@ def test_command_lines_parse(line):
 
 @pytest.mark.parametrize(("name", "lines"), examples_by_page().items())
 def test_a_page_makes_the_cubes_and_plans_that_it_uses(name, lines):
-    """Help texts may use the cube of README. No file is written twice without --force."""
+    """Help texts may use the cube of README. No file is written twice
+    without --force.
+    """
     written, made = set(), [CUBE] if name.endswith("--help") else []
     for line in lines:
         words = shlex.split(line)
@@ -173,7 +177,9 @@ FILE = r"(?:uplift|cli|tests|benchmarks|tools|docs|atlases)/[\w./-]*\w"
 
 
 def missing(names):
-    """Files that are neither in the repository nor in the package; NAME and PAGE in a name stand for any."""
+    """Files that are neither in the repository nor in the package; NAME and PAGE in a
+    name stand for any.
+    """
     names = [name for name in names if not re.search("NAME|PAGE", name)]
     return [
         name
@@ -240,7 +246,9 @@ def test_the_page_of_coverage_has_no_empty_row_and_names_what_exists():
 
 
 def is_real(code):
-    """Whether a test of this path and name, a page that can be measured, or a command of this line exists."""
+    """Whether a test of this path and name, a page that can be measured, or a command
+    of this line exists.
+    """
     path, _, name = code.partition("::")
     if path.startswith("tests/"):
         return (ROOT / path).is_file() and (

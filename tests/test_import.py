@@ -1,4 +1,6 @@
-"""``import uplift`` is light, changes no global setting, and exposes the public interface."""
+"""``import uplift`` is light, changes no global setting, and exposes the public
+interface.
+"""
 
 import subprocess
 import sys
@@ -21,13 +23,18 @@ HEAVY_OF_FITS = {"colour", "scipy", "jax", "equinox", "optimistix"}
 
 
 def loaded_subpackages(code):
-    """Run code in a new process and return the subpackages of uplift that it loads, and its loaded modules."""
+    """Run code in a new process and return the subpackages of uplift that it loads, and
+    its loaded modules.
+    """
     modules = run_python(f"{code}\nimport sys; print(*sys.modules)").split()
     ours = [name for name in modules if name.startswith("uplift.")]
     return {name.split(".")[1] for name in ours}, set(modules)
 
 
-QUERY = "from uplift_cli.main import main\ntry: main(['query', '#123456', '--format', 'json'])\nexcept SystemExit: pass"
+QUERY = (
+    "from uplift_cli.main import main\ntry: main(['query', '#123456', '--format', "
+    "'json'])\nexcept SystemExit: pass"
+)
 
 
 def test_builds_and_queries_load_only_the_core():
@@ -63,16 +70,21 @@ def test_builds_and_queries_load_only_the_core():
 
 def test_settings_of_jax_numpy_and_warnings_are_unchanged():
     code = (
-        "import numpy, warnings, scipy.special, scipy.sparse\n"  # these two add filters of warnings themselves
+        # these two add filters of warnings themselves
+        "import numpy, warnings, scipy.special, scipy.sparse\n"
         "def settings():\n"
-        "    return numpy.geterr(), numpy.get_printoptions(), list(warnings.filters), warnings.showwarning\n"
+        "    return numpy.geterr(), numpy.get_printoptions(), list(warnings.filters), "
+        "warnings.showwarning\n"
         "before = settings()\n"
         "import jax, jax.numpy as jnp\n"
         "of_jax = dict(jax.config.values)\n"
-        "import uplift; uplift.load().reflectance([0.5, 0.5, 0.5]); uplift.build(dim=2)\n"
-        "from uplift.lookup import bulk; bulk.spectra(uplift.load(), [500])([0.5, 0.5, 0.5])\n"
+        "import uplift; uplift.load().reflectance([0.5, 0.5, 0.5]); "
+        "uplift.build(dim=2)\n"
+        "from uplift.lookup import bulk; bulk.spectra(uplift.load(), [500])([0.5, "
+        "0.5, 0.5])\n"
         "assert settings() == before\n"
-        "print({name for name, value in jax.config.values.items() if of_jax.get(name) != value})\n"
+        "print({name for name, value in jax.config.values.items() if of_jax.get(name) "
+        "!= value})\n"
         "print(jnp.zeros(1).dtype)"
     )
     assert run_python(code) == "set()\nfloat32"

@@ -1,4 +1,6 @@
-"""The wheel has the library, the command line and the atlases, and nothing else; examples run from it."""
+"""The wheel has the library, the command line and the atlases, and nothing else;
+examples run from it.
+"""
 
 import zipfile
 from pathlib import Path
@@ -23,7 +25,10 @@ FEW = (
     "cd uplift-samples",
     "uplift relight wood.png -o wood.html",
     "uplift build --atlas macbeth --dim 32",
-    "uplift query --cube macbeth-32.uplift --input colours.csv --format csv --mode refined > spectra.csv",
+    (
+        "uplift query --cube macbeth-32.uplift --input colours.csv --format csv --mode "
+        "refined > spectra.csv"
+    ),
     "uplift texture wood.png -o wood.exr",
     "uplift export macbeth-32.uplift -o cube.h",
     "uplift lights query 30 22 9",
@@ -32,7 +37,9 @@ FEW = (
     "uplift palette metamers.toml",
     "uplift chart --recommend --time-ns 500",
 )
-"""Quick ones, in reading order: later lines use files of earlier ones. `make examples` runs all."""
+"""Quick ones, in reading order: later lines use files of earlier ones. `make examples`
+runs all.
+"""
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +83,10 @@ def test_data_and_licence_are_in_it_and_nothing_else(wheel, repository):
     library = {name for name in tracked if name.startswith("uplift/")}
     atlases = {f"uplift_{name}" for name in tracked if name.startswith("atlases/")}
     assert data == library | atlases
-    suffixes = ".c .cpp .css .csv .cxf .cuh .exr .glsl .h .hlsl .j2 .js .npz .png .spd .ti3 .toml .typed .uplift .xlsx"
+    suffixes = (
+        ".c .cpp .css .csv .cxf .cuh .exr .glsl .h .hlsl .j2 .js .npz .png .spd .ti3 "
+        ".toml .typed .uplift .xlsx"
+    )
     assert {Path(name).suffix for name in library} == set(suffixes.split())
     assert {Path(name).suffix for name in atlases} == {".md", ".txt"}
 

@@ -1,4 +1,6 @@
-"""The documentation site: every page is there, notebooks have run, and no network is needed to read it."""
+"""The documentation site: every page is there, notebooks have run, and no network is
+needed to read it.
+"""
 
 import re
 

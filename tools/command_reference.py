@@ -1,4 +1,6 @@
-"""The reference of the command line: Markdown made from click's commands, for the documentation site."""
+"""The reference of the command line: Markdown made from click's commands, for the
+documentation site.
+"""
 
 import inspect
 import re
@@ -15,7 +17,9 @@ PIPE = r"\|"
 
 
 def command_reference() -> str:
-    """Return the section of every group, command and subcommand in Markdown, in the order of the help."""
+    """Return the section of every group, command and subcommand in Markdown, in the
+    order of the help.
+    """
     parts = []
     with click.Context(main, info_name="uplift", **main.context_settings) as context:
         for title, names in GROUPS.items():
@@ -26,7 +30,9 @@ def command_reference() -> str:
 
 
 def _command(command: click.Command, name: str, parent: click.Context) -> Iterator[str]:
-    """Yield the usage, the help and the options of a command, followed by its subcommands."""
+    """Yield the usage, the help and the options of a command, followed by its
+    subcommands.
+    """
     with click.Context(command, info_name=name, parent=parent) as context:
         usage = " ".join([context.command_path, *command.collect_usage_pieces(context)])
         yield f"\n### {context.command_path}\n\n```text\n{usage}\n```\n"
@@ -45,7 +51,9 @@ def _command(command: click.Command, name: str, parent: click.Context) -> Iterat
 
 
 def _code_block(paragraph: str) -> str:
-    """Format a paragraph that click prints as it stands; its first line may be a heading."""
+    """Format a paragraph that click prints as it stands; its first line may be a
+    heading.
+    """
     heading, *lines = paragraph.removeprefix(VERBATIM).splitlines()
     if not heading.endswith(":"):
         heading, lines = "", [heading, *lines]

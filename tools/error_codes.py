@@ -14,7 +14,9 @@ KEYWORDS = {"code", "foreign"}
 
 
 def codes(tree: ast.AST) -> Iterator[tuple[str, str]]:
-    """Yield function or class and code: of classes, of arguments, and of names that have a text in the same file."""
+    """Yield function or class and code: of classes, of arguments, and of names that
+    have a text in the same file.
+    """
     named = defaultdict(list)
     for node in ast.walk(tree):
         if isinstance(node, ast.Assign):
@@ -50,7 +52,9 @@ def codes(tree: ast.AST) -> Iterator[tuple[str, str]]:
 
 
 def collect(root: Path = ROOT) -> list[dict[str, Any]]:
-    """Return ``code``, ``kind`` ("error" or "warning") and ``packages`` that use it, by code."""
+    """Return ``code``, ``kind`` ("error" or "warning") and ``packages`` that use it, by
+    code.
+    """
     found: dict[tuple[str, str], set[str]] = {}
     for path in sorted(
         path for folder in ("cli", "uplift") for path in (root / folder).rglob("*.py")

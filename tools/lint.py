@@ -1,4 +1,6 @@
-"""Check prose and docstrings: banned words (tools/banned_words.txt) and numpydoc sections of the reference."""
+"""Check prose and docstrings: banned words (tools/banned_words.txt) and numpydoc
+sections of the reference.
+"""
 
 import importlib
 import inspect
@@ -13,7 +15,9 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 WORDS = ROOT / "tools" / "banned_words.txt"
 REQUIRED = frozenset({"GL08", "SS01", "PR01", "PR02", "PR10", "RT01"})
-"""numpydoc's codes: docstring, summary, parameters documented, none unknown, spacing, returns documented."""
+"""numpydoc's codes: docstring, summary, parameters documented, none unknown, spacing,
+returns documented.
+"""
 DIALECT = {"told", "asked", "seen", "heard", "mended", "anew", "beside", "said"}
 """Words that no identifier contains."""
 FILE_KEYS = {"mended", "told"}
@@ -21,7 +25,9 @@ FILE_KEYS = {"mended", "told"}
 
 
 def tracked() -> list[Path]:
-    """Return the Python and Markdown files and the templates that git tracks, or would if they were added."""
+    """Return the Python and Markdown files and the templates that git tracks, or would
+    if they were added.
+    """
     command = [
         "git",
         "ls-files",
@@ -39,7 +45,9 @@ def tracked() -> list[Path]:
 
 
 def prose(path: Path) -> Iterator[tuple[int, str]]:
-    """Yield the lines of prose of a file with their numbers: strings, comments and names of code, text of pages."""
+    """Yield the lines of prose of a file with their numbers: strings, comments and
+    names of code, text of pages.
+    """
     text = path.read_text(encoding="utf-8")
     if path.suffix == ".py":
         for token in tokenize.generate_tokens(io.StringIO(text).readline):
@@ -92,7 +100,8 @@ def check_words() -> list[str]:
 
 
 def documented(package: str) -> Iterator[tuple[str, frozenset[str]]]:
-    """Yield the dotted names of what a package exports and the public methods of its classes, with codes to check.
+    """Yield the dotted names of what a package exports and the public methods of its
+    classes, with codes to check.
 
     Methods with an inherited docstring are left out.
     """
@@ -118,7 +127,9 @@ def documented(package: str) -> Iterator[tuple[str, frozenset[str]]]:
 
 
 def check_docstrings() -> list[str]:
-    """Return a line for every name in the reference of the Python API whose docstring misses a section."""
+    """Return a line for every name in the reference of the Python API whose docstring
+    misses a section.
+    """
     from numpydoc.validate import validate
 
     page = (ROOT / "docs" / "reference" / "python.md").read_text(encoding="utf-8")

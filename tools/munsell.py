@@ -1,7 +1,8 @@
-"""Convert the Munsell data of luxpy to an atlas: ``make munsell`` writes out/munsell.csv.
+"""Convert the Munsell data of luxpy to an atlas: ``make munsell`` writes
+out/munsell.csv.
 
-The data are 1,269 matt chips measured at the University of Joensuu, 380–800 nm at 1 nm. luxpy is licensed under GPL-3,
-so the output is for local use only.
+The data are 1,269 matt chips measured at the University of Joensuu, 380–800 nm at 1 nm.
+luxpy is licensed under GPL-3, so the output is for local use only.
 """
 
 import csv
@@ -14,7 +15,9 @@ from uplift.atlas import Atlas, Entry, write_atlas
 
 
 def main(folder: str, output: str) -> None:
-    """Convert the data of the luxpy installation in ``folder`` to a CSV atlas at 5 nm."""
+    """Convert the data of the luxpy installation in ``folder`` to a CSV
+    atlas at 5 nm.
+    """
     data = Path(folder) / "luxpy" / "data" / "rfls"
     table = np.loadtxt(data / "Munsell1269.dat", delimiter=",")
     lines = (

@@ -1,9 +1,11 @@
-"""Render the pages of measurements: docs/templates/NAME.md.j2 filled from docs/data/NAME.json is docs/NAME.md.
+"""Render the pages of measurements: docs/templates/NAME.md.j2 filled from
+docs/data/NAME.json is docs/NAME.md.
 
-README.md.j2 is the README, above docs. Long tables of a page are CSV files that it links to, in docs/tables.
+README.md.j2 is the README, above docs. Long tables of a page are CSV files that it
+links to, in docs/tables.
 
-Nothing is measured here. The programs in benchmarks/ write the data. A template without data uses that of
-other pages, by ``load``.
+Nothing is measured here. The programs in benchmarks/ write the data. A template without
+data uses that of other pages, by ``load``.
 
 Examples
 --------
@@ -33,11 +35,13 @@ Row = Mapping[str, Any]
 
 
 def number(value: Any, spec: str = "") -> str:
-    """Format a value of the data by a format specification of Python, or "time", "size", "error" or "build_time".
+    """Format a value of the data by a format specification of Python, or "time",
+    "size", "error" or "build_time".
 
-    "time" takes nanoseconds, "size" bytes: the functions of `uplift.viz.format`.
-    None is an empty string, a bool a filled or an empty circle. The items of a list are joined by slashes, or by commas
-    after "list ". ``{median, min, max}`` is written as "median (min–max)", ``{mean, std}`` as "mean ± std".
+    "time" takes nanoseconds, "size" bytes: the functions of `uplift.viz.format`. None
+    is an empty string, a bool a filled or an empty circle. The items of a list are
+    joined by slashes, or by commas after "list ". ``{median, min, max}`` is written as
+    "median (min–max)", ``{mean, std}`` as "mean ± std".
     """
     if value is None:
         return ""
@@ -62,7 +66,9 @@ def number(value: Any, spec: str = "") -> str:
 
 
 class RowFormatter(string.Formatter):
-    """Fill a pattern such as ``{cube} | {worst:.1e}`` from a row; a dot leads into a nested dict or list."""
+    """Fill a pattern such as ``{cube} | {worst:.1e}`` from a row; a dot leads into a
+    nested dict or list.
+    """
 
     def get_field(
         self, field_name: str, args: Sequence[Any], kwargs: Mapping[str, Any]
@@ -81,7 +87,8 @@ class RowFormatter(string.Formatter):
 def table(rows: Iterable[Row], caller: Callable[[], str]) -> str:
     """Return a Markdown table.
 
-    The body of the ``call`` block has two lines: the headings, and the pattern of a row.
+    The body of the ``call`` block has two lines: the headings, and the pattern of a
+    row.
     """
     heading, pattern = filter(None, caller().splitlines())
     rule = " | ".join(["---"] * (heading.count(" | ") + 1))
@@ -92,7 +99,8 @@ def table(rows: Iterable[Row], caller: Callable[[], str]) -> str:
 def leaves(
     value: Any, parts: Sequence[str], name: str = ""
 ) -> Iterator[tuple[str, Any]]:
-    """Yield the names and values of a nested row, the names joined by dots; floats have six digits.
+    """Yield the names and values of a nested row, the names joined by dots; floats have
+    six digits.
 
     The items of a list have the names ``parts``. A list of another length is one value.
     """
@@ -127,7 +135,9 @@ def where(rows: Iterable[Row], **conditions: Any) -> list[Row]:
 
 
 def pick(rows: Iterable[Row], **conditions: Any) -> Row:
-    """Return the one row with these values; raise `ValueError` if there is none, or more than one."""
+    """Return the one row with these values; raise `ValueError` if there is none, or
+    more than one.
+    """
     (found,) = where(rows, **conditions)
     return found
 
@@ -161,7 +171,9 @@ def read_text(path: str) -> str:
 
 
 def render(name: str, data: Mapping[str, Any] | None = None) -> dict[Path, str]:
-    """Return the text of a page and of its CSV files, from its template and its data, by default the stored one."""
+    """Return the text of a page and of its CSV files, from its template and its data,
+    by default the stored one.
+    """
     page, tables = (ROOT if name == "README" else DOCS) / f"{name}.md", {}
 
     def long_table(

@@ -1,6 +1,8 @@
-"""Write the atlases of atlases/ from tables of colour-science: ``python tools/ship_atlases.py [FOLDER]``.
+"""Write the atlases of atlases/ from tables of colour-science: ``python
+tools/ship_atlases.py [FOLDER]``.
 
-atlases/README.md describes the files; tests/atlas/test_shipped.py compares them with the output.
+atlases/README.md describes the files; tests/atlas/test_shipped.py compares them with
+the output.
 """
 
 import sys
@@ -14,9 +16,15 @@ from colour.quality.cfi2017 import load_TCS_CIE2017
 from uplift.atlas import Atlas, Entry, Header, write_atlas
 
 FOLDER = Path(__file__).parents[1] / "atlases"
-LICENCE = "BSD-3-Clause (https://opensource.org/licenses/BSD-3-Clause), as part of colour-science"
+LICENCE = (
+    "BSD-3-Clause (https://opensource.org/licenses/BSD-3-Clause), as part of "
+    "colour-science"
+)
 COPYRIGHT = "Copyright 2013 Colour Developers (colour-science 0.4.7)"
-BABELCOLOR = "Copyright 2004-2012 Danny Pascale (www.babelcolor.com), used by permission in colour-science; "
+BABELCOLOR = (
+    "Copyright 2004-2012 Danny Pascale (www.babelcolor.com), used by permission in "
+    "colour-science; "
+)
 
 
 def columns(
@@ -34,7 +42,11 @@ ATLASES = {
         ("{name}", '"{lower}" patch of the Macbeth ColorChecker'),
     ),
     "babelcolor": (
-        "24 patches of the ColorChecker Classic, average of 30 charts by BabelColor (2012)",
+        (
+            "24 patches of the ColorChecker Classic, average of 30 charts by "
+            "BabelColor "
+            "(2012)"
+        ),
         CHECKERS["BabelColor Average"],
         ("BabelColor {name}", '"{lower}" patch, average of 30 ColorChecker charts'),
     ),
@@ -59,7 +71,10 @@ ATLASES = {
         ("CES{number:02}", "CIE 224:2017 colour evaluation sample {number}"),
     ),
     "rawtoaces": (
-        "190 patches that RAW to ACES 1.0 trains camera transforms on, Dyer et al. (2017)",
+        (
+            "190 patches that RAW to ACES 1.0 trains camera transforms on, Dyer et al. "
+            "(2017)"
+        ),
         columns(read_training_data_rawtoaces_v1()),
         ("patch{number:03}", "RAW to ACES training patch {number}"),
     ),

@@ -1,8 +1,10 @@
-"""Write the library that shapes the prior: ``python -m tools.ship_library [FILE]`` (docs/prior.md).
+"""Write the library that shapes the prior: ``python -m tools.ship_library [FILE]``
+(docs/prior.md).
 
-It consists of the shipped atlases, and of spectra by Otsu et al. 2018, which stand for the Munsell book that their
-clusters were learnt from. With it are the tables of smooth spectra of usual RGB spaces, which builds need not solve
-again. tests/fit/test_families.py compares the shipped file with the output.
+It consists of the shipped atlases, and of spectra by Otsu et al. 2018, which stand for
+the Munsell book that their clusters were learnt from. With it are the tables of smooth
+spectra of usual RGB spaces, which builds need not solve again.
+tests/fit/test_families.py compares the shipped file with the output.
 """
 
 import sys
@@ -30,12 +32,16 @@ FAMILIES = {"checker": ("macbeth", "babelcolor")} | {
 }
 """Shipped atlases by family: the two ColorCheckers are one chart."""
 SPREAD, OTSU_SPREAD = 5.0, 3.0
-"""Variance of what is peculiar to a family, chosen in docs/prior.md; the Munsell book is larger than the others."""
+"""Variance of what is peculiar to a family, chosen in docs/prior.md; the Munsell book
+is larger than the others.
+"""
 SPACES = ("sRGB", "ACEScg", "ITU-R BT.2020")
 """RGB spaces whose tables are stored."""
 SPACE = "ITU-R BT.2020"
 CANDIDATES, SPECTRA = 30_000, 320
-"""Random colours, and those of them that are taken: in turn the one farthest from all before."""
+"""Random colours, and those of them that are taken: in turn the one farthest from all
+before.
+"""
 BLUR = 0.01
 """Width, in CIE xy, of the transition between clusters: their seams must not show."""
 
@@ -74,7 +80,9 @@ def measurements(atlases: tuple[str, ...]) -> Array:
 
 
 def otsu_spectra() -> Array:
-    """Spectra (320, 81) by Otsu et al. of colours evenly spread over those that need no clipping."""
+    """Spectra (320, 81) by Otsu et al. of colours evenly spread over those that need no
+    clipping.
+    """
     sensor = observer.sensor(SPACE)
     rgb = np.random.default_rng(2018).random((CANDIDATES, 3)) ** 2
     spectra = blurred_otsu(sensor.xyz(rgb), sensor.light.xyz)
@@ -83,7 +91,9 @@ def otsu_spectra() -> Array:
 
 
 def blurred_otsu(xyz: Array, light: Array) -> Array:
-    """Spectra (n, 81) of XYZ (n, 3) under a light (3, 81), blended between clusters; exact, not clipped."""
+    """Spectra (n, 81) of XYZ (n, 3) under a light (3, 81), blended between clusters;
+    exact, not clipped.
+    """
     shape = otsu2018.SPECTRAL_SHAPE_OTSU2018
     resampled = np.stack(
         [np.interp(observer.grid(), shape.wavelengths, row) for row in np.eye(36)]
@@ -106,7 +116,9 @@ def blurred_otsu(xyz: Array, light: Array) -> Array:
 
 
 def shares(xy: Array, clusters: int) -> Array:
-    """Share of each cluster (n, 8) at chromaticities (n, 2), by the decision tree with blurred thresholds."""
+    """Share of each cluster (n, 8) at chromaticities (n, 2), by the decision tree with
+    blurred thresholds.
+    """
     tree = otsu2018.SELECTOR_ARRAY_OTSU2018
     found = np.zeros((len(xy), clusters))
 

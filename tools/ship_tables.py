@@ -1,6 +1,8 @@
-"""Write the tables of colour-science that most commands need: ``python -m tools.ship_tables``.
+"""Write the tables of colour-science that most commands need: ``python -m
+tools.ship_tables``.
 
-`uplift.colorimetry.tables` reads them; tests/colorimetry/test_tables.py compares them with colour-science.
+`uplift.colorimetry.tables` reads them; tests/colorimetry/test_tables.py compares them
+with colour-science.
 """
 
 from collections.abc import Mapping

@@ -1,4 +1,6 @@
-"""Build the stored cubes of ``cubes/``, which ``uplift check`` compares, and the cubes and lights of the package."""
+"""Build the stored cubes of ``cubes/``, which ``uplift check`` compares, and the cubes
+and lights of the package.
+"""
 
 import shutil
 import warnings

@@ -1,4 +1,5 @@
-"""Spectral uplifting cubes: linear RGB in, measured or plausible reflectance spectra out.
+"""Spectral uplifting cubes: linear RGB in, measured or plausible reflectance spectra
+out.
 
 ::
 
@@ -10,7 +11,8 @@
     cube = uplift.load("macbeth.uplift")
     cube.reflectance([0.8, 0.2, 0.1], wavelengths=range(380, 781, 5))
 
-``import uplift`` loads no other module of the package. The first use of a name below imports its module.
+``import uplift`` loads no other module of the package. The first use of a name below
+imports its module.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""``python -m uplift``: the command line, which is found by its name as it lies above this package."""
+"""``python -m uplift``: the command line, which is found by its name as it lies above
+this package.
+"""
 
 import runpy
 

@@ -1,4 +1,5 @@
-"""Spectra of millions of colours: a cube is prepared once, then queried through JAX, on CPU or accelerator.
+"""Spectra of millions of colours: a cube is prepared once, then queried through JAX, on
+CPU or accelerator.
 
 Examples
 --------

@@ -21,7 +21,8 @@ SHOWN = 4
 
 @click.command(
     "advise",
-    help="""Estimate the errors of the colours of images, and name the swatches whose measurement lowers them most.
+    help="""Estimate the errors of the colours of images, and name the swatches whose
+    measurement lowers them most.
 
     \b
     Examples:
@@ -29,10 +30,12 @@ SHOWN = 4
       uplift advise wood.png --cube macbeth-32.uplift --plot advice.png
       uplift advise wood.png --cube macbeth-32.uplift --count 12 --format json
 
-    Errors are standard errors, ΔE00 under each --light, averaged over the area of the images. A swatch is a colour of
-    the images: measure a material that has it, add it to the atlas, and build the cube again. Its gain is by how much
-    the mean of the errors is expected to fall, after the swatches above it. It supposes that all of a colour is one
-    material, and that colours close to it are like it as far as those of the atlas are.
+    Errors are standard errors, ΔE00 under each --light, averaged over the area of the
+    images. A swatch is a colour of the images: measure a material that has it, add it
+    to the atlas, and build the cube again. Its gain is by how much the mean of the
+    errors is expected to fall, after the swatches above it. It supposes that all of a
+    colour is one material, and that colours close to it are like it as far as those of
+    the atlas are.
     """,
 )
 @click.argument("images", metavar="IMAGE...", nargs=-1, required=True)

@@ -1,4 +1,6 @@
-"""``uplift atlas``: list the shipped atlases or the entries of atlases, or convert between formats."""
+"""``uplift atlas``: list the shipped atlases or the entries of atlases, or convert
+between formats.
+"""
 
 from __future__ import annotations
 
@@ -41,12 +43,15 @@ SOURCE = ("name", "digest", "format", "measured", "missing", "notes")
     "atlas",
     help="""List the entries of atlas files, and how the files were understood.
 
-    Without FILE, lists the atlases that are installed with uplift, with source and licence. Their names are valid
-    wherever an atlas file is: where no file of the name exists, the shipped atlas is read.
+    Without FILE, lists the atlases that are installed with uplift, with source and
+    licence. Their names are valid wherever an atlas file is: where no file of the name
+    exists, the shipped atlas is read.
 
-    An atlas contains measured reflectances: a table with a row or a column per sample (CSV, text, spreadsheets), an
-    ART measurement archive, CGATS and Argyll .ti3, CxF3, IES TM-27, JCAMP-DX, or an ENVI library. Several files are
-    read as one atlas. --output writes CSV if its name ends in .csv, and an ART measurement archive otherwise.
+    An atlas contains measured reflectances: a table with a row or a column per sample
+    (CSV, text, spreadsheets), an ART measurement archive, CGATS and Argyll .ti3, CxF3,
+    IES TM-27, JCAMP-DX, or an ENVI library. Several files are read as one atlas.
+    --output writes CSV if its name ends in .csv, and an ART measurement archive
+    otherwise.
 
     \b
     Examples:
@@ -149,7 +154,9 @@ def _print_shipped(style: str) -> None:
 def _list_entries(
     atlas: Atlas, sensor: Sensor, illuminant: Illuminant
 ) -> tuple[list[dict[str, Any]], Array, str | None]:
-    """List all entries, with reflectances clipped as in a build; return 8-bit sRGB (n, 3) and `smallest_space`."""
+    """List all entries, with reflectances clipped as in a build; return 8-bit sRGB (n,
+    3) and `smallest_space`.
+    """
     from uplift.atlas import resample
     from uplift.colorimetry.gamut import SRGB
     from uplift.colorimetry.observer import sensor as make_sensor
@@ -207,7 +214,10 @@ def _print_table(
     outside = [row["name"] for row in rows if not row["in_gamut"]]
     skipped = [skipped.name for skipped in atlas.skipped]
     entries = pluralise(len(rows), "entry")
-    text = f"{entries}, {_count(outside, f'out of the {sensor.space} gamut')}, {_count(skipped, 'skipped')}"
+    text = (
+        f"{entries}, {_count(outside, f'out of the {sensor.space} gamut')}, "
+        f"{_count(skipped, 'skipped')}"
+    )
     if outside:
         text += (
             f"; {smallest} holds all {len(rows)}"

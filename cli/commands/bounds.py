@@ -31,19 +31,24 @@ if TYPE_CHECKING:
 Block = tuple[Sequence["QueryResult"], Sequence["Bounds"]]
 """Answers, and their bounds under each light."""
 DIVISIONS, SINGLE_DIVISIONS = 2, 3
-"""Density of the directions of bounds: 162 of each of many colours, 642 of a single one."""
+"""Density of the directions of bounds: 162 of each of many colours, 642 of a single
+one.
+"""
 
 
 @click.command(
     "bounds",
     cls=options.Command,
     everyday=("cube_path", "encoded", "lights", "style", "plot_path", "html"),
-    help="""Compute the bounds of all reflectances of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
+    help="""Compute the bounds of all reflectances of a COLOUR: R G B, '#rrggbb', or '-'
+    for lines on standard input.
 
-    RGB does not identify a material: others of the same colour may differ under another light. Under each --light, the
-    bounds are the largest ΔE00 of any reflectance of the colour from the answer of the cube ("ΔE max"; "ΔE 95%" for
-    materials like the atlas), and the ranges of L*, a* and b* among sampled extremes, whose ends can lie some units
-    further out. "share" is their volume relative to all colours of reflectances under the light.
+    RGB does not identify a material: others of the same colour may differ under another
+    light. Under each --light, the bounds are the largest ΔE00 of any reflectance of the
+    colour from the answer of the cube ("ΔE max"; "ΔE 95%" for materials like the
+    atlas), and the ranges of L*, a* and b* among sampled extremes, whose ends can lie
+    some units further out. "share" is their volume relative to all colours of
+    reflectances under the light.
 
     \b
     Examples:
@@ -61,7 +66,8 @@ DIVISIONS, SINGLE_DIVISIONS = 2, 3
 @options.output_format("table", "json", "csv")
 @options.plot("Plot the bounds")
 @options.page(
-    "Write a page on which the colour under each --light is dragged within its bounds, for a file of looks."
+    "Write a page on which the colour under each --light is dragged within its "
+    "bounds, for a file of looks."
 )
 @options.force
 def command(

@@ -73,17 +73,20 @@ def parse_range(
       uplift plan kitchen.toml
       uplift build --plan kitchen.plan.json
 
-    Warnings name the entries that were left out, clipped or crowded. Colours without measurements get the
-    spectra that real materials of such colours are expected to have.
+    Warnings name the entries that were left out, clipped or crowded. Colours without
+    measurements get the spectra that real materials of such colours are expected to
+    have.
 
-    Looks state colours under other lights, such as rgb = "#8a2a20" and HP1 = "#70392a" (docs/looks.md). They
-    become entries. A look that no reflectance meets gets the nearest colour, and a warning.
+    Looks state colours under other lights, such as rgb = "#8a2a20" and HP1 = "#70392a"
+    (docs/looks.md). They become entries. A look that no reflectance meets gets the
+    nearest colour, and a warning.
 
-    Entries have their own values in the --range as far as they were measured, and continue as constants. So does the
-    learnt prior, from 380 and 780 nm.
+    Entries have their own values in the --range as far as they were measured, and
+    continue as constants. So does the learnt prior, from 380 and 780 nm.
 
-    With --scene the cube is sparse: it is smaller and faster to build, and gives the same spectra for colours of the
-    images. Other colours are errors, unless 'query' and 'texture' are given --fill-missing.
+    With --scene the cube is sparse: it is smaller and faster to build, and gives the
+    same spectra for colours of the images. Other colours are errors, unless 'query' and
+    'texture' are given --fill-missing.
     """,
 )
 @options.atlas("Measured spectra")
@@ -97,7 +100,10 @@ def parse_range(
     default=32,
     type=options.WHOLE_OR_AUTO,
     metavar="N",
-    help="Lattice nodes along each axis. 'auto' chooses the smallest dim, and its axis, that resolves every entry.",
+    help=(
+        "Lattice nodes along each axis. 'auto' chooses the smallest dim, and its "
+        "axis, that resolves every entry."
+    ),
 )
 @options.tolerance(
     "auto_tolerance",
@@ -137,7 +143,10 @@ def parse_range(
 @click.option(
     "--prior",
     default="learnt",
-    help="Spectra of colours without measurements: learnt (from real materials) or smooth.",
+    help=(
+        "Spectra of colours without measurements: learnt (from real materials) or "
+        "smooth."
+    ),
 )
 @click.option(
     "--neutral",
@@ -159,7 +168,11 @@ def parse_range(
 @options.repeatable(
     "--exclude-family",
     "leave_out",
-    "Family of the shipped library that the learnt prior must not know, for tests on it",
+    (
+        "Family of the shipped library that the learnt prior must not know, for tests "
+        "on "
+        "it"
+    ),
     metavar="FAMILY",
 )
 @click.option(
@@ -177,13 +190,17 @@ def parse_range(
 @click.option(
     "--growth",
     default="outward",
-    help="Order of the nodes: outward from the entries, coarse-to-fine, or neighbours: outward, each node from the "
+    help="Order of the nodes: outward from the entries, coarse-to-fine, or neighbours: "
+    "outward, each node from the "
     "spectra of its neighbours.",
 )
 @click.option(
     "--solver",
     default="least-change",
-    help="Solver: least-change, dogleg, levenberg-marquardt or gauss-newton. Only nearly box-shaped spectra differ.",
+    help=(
+        "Solver: least-change, dogleg, levenberg-marquardt or gauss-newton. Only "
+        "nearly box-shaped spectra differ."
+    ),
 )
 @options.encoding
 @options.input_space("--scene images")
@@ -197,7 +214,10 @@ def parse_range(
 @click.option(
     "--seed-corners",
     is_flag=True,
-    help="Start all eight nodes around an entry from it: closer near entries, less so for other materials.",
+    help=(
+        "Start all eight nodes around an entry from it: closer near entries, less so "
+        "for other materials."
+    ),
 )
 @click.option(
     "--debug",
@@ -247,7 +267,8 @@ def command(
             useless := [given[name] for name in OF_IMAGES if name in given]
         ):
             raise click.UsageError(
-                f"{', '.join(useless)}: no --scene image is given to which this applies."
+                f"{', '.join(useless)}: no --scene image is given to which this "
+                "applies."
             )
         name = _default_name(files, images, settings) if output is None else output
         settings["shortest"], settings["longest"] = settings.pop("limits")
@@ -323,7 +344,10 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
     if data.complete_cells is not None:
         count = int(data.points.present.sum())
         facts = [
-            f"{count:,} of {pluralise(data.lattice.size, 'node')} ({count / data.lattice.size:.1%})"
+            (
+                f"{count:,} of {pluralise(data.lattice.size, 'node')} "
+                f"({count / data.lattice.size:.1%})"
+            )
         ]
     if data.provenance["atlases"]:
         facts.append(pluralise(measured, "atlas entry"))
@@ -333,9 +357,11 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
     paragraph(f"{path}: {', '.join(facts)}")
     if unrealisable := counts["unrealisable"]:
         paragraph(
-            f"{pluralise(unrealisable, 'node')} whose colour no reflectance has: stored with less chroma"
+            f"{pluralise(unrealisable, 'node')} whose colour no reflectance has: "
+            "stored with less chroma"
         )
     if unfitted := counts["unfitted"]:
         paragraph(
-            f"{pluralise(unfitted, 'node')} EXCEED the threshold {data.threshold:g}: 'uplift report' shows where"
+            f"{pluralise(unfitted, 'node')} EXCEED the threshold {data.threshold:g}: "
+            "'uplift report' shows where"
         )

@@ -1,4 +1,6 @@
-"""``uplift chart``: speed and accuracy of upsampling methods, and a recommendation of the cube to build."""
+"""``uplift chart``: speed and accuracy of upsampling methods, and a recommendation of
+the cube to build.
+"""
 
 from __future__ import annotations
 
@@ -26,13 +28,16 @@ FILES = ("chart.csv", "chart.png", "chart.html")
 
 @click.command(
     "chart",
-    help="""Measure speed and accuracy of spectral upsampling methods, of this package and from the literature.
+    help="""Measure speed and accuracy of spectral upsampling methods, of this package
+    and from the literature.
 
-    Every method processes the same colours and measured spectra, with 1, 1000, 65536 and a million colours per call.
-    The table has these times, time and size of the build, the error of round trips at 1 nm with the white and matrix
-    that the method states, ΔE00 of unseen materials under A, FL2, FL7, FL11 and LED-B3, and the error of their spectra.
-    Odd entries of every atlas build the cubes, even entries test them. Methods with wrong results are listed but not
-    timed, as are those that are not installed.
+    Every method processes the same colours and measured spectra, with 1, 1000, 65536
+    and a million colours per call. The table has these times, time and size of the
+    build, the error of round trips at 1 nm with the white and matrix that the method
+    states, ΔE00 of unseen materials under A, FL2, FL7, FL11 and LED-B3, and the error
+    of their spectra. Odd entries of every atlas build the cubes, even entries test
+    them. Methods with wrong results are listed but not timed, as are those that are not
+    installed.
 
     Writes chart.csv, chart.png and chart.html, and prints the Pareto fronts.
 
@@ -65,7 +70,10 @@ FILES = ("chart.csv", "chart.png", "chart.html")
 @click.option(
     "--recommend",
     is_flag=True,
-    help="Recommend a cube for common situations, or for limits, by the packaged chart or --from.",
+    help=(
+        "Recommend a cube for common situations, or for limits, by the packaged "
+        "chart or --from."
+    ),
 )
 @click.option(
     "--time-ns",
@@ -75,7 +83,10 @@ FILES = ("chart.csv", "chart.png", "chart.html")
 @options.tolerance("delta_e", help="With --recommend: largest mean ΔE00.")
 @click.option(
     "--light",
-    help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: mean of five]",
+    help=(
+        "With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: "
+        "mean of five]"
+    ),
 )
 @click.option(
     "--atlas-materials",
@@ -138,8 +149,10 @@ def _recommend(source: str | None, required: dict[str, Any]) -> None:
     ):
         row = recommend_cube(chart, each)
         paragraph(
-            f"{title}{': ' * bool(title)}{row.title}: {format_time(row.numbers['time_ns'])} per RGB, mean ΔE00 "
-            f"{format_error(row.numbers[each.error])} {each.description}, {format_size(row.numbers['bytes'])}"
+            f"{title}{': ' * bool(title)}{row.title}: "
+            f"{format_time(row.numbers['time_ns'])} per RGB, mean ΔE00 "
+            f"{format_error(row.numbers[each.error])} {each.description}, "
+            f"{format_size(row.numbers['bytes'])}"
         )
         say(f"  {row.build}")
         say(f"  {row.call}")

@@ -1,4 +1,6 @@
-"""``uplift check``: compare stored cubes with rebuilt ones, for continuous integration."""
+"""``uplift check``: compare stored cubes with rebuilt ones, for continuous
+integration.
+"""
 
 from __future__ import annotations
 
@@ -33,16 +35,19 @@ if TYPE_CHECKING:
       uplift check macbeth-32.uplift --atlas-dir . --format json
       uplift check macbeth-32.uplift --update
 
-    The comparison covers lattice RGB, spectra (largest and rms difference), ΔE00 under D65, A and FL11, and the number
-    of nodes by status. The exit code is 0 if all differences are within their limits and 1 otherwise.
+    The comparison covers lattice RGB, spectra (largest and rms difference), ΔE00 under
+    D65, A and FL11, and the number of nodes by status. The exit code is 0 if all
+    differences are within their limits and 1 otherwise.
 
-    A cube that cannot be read or rebuilt, or that has another lattice, has failed; the others are still checked. If an
-    atlas has changed, its cube has failed: the entries that were added, removed or moved are listed, by ΔE00.
-    --update replaces every failed cube that can be rebuilt.
+    A cube that cannot be read or rebuilt, or that has another lattice, has failed; the
+    others are still checked. If an atlas has changed, its cube has failed: the entries
+    that were added, removed or moved are listed, by ΔE00. --update replaces every
+    failed cube that can be rebuilt.
 
-    The first atlas of the recorded name counts, in --atlas-dir, in the cube's folder, and in 'atlases' in these. A
-    shipped atlas replaces it only where there is none and the contents are equal. A note names the version that
-    wrote a cube, if it is older than this one.
+    The first atlas of the recorded name counts, in --atlas-dir, in the cube's folder,
+    and in 'atlases' in these. A shipped atlas replaces it only where there is none and
+    the contents are equal. A note names the version that wrote a cube, if it is older
+    than this one.
     """,
 )
 @click.argument(
@@ -95,7 +100,9 @@ def command(
 def _check(
     path: Path, folders: Sequence[str], progress: ProgressCallback
 ) -> tuple[dict[str, Any], Cube | None, UpliftError | None]:
-    """Return the record of a check, the rebuilt cube if there is one, and the error that prevented the comparison."""
+    """Return the record of a check, the rebuilt cube if there is one, and the error
+    that prevented the comparison.
+    """
     from uplift.lookup import load
     from uplift.pipeline.rebuild import rebuild
     from uplift.report.regression import compare_rebuilt

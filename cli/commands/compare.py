@@ -27,21 +27,26 @@ SPECTRA = ("surfaces.csv", "lights.csv")
 
 @click.command(
     "compare",
-    help="""Compare representations of spectra for a renderer's lights and surfaces, by colour error and cost.
+    help="""Compare representations of spectra for a renderer's lights and surfaces, by
+    colour error and cost.
 
-    Every light is multiplied with every reflectance of the atlases. The table has ΔE00 to the products of densely
-    sampled spectra, the number of floats stored, and the time of a product, for representations that no other beats
-    in floats and error. --light replaces the default lights, a smooth and a spiky set.
+    Every light is multiplied with every reflectance of the atlases. The table has ΔE00
+    to the products of densely sampled spectra, the number of floats stored, and the
+    time of a product, for representations that no other beats in floats and error.
+    --light replaces the default lights, a smooth and a spiky set.
 
-    Representations: point samples (PS, filtered PF), Riemann sums (RS, enhanced RE), Sun's composite model (CS),
-    Gaussian quadrature (GQ), trigonometric moments (TM), the sigmoid (SG), linear models (LM), hero wavelengths (HW).
-    Fitted to the scene: wavelengths (FW), Bergner's factor model (BF), moments as cubes have them (CM).
+    Representations: point samples (PS, filtered PF), Riemann sums (RS, enhanced RE),
+    Sun's composite model (CS), Gaussian quadrature (GQ), trigonometric moments (TM),
+    the sigmoid (SG), linear models (LM), hero wavelengths (HW). Fitted to the scene:
+    wavelengths (FW), Bergner's factor model (BF), moments as cubes have them (CM).
 
-    --tolerance prints the cheapest sufficient representation for each set of lights. The cheapest stores the fewest
-    floats per surface, then per light. --output writes box plots, a plot of error over cost, and a page.
+    --tolerance prints the cheapest sufficient representation for each set of lights.
+    The cheapest stores the fewest floats per surface, then per light. --output writes
+    box plots, a plot of error over cost, and a page.
 
-    --write writes spectra at 1 nm that have the colours of a representation or filter: surfaces.csv can be the --atlas
-    of other commands, lights.csv the lamps of uplift lights build.
+    --write writes spectra at 1 nm that have the colours of a representation or filter:
+    surfaces.csv can be the --atlas of other commands, lights.csv the lamps of uplift
+    lights build.
 
     \b
     Examples:
@@ -61,7 +66,9 @@ SPECTRA = ("surfaces.csv", "lights.csv")
 @click.option(
     "--filters",
     is_flag=True,
-    help="Also search the best low-pass filters for point sampling, which takes minutes.",
+    help=(
+        "Also search the best low-pass filters for point sampling, which takes minutes."
+    ),
 )
 @click.option(
     "--all",
@@ -77,8 +84,10 @@ SPECTRA = ("surfaces.csv", "lights.csv")
 @click.option(
     "--write",
     metavar="NAME",
-    help="Write surfaces and lights as a representation or filter stores them to --output, and compare nothing: PS16, "
-    "PF16, RS32, TM9, SG3, or PS16:KIND:EXTENT:PARAMETERS with a filter, such as PS16:gaussian:7:0.5.",
+    help="Write surfaces and lights as a representation or filter stores them to "
+    "--output, and compare nothing: PS16, "
+    "PF16, RS32, TM9, SG3, or PS16:KIND:EXTENT:PARAMETERS with a filter, such as "
+    "PS16:gaussian:7:0.5.",
 )
 @options.output(help="Folder for tables and plots.", metavar="DIR")
 @options.output_format("table", "json", "csv")
@@ -101,7 +110,8 @@ def command(
     if write is not None:
         if output is None or filters or tolerance is not None:
             raise click.UsageError(
-                "--write requires --output, and does not apply to --filters and --tolerance."
+                "--write requires --output, and does not apply to --filters and "
+                "--tolerance."
             )
         _write_spectra(write, files, lights, output)
         return
@@ -189,11 +199,16 @@ def _print_advice(comparison: Comparison, tolerance: float) -> None:
         row = cheapest(comparison, name, tolerance)
         if row is None:
             best = min(comparison.of(name), key=lambda result: result.statistics.q97_5)
-            text = f"none; the most accurate, {best.name}, has {format_error(best.statistics.q97_5)}"
+            text = (
+                f"none; the most accurate, {best.name}, has "
+                f"{format_error(best.statistics.q97_5)}"
+            )
         else:
             text = (
-                f"{row.name} ({row.family}): 97.5 % below {format_error(row.statistics.q97_5)}, "
-                f"{row.floats:.4g} floats per surface, {row.light_floats:.4g} per light, "
+                f"{row.name} ({row.family}): 97.5 % below "
+                f"{format_error(row.statistics.q97_5)}, "
+                f"{row.floats:.4g} floats per surface, {row.light_floats:.4g} per "
+                "light, "
                 f"{format_time(row.ns.median)} per product"
             )
         say(f"{title}: {text}")

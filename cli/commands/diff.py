@@ -18,7 +18,8 @@ from ..outputs import check_outputs
 
 @click.command(
     "diff",
-    help="""Compare two cubes: ΔE00 of their answers at nodes, atlas entries, and the colours of images.
+    help="""Compare two cubes: ΔE00 of their answers at nodes, atlas entries, and the
+    colours of images.
 
     \b
     Examples:
@@ -27,8 +28,8 @@ from ..outputs import check_outputs
       uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
       uplift diff macbeth-32.uplift fabrics.uplift --tolerance 50 --format json
 
-    The cubes may have different lattices, models, atlases and ranges, in one RGB space. Entries are compared by name.
-    Without --tolerance the exit code is 0.
+    The cubes may have different lattices, models, atlases and ranges, in one RGB space.
+    Entries are compared by name. Without --tolerance the exit code is 0.
     """,
 )
 @click.argument("first", metavar="CUBE", shell_complete=options.complete_cube)
@@ -36,7 +37,8 @@ from ..outputs import check_outputs
 @click.argument("images", metavar="[IMAGE]...", nargs=-1)
 @options.light("Illuminant", "D65 A FL2 FL11 LED-B3")
 @options.tolerance(
-    help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by more, if one cube alone lacks a "
+    help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by "
+    "more, if one cube alone lacks a "
     "colour, or if entries were added or removed."
 )
 @click.option(
@@ -117,7 +119,8 @@ def _print(figures: dict[str, Any]) -> None:
             paragraph(f"entries {change}: {', '.join(figures[f'entries_{change}'])}")
     for row in figures["lacking"]:
         say(
-            f"{row['set']}: {row['cubes']} cannot answer {pluralise(row['colours'], 'colour')}"
+            f"{row['set']}: {row['cubes']} cannot answer "
+            f"{pluralise(row['colours'], 'colour')}"
         )
     if "tolerance" in figures:
         say(

@@ -66,9 +66,10 @@ APPLIES = {
     npz    all arrays of the cube, for numpy
     csv    one line per node
 
-    Names in a program start with the file's. A C header, also valid C++, contains the table, or loads it from a file
-    of numbers. Programs in other languages come with a second file, which they explain. The tables of coeff, pbrt and
-    luisa store sigmoid spectra of the cube's colours: three coefficients cannot represent the atlas.
+    Names in a program start with the file's. A C header, also valid C++, contains the
+    table, or loads it from a file of numbers. Programs in other languages come with a
+    second file, which they explain. The tables of coeff, pbrt and luisa store sigmoid
+    spectra of the cube's colours: three coefficients cannot represent the atlas.
 
     \b
     Examples:
@@ -97,7 +98,10 @@ APPLIES = {
 @click.option(
     "--res",
     type=options.WHOLE,
-    help="Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier 33, film 192]",
+    help=(
+        "Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier "
+        "33, film 192]"
+    ),
 )
 @click.option(
     "--light",
@@ -110,7 +114,10 @@ APPLIES = {
 @click.option(
     "--mode",
     type=click.Choice(("spectra", "moments")),
-    help="What programs interpolate: spectra, with exact colours, or coefficients. [default: spectra]",
+    help=(
+        "What programs interpolate: spectra, with exact colours, or coefficients. "
+        "[default: spectra]"
+    ),
 )
 @options.table
 @options.fill
@@ -129,7 +136,8 @@ def command(
     )
     if style is None:
         raise click.UsageError(
-            f"Give --format, or --output ending in {', '.join(dict.fromkeys(SUFFIXES.values()))}."
+            "Give --format, or --output ending in "
+            f"{', '.join(dict.fromkeys(SUFFIXES.values()))}."
         )
     settings = {name: value for name, value in given.items() if value is not None}
     for name in settings:
@@ -139,7 +147,8 @@ def command(
             )
     if style in LUTS and "light" not in settings:
         raise click.UsageError(
-            "A cube or clf table shows the colours under a light: give --light, such as HP1."
+            "A cube or clf table shows the colours under a light: give --light, such "
+            "as HP1."
         )
     from uplift.common.files import check_output, check_outputs
     from uplift.io.export import check_form, output_files
@@ -172,7 +181,10 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
         return f"shader in {shader}, with 8 bits {_shown(error)}"
     if style == "film":
         film = export.write_film(cube, path, **settings)
-        return f"{film.inside:.0%} of the chromaticities from the cube, mean error of exposure {film.stops:.2g} stops"
+        return (
+            f"{film.inside:.0%} of the chromaticities from the cube, mean error of "
+            f"exposure {film.stops:.2g} stops"
+        )
     if style in SIGMOIDS:
         with progress_bar("fitting sigmoids"):
             error = export.write_coeff(data, path, layout=style, **settings)
@@ -206,7 +218,8 @@ def _write_program(
     nodes = pluralise(data.lattice.size, "node")
     facts = [nodes, pluralise(len(data.atlas.names), "atlas entry"), f"{size:.1f} MB"]
     facts.append(
-        f"single precision changes reflectances by less than {round_up(export.rounding_error(data, mode)):g}"
+        "single precision changes reflectances by less than "
+        f"{round_up(export.rounding_error(data, mode)):g}"
     )
     moved = export.moved_cells(data, mode).sum() / (data.lattice.dim - 1) ** 3
     if moved:
@@ -218,4 +231,7 @@ def _write_program(
 def _shown(error: TableError) -> str:
     """Describe the errors of a table."""
     worst = " ".join(f"{value:.2g}" for value in error.worst)
-    return f"ΔE00 from the cube's: mean {error.mean:.2g}, largest {round_up(error.largest):g} (RGB {worst})"
+    return (
+        f"ΔE00 from the cube's: mean {error.mean:.2g}, largest "
+        f"{round_up(error.largest):g} (RGB {worst})"
+    )

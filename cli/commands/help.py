@@ -24,9 +24,13 @@ MODE_MEANINGS = {
 GAMUT_MEANINGS = {
     "error": "refuse the colour",
     "clip": "clip each component, which changes chromaticity, hue and luminance",
-    "scale": "move towards white at constant luminance until no component is negative, then divide by the largest",
+    "scale": (
+        "move towards white at constant luminance until no component is negative, "
+        "then divide by the largest"
+    ),
     "desaturate": "move towards white at constant luminance and dominant wavelength",
-    "desaturate-oklab": "move towards grey at constant lightness and hue of Oklab, which keeps the hue of reds and "
+    "desaturate-oklab": "move towards grey at constant lightness and hue of Oklab, which keeps the "
+    "hue of reds and "
     "yellows better",
 }
 TEMPERATURES = """

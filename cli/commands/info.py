@@ -34,7 +34,8 @@ OPTIONS = {
 
 @click.command(
     "info",
-    help="""Show the contents and provenance of a cube file. CUBE defaults to the packaged cube.
+    help="""Show the contents and provenance of a cube file. CUBE defaults to the
+    packaged cube.
 
     \b
     Examples:
@@ -98,7 +99,10 @@ def _as_options(settings: dict[str, Any]) -> str:
                 each["name"] if isinstance(each, dict) else each for each in values
             ]
             words += [
-                f"{option} {shlex.quote(f'{each:g}' if isinstance(each, float) else str(each))}"
+                (
+                    f"{option} "
+                    f"{shlex.quote(f'{each:g}' if isinstance(each, float) else str(each))}"
+                )
                 for each in values
             ]
     return " ".join(words)
@@ -111,7 +115,10 @@ def _look(record: dict[str, Any]) -> str:
     from uplift.colorimetry.srgb import hex_codes
 
     wishes = (
-        f"{each['light']} {hex_codes(np.array([each['wish']]))[0]} (ΔE00 {each['delta_e']:.2f})"
+        (
+            f"{each['light']} {hex_codes(np.array([each['wish']]))[0]} (ΔE00 "
+            f"{each['delta_e']:.2f})"
+        )
         for each in record["lights"]
     )
     weight = "" if record["weight"] == 1 else f"weight {record['weight']:g}, "

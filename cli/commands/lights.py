@@ -45,9 +45,11 @@ table_option = click.option(
 @click.group(
     "lights",
     cls=options.Group,
-    help="""Give lights of any brightness the spectral powers that lamps of their colour are expected to have.
+    help="""Give lights of any brightness the spectral powers that lamps of their colour
+    are expected to have.
 
-    Spectra of lights are in emission tables. The packaged one, named emission, is for linear sRGB.
+    Spectra of lights are in emission tables. The packaged one, named emission, is for
+    linear sRGB.
 
     \b
     Examples:
@@ -64,7 +66,8 @@ def command() -> None:
 
 @command.command(
     "build",
-    help="""Build an emission table. Lamps of --atlas are exact at their colours; tables of power need no scale.
+    help="""Build an emission table. Lamps of --atlas are exact at their colours; tables
+    of power need no scale.
 
     \b
     Examples:
@@ -97,8 +100,10 @@ def build(
     if not quiet:
         knots, rings = table.data.lattice.shape
         say(
-            f"{path}: {knots} × {rings} nodes, {pluralise(len(table.lamp_names), 'lamp')}, "
-            f"expected ΔE00 of surfaces {float(table.expected_error([1.0, 1.0, 1.0])):.1f} (white), "
+            f"{path}: {knots} × {rings} nodes, "
+            f"{pluralise(len(table.lamp_names), 'lamp')}, "
+            "expected ΔE00 of surfaces "
+            f"{float(table.expected_error([1.0, 1.0, 1.0])):.1f} (white), "
             f"{path.stat().st_size / 1e6:.1f} MB, {time.perf_counter() - begin:.1f} s"
         )
 
@@ -189,10 +194,12 @@ def export(table_path: str, output: str, table: str | None, force: bool) -> None
 
 @command.command(
     "texture",
-    help="""Convert images of lights, such as environment maps, to spectral power and write OpenEXR textures.
+    help="""Convert images of lights, such as environment maps, to spectral power and
+    write OpenEXR textures.
 
-    Pixels have any brightness. The unit of power is that of the equal-energy light of luminance 1; RGB (1, 1, 1) has
-    luminance 1. Only colours outside the spectral locus change.
+    Pixels have any brightness. The unit of power is that of the equal-energy light of
+    luminance 1; RGB (1, 1, 1) has luminance 1. Only colours outside the spectral locus
+    change.
 
     \b
     Examples:
@@ -223,9 +230,11 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
     "query",
     cls=options.Command,
     everyday=("table_path", "encoded", "wavelengths", "style", "plot_path"),
-    help="""Query the spectral power of a light by its COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
+    help="""Query the spectral power of a light by its COLOUR: R G B, '#rrggbb', or '-'
+    for lines on standard input.
 
-    Numbers are linear RGB of any size, negative ones included. A power of 1 at all wavelengths has luminance 1.
+    Numbers are linear RGB of any size, negative ones included. A power of 1 at all
+    wavelengths has luminance 1.
 
     \b
     Examples:
@@ -240,7 +249,10 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
 @options.choice(
     *("--out-of-gamut", "error", "clip"),
     name="outside",
-    help="Treatment of colours that no light has: raise an error, or take the nearest one towards white.",
+    help=(
+        "Treatment of colours that no light has: raise an error, or take the nearest "
+        "one towards white."
+    ),
 )
 @options.output_format("table", "json", "csv")
 @options.plot("Plot the spectra")
@@ -299,7 +311,10 @@ def query(
         fields = {
             "linear RGB": f"{format_rgb(result['rgb'])} ({table.space})",
             "round trip": format_rgb(result["round_trip"]["rgb"]),
-            "expected error": f"ΔE00 {result['expected_error']:.2g} of surfaces, to a measured lamp of this RGB",
+            "expected error": (
+                f"ΔE00 {result['expected_error']:.2g} of surfaces, to a measured "
+                "lamp of this RGB"
+            ),
             "peak": f"{power.max():.5g} at {at[power.argmax()]:g} nm",
         }
         print_spectrum(
@@ -316,7 +331,9 @@ def query(
 def _answers(
     table: EmissionTable, blocks: Iterable[Array], at: Array, outside: str
 ) -> Iterator[dict[str, Any]]:
-    """Answer blocks of XYZ (n, 3), each before the next one is read, by JSON values and ``power`` (N,)."""
+    """Answer blocks of XYZ (n, 3), each before the next one is read, by JSON values and
+    ``power`` (N,).
+    """
     for xyz in blocks:
         answers = table.rgb(table.spectrum_of_xyz(xyz, outside=outside))
         power = table.spectrum_of_xyz(xyz, at, outside=outside)

@@ -48,11 +48,13 @@ if TYPE_CHECKING:
         "over",
         "output",
     ),
-    help="""Mix colours as spectra. A cube converts each colour to a spectrum, and the mixture has its illuminant.
+    help="""Mix colours as spectra. A cube converts each colour to a spectrum, and the
+    mixture has its illuminant.
 
-    A COLOUR is '#rrggbb', 'r,g,b' in linear RGB, 'white', 'black', or an entry of the cube's atlas or of --atlas.
-    'A/B' is a paint whose layer of thickness 1 has colour A on white and colour B on black. Other paints are opaque by
-    default, and --thickness is in units of about one scattering event.
+    A COLOUR is '#rrggbb', 'r,g,b' in linear RGB, 'white', 'black', or an entry of the
+    cube's atlas or of --atlas. 'A/B' is a paint whose layer of thickness 1 has colour A
+    on white and colour B on black. Other paints are opaque by default, and --thickness
+    is in units of about one scattering event.
 
     \b
     Examples:
@@ -86,7 +88,8 @@ if TYPE_CHECKING:
     "--duntley",
     "kind",
     flag_value="duntley",
-    help="Mix paints by Duntley's theory. Ingredients are [PARTS:]FILE: tables, over wavelength, of the constants "
+    help="Mix paints by Duntley's theory. Ingredients are [PARTS:]FILE: tables, over "
+    "wavelength, of the constants "
     "K', B', F' of a beam and K, B, F of diffuse light, per unit thickness.",
 )
 @click.option(
@@ -118,30 +121,41 @@ if TYPE_CHECKING:
     "--surface-reflectance",
     type=options.NUMBER,
     metavar="K1",
-    help="Saunderson's reflectance of the surface for light from air. [default: by --refractive-index]",
+    help=(
+        "Saunderson's reflectance of the surface for light from air. [default: by "
+        "--refractive-index]"
+    ),
 )
 @click.option(
     "--internal-reflectance",
     type=options.NUMBER,
     metavar="K2",
-    help="Saunderson's reflectance of the surface for diffuse light from within. [default: by --refractive-index]",
+    help=(
+        "Saunderson's reflectance of the surface for diffuse light from within. "
+        "[default: by --refractive-index]"
+    ),
 )
 @click.option(
     "--plate",
     type=click.Choice(("reflected", "transmitted")),
-    help="With --dye: the light that a free plate of the dye reflects, with --ground behind it, or transmits. "
+    help="With --dye: the light that a free plate of the dye reflects, with --ground "
+    "behind it, or transmits. "
     "--refractive-index is that of the plate.",
 )
 @options.choice(
     "--scattering",
     *("dispersive", "root", "constant"),
-    help="Scattering that is assumed of a paint given by one colour: dispersive is strongest on the long-wave side of "
+    help="Scattering that is assumed of a paint given by one colour: dispersive is "
+    "strongest on the long-wave side of "
     "an absorption, root is √R for a reflectance R, constant is 1.",
 )
 @click.option(
     "--theories",
     is_flag=True,
-    help="Mix the colours by every model: Kubelka and Munk, Amy, Duntley, dyes, filters, and heuristics of RGB.",
+    help=(
+        "Mix the colours by every model: Kubelka and Munk, Amy, Duntley, dyes, "
+        "filters, and heuristics of RGB."
+    ),
 )
 @options.cube()
 @options.atlas("Measured spectra whose entries are ingredients")
@@ -212,7 +226,8 @@ def command(
         raise click.UsageError("--over IMAGE and --output EXR require each other.")
     if ground is not None and (kind not in COATS or over is not None):
         raise click.UsageError(
-            "--ground applies to coats of --pigment, --dye or --duntley, without --over."
+            "--ground applies to coats of --pigment, --dye or --duntley, without "
+            "--over."
         )
     if plate is not None and kind != "dye":
         raise click.UsageError("--plate applies to --dye.")
@@ -227,7 +242,8 @@ def command(
         or any(each is not None for each in (thickness, ground, plate, over, plot_path))
     ):
         raise click.UsageError(
-            "--theories mixes opaque colours, without --duntley, --thickness, --ground, --plate, --over and --plot."
+            "--theories mixes opaque colours, without --duntley, --thickness, "
+            "--ground, --plate, --over and --plot."
         )
     if output is not None and not output.lower().endswith(".exr"):
         raise OutputError(
@@ -251,7 +267,8 @@ def command(
     grid = np.concatenate(
         [sensor.wavelengths, further]
     )  # for colours, followed by those of the output
-    # The default is for mixtures: an ingredient outside [0, 1] is a mistake, unless the option is given.
+    # The default is for mixtures: an ingredient outside [0, 1] is a mistake, unless the
+    # option is given.
     is_given = (
         click.get_current_context().get_parameter_source("method")
         is ParameterSource.COMMANDLINE

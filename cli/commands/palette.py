@@ -30,15 +30,18 @@ LEGEND = "requested, obtained, factor model, ΔE00 of obtained/model; * designed
 
 @click.command(
     "palette",
-    help="""Design the unknown spectra of a palette of lights and materials, and print the matrix of their colours.
+    help="""Design the unknown spectra of a palette of lights and materials, and print
+    the matrix of their colours.
 
-    SPEC.toml lists lights and materials, given or to be designed, and the colours that materials must have.
-    Several cells may share one colour that is free (docs/palette.md).
+    SPEC.toml lists lights and materials, given or to be designed, and the colours that
+    materials must have. Several cells may share one colour that is free
+    (docs/palette.md).
 
-    A cell of the matrix shows the requested colour, the colour of the designed spectra and the colour of the factor
-    model, with ΔE00 between the first and the second and between the second and the third. Goals that no spectra can
-    meet are listed with the requirements to relax. JSON output has all spectra, and the factor model: its basis, the
-    dual that encodes other reflectances, and light_dual for powers.
+    A cell of the matrix shows the requested colour, the colour of the designed spectra
+    and the colour of the factor model, with ΔE00 between the first and the second and
+    between the second and the third. Goals that no spectra can meet are listed with the
+    requirements to relax. JSON output has all spectra, and the factor model: its basis,
+    the dual that encodes other reflectances, and light_dual for powers.
 
     \b
     Examples:
@@ -61,7 +64,10 @@ LEGEND = "requested, obtained, factor model, ΔE00 of obtained/model; * designed
 @click.option(
     "--image",
     metavar="FILE",
-    help="Picture for the page: an 8-bit image of labels, or EXR channels with the names of the materials.",
+    help=(
+        "Picture for the page: an 8-bit image of labels, or EXR channels with the "
+        "names of the materials."
+    ),
 )
 @options.repeatable(
     "--label",
@@ -126,7 +132,9 @@ def command(
 def _read_picture(
     palette: Palette, html: str | None, image: str | None, labels: tuple[str, ...]
 ) -> NDArray[np.float32] | None:
-    """Read how much of each material a pixel shows; None if the page draws its own picture."""
+    """Read how much of each material a pixel shows; None if the page draws its own
+    picture.
+    """
     if image is None and labels:
         raise click.UsageError(
             "--label requires --image, the image that has these colours."

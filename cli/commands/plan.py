@@ -13,10 +13,12 @@ from ..startup import enable_jit_cache
 
 @click.command(
     "plan",
-    help="""Search the cheapest cube, texture format and wavelengths that keep a scene's colours within a tolerance.
+    help="""Search the cheapest cube, texture format and wavelengths that keep a scene's
+    colours within a tolerance.
 
-    SCENE.toml lists textures and, optionally, atlases, lights, the tolerated ΔE00, the fraction of pixels that must
-    stay within it, what to minimise (balance, memory, time or samples), and limits:
+    SCENE.toml lists textures and, optionally, atlases, lights, the tolerated ΔE00, the
+    fraction of pixels that must stay within it, what to minimise (balance, memory, time
+    or samples), and limits:
 
     \b
       textures = ["wood.png", "shot.*.exr"]
@@ -34,9 +36,10 @@ from ..startup import enable_jit_cache
       uplift plan kitchen.toml --format json --force
       uplift plan kitchen.toml -o other.plan.json
 
-    Candidates that may be on the Pareto front of memory, time, samples and error are measured on pixels of the
-    textures and on the entries of the atlases. The cheapest sufficient one is confirmed on other pixels: RGB without
-    spectra, a list of spectra, or a cube, which 'uplift build --plan' builds.
+    Candidates that may be on the Pareto front of memory, time, samples and error are
+    measured on pixels of the textures and on the entries of the atlases. The cheapest
+    sufficient one is confirmed on other pixels: RGB without spectra, a list of spectra,
+    or a cube, which 'uplift build --plan' builds.
     """,
 )
 @click.argument("scene", metavar="SCENE.toml", type=click.Path())
@@ -74,7 +77,8 @@ def command(
         worst = result.confirmed.worst
         paragraph(f"{result.scene.path.name}: {result.chosen.name}")
         paragraph(
-            f"{summary.verdict(result)} ({worst.group} under {worst.light}). {' '.join(summary.notes(result))}"
+            f"{summary.verdict(result)} ({worst.group} under {worst.light}). "
+            f"{' '.join(summary.notes(result))}"
         )
         say()
         table = make_table(("",), summary.HEADINGS[:4])

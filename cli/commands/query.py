@@ -55,7 +55,11 @@ LARGEST = 1e30
 
 colour_options = options.stacked(
     options.colours(
-        "under the cube's illuminant, where white has Y = 1; also outside the cube's space",
+        (
+            "under the cube's illuminant, where white has Y = 1; also outside the "
+            "cube's "
+            "space"
+        ),
         "that of the cube",
     ),
     options.cube(),
@@ -63,18 +67,25 @@ colour_options = options.stacked(
     options.choice(
         "--mode",
         *("spectra", "moments", "refined", "nearest"),
-        help="Interpolate spectra (exact), coefficients (fast), coefficients with refinement, or use the nearest node.",
+        help=(
+            "Interpolate spectra (exact), coefficients (fast), coefficients with "
+            "refinement, or use the nearest node."
+        ),
     ),
     options.out_of_gamut("error", "as such a number is often a mistake"),
     options.fill,
 )
-"""Argument and options of the colours of a query, and of how they are answered; for `Answers`."""
+"""Argument and options of the colours of a query, and of how they are answered; for
+`Answers`.
+"""
 
 
 class Answers:
-    """Answers to blocks of colours from the values of `colour_options`, each before the next block is read.
+    """Answers to blocks of colours from the values of `colour_options`, each before the
+    next block is read.
 
-    ``cube`` is filled where colours need it. ``origin`` is its file, dim and atlases, for JSON, and ``title`` for text.
+    ``cube`` is filled where colours need it. ``origin`` is its file, dim and atlases,
+    for JSON, and ``title`` for text.
     """
 
     def __init__(
@@ -125,7 +136,9 @@ class Answers:
             self.lights = list(named.values())
 
     def __iter__(self) -> Iterator[list[QueryResult]]:
-        """Answer block by block, and warn at the end of colours that were mapped or filled."""
+        """Answer block by block, and warn at the end of colours that were mapped or
+        filled.
+        """
         from uplift.lookup.query import query, query_xyz
 
         if self.source.xyz is not None:
@@ -164,7 +177,10 @@ class Answers:
             )
             sys.stdout.flush()
         if mapped:
-            by = f"mapped into the gamut ({self.method}), a component by up to {change:.3g}"
+            by = (
+                f"mapped into the gamut ({self.method}), a component by up to "
+                f"{change:.3g}"
+            )
             warn(
                 [
                     UpliftWarning(
@@ -173,11 +189,16 @@ class Answers:
                 ]
             )
         if filled:
-            problem = f"{filled} of {pluralise(count, 'colour')} outside the cube's scene: filled from the packaged cube"
+            problem = (
+                f"{filled} of {pluralise(count, 'colour')} outside the cube's scene: "
+                "filled from the packaged cube"
+            )
             warn([UpliftWarning(problem)])
 
     def light_colours(self, result: QueryResult) -> dict[str, tuple[Array, str]]:
-        """Return linear sRGB (3,) and '#rrggbb' of an answer by light; its white is that of the screen."""
+        """Return linear sRGB (3,) and '#rrggbb' of an answer by light; its white is
+        that of the screen.
+        """
         from uplift.colorimetry.srgb import hex_codes
 
         colours = {
@@ -190,10 +211,12 @@ class Answers:
     "query",
     cls=options.Command,
     everyday=("cube_path", "encoded", "wavelengths", "lights", "style", "plot_path"),
-    help="""Query the spectra of colours: R G B, '#rrggbb', or '-' for lines on standard input.
+    help="""Query the spectra of colours: R G B, '#rrggbb', or '-' for lines on standard
+    input.
 
-    Numbers are linear RGB from 0 to 1 in the cube's space, or in that of --input-space. Hex colours, and numbers with
-    --encoded, are encoded by the transfer function of the space.
+    Numbers are linear RGB from 0 to 1 in the cube's space, or in that of --input-space.
+    Hex colours, and numbers with --encoded, are encoded by the transfer function of the
+    space.
 
     \b
     Examples:
@@ -215,11 +238,12 @@ class Answers:
       uplift query '#cc3319' --light lamp.spd
       uplift query --check spectra.csv
 
-    Standard errors are those of materials like the entries of the cube's atlas. RGB does not identify a material:
-    others of the same colour may differ by more, at most as 'uplift bounds' states.
+    Standard errors are those of materials like the entries of the cube's atlas. RGB
+    does not identify a material: others of the same colour may differ by more, at most
+    as 'uplift bounds' states.
 
-    Lines of files and of standard input are answered in blocks as they come. An error in a later block follows the
-    answers to earlier ones.
+    Lines of files and of standard input are answered in blocks as they come. An error
+    in a later block follows the answers to earlier ones.
     """,
 )
 @colour_options
@@ -297,7 +321,9 @@ def command(
 def _check(
     path: str, cube_path: str | None, mode: str, tolerance: float, style: str
 ) -> None:
-    """Compare stored answers with those of a cube; exit with 1 if one differs by more than the tolerance."""
+    """Compare stored answers with those of a cube; exit with 1 if one differs by more
+    than the tolerance.
+    """
     from uplift.lookup import load
     from uplift.report.answers import read_answers
 
@@ -316,8 +342,10 @@ def _check(
         print_json(counts | figures | {"tolerance": tolerance, "passed": passed})
     else:
         say(
-            f"{path}: {'passed' if passed else 'FAILED'}, {moved} of {pluralise(len(differences), 'answer')} "
-            f"moved by more than {tolerance:g}, the most by {differences[worst]:.2g} ({format_rgb(stored.rgb[worst])})"
+            f"{path}: {'passed' if passed else 'FAILED'}, {moved} of "
+            f"{pluralise(len(differences), 'answer')} "
+            f"moved by more than {tolerance:g}, the most by {differences[worst]:.2g} "
+            f"({format_rgb(stored.rgb[worst])})"
         )
     if not passed:
         raise SystemExit(1)
@@ -371,15 +399,20 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
             delta_e_rgb(data.sensor, result.requested_rgb.clip(-LARGEST, LARGEST), rgb)
         )
         fields["requested"] = (
-            f"{format_rgb(result.requested_rgb)}  outside [0, 1], mapped by ΔE00 {moved:.2g}"
+            f"{format_rgb(result.requested_rgb)}  outside [0, 1], mapped by ΔE00 "
+            f"{moved:.2g}"
         )
     fields["linear RGB"] = f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"
     fields |= describe_coordinates(coordinates(cube, rgb))
     fields["cube"] = answers.title
     fields["cell"] = (
-        f"{result.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in result.statuses)}"
+        f"{result.cell} of {data.lattice.dim - 1}³, "
+        f"{', '.join(s.label for s in result.statuses)}"
     )
-    round_trip = f"{format_rgb(result.round_trip)}  ΔE00 {result.delta_e_2000:.2g} ({data.sensor.illuminant})"
+    round_trip = (
+        f"{format_rgb(result.round_trip)}  ΔE00 {result.delta_e_2000:.2g} "
+        f"({data.sensor.illuminant})"
+    )
     fields["round trip"] = round_trip
     if data.sensor.sensitivities is not None:
         fields["XYZ"] = format_rgb(result.xyz)
@@ -454,7 +487,8 @@ def _print_lines(answers: Answers, results: Iterable[QueryResult]) -> None:
             indent = " " * 5 * has_colours()
             say(f"cube     {answers.title}")
             say(
-                f"{indent}hex      {'linear RGB':<17}  {'ΔE00':<7}  {'  '.join(names)}  atlas entry"
+                f"{indent}hex      {'linear RGB':<17}  {'ΔE00':<7}  "
+                f"{'  '.join(names)}  atlas entry"
             )
         last = [f"{error:>{len(name)}}" for name, error in errors.items()] or [
             sparkline(result.reflectance, 16)
@@ -463,13 +497,18 @@ def _print_lines(answers: Answers, results: Iterable[QueryResult]) -> None:
         entry = result.entry or (
             "unlike the atlas" if errors and result.unlike_atlas else ""
         )
-        line = f"{hex_code(cube, result.rgb)}  {rgb}  {result.delta_e_2000:<7.2g}  {'  '.join(last)}  {entry}"
+        line = (
+            f"{hex_code(cube, result.rgb)}  {rgb}  {result.delta_e_2000:<7.2g}  "
+            f"{'  '.join(last)}  {entry}"
+        )
         swatch = patch(cube, result.rgb, 3)
         emit((swatch and f"{swatch}  ") + printable(line.rstrip()))
 
 
 def _errors(cube: Cube, result: QueryResult) -> list[tuple[str, float, float]]:
-    """Return light, standard error and error bound, that of the cube first; empty if they are unknown."""
+    """Return light, standard error and error bound, that of the cube first; empty if
+    they are unknown.
+    """
     if result.standard_error is None or result.error_bound is None:
         return []
     reference = cube.data.error_illuminant

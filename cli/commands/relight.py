@@ -43,8 +43,14 @@ def _check_output(path: str) -> str:
     suffixes = (*SUFFIXES, PAGE, IMAGE)
     suffix = Path(path).suffix.lower()
     if suffix not in suffixes:
-        problem = f"the suffix of relit images must be one of {', '.join(suffixes)}, got '{suffix}'"
-        hint = "give a file name ending in .png for a figure, .html for a page, or .exr for the image itself"
+        problem = (
+            f"the suffix of relit images must be one of {', '.join(suffixes)}, got "
+            f"'{suffix}'"
+        )
+        hint = (
+            "give a file name ending in .png for a figure, .html for a page, or .exr "
+            "for the image itself"
+        )
         raise OutputError(problem, path=path, hint=hint)
     if suffix in SUFFIXES:
         check_suffix(path)
@@ -53,16 +59,20 @@ def _check_output(path: str) -> str:
 
 @click.command(
     "relight",
-    help="""Show images under other lights: RGB multiplied by the light, next to spectra.
+    help="""Show images under other lights: RGB multiplied by the light, next to
+    spectra.
 
-    Without IMAGE, a sample painted in colours of the ColorChecker is shown, with the ColorChecker as its atlas. Spectra
-    come from the packaged cube, which knows no atlas ('spectral'), and from --cube or --atlas; from --cube alone if it
-    has another RGB space, illuminant or observer. The page has a line to drag between two of the methods or the
-    original, and maps of ΔE00. Figures and pages show images with at most 960 pixels per side.
+    Without IMAGE, a sample painted in colours of the ColorChecker is shown, with the
+    ColorChecker as its atlas. Spectra come from the packaged cube, which knows no atlas
+    ('spectral'), and from --cube or --atlas; from --cube alone if it has another RGB
+    space, illuminant or observer. The page has a line to drag between two of the
+    methods or the original, and maps of ΔE00. Figures and pages show images with at
+    most 960 pixels per side.
 
-    With -o relit.exr, one image is written at full size, linear and in its own RGB space, by the spectra of --cube or
-    --atlas if there is one. R, G and B are the colours under the first light; each further light is a layer of its
-    name, such as FL11.R, FL11.G and FL11.B. Alpha and other channels are copied.
+    With -o relit.exr, one image is written at full size, linear and in its own RGB
+    space, by the spectra of --cube or --atlas if there is one. R, G and B are the
+    colours under the first light; each further light is a layer of its name, such as
+    FL11.R, FL11.G and FL11.B. Alpha and other channels are copied.
 
     \b
     Examples:
@@ -72,11 +82,11 @@ def _check_output(path: str) -> str:
       uplift relight --cube macbeth-32.uplift --format json -o cube.html
       uplift relight painting.exr --light 3200K --light lamp.spd -o relit.exr
 
-    Eye and camera adapt to lights that look white, so their white becomes the white of the screen. The eye does not
-    adapt to a sodium lamp: such lights keep their tint. --adapt or --no-adapt shows all lights alike, and pages have a
-    switch. In an .exr file, whites are white unless --no-adapt is given. The table lists ΔE00 from the products of RGB,
-    relative to the white of the light.
-""",
+    Eye and camera adapt to lights that look white, so their white becomes the white of
+    the screen. The eye does not adapt to a sodium lamp: such lights keep their tint.
+    --adapt or --no-adapt shows all lights alike, and pages have a switch. In an .exr
+    file, whites are white unless --no-adapt is given. The table lists ΔE00 from the
+    products of RGB, relative to the white of the light.""",
 )
 @click.argument("images", metavar="[IMAGE]...", nargs=-1)
 @options.light("Illuminant", "A FL11 HP1")
@@ -87,7 +97,10 @@ def _check_output(path: str) -> str:
 )
 @options.pixels()
 @options.output(
-    help="File to write: a figure if it ends in .png, .svg or .pdf, a page if in .html, the image itself if in .exr.",
+    help=(
+        "File to write: a figure if it ends in .png, .svg or .pdf, a page if in "
+        ".html, the image itself if in .exr."
+    ),
     default="relit.png",
     type=options.OutputFile(_check_output),
 )
@@ -215,14 +228,17 @@ def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:
     show(table)
     names = ", ".join(image.name for image in relit)
     paragraph(
-        f"{output}: {names} under {', '.join(rendering.light for rendering in relit[0].renderings)}"
+        f"{output}: {names} under "
+        f"{', '.join(rendering.light for rendering in relit[0].renderings)}"
     )
 
 
 def _cube_of_user(
     path: str | None, atlases: tuple[str, ...]
 ) -> tuple[Cube | None, list[UpliftWarning]]:
-    """Load the cube of a file, or build that of atlases with its warnings; None without either."""
+    """Load the cube of a file, or build that of atlases with its warnings; None without
+    either.
+    """
     from uplift.lookup import load
 
     if atlases:

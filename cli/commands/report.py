@@ -20,9 +20,11 @@ if TYPE_CHECKING:
 
 @click.command(
     "report",
-    help="""Assess a cube: failures, errors, crowded entries, and every atlas entry compared with its measurement.
+    help="""Assess a cube: failures, errors, crowded entries, and every atlas entry
+    compared with its measurement.
 
-    The HTML page is self-contained. With --format json the same numbers go to standard output, or to FILE.
+    The HTML page is self-contained. With --format json the same numbers go to standard
+    output, or to FILE.
 
     \b
     Examples:
@@ -31,10 +33,11 @@ if TYPE_CHECKING:
       uplift report macbeth-32.uplift --light FL4 --worst 6 -o worst.html
       uplift report macbeth-32.uplift --format json | jq .failures
 
-    The measured spectra are those of the cube's atlases, which are found by name and content, as by 'uplift check'.
+    The measured spectra are those of the cube's atlases, which are found by name and
+    content, as by 'uplift check'.
 
-    --atlas evaluates entries of other atlases at their own colours. This shows how well the cube predicts unseen
-    materials, and whether its standard errors are calibrated.
+    --atlas evaluates entries of other atlases at their own colours. This shows how well
+    the cube predicts unseen materials, and whether its standard errors are calibrated.
     """,
 )
 @options.cube_argument
@@ -106,12 +109,14 @@ def _summary(assessment: Assessment) -> str:
         names, answers = assessment.entries.names, assessment.entries.answers
         parts.append(pluralise(len(names), "entry"))
         parts.append(
-            f"ΔE00 mean {answers.delta_e.mean():.2f}, worst {answers.worst[0]:.2f} ('{names[0]}')"
+            f"ΔE00 mean {answers.delta_e.mean():.2f}, worst {answers.worst[0]:.2f} "
+            f"('{names[0]}')"
         )
     if assessment.calibration is not None:
         calibration, light = assessment.calibration, assessment.data.error_illuminant
         parts.append(
-            f"68 % within {calibration.actual:.2f} under {light}, predicted {calibration.predicted:.2f}"
+            f"68 % within {calibration.actual:.2f} under {light}, predicted "
+            f"{calibration.predicted:.2f}"
         )
     if assessment.crowding is not None:
         parts.append(pluralise(len(assessment.crowding.entries.names), "crowded entry"))

@@ -13,11 +13,13 @@ from ..output.console import paragraph, say
 
 @click.command(
     "samples",
-    help="""Copy images, scenes, palettes and measurements into FOLDER, as files to try uplift with.
+    help="""Copy images, scenes, palettes and measurements into FOLDER, as files to try
+    uplift with.
 
-    All commands in the documentation and in these help texts run in that folder, those of a help text after
-    'uplift build --atlas macbeth --dim 32'. Files that are there already stay as
-    they are. The pictures are in the public domain; paints.csv and fabrics.csv are two of the shipped atlases.
+    All commands in the documentation and in these help texts run in that folder, those
+    of a help text after 'uplift build --atlas macbeth --dim 32'. Files that are there
+    already stay as they are. The pictures are in the public domain; paints.csv and
+    fabrics.csv are two of the shipped atlases.
 
     \b
     Examples:
@@ -35,7 +37,8 @@ def command(folder: str, force: bool) -> None:
 
     copies = copy_samples(folder, force=force)
     paragraph(
-        f"{folder}: {pluralise(len(copies), 'sample file')}, with which all examples run. Try first:"
+        f"{folder}: {pluralise(len(copies), 'sample file')}, with which all examples "
+        "run. Try first:"
     )
     for line in _first_commands(Path(folder)):
         say(f"  {line}")

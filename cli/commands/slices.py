@@ -24,12 +24,14 @@ SHEET = options.OutputFile(_check_sheet)
     "slices",
     help="""Write the blue slices of a cube as images.
 
-    The file of --output has one part per blue slice and one pixel per node. Red increases to the right, green upwards.
-    Channels are lattice RGB, target RGB, fitting distance, ΔE00, status, atlas entry, standard error, round (with debug
-    information) and every coefficient. -1 stands for no entry or no round.
+    The file of --output has one part per blue slice and one pixel per node. Red
+    increases to the right, green upwards. Channels are lattice RGB, target RGB, fitting
+    distance, ΔE00, status, atlas entry, standard error, round (with debug information)
+    and every coefficient. -1 stands for no entry or no round.
 
-    --plot tiles all slices into one image for any viewer: lattice RGB, fitting distance, status and, where the cube has
-    them, standard error and round, with legends.
+    --plot tiles all slices into one image for any viewer: lattice RGB, fitting
+    distance, status and, where the cube has them, standard error and round, with
+    legends.
 
     \b
     Examples:
@@ -42,7 +44,10 @@ SHEET = options.OutputFile(_check_sheet)
 )
 @options.cube_argument
 @options.output(
-    help="Slices to write, as .exr. [default: CUBE's name with .exr, in the current folder]"
+    help=(
+        "Slices to write, as .exr. [default: CUBE's name with .exr, in the current "
+        "folder]"
+    )
 )
 @click.option(
     "--plot",

@@ -43,7 +43,8 @@ HEADINGS = {
 @click.group(
     "study",
     cls=options.Group,
-    help="""Measure the accuracy of the models, the reliability of the solver, and the propagation of errors.
+    help="""Measure the accuracy of the models, the reliability of the solver, and the
+    propagation of errors.
 
     \b
     Examples:
@@ -65,7 +66,9 @@ def _print(
     table: Sequence[Row],
     title: str | None = None,
 ) -> None:
-    """Print JSON of the records, CSV of rows, or a table, in which floats have three digits."""
+    """Print JSON of the records, CSV of rows, or a table, in which floats have three
+    digits.
+    """
     from uplift.lab.timing import records_csv
 
     if style == "json":
@@ -93,15 +96,19 @@ def _print_table(rows: Sequence[Row], title: str | None = None) -> None:
 
 @command.command(
     "moments",
-    help="""Reconstruct measured spectra from their moments and compare them with the measurements.
+    help="""Reconstruct measured spectra from their moments and compare them with the
+    measurements.
 
-    Tests 0 to N moments of mirrored and unmirrored, warped and unwarped spectra, for all atlases together and for each
-    (Tódová 2020, table 4.1 and appendix B.1). Errors are mean and largest ΔE76 under D65, ΔE00 under D65, A, FL2, FL7,
-    FL11 and LED-B3, and the rms difference. The table shows mean / largest ΔE76 of all atlases together; JSON and CSV
-    have all errors. n moments take n + 1 floats mirrored, 2n + 1 unmirrored.
+    Tests 0 to N moments of mirrored and unmirrored, warped and unwarped spectra, for
+    all atlases together and for each (Tódová 2020, table 4.1 and appendix B.1). Errors
+    are mean and largest ΔE76 under D65, ΔE00 under D65, A, FL2, FL7, FL11 and LED-B3,
+    and the rms difference. The table shows mean / largest ΔE76 of all atlases together;
+    JSON and CSV have all errors. n moments take n + 1 floats mirrored, 2n + 1
+    unmirrored.
 
-    --output writes, as PNG, the errors over the number of floats (moments), the patches of the thesis or the first two
-    entries (moments-patches), and the entries with the largest errors (moments-worst).
+    --output writes, as PNG, the errors over the number of floats (moments), the patches
+    of the thesis or the first two entries (moments-patches), and the entries with the
+    largest errors (moments-worst).
 
     \b
     Examples:
@@ -160,13 +167,16 @@ def moments(
 
 @command.command(
     "held-out",
-    help="""Build cubes from half of an atlas, query the colours of the other half, and compare with the measurements.
+    help="""Build cubes from half of an atlas, query the colours of the other half, and
+    compare with the measurements.
 
-    Reports the rms difference of the spectra and mean ΔE00 under A, FL2, FL7, FL11, LED-B3, LED-RGB1 and HP1, compared
-    with cubes of moments and of sigmoids that have no atlas, and the predicted and the actual standard errors.
-    The prior does not know the families of its library that contain spectra of the atlas.
+    Reports the rms difference of the spectra and mean ΔE00 under A, FL2, FL7, FL11,
+    LED-B3, LED-RGB1 and HP1, compared with cubes of moments and of sigmoids that have
+    no atlas, and the predicted and the actual standard errors. The prior does not know
+    the families of its library that contain spectra of the atlas.
 
-    A plain baseline knows the same half: a local-linear regression of reflectance on RGB.
+    A plain baseline knows the same half: a local-linear regression of reflectance on
+    RGB.
 
     \b
     Examples:
@@ -205,21 +215,29 @@ def held_out(
     _print(style, records, rows, rows)
     for record in records if style == "table" else ():
         if errors := record.get("standard_error"):
-            shares = f"{errors['within_error']:.0%} within it, {errors['within_bound']:.0%} within the error bound"
-            means = f"predicted standard error ΔE00 {errors['stated']:.2f}, actual {errors['real']:.2f}"
+            shares = (
+                f"{errors['within_error']:.0%} within it, "
+                f"{errors['within_bound']:.0%} within the error bound"
+            )
+            means = (
+                f"predicted standard error ΔE00 {errors['stated']:.2f}, actual "
+                f"{errors['real']:.2f}"
+            )
             say(f"{record['atlas']}: {means}; {shares}")
 
 
 @command.command(
     "stability",
-    help="""Build cubes over dims, coefficients, models, spaces, thresholds and atlases, and count unfitted nodes.
+    help="""Build cubes over dims, coefficients, models, spaces, thresholds and atlases,
+    and count unfitted nodes.
 
-    Reports for each build the realisable and the unfitted nodes, rounds, improvement attempts, the largest residual and
-    the time. The builds are a grid of each setting against models and coefficients, and a random sample of other
-    combinations; `uplift.lab.study.stability` takes other ones.
+    Reports for each build the realisable and the unfitted nodes, rounds, improvement
+    attempts, the largest residual and the time. The builds are a grid of each setting
+    against models and coefficients, and a random sample of other combinations;
+    `uplift.lab.study.stability` takes other ones.
 
-    Atlases are none, the ColorChecker, and three difficult synthetic ones: crowded, spiky and noisy. --output writes a
-    heat map of the largest residuals, as PNG.
+    Atlases are none, the ColorChecker, and three difficult synthetic ones: crowded,
+    spiky and noisy. --output writes a heat map of the largest residuals, as PNG.
 
     \b
     Examples:
@@ -277,22 +295,27 @@ def stability(
             pluralise(len(failed), "build"),
         )
         say(
-            f"{builds}, {pluralise(nodes, 'realisable node')}: {sum(failed)} unfitted in {missed}"
+            f"{builds}, {pluralise(nodes, 'realisable node')}: {sum(failed)} unfitted "
+            f"in {missed}"
         )
 
 
 @command.command(
     "sensitivity",
-    help="""Perturb queried colours and the measurements of a cube, and report the change of its spectra.
+    help="""Perturb queried colours and the measurements of a cube, and report the
+    change of its spectra.
 
-    Colours are perturbed by an 8-bit code, a 10-bit code and float rounding. The cube is rebuilt with noise on its
-    atlas, with one entry reversed, and with one entry left out. CUBE defaults to the packaged cube, which has no atlas.
-    ΔE00 are under FL11 and, for colours, under the illuminant of the cube.
+    Colours are perturbed by an 8-bit code, a 10-bit code and float rounding. The cube
+    is rebuilt with noise on its atlas, with one entry reversed, and with one entry left
+    out. CUBE defaults to the packaged cube, which has no atlas. ΔE00 are under FL11
+    and, for colours, under the illuminant of the cube.
 
-    jump is the change that remains when steps are halved repeatedly: rounding, unless answers are discontinuous, as
-    those of Otsu 2018 are. --method adds such published methods, in sRGB.
+    jump is the change that remains when steps are halved repeatedly: rounding, unless
+    answers are discontinuous, as those of Otsu 2018 are. --method adds such published
+    methods, in sRGB.
 
-    --output writes, as PNG, the distance to which an entry of the atlas affects the cube.
+    --output writes, as PNG, the distance to which an entry of the atlas affects the
+    cube.
 
     \b
     Examples:
@@ -345,7 +368,8 @@ def sensitivity(
         atlas = recorded_atlas(loaded.data, cube, folders)
     if output is not None and atlas is None:
         raise click.UsageError(
-            "--output draws the effect of entries: it needs a CUBE with an atlas, and --entries."
+            "--output draws the effect of entries: it needs a CUBE with an atlas, and "
+            "--entries."
         )
     check_folder(output, SENSITIVITY_PLOTS, inputs=recorded)
     of_methods = []

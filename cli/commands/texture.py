@@ -73,7 +73,8 @@ image_options = options.stacked(
     "texture",
     cls=options.Command,
     everyday=("target", "cube_paths", "mask", "kind", "depth", "force"),
-    help="""Convert every pixel of an image (EXR, HDR, PNG, JPEG, TIFF) to a spectrum and write an OpenEXR texture.
+    help="""Convert every pixel of an image (EXR, HDR, PNG, JPEG, TIFF) to a spectrum
+    and write an OpenEXR texture.
 
     \b
     Examples:
@@ -85,22 +86,27 @@ image_options = options.stacked(
       uplift texture shot.*.exr -o uplifted --scheduler tcp://10.0.0.5:8786
       uplift texture wood.png -o errors.exr --cube macbeth-32.uplift --errors FL11
 
-    'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at --wavelengths. 'moments' can be filtered
-    and mip-mapped. 'multipliers' can be evaluated directly, by the formula in the header. Alpha and other channels are
-    copied; colours multiplied by alpha, as in OpenEXR, are divided by it first and multiplied after. Several images, or
-    a quoted pattern, go into the folder of --output.
+    'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at
+    --wavelengths. 'moments' can be filtered and mip-mapped. 'multipliers' can be
+    evaluated directly, by the formula in the header. Alpha and other channels are
+    copied; colours multiplied by alpha, as in OpenEXR, are divided by it first and
+    multiplied after. Several images, or a quoted pattern, go into the folder of
+    --output.
 
-    \f
-    Colours of an image in another RGB space than the cube's are converted. Its space is that of --input-space, or the
-    one that the file states, for example by chromaticities, an ICC profile or gAMA. Channels X, Y and Z are CIE XYZ.
+    \f Colours of an image in another RGB space than the cube's are converted. Its space
+    is that of --input-space, or the one that the file states, for example by
+    chromaticities, an ICC profile or gAMA. Channels X, Y and Z are CIE XYZ.
 
-    Colours outside [0, 1] are treated by --out-of-gamut, and NaN becomes 0. A warning counts both.
+    Colours outside [0, 1] are treated by --out-of-gamut, and NaN becomes 0. A warning
+    counts both.
 
-    With --mask, pixels have the spectra of several cubes. A grey mask holds the numbers of the cubes, from 0 in the
-    order of --cube; or, for two cubes, weights: black is the first, white the second, and grey mixes both. A coloured
-    mask holds the weights of three cubes in R, G and B. Mixed spectra keep the colour of the pixel.
+    With --mask, pixels have the spectra of several cubes. A grey mask holds the numbers
+    of the cubes, from 0 in the order of --cube; or, for two cubes, weights: black is
+    the first, white the second, and grey mixes both. A coloured mask holds the weights
+    of three cubes in R, G and B. Mixed spectra keep the colour of the pixel.
 
-    Pixels that are light, such as those of an environment map, need 'uplift lights texture'.
+    Pixels that are light, such as those of an environment map, need 'uplift lights
+    texture'.
     """,
 )
 @image_options
@@ -112,7 +118,10 @@ image_options = options.stacked(
 @click.option(
     "--mask",
     metavar="FILE",
-    help="Image of which cube a pixel belongs to: 0 for the first, 1 for the second …, or from black to white.",
+    help=(
+        "Image of which cube a pixel belongs to: 0 for the first, 1 for the second "
+        "…, or from black to white."
+    ),
 )
 @options.choice(
     "--representation",
@@ -130,7 +139,10 @@ image_options = options.stacked(
     *(
         "--errors",
         "errors",
-        "Add a channel with the standard error, ΔE00, under an illuminant, such as error.A",
+        (
+            "Add a channel with the standard error, ΔE00, under an illuminant, such as "
+            "error.A"
+        ),
     ),
     metavar="NAME|FILE",
     type=options.LIGHT,
@@ -181,7 +193,9 @@ def convert(
     quiet: bool,
     **given: Any,
 ) -> None:
-    """Convert images, on as many threads as the processes leave; see `TextureSettings` and `image_options`."""
+    """Convert images, on as many threads as the processes leave; see `TextureSettings`
+    and `image_options`.
+    """
     enable_jit_cache()
     from uplift.io import texture
     from uplift.io.texture.sequence import converter_for, run
@@ -228,12 +242,18 @@ def convert(
             dict.fromkeys(space for one in converted for space in one.spaces)
         )
         say(
-            f"{target}: {pluralise(len(converted), 'texture')}{skipped}, {pluralise(pixels, 'pixel')}, "
-            f"{size:.1f} MB, {time.perf_counter() - begin:.1f} s{f', read as {spaces}' * bool(spaces)}"
+            f"{target}: {pluralise(len(converted), 'texture')}{skipped}, "
+            f"{pluralise(pixels, 'pixel')}, "
+            f"{size:.1f} MB, {time.perf_counter() - begin:.1f} "
+            f"s{f', read as {spaces}' * bool(spaces)}"
         )
         if size > LARGE and isinstance(settings.pixel_encoding, texture.Spectrum):
             say(
-                "hint: --representation moments --depth half takes a fraction of the size",
+                (
+                    "hint: --representation moments --depth half takes a fraction of "
+                    "the "
+                    "size"
+                ),
                 err=True,
             )
     for failure in failures[1:]:
@@ -243,9 +263,11 @@ def convert(
 
 
 def _texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path]]:
-    """Return pairs of an image and its texture. Several images, and patterns, go into the folder ``target``.
+    """Return pairs of an image and its texture. Several images, and patterns, go into
+    the folder ``target``.
 
-    Raises `TextureError` for images that are not there, `OutputError` for a file in place of the folder.
+    Raises `TextureError` for images that are not there, `OutputError` for a file in
+    place of the folder.
     """
     images = expand_patterns(sources)
     if UDIM in target:
@@ -271,7 +293,9 @@ def _texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path
 def _tiles(
     sources: Sequence[str], images: list[str], target: str
 ) -> list[tuple[Path, Path]]:
-    """Return pairs of the tiles of one UDIM pattern and their textures, whose names have the same numbers."""
+    """Return pairs of the tiles of one UDIM pattern and their textures, whose names
+    have the same numbers.
+    """
     is_plain = len(sources) == 1 and not glob.has_magic(sources[0])
     if not is_plain or sources[0].count(UDIM) != 1 or target.count(UDIM) != 1:
         hint = f"write for example 'wood.{UDIM}.exr' -o 'uplifted.{UDIM}.exr'"
@@ -304,7 +328,8 @@ def _collect(results: Generator[Outcome], total: int, *, quiet: bool) -> list[Ou
                 progress(Progress("images", len(collected), total))
     except KeyboardInterrupt as interrupt:
         interrupt.add_note(
-            f"{len(collected)} of {pluralise(total, 'image')} finished, continue with --resume"
+            f"{len(collected)} of {pluralise(total, 'image')} finished, continue with "
+            "--resume"
         )
         raise
     return collected

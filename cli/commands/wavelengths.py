@@ -25,11 +25,14 @@ if TYPE_CHECKING:
     "wavelengths",
     cls=options.Command,
     everyday=("count", "tolerance", "files", "lights", "style", "plot_path"),
-    help="""Choose the wavelengths at which a renderer samples the materials and lights of a scene.
+    help="""Choose the wavelengths at which a renderer samples the materials and lights
+    of a scene.
 
-    All lights share one set of wavelengths. The power of a light at a wavelength is prefiltered, so that spectral lines
-    between the wavelengths count. Radiance is power times reflectance. Weighted sums of radiance give XYZ, or linear
-    RGB in which white under --illuminant is (1, 1, 1). Errors are ΔE00 to sums over every nanometre from 380 to 770.
+    All lights share one set of wavelengths. The power of a light at a wavelength is
+    prefiltered, so that spectral lines between the wavelengths count. Radiance is power
+    times reflectance. Weighted sums of radiance give XYZ, or linear RGB in which white
+    under --illuminant is (1, 1, 1). Errors are ΔE00 to sums over every nanometre from
+    380 to 770.
 
     \b
     Examples:
@@ -54,7 +57,8 @@ if TYPE_CHECKING:
 @click.option(
     "--method",
     type=click.Choice(("optimised", "meyer", "uniform", "bins", "fitted")),
-    help="optimised: fit everything; meyer: Meyer's quadrature; the others use even wavelengths, sampled (uniform), "
+    help="optimised: fit everything; meyer: Meyer's quadrature; the others use even "
+    "wavelengths, sampled (uniform), "
     "averaged over bins (bins) or with fitted weights (fitted). [default: optimised]",
 )
 @click.option(
@@ -62,12 +66,17 @@ if TYPE_CHECKING:
     nargs=3,
     metavar="A C1 C2",
     type=options.WHOLE,
-    help="Meyer's quadrature with these numbers of wavelengths for the three channels, 1 to 10 each.",
+    help=(
+        "Meyer's quadrature with these numbers of wavelengths for the three "
+        "channels, 1 to 10 each."
+    ),
 )
 @click.option(
     "--channels",
     type=click.Choice(("opponent", "cones", "xyz")),
-    help="Channels of --orders: A C1 C2, the cones S M L, or X Y Z. [default: opponent]",
+    help=(
+        "Channels of --orders: A C1 C2, the cones S M L, or X Y Z. [default: opponent]"
+    ),
 )
 @options.atlas("Materials", DEFAULT_ATLASES)
 @options.light("Illuminant of the scene", "D65")

@@ -1,4 +1,6 @@
-"""Colours and spectra as text: patches, sparklines, columns, and classical coordinates."""
+"""Colours and spectra as text: patches, sparklines, columns, and classical
+coordinates.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,8 @@ def print_spectrum(
     patches: dict[str, str] | None = None,
     highest: float = 1.0,
 ) -> None:
-    """Print fields, a sparkline up to the ``highest`` value, and wavelengths and values in columns, downwards.
+    """Print fields, a sparkline up to the ``highest`` value, and wavelengths and values
+    in columns, downwards.
 
     At most `MAX_CELLS` of them are printed, unless ``complete``.
     """
@@ -48,7 +51,9 @@ def print_spectrum(
 
 
 def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
-    """Return a patch of colour, ``width`` characters wide; empty where standard output shows no colours."""
+    """Return a patch of colour, ``width`` characters wide; empty where standard output
+    shows no colours.
+    """
     if not has_colours():
         return ""
     from uplift.colorimetry.srgb import to_display_codes
@@ -59,7 +64,9 @@ def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
 
 
 def hex_code(cube: Cube, rgb: Array) -> str:
-    """Return '#rrggbb' of linear RGB (3,), encoded by the transfer function of the cube's space."""
+    """Return '#rrggbb' of linear RGB (3,), encoded by the transfer function of the
+    cube's space.
+    """
     return "#" + "".join(f"{round(float(code)):02x}" for code in cube.encode(rgb))
 
 
@@ -90,10 +97,11 @@ def sparkline(values: Array, width: int = 40) -> str:
 
 
 def coordinates(cube: Cube, rgb: Array) -> dict[str, Any]:
-    """Return HSV, HSL, YIQ, dominant wavelength and purity of linear RGB (3,) for JSON (Fishkin 1983, 3.11–3.13).
+    """Return HSV, HSL, YIQ, dominant wavelength and purity of linear RGB (3,) for JSON
+    (Fishkin 1983, 3.11–3.13).
 
-    HSV, HSL and YIQ are those of the encoded components, as displays and broadcasts use them, clipped to [0, 1]. Empty
-    for a camera, whose values no display shows.
+    HSV, HSL and YIQ are those of the encoded components, as displays and broadcasts use
+    them, clipped to [0, 1]. Empty for a camera, whose values no display shows.
     """
     from uplift.colorimetry.dominant import dominant_wavelength
 

@@ -1,7 +1,9 @@
-"""Standard output and standard error: the one door through which text reaches the terminal.
+"""Standard output and standard error: the one door through which text reaches the
+terminal.
 
-Texts may come from files. `say`, `print_fields` and the cells of `make_table` escape what a terminal would obey; `emit`
-prints text that is safe already; `print_json` and `print_csv` print data.
+Texts may come from files. `say`, `print_fields` and the cells of `make_table` escape
+what a terminal would obey; `emit` prints text that is safe already; `print_json` and
+`print_csv` print data.
 """
 
 from __future__ import annotations
@@ -39,7 +41,9 @@ def emit(text: str, *, err: bool = False, nl: bool = True) -> None:
 
 
 def flush_stdout() -> None:
-    """Write what standard output still holds, and drop it if that fails: the interpreter would try again at its end."""
+    """Write what standard output still holds, and drop it if that fails: the
+    interpreter would try again at its end.
+    """
     try:
         sys.stdout.flush()
     except OSError:
@@ -64,7 +68,9 @@ def has_colours() -> bool:
 def paragraph(
     text: str, indent: int = 0, prefix: str = "", suffix: str = "", *, err: bool = False
 ) -> None:
-    """Print prose with control characters escaped, wrapped to the window; words such as URLs stay whole."""
+    """Print prose with control characters escaped, wrapped to the window; words such as
+    URLs stay whole.
+    """
     lines = textwrap.wrap(
         printable(text),
         columns() - indent,
@@ -77,7 +83,9 @@ def paragraph(
 def print_fields(
     fields: Mapping[str, str], patches: Mapping[str, str] | None = None
 ) -> None:
-    """Print names and values in two columns, and the patches of colour that belong to a value."""
+    """Print names and values in two columns, and the patches of colour that belong to a
+    value.
+    """
     names = {name: printable(name) for name in fields}
     width = max(12, *(len(name) + 2 for name in names.values()))
     for name, text in fields.items():
@@ -86,7 +94,9 @@ def print_fields(
 
 
 def json_text(values: Any, indent: int | None = 2, *, ascii_only: bool = False) -> str:
-    """Return standard JSON. Raises ValueError for NaN and infinity, which it cannot represent."""
+    """Return standard JSON. Raises ValueError for NaN and infinity, which it cannot
+    represent.
+    """
     return json_escapes(
         json.dumps(values, indent=indent, ensure_ascii=ascii_only, allow_nan=False)
     )
@@ -101,7 +111,9 @@ def print_json(
 
 
 def print_json_answers(objects: Iterable[Any], *, single: bool) -> None:
-    """Print one object on a line, or else an array, each object before the next one is computed."""
+    """Print one object on a line, or else an array, each object before the next one is
+    computed.
+    """
     if single:
         (values,) = objects
         print_json(values, indent=None)
@@ -140,7 +152,9 @@ def swatch(codes: Iterable[int], text: str = "   ") -> Text:
 def make_table(
     texts: Iterable[str] = (), numbers: Iterable[str] = (), **options: Any
 ) -> SafeTable:
-    """Return a table with left-aligned columns of text followed by right-aligned columns of numbers."""
+    """Return a table with left-aligned columns of text followed by right-aligned
+    columns of numbers.
+    """
     from rich import box
 
     from .tables import SafeTable
@@ -154,7 +168,9 @@ def make_table(
 
 
 def show(*tables: SafeTable) -> None:
-    """Print tables. Texts are wrapped between words; a table wider than the window is divided by columns."""
+    """Print tables. Texts are wrapped between words; a table wider than the window is
+    divided by columns.
+    """
     from rich.console import Console
 
     from .tables import table_width

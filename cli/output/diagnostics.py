@@ -1,4 +1,6 @@
-"""Errors and warnings on standard error: one line each, or JSON, with hints in terms of command-line options."""
+"""Errors and warnings on standard error: one line each, or JSON, with hints in terms of
+command-line options.
+"""
 
 import contextlib
 import os
@@ -33,7 +35,9 @@ MAX_DETAIL = 200
 """Characters of the message of an internal error."""
 HINTS = {
     "atlas-out-of-gamut": "use --scale percent if the values are in percent, or else a wider --space",
-    "atlas-changed": "name the folder of the recorded file with --atlas-dir, or build the cube again",
+    "atlas-changed": (
+        "name the folder of the recorded file with --atlas-dir, or build the cube again"
+    ),
     "atlas-not-found": "name its folder with --atlas-dir, or build the cube again",
     "colour-not-a-light": "use --out-of-gamut clip for the nearest colour towards white",
     "colour-not-in-scene": "use --fill-missing, or build the cube with the image in --scene",
@@ -43,9 +47,18 @@ HINTS = {
     "scales-contradict": "use --scale percent, or --scale fraction for values from 0 to 1",
     "dark-percent": "use --scale fraction if they are from 0 to 1",
     "mixed-scales": "correct the row, or use --scale percent or fraction if it is right",
-    "not-a-cube": "'uplift build --atlas FILE' makes one of spectra, and 'uplift lights' reads emission tables",
-    "not-an-emission-table": "build one with 'uplift lights build', or use 'uplift query' and the like for a cube",
-    "not-spectra": "name an atlas; a cube is used with --cube, an image with 'uplift texture' and 'uplift relight'",
+    "not-a-cube": (
+        "'uplift build --atlas FILE' makes one of spectra, and 'uplift lights' reads "
+        "emission tables"
+    ),
+    "not-an-emission-table": (
+        "build one with 'uplift lights build', or use 'uplift query' and the like "
+        "for a cube"
+    ),
+    "not-spectra": (
+        "name an atlas; a cube is used with --cube, an image with 'uplift texture' "
+        "and 'uplift relight'"
+    ),
     "rgb-like-codes": "write 8-bit codes as '#rrggbb', or use --encoded where the command has it",
     "rgb-out-of-gamut": "map it inside with --out-of-gamut desaturate",
     "sparse-cube": "use --fill-missing where the command has it, or a cube built without --scene",
@@ -70,7 +83,9 @@ MEMORY_PROBLEMS = ("RESOURCE_EXHAUSTED", "failed to map segment")
 
 
 def hint_for(diagnostic: Diagnostic) -> str:
-    """Return the hint of the command line for an error or warning, or else the library's own in its terms."""
+    """Return the hint of the command line for an error or warning, or else the
+    library's own in its terms.
+    """
     if isinstance(diagnostic, CubeFileError) and diagnostic.code == "file-not-found":
         return _hint_of_missing_cube(str(diagnostic.path)) or diagnostic.hint
     if diagnostic.code in HINTS:
@@ -89,7 +104,9 @@ def _as_option(parameter: re.Match[str]) -> str:
 
 
 def _hint_of_missing_cube(path: str) -> str:
-    """Return how the cube of a name is built, or a file of nearly this name; empty where neither is known."""
+    """Return how the cube of a name is built, or a file of nearly this name; empty
+    where neither is known.
+    """
     from uplift.atlas import shipped_atlases
 
     if os.path.isfile(f"{path}.uplift"):
@@ -100,11 +117,16 @@ def _hint_of_missing_cube(path: str) -> str:
     ]:
         return ""
     dim = f" --dim {match[2]}" if match[2] else ""
-    return f"'{match[1]}' is an atlas: build its cube with 'uplift build --atlas {match[1]}{dim}'"
+    return (
+        f"'{match[1]}' is an atlas: build its cube with 'uplift build --atlas "
+        f"{match[1]}{dim}'"
+    )
 
 
 class CommandFailure(click.ClickException):
-    """An exception that ended a command, as one line on standard error and an exit code; JSON if ``as_json``."""
+    """An exception that ended a command, as one line on standard error and an exit
+    code; JSON if ``as_json``.
+    """
 
     def __init__(self, cause: BaseException, *, as_json: bool = False) -> None:
         self.error, self.as_json = _as_uplift_error(cause), as_json
@@ -156,7 +178,10 @@ def _internal_error(cause: BaseException) -> UpliftError:
 
     place = traceback.extract_tb(cause.__traceback__)[-1:]
     if place and Path(place[0].filename).name == "xla_bridge.py":
-        problem = f"JAX finds no device for JAX_PLATFORMS={printable(os.environ.get('JAX_PLATFORMS', ''))}"
+        problem = (
+            "JAX finds no device for "
+            f"JAX_PLATFORMS={printable(os.environ.get('JAX_PLATFORMS', ''))}"
+        )
         return OptionError(
             problem, hint="unset JAX_PLATFORMS, or install JAX for this device"
         )
@@ -169,7 +194,10 @@ def _internal_error(cause: BaseException) -> UpliftError:
     )
     hint = "'uplift --traceback COMMAND …' shows more"
     if "jax" in sys.modules and remove_compiled_code():
-        hint = f"try again first: compiled code, which may have been damaged, was removed; {hint}"
+        hint = (
+            "try again first: compiled code, which may have been damaged, was "
+            f"removed; {hint}"
+        )
     return UpliftError(problem, code="internal-error", hint=hint)
 
 
@@ -179,7 +207,9 @@ def error_object(error: UpliftError) -> dict[str, Any]:
 
 
 def show_usage_error(error: click.ClickException) -> None:
-    """Print an error of the command line on one line, with the command that shows the help."""
+    """Print an error of the command line on one line, with the command that shows the
+    help.
+    """
     message = " ".join(error.format_message().split())
     context = getattr(error, "ctx", None)
     _print_error(
@@ -197,7 +227,9 @@ def warn(found: Iterable[UpliftWarning]) -> None:
 def show_warning(
     message: Warning | str, category: type[Warning], *_: Any, **__: Any
 ) -> None:
-    """Print warnings of the library on one line each, and no others; replaces `warnings.showwarning`."""
+    """Print warnings of the library on one line each, and no others; replaces
+    `warnings.showwarning`.
+    """
     if str(message).startswith("Error reading persistent compilation cache entry"):
         remove_compiled_code()
     if isinstance(message, UpliftWarning):

@@ -21,7 +21,9 @@ NOTES = ("entry-clipped", "entry-crowded", "shipped-atlas", "values-in-percent")
 
 
 def collect_notes(make: Callable[[], Made]) -> tuple[Made, list[UpliftWarning]]:
-    """Read an atlas or build a cube, and return it with its notes, which are shown at once only if that fails."""
+    """Read an atlas or build a cube, and return it with its notes, which are shown at
+    once only if that fails.
+    """
     notes: list[UpliftWarning] = []
     show = warnings.showwarning
 
@@ -45,7 +47,9 @@ def collect_notes(make: Callable[[], Made]) -> tuple[Made, list[UpliftWarning]]:
 def print_notes(
     cube: Cube, notes: Iterable[UpliftWarning], *, err: bool = False
 ) -> None:
-    """Print the notes of a build and on the entries outside the space of the cube, a paragraph for each."""
+    """Print the notes of a build and on the entries outside the space of the cube, a
+    paragraph for each.
+    """
     for note in notes:
         paragraph(note.describe(hint_for(note)), err=err)
     if cube.outside_names:
@@ -53,7 +57,9 @@ def print_notes(
 
 
 def _describe_outside(cube: Cube) -> str:
-    """Describe the entries outside the RGB space of a cube, with the smallest space that holds all entries."""
+    """Describe the entries outside the RGB space of a cube, with the smallest space
+    that holds all entries.
+    """
     import numpy as np
 
     from uplift.colorimetry.observer import grid, smallest_space
@@ -64,4 +70,7 @@ def _describe_outside(cube: Cube) -> str:
     count, total = len(cube.outside_names), len(table.names) - cube.data.atlas.looks
     kept = f'--space "{space}"' if space else "wider spaces"
     verb = "lies" if count == 1 else "lie"
-    return f"{count} of {pluralise(total, 'entry')} {verb} outside {cube.space}: kept for {kept}"
+    return (
+        f"{count} of {pluralise(total, 'entry')} {verb} outside {cube.space}: kept "
+        f"for {kept}"
+    )

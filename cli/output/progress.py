@@ -1,4 +1,6 @@
-"""Progress on standard error: a bar on a terminal; elsewhere, in long commands, a line now and then."""
+"""Progress on standard error: a bar on a terminal; elsewhere, in long commands, a line
+now and then.
+"""
 
 import contextlib
 import os
@@ -20,7 +22,9 @@ INTERVAL = 10.0
 def progress_bar(
     title: str = "", *, quiet: bool = False, verbose: bool = False
 ) -> Iterator[ProgressCallback]:
-    """Yield a callback for events, titled ``title`` or by their stages: all lines if ``verbose``, none if ``quiet``."""
+    """Yield a callback for events, titled ``title`` or by their stages: all lines if
+    ``verbose``, none if ``quiet``.
+    """
 
     def describe(event: Progress) -> str:
         return title or STAGES.get(event.stage, event.stage)

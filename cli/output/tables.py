@@ -1,4 +1,6 @@
-"""Tables whose texts come from files; imported when a table is printed, as it loads rich."""
+"""Tables whose texts come from files; imported when a table is printed, as it loads
+rich.
+"""
 
 import copy
 from collections.abc import Iterator, Sequence
@@ -25,11 +27,15 @@ WRAPPED = 16
 GAP = 2
 """Characters between columns."""
 MAX_KEYS = 3
-"""Columns of text that every part of a wide table begins with, in at most half of the window."""
+"""Columns of text that every part of a wide table begins with, in at most half of the
+window.
+"""
 
 
 class SafeTable(Table):
-    """A table that shows its texts as they are: no markup, and control characters escaped."""
+    """A table that shows its texts as they are: no markup, and control characters
+    escaped.
+    """
 
     def __init__(
         self, *, title: str | None = None, caption: str | None = None, **options: Any
@@ -41,7 +47,9 @@ class SafeTable(Table):
         )
 
     def add_column(self, header: Any = "", *args: Any, **options: Any) -> None:
-        """Add a column with a heading of text, wrapped between words unless it is ``no_wrap``."""
+        """Add a column with a heading of text, wrapped between words unless it is
+        ``no_wrap``.
+        """
         super().add_column(plain(header), *args, **{"overflow": "fold"} | options)
 
     def add_row(self, *cells: Any, **options: Any) -> None:
@@ -49,7 +57,9 @@ class SafeTable(Table):
         super().add_row(*map(plain, cells), **options)
 
     def parts(self, width: int) -> Iterator["SafeTable"]:
-        """Divide the columns of a table that is wider than a window; the first ones are repeated in every part."""
+        """Divide the columns of a table that is wider than a window; the first ones are
+        repeated in every part.
+        """
         for column in self.columns:
             column.min_width = narrowest(column)
         keys = self._keys(width)

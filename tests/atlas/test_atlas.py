@@ -1,4 +1,6 @@
-"""`Atlas` as a sequence with names, entries from Python, distributions of other libraries, and resampling."""
+"""`Atlas` as a sequence with names, entries from Python, distributions of other
+libraries, and resampling.
+"""
 
 import warnings
 from types import SimpleNamespace

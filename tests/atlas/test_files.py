@@ -1,4 +1,6 @@
-"""Files in general and tables: unreadable ones, sources, and round trips that keep every bit."""
+"""Files in general and tables: unreadable ones, sources, and round trips that keep
+every bit.
+"""
 
 import hashlib
 import os
@@ -134,7 +136,9 @@ INNER = st.floats(1.0, 2000.0).map(lambda nm: round(nm, 4))
 
 @st.composite
 def samplings(draw):
-    """Irregular wavelengths, or regular ones with any start and step that cover the visible range."""
+    """Irregular wavelengths, or regular ones with any start and step that cover the
+    visible range.
+    """
     if draw(st.booleans()):
         return np.unique([400.0, 700.0, *draw(st.lists(INNER, max_size=8))])
     start, step = draw(st.floats(300.0, 400.0)), draw(st.floats(5.0, 100.0))

@@ -1,4 +1,6 @@
-"""Resampling to a grid: averages over bands of fine data, and clips of the file's own values."""
+"""Resampling to a grid: averages over bands of fine data, and clips of the file's own
+values.
+"""
 
 import numpy as np
 import pytest

@@ -1,4 +1,6 @@
-"""The files of atlases/ agree with tools/ship_atlases.py and the tables of colour-science."""
+"""The files of atlases/ agree with tools/ship_atlases.py and the tables of
+colour-science.
+"""
 
 import runpy
 

@@ -1,4 +1,6 @@
-"""What texts state about scale, quantity and unit of wavelengths, and what they do not."""
+"""What texts state about scale, quantity and unit of wavelengths, and what
+they do not.
+"""
 
 import numpy as np
 import pytest

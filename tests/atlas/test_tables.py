@@ -1,4 +1,6 @@
-"""Tables as people have them: read right, with a note on what was assumed, or refused."""
+"""Tables as people have them: read right, with a note on what was assumed,
+or refused.
+"""
 
 import numpy as np
 import pytest
@@ -368,7 +370,10 @@ def test_values_without_their_wavelengths(tmp_path):
 
 @pytest.mark.parametrize(("xy", "factor"), [("{:g},0 {}", 100), ("{:g},0; {}", 100)])
 def test_decimal_commas_of_jcamp(save, xy, factor):
-    head = "##TITLE=a\n##JCAMP-DX=4.24\n##XUNITS=NANOMETERS\n##YUNITS=% REFLECTANCE\n##XYPOINTS=(XY..XY)\n"
+    head = (
+        "##TITLE=a\n##JCAMP-DX=4.24\n##XUNITS=NANOMETERS\n##YUNITS=% "
+        "REFLECTANCE\n##XYPOINTS=(XY..XY)\n"
+    )
     text = "".join(
         xy.format(at, f"{value * factor:.4f}".replace(".", ",")) + "\n"
         for at, value in zip(NM, VALUES, strict=True)

@@ -1,4 +1,6 @@
-"""Files in the layouts of instruments and programs give the spectra that they were written from."""
+"""Files in the layouts of instruments and programs give the spectra that they were
+written from.
+"""
 
 import re
 import sys
@@ -70,7 +72,10 @@ def test_rows_of_single_samples(save):
 
 
 ROW = "name,400,500,600,700\n"
-SETS = "\nBEGIN_DATA_FORMAT\nID SPEC_400 SPEC_700\nEND_DATA_FORMAT\nBEGIN_DATA\na 1 1\nEND_DATA\n"
+SETS = (
+    "\nBEGIN_DATA_FORMAT\nID SPEC_400 SPEC_700\nEND_DATA_FORMAT\nBEGIN_DATA\na 1 "
+    "1\nEND_DATA\n"
+)
 
 
 @pytest.mark.parametrize(
@@ -110,9 +115,14 @@ def test_scale_given_by_the_caller(save):
         "Mode,Transmission\n" + ROW + "a,0.2,0.3,0.4,0.5\n",
         "name,T400,T500,T600,T700\na,0.2,0.3,0.4,0.5\n",
         'CTI3\nDEVICE_CLASS "DISPLAY"' + SETS,
-        "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS=ABSORBANCE\n##XYPOINTS=(XY..XY)\n400, 1\n700, 1\n##END=\n",
-        '<IESTM2714 xmlns="iestm2714"><SpectralDistribution><SpectralQuantity>flux</SpectralQuantity>'
-        '<SpectralData wavelength="400">1</SpectralData><SpectralData wavelength="700">1</SpectralData>'
+        (
+            "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS=ABSORBANCE\n##XYPOINTS=(XY..XY)\n400, "
+            "1\n700, 1\n##END=\n"
+        ),
+        "<IESTM2714 "
+        'xmlns="iestm2714"><SpectralDistribution><SpectralQuantity>flux</SpectralQuantity>'
+        '<SpectralData wavelength="400">1</SpectralData><SpectralData '
+        'wavelength="700">1</SpectralData>'
         "</SpectralDistribution></IESTM2714>",
     ],
 )
@@ -184,7 +194,10 @@ def test_missing_packages_are_named(tmp_path, monkeypatch, format):
     ("text", "code"),
     [
         (
-            '<?xml version="1.0"?>\n<!DOCTYPE x [<!ENTITY a "b">]>\n<IESTM2714 xmlns="i">&a;</IESTM2714>',
+            (
+                '<?xml version="1.0"?>\n<!DOCTYPE x [<!ENTITY a "b">]>\n<IESTM2714 '
+                'xmlns="i">&a;</IESTM2714>'
+            ),
             "atlas",
         ),
         (
@@ -204,11 +217,17 @@ def test_missing_packages_are_named(tmp_path, monkeypatch, format):
         ("##TITLE=a\n##XYDATA=(X++(Y..Y))\n400 q\n", "atlas"),
         ("CGATS.17\nBEGIN_DATA_FORMAT\nEND_DATA_FORMAT\n", "atlas"),
         (
-            "CGATS.17\nBEGIN_DATA_FORMAT\nID LAB_L\nEND_DATA_FORMAT\nBEGIN_DATA\n1 2\nEND_DATA\n",
+            (
+                "CGATS.17\nBEGIN_DATA_FORMAT\nID LAB_L\nEND_DATA_FORMAT\nBEGIN_DATA\n1 "
+                "2\nEND_DATA\n"
+            ),
             "atlas",
         ),
         (
-            'X\nSPECTRAL_NORM "0"\nBEGIN_DATA_FORMAT\nnm400 nm700\nEND_DATA_FORMAT\nBEGIN_DATA\n1 2\nEND_DATA',
+            (
+                'X\nSPECTRAL_NORM "0"\nBEGIN_DATA_FORMAT\nnm400 '
+                "nm700\nEND_DATA_FORMAT\nBEGIN_DATA\n1 2\nEND_DATA"
+            ),
             "atlas",
         ),
         (b"PK\x03\x04junk", "atlas"),
@@ -221,7 +240,10 @@ def test_damaged_files_raise(save, text, code):
         read_atlas(save(text))
 
 
-SHEET_XML = '<worksheet><sheetData><row r="1"><c r="A1"><v>1</v></c></row>{}</sheetData></worksheet>'
+SHEET_XML = (
+    '<worksheet><sheetData><row r="1"><c '
+    'r="A1"><v>1</v></c></row>{}</sheetData></worksheet>'
+)
 
 
 @pytest.mark.parametrize(

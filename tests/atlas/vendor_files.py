@@ -1,6 +1,8 @@
-"""Shipped spectra in the layouts of instruments and programs, for the tests of the readers.
+"""Shipped spectra in the layouts of instruments and programs, for the tests of the
+readers.
 
-Each file in layouts/ is the text of a layout as a template of Jinja, in archives the texts of all parts.
+Each file in layouts/ is the text of a layout as a template of Jinja, in archives the
+texts of all parts.
 """
 
 import io
@@ -27,7 +29,9 @@ LAYOUTS = jinja2.Environment(
 
 
 def sample(atlas: Atlas, count: int = 6) -> Atlas:
-    """Return the first entries at the wavelengths of an instrument, with eight decimals."""
+    """Return the first entries at the wavelengths of an instrument, with eight
+    decimals.
+    """
     chosen = atlas[:count]
     values = np.round(on_grid(chosen, NM), 8)
     return Atlas(
@@ -53,11 +57,13 @@ def row(
 
 @dataclass(frozen=True)
 class Vendor:
-    """A layout: the format that must recognise it, its template, and the programs that write it.
+    """A layout: the format that must recognise it, its template, and the programs that
+    write it.
 
-    ``count`` spectra fit into it, ``percent`` is not stated, ``skipped`` columns are of other quantities. Samples of
-    libraries of ENVI are numbers of a type, each eighth decimal a unit, in a file of their own. Those of the USGS are
-    next to a file of ``wavelengths``.
+    ``count`` spectra fit into it, ``percent`` is not stated, ``skipped`` columns are of
+    other quantities. Samples of libraries of ENVI are numbers of a type, each eighth
+    decimal a unit, in a file of their own. Those of the USGS are next to a file of
+    ``wavelengths``.
     """
 
     format: str
@@ -121,7 +127,9 @@ class Vendor:
 
 
 def archive(text: str) -> bytes:
-    """Return an archive of parts, each below a line with its name; their lines become one, as programs write them."""
+    """Return an archive of parts, each below a line with its name; their lines become
+    one, as programs write them.
+    """
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as parts:
         for part in re.split(r"^=== ", text, flags=re.MULTILINE)[1:]:

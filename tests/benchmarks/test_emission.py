@@ -1,4 +1,6 @@
-"""Evidence on emission tables: what predictions must not know, other methods, exactness, on small tables."""
+"""Evidence on emission tables: what predictions must not know, other methods,
+exactness, on small tables.
+"""
 
 from collections import Counter
 from dataclasses import replace

@@ -1,4 +1,6 @@
-"""Programs of pages whose computations nothing else tests: matrices of cameras, closed cells, the scan."""
+"""Programs of pages whose computations nothing else tests: matrices of cameras, closed
+cells, the scan.
+"""
 
 import numpy as np
 import pytest

@@ -1,4 +1,6 @@
-"""The pages of measurements are renderings of the stored data, and each has a program in benchmarks/."""
+"""The pages of measurements are renderings of the stored data, and each has a program
+in benchmarks/.
+"""
 
 import importlib
 import json

@@ -1,4 +1,6 @@
-"""Answers of other tools: a table of rgb2spec gives back its colours, and wrong or missing ones are found."""
+"""Answers of other tools: a table of rgb2spec gives back its colours, and wrong or
+missing ones are found.
+"""
 
 from itertools import product
 

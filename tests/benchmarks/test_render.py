@@ -1,6 +1,6 @@
 """The rendered ColorChecker, small and noisy: layout, reference, errors."""
 
-
+# ruff: noqa: E402  (what follows imports Mitsuba)
 import numpy as np
 import pytest
 
@@ -22,7 +22,9 @@ def painted():
 
 @pytest.fixture(scope="module")
 def renders(painted, repository):
-    """All methods under all lights; Mitsuba's own uplift stands in for the cubes that are not stored."""
+    """All methods under all lights; Mitsuba's own uplift stands in for the cubes that
+    are not stored.
+    """
     start_mitsuba()
     built_in = [{"type": "rgb", "value": rgb} for rgb in painted.painted.tolist()]
     cube = str(repository / "cubes" / "moments-8-macbeth.uplift")

@@ -79,7 +79,9 @@ def ask(run: Run) -> Callable[..., Any]:
 
 @pytest.fixture
 def refuse(run: Run, shown: list[click.ClickException]) -> Callable[..., UpliftError]:
-    """Run ``uplift`` with bad input and return the error, reported on one line that has a hint or the constraint."""
+    """Run ``uplift`` with bad input and return the error, reported on one line that has
+    a hint or the constraint.
+    """
 
     def refuse(*args: object, **options: object) -> UpliftError:
         result = run(*args, code=2, **options)
@@ -101,7 +103,9 @@ def refuse(run: Run, shown: list[click.ClickException]) -> Callable[..., UpliftE
 
 @pytest.fixture
 def misuse(run: Run, shown: list[click.ClickException]) -> Callable[..., str]:
-    """Run ``uplift`` with options that do not fit together; return the message of click's usage error."""
+    """Run ``uplift`` with options that do not fit together; return the message of
+    click's usage error.
+    """
 
     def misuse(*args: object, **options: object) -> str:
         result = run(*args, code=2, **options)

@@ -33,7 +33,8 @@ def test_table_lists_entries_and_counts_those_out_of_gamut(run, monkeypatch):
             "0.3855",
         ]
     assert text.endswith(
-        "24 entries, 1 out of the sRGB gamut (cyan), 0 skipped; Display P3 holds all 24\n"
+        "24 entries, 1 out of the sRGB gamut (cyan), 0 skipped; Display P3 holds all "
+        "24\n"
     )
     assert "54 entries, 2 out" in run("atlas", MACBETH, ATLASES / "pmc.txt").stdout
 

@@ -7,7 +7,10 @@ import uplift
 from .conftest import warning_lines
 
 SMALL = ("--dim", "4", "--coefficients", "4")
-LOOK = '[[look]]\nrgb = "#4060a0"\nA = "#5060a0"\n[[look]]\nrgb = "#8a2a20"\nHP1 = "#70392a"\nname = "brick"\n'
+LOOK = (
+    '[[look]]\nrgb = "#4060a0"\nA = "#5060a0"\n[[look]]\nrgb = "#8a2a20"\nHP1 = '
+    '"#70392a"\nname = "brick"\n'
+)
 
 
 def test_unrealisable_colours_are_counted(run, home):

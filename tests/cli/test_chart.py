@@ -22,7 +22,9 @@ FOREIGN = {each.method for each in measure.METHODS if each.needs}
 
 @pytest.fixture(scope="module")
 def quick(repository, tmp_path_factory):
-    """A quick chart of the ColorChecker with short timings: its folder and the result of the command."""
+    """A quick chart of the ColorChecker with short timings: its folder and the result
+    of the command.
+    """
     folder = tmp_path_factory.mktemp("quick")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)

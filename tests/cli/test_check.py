@@ -195,7 +195,9 @@ def test_a_changed_atlas_is_explained_and_the_cube_updated(run, ask, home):
 
 @pytest.mark.parametrize("cube", CUBES, ids=lambda path: path.stem)
 def test_stored_cubes_pass(run, cube):
-    """Stored cubes equal their rebuilds within the limits, the default cube of the package included."""
+    """Stored cubes equal their rebuilds within the limits, the default cube of the
+    package included.
+    """
     result = run("check", "-v", cube)
     assert "passed" in result.stdout
     assert "storing: " in result.stderr

@@ -21,7 +21,9 @@ GIVEN = ("--light", "LED-B3", "--light", "HP1")
 
 @pytest.fixture(scope="module")
 def quick(repository, tmp_path_factory):
-    """A quick comparison on the ColorChecker with filters: its folder and the result of the command."""
+    """A quick comparison on the ColorChecker with filters: its folder and the result of
+    the command.
+    """
     folder = tmp_path_factory.mktemp("compare")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)

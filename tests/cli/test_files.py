@@ -1,4 +1,6 @@
-"""No command replaces a file that it reads, all outputs are checked before any is written, and any name will do."""
+"""No command replaces a file that it reads, all outputs are checked before any is
+written, and any name will do.
+"""
 
 import contextlib
 import importlib
@@ -91,7 +93,9 @@ texture image.exr --cube cube.uplift --cube cube2.uplift --mask mask.exr | -o x.
 texture image.exr wood.*.exr --errors lamp.csv | -o out | out/image.exr out/wood.2.exr
 wavelengths --count 4 --atlas atlas.txt --observer camera.csv --light lamp.csv | --plot x.png | x.png
 """
-"""Commands with all their inputs | the outputs that are added | the files that these are."""
+"""Commands with all their inputs | the outputs that are added | the files that these
+are.
+"""
 WITHOUT_ROWS = {
     "check": "--update replaces the cubes that it checks",
     "samples": "reads no file of the user",

@@ -131,7 +131,8 @@ def test_two_lights_of_one_name(refuse, home, files):
 def test_scenes_name_lamps(run, refuse, home, files):
     scene = home / "scene.toml"
     scene.write_text(
-        'textures = ["wood.png"]\natlases = ["two.csv"]\nlights = ["lamp.spd", "A"]\ntolerance = 0.5\n'
+        'textures = ["wood.png"]\natlases = ["two.csv"]\nlights = ["lamp.spd", '
+        '"A"]\ntolerance = 0.5\n'
     )
     (home / "two.csv").write_text(
         "name,400,550,700\ncold,0.3,0.2,0.1\nwarm,0.1,0.2,0.3\n"
@@ -152,7 +153,10 @@ def test_scenes_name_lamps(run, refuse, home, files):
 
 
 def test_palettes_name_lamps(run, refuse, home, files):
-    text = '[materials]\ncard = {{rgb = [0.5, 0.5, 0.5]}}\n[lights]\nday = {{illuminant = "{}"}}\n'
+    text = (
+        "[materials]\ncard = {{rgb = [0.5, 0.5, 0.5]}}\n[lights]\nday = {{illuminant "
+        '= "{}"}}\n'
+    )
     palette = home / "palette.toml"
     for name in ("lamp.spd", "two.csv:warm"):
         palette.write_text(text.format(name))

@@ -1,4 +1,6 @@
-"""Behaviour that all commands share: help, completion, numbers, errors and warnings, tables and progress."""
+"""Behaviour that all commands share: help, completion, numbers, errors and warnings,
+tables and progress.
+"""
 
 import ast
 import errno
@@ -141,7 +143,8 @@ def test_internal_errors_are_one_line_with_exit_code_70(failing, run, monkeypatc
     result = run("info", "x", code=70)
     assert result.stdout == ""
     assert result.stderr.startswith(
-        f"error: internal error, please report it: {type(bug).__name__} in test_main.py:"
+        f"error: internal error, please report it: {type(bug).__name__} in "
+        "test_main.py:"
     )
     assert result.stderr == printable(result.stderr[:-1]) + "\n"
     result = run("info", "x", "--format", "json", code=70)

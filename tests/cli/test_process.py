@@ -1,4 +1,6 @@
-"""``uplift`` as a process: what it imports, its streams, the signals that end it, and its cache folder."""
+"""``uplift`` as a process: what it imports, its streams, the signals that end it, and
+its cache folder.
+"""
 
 import json
 import os
@@ -112,7 +114,9 @@ def test_json_is_the_same_on_any_terminal(tmp_path):
 
 @pytest.fixture
 def texture(tmp_path):
-    """A process that converts two large images on two workers, and has begun with both."""
+    """A process that converts two large images on two workers, and has
+    begun with both.
+    """
     for name in ("a.png", "b.png"):
         Image.fromarray(np.full((4096, 4096, 3), 100, np.uint8)).save(
             tmp_path / name, compress_level=1
@@ -129,7 +133,8 @@ def texture(tmp_path):
         "--processes",
         "2",
     ]
-    # A shell without job control starts what runs in its background with SIGINT ignored.
+    # A shell without job control starts what runs in its background with SIGINT
+    # ignored.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     with subprocess.Popen(
         command, cwd=tmp_path, stderr=subprocess.PIPE, text=True
@@ -153,7 +158,9 @@ def wait_until(condition):
 
 
 def workers_of(process):
-    """Processes of Python that the process started, without the tracker of resources."""
+    """Processes of Python that the process started, without the tracker of
+    resources.
+    """
     children = (
         Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
     )
@@ -200,12 +207,17 @@ def test_a_killed_worker_is_one_line(texture, tmp_path):
     assert list((tmp_path / "out").iterdir()) == []
 
 
-MARK = "open({path!r}, 'a').write(__name__ + ' ')\nraise ImportError('a module of the working folder')\n"
+MARK = (
+    "open({path!r}, 'a').write(__name__ + ' ')\nraise ImportError('a module of the "
+    "working folder')\n"
+)
 
 
 @pytest.fixture
 def strange_folder(tmp_path):
-    """A working folder with a module for each one of Python, and some others, that leave a trace in a file."""
+    """A working folder with a module for each one of Python, and some others, that
+    leave a trace in a file.
+    """
     folder = tmp_path / "strange"
     folder.mkdir()
     for name in {
@@ -317,7 +329,9 @@ def test_settings_of_matplotlib_are_neither_obeyed_nor_remarked_on(tmp_path, set
 
 @pytest.fixture
 def cache(tmp_path, monkeypatch):
-    """The user's cache folder, which does not exist yet; the folders above it are the user's alone."""
+    """The user's cache folder, which does not exist yet; the folders above it are the
+    user's alone.
+    """
     monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", "")  # so that it is restored
     monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR")
     monkeypatch.setattr(
@@ -371,7 +385,10 @@ def test_a_cache_folder_that_cannot_be_used_is_a_warning(cache, tmp_path, monkey
             assert used_cache() is None
 
 
-BUILD = f"env -u JAX_COMPILATION_CACHE_DIR {UPLIFT} build --dim 2 --prior smooth --coefficients 3 --force -o"
+BUILD = (
+    f"env -u JAX_COMPILATION_CACHE_DIR {UPLIFT} build --dim 2 --prior smooth "
+    "--coefficients 3 --force -o"
+)
 
 
 def test_compiled_code_that_cannot_be_read_is_removed(tmp_path):

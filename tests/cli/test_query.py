@@ -378,7 +378,9 @@ def test_json_has_every_field(ask, macbeth_cube):
 
 
 def test_classical_coordinates(ask):
-    """Of encoded RGB; #ff0000 has the I and Q that the FCC's matrix of 1953 gives to red."""
+    """Of encoded RGB; #ff0000 has the I and Q that the FCC's matrix of 1953 gives to
+    red.
+    """
     red = ask("query", "#ff0000")
     assert (red["hsv"], red["hsl"]) == ([0, 1, 1], [0, 1, 0.5])
     np.testing.assert_allclose(red["yiq"], [0.30, 0.60, 0.21], atol=0.005)

@@ -1,4 +1,6 @@
-"""Options and inputs are validated, and packages are found, before a command computes or writes anything."""
+"""Options and inputs are validated, and packages are found, before a command computes
+or writes anything.
+"""
 
 import itertools
 import shutil
@@ -219,7 +221,9 @@ unknown-name wavelengths --count 4 --light none --plot x.png
 option wavelengths --wavelengths 1:2:1 --plot x.png
 option wavelengths --tolerance 0 --plot x.png
 """
-"""Codes of errors, and commands of which the last input is missing or a late option is invalid; {} is a cube."""
+"""Codes of errors, and commands of which the last input is missing or a late option is
+invalid; {} is a cube.
+"""
 UNPLOTTED = """
 advise wood.png --cube {} --plot x.png
 bounds #888 --plot x.svg
@@ -272,7 +276,10 @@ WITHOUT_ROWS = {
     "samples": "reads no file of the user",
     "help": "reads no file",
 }
-PALETTE = '[materials]\ncard = {rgb = [0.5, 0.5, 0.5]}\n[lights]\nday = {illuminant = "D65"}\n'
+PALETTE = (
+    "[materials]\ncard = {rgb = [0.5, 0.5, 0.5]}\n[lights]\nday = {illuminant = "
+    '"D65"}\n'
+)
 
 
 @pytest.fixture
@@ -317,7 +324,9 @@ def command_of(line):
 
 @pytest.fixture
 def refuse_at_once(refuse, home, files, monkeypatch):
-    """Run an invalid command, which must not compute, write or print anything, and return the error."""
+    """Run an invalid command, which must not compute, write or print anything, and
+    return the error.
+    """
 
     def begin(*args, **options):
         pytest.fail("began to compute")

@@ -1,4 +1,6 @@
-"""Sensors of cameras: sensitivities by name and from files, and the matrix of a camera that is a linear map of XYZ."""
+"""Sensors of cameras: sensitivities by name and from files, and the matrix of a camera
+that is a linear map of XYZ.
+"""
 
 import json
 

@@ -1,4 +1,6 @@
-"""L*a*b*, ΔE00 and dominant wavelength compared with published pairs and with colour-science."""
+"""L*a*b*, ΔE00 and dominant wavelength compared with published pairs and with
+colour-science.
+"""
 
 from pathlib import Path
 
@@ -49,7 +51,9 @@ def test_lab_agrees_with_colour_science_and_is_invertible(name):
     "name", [observer.DEFAULT_OBSERVER, "CIE 2015 2 Degree Standard Observer"]
 )
 def test_spectral_colours_and_their_tints(name):
-    """A mixture of white and one wavelength has that wavelength, and the purity of the distances in x, y."""
+    """A mixture of white and one wavelength has that wavelength, and the purity of the
+    distances in x, y.
+    """
     sensor = observer.sensor(observer=name)
     for wavelength in (440, 480, 520, 560, 600, 640):
         pure = sensor.cmfs[list(sensor.wavelengths).index(wavelength)]

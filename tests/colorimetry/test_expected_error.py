@@ -68,7 +68,9 @@ def test_errors_are_weighted_sums(monkeypatch):
 
 @pytest.mark.parametrize("count", [8, 12, 24])
 def test_errors_of_few_entries_are_covered(count):
-    """Of normal errors whose variance is that of the other ones, on average over many atlases."""
+    """Of normal errors whose variance is that of the other ones, on average over many
+    atlases.
+    """
     errors = np.random.default_rng(count).normal(size=(4000, count + 1))
     squares = errors**2
     known = squares[:, :-1]

@@ -1,4 +1,6 @@
-"""Gamuts of displays: matrices, Oklab, and laws of each mapping, with a root finder as the oracle."""
+"""Gamuts of displays: matrices, Oklab, and laws of each mapping, with a root finder as
+the oracle.
+"""
 
 import colour
 import numpy as np
@@ -35,7 +37,9 @@ def gamut(request):
 
 @pytest.fixture(scope="module")
 def outside() -> Array:
-    """(n, 3) linear RGB, all outside [0, 1]: slightly, far, too bright, too dark, too saturated, and combinations."""
+    """(n, 3) linear RGB, all outside [0, 1]: slightly, far, too bright, too dark, too
+    saturated, and combinations.
+    """
     rng = np.random.default_rng(0)
     near = np.clip(rng.normal(0.5, 0.5, (3000, 3)), 0, 1) + rng.normal(
         0, 1e-3, (3000, 3)
@@ -122,7 +126,9 @@ D65 = (0.3127, 0.3290)
 
 
 def test_example_of_the_thesis():
-    """Equations 4.2 and 4.3, whose last printed digit is unreliable: .26553 stands for .26533."""
+    """Equations 4.2 and 4.3, whose last printed digit is unreliable: .26553 stands for
+    .26533.
+    """
     np.testing.assert_allclose(
         CIE_RGB.lengths, [0.66694, 1.1324, 1.2006], rtol=0, atol=2e-4
     )
@@ -227,7 +233,9 @@ def test_mappings_are_continuous(method, name, outside):
 
 
 def test_procedure_of_the_thesis_gives_the_same_chromaticity(gamut):
-    """6.2.3: the line through white, (⅓, ⅓), in coordinates R / (R + G + B), G / (R + G + B) intersects b = 0."""
+    """6.2.3: the line through white, (⅓, ⅓), in coordinates R / (R + G + B), G / (R + G
+    + B) intersects b = 0.
+    """
     rgb = np.array([[0.6, 0.35, -0.2], [0.2, 0.5, -0.05], [0.3, 0.31, -0.4]])
     found = map_to_gamut(rgb, gamut, "scale").rgb
     for before, after in zip(rgb, found, strict=True):

@@ -1,4 +1,6 @@
-"""Extreme reflectances, mismatch volumes and largest differences: laws, measured metamers and linear programs."""
+"""Extreme reflectances, mismatch volumes and largest differences: laws, measured
+metamers and linear programs.
+"""
 
 import numpy as np
 import pytest
@@ -27,7 +29,9 @@ ROUNDING = 1e-9
 
 
 def problems(sensor, name, count):
-    """RGB of random smooth reflectances, and responses in random directions of XYZ under a light."""
+    """RGB of random smooth reflectances, and responses in random directions of XYZ
+    under a light.
+    """
     rng = np.random.default_rng(7)
     smooth = np.cumsum(
         rng.normal(scale=0.3, size=(count, len(sensor.wavelengths))), axis=1
@@ -111,7 +115,9 @@ def test_the_outline_of_a_mesh_is_that_of_its_projection():
 
 @pytest.mark.parametrize("name", LIGHTS)
 def test_measured_metamers_lie_inside(sensor, name):
-    """Every measured reflectance is a metamer of the colour that it has; white is none of grey."""
+    """Every measured reflectance is a metamer of the colour that it has; white is none
+    of grey.
+    """
     light = observer.light(name)
     parts = [
         resample(read_atlas(each.path), sensor.wavelengths).values
@@ -157,7 +163,8 @@ def test_the_volume_is_that_of_the_hull_of_linear_programs(sensor):
     assert coarse.volume[0] < volumes.volume[0] < 1.05 * coarse.volume[0]
     slack = hull.equations[:, :3] @ volumes.xyz[0].T + hull.equations[:, 3:]
     assert slack.max() < 0.1 * np.cbrt(hull.volume)
-    # The planes of the boundary points bound the points of the other solver, and so do the corners.
+    # The planes of the boundary points bound the points of the other solver, and so do
+    # the corners.
     outer = ConvexHull(volumes.corners[0])
     assert (
         outer.equations[:, :3] @ hull.points.T + outer.equations[:, 3:]

@@ -63,7 +63,9 @@ def test_colours_agree_with_colour_science(sensor):
 
 @pytest.mark.parametrize("name", tables.names("observer"))
 def test_observers_agree_on_hues(name, sensor):
-    """Those of RGB and of cones, which XYZ are computed from by a matrix, are not observers."""
+    """Those of RGB and of cones, which XYZ are computed from by a matrix, are not
+    observers.
+    """
     own = observer.sensor(observer=name)
     for rgb in ([0, 0.35, 0.05], [0.7, 0.2, 0.02]):
         hue = dominant_wavelength(own.xyz(np.array(rgb)), own).wavelength
@@ -231,7 +233,9 @@ def test_transfer_curve_agrees_with_the_standard_and_is_invertible():
     ("space", "illuminant"), [("P3-D65", "D65"), ("ProPhoto RGB", "D50"), ("sRGB", "A")]
 )
 def test_other_spaces_keep_their_appearance(space, illuminant):
-    """An sRGB sensor under the illuminant of the cube adapts by Bradford's transform too."""
+    """An sRGB sensor under the illuminant of the cube adapts by Bradford's transform
+    too.
+    """
     own, screen = (observer.sensor(name, illuminant) for name in (space, "sRGB"))
     rgb = 0.3 + 0.3 * np.random.default_rng(1).random((200, 3))  # pale enough for sRGB
     expected = 255 * encode(own.xyz(rgb) @ screen.xyz_to_rgb.T)

@@ -11,7 +11,9 @@ from uplift.lattice import Lattice, axis_nodes
 
 
 def best_residual(sensor, rgb):
-    """Smallest max |linear RGB| residual over all reflectances, for each colour (n, 3)."""
+    """Smallest max |linear RGB| residual over all reflectances, for each
+    colour (n, 3).
+    """
     found = [
         lsq_linear(sensor.matrix, colour, (0, 1), method="bvls", tol=1e-14)
         for colour in rgb
@@ -33,9 +35,11 @@ def test_solid_contains_the_colours_that_a_solver_reaches(space):
 
 
 def test_spectra_of_two_steps_lie_on_the_boundary(sensor):
-    """MacAdam 1935: the purest colours have a reflectance of 0 or 1 with at most two steps.
+    """MacAdam 1935: the purest colours have a reflectance of 0 or 1 with at most two
+    steps.
 
-    Approximately: the spectrum locus is concave at its ends, where the observer has almost no sensitivity.
+    Approximately: the spectrum locus is concave at its ends, where the observer has
+    almost no sensitivity.
     """
     limits = solid(sensor.matrix)
     rng = np.random.default_rng(1)

@@ -52,7 +52,9 @@ def test_what_the_file_lacks_comes_from_colour_science():
 
 def test_a_build_does_not_import_colour_science():
     code = (
-        "import sys, warnings; warnings.simplefilter('ignore'); import uplift; uplift.build('macbeth', dim=2); "
-        "found = {'colour', 'matplotlib', 'PIL', 'PyOpenColorIO'} & set(sys.modules); assert not found, found"
+        "import sys, warnings; warnings.simplefilter('ignore'); import uplift; "
+        "uplift.build('macbeth', dim=2); "
+        "found = {'colour', 'matplotlib', 'PIL', 'PyOpenColorIO'} & set(sys.modules); "
+        "assert not found, found"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -1,4 +1,6 @@
-"""Errors: location, problem and hint on one line, a stable code, and the built-in error that each also is."""
+"""Errors: location, problem and hint on one line, a stable code, and the built-in error
+that each also is.
+"""
 
 import inspect
 

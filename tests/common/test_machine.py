@@ -2,9 +2,9 @@
 
 from concurrent.futures import ThreadPoolExecutor
 
-import numpy as np
+import numpy as np  # noqa: F401  loads its BLAS
 import pytest
-import scipy.linalg
+import scipy.linalg  # noqa: F401
 from threadpoolctl import OpenBLASController, threadpool_info, threadpool_limits
 
 from uplift.common.machine import single_threaded_blas

@@ -1,4 +1,6 @@
-"""Reading and validation of TOML and JSON files: locations, limits and control characters."""
+"""Reading and validation of TOML and JSON files: locations, limits and control
+characters.
+"""
 
 import pytest
 

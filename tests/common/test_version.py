@@ -1,4 +1,6 @@
-"""The version: of a commit in a clone, of its build in a distribution, and unknown elsewhere."""
+"""The version: of a commit in a clone, of its build in a distribution, and unknown
+elsewhere.
+"""
 
 import shutil
 import subprocess

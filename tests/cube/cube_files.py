@@ -16,7 +16,9 @@ from uplift.cube import CubeData, container, contents
 def forge(
     data: CubeData, path: Path, change: Callable[[dict[str, Any], dict[str, Any]], None]
 ) -> Path:
-    """Write ``data`` after ``change(tensors, metadata)``, with the digest of the changed content."""
+    """Write ``data`` after ``change(tensors, metadata)``, with the digest of the
+    changed content.
+    """
     tensors, metadata = contents(data)
     metadata = json.loads(json.dumps(metadata))
     change(tensors, metadata)

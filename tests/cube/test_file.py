@@ -42,7 +42,9 @@ def content(path):
 
 
 def refused(path, *codes):
-    """The error of reading a file: one line, located at the file, with a hint and one of ``codes``, if given."""
+    """The error of reading a file: one line, located at the file, with a hint and one
+    of ``codes``, if given.
+    """
     with pytest.raises(CubeFileError) as caught:
         read(path)
     error = caught.value
@@ -55,7 +57,9 @@ def refused(path, *codes):
 
 @pytest.fixture
 def forged(data, tmp_path):
-    """Change one array of the cube, with a valid digest, and return the error of reading it."""
+    """Change one array of the cube, with a valid digest, and return the error of
+    reading it.
+    """
 
     def forged(name, change):
         def apply(tensors, metadata):

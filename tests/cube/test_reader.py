@@ -1,4 +1,6 @@
-"""docs/reader.py, the reader that docs/cube-file.md describes, answers as uplift does, without it."""
+"""docs/reader.py, the reader that docs/cube-file.md describes, answers as uplift does,
+without it.
+"""
 
 import importlib.util
 import subprocess

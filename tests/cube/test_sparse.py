@@ -120,8 +120,10 @@ def test_small_files_of_large_lattices_take_little_memory(plain_cube, tmp_path):
     assert path.stat().st_size < 20_000
     code = (
         "import sys, uplift\nfrom uplift.report.measures import compute_smoothness\n"
-        "cube = uplift.load(sys.argv[1]).fill_missing([[0.5, 0.5, 0.5]])\ncompute_smoothness(cube.data)\n"
-        "print(next(line.split()[1] for line in open('/proc/self/status') if line.startswith('VmHWM:')))"
+        "cube = uplift.load(sys.argv[1]).fill_missing([[0.5, 0.5, "
+        "0.5]])\ncompute_smoothness(cube.data)\n"
+        "print(next(line.split()[1] for line in open('/proc/self/status') if "
+        "line.startswith('VmHWM:')))"
     )
     done = subprocess.run(
         [sys.executable, "-c", code, path],

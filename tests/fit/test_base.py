@@ -1,4 +1,6 @@
-"""Base spectra: nearly the colour, dark where the colour is dark, and learnt ones better for unknown materials."""
+"""Base spectra: nearly the colour, dark where the colour is dark, and learnt ones
+better for unknown materials.
+"""
 
 import numpy as np
 import pytest
@@ -111,7 +113,9 @@ def test_dark_saturated_colours_stay_dark_outside_the_visible_range(problem, sen
 
 
 def test_an_atlas_raises_the_relevance_of_families_like_it(problem, sensor):
-    """The atlas deviates from smooth spectra exactly as one family, the others are noise."""
+    """The atlas deviates from smooth spectra exactly as one family, the others are
+    noise.
+    """
     rng = np.random.default_rng(4)
     (like,) = [family for family in shipped_library() if family.name == "rawtoaces"]
     own, rest = np.array_split(rng.permutation(len(like.measured)), 2)
@@ -129,7 +133,9 @@ def test_an_atlas_raises_the_relevance_of_families_like_it(problem, sensor):
 
 
 def test_spectra_of_the_atlas_are_no_evidence_for_themselves(problem, sensor):
-    """A library that is the atlas has no spectra left: the base is that of smooth spectra."""
+    """A library that is the atlas has no spectra left: the base is that of smooth
+    spectra.
+    """
     (same,) = [family for family in shipped_library() if family.name == "tcs"]
     learnt, relevance = learn_base(problem, [same], entries_of(sensor, same.measured))
     assert relevance == (1.0,)

@@ -1,4 +1,6 @@
-"""Black, white, the primaries and colours near them: finite, and as exact as all others."""
+"""Black, white, the primaries and colours near them: finite, and as exact as all
+others.
+"""
 
 from itertools import product
 

@@ -1,4 +1,6 @@
-"""Fitted atlas entries: exact colour, close spectrum, close colours under other lights."""
+"""Fitted atlas entries: exact colour, close spectrum, close colours under
+other lights.
+"""
 
 import numpy as np
 import pytest
@@ -70,7 +72,9 @@ def test_the_ends_of_the_spectrum_follow_the_measurement(sensor, measured):
 
 
 def steps_along_noise(sensor, spectrum, **weights):
-    """Steps of fitted spectra while a measurement gains noise evenly, in units of the steps of the measurement."""
+    """Steps of fitted spectra while a measurement gains noise evenly, in units of the
+    steps of the measurement.
+    """
     noise = np.random.default_rng(2).normal(0, 0.002, (23, len(spectrum)))[22]
     path = np.clip(spectrum + np.linspace(0, 1, 41)[:, None] * noise, 1e-4, 1)
     changes = [
@@ -81,7 +85,9 @@ def steps_along_noise(sensor, spectrum, **weights):
 
 
 def test_fit_of_a_dark_entry_is_continuous_in_the_measurement(sensor, measured):
-    """Black of the ColorChecker: without smoothness, noise of a spectrophotometer moves it to another minimum."""
+    """Black of the ColorChecker: without smoothness, noise of a spectrophotometer moves
+    it to another minimum.
+    """
     black = measured[-1]
     assert black.mean() < 0.05
     assert steps_along_noise(sensor, black).max() <= 8
@@ -89,7 +95,9 @@ def test_fit_of_a_dark_entry_is_continuous_in_the_measurement(sensor, measured):
 
 
 def jacobian(goal, multipliers):
-    """Derivative (m, C) of the residuals at multipliers (C,), row by row of the objective."""
+    """Derivative (m, C) of the residuals at multipliers (C,), row by row of the
+    objective.
+    """
     x = goal.basis @ multipliers
     change = goal.model.derivative(x)[:, None] * goal.basis
     colours = lab_jacobian(goal.lights @ goal.model.to_reflectance(x), goal.whites) @ (

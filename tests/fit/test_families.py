@@ -1,4 +1,6 @@
-"""Families of materials: the shipped library, kriging against the explicit covariance, and relevances."""
+"""Families of materials: the shipped library, kriging against the explicit covariance,
+and relevances.
+"""
 
 from importlib.resources import files
 
@@ -80,7 +82,9 @@ def matern(first, second):
 
 
 def conditional_mean(families, points, lab):
-    """Mean of shared deviation plus the related share of each family's own, given all samples."""
+    """Mean of shared deviation plus the related share of each family's own, given all
+    samples.
+    """
     where = np.concatenate([each.locations for each in points])
     what = np.concatenate([each.deviations for each in points])
     covariance = matern(where, where)

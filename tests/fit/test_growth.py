@@ -1,4 +1,6 @@
-"""Growth, improvement and storage, from the prior and as in Tódová 2020, section 3.1: any seeds fit all nodes."""
+"""Growth, improvement and storage, from the prior and as in Tódová 2020, section 3.1:
+any seeds fit all nodes.
+"""
 
 from dataclasses import replace
 from functools import partial
@@ -35,7 +37,9 @@ def all_nodes(lattice):
 
 
 def fitted(model, sensor, lattice, rgb=NO_COLOURS, grow=grow_outward):
-    """Fit a lattice with entries of grey spectra at linear RGB (E, 3): table of nodes, improvements."""
+    """Fit a lattice with entries of grey spectra at linear RGB (E, 3): table of nodes,
+    improvements.
+    """
     problem, nodes, seeds = (
         Problem(sensor, model),
         all_nodes(lattice),
@@ -85,7 +89,9 @@ def test_tiny_lattices_are_fitted_to_their_corners(model, dim, sensor):
 
 
 def test_points_that_fail_from_their_start_are_fitted_from_their_neighbours(sensor):
-    """All but the middle node start so near black that no step helps; growth proceeds outward from it."""
+    """All but the middle node start so near black that no step helps; growth proceeds
+    outward from it.
+    """
     rounds = []
     middle = LATTICE.size // 2
     start = np.full((LATTICE.size, 9), -1e9) * MODEL.constant()
@@ -123,7 +129,9 @@ def test_growth_proceeds_from_a_coarse_lattice_to_finer_ones(sensor):
 
 
 def test_growth_proceeds_outward_in_shells(sensor):
-    """Distances are those to the nearest seed, and most nodes have a nearer one on their way."""
+    """Distances are those to the nearest seed, and most nodes have a nearer one on
+    their way.
+    """
     lattice = Lattice(axis_nodes("srgb", 9))
     seeds = np.array([4, 300, 700])
     distance, toward = shells(lattice, seeds)
@@ -144,7 +152,9 @@ def test_growth_proceeds_outward_in_shells(sensor):
     "rgb", [NO_COLOURS, np.array([[0.2, 0.3, 0.4]])], ids=["no seeds", "seeds"]
 )
 def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch, rgb):
-    """Outward, all at once, and from coarse lattices to finer ones; few nodes differ."""
+    """Outward, all at once, and from coarse lattices to finer ones; few
+    nodes differ.
+    """
     lattice = Lattice(axis_nodes("srgb", 17))
     spectra = [
         reflectance(
@@ -170,7 +180,9 @@ def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch, 
 
 
 def test_an_unrealisable_colour_has_status_unfitted(sensor):
-    """The green corner of ProPhoto RGB, not declared as unrealisable. Other nodes are not affected."""
+    """The green corner of ProPhoto RGB, not declared as unrealisable. Other nodes are
+    not affected.
+    """
     wide = observer.sensor("ProPhoto RGB", "D65")
     lattice = Lattice(np.linspace(0, 1, 3))
     points, improvements = fitted(MODEL, wide, lattice)
@@ -271,7 +283,9 @@ def test_single_precision_is_used_where_it_is_accurate(problem):
 
 
 def test_double_precision_is_used_where_single_is_inaccurate(problem, monkeypatch):
-    """The threshold is so small that rounding exceeds it in the last block: all nodes are evaluated again."""
+    """The threshold is so small that rounding exceeds it in the last block: all nodes
+    are evaluated again.
+    """
     monkeypatch.setattr("uplift.fit.growth.BLOCK_POINTS", 256)
     strict = replace(problem, threshold=1e-7)
     multipliers = greys(

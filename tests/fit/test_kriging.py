@@ -1,4 +1,6 @@
-"""Kriging of deviations against dense linear algebra, and kernels learnt where the best kernel is known."""
+"""Kriging of deviations against dense linear algebra, and kernels learnt where the best
+kernel is known.
+"""
 
 from functools import partial
 
@@ -65,7 +67,9 @@ def test_it_is_the_conditional_mean():
 
 @pytest.mark.parametrize("points", [30, 20])
 def test_leave_one_out_equals_kriging_of_the_other_entries(monkeypatch, points):
-    """Also where close entries are averaged, which is the same as moving them to their mean."""
+    """Also where close entries are averaged, which is the same as moving them to their
+    mean.
+    """
     monkeypatch.setattr(kriging, "MAX_POINTS", points)
     monkeypatch.setattr(kriging, "CELLS", (20.0,))
     means = average_close(PLACES * METRIC, DEVIATIONS)
@@ -146,7 +150,9 @@ def test_without_evidence_the_default_is_kept():
 
 
 def test_what_deviates_from_all_others_hardly_counts():
-    """A sixth of the materials is of another kind: the means of the kinds are 0 and 1."""
+    """A sixth of the materials is of another kind: the means of the kinds
+    are 0 and 1.
+    """
     other = LEARNING.random(150) < 1 / 6
     deviations = 0.1 * LEARNING.normal(size=(150, 3)) + other[:, None]
     found, _ = learn_kriging(MANY, deviations, ALL_VISIBLE)
@@ -156,12 +162,15 @@ def test_what_deviates_from_all_others_hardly_counts():
 
 
 def test_visible_change_ranks_metameric_changes_by_delta_e(sensor):
-    """A change of the coefficients, made exact in colour by the solver, against the linear prediction.
+    """A change of the coefficients, made exact in colour by the solver, against the
+    linear prediction.
 
-    All coefficients change alike. If changes fell off with the order, most of what remains once the colour is exact
-    would lie in the roughest parts of the spectrum, which the prediction neglects: the correlation would be 0.6, and
-    0.6 without the weights of ΔE00. So it is 0.84 to 0.90 over samples, below 0.79 without these weights, and below
-    0.70 without the part that a smooth change of the same colour undoes.
+    All coefficients change alike. If changes fell off with the order, most of what
+    remains once the colour is exact would lie in the roughest parts of the spectrum,
+    which the prediction neglects: the correlation would be 0.6, and 0.6 without the
+    weights of ΔE00. So it is 0.84 to 0.90 over samples, below 0.79 without these
+    weights, and below 0.70 without the part that a smooth change of the same colour
+    undoes.
     """
     model = Moments(9)
     problem = Problem(sensor, model, (observer.light("A"), observer.light("FL11")))

@@ -1,4 +1,6 @@
-"""Designed reflectances of looks: exact colours, wishes of real materials met, and the nearest colour where none is."""
+"""Designed reflectances of looks: exact colours, wishes of real materials met, and the
+nearest colour where none is.
+"""
 
 import warnings
 
@@ -32,7 +34,9 @@ def goal_of(sensor, lights, reflectance, rgb=None):
 
 @pytest.fixture(scope="module")
 def materials(sensor):
-    """Measured reflectances in gamut, and what a cube without an atlas answers to their colours."""
+    """Measured reflectances in gamut, and what a cube without an atlas answers to their
+    colours.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         measured = on_grid(read_atlas(MACBETH), sensor.wavelengths)

@@ -1,4 +1,6 @@
-"""The prior: the spectrum of an entry at its colour, and standard errors of left-out entries."""
+"""The prior: the spectrum of an entry at its colour, and standard errors of left-out
+entries.
+"""
 
 import numpy as np
 import pytest
@@ -110,7 +112,8 @@ def test_too_few_entries_give_no_standard_error(problem, sensor, materials):
 def test_errors_of_left_out_entries_agree_with_the_standard_error(
     problem, sensor, materials
 ):
-    """Half the materials are the atlas, the other half is predicted; repeated several times.
+    """Half the materials are the atlas, the other half is predicted; repeated several
+    times.
 
     Errors of materials have heavy tails: a single split is off by up to half.
     """

@@ -1,4 +1,6 @@
-"""Realisable colours are fitted; all others are reported and replaced by the nearest realisable colour."""
+"""Realisable colours are fitted; all others are reported and replaced by the nearest
+realisable colour.
+"""
 
 import os
 import platform
@@ -24,7 +26,9 @@ ONLY_AVX = {
     "OPENBLAS_CORETYPE": "Sandybridge",
     "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR",
 }
-"""Environment of a process without AVX2 and the products of FMA, which round differently."""
+"""Environment of a process without AVX2 and the products of FMA, which round
+differently.
+"""
 
 
 @pytest.mark.parametrize(
@@ -65,7 +69,9 @@ def test_the_nearest_colour_has_the_same_hue_and_luminance(sensor):
 
 
 def store_spectra(path):
-    """Store the spectra of nodes in wide gamuts, and near a look that nine coefficients do not reach."""
+    """Store the spectra of nodes in wide gamuts, and near a look that nine coefficients
+    do not reach.
+    """
     skin = uplift.Look("#c08a6e", {"FL11": "#bc8c78", "A": "#c48e70"})
     cubes = (
         uplift.build(dim=6, space="ACEScg").data,
@@ -85,7 +91,10 @@ def store_spectra(path):
 def test_spectra_do_not_depend_on_the_instruction_set(tmp_path):
     here, there = tmp_path / "here.npy", tmp_path / "there.npy"
     store_spectra(here)
-    code = f"from tests.fit.test_problem import store_spectra; store_spectra({str(there)!r})"
+    code = (
+        "from tests.fit.test_problem import store_spectra; "
+        f"store_spectra({str(there)!r})"
+    )
     subprocess.run(
         [sys.executable, "-c", code],
         cwd=Path(__file__).parents[2],

@@ -1,7 +1,8 @@
-"""Seeds: nearest nodes and corners in any order of the atlas, starts between entries and prior, and the size of lattice
-that an atlas needs.
+"""Seeds: nearest nodes and corners in any order of the atlas, starts between entries
+and prior, and the size of lattice that an atlas needs.
 
-Cells of the lattice of 6³ are 20 to 60 ΔE*ab long, so that corners are far from their entries; those of 64³ are near.
+Cells of the lattice of 6³ are 20 to 60 ΔE*ab long, so that corners are far from their
+entries; those of 64³ are near.
 """
 
 import numpy as np

@@ -1,4 +1,6 @@
-"""The solver against scipy, run by optimistix itself, and with any other solver of optimistix in its place."""
+"""The solver against scipy, run by optimistix itself, and with any other solver of
+optimistix in its place.
+"""
 
 import os
 import subprocess
@@ -61,7 +63,9 @@ def test_no_distance_increases(sensor):
 
 @pytest.mark.parametrize("max_passes", [1, 12])
 def test_solutions_do_not_depend_on_the_batch(sensor, max_passes):
-    """A problem has the same solution alone and among many, also if it is hard or abandoned."""
+    """A problem has the same solution alone and among many, also if it is hard or
+    abandoned.
+    """
     model = Moments(9)
     forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     dark, wild = [[2e-4, 1e-3, 1e-5]], [[0.9, 0.0, 0.9], [1.2, -0.3, 0.5]]
@@ -104,7 +108,9 @@ def test_optimistix_runs_it(forward):
 
 
 def test_the_answer_is_the_nearest_to_the_prior(forward):
-    """scipy minimises the distance from the prior under the constraint of the colour."""
+    """scipy minimises the distance from the prior under the constraint of
+    the colour.
+    """
     found = solve(forward, PRIORS, INNER, tolerance=1e-12, max_passes=40, prior=PRIORS)
     for prior, target, multipliers in zip(
         PRIORS, INNER, found.multipliers, strict=True
@@ -136,7 +142,9 @@ def test_the_answer_does_not_depend_on_the_start(forward):
 
 
 def test_stock_solvers_give_the_same_cube():
-    """Nodes on the faces have nearly box-shaped spectra: there the default stops to pull towards the prior."""
+    """Nodes on the faces have nearly box-shaped spectra: there the default stops to
+    pull towards the prior.
+    """
     dogleg = optimistix.Dogleg(rtol=1e-8, atol=1e-8)
     cubes = [
         build(**SMALL, solver=solver)

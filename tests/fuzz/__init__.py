@@ -1,1 +1,3 @@
-"""Fuzzing (`make nightly`): accepted input is usable, rejected input raises an `UpliftError` of one line."""
+"""Fuzzing (`make nightly`): accepted input is usable, rejected input raises an
+`UpliftError` of one line.
+"""

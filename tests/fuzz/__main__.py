@@ -1,4 +1,6 @@
-"""`make nightly`: every target with many inputs; the first one of each kind of failure is kept in out/fuzz."""
+"""`make nightly`: every target with many inputs; the first one of each kind of failure
+is kept in out/fuzz.
+"""
 
 import json
 from collections import Counter
@@ -24,7 +26,9 @@ BLOCK = 5000
 )
 @click.option("--seed", default=0, show_default=True)
 def main(names: tuple[str, ...], inputs: int, seed: int) -> None:
-    """Fuzz readers and commands, all by default, print what happened, and end with 1 after a failure."""
+    """Fuzz readers and commands, all by default, print what happened, and end with 1
+    after a failure.
+    """
     KEPT.mkdir(parents=True, exist_ok=True)
     rows = []
     with ProcessPoolExecutor(max_tasks_per_child=1) as pool:
@@ -58,9 +62,10 @@ def main(names: tuple[str, ...], inputs: int, seed: int) -> None:
                 }
             )
             click.echo(
-                "{target}: {tried:,} inputs, {taken:,} accepted, failures: {failures}".format(
-                    **rows[-1]
-                )
+                (
+                    "{target}: {tried:,} inputs, {taken:,} accepted, failures: "
+                    "{failures}"
+                ).format(**rows[-1])
             )
     figures = {
         "command": "make nightly",

@@ -1,6 +1,8 @@
-"""Odd builds, and the laws that cubes keep: ``python -m tests.fuzz.builds FIRST COUNT`` tries seeds.
+"""Odd builds, and the laws that cubes keep: ``python -m tests.fuzz.builds FIRST COUNT``
+tries seeds.
 
-Programs of JAX and C depend on few numbers of a build, so that most seeds find theirs compiled by those before.
+Programs of JAX and C depend on few numbers of a build, so that most seeds find theirs
+compiled by those before.
 """
 
 import contextlib
@@ -47,12 +49,16 @@ OBSERVERS = (
 CAMERAS = ("Nikon 5100 (NPL)", "Sigma SDMerill (NPL)")
 SHAPES = ("smooth", "equal", "dark", "black", "white", "spiky")
 EXACT, SAME, DEEP, SUM = 1e-4, 1e-3, 1e-4, 2e-6
-"""Largest error of a realisable colour, and largest difference of reflectances between languages, of colours that far
-inside the solid, with the error of RGB as a sum of some hundred products in single precision. Near the boundary of the
-solid spectra are steps, which single precision cannot place: an error d of RGB at the distance h moves a step by about
-d / h of its width."""
+"""Largest error of a realisable colour, and largest difference of reflectances between
+languages, of colours that far inside the solid, with the error of RGB as a sum of some
+hundred products in single precision. Near the boundary of the solid spectra are steps,
+which single precision cannot place: an error d of RGB at the distance h moves a step by
+about d / h of its width.
+"""
 NEAR = 1e-6
-"""Distance in linear RGB within which single precision takes a colour for one of the next cell."""
+"""Distance in linear RGB within which single precision takes a colour for one of the
+next cell.
+"""
 AT = (385.0, 450.0, 525.0, 600.0, 675.0, 775.0)
 COUNTS = ((3, 3), (4, 9), (5, 17), (9, 9), (9, 13), (17, 17))
 RANGES = ((380, 780, 5), (380, 780, 10), (360, 830, 5), (320, 900, 10))
@@ -60,7 +66,9 @@ RANGES = ((380, 780, 5), (380, 780, 10), (360, 830, 5), (320, 900, 10))
 
 @dataclass(frozen=True)
 class Kind:
-    """Numbers of builds from which programs are compiled: nodes along each axis, entries, coefficients, wavelengths."""
+    """Numbers of builds from which programs are compiled: nodes along each axis,
+    entries, coefficients, wavelengths.
+    """
 
     dims: tuple[int, ...]
     sizes: tuple[int, ...] = (0, 0, 1, 2, 30)
@@ -77,7 +85,9 @@ TABLE = Lattice(np.linspace(0, 1, 5) ** 2)
 
 @contextlib.contextmanager
 def little_work() -> Iterator[None]:
-    """Start from a coarse table of smooth spectra, and fit small batches: 17³ nodes would be most of the work."""
+    """Start from a coarse table of smooth spectra, and fit small batches: 17³ nodes
+    would be most of the work.
+    """
     with (
         mock.patch.object(base, "TABLE", TABLE),
         mock.patch.object(
@@ -152,11 +162,13 @@ def odd_atlas(random: Random, size: int) -> uplift.Atlas:
 def distance_to_solid(
     sensor: Sensor, rgb: Array, spectra: Array, normals: Array
 ) -> Array:
-    """Return how far, max |linear RGB|, colours (n, 3) are from those of reflectances, by proof or linear program.
+    """Return how far, max |linear RGB|, colours (n, 3) are from those of reflectances,
+    by proof or linear program.
 
-    A spectrum (n, N) of the colour proves that there is one. A plane that has all colours of reflectances on one side,
-    with one of the ``normals`` (F, 3), proves how far away a colour is: n · r - max n · W g, over Σ |n|. A linear
-    program judges those of which neither is known to 1e-6.
+    A spectrum (n, N) of the colour proves that there is one. A plane that has all
+    colours of reflectances on one side, with one of the ``normals`` (F, 3), proves how
+    far away a colour is: n · r - max n · W g, over Σ |n|. A linear program judges those
+    of which neither is known to 1e-6.
     """
     near = np.abs(sensor.rgb(np.clip(spectra, 0, 1)) - rgb).max(axis=1)
     best = normals[
@@ -173,7 +185,9 @@ def distance_to_solid(
 
 
 def miss(matrix: Array, rgb: Array) -> float:
-    """Return the least max |linear RGB| from a colour (3,) that reflectances in [0, 1] have, by a linear program."""
+    """Return the least max |linear RGB| from a colour (3,) that reflectances in [0, 1]
+    have, by a linear program.
+    """
     count, off = matrix.shape[1], np.ones((3, 1))
     rows = np.block([[matrix, -off], [-matrix, -off]])
     cost, limits = np.append(np.zeros(count), 1), [(0, 1)] * count + [(0, None)]
@@ -189,7 +203,9 @@ def miss(matrix: Array, rgb: Array) -> float:
 
 
 def colours(random: Random, cube: uplift.Cube) -> np.ndarray:
-    """Return colours (n, 3) in [0, 1]: random, dark, pure, of entries, and near them."""
+    """Return colours (n, 3) in [0, 1]: random, dark, pure, of entries, and
+    near them.
+    """
     rgb = random.uniform(0, 1, (24, 3))
     rgb[8:12] **= 4
     rgb[12:16, int(random.integers(3))] = random.uniform(0, 0.02)
@@ -248,7 +264,10 @@ def _file_laws(cube: uplift.Cube, folder: Path, check: bool) -> Iterator[str]:
             command_line, ["check", str(folder / "cube.uplift"), "--format", "json"]
         )
         if result.exit_code:
-            yield f"check: exit code {result.exit_code}: {result.exception!r} {result.stderr[-200:]}"
+            yield (
+                f"check: exit code {result.exit_code}: {result.exception!r} "
+                f"{result.stderr[-200:]}"
+            )
 
 
 def _colour_laws(cube: uplift.Cube, rgb: Array, folder: Path) -> Iterator[str]:
@@ -287,7 +306,10 @@ def _colour_laws(cube: uplift.Cube, rgb: Array, folder: Path) -> Iterator[str]:
             answer.get("realisable", True) != (missed < 1e-6)
             and not 1e-9 < missed < 1e-6
         ):
-            yield f"realisable is {answer.get('realisable')}, {missed:.1e} from the nearest: {answer['rgb']}"
+            yield (
+                f"realisable is {answer.get('realisable')}, {missed:.1e} from the "
+                f"nearest: {answer['rgb']}"
+            )
         if np.abs(np.array(answer["reflectance"]) - row).max() > 1e-6:
             yield "the command line has other reflectances"
     for mode in ("spectra", "moments") if shutil.which("cc") else ():
@@ -304,15 +326,23 @@ def _program_laws(cube: uplift.Cube, mode: str, rgb: Array) -> Iterator[str]:
     difference = np.abs(found - cube.reflectance(rgb, AT, mode)).max(axis=1)
     stated, stays = rounding_error(cube.data, mode), stay(cube.data, mode, rgb)
     for row in np.flatnonzero(stays & (difference > stated)):
-        yield f"C, {mode}: states {stated:.1e}, but differs by {difference[row]:.1e}: {rgb[row].tolist()}"
+        yield (
+            f"C, {mode}: states {stated:.1e}, but differs by {difference[row]:.1e}: "
+            f"{rgb[row].tolist()}"
+        )
     depth = -cube.data.solid.signed_distance(rgb)
     limit = np.maximum(np.maximum(SAME, SUM / np.maximum(depth, DEEP)), 2 * stated)
     for row in np.flatnonzero(~stays & (depth > DEEP) & (difference > limit)):
-        yield f"C, {mode}: differs by {difference[row]:.1e} at the depth {depth[row]:.1e}: {rgb[row].tolist()}"
+        yield (
+            f"C, {mode}: differs by {difference[row]:.1e} at the depth "
+            f"{depth[row]:.1e}: {rgb[row].tolist()}"
+        )
 
 
 def stay(data: CubeData, mode: str, rgb: Array) -> Mask:
-    """Return which colours (n, 3) are interpolated inside cells whose answers are not moved."""
+    """Return which colours (n, 3) are interpolated inside cells whose answers are not
+    moved.
+    """
     hits = data.entry_boxes.locate(rgb)[2]
     place = rgb.copy()
     place[hits.rows] = hits.exit_rgb
@@ -341,9 +371,11 @@ def broken(seed: int, kind: Kind = SMALL) -> list[str]:
 
 
 def main(first: int, count: int) -> int:
-    """Try seeds, every fiftieth with a large cube, print the laws that they break, and return their number.
+    """Try seeds, every fiftieth with a large cube, print the laws that they break, and
+    return their number.
 
-    The figures of the page are written after each build: an interrupted run counts those that it had.
+    The figures of the page are written after each build: an interrupted run counts
+    those that it had.
     """
     laws = Counter[str]()
     KEPT.mkdir(parents=True, exist_ok=True)

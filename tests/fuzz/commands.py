@@ -1,4 +1,6 @@
-"""Fuzz target of the command line: names that terminals, spreadsheets, pages or figures may obey."""
+"""Fuzz target of the command line: names that terminals, spreadsheets, pages or figures
+may obey.
+"""
 
 import contextlib
 import csv
@@ -30,7 +32,8 @@ TOKENS = (
     "\\n", "*/", "??/", "//", "#", "Entry ID:", "../..", "~", "青", "é", "e\u0301", "👩\u200d🔬", "العربية", "a" * 300,
     " ", "a", "grey", "", "nan", "--force", "-",
 )  # fmt: skip
-"""Parts of names that terminals, spreadsheets, templates, browsers or parsers may obey."""
+"""Parts of names that terminals, spreadsheets, templates, browsers or parsers may obey.
+"""
 CUBE = "c.uplift"
 CHART_TEXT = (ROOT / "uplift" / "lab" / "chart" / "measured.csv").read_text(
     encoding="utf-8"
@@ -44,16 +47,29 @@ rgb = [0.2, 0.3, 0.4]
 """
 LINES = (
     "info c.uplift", "info c.uplift --format json", "query --cube c.uplift 0.2 0.3 0.4",
-    "query --cube c.uplift --input colours.csv", "query --cube c.uplift --input colours.csv --format json",
-    "query --cube c.uplift --input colours.csv --format csv", "query --cube c.uplift --input colours.csv --plot x.png",
+    ("query --cube "
+    "c.uplift --input "
+    "colours.csv"), ("query --cube c.uplift --input "
+    "colours.csv --format json"),
+    ("query --cube c.uplift "
+    "--input colours.csv "
+    "--format csv"), ("query --cube c.uplift "
+    "--input colours.csv "
+    "--plot x.png"),
     "query {}", "query --cube {} 0 0 0", "query --input {}", "{}", "--{}", "query --{}", "query 0 0 0 --wavelengths {}",
     "query 0 0 0 --input-space {}", "query 0 0 0 --format {}", "query 0 0 0 --plot {}/x.png", "atlas a.txt",
     "atlas a.txt --format json", "atlas a.txt --format csv", "atlas a.csv", "atlas a.csv --format csv",
     "atlas a.csv -o b.csv", "atlas a.csv a.txt", "atlas {}", "atlas a.txt --space {}", "atlas a.txt --observer {}",
-    "mix 1:{} --cube c.uplift", "mix 1:{} 1:#ff0000 --atlas a.csv", "mix {}:#ff0000 --ground {}",
-    "wavelengths --count 3 --atlas a.csv", "wavelengths --count 3 --light {}", "palette p.toml",
-    "palette p.toml --format json", "palette p.toml --plot m.png --plot-spectra s.png", "palette p.toml --html p.html",
-    "palette p.toml --html p.html --label {}", "chart --recommend --tolerance 1 --from chart.csv",
+    "mix 1:{} --cube c.uplift", ("mix 1:{} 1:#ff0000 "
+    "--atlas a.csv"), "mix {}:#ff0000 --ground {}",
+    ("wavelengths --count 3 "
+    "--atlas a.csv"), ("wavelengths --count 3 "
+    "--light {}"), "palette p.toml",
+    "palette p.toml --format json", ("palette p.toml "
+    "--plot m.png "
+    "--plot-spectra s.png"), "palette p.toml --html p.html",
+    ("palette p.toml --html "
+    "p.html --label {}"), "chart --recommend --tolerance 1 --from chart.csv",
     "chart --recommend --light {}", "export c.uplift -o x.csv", "export c.uplift -o x.h", "export c.uplift -o x.npz",
     "report c.uplift --format json", "check c.uplift{}", "plan {}", "plan p.toml", "build --plan p.toml",
     "build --model {} --dim 4", "build --space {} --dim 4", "build --atlas {} --dim 4", "texture {} -o x.exr",
@@ -72,7 +88,9 @@ def check_csv(text: str) -> None:
 
 
 def _check(result: Result) -> None:
-    """Check what a run printed. Raises `UpliftError` for rejected input, ValueError for what it must not print."""
+    """Check what a run printed. Raises `UpliftError` for rejected input, ValueError for
+    what it must not print.
+    """
     if any(
         printable(line) != line
         for line in (result.stdout + "\n" + result.stderr).split("\n")

@@ -1,4 +1,6 @@
-"""Random mutation of seeds, and runs of a target with many inputs under limits of time and memory."""
+"""Random mutation of seeds, and runs of a target with many inputs under limits of time
+and memory.
+"""
 
 import functools
 import re
@@ -23,7 +25,9 @@ ROOT = Path(__file__).parents[2]
 SECONDS = 5.0
 """Limit of processor time per input. Valid inputs take milliseconds."""
 MEGABYTES = 2048
-"""Limit of address space in addition to that of the process at the start; the libraries of images take half of it."""
+"""Limit of address space in addition to that of the process at the start; the libraries
+of images take half of it.
+"""
 Random = np.random.Generator
 Seeds = tuple[bytes, ...]
 
@@ -45,7 +49,9 @@ NUMBER = re.compile(rb"[0-9.+-]+(?:[eE][0-9+-]+)?")
 
 @dataclass(frozen=True)
 class Target:
-    """A reader under test: ``generate`` writes an input, ``use`` reads it and may raise `UpliftError` alone."""
+    """A reader under test: ``generate`` writes an input, ``use`` reads it and may raise
+    `UpliftError` alone.
+    """
 
     name: str
     generate: Callable[[Random, Path], object]
@@ -53,7 +59,9 @@ class Target:
 
 
 class HangError(BaseException):
-    """An input exceeded its time. Not an `Exception`, so that no handler of the target catches it."""
+    """An input exceeded its time. Not an `Exception`, so that no handler of the target
+    catches it.
+    """
 
 
 def choose(random: Random, items: Sequence[Any]) -> Any:
@@ -67,7 +75,9 @@ def _words(seeds: Seeds) -> Seeds:
 
 
 def mutate(content: bytes, random: Random, seeds: Seeds) -> bytes:
-    """Apply one to eight random changes to ``content``, with words from the ``seeds`` of the format."""
+    """Apply one to eight random changes to ``content``, with words from the ``seeds``
+    of the format.
+    """
     words = _words(seeds)
     for _ in range(int(random.integers(1, 9))):
         first = int(random.integers(len(content) + 1))
@@ -122,9 +132,11 @@ def mutated(
 def fuzz(
     target: Target, seed: int, inputs: range, folder: Path, kept: Path
 ) -> Counter[str]:
-    """Run a target with numbered inputs, written to ``folder``; copy the first of each kind of failure to ``kept``.
+    """Run a target with numbered inputs, written to ``folder``; copy the first of each
+    kind of failure to ``kept``.
 
-    Returns the numbers of inputs that were ``accepted`` and ``rejected``, and of each kind of failure.
+    Returns the numbers of inputs that were ``accepted`` and ``rejected``, and of each
+    kind of failure.
     """
 
     def interrupt(number: int, frame: FrameType | None) -> None:
@@ -165,7 +177,10 @@ def _outcome(target: Target, path: Path) -> str:
         raise
     except BaseException as error:
         frame = traceback.extract_tb(error.__traceback__)[-1]
-        return f"{type(error).__name__} in {Path(frame.filename).name}, {frame.name}: {str(error)[:80]}"
+        return (
+            f"{type(error).__name__} in {Path(frame.filename).name}, {frame.name}: "
+            f"{str(error)[:80]}"
+        )
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
     return "accepted"

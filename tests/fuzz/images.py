@@ -1,7 +1,9 @@
-"""Images of random formats, statements, alpha and depths: ``python -m tests.fuzz.images FIRST COUNT`` tries seeds.
+"""Images of random formats, statements, alpha and depths: ``python -m tests.fuzz.images
+FIRST COUNT`` tries seeds.
 
-Each is read as lights are, without limits, and as reflectances. The result must be the linear sRGB that colour-science
-computes from the statements, with a warning if one of them cannot be used.
+Each is read as lights are, without limits, and as reflectances. The result must be the
+linear sRGB that colour-science computes from the statements, with a warning if one of
+them cannot be used.
 """
 
 import sys
@@ -35,7 +37,9 @@ Curve = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Space:
-    """A statement that can be used: primaries and white by x, y, and the curve of codes."""
+    """A statement that can be used: primaries and white by x, y, and the curve of
+    codes.
+    """
 
     gamut: str | tuple[float, ...] = "sRGB"
     curve: Curve = colour.models.eotf_sRGB
@@ -63,7 +67,9 @@ def rgb_space(gamut: str | tuple[float, ...]) -> Any:
 
 
 def xyz_to_srgb(xyz: Array, white: Array) -> Array:
-    """Convert XYZ (n, 3), relative to a white of Y = 1, to linear sRGB, adapted by Bradford."""
+    """Convert XYZ (n, 3), relative to a white of Y = 1, to linear sRGB, adapted by
+    Bradford.
+    """
     srgb = colour.RGB_COLOURSPACES["sRGB"]
     from_white, to_white = colour.xy_to_XYZ(white), colour.xy_to_XYZ(srgb.whitepoint)
     adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(
@@ -77,7 +83,9 @@ def xyz_to_srgb(xyz: Array, white: Array) -> Array:
 
 @dataclass
 class Drawn:
-    """An image in a file, and linear sRGB (n, 3) that it states; ``assumed`` if a statement cannot be used."""
+    """An image in a file, and linear sRGB (n, 3) that it states; ``assumed`` if a
+    statement cannot be used.
+    """
 
     path: Path
     text: str
@@ -148,7 +156,9 @@ def power(exponent: float) -> Curve:
 
 
 def first_usable(statements: list[Space | None]) -> tuple[Space, bool]:
-    """Return the first usable statement, else sRGB, and whether one before it cannot be used."""
+    """Return the first usable statement, else sRGB, and whether one before it cannot be
+    used.
+    """
     for index, space in enumerate(statements):
         if space is not None:
             return space, index > 0
@@ -266,7 +276,7 @@ def draw_exr(random: Random, folder: Path) -> Drawn:
     convert = usable.linear_to_srgb
     if kind == "XYZ":
         white = np.array(space.whitepoint)
-        convert = lambda values: xyz_to_srgb(values / luminance, white)
+        convert = lambda values: xyz_to_srgb(values / luminance, white)  # noqa: E731
     text = f"{layer}{kind} {dtype.__name__} {header} alpha {has_alpha}"
     tolerance = 3e-3 if dtype is np.float16 else 1e-3
     return Drawn(path, text, convert(held), convert(divided), assumed, tolerance)
@@ -312,7 +322,9 @@ EXIF_TAGS = {
 def draw_exif(
     random: Random, chance: float, stated: list[Space | None]
 ) -> tuple[Any, Any, str]:
-    """Draw the EXIF tags ColorSpace and interoperability index, by a chance, and add the space that they state."""
+    """Draw the EXIF tags ColorSpace and interoperability index, by a chance, and add
+    the space that they state.
+    """
     if random.random() >= chance:
         return None, None, ""
     name = choose(random, list(EXIF_TAGS))
@@ -407,7 +419,9 @@ DRAW = (
 
 
 def largest_error(found: Array, expected: Array, colours: Array) -> float:
-    """Return the largest difference, relative to the largest component of the ``colours`` if they are above 1."""
+    """Return the largest difference, relative to the largest component of the
+    ``colours`` if they are above 1.
+    """
     scale = np.maximum(1, np.abs(colours).max(axis=1, keepdims=True))
     return float((np.abs(found - expected) / scale).max())
 

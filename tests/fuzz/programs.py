@@ -1,4 +1,6 @@
-"""Programs in C of many cubes: one per kind of cube is compiled, and reads sizes, constants and table at run time."""
+"""Programs in C of many cubes: one per kind of cube is compiled, and reads sizes,
+constants and table at run time.
+"""
 
 import functools
 import re

@@ -1,4 +1,6 @@
-"""Fuzz targets of the readers: seeds of each format, and what is done with a file that is accepted."""
+"""Fuzz targets of the readers: seeds of each format, and what is done with a file that
+is accepted.
+"""
 
 import csv
 import dataclasses
@@ -77,7 +79,9 @@ TABLE_SEEDS = (
 
 
 def use_atlas(path: Path) -> None:
-    """Use the atlas at ``path``. Raises `UpliftError` for invalid files, ValueError for invalid results."""
+    """Use the atlas at ``path``. Raises `UpliftError` for invalid files, ValueError for
+    invalid results.
+    """
     atlas = read_atlas(path)
     values = resample(atlas, np.arange(380.0, 781.0, 5.0)).values
     if not ((values >= 0) & (values <= 1)).all():
@@ -186,7 +190,9 @@ _model = functools.cache(lambda count: standard_model(observer.sensor(), count))
 
 
 def use_palette(path: Path) -> None:
-    """Design the palette. Raises `UpliftError` for invalid files, ValueError for invalid spectra."""
+    """Design the palette. Raises `UpliftError` for invalid files, ValueError for
+    invalid spectra.
+    """
     palette = read_palette(path)
     result = design(palette, _model(palette.count))
     matrix(result)
@@ -296,7 +302,9 @@ CUBES = tuple(_coarse(read(path)) for path in CUBE_FILES)
 
 
 def use_cube(path: Path) -> None:
-    """Query a cube in every mode, summarise it, prepare its rebuild, write it and read it again."""
+    """Query a cube in every mode, summarise it, prepare its rebuild, write it and read
+    it again.
+    """
     cube = load(path)
     for mode in MODES:
         reflectance = cube.reflectance(RGB, WAVELENGTHS, mode)
@@ -388,7 +396,9 @@ def _places(value: Any) -> Iterator[tuple[Any, Any]]:
 def _change_metadata(
     tensors: dict[str, Any], metadata: dict[str, Any], random: Random
 ) -> None:
-    """Replace, remove or add a value anywhere in the metadata, sometimes a nested one."""
+    """Replace, remove or add a value anywhere in the metadata, sometimes a
+    nested one.
+    """
     place, key = choose(random, list(_places(metadata)))
     value, draw = choose(random, VALUES), random.random()
     for _ in range(

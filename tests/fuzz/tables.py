@@ -1,4 +1,5 @@
-"""Tables of known spectra in all combinations of how programs write them: units, scales, orders, separators, marks.
+"""Tables of known spectra in all combinations of how programs write them: units,
+scales, orders, separators, marks.
 
 A reader gives the same spectra, or refuses the table; it never gives other values.
 """
@@ -245,7 +246,9 @@ def describe(writing: Writing) -> str:
 
 
 def check(seed: int, folder: Path) -> str:
-    """Return 'read' for the table of a seed, or the code of the error. Raise `AssertionError` for other values."""
+    """Return 'read' for the table of a seed, or the code of the error. Raise
+    `AssertionError` for other values.
+    """
     generator = np.random.default_rng(seed)
     writing = draw(generator)
     reflectances = spectra(writing, generator)

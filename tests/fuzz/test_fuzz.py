@@ -16,7 +16,10 @@ FINDS = {
         b"\xe2\x80\xa8\n",
     ),
     "atlas text": (
-        b"Entry ID: a\nSampling information\nType : regular\nStart : 400 nm\nIncrement : inf nm\n",
+        (
+            b"Entry ID: a\nSampling information\nType : regular\nStart : 400 "
+            b"nm\nIncrement : inf nm\n"
+        ),
     ),
     "colour table": (b"1e308,0.5,0.2\n", b"9" * 5000 + b"x,0,0\n"),
     "scene file": (

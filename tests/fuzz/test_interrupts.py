@@ -1,4 +1,6 @@
-"""Writers that are killed, and builds at once: the old or a complete new file remains, and cubes are equal."""
+"""Writers that are killed, and builds at once: the old or a complete new file remains,
+and cubes are equal.
+"""
 
 import os
 import shutil

@@ -1,4 +1,6 @@
-"""Cubes built for a scene: the answers of the complete cube to its colours, and errors for all others."""
+"""Cubes built for a scene: the answers of the complete cube to its colours, and errors
+for all others.
+"""
 
 import numpy as np
 import pytest

@@ -1,4 +1,6 @@
-"""Comparison of representations: errors are those of single products, the best filter is found, pictures have all."""
+"""Comparison of representations: errors are those of single products, the best filter
+is found, pictures have all.
+"""
 
 import json
 import re
@@ -156,7 +158,8 @@ def test_written_spectra_have_the_colours_of_the_representation(
     )
     assert (surfaces.names, lamps.names) == (atlas.names, scene.sets[0].lights)
     code = made.encode_surface(scene.surfaces)
-    # A linear code of samples is that of a light too; models are multiplied with a flat one.
+    # A linear code of samples is that of a light too; models are multiplied with a flat
+    # one.
     flat = made.encode_light(np.ones_like(scene.surfaces))
     expected = made.xyz(made.multiply(flat, code) if name[:2] in ("TM", "SG") else code)
     np.testing.assert_allclose(

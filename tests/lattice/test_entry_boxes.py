@@ -146,7 +146,9 @@ def test_the_weight_of_an_entry_outside_is_1_in_its_core_and_0_on_the_faces():
 
 
 def colours_in(data, cell, count=400):
-    """Linear RGB (count, 3) in a cell, some on its faces and corners, some at entries in it."""
+    """Linear RGB (count, 3) in a cell, some on its faces and corners, some at entries
+    in it.
+    """
     random = np.random.default_rng(cell)
     share = random.random((count, 3))
     share[: count // 2] = np.clip(
@@ -160,7 +162,9 @@ def colours_in(data, cell, count=400):
 
 
 def missing(data, required):
-    """Count colours that are answered from nodes other than those that ``required`` returns for their cell."""
+    """Count colours that are answered from nodes other than those that ``required``
+    returns for their cell.
+    """
     count = 0
     for cell in np.unique(data.entry_boxes.cells[0])[::3]:
         mask = np.zeros(data.lattice.size, dtype=bool)

@@ -53,7 +53,9 @@ def test_lamps_of_one_colour_are_left_out_with_a_warning():
 
 
 def test_expected_errors_are_numbers_where_sodium_has_no_z():
-    """The 10° observer does not respond to 590 nm by Z, so the white of sodium light has none."""
+    """The 10° observer does not respond to 590 nm by Z, so the white of sodium light
+    has none.
+    """
     found = build_emission(observer="CIE 1964 10 Degree Standard Observer", **SMALL)
     assert np.isfinite(found.data.error).all()
 
@@ -87,11 +89,16 @@ def test_a_lamp_without_power_is_refused(tmp_path):
 
 
 TM27 = (
-    '<IESTM2714 xmlns="iestm2714"><SpectralDistribution><SpectralQuantity>{}</SpectralQuantity>'
-    '<SpectralData wavelength="400">0.1</SpectralData><SpectralData wavelength="700">0.4</SpectralData>'
+    "<IESTM2714 "
+    'xmlns="iestm2714"><SpectralDistribution><SpectralQuantity>{}</SpectralQuantity>'
+    '<SpectralData wavelength="400">0.1</SpectralData><SpectralData '
+    'wavelength="700">0.4</SpectralData>'
     "</SpectralDistribution></IESTM2714>"
 )
-JCAMP = "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS={}\n##XYPOINTS=(XY..XY)\n400, 0.1\n700, 0.4\n##END=\n"
+JCAMP = (
+    "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS={}\n##XYPOINTS=(XY..XY)\n400, 0.1\n700, "
+    "0.4\n##END=\n"
+)
 
 
 @pytest.mark.parametrize("quantity", ["flux", "irradiance", "Relative"])

@@ -1,4 +1,6 @@
-"""Measured lamps in place of the names of illuminants: sampling, names in results, and files that are refused."""
+"""Measured lamps in place of the names of illuminants: sampling, names in results, and
+files that are refused.
+"""
 
 import json
 

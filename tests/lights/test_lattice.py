@@ -1,4 +1,6 @@
-"""The lattice over chromaticity: weights give back the chromaticity, single wavelengths are on its rim."""
+"""The lattice over chromaticity: weights give back the chromaticity, single wavelengths
+are on its rim.
+"""
 
 import numpy as np
 import pytest

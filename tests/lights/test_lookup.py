@@ -1,4 +1,6 @@
-"""Queries of an emission table: exact colour, no negative power, lamps, and colours that no light has."""
+"""Queries of an emission table: exact colour, no negative power, lamps, and colours
+that no light has.
+"""
 
 import numpy as np
 import pytest
@@ -16,7 +18,9 @@ RADIOMETRY = TABLE.data.cmfs / TABLE.data.cmfs[:, 1].sum()
 
 
 def random_lights(count, seed=0):
-    """XYZ of random mixtures of few wavelengths, which cover the spectral locus, of many brightnesses."""
+    """XYZ of random mixtures of few wavelengths, which cover the spectral locus, of
+    many brightnesses.
+    """
     rng = np.random.default_rng(seed)
     power = rng.random((count, 81)) ** 40 * 10.0 ** rng.uniform(-4, 5, (count, 1))
     return power @ RADIOMETRY
@@ -93,7 +97,9 @@ def test_lamps_are_exact_at_their_colours():
 
 
 def test_single_wavelengths_are_themselves():
-    """At 590 nm, near the lamps of low pressure sodium, a mixture of yellow and red has nearly the same colour."""
+    """At 590 nm, near the lamps of low pressure sodium, a mixture of yellow and red has
+    nearly the same colour.
+    """
     rows = np.searchsorted(TABLE.wavelengths, [470, 530, 590, 600])
     np.testing.assert_allclose(
         TABLE.spectrum_of_xyz(RADIOMETRY[rows]), np.eye(81)[rows], atol=1e-5
@@ -150,7 +156,9 @@ def test_colours_of_no_light_are_errors():
 
 
 def test_contains_agrees_with_mixtures_of_wavelengths():
-    """The realisable colours are those of non-negative powers; the others have a positive distance from them."""
+    """The realisable colours are those of non-negative powers; the others have a
+    positive distance from them.
+    """
     from scipy.optimize import nnls
 
     rng = np.random.default_rng(3)
@@ -196,7 +204,9 @@ def test_bad_input_is_refused(code, kind, rgb, options):
 
 
 def test_discs_are_those_of_a_comparison_with_all():
-    """Discs in and across bins: a row of small ones, which share a bin, a large one, and one at the edge."""
+    """Discs in and across bins: a row of small ones, which share a bin, a large one,
+    and one at the edge.
+    """
     uv = np.array(
         [[0.2 + 4e-4 * step, 0.5] for step in range(9)] + [[0.4, 0.3], [0.0, 0.4]]
     )

@@ -1,4 +1,6 @@
-"""Lights expected at chromaticities: exact, positive, near lamps where there are any; entries in discs."""
+"""Lights expected at chromaticities: exact, positive, near lamps where there are any;
+entries in discs.
+"""
 
 import numpy as np
 import pytest
@@ -51,7 +53,9 @@ def test_left_out_lamps_are_predicted_better_than_by_smooth_light_and_by_the_nea
 
 
 def test_left_out_predictions_do_not_know_the_lamp(fitted):
-    """A plain kriging of the others gives the same light, before it is moved to the chromaticity."""
+    """A plain kriging of the others gives the same light, before it is moved to the
+    chromaticity.
+    """
     prior, left_out = fitted
     row = LAMPS.names.index("FL11")
     others = np.arange(len(LAMPS)) != row

@@ -1,4 +1,6 @@
-"""Files of emission tables: round trip, damage, and content that is refused although its digest is valid."""
+"""Files of emission tables: round trip, damage, and content that is refused although
+its digest is valid.
+"""
 
 from dataclasses import replace
 
@@ -19,7 +21,9 @@ def data():
 
 
 def forge(data, path, change):
-    """Write ``data`` after ``change(tensors, metadata)``, with the digest of the changed content."""
+    """Write ``data`` after ``change(tensors, metadata)``, with the digest of the
+    changed content.
+    """
     tensors, metadata = table._tensors(data), table._metadata(data)
     change(tensors, metadata)
     container.save((tensors, metadata), path, table.KIND, lambda _: None, force=True)

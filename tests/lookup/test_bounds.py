@@ -25,7 +25,9 @@ def test_the_answer_lies_inside(small_cube):
 
 
 def test_entries_are_metamers_of_their_colours(small_cube):
-    """Measured spectra differ from the answers by no more than the largest difference."""
+    """Measured spectra differ from the answers by no more than the largest
+    difference.
+    """
     measured = small_cube.data.atlas.measured
     spectra = measured[:20].astype(float)
     found = bounds(small_cube, small_cube.data.sensor.rgb(spectra), FL11)

@@ -24,7 +24,9 @@ def sample(small_cube):
 
 
 def colours(data, count=3000):
-    """Random colours, all nodes, and colours in, around and on the faces of entry boxes."""
+    """Random colours, all nodes, and colours in, around and on the faces of entry
+    boxes.
+    """
     rng = np.random.default_rng(5)
     low, high = data.entry_boxes.faces
     boxes = [

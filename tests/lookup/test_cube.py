@@ -1,4 +1,6 @@
-"""Queries of a cube: shapes, types of input, blocks and threads, 8-bit codes, files by name, and invalid arguments."""
+"""Queries of a cube: shapes, types of input, blocks and threads, 8-bit codes, files by
+name, and invalid arguments.
+"""
 
 import os
 

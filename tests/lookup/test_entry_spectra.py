@@ -1,4 +1,6 @@
-"""Entries with more coefficients than the nodes, in every way of looking a colour up."""
+"""Entries with more coefficients than the nodes, in every way of looking a
+colour up.
+"""
 
 import numpy as np
 import pytest

@@ -97,7 +97,9 @@ def test_answers_are_continuous_across_the_boundary_of_the_solid(wide, mode):
 
 
 def test_weighted_coefficients_are_continuous_across_cells():
-    """They miss their colours, so that a move in some cells alone would be a step at their faces."""
+    """They miss their colours, so that a move in some cells alone would be a step at
+    their faces.
+    """
     cube = uplift.load("acescg")
     assert 0 < cube.data.inexact_cells.mean() < 0.9
     middle = np.random.default_rng(5).uniform(0, 1, (500, 3))

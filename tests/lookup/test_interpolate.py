@@ -1,4 +1,6 @@
-"""The four modes of interpolation: exact at nodes, near the colour elsewhere, continuous between cells."""
+"""The four modes of interpolation: exact at nodes, near the colour elsewhere,
+continuous between cells.
+"""
 
 import numpy as np
 import pytest

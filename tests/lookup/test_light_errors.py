@@ -1,4 +1,6 @@
-"""Standard errors under any light: calibrated on materials that the cube does not know."""
+"""Standard errors under any light: calibrated on materials that the cube
+does not know.
+"""
 
 import dataclasses
 import warnings
@@ -26,7 +28,9 @@ SPLITS = 2
 
 @pytest.fixture(scope="module", params=["rawtoaces", "cie2017"])
 def halves(request, sensor):
-    """Cubes of halves of an atlas, and the measured reflectances of the other halves, in both directions."""
+    """Cubes of halves of an atlas, and the measured reflectances of the other halves,
+    in both directions.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         atlas = read_atlas(ATLASES / f"{request.param}.txt")

@@ -1,4 +1,6 @@
-"""Results of detailed queries, by RGB and by XYZ inside and outside the space of the cube."""
+"""Results of detailed queries, by RGB and by XYZ inside and outside the space of the
+cube.
+"""
 
 from dataclasses import replace
 
@@ -29,7 +31,9 @@ def results_of(cube, *rgb, **options):
 
 
 def xyz(cube, reflectance):
-    """XYZ by the integration of colour-science, with Y = 1 for the perfect reflector."""
+    """XYZ by the integration of colour-science, with Y = 1 for the perfect
+    reflector.
+    """
     cmfs = (
         colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"]
         .copy()
@@ -111,7 +115,9 @@ def test_invalid_queries_are_refused(small_cube):
 
 
 def colours_outside(cube, count=200):
-    """Return XYZ of smooth band-pass and band-stop reflectances that lie outside the space of a cube."""
+    """Return XYZ of smooth band-pass and band-stop reflectances that lie outside the
+    space of a cube.
+    """
     sensor, rng = cube.data.sensor, np.random.default_rng(0)
     nm = sensor.wavelengths
     edges, width = (
@@ -233,7 +239,9 @@ def test_other_colours_raise():
 
 
 def test_colours_are_realisable_if_the_solid_contains_them():
-    """Also in cells whose corners are stand-ins that were not fitted, as in cubes of cameras."""
+    """Also in cells whose corners are stand-ins that were not fitted, as in cubes of
+    cameras.
+    """
     cube = uplift.build(dim=6, space="camera", observer="Nikon 5100 (NPL)")
     rgb = np.concatenate(
         [[[0.0051, 0.1433, 0.4522]], np.random.default_rng(8).random((60, 3))]

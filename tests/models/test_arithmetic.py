@@ -1,4 +1,6 @@
-"""The vectorised arc tangent compared with the C library, for all magnitudes; sliced matrix products."""
+"""The vectorised arc tangent compared with the C library, for all magnitudes; sliced
+matrix products.
+"""
 
 import jax
 import jax.numpy as jnp

@@ -1,4 +1,6 @@
-"""Moments and multipliers (docs/mathematics.md, 4), compared with definitions and adaptive integration."""
+"""Moments and multipliers (docs/mathematics.md, 4), compared with definitions and
+adaptive integration.
+"""
 
 import numpy as np
 import pytest
@@ -114,7 +116,9 @@ def test_steps_narrower_than_the_nodes():
 
 
 def test_boxes_survive_a_round_trip():
-    """Spectra of two steps within a hundred thousandth of the phase: unchanged by storage."""
+    """Spectra of two steps within a hundred thousandth of the phase: unchanged by
+    storage.
+    """
     edges = np.random.default_rng(4).uniform(-2.8, -0.3, (50, 2))
     cosine = np.cos(edges)
     # −10⁵ (cos φ − cos φ₁)(cos φ − cos φ₂) as a series of cosines

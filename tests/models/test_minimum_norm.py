@@ -3,7 +3,7 @@
 import jax
 import numpy as np
 
-import uplift.fit.batch  # makes the forward map a pytree
+import uplift.fit.batch  # noqa: F401  (makes the forward map a pytree)
 from uplift.models import Moments
 from uplift.models.minimum_norm import (
     anchored_step,
@@ -38,7 +38,9 @@ def numeric_jacobian(forward, multipliers, target):
 
 
 def test_step_agrees_with_its_formula(sensor):
-    """Δp = M⁻¹Jᵀ(J M⁻¹Jᵀ)⁻¹ r, J by differences and the rest by a dense solver; nothing in the null space."""
+    """Δp = M⁻¹Jᵀ(J M⁻¹Jᵀ)⁻¹ r, J by differences and the rest by a dense solver; nothing
+    in the null space.
+    """
     forward = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
     residuals = forward.residual(POINTS, TARGETS)
     metric = np.linalg.inv(forward.root @ forward.root.T)

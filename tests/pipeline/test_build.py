@@ -162,7 +162,9 @@ def in_order():
 @settings(max_examples=3, phases=[Phase.generate])
 @given(order=st.permutations(range(24)))
 def test_the_order_of_the_atlas_changes_only_the_order_of_its_table(in_order, order):
-    """Nodes are equal bit by bit, except for the row of their entry; the table is equal up to rounding."""
+    """Nodes are equal bit by bit, except for the row of their entry; the table is equal
+    up to rounding.
+    """
     spectra = read_atlas(MACBETH)
     shuffled = quiet_build(
         Atlas(tuple(spectra.entries[row] for row in order)), dim=5

@@ -1,4 +1,6 @@
-"""Looks of files and builds: met exactly, recorded, rebuilt; refused where they contradict or cannot be met."""
+"""Looks of files and builds: met exactly, recorded, rebuilt; refused where they
+contradict or cannot be met.
+"""
 
 import numpy as np
 import pytest
@@ -35,7 +37,9 @@ def bare():
 
 
 def distances(cube, looks):
-    """ΔE00 of the answers to the colours of looks from the wishes, computed from the definition."""
+    """ΔE00 of the answers to the colours of looks from the wishes, computed from the
+    definition.
+    """
     found = []
     for look in looks:
         rgb = (

@@ -1,4 +1,6 @@
-"""Builds with a prior, libraries and families left out: recorded, repeatable; contradictions are errors."""
+"""Builds with a prior, libraries and families left out: recorded, repeatable;
+contradictions are errors.
+"""
 
 import shutil
 

@@ -1,4 +1,6 @@
-"""Cubes of other ranges and steps of wavelengths: entries measured farther, and entries cut short."""
+"""Cubes of other ranges and steps of wavelengths: entries measured farther, and entries
+cut short.
+"""
 
 from pathlib import Path
 
@@ -19,14 +21,18 @@ MEASURED = np.arange(360, 1001, 10.0)
 
 
 def leaf(wavelengths):
-    """Return reflectances that rise steeply in the near infrared, as those of leaves."""
+    """Return reflectances that rise steeply in the near infrared, as those
+    of leaves.
+    """
     visible = 0.08 + 0.1 * np.exp(-(((wavelengths - 550) / 40) ** 2))
     return visible + 0.5 / (1 + np.exp(-(wavelengths - 850) / 20))
 
 
 @pytest.fixture(scope="module")
 def infrared():
-    """Cube to 1000 nm of a leaf, and of the same colours cut short at 700 nm, but brighter."""
+    """Cube to 1000 nm of a leaf, and of the same colours cut short at 700 nm, but
+    brighter.
+    """
     short = np.arange(400, 701, 10.0)
     entries = (
         Entry("leaf", MEASURED, leaf(MEASURED)),

@@ -121,7 +121,9 @@ def test_a_shipped_atlas_of_the_recorded_content_replaces_a_missing_file(
 
 
 def test_the_first_file_of_the_recorded_name_decides(tiny_cube, repository, tmp_path):
-    """The recorded content in a later folder or among the shipped atlases does not hide that a file has changed."""
+    """The recorded content in a later folder or among the shipped atlases does not hide
+    that a file has changed.
+    """
     text = (repository / "atlases" / "macbeth.txt").read_text(encoding="utf-8")
     (tmp_path / "macbeth.txt").write_text(text + "\n", encoding="utf-8")
     path, folder = tmp_path / "cube.uplift", repository / "atlases"

@@ -1,4 +1,6 @@
-"""Every RGB space by name: small cubes are built, stored, read, looked up and exported."""
+"""Every RGB space by name: small cubes are built, stored, read, looked up
+and exported.
+"""
 
 import numpy as np
 import pytest

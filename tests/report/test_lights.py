@@ -1,4 +1,6 @@
-"""Report of an emission table: its numbers, and a page that is complete, self-contained and safe."""
+"""Report of an emission table: its numbers, and a page that is complete, self-contained
+and safe.
+"""
 
 import re
 from dataclasses import replace

@@ -1,4 +1,6 @@
-"""Look page: its numbers; in Chromium a drag changes the spectrum, the RGB stays, and colours are those of Python."""
+"""Look page: its numbers; in Chromium a drag changes the spectrum, the RGB stays, and
+colours are those of Python.
+"""
 
 import json
 import re
@@ -85,7 +87,10 @@ def test_a_page_is_about_one_colour(small_cube):
 
 def drag(tab, light, dx, dy):
     """Drag the point of a light by a part of the width of its plot."""
-    script = f"(box => [box.x + box.width / 2, box.y + box.height / 2])({rect(f'point-{light}')})"
+    script = (
+        "(box => [box.x + box.width / 2, box.y + box.height / "
+        f"2])({rect(f'point-{light}')})"
+    )
     x, y = tab.evaluate(script)
     width = tab.evaluate(f"{rect(f'region-{light}')}.width")
     tab.mouse("mousePressed", x, y)

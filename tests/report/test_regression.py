@@ -1,4 +1,6 @@
-"""Comparison of a stored cube with a rebuilt one: what passes, and that all else fails."""
+"""Comparison of a stored cube with a rebuilt one: what passes, and that all
+else fails.
+"""
 
 import dataclasses
 from pathlib import Path

@@ -1,4 +1,6 @@
-"""Relit colours: laws, a plain counterpart that integrates spectra, and measured atlas entries."""
+"""Relit colours: laws, a plain counterpart that integrates spectra, and measured atlas
+entries.
+"""
 
 import colour
 import numpy as np
@@ -17,7 +19,9 @@ LIGHTS = ("D65", "A", "FL11", "HP1")
 
 @pytest.fixture(scope="module")
 def picture(small_cube):
-    """Colours of 70 × 3 pixels: more rows than are computed at once; the last row is white."""
+    """Colours of 70 × 3 pixels: more rows than are computed at once; the last row is
+    white.
+    """
     rgb = np.random.default_rng(7).uniform(0, 1, (70, 3, 3)).astype(np.float32)
     rgb[-1] = 1
     return rgb

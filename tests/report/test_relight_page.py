@@ -110,12 +110,14 @@ def test_maps_of_a_page_have_one_scale(relit, page):
 def test_the_line_moves_by_key_and_by_mouse(tab):
     tab.window(1200, 900)
     tab.evaluate(
-        'document.querySelector(".split").value = 50; document.querySelector(".split").focus()'
+        'document.querySelector(".split").value = 50; '
+        'document.querySelector(".split").focus()'
     )
     tab.key("ArrowRight")
     assert tab.evaluate(SPLIT) == "51%"
     x, y, width, height = tab.evaluate(
-        '(b => [b.x, b.y, b.width, b.height])(document.querySelector(".view").getBoundingClientRect())'
+        "(b => [b.x, b.y, b.width, "
+        'b.height])(document.querySelector(".view").getBoundingClientRect())'
     )
     tab.mouse("mousePressed", x + width / 2, y + height / 2)
     tab.mouse("mouseMoved", x + width / 4, y + height / 2)

@@ -30,7 +30,9 @@ def test_folders_that_cannot_be_made_are_refused(tmp_path):
 
 
 def test_the_still_life_holds_the_colorchecker(sensor):
-    """The patches of the chart in the picture have the colours of the atlas, to half a code."""
+    """The patches of the chart in the picture have the colours of the atlas, to half a
+    code.
+    """
     picture = OpenImageIO.ImageBuf(str(sample_path("still-life.png"))).get_pixels(
         OpenImageIO.FLOAT
     )

@@ -1,4 +1,6 @@
-"""Gaussian quadrature for sampled weights: known rules, an exact oracle, polynomial exactness, undefined orders."""
+"""Gaussian quadrature for sampled weights: known rules, an exact oracle, polynomial
+exactness, undefined orders.
+"""
 
 from fractions import Fraction
 
@@ -17,7 +19,9 @@ BELL = np.exp(-(((POINTS - 560) / 40) ** 2))
 
 
 def _moment_error(rule, points, masses, degree):
-    """Largest error over Legendre polynomials up to ``degree``, relative to the sum of the absolute masses."""
+    """Largest error over Legendre polynomials up to ``degree``, relative to the sum of
+    the absolute masses.
+    """
     middle, half = (points[0] + points[-1]) / 2, (points[-1] - points[0]) / 2
     exact = masses @ legendre.legvander((points - middle) / half, degree)
     result = rule.weights @ legendre.legvander((rule.nodes - middle) / half, degree)
@@ -44,7 +48,9 @@ def test_rule_is_exact_to_degree_2n_minus_1_and_no_further(order):
 
 
 def _exact_nodes(points, masses, order):
-    """Roots of the orthogonal polynomial from its moments, by elimination in fractions."""
+    """Roots of the orthogonal polynomial from its moments, by elimination
+    in fractions.
+    """
     moments = [
         sum(m * Fraction(p) ** k for p, m in zip(points, masses, strict=True))
         for k in range(2 * order)

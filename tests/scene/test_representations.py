@@ -1,4 +1,6 @@
-"""Representations: laws of all of them, and each against direct computations or its paper."""
+"""Representations: laws of all of them, and each against direct computations or its
+paper.
+"""
 
 import numpy as np
 import pytest
@@ -55,7 +57,9 @@ def every(checker):
 
 @pytest.fixture
 def light_powers(checker):
-    """Function of the name of a light that returns its powers (24, 401), one row per patch."""
+    """Function of the name of a light that returns its powers (24, 401), one row per
+    patch.
+    """
 
     def light_powers(name):
         part = next(part for part in checker.sets if name in part.lights)
@@ -74,7 +78,9 @@ NAMES = [
     *("CS5", "CS15", "TM5", "TM17", "SG3", "LM4", "LM16", "HW4", "HW256"),
 ]
 EXACT = [name for name in NAMES if not name.startswith(("LM", "HW", "PF"))]
-"""All but linear models of a scene, random hero wavelengths, and filters that count values past the ends as 0."""
+"""All but linear models of a scene, random hero wavelengths, and filters that count
+values past the ends as 0.
+"""
 
 
 @pytest.mark.parametrize("name", EXACT)
@@ -146,7 +152,9 @@ SOME = [
 
 
 def reference_conversion(taps, up, down, count, spectrum):
-    """Conversion as in the listing of the thesis: insert zeros, filter, keep every M-th sample."""
+    """Conversion as in the listing of the thesis: insert zeros, filter, keep every M-th
+    sample.
+    """
     dense = np.zeros((len(spectrum) - 1) * up + 1)
     dense[::up] = spectrum
     smoothed = np.convolve(dense, taps * up, mode="full")[len(taps) // 2 :]

@@ -1,4 +1,6 @@
-"""Wavelengths on the ColorChecker: setups, the methods against references and each other, and invalid input."""
+"""Wavelengths on the ColorChecker: setups, the methods against references and each
+other, and invalid input.
+"""
 
 import colour
 import numpy as np

@@ -1,4 +1,6 @@
-"""Pages in Chromium: width, accessibility, schemes of colour; their own script works, no other one runs."""
+"""Pages in Chromium: width, accessibility, schemes of colour; their own script works,
+no other one runs.
+"""
 
 import pytest
 
@@ -66,12 +68,16 @@ def test_grey_surround_replaces_the_dark_scheme(tab, tmp_path):
 
 INTERACTIVE = "viz/templates/interactive.html.j2"
 ATTACK = Markup(
-    "<script>document.title = 'attacked'</script><b onclick='document.title = \"attacked\"'>x</b>"
+    "<script>document.title = 'attacked'</script><b onclick='document.title = "
+    '"attacked"\'>x</b>'
 )
 
 
 def interactive(**values):
-    circle = "<svg viewBox='0 0 9 9'><g id='marker-0-0'><circle r='3' cx='4' cy='4'/></g></svg>"
+    circle = (
+        "<svg viewBox='0 0 9 9'><g id='marker-0-0'><circle r='3' cx='4' "
+        "cy='4'/></g></svg>"
+    )
     tooltips = [{"title": "a point", "family": "one", "lines": [("", "1 ns")]}]
     page = {
         "title": "A page",

@@ -1,4 +1,6 @@
-"""Atlases of measured reflectances: readers of many formats, writers of two, and resampling."""
+"""Atlases of measured reflectances: readers of many formats, writers of two, and
+resampling.
+"""
 
 from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source, merge
 from uplift.atlas.formats import FORMATS, Format

@@ -1,4 +1,6 @@
-"""Atlases and their entries: the result of every reader and the input of every writer."""
+"""Atlases and their entries: the result of every reader and the input of
+every writer.
+"""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
@@ -13,16 +15,22 @@ from uplift.common.errors import UpliftWarning, unknown_name
 from uplift.common.text import listed, pluralise
 
 VISIBLE = (400.0, 700.0)
-"""Range in nm that every entry must cover. Wavelengths outside have little effect on colour."""
+"""Range in nm that every entry must cover. Wavelengths outside have little effect on
+colour.
+"""
 
 USED = (380.0, 780.0)
 """Range in nm that a cube samples by default."""
 
 LOWEST, HIGHEST = -0.05, 2.0
-"""Limits of reflectance. Noise is slightly below 0, fluorescent whites are above 1; other values have a wrong scale."""
+"""Limits of reflectance. Noise is slightly below 0, fluorescent whites are above 1;
+other values have a wrong scale.
+"""
 
 LONGEST = 1e6
-"""Largest wavelength in nm, a millimetre. Larger values would overflow in interpolation."""
+"""Largest wavelength in nm, a millimetre. Larger values would overflow in
+interpolation.
+"""
 
 SLACK = 1e-6
 """Tolerance in nm for the ends of a range, as start + n × increment is rounded."""
@@ -33,7 +41,9 @@ ASSUMED = ", assumed: "
 MAX_NAME = 1000
 """Characters of a name."""
 NOTEBOOK = "uplift.viz.notebook"
-"""Module of the HTML table. It lies above this one, so it is imported by name, when a notebook shows an atlas."""
+"""Module of the HTML table. It lies above this one, so it is imported by name, when a
+notebook shows an atlas.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +57,8 @@ class Entry:
     wavelengths : array_like, shape (N,)
         Wavelengths in nm: positive, ascending, covering at least 400–700 nm.
     values : array_like, shape (N,)
-        Reflectance in units of 1 as measured: noise slightly below 0 or above 1 is allowed.
+        Reflectance in units of 1 as measured: noise slightly below 0 or above 1 is
+        allowed.
     description, additional_description, device, measured_by, date : str
         Statements of the archive about the measurement.
     path : str, optional
@@ -94,7 +105,10 @@ class Entry:
 
     def __repr__(self) -> str:
         first, last = self.wavelengths[[0, -1]]
-        return f"Entry({self.name!r}, {pluralise(len(self.values), 'sample')}, {first:g}–{last:g} nm)"
+        return (
+            f"Entry({self.name!r}, {pluralise(len(self.values), 'sample')}, "
+            f"{first:g}–{last:g} nm)"
+        )
 
     def _repr_html_(self) -> str:
         return Atlas((self,))._repr_html_()
@@ -129,7 +143,9 @@ class SkippedEntry:
 
 
 def skipped_warning(skipped: Sequence[SkippedEntry], *, code: str) -> UpliftWarning:
-    """Create one warning for all skipped entries, with the location and the reason of the first one."""
+    """Create one warning for all skipped entries, with the location and the reason of
+    the first one.
+    """
     first, *others = skipped
     problem = f"skipped: {first.reason}"
     if others:
@@ -168,7 +184,8 @@ class Source:
     header : Header
         Statements of the file about itself.
     format : str
-        Name of the format that was recognised; empty for spectra that come from elsewhere.
+        Name of the format that was recognised; empty for spectra that come from
+        elsewhere.
     measured : {"auto", "percent", "fraction"}
         Scale of the values that the caller gave.
     notes : tuple of str
@@ -210,7 +227,8 @@ class Source:
 class Atlas:
     """A sequence of entries with unique names.
 
-    Iteration yields entries. An index is a name, a position, or a slice, which gives an atlas.
+    Iteration yields entries. An index is a name, a position, or a slice, which gives an
+    atlas.
 
     Parameters
     ----------
@@ -240,7 +258,8 @@ class Atlas:
     sources: tuple[Source, ...] = ()
 
     def __post_init__(self) -> None:
-        # The first entry of each name; the second one is refused with the place of the first.
+        # The first entry of each name; the second one is refused with the place of the
+        # first.
         named: dict[str, Entry] = {}
         for entry in self.entries:
             first = named.setdefault(entry.name, entry)
@@ -332,17 +351,25 @@ def merge(parts: Iterable[Atlas]) -> Atlas:
 
 
 def _faults(name: str, wavelengths: Array, values: Array) -> Iterator[tuple[str, str]]:
-    """Yield problems of a name and of samples (N,) in nm and units of 1, with hints. The first one counts."""
+    """Yield problems of a name and of samples (N,) in nm and units of 1, with hints.
+    The first one counts.
+    """
     if name != name.strip() or len(name.splitlines()) != 1 or "\0" in name:
         yield (
             "the name must be one line of text without surrounding blanks",
             "give every entry a unique name",
         )
     if len(name) > MAX_NAME or name != name.encode(errors="ignore").decode():
-        problem = f"the name must have at most {MAX_NAME} characters, all of them valid Unicode"
+        problem = (
+            f"the name must have at most {MAX_NAME} characters, all of them valid "
+            "Unicode"
+        )
         yield problem, "give the entry a shorter name"
     if wavelengths.ndim != 1 or wavelengths.shape != values.shape:
-        problem = f"wavelengths and values must have the same shape (N,), got {wavelengths.shape} and {values.shape}"
+        problem = (
+            "wavelengths and values must have the same shape (N,), got "
+            f"{wavelengths.shape} and {values.shape}"
+        )
         yield problem, "give one wavelength for every value"
     if len(wavelengths) < 2:
         yield (
@@ -356,14 +383,26 @@ def _faults(name: str, wavelengths: Array, values: Array) -> Iterator[tuple[str,
         yield problem, "replace it by the measured value or remove the entry"
     first, last = wavelengths[0], wavelengths[-1]
     if first <= 0 or last > LONGEST:
-        problem = f"wavelengths must be in (0, {LONGEST:g}] nm, got {first if first <= 0 else last:g}"
+        problem = (
+            f"wavelengths must be in (0, {LONGEST:g}] nm, got "
+            f"{first if first <= 0 else last:g}"
+        )
         yield problem, "give wavelengths in nm"
     for i in np.flatnonzero(np.diff(wavelengths) < SLACK):
-        problem = f"wavelengths must ascend, got {wavelengths[i]:g} nm, then {wavelengths[i + 1]:g} nm"
+        problem = (
+            f"wavelengths must ascend, got {wavelengths[i]:g} nm, then "
+            f"{wavelengths[i + 1]:g} nm"
+        )
         yield problem, "sort the samples by wavelength, each wavelength once"
     if first > VISIBLE[0] + SLACK or last < VISIBLE[1] - SLACK:
-        problem = f"an entry must cover {VISIBLE[0]:g}–{VISIBLE[1]:g} nm, got {first:g}–{last:g} nm"
+        problem = (
+            f"an entry must cover {VISIBLE[0]:g}–{VISIBLE[1]:g} nm, got "
+            f"{first:g}–{last:g} nm"
+        )
         yield problem, "add the missing samples and give wavelengths in nm"
     for i in np.flatnonzero((values > HIGHEST) | (values < LOWEST)):
-        problem = f"reflectance must be in [{LOWEST:g}, {HIGHEST:g}], got {values[i]:g} at {wavelengths[i]:g} nm"
+        problem = (
+            f"reflectance must be in [{LOWEST:g}, {HIGHEST:g}], got {values[i]:g} at "
+            f"{wavelengths[i]:g} nm"
+        )
         yield problem, "correct the value, or the scale of the file"

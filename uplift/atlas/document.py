@@ -1,4 +1,6 @@
-"""Files as text with source locations, and parsing steps that all readers share: numbers, scales, units, XML."""
+"""Files as text with source locations, and parsing steps that all readers share:
+numbers, scales, units, XML.
+"""
 
 import hashlib
 import os
@@ -24,7 +26,9 @@ EXPORT = "export the file again, or export a CSV table"
 
 @dataclass(frozen=True)
 class SourceLocation:
-    """Path, line (counted from 1) and entry that an error refers to, as far as they are known."""
+    """Path, line (counted from 1) and entry that an error refers to, as far as they are
+    known.
+    """
 
     path: str | None = None
     line: int | None = None
@@ -67,7 +71,8 @@ class Document:
         Raises `AtlasError` if it is empty, has a NUL character, or is damaged UTF-16.
         """
         data, encoding, hint = self.data, None, "save the atlas as UTF-8 text"
-        # One byte of every ASCII character in UTF-16 is 0: the first one if the order of bytes is big-endian.
+        # One byte of every ASCII character in UTF-16 is 0: the first one if the order
+        # of bytes is big-endian.
         even, odd = data[:UTF_16_START:2], data[1:UTF_16_START:2]
         if data.startswith((b"\xff\xfe", b"\xfe\xff")):
             encoding = "utf-16"
@@ -78,7 +83,8 @@ class Document:
             and (all(even) or all(odd))
         ):
             encoding = "utf-16-le" if any(even) else "utf-16-be"
-        # Every sequence of bytes is valid Latin-1, so this is the last encoding that is tried.
+        # Every sequence of bytes is valid Latin-1, so this is the last encoding that is
+        # tried.
         try:
             text = data.decode(encoding or "utf-8-sig")
         except UnicodeDecodeError:
@@ -107,14 +113,19 @@ class Document:
         return self.text.split("\n")
 
     def check_xml(self) -> None:
-        """Raise `AtlasError` for XML with a document type, too many or too deep elements, or errors of syntax."""
+        """Raise `AtlasError` for XML with a document type, too many or too deep
+        elements, or errors of syntax.
+        """
         depth = count = 0
 
         def start(name: str, attributes: Any) -> None:
             nonlocal depth, count
             depth, count = depth + 1, count + 1
             if depth > MAX_DEPTH or count > MAX_ELEMENTS:
-                problem = f"an XML file must have at most {MAX_ELEMENTS:,} elements, and {MAX_DEPTH} nested ones"
+                problem = (
+                    f"an XML file must have at most {MAX_ELEMENTS:,} elements, and "
+                    f"{MAX_DEPTH} nested ones"
+                )
                 raise self.location.error(problem, EXPORT)
 
         def end(name: str) -> None:
@@ -158,7 +169,9 @@ def read_document(path: StrPath) -> Document:
 
 
 def parse_number(token: str, location: SourceLocation, label: str) -> float:
-    """Parse a number as data files write it; an error names it by ``label``. Raise `AtlasError`."""
+    """Parse a number as data files write it; an error names it by ``label``. Raise
+    `AtlasError`.
+    """
     try:
         return parse_float(token)
     except ValueError:
@@ -171,7 +184,9 @@ def parse_number(token: str, location: SourceLocation, label: str) -> float:
 
 
 def check_scale(scale: float, label: str, location: SourceLocation) -> float:
-    """Return the divisor of the values that a file states. Raise `AtlasError` unless it is positive and finite."""
+    """Return the divisor of the values that a file states. Raise `AtlasError` unless it
+    is positive and finite.
+    """
     if not 0 < scale < float("inf"):
         problem = f"{label} must be positive and finite, got {scale:g}"
         raise location.error(problem, "write 100 for percent, 1 for values in [0, 1]")
@@ -179,16 +194,23 @@ def check_scale(scale: float, label: str, location: SourceLocation) -> float:
 
 
 def stated_unit(text: str, location: SourceLocation) -> float:
-    """Return the unit of wavelengths, see `find_unit`. Raise `AtlasError` for an unknown one."""
+    """Return the unit of wavelengths, see `find_unit`. Raise `AtlasError` for an
+    unknown one.
+    """
     unit = find_unit(text)
     if unit is None:
-        problem = f"wavelengths must be in nanometers, micrometers or 1/cm, got '{truncate(text)}'"
+        problem = (
+            "wavelengths must be in nanometers, micrometers or 1/cm, got "
+            f"'{truncate(text)}'"
+        )
         raise location.error(problem, "export the file with wavelengths in nm")
     return unit
 
 
 def one_line(text: object) -> str:
-    """Return a text, empty for None, with every run of blanks and line breaks as one blank."""
+    """Return a text, empty for None, with every run of blanks and line breaks as one
+    blank.
+    """
     return "" if text is None else " ".join(str(text).replace("\0", " ").split())
 
 

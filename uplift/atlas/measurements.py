@@ -1,4 +1,6 @@
-"""Spectra as the reader of a format returns them, and their conversion to an `Atlas`: order, scale and quantity."""
+"""Spectra as the reader of a format returns them, and their conversion to an `Atlas`:
+order, scale and quantity.
+"""
 
 import contextlib
 import warnings
@@ -32,7 +34,9 @@ Missing = Literal["refuse", "interpolate", "skip"]
 MISSING: tuple[Missing, ...] = ("refuse", "interpolate", "skip")
 """What becomes of an entry with a missing value."""
 MEASURED: tuple[Measured, ...] = ("auto", "percent", "fraction")
-"""Scales of measured values; ``auto`` takes the scale that the file states or, failing that, decides by the values."""
+"""Scales of measured values; ``auto`` takes the scale that the file states or, failing
+that, decides by the values.
+"""
 COARSE = 20.0
 """Largest step in nm at which neighbours are alike."""
 ODD = 10.0
@@ -65,7 +69,9 @@ def to_atlas(
     measured: str = "auto",
     missing: str = "refuse",
 ) -> Atlas:
-    """Make entries of the reflectances of a file: in order of wavelength, without missing values, in units of 1."""
+    """Make entries of the reflectances of a file: in order of wavelength, without
+    missing values, in units of 1.
+    """
     reflectances, skipped = _reflectances(document, measurements)
     samples = [
         in_order(spectrum, document.location, missing) for spectrum in reflectances
@@ -81,7 +87,8 @@ def to_atlas(
         ]
     else:  # the error of an entry states what is wrong
         kept = samples
-    # One scale for all spectra: a dark one alone does not show whether it is in percent.
+    # One scale for all spectra: a dark one alone does not show whether it is in
+    # percent.
     scale, scale_note = find_scale(
         document.location, measurements.scales, kept, measured
     )
@@ -108,7 +115,9 @@ def to_atlas(
 def _reflectances(
     document: Document, measurements: Measurements
 ) -> tuple[list[Spectrum], list[SkippedEntry]]:
-    """Separate reflectances from other spectra. Raise `AtlasError` if none may be a reflectance."""
+    """Separate reflectances from other spectra. Raise `AtlasError` if none may be a
+    reflectance.
+    """
     kept, skipped = list[Spectrum](), list[SkippedEntry]()
     refusals = list[AtlasError]()
     for spectrum in measurements.spectra:
@@ -129,7 +138,9 @@ def _reflectances(
 
 
 def _entry(samples: Samples, scale: float, document: Document) -> Entry:
-    """Make an entry of samples on a scale. Invalid ones outside the range that is used are cut off."""
+    """Make an entry of samples on a scale. Invalid ones outside the range that is used
+    are cut off.
+    """
     spectrum, nm, scaled = samples.spectrum, samples.nm, samples.values / scale
     location = document.location.at(spectrum.line, spectrum.name)
     outside = (scaled > HIGHEST) | (scaled < LOWEST)
@@ -166,7 +177,10 @@ def warn_of_odd(entries: Sequence[Entry]) -> None:
             )[:1]
             + 1
         ):
-            problem = f"{entry.values[at]:g} at {entry.wavelengths[at]:g} nm is far from both of its neighbours"
+            problem = (
+                f"{entry.values[at]:g} at {entry.wavelengths[at]:g} nm is far from "
+                "both of its neighbours"
+            )
             warning = UpliftWarning(
                 problem,
                 code="odd-value",
@@ -185,16 +199,24 @@ def not_used_note(labels: Iterable[str]) -> tuple[str, ...]:
 
 def wrong_quantity(quantity: Quantity, location: SourceLocation) -> AtlasError:
     """Create the error for values that are not reflectances."""
-    hint = "measure the reflectance, or correct the statement if it is wrong: a cube holds reflectances"
+    hint = (
+        "measure the reflectance, or correct the statement if it is wrong: a cube "
+        "holds reflectances"
+    )
     if quantity.of_light:
         hint = "it is read by read_lamps(): an atlas holds reflectances"
-    problem = f"the file states {quantity.name} ('{truncate(quantity.text)}'), not reflectance"
+    problem = (
+        f"the file states {quantity.name} ('{truncate(quantity.text)}'), not "
+        "reflectance"
+    )
     return location.error(problem, hint, code="not-reflectance")
 
 
 @contextlib.contextmanager
 def parsed_by(library: str, kind: str, document: Document) -> Iterator[None]:
-    """Import and run another library's reader; its exceptions, which a damaged file may cause, become `AtlasError`."""
+    """Import and run another library's reader; its exceptions, which a damaged file may
+    cause, become `AtlasError`.
+    """
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         try:

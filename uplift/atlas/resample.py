@@ -38,7 +38,10 @@ class Clip:
     wavelength: float
 
     def __str__(self) -> str:
-        return f"{self.value:.6g} at {self.wavelength:g} nm clipped to {min(max(self.value, 0), 1):g}"
+        return (
+            f"{self.value:.6g} at {self.wavelength:g} nm clipped to "
+            f"{min(max(self.value, 0), 1):g}"
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,9 +63,10 @@ class Resampled:
 def on_grid(atlas: Atlas, wavelengths: ArrayLike) -> Array:
     """Resample all entries to a wavelength grid.
 
-    The interpolation is a shape-preserving cubic (PCHIP) without overshoot, with constant extrapolation. An entry that
-    is sampled more finely than a regular grid of at most 20 nm is averaged over bands as wide as the step (CIE 15:2018,
-    ASTM E308), so that the noise of its samples averages out.
+    The interpolation is a shape-preserving cubic (PCHIP) without overshoot, with
+    constant extrapolation. An entry that is sampled more finely than a regular grid of
+    at most 20 nm is averaged over bands as wide as the step (CIE 15:2018, ASTM E308),
+    so that the noise of its samples averages out.
 
     Parameters
     ----------
@@ -102,13 +106,17 @@ def on_grid(atlas: Atlas, wavelengths: ArrayLike) -> Array:
     elif clips:
         names = listed([f"'{clip.name}'" for clip in clips])
         most = max(clips, key=lambda clip: max(-clip.value, clip.value - 1))
-        problem = f"{pluralise(len(clips), 'entry')} clipped to [0, 1]: {names}; '{most.name}' has {most}"
+        problem = (
+            f"{pluralise(len(clips), 'entry')} clipped to [0, 1]: {names}; "
+            f"'{most.name}' has {most}"
+        )
         warnings.warn(UpliftWarning(problem, code="entry-clipped"), stacklevel=2)
     return resampled.values
 
 
 def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
-    """Resample all entries as `on_grid`, and return the clipped entries instead of warning.
+    """Resample all entries as `on_grid`, and return the clipped entries instead of
+    warning.
 
     Parameters
     ----------
@@ -136,7 +144,9 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
 
 
 def _clip(entry: Entry, grid: Array) -> Clip | None:
-    """Return the sample of an entry within the range of a grid that is farthest outside [0, 1]."""
+    """Return the sample of an entry within the range of a grid that is farthest outside
+    [0, 1].
+    """
     # Distance from [0, 1]: x − 1 above, −x below
     excess = np.maximum(entry.values - 1.0, -entry.values)
     excess[(entry.wavelengths < grid.min()) | (entry.wavelengths > grid.max())] = 0
@@ -152,14 +162,18 @@ def _clip(entry: Entry, grid: Array) -> Clip | None:
 
 
 def _step(grid: Array) -> float:
-    """Return the step of a regular grid in nm; 0 for wavelengths that do not sample a spectrum."""
+    """Return the step of a regular grid in nm; 0 for wavelengths that do not sample a
+    spectrum.
+    """
     steps = np.diff(grid)
     is_sampling = len(steps) > 1 and np.ptp(steps) < SLACK and 0 < steps[0] <= WIDEST
     return float(steps[0]) if is_sampling else 0.0
 
 
 def _interpolate(nm: Array, values: Array, grid: Array) -> Array:
-    """Resample values (E, n) at wavelengths (n,) to a grid (N,): averages over its bands if they are finer."""
+    """Resample values (E, n) at wavelengths (n,) to a grid (N,): averages over its
+    bands if they are finer.
+    """
     from scipy.interpolate import (
         PchipInterpolator,
     )  # takes as long to import as a small build
@@ -174,7 +188,9 @@ def _interpolate(nm: Array, values: Array, grid: Array) -> Array:
 
 
 def _integral(curve: Any, ends: Array) -> Array:
-    """Integrate a `PchipInterpolator` of (E, n) from its first wavelength to ends (N,); it is constant outside."""
+    """Integrate a `PchipInterpolator` of (E, n) from its first wavelength to ends (N,);
+    it is constant outside.
+    """
     first, last = curve.x[[0, -1]]
     inside = np.clip(ends, first, last)
     constant = np.where(ends < first, curve(first)[:, None], curve(last)[:, None])

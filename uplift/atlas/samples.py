@@ -1,4 +1,6 @@
-"""One spectrum of a file: its samples in order of wavelength, without missing values."""
+"""One spectrum of a file: its samples in order of wavelength, without
+missing values.
+"""
 
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, replace
@@ -25,7 +27,8 @@ class Spectrum:
     """Name of the entry."""
     wavelengths: Sequence[float] | Array
     values: Sequence[float] | Array
-    """(N,) Wavelengths in nm, ascending or descending, and values in units of the file."""
+    """(N,) Wavelengths in nm, ascending or descending, and values in units of the file.
+    """
     _: KW_ONLY
     line: int | None = None
     """First line of the spectrum in the file."""
@@ -38,7 +41,9 @@ class Spectrum:
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Samples of a spectrum in ascending order, without missing ones; or why it is skipped."""
+    """Samples of a spectrum in ascending order, without missing ones; or why it is
+    skipped.
+    """
 
     spectrum: Spectrum
     nm: Array
@@ -59,7 +64,9 @@ def is_missing(values: ArrayLike) -> Mask:
 
 
 def in_order(spectrum: Spectrum, location: SourceLocation, missing: str) -> Samples:
-    """Sort the samples of a spectrum by wavelength, and leave out missing values as ``missing`` has it."""
+    """Sort the samples of a spectrum by wavelength, and leave out missing values as
+    ``missing`` has it.
+    """
     nm = np.asarray(spectrum.wavelengths, dtype=float)
     values = np.asarray(spectrum.values, dtype=float)
     notes = list[str]()

@@ -14,11 +14,15 @@ from uplift.common.errors import UpliftWarning
 GIVEN = {"percent": "percent", "fraction": "0 to 1"}
 WHICH_SCALE = "pass measured='percent' or measured='fraction'"
 DARKEST = 1.0
-"""A row of a table in percent whose values are all below this number is darker than any common material."""
+"""A row of a table in percent whose values are all below this number is darker than any
+common material.
+"""
 DIM = 5.0
 """Largest value in percent of dark samples that may be another quantity."""
 JUMP, FLOOR = 30.0, 0.1
-"""Ratio of neighbouring samples that no reflectance has, and the smallest divisor in units of the table."""
+"""Ratio of neighbouring samples that no reflectance has, and the smallest divisor in
+units of the table.
+"""
 
 
 def find_scale(
@@ -27,7 +31,9 @@ def find_scale(
     samples: Sequence[Samples],
     measured: str,
 ) -> tuple[float, str]:
-    """Return the divisor of all values, and a note about it. What is stated wins over what the values suggest."""
+    """Return the divisor of all values, and a note about it. What is stated wins over
+    what the values suggest.
+    """
     if measured != "auto":
         return (
             PERCENT if measured == "percent" else 1.0,
@@ -52,7 +58,10 @@ def find_scale(
             0
         ].divisor, f"scale: 0 to {stated[0].divisor:g}, as stated: '{text}'"
     if HIGHEST < top <= DIM:
-        problem = f"values up to {top:g} may be dark samples in percent, or another quantity, and no scale is stated"
+        problem = (
+            f"values up to {top:g} may be dark samples in percent, or another "
+            "quantity, and no scale is stated"
+        )
         raise location.error(problem, WHICH_SCALE, code="scale-not-stated")
     if top > HIGHEST:
         _check_one_scale(location, used, highest)
@@ -96,18 +105,25 @@ def _check_statements(
 def _check_one_scale(
     location: SourceLocation, samples: Sequence[Samples], highest: Sequence[float]
 ) -> None:
-    """Raise `AtlasError` for a row in units of 1 among rows in percent, or the reverse, or within one row."""
+    """Raise `AtlasError` for a row in units of 1 among rows in percent, or the reverse,
+    or within one row.
+    """
     problem, odd = "", samples[0].spectrum
-    # A row that never exceeds 1, where others are in percent, is in units of 1, or the reverse; the minority is named.
+    # A row that never exceeds 1, where others are in percent, is in units of 1, or the
+    # reverse; the minority is named.
     dark = [row for row, top in enumerate(highest) if top <= DARKEST]
     if dark:
         light = [row for row, top in enumerate(highest) if top > HIGHEST]
         (row, *_), (usual, *_) = sorted((dark, light), key=len)
         odd = samples[row].spectrum
         name = truncate(samples[usual].spectrum.name)
-        problem = f"values up to {highest[row]:g}, where '{name}' has up to {highest[usual]:g}"
+        problem = (
+            f"values up to {highest[row]:g}, where '{name}' has up to "
+            f"{highest[usual]:g}"
+        )
     for each in samples:
-        # Neighbours that differ by more than JUMP, one of them within [0, 1], and the other one in percent.
+        # Neighbours that differ by more than JUMP, one of them within [0, 1], and the
+        # other one in percent.
         low = np.minimum(each.values[:-1], each.values[1:])
         high = np.maximum(each.values[:-1], each.values[1:])
         jumps = np.flatnonzero(
@@ -116,11 +132,17 @@ def _check_one_scale(
         if len(jumps):
             at = jumps[0]
             odd = each.spectrum
-            problem = f"{each.values[at]:g}, then {each.values[at + 1]:g}, at {each.nm[at + 1]:g} nm"
+            problem = (
+                f"{each.values[at]:g}, then {each.values[at + 1]:g}, at "
+                f"{each.nm[at + 1]:g} nm"
+            )
             break
     if problem:
         raise location.at(odd.line, odd.name).error(
             f"mixed scales of percent and 0 to 1: {problem}",
-            "correct the row, or pass measured='percent' or measured='fraction' if it is right",
+            (
+                "correct the row, or pass measured='percent' or measured='fraction' if "
+                "it is right"
+            ),
             code="mixed-scales",
         )

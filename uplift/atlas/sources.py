@@ -1,4 +1,6 @@
-"""Where atlases come from and go to: files, the atlases that are installed with uplift, and other libraries."""
+"""Where atlases come from and go to: files, the atlases that are installed with uplift,
+and other libraries.
+"""
 
 import difflib
 import functools
@@ -40,19 +42,22 @@ FORMS = (
 def read_atlas(
     *paths: StrPath, measured: Measured = "auto", missing: Missing = "refuse"
 ) -> Atlas:
-    """Read atlas files into one atlas. The content of a file determines its format, one of `FORMATS`.
+    """Read atlas files into one atlas. The content of a file determines its format, one
+    of `FORMATS`.
 
     Parameters
     ----------
     *paths : path-like
-        Files, in the order of their entries. Where a file does not exist, a shipped atlas of that name is read, in any
-        case, with or without the suffix ``.txt``; see `shipped_atlases`.
+        Files, in the order of their entries. Where a file does not exist, a shipped
+        atlas of that name is read, in any case, with or without the suffix ``.txt``;
+        see `shipped_atlases`.
     measured : {"auto", "percent", "fraction"}
-        Scale of the values. ``"auto"`` takes the scale that a file states, or else decides by its values. Measurement
-        archives always state their scale.
+        Scale of the values. ``"auto"`` takes the scale that a file states, or else
+        decides by its values. Measurement archives always state their scale.
     missing : {"refuse", "interpolate", "skip"}
-        What becomes of an entry that lacks a value within 380–780 nm: an error, interpolation between its neighbours,
-        or the entry is left out with a warning. Values that are missing elsewhere are always left out.
+        What becomes of an entry that lacks a value within 380–780 nm: an error,
+        interpolation between its neighbours, or the entry is left out with a warning.
+        Values that are missing elsewhere are always left out.
 
     Returns
     -------
@@ -61,16 +66,19 @@ def read_atlas(
     Raises
     ------
     AtlasError
-        A file cannot be read, or two entries share a name. The error has path, line, entry and hint.
+        A file cannot be read, or two entries share a name. The error has path, line,
+        entry and hint.
     UnknownNameError
         The scale, or what becomes of missing values, is unknown.
 
     Warns
     -----
     UpliftWarning
-        Entries were skipped (``entry-skipped``), a table was read as percent (``values-in-percent``), a file in percent
-        has no value above 1 (``dark-percent``), a value is far from its neighbours (``odd-value``), or a shipped atlas
-        replaces a missing file (``shipped-atlas``); the name ``macbeth`` without a suffix gives no warning.
+        Entries were skipped (``entry-skipped``), a table was read as percent
+        (``values-in-percent``), a file in percent has no value above 1
+        (``dark-percent``), a value is far from its neighbours (``odd-value``), or a
+        shipped atlas replaces a missing file (``shipped-atlas``); the name ``macbeth``
+        without a suffix gives no warning.
 
     Examples
     --------
@@ -112,15 +120,16 @@ def write_atlas(
     path : path-like
         The file. With the suffix ``.csv`` it is a table, otherwise atlas text.
     header : Header, optional
-        Statements about the archive, by default those of the sources. A table has no header.
+        Statements about the archive, by default those of the sources. A table has no
+        header.
     force : bool, default True
         Replace an existing file.
 
     Raises
     ------
     OutputError
-        The atlas is empty, the path cannot be written, the file exists and ``force`` is false, or the entries of a
-        table differ in sampling.
+        The atlas is empty, the path cannot be written, the file exists and ``force`` is
+        false, or the entries of a table differ in sampling.
     """
     from uplift.atlas.formats import table
 
@@ -141,14 +150,16 @@ def write_atlas(
 
 
 def from_distributions(distributions: Any) -> Atlas:
-    """Create an atlas from distributions of colour-science, or from objects with the same attributes.
+    """Create an atlas from distributions of colour-science, or from objects with the
+    same attributes.
 
     Parameters
     ----------
     distributions : mapping or object
-        A mapping of names to objects with ``wavelengths`` (N,) in nm and ``values`` (N,) in units of 1; one object with
-        ``labels`` (E,), ``wavelengths`` (N,) and ``values`` (N, E); or one distribution with ``name``,
-        ``wavelengths`` and ``values``.
+        A mapping of names to objects with ``wavelengths`` (N,) in nm and ``values``
+        (N,) in units of 1; one object with ``labels`` (E,), ``wavelengths`` (N,) and
+        ``values`` (N, E); or one distribution with ``name``, ``wavelengths`` and
+        ``values``.
 
     Returns
     -------
@@ -183,7 +194,10 @@ def from_distributions(distributions: Any) -> Atlas:
             entries.append(Entry(str(name), nm, values))
         elif np.ndim(values) != 2 or np.shape(values)[1] != len(labels):
             count = pluralise(len(labels), "label")
-            problem = f"values must have shape (N, {len(labels)}) for {count}, got {np.shape(values)}"
+            problem = (
+                f"values must have shape (N, {len(labels)}) for {count}, got "
+                f"{np.shape(values)}"
+            )
             raise SourceLocation().error(problem, "give one column of values per label")
         else:
             entries += [
@@ -267,7 +281,9 @@ def _shipped_paths() -> dict[str, Path]:
 
 
 def read_named(file: StrPath) -> Document:
-    """Read a file that `find_atlas_file` found. Messages have the name of a shipped atlas, not its path."""
+    """Read a file that `find_atlas_file` found. Messages have the name of a shipped
+    atlas, not its path.
+    """
     document = read_document(file)
     if file not in _shipped_paths().values():
         return document
@@ -275,10 +291,12 @@ def read_named(file: StrPath) -> Document:
 
 
 def find_atlas_file(path: StrPath, folder: StrPath = "") -> StrPath:
-    """Return the file that a path, relative to ``folder``, or the name of a shipped atlas stands for.
+    """Return the file that a path, relative to ``folder``, or the name of a shipped
+    atlas stands for.
 
-    An existing file takes precedence. Otherwise a path without another folder may name a shipped atlas, in any case,
-    with or without the suffix. Warnings refer to the caller of the caller.
+    An existing file takes precedence. Otherwise a path without another folder may name
+    a shipped atlas, in any case, with or without the suffix. Warnings refer to the
+    caller of the caller.
     """
     name, paths = os.fspath(path), _shipped_paths()
     file = os.path.join(folder, path)

@@ -1,4 +1,6 @@
-"""What a text of a file states about its numbers: their scale, their quantity, and the unit of wavelengths."""
+"""What a text of a file states about its numbers: their scale, their quantity, and the
+unit of wavelengths.
+"""
 
 import re
 from collections.abc import Iterable
@@ -70,7 +72,10 @@ _TRANSMITTANCE = _any(
 )
 _ABSORBANCE = _any(r"\W*(?:abs|od)\W*\d*\W*")
 """Short labels of other quantities."""
-_KEYS = "lux|lx|fc|foot-?candles?|cct|tcp|duv|cri|ra|ppfd|tlci|lumens?|lm|colou?r temperature"
+_KEYS = (
+    "lux|lx|fc|foot-?candles?|cct|tcp|duv|cri|ra|ppfd|tlci|lumens?|lm|colou?r "
+    "temperature"
+)
 _PHOTOMETRIC = _any(
     rf"\W*(?:{_KEYS}) ?(?:[([][^)\]]*[)\]])? ?[:=,;]? ?(?:[+-]?[\d.,]+ ?\w*)?\W*"
 )
@@ -85,7 +90,8 @@ _PLAIN = frozenset(
         "factor", "spectral", "data",
     )
 )  # fmt: skip
-"""Words of labels without a name of a sample, next to those that begin with 'reflect'."""
+"""Words of labels without a name of a sample, next to those that begin with 'reflect'.
+"""
 NANOMETRE, MICROMETRE, ANGSTROM, METRE = 1.0, 1e3, 0.1, 1e9
 """Lengths in nm."""
 WAVE_NUMBER = -1e7
@@ -110,7 +116,9 @@ _WAVES = _any(
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity that a file states, in the words of ``text``; of a light, or of a material."""
+    """A quantity that a file states, in the words of ``text``; of a light, or of a
+    material.
+    """
 
     name: str
     text: str
@@ -131,7 +139,8 @@ class Scale:
 
 
 def label_scale(text: str) -> Scale | None:
-    """Return the scale that the label of values states; None if it states none. '50 %' is a part of a name.
+    """Return the scale that the label of values states; None if it states none. '50 %'
+    is a part of a name.
 
     >>> [label_scale(text) for text in ("R% 400", "grey 50%")]
     [Scale(divisor=100.0, text='R% 400'), None]
@@ -150,7 +159,8 @@ def remark_scale(text: str) -> Scale | None:
 
 
 def label_quantity(text: str) -> Quantity | None:
-    """Return the quantity that the label of values states; that of a material wins over that of a light.
+    """Return the quantity that the label of values states; that of a material wins over
+    that of a light.
 
     >>> [found and found.name for found in map(label_quantity, ("%T", "R [%]", "SPD", "ochre"))]
     ['transmittance', 'reflectance', 'spd', None]
@@ -172,14 +182,18 @@ def is_photometric(text: str) -> bool:
 
 
 def name_quantity(text: str) -> Quantity | None:
-    """Return the quantity of a row of deviations of the others, which is not a sample."""
+    """Return the quantity of a row of deviations of the others, which is
+    not a sample.
+    """
     return (
         Quantity("standard deviation", text) if _UNCERTAINTY.fullmatch(text) else None
     )
 
 
 def remark_quantity(texts: Iterable[str]) -> Quantity | None:
-    """Return reflectance if a line of text states it, else the first other quantity that one states."""
+    """Return reflectance if a line of text states it, else the first other quantity
+    that one states.
+    """
     others = list[Quantity]()
     for text in texts:
         if _REFLECTANCE.search(text):
@@ -194,7 +208,9 @@ def remark_quantity(texts: Iterable[str]) -> Quantity | None:
 
 
 def is_plain(text: str) -> bool:
-    """Whether a label of values names no sample, only what is measured: 'R [%]', 'Reflectance', '[counts]'."""
+    """Whether a label of values names no sample, only what is measured: 'R [%]',
+    'Reflectance', '[counts]'.
+    """
     if re.fullmatch(r"[\[(].*[\])]", text):
         return True
     words = [word for word in re.split(r"[\W_]+", text.casefold()) if word]
@@ -203,7 +219,8 @@ def is_plain(text: str) -> bool:
 
 
 def find_unit(text: str) -> float | None:
-    """Return the unit of wavelengths that a text names: a length in nm, or `WAVE_NUMBER`.
+    """Return the unit of wavelengths that a text names: a length in nm, or
+    `WAVE_NUMBER`.
 
     >>> [find_unit(text) for text in ("Wavelength_um", "[nm]", "cm-1", "lambda")]
     [1000.0, 1.0, -10000000.0, None]
@@ -218,7 +235,9 @@ def remark_unit(texts: Iterable[str]) -> float | None:
 
 
 def names_wavelengths(text: str) -> bool:
-    """Whether a label is that of wavelengths, and not of one of them, such as 'nm400'."""
+    """Whether a label is that of wavelengths, and not of one of them, such
+    as 'nm400'.
+    """
     if re.search(r"\d\d", text):
         return False
     return (
@@ -234,7 +253,9 @@ def to_nm(numbers: ArrayLike, unit: float) -> Array:
 
 
 def unit_by_values(numbers: ArrayLike) -> float:
-    """Return the unit of ascending or descending wavelengths without a statement: micrometres and metres are plain."""
+    """Return the unit of ascending or descending wavelengths without a statement:
+    micrometres and metres are plain.
+    """
     numbers = np.asarray(numbers, dtype=float)
     low, high = numbers.min(), numbers.max()
     is_sorted = len(set(np.sign(np.diff(numbers)))) == 1

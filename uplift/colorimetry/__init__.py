@@ -1,4 +1,6 @@
-"""Colorimetry: sensors and lights, RGB spaces and gamuts, the solid of object colours, ΔE and expected errors."""
+"""Colorimetry: sensors and lights, RGB spaces and gamuts, the solid of object colours,
+ΔE and expected errors.
+"""
 
 from uplift.colorimetry.delta_e import (
     delta_e_1976,

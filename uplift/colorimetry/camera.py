@@ -1,4 +1,6 @@
-"""Cameras: measured spectral sensitivities, in place of the colour-matching functions of an observer."""
+"""Cameras: measured spectral sensitivities, in place of the colour-matching functions
+of an observer.
+"""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,15 +17,21 @@ from uplift.common.files import read_bytes
 from uplift.common.text import format_value
 
 CAMERA = "camera"
-"""Name of the RGB space of raw values, balanced so that the perfect reflector is (1, 1, 1)."""
+"""Name of the RGB space of raw values, balanced so that the perfect reflector is (1, 1,
+1).
+"""
 LAYOUT = "give rows of a wavelength in nm and the sensitivities of red, green and blue"
 CAMERA_FILES = (".csv", ".tsv", ".txt", ".json")
 """Suffixes of files of sensitivities, which distinguish them from names."""
 MAX_BYTES = 1_000_000
 CORRELATED = 50.0
-"""Distance in nm over which the correlation of the reflectances that a camera's matrix is fitted to falls to 1/e."""
+"""Distance in nm over which the correlation of the reflectances that a camera's matrix
+is fitted to falls to 1/e.
+"""
 MAX_CONDITION = 1e4
-"""Limit of the condition number of a camera's matrix: one channel is a mixture of the others beyond it."""
+"""Limit of the condition number of a camera's matrix: one channel is a mixture of the
+others beyond it.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +47,9 @@ class Camera:
     wavelengths: Array
     """(N,) Wavelengths in nm, ascending."""
     sensitivities: Array
-    """(N, 3) Sensitivities of red, green and blue, not negative, in any one unit. They are divided by the largest."""
+    """(N, 3) Sensitivities of red, green and blue, not negative, in any one unit. They
+    are divided by the largest.
+    """
 
     def __post_init__(self) -> None:
         wavelengths = np.array(self.wavelengths, dtype=float)
@@ -51,12 +61,18 @@ class Camera:
             or sensitivities.shape != (len(wavelengths), 3)
         ):
             shapes = f"{wavelengths.shape} and {sensitivities.shape}"
-            problem = f"sensitivities need at least 2 wavelengths (N,) and values (N, 3), got {shapes}"
+            problem = (
+                "sensitivities need at least 2 wavelengths (N,) and values (N, 3), "
+                f"got {shapes}"
+            )
         elif not (np.isfinite(wavelengths).all() and np.isfinite(sensitivities).all()):
             problem = "wavelengths and sensitivities must be finite"
         elif (np.diff(wavelengths) <= 0).any():
             first = int((np.diff(wavelengths) <= 0).argmax())
-            problem = f"wavelengths must ascend, got {wavelengths[first]:g} nm, then {wavelengths[first + 1]:g} nm"
+            problem = (
+                f"wavelengths must ascend, got {wavelengths[first]:g} nm, then "
+                f"{wavelengths[first + 1]:g} nm"
+            )
         elif (sensitivities < 0).any():
             problem = f"sensitivities must not be negative, got {sensitivities.min():g}"
         if problem:
@@ -67,7 +83,9 @@ class Camera:
         )
 
     def at(self, wavelengths: ArrayLike) -> Array:
-        """Interpolate the sensitivities (M, 3) linearly at wavelengths (M,) in nm; outside their range they are 0."""
+        """Interpolate the sensitivities (M, 3) linearly at wavelengths (M,) in nm;
+        outside their range they are 0.
+        """
         at = np.asarray(wavelengths, dtype=float)
         channels = (
             np.interp(at, self.wavelengths, channel, left=0, right=0)
@@ -77,11 +95,13 @@ class Camera:
 
 
 def camera_sensor(camera: Camera, standard: Sensor) -> Sensor:
-    """Make the sensor of a camera's raw values, balanced so that the perfect reflector is (1, 1, 1).
+    """Make the sensor of a camera's raw values, balanced so that the perfect reflector
+    is (1, 1, 1).
 
-    Illuminant, observer and wavelengths are those of a standard sensor. The matrix from XYZ, for distances between
-    colours only, is the least-squares fit for smooth reflectances, whose values at two wavelengths correlate as
-    exp(−|Δλ| / `CORRELATED`).
+    Illuminant, observer and wavelengths are those of a standard sensor. The matrix from
+    XYZ, for distances between colours only, is the least-squares fit for smooth
+    reflectances, whose values at two wavelengths correlate as exp(−|Δλ| /
+    `CORRELATED`).
     """
     nm, light = standard.wavelengths, standard.light
     sensitivities = camera.at(nm)
@@ -91,7 +111,8 @@ def camera_sensor(camera: Camera, standard: Sensor) -> Sensor:
             f"every channel must respond to {light.name} within {nm[0]:g}–{nm[-1]:g} nm"
         )
         raise OptionError(problem, hint=LAYOUT)
-    # With C the correlation, B the balanced camera and X the weights of XYZ: M = B C Xᵀ (X C Xᵀ)⁻¹.
+    # With C the correlation, B the balanced camera and X the weights of XYZ: M = B C Xᵀ
+    # (X C Xᵀ)⁻¹.
     balanced = (weights / weights.sum(axis=0)).T
     expected = np.exp(-np.abs(np.subtract.outer(nm, nm)) / CORRELATED) @ light.xyz.T
     matrix = balanced @ expected @ np.linalg.inv(light.xyz @ expected)
@@ -107,12 +128,14 @@ def camera_sensor(camera: Camera, standard: Sensor) -> Sensor:
 
 
 def read_camera(path: StrPath) -> Camera:
-    """Read the sensitivities of a file, whose name without the suffix is that of the camera.
+    """Read the sensitivities of a file, whose name without the suffix is that of the
+    camera.
 
-    Rows of a table have a wavelength in nm, red, green and blue, separated by commas, semicolons, tabs or blanks, with
-    decimal points or commas, in ascending or descending order. Rows before them with fewer than two numbers are
-    headers; lines that begin with ``#`` are comments. JSON (``.json``) is that of rawtoaces. Raises `OptionError` for
-    anything else.
+    Rows of a table have a wavelength in nm, red, green and blue, separated by commas,
+    semicolons, tabs or blanks, with decimal points or commas, in ascending or
+    descending order. Rows before them with fewer than two numbers are headers; lines
+    that begin with ``#`` are comments. JSON (``.json``) is that of rawtoaces. Raises
+    `OptionError` for anything else.
     """
     if is_json(path):
         spectra = read_spectra(path, RGB, OptionError)
@@ -130,7 +153,9 @@ def read_camera(path: StrPath) -> Camera:
 
 
 def _read_table(path: StrPath) -> Array:
-    """Read rows (N, 4) of a wavelength and three sensitivities, in ascending order if they descend."""
+    """Read rows (N, 4) of a wavelength and three sensitivities, in ascending order if
+    they descend.
+    """
     data = read_bytes(path, OptionError, limit=MAX_BYTES, hint=LAYOUT)
     encoding = "utf-16" if data.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig"
     lines = data.decode(encoding, errors="replace").splitlines()

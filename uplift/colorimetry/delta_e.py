@@ -1,7 +1,7 @@
 """CIE L*a*b*, ΔE76 and ΔE00 with numpy alone.
 
-Modules that must not import colour-science use this implementation too. The tests compare it with colour-science and
-the published pairs.
+Modules that must not import colour-science use this implementation too. The tests
+compare it with colour-science and the published pairs.
 """
 
 import numpy as np
@@ -13,7 +13,9 @@ from uplift.common.arrays import Array
 OPPONENTS = np.array([[0.0, 116, 0], [500, -500, 0], [0, 200, -200]])
 """Compressed X, Y, Z to L*a*b*, without the −16 of L*."""
 HUE_TERMS = ((-0.17, 1, -30), (0.24, 2, 0), (0.32, 3, 6), (-0.20, 4, -63))
-"""Weights, multiples and phases in degrees of the cosines of the hue in T (Sharma et al. 2005, eq. 15)."""
+"""Weights, multiples and phases in degrees of the cosines of the hue in T (Sharma et
+al. 2005, eq. 15).
+"""
 
 
 def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
@@ -47,7 +49,9 @@ def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
 
 
 def lab_to_xyz(lab: ArrayLike, white: ArrayLike) -> Array:
-    """Convert CIE 1976 L*a*b* to XYZ, the inverse of `lab`. Shapes: ``lab`` (…, 3), ``white`` (3,) → (…, 3)."""
+    """Convert CIE 1976 L*a*b* to XYZ, the inverse of `lab`. Shapes: ``lab`` (…, 3),
+    ``white`` (3,) → (…, 3).
+    """
     compressed = (
         np.asarray(lab, dtype=float) + np.array([16.0, 0, 0])
     ) @ np.linalg.inv(OPPONENTS.T)
@@ -59,7 +63,9 @@ def lab_to_xyz(lab: ArrayLike, white: ArrayLike) -> Array:
 
 
 def lab_jacobian(xyz: ArrayLike, white: ArrayLike) -> Array:
-    """Compute the derivative of L*a*b* with respect to XYZ. Shapes: ``xyz`` (…, 3), ``white`` (3,) → (…, 3, 3)."""
+    """Compute the derivative of L*a*b* with respect to XYZ. Shapes: ``xyz`` (…, 3),
+    ``white`` (3,) → (…, 3, 3).
+    """
     white = np.asarray(white, dtype=float)
     t = np.asarray(xyz, dtype=float) / white
     root = np.cbrt(
@@ -69,7 +75,9 @@ def lab_jacobian(xyz: ArrayLike, white: ArrayLike) -> Array:
 
 
 def rgb_to_lab(sensor: Sensor, rgb: ArrayLike) -> Array:
-    """Convert linear RGB to CIE L*a*b* under the build illuminant. Shapes: ``rgb`` (…, 3) → (…, 3)."""
+    """Convert linear RGB to CIE L*a*b* under the build illuminant. Shapes: ``rgb`` (…,
+    3) → (…, 3).
+    """
     return lab(sensor.xyz(rgb), sensor.light.white)
 
 
@@ -136,7 +144,8 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
         weight * np.cos(np.radians(k * hue + phase)) for weight, k, phase in HUE_TERMS
     )
     tone = sum(terms, start=np.ones_like(hue))
-    # Differences over S_L, S_C and S_H, and the rotation R_T for blues (eq. 8–11 and 15–22).
+    # Differences over S_L, S_C and S_H, and the rotation R_T for blues (eq. 8–11 and
+    # 15–22).
     delta_l = (l2 - l1) / (
         1 + 0.015 * (light - 50) ** 2 / np.sqrt(20 + (light - 50) ** 2)
     )
@@ -160,10 +169,12 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
 
 
 def delta_e_2000_weights(lab: ArrayLike) -> Array:
-    """Compute the linear map from small changes of L*a*b* to weighted differences of lightness, chroma and hue.
+    """Compute the linear map from small changes of L*a*b* to weighted differences of
+    lightness, chroma and hue.
 
-    The norm of the differences is CIEDE2000, but for its corrections of neutral and of blue colours (Sharma, Wu & Dalal
-    2005, eq. 15–17, 19 and 20, with G and T of a neutral colour). Shapes: ``lab`` (…, 3) → (…, 3, 3).
+    The norm of the differences is CIEDE2000, but for its corrections of neutral and of
+    blue colours (Sharma, Wu & Dalal 2005, eq. 15–17, 19 and 20, with G and T of a
+    neutral colour). Shapes: ``lab`` (…, 3) → (…, 3, 3).
     """
     light, a, b = np.moveaxis(np.asarray(lab, dtype=float), -1, 0)
     chroma, hue = np.hypot(a, b), np.arctan2(b, a)

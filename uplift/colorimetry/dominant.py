@@ -1,4 +1,6 @@
-"""Dominant wavelength and excitation purity of a colour (Fishkin 1983, 3.12; CIE 15:2018, 9.3.2)."""
+"""Dominant wavelength and excitation purity of a colour (Fishkin 1983, 3.12; CIE
+15:2018, 9.3.2).
+"""
 
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +14,9 @@ from uplift.common.arrays import Array
 ACHROMATIC = 1e-5
 """Distance in x, y from white within which a colour has no dominant wavelength."""
 SLACK = 1e-9
-"""Fraction of an edge of the locus by which a line may miss it, so that none passes between two edges."""
+"""Fraction of an edge of the locus by which a line may miss it, so that none passes
+between two edges.
+"""
 
 
 @dataclass(frozen=True)
@@ -20,33 +24,40 @@ class DominantWavelength:
     """Chromaticity relative to white."""
 
     wavelength: float | None
-    """Wavelength in nm at which the line from white through the colour meets the spectrum locus; that of the
-    opposite direction for purples. None for greys and for black."""
+    """Wavelength in nm at which the line from white through the colour meets the
+    spectrum locus; that of the opposite direction for purples. None for greys and for
+    black.
+    """
     complementary: bool
     """Whether the colour is a purple, and the wavelength that of its complement."""
     purity: float
-    """Distance of the colour from white relative to that of the spectrum locus, or of the line of purples. Above 1
-    for colours that no light has."""
+    """Distance of the colour from white relative to that of the spectrum locus, or of
+    the line of purples. Above 1 for colours that no light has.
+    """
 
 
 GREY = DominantWavelength(None, False, 0.0)
 
 
 def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
-    """Find the dominant wavelength and the purity of a colour (3,) relative to the white of a sensor."""
+    """Find the dominant wavelength and the purity of a colour (3,) relative to the
+    white of a sensor.
+    """
     colour = np.asarray(xyz, dtype=float)
     if not colour.sum() > 0:
         return GREY
     responds = sensor.cmfs.any(axis=1)
     wavelengths, locus = sensor.wavelengths[responds], sensor.cmfs[responds]
-    # x, y of white, and from there to the spectrum locus and the line of purples around it (n + 1, 2)
+    # x, y of white, and from there to the spectrum locus and the line of purples around
+    # it (n + 1, 2)
     curves = np.concatenate([sensor.light.white[None], locus, locus[:1]])
     xy = curves[:, :2] / curves.sum(axis=1, keepdims=True)
     white, outline = xy[0], xy[1:] - xy[0]
     direction = colour[:2] / colour.sum() - white
     if np.hypot(*direction) < ACHROMATIC:
         return GREY
-    # The ray white + distance · direction leaves the outline at the locus, or at the line of purples, the last edge.
+    # The ray white + distance · direction leaves the outline at the locus, or at the
+    # line of purples, the last edge.
     edge, fraction, distance = crossing(outline, direction)
     complementary = edge == len(outline) - 2
     if complementary:
@@ -60,10 +71,12 @@ def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
 
 
 def crossing(path: Array, direction: Array) -> tuple[Any, Array, Array]:
-    """Return where rays from the origin leave a path: the edge, the fraction of its length, and the distance.
+    """Return where rays from the origin leave a path: the edge, the fraction of its
+    length, and the distance.
 
-    The distance is in units of the direction, infinite for a ray that meets no edge. Of several edges, as at the end of
-    the locus, it is the farthest. Shapes: ``path`` (n, 2), ``direction`` (..., 2) → (...).
+    The distance is in units of the direction, infinite for a ray that meets no edge. Of
+    several edges, as at the end of the locus, it is the farthest. Shapes: ``path`` (n,
+    2), ``direction`` (..., 2) → (...).
     """
     # t · direction = start + f · edge, solved by Cramer's rule
     (x, y), (u, v) = path[:-1].T, np.diff(path, axis=0).T

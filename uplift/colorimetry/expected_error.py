@@ -1,4 +1,6 @@
-"""Expected errors of predicted colours, learnt from measurements that were left out (docs/mathematics.md, 7)."""
+"""Expected errors of predicted colours, learnt from measurements that were left out
+(docs/mathematics.md, 7).
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,17 +10,25 @@ import numpy as np
 from uplift.common.arrays import Array, blocks, distances
 
 LENGTH = 6.0
-"""Length in CIE L*a*b* of the weights exp(−ΔE / length) of the errors of entries around a colour."""
+"""Length in CIE L*a*b* of the weights exp(−ΔE / length) of the errors of entries around
+a colour.
+"""
 PRIOR_COUNT = 2.0
 """Weight of the mean error of all entries, in entries."""
 COVERAGE = ((0.68, 1.0), (0.95, 2.0))
-"""Shares of materials within the standard error and within the error bound; their radii if errors were normal."""
+"""Shares of materials within the standard error and within the error bound; their radii
+if errors were normal.
+"""
 TRUST = 20.0
-"""Entries at which half of the difference from Student's distribution is applied, on a logarithmic scale."""
+"""Entries at which half of the difference from Student's distribution is applied, on a
+logarithmic scale.
+"""
 MIN_VARIANCE = 0.02
 """Lower limit of the variance assigned to a left-out entry."""
 FAMILIAR = 0.95
-"""Share of the entries that are nearer to another one than colours that are like the atlas may be."""
+"""Share of the entries that are nearer to another one than colours that are like the
+atlas may be.
+"""
 BLOCK_NUMBERS = 1 << 17
 """Numbers of the matrix of weights held at a time."""
 TINY = np.finfo(float).tiny
@@ -28,18 +38,26 @@ MAX_ROWS = 1000
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ExpectedError:
-    """Expected squares of errors around left-out entries, and the radii that errors stay within."""
+    """Expected squares of errors around left-out entries, and the radii that errors
+    stay within.
+    """
 
     locations: Array
     """(E, 3) CIE L*a*b* of the entries."""
     columns: Array
-    """(E, K + 1) Squares or products of the errors of each entry when left out, per unit of variance, and 1."""
+    """(E, K + 1) Squares or products of the errors of each entry when left out, per
+    unit of variance, and 1.
+    """
     floor: Array
     """(K,) Squares or products that remain at the entries themselves."""
     left_out: Array
-    """(E, K) Expected squares or products of each entry when left out, from the other entries."""
+    """(E, K) Expected squares or products of each entry when left out, from the other
+    entries.
+    """
     radii: tuple[float, float]
-    """Radii in roots of the expected squares that 68 % and 95 % of materials stay within; normal errors: 1 and 2."""
+    """Radii in roots of the expected squares that 68 % and 95 % of materials stay
+    within; normal errors: 1 and 2.
+    """
 
     @property
     def scale(self) -> float:
@@ -48,7 +66,9 @@ class ExpectedError:
         return float(np.sqrt((standard**2 + (bound / COVERAGE[1][1]) ** 2) / 2))
 
     def combine(self, sums: Array, nearest: Array) -> Array:
-        """Squares (n, K) less `floor` from weighted sums (n, K + 1) of `columns`, and the largest weights (n,)."""
+        """Squares (n, K) less `floor` from weighted sums (n, K + 1) of `columns`, and
+        the largest weights (n,).
+        """
         # v(x) (Σ k e² + n₀ mean e²) / (Σ k + n₀), with v = 1 − k² of the nearest entry
         spread = (sums[:, :-1] + PRIOR_COUNT * self.columns[:, :-1].mean(axis=0)) / (
             sums[:, -1:] + PRIOR_COUNT
@@ -70,9 +90,11 @@ def expected_error(
     kept: Array,
     products: tuple[Array, Array] | None = None,
 ) -> ExpectedError:
-    """Learn from the ΔE00 (E,) of entries at L*a*b* (E, 3), when left out and when kept.
+    """Learn from the ΔE00 (E,) of entries at L*a*b* (E, 3), when left out and when
+    kept.
 
-    What is learnt are the ``products`` (E, K) of errors, in both cases, by default their squares.
+    What is learnt are the ``products`` (E, K) of errors, in both cases, by default
+    their squares.
     """
     left_out_products, kept_products = products or (
         left_out[:, None] ** 2,
@@ -85,11 +107,13 @@ def expected_error(
         np.fill_diagonal(apart[:, part], np.inf)
         return apart
 
-    # The variance v = 1 − k² that a left-out entry has, by the weight k = exp(−ΔE / length) of the nearest other one
+    # The variance v = 1 − k² that a left-out entry has, by the weight k = exp(−ΔE /
+    # length) of the nearest other one
     nearest = np.concatenate([others(part).min(axis=1) for part in parts])
     variance = np.maximum(1 - np.exp(nearest / -LENGTH) ** 2, MIN_VARIANCE)
     floor, products_floor = (kept**2).mean(), kept_products.mean(axis=0)
-    # Part of each square that the other entries explain, per unit of variance: (e² − f) / v e².
+    # Part of each square that the other entries explain, per unit of variance: (e² − f)
+    # / v e².
     share = np.maximum(1 - floor / np.maximum(left_out**2, TINY), 0) / variance
     columns = np.column_stack(
         [left_out_products * share[:, None], left_out**2 * share, np.ones(len(share))]
@@ -111,7 +135,9 @@ def expected_error(
 
 
 def mahalanobis(covariance: Array, difference: Array) -> Array:
-    """Mahalanobis distances (n,) of differences (n, d) by covariances (n, d, d), which may be singular."""
+    """Mahalanobis distances (n,) of differences (n, d) by covariances (n, d, d), which
+    may be singular.
+    """
     values, axes = np.linalg.eigh(covariance)
     along = np.einsum("nij,ni->nj", axes, difference)
     return np.asarray(np.sqrt((along**2 / np.maximum(values, TINY)).sum(axis=1)))
@@ -120,17 +146,20 @@ def mahalanobis(covariance: Array, difference: Array) -> Array:
 def learn_radii(
     ratio: Array, coverage: Sequence[tuple[float, float]], components: int = 1
 ) -> list[float]:
-    """Learn radii that shares of left-out entries stay within, from their errors over the expected ones (E,).
+    """Learn radii that shares of left-out entries stay within, from their errors over
+    the expected ones (E,).
 
-    ``coverage`` pairs a share with its radius if errors of that many ``components`` were normal. Errors have heavier
-    tails. Quantiles are at k / (E + 1), as in conformal prediction: they hold on average for one more entry.
+    ``coverage`` pairs a share with its radius if errors of that many ``components``
+    were normal. Errors have heavier tails. Quantiles are at k / (E + 1), as in
+    conformal prediction: they hold on average for one more entry.
     """
     count = len(ratio)
     trust = count / (count + TRUST)
     radii = []
     for share, normal in coverage:
-        # Errors in units of a scale that is known from E of them have Student's distribution (Abramowitz & Stegun 1964,
-        # "Handbook of mathematical functions", 26.7.5, to first order in 1 / E).
+        # Errors in units of a scale that is known from E of them have Student's
+        # distribution (Abramowitz & Stegun 1964, "Handbook of mathematical functions",
+        # 26.7.5, to first order in 1 / E).
         student = normal * (1 + (normal**2 + components) / (4 * count))
         found = float(np.quantile(ratio, share, method="weibull"))
         radii.append(student * (found / student) ** trust if found > 0 else normal)
@@ -138,7 +167,9 @@ def learn_radii(
 
 
 def nearest_distances(lab: Array, locations: Array) -> Array:
-    """ΔE*ab (n,) from L*a*b* (n, 3) to the nearest of the entries (E, 3); infinite without entries."""
+    """ΔE*ab (n,) from L*a*b* (n, 3) to the nearest of the entries (E, 3); infinite
+    without entries.
+    """
     if not len(locations):
         return np.full(len(lab), np.inf)
     parts = blocks(len(lab), max(BLOCK_NUMBERS // len(locations), 1))
@@ -148,7 +179,9 @@ def nearest_distances(lab: Array, locations: Array) -> Array:
 
 
 def familiar_distance(locations: Array) -> float:
-    """ΔE*ab within which `FAMILIAR` of the entries at L*a*b* (E, 3) have another one; 0 for fewer than two."""
+    """ΔE*ab within which `FAMILIAR` of the entries at L*a*b* (E, 3) have another one; 0
+    for fewer than two.
+    """
     if len(locations) < 2:
         return 0.0
     step = -(-len(locations) // MAX_ROWS)

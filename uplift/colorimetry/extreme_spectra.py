@@ -1,15 +1,18 @@
-"""Extreme reflectances of a colour: of all reflectances in [0, 1] with given RGB, the one with the largest response.
+"""Extreme reflectances of a colour: of all reflectances in [0, 1] with given RGB, the
+one with the largest response.
 
-maximise c · g subject to W g = r, 0 ≤ g ≤ 1, for many problems at once. At the optimum g is 0 or 1 but at three
-wavelengths, the basis. The signs of the reduced responses u = c − λ W put the others at a bound. A step exchanges the
-wavelength of the basis whose reflectance violates [0, 1] most, and passes all changes of sign that still lower the
+maximise c · g subject to W g = r, 0 ≤ g ≤ 1, for many problems at once. At the optimum
+g is 0 or 1 but at three wavelengths, the basis. The signs of the reduced responses u =
+c − λ W put the others at a bound. A step exchanges the wavelength of the basis whose
+reflectance violates [0, 1] most, and passes all changes of sign that still lower the
 dual objective λ · r + Σ max(u, 0).
 
 References
 ----------
-Logvinenko, Funt & Godau 2014, "Metamer mismatching", IEEE Transactions on Image Processing 23(1): the boundary of the
-mismatch volume consists of such reflectances. Maros 2003, "A generalized dual phase-2 simplex algorithm", European
-Journal of Operational Research 149(1): the step over several bounds.
+Logvinenko, Funt & Godau 2014, "Metamer mismatching", IEEE Transactions on Image
+Processing 23(1): the boundary of the mismatch volume consists of such reflectances.
+Maros 2003, "A generalized dual phase-2 simplex algorithm", European Journal of
+Operational Research 149(1): the step over several bounds.
 """
 
 from typing import NamedTuple
@@ -21,9 +24,13 @@ from uplift.common.arrays import Array, Indices, Mask, blocks
 FEASIBLE = 1e-9
 """Violation of [0, 1] that counts as rounding."""
 ROUNDING = 1e-10
-"""Part of a violation that may remain at the boundary of the object-colour solid, where the objective ends to fall."""
+"""Part of a violation that may remain at the boundary of the object-colour solid, where
+the objective ends to fall.
+"""
 PERTURBATION = 1e-11
-"""Size, relative to the largest response, of the changes that keep the reduced responses away from 0."""
+"""Size, relative to the largest response, of the changes that keep the reduced
+responses away from 0.
+"""
 MAX_STEPS = 500
 BLOCK_NUMBERS = 1 << 18
 """Reduced responses held at a time: they fit into the cache."""
@@ -37,13 +44,16 @@ class ExtremeSpectra(NamedTuple):
     basis: Indices
     """(n, 3) wavelengths whose reflectance may lie between 0 and 1."""
     solved: Mask
-    """(n,) True unless no reflectance has the colour, or rounding prevents a decision."""
+    """(n,) True unless no reflectance has the colour, or rounding prevents a decision.
+    """
 
 
 def extreme_spectra(
     matrix: Array, rgb: Array, response: Array, basis: Indices | None = None
 ) -> ExtremeSpectra:
-    """Find the reflectances of colours (n, 3) with the largest responses (n, N), from a ``basis`` (n, 3)."""
+    """Find the reflectances of colours (n, 3) with the largest responses (n, N), from a
+    ``basis`` (n, 3).
+    """
     start = np.tile(first_basis(matrix), (len(rgb), 1)) if basis is None else basis
     found = ExtremeSpectra(
         np.empty(response.shape), start.copy(), np.zeros(len(rgb), dtype=bool)
@@ -57,7 +67,9 @@ def extreme_spectra(
 
 
 def first_basis(matrix: Array) -> Indices:
-    """Choose three wavelengths (3,) with independent colours: the largest part that those before do not share."""
+    """Choose three wavelengths (3,) with independent colours: the largest part that
+    those before do not share.
+    """
     rest, chosen = matrix.copy(), []
     for _ in range(3):
         lengths = np.linalg.norm(rest, axis=0)
@@ -68,7 +80,9 @@ def first_basis(matrix: Array) -> Indices:
 
 
 def _perturbed(response: Array) -> Array:
-    """Add distinct numbers, the same for all problems: equal ratios of responses could repeat a basis for ever."""
+    """Add distinct numbers, the same for all problems: equal ratios of responses could
+    repeat a basis for ever.
+    """
     count = response.shape[1]
     offsets = (np.arange(1, count + 1) * 0.6180339887498949) % 1 - 0.5
     return (
@@ -112,8 +126,11 @@ def _solve(matrix: Array, rgb: Array, response: Array, found: ExtremeSpectra) ->
 def _state(
     matrix: Array, rgb: Array, response: Array, basis: Indices
 ) -> tuple[Array, Array, Array, Array]:
-    """Reduced responses (n, N), reflectances (n, 3) of the basis, inverse (n, 3, 3), reflectances (n, N) at bounds."""
-    # λ = c_B W_B⁻¹ for the basis B, u = c − λ W, g = 1 where u > 0, and g_B = W_B⁻¹ (r − W g)
+    """Reduced responses (n, N), reflectances (n, 3) of the basis, inverse (n, 3, 3),
+    reflectances (n, N) at bounds.
+    """
+    # λ = c_B W_B⁻¹ for the basis B, u = c − λ W, g = 1 where u > 0, and g_B = W_B⁻¹ (r
+    # − W g)
     rows = np.arange(len(basis))[:, None]
     inverse = np.asarray(np.linalg.inv(matrix.T[basis].mT))
     multipliers = (np.take_along_axis(response, basis, axis=1)[:, None, :] @ inverse)[
@@ -129,10 +146,12 @@ def _state(
 def _entering(
     reduced: Array, rate: Array, violation: Array, basis: Indices
 ) -> tuple[Indices, Mask]:
-    """Choose the wavelengths that enter the basis, and whether (n,) the dual objective ends to fall.
+    """Choose the wavelengths that enter the basis, and whether (n,) the dual objective
+    ends to fall.
 
-    Along the step reduced responses change at ``rate`` (n, N). Each change of sign raises the slope of the objective,
-    which starts at minus the violation, by the size of the rate.
+    Along the step reduced responses change at ``rate`` (n, N). Each change of sign
+    raises the slope of the objective, which starts at minus the violation, by the size
+    of the rate.
     """
     rows = np.arange(len(basis))[:, None]
     crosses = reduced * rate < 0

@@ -1,10 +1,13 @@
-"""Display gamuts by primaries and white, and gamut mapping of linear RGB outside [0, 1] (docs/guides/acescg.md).
+"""Display gamuts by primaries and white, and gamut mapping of linear RGB outside [0, 1]
+(docs/guides/acescg.md).
 
-Fishkin 1983, *Applying Color Science to Computer Graphics*, chapters 4 and 6: a colour too bright for the display is
-scaled (6.1); a chromaticity outside the triangle of the primaries moves toward white on a straight line, which keeps
-the dominant wavelength (6.2.3). There the thesis keeps R + G + B, here the luminance is kept.
+Fishkin 1983, *Applying Color Science to Computer Graphics*, chapters 4 and 6: a colour
+too bright for the display is scaled (6.1); a chromaticity outside the triangle of the
+primaries moves toward white on a straight line, which keeps the dominant wavelength
+(6.2.3). There the thesis keeps R + G + B, here the luminance is kept.
 
-In Oklab (Ottosson 2020, "A perceptual color space for image processing") lines of constant hue are nearly straight.
+In Oklab (Ottosson 2020, "A perceptual color space for image processing") lines of
+constant hue are nearly straight.
 """
 
 from collections.abc import Callable, Sequence
@@ -26,7 +29,9 @@ from uplift.common.errors import ColourError, OptionError, unknown_name
 BRADFORD = np.array(
     [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]
 )
-"""XYZ to the cone responses of Bradford adaptation (Lam 1985; the matrix of ICC.1:2022, annex E)."""
+"""XYZ to the cone responses of Bradford adaptation (Lam 1985; the matrix of ICC.1:2022,
+annex E).
+"""
 
 Chromaticity = tuple[float, float]
 """CIE x, y."""
@@ -48,21 +53,30 @@ OKLAB = np.array(
 )
 """Cube roots of cone responses to L, a, b."""
 NEARLY = 2.5e-3
-"""Linear RGB, relative to the largest component, by which a line in Oklab may leave the gamut before its edge.
+"""Linear RGB, relative to the largest component, by which a line in Oklab may leave the
+gamut before its edge.
 
-The boundary is concave near blue: lines from grey leave sRGB by 0.0008, ACEScg by 0.0021, and return."""
+The boundary is concave near blue: lines from grey leave sRGB by 0.0008, ACEScg by
+0.0021, and return.
+"""
 HALVINGS = 24
 """Bisection steps along a line."""
 
 LARGEST = 1e300
-"""Colours are scaled down to components of this magnitude where sums of three could overflow."""
+"""Colours are scaled down to components of this magnitude where sums of three could
+overflow.
+"""
 
 BLOCK = 1 << 13
-"""Colours mapped per block; the temporary arrays of a block fit into a processor's cache."""
+"""Colours mapped per block; the temporary arrays of a block fit into a processor's
+cache.
+"""
 
 
 class Gamut(Protocol):
-    """An RGB space whose linear RGB in [0, 1] can be displayed, such as `Primaries` and sensors."""
+    """An RGB space whose linear RGB in [0, 1] can be displayed, such as `Primaries` and
+    sensors.
+    """
 
     @property
     def rgb_to_xyz(self) -> Array:
@@ -92,12 +106,14 @@ class Primaries:
     blue: Chromaticity
     white: Chromaticity
     lengths: Array = field(init=False, repr=False, compare=False)
-    """X + Y + Z of each primary at full power: ρ, γ and β of equation 4.5; shape (3,)."""
+    """X + Y + Z of each primary at full power: ρ, γ and β of equation 4.5; shape (3,).
+    """
     rgb_to_xyz: Array = field(init=False, repr=False, compare=False)
     """Matrix from linear RGB to XYZ; white has Y = 1; shape (3, 3)."""
 
     def __post_init__(self) -> None:
-        # Equation 4.4: the columns are the chromaticities (x, y, 1 − x − y) times their lengths, and add up to white.
+        # Equation 4.4: the columns are the chromaticities (x, y, 1 − x − y) times their
+        # lengths, and add up to white.
         *columns, white = np.array(
             [
                 [x, y, 1 - x - y]
@@ -111,7 +127,10 @@ class Primaries:
                 np.linalg.solve(matrix, white / white[1]) if regular else np.zeros(3)
             )
             if not ((lengths > 0) & np.isfinite(lengths)).all():
-                problem = f"primaries must span a triangle with the white inside, got ({self})"
+                problem = (
+                    "primaries must span a triangle with the white inside, got "
+                    f"({self})"
+                )
                 raise OptionError(problem, hint=PRIMARIES)
         object.__setattr__(self, "lengths", lengths)
         object.__setattr__(self, "rgb_to_xyz", matrix * lengths)
@@ -154,7 +173,9 @@ SRGB = Primaries((0.64, 0.33), (0.30, 0.60), (0.15, 0.06), (0.3127, 0.3290))
 
 
 def conversion(source: Gamut, target: Gamut) -> Array:
-    """Compute the matrix (3, 3) between the linear RGB of two gamuts, with Bradford adaptation of the white."""
+    """Compute the matrix (3, 3) between the linear RGB of two gamuts, with Bradford
+    adaptation of the white.
+    """
     before, after = (
         BRADFORD @ gamut.rgb_to_xyz.sum(axis=1) for gamut in (source, target)
     )
@@ -164,7 +185,9 @@ def conversion(source: Gamut, target: Gamut) -> Array:
 
 
 def cone_responses(gamut: Gamut) -> Array:
-    """Matrix (3, 3) from linear RGB to cone responses, adapted so that the white of the gamut gives (1, 1, 1)."""
+    """Matrix (3, 3) from linear RGB to cone responses, adapted so that the white of the
+    gamut gives (1, 1, 1).
+    """
     matrix = CONES @ gamut.rgb_to_xyz
     return np.asarray(matrix / matrix.sum(axis=1, keepdims=True))
 
@@ -180,14 +203,18 @@ def cube_roots(lab: Array) -> Array:
 
 
 def clip(rgb: Array, gamut: Gamut) -> Array:
-    """Clip each component separately, which changes chromaticity, hue and luminance (Fishkin, 6.1.1)."""
+    """Clip each component separately, which changes chromaticity, hue and luminance
+    (Fishkin, 6.1.1).
+    """
     return np.clip(rgb, 0, 1)
 
 
 def scale(rgb: Array, gamut: Gamut) -> Array:
-    """Move toward white at constant luminance until no component is negative, then divide by the largest.
+    """Move toward white at constant luminance until no component is negative, then
+    divide by the largest.
 
-    The dominant wavelength is kept. So is the chromaticity of colours that are only too bright.
+    The dominant wavelength is kept. So is the chromaticity of colours that are only too
+    bright.
     """
     luminance = rgb @ gamut.rgb_to_xyz[1, :, None]
     inside = _toward_grey(rgb, np.maximum(luminance, 0), np.inf)
@@ -195,17 +222,22 @@ def scale(rgb: Array, gamut: Gamut) -> Array:
 
 
 def desaturate(rgb: Array, gamut: Gamut) -> Array:
-    """Move toward white at constant luminance and dominant wavelength until all components are in [0, 1].
+    """Move toward white at constant luminance and dominant wavelength until all
+    components are in [0, 1].
 
-    A luminance of at least that of white gives white. A luminance of at most 0 gives black.
+    A luminance of at least that of white gives white. A luminance of at most 0 gives
+    black.
     """
     luminance = rgb @ gamut.rgb_to_xyz[1, :, None]
     return _toward_grey(rgb, np.clip(luminance, 0, 1), 1)
 
 
 def _toward_grey(rgb: Array, grey: Array, top: float) -> Array:
-    """Mix with grey (n, 1) in [0, top], keeping as much colour as all components in [0, top] allow."""
-    # grey + f (rgb − grey) meets 0 at f = grey / (grey − low), and the top at (top − grey) / (high − grey).
+    """Mix with grey (n, 1) in [0, top], keeping as much colour as all components in [0,
+    top] allow.
+    """
+    # grey + f (rgb − grey) meets 0 at f = grey / (grey − low), and the top at (top −
+    # grey) / (high − grey).
     low, high = rgb.min(axis=1, keepdims=True), rgb.max(axis=1, keepdims=True)
     below, above = np.ones_like(grey), np.ones_like(grey)
     np.divide(grey, grey - low, out=below, where=low < 0)
@@ -214,9 +246,12 @@ def _toward_grey(rgb: Array, grey: Array, top: float) -> Array:
 
 
 def desaturate_oklab(rgb: Array, gamut: Gamut) -> Array:
-    """Move toward grey at constant lightness and hue of Oklab, which keeps the hue of reds and yellows better."""
+    """Move toward grey at constant lightness and hue of Oklab, which keeps the hue of
+    reds and yellows better.
+    """
     lab = oklab(rgb, gamut)
-    # One row per response, then one per component: contiguous rows are twice as fast here.
+    # One row per response, then one per component: contiguous rows are twice as fast
+    # here.
     grey = np.ascontiguousarray(cube_roots(np.clip(lab[:, :1], 0, 1) * [1, 0, 0]).T)
     chroma = np.ascontiguousarray(cube_roots(lab * [0, 1, 1]).T)
     to_rgb = np.linalg.inv(cone_responses(gamut))
@@ -236,7 +271,9 @@ def _cube(values: Array) -> Array:
 
 
 Mapping = Callable[[Array, Gamut], Array]
-"""Function from finite linear RGB (n, 3) outside [0, 1] to linear RGB (n, 3) inside, up to rounding."""
+"""Function from finite linear RGB (n, 3) outside [0, 1] to linear RGB (n, 3) inside, up
+to rounding.
+"""
 MAPPINGS: dict[str, Mapping] = {"clip": clip, "scale": scale, "desaturate": desaturate}
 MAPPINGS["desaturate-oklab"] = desaturate_oklab
 METHODS = ("error", *MAPPINGS)
@@ -285,12 +322,14 @@ class GamutMapped:
 
 
 def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMapped:
-    """Move linear RGB outside [0, 1] inside; in-gamut colours are unchanged, bit for bit.
+    """Move linear RGB outside [0, 1] inside; in-gamut colours are unchanged, bit for
+    bit.
 
     Parameters
     ----------
     rgb : array_like, shape (..., 3)
-        Linear RGB. float32 stays float32. Deviations by rounding (`uplift.colorimetry.sensor.SLACK`) are in gamut.
+        Linear RGB. float32 stays float32. Deviations by rounding
+        (`uplift.colorimetry.sensor.SLACK`) are in gamut.
     gamut : Gamut
         The RGB space of ``rgb``: a cube's sensor, `Primaries`, or `SRGB`.
     method : str
@@ -304,7 +343,8 @@ def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMa
     Raises
     ------
     ColourError
-        A colour that needs mapping is not finite, or lies outside [0, 1] and ``method`` is ``"error"``.
+        A colour that needs mapping is not finite, or lies outside [0, 1] and ``method``
+        is ``"error"``.
     UnknownNameError
         The method is unknown.
 

@@ -1,7 +1,8 @@
 """Illuminants for each purpose, by the names of colour-science, and sets of lamps.
 
-Temperatures such as 3200K are names too: from 4000K to 25000K of CIE daylight (CIE 15:2004, 3.1) of this nominal
-temperature, as D65 is 6500K, and below, from 1000K, of black bodies. A `Lamp` is a measured light in place of a name.
+Temperatures such as 3200K are names too: from 4000K to 25000K of CIE daylight (CIE
+15:2004, 3.1) of this nominal temperature, as D65 is 6500K, and below, from 1000K, of
+black bodies. A `Lamp` is a measured light in place of a name.
 """
 
 import math
@@ -27,7 +28,9 @@ TEMPERATURES = (1000.0, 25000.0)
 DAYLIGHT_FROM = 4000.0
 """Lowest colour temperature in K of CIE daylight (CIE 15:2004, 3.1)."""
 NOMINAL = 1.4388 / 1.4380
-"""Colour temperatures of CIE daylight over nominal ones, which refer to an older radiation constant."""
+"""Colour temperatures of CIE daylight over nominal ones, which refer to an older
+radiation constant.
+"""
 SECOND_RADIATION_CONSTANT = 1.4387768775e7
 """h c / k in nm K."""
 
@@ -38,13 +41,17 @@ ERROR_ILLUMINANT = "A"
 """Illuminant of the standard errors that a cube stores."""
 
 SCENE_LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3")
-"""Lights under which entries keep their measured colours, and lights of a scene that names none."""
+"""Lights under which entries keep their measured colours, and lights of a scene that
+names none.
+"""
 
 REPORT_LIGHTS = ("D65", "A", "FL2", "FL7", "FL11", "LED-B3")
 """Lights of reports and of the study of moments."""
 
 RELIGHT_LIGHTS = ("A", "FL11", "HP1")
-"""Lights under which products of RGB go visibly wrong: warm, three narrow bands, and nearly one wavelength."""
+"""Lights under which products of RGB go visibly wrong: warm, three narrow bands, and
+nearly one wavelength.
+"""
 
 DESCRIPTIONS = {
     "A": "tungsten", "D50": "warm daylight", "D65": "daylight", "HP1": "sodium lamp",
@@ -54,19 +61,24 @@ DESCRIPTIONS = {
 """Words for readers who do not know the names."""
 
 CHART_LIGHTS = REPORT_LIGHTS[1:]
-"""Lights of the chart of methods: all of a report but the illuminant that colours are matched under."""
+"""Lights of the chart of methods: all of a report but the illuminant that colours are
+matched under.
+"""
 
 HELD_OUT_LIGHTS = (*CHART_LIGHTS, "LED-RGB1", "HP1")
 """Lights of errors on held-out measurements, which include extreme spectra."""
 
 REGRESSION_LIGHTS = ("D65", "A", "FL11")
-"""Lights of the regression check of stored cubes: smooth, reddish, and three narrow bands."""
+"""Lights of the regression check of stored cubes: smooth, reddish, and three narrow
+bands.
+"""
 
 PALETTE_LIGHTS = ("D65", "A", "D50", "E")
 """Smooth lights that the standard factor model of palettes is fitted to."""
 
 NARROW_BAND_LIGHT = "FL11"
-"""Light of the sensitivity study: its narrow bands expose differences between spectra."""
+"""Light of the sensitivity study: its narrow bands expose differences between spectra.
+"""
 
 KMENT_LIGHTS = {"smooth": ("A", "B", "C"), "spiky": ("FL2", "FL7", "FL11")}
 """Sets of lights of Kment 2011, 5.4: non-fluorescent and fluorescent."""
@@ -77,7 +89,8 @@ STANDARD_ILLUMINANTS = ("A", "D50", "D55", "D65", "D75")
 
 @dataclass(frozen=True)
 class Lamp:
-    """A measured light, which functions take in place of the name of an illuminant; `uplift.read_lamp` reads files.
+    """A measured light, which functions take in place of the name of an illuminant;
+    `uplift.read_lamp` reads files.
 
     Parameters
     ----------
@@ -86,7 +99,8 @@ class Lamp:
     wavelengths : tuple of float
         At least two wavelengths in nm, ascending.
     power : tuple of float
-        Relative spectral power at the wavelengths, not negative, not all 0. Outside it keeps its first and last value.
+        Relative spectral power at the wavelengths, not negative, not all 0. Outside it
+        keeps its first and last value.
 
     Raises
     ------
@@ -110,13 +124,19 @@ class Lamp:
         )
         problem = ""
         if not len(wavelengths) == len(power) >= 2:
-            problem = f"must have at least 2 wavelengths and as many powers, got {len(wavelengths)} and {len(power)}"
+            problem = (
+                "must have at least 2 wavelengths and as many powers, got "
+                f"{len(wavelengths)} and {len(power)}"
+            )
         elif not all(map(math.isfinite, (*wavelengths, *power))):
             problem = "must have finite wavelengths and powers"
         elif (np.diff(wavelengths) <= 0).any():
             problem = "must have ascending wavelengths"
         elif min(power) < 0 or max(power) == 0:
-            problem = f"must have powers of at least 0, one of them above, got {min(power):g} to {max(power):g}"
+            problem = (
+                "must have powers of at least 0, one of them above, got "
+                f"{min(power):g} to {max(power):g}"
+            )
         if problem:
             raise OptionError(f"the lamp '{self.name}' {problem}")
         object.__setattr__(self, "wavelengths", wavelengths)
@@ -128,8 +148,8 @@ class Lamp:
     def at(self, wavelengths: ArrayLike) -> Array:
         """Sample the power at evenly spaced wavelengths (N,) in nm.
 
-        Powers that are measured at a smaller step are averaged with triangular weights, so that no narrow line is lost.
-        Others are interpolated linearly.
+        Powers that are measured at a smaller step are averaged with triangular weights,
+        so that no narrow line is lost. Others are interpolated linearly.
         """
         nm = np.asarray(wavelengths, dtype=float)
         step, own = np.diff(nm[:2]).sum(), float(np.median(np.diff(self.wavelengths)))
@@ -145,7 +165,8 @@ Illuminant = str | Lamp
 
 
 def standard_name(name: str) -> tuple[str, float | None]:
-    """Return the name of an illuminant for one of `COMMON_NAMES`, and its colour temperature, as of ``3200K``.
+    """Return the name of an illuminant for one of `COMMON_NAMES`, and its colour
+    temperature, as of ``3200K``.
 
     Other names stay, and have none. `OptionError` for a temperature out of range.
 
@@ -165,7 +186,9 @@ def standard_name(name: str) -> tuple[str, float | None]:
 
 
 def black_body(kelvin: float, wavelengths: Array) -> Array:
-    """Compute the relative power of a black body by Planck's law. Shapes: ``wavelengths`` (N,) nm → (N,)."""
+    """Compute the relative power of a black body by Planck's law. Shapes:
+    ``wavelengths`` (N,) nm → (N,).
+    """
     return np.asarray(
         wavelengths**-5
         / np.expm1(SECOND_RADIATION_CONSTANT / (wavelengths * kelvin))

@@ -1,17 +1,21 @@
-"""Mismatch volumes: all colours that the reflectances of one RGB can have under another light.
+"""Mismatch volumes: all colours that the reflectances of one RGB can have under another
+light.
 
-Of all reflectances in [0, 1] with linear RGB r under the build illuminant, the XYZ under a second light fill a convex
-body: the object-colour solid of the six sensors, cut at r. In each direction its boundary is the XYZ of one extreme
-reflectance (`uplift.colorimetry.extreme_spectra`).
+Of all reflectances in [0, 1] with linear RGB r under the build illuminant, the XYZ
+under a second light fill a convex body: the object-colour solid of the six sensors, cut
+at r. In each direction its boundary is the XYZ of one extreme reflectance
+(`uplift.colorimetry.extreme_spectra`).
 
-ΔE00 is not convex, so the search for the metamer that differs most from a given one starts in 20 parts of the volume:
-the triangles of directions within each triangle of the icosahedron. Each step goes to the extreme in the direction in
-which ΔE00 rises fastest at the current one. Finally, directions close to that of the best metamer are tried.
+ΔE00 is not convex, so the search for the metamer that differs most from a given one
+starts in 20 parts of the volume: the triangles of directions within each triangle of
+the icosahedron. Each step goes to the extreme in the direction in which ΔE00 rises
+fastest at the current one. Finally, directions close to that of the best metamer are
+tried.
 
 References
 ----------
-Finlayson & Morovic 2005, "Metamer sets", JOSA A 22(5). Logvinenko, Funt & Godau 2014, "Metamer mismatching", IEEE
-Transactions on Image Processing 23(1).
+Finlayson & Morovic 2005, "Metamer sets", JOSA A 22(5). Logvinenko, Funt & Godau 2014,
+"Metamer mismatching", IEEE Transactions on Image Processing 23(1).
 """
 
 from dataclasses import dataclass
@@ -36,11 +40,15 @@ MIN_ROUNDNESS = 1e-12
 DIVISIONS = 2
 """Divisions of the icosahedron: 162 directions."""
 MIN_SCALE = 1e-6
-"""Smallest scale of a direction, relative to the light: the volume of the build illuminant is a point."""
+"""Smallest scale of a direction, relative to the light: the volume of the build
+illuminant is a point.
+"""
 BLOCK_PROBLEMS = 1 << 14
 """Colours times directions processed at a time."""
 PARTS = 20
-"""Triangles of the icosahedron; a triangle of a divided one belongs to that of its number modulo this."""
+"""Triangles of the icosahedron; a triangle of a divided one belongs to that of its
+number modulo this.
+"""
 MAX_STEPS = 20
 DIFFERENCE_STEP = 1e-3
 """Step in L*a*b* of the differences that approximate the derivative of ΔE00."""
@@ -58,7 +66,9 @@ class Sphere:
     faces: Indices
     """(F, 3) Triangles, their corners counter-clockwise from outside."""
     parents: Indices
-    """(D,) A neighbour of each direction in the coarser mesh; −1 for the corners of the icosahedron."""
+    """(D,) A neighbour of each direction in the coarser mesh; −1 for the corners of the
+    icosahedron.
+    """
 
 
 def sphere(divisions: int) -> Sphere:
@@ -110,7 +120,8 @@ def _divided(coarse: Sphere) -> Sphere:
 
 
 RING = np.concatenate([size * sphere(0).directions for size in (0.4, 0.15, 0.05)])
-"""Changes of a direction of length 1 that are tried around the most different metamer."""
+"""Changes of a direction of length 1 that are tried around the most different metamer.
+"""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -139,18 +150,24 @@ class MismatchVolumes:
 
     @cached_property
     def volume(self) -> Array:
-        """Volumes (n,) in XYZ of the meshes between the boundary points: less than those of the bodies."""
+        """Volumes (n,) in XYZ of the meshes between the boundary points: less than
+        those of the bodies.
+        """
         return mesh_volume(self.xyz, self.directions.faces)
 
     @cached_property
     def normals(self) -> Array:
-        """Unit vectors (D, 3) of XYZ, in whose directions the boundary points are the extremes."""
+        """Unit vectors (D, 3) of XYZ, in whose directions the boundary points are the
+        extremes.
+        """
         found = self.directions.directions @ np.linalg.inv(self.scale)
         return np.asarray(found / np.linalg.norm(found, axis=1)[:, None])
 
     @cached_property
     def corners(self) -> Array:
-        """XYZ (n, F, 3) whose convex hull contains the body: where the planes of three neighbours meet."""
+        """XYZ (n, F, 3) whose convex hull contains the body: where the planes of three
+        neighbours meet.
+        """
         faces, directions = self.directions.faces, self.directions.directions
         scaled = self.xyz @ np.linalg.inv(self.scale).T
         support = np.einsum("kdi,di->kd", scaled, directions)[:, faces]
@@ -160,7 +177,9 @@ class MismatchVolumes:
         )
 
     def excess(self, xyz: Array) -> Array:
-        """Compute by how much (n,) XYZ (n, 3) exceed the body in the direction in which they do so most."""
+        """Compute by how much (n,) XYZ (n, 3) exceed the body in the direction in which
+        they do so most.
+        """
         return np.asarray(
             np.einsum("kdi,di->kd", xyz[:, None] - self.xyz, self.normals).max(axis=1)
         )
@@ -173,10 +192,12 @@ def mismatch_volumes(
     outside = np.flatnonzero(~solid(sensor.matrix).contains(rgb))
     if outside.size:
         raise _unrealisable(
-            f"no reflectance has the colour {format_rgb(rgb[outside[0]])} under {sensor.illuminant}"
+            f"no reflectance has the colour {format_rgb(rgb[outside[0]])} under "
+            f"{sensor.illuminant}"
         )
     directions, scale = sphere(divisions), _scale(sensor, light)
-    # A direction d of the scaled space S⁻¹ x is maximised by the response dᵀ S⁻¹ X of each wavelength.
+    # A direction d of the scaled space S⁻¹ x is maximised by the response dᵀ S⁻¹ X of
+    # each wavelength.
     response = directions.directions @ np.linalg.solve(scale, light.xyz)
     xyz = np.empty((len(rgb), len(response), 3))
     basis = np.empty(xyz.shape, dtype=np.intp)
@@ -200,7 +221,9 @@ def _unrealisable(problem: str) -> ColourError:
 
 
 def _scale(sensor: Sensor, light: Light) -> Array:
-    """Square root of the products of the responses of the light that those of the sensor do not explain."""
+    """Square root of the products of the responses of the light that those of the
+    sensor do not explain.
+    """
     # With P the projection to the sensor's responses, S = ((X − P X)(X − P X)ᵀ)^½.
     explained = np.linalg.lstsq(sensor.matrix.T, light.xyz.T, rcond=None)[0]
     rest = light.xyz - explained.T @ sensor.matrix
@@ -218,7 +241,9 @@ def _solve(
     xyz: Array,
     basis: Indices,
 ) -> None:
-    """Fill the boundary points (n, D, 3), from coarse to fine: each direction starts at its parent's optimum."""
+    """Fill the boundary points (n, D, 3), from coarse to fine: each direction starts at
+    its parent's optimum.
+    """
     basis[:] = first_basis(sensor.matrix)
     for first, last in pairwise((0, *COUNTS)):
         if first >= len(parents):
@@ -244,8 +269,10 @@ class LargestDifference:
     delta_e_2000: Array
     """(n,) ΔE00 of the most different metamer that was found."""
     outer: Array
-    """(n,) Largest ΔE00 to a corner of the polyhedron around the volume, at least ``delta_e_2000``. A difference
-    that grows along all straight lines from the given colour would be bounded by it; ΔE00 nearly does."""
+    """(n,) Largest ΔE00 to a corner of the polyhedron around the volume, at least
+    ``delta_e_2000``. A difference that grows along all straight lines from the given
+    colour would be bounded by it; ΔE00 nearly does.
+    """
     xyz: Array
     """(n, 3) XYZ of the most different metamers."""
 
@@ -288,7 +315,9 @@ class _Metamers(NamedTuple):
 
 
 def _most_different(count: int, *parts: _Metamers) -> _Metamers:
-    """Choose the most different metamer of each of n colours, of which each part has the same number in order."""
+    """Choose the most different metamer of each of n colours, of which each part has
+    the same number in order.
+    """
     delta_e, *others = zip(*parts, strict=True)
     differences = np.concatenate([each.reshape(count, -1) for each in delta_e], axis=1)
     best = np.arange(count), differences.argmax(axis=1)
@@ -323,7 +352,9 @@ class _Search:
         )
 
     def ascend(self, row: Indices, slope: Array, basis: Indices) -> _Metamers:
-        """Metamers (m,) where the steps from the extremes in the directions (m, 3) end."""
+        """Metamers (m,) where the steps from the extremes in the directions
+        (m, 3) end.
+        """
         found = self.extremes(row, slope, basis)
         rises = np.arange(len(row))
         for _ in range(MAX_STEPS):
@@ -339,7 +370,9 @@ class _Search:
         return found
 
     def around(self, best: _Metamers) -> _Metamers:
-        """The most different of metamers (n,) and of those in directions around theirs."""
+        """The most different of metamers (n,) and of those in directions
+        around theirs.
+        """
         count = len(best.delta_e)
         scale = self.volumes.scale
         middle = best.direction @ scale
@@ -364,14 +397,18 @@ class _Search:
 
 
 def mesh_volume(points: Array, faces: Indices) -> Array:
-    """Compute the volumes (n,) of closed triangle meshes with corners (n, D, 3) and faces (F, 3)."""
+    """Compute the volumes (n,) of closed triangle meshes with corners (n, D, 3) and
+    faces (F, 3).
+    """
     centred = points - points.mean(axis=1, keepdims=True)
     a, b, c = (centred[:, faces[:, corner]] for corner in range(3))
     return np.asarray(np.einsum("kfi,kfi->k", a, np.cross(b, c)) / 6)
 
 
 def outline(points: Array, faces: Indices, angles: int = ANGLES) -> Array:
-    """Compute the outline (angles, 2) of a triangle mesh, of ``faces`` (F, 3), with points (D, 2) in a plane."""
+    """Compute the outline (angles, 2) of a triangle mesh, of ``faces`` (F, 3), with
+    points (D, 2) in a plane.
+    """
     centre = points.mean(axis=0)
     values, axes = np.linalg.eigh(np.cov(points.T))
     lengths = np.sqrt(

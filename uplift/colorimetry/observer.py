@@ -1,8 +1,8 @@
 """Sensors, lights and observers by name, from the tables of colour-science.
 
-Tables are sampled from ``start`` to ``end`` every ``step`` nm. Outside their tables lights keep their last value, and
-observers are 0.
-Names that are unknown raise `UnknownNameError`, whose hint gives the nearest ones.
+Tables are sampled from ``start`` to ``end`` every ``step`` nm. Outside their tables
+lights keep their last value, and observers are 0. Names that are unknown raise
+`UnknownNameError`, whose hint gives the nearest ones.
 """
 
 from collections.abc import Iterable, Sequence
@@ -45,19 +45,21 @@ def sensor(
 ) -> Sensor:
     """Create a sensor from names of colour-science.
 
-    Bradford adaptation takes the white of the illuminant to the white of the space. Each row of the matrix is scaled
-    so that the perfect reflector gives (1, 1, 1) up to rounding.
+    Bradford adaptation takes the white of the illuminant to the white of the space.
+    Each row of the matrix is scaled so that the perfect reflector gives (1, 1, 1) up to
+    rounding.
 
     Parameters
     ----------
     space : str
-        RGB space: a name of colour-science, a short name such as ``AP1``, or a name of OpenColorIO, such as
-        ``lin_rec2020``, of a space that colour-science has as well. ``"camera"`` are raw values of a camera.
+        RGB space: a name of colour-science, a short name such as ``AP1``, or a name of
+        OpenColorIO, such as ``lin_rec2020``, of a space that colour-science has as
+        well. ``"camera"`` are raw values of a camera.
     illuminant : str or Lamp
         Illuminant that the RGB refer to.
     observer : str or Camera
-        Colour-matching functions; for the space ``"camera"`` a camera, see `find_camera`. XYZ of a camera's sensor are
-        those of the CIE 1931 observer.
+        Colour-matching functions; for the space ``"camera"`` a camera, see
+        `find_camera`. XYZ of a camera's sensor are those of the CIE 1931 observer.
     wavelengths : tuple of float, default (380, 780, 5)
         First and last wavelength and step in nm, as `Sensor.range`.
 
@@ -70,7 +72,8 @@ def sensor(
     UnknownNameError
         A name is unknown; the hint gives the nearest names.
     OptionError
-        A camera without its space, or one that cannot be used (see `Camera`), or a colour temperature out of range.
+        A camera without its space, or one that cannot be used (see `Camera`), or a
+        colour temperature out of range.
 
     Examples
     --------
@@ -100,7 +103,8 @@ def sensor(
 
         rgb_space = look_up_space(space)
     build_light = light(illuminant, observer)
-    # XYZ to RGB is M_space · M_Bradford: the white of the illuminant becomes the white of the space.
+    # XYZ to RGB is M_space · M_Bradford: the white of the illuminant becomes the white
+    # of the space.
     x, y = rgb_space.whitepoint
     adapt = tables.bradford(build_light.white, np.array([x / y, 1.0, (1 - x - y) / y]))
     matrix = rgb_space.matrix_XYZ_to_RGB @ adapt
@@ -124,7 +128,8 @@ def on_range(
     *,
     illuminant: Illuminant | None = None,
 ) -> Sensor:
-    """Return a sensor with a range of wavelengths, where the perfect reflector is white again.
+    """Return a sensor with a range of wavelengths, where the perfect reflector is white
+    again.
 
     ``illuminant`` is that of the sensor, which must be given if it is a lamp.
     """
@@ -149,7 +154,9 @@ def on_range(
 
 
 def is_camera_file(observer: str) -> bool:
-    """Whether the name of an observer is that of a file of sensitivities, which is read."""
+    """Whether the name of an observer is that of a file of sensitivities, which is
+    read.
+    """
     return observer.casefold().endswith(CAMERA_FILES)
 
 
@@ -163,10 +170,15 @@ def is_camera(observer: str | Camera) -> bool:
 
 
 def require_observer(observer: str | Camera, purpose: str) -> None:
-    """Raise `OptionError` for a camera in place of an observer, where XYZ are needed for a ``purpose``."""
+    """Raise `OptionError` for a camera in place of an observer, where XYZ are needed
+    for a ``purpose``.
+    """
     if is_camera(observer):
         name = observer.name if isinstance(observer, Camera) else observer
-        problem = f"{purpose} need XYZ, which raw values of the camera '{name}' do not determine"
+        problem = (
+            f"{purpose} need XYZ, which raw values of the camera '{name}' do not "
+            "determine"
+        )
         raise OptionError(problem, hint="use a standard observer")
 
 
@@ -191,8 +203,8 @@ def display_sensors(
 ) -> tuple[Sensor, ...]:
     """Create a sensor, by default of sRGB, for each illuminant, without duplicates.
 
-    Their linear RGB can be displayed directly: the white of each illuminant becomes the white of the screen. Raises
-    `OptionError` for two lamps of one name.
+    Their linear RGB can be displayed directly: the white of each illuminant becomes the
+    white of the screen. Raises `OptionError` for two lamps of one name.
     """
     check_distinct(illuminants)
     sensors = (
@@ -202,7 +214,9 @@ def display_sensors(
 
 
 def check_distinct(illuminants: Iterable[Illuminant]) -> None:
-    """Check that no two different lamps, nor a lamp and an illuminant, have the same name in results."""
+    """Check that no two different lamps, nor a lamp and an illuminant, have the same
+    name in results.
+    """
     known: dict[str, Lamp | None] = {}
     for each in illuminants:
         name, lamp = (
@@ -273,7 +287,8 @@ def smallest_space(
     illuminant: Illuminant = DEFAULT_ILLUMINANT,
     observer: str = DEFAULT_OBSERVER,
 ) -> str | None:
-    """Find the smallest of `COMMON_SPACES` that holds all colours of reflectances (…, 81) on `grid`; None if none does.
+    """Find the smallest of `COMMON_SPACES` that holds all colours of reflectances (…,
+    81) on `grid`; None if none does.
 
     >>> import numpy as np
     >>> smallest_space(np.full(81, 0.5))

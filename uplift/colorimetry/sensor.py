@@ -1,4 +1,6 @@
-"""Sensors: the linear map from reflectance to linear RGB, as plain arrays (docs/mathematics.md, 1)."""
+"""Sensors: the linear map from reflectance to linear RGB, as plain arrays
+(docs/mathematics.md, 1).
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,7 +22,9 @@ MIN_CODE = 10
 
 
 def in_unit_cube(rgb: Values) -> Mask:
-    """Test whether (…) RGB (…, 3) are in gamut: in [0, 1], up to `SLACK`; False for NaN."""
+    """Test whether (…) RGB (…, 3) are in gamut: in [0, 1], up to `SLACK`; False for
+    NaN.
+    """
     return np.asarray(((rgb >= -SLACK) & (rgb <= 1 + SLACK)).all(axis=-1))
 
 
@@ -106,12 +110,14 @@ class Sensor:
     power : ndarray, shape (N,)
         Relative spectral power of the illuminant.
     xyz_to_rgb : ndarray, shape (3, 3)
-        XYZ under the illuminant, where white has Y = 1, to linear RGB, where white is (1, 1, 1). For a camera, an
-        approximation, for distances between colours only.
+        XYZ under the illuminant, where white has Y = 1, to linear RGB, where white is
+        (1, 1, 1). For a camera, an approximation, for distances between colours only.
     decoding : ndarray, shape (256,)
-        Linear value of each 8-bit code of the space. Those of log curves begin below 0 and end above 1.
+        Linear value of each 8-bit code of the space. Those of log curves begin below 0
+        and end above 1.
     sensitivities : ndarray, shape (N, 3), optional
-        Spectral sensitivities of a camera, whose raw values the RGB are. By default RGB are a linear map of XYZ.
+        Spectral sensitivities of a camera, whose raw values the RGB are. By default RGB
+        are a linear map of XYZ.
     """
 
     space: str
@@ -136,25 +142,35 @@ class Sensor:
     @cached_property
     def light(self) -> Light:
         """The build illuminant."""
-        # X, Y, Z of g are Σ x̄ S g / Σ ȳ S, and so on: the perfect reflector, g = 1, has Y = 1.
+        # X, Y, Z of g are Σ x̄ S g / Σ ȳ S, and so on: the perfect reflector, g = 1,
+        # has Y = 1.
         weights = self.cmfs * self.power[:, None]
         return Light(self.illuminant, (weights / weights[:, 1].sum()).T)
 
     @cached_property
     def matrix(self) -> Array:
-        """W, shape (3, N): ``W @ reflectance`` is linear RGB; the perfect reflector gives (1, 1, 1)."""
-        # W_ci = Σ_k M_ck · XYZ weights of k at wavelength i: colours are linear in the reflectance.
+        """W, shape (3, N): ``W @ reflectance`` is linear RGB; the perfect reflector
+        gives (1, 1, 1).
+        """
+        # W_ci = Σ_k M_ck · XYZ weights of k at wavelength i: colours are linear in the
+        # reflectance.
         if self.sensitivities is None:
             return self.xyz_to_rgb @ self.light.xyz
-        # Raw values of a camera: each channel is divided by that of the perfect reflector.
+        # Raw values of a camera: each channel is divided by that of the perfect
+        # reflector.
         weights = self.sensitivities * self.power[:, None]
         return np.asarray((weights / weights.sum(axis=0)).T)
 
     def require_xyz(self) -> None:
-        """Raise `ColourError` (``camera-without-xyz``) for a camera, whose raw values do not determine XYZ."""
+        """Raise `ColourError` (``camera-without-xyz``) for a camera, whose raw values
+        do not determine XYZ.
+        """
         if self.sensitivities is not None:
             raise ColourError(
-                f"the colours of '{self.space}' are raw values of a camera, and no matrix converts them to or from XYZ",
+                (
+                    f"the colours of '{self.space}' are raw values of a camera, and no "
+                    "matrix converts them to or from XYZ"
+                ),
                 code="camera-without-xyz",
                 hint="give raw values, or use a cube of an RGB space",
             )
@@ -179,7 +195,8 @@ class Sensor:
         return np.asarray(reflectance, dtype=float) @ self.matrix.T
 
     def xyz(self, rgb: ArrayLike) -> Array:
-        """Convert linear RGB to XYZ under the build illuminant; approximately for a camera.
+        """Convert linear RGB to XYZ under the build illuminant; approximately for a
+        camera.
 
         Parameters
         ----------

@@ -1,8 +1,9 @@
 """The object-colour solid: all colours that a reflectance in [0, 1] can have.
 
-MacAdam 1935, "The theory of the maximum visual efficiency of colored materials". Reflectances in [0, 1] at N
-wavelengths map to a zonotope of linear RGB, the sum of N segments from black to W_i. Each pair of segments spans two
-parallel facets, so the facets are known exactly.
+MacAdam 1935, "The theory of the maximum visual efficiency of colored materials".
+Reflectances in [0, 1] at N wavelengths map to a zonotope of linear RGB, the sum of N
+segments from black to W_i. Each pair of segments spans two parallel facets, so the
+facets are known exactly.
 """
 
 from dataclasses import dataclass
@@ -14,7 +15,9 @@ from uplift.common.arrays import Array, Mask
 SLACK = 1e-9
 """Distance from the solid, in linear RGB, that counts as rounding."""
 BLOCK = 1 << 6
-"""Colours processed per block: with thousands of facets, larger arrays do not fit into the cache."""
+"""Colours processed per block: with thousands of facets, larger arrays do not fit into
+the cache.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +30,9 @@ class Solid:
     """(F,) Distances of the facets from the origin."""
 
     def signed_distance(self, rgb: Array) -> Array:
-        """Compute the largest signed distance (n,) of linear RGB (n, 3) from the facets: positive outside the solid."""
+        """Compute the largest signed distance (n,) of linear RGB (n, 3) from the
+        facets: positive outside the solid.
+        """
         blocks = [rgb[first : first + BLOCK] for first in range(0, len(rgb), BLOCK)]
         return np.concatenate(
             [
@@ -44,11 +49,14 @@ class Solid:
         return np.asarray(self.signed_distance(rgb) <= SLACK)
 
     def ray_fraction(self, origin: Array, target: Array) -> Array:
-        """Compute the fraction (n,) that is inside the solid of segments from an origin (n, 3) inside to a target."""
+        """Compute the fraction (n,) that is inside the solid of segments from an origin
+        (n, 3) inside to a target.
+        """
         fractions = [np.zeros(0)]
         for first in range(0, len(target), BLOCK):
             start, end = origin[first : first + BLOCK], target[first : first + BLOCK]
-            # On start + f · (end − start), facet i is met at f = (offset_i − n_i · start) / n_i · (end − start).
+            # On start + f · (end − start), facet i is met at f = (offset_i − n_i ·
+            # start) / n_i · (end − start).
             margin = np.maximum(self.offsets - start @ self.normals.T, 0)
             speed = (end - start) @ self.normals.T
             fractions.append(
@@ -60,14 +68,16 @@ class Solid:
 
 
 def toward_grey(limits: Solid, grey: Array, target: Array, margin: float) -> Array:
-    """Move colours (n, 3) that lie outside the solid, or less than a margin inside, onto their line to a grey (n, 3).
+    """Move colours (n, 3) that lie outside the solid, or less than a margin inside,
+    onto their line to a grey (n, 3).
 
     Colours deeper inside are unchanged, bit for bit, and the result is continuous.
     """
     result = target.copy()
     near = np.flatnonzero(limits.signed_distance(target) > -2 * margin)
     grey, chroma = grey[near], target[near] - grey[near]
-    # With x = grey + f · chroma, the boundary is at f = 2 · ray_fraction; results stay a margin inside of it.
+    # With x = grey + f · chroma, the boundary is at f = 2 · ray_fraction; results stay
+    # a margin inside of it.
     inward = margin / np.maximum(np.abs(chroma).max(axis=1), margin)
     reach = 2 * limits.ray_fraction(grey, grey + 2 * chroma) - inward
     moved = reach < 1
@@ -77,7 +87,8 @@ def toward_grey(limits: Solid, grey: Array, target: Array, margin: float) -> Arr
 
 def solid(matrix: Array) -> Solid:
     """Compute the object-colour solid of a sensor. Shapes: ``matrix`` (3, N)."""
-    # The zonotope is Σ_i [0, 1] · W_i. A facet is spanned by two segments: its normal is n = ± W_i × W_j.
+    # The zonotope is Σ_i [0, 1] · W_i. A facet is spanned by two segments: its normal
+    # is n = ± W_i × W_j.
     segments = matrix.T
     first, second = np.triu_indices(len(segments), k=1)
     cross = np.cross(segments[first], segments[second])
@@ -86,7 +97,8 @@ def solid(matrix: Array) -> Solid:
         segments[second], axis=1
     )
     normals = cross[kept] / length[kept, None]
-    # The farthest colour along n takes every W_k with n · W_k > 0: the offset is Σ_k max(0, n · W_k).
+    # The farthest colour along n takes every W_k with n · W_k > 0: the offset is Σ_k
+    # max(0, n · W_k).
     along = normals @ matrix
     offsets = np.maximum(along, 0).sum(axis=1), np.maximum(-along, 0).sum(axis=1)
     return Solid(np.concatenate([normals, -normals]), np.concatenate(offsets))
@@ -95,8 +107,8 @@ def solid(matrix: Array) -> Solid:
 def solid_volume(matrix: Array) -> float:
     """Compute the volume of the object-colour solid of three responses (3, N).
 
-    The zonotope consists of a parallelepiped for each triple of segments; each pair of segments takes part in those of
-    all third ones.
+    The zonotope consists of a parallelepiped for each triple of segments; each pair of
+    segments takes part in those of all third ones.
     """
     first, second = np.triu_indices(matrix.shape[1], k=1)
     normals = np.cross(matrix.T[first], matrix.T[second])

@@ -1,4 +1,6 @@
-"""RGB spaces by name: of colour-science, of OpenColorIO (``$OCIO`` and its built-in ACES), or by chromaticities."""
+"""RGB spaces by name: of colour-science, of OpenColorIO (``$OCIO`` and its built-in
+ACES), or by chromaticities.
+"""
 
 import functools
 import os
@@ -21,7 +23,10 @@ from uplift.common.text import format_value, parse_float
 
 VARIABLE = "OCIO"
 """Environment variable with the path of a configuration."""
-CONFIGURATION_HINT = "correct the environment variable OCIO, or unset it to use the built-in configuration"
+CONFIGURATION_HINT = (
+    "correct the environment variable OCIO, or unset it to use the built-in "
+    "configuration"
+)
 BUILT_IN = "ocio://studio-config-latest"
 REFERENCE = "ACES2065-1"
 AP0 = Primaries((0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.077), (0.32168, 0.33767))
@@ -29,7 +34,8 @@ AP0 = Primaries((0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.077), (0.32168, 0.3376
 FIRST_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "Adobe RGB (1998)")
 """Spaces of colour-science that stand for others with the same primaries."""
 MAX_MATRIX_DIFFERENCE = 1e-3
-"""Largest difference between matrices of the same primaries, of which some are rounded."""
+"""Largest difference between matrices of the same primaries, of which some are rounded.
+"""
 MAX_PRIMARIES_DIFFERENCE = 5e-3
 """Largest difference in linear RGB between primaries that count as equal."""
 MAX_CURVE_DIFFERENCE = 0.5
@@ -47,9 +53,13 @@ class ImageSpace:
     gamut: Gamut
     """Primaries of the linear RGB that `decode` returns."""
     decode: Callable[[Array], Array] | None = None
-    """From codes (..., 3), 0 to 1, to linear RGB (..., 3). None for the transfer function of the cube's space."""
+    """From codes (..., 3), 0 to 1, to linear RGB (..., 3). None for the transfer
+    function of the cube's space.
+    """
     floats_are_codes: bool = False
-    """Whether floats of the space are codes, too, as those of encoded spaces of OpenColorIO."""
+    """Whether floats of the space are codes, too, as those of encoded spaces of
+    OpenColorIO.
+    """
     mixes_channels: bool = False
     """Whether `decode` computes each component from all three."""
     to_gamut: Array | None = None
@@ -61,7 +71,9 @@ class ImageSpace:
         return matrix if self.to_gamut is None else matrix @ self.to_gamut
 
     def matrix_to(self, sensor: Sensor) -> Array | None:
-        """Compute the matrix (3, 3) to the linear RGB of a sensor; None if the primaries are equal."""
+        """Compute the matrix (3, 3) to the linear RGB of a sensor; None if the
+        primaries are equal.
+        """
         sensor.require_xyz()
         matrix = self.matrix(sensor)
         return (
@@ -114,7 +126,9 @@ class OcioSpace:
         return AP0.rgb_to_xyz @ self.matrix
 
     def as_image_space(self) -> ImageSpace:
-        """Return the space with its own primaries if it is linear RGB, else converted to `AP0`."""
+        """Return the space with its own primaries if it is linear RGB, else converted
+        to `AP0`.
+        """
         if self.is_linear:
             white = self.matrix.sum(axis=1)
             is_rgb = np.abs(white - 1).max() <= MAX_MATRIX_DIFFERENCE
@@ -128,7 +142,8 @@ class OcioSpace:
 
 
 def find_space(text: str) -> ImageSpace:
-    """Find an RGB space by chromaticities, or by name: of ``$OCIO``, colour-science, or the built-in configuration.
+    """Find an RGB space by chromaticities, or by name: of ``$OCIO``, colour-science, or
+    the built-in configuration.
 
     >>> find_space("rec2020").name, find_space("lin_ap1_scene").name
     ('ITU-R BT.2020', 'ACEScg')
@@ -137,7 +152,10 @@ def find_space(text: str) -> ImageSpace:
         try:
             numbers = [parse_float(word) for word in re.split(r"[,;\s]+", text.strip())]
         except ValueError as error:
-            problem = f"primaries must be the name of a space or eight numbers, got {format_value(text)}"
+            problem = (
+                "primaries must be the name of a space or eight numbers, got "
+                f"{format_value(text)}"
+            )
             hint = "give x,y of red, green, blue and white"
             raise OptionError(problem, hint=hint) from error
         return ImageSpace(text, Primaries.of(numbers))
@@ -163,7 +181,9 @@ def find_space(text: str) -> ImageSpace:
 
 
 def look_up_space(name: str, *, ocio: bool = True) -> RgbSpace:
-    """Find an RGB space of colour-science, also by the name of OpenColorIO of a space with the same primaries."""
+    """Find an RGB space of colour-science, also by the name of OpenColorIO of a space
+    with the same primaries.
+    """
     if (found := tables.rgb_space(name)) is not None:
         return found
     if ocio and (space := find_ocio_space(name)) is not None:
@@ -215,7 +235,10 @@ def find_ocio_space(name: str, *, built_in: bool = True) -> OcioSpace | None:
             )
         except PyOpenColorIO.Exception as error:
             raise OptionError(
-                f"the configuration of OpenColorIO cannot be used: {' '.join(str(error).split())}",
+                (
+                    "the configuration of OpenColorIO cannot be used: "
+                    f"{' '.join(str(error).split())}"
+                ),
                 path=place,
                 hint=CONFIGURATION_HINT,
             ) from error

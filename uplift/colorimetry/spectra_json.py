@@ -1,7 +1,8 @@
 """JSON files of rawtoaces: spectral sensitivities of cameras and powers of lamps.
 
-Present files have ``spectral_data`` with an ``index`` of labels and ``data`` by wavelength. The first versions have a
-``range`` of first and last wavelength and step, and rows of ``sensitivity`` or of ``spec``, the power.
+Present files have ``spectral_data`` with an ``index`` of labels and ``data`` by
+wavelength. The first versions have a ``range`` of first and last wavelength and step,
+and rows of ``sensitivity`` or of ``spec``, the power.
 """
 
 from dataclasses import dataclass
@@ -39,7 +40,9 @@ def is_json(path: StrPath) -> bool:
 def read_spectra(
     path: StrPath, labels: tuple[str, ...], error: type[UpliftError]
 ) -> LabelledSpectra:
-    """Read spectra in the order of ``labels``; raise ``error`` for a file with others, or that is not of rawtoaces."""
+    """Read spectra in the order of ``labels``; raise ``error`` for a file with others,
+    or that is not of rawtoaces.
+    """
     data = read_bytes(path, error, limit=MAX_BYTES, hint=HINT)
     try:
         table = parse_json(data.decode("utf-8-sig"))
@@ -54,7 +57,10 @@ def read_spectra(
             hint=HINT,
         ) from cause
     if sorted(spectra.labels) != sorted(labels):
-        problem = f"must have the columns {', '.join(labels)}, got {', '.join(spectra.labels)}"
+        problem = (
+            f"must have the columns {', '.join(labels)}, got "
+            f"{', '.join(spectra.labels)}"
+        )
         raise error(problem, path=path, hint="name a file of another kind")
     columns = [spectra.labels.index(label) for label in labels]
     order = np.argsort(spectra.wavelengths)

@@ -1,6 +1,8 @@
-"""Colours as codes: the sRGB transfer curve (IEC 61966-2-1), linear RGB for display, and colours as files write them.
+"""Colours as codes: the sRGB transfer curve (IEC 61966-2-1), linear RGB for display,
+and colours as files write them.
 
-Image viewers show a PNG as sRGB for every space of the cube, so this is separate from the encoding of a cube.
+Image viewers show a PNG as sRGB for every space of the cube, so this is separate from
+the encoding of a cube.
 """
 
 import re
@@ -37,7 +39,9 @@ def encode(linear: ArrayLike) -> Array:
 
 
 def to_display_codes(rgb: ArrayLike, gamut: Gamut) -> Array:
-    """Convert linear RGB of a gamut to 8-bit sRGB codes, white to white. Shapes: ``rgb`` (…, 3) → (…, 3)."""
+    """Convert linear RGB of a gamut to 8-bit sRGB codes, white to white. Shapes:
+    ``rgb`` (…, 3) → (…, 3).
+    """
     linear = np.asarray(rgb, dtype=float) @ conversion(gamut, SRGB).T
     return np.rint(255 * encode(map_to_gamut(linear, SRGB, DISPLAY_MAPPING).rgb))
 

@@ -1,8 +1,10 @@
-"""Tables of colour-science by name: observers, illuminants, lamps, cameras and RGB spaces.
+"""Tables of colour-science by name: observers, illuminants, lamps, cameras and RGB
+spaces.
 
-Importing colour-science takes a second, so what most commands need is in a file that ``tools/ship_tables.py`` makes of
-it: spectra on 380–780 nm every 5 nm, and RGB spaces. Everything else comes from colour-science itself. The data are
-Copyright 2013 Colour Developers, BSD-3-Clause, as part of colour-science.
+Importing colour-science takes a second, so what most commands need is in a file that
+``tools/ship_tables.py`` makes of it: spectra on 380–780 nm every 5 nm, and RGB spaces.
+Everything else comes from colour-science itself. The data are Copyright 2013 Colour
+Developers, BSD-3-Clause, as part of colour-science.
 """
 
 import functools
@@ -39,13 +41,21 @@ TABLES = {
 }
 """All tables of colour-science that are used."""
 FILES = {
-    "illuminant": "here an illuminant is a name; in Python pass the lamp that uplift.read_lamp reads",
-    "observer": "sensitivities of a camera need space='camera' and a file .csv, .tsv, .txt or .json",
+    "illuminant": (
+        "here an illuminant is a name; in Python pass the lamp that uplift.read_lamp "
+        "reads"
+    ),
+    "observer": (
+        "sensitivities of a camera need space='camera' and a file .csv, .tsv, .txt "
+        "or .json"
+    ),
     "camera": "files of cameras end in .csv, .tsv, .txt or .json",
 }
 """Hints for files in place of a name."""
 RESPONSES = ("observer", "camera")
-"""Kinds that are 0 outside their tables: a wavelength without a value adds nothing. Others keep their last value."""
+"""Kinds that are 0 outside their tables: a wavelength without a value adds nothing.
+Others keep their last value.
+"""
 SHORT_NAMES = {
     "ap0": "ACES2065-1", "ap1": "ACEScg", "p3": "Display P3", "prophoto": "ProPhoto RGB",
     "rec709": "ITU-R BT.709", "bt709": "ITU-R BT.709", "rec2020": "ITU-R BT.2020", "bt2020": "ITU-R BT.2020",
@@ -62,7 +72,7 @@ class RgbSpace:
     """(3, 2) chromaticities."""
     whitepoint: Array
     """(2,) chromaticity."""
-    matrix_XYZ_to_RGB: Array
+    matrix_XYZ_to_RGB: Array  # noqa: N815 — the name of colour-science
     """(3, 3)."""
     decoding: Array
     """(256,) linear values of the 8-bit codes."""
@@ -80,7 +90,8 @@ def _file() -> Mapping[str, Array]:
 
 @functools.cache
 def names(kind: str) -> tuple[str, ...]:
-    """Return the names of a kind: ``"illuminant"``, ``"observer"``, ``"camera"``, ``"RGB space"``…
+    """Return the names of a kind: ``"illuminant"``, ``"observer"``, ``"camera"``,
+    ``"RGB space"``…
 
     >>> names("camera")
     ('Nikon 5100 (NPL)', 'Sigma SDMerill (NPL)')
@@ -89,7 +100,8 @@ def names(kind: str) -> tuple[str, ...]:
 
 
 def stated_name(kind: str, name: Illuminant) -> str:
-    """Return the name that colour-science states for a name, which may be an alias or have other capitals.
+    """Return the name that colour-science states for a name, which may be an alias or
+    have other capitals.
 
     A lamp has its own, which must not be that of an illuminant.
     """
@@ -114,10 +126,12 @@ def samples(
     end: float = END,
     step: float = STEP,
 ) -> Array:
-    """Sample spectra by name, or those of a lamp; the result is read-only. Shape (N,) or (N, 3).
+    """Sample spectra by name, or those of a lamp; the result is read-only. Shape (N,)
+    or (N, 3).
 
-    Outside its table a spectrum keeps its last value, as CIE 15 has it for lights, and one of `RESPONSES` is 0.
-    ``kind`` is one of the keys of `TABLES`, such as ``"display"`` for the power of the primaries of a display.
+    Outside its table a spectrum keeps its last value, as CIE 15 has it for lights, and
+    one of `RESPONSES` is 0. ``kind`` is one of the keys of `TABLES`, such as
+    ``"display"`` for the power of the primaries of a display.
     """
     if isinstance(name, Lamp):
         values = name.at(np.arange(start, end + step / 2, step))
@@ -145,7 +159,9 @@ def aligned(kind: str, spectra: Any, start: float, end: float, step: float) -> A
 
 
 def rgb_space(name: str) -> RgbSpace | None:
-    """Return an RGB space by a name of colour-science or one of `SHORT_NAMES`, None if it has none of the name."""
+    """Return an RGB space by a name of colour-science or one of `SHORT_NAMES`, None if
+    it has none of the name.
+    """
     known, name = (
         names("RGB space"),
         SHORT_NAMES.get(re.sub(r"[ ._-]", "", name.casefold()), name),
@@ -164,7 +180,9 @@ def rgb_space(name: str) -> RgbSpace | None:
 
 
 def bradford(source: Array, target: Array) -> Array:
-    """Compute the matrix (3, 3) of Bradford's adaptation from one white XYZ (3,) to another."""
+    """Compute the matrix (3, 3) of Bradford's adaptation from one white XYZ (3,) to
+    another.
+    """
     matrix = _file()["bradford"]
     # M⁻¹ diag(M w′ / M w) M
     return (
@@ -173,7 +191,9 @@ def bradford(source: Array, target: Array) -> Array:
 
 
 def look_up(kind: str, name: str) -> Any:
-    """Return an object of colour-science by its name, for an illuminant also by the names of `lights`."""
+    """Return an object of colour-science by its name, for an illuminant also by the
+    names of `lights`.
+    """
     table = operator.attrgetter(TABLES[kind])(colour_science())
     known = list(table)
     if kind == "observer" and name not in table and name in colour_science().MSDS_CMFS:

@@ -1,1 +1,3 @@
-"""Shared basics of all layers: arrays, errors, text, files in and out, progress, and limits of the machine."""
+"""Shared basics of all layers: arrays, errors, text, files in and out, progress, and
+limits of the machine.
+"""

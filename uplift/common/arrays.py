@@ -1,4 +1,6 @@
-"""Types of arrays and paths in signatures; blocks of rows, and distances between points."""
+"""Types of arrays and paths in signatures; blocks of rows, and distances between
+points.
+"""
 
 from collections.abc import Iterator
 from functools import reduce
@@ -27,12 +29,16 @@ def blocks(count: int, size: int) -> Iterator[slice]:
 
 
 def largest(rows: Array) -> Array:
-    """Largest element (n,) of each row (n, K), K > 0, by columns: numpy is slow along short axes."""
+    """Largest element (n,) of each row (n, K), K > 0, by columns: numpy is slow along
+    short axes.
+    """
     return np.asarray(reduce(np.maximum, rows.T))
 
 
 def distances(first: Array, second: Array) -> Array:
-    """Compute the Euclidean distances (n, m) of points (n, K) and (m, K), by components, as products would cancel."""
+    """Compute the Euclidean distances (n, m) of points (n, K) and (m, K), by
+    components, as products would cancel.
+    """
     squares = np.zeros((len(first), len(second)))
     for one, other in zip(first.T, second.T, strict=True):
         squares += np.subtract.outer(one, other) ** 2

@@ -9,7 +9,8 @@ import numpy as np
 
 @functools.cache
 def colour_science() -> ModuleType:
-    """Import colour-science, which takes a second, without its warnings about optional dependencies.
+    """Import colour-science, which takes a second, without its warnings about optional
+    dependencies.
 
     The print options of numpy, which it changes, are restored.
     """

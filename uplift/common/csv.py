@@ -1,8 +1,10 @@
-"""CSV text: the writer of the project, the reader of tables that it wrote, and the parts of readers of others.
+"""CSV text: the writer of the project, the reader of tables that it wrote, and the
+parts of readers of others.
 
-A spreadsheet runs a cell that begins with ``=``, ``+``, ``-``, ``@`` or a tab as a formula. Such text is written with
-an apostrophe before it, which spreadsheets hide; `plain_cell` takes it away again. Numbers, also those formatted as
-text, stay as they are.
+A spreadsheet runs a cell that begins with ``=``, ``+``, ``-``, ``@`` or a tab as a
+formula. Such text is written with an apostrophe before it, which spreadsheets hide;
+`plain_cell` takes it away again. Numbers, also those formatted as text, stay as they
+are.
 """
 
 import csv
@@ -23,10 +25,12 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 def write_csv(
     file: Any, rows: Iterable[Iterable[object]], *, quote_text: bool = False
 ) -> None:
-    """Write rows with LF line ends, each before the next is computed, to a text file or anything else with ``write``.
+    """Write rows with LF line ends, each before the next is computed, to a text file or
+    anything else with ``write``.
 
-    Floats have all significant digits, None is an empty cell, and text is neutralised. With ``quote_text`` all text is
-    quoted, which distinguishes a name such as ``1`` from a number.
+    Floats have all significant digits, None is an empty cell, and text is neutralised.
+    With ``quote_text`` all text is quoted, which distinguishes a name such as ``1``
+    from a number.
     """
     writer = csv.writer(
         file,
@@ -57,7 +61,8 @@ def csv_text(
 def parse_csv(data: bytes) -> list[dict[str, str]]:
     """Parse a table with a line of column names, a dictionary for each row.
 
-    `ValueError` for bytes that are not UTF-8 or CSV, and for rows that have not a cell for each name.
+    `ValueError` for bytes that are not UTF-8 or CSV, and for rows that have not a cell
+    for each name.
     """
     reader = csv.DictReader(io.StringIO(data.decode("utf-8-sig"), newline=""))
     try:
@@ -70,7 +75,8 @@ def parse_csv(data: bytes) -> list[dict[str, str]]:
 
 
 def parse_decimal(text: str) -> float:
-    """Parse a number with a decimal point or a decimal comma, which may be infinite or NaN; `ValueError` otherwise.
+    """Parse a number with a decimal point or a decimal comma, which may be infinite or
+    NaN; `ValueError` otherwise.
 
     >>> parse_decimal("0.25"), parse_decimal("0,25"), parse_decimal("-1,5e-3")
     (0.25, 0.25, -0.0015)
@@ -92,9 +98,11 @@ def is_decimal(text: str) -> bool:
 
 
 def find_delimiter(lines: Iterable[str]) -> str:
-    """Return the one of `DELIMITERS` that splits most numbers off lines, and few other cells.
+    """Return the one of `DELIMITERS` that splits most numbers off lines, and few other
+    cells.
 
-    Of lines without numbers it is the first one that they have, of lines without any a semicolon.
+    Of lines without numbers it is the first one that they have, of lines without any a
+    semicolon.
 
     >>> [find_delimiter([line]) for line in ("400,5;0,3", "0,2 0,3 0,4", "0.2, 0.3, 0.4", '"0,2","0,3"', "r,g")]
     [';', ' ', ',', ',', ',']
@@ -113,7 +121,8 @@ def find_delimiter(lines: Iterable[str]) -> str:
 
 
 def split_line(line: str, delimiter: str) -> list[str]:
-    """Split a line into cells without the blanks around them, and without empty cells at the end.
+    """Split a line into cells without the blanks around them, and without empty cells
+    at the end.
 
     `ValueError` for a cell that is too long.
 

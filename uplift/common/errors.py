@@ -1,4 +1,6 @@
-"""Exception hierarchy: errors and warnings carry a stable code, the problem and, where known, a place and a hint."""
+"""Exception hierarchy: errors and warnings carry a stable code, the problem and, where
+known, a place and a hint.
+"""
 
 import contextlib
 import os
@@ -10,7 +12,7 @@ from uplift.common.text import listed, printable
 StrPath = str | os.PathLike[str]
 
 
-class Diagnostic(Exception):
+class Diagnostic(Exception):  # noqa: N818
     """Fields that errors and warnings share.
 
     Parameters
@@ -18,7 +20,8 @@ class Diagnostic(Exception):
     problem : str
         The constraint and the value received, without a full stop.
     code : str
-        Stable identifier in kebab case, for programs and tests. Wording may change between versions, codes do not.
+        Stable identifier in kebab case, for programs and tests. Wording may change
+        between versions, codes do not.
     path : path-like, optional
         The file concerned.
     line : int, optional
@@ -26,7 +29,8 @@ class Diagnostic(Exception):
     entry : str, optional
         Name of the atlas entry concerned.
     hint : str, optional
-        How to solve the problem. It names parameters of the library, never options of the command line.
+        How to solve the problem. It names parameters of the library, never options of
+        the command line.
     """
 
     code = "error"
@@ -50,7 +54,9 @@ class Diagnostic(Exception):
 
     @property
     def where(self) -> str:
-        """Location as ``path:line: entry 'name'``, as far as it is known; empty if nothing is."""
+        """Location as ``path:line: entry 'name'``, as far as it is known; empty if
+        nothing is.
+        """
         place = ":".join(
             str(part) for part in (self.path, self.line) if part is not None
         )
@@ -58,11 +64,15 @@ class Diagnostic(Exception):
         return ": ".join(part for part in (place, entry) if part)
 
     def __str__(self) -> str:
-        """One line: location, problem, hint, as `describe` of the library's own hint."""
+        """One line: location, problem, hint, as `describe` of the library's
+        own hint.
+        """
         return self.describe(self.hint)
 
     def describe(self, hint: str) -> str:
-        """Location, problem and another hint in one line, with control characters escaped."""
+        """Location, problem and another hint in one line, with control characters
+        escaped.
+        """
         text = f"{self.where}: {self.problem}" if self.where else self.problem
         return printable(f"{text}; {hint}" if hint else text)
 
@@ -87,7 +97,9 @@ class AtlasError(UpliftError, ValueError):
 
 
 class UnknownNameError(UpliftError, KeyError):
-    """A name is unknown, such as that of an illuminant, an RGB space, a mode or an atlas entry."""
+    """A name is unknown, such as that of an illuminant, an RGB space, a mode or an
+    atlas entry.
+    """
 
     code = "unknown-name"
 
@@ -111,7 +123,9 @@ class ChartFileError(UpliftError, ValueError):
 
 
 class PlanFileError(UpliftError, ValueError):
-    """A scene file or a plan is missing, invalid, out of date, or cannot be satisfied."""
+    """A scene file or a plan is missing, invalid, out of date, or cannot be
+    satisfied.
+    """
 
     code = "plan-file"
 
@@ -129,7 +143,9 @@ class PaletteError(UpliftError, ValueError):
 
 
 class ColourError(UpliftError, ValueError):
-    """A colour is outside [0, 1], not finite, unreadable, or one that a cube or a reflectance cannot have."""
+    """A colour is outside [0, 1], not finite, unreadable, or one that a cube or a
+    reflectance cannot have.
+    """
 
     code = "colour"
 
@@ -155,7 +171,8 @@ class UpliftWarning(Diagnostic, UserWarning):
 def unknown_name(
     name: str, known: Iterable[str], kind: str, lister: str = ""
 ) -> UnknownNameError:
-    """Make the error for an unknown name of a ``kind``. Its hint has the nearest names, or the ``lister`` of all.
+    """Make the error for an unknown name of a ``kind``. Its hint has the nearest names,
+    or the ``lister`` of all.
 
     >>> error = unknown_name("srbg", ("sRGB", "P3-D65"), "RGB space")
     >>> print(error.code, "|", error)

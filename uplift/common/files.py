@@ -1,7 +1,8 @@
-"""Files in and out: regular files of limited size are read; a file that is written is complete or absent.
+"""Files in and out: regular files of limited size are read; a file that is written is
+complete or absent.
 
-A writer fills a temporary file in the same folder, flushes it to disk and renames it. With concurrent writers the last
-one to finish wins.
+A writer fills a temporary file in the same folder, flushes it to disk and renames it.
+With concurrent writers the last one to finish wins.
 """
 
 import contextlib
@@ -15,7 +16,9 @@ from pathlib import Path
 from uplift.common.errors import OutputError, StrPath, UpliftError
 
 DAY = 86_400.0
-"""Seconds without a change after which a temporary file belongs to a writer that was killed."""
+"""Seconds without a change after which a temporary file belongs to a writer that was
+killed.
+"""
 KERNEL = "/proc"
 """Folder of the files of the kernel, where there is one."""
 IMAGES = (b"\x89PNG", b"v/1\x01", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"#?")
@@ -30,9 +33,11 @@ _TEMPORARIES: set[Path] = set()
 
 
 def check_regular(path: StrPath, error: type[UpliftError], *, hint: str) -> None:
-    """Check that a path is a regular file, which ends and can be read twice; raise ``error`` otherwise.
+    """Check that a path is a regular file, which ends and can be read twice; raise
+    ``error`` otherwise.
 
-    Files of the kernel such as ``/proc/kmsg`` look regular, but reading them may never end.
+    Files of the kernel such as ``/proc/kmsg`` look regular, but reading them may never
+    end.
     """
     with _reading(path, error, hint):
         status = os.stat(path)
@@ -63,7 +68,9 @@ def read_bytes(
 
 
 def recognise(data: bytes) -> str:
-    """Name what a file is by its bytes: an image, a cube, an emission table or text; empty for all others."""
+    """Name what a file is by its bytes: an image, a cube, an emission table or text;
+    empty for all others.
+    """
     if data.startswith(IMAGES):
         return "an image"
     if data[8:9] == b"{":  # safetensors: the length of a header, and the header as JSON
@@ -72,7 +79,9 @@ def recognise(data: bytes) -> str:
 
 
 def file_digest(path: StrPath, error: type[UpliftError] = UpliftError) -> str:
-    """Return the SHA-256 digest of a regular file in hexadecimal; raise ``error`` for others."""
+    """Return the SHA-256 digest of a regular file in hexadecimal; raise ``error`` for
+    others.
+    """
     import hashlib
 
     check_regular(path, error, hint="name a file")
@@ -102,7 +111,9 @@ def check_outputs(
     inputs: Iterable[StrPath | None] = (),
     force: bool = False,
 ) -> None:
-    """Check all outputs of a program before it reads and writes anything, as `check_output`; None are left out."""
+    """Check all outputs of a program before it reads and writes anything, as
+    `check_output`; None are left out.
+    """
     outputs, inputs = [path for path in paths if path is not None], list(inputs)
     for path in outputs:
         check_output(path, inputs=inputs, force=force)
@@ -125,8 +136,9 @@ def check_output(
 ) -> Path:
     """Check that a file can be written, before long work rather than after it.
 
-    An existing file is accepted with ``force``, one of the ``inputs`` never (``output-is-input``). Names of inputs
-    without a file, such as those of shipped atlases, are ignored.
+    An existing file is accepted with ``force``, one of the ``inputs`` never
+    (``output-is-input``). Names of inputs without a file, such as those of shipped
+    atlases, are ignored.
     """
     if os.fspath(path) == "-":
         hint = "give a file name, or ./- for a file of this name"
@@ -177,7 +189,9 @@ def check_folder(
     inputs: Iterable[StrPath | None] = (),
     force: bool = False,
 ) -> Path:
-    """Check that files with these names can be written to a folder, which `make_folder` creates if necessary."""
+    """Check that files with these names can be written to a folder, which `make_folder`
+    creates if necessary.
+    """
     folder = Path(path)
     outputs = [folder / name for name in names]
     if os.path.isdir(folder):
@@ -219,9 +233,11 @@ def write_text(text: str, path: StrPath, *, force: bool = False) -> None:
 
 @contextlib.contextmanager
 def atomic_write(path: StrPath, *, force: bool = False) -> Iterator[Path]:
-    """Provide a temporary path that is renamed to ``path`` if the block succeeds, and removed if it fails.
+    """Provide a temporary path that is renamed to ``path`` if the block succeeds, and
+    removed if it fails.
 
-    A replaced file keeps its permissions. A symbolic link is kept and its target replaced.
+    A replaced file keeps its permissions. A symbolic link is kept and its target
+    replaced.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -240,7 +256,8 @@ def atomic_write(path: StrPath, *, force: bool = False) -> Iterator[Path]:
         remove_stale(target)
         temporary.touch(exist_ok=False)
         yield temporary
-        # On disk before it gets its name: after a power cut the name stands for the old content or for all of the new.
+        # On disk before it gets its name: after a power cut the name stands for the old
+        # content or for all of the new.
         with temporary.open("rb+") as file:
             os.fsync(file.fileno())
         if target.exists():
@@ -259,7 +276,9 @@ def atomic_write(path: StrPath, *, force: bool = False) -> Iterator[Path]:
 
 
 def remove_stale(path: StrPath, seconds: float = DAY) -> None:
-    """Remove the temporary files of writers to a path that have not changed for so long: their writers were killed."""
+    """Remove the temporary files of writers to a path that have not changed for so
+    long: their writers were killed.
+    """
     target = Path(path).resolve()
     for entry in os.scandir(target.parent):
         if entry.name.startswith(
@@ -271,7 +290,9 @@ def remove_stale(path: StrPath, seconds: float = DAY) -> None:
 
 
 def remove_temporaries() -> None:
-    """Remove the temporary files that this process is writing, before it ends without leaving its blocks."""
+    """Remove the temporary files that this process is writing, before it ends without
+    leaving its blocks.
+    """
     for temporary in list(_TEMPORARIES):
         with contextlib.suppress(OSError):
             temporary.unlink()

@@ -14,16 +14,19 @@ from uplift.common.errors import OptionError, UpliftError
 _LOCK = threading.Lock()
 _CALLERS: set[object] = set()
 _LIMITS: list[Any] = []
-"""Those of the callers in their order, all lifted after the last caller: a later one may know more libraries."""
+"""Those of the callers in their order, all lifted after the last caller: a later one
+may know more libraries.
+"""
 
 
 @contextlib.contextmanager
 def single_threaded_blas() -> Iterator[None]:
     """Limit BLAS to one thread, until the last of several concurrent callers is done.
 
-    The matrices of this package are small, so threads would wait for each other. Results then also do not depend on the
-    number of threads, which changes the rounding of sums. The threads of XLA are not affected: they distribute rows.
-    Only loaded libraries are limited: scipy, which brings its own BLAS, must be imported before.
+    The matrices of this package are small, so threads would wait for each other.
+    Results then also do not depend on the number of threads, which changes the rounding
+    of sums. The threads of XLA are not affected: they distribute rows. Only loaded
+    libraries are limited: scipy, which brings its own BLAS, must be imported before.
     """
     from threadpoolctl import (
         OpenBLASController,
@@ -35,7 +38,8 @@ def single_threaded_blas() -> Iterator[None]:
         threading_layer="openmp"
     )  # its limits hold for the calling thread
     with per_thread.limit(limits=1, user_api="blas"):
-        # A limit lifted by one caller would hold no longer for the others, so all are kept until the last has left.
+        # A limit lifted by one caller would hold no longer for the others, so all are
+        # kept until the last has left.
         caller = object()
         with _LOCK:
             _CALLERS.add(caller)
@@ -46,7 +50,8 @@ def single_threaded_blas() -> Iterator[None]:
             with _LOCK:
                 _CALLERS.remove(caller)
                 while _LIMITS and not _CALLERS:
-                    # The limit can otherwise be restored by the thread only that set it.
+                    # The limit can otherwise be restored by the thread only that set
+                    # it.
                     OpenBLASController.clear_controlling_thread(force=True)
                     _LIMITS.pop().restore_original_limits()
 
@@ -64,7 +69,9 @@ CGROUP_LIMITS = (
 
 
 def free_memory() -> int | None:
-    """Return the bytes that this process can still have: of the machine, its container, its limit; None if unknown."""
+    """Return the bytes that this process can still have: of the machine, its container,
+    its limit; None if unknown.
+    """
     limits = []
     with contextlib.suppress(OSError, AttributeError):  # on Linux
         limits.append(
@@ -92,14 +99,21 @@ def free_memory() -> int | None:
 def check_memory(
     need: float, subject: str, error: type[UpliftError], hint: str
 ) -> None:
-    """Raise ``error`` (``out-of-memory``) if the subject needs more bytes than are known to be free."""
+    """Raise ``error`` (``out-of-memory``) if the subject needs more bytes than are
+    known to be free.
+    """
     free = free_memory()
     if free is not None and need > free:
-        problem = f"{subject} needs about {need / 1e9:.3g} GB of memory, {free / 1e9:.3g} GB are free"
+        problem = (
+            f"{subject} needs about {need / 1e9:.3g} GB of memory, {free / 1e9:.3g} "
+            "GB are free"
+        )
         raise error(problem, code="out-of-memory", hint=hint)
 
 
 @cache
 def require_memory_of_xla() -> None:
-    """Raise `OptionError` if XLA, which ends the process without memory for its threads, would not have it."""
+    """Raise `OptionError` if XLA, which ends the process without memory for its
+    threads, would not have it.
+    """
     check_memory(PROCESS_BYTES, "a fit", OptionError, "use a machine with more memory")

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Progress:
-    """Work done so far: ``done`` of ``total`` items of a stage such as ``"fit"``, in a ``step``.
+    """Work done so far: ``done`` of ``total`` items of a stage such as ``"fit"``, in a
+    ``step``.
 
     ``detail`` is one line for verbose output.
     """

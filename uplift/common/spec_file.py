@@ -1,4 +1,5 @@
-"""TOML and JSON files checked against pydantic models, with errors that name file, key and received value.
+"""TOML and JSON files checked against pydantic models, with errors that name file, key
+and received value.
 
     scene.toml: lights[1]: unknown illuminant 'D66'; did you mean 'D65', 'D60', 'D50'?
 
@@ -58,7 +59,9 @@ def problem(text: str, hint: str = "", code: str = INVALID) -> PydanticCustomErr
 
 
 def resolves(look_up: Callable[[Any], Any]) -> AfterValidator:
-    """Return a validator for names that a function must know, without an `UpliftError`. The value stays as it is."""
+    """Return a validator for names that a function must know, without an `UpliftError`.
+    The value stays as it is.
+    """
 
     def check(value: Any) -> Any:
         try:
@@ -71,7 +74,9 @@ def resolves(look_up: Callable[[Any], Any]) -> AfterValidator:
 
 
 def check_inside(name: str) -> str:
-    """Check that a path lies within the folder of its spec file, which may come from a stranger."""
+    """Check that a path lies within the folder of its spec file, which may come from a
+    stranger.
+    """
     if (
         PureWindowsPath(name).anchor or ".." in PureWindowsPath(name).parts
     ):  # of POSIX, too
@@ -95,7 +100,9 @@ class SpecFile:
     error: type[UpliftError]
 
     def validate(self, model: type[Model], hint: str = "") -> Model:
-        """Check the values against a model; the first that does not fit raises `error`, with ``hint`` or its own."""
+        """Check the values against a model; the first that does not fit raises `error`,
+        with ``hint`` or its own.
+        """
         try:
             return TypeAdapter(model).validate_python(self.values)
         except ValidationError as caught:
@@ -118,7 +125,9 @@ class SpecFile:
     def fail(
         self, keys: Iterable[Key], text: str, *, code: str = INVALID, hint: str = ""
     ) -> NoReturn:
-        """Raise the error for the value at a key path such as ``apart[2].light``, empty for the file."""
+        """Raise the error for the value at a key path such as ``apart[2].light``, empty
+        for the file.
+        """
         # Left out of the path: what pydantic adds for unions and for keys of tables
         parts = [key for key in keys if key != "[key]" and not str(key).startswith(TAG)]
         place = "".join(

@@ -1,4 +1,6 @@
-"""Text from elsewhere: made safe to show, shortened for messages, and parsed as numbers or JSON."""
+"""Text from elsewhere: made safe to show, shortened for messages, and parsed as numbers
+or JSON.
+"""
 
 import decimal
 import json
@@ -13,7 +15,8 @@ MAX_LISTED = 6
 """Names in a message."""
 _UNPRINTABLE = re.compile(
     "[\x00-\x1f\x7f-\x9f"  # controls, among them the newline
-    "\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"  # direction, line breaks, invisible
+    # direction, line breaks, invisible
+    "\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"
     "\ud800-\udfff\U000e0000-\U000e007f]"  # no encoding; invisible
 )
 _FLOAT = re.compile(
@@ -26,7 +29,8 @@ _WHOLE = re.compile(
 
 
 def printable(text: str) -> str:
-    r"""Escape what a terminal would obey or cannot show: controls, marks of writing direction, lone surrogates.
+    r"""Escape what a terminal would obey or cannot show: controls, marks of writing
+    direction, lone surrogates.
 
     >>> printable("red\x1b[2J\nΔE00")
     'red\\x1b[2J\\nΔE00'
@@ -39,7 +43,9 @@ def printable(text: str) -> str:
 
 
 def json_escapes(text: str) -> str:
-    """Escape the same characters in JSON text, which keeps its meaning. Line breaks between values stay."""
+    """Escape the same characters in JSON text, which keeps its meaning. Line breaks
+    between values stay.
+    """
     # Within strings the encoder has escaped line breaks and tabs.
     return _UNPRINTABLE.sub(
         lambda match: match[0] if match[0] in "\n\r\t" else json.dumps(match[0])[1:-1],
@@ -48,7 +54,9 @@ def json_escapes(text: str) -> str:
 
 
 def format_value(value: object) -> str:
-    """Return the representation of a received value for a message, at most `MAX_LENGTH` characters of it."""
+    """Return the representation of a received value for a message, at most `MAX_LENGTH`
+    characters of it.
+    """
     try:
         return shorten(repr(value))
     except ValueError:  # Python does not print integers of more than 4300 digits
@@ -58,12 +66,16 @@ def format_value(value: object) -> str:
 
 
 def shorten(text: str) -> str:
-    """Return at most `MAX_LENGTH` characters of a text, and an ellipsis if it has more."""
+    """Return at most `MAX_LENGTH` characters of a text, and an ellipsis if
+    it has more.
+    """
     return text if len(text) <= MAX_LENGTH else f"{text[:MAX_LENGTH]}…"
 
 
 def listed(names: Sequence[str]) -> str:
-    """Join the first `MAX_LISTED` names, and count the others: 'a, b, c, d, e, f and 2 more'."""
+    """Join the first `MAX_LISTED` names, and count the others: 'a, b, c, d, e, f and 2
+    more'.
+    """
     more = f" and {len(names) - MAX_LISTED} more" if len(names) > MAX_LISTED else ""
     return ", ".join(names[:MAX_LISTED]) + more
 
@@ -96,7 +108,8 @@ def pluralise(count: int, noun: str) -> str:
 def parse_float(text: str) -> float:
     """Parse a number, which may be infinite or NaN; `ValueError` otherwise.
 
-    Python also accepts digits of other scripts and underscores, which are errors in data.
+    Python also accepts digits of other scripts and underscores, which are errors in
+    data.
     """
     text = text.strip()
     if not _FLOAT.fullmatch(text):
@@ -118,7 +131,9 @@ TOO_DEEP = f"tables and lists must not nest more than {MAX_DEPTH} levels deep"
 
 
 def parse_json(text: str) -> Any:
-    """Parse JSON; `ValueError` for text that is not JSON, not finite, not Unicode, or beyond the limits."""
+    """Parse JSON; `ValueError` for text that is not JSON, not finite, not Unicode, or
+    beyond the limits.
+    """
     try:
         value = json.loads(text, parse_constant=_finite, parse_float=_finite)
     except RecursionError:
@@ -128,7 +143,9 @@ def parse_json(text: str) -> Any:
 
 
 def check_values(value: object, depth: int = 0) -> None:
-    """Raise `ValueError` if parsed values nest too deeply for recursive code or have lone surrogates."""
+    """Raise `ValueError` if parsed values nest too deeply for recursive code or have
+    lone surrogates.
+    """
     if isinstance(value, str):
         value.encode()  # raises ValueError for lone surrogates
     elif isinstance(value, dict | list):

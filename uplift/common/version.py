@@ -1,11 +1,15 @@
-"""Version of uplift: that of a release, or on the way to one, which moves with every commit."""
+"""Version of uplift: that of a release, or on the way to one, which moves with every
+commit.
+"""
 
 import functools
 import re
 from pathlib import Path
 
 VERSION = "0.3.0.dev"
-"""Version of this source. After ``.dev`` follows the number of commits; a release has no such suffix."""
+"""Version of this source. After ``.dev`` follows the number of commits; a release has
+no such suffix.
+"""
 UNKNOWN = "0"
 """In place of the number of commits, where neither git nor a distribution has it."""
 DISTRIBUTION = "spectral-uplift"
@@ -16,9 +20,11 @@ ROOT = Path(__file__).parents[2]
 
 @functools.cache
 def version() -> str:
-    """Return the version: in a clone that of its commit, in a distribution that of its build.
+    """Return the version: in a clone that of its commit, in a distribution that of its
+    build.
 
-    `pyproject.toml` calls this for a build. It is not computed on import, as git takes some milliseconds.
+    `pyproject.toml` calls this for a build. It is not computed on import, as git takes
+    some milliseconds.
     """
     if not VERSION.endswith(".dev"):
         return VERSION
@@ -68,7 +74,9 @@ def is_older(first: str, second: str) -> bool:
 
 
 def _order(version: str) -> tuple[float, ...]:
-    """Return numbers in the order of versions: a release follows its commits, and NaN is neither below nor above."""
+    """Return numbers in the order of versions: a release follows its commits, and NaN
+    is neither below nor above.
+    """
     match = re.fullmatch(
         r"([0-9]{1,9})\.([0-9]{1,9})\.([0-9]{1,9})(?:\.dev([0-9]{1,9}))?", version
     )

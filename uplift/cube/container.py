@@ -1,4 +1,5 @@
-"""The container of cubes and emission tables: safetensors with one JSON text of metadata (docs/cube-file.md).
+"""The container of cubes and emission tables: safetensors with one JSON text of
+metadata (docs/cube-file.md).
 
 Equal contents have equal bytes.
 """
@@ -23,7 +24,8 @@ KEY = "uplift"
 STORED_TYPES = ("F64", "F32", "U8", "I32", "I16", "U32")
 """Types of arrays, by their names in safetensors."""
 MAX_VALUE = 1e30
-"""Limit of all numbers: far above those of any cube, and their squares do not overflow."""
+"""Limit of all numbers: far above those of any cube, and their squares do not overflow.
+"""
 MAX_TEXT = 1000
 """Characters of a text."""
 
@@ -32,9 +34,11 @@ Content = TypeVar("Content")
 
 
 class Kind(NamedTuple):
-    """A kind of file: the text that names it in the metadata, versions that are read, the noun of messages.
+    """A kind of file: the text that names it in the metadata, versions that are read,
+    the noun of messages.
 
-    ``foreign`` is the code of the error for files of another kind, ``features`` are the optional parts that are read.
+    ``foreign`` is the code of the error for files of another kind, ``features`` are the
+    optional parts that are read.
     """
 
     format: str
@@ -45,7 +49,8 @@ class Kind(NamedTuple):
 
 
 class Stored(NamedTuple):
-    """How an array is stored: its shape in the letters of docs/cube-file.md, its types, its least and largest value.
+    """How an array is stored: its shape in the letters of docs/cube-file.md, its types,
+    its least and largest value.
 
     With a ``feature``, the array is in the files only that announce the feature.
     """
@@ -65,14 +70,17 @@ def save(
     *,
     force: bool,
 ) -> None:
-    """Write arrays and metadata with their digest, atomically. The new file is read back before it replaces another."""
+    """Write arrays and metadata with their digest, atomically. The new file is read
+    back before it replaces another.
+    """
     from safetensors.numpy import save as encode
 
     tensors, metadata = content
     with atomic_write(path, force=force) as temporary:
         try:
             complete = {**metadata, "digest": content_digest(tensors, metadata)}
-            # safetensors' own save_file uses another temporary file, which would remain if this process were killed.
+            # safetensors' own save_file uses another temporary file, which would remain
+            # if this process were killed.
             temporary.write_bytes(encode(tensors, metadata={KEY: _json(complete)}))
             read(temporary)
         except CubeFileError as error:
@@ -86,7 +94,8 @@ def save(
 def load(
     path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Content]
 ) -> Content:
-    """Read a file: check its kind, version, features and digest, then ``decode`` its arrays and metadata.
+    """Read a file: check its kind, version, features and digest, then ``decode`` its
+    arrays and metadata.
 
     Every error that the content causes is a `CubeFileError` about the file.
     """
@@ -101,7 +110,7 @@ def load(
             metadata = parse_json((file.metadata() or {}).get(KEY, "{}"))
             if any(
                 file.get_slice(name).get_dtype() not in STORED_TYPES
-                for name in file.keys()
+                for name in file.keys()  # noqa: SIM118
             ):
                 raise ValueError("an array of an unknown type")
             tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
@@ -145,14 +154,18 @@ def load(
 
 
 def _recognise_file(path: Path) -> str:
-    """Name what a file is by its first bytes, see `recognise`; empty if they cannot be read."""
+    """Name what a file is by its first bytes, see `recognise`; empty if they cannot be
+    read.
+    """
     with contextlib.suppress(OSError), path.open("rb") as file:
         return recognise(file.read(MAX_TEXT))
     return ""
 
 
 def _check_readable(metadata: dict[str, Any], kind: Kind, path: Path) -> None:
-    """Raise `CubeFileError` for a version or a feature of later, or much earlier, versions of uplift."""
+    """Raise `CubeFileError` for a version or a feature of later, or much earlier,
+    versions of uplift.
+    """
     provenance = metadata.get("provenance")
     writer = provenance.get("uplift") if isinstance(provenance, dict) else None
     version = (
@@ -171,7 +184,10 @@ def _check_readable(metadata: dict[str, Any], kind: Kind, path: Path) -> None:
     features = metadata.get("features")
     for feature in features if isinstance(features, list) else ():
         if isinstance(feature, str) and feature not in kind.features:
-            problem = f"features must be of {', '.join(kind.features) or 'none'}, got {format_value(feature)}"
+            problem = (
+                f"features must be of {', '.join(kind.features) or 'none'}, got "
+                f"{format_value(feature)}"
+            )
             raise CubeFileError(problem, code="cube-feature", path=path, hint=hint)
 
 
@@ -208,9 +224,11 @@ def require(condition: bool, problem: str) -> None:
 def check_arrays(
     tensors: Tensors, schema: Mapping[str, Stored], sizes: Mapping[str, int]
 ) -> None:
-    """Check presence, type, shape and range of all arrays as stored, before anything is computed from them.
+    """Check presence, type, shape and range of all arrays as stored, before anything is
+    computed from them.
 
-    ``sizes`` has the lengths that the letters of shapes stand for; other letters are numbers.
+    ``sizes`` has the lengths that the letters of shapes stand for; other letters are
+    numbers.
     """
     for name, stored in schema.items():
         require(name in tensors, f"has no array {name}")
@@ -226,11 +244,13 @@ def check_arrays(
 
 
 def check_metadata(value: Any, schema: Any, path: str = "metadata") -> None:
-    """Raise `CubeFileError` for the first JSON value that does not fit a schema, with its key path.
+    """Raise `CubeFileError` for the first JSON value that does not fit a schema, with
+    its key path.
 
-    A schema is `str` for text, `int` for a whole number from 0, a range (low, high) of numbers, a list [schema, limit]
-    of at most so many items, or a table of schemas by key, with ``?`` after optional keys and ``*`` for all others.
-    None is for any value. Every query reads metadata, and pydantic takes long to import.
+    A schema is `str` for text, `int` for a whole number from 0, a range (low, high) of
+    numbers, a list [schema, limit] of at most so many items, or a table of schemas by
+    key, with ``?`` after optional keys and ``*`` for all others. None is for any value.
+    Every query reads metadata, and pydantic takes long to import.
     """
     items: list[tuple[Any, Any, str]] = []
     if schema is None:

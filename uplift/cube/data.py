@@ -1,4 +1,6 @@
-"""The content of a cube file: everything that a lookup needs, and how the cube was built."""
+"""The content of a cube file: everything that a lookup needs, and how the cube was
+built.
+"""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -20,22 +22,29 @@ from uplift.models import evaluate
 from uplift.models.model import Model
 
 MAX_SIZE = 500.0
-"""Largest Σ |p| of the multipliers of nodes that have not their own colours, in mixtures of spectra."""
+"""Largest Σ |p| of the multipliers of nodes that have not their own colours, in
+mixtures of spectra.
+"""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EntrySpectra:
-    """The spectra that answer the colours of atlas entries: ``coefficients`` (E, K) in a ``model``.
+    """The spectra that answer the colours of atlas entries: ``coefficients`` (E, K) in
+    a ``model``.
 
-    Entries are few and nodes are many, so the entries may have more coefficients than the nodes: the model is that of
-    the cube, with the same or a larger number of coefficients.
+    Entries are few and nodes are many, so the entries may have more coefficients than
+    the nodes: the model is that of the cube, with the same or a larger number of
+    coefficients.
     """
 
     model: Model
     coefficients: Array
 
     def __repr__(self) -> str:
-        return f"EntrySpectra({len(self.coefficients)} of {pluralise(self.model.count, 'coefficient')})"
+        return (
+            f"EntrySpectra({len(self.coefficients)} of "
+            f"{pluralise(self.model.count, 'coefficient')})"
+        )
 
     @cached_property
     def multipliers(self) -> Array:
@@ -43,7 +52,9 @@ class EntrySpectra:
         return self.model.from_storage(self.coefficients)
 
     def reflectance(self, entries: Indices, wavelengths: Array) -> Array:
-        """Evaluate the spectra of ``entries`` (k,) at wavelengths (N,) in nm: reflectance (k, N) in [0, 1]."""
+        """Evaluate the spectra of ``entries`` (k,) at wavelengths (N,) in nm:
+        reflectance (k, N) in [0, 1].
+        """
         return evaluate(self.model, self.multipliers[entries], wavelengths)
 
 
@@ -56,21 +67,35 @@ class AtlasTable:
     rgb: Array
     """(E, 3) linear RGB."""
     coefficients: Array
-    """(E, C) coefficients in the model of the nodes, for uses that need one number of coefficients."""
+    """(E, C) coefficients in the model of the nodes, for uses that need one number of
+    coefficients.
+    """
     half_width: Array
-    """(E,) half the width of each entry box in lattice steps, 0 to 1. 0 if an earlier entry has the colour."""
+    """(E,) half the width of each entry box in lattice steps, 0 to 1. 0 if an earlier
+    entry has the colour.
+    """
     error: Array
-    """(E,) ΔE00 between fitted and measured spectrum; for looks the standard error at their colours."""
+    """(E,) ΔE00 between fitted and measured spectrum; for looks the standard error at
+    their colours.
+    """
     spectra: EntrySpectra
-    """The spectra that answer the colours of the entries, in the model of the nodes or with more coefficients."""
+    """The spectra that answer the colours of the entries, in the model of the nodes or
+    with more coefficients.
+    """
     measured: NDArray[np.float32] | None = None
-    """(M, N) measured reflectances at the wavelengths of the sensor; None for a small atlas and in earlier files."""
+    """(M, N) measured reflectances at the wavelengths of the sensor; None for a small
+    atlas and in earlier files.
+    """
     left_out: NDArray[np.float32] | None = None
-    """(M, N) reflectances at the colours of these entries, each predicted from the others; evidence for errors."""
+    """(M, N) reflectances at the colours of these entries, each predicted from the
+    others; evidence for errors.
+    """
     looks: int = 0
     """Number of looks: chosen spectra, of which no measurement is known."""
     outside: "AtlasTable | None" = None
-    """The O entries outside the RGB space, which answer XYZ and textures; their boxes have steps of 1 / (dim − 1)."""
+    """The O entries outside the RGB space, which answer XYZ and textures; their boxes
+    have steps of 1 / (dim − 1).
+    """
 
     @property
     def measured_count(self) -> int:
@@ -116,7 +141,9 @@ class CubeData:
     error_illuminant: str
     """Illuminant of all ΔE00 values in the cube."""
     provenance: Mapping[str, Any]
-    """How the cube was built, such as its options and the names and digests of its atlas files. JSON values."""
+    """How the cube was built, such as its options and the names and digests of its
+    atlas files. JSON values.
+    """
 
     def __repr__(self) -> str:
         sensor, own = self.sensor, self.atlas.spectra.model
@@ -129,8 +156,10 @@ class CubeData:
             else f" and {len(self.atlas.outside.names)} outside"
         )
         return (
-            f"CubeData({self.model.name} with {pluralise(self.model.count, 'coefficient')}, dim {self.lattice.dim}, "
-            f"{sensor.space} under {sensor.illuminant}, {pluralise(len(self.atlas.names), 'entry')}{more}{outside})"
+            f"CubeData({self.model.name} with "
+            f"{pluralise(self.model.count, 'coefficient')}, dim {self.lattice.dim}, "
+            f"{sensor.space} under {sensor.illuminant}, "
+            f"{pluralise(len(self.atlas.names), 'entry')}{more}{outside})"
         )
 
     @cached_property
@@ -140,14 +169,18 @@ class CubeData:
 
     @cached_property
     def familiar_distance(self) -> float:
-        """ΔE*ab from the nearest entry up to which a colour is like those of the atlas."""
+        """ΔE*ab from the nearest entry up to which a colour is like those
+        of the atlas.
+        """
         from uplift.colorimetry.expected_error import familiar_distance
 
         return familiar_distance(self.entry_lab)
 
     @property
     def error_bound_factor(self) -> float:
-        """Error bound in standard errors, under `error_illuminant`; 2 in cubes that do not record it."""
+        """Error bound in standard errors, under `error_illuminant`; 2 in cubes that do
+        not record it.
+        """
         return float(self.provenance.get("prior", {}).get("error_bound", 2.0))
 
     @cached_property
@@ -161,7 +194,8 @@ class CubeData:
         outside = self.atlas.outside
         if outside is None:
             return OutsideBoxes(np.zeros((0, 3)), np.zeros(0))
-        # The lattice has no steps outside [0, 1]: half widths are in those of a linear axis.
+        # The lattice has no steps outside [0, 1]: half widths are in those of a linear
+        # axis.
         return OutsideBoxes(outside.rgb, outside.half_width / (self.lattice.dim - 1))
 
     @cached_property
@@ -171,7 +205,9 @@ class CubeData:
 
     @cached_property
     def complete_cells(self) -> Mask | None:
-        """(n,) True for cells with eight present corners, by the number of the lowest. None if no node is absent."""
+        """(n,) True for cells with eight present corners, by the number of the lowest.
+        None if no node is absent.
+        """
         return (
             None
             if self.points.present.all()
@@ -180,11 +216,13 @@ class CubeData:
 
     @cached_property
     def inexact_cells(self) -> Mask | None:
-        """(n,) True for cells with a corner that has not its own colour, by the number of the lowest. None without any.
+        """(n,) True for cells with a corner that has not its own colour, by the number
+        of the lowest. None without any.
 
         Corners are unrealisable in wide gamuts, or were not fitted.
         """
-        # Mixtures Σ w g_i have the colour x = Σ w x_i only if every corner has r_i = x_i.
+        # Mixtures Σ w g_i have the colour x = Σ w x_i only if every corner has r_i =
+        # x_i.
         inexact = self.points.present & ~(self.points.distance <= self.threshold)
         return self.lattice.cells_around(inexact) if inexact.any() else None
 
@@ -207,9 +245,11 @@ class CubeData:
         return np.flatnonzero(absent)
 
     def smoothed_multipliers(self, points: Indices) -> Array:
-        """Return multipliers (m, C) of nodes for mixtures, with less steep steps where colours are not exact.
+        """Return multipliers (m, C) of nodes for mixtures, with less steep steps where
+        colours are not exact.
 
-        Spectra near the boundary of the solid are steps, which single precision cannot place; answers there are moved.
+        Spectra near the boundary of the solid are steps, which single precision cannot
+        place; answers there are moved.
         """
         multipliers = self.model.from_storage(self.points.coefficients[points])
         rows = np.flatnonzero(self.points.distance[points] > self.threshold)
@@ -220,13 +260,18 @@ class CubeData:
 
 
 def common_sensor(cubes: Iterable[CubeData]) -> Sensor:
-    """Return the sensor of the first of cubes of one RGB space, illuminant and observer; `OptionError` otherwise."""
+    """Return the sensor of the first of cubes of one RGB space, illuminant and
+    observer; `OptionError` otherwise.
+    """
     sensors = [cube.sensor for cube in cubes]
     spaces = {(each.space, each.illuminant, each.observer) for each in sensors}
     if len(spaces) > 1:
         names = " and ".join(", ".join(space) for space in sorted(spaces))
         raise OptionError(
-            f"cubes that are used together must have one RGB space, illuminant and observer, got {names}",
+            (
+                "cubes that are used together must have one RGB space, illuminant and "
+                f"observer, got {names}"
+            ),
             code="cubes-of-different-spaces",
             hint="build the cube with the settings of the other",
         )

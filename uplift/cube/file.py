@@ -36,11 +36,17 @@ FEATURES = (
     "outside",
     "outside-measured",
 )
-"""Optional parts of a file, in the order in which the metadata list them. Earlier readers refuse a new one."""
+"""Optional parts of a file, in the order in which the metadata list them. Earlier
+readers refuse a new one.
+"""
 KIND = Kind(FORMAT, (3, VERSION), "cube", foreign="not-a-cube", features=FEATURES)
-"""Versions that are read. The entries of version 3 have as many coefficients as the nodes."""
+"""Versions that are read. The entries of version 3 have as many coefficients as the
+nodes.
+"""
 MAX_POINTS = 1 << 27
-"""Nodes of the largest lattice of a sparse file, as a small file must not claim all memory."""
+"""Nodes of the largest lattice of a sparse file, as a small file must not claim all
+memory.
+"""
 MAX_CONDITION = 1e6
 """Limit of the condition number of the matrix from XYZ to RGB."""
 MIN_THRESHOLD, MAX_THRESHOLD = 1e-12, 0.1
@@ -75,7 +81,9 @@ TABLE = {
     "error": Stored("E", low=0),
     ENTRY_COEFFICIENTS: Stored("E K"),
 }
-"""Arrays of an `AtlasTable`: entries in the RGB space, and those outside it, whose colours are not in [0, 1]."""
+"""Arrays of an `AtlasTable`: entries in the RGB space, and those outside it, whose
+colours are not in [0, 1].
+"""
 OUTSIDE = {
     name: stored._replace(shape=f"O{stored.shape[1:]}", feature="outside")
     for name, stored in TABLE.items()
@@ -92,7 +100,9 @@ ARRAYS = {
     "atlas.left_out": Stored("M N", SINGLE, 0, 1, feature="left-out"),
     "outside.measured": Stored("O N", SINGLE, 0, 1, feature="outside-measured"),
 }
-"""All arrays of a file by name. Letters as in docs/cube-file.md, and D for the number of nodes along an axis."""
+"""All arrays of a file by name. Letters as in docs/cube-file.md, and D for the number
+of nodes along an axis.
+"""
 
 NUMBER, POSITIVE = (-1e30, 1e30), (0, 1e30)
 ENTRIES = [str, 1_000_000]
@@ -155,22 +165,30 @@ METADATA = {
 
 
 def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write a cube file, atomically. The new file is read back before it replaces an existing one."""
+    """Write a cube file, atomically. The new file is read back before it replaces an
+    existing one.
+    """
     save(contents(data), path, KIND, read, force=force)
 
 
 def read(path: str | os.PathLike[str]) -> CubeData:
-    """Read a cube file. A file that is missing, damaged, of another kind or invalid is a `CubeFileError`."""
+    """Read a cube file. A file that is missing, damaged, of another kind or invalid is
+    a `CubeFileError`.
+    """
     return load(Path(path), KIND, _decode)
 
 
 def digest(data: CubeData) -> str:
-    """Compute the SHA-256 of a cube, in hexadecimal. Cubes with equal digests give equal answers, bit for bit."""
+    """Compute the SHA-256 of a cube, in hexadecimal. Cubes with equal digests give
+    equal answers, bit for bit.
+    """
     return content_digest(*contents(data))
 
 
 def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
-    """Return the arrays by their names in the file, and the metadata without the digest."""
+    """Return the arrays by their names in the file, and the metadata without the
+    digest.
+    """
     atlas = data.atlas
     arrays: dict[str, Any] = {
         "nodes": data.lattice.nodes,
@@ -235,7 +253,9 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
 
 
 def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
-    """Make the cube of a file after a check of types and ranges, of metadata first, then of arrays."""
+    """Make the cube of a file after a check of types and ranges, of metadata first,
+    then of arrays.
+    """
     # In version 3 nodes and entries share one model.
     if metadata["version"] < VERSION:
         metadata["entry_model"] = metadata.get("model")
@@ -333,7 +353,9 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
 
 
 def _check(data: CubeData) -> None:
-    """Check what a lookup relies on beyond types and ranges. The nodes of a sparse cube are those in its file."""
+    """Check what a lookup relies on beyond types and ranges. The nodes of a sparse cube
+    are those in its file.
+    """
     atlas, sensor, nodes = data.atlas, data.sensor, data.lattice.nodes
     names = (*atlas.names, *(() if atlas.outside is None else atlas.outside.names))
     looks = tuple(look["name"] for look in data.provenance.get("looks", ()))
@@ -393,7 +415,9 @@ def _has_three_channels(matrix: Array) -> bool:
 
 
 def _expand(points: PointTable, numbers: Indices, lattice: Lattice) -> PointTable:
-    """Expand the rows (m, …) of the nodes ``numbers`` (m,) to those of the lattice, (n, …)."""
+    """Expand the rows (m, …) of the nodes ``numbers`` (m,) to those of the lattice, (n,
+    …).
+    """
     size = lattice.size
     valid = (
         0 < len(numbers) < size <= MAX_POINTS

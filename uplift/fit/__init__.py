@@ -1,1 +1,3 @@
-"""The fit: atlas entries, prior, seeds, then growth, improvement and storage of the nodes."""
+"""The fit: atlas entries, prior, seeds, then growth, improvement and storage of the
+nodes.
+"""

@@ -1,11 +1,14 @@
-"""Base spectra: what the prior expects of a colour where no atlas entry is near (docs/mathematics.md, 7).
+"""Base spectra: what the prior expects of a colour where no atlas entry is near
+(docs/mathematics.md, 7).
 
-Smooth spectra: multipliers have no upper bound on slope, so that from them alone a dark red rises to a reflectance of 1
-outside the range of the colour-matching functions. So a colour x starts from a brighter one, x' = x / k with
-k = √max(x). It is solved from a grey by minimum-norm steps, and its spectrum is scaled by k.
+Smooth spectra: multipliers have no upper bound on slope, so that from them alone a dark
+red rises to a reflectance of 1 outside the range of the colour-matching functions. So a
+colour x starts from a brighter one, x' = x / k with k = √max(x). It is solved from a
+grey by minimum-norm steps, and its spectrum is scaled by k.
 
-The learnt base adds the deviation that families of measured materials have from smooth spectra (docs/prior.md). It is
-kriged relative to the brightening, so that dark colours stay dark, at the nodes of the table.
+The learnt base adds the deviation that families of measured materials have from smooth
+spectra (docs/prior.md). It is kriged relative to the brightening, so that dark colours
+stay dark, at the nodes of the table.
 """
 
 from collections.abc import Sequence
@@ -31,44 +34,58 @@ from uplift.models.minimum_norm import ForwardMap
 from uplift.models.model import Model
 
 BRIGHTENING = 0.5
-"""Power of max(x) that a colour is divided by: 0 leaves it unchanged, 1 makes it as bright as possible."""
+"""Power of max(x) that a colour is divided by: 0 leaves it unchanged, 1 makes it as
+bright as possible.
+"""
 GREY = 2 / 3
 """Power of the mean of x' that gives the reflectance of the grey to start from."""
 TABLE = Lattice(np.linspace(0, 1, 17) ** 2)
 MIN_LEVEL, MAX_LEVEL = 1e-4, 0.98
 SAME_SENSOR = 1e-14
-"""Difference of elements of W up to which a stored table is that of a sensor: they differ between instruction sets."""
+"""Difference of elements of W up to which a stored table is that of a sensor: they
+differ between instruction sets.
+"""
 NO_FREEDOM = 3
 """Number of coefficients that the colour alone determines."""
 SAME_COLOUR, SAME_SPECTRUM = 6.0, 0.03
-"""ΔE*ab and rms within which a spectrum of a library is that of an atlas entry, which replaces it."""
+"""ΔE*ab and rms within which a spectrum of a library is that of an atlas entry, which
+replaces it.
+"""
 MAX_ENTRIES = 1000
 """Entries from which relevances are learnt, at most."""
 BOUND = 0.1
 """Part of the distance of a smooth spectrum from 0 and 1 that always remains."""
 COLOUR_WEIGHT = 0.06
-"""Weight of a unit of CIE L*a*b* under a light: twice that of atlas entries, as the spectra are uncertain."""
+"""Weight of a unit of CIE L*a*b* under a light: twice that of atlas entries, as the
+spectra are uncertain.
+"""
 MATCH_NODES = 1024
 """Nodes of the integrals from reflectances to moments."""
 DAMPING = 1e-4
 """Damping of the step, relative to the mean diagonal of its matrix."""
 MATCH_ROWS = 1 << 9
 DIMMEST = 0.1
-"""Brightened colours below this, linear RGB under 0.01, tend towards smooth spectra: hardly anything is so dark."""
+"""Brightened colours below this, linear RGB under 0.01, tend towards smooth spectra:
+hardly anything is so dark.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Base:
-    """Base spectra from coefficients (17³, C) of brightened colours in `TABLE`; greys where ``nodes`` is None.
+    """Base spectra from coefficients (17³, C) of brightened colours in `TABLE`; greys
+    where ``nodes`` is None.
 
-    Coefficients of the moments model are moments of reflectances in (0, 1), so weighted means of several are valid.
+    Coefficients of the moments model are moments of reflectances in (0, 1), so weighted
+    means of several are valid.
     """
 
     model: Model
     nodes: Array | None
 
     def coefficients(self, rgb: Array) -> Array:
-        """Coefficients (n, C) of nearly the linear RGB (n, 3) in [0, 1], continuous in it; the solver does the rest."""
+        """Coefficients (n, C) of nearly the linear RGB (n, 3) in [0, 1], continuous in
+        it; the solver does the rest.
+        """
         if self.nodes is None:
             return self.model.to_storage(_grey(self.model, rgb))
         # s(x) = k s(x / k), as moments are linear in the spectrum
@@ -83,7 +100,9 @@ class Base:
 
 
 def smooth_table(problem: Problem, goal: Array) -> Base:
-    """Smooth spectra of colours ``goal`` (17³, 3): those in `FILE`, if it has the model and sensor, or solved."""
+    """Smooth spectra of colours ``goal`` (17³, 3): those in `FILE`, if it has the model
+    and sensor, or solved.
+    """
     sensor = problem.sensor
     if problem.model == Moments():
         with (
@@ -99,7 +118,9 @@ def smooth_table(problem: Problem, goal: Array) -> Base:
 
 
 def smooth(model: Model, forward: ForwardMap, goal: Array | None = None) -> Base:
-    """Solve the table for smooth spectra of brightened colours ``goal`` (17³, 3), its nodes by default."""
+    """Solve the table for smooth spectra of brightened colours ``goal`` (17³, 3), its
+    nodes by default.
+    """
     if model.count == NO_FREEDOM:
         return Base(model, None)
     goal = TABLE.points if goal is None else goal  # each is solved from its grey
@@ -118,13 +139,16 @@ def learn_base(
     families: Sequence[Family] = (),
     entries: FittedEntries | None = None,
 ) -> tuple[Base, tuple[float, ...]]:
-    """Learn the base from families, and the relevance of each, 0 to 4, from atlas entries; 1 without an atlas.
+    """Learn the base from families, and the relevance of each, 0 to 4, from atlas
+    entries; 1 without an atlas.
 
-    Spectra out of gamut, and those of atlas entries, are not used. The base is that of smooth spectra without families,
-    and for models whose spectra the colour alone determines.
+    Spectra out of gamut, and those of atlas entries, are not used. The base is that of
+    smooth spectra without families, and for models whose spectra the colour alone
+    determines.
     """
-    # Unrealisable nodes of the table are solved for realisable colours of less chroma: their own multipliers would be
-    # arbitrary, and would spoil the interpolation between nodes.
+    # Unrealisable nodes of the table are solved for realisable colours of less chroma:
+    # their own multipliers would be arbitrary, and would spoil the interpolation
+    # between nodes.
     table = nodes_of(TABLE, problem.sensor)
     bright = table.goal(table.points)
     plain = smooth_table(problem, bright)  # s(x′)
@@ -148,7 +172,8 @@ def learn_base(
             problem.lights, locations, expected, parts, entries.measured[order]
         )
 
-    # s(x′) + d(x) / k at the nodes x′ of the table, inside (0, 1), as coefficients, where x = x′ max(x′)
+    # s(x′) + d(x) / k at the nodes x′ of the table, inside (0, 1), as coefficients,
+    # where x = x′ max(x′)
     spectra = reflectance(model, plain.nodes, sensor.wavelengths)
     colours = bright * bright.max(axis=1, keepdims=True) ** (
         BRIGHTENING / (1 - BRIGHTENING)
@@ -156,8 +181,9 @@ def learn_base(
     deviations = kriging(rgb_to_lab(sensor, colours), relevance)
     deviations = deviations * np.minimum(bright.max(axis=1, keepdims=True) / DIMMEST, 1)
     goal = np.clip(spectra + deviations, BOUND * spectra, 1 - BOUND * (1 - spectra))
-    # Spectra are matched at their actual brightness. Where the result cannot be brightened, as no reflectance has such
-    # moments, the brightened spectrum is matched instead.
+    # Spectra are matched at their actual brightness. Where the result cannot be
+    # brightened, as no reflectance has such moments, the brightened spectrum is matched
+    # instead.
     factor = plain.brightness(colours)
     nodes = (
         to_storage(
@@ -176,7 +202,9 @@ def learn_base(
 def _samples(
     plain: Base, problem: Problem, measured: Array, entries: FittedEntries | None
 ) -> Points:
-    """Deviations of the spectra (E, N) from smooth ones, brightened, without those of atlas entries."""
+    """Deviations of the spectra (E, N) from smooth ones, brightened, without those of
+    atlas entries.
+    """
     sensor = problem.sensor
     rgb = sensor.rgb(measured)
     rows = np.flatnonzero(in_unit_cube(rgb))
@@ -202,11 +230,13 @@ def _samples(
 def match_spectra(
     model: Moments, wavelengths: Array, reflectances: Array, lights: Sequence[Light]
 ) -> Array:
-    """Multipliers (n, C) of spectra near reflectances (n, N) in (0, 1), with nearly their colours under several lights.
+    """Multipliers (n, C) of spectra near reflectances (n, N) in (0, 1), with nearly
+    their colours under several lights.
 
-    The wavelengths (N,) are evenly spaced over the range of the model. The moments of a detailed reflectance lose its
-    colour under other lights if they are few. One Gauss–Newton step of the objective (6) restores it; spectra that it
-    would not bring nearer stay.
+    The wavelengths (N,) are evenly spaced over the range of the model. The moments of a
+    detailed reflectance lose its colour under other lights if they are few. One
+    Gauss–Newton step of the objective (6) restores it; spectra that it would not bring
+    nearer stay.
     """
     goal = objective(
         model, model.basis(wavelengths), lights, COLOUR_WEIGHT, smoothness=None
@@ -231,7 +261,9 @@ def match_spectra(
 
 
 def moment_matrix(model: Moments, wavelengths: Array) -> Array:
-    """Weights (N, C) that turn reflectances (n, N), linear between the wavelengths, into moments."""
+    """Weights (N, C) that turn reflectances (n, N), linear between the wavelengths,
+    into moments.
+    """
     phase = -np.pi * (np.arange(MATCH_NODES) + 0.5) / MATCH_NODES
     at = np.interp(phase, model.phase(wavelengths), np.arange(len(wavelengths)))
     samples = np.stack(

@@ -1,4 +1,6 @@
-"""Batches of few shapes, so that XLA compiles rarely, over all devices of JAX; the compiled integrals of moments."""
+"""Batches of few shapes, so that XLA compiles rarely, over all devices of JAX; the
+compiled integrals of moments.
+"""
 
 from collections.abc import Callable
 from functools import cache, partial
@@ -19,14 +21,18 @@ from uplift.models.minimum_norm import ForwardMap
 from uplift.models.model import Model
 
 CPU_ROWS, ACCELERATOR_ROWS = (4096, 256), (1 << 15, 1 << 15)
-"""Rows of a batch per device, and of a chunk: that of a CPU fits its cache, an accelerator takes a whole batch."""
+"""Rows of a batch per device, and of a chunk: that of a CPU fits its cache, an
+accelerator takes a whole batch.
+"""
 EVERYWHERE, ROWS = PartitionSpec(), PartitionSpec("rows")  # type: ignore[no-untyped-call]
 MAX_NODES = 256
 """Larger rules of integration, which few spectra need, are not worth compiling."""
 PART_NODES = 97
 """Nodes of the first rule. Other rules run in parts of as many: one program for all."""
 CONVERGED = 1e-6
-"""For lattices: moments differ by some 1e-9 at most, a sixtieth of the rounding to single precision."""
+"""For lattices: moments differ by some 1e-9 at most, a sixtieth of the rounding to
+single precision.
+"""
 
 jax.tree_util.register_dataclass(
     ForwardMap,
@@ -36,9 +42,11 @@ jax.tree_util.register_dataclass(
 
 
 def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any) -> Any:
-    """Apply a function to constants and to trees of arrays (n, …), n > 0, and join the arrays that it returns.
+    """Apply a function to constants and to trees of arrays (n, …), n > 0, and join the
+    arrays that it returns.
 
-    It is compiled for a chunk of rows, once if it is the same object in each call. Batches run side by side.
+    It is compiled for a chunk of rows, once if it is the same object in each call.
+    Batches run side by side.
     """
     require_memory_of_xla()
     devices, parts = len(jax.devices()), []
@@ -111,7 +119,9 @@ def _program(
 
 
 def to_storage(model: Model, multipliers: Array) -> Array:
-    """Coefficients (n, C) of many multipliers (n, C): `Model.to_storage`, less precise and several times faster."""
+    """Coefficients (n, C) of many multipliers (n, C): `Model.to_storage`, less precise
+    and several times faster.
+    """
     if isinstance(model, Moments):
         return moments_from_multipliers(multipliers, _integrate, CONVERGED)
     return model.to_storage(multipliers)
@@ -124,7 +134,8 @@ def _integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
         return integrate(multipliers, synthesis, analysis)
     moments = np.zeros((len(multipliers), columns))
     for first in range(0, nodes, PART_NODES):
-        # Each part is as large as the first rule, which has two sets of moments: the rest has no weight.
+        # Each part is as large as the first rule, which has two sets of moments: the
+        # rest has no weight.
         part = slice(first, first + PART_NODES)
         points, weights = (
             np.zeros((count, PART_NODES)),

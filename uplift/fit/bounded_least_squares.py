@@ -1,6 +1,8 @@
-"""Linear least squares within bounds: spectra for given colours. The problem is convex, so the minimum is global.
+"""Linear least squares within bounds: spectra for given colours. The problem is convex,
+so the minimum is global.
 
-Palettes are solved by it (Bergner, Möller & Drew 2004, section 3.3), and the reflectances of looks.
+Palettes are solved by it (Bergner, Möller & Drew 2004, section 3.3), and the
+reflectances of looks.
 """
 
 import warnings
@@ -16,10 +18,11 @@ TOLERANCE, MAX_ITERATIONS = 1e-12, 1000
 
 
 def solve_bounded(matrix: Array, values: Array, low: Array, high: Array) -> Array:
-    """Minimise ‖M x − y‖ for a matrix (rows, n) and values (rows,) within bounds (n,) of x, some of them finite.
+    """Minimise ‖M x − y‖ for a matrix (rows, n) and values (rows,) within bounds (n,)
+    of x, some of them finite.
 
-    By an active-set method, BVLS of Stark & Parker 1995 in scipy's ``lsq_linear``. `UpliftWarning`
-    (``design-not-converged``) if it stops early.
+    By an active-set method, BVLS of Stark & Parker 1995 in scipy's ``lsq_linear``.
+    `UpliftWarning` (``design-not-converged``) if it stops early.
     """
     from scipy.optimize import lsq_linear
 
@@ -33,6 +36,9 @@ def solve_bounded(matrix: Array, values: Array, low: Array, high: Array) -> Arra
             max_iter=MAX_ITERATIONS,
         )
     if not result.success:
-        text = f"the solver stopped after {MAX_ITERATIONS} iterations: colours may be slightly off"
+        text = (
+            f"the solver stopped after {MAX_ITERATIONS} iterations: colours may be "
+            "slightly off"
+        )
         warnings.warn(UpliftWarning(text, code="design-not-converged"), stacklevel=3)
     return np.clip(result.x, low, high)  # removes rounding errors

@@ -1,7 +1,9 @@
-"""Fit of atlas entries: the measured spectrum, its colours under several lights, and exactly its RGB.
+"""Fit of atlas entries: the measured spectrum, its colours under several lights, and
+exactly its RGB.
 
-docs/mathematics.md, 6. `Marquardt`, a solver of optimistix that is stepped in numpy, minimises the objective: nothing
-needs to be compiled for a few entries, and those that have converged leave the batch.
+docs/mathematics.md, 6. `Marquardt`, a solver of optimistix that is stepped in numpy,
+minimises the objective: nothing needs to be compiled for a few entries, and those that
+have converged leave the batch.
 """
 
 from collections.abc import Sequence
@@ -25,17 +27,23 @@ from uplift.fit.solver import (
 from uplift.models.model import Model
 
 LIGHTS_WEIGHT, SMOOTHNESS = 0.03, 1e-3
-"""Weights of a unit of CIE L*a*b* under a light, and of the multipliers but the constant one, in the metric M of
-docs/mathematics.md, 5, relative to the root-mean-square difference of the spectra.
+"""Weights of a unit of CIE L*a*b* under a light, and of the multipliers but the
+constant one, in the metric M of docs/mathematics.md, 5, relative to the
+root-mean-square difference of the spectra.
 
-Without smoothness the minimum of a dark entry jumps: of two spectra that meet its colours nearly equally well one has
-multipliers ten times as large, and noise decides between them.
+Without smoothness the minimum of a dark entry jumps: of two spectra that meet its
+colours nearly equally well one has multipliers ten times as large, and noise decides
+between them.
 """
 FLATNESS = 1e-5
-"""Weight that keeps the constant multiplier finite where neither the spectrum nor the lights constrain it."""
+"""Weight that keeps the constant multiplier finite where neither the spectrum nor the
+lights constrain it.
+"""
 MAX_STEPS = 256
 PRECISION = 1e-8
-"""Relative reduction of the objective and relative change of the multipliers at which a fit ends."""
+"""Relative reduction of the objective and relative change of the multipliers at which a
+fit ends.
+"""
 FIRST_DAMPING = 1e-3
 """Initial μ relative to the largest diagonal element of JᵀJ."""
 
@@ -44,8 +52,9 @@ FIRST_DAMPING = 1e-3
 class Objective:
     """Residuals of the fit of a measured reflectance (N,), and their normal equations.
 
-    ``values`` weighs a difference of spectra, ``weight`` a unit of CIE L*a*b*, ``multipliers`` (C,) the
-    multipliers. ``lights`` (L, 3, N) maps spectra to XYZ, and ``whites`` (L, 3) are those of the perfect reflector.
+    ``values`` weighs a difference of spectra, ``weight`` a unit of CIE L*a*b*,
+    ``multipliers`` (C,) the multipliers. ``lights`` (L, 3, N) maps spectra to XYZ, and
+    ``whites`` (L, 3) are those of the perfect reflector.
     """
 
     model: Model
@@ -94,7 +103,8 @@ class Objective:
     def normal_equations(
         self, multipliers: Array, residuals: Array
     ) -> tuple[Array, Array]:
-        """JᵀJ (n, C, C) and Jᵀf (n, C) of residuals f (n, N + 3 L + C), J = ∂f/∂p, at multipliers p (n, C).
+        """JᵀJ (n, C, C) and Jᵀf (n, C) of residuals f (n, N + 3 L + C), J = ∂f/∂p, at
+        multipliers p (n, C).
 
         J itself, which has a row for each residual, is not formed.
         """
@@ -131,9 +141,11 @@ def objective(
     weight: float = LIGHTS_WEIGHT,
     smoothness: float | None = SMOOTHNESS,
 ) -> Objective:
-    """Make the objective of spectra, whose mean square difference counts, and of their colours under lights.
+    """Make the objective of spectra, whose mean square difference counts, and of their
+    colours under lights.
 
-    ``weight`` is that of a unit of CIE L*a*b*, ``smoothness`` that of the multipliers; None leaves them free.
+    ``weight`` is that of a unit of CIE L*a*b*, ``smoothness`` that of the multipliers;
+    None leaves them free.
     """
     xyz, whites = (
         np.stack([getattr(light, name) for light in lights])
@@ -163,10 +175,12 @@ class MarquardtState(NamedTuple):
 
 
 class Marquardt(BatchSolver):
-    """Levenberg and Marquardt's method for a batch of fits in numpy, with Nielsen's damping.
+    """Levenberg and Marquardt's method for a batch of fits in numpy, with Nielsen's
+    damping.
 
-    The option ``normal_equations`` maps ``y`` (n, C) and the residuals f (n, m) to JᵀJ and Jᵀf. Madsen, Nielsen &
-    Tingleff 2004, "Methods for non-linear least squares problems", section 3.2.
+    The option ``normal_equations`` maps ``y`` (n, C) and the residuals f (n, m) to JᵀJ
+    and Jᵀf. Madsen, Nielsen & Tingleff 2004, "Methods for non-linear least squares
+    problems", section 3.2.
     """
 
     rtol: float = PRECISION
@@ -193,7 +207,9 @@ class Marquardt(BatchSolver):
         state: MarquardtState,
         *rest: Any,
     ) -> Stepped:
-        """Take one step in every fit that has not ended; no sum of squares increases."""
+        """Take one step in every fit that has not ended; no sum of squares
+        increases.
+        """
         gram, slope = options["normal_equations"](y, state.residual)
         diagonal = gram.diagonal(axis1=-2, axis2=-1).max(axis=-1)
         damping = np.where(state.damping > 0, state.damping, FIRST_DAMPING * diagonal)
@@ -235,7 +251,9 @@ class Marquardt(BatchSolver):
 
 
 def minimise(goal: Objective, measured: Array) -> Array:
-    """Multipliers (E, C) that minimise the objective of measured reflectances (E, N), starting from grey."""
+    """Multipliers (E, C) that minimise the objective of measured reflectances (E, N),
+    starting from grey.
+    """
     colours = goal.colours(measured)
     return iterate_rows(
         Marquardt(),
@@ -249,8 +267,9 @@ def minimise(goal: Objective, measured: Array) -> Array:
 class FittedEntries(NamedTuple):
     """E atlas entries as spectra of the model.
 
-    Linear ``rgb`` (E, 3), ``measured`` reflectances (E, N) at the wavelengths of the sensor, ``multipliers`` (E, C) of
-    the fitted spectra, and the ``error`` (E,): ΔE00 between both.
+    Linear ``rgb`` (E, 3), ``measured`` reflectances (E, N) at the wavelengths of the
+    sensor, ``multipliers`` (E, C) of the fitted spectra, and the ``error`` (E,): ΔE00
+    between both.
     """
 
     rgb: Array
@@ -266,9 +285,11 @@ class FittedEntries(NamedTuple):
 def fit_entries(
     problem: Problem, measured: Array, rgb: Array, **weights: float
 ) -> FittedEntries:
-    """Fit measured reflectances (E, N) by the spectrum model, and meet their linear RGB (E, 3) to the tolerance.
+    """Fit measured reflectances (E, N) by the spectrum model, and meet their linear RGB
+    (E, 3) to the tolerance.
 
-    ``weights`` are the keyword arguments of `objective`. The order of the entries does not change the rounding of sums.
+    ``weights`` are the keyword arguments of `objective`. The order of the entries does
+    not change the rounding of sums.
     """
     goal = objective(problem.model, problem.forward.basis, problem.lights, **weights)
     order = np.lexsort(rgb.T)

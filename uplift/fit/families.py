@@ -1,14 +1,18 @@
-"""Families of measured materials, which shape the prior but do not constrain the cube (docs/prior.md).
+"""Families of measured materials, which shape the prior but do not constrain the cube
+(docs/prior.md).
 
-The deviation of a material of family f at the colour x is d(x) + d_f(x) + noise. d and d_f are independent Gaussian
-processes over CIE L*a*b* with the same Matérn correlation; their variances are 1 and the spread of the family. What is
-expected of a material of no known family is E[d(x)], so a large family does not outweigh several small ones.
+The deviation of a material of family f at the colour x is d(x) + d_f(x) + noise. d and
+d_f are independent Gaussian processes over CIE L*a*b* with the same Matérn correlation;
+their variances are 1 and the spread of the family. What is expected of a material of no
+known family is E[d(x)], so a large family does not outweigh several small ones.
 
-With an atlas, the relevance of each family is learnt: the factor of its contribution with which it explains the
-entries. Relevances are supposed to vary about 1, and to vary less than differences that no family explains are large:
-atlases of many entries, and those which families explain well, decide; others leave relevances near 1.
+With an atlas, the relevance of each family is learnt: the factor of its contribution
+with which it explains the entries. Relevances are supposed to vary about 1, and to vary
+less than differences that no family explains are large: atlases of many entries, and
+those which families explain well, decide; others leave relevances near 1.
 
-Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25 and 4.17 (ν = 3/2); 2.1 for the ridge.
+Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25 and 4.17
+(ν = 3/2); 2.1 for the ridge.
 """
 
 from collections.abc import Collection, Sequence
@@ -37,19 +41,25 @@ NUGGET = 0.3
 BLOCK_NUMBERS = 1 << 17
 """Numbers of the kernel matrix held at a time."""
 VARIANCE = 0.5
-"""Assumed variance of relevances about 1. Halves of ColorCheckers prefer 1 or more, those of mixed sets less."""
+"""Assumed variance of relevances about 1. Halves of ColorCheckers prefer 1 or more,
+those of mixed sets less.
+"""
 CORRELATED = Kernel(length=24.0, noise=1.0)
-"""Covariance of the deviations of entries that no family explains: that of close colours is left to the kriging."""
+"""Covariance of the deviations of entries that no family explains: that of close
+colours is left to the kriging.
+"""
 MAX_RELEVANCE = 4.0
 
 
 @dataclass(frozen=True, eq=False)
 class Family:
-    """Spectra (E, N) measured together, which deviate from smooth spectra in a common way.
+    """Spectra (E, N) measured together, which deviate from smooth spectra in a common
+    way.
 
-    ``spread`` is the variance of the family's own deviation, relative to that of the deviation which all materials
-    share. ``related``, 0 to 1, is the part of it that the materials of a cube are expected to have as well: 0 for a
-    family like any other, 1 for the family that they belong to.
+    ``spread`` is the variance of the family's own deviation, relative to that of the
+    deviation which all materials share. ``related``, 0 to 1, is the part of it that the
+    materials of a cube are expected to have as well: 0 for a family like any other, 1
+    for the family that they belong to.
     """
 
     name: str
@@ -59,9 +69,11 @@ class Family:
 
 
 def shipped_library(leave_out: Collection[str] = ()) -> tuple[Family, ...]:
-    """Return the families that come with the package, at the wavelengths of the default sensor.
+    """Return the families that come with the package, at the wavelengths of the default
+    sensor.
 
-    Some may be left out by name, for tests on them. Raises `UnknownNameError` for an unknown name.
+    Some may be left out by name, for tests on them. Raises `UnknownNameError` for an
+    unknown name.
     """
     with (
         (files(__package__) / FILE).open("rb") as file,
@@ -80,7 +92,9 @@ def shipped_library(leave_out: Collection[str] = ()) -> tuple[Family, ...]:
 
 
 def families_with(measured: Array) -> tuple[str, ...]:
-    """Names of the shipped families that contain one of some spectra (n, 81), to leave them out of tests on these."""
+    """Names of the shipped families that contain one of some spectra (n, 81), to leave
+    them out of tests on these.
+    """
     from scipy.spatial import cKDTree
 
     if not len(measured):
@@ -95,9 +109,11 @@ def families_with(measured: Array) -> tuple[str, ...]:
 
 @dataclass(frozen=True, eq=False)
 class FamilyKriging:
-    """Expected deviation of a material, as the sum of a contribution of each of ``count`` families.
+    """Expected deviation of a material, as the sum of a contribution of each of
+    ``count`` families.
 
-    The spectra of all families have L*a*b* (E, 3), kriging weights (E, N) and the row of their family (E,).
+    The spectra of all families have L*a*b* (E, 3), kriging weights (E, N) and the row
+    of their family (E,).
     """
 
     locations: Array
@@ -116,7 +132,9 @@ class FamilyKriging:
         )
 
     def __call__(self, lab: Array, relevance: Array) -> Array:
-        """Sum of the contributions (n, N) at L*a*b* (n, 3), each times the relevance (F,) of its family."""
+        """Sum of the contributions (n, N) at L*a*b* (n, 3), each times the relevance
+        (F,) of its family.
+        """
         return _kernel_sum(
             lab, self.locations, self.weights * relevance[self.family][:, None]
         )
@@ -125,7 +143,9 @@ class FamilyKriging:
 def krige_families(
     families: Sequence[Family], samples: Sequence[Points]
 ) -> FamilyKriging:
-    """Fit the kriging of families to their deviations at L*a*b*, of which each family may have any number, also 0."""
+    """Fit the kriging of families to their deviations at L*a*b*, of which each family
+    may have any number, also 0.
+    """
     number = np.repeat(
         np.arange(len(families)), [len(points.counts) for points in samples]
     )
@@ -134,14 +154,16 @@ def krige_families(
     )
     spread = np.array([family.spread for family in families])
     related = np.array([family.related for family in families])
-    # Covariance of samples i, j: (1 + spread_f) k_ij within a family, k_ij between families, noise on the diagonal.
+    # Covariance of samples i, j: (1 + spread_f) k_ij within a family, k_ij between
+    # families, noise on the diagonal.
     covariance = _matern(locations, locations)
     for own in range(len(families)):
         rows = np.flatnonzero(number == own)
         covariance[np.ix_(rows, rows)] *= 1 + spread[own]
     covariance[np.diag_indices(len(number))] += NUGGET / counts
     weights = np.linalg.solve(covariance, deviations)
-    # Their covariance with a new material, whose deviation is d(x) and the related part of d_f(x).
+    # Their covariance with a new material, whose deviation is d(x) and the related part
+    # of d_f(x).
     weights *= (1 + related * spread)[number][:, None]
     return FamilyKriging(locations, weights, number, len(families))
 
@@ -158,7 +180,9 @@ def _kernel_sum(lab: Array, locations: Array, weights: Array) -> Array:
 
 
 def _matern(first: Array, second: Array) -> Array:
-    """Matérn correlation (n, m) with ν = 3/2: (1 + √3 d / l) exp(−√3 d / l), in place."""
+    """Matérn correlation (n, m) with ν = 3/2: (1 + √3 d / l) exp(−√3 d /
+    l), in place.
+    """
     distance = distances(first, second)
     distance *= -np.sqrt(3) / LENGTH
     kernel = np.exp(distance)
@@ -173,11 +197,13 @@ def learn_relevance(
     parts: Array,
     measured: Array,
 ) -> Array:
-    """Learn relevances (F,) of families by bounded generalised least squares, which shrinks them towards 1.
+    """Learn relevances (F,) of families by bounded generalised least squares, which
+    shrinks them towards 1.
 
-    Entries at L*a*b* (n, 3) have ``measured`` reflectances (n, N). Without families ``plain`` (n, N) are expected, and
-    ``parts`` (F, n, N) are the contributions of the families. Residuals are differences of spectra and of their colours
-    under the lights; those of entries of close colours are correlated.
+    Entries at L*a*b* (n, 3) have ``measured`` reflectances (n, N). Without families
+    ``plain`` (n, N) are expected, and ``parts`` (F, n, N) are the contributions of the
+    families. Residuals are differences of spectra and of their colours under the
+    lights; those of entries of close colours are correlated.
     """
     assumed = np.ones(len(parts))
     if not len(measured):
@@ -195,7 +221,9 @@ def learn_relevance(
     root = np.linalg.cholesky(covariance / (1 + CORRELATED.noise))
 
     def independent(change: Array) -> Array:
-        """Weighted differences (n, N + 3 L) of spectra as in the objective of entries, made independent by L⁻¹."""
+        """Weighted differences (n, N + 3 L) of spectra as in the objective of entries,
+        made independent by L⁻¹.
+        """
         xyz = (change @ matrices.mT).swapaxes(0, 1)
         colours = (to_lab @ xyz[..., None])[..., 0].reshape(len(change), -1)
         features = np.concatenate([change / np.sqrt(change.shape[1]), colours], axis=1)
@@ -203,8 +231,9 @@ def learn_relevance(
 
     columns = np.stack([independent(part).ravel() for part in parts], axis=1)
     unexplained = independent(measured - plain)
-    # Differences at neighbouring wavelengths, and of colours, are a few independent ones many times over: as many as
-    # their covariance has large eigenvalues, (Σ λ)² / Σ λ². So the variance of one is Σ λ² / Σ λ / n.
+    # Differences at neighbouring wavelengths, and of colours, are a few independent
+    # ones many times over: as many as their covariance has large eigenvalues, (Σ λ)² /
+    # Σ λ². So the variance of one is Σ λ² / Σ λ / n.
     residuals = unexplained - (columns @ assumed).reshape(unexplained.shape)
     products = residuals.T @ residuals
     total = np.trace(products)

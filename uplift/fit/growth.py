@@ -1,18 +1,21 @@
-"""State of growth, the second attempt at failed nodes, and the improvement pass (docs/mathematics.md, 7).
+"""State of growth, the second attempt at failed nodes, and the improvement pass
+(docs/mathematics.md, 7).
 
 Nodes are fitted in rounds, in one of three orders (docs/accuracy.md):
 
 - `uplift.fit.growth_outward`, the default: outward from the seeds, in shells.
 - `uplift.fit.growth_coarse`: from a coarse lattice to finer ones.
-- `uplift.fit.growth_thesis`: outward, each node from a fitted neighbour, as Tódová 2020 does.
+- `uplift.fit.growth_thesis`: outward, each node from a fitted neighbour, as Tódová 2020
+  does.
 
-In the first two the answer at a node is the spectrum of its colour that is nearest to its prior. The correction between
-prior and answer is smooth over the lattice, so a node starts from its prior plus the correction expected from earlier
-rounds. Most nodes then need one step in place of two, and the answer does not depend on the start. Nodes that fail are
-tried again from the mean of their fitted neighbours (`retry`).
+In the first two the answer at a node is the spectrum of its colour that is nearest to
+its prior. The correction between prior and answer is smooth over the lattice, so a node
+starts from its prior plus the correction expected from earlier rounds. Most nodes then
+need one step in place of two, and the answer does not depend on the start. Nodes that
+fail are tried again from the mean of their fitted neighbours (`retry`).
 
-After any of them the improvement pass (`improve`; Tódová 2020, "Constrained spectral uplifting", section 3.1.4) moves
-nodes over the threshold out of local minima.
+After any of them the improvement pass (`improve`; Tódová 2020, "Constrained spectral
+uplifting", section 3.1.4) moves nodes over the threshold out of local minima.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,8 +34,9 @@ MAX_PASSES, IMPROVEMENT_PASSES = 24, 192
 BLOCK_POINTS = 1 << 15
 """Nodes processed at a time."""
 MAX_CORRECTION = 0.1
-"""Largest correction, in units of the metric, that others start from: nearly box-shaped spectra have larger ones, which
-are not smooth."""
+"""Largest correction, in units of the metric, that others start from: nearly box-shaped
+spectra have larger ones, which are not smooth.
+"""
 NUDGE = 0.5
 """Change of a multiplier in the improvement pass."""
 EXTREME = 100.0
@@ -44,8 +48,10 @@ STEPS = (
     "all multipliers nudged",
     "from white or black",
 )
-"""More iterations fix nearly every realisable node, grey those whose neighbours were black or white, where the gradient
-vanishes. The steps of the thesis, which moves Ceres out of minima in moment space, remain for the rest."""
+"""More iterations fix nearly every realisable node, grey those whose neighbours were
+black or white, where the gradient vanishes. The steps of the thesis, which moves Ceres
+out of minima in moment space, remain for the rest.
+"""
 THESIS_STEPS = (
     "constant multiplier nudged",
     "all multipliers nudged",
@@ -56,15 +62,18 @@ THESIS_STEPS = (
 )
 """The order of Tódová 2020, section 3.1.4."""
 Expected = Callable[[Indices, Array], Array]
-"""From nodes (k,) and the linear RGB (k, 3) that they are fitted to, to the multipliers (k, C) expected there."""
+"""From nodes (k,) and the linear RGB (k, 3) that they are fitted to, to the multipliers
+(k, C) expected there.
+"""
 
 
 class Growth:
     """State of growth over all n nodes of a lattice, changed in place round by round.
 
-    ``multipliers`` (n, C) are the best so far, ``distance`` (n,) their distance from the goal and ``rgb`` (n, 3) their
-    linear RGB; 0, infinite and 0 at nodes that are not to be fitted. ``round`` (n,) is that in which the node was
-    fitted, −1 if none did or the improvement pass did, and ``done`` counts the nodes that rounds fitted.
+    ``multipliers`` (n, C) are the best so far, ``distance`` (n,) their distance from
+    the goal and ``rgb`` (n, 3) their linear RGB; 0, infinite and 0 at nodes that are
+    not to be fitted. ``round`` (n,) is that in which the node was fitted, −1 if none
+    did or the improvement pass did, and ``done`` counts the nodes that rounds fitted.
     """
 
     def __init__(
@@ -96,7 +105,8 @@ class Growth:
         prior: Array | None = None,
         max_passes: int = MAX_PASSES,
     ) -> Solution:
-        """Solve nodes (k,) from multipliers (k, C) and keep results that are nearer to the goal than before.
+        """Solve nodes (k,) from multipliers (k, C) and keep results that are nearer to
+        the goal than before.
 
         ``number`` is their round, or `NOT_FITTED` in the improvement pass.
         """
@@ -126,7 +136,9 @@ class Growth:
         return solution
 
     def is_smooth(self, correction: Array) -> Mask:
-        """Whether corrections (k, C) are small enough to expect similar ones nearby: |R⁻¹ (p − p₀)|∞."""
+        """Whether corrections (k, C) are small enough to expect similar ones nearby:
+        |R⁻¹ (p − p₀)|∞.
+        """
         return (
             largest(
                 np.abs(blocked_matmul(correction, self.problem.forward.inverse_root.T))
@@ -136,7 +148,9 @@ class Growth:
 
 
 def retry(growth: Growth, number: int) -> None:
-    """Try failed nodes again from the mean of their fitted neighbours, while one more of these has been fitted."""
+    """Try failed nodes again from the mean of their fitted neighbours, while one more
+    of these has been fitted.
+    """
     lattice, multipliers = growth.nodes.lattice, growth.multipliers
     fresh = np.flatnonzero(growth.round != NOT_FITTED)
     while fresh.size:
@@ -149,7 +163,8 @@ def retry(growth: Growth, number: int) -> None:
                 neighbours[adjacent],
                 inside[adjacent] & fitted[neighbours[adjacent]],
             )
-            # Column by column: all 26 neighbours at once would take 26 times the memory.
+            # Column by column: all 26 neighbours at once would take 26 times the
+            # memory.
             total = np.zeros((len(neighbours), multipliers.shape[1]))
             for column in range(neighbours.shape[1]):
                 total += np.where(
@@ -166,18 +181,22 @@ def retry(growth: Growth, number: int) -> None:
 
 
 def improve(growth: Growth, steps: Sequence[str] = STEPS) -> list[tuple[str, int, int]]:
-    """Improve nodes in place. Each step tries those that are still over the threshold; no distance increases.
+    """Improve nodes in place. Each step tries those that are still over the threshold;
+    no distance increases.
 
-    Returns each step with the numbers of nodes that it tried, and of those that are within the threshold afterwards.
+    Returns each step with the numbers of nodes that it tried, and of those that are
+    within the threshold afterwards.
     """
     problem, points, done = growth.problem, growth.nodes.points, []
-    # Alternating nudges, the same for every node and every run: no direction is better justified than another.
+    # Alternating nudges, the same for every node and every run: no direction is better
+    # justified than another.
     alternating = NUDGE * (-1.0) ** np.arange(problem.model.count)
     for step in steps:
         points = points[growth.distance[points] > problem.threshold]
         if not points.size:
             break
-        # A linear part of +1 for goals nearer to white, −1 for those nearer to black, at all wavelengths.
+        # A linear part of +1 for goals nearer to white, −1 for those nearer to black,
+        # at all wavelengths.
         sign = np.where(growth.nodes.goal(points).mean(axis=1) >= 0.5, 1.0, -1.0)
         best, extreme = (
             growth.multipliers[points],

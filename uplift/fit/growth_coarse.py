@@ -1,4 +1,6 @@
-"""Growth from a coarse lattice to finer ones: corrections are interpolated between nodes of earlier rounds."""
+"""Growth from a coarse lattice to finer ones: corrections are interpolated between
+nodes of earlier rounds.
+"""
 
 import numpy as np
 
@@ -9,7 +11,9 @@ from uplift.fit.problem import Nodes, Problem
 from uplift.lattice import weighted_sum
 
 MIN_CELLS = 4
-"""Cells along each axis of the coarsest lattice, at least; all of them in smaller lattices."""
+"""Cells along each axis of the coarsest lattice, at least; all of them in smaller
+lattices.
+"""
 ALL = 1 - 1e-9
 """Sum of the weights of known corners above which all corners are known."""
 
@@ -28,10 +32,13 @@ def grow_coarse_to_fine(
     seeds: Indices,
     progress: ProgressCallback,
 ) -> Growth:
-    """Fit nodes from the prior. Seeds (S,) are fitted in the first round, and give and take no correction."""
+    """Fit nodes from the prior. Seeds (S,) are fitted in the first round, and give and
+    take no correction.
+    """
     growth, lattice = Growth(problem, nodes, progress), nodes.lattice
     waiting, seeded = lattice.mask(nodes.points), lattice.mask(seeds)
-    # Corrections p − p₀ at every second node, whose last column is the weight of a known one, and the rows of nodes.
+    # Corrections p − p₀ at every second node, whose last column is the weight of a
+    # known one, and the rows of nodes.
     half, numbers = lattice.thinned(2)
     corrections, row = (
         np.zeros((half.size, problem.model.count + 1)),
@@ -57,7 +64,8 @@ def grow_coarse_to_fine(
 
     rounds = strides(lattice.dim)
     for number, stride in enumerate(rounds):
-        # Of every stride-th node, those that no coarser round has had; the seeds come first.
+        # Of every stride-th node, those that no coarser round has had; the seeds come
+        # first.
         _, points = lattice.thinned(stride)
         points = np.union1d(points, seeds) if number == 0 else points
         points = points[waiting[points]]
@@ -66,7 +74,8 @@ def grow_coarse_to_fine(
         known = np.where((row[numbers] >= 0)[:, None], corrections[row[numbers]], 0)
         rest = [(points[:0], growth.multipliers[:0], growth.multipliers[:0])]
         for block in blocks(len(points), BLOCK_POINTS):
-            # From p₀ + R δ, with the correction δ of the nodes around, to the spectrum of the colour nearest to p₀.
+            # From p₀ + R δ, with the correction δ of the nodes around, to the spectrum
+            # of the colour nearest to p₀.
             some = points[block]
             prior = expected(some, nodes.goal(some))
             sums = weighted_sum(known, *level.corners(lattice.target(some)))

@@ -1,6 +1,7 @@
 """Growth outward from the seeds, in shells, the default order.
 
-A node starts from its prior plus the correction extrapolated from the two nodes before it on the way to a seed.
+A node starts from its prior plus the correction extrapolated from the two nodes before
+it on the way to a seed.
 """
 
 import numpy as np
@@ -20,14 +21,17 @@ def grow_outward(
     seeds: Indices,
     progress: ProgressCallback,
 ) -> Growth:
-    """Fit nodes from the prior, in the order of their distance from the seeds (S,), or from the middle without any.
+    """Fit nodes from the prior, in the order of their distance from the seeds (S,), or
+    from the middle without any.
 
-    Seeds start from entries, or half-way between entry and prior, and give and take no correction.
+    Seeds start from entries, or half-way between entry and prior, and give and take no
+    correction.
     """
     growth, lattice = Growth(problem, nodes, progress), nodes.lattice
     middle = lattice.index(np.full((1, 3), lattice.dim // 2))
     distance, toward = shells(lattice, seeds if seeds.size else middle)
-    # δ = p − p₀ of the nodes, in single precision as it is only a start, and whether it is known and smooth
+    # δ = p − p₀ of the nodes, in single precision as it is only a start, and whether it
+    # is known and smooth
     corrections = np.zeros((lattice.size, problem.model.count), dtype=np.float32)
     known, seeded = np.zeros(lattice.size, dtype=bool), lattice.mask(seeds)
     order = nodes.points[np.argsort(distance[nodes.points], kind="stable")]
@@ -38,7 +42,8 @@ def grow_outward(
         for block in blocks(len(shell), BLOCK_POINTS):
             points = shell[block]
             prior = expected(points, nodes.goal(points))
-            # δ ≈ 2 δ₁ − δ₂ with the corrections one and two steps towards a seed, δ₁ where δ₂ is not known, or else 0.
+            # δ ≈ 2 δ₁ − δ₂ with the corrections one and two steps towards a seed, δ₁
+            # where δ₂ is not known, or else 0.
             near, far = toward[points], toward[toward[points]]
             one = known[near] & (distance[near] < number)
             two = one & known[far] & (distance[far] < distance[near])
@@ -68,9 +73,11 @@ def grow_outward(
 def shells(
     lattice: Lattice, seeds: Indices
 ) -> tuple[NDArray[np.int16], NDArray[np.int32]]:
-    """Distances (n,) of nodes from the nearest seed, in steps to any of 26 neighbours, and nodes (n,) nearer to a seed.
+    """Distances (n,) of nodes from the nearest seed, in steps to any of 26 neighbours,
+    and nodes (n,) nearer to a seed.
 
-    The latter are one step along each axis towards the seed that is nearest by the sum of the steps along the axes.
+    The latter are one step along each axis towards the seed that is nearest by the sum
+    of the steps along the axes.
     """
     dim = lattice.dim
     reached = lattice.mask(seeds).reshape(lattice.shape)

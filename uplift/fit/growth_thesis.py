@@ -1,6 +1,8 @@
-"""Growth from neighbours: outward from seeds in rounds, each node from the spectra of its fitted neighbours.
+"""Growth from neighbours: outward from seeds in rounds, each node from the spectra of
+its fitted neighbours.
 
-The algorithm of Tódová 2020, section 3.1.3, for any model and solver; docs/accuracy.md compares it with the default.
+The algorithm of Tódová 2020, section 3.1.3, for any model and solver; docs/accuracy.md
+compares it with the default.
 """
 
 import numpy as np
@@ -24,7 +26,8 @@ def grow_from_neighbours(
 ) -> Growth:
     """Fit nodes that can be reached from seeds (S,).
 
-    Without seeds, growth starts at the node of ``nodes`` that is nearest to the middle, from grey.
+    Without seeds, growth starts at the node of ``nodes`` that is nearest to the middle,
+    from grey.
     """
     growth, lattice = Growth(problem, nodes, progress), nodes.lattice
     seeds = np.intersect1d(seeds, nodes.points)
@@ -53,7 +56,9 @@ def grow_from_neighbours(
 def _try_neighbours(
     growth: Growth, points: Indices, is_fresh: Mask, number: int
 ) -> Indices:
-    """Try waiting nodes from each of their fresh neighbours in turn, and return those that are fitted now."""
+    """Try waiting nodes from each of their fresh neighbours in turn, and return those
+    that are fitted now.
+    """
     neighbours, inside = growth.nodes.lattice.neighbours(points)
     known = inside & is_fresh[neighbours]
     adjacent = known.any(axis=1)
@@ -71,7 +76,9 @@ def _try_neighbours(
 
 
 def _try(growth: Growth, points: Indices, start: Array, number: int) -> Indices:
-    """Solve nodes from ``start``, then from their best multipliers so far with the first one nudged."""
+    """Solve nodes from ``start``, then from their best multipliers so far with the
+    first one nudged.
+    """
     growth.attempt(points, start, number)
     for nudge in NUDGES:
         failed = points[growth.round[points] == NOT_FITTED]

@@ -1,6 +1,8 @@
-"""Kriging of the deviation of atlas entries from a base predictor over CIE L*a*b* (docs/mathematics.md, 7).
+"""Kriging of the deviation of atlas entries from a base predictor over CIE L*a*b*
+(docs/mathematics.md, 7).
 
-Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25 and 2.26, and 5.4.2 for leave-one-out.
+Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25 and 2.26,
+and 5.4.2 for leave-one-out.
 """
 
 from dataclasses import dataclass
@@ -16,13 +18,19 @@ from uplift.common.arrays import Array, Indices, blocks, distances
 from uplift.fit.problem import Problem
 
 METRIC = np.array([0.5, 1.0, 1.0])
-"""Weights of differences of L*, a* and b*: materials of one hue are more alike than those of one lightness."""
+"""Weights of differences of L*, a* and b*: materials of one hue are more alike than
+those of one lightness.
+"""
 REACH, WHITE = 10.0, 0.1
-"""Distance within which the noise of an entry fades away, and the part of it that is white."""
+"""Distance within which the noise of an entry fades away, and the part of it that is
+white.
+"""
 BLOCK_NUMBERS, BLOCK_ROWS = 1 << 20, 1 << 13
 """Numbers and rows of the kernel matrix that are held at a time, at most."""
 DOUBT = 0.5
-"""Entries' worth of the preference for `DEFAULT`, per squared doubling of the length or quadrupling of the noise."""
+"""Entries' worth of the preference for `DEFAULT`, per squared doubling of the length or
+quadrupling of the noise.
+"""
 MIN_ENTRIES = 8
 """Entries needed to learn a kernel."""
 MEDIAN_STEPS, DOUBTFUL = 3, 0.2
@@ -36,13 +44,16 @@ CELLS = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)
 
 
 class Kernel(NamedTuple):
-    """Covariance exp(−d / l) + ν √(v v′) ((1 − w) (1 − d / r)⁴₊ (1 + 4 d / r) + w [same material]).
+    """Covariance exp(−d / l) + ν √(v v′) ((1 − w) (1 − d / r)⁴₊ (1 + 4 d / r) + w [same
+    material]).
 
     Here l is ``length``, ν ``noise``, r `REACH` and w `WHITE`.
 
-    The first term is common to the materials of an atlas. The noise ν v belongs to one of them: kriging keeps most of
-    it at the colour of an entry and near it, and averages it elsewhere. The function of d / r is that of Wendland 1995,
-    "Piecewise polynomial, positive definite and compactly supported radial functions of minimal degree".
+    The first term is common to the materials of an atlas. The noise ν v belongs to one
+    of them: kriging keeps most of it at the colour of an entry and near it, and
+    averages it elsewhere. The function of d / r is that of Wendland 1995, "Piecewise
+    polynomial, positive definite and compactly supported radial functions of minimal
+    degree".
     """
 
     length: float
@@ -58,7 +69,9 @@ KERNELS = tuple(
 
 
 class Points(NamedTuple):
-    """Mean deviations (P, C) of spectra whose mean locations are (P, 3), their counts (P,), and the point of each."""
+    """Mean deviations (P, C) of spectra whose mean locations are (P, 3), their counts
+    (P,), and the point of each.
+    """
 
     locations: Array
     deviations: Array
@@ -67,7 +80,8 @@ class Points(NamedTuple):
 
 
 def average_close(locations: Array, deviations: Array) -> Points:
-    """Average deviations (E, C) of close locations (E, 3), so that at most `MAX_POINTS` remain, and count them.
+    """Average deviations (E, C) of close locations (E, 3), so that at most `MAX_POINTS`
+    remain, and count them.
 
     With cells of the largest edge more may remain.
     """
@@ -93,9 +107,11 @@ def average_close(locations: Array, deviations: Array) -> Points:
 
 @dataclass(frozen=True, eq=False)
 class Kriging:
-    """Expected deviation d(x) = k(x)ᵀ w of E entries, from the locations (P, 3) and weights (P, C) of points.
+    """Expected deviation d(x) = k(x)ᵀ w of E entries, from the locations (P, 3) and
+    weights (P, C) of points.
 
-    ``noise`` (P,) are the variances ν v of the points, and ``variances`` (E,) the v of the entries.
+    ``noise`` (P,) are the variances ν v of the points, and ``variances`` (E,) the v of
+    the entries.
     """
 
     kernel: Kernel
@@ -115,9 +131,11 @@ class Kriging:
 def krige(
     lab: Array, deviations: Array, kernel: Kernel, variances: Array | None = None
 ) -> tuple[Kriging, Array]:
-    """Fit the kriging of deviations (E, C) at L*a*b* (E, 3); with it, return its leave-one-out errors (E, C).
+    """Fit the kriging of deviations (E, C) at L*a*b* (E, 3); with it, return its
+    leave-one-out errors (E, C).
 
-    ``variances`` (E,) are those of the noise of the entries, relative to that of the kernel, 1 by default.
+    ``variances`` (E,) are those of the noise of the entries, relative to that of the
+    kernel, 1 by default.
     """
     return _krige(
         average_close(lab * METRIC, deviations), deviations, kernel, variances
@@ -134,8 +152,9 @@ def _krige(
     own = spread * _own(distance) * spread[:, None]
     precision = np.linalg.inv(_shared(distance, kernel.length) + own + np.diag(white))
     weights = precision @ points.deviations
-    # A point of n entries answers its mean less w ν v u / n, where u is its weight, and gives the part h / n of the
-    # deviation of an entry to this entry, h = 1 − w ν v K⁻¹_ii / n: without itself, its error is r / (1 − h / n).
+    # A point of n entries answers its mean less w ν v u / n, where u is its weight, and
+    # gives the part h / n of the deviation of an entry to this entry, h = 1 − w ν v
+    # K⁻¹_ii / n: without itself, its error is r / (1 − h / n).
     residuals = (
         deviations - (points.deviations - white[:, None] * weights)[points.point]
     )
@@ -148,10 +167,11 @@ def _krige(
 def learn_kriging(
     lab: Array, deviations: Array, visible: Array
 ) -> tuple[Kriging, Array]:
-    """Return the kriging with the least mean visible error of left-out entries, and its errors, as `krige` does.
+    """Return the kriging with the least mean visible error of left-out entries, and its
+    errors, as `krige` does.
 
-    The entries have L*a*b* (E, 3) and deviations (E, C), whose `visible_change` is (E, L, 3, C). Few entries lean
-    towards `DEFAULT`.
+    The entries have L*a*b* (E, 3) and deviations (E, C), whose `visible_change` is (E,
+    L, 3, C). Few entries lean towards `DEFAULT`.
     """
     points = average_close(lab * METRIC, deviations)
     if len(lab) < MIN_ENTRIES:
@@ -166,7 +186,8 @@ def learn_kriging(
         )
 
     def loss(kernel: Kernel) -> float:
-        # Visible leave-one-out error, and the surprise at a kernel that is not the default
+        # Visible leave-one-out error, and the surprise at a kernel that is not the
+        # default
         doublings, quadruplings = np.log2(np.divide(kernel, DEFAULT)) / (1, 2)
         error = changes(_krige(points, deviations, kernel)[1]).mean()
         return float(
@@ -186,7 +207,8 @@ def learn_kriging(
 
 
 def posterior(kernel: Kernel, known: Array, lab: Array) -> Array:
-    """Covariance (n, n) of the deviations of materials at L*a*b* (n, 3), given those of known ones (E, 3).
+    """Covariance (n, n) of the deviations of materials at L*a*b* (n, 3), given those of
+    known ones (E, 3).
 
     It is relative to the variance of a material if none is known.
     """
@@ -214,7 +236,8 @@ def posterior(kernel: Kernel, known: Array, lab: Array) -> Array:
 def kernel_sums(
     at: Array, locations: Array, columns: Array, length: float, own: Array
 ) -> tuple[Array, Array]:
-    """Sums (n, K) of columns (P, K) weighted by the kernel at locations (n, 3), and the largest weight (n,).
+    """Sums (n, K) of columns (P, K) weighted by the kernel at locations (n, 3), and the
+    largest weight (n,).
 
     ``own`` (P,) weigh the part of the noise that is not white.
     """
@@ -262,17 +285,19 @@ def _own(distance: Any) -> Any:
 
 
 def visible_change(problem: Problem, measured: Array) -> Array:
-    """Derivative (E, L, 3, C) of the colours of reflectances (E, N) under L lights by coefficients, in units of ΔE00.
+    """Derivative (E, L, 3, C) of the colours of reflectances (E, N) under L lights by
+    coefficients, in units of ΔE00.
 
-    Lightness, chroma and hue difference change once the colour of the build is exact again. Moments are linear in the
-    spectrum, which they determine up to its roughest parts: their basis approximates the change of the spectrum.
+    Lightness, chroma and hue difference change once the colour of the build is exact
+    again. Moments are linear in the spectrum, which they determine up to its roughest
+    parts: their basis approximates the change of the spectrum.
     """
     basis, sensor = (
         problem.forward.basis,
         problem.forward.sensor @ problem.forward.basis,
     )
-    # Of changes of the coefficients, only the part remains that a smooth change of the same colour does not undo:
-    # I − M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ J with J = W B.
+    # Of changes of the coefficients, only the part remains that a smooth change of the
+    # same colour does not undo: I − M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ J with J = W B.
     smooth = sensor.T / problem.model.metric_diagonal()[:, None]
     metameric = np.eye(problem.model.count) - smooth @ np.linalg.solve(
         sensor @ smooth, sensor

@@ -1,9 +1,11 @@
-"""Looks: colours whose appearance under further lights is chosen, as entries of a cube (docs/looks.md).
+"""Looks: colours whose appearance under further lights is chosen, as entries of a cube
+(docs/looks.md).
 
-A reflectance is designed first: of all within [0, 1] that have the colour of the build exactly, the one nearest to the
-target colours, and among these the one that differs least from the expected spectrum. The problem is convex, so no
-reflectance meets a target that it misses. The entry fit then brings the reflectance into the spectrum model, like a
-measured one, with its colours weighted more.
+A reflectance is designed first: of all within [0, 1] that have the colour of the build
+exactly, the one nearest to the target colours, and among these the one that differs
+least from the expected spectrum. The problem is convex, so no reflectance meets a
+target that it misses. The entry fit then brings the reflectance into the spectrum
+model, like a measured one, with its colours weighted more.
 """
 
 from collections.abc import Sequence
@@ -28,10 +30,14 @@ from uplift.models import evaluate
 MET = 0.1
 """ΔE00 within which a target is met."""
 FIT_WEIGHTS, REACHED = ({"weight": 1.0}, {"weight": 0.3, "smoothness": 3e-3}), 0.5
-"""Weights of the fit of a design: the lights count as much as the spectrum allows, or less where that ends at more than
-so many ΔE00 from the colours of the design, as then the spectrum would be bent towards them without end."""
+"""Weights of the fit of a design: the lights count as much as the spectrum allows, or
+less where that ends at more than so many ΔE00 from the colours of the design, as then
+the spectrum would be bent towards them without end.
+"""
 SHAPES = (0.3, 0.03)
-"""ΔE00 that a root-mean-square change of the reflectance by 1 weighs. The second is used where the first misses."""
+"""ΔE00 that a root-mean-square change of the reflectance by 1 weighs. The second is
+used where the first misses.
+"""
 ENOUGH = 0.02
 """ΔE00 of a design that is not repeated with a smaller weight of the shape."""
 SMOOTH = 50.0
@@ -44,7 +50,8 @@ MAX_TURNS = 3
 
 @dataclass(frozen=True, eq=False)
 class LookGoal:
-    """Linear RGB (3,) under the build illuminant, and target XYZ (L, 3) under L lights, of reflectances (N,).
+    """Linear RGB (3,) under the build illuminant, and target XYZ (L, 3) under L lights,
+    of reflectances (N,).
 
     The perfect reflector has the XYZ of `Light.white`.
     """
@@ -68,14 +75,17 @@ class LookGoal:
         )
 
     def softened(self, expected: Array, weight: float) -> "LookGoal":
-        """Move the targets towards the colours of an expected reflectance (N,), on a straight line in XYZ."""
+        """Move the targets towards the colours of an expected reflectance (N,), on a
+        straight line in XYZ.
+        """
         return replace(
             self, xyz=weight * self.xyz + (1 - weight) * self.colours(expected)
         )
 
 
 def design_reflectance(sensor: Sensor, goal: LookGoal, expected: Array) -> Array:
-    """Design a reflectance (N,) in [0, 1] of a goal that differs least from ``expected`` (N,), which has its RGB.
+    """Design a reflectance (N,) in [0, 1] of a goal that differs least from
+    ``expected`` (N,), which has its RGB.
 
     Where no reflectance meets the goal, the sum of squares of (nearly) ΔE00 is least.
     """
@@ -95,7 +105,9 @@ def design_reflectance(sensor: Sensor, goal: LookGoal, expected: Array) -> Array
 
 
 def _shape(wavelengths: Array) -> Array:
-    """Rows (2 N − 1, N) whose squares sum to the mean square of a change and of `SMOOTH` times its slope."""
+    """Rows (2 N − 1, N) whose squares sum to the mean square of a change and of
+    `SMOOTH` times its slope.
+    """
     count, slope = len(wavelengths), np.diff(np.eye(len(wavelengths)), axis=0)
     slope *= SMOOTH / np.diff(wavelengths)[:, None]
     return np.concatenate([np.eye(count), slope]) / np.sqrt(count)
@@ -104,7 +116,9 @@ def _shape(wavelengths: Array) -> Array:
 def _linear_design(
     sensor: Sensor, goal: LookGoal, expected: Array, near: Array, shape: Array
 ) -> Array:
-    """Reflectance (N,) of least squares, with L*a*b* linearised at the colours of the reflectance ``near``."""
+    """Reflectance (N,) of least squares, with L*a*b* linearised at the colours of the
+    reflectance ``near``.
+    """
     # |E (W g − rgb)|² + Σ_lights |ΔE00|² + |shape (g − expected)|² in the change of the reflectance g, 0 ≤ g ≤ 1
     rows, values = (
         [EXACT * sensor.matrix],
@@ -129,14 +143,18 @@ def _linear_design(
 def fit_designs(
     problem: Problem, goals: Sequence[LookGoal], designs: Array
 ) -> FittedEntries:
-    """Fit designed reflectances (k, N) by the spectrum model, each with the lights of its goal."""
+    """Fit designed reflectances (k, N) by the spectrum model, each with the lights of
+    its goal.
+    """
     return join_entries(
         *(_fit_design(problem, *each) for each in zip(goals, designs, strict=True))
     )
 
 
 def _fit_design(problem: Problem, goal: LookGoal, design: Array) -> FittedEntries:
-    """Fit a reflectance (N,) with the first weights that reach its colours, or the last."""
+    """Fit a reflectance (N,) with the first weights that reach its colours, or the
+    last.
+    """
     own = replace(
         problem, lights=(problem.sensor.light, *goal.lights), method=LeastChange
     )

@@ -1,7 +1,9 @@
-"""The prior: the spectrum expected at a colour before it is fitted, and the standard error of that expectation.
+"""The prior: the spectrum expected at a colour before it is fitted, and the standard
+error of that expectation.
 
-p(x) = s(x) + k(x) d(x), the base spectrum and the kriged deviation of the entries from it (docs/mathematics.md, 7).
-Moments are linear in the spectrum, and so is the colour under another light: deviations are those of coefficients.
+p(x) = s(x) + k(x) d(x), the base spectrum and the kriged deviation of the entries from
+it (docs/mathematics.md, 7). Moments are linear in the spectrum, and so is the colour
+under another light: deviations are those of coefficients.
 """
 
 from dataclasses import dataclass, replace
@@ -32,18 +34,24 @@ from uplift.models.model import Model
 
 MAX_PASSES = 32
 DETERMINED = Kernel(length=6.0, noise=1e-3)
-"""Kernel where the colour alone determines the spectrum: it only chooses among solutions."""
+"""Kernel where the colour alone determines the spectrum: it only chooses among
+solutions.
+"""
 LOOK_VARIANCE = 0.01
 """Variance of the noise of a look relative to that of entries."""
 FRACTIONS = np.multiply.accumulate(np.full(16, 0.7))
-"""Parts of a deviation that are tried where all of it leaves the space of valid coefficients or is `STEEP`. The largest
-that does neither counts."""
+"""Parts of a deviation that are tried where all of it leaves the space of valid
+coefficients or is `STEEP`. The largest that does neither counts.
+"""
 STEEP = 100
-"""Multipliers that a deviation must not exceed: beyond them a spectrum is nearly a box, which small changes of its
-coefficients reshape."""
+"""Multipliers that a deviation must not exceed: beyond them a spectrum is nearly a box,
+which small changes of its coefficients reshape.
+"""
 
 FLAT_CHROMA = (4.0, 12.0)
-"""CIE L*a*b* chroma up to which, and to the cells of greys, `Prior.with_flat_greys` applies, and where it has ended."""
+"""CIE L*a*b* chroma up to which, and to the cells of greys, `Prior.with_flat_greys`
+applies, and where it has ended.
+"""
 FLAT_LEVELS = (5e-5, 1 - 5e-5)
 """Limits of flat reflectances, as 0 and 1 have no multipliers."""
 
@@ -52,9 +60,11 @@ FLAT_LEVELS = (5e-5, 1 - 5e-5)
 class Prior:
     """Base spectra and, with an atlas, the kriged deviation of its entries from them.
 
-    ``errors`` are the expected squares of ΔE00, and ``left_out`` (E, N) the reflectances expected at the colours of the
-    entries without them, in their order; both None for an atlas of fewer than 8 entries. ``shares`` (3, C) are
-    the coefficients of spectra of the primaries that sum to 1, after `with_flat_greys`, else None.
+    ``errors`` are the expected squares of ΔE00, and ``left_out`` (E, N) the
+    reflectances expected at the colours of the entries without them, in their order;
+    both None for an atlas of fewer than 8 entries. ``shares`` (3, C) are the
+    coefficients of spectra of the primaries that sum to 1, after `with_flat_greys`,
+    else None.
     """
 
     model: Model
@@ -87,7 +97,8 @@ class Prior:
             np.ptp(lattice.to_steps(rgb), axis=1) < 1.5,
         )
         near, grey = weight > 0, np.clip(self.sensor.grey(rgb), *FLAT_LEVELS)
-        # y + Σ (x_i − y) b_i with Σ b_i = 1, of the grey y of x: flat for greys, linear in x and so flat between nodes
+        # y + Σ (x_i − y) b_i with Σ b_i = 1, of the grey y of x: flat for greys, linear
+        # in x and so flat between nodes
         flat = grey[near, :1] * self.model.constant()
         own = _bounded(
             self.model, flat, (rgb - grey)[near] @ self.shares, MAX_MULTIPLIER
@@ -96,9 +107,11 @@ class Prior:
         return multipliers
 
     def with_flat_greys(self) -> "Prior":
-        """Return a prior that expects flat spectra at and near greys; itself for models that have no choice.
+        """Return a prior that expects flat spectra at and near greys; itself for models
+        that have no choice.
 
-        Mallett & Yuksel 2019, "Spectral primary decomposition for rendering with sRGB reflectance".
+        Mallett & Yuksel 2019, "Spectral primary decomposition for rendering with sRGB
+        reflectance".
         """
         if self.model.count == NO_FREEDOM or not isinstance(self.model, Moments):
             return self
@@ -111,7 +124,8 @@ class Prior:
         )
 
     def standard_error(self, rgb: Array) -> Array | None:
-        """ΔE00 (n,) within which 68 % of measurements are expected to lie from answers to linear RGB (n, 3).
+        """ΔE00 (n,) within which 68 % of measurements are expected to lie from answers
+        to linear RGB (n, 3).
 
         None if the atlas is too small to estimate it.
         """
@@ -124,13 +138,15 @@ class Prior:
         sums, nearest = kernel_sums(
             rgb_to_lab(self.sensor, rgb), self.errors.locations, columns, LENGTH, none
         )
-        # Expected square v(x) Σ k e² / Σ k + f, and the learnt radius of 68 % in its root
+        # Expected square v(x) Σ k e² / Σ k + f, and the learnt radius of 68 % in its
+        # root
         squares = self.errors.combine(sums[:, :used], nearest)[:, 0] + self.errors.floor
         standard, _ = self.errors.radii
         return np.asarray(standard * np.sqrt(squares))
 
     def with_entries(self, entries: FittedEntries, looks: int) -> "Prior":
-        """Return the prior of entries whose last ones are looks, with the same kernel and standard errors.
+        """Return the prior of entries whose last ones are looks, with the same kernel
+        and standard errors.
 
         Looks are nearly certain: see `LOOK_VARIANCE`.
         """
@@ -173,7 +189,8 @@ def fit_prior(
         kriging, errors = learn_kriging(locations, deviations, visible)
     if len(entries.rgb) < MIN_ENTRIES:
         return Prior(model, sensor, base, kriging)
-    # Each entry as the others predict it: its deviation less its leave-one-out error, moved to its exact colour.
+    # Each entry as the others predict it: its deviation less its leave-one-out error,
+    # moved to its exact colour.
     start = _bounded(
         model, expected, base.brightness(entries.rgb) * (deviations - errors)
     )
@@ -191,7 +208,9 @@ def fit_prior(
 def _deviations(
     model: Model, base: Base, entries: FittedEntries
 ) -> tuple[Array, Array]:
-    """Deviations d_i = (c_i − s(x_i)) / k(x_i) (E, C), relative to the brightening as those of families, and s(x_i)."""
+    """Deviations d_i = (c_i − s(x_i)) / k(x_i) (E, C), relative to the brightening as
+    those of families, and s(x_i).
+    """
     expected = base.coefficients(entries.rgb)
     return (model.to_storage(entries.multipliers) - expected) / base.brightness(
         entries.rgb
@@ -199,7 +218,9 @@ def _deviations(
 
 
 def blended(model: Model, own: Array, expected: Array, weight: Array) -> Array:
-    """Multipliers (n, C) of c = w c_own + (1 − w) c_expected, with weights (n,): coefficients mix as spectra do."""
+    """Multipliers (n, C) of c = w c_own + (1 − w) c_expected, with weights (n,):
+    coefficients mix as spectra do.
+    """
     multipliers = np.where(weight[:, None] == 1, own, expected)
     mixed = (weight > 0) & (weight < 1)
     part = weight[mixed, None]
@@ -213,7 +234,9 @@ def blended(model: Model, own: Array, expected: Array, weight: Array) -> Array:
 def _bounded(
     model: Model, expected: Array, deviation: Array, steep: float = STEEP
 ) -> Array:
-    """Multipliers (n, C) of expected coefficients plus their deviation (n, C), shrunk as little as is necessary."""
+    """Multipliers (n, C) of expected coefficients plus their deviation (n, C), shrunk
+    as little as is necessary.
+    """
 
     def convert(coefficients: Array) -> tuple[Array, Mask]:
         multipliers, valid = model.try_from_storage(coefficients)
@@ -221,7 +244,8 @@ def _bounded(
 
     multipliers, kept = convert(expected + deviation)
     rows = np.flatnonzero(~kept)
-    # c = s + f d with the largest of the fractions f that will do, all of them at once; s alone where none does
+    # c = s + f d with the largest of the fractions f that will do, all of them at once;
+    # s alone where none does
     shrunk = expected[rows, None] + FRACTIONS[:, None] * deviation[rows, None]
     found, kept = convert(shrunk.reshape(-1, model.count))
     kept = kept.reshape(shrunk.shape[:2])

@@ -1,4 +1,6 @@
-"""What is fitted: the problem that all stages of a build share, and the nodes of a lattice with their goals."""
+"""What is fitted: the problem that all stages of a build share, and the nodes of a
+lattice with their goals.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,16 +18,20 @@ from uplift.models.model import Model
 BLOCK_NODES = 1 << 15
 """Nodes that are tested at a time."""
 MARGIN = 1e-3
-"""Linear RGB between the goals of unrealisable nodes and the boundary. Nearer to it spectra become boxes, and many of
-these have the same colour: rounding would decide between them."""
+"""Linear RGB between the goals of unrealisable nodes and the boundary. Nearer to it
+spectra become boxes, and many of these have the same colour: rounding would decide
+between them.
+"""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Problem:
-    """Sensor, spectrum model, lights under which colours are kept, light of the errors, threshold and solver.
+    """Sensor, spectrum model, lights under which colours are kept, light of the errors,
+    threshold and solver.
 
-    ``error_light`` is that of the sensor by default. ``threshold`` is the largest distance of a fitted node in linear
-    RGB. ``method`` solves batches of nodes; see `uplift.fit.solver`.
+    ``error_light`` is that of the sensor by default. ``threshold`` is the largest
+    distance of a fitted node in linear RGB. ``method`` solves batches of nodes; see
+    `uplift.fit.solver`.
     """
 
     sensor: Sensor
@@ -42,13 +48,17 @@ class Problem:
 
     @property
     def tolerance(self) -> float:
-        """Residual at which solvers stop: the last steps converge quadratically and cost little."""
+        """Residual at which solvers stop: the last steps converge quadratically and
+        cost little.
+        """
         return self.threshold / 100
 
     def solve(
         self, target: Array, start: Array, max_passes: int, prior: Array | None = None
     ) -> Solution:
-        """Find multipliers (n, C) of linear RGB (n, 3); see `uplift.fit.solver.solve`."""
+        """Find multipliers (n, C) of linear RGB (n, 3); see
+        `uplift.fit.solver.solve`.
+        """
         return solve(
             self.forward, start, target, self.tolerance, max_passes, prior, self.method
         )
@@ -58,8 +68,9 @@ class Problem:
 class Nodes:
     """Nodes of a lattice that are to be fitted, by their numbers (k,), ascending.
 
-    ``unrealisable`` are those whose colour no reflectance has, and ``nearest`` (u, 3) the linear RGB that replace
-    theirs in the fit: realisable colours of the same hue and less chroma (`nodes_of`).
+    ``unrealisable`` are those whose colour no reflectance has, and ``nearest`` (u, 3)
+    the linear RGB that replace theirs in the fit: realisable colours of the same hue
+    and less chroma (`nodes_of`).
     """
 
     lattice: Lattice
@@ -77,11 +88,13 @@ class Nodes:
 
 
 def nodes_of(lattice: Lattice, sensor: Sensor, points: Indices | None = None) -> Nodes:
-    """Find the goals of nodes, by their numbers, or of all nodes (docs/mathematics.md, 9).
+    """Find the goals of nodes, by their numbers, or of all nodes (docs/mathematics.md,
+    9).
 
-    The goal of an unrealisable node has its hue and less chroma: it lies on the straight line to the grey of the same
-    luminance, `MARGIN` inside the object-colour solid. The spectra on the boundary are steps between 0 and 1 (MacAdam
-    1935), which no smooth model has.
+    The goal of an unrealisable node has its hue and less chroma: it lies on the
+    straight line to the grey of the same luminance, `MARGIN` inside the object-colour
+    solid. The spectra on the boundary are steps between 0 and 1 (MacAdam 1935), which
+    no smooth model has.
     """
     points = np.arange(lattice.size) if points is None else points
     limits = solid(sensor.matrix)

@@ -1,5 +1,5 @@
-"""Atlas entries in a lattice: the widths of their boxes, seeds, the multipliers that nodes start from, and the lattice
-that keeps all entries.
+"""Atlas entries in a lattice: the widths of their boxes, seeds, the multipliers that
+nodes start from, and the lattice that keeps all entries.
 
 Tódová 2020, "Constrained spectral uplifting", section 3.1.2; docs/mathematics.md, 6.
 """
@@ -21,7 +21,9 @@ NEAR, FAR = 8.0, 16.0
 MAX_HALF_WIDTH = 1.0
 """Lattice steps: the half width of an entry box without other entries nearby."""
 SAME_COLOUR = 1e-6
-"""Lattice steps. Entries that are closer have the same colour, and only the first of them is used."""
+"""Lattice steps. Entries that are closer have the same colour, and only the first of
+them is used.
+"""
 DIMS = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128)
 """Lattices that `choose_lattice` tries."""
 MAX_PASSES = 32
@@ -30,10 +32,11 @@ BLOCK = 64
 
 
 def half_widths(steps: Array) -> Array:
-    """Half widths (E,), 0 to 1, of the boxes around entries at positions (E, 3), all in lattice steps.
+    """Half widths (E,), 0 to 1, of the boxes around entries at positions (E, 3), all in
+    lattice steps.
 
-    No two boxes overlap: a box extends at most half the distance to the nearest other entry (docs/mathematics.md, 8).
-    An entry whose colour an earlier entry has gets 0.
+    No two boxes overlap: a box extends at most half the distance to the nearest other
+    entry (docs/mathematics.md, 8). An entry whose colour an earlier entry has gets 0.
     """
     unique = np.ones(len(steps), dtype=bool)
     for rows in blocks(len(steps), BLOCK):
@@ -50,7 +53,8 @@ def half_widths(steps: Array) -> Array:
 
 
 def outside_half_widths(lattice: Lattice, rgb: Array) -> Array:
-    """Half widths (O,) of the boxes around entries outside [0, 1], in lattice steps of 1 / (dim − 1), as `half_widths`.
+    """Half widths (O,) of the boxes around entries outside [0, 1], in lattice steps of
+    1 / (dim − 1), as `half_widths`.
 
     A box ends at [0, 1].
     """
@@ -76,7 +80,8 @@ def _apart(some: Array, others: Array) -> Array:
 class Seeds:
     """Nodes (S,) that start from the entries (S,) of linear RGB (E, 3).
 
-    ``primary`` (S,) marks the node nearest to its entry. ``crowded`` are entries whose nearest node a closer one has.
+    ``primary`` (S,) marks the node nearest to its entry. ``crowded`` are entries whose
+    nearest node a closer one has.
     """
 
     lattice: Lattice
@@ -88,10 +93,12 @@ class Seeds:
 
 
 def seed(lattice: Lattice, rgb: Array) -> Seeds:
-    """Assign nodes to atlas entries of linear RGB (E, 3), independently of the order of entries of different colours.
+    """Assign nodes to atlas entries of linear RGB (E, 3), independently of the order of
+    entries of different colours.
 
-    Every entry gets its nearest node, unless a closer entry owns it. Then, in rounds, every entry gets the nearest free
-    corner of its cell: the "better approach" of Tódová 2020, section 3.1.2.
+    Every entry gets its nearest node, unless a closer entry owns it. Then, in rounds,
+    every entry gets the nearest free corner of its cell: the "better approach" of
+    Tódová 2020, section 3.1.2.
     """
     cells, _ = lattice.corners(rgb)
     distance = np.linalg.norm(lattice.target(cells) - rgb[:, None, :], axis=-1)
@@ -123,15 +130,17 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
 
 
 Blend = tuple[float, float]
-"""Weights of an entry in the start of the corners of its cell, up to `NEAR` ΔE*ab from the entry and from `FAR`.
+"""Weights of an entry in the start of the corners of its cell, up to `NEAR` ΔE*ab from
+the entry and from `FAR`.
 
 The weight changes linearly between them; the rest is the prior.
 """
 HALF_ENTRY: Blend = (0.5, 0.0)
-"""The default: shades of an entry, paint of nearly its colour, are like it, other materials near it like the prior.
+"""The default: shades of an entry, paint of nearly its colour, are like it, other
+materials near it like the prior.
 
-More of the entry is worse for other materials, and less is worse for shades. Corners of coarse lattices whose colour
-is another one start from the prior alone.
+More of the entry is worse for other materials, and less is worse for shades. Corners of
+coarse lattices whose colour is another one start from the prior alone.
 """
 FULL_ENTRY: Blend = (1.0, 1.0)
 """Tódová 2020, section 3.1.2."""
@@ -145,10 +154,12 @@ def initial_guess(
     entries: Array,
     blend: Blend,
 ) -> Array:
-    """Multipliers (k, C) that nodes (k,), which are fitted to linear RGB (k, 3), start from.
+    """Multipliers (k, C) that nodes (k,), which are fitted to linear RGB (k, 3), start
+    from.
 
-    The primary node of an entry starts from its multipliers in ``entries`` (E, C), the other corners of its cell from a
-    blend of these with the prior, and all other nodes from the prior.
+    The primary node of an entry starts from its multipliers in ``entries`` (E, C), the
+    other corners of its cell from a blend of these with the prior, and all other nodes
+    from the prior.
     """
     multipliers = prior.at_nodes(seeds.lattice, rgb)
     _, seeded, row = np.intersect1d(
@@ -173,7 +184,8 @@ def lattice_error(
     blend: Blend,
     entries: FittedEntries,
 ) -> Array:
-    """Largest ΔE00 (E,) under the lights between each entry's fitted spectrum and the lattice at its colour.
+    """Largest ΔE00 (E,) under the lights between each entry's fitted spectrum and the
+    lattice at its colour.
 
     Only the corners of the entries' cells are fitted. Entry boxes are not used.
     """
@@ -201,9 +213,11 @@ def choose_lattice(
     entries: FittedEntries,
     max_error: float,
 ) -> tuple[str, int, int]:
-    """Choose the smallest lattice that keeps every entry within ``max_error`` or, if none does, keeps the most.
+    """Choose the smallest lattice that keeps every entry within ``max_error`` or, if
+    none does, keeps the most.
 
-    Returns the spacing of its axis nodes, its dim, and the number of entries that it does not keep.
+    Returns the spacing of its axis nodes, its dim, and the number of entries that it
+    does not keep.
     """
     trials = []
     for dim in DIMS:

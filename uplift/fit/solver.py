@@ -1,8 +1,10 @@
-"""The solver of the fit: of all spectra of a colour, the one nearest to the prior (docs/mathematics.md, 5).
+"""The solver of the fit: of all spectra of a colour, the one nearest to the prior
+(docs/mathematics.md, 5).
 
-minimise |R⁻¹ (p − p₀)|² subject to r(p) = t, by damped steps (Nocedal & Wright 2006, "Numerical optimization", 18.1).
-`LeastChange` is a solver of optimistix for many problems at a time, each with its own damping. `solve` steps it, or any
-other solver of optimistix (`uplift.fit.stock_solvers`), over batches of fixed shapes.
+minimise |R⁻¹ (p − p₀)|² subject to r(p) = t, by damped steps (Nocedal & Wright 2006,
+"Numerical optimization", 18.1). `LeastChange` is a solver of optimistix for many
+problems at a time, each with its own damping. `solve` steps it, or any other solver of
+optimistix (`uplift.fit.stock_solvers`), over batches of fixed shapes.
 """
 
 import abc
@@ -25,12 +27,18 @@ from uplift.models.duality import MAX_MULTIPLIER
 from uplift.models.minimum_norm import ForwardMap, anchored_step
 
 FIRST_DAMPING = 1e-6
-"""Initial μ; divided by four after a successful step, multiplied by four after a rejected one."""
+"""Initial μ; divided by four after a successful step, multiplied by four after a
+rejected one.
+"""
 SINGLE_STEPS, MORE_STEPS = 2, 8
-"""Passes that take one step, in which most problems converge, and the steps of each later pass."""
+"""Passes that take one step, in which most problems converge, and the steps of each
+later pass.
+"""
 MIN_GAIN, PATIENCE = 1e-3, 8
-"""A problem is abandoned after `PATIENCE` consecutive passes that each reduce its distance by less than this part.
-Otherwise unrealisable colours, frequent in wide gamuts, would remain until the last pass."""
+"""A problem is abandoned after `PATIENCE` consecutive passes that each reduce its
+distance by less than this part. Otherwise unrealisable colours, frequent in wide
+gamuts, would remain until the last pass.
+"""
 NUMPY_ROWS = 128
 """Problems of a block that is stepped in numpy."""
 
@@ -39,11 +47,15 @@ Options = dict[str, Any]
 NO_TAGS: frozenset[object] = frozenset()
 """Nothing is known of the matrices of the problem."""
 Stepped = tuple[Any, Any, Any]
-"""What a step of a solver returns: ``y``, its state, and what the function returned with the residuals."""
+"""What a step of a solver returns: ``y``, its state, and what the function returned
+with the residuals.
+"""
 
 
 class BatchSolver(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
-    """A solver of optimistix for a batch of problems: ``y`` and the arrays of its state have a row for each."""
+    """A solver of optimistix for a batch of problems: ``y`` and the arrays of its state
+    have a row for each.
+    """
 
     norm: Callable[[Any], Any] = equinox.field(
         static=True, default=optimistix.max_norm, kw_only=True
@@ -66,17 +78,23 @@ class BatchSolver(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
         return y, aux, {}
 
     def resume(self, options: Options, y: Any, state: Any) -> Options:
-        """Return the options that ``init`` goes on with in place of those before, from ``y`` (n, C) and the state."""
+        """Return the options that ``init`` goes on with in place of those before, from
+        ``y`` (n, C) and the state.
+        """
         return {}
 
 
 class Method(Protocol):
-    """A way to solve batches, the same object for a whole build: what is compiled for it is found by its identity."""
+    """A way to solve batches, the same object for a whole build: what is compiled for
+    it is found by its identity.
+    """
 
     def __call__(self, forward: ForwardMap, tolerance: Any) -> Any:
-        """Make a solver of optimistix for a batch, which stops at a distance of ``tolerance`` in linear RGB.
+        """Make a solver of optimistix for a batch, which stops at a distance of
+        ``tolerance`` in linear RGB.
 
-        Its further method ``resume(options, y, state)`` returns the options with which ``init`` goes on.
+        Its further method ``resume(options, y, state)`` returns the options with which
+        ``init`` goes on.
         """
 
     def options(self, start: Array, prior: Array | None) -> Options:
@@ -96,15 +114,18 @@ class LeastChangeState(NamedTuple):
     damping: Any
     """(n,) μ."""
     anchor_weight: Any
-    """(n,) 1, or 0 once a step was rejected: a problem that hard is no longer pulled towards its prior."""
+    """(n,) 1, or 0 once a step was rejected: a problem that hard is no longer pulled
+    towards its prior.
+    """
 
 
 class LeastChange(BatchSolver):
-    """Damped steps that reach the colour and change the prior least, for a batch of problems with three residuals each.
+    """Damped steps that reach the colour and change the prior least, for a batch of
+    problems with three residuals each.
 
-    ``atol`` is the distance in linear RGB at which a problem is solved. The options of `init` are ``prior`` (n, C), the
-    multipliers to change least (the start by default), ``damping`` and ``anchor_weight`` (n,). Arrays are those of
-    numpy or of JAX.
+    ``atol`` is the distance in linear RGB at which a problem is solved. The options of
+    `init` are ``prior`` (n, C), the multipliers to change least (the start by default),
+    ``damping`` and ``anchor_weight`` (n,). Arrays are those of numpy or of JAX.
     """
 
     forward: ForwardMap
@@ -130,14 +151,17 @@ class LeastChange(BatchSolver):
         state: LeastChangeState,
         *rest: Any,
     ) -> Stepped:
-        """Take one step in every problem whose distance exceeds the tolerance; no squared residual increases."""
+        """Take one step in every problem whose distance exceeds the tolerance; no
+        squared residual increases.
+        """
         where = y.__array_namespace__().where
         # Δx = A⁺ (t − r + A d) − d, and p changes by R Δx.
         anchored = state.displacement * state.anchor_weight[:, None]
         change = anchored_step(self.forward, y, state.residual, state.damping, anchored)
         trial = y + blocked_matmul(change, self.forward.root.T)
         left, aux = fn(trial, args)
-        # A step is accepted where it reduces the squared residual; μ follows the success of the linearisation.
+        # A step is accepted where it reduces the squared residual; μ follows the
+        # success of the linearisation.
         better = ((left**2).sum(axis=1) < (state.residual**2).sum(axis=1)) & (
             abs(trial).max(axis=1) <= MAX_MULTIPLIER
         )
@@ -159,7 +183,9 @@ class LeastChange(BatchSolver):
 
     @staticmethod
     def options(start: Array, prior: Array | None) -> Options:
-        """Change the prior least, or without one the current multipliers in each step."""
+        """Change the prior least, or without one the current multipliers in
+        each step.
+        """
         count = len(start)
         given = {
             "damping": np.full(count, FIRST_DAMPING),
@@ -169,7 +195,9 @@ class LeastChange(BatchSolver):
 
     @staticmethod
     def schedule() -> Iterator[int]:
-        """One step at a time while most problems converge, then several, to pass through fewer batches."""
+        """One step at a time while most problems converge, then several, to pass
+        through fewer batches.
+        """
         return chain(repeat(1, SINGLE_STEPS), repeat(MORE_STEPS))
 
 
@@ -195,11 +223,13 @@ def solve(
     prior: Array | None = None,
     method: Method = LeastChange,
 ) -> Solution:
-    """Find multipliers of linear RGB ``target`` (n, 3), from ``start`` (n, C), nearest to ``prior`` (n, C).
+    """Find multipliers of linear RGB ``target`` (n, 3), from ``start`` (n, C), nearest
+    to ``prior`` (n, C).
 
-    Without a prior each step changes the current multipliers least, which is more robust far from the answer. No
-    squared residual increases. Failure to converge is not an error: the distance reports it. The steps of a problem do
-    not depend on the others.
+    Without a prior each step changes the current multipliers least, which is more
+    robust far from the answer. No squared residual increases. Failure to converge is
+    not an error: the distance reports it. The steps of a problem do not depend on the
+    others.
     """
     count, advance = len(start), _advance(method)  # type: ignore[arg-type]
     unknown = np.full((count, 3), np.inf)
@@ -246,7 +276,9 @@ def residuals(
 
 @cache
 def _advance(method: Method) -> Callable[..., Any]:
-    """Make the function that takes up to a number of steps in a chunk of rows; the options go on from there."""
+    """Make the function that takes up to a number of steps in a chunk of rows; the
+    options go on from there.
+    """
 
     def advance(
         constants: Any, y: jax.Array, target: jax.Array, options: Options
@@ -274,10 +306,11 @@ def _advance(method: Method) -> Callable[..., Any]:
 def iterate(
     solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps: Any
 ) -> tuple[Any, Any, Any]:
-    """Step a solver of optimistix by hand until it terminates, as its documentation shows for interactive use.
+    """Step a solver of optimistix by hand until it terminates, as its documentation
+    shows for interactive use.
 
-    Returns the last ``y``, the state and the number of steps. `optimistix.least_squares` takes the same steps, but
-    takes longer to compile.
+    Returns the last ``y``, the state and the number of steps.
+    `optimistix.least_squares` takes the same steps, but takes longer to compile.
     """
     state = solver.init(fn, y, args, options, *jax.eval_shape(fn, y, args), NO_TAGS)
     arrays, static = equinox.partition(state, equinox.is_array)
@@ -307,9 +340,11 @@ def iterate_rows(
     options: Callable[[slice], Options],
     max_steps: int,
 ) -> Array:
-    """Step a batch solver in numpy from ``start`` (n, C), in blocks of rows; those that are done leave their block.
+    """Step a batch solver in numpy from ``start`` (n, C), in blocks of rows; those that
+    are done leave their block.
 
-    Nothing is compiled, which pays for a few problems. ``fn`` maps ``y`` and the numbers of its rows to residuals.
+    Nothing is compiled, which pays for a few problems. ``fn`` maps ``y`` and the
+    numbers of its rows to residuals.
     """
     found = start.copy()
     for block in blocks(len(found), NUMPY_ROWS):
@@ -332,7 +367,9 @@ def iterate_rows(
 def solve_in_numpy(
     forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int
 ) -> Array:
-    """Find multipliers (n, C) of linear RGB (n, 3) by minimum-norm steps from ``start`` (n, C), without compiling."""
+    """Find multipliers (n, C) of linear RGB (n, 3) by minimum-norm steps from ``start``
+    (n, C), without compiling.
+    """
 
     return iterate_rows(
         LeastChange(forward, tolerance),

@@ -1,7 +1,9 @@
-"""Solvers of optimistix in place of the default: each row of a batch is a separate problem.
+"""Solvers of optimistix in place of the default: each row of a batch is a separate
+problem.
 
-The problem is one of least squares: the residuals of the colour, and the difference from the prior with the small
-weight `CLOSENESS`, which selects the spectrum of the colour that is nearest to the prior.
+The problem is one of least squares: the residuals of the colour, and the difference
+from the prior with the small weight `CLOSENESS`, which selects the spectrum of the
+colour that is nearest to the prior.
 """
 
 from collections.abc import Callable, Iterator
@@ -22,14 +24,17 @@ from uplift.fit.solver import NO_TAGS, BatchSolver, Options, Stepped
 from uplift.models.minimum_norm import ForwardMap
 
 CLOSENESS = 1e-5
-"""Weight of the difference from the prior, in linear RGB per unit of the metric; every further pass divides it by
-100."""
+"""Weight of the difference from the prior, in linear RGB per unit of the metric; every
+further pass divides it by 100.
+"""
 SMALL_STEP = 1e-2
 """Change at which a stock solver stops, relative to the residual requested."""
 MAX_STEPS = 64
 """Steps of a pass."""
 MAX_PASSES = 4
-"""Passes of an unsolved problem; each but the first has the answer of the one before as prior."""
+"""Passes of an unsolved problem; each but the first has the answer of the one before as
+prior.
+"""
 
 Solver: TypeAlias = optimistix.AbstractLeastSquaresSolver | optimistix.AbstractMinimiser
 STOCK = {
@@ -85,7 +90,9 @@ class EachRowState(NamedTuple):
 
 
 class EachRow(BatchSolver):
-    """Another solver for every row of a batch, in the coordinates x = R⁻¹ p of the metric."""
+    """Another solver for every row of a batch, in the coordinates x = R⁻¹ p of the
+    metric.
+    """
 
     solver: Solver
     forward: ForwardMap
@@ -150,11 +157,15 @@ class EachRow(BatchSolver):
         return state.done
 
     def resume(self, options: Options, y: Any, state: EachRowState) -> Options:
-        """Go on closer to the colour: the first answers are near the prior, later ones near the last answer."""
+        """Go on closer to the colour: the first answers are near the prior, later ones
+        near the last answer.
+        """
         return {"prior": y, "closeness": options["closeness"] / 100}
 
     def _rows(self, y: Any, args: Any, options: Options) -> tuple[Any, Any]:
-        """Coordinates (n, C) of multipliers, and what the problem of each row is given."""
+        """Coordinates (n, C) of multipliers, and what the problem of each
+        row is given.
+        """
         x, prior = (
             each @ self.forward.inverse_root.T for each in (y, options["prior"])
         )
@@ -172,7 +183,9 @@ class EachRow(BatchSolver):
 
 
 def _objective(solver: Solver, residuals: Any) -> Any:
-    """What a solver minimises: the sum of squares of residuals, or half of it as a number for a minimiser."""
+    """What a solver minimises: the sum of squares of residuals, or half of it as a
+    number for a minimiser.
+    """
     if isinstance(solver, optimistix.AbstractLeastSquaresSolver):
         return residuals
 

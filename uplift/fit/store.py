@@ -1,4 +1,6 @@
-"""Storage of growth: multipliers as coefficients, the colours of what is stored, and the status of every node."""
+"""Storage of growth: multipliers as coefficients, the colours of what is stored, and
+the status of every node.
+"""
 
 from typing import Any
 
@@ -21,9 +23,11 @@ MAX_LOSS = 0.1
 
 
 def store(growth: Growth, seeds: Seeds, prior: Prior) -> PointTable:
-    """Return the table of all nodes. RGB, distance and status are those of the stored coefficients.
+    """Return the table of all nodes. RGB, distance and status are those of the stored
+    coefficients.
 
-    Unrealisable nodes are fitted to a realisable colour of less chroma; their distance is measured from their own.
+    Unrealisable nodes are fitted to a realisable colour of less chroma; their distance
+    is measured from their own.
     """
     nodes, lattice, threshold = (
         growth.nodes,
@@ -31,7 +35,8 @@ def store(growth: Growth, seeds: Seeds, prior: Prior) -> PointTable:
         growth.problem.threshold,
     )
     coefficients, distance, standard_error = _store_coefficients(growth, prior)
-    # The entry that a node started from, and its status: later lines overrule earlier ones.
+    # The entry that a node started from, and its status: later lines overrule earlier
+    # ones.
     entry = np.full(lattice.size, NO_ENTRY, dtype=np.int32)
     entry[seeds.points] = seeds.entry
     status = np.full(lattice.size, Status.REGULAR, dtype=np.uint8)
@@ -56,11 +61,13 @@ def store(growth: Growth, seeds: Seeds, prior: Prior) -> PointTable:
 def _store_coefficients(
     growth: Growth, prior: Prior
 ) -> tuple[NDArray[Any], NDArray[np.float32], NDArray[np.float32] | None]:
-    """Coefficients (n, C), their distances (n,) and standard errors (n,), all 0 at nodes that are not to be fitted.
+    """Coefficients (n, C), their distances (n,) and standard errors (n,), all 0 at
+    nodes that are not to be fitted.
 
-    The coefficients are float32 if that is accurate enough for every node, else float64 for all. Where rounding them
-    cannot change the colour (`Model.is_float32_safe`), the colour is that of the solver; elsewhere it is evaluated from
-    the rounded coefficients. They overwrite the multipliers, as memory for both may not suffice.
+    The coefficients are float32 if that is accurate enough for every node, else float64
+    for all. Where rounding them cannot change the colour (`Model.is_float32_safe`), the
+    colour is that of the solver; elsewhere it is evaluated from the rounded
+    coefficients. They overwrite the multipliers, as memory for both may not suffice.
     """
     problem, nodes, kind = growth.problem, growth.nodes, SINGLE
     coefficients, distance = (
@@ -79,7 +86,8 @@ def _store_coefficients(
                 largest(np.abs(residual)),
             )
 
-    # Block by block; once a block loses too much in single precision, all sensitive nodes so far are evaluated again.
+    # Block by block; once a block loses too much in single precision, all sensitive
+    # nodes so far are evaluated again.
     sensitive = []
     for block in blocks(len(nodes.points), BLOCK_POINTS):
         points = nodes.points[block]

@@ -1,1 +1,3 @@
-"""Formats of other tools: textures, EXR slices, exports for other programs, Mitsuba; child processes."""
+"""Formats of other tools: textures, EXR slices, exports for other programs, Mitsuba;
+child processes.
+"""

@@ -1,4 +1,6 @@
-"""Cubes as OpenEXR: header attributes that identify a cube, and all numbers of all nodes, one part per blue slice."""
+"""Cubes as OpenEXR: header attributes that identify a cube, and all numbers of all
+nodes, one part per blue slice.
+"""
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
@@ -21,16 +23,21 @@ NODE_BYTES = 220
 """Memory of a node in all images, without its coefficients."""
 MAX_FLOAT32 = float(np.finfo(np.float32).max)
 COMMENTS = (
-    "A blue slice of a spectral uplifting cube. A pixel is a node: red rises to the right, green "
-    "upwards (the top row has the highest). R, G, B and lattice: what the stored spectrum evaluates to; target: "
-    "the node itself, both linear. distance: largest difference of the two. entry and round: -1 for none. "
+    "A blue slice of a spectral uplifting cube. A pixel is a node: red rises to the "
+    "right, green "
+    "upwards (the top row has the highest). R, G, B and lattice: what the stored "
+    "spectrum evaluates to; target: "
+    "the node itself, both linear. distance: largest difference of the two. entry and "
+    "round: -1 for none. "
     "Absent nodes, of a cube built for a scene, hold nothing but their status."
 )
 """The ``comments`` attribute of every part."""
 
 
 def attributes(data: CubeData) -> dict[str, Any]:
-    """Return attributes of the header: ``uplift.cube`` is the digest of the content, ``uplift.model`` the model."""
+    """Return attributes of the header: ``uplift.cube`` is the digest of the content,
+    ``uplift.model`` the model.
+    """
     return {
         "chromaticities": chromaticities(data.sensor),
         "uplift.cube": digest(data),
@@ -49,7 +56,9 @@ def attributes(data: CubeData) -> dict[str, Any]:
 def make_part(
     name: str, header: Mapping[str, Any], channels: Mapping[str, Values]
 ) -> Any:
-    """Make an `OpenEXR.Part` of channels (height, width). Raises `OutputError` for NaN."""
+    """Make an `OpenEXR.Part` of channels (height, width). Raises
+    `OutputError` for NaN.
+    """
     import OpenEXR
 
     lossless = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
@@ -60,7 +69,8 @@ def make_part(
 def write_parts(parts: Iterable[Any], path: StrPath, *, force: bool = False) -> None:
     """Write parts as one file, atomically and reproducibly. Raises `OutputError`.
 
-    The file is opened here, because OpenEXR 3.5 ignores a full disk if it opens the file.
+    The file is opened here, because OpenEXR 3.5 ignores a full disk if it opens the
+    file.
     """
     import OpenEXR
 
@@ -69,7 +79,9 @@ def write_parts(parts: Iterable[Any], path: StrPath, *, force: bool = False) -> 
 
 
 def _float32(channel: str, plane: Values) -> Floats:
-    """Convert to float32. Integers up to 2²⁴ are exact; numbers that are too large become the largest float."""
+    """Convert to float32. Integers up to 2²⁴ are exact; numbers that are too large
+    become the largest float.
+    """
     if np.isnan(plane).any():
         raise OutputError(f"channel '{channel}' contains NaN", hint="rebuild the cube")
     return np.ascontiguousarray(
@@ -78,7 +90,9 @@ def _float32(channel: str, plane: Values) -> Floats:
 
 
 def chromaticities(gamut: Gamut) -> tuple[float, ...]:
-    """Return x, y of red, green, blue and white, of a sensor under the build illuminant, in the order of OpenEXR."""
+    """Return x, y of red, green, blue and white, of a sensor under the build
+    illuminant, in the order of OpenEXR.
+    """
     primaries = np.vstack([np.eye(3), np.ones(3)]) @ gamut.rgb_to_xyz.T
     return tuple(
         map(float, (primaries / primaries.sum(axis=1, keepdims=True))[:, :2].ravel())
@@ -86,12 +100,15 @@ def chromaticities(gamut: Gamut) -> tuple[float, ...]:
 
 
 def write_slices(data: CubeData, path: StrPath, *, force: bool = False) -> None:
-    """Write a cube as one OpenEXR file with a part ``blue 07 (0.1234)`` for every node of the blue axis.
+    """Write a cube as one OpenEXR file with a part ``blue 07 (0.1234)`` for every node
+    of the blue axis.
 
-    Pixel x is the red index. Row y is the green index dim − 1 − y, so that green rises upwards. The channels are 32-bit
-    floats: ``R``, ``G``, ``B`` and ``lattice.*`` (lattice RGB), ``target.*``, ``distance``, ``deltaE2000`` (target to
-    lattice RGB under the build illuminant), ``status``, ``entry`` and ``round`` (−1 for none; ``round`` only with debug
-    information), ``standardError`` (of cubes with an atlas) and ``coefficient.00`` onwards. Raises `OutputError`.
+    Pixel x is the red index. Row y is the green index dim − 1 − y, so that green rises
+    upwards. The channels are 32-bit floats: ``R``, ``G``, ``B`` and ``lattice.*``
+    (lattice RGB), ``target.*``, ``distance``, ``deltaE2000`` (target to lattice RGB
+    under the build illuminant), ``status``, ``entry`` and ``round`` (−1 for none;
+    ``round`` only with debug information), ``standardError`` (of cubes with an atlas)
+    and ``coefficient.00`` onwards. Raises `OutputError`.
     """
     if Path(path).suffix.lower() != ".exr":
         raise OutputError(
@@ -104,16 +121,20 @@ def write_slices(data: CubeData, path: StrPath, *, force: bool = False) -> None:
 
 
 def check_slices(data: CubeData) -> None:
-    """Raise `OutputError` if the images of all nodes, of which a sparse cube has few, do not fit into free memory."""
+    """Raise `OutputError` if the images of all nodes, of which a sparse cube has few,
+    do not fit into free memory.
+    """
     need = data.lattice.size * (NODE_BYTES + 4 * data.model.count)
     hint = "use a machine with more memory, or a cube of a smaller dim"
     check_memory(need, f"images of {data.lattice.dim}³ nodes", OutputError, hint)
 
 
 def blue_slices(values: Values, dim: int) -> Values:
-    """Arrange the values (dim³, …) of nodes as a view (dim, dim, dim, …) with axes blue, row, red.
+    """Arrange the values (dim³, …) of nodes as a view (dim, dim, dim, …) with axes
+    blue, row, red.
 
-    Image rows count downwards, so row 0 has the highest green: ``row = dim − 1 − green``.
+    Image rows count downwards, so row 0 has the highest green: ``row = dim − 1 −
+    green``.
     """
     by_red = values.reshape(dim, dim, dim, *values.shape[1:])
     return by_red.swapaxes(0, 2)[:, ::-1]

@@ -1,4 +1,6 @@
-"""Child processes that end with their parent: pools of workers, and single calls that may crash or hang."""
+"""Child processes that end with their parent: pools of workers, and single calls that
+may crash or hang.
+"""
 
 import contextlib
 import multiprocessing
@@ -22,10 +24,11 @@ class ChildError(Exception):
 def call_in_child(
     function: Callable[..., Result], *arguments: Any, seconds: float
 ) -> Result:
-    """Call a function in a separate process, whose crash or hang leaves this process unharmed.
+    """Call a function in a separate process, whose crash or hang leaves this process
+    unharmed.
 
-    The function and its arguments are pickled. Its exceptions are raised here; a child that crashes, or has no answer
-    after ``seconds`` and is killed, raises `ChildError`.
+    The function and its arguments are pickled. Its exceptions are raised here; a child
+    that crashes, or has no answer after ``seconds`` and is killed, raises `ChildError`.
     """
     others = set(multiprocessing.active_children())
     try:
@@ -59,9 +62,11 @@ def _call_silently(
 
 @contextlib.contextmanager
 def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
-    """Start processes that end, and remove their temporary files, when the block raises or this process ends.
+    """Start processes that end, and remove their temporary files, when the block raises
+    or this process ends.
 
-    They are new ones, as JAX cannot be forked, and load no module from the working folder in place of one of Python's.
+    They are new ones, as JAX cannot be forked, and load no module from the working
+    folder in place of one of Python's.
     """
     others, before = (
         set(multiprocessing.active_children()),
@@ -73,7 +78,8 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
     )
     try:
         yield pool
-    # Work that is not finished is not waited for: a signal ends the workers, which remove their temporary files.
+    # Work that is not finished is not waited for: a signal ends the workers, which
+    # remove their temporary files.
     except BaseException:
         for child in set(multiprocessing.active_children()) - others:
             child.terminate()
@@ -84,7 +90,9 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
 
 
 def _tie() -> None:
-    """End this worker with its parent, and not by the Ctrl-C that the terminal sends to all processes."""
+    """End this worker with its parent, and not by the Ctrl-C that the terminal sends to
+    all processes.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for name in {"SIGTERM", "SIGHUP"} & {
         each.name for each in signal.Signals

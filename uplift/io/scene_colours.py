@@ -1,4 +1,6 @@
-"""The colours of images as a scene: `uplift.build` fits only the nodes that answer them."""
+"""The colours of images as a scene: `uplift.build` fits only the nodes that answer
+them.
+"""
 
 import warnings
 from collections.abc import Iterator
@@ -39,9 +41,11 @@ TYPE_BYTES = {"uint8": 1, "uint16": 2, "half": 2}
 
 @dataclass(frozen=True)
 class Images:
-    """A scene of at least one image; a `SceneLike` of `uplift.build`. Memory holds the cells of the colours only.
+    """A scene of at least one image; a `SceneLike` of `uplift.build`. Memory holds the
+    cells of the colours only.
 
-    ``encoding``, ``out_of_gamut`` and ``space`` are those of `uplift.io.texture.prepare`. Raises `OptionError`.
+    ``encoding``, ``out_of_gamut`` and ``space`` are those of
+    `uplift.io.texture.prepare`. Raises `OptionError`.
     """
 
     paths: tuple[Path, ...]
@@ -61,9 +65,11 @@ class Images:
     def required_points(
         self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback
     ) -> Mask:
-        """Return the mask (dim³,) of the nodes that answer the colours of the images; see `SceneLike`.
+        """Return the mask (dim³,) of the nodes that answer the colours of the images;
+        see `SceneLike`.
 
-        Raises `TextureError`, and `ColourError` with ``out_of_gamut="error"``. Warns of images in another RGB space.
+        Raises `TextureError`, and `ColourError` with ``out_of_gamut="error"``. Warns of
+        images in another RGB space.
         """
         cells = np.zeros(boxes.lattice.size, dtype=bool)
         for done, path in enumerate(self.paths):
@@ -73,7 +79,9 @@ class Images:
         return boxes.required_points(cells)
 
     def describe(self) -> list[dict[str, Any]]:
-        """Return name and digest of each image, and how it was decoded, as JSON values."""
+        """Return name and digest of each image, and how it was decoded, as
+        JSON values.
+        """
         decoding = {"encoding": self.encoding, "out_of_gamut": self.out_of_gamut}
         decoding |= {} if self.space is None else {"space": self.space}
         return [
@@ -82,13 +90,17 @@ class Images:
         ]
 
     def colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
-        """Yield the colours of an image, linear RGB (n, 3) in [0, 1] of a sensor, block by block."""
+        """Yield the colours of an image, linear RGB (n, 3) in [0, 1] of a sensor, block
+        by block.
+        """
         return (rgb for rgb, _ in self.blocks(path, sensor))
 
     def blocks(
         self, path: Path, sensor: Sensor, step: int = 1
     ) -> Iterator[tuple[Array, Counts]]:
-        """Yield the colours of every pixel of this ``step``, as `colours`, and counts of those that had to change."""
+        """Yield the colours of every pixel of this ``step``, as `colours`, and counts
+        of those that had to change.
+        """
         space = None if self.space is None else find_space(self.space)
         with open_image(path) as image:
             for warning in space_warnings(image, sensor, space):
@@ -109,7 +121,9 @@ class Images:
 
 
 def cells_touched(lattice: Lattice, rgb: Array) -> Indices:
-    """Return the numbers (m,) of the cells around linear RGB (n, 3), and of those within rounding error of them."""
+    """Return the numbers (m,) of the cells around linear RGB (n, 3), and of those
+    within rounding error of them.
+    """
     (low, _), (high, _) = lattice.cell(rgb - MARGIN), lattice.cell(rgb + MARGIN)
     on_face = (low != high).any(axis=1)
     adjacent = np.where(CORNERS[:, None, :] == 1, high[on_face], low[on_face]).reshape(
@@ -120,7 +134,9 @@ def cells_touched(lattice: Lattice, rgb: Array) -> Indices:
 
 @dataclass(frozen=True, eq=False)
 class ColourSet:
-    """Scene of linear RGB (n, 3) for `uplift.build`: the cube gets the nodes that the colours need."""
+    """Scene of linear RGB (n, 3) for `uplift.build`: the cube gets the nodes that the
+    colours need.
+    """
 
     rgb: Array
 
@@ -139,7 +155,9 @@ class ColourSet:
 
 @dataclass(frozen=True, eq=False)
 class PixelSample:
-    """Distinct linear RGB (n, 3), and the share (n,) of the sampled pixels that have each; shares sum to 1."""
+    """Distinct linear RGB (n, 3), and the share (n,) of the sampled pixels that have
+    each; shares sum to 1.
+    """
 
     rgb: Array
     share: Array
@@ -147,11 +165,13 @@ class PixelSample:
 
 @dataclass(frozen=True, eq=False)
 class SampledColours:
-    """Disjoint samples of the textures' pixels, to choose candidates by and to verify the result.
+    """Disjoint samples of the textures' pixels, to choose candidates by and to verify
+    the result.
 
-    Textures with fewer pixels than both need together have all pixels in both. ``colour_bins`` (n, 3) has a colour of
-    every bin that has any pixel, in linear RGB. ``pixels`` are all those of the textures, ``size`` their bytes as RGB,
-    and ``few`` (n, 3) their different colours if these are at most `MAX_LIST`.
+    Textures with fewer pixels than both need together have all pixels in both.
+    ``colour_bins`` (n, 3) has a colour of every bin that has any pixel, in linear RGB.
+    ``pixels`` are all those of the textures, ``size`` their bytes as RGB, and ``few``
+    (n, 3) their different colours if these are at most `MAX_LIST`.
     """
 
     predicting: PixelSample
@@ -165,10 +185,12 @@ class SampledColours:
 def sample_colours(
     images: Images, sensor: Sensor, sizes: tuple[int, int], progress: ProgressCallback
 ) -> SampledColours:
-    """Sample about ``sizes`` pixels to predict and to confirm, all pixels with equal probability.
+    """Sample about ``sizes`` pixels to predict and to confirm, all pixels with equal
+    probability.
 
-    The sample is the same every time. Of more than `MAX_PIXELS`, only every so many are read. Warns of colours that
-    change. Raises `TextureError`, also for images without pixels.
+    The sample is the same every time. Of more than `MAX_PIXELS`, only every so many are
+    read. Warns of colours that change. Raises `TextureError`, also for images without
+    pixels.
     """
     counts = [_pixel_count(path) for path in images.paths]
     total, size = map(sum, zip(*counts, strict=True))
@@ -209,7 +231,9 @@ def sample_colours(
 
 
 def _pixel_count(path: Path) -> tuple[int, int]:
-    """Pixels of the parts of an image that have colour channels, and the bytes of their RGB."""
+    """Pixels of the parts of an image that have colour channels, and the bytes of their
+    RGB.
+    """
     with open_image(path) as image:
         parts = [
             (part.window.width * part.window.height, part)
@@ -221,7 +245,9 @@ def _pixel_count(path: Path) -> tuple[int, int]:
 
 
 def bin_index(sensor: Sensor, rgb: Array) -> Any:
-    """Return the numbers (n,) of the bins of linear RGB (n, 3), of `BINS` along each channel of encoded RGB."""
+    """Return the numbers (n,) of the bins of linear RGB (n, 3), of `BINS` along each
+    channel of encoded RGB.
+    """
     codes = np.interp(rgb, sensor.decoding, np.linspace(0, BINS, 256))
     red, green, blue = np.minimum(codes, BINS - 1).astype(int).T
     return (red * BINS + green) * BINS + blue

@@ -1,1 +1,3 @@
-"""Measurements of methods: studies, the chart of speed against accuracy, comparisons of representations."""
+"""Measurements of methods: studies, the chart of speed against accuracy, comparisons of
+representations.
+"""

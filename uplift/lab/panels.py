@@ -1,4 +1,6 @@
-"""Panels of error over cost on logarithmic axes: markers with labels and the Pareto front, for figures and pages."""
+"""Panels of error over cost on logarithmic axes: markers with labels and the Pareto
+front, for figures and pages.
+"""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -55,7 +57,9 @@ class Point:
 
 @dataclass(frozen=True)
 class Panel:
-    """Points over a kind of cost, of which ``axis`` is the label, and ``format`` the text of a value."""
+    """Points over a kind of cost, of which ``axis`` is the label, and ``format`` the
+    text of a value.
+    """
 
     title: str
     axis: str
@@ -73,7 +77,9 @@ def family_colours(families: Iterable[str], known: Mapping[str, str]) -> dict[st
 
 
 def pareto_front(points: Sequence[tuple[float, float]]) -> list[int]:
-    """Return the rows of cost and error whose error is clearly below that of every cheaper one, cheapest first."""
+    """Return the rows of cost and error whose error is clearly below that of every
+    cheaper one, cheapest first.
+    """
     front: list[int] = []
     for row in sorted(range(len(points)), key=points.__getitem__):
         if not front or points[row][1] < CLEAR_RATIO * points[front[-1]][1]:
@@ -95,7 +101,9 @@ def write_panels(
 
 
 def page_panel(panel: Panel, number: int) -> Markup:
-    """Draw a panel for a page, whose titles are in its text. The artists are named ``marker-<number>-<row>`` etc."""
+    """Draw a panel for a page, whose titles are in its text. The artists are named
+    ``marker-<number>-<row>`` etc.
+    """
     with styled():
         return to_page_svg(
             panel_figure([panel], 1, titles=False, first=number),

@@ -1,4 +1,6 @@
-"""Timings with median and range, the environment in which they are taken, and records of both."""
+"""Timings with median and range, the environment in which they are taken, and records
+of both.
+"""
 
 import contextlib
 import json
@@ -25,18 +27,23 @@ ONE_THREAD = {
     "MKL_NUM_THREADS": "1",
     "OMP_NUM_THREADS": "1",
 }
-"""Environment variables, read when numpy is imported. Matrices here are small: with more threads colour-science took
-twice as long."""
+"""Environment variables, read when numpy is imported. Matrices here are small: with
+more threads colour-science took twice as long.
+"""
 CODE = (
     ":/uplift",
     ":/cli",
     ":/benchmarks",
     ":(top,exclude)uplift/lab/chart/measured.csv",
 )
-"""Files that measurements depend on: the code, without the measurements that are part of the package."""
+"""Files that measurements depend on: the code, without the measurements that are part
+of the package.
+"""
 SOURCES = Path(__file__).parents[1]
 MIN_RUNS, MAX_LAPS = 3, 75
-"""Fewest runs, and duration of all runs together in units of the shortest, unless `MIN_RUNS` take longer."""
+"""Fewest runs, and duration of all runs together in units of the shortest, unless
+`MIN_RUNS` take longer.
+"""
 
 
 @dataclass(frozen=True)
@@ -68,7 +75,8 @@ def time_calls(
 ) -> tuple[TimingStats, TimingStats]:
     """Measure wall and CPU seconds of repeated calls.
 
-    The caller has called the function once to warm up. Asynchronous results must be complete when it returns.
+    The caller has called the function once to warm up. Asynchronous results must be
+    complete when it returns.
     """
     wall, cpu = [], []
     for _ in range(runs):
@@ -87,7 +95,9 @@ def children_cpu(function: Callable[[], object]) -> float:
 
 
 def time_laps(function: Callable[[], object], lap: float, runs: int) -> TimingStats:
-    """Measure the CPU seconds of a call after one that warms up, by up to ``runs`` runs of at least ``lap`` seconds."""
+    """Measure the CPU seconds of a call after one that warms up, by up to ``runs`` runs
+    of at least ``lap`` seconds.
+    """
     function()
     once = max(time_calls(function, 1)[1].median, 1e-7)
     calls = max(1, round(lap / once))
@@ -103,7 +113,9 @@ def time_laps(function: Callable[[], object], lap: float, runs: int) -> TimingSt
 def time_process(
     command: list[str], runs: int, variables: dict[str, str] | None = None
 ) -> tuple[TimingStats, float]:
-    """Measure the wall seconds of a process, and its peak memory in MB (Linux counts in kB)."""
+    """Measure the wall seconds of a process, and its peak memory in MB (Linux counts in
+    kB).
+    """
     wall, peak = [], 0
     for _ in range(runs):
         begin = time.perf_counter()
@@ -146,7 +158,8 @@ def environment() -> dict[str, str]:
 
 
 def commit() -> str:
-    """Return the last commit of the branch main that changed this code, which later rebasing leaves in the history.
+    """Return the last commit of the branch main that changed this code, which later
+    rebasing leaves in the history.
 
     Commits of pages and tests alone do not count.
     """
@@ -180,7 +193,9 @@ def records_csv(records: Sequence[Mapping[str, Any]]) -> str:
 
 
 def write_record(path: Path, command: str, **figures: Any) -> None:
-    """Write figures with the command that measures them; ``environment`` is that of this process by default."""
+    """Write figures with the command that measures them; ``environment`` is that of
+    this process by default.
+    """
     content = {"command": command, "environment": environment(), **figures}
     values = to_jsonable_python(content, fallback=lambda array: array.tolist())
     text = json.dumps(values, indent=1, ensure_ascii=False, allow_nan=False)

@@ -1,4 +1,6 @@
-"""The lattice over RGB: nodes, cells, neighbours, the boxes around atlas entries, and the table of the nodes."""
+"""The lattice over RGB: nodes, cells, neighbours, the boxes around atlas entries, and
+the table of the nodes.
+"""
 
 from uplift.lattice.entry_boxes import BoxHits, EntryBoxes, Nodes, OutsideBoxes
 from uplift.lattice.lattice import AXES, CORNERS, Lattice, axis_nodes, weighted_sum

@@ -1,9 +1,11 @@
-"""Boxes around atlas entries: a query at the colour of an entry returns the spectrum of the entry.
+"""Boxes around atlas entries: a query at the colour of an entry returns the spectrum of
+the entry.
 
-No two boxes overlap; `uplift.fit.seeds.half_widths` makes them as wide as that allows. A colour x inside a box
-is x = (1 − t) e + t y, with the entry's colour e and the point y where the ray from e through x leaves the box. The
-answer mixes the spectra at e and y by the same weights. It has exactly the colour x and stays within [0, 1]. It equals
-the lattice on the faces of the box, and the entry at its centre. Needs numpy only.
+No two boxes overlap; `uplift.fit.seeds.half_widths` makes them as wide as that allows.
+A colour x inside a box is x = (1 − t) e + t y, with the entry's colour e and the point
+y where the ray from e through x leaves the box. The answer mixes the spectra at e and y
+by the same weights. It has exactly the colour x and stays within [0, 1]. It equals the
+lattice on the faces of the box, and the entry at its centre. Needs numpy only.
 """
 
 from dataclasses import dataclass
@@ -19,9 +21,11 @@ from uplift.lattice.lattice import Lattice, weighted_sum
 from uplift.lattice.point_table import NO_ENTRY
 
 CORE = 0.1
-"""Part of the half width of a box outside [0, 1] up to which the entry alone answers."""
+"""Part of the half width of a box outside [0, 1] up to which the entry alone answers.
+"""
 CELL_BLOCK = np.array(list(product((-1, 0, 1), repeat=3)))
-"""(27, 3) steps to the cells that a box can touch: its half width is at most one step."""
+"""(27, 3) steps to the cells that a box can touch: its half width is at most one step.
+"""
 MARGIN = 1e-6
 """Linear RGB by which rounding, to float32 too, can move a colour."""
 
@@ -34,12 +38,16 @@ class BoxHits(NamedTuple):
     entry: Indices
     """(k,) row of the entry whose box contains the colour."""
     lattice_weight: Array
-    """(k,) weight in the answer, 0 to 1, of the lattice or, outside [0, 1], of what answers without the entry."""
+    """(k,) weight in the answer, 0 to 1, of the lattice or, outside [0, 1], of what
+    answers without the entry.
+    """
     exit_rgb: Array
     """(k, 3) linear RGB of the point at which that is evaluated."""
 
     def mix(self, values: Values, entry: Values) -> Values:
-        """Mix values (n, K), in place, with those (k, K) of the entries: t · values + (1 − t) · entry."""
+        """Mix values (n, K), in place, with those (k, K) of the entries: t · values +
+        (1 − t) · entry.
+        """
         if self.rows.size:
             weight = self.lattice_weight.astype(values.dtype)[:, None]
             values[self.rows] = weight * values[self.rows] + (1 - weight) * entry
@@ -48,23 +56,31 @@ class BoxHits(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Nodes:
-    """The nodes around n colours: eight corners of a cell each and, for k of them, the entry of a box."""
+    """The nodes around n colours: eight corners of a cell each and, for k of them, the
+    entry of a box.
+    """
 
     points: Indices
     """(n, 8) numbers of the corners in the lattice."""
     weights: Array
     """(n, 8) their trilinear weights w, summing to 1."""
     hits: BoxHits
-    """The colours in entry boxes. There the lattice has weight t and is evaluated where the ray leaves the box."""
+    """The colours in entry boxes. There the lattice has weight t and is evaluated where
+    the ray leaves the box.
+    """
 
     def weighted_sum(self, lattice: Values, atlas: Values) -> Values:
-        """Σ w · values of the lattice (dim³, K), mixed with those of the entries (E, K): (n, K), in their type."""
+        """Σ w · values of the lattice (dim³, K), mixed with those of the entries (E,
+        K): (n, K), in their type.
+        """
         return self.hits.mix(
             weighted_sum(lattice, self.points, self.weights), atlas[self.hits.entry]
         )
 
     def nearest(self) -> tuple[Indices, Indices, Indices]:
-        """Return the corners of largest weight (n,), and the rows and entries (m,) where an entry weighs more."""
+        """Return the corners of largest weight (n,), and the rows and entries (m,)
+        where an entry weighs more.
+        """
         best = self.weights.argmax(axis=1)[:, None]
         points = np.take_along_axis(self.points, best, axis=1)[:, 0]
         weights = np.take_along_axis(self.weights, best, axis=1)[:, 0]
@@ -74,7 +90,9 @@ class Nodes:
         return points, self.hits.rows[is_entry], self.hits.entry[is_entry]
 
     def lattice_rgb(self, rgb: Array) -> Array:
-        """Return the colours (n, 3) at which the lattice is evaluated for linear RGB (n, 3)."""
+        """Return the colours (n, 3) at which the lattice is evaluated for linear RGB
+        (n, 3).
+        """
         evaluated = rgb.copy()
         evaluated[self.hits.rows] = self.hits.exit_rgb
         return evaluated
@@ -86,20 +104,27 @@ NO_HITS = BoxHits(NO_ROWS, NO_ROWS, np.zeros(0), np.zeros((0, 3)))
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EntryBoxes:
-    """Boxes in a lattice around entries of linear RGB (E, 3), of half widths (E,) in steps: 0 to 1, 0 for none."""
+    """Boxes in a lattice around entries of linear RGB (E, 3), of half widths (E,) in
+    steps: 0 to 1, 0 for none.
+    """
 
     lattice: Lattice
     rgb: Array
     half_width: Array
 
     def __repr__(self) -> str:
-        return f"EntryBoxes({pluralise(int(np.count_nonzero(self.half_width)), 'box')} in {self.lattice})"
+        return (
+            f"EntryBoxes({pluralise(int(np.count_nonzero(self.half_width)), 'box')} "
+            f"in {self.lattice})"
+        )
 
     @cached_property
     def faces(self) -> tuple[Array, Array]:
-        """Linear RGB (E, 3) of the lowest and of the highest corner of each box, clipped to the lattice.
+        """Linear RGB (E, 3) of the lowest and of the highest corner of each box,
+        clipped to the lattice.
 
-        Where an entry is within `MARGIN` of the edge, the face lies beyond: between the two, rounding would decide.
+        Where an entry is within `MARGIN` of the edge, the face lies beyond: between the
+        two, rounding would decide.
         """
         rgb, steps, half = (
             self.rgb,
@@ -120,7 +145,9 @@ class EntryBoxes:
 
     @cached_property
     def cells(self) -> tuple[Indices, Indices]:
-        """Numbers of the cells that boxes touch, ascending, and the entry of each of these boxes."""
+        """Numbers of the cells that boxes touch, ascending, and the entry of each of
+        these boxes.
+        """
         low, high = (self.lattice.cell(face)[0][:, None] for face in self.faces)
         cells = self.lattice.cell(self.rgb)[0][:, None] + CELL_BLOCK
         touched = ((cells >= low) & (cells <= high)).all(axis=-1) & (
@@ -133,7 +160,9 @@ class EntryBoxes:
 
     @cached_property
     def touched_cells(self) -> Mask:
-        """(dim³,) True for cells that a box touches. Untouched pages of the array take no memory."""
+        """(dim³,) True for cells that a box touches. Untouched pages of the array take
+        no memory.
+        """
         touched = np.zeros(self.lattice.size, dtype=bool)
         touched[self.cells[0]] = True
         return touched
@@ -141,8 +170,9 @@ class EntryBoxes:
     def required_points(self, cells: Mask) -> Mask:
         """Nodes needed to answer any colour in a set of cells, both as masks (dim³,).
 
-        They are the corners of the cells and, where a box touches one, the corners of all cells that the box
-        touches: a colour in the box is answered from a point on its faces, within `MARGIN`.
+        They are the corners of the cells and, where a box touches one, the corners of
+        all cells that the box touches: a colour in the box is answered from a point on
+        its faces, within `MARGIN`.
         """
         requested = cells.reshape(self.lattice.shape)
         required = requested.copy()
@@ -157,22 +187,29 @@ class EntryBoxes:
         return self.lattice.corner_points(required.ravel())
 
     def locate(self, rgb: Array) -> tuple[Indices, Array, BoxHits]:
-        """Find the cells (`Lattice.cell`) in which the lattice is evaluated for linear RGB (n, 3), and their boxes.
+        """Find the cells (`Lattice.cell`) in which the lattice is evaluated for linear
+        RGB (n, 3), and their boxes.
 
-        In a box the lattice is evaluated on the face, in the cell in which the ray leaves the box.
+        In a box the lattice is evaluated on the face, in the cell in which the ray
+        leaves the box.
         """
-        # x = (1 − t) e + t y in the box of entry e: the lattice answers y, with weight t (8).
+        # x = (1 − t) e + t y in the box of entry e: the lattice answers y, with weight
+        # t (8).
         low, fraction = self.lattice.cell(rgb)
         hits = self.find(rgb, self.lattice.index(low))
         low[hits.rows], fraction[hits.rows] = self.lattice.cell(hits.exit_rgb)
         return low, fraction, hits
 
     def cell(self, rgb: Array) -> Indices:
-        """Return the numbers (n,) of the cells in which the lattice is evaluated for linear RGB (n, 3)."""
+        """Return the numbers (n,) of the cells in which the lattice is evaluated for
+        linear RGB (n, 3).
+        """
         return self.lattice.index(self.locate(rgb)[0])
 
     def find(self, rgb: Array, cell: Indices | None = None) -> BoxHits:
-        """Find which of the linear RGB (n, 3) lie in boxes. Their ``cell`` (n,) is computed if it is not known."""
+        """Find which of the linear RGB (n, 3) lie in boxes. Their ``cell`` (n,) is
+        computed if it is not known.
+        """
         if not len(self.rgb):
             return NO_HITS
         numbers, entries = self.cells
@@ -194,7 +231,8 @@ class EntryBoxes:
         centre = self.rgb[entry]
         ray = rgb[rows] - centre
         low, high = (face[entry] for face in self.faces)
-        # x = (1 − t) e + t y: t is the largest fraction, over the axes, of the way from e to the face that x moves to.
+        # x = (1 − t) e + t y: t is the largest fraction, over the axes, of the way from
+        # e to the face that x moves to.
         room = np.where(ray > 0, high - centre, centre - low)
         weight = np.divide(
             np.abs(ray), room, out=np.zeros_like(ray), where=ray != 0
@@ -208,7 +246,8 @@ class EntryBoxes:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OutsideBoxes:
-    """Boxes around entries of linear RGB (O, 3) outside [0, 1], of half widths (O,) in linear RGB, 0 for none.
+    """Boxes around entries of linear RGB (O, 3) outside [0, 1], of half widths (O,) in
+    linear RGB, 0 for none.
 
     They overlap neither each other nor [0, 1], so that answers are continuous there.
     """

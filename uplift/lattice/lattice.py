@@ -1,4 +1,6 @@
-"""The regular grid over RGB: axis nodes, node numbers, cells and neighbours. Nodes are numbered blue fastest."""
+"""The regular grid over RGB: axis nodes, node numbers, cells and neighbours. Nodes are
+numbered blue fastest.
+"""
 
 import decimal
 from dataclasses import dataclass, field
@@ -22,10 +24,12 @@ NEIGHBOURS = np.array([step for step in product((-1, 0, 1), repeat=3) if any(ste
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Lattice:
-    """A regular grid of dim³ nodes over linear RGB, from the coordinates (dim,) along each axis, usually from 0 to 1.
+    """A regular grid of dim³ nodes over linear RGB, from the coordinates (dim,) along
+    each axis, usually from 0 to 1.
 
-    A cell is the box between eight neighbouring nodes; it has the number of its lowest corner. Positions are steps
-    along the axes, in fractions between nodes. Sets of nodes and of cells are masks (dim³,).
+    A cell is the box between eight neighbouring nodes; it has the number of its lowest
+    corner. Positions are steps along the axes, in fractions between nodes. Sets of
+    nodes and of cells are masks (dim³,).
     """
 
     nodes: Array
@@ -41,7 +45,10 @@ class Lattice:
         valid = nodes.ndim == 1 and len(nodes) >= 2 and bool(np.isfinite(nodes).all())
         if not valid or not (np.diff(nodes) > 0).all():
             raise OptionError(
-                f"the nodes of a lattice must be at least 2 increasing numbers, got shape {nodes.shape}",
+                (
+                    "the nodes of a lattice must be at least 2 increasing numbers, got "
+                    f"shape {nodes.shape}"
+                ),
                 hint="use dim=2 or more",
             )
         dim = len(nodes)
@@ -77,12 +84,15 @@ class Lattice:
         return np.interp(rgb, self.nodes, np.arange(self.dim))
 
     def from_steps(self, steps: Array) -> Array:
-        """Linear RGB (n, 3) at fractional positions (n, 3), of the edge for those outside; inverse of `to_steps`."""
+        """Linear RGB (n, 3) at fractional positions (n, 3), of the edge for those
+        outside; inverse of `to_steps`.
+        """
         return np.interp(steps, np.arange(self.dim), self.nodes)
 
     def cell(self, rgb: Array) -> tuple[Indices, Array]:
-        """Find the cells around linear RGB (n, 3): positions (n, 3), 0 to dim − 2, of their lowest corners,
-        and fractions (n, 3) of the way across them. Colours outside the lattice belong to the nearest cell.
+        """Find the cells around linear RGB (n, 3): positions (n, 3), 0 to dim − 2, of
+        their lowest corners, and fractions (n, 3) of the way across them. Colours
+        outside the lattice belong to the nearest cell.
         """
         low = np.clip(
             np.searchsorted(self.nodes, rgb, side="right") - 1, 0, self.dim - 2
@@ -91,11 +101,15 @@ class Lattice:
         return low, (rgb - start) / (self.nodes[low + 1] - start)
 
     def corners(self, rgb: Array) -> tuple[Indices, Array]:
-        """Corners (n, 8) of the cells around linear RGB (n, 3), with trilinear weights (n, 8)."""
+        """Corners (n, 8) of the cells around linear RGB (n, 3), with trilinear weights
+        (n, 8).
+        """
         return self.cell_corners(*self.cell(rgb))
 
     def cell_corners(self, low: Indices, fraction: Array) -> tuple[Indices, Array]:
-        """Corners (n, 8) of cells, with the trilinear weights (n, 8), which sum to 1, of a result of `cell`."""
+        """Corners (n, 8) of cells, with the trilinear weights (n, 8), which sum to 1,
+        of a result of `cell`.
+        """
         # The weight of a corner is the product of t or 1 − t along the three axes.
         along = np.ascontiguousarray(fraction.T)
         r, g, b = np.stack([1 - along, along], axis=1)
@@ -139,7 +153,9 @@ class Lattice:
         ) & ~self.complete_cells(~points)
 
     def thinned(self, stride: int) -> tuple["Lattice", Indices]:
-        """Return the coarser lattice of every ``stride``-th node and the last, and its nodes (m,) in this lattice."""
+        """Return the coarser lattice of every ``stride``-th node and the last, and its
+        nodes (m,) in this lattice.
+        """
         kept = np.append(np.arange(0, self.dim - 1, stride), self.dim - 1)
         grid = np.meshgrid(kept, kept, kept, indexing="ij")
         return Lattice(self.nodes[kept]), self.index(
@@ -147,25 +163,31 @@ class Lattice:
         )
 
     def neighbours(self, index: Indices) -> tuple[Indices, Mask]:
-        """Neighbours (n, 26) of nodes (n,), diagonal ones included, and which of them lie inside the lattice."""
+        """Neighbours (n, 26) of nodes (n,), diagonal ones included, and which of them
+        lie inside the lattice.
+        """
         position = self.position(index)[:, None, :] + NEIGHBOURS
         inside: Mask = np.all((position >= 0) & (position < self.dim), axis=-1)
         return self.index(np.clip(position, 0, self.dim - 1)), inside
 
 
 def weighted_sum(values: Values, points: Indices, weights: Array) -> Values:
-    """Sums (n, K) of rows (n, 8) of a table (m, K), float32 or float64, by weights (n, 8)."""
+    """Sums (n, K) of rows (n, 8) of a table (m, K), float32 or float64, by weights (n,
+    8).
+    """
     # The indices are valid. mode="clip" skips numpy's check and the copy that it needs.
     corners = values.take(points, axis=0, mode="clip")
     return (weights.astype(values.dtype, copy=False)[:, None, :] @ corners)[:, 0, :]
 
 
 def axis_nodes(spacing: str, dim: int) -> Array:
-    """Return the positions (dim,) of the nodes of an axis in linear RGB, the same doubles on every CPU.
+    """Return the positions (dim,) of the nodes of an axis in linear RGB, the same
+    doubles on every CPU.
 
-    So cubes of one dim and spacing have equal nodes wherever they were built. The powers of numpy differ in the last
-    bit between instruction sets. Here they are computed in decimal arithmetic and rounded once, which is slow; IEEE 754
-    defines how every other operation rounds.
+    So cubes of one dim and spacing have equal nodes wherever they were built. The
+    powers of numpy differ in the last bit between instruction sets. Here they are
+    computed in decimal arithmetic and rounded once, which is slow; IEEE 754 defines how
+    every other operation rounds.
 
     >>> axis_nodes("srgb", 3).tolist()
     [0.0, 0.21404114048223255, 1.0]
@@ -175,7 +197,8 @@ def axis_nodes(spacing: str, dim: int) -> Array:
     even = np.linspace(0.0, 1.0, dim)
     if spacing == "linear":
         return even
-    # The transfer curve of IEC 61966-2-1: c / 12.92 near black, else ((c + 0.055) / 1.055)^2.4
+    # The transfer curve of IEC 61966-2-1: c / 12.92 near black, else ((c + 0.055) /
+    # 1.055)^2.4
     context, exponent = (
         decimal.Context(prec=POWER_DIGITS),
         decimal.Decimal.from_float(2.4),

@@ -43,12 +43,14 @@ ABSENT_VALUES = {"status": int(Status.ABSENT), "entry": NO_ENTRY, "round": NOT_F
 class PointTable:
     """Arrays over the n nodes of a lattice, in their order (blue fastest).
 
-    ``coefficients`` (n, C) are the argument of ``model.from_storage``: float32 or, where single precision is not
-    accurate enough, float64. ``rgb`` (n, 3) is the linear RGB that the stored spectrum evaluates to, and ``distance``
-    (n,) max |target RGB − rgb|. ``entry`` (n,) is the row of the atlas entry that seeds a node, −1 for none.
-    ``round`` (n,), stored with ``debug=True`` only, is the round of growth that fitted the node, −1 for none.
-    ``standard_error`` (n,) is the ΔE00 from the answer within which 68 % of measurements are expected, None if the
-    atlas is too small to estimate it. Absent nodes have status ``ABSENT``, entry and round −1, and 0 everywhere else.
+    ``coefficients`` (n, C) are the argument of ``model.from_storage``: float32 or,
+    where single precision is not accurate enough, float64. ``rgb`` (n, 3) is the linear
+    RGB that the stored spectrum evaluates to, and ``distance`` (n,) max |target RGB −
+    rgb|. ``entry`` (n,) is the row of the atlas entry that seeds a node, −1 for none.
+    ``round`` (n,), stored with ``debug=True`` only, is the round of growth that fitted
+    the node, −1 for none. ``standard_error`` (n,) is the ΔE00 from the answer within
+    which 68 % of measurements are expected, None if the atlas is too small to estimate
+    it. Absent nodes have status ``ABSENT``, entry and round −1, and 0 everywhere else.
     """
 
     coefficients: NDArray[Any]
@@ -65,7 +67,9 @@ class PointTable:
 
     @cached_property
     def present(self) -> Mask:
-        """(n,) True where a node has a spectrum: everywhere, unless the cube was built for a scene."""
+        """(n,) True where a node has a spectrum: everywhere, unless the cube was built
+        for a scene.
+        """
         return self.status != Status.ABSENT
 
     @property
@@ -75,7 +79,9 @@ class PointTable:
         return {name: column for name, column in columns.items() if column is not None}
 
     def spread(self, numbers: Indices, size: int) -> "PointTable":
-        """Return the table of ``size`` nodes whose rows, at the nodes ``numbers`` (n,), are those of this one."""
+        """Return the table of ``size`` nodes whose rows, at the nodes ``numbers`` (n,),
+        are those of this one.
+        """
         columns = {}
         for name, rows in self.columns.items():
             shape, absent = (size, *rows.shape[1:]), ABSENT_VALUES.get(name)
@@ -94,7 +100,8 @@ class PointTable:
         return PointTable(**rows).spread(points, len(self.status))
 
     def filled(self, points: Indices, rows: Mapping[str, NDArray[Any]]) -> "PointTable":
-        """Return the table with columns of ``rows`` at absent nodes ``points`` (k,); others keep `ABSENT_VALUES` there.
+        """Return the table with columns of ``rows`` at absent nodes ``points`` (k,);
+        others keep `ABSENT_VALUES` there.
 
         Coefficients become float64 if those of the rows are.
         """

@@ -1,1 +1,3 @@
-"""Emission tables: lights as colours, measured lamps, and a lattice over the chromaticities u′v′."""
+"""Emission tables: lights as colours, measured lamps, and a lattice over the
+chromaticities u′v′.
+"""

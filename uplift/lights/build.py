@@ -34,7 +34,9 @@ MAX_KNOTS, MAX_RINGS = 1024, 512
 SURFACES = "macbeth"
 """Atlas of the surfaces by which predictions of lamps are judged."""
 STACK_LEVEL = 4
-"""Frames between a warning and the caller of `build_emission`, whose decorator adds two."""
+"""Frames between a warning and the caller of `build_emission`, whose decorator adds
+two.
+"""
 
 LampFiles = Atlas | StrPath | Sequence[StrPath] | None
 
@@ -51,24 +53,29 @@ def build_emission(
 ) -> EmissionTable:
     """Build a table of the spectra of lights, constrained by measured lamps.
 
-    Lights scale, so the table is a lattice over chromaticity, up to the spectral locus. Lamps are exact at their
-    chromaticities. Between them, spectra are those expected by the lamps around, and smooth where no lamp is near.
+    Lights scale, so the table is a lattice over chromaticity, up to the spectral locus.
+    Lamps are exact at their chromaticities. Between them, spectra are those expected by
+    the lamps around, and smooth where no lamp is near.
 
     Parameters
     ----------
     atlas : Atlas, path-like or sequence of path-like, optional
-        Measured lamps, or the files that contain them, in addition to those of colour-science. Of lamps of nearly the
-        same chromaticity, those of the atlas are exact; without an atlas, the CIE illuminants A and D50 to D75.
+        Measured lamps, or the files that contain them, in addition to those of
+        colour-science. Of lamps of nearly the same chromaticity, those of the atlas are
+        exact; without an atlas, the CIE illuminants A and D50 to D75.
     knots : int, default 96
-        Nodes around white, 3 to 1024. The spectral locus has one at each corner, so there are never fewer than these.
+        Nodes around white, 3 to 1024. The spectral locus has one at each corner, so
+        there are never fewer than these.
     rings : int, default 24
         Nodes from white to the locus, 3 to 512.
     space : str, default "sRGB"
-        RGB space of queries, by its name in colour-science. White is the white of the space, without adaptation.
+        RGB space of queries, by its name in colour-science. White is the white of the
+        space, without adaptation.
     observer : str, default "CIE 1931 2 Degree Standard Observer"
         Colour-matching functions.
     without : collection of str, optional
-        Names of lamps of colour-science to leave out, to test how lamps are predicted that the table does not know.
+        Names of lamps of colour-science to leave out, to test how lamps are predicted
+        that the table does not know.
 
     Returns
     -------
@@ -87,8 +94,9 @@ def build_emission(
     Warns
     -----
     UpliftWarning
-        Lamps of the atlas with the chromaticity of another one of it, which are left out (``entry-duplicate``), or
-        entries of a file that were skipped (``entry-skipped``).
+        Lamps of the atlas with the chromaticity of another one of it, which are left
+        out (``entry-duplicate``), or entries of a file that were skipped
+        (``entry-skipped``).
 
     Examples
     --------
@@ -163,8 +171,8 @@ def _choose_lamps(
 ) -> tuple[Lamps, Lamps, tuple[Source, ...]]:
     """Return lamps that must be exact, other known ones, and the files of the former.
 
-    The exact ones are those of the atlas at luminance 1, by default standard illuminants. None of the others has the
-    name or spectrum of an exact one.
+    The exact ones are those of the atlas at luminance 1, by default standard
+    illuminants. None of the others has the name or spectrum of an exact one.
     """
     if atlas is None:
         is_standard = np.isin(known.names, STANDARD_ILLUMINANTS)
@@ -198,7 +206,8 @@ def _expected_error(
 ) -> NDArray[np.float32]:
     """ΔE00 (K, R) of the ColorChecker lit by an answer.
 
-    Errors (L,) of left-out lamps, in units of the standard deviation of the prior there, are averaged by distance.
+    Errors (L,) of left-out lamps, in units of the standard deviation of the prior
+    there, are averaged by distance.
     """
     units = errors / prior.left_out_deviation()
     uv = lattice.nodes.reshape(-1, 2)
@@ -212,7 +221,9 @@ def _expected_error(
 
 
 def _record(source: Source) -> dict[str, str]:
-    """Name and digest of a file of lamps, and the scale of its values if the caller gave it."""
+    """Name and digest of a file of lamps, and the scale of its values if the caller
+    gave it.
+    """
     scale = {} if source.measured == "auto" else {"measured": source.measured}
     return {"name": source.name, "digest": source.digest, **scale}
 

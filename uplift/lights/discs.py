@@ -1,4 +1,6 @@
-"""Measured lamps in discs over u′v′: within a disc, answers blend to the lamp at its centre."""
+"""Measured lamps in discs over u′v′: within a disc, answers blend to the lamp at its
+centre.
+"""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -20,7 +22,9 @@ MAX_RADIUS = 0.01
 SAME_CHROMATICITY = 1e-5
 """Distance in u′v′ at which two constraints are one: they have one RGB."""
 CLEARANCE = 2e-3
-"""Distance in u′v′ that other lamps keep from constraints: about two just noticeable differences."""
+"""Distance in u′v′ that other lamps keep from constraints: about two just noticeable
+differences.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +33,9 @@ class Lamps:
 
     names: tuple[str, ...]
     power: Array
-    """(L, N) Power at the wavelengths of a sensor, not negative, relative to the equal-energy light of luminance 1."""
+    """(L, N) Power at the wavelengths of a sensor, not negative, relative to the
+    equal-energy light of luminance 1.
+    """
 
     def __len__(self) -> int:
         return len(self.names)
@@ -47,9 +53,10 @@ class Lamps:
 class DiscHits:
     """Those of n chromaticities that lie in discs.
 
-    `rows` and `entry` (k,) number the chromaticities and their lamps. `share` (k,) of the answer is the lamp: 1 at its
-    chromaticity, 0 on the circle. The rest is the answer of the lattice at `exit_uv` (k, 2), where the ray from the
-    lamp through the chromaticity leaves the disc.
+    `rows` and `entry` (k,) number the chromaticities and their lamps. `share` (k,) of
+    the answer is the lamp: 1 at its chromaticity, 0 on the circle. The rest is the
+    answer of the lattice at `exit_uv` (k, 2), where the ray from the lamp through the
+    chromaticity leaves the disc.
     """
 
     rows: Indices
@@ -60,9 +67,11 @@ class DiscHits:
 
 @dataclass(frozen=True, eq=False)
 class LampEntries:
-    """Measured lamps that a table returns exactly: E names, each once, u′v′ (E, 2), spectra (E, N) and radii (E,).
+    """Measured lamps that a table returns exactly: E names, each once, u′v′ (E, 2),
+    spectra (E, N) and radii (E,).
 
-    Spectra have unit X + 15 Y + 3 Z. The radius is that of the disc, in u′v′; discs do not overlap.
+    Spectra have unit X + 15 Y + 3 Z. The radius is that of the disc, in u′v′; discs do
+    not overlap.
     """
 
     names: tuple[str, ...]
@@ -101,7 +110,8 @@ class LampEntries:
     def _candidates(self) -> tuple[Indices, Indices]:
         """The lamps whose discs reach into each bin.
 
-        (BINS²,) rows of the bins in the second array, −1 for bins without lamps; (m, k) numbers of lamps, the rest −1.
+        (BINS²,) rows of the bins in the second array, −1 for bins without lamps; (m, k)
+        numbers of lamps, the rest −1.
         """
         found = touched_bins(self.uv, self.radius, BINS)
         places = np.full(BINS**2, -1)
@@ -115,11 +125,14 @@ class LampEntries:
 def lamp_entries(
     constraints: Lamps, others: Lamps, lattice: ChromaticityLattice, radiometry: Array
 ) -> tuple[LampEntries, tuple[tuple[str, str], ...]]:
-    """Give each lamp a disc that reaches half of the way to the next one, and at most `MAX_RADIUS`, in the lattice.
+    """Give each lamp a disc that reaches half of the way to the next one, and at most
+    `MAX_RADIUS`, in the lattice.
 
-    Other lamps are exact unless they are close to a constraint, or have nearly the chromaticity of another lamp: of two
-    lamps of one RGB neither is exact, and the expected light averages them. `radiometry` (N, 3) leads from power to
-    XYZ. Returns also the constraints that are left out, each with an earlier one of the same chromaticity.
+    Other lamps are exact unless they are close to a constraint, or have nearly the
+    chromaticity of another lamp: of two lamps of one RGB neither is exact, and the
+    expected light averages them. `radiometry` (N, 3) leads from power to XYZ. Returns
+    also the constraints that are left out, each with an earlier one of the same
+    chromaticity.
     """
     power, uv = _unit(constraints.power, radiometry)
     kept: list[int] = []
@@ -162,7 +175,9 @@ def lamp_entries(
 def touched_bins(
     uv: Array, radius: Array, count: int
 ) -> dict[tuple[int, int], list[int]]:
-    """Return the numbers of the discs that reach into each of ``count``² bins, by the bin along v′ and u′."""
+    """Return the numbers of the discs that reach into each of ``count``² bins, by the
+    bin along v′ and u′.
+    """
     low, high = (_bins(uv + sign * radius[:, None], count).tolist() for sign in (-1, 1))
     found: dict[tuple[int, int], list[int]] = {}
     for number, ((left, bottom), (right, top)) in enumerate(

@@ -1,4 +1,6 @@
-"""Fit the nodes of an emission table: the locus of single wavelengths, and expected lights moved to chromaticities."""
+"""Fit the nodes of an emission table: the locus of single wavelengths, and expected
+lights moved to chromaticities.
+"""
 
 from dataclasses import dataclass
 from typing import Any
@@ -22,16 +24,21 @@ TOLERANCE = 1e-9
 """Distance in XYZ, of unit X + 15 Y + 3 Z, at which a node is solved."""
 MAX_PASSES = 60
 FAINTEST = 1e-6
-"""Smallest power of a prior as a share of its mean: the model has positive powers only."""
+"""Smallest power of a prior as a share of its mean: the model has positive powers only.
+"""
 MIN_ANGLE = 1e-3
-"""Smallest angle in radians between a wavelength inside the convex polygon and its neighbours on the polygon."""
+"""Smallest angle in radians between a wavelength inside the convex polygon and its
+neighbours on the polygon.
+"""
 
 
 @dataclass(frozen=True)
 class Exponential(Model):
-    """Positive spectra g(t) = exp(Σ p_j cos(j π t)) without an upper bound, t from 0 to 1 over the range.
+    """Positive spectra g(t) = exp(Σ p_j cos(j π t)) without an upper bound, t from 0 to
+    1 over the range.
 
-    With as many multipliers as there are evenly spaced wavelengths, every positive spectrum is one of the model.
+    With as many multipliers as there are evenly spaced wavelengths, every positive
+    spectrum is one of the model.
     """
 
     count: int = 81
@@ -61,15 +68,18 @@ class Exponential(Model):
 def locus_lattice(
     radiometry: Array, white: Array, knots: int, rings: Array
 ) -> tuple[ChromaticityLattice, Array]:
-    """Create a lattice that ends at the spectral locus, the polygon of the chromaticities of single wavelengths.
+    """Create a lattice that ends at the spectral locus, the polygon of the
+    chromaticities of single wavelengths.
 
-    Every corner of the polygon is a knot; the others divide its longest edges, as white views them, until there are
-    `knots`. Returns also the power (K, N) of unit X + 15 Y + 3 Z at the knots. `radiometry` (N, 3) leads from power to
-    XYZ, `white` (2,) is u′v′ of the centre.
+    Every corner of the polygon is a knot; the others divide its longest edges, as white
+    views them, until there are `knots`. Returns also the power (K, N) of unit X + 15 Y
+    + 3 Z at the knots. `radiometry` (N, 3) leads from power to XYZ, `white` (2,) is
+    u′v′ of the centre.
     """
-    # The locus is not quite convex: from 575 to 700 nm, mixtures of wavelengths lie outside it, by LOCUS_TOLERANCE at
-    # most. They have a place on the polygon nevertheless, next to the wavelengths between them. On the convex polygon,
-    # pure orange would be a mixture of yellow and red.
+    # The locus is not quite convex: from 575 to 700 nm, mixtures of wavelengths lie
+    # outside it, by LOCUS_TOLERANCE at most. They have a place on the polygon
+    # nevertheless, next to the wavelengths between them. On the convex polygon, pure
+    # orange would be a mixture of yellow and red.
     size = radiometry @ DENOMINATOR
     visible = np.flatnonzero(size > 0)
     uv = chromaticity(radiometry[visible])
@@ -94,7 +104,9 @@ def locus_lattice(
 
 
 def _corners(uv: Array, white: Array) -> Indices:
-    """Corners of the convex polygon of chromaticities (n, 2), and others within `LOCUS_TOLERANCE` of it, in order."""
+    """Corners of the convex polygon of chromaticities (n, 2), and others within
+    `LOCUS_TOLERANCE` of it, in order.
+    """
     from scipy.spatial import ConvexHull
 
     hull = ConvexHull(uv).vertices
@@ -123,10 +135,12 @@ def _angles(first: Array, second: Array) -> Array:
 
 
 def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
-    """Move spectra (n, N), of any scale, to chromaticities (n, 2), each by the smoothest and smallest factor.
+    """Move spectra (n, N), of any scale, to chromaticities (n, 2), each by the
+    smoothest and smallest factor.
 
-    `radiometry` (N, 3) leads from power, at evenly spaced wavelengths, to XYZ. Returns power (n, N) of unit
-    X + 15 Y + 3 Z. Chromaticities near the spectral locus may be missed; see `mix_with_locus`.
+    `radiometry` (N, 3) leads from power, at evenly spaced wavelengths, to XYZ. Returns
+    power (n, N) of unit X + 15 Y + 3 Z. Chromaticities near the spectral locus may be
+    missed; see `mix_with_locus`.
     """
     model = Exponential(len(radiometry))
     wavelengths = np.linspace(0.0, 1.0, len(radiometry))
@@ -155,15 +169,18 @@ def mix_with_locus(
     locus: Array,
     radiometry: Array,
 ) -> Array:
-    """Remove the last differences of power (n, N) from chromaticities (n, 2) by adding a little light of the locus.
+    """Remove the last differences of power (n, N) from chromaticities (n, 2) by adding
+    a little light of the locus.
 
-    `locus` (K, N) is the power at the knots; it, `power` and the result have unit X + 15 Y + 3 Z.
+    `locus` (K, N) is the power at the knots; it, `power` and the result have unit X +
+    15 Y + 3 Z.
     """
     knots = lattice.knots
     edges = np.roll(knots, -1, axis=0) - knots
     reached = chromaticity(power @ radiometry)
-    # Where rays from the chromaticity that was reached through the wanted one leave the polygon: the solutions of
-    # reached + length (uv − reached) = knot + along edge, for all rays and edges.
+    # Where rays from the chromaticity that was reached through the wanted one leave the
+    # polygon: the solutions of reached + length (uv − reached) = knot + along edge, for
+    # all rays and edges.
     direction = uv - reached
     denominator = (
         direction[:, None, 0] * edges[:, 1] - direction[:, None, 1] * edges[:, 0]

@@ -41,7 +41,8 @@ def known_lamps(
 ) -> Lamps:
     """Return the lights of colour-science: CIE illuminants and measured lamps.
 
-    Lights that are measured on less than 400–700 nm, and lights with the spectrum of an earlier one, are left out.
+    Lights that are measured on less than 400–700 nm, and lights with the spectrum of an
+    earlier one, are left out.
     """
     luminance = matching_functions(observer, start, end, step)[:, 1]
     found: dict[str, Array] = {}
@@ -61,10 +62,11 @@ def known_lamps(
 
 
 def read_lamps(*paths: StrPath) -> Atlas:
-    """Read files of spectral powers into one atlas, in the formats of `uplift.atlas.read_atlas`.
+    """Read files of spectral powers into one atlas, in the formats of
+    `uplift.atlas.read_atlas`.
 
-    Powers have no common scale: the largest one of each lamp is 1. `AtlasError` for files of reflectances and lamps
-    without power.
+    Powers have no common scale: the largest one of each lamp is 1. `AtlasError` for
+    files of reflectances and lamps without power.
     """
     atlas = merge(map(_read, map(read_named, map(find_atlas_file, paths))))
     if atlas.skipped:
@@ -78,21 +80,24 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
     Parameters
     ----------
     path : path-like
-        File of spectral powers, in a format of `uplift.read_atlas`: such as CSV or SPD with lines of a wavelength in nm
-        and a power, CGATS, IES TM-27 (.spdx) or a spreadsheet, or JSON of rawtoaces. The powers have any one unit.
+        File of spectral powers, in a format of `uplift.read_atlas`: such as CSV or SPD
+        with lines of a wavelength in nm and a power, CGATS, IES TM-27 (.spdx) or a
+        spreadsheet, or JSON of rawtoaces. The powers have any one unit.
     name : str, optional
         Name of a lamp in a file of several.
 
     Returns
     -------
     Lamp
-        The lamp, with the name of the file without its suffix, or its own name if the file has several. Names that are
-        those of illuminants are not shortened. Negative powers, which are noise, are 0.
+        The lamp, with the name of the file without its suffix, or its own name if the
+        file has several. Names that are those of illuminants are not shortened.
+        Negative powers, which are noise, are 0.
 
     Raises
     ------
     AtlasError
-        The file cannot be read, states reflectances, or has several lamps and no ``name`` is given.
+        The file cannot be read, states reflectances, or has several lamps and no
+        ``name`` is given.
     UnknownNameError
         No lamp of the file has the name.
 
@@ -124,10 +129,11 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
 
 
 def find_light(text: str) -> Illuminant:
-    """Return the name of an illuminant, or read the lamp of a file: ``lamp.csv``, or ``lamps.csv:NAME`` of several.
+    """Return the name of an illuminant, or read the lamp of a file: ``lamp.csv``, or
+    ``lamps.csv:NAME`` of several.
 
-    A name takes precedence over a file. Raises the errors of `read_lamp`, and `UnknownNameError` for a text that is
-    neither.
+    A name takes precedence over a file. Raises the errors of `read_lamp`, and
+    `UnknownNameError` for a text that is neither.
     """
     file = lamp_file(text)
     try:

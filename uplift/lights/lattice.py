@@ -1,9 +1,12 @@
-"""The lattice over CIE 1976 u′v′: spokes from white to knots on the spectral locus, crossed by rings."""
+"""The lattice over CIE 1976 u′v′: spokes from white to knots on the spectral locus,
+crossed by rings.
+"""
 
-# Node (k, j) lies on the segment from white to knot k, at the fraction of ring j. A cell lies between two neighbouring
-# knots and two neighbouring rings. Its two ring sides are parallel, so weights that are linear along the rings and
-# across them give back the chromaticity exactly. With every spectrum at its node scaled to X + 15 Y + 3 Z = 1, the
-# denominator of u′v′, so do the weighted spectra.
+# Node (k, j) lies on the segment from white to knot k, at the fraction of ring j. A
+# cell lies between two neighbouring knots and two neighbouring rings. Its two ring
+# sides are parallel, so weights that are linear along the rings and across them give
+# back the chromaticity exactly. With every spectrum at its node scaled to X + 15 Y + 3
+# Z = 1, the denominator of u′v′, so do the weighted spectra.
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,7 +20,9 @@ from uplift.common.text import pluralise
 DENOMINATOR = np.array([1.0, 15.0, 3.0])
 """Weights of X, Y and Z in the denominator of u′ and v′."""
 LOCUS_TOLERANCE = 3e-4
-"""Share of the distance from white by which lights may lie beyond the polygon, as the spectral locus bends inward."""
+"""Share of the distance from white by which lights may lie beyond the polygon, as the
+spectral locus bends inward.
+"""
 TINY = float(np.finfo(np.float64).tiny)
 
 
@@ -27,14 +32,18 @@ def chromaticity(xyz: Array) -> Array:
 
 
 def unit_xyz(uv: Array) -> Array:
-    """Compute XYZ (..., 3) of unit X + 15 Y + 3 Z of u′v′ (..., 2), the inverse of `chromaticity`."""
+    """Compute XYZ (..., 3) of unit X + 15 Y + 3 Z of u′v′ (..., 2), the inverse of
+    `chromaticity`.
+    """
     x, y = uv[..., 0] / 4, uv[..., 1] / 9
     return np.stack([x, y, (1 - x - 15 * y) / 3], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """Cells of n colours: knot and ring of the lowest corner, and positions from 0 to 1 to the next ones, all (n,)."""
+    """Cells of n colours: knot and ring of the lowest corner, and positions from 0 to 1
+    to the next ones, all (n,).
+    """
 
     sector: Indices
     ring: Indices
@@ -52,9 +61,9 @@ class Cells:
 class ChromaticityLattice:
     """Nodes over all chromaticities of lights.
 
-    `white` (2,) is the centre. `knots` (K, 2) are the corners, counterclockwise, of a polygon that the centre views
-    completely. `rings` (R,) are fractions of the way from the centre to the polygon, increasing from 0 to 1. Others
-    raise `OptionError`.
+    `white` (2,) is the centre. `knots` (K, 2) are the corners, counterclockwise, of a
+    polygon that the centre views completely. `rings` (R,) are fractions of the way from
+    the centre to the polygon, increasing from 0 to 1. Others raise `OptionError`.
     """
 
     white: Array
@@ -69,7 +78,8 @@ class ChromaticityLattice:
         )
         if not shapes or len(self.knots) < 3 or len(self.rings) < 2:
             raise _error(
-                f"must have 3 knots and 2 rings or more, got {self.knots.shape}, {self.rings.shape}"
+                f"must have 3 knots and 2 rings or more, got {self.knots.shape}, "
+                f"{self.rings.shape}"
             )
         if not (
             self.rings[0] == 0
@@ -83,7 +93,10 @@ class ChromaticityLattice:
             raise _error("must have knots counterclockwise around the centre")
 
     def __repr__(self) -> str:
-        return f"ChromaticityLattice({pluralise(len(self.knots), 'knot')}, {pluralise(len(self.rings), 'ring')})"
+        return (
+            f"ChromaticityLattice({pluralise(len(self.knots), 'knot')}, "
+            f"{pluralise(len(self.rings), 'ring')})"
+        )
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -117,21 +130,26 @@ class ChromaticityLattice:
         return np.asarray(np.linalg.inv(pairs))
 
     def sectors(self) -> tuple[Array, Array]:
-        """Return the pseudo angles (K,) of the knots, and the matrices (K, 2, 2) from offsets to shares of spokes.
+        """Return the pseudo angles (K,) of the knots, and the matrices (K, 2, 2) from
+        offsets to shares of spokes.
 
-        Angles are 0 at the first knot and increase to at most 4. Programs in other languages need both.
+        Angles are 0 at the first knot and increase to at most 4. Programs in other
+        languages need both.
         """
         return self._angles, self._inverses
 
     def polar(self, offset: Array) -> tuple[Indices, Array, Array]:
-        """Find the sectors (n,) of offsets (n, 2) from the centre, and in them positions and lengths (n,).
+        """Find the sectors (n,) of offsets (n, 2) from the centre, and in them
+        positions and lengths (n,).
 
-        Positions run from 0 at the knot of the sector to 1 at the next one. On the polygon the length is 1.
+        Positions run from 0 at the knot of the sector to 1 at the next one. On the
+        polygon the length is 1.
         """
         angles = _pseudo_angle(offset) - self._first_angle
         angles += 4.0 * (angles < 0)
         sector = np.searchsorted(self._angles, angles, side="right") - 1
-        # The offset is a sum of the two spokes of its sector: their shares by Cramer's rule.
+        # The offset is a sum of the two spokes of its sector: their shares by Cramer's
+        # rule.
         (a, b), (c, d) = self._inverses.transpose(1, 2, 0)
         u, v = offset.T
         first = np.maximum(a.take(sector) * u + b.take(sector) * v, 0.0)
@@ -140,7 +158,9 @@ class ChromaticityLattice:
         return sector, second / np.maximum(length, TINY), length
 
     def locate(self, uv: Array) -> Cells:
-        """Find the cells of u′v′ (n, 2), of which those outside are moved to the polygon."""
+        """Find the cells of u′v′ (n, 2), of which those outside are moved to the
+        polygon.
+        """
         return self.cells(*self.polar(uv - self.white))
 
     def cells(self, sector: Indices, along: Array, length: Array) -> Cells:
@@ -155,7 +175,9 @@ class ChromaticityLattice:
         return Cells(sector, ring, along, across)
 
     def corners(self, cells: Cells) -> Indices:
-        """Return the numbers (n, 4) of the corners of cells, in the order of their weights; node (k, j) is k R + j."""
+        """Return the numbers (n, 4) of the corners of cells, in the order of their
+        weights; node (k, j) is k R + j.
+        """
         knots, rings = self.shape
         first = cells.sector * rings + cells.ring
         second = first + rings
@@ -172,7 +194,9 @@ def _error(problem: str) -> OptionError:
 
 
 def _pseudo_angle(offset: Array) -> Array:
-    """Increase with the angle counterclockwise from the u′ axis, from 0 to 4, without transcendental functions."""
+    """Increase with the angle counterclockwise from the u′ axis, from 0 to 4, without
+    transcendental functions.
+    """
     u, v = offset[..., 0], offset[..., 1]
     slope = u / np.maximum(np.abs(u) + np.abs(v), TINY)
     return np.asarray(2.0 - np.copysign(1.0 + slope, v))

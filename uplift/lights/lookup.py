@@ -1,4 +1,6 @@
-"""The emission table: linear RGB of any brightness in, spectral power out. Needs numpy only."""
+"""The emission table: linear RGB of any brightness in, spectral power out. Needs numpy
+only.
+"""
 
 import os
 from dataclasses import dataclass
@@ -27,7 +29,9 @@ from uplift.models.arithmetic import blocked_matmul
 EMISSION = Path(__file__).with_name("emission.uplift")
 """The packaged table of sRGB."""
 OUTSIDE = ("error", "clip")
-"""Treatments of colours that no light has: an error, or the nearest colour towards white."""
+"""Treatments of colours that no light has: an error, or the nearest colour towards
+white.
+"""
 MAX_VALUE = 1e30
 """Limit of the components of a colour."""
 FAR = 10.0
@@ -38,8 +42,9 @@ FAR = 10.0
 class EmissionTable:
     """A table of spectra of lights.
 
-    Powers are relative to the equal-energy light of luminance 1, whose power is 1 at every wavelength: XYZ of a power s
-    is Σ s cmfs / Σ ȳ, and white, linear RGB (1, 1, 1), has luminance 1.
+    Powers are relative to the equal-energy light of luminance 1, whose power is 1 at
+    every wavelength: XYZ of a power s is Σ s cmfs / Σ ȳ, and white, linear RGB (1, 1,
+    1), has luminance 1.
 
     Parameters
     ----------
@@ -97,17 +102,20 @@ class EmissionTable:
     ) -> NDArray[Any]:
         """Compute the spectral power of lights whose colour is the given RGB.
 
-        Power is linear between the stored wavelengths, and constant outside their range.
+        Power is linear between the stored wavelengths, and constant outside their
+        range.
 
         Parameters
         ----------
         rgb : array_like, shape (..., 3)
-            Linear RGB of any size in the RGB space of the table; negative components are allowed.
+            Linear RGB of any size in the RGB space of the table; negative components
+            are allowed.
         wavelengths : array_like, shape (N,), optional
             Wavelengths in nm, by default those of the table.
         outside : {"error", "clip"}, default "error"
-            Treatment of colours that no light has: an error, or the nearest colour on the way to white of the same
-            luminance. Where luminance is not positive, that is black.
+            Treatment of colours that no light has: an error, or the nearest colour on
+            the way to white of the same luminance. Where luminance is not positive,
+            that is black.
         dtype : {float64, float32}, default float64
             Type of the result.
         threads : int, default 1
@@ -121,7 +129,8 @@ class EmissionTable:
         Raises
         ------
         ColourError
-            Values that are not finite, or a colour that no light has (``colour-not-a-light``).
+            Values that are not finite, or a colour that no light has
+            (``colour-not-a-light``).
         OptionError
             Invalid wavelengths, treatment, type or number of threads.
         """
@@ -159,7 +168,8 @@ class EmissionTable:
         Raises
         ------
         ColourError
-            Values that are not finite, or a colour that no light has (``colour-not-a-light``).
+            Values that are not finite, or a colour that no light has
+            (``colour-not-a-light``).
         OptionError
             Invalid wavelengths, treatment, type or number of threads.
         """
@@ -174,7 +184,9 @@ class EmissionTable:
         dtype: DTypeLike,
         threads: int,
     ) -> NDArray[Any]:
-        """Spectral power (..., N) of colours (..., 3), whose rows are converted to XYZ block by block."""
+        """Spectral power (..., N) of colours (..., 3), whose rows are converted to XYZ
+        block by block.
+        """
         if outside not in OUTSIDE:
             raise OptionError(
                 f"unknown treatment of colours outside '{outside}'",
@@ -253,7 +265,8 @@ class EmissionTable:
         )
 
     def contains(self, rgb: ArrayLike) -> Mask:
-        """Test whether a light can have the colours: black, or a chromaticity within the spectral locus.
+        """Test whether a light can have the colours: black, or a chromaticity within
+        the spectral locus.
 
         Parameters
         ----------
@@ -274,9 +287,11 @@ class EmissionTable:
         return _is_light(flat, *_polar(self.data, flat)[1:]).reshape(xyz.shape[:-1])
 
     def expected_error(self, rgb: ArrayLike) -> Array:
-        """Estimate how far surfaces lit by an answer are from those lit by a measured lamp of the same chromaticity.
+        """Estimate how far surfaces lit by an answer are from those lit by a measured
+        lamp of the same chromaticity.
 
-        The estimate is learned from lamps that are left out. It does not depend on brightness.
+        The estimate is learned from lamps that are left out. It does not depend on
+        brightness.
 
         Parameters
         ----------
@@ -291,7 +306,8 @@ class EmissionTable:
         Raises
         ------
         ColourError
-            Values that are not finite, or a colour that no light has (``colour-not-a-light``).
+            Values that are not finite, or a colour that no light has
+            (``colour-not-a-light``).
         """
 
         def errors(xyz: Array) -> Array:
@@ -327,7 +343,8 @@ def load_emission(path: str | os.PathLike[str] | None = None) -> EmissionTable:
     Parameters
     ----------
     path : path-like, optional
-        File of the table, or ``"emission"`` if no file has the name: the sRGB table of the package, also the default.
+        File of the table, or ``"emission"`` if no file has the name: the sRGB table of
+        the package, also the default.
 
     Returns
     -------
@@ -349,12 +366,16 @@ def load_emission(path: str | os.PathLike[str] | None = None) -> EmissionTable:
 
 
 def find_table(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
-    """Return the packaged table for its name ``emission``, unless a file has it, or else the path."""
+    """Return the packaged table for its name ``emission``, unless a file has it, or
+    else the path.
+    """
     return find_file(path, {EMISSION.stem: EMISSION})
 
 
 def _checked(colours: NDArray[Any]) -> Array:
-    """Convert to float64 (n, 3); `ColourError` if a value is not finite or too large to be squared."""
+    """Convert to float64 (n, 3); `ColourError` if a value is not finite or too large to
+    be squared.
+    """
     array = colours.astype(float, copy=False)
     if not (np.abs(array) <= MAX_VALUE).all():
         raise ColourError(
@@ -364,7 +385,9 @@ def _checked(colours: NDArray[Any]) -> Array:
 
 
 def _resample(spectra: Values, grid: Array, wavelengths: Array) -> Values:
-    """Interpolate spectra (n, M) on a grid (M,) linearly at wavelengths (N,), constant outside the grid."""
+    """Interpolate spectra (n, M) on a grid (M,) linearly at wavelengths (N,), constant
+    outside the grid.
+    """
     if np.array_equal(wavelengths, grid):
         return spectra
     place = np.clip(
@@ -378,7 +401,9 @@ def _resample(spectra: Values, grid: Array, wavelengths: Array) -> Values:
 def _power(
     data: EmissionData, nodes: Values, entries: Values, xyz: Array, *, clip: bool
 ) -> NDArray[Any]:
-    """Power (n, N) of lights of XYZ (n, 3), in the type of the spectra of the nodes (K · R, N) and lamps (E, N)."""
+    """Power (n, N) of lights of XYZ (n, 3), in the type of the spectra of the nodes (K
+    · R, N) and lamps (E, N).
+    """
     uv, size = _chromaticities(xyz)
     discs = data.entries.locate(uv)
     uv[discs.rows] = discs.exit_uv
@@ -393,7 +418,9 @@ def _power(
 
 
 def _chromaticities(xyz: Array) -> tuple[Array, Array]:
-    """u′v′ (n, 2), column by column, and X + 15 Y + 3 Z (n,); any u′v′ within `FAR` where that is not positive."""
+    """u′v′ (n, 2), column by column, and X + 15 Y + 3 Z (n,); any u′v′ within `FAR`
+    where that is not positive.
+    """
     x, y, z = np.ascontiguousarray(xyz.T)
     size = x + 15.0 * y + 3.0 * z
     known = np.where(size > 0, size, np.inf)
@@ -407,7 +434,9 @@ def _chromaticities(xyz: Array) -> tuple[Array, Array]:
 def _cells(
     data: EmissionData, xyz: Array, uv: Array, size: Array, *, clip: bool
 ) -> tuple[Cells, Array]:
-    """Cells of chromaticities (n, 2), and X + 15 Y + 3 Z (n,); those that no light has are clipped or an error."""
+    """Cells of chromaticities (n, 2), and X + 15 Y + 3 Z (n,); those that no light has
+    are clipped or an error.
+    """
     lattice = data.lattice
     sector, along, length = lattice.polar(uv - lattice.white)
     rows = np.flatnonzero((size <= 0) | (length > 1))
@@ -418,9 +447,11 @@ def _cells(
 
 
 def _polar(data: EmissionData, xyz: Array) -> tuple[Array, Array, Array]:
-    """u′v′ from white (n, 2), X + 15 Y + 3 Z (n,), and the length (n,) of `ChromaticityLattice.polar`.
+    """u′v′ from white (n, 2), X + 15 Y + 3 Z (n,), and the length (n,) of
+    `ChromaticityLattice.polar`.
 
-    All are homogeneous in XYZ: u′v′ and lengths are multiplied by X + 15 Y + 3 Z, which may be 0.
+    All are homogeneous in XYZ: u′v′ and lengths are multiplied by X + 15 Y + 3 Z, which
+    may be 0.
     """
     size = xyz @ DENOMINATOR
     offset = xyz[:, :2] * (4.0, 9.0) - size[:, None] * data.lattice.white
@@ -428,16 +459,20 @@ def _polar(data: EmissionData, xyz: Array) -> tuple[Array, Array, Array]:
 
 
 def _is_light(xyz: Array, size: Array, length: Array) -> Mask:
-    """Test whether XYZ (n, 3) are black or within the spectral locus, beyond which `LOCUS_TOLERANCE` is allowed."""
+    """Test whether XYZ (n, 3) are black or within the spectral locus, beyond which
+    `LOCUS_TOLERANCE` is allowed.
+    """
     return np.asarray(
         ((size > 0) & (length <= size * (1 + LOCUS_TOLERANCE))) | (xyz == 0).all(axis=1)
     )
 
 
 def _to_locus(data: EmissionData, xyz: Array, *, clip: bool) -> tuple[Array, Array]:
-    """Move XYZ (n, 3) towards white of the same luminance, white + f (colour − white), up to the spectral locus.
+    """Move XYZ (n, 3) towards white of the same luminance, white + f (colour − white),
+    up to the spectral locus.
 
-    Returns u′v′ (n, 2) and X + 15 Y + 3 Z (n,). Unless ``clip``, `ColourError` for excesses beyond `LOCUS_TOLERANCE`.
+    Returns u′v′ (n, 2) and X + 15 Y + 3 Z (n,). Unless ``clip``, `ColourError` for
+    excesses beyond `LOCUS_TOLERANCE`.
     """
     offset, size, length = _polar(data, xyz)
     wrong = ~_is_light(xyz, size, length)

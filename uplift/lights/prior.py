@@ -1,7 +1,10 @@
-"""The light expected at a chromaticity: kriging of the deviations of lamps from the smoothest light."""
+"""The light expected at a chromaticity: kriging of the deviations of lamps from the
+smoothest light.
+"""
 
-# Colours of surfaces are linear in the power of the light that falls on them, so the best prediction is the conditional
-# mean of the power. It is spiky near the chromaticities of lamps, and smooth far from them.
+# Colours of surfaces are linear in the power of the light that falls on them, so the
+# best prediction is the conditional mean of the power. It is spiky near the
+# chromaticities of lamps, and smooth far from them.
 
 from dataclasses import dataclass
 from itertools import product
@@ -24,7 +27,8 @@ SMOOTHEST_SHARE = 1e-3
 
 @dataclass(frozen=True)
 class LampKernel:
-    """Covariance exp(−d / length) of the deviations of two lamps, where d is their distance in u′v′.
+    """Covariance exp(−d / length) of the deviations of two lamps, where d is their
+    distance in u′v′.
 
     The nugget is the variance that a lamp shares with no other.
     """
@@ -42,8 +46,8 @@ class LampKernel:
 class LampPrior:
     """Lights expected from lamps at u′v′ (L, 2).
 
-    `weights` (L, N) are those of the kernel around each lamp, `precision` (L, L) is the inverse of the covariance of
-    the lamps. `radiometry` (N, 3) leads from power to XYZ.
+    `weights` (L, N) are those of the kernel around each lamp, `precision` (L, L) is the
+    inverse of the covariance of the lamps. `radiometry` (N, 3) leads from power to XYZ.
     """
 
     uv: Array
@@ -58,14 +62,18 @@ class LampPrior:
         return _bounded(smooth + self.kernel(uv, self.uv) @ self.weights, smooth)
 
     def standard_deviation(self, uv: Array) -> Array:
-        """Standard deviation (n,) of another lamp at u′v′ (n, 2), relative to that of a lamp far from all others."""
+        """Standard deviation (n,) of another lamp at u′v′ (n, 2), relative to that of a
+        lamp far from all others.
+        """
         shared = self.kernel(uv, self.uv)
         total = 1 + self.kernel.nugget
         variance = total - np.einsum("nl,lm,nm->n", shared, self.precision, shared)
         return np.sqrt(np.maximum(variance, self.kernel.nugget) / total)
 
     def left_out_deviation(self) -> Array:
-        """Standard deviation (L,) of each lamp, as the others predict it; see `standard_deviation`."""
+        """Standard deviation (L,) of each lamp, as the others predict it; see
+        `standard_deviation`.
+        """
         return np.asarray(
             np.sqrt(1 / np.diag(self.precision) / (1 + self.kernel.nugget))
         )
@@ -74,11 +82,13 @@ class LampPrior:
 def fit_lamp_prior(
     power: Array, surfaces: Array, radiometry: Array, exact: int = 0
 ) -> tuple[LampPrior, Array]:
-    """Fit the prior to lamps (L, N) of any scale, with the kernel that predicts left-out lamps best.
+    """Fit the prior to lamps (L, N) of any scale, with the kernel that predicts
+    left-out lamps best.
 
-    Predictions are judged by the colours of `surfaces` (P, N). The expected lights nearly reach the first `exact`
-    lamps; others of one chromaticity are averaged. Returns also the light (L, N) that is expected at the chromaticity
-    of each lamp without the lamp, exact in chromaticity.
+    Predictions are judged by the colours of `surfaces` (P, N). The expected lights
+    nearly reach the first `exact` lamps; others of one chromaticity are averaged.
+    Returns also the light (L, N) that is expected at the chromaticity of each lamp
+    without the lamp, exact in chromaticity.
     """
     power = power / (power @ radiometry @ DENOMINATOR)[:, None]
     uv = chromaticity(power @ radiometry)
@@ -86,8 +96,8 @@ def fit_lamp_prior(
     own_share = np.where(np.arange(len(uv)) < exact, EXACT_SHARE, 1.0)
 
     def predict(kernel: LampKernel) -> tuple[Array, Array, Array]:
-        # Left-out predictions of all lamps from one inverse: Rasmussen & Williams 2006, "Gaussian processes for machine
-        # learning", eq. 5.12.
+        # Left-out predictions of all lamps from one inverse: Rasmussen & Williams 2006,
+        # "Gaussian processes for machine learning", eq. 5.12.
         inverse = np.asarray(
             np.linalg.inv(kernel(uv, uv) + np.diag(kernel.nugget * own_share))
         )
@@ -111,7 +121,9 @@ def fit_lamp_prior(
 
 
 def smoothest_lights(uv: Array, radiometry: Array) -> Array:
-    """Return the lights (n, N) of chromaticities (n, 2) that differ least from the equal-energy light."""
+    """Return the lights (n, N) of chromaticities (n, 2) that differ least from the
+    equal-energy light.
+    """
     return nearest_lights(np.ones((len(uv), len(radiometry))), uv, radiometry)
 
 
@@ -123,9 +135,11 @@ def _bounded(power: Array, smooth: Array) -> Array:
 def relit_delta_e(
     lamps: Array, estimates: Array, reflectances: Array, radiometry: Array
 ) -> Array:
-    """Compare surfaces (P, N) lit by lamps (L, N) with the same surfaces lit by estimates of the lamps.
+    """Compare surfaces (P, N) lit by lamps (L, N) with the same surfaces lit by
+    estimates of the lamps.
 
-    Returns ΔE00 (L, P) between CIE L*a*b* relative to the white of the respective light. Powers have any scale.
+    Returns ΔE00 (L, P) between CIE L*a*b* relative to the white of the respective
+    light. Powers have any scale.
     """
     first, second = (
         _relit_lab(power, reflectances, radiometry) for power in (lamps, estimates)
@@ -136,8 +150,8 @@ def relit_delta_e(
 def _relit_lab(power: Array, reflectances: Array, radiometry: Array) -> Array:
     """CIE L*a*b* (L, P, 3).
 
-    For the 10° observer sodium light has no Z. Z relative to white is then the ratio of luminances, as it is for all
-    single wavelengths.
+    For the 10° observer sodium light has no Z. Z relative to white is then the ratio of
+    luminances, as it is for all single wavelengths.
     """
     weights = (
         (reflectances[:, :, None] * radiometry)

@@ -1,4 +1,6 @@
-"""The content of an emission table, and the file that stores it (docs/cube-file.md, "Emission tables")."""
+"""The content of an emission table, and the file that stores it (docs/cube-file.md,
+"Emission tables").
+"""
 
 import os
 from collections.abc import Mapping
@@ -36,7 +38,9 @@ KIND = Kind(
     foreign="not-an-emission-table",
 )
 MAX_OFFSET = 1e-4
-"""Largest distance in u′v′ between a stored spectrum and its place; single precision keeps 1e-6."""
+"""Largest distance in u′v′ between a stored spectrum and its place; single precision
+keeps 1e-6.
+"""
 MAX_RADIUS = 0.1
 """Largest radius of a disc in u′v′."""
 ARRAYS = {
@@ -64,9 +68,11 @@ METADATA = {
 
 @dataclass(frozen=True, eq=False, repr=False)
 class EmissionData:
-    """Content of an emission table: a lattice of K knots and R rings, spectra at N wavelengths, and lamps.
+    """Content of an emission table: a lattice of K knots and R rings, spectra at N
+    wavelengths, and lamps.
 
-    Powers are relative to the equal-energy light of luminance 1, whose power is 1 at every wavelength.
+    Powers are relative to the equal-energy light of luminance 1, whose power is 1 at
+    every wavelength.
     """
 
     space: str
@@ -83,7 +89,9 @@ class EmissionData:
     spectra: NDArray[np.float32]
     """(K, R, N) power of unit X + 15 Y + 3 Z at the nodes."""
     error: NDArray[np.float32]
-    """(K, R) expected ΔE00 of surfaces lit by the answer instead of a measured lamp of the same chromaticity."""
+    """(K, R) expected ΔE00 of surfaces lit by the answer instead of a measured lamp of
+    the same chromaticity.
+    """
     entries: LampEntries
     """Lamps that are exact."""
     provenance: Mapping[str, Any]
@@ -93,7 +101,10 @@ class EmissionData:
         lamps = pluralise(len(self.entries.names), "lamp")
         knots, rings = self.lattice.shape
         wavelengths = pluralise(len(self.wavelengths), "wavelength")
-        return f"EmissionData({knots} × {rings} nodes, {wavelengths}, {self.space}, {lamps})"
+        return (
+            f"EmissionData({knots} × {rings} nodes, {wavelengths}, {self.space}, "
+            f"{lamps})"
+        )
 
     @cached_property
     def radiometry(self) -> Array:
@@ -104,7 +115,8 @@ class EmissionData:
 def write_emission(
     data: EmissionData, path: str | os.PathLike[str], *, force: bool = False
 ) -> None:
-    """Write an emission table, atomically; `OutputError` if the file exists and `force` is false, or cannot be written.
+    """Write an emission table, atomically; `OutputError` if the file exists and `force`
+    is false, or cannot be written.
 
     The new file is read back before it replaces an existing one.
     """
@@ -114,13 +126,16 @@ def write_emission(
 def read_emission(path: str | os.PathLike[str]) -> EmissionData:
     """Read an emission table, and check its digest and all its content.
 
-    `CubeFileError` if the file is missing, damaged, or not an emission table of this version.
+    `CubeFileError` if the file is missing, damaged, or not an emission table of this
+    version.
     """
     return load(Path(path), KIND, _decode)
 
 
 def emission_digest(data: EmissionData) -> str:
-    """SHA-256 in hexadecimal of a table. Tables with equal digests give equal answers, bit for bit."""
+    """SHA-256 in hexadecimal of a table. Tables with equal digests give equal answers,
+    bit for bit.
+    """
     return content_digest(_tensors(data), _metadata(data))
 
 

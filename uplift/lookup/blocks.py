@@ -1,4 +1,6 @@
-"""Arguments of queries as plain arrays, and functions of them applied in blocks of bounded memory."""
+"""Arguments of queries as plain arrays, and functions of them applied in blocks of
+bounded memory.
+"""
 
 import contextlib
 from collections import deque
@@ -34,9 +36,11 @@ def blockwise(
     threads: int = 1,
     block: int = BLOCK,
 ) -> NDArray[Any]:
-    """Apply a function, from rows (k, K) to rows (k, width), to rows (…, K) block by block: (…, width).
+    """Apply a function, from rows (k, K) to rows (k, width), to rows (…, K) block by
+    block: (…, width).
 
-    numpy releases the GIL, so threads run in parallel. The result does not depend on their number.
+    numpy releases the GIL, so threads run in parallel. The result does not depend on
+    their number.
     """
     flat = rows.reshape(-1, rows.shape[-1])
     result = np.empty((len(flat), width), dtype=dtype)
@@ -56,7 +60,8 @@ def blockwise(
 
 
 def as_colours(rgb: ArrayLike, sensor: Sensor) -> Array:
-    """Convert to linear RGB (…, 3), float64, clipped where rounding moved it outside [0, 1].
+    """Convert to linear RGB (…, 3), float64, clipped where rounding moved it outside
+    [0, 1].
 
     `ColourError` quotes the first colour outside.
     """
@@ -68,7 +73,9 @@ def as_colours(rgb: ArrayLike, sensor: Sensor) -> Array:
 
 
 def as_wavelengths(wavelengths: ArrayLike | None, default: Array) -> Array:
-    """Convert to wavelengths (N,) in nm, None to the default; `OptionError` if they are not positive numbers."""
+    """Convert to wavelengths (N,) in nm, None to the default; `OptionError` if they are
+    not positive numbers.
+    """
     if wavelengths is None:
         return default
     with contextlib.suppress(TypeError, ValueError):
@@ -98,7 +105,9 @@ def as_thread_count(threads: int) -> int:
 
 
 def as_coefficient_count(count: int | None, data: CubeData) -> int:
-    """Return the number of coefficients of nodes, the default, or of entries; `OptionError` for other numbers."""
+    """Return the number of coefficients of nodes, the default, or of entries;
+    `OptionError` for other numbers.
+    """
     counts = (data.model.count, data.atlas.spectra.model.count)
     if count is None:
         return counts[0]
@@ -109,7 +118,9 @@ def as_coefficient_count(count: int | None, data: CubeData) -> int:
 
 
 def decode_codes(sensor: Sensor, codes: ArrayLike) -> Array:
-    """Convert 8-bit codes (…) to linear values by the encoding of a sensor; `ColourError` outside 0 to 255."""
+    """Convert 8-bit codes (…) to linear values by the encoding of a sensor;
+    `ColourError` outside 0 to 255.
+    """
     try:
         array = np.asarray(codes, dtype=float)
     except (TypeError, ValueError) as error:

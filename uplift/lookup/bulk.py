@@ -1,8 +1,9 @@
-"""Millions of colours: a cube prepared once for textures, then queried through JAX, on CPU or accelerator.
+"""Millions of colours: a cube prepared once for textures, then queried through JAX, on
+CPU or accelerator.
 
-The first call compiles. For a few thousand colours `uplift.Cube` is faster. This is `uplift.lookup.interpolate` in JAX:
-geometry is float64, as entry boxes may be small, values and weights are float32. Functions raise `OptionError` for
-invalid arguments.
+The first call compiles. For a few thousand colours `uplift.Cube` is faster. This is
+`uplift.lookup.interpolate` in JAX: geometry is float64, as entry boxes may be small,
+values and weights are float32. Functions raise `OptionError` for invalid arguments.
 """
 
 from dataclasses import dataclass
@@ -33,15 +34,20 @@ from uplift.lookup.node_table import Exact, NodeTable, tabulate, tabulate_coeffi
 __all__ = ["Sampler", "coefficients", "spectra"]
 
 BINS = 4096
-"""Even bins of [0, 1]. A bin contains at most one node, except in the finest lattices."""
+"""Even bins of [0, 1]. A bin contains at most one node, except in the finest lattices.
+"""
 CHUNKS = (1 << 16, 1 << 12)
-"""Rows per chunk: two shapes, so that little is compiled; the smaller one is for short inputs."""
+"""Rows per chunk: two shapes, so that little is compiled; the smaller one is for short
+inputs.
+"""
 
 Places = NDArray[np.int32]
 
 
 class Grid(NamedTuple):
-    """Arrays only, a pytree for JAX. Row E of ``boxes`` and ``atlas`` stands for no entry."""
+    """Arrays only, a pytree for JAX. Row E of ``boxes`` and ``atlas`` stands for no
+    entry.
+    """
 
     nodes: Any
     """(dim + 1,) axis nodes, and infinity."""
@@ -52,7 +58,9 @@ class Grid(NamedTuple):
     candidates: Any
     """(K, dim³) entries whose boxes touch each cell, padded with E."""
     boxes: Any
-    """(E + 1, 3, 3) centre in linear RGB, and reciprocals of the distances to the lower and upper faces."""
+    """(E + 1, 3, 3) centre in linear RGB, and reciprocals of the distances to the lower
+    and upper faces.
+    """
     lattice: Any
     """(dim³, N) values of the lattice, float32; NaN at absent nodes."""
     atlas: Any
@@ -82,7 +90,8 @@ def _sampler(table: NodeTable, threads: int) -> "Sampler":
 def _bins(lattice: Lattice) -> tuple[Places, int]:
     """The last node before each bin, and the largest number of nodes in a bin.
 
-    Nodes and colours are truncated alike, so that no colour moves to the other side of a node.
+    Nodes and colours are truncated alike, so that no colour moves to the other side of
+    a node.
     """
     bins = (lattice.nodes * BINS).astype(np.int64)
     before = np.searchsorted(bins, np.arange(BINS + 1), side="left") - 1
@@ -137,7 +146,9 @@ def _number(grid: Grid, position: jax.Array) -> jax.Array:
 
 
 def _with_entries(grid: Grid, rgb: jax.Array) -> jax.Array:
-    """Interpolate the lattice and, in the box of an entry, the entry (`uplift.lattice.entry_boxes`)."""
+    """Interpolate the lattice and, in the box of an entry, the entry
+    (`uplift.lattice.entry_boxes`).
+    """
     exit_rgb, entry, weight = _box_hits(grid, rgb)
     return weight[:, None] * _trilinear(grid, exit_rgb) + (1 - weight)[:, None] * _rows(
         grid.atlas, entry
@@ -145,7 +156,9 @@ def _with_entries(grid: Grid, rgb: jax.Array) -> jax.Array:
 
 
 def _box_hits(grid: Grid, rgb: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """Colours (n, 3) at which to evaluate the lattice, the entry (n,) of each, and the weight (n,) of the lattice."""
+    """Colours (n, 3) at which to evaluate the lattice, the entry (n,) of each, and the
+    weight (n,) of the lattice.
+    """
     cell = _number(grid, _cell(grid, rgb))
 
     def turn(
@@ -154,7 +167,8 @@ def _box_hits(grid: Grid, rgb: jax.Array) -> tuple[jax.Array, jax.Array, jax.Arr
         entry, weight = best
         candidate = _rows(grid.candidates[count], cell)
         centre, below, above = jnp.moveaxis(_rows(grid.boxes, candidate), 1, 0)
-        # x = (1 − t) e + t y: t is the largest fraction, over the axes, of the way from e to the face that x moves to.
+        # x = (1 − t) e + t y: t is the largest fraction, over the axes, of the way from
+        # e to the face that x moves to.
         ray = rgb - centre
         reached = jnp.where(ray > 0, ray * above, -ray * below).max(axis=1)
         inside = reached < 1
@@ -199,7 +213,8 @@ class Sampler:
     threads : int
         Number of threads; each processes a chunk at a time.
     exact : function, optional
-        If some nodes have not their own colours: finds the colours around them and their values by numpy.
+        If some nodes have not their own colours: finds the colours around them and
+        their values by numpy.
     """
 
     sensor: Sensor
@@ -208,10 +223,15 @@ class Sampler:
     exact: Exact | None = None
 
     def __repr__(self) -> str:
-        return f"Sampler({pluralise(self.grid.lattice.shape[1], 'value')} per colour, {self.nbytes / 1e6:.1f} MB)"
+        return (
+            f"Sampler({pluralise(self.grid.lattice.shape[1], 'value')} per colour, "
+            f"{self.nbytes / 1e6:.1f} MB)"
+        )
 
     def __call__(self, rgb: ArrayLike) -> Floats:
-        """Interpolate values (…, N) at linear RGB (…, 3) in [0, 1]; `ColourError` as in `Cube.reflectance`."""
+        """Interpolate values (…, N) at linear RGB (…, 3) in [0, 1]; `ColourError` as in
+        `Cube.reflectance`.
+        """
         width = self.grid.lattice.shape[1]
         return blockwise(
             self._chunk, as_rgb(rgb), width, np.float32, self.threads, CHUNKS[0]
@@ -252,7 +272,8 @@ def spectra(
 ) -> Sampler:
     """Prepare a cube for reflectances in mode ``spectra``, accurate to 1e-6.
 
-    The table takes 4 · dim³ · N bytes. A colour reads eight of its rows (32 · N bytes), in an entry box one more.
+    The table takes 4 · dim³ · N bytes. A colour reads eight of its rows (32 · N bytes),
+    in an entry box one more.
 
     Parameters
     ----------

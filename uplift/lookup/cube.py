@@ -1,4 +1,6 @@
-"""The cube: linear RGB in, coefficients and reflectance spectra out. Needs numpy only."""
+"""The cube: linear RGB in, coefficients and reflectance spectra out. Needs
+numpy only.
+"""
 
 from __future__ import annotations
 
@@ -32,24 +34,32 @@ FOLDER = Path(__file__).parent
 DEFAULT = FOLDER / "default.uplift"
 """The cube of sRGB."""
 PACKAGED = {"srgb": DEFAULT, "acescg": FOLDER / "acescg.uplift"}
-"""Cubes of the package by the name of their space in lower case. They have D65 and no atlas."""
+"""Cubes of the package by the name of their space in lower case. They have D65 and no
+atlas.
+"""
 MAX_TABLE_BYTES = 1 << 28
 """Largest table of the spectra of all nodes that a query computes."""
 TABULATED = ("spectra", "nearest")
-"""Modes that can use a table, which are methods of `uplift.lookup.node_table.NodeTable`."""
+"""Modes that can use a table, which are methods of
+`uplift.lookup.node_table.NodeTable`.
+"""
 OBSERVER = "uplift.colorimetry.observer"
-"""Module that reads the tables of illuminants. It is imported by name, when a light is."""
+"""Module that reads the tables of illuminants. It is imported by name, when a light is.
+"""
 NOTEBOOK = "uplift.viz.notebook"
-"""Module of the HTML. It lies above this one, so it is imported by name, when HTML is requested."""
+"""Module of the HTML. It lies above this one, so it is imported by name, when HTML is
+requested.
+"""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Cube:
     """A spectral uplifting cube.
 
-    Its methods raise `ColourError` for colours outside [0, 1], not finite, or not in the scene of a sparse cube,
-    `UnknownNameError` for an unknown mode or light, and `OptionError` for other invalid arguments. Results do not
-    depend on the number of threads.
+    Its methods raise `ColourError` for colours outside [0, 1], not finite, or not in
+    the scene of a sparse cube, `UnknownNameError` for an unknown mode or light, and
+    `OptionError` for other invalid arguments. Results do not depend on the number of
+    threads.
 
     Parameters
     ----------
@@ -104,7 +114,9 @@ class Cube:
 
     @property
     def entry_coefficient_count(self) -> int:
-        """Coefficients per spectrum of an atlas entry: as many as a node has, or more."""
+        """Coefficients per spectrum of an atlas entry: as many as a node
+        has, or more.
+        """
         return self.data.atlas.spectra.model.count
 
     @property
@@ -114,7 +126,9 @@ class Cube:
 
     @property
     def outside_names(self) -> tuple[str, ...]:
-        """Names of the atlas entries outside the RGB space, which XYZ and textures of wider spaces get."""
+        """Names of the atlas entries outside the RGB space, which XYZ and textures of
+        wider spaces get.
+        """
         return () if self.data.atlas.outside is None else self.data.atlas.outside.names
 
     def coefficients(
@@ -127,8 +141,9 @@ class Cube:
     ) -> NDArray[Any]:
         """Interpolate the coefficients of the model between nodes and atlas entries.
 
-        With the ``count`` of the lattice the entries have their exact colours, and spectra fitted with as few
-        coefficients. With that of the entries they have their spectra, and those of the lattice do not change.
+        With the ``count`` of the lattice the entries have their exact colours, and
+        spectra fitted with as few coefficients. With that of the entries they have
+        their spectra, and those of the lattice do not change.
 
         Parameters
         ----------
@@ -167,18 +182,21 @@ class Cube:
         dtype: DTypeLike = np.float64,
         threads: int = 1,
     ) -> NDArray[Any]:
-        """Compute reflectance spectra whose colour, under the illuminant of the cube, is the given RGB.
+        """Compute reflectance spectra whose colour, under the illuminant of the cube,
+        is the given RGB.
 
         Parameters
         ----------
         rgb : array_like, shape (..., 3)
             Linear RGB in [0, 1], in the RGB space of the cube.
         wavelengths : array_like, shape (N,), optional
-            Wavelengths in nm, by default those of the sensor. Spectra are constant outside the range of the model.
+            Wavelengths in nm, by default those of the sensor. Spectra are constant
+            outside the range of the model.
         mode : {"spectra", "moments", "refined", "nearest"}, default "spectra"
-            ``"spectra"`` interpolates spectra, with exact colours. ``"moments"`` interpolates coefficients, with
-            nearly exact colours. ``"refined"`` moves those to the exact colour. ``"nearest"`` is the spectrum of
-            the nearest node, of another colour.
+            ``"spectra"`` interpolates spectra, with exact colours. ``"moments"``
+            interpolates coefficients, with nearly exact colours. ``"refined"`` moves
+            those to the exact colour. ``"nearest"`` is the spectrum of the nearest
+            node, of another colour.
         dtype : {float64, float32}, default float64
             Type of the result; float32 differs by less than 1e-6.
         threads : int, default 1
@@ -210,7 +228,9 @@ class Cube:
         return blocks.blockwise(function, colours, len(at), kind, count)
 
     def _is_table_worthwhile(self, colours: Array, row_bytes: int) -> bool:
-        """Whether to compute the spectra of all nodes once, instead of repeatedly per block."""
+        """Whether to compute the spectra of all nodes once, instead of repeatedly per
+        block.
+        """
         points = self.data.points.present
         return bool(
             points.size * row_bytes <= MAX_TABLE_BYTES
@@ -218,7 +238,8 @@ class Cube:
         )
 
     def covers(self, rgb: ArrayLike) -> Mask:
-        """Test whether the cube can answer colours in [0, 1]: all of them, unless it was built for a scene.
+        """Test whether the cube can answer colours in [0, 1]: all of them, unless it
+        was built for a scene.
 
         Parameters
         ----------
@@ -244,14 +265,16 @@ class Cube:
         *,
         threads: int = 1,
     ) -> Cube:
-        """Add missing nodes of a sparse cube: spectra of its model, fitted to those of another, with exact colours.
+        """Add missing nodes of a sparse cube: spectra of its model, fitted to those of
+        another, with exact colours.
 
         Parameters
         ----------
         rgb : array_like, shape (..., 3), optional
             Colours that the result must answer; all by default.
         other : Cube, optional
-            Cube of the same RGB space, illuminant and observer; the default cube of the package by default.
+            Cube of the same RGB space, illuminant and observer; the default cube of the
+            package by default.
         threads : int, default 1
             Number of threads.
 
@@ -280,17 +303,20 @@ class Cube:
     def standard_error(
         self, rgb: ArrayLike, light: Illuminant | Light | None = None
     ) -> Array | None:
-        """Estimate the difference that 68 % of measurements stay within, as learnt from left-out atlas entries.
+        """Estimate the difference that 68 % of measurements stay within, as learnt from
+        left-out atlas entries.
 
-        It holds for materials like those of the atlas, which colours alone do not identify; see `unlike_atlas`.
+        It holds for materials like those of the atlas, which colours alone do not
+        identify; see `unlike_atlas`.
 
         Parameters
         ----------
         rgb : array_like, shape (..., 3)
             Linear RGB in [0, 1].
         light : str, Lamp or Light, optional
-            Illuminant, by its name in colour-science, or measured. ``data.error_illuminant`` by default; others need
-            a cube with left-out entries, or raise `OptionError`.
+            Illuminant, by its name in colour-science, or measured.
+            ``data.error_illuminant`` by default; others need a cube with left-out
+            entries, or raise `OptionError`.
 
         Returns
         -------
@@ -303,7 +329,8 @@ class Cube:
     def error_bound(
         self, rgb: ArrayLike, light: Illuminant | Light | None = None
     ) -> Array | None:
-        """Estimate the difference that 95 % of measurements stay within, which is learnt separately.
+        """Estimate the difference that 95 % of measurements stay within, which is
+        learnt separately.
 
         Parameters
         ----------
@@ -319,7 +346,8 @@ class Cube:
         return None if errors is None else errors[..., 1]
 
     def unlike_atlas(self, rgb: ArrayLike) -> Mask:
-        """Find colours that are far from all atlas entries, where standard errors rest on no evidence.
+        """Find colours that are far from all atlas entries, where standard errors rest
+        on no evidence.
 
         Parameters
         ----------
@@ -329,7 +357,8 @@ class Cube:
         Returns
         -------
         ndarray of bool, shape (...)
-            True for colours farther from every entry, in CIE L*a*b*, than 95 % of the entries are from another one.
+            True for colours farther from every entry, in CIE L*a*b*, than 95 % of the
+            entries are from another one.
         """
         from uplift.colorimetry.expected_error import nearest_distances
 
@@ -388,8 +417,8 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
     Parameters
     ----------
     path : path-like, optional
-        Cube file, or ``"srgb"`` or ``"acescg"`` if no file has the name. By default the sRGB cube of the package.
-        The packaged cubes have D65 and no atlas.
+        Cube file, or ``"srgb"`` or ``"acescg"`` if no file has the name. By default the
+        sRGB cube of the package. The packaged cubes have D65 and no atlas.
 
     Returns
     -------
@@ -399,7 +428,8 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
     Raises
     ------
     CubeFileError
-        The file is missing, damaged, not a cube file, or of a version that this one does not read.
+        The file is missing, damaged, not a cube file, or of a version that this one
+        does not read.
     """
     return Cube(read(DEFAULT if path is None else find_file(path)))
 
@@ -407,7 +437,9 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
 def expected_errors(
     cube: Cube, rgb: ArrayLike, light: Illuminant | Light | None = None
 ) -> Array | None:
-    """Standard errors and error bounds (…, 2) of a cube that has estimates. Those of nodes are under one light."""
+    """Standard errors and error bounds (…, 2) of a cube that has estimates. Those of
+    nodes are under one light.
+    """
     data = cube.data
     if data.points.standard_error is None:
         return None
@@ -425,6 +457,8 @@ def expected_errors(
 def find_file(
     path: str | os.PathLike[str], packaged: dict[str, Path] = PACKAGED
 ) -> str | os.PathLike[str]:
-    """Return the packaged file that a name, in any case, stands for, or else the path. A file takes precedence."""
+    """Return the packaged file that a name, in any case, stands for, or else the path.
+    A file takes precedence.
+    """
     found = packaged.get(os.fsdecode(path).casefold())
     return path if found is None or os.path.lexists(path) else found

@@ -1,17 +1,21 @@
-"""Interpolation of coefficients and spectra between nodes, in four modes (docs/mathematics.md, 8). Needs numpy only.
+"""Interpolation of coefficients and spectra between nodes, in four modes
+(docs/mathematics.md, 8). Needs numpy only.
 
-spectra   weighted spectra of the surrounding nodes; exact colours, as RGB is linear in the spectrum
-moments   weighted coefficients; one reconstruction instead of eight
-refined   ``moments``, then minimum-norm steps to the exact colour (section 5)
-nearest   the spectrum of the node of largest weight, of another colour
+spectra   weighted spectra of the surrounding nodes; exact colours, as RGB is linear in
+the spectrum moments   weighted coefficients; one reconstruction instead of eight
+refined   ``moments``, then minimum-norm steps to the exact colour (section 5) nearest
+the spectrum of the node of largest weight, of another colour
 
-Where nodes have not their own colours, answers of all modes but ``nearest`` are then moved to theirs (section 9).
+Where nodes have not their own colours, answers of all modes but ``nearest`` are then
+moved to theirs (section 9).
 
-In the box of an entry all modes but ``nearest`` mix the answer of the lattice, where the ray from the entry through the
-colour leaves the box, with the spectrum of the entry. Spectra mix exactly; lattice and entry may have different numbers
-of coefficients.
+In the box of an entry all modes but ``nearest`` mix the answer of the lattice, where
+the ray from the entry through the colour leaves the box, with the spectrum of the
+entry. Spectra mix exactly; lattice and entry may have different numbers of
+coefficients.
 
-All of it in float64: the conversion from moments to multipliers amplifies rounding errors.
+All of it in float64: the conversion from moments to multipliers amplifies rounding
+errors.
 """
 
 from collections.abc import Callable
@@ -34,7 +38,9 @@ Mode = Callable[..., Array]
 
 
 def around(data: CubeData, rgb: Array) -> Nodes:
-    """Return the nodes around linear RGB (n, 3) in [0, 1]; `ColourError` if a sparse cube lacks one of them."""
+    """Return the nodes around linear RGB (n, 3) in [0, 1]; `ColourError` if a sparse
+    cube lacks one of them.
+    """
     low, fraction, hits = data.entry_boxes.locate(rgb)
     if data.complete_cells is not None:
         require_covered(data.complete_cells[data.lattice.index(low)], rgb)
@@ -45,14 +51,22 @@ def require_covered(covered: Mask, rgb: Array) -> None:
     """Raise `ColourError` for the first colour (n, 3) that is not covered (n,)."""
     if not covered.all():
         raise ColourError(
-            f"the cube answers the colours of its scene only, got linear RGB {format_rgb(rgb[int(covered.argmin())])}",
+            (
+                "the cube answers the colours of its scene only, got linear RGB "
+                f"{format_rgb(rgb[int(covered.argmin())])}"
+            ),
             code="colour-not-in-scene",
-            hint="build the cube with this colour in its scene, or fill it with Cube.fill_missing",
+            hint=(
+                "build the cube with this colour in its scene, or fill it with "
+                "Cube.fill_missing"
+            ),
         )
 
 
 def exact(mix: Mode, data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) of a mixture, moved to exact colours where nodes have not their own."""
+    """Reflectance (n, N) of a mixture, moved to exact colours where nodes have not
+    their own.
+    """
     mixed = mix(data, rgb, wavelengths)
     if data.inexact_cells is None:
         return mixed
@@ -66,21 +80,26 @@ def exact(mix: Mode, data: CubeData, rgb: Array, wavelengths: Array) -> Array:
 
 
 def mixed_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) as weighted spectra Σ w · g of the nodes, whose colours are Σ w · RGB."""
+    """Reflectance (n, N) as weighted spectra Σ w · g of the nodes, whose colours are Σ
+    w · RGB.
+    """
     nodes = around(data, rgb)
     # Each node is evaluated once, although neighbouring colours share nodes.
     points, row = np.unique(nodes.points, return_inverse=True)
     values = evaluate(data.model, data.smoothed_multipliers(points), wavelengths)
-    # g = Σ w g_i has the colour W g = Σ w W g_i = Σ w r_i = x, as trilinear weights reproduce x.
+    # g = Σ w g_i has the colour W g = Σ w W g_i = Σ w r_i = x, as trilinear weights
+    # reproduce x.
     lattice = weighted_sum(values, row.reshape(nodes.points.shape), nodes.weights)
     return _mix_entries(data, nodes, lattice, wavelengths)
 
 
 def is_inexact(data: CubeData, rgb: Array) -> Mask:
-    """Whether the nodes around linear RGB (n, 3) in [0, 1] do not all have their own colours.
+    """Whether the nodes around linear RGB (n, 3) in [0, 1] do not all have their own
+    colours.
 
-    A wide-gamut lattice has corners of colours that no reflectance has, and stores other colours there. Mixtures of
-    such corners miss the requested colour, although most colours of their cells are realisable.
+    A wide-gamut lattice has corners of colours that no reflectance has, and stores
+    other colours there. Mixtures of such corners miss the requested colour, although
+    most colours of their cells are realisable.
     """
     if data.inexact_cells is None:
         return np.zeros(len(rgb), dtype=bool)
@@ -88,10 +107,12 @@ def is_inexact(data: CubeData, rgb: Array) -> Mask:
 
 
 def fading_share(data: CubeData, rgb: Array) -> Array:
-    """Return the share (n,) by which weighted coefficients at linear RGB (n, 3) are moved.
+    """Return the share (n,) by which weighted coefficients at linear RGB (n, 3) are
+    moved.
 
-    Weighted coefficients miss their colour in all cells. The share is 1 in cells with a node that has not its own
-    colour, and falls to 0 across the cells around them, so that answers are continuous.
+    Weighted coefficients miss their colour in all cells. The share is 1 in cells with a
+    node that has not its own colour, and falls to 0 across the cells around them, so
+    that answers are continuous.
     """
     if data.inexact_corners is None:
         return np.zeros(len(rgb))
@@ -102,7 +123,9 @@ def fading_share(data: CubeData, rgb: Array) -> Array:
 
 
 def mixed_moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) of the weighted coefficients of the lattice, mixed with entries."""
+    """Reflectance (n, N) of the weighted coefficients of the lattice, mixed with
+    entries.
+    """
     nodes = around(data, rgb)
     weighted = weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
     lattice = reflectance(data.model, weighted, wavelengths)
@@ -110,7 +133,9 @@ def mixed_moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
 
 
 def mixed_refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) of the weighted coefficients of the lattice and of entries, moved to their colours."""
+    """Reflectance (n, N) of the weighted coefficients of the lattice and of entries,
+    moved to their colours.
+    """
     nodes = around(data, rgb)
     lattice = evaluate(data.model, _exact_lattice(data, nodes, rgb), wavelengths)
     return nodes.hits.mix(
@@ -129,7 +154,9 @@ def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
 
 
 def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) as weighted spectra of the lattice alone, without entry boxes."""
+    """Reflectance (n, N) as weighted spectra of the lattice alone, without
+    entry boxes.
+    """
     corners, weights = data.lattice.corners(rgb)
     points, row = np.unique(corners, return_inverse=True)
     values = reflectance(data.model, data.points.coefficients[points], wavelengths)
@@ -148,14 +175,18 @@ MODES: dict[str, Mode] = {
 
 
 def coefficients(data: CubeData, rgb: Array) -> Array:
-    """Weighted coefficients (n, C) of the nodes around linear RGB (n, 3) in [0, 1], as `exact_coefficients`."""
+    """Weighted coefficients (n, C) of the nodes around linear RGB (n, 3) in [0, 1], as
+    `exact_coefficients`.
+    """
     return exact_coefficients(
         data, data.model, rgb, weighted_coefficients(data, rgb), refined_multipliers
     )
 
 
 def extended_coefficients(data: CubeData, rgb: Array) -> Array:
-    """Weighted coefficients (n, K) of the nodes' spectra, as many as the entries have, as `exact_coefficients`."""
+    """Weighted coefficients (n, K) of the nodes' spectra, as many as the entries have,
+    as `exact_coefficients`.
+    """
     nodes = around(data, rgb)
     points, row = np.unique(nodes.points, return_inverse=True)
     lattice = extend_coefficients(data, data.points.coefficients[points])
@@ -173,7 +204,9 @@ def exact_coefficients(
     weighted: Array,
     multipliers: Callable[[CubeData, Array], Array],
 ) -> Array:
-    """Move coefficients (n, K), where nodes have not their own colours, to those of exact ``multipliers``."""
+    """Move coefficients (n, K), where nodes have not their own colours, to those of
+    exact ``multipliers``.
+    """
     share = fading_share(data, rgb)
     rows = np.flatnonzero(share)
     if rows.size:
@@ -192,11 +225,14 @@ def weighted_coefficients(data: CubeData, rgb: Array) -> Array:
 
 
 def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
-    """Coefficients (m, K) in the model of the entries of the lattice spectra with coefficients (m, C).
+    """Coefficients (m, K) in the model of the entries of the lattice spectra with
+    coefficients (m, C).
 
-    Multipliers followed by zeros are those of the same spectrum, which has more moments.
+    Multipliers followed by zeros are those of the same spectrum, which has more
+    moments.
     """
-    # B p is the same with zeros for further multipliers; the moments c_j = (1/π) ∫ g cos jφ dφ of g follow for any j.
+    # B p is the same with zeros for further multipliers; the moments c_j = (1/π) ∫ g
+    # cos jφ dφ of g follow for any j.
     extended = data.atlas.spectra.model.to_storage(
         _append_zeros(data, data.model.from_storage(coefficients))
     )
@@ -205,7 +241,9 @@ def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
 
 
 def refined_multipliers(data: CubeData, rgb: Array) -> Array:
-    """Multipliers (n, C) that start from the weighted coefficients and have exactly the colours (n, 3)."""
+    """Multipliers (n, C) that start from the weighted coefficients and have exactly the
+    colours (n, 3).
+    """
     return refine_to_rgb(
         data, data.model, data.model.from_storage(weighted_coefficients(data, rgb)), rgb
     )
@@ -214,7 +252,8 @@ def refined_multipliers(data: CubeData, rgb: Array) -> Array:
 def extended_multipliers(data: CubeData, rgb: Array) -> Array:
     """Multipliers (n, K), as many as the entries have, with exactly the colours (n, 3).
 
-    Outside entry boxes they have the spectra of mode ``refined``, inside the same coefficients.
+    Outside entry boxes they have the spectra of mode ``refined``, inside the same
+    coefficients.
     """
     nodes, model = around(data, rgb), data.atlas.spectra.model
     extended = _append_zeros(data, _exact_lattice(data, nodes, rgb))
@@ -230,7 +269,9 @@ def extended_multipliers(data: CubeData, rgb: Array) -> Array:
 
 
 def node_errors(data: CubeData, rgb: Array) -> Array:
-    """Standard errors and error bounds (n, 2) from those of the nodes, for a cube that has them."""
+    """Standard errors and error bounds (n, 2) from those of the nodes, for a cube that
+    has them.
+    """
     nodes, factors = around(data, rgb), np.array([1, data.error_bound_factor])
     errors = np.asarray(data.points.standard_error, dtype=float)[:, None]
     entries = np.repeat(data.atlas.error[:, None], 2, axis=1)
@@ -240,8 +281,11 @@ def node_errors(data: CubeData, rgb: Array) -> Array:
 
 
 def _exact_lattice(data: CubeData, nodes: Nodes, rgb: Array) -> Array:
-    """Multipliers (n, C) of the lattice that have exactly its share of the colours (n, 3)."""
-    # The mean moments nearly have the mean colour: a step or two of Δx = A⁺ (t − r) suffice (5).
+    """Multipliers (n, C) of the lattice that have exactly its share of the colours (n,
+    3).
+    """
+    # The mean moments nearly have the mean colour: a step or two of Δx = A⁺ (t − r)
+    # suffice (5).
     start = data.model.from_storage(
         weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
     )
@@ -249,7 +293,9 @@ def _exact_lattice(data: CubeData, nodes: Nodes, rgb: Array) -> Array:
 
 
 def _exact_entries(data: CubeData, nodes: Nodes) -> Array:
-    """Multipliers (k, K) of the entry of each colour in a box, that have exactly the colour of the entry."""
+    """Multipliers (k, K) of the entry of each colour in a box, that have exactly the
+    colour of the entry.
+    """
     atlas, (entries, row) = data.atlas, np.unique(nodes.hits.entry, return_inverse=True)
     return refine_to_rgb(
         data,
@@ -260,7 +306,9 @@ def _exact_entries(data: CubeData, nodes: Nodes) -> Array:
 
 
 def _append_zeros(data: CubeData, multipliers: Array) -> Array:
-    """Multipliers (m, K) in the model of the entries of the spectra with multipliers (m, C)."""
+    """Multipliers (m, K) in the model of the entries of the spectra with multipliers
+    (m, C).
+    """
     return np.pad(
         multipliers, ((0, 0), (0, data.atlas.spectra.model.count - data.model.count))
     )
@@ -269,7 +317,9 @@ def _append_zeros(data: CubeData, multipliers: Array) -> Array:
 def _mix_entries(
     data: CubeData, nodes: Nodes, lattice: Array, wavelengths: Array
 ) -> Array:
-    """Reflectance (n, N) of the lattice, mixed with the spectra of entries in their boxes."""
+    """Reflectance (n, N) of the lattice, mixed with the spectra of entries in their
+    boxes.
+    """
     if not nodes.hits.rows.size:
         return lattice
     entries, row = np.unique(nodes.hits.entry, return_inverse=True)

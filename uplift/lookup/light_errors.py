@@ -1,7 +1,9 @@
-"""Standard errors of answers under any light, learnt from atlas entries that were left out (docs/mathematics.md, 7).
+"""Standard errors of answers under any light, learnt from atlas entries that were left
+out (docs/mathematics.md, 7).
 
-RGB does not identify a material: the errors are those of materials like the entries of the atlas. `Cube.unlike_atlas`
-finds colours that no entry is near to; of a material of another family with the colour of an entry nothing is known.
+RGB does not identify a material: the errors are those of materials like the entries of
+the atlas. `Cube.unlike_atlas` finds colours that no entry is near to; of a material of
+another family with the colour of an entry nothing is known.
 """
 
 from dataclasses import dataclass
@@ -25,7 +27,9 @@ from uplift.lookup.interpolate import around
 from uplift.models import reflectance
 
 LIKELY = 0.95
-"""Share of the materials like the entries of the atlas whose a* and b* lie in the likely region."""
+"""Share of the materials like the entries of the atlas whose a* and b* lie in the
+likely region.
+"""
 NORMAL_RADIUS = float(np.sqrt(-2 * np.log1p(-LIKELY)))
 """Mahalanobis distance that this share of pairs of normal variables stays within."""
 
@@ -38,23 +42,30 @@ class LightErrors:
     expected: ExpectedError
     """Squares of ΔE00, without entry boxes."""
     entries: Array
-    """(E, 2) ΔE00 between the measured and the stored spectrum of each entry; of looks, what remains on average."""
+    """(E, 2) ΔE00 between the measured and the stored spectrum of each entry; of looks,
+    what remains on average.
+    """
 
     def __call__(self, rgb: Array) -> Array:
-        """ΔE00 (n, 2) that 68 % and 95 % of measurements stay within, at linear RGB (n, 3) in [0, 1].
+        """ΔE00 (n, 2) that 68 % and 95 % of measurements stay within, at linear RGB (n,
+        3) in [0, 1].
 
-        In an entry box, the error that remains at entries is mixed with that of the entry, as spectra are.
+        In an entry box, the error that remains at entries is mixed with that of the
+        entry, as spectra are.
         """
         nodes, radii = around(self.data, rgb), np.array(self.expected.radii)
         squares = self.expected(rgb_to_lab(self.data.sensor, rgb))
-        # e² = radius² E[e²] + e₀², with the error e₀ that remains at the entries themselves
+        # e² = radius² E[e²] + e₀², with the error e₀ that remains at the entries
+        # themselves
         remaining = np.tile(radii * np.sqrt(self.expected.floor), (len(rgb), 1))
         remaining = nodes.hits.mix(remaining, self.entries[nodes.hits.entry])
         return np.asarray(np.sqrt(radii**2 * squares + remaining**2))
 
 
 def light_errors(data: CubeData, light: Light) -> LightErrors:
-    """Learn the standard errors under a light; `OptionError` without left-out entries."""
+    """Learn the standard errors under a light; `OptionError` without
+    left-out entries.
+    """
     measured, left_out = _evidence(data)
     at, rows = data.sensor.wavelengths, np.arange(len(measured))
     missed = delta_e_spectra(light, left_out, measured)
@@ -71,7 +82,9 @@ def light_errors(data: CubeData, light: Light) -> LightErrors:
 
 
 def outside_errors(data: CubeData, light: Light | None) -> Array:
-    """ΔE00 (O,) between stored and measured spectrum of the entries outside the RGB space, NaN if it is not known."""
+    """ΔE00 (O,) between stored and measured spectrum of the entries outside the RGB
+    space, NaN if it is not known.
+    """
     table = data.atlas.outside
     if table is None:
         return np.zeros(0)
@@ -93,10 +106,13 @@ class LabErrors:
     expected: ExpectedError
     """Products (9) of the components of the differences."""
     likely_radius: float
-    """Mahalanobis distance in a* and b* that `LIKELY` of the materials like the atlas stay within. Normal: 2.45."""
+    """Mahalanobis distance in a* and b* that `LIKELY` of the materials like the atlas
+    stay within. Normal: 2.45.
+    """
 
     def covariance(self, rgb: Array) -> Array:
-        """Expected covariances (n, 3, 3) around the answers at linear RGB (n, 3), also outside [0, 1].
+        """Expected covariances (n, 3, 3) around the answers at linear RGB (n, 3), also
+        outside [0, 1].
 
         Positive semidefinite; [:, 1:, 1:] is that of a* and b*.
         """
@@ -111,7 +127,9 @@ class LabErrors:
 
 
 def lab_errors(data: CubeData, light: Light) -> LabErrors:
-    """Learn the covariances in CIE L*a*b* under a light; `OptionError` without left-out entries."""
+    """Learn the covariances in CIE L*a*b* under a light; `OptionError` without left-out
+    entries.
+    """
     measured, left_out = _evidence(data)
     spectra = (
         left_out,
@@ -141,10 +159,16 @@ def lab_errors(data: CubeData, light: Light) -> LabErrors:
 
 
 def _evidence(data: CubeData) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Reflectances (M, N) of the entries as measured, and as answered without each of them."""
+    """Reflectances (M, N) of the entries as measured, and as answered without each of
+    them.
+    """
     if data.atlas.measured is None or data.atlas.left_out is None:
         raise OptionError(
-            "standard errors under a light need a cube with the left-out entries of its atlas",
+            (
+                "standard errors under a light need a cube with the left-out entries "
+                "of "
+                "its atlas"
+            ),
             code="too-few-entries",
             hint="build the cube again, with an atlas of at least 8 entries",
         )

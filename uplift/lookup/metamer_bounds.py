@@ -1,4 +1,6 @@
-"""Bounds of answers: how far the colour of any reflectance of an RGB can be from the answer's under another light."""
+"""Bounds of answers: how far the colour of any reflectance of an RGB can be from the
+answer's under another light.
+"""
 
 from dataclasses import dataclass
 
@@ -28,9 +30,13 @@ class Bounds:
     largest: mismatch.LargestDifference
     """The reflectances whose colour differs most from that of the answer."""
     covariance: Array | None
-    """(n, 3, 3) expected covariance of L*a*b* of a material of the colour; None without left-out entries."""
+    """(n, 3, 3) expected covariance of L*a*b* of a material of the colour; None without
+    left-out entries.
+    """
     likely_radius: float | None
-    """Mahalanobis distance in a* and b* that `LIKELY` of the materials like the atlas stay within."""
+    """Mahalanobis distance in a* and b* that `LIKELY` of the materials like the atlas
+    stay within.
+    """
 
     @property
     def lab(self) -> Array:
@@ -39,7 +45,9 @@ class Bounds:
 
     @property
     def share(self) -> Array:
-        """Volumes of the metamers as shares (n,) of all colours of reflectances under the light."""
+        """Volumes of the metamers as shares (n,) of all colours of reflectances under
+        the light.
+        """
         return self.volumes.volume / solid_volume(self.light.xyz)
 
     @property
@@ -49,13 +57,17 @@ class Bounds:
         return np.stack([found.min(axis=1), found.max(axis=1)], axis=1)
 
     def outline(self, row: int) -> Array:
-        """Compute the outline (M, 2) in a* and b* of all colours that the reflectances of colour ``row`` can have."""
+        """Compute the outline (M, 2) in a* and b* of all colours that the reflectances
+        of colour ``row`` can have.
+        """
         return mismatch.outline(
             self.volumes.lab[row, :, 1:], self.volumes.directions.faces
         )
 
     def likely(self, row: int) -> Array | None:
-        """Compute the ellipse (M, 2) in a* and b* that holds `LIKELY` of the materials like the atlas, if known."""
+        """Compute the ellipse (M, 2) in a* and b* that holds `LIKELY` of the materials
+        like the atlas, if known.
+        """
         if self.covariance is None or self.likely_radius is None:
             return None
         values, axes = np.linalg.eigh(self.covariance[row, 1:, 1:])
@@ -75,10 +87,11 @@ def bounds(
     mode: str = "spectra",
     divisions: int = mismatch.DIVISIONS,
 ) -> Bounds:
-    """Compute bounds of the answers to linear RGB (n, 3) under a light at the wavelengths of the sensor.
+    """Compute bounds of the answers to linear RGB (n, 3) under a light at the
+    wavelengths of the sensor.
 
-    Colours outside [0, 1] are answered by `reflectance_anywhere`; ``divisions`` (0 to 4) sets the number of boundary
-    points, see `uplift.colorimetry.mismatch.COUNTS`.
+    Colours outside [0, 1] are answered by `reflectance_anywhere`; ``divisions`` (0 to
+    4) sets the number of boundary points, see `uplift.colorimetry.mismatch.COUNTS`.
     Raises `ColourError` if no reflectance has a colour.
     """
     data = cube.data

@@ -1,4 +1,6 @@
-"""Tables of the values of all nodes, for queries of at least as many colours as the cube has nodes."""
+"""Tables of the values of all nodes, for queries of at least as many colours as the
+cube has nodes.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,7 +17,9 @@ from uplift.lookup.blocks import Function, as_colours, blockwise
 from uplift.models import reflectance
 
 Exact = Callable[[Array], tuple[Indices, Array]]
-"""From linear RGB (n, 3) to the rows (m,) that are moved as nodes have not their own colours, and values (m, K)."""
+"""From linear RGB (n, 3) to the rows (m,) that are moved as nodes have not their own
+colours, and values (m, K).
+"""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,7 +80,9 @@ def _exact(share: Function, values: Function, rgb: Array) -> tuple[Indices, Arra
 def prepare_products(
     data: CubeData, wavelengths: Array, matrix: Array, threads: int = 1
 ) -> Callable[..., Values]:
-    """Prepare products (…, K) of a matrix (K, N) and reflectances in mode ``spectra`` at linear RGB (…, 3), float32."""
+    """Prepare products (…, K) of a matrix (K, N) and reflectances in mode ``spectra``
+    at linear RGB (…, 3), float32.
+    """
     # (Σ w g) Mᵀ = Σ w (g Mᵀ): interpolation is linear, and is faster of fewer numbers.
     table = tabulate(data, wavelengths, np.float32, threads)
     lattice, atlas = (
@@ -105,7 +111,9 @@ def _sample(table: NodeTable, threads: int, rgb: ArrayLike) -> Values:
 def tabulate(
     data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1
 ) -> NodeTable:
-    """Compute the reflectances of all nodes at wavelengths (N,) in nm: dim³ × N numbers."""
+    """Compute the reflectances of all nodes at wavelengths (N,) in nm: dim³ × N
+    numbers.
+    """
     evaluate_rows = partial(reflectance, data.model, wavelengths=wavelengths)
     stored = data.points.coefficients[data.points.present]
     present = blockwise(evaluate_rows, stored, len(wavelengths), dtype, threads)
@@ -120,7 +128,9 @@ def tabulate(
 def tabulate_coefficients(
     data: CubeData, count: int, dtype: DTypeLike = np.float64, threads: int = 1
 ) -> NodeTable:
-    """Tabulate the coefficients of all nodes, ``count`` each: as many as the nodes or the entries have."""
+    """Tabulate the coefficients of all nodes, ``count`` each: as many as the nodes or
+    the entries have.
+    """
     present = data.points.coefficients[data.points.present]
     entries, coefficients = data.atlas.coefficients, interpolate.coefficients
     if count != data.model.count:

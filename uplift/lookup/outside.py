@@ -1,4 +1,6 @@
-"""Colours that a cube does not hold: outside its RGB space (docs/mathematics.md, 8), or not in its scene."""
+"""Colours that a cube does not hold: outside its RGB space (docs/mathematics.md, 8), or
+not in its scene.
+"""
 
 from dataclasses import replace
 from functools import partial
@@ -19,28 +21,41 @@ from uplift.lookup.refine import refine_to_rgb
 from uplift.models import evaluate, reflectance
 
 MAPPING = "desaturate"
-"""Gamut mapping to the colour from which the spectra of colours outside the RGB space start."""
+"""Gamut mapping to the colour from which the spectra of colours outside the RGB space
+start.
+"""
 MIN_REFLECTANCE = 1e-6
-"""Reflectances are clipped to this distance from 0 and 1, so that the linear part of the model is finite."""
+"""Reflectances are clipped to this distance from 0 and 1, so that the linear part of
+the model is finite.
+"""
 
 
 def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
-    """Compute reflectances (n, N) at wavelengths (N,) in nm, of linear RGB (n, 3) that may lie outside [0, 1].
+    """Compute reflectances (n, N) at wavelengths (N,) in nm, of linear RGB (n, 3) that
+    may lie outside [0, 1].
 
-    A colour in the object-colour solid has spectra, whether or not its RGB lie in [0, 1]. The multipliers of the
-    nearest colour that the cube holds, on the line of constant dominant wavelength, move to it by minimum-norm steps,
-    which may fail close to the boundary of the solid. In the box of an entry outside [0, 1], so do those of the entry,
-    and the two reflectances, of one colour, are mixed.
+    A colour in the object-colour solid has spectra, whether or not its RGB lie in [0,
+    1]. The multipliers of the nearest colour that the cube holds, on the line of
+    constant dominant wavelength, move to it by minimum-norm steps, which may fail close
+    to the boundary of the solid. In the box of an entry outside [0, 1], so do those of
+    the entry, and the two reflectances, of one colour, are mixed.
     """
     possible = data.solid.contains(rgb)
     if not possible.all():
         raise ColourError(
-            f"no reflectance has the colour of XYZ {format_rgb(data.sensor.xyz(rgb[int(possible.argmin())]))}",
+            (
+                "no reflectance has the colour of XYZ "
+                f"{format_rgb(data.sensor.xyz(rgb[int(possible.argmin())]))}"
+            ),
             code="colour-unrealisable",
-            hint="reduce its luminance, where white has Y = 1, or its distance from white",
+            hint=(
+                "reduce its luminance, where white has Y = 1, or its distance from "
+                "white"
+            ),
         )
-    # Start from the nearest colour inside, and near an entry outside from its spectrum, unless that answers alone.
-    # A cube without entries outside has no boxes there, and no hits.
+    # Start from the nearest colour inside, and near an entry outside from its spectrum,
+    # unless that answers alone. A cube without entries outside has no boxes there, and
+    # no hits.
     hits, entries = (
         data.outside_boxes.find(rgb),
         (data.atlas.outside or data.atlas).spectra,
@@ -63,9 +78,15 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
     distance = np.abs(reached - rgb).max(axis=1)
     if (distance > data.threshold).any():
         raise ColourError(
-            f"the model does not reach the colour of XYZ {format_rgb(data.sensor.xyz(rgb[int(distance.argmax())]))}",
+            (
+                "the model does not reach the colour of XYZ "
+                f"{format_rgb(data.sensor.xyz(rgb[int(distance.argmax())]))}"
+            ),
             code="colour-unrealisable",
-            hint="move it toward white, away from the limit of what reflectances can have",
+            hint=(
+                "move it toward white, away from the limit of what reflectances can "
+                "have"
+            ),
         )
     return spectra(at)
 
@@ -73,7 +94,9 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
 def reflectance_anywhere(
     data: CubeData, rgb: Array, at: Array, mode: str, outside: Mask
 ) -> Array:
-    """Compute reflectances (n, N) at wavelengths (N,) in nm, of linear RGB (n, 3) that may be ``outside`` (n,)."""
+    """Compute reflectances (n, N) at wavelengths (N,) in nm, of linear RGB (n, 3) that
+    may be ``outside`` (n,).
+    """
     spectra = np.empty((len(rgb), len(at)))
     spectra[~outside] = MODES[mode](data, np.clip(rgb[~outside], 0, 1), at)
     if outside.any():
@@ -84,9 +107,11 @@ def reflectance_anywhere(
 def fill_missing(
     data: CubeData, points: Indices, other: CubeData, threads: int = 1
 ) -> CubeData:
-    """Return the cube with absent nodes ``points`` (k,) fitted to the answers of another cube of the same RGB space.
+    """Return the cube with absent nodes ``points`` (k,) fitted to the answers of
+    another cube of the same RGB space.
 
-    Their standard error is the largest of the cube, as their distance from measurements is unknown.
+    Their standard error is the largest of the cube, as their distance from measurements
+    is unknown.
     """
     common_sensor([data, other])
     target, table = data.lattice.target(points), data.points
@@ -117,7 +142,9 @@ def fill_missing(
 
 
 def _fit_to_other(data: CubeData, other: CubeData, rgb: Array) -> Array:
-    """Multipliers (n, C) of the cube's model: close to the spectra of ``other``, with exactly the colours (n, 3)."""
+    """Multipliers (n, C) of the cube's model: close to the spectra of ``other``, with
+    exactly the colours (n, 3).
+    """
     spectra = refined(other, rgb, data.sensor.wavelengths)
     # min |B p − S⁻¹(g)|, and from this p by steps to the exact colour
     linear = data.model.from_reflectance(

@@ -34,28 +34,42 @@ class QueryResult:
     round_trip: Array
     """(3,) linear RGB of the reflectance."""
     xyz: Array
-    """(3,) XYZ of the reflectance under the illuminant of the cube, where white has Y = 1."""
+    """(3,) XYZ of the reflectance under the illuminant of the cube, where white has Y =
+    1.
+    """
     delta_e_2000: float
-    """ΔE00 between ``rgb`` and ``round_trip``; for raw values of a camera, by an approximate matrix."""
+    """ΔE00 between ``rgb`` and ``round_trip``; for raw values of a camera, by an
+    approximate matrix.
+    """
     cell: tuple[int, int, int]
     """Position of the lowest corner of the cell along the axes."""
     statuses: tuple[Status, ...]
     """Statuses of the corners of the cell."""
     entry: str | None
-    """Atlas entry whose 8-bit codes are those of the colour, within `CODE_TOLERANCE`."""
+    """Atlas entry whose 8-bit codes are those of the colour, within `CODE_TOLERANCE`.
+    """
     standard_error: float | None
-    """ΔE00 from the answer that 68 % of measurements stay within; None if the cube has no estimate."""
+    """ΔE00 from the answer that 68 % of measurements stay within; None if the cube has
+    no estimate.
+    """
     error_bound: float | None
     """The same for 95 %."""
     standard_errors: Mapping[str, float]
-    """Standard errors under other lights, by their names; empty if the cube has no estimate."""
+    """Standard errors under other lights, by their names; empty if the cube has no
+    estimate.
+    """
     error_bounds: Mapping[str, float]
     light_xyz: Mapping[str, Array]
-    """XYZ (3,) of the reflectance under these lights; the perfect reflector has that of `Light.white`."""
+    """XYZ (3,) of the reflectance under these lights; the perfect reflector has that of
+    `Light.white`.
+    """
     unlike_atlas: bool
-    """Whether no atlas entry has a colour near this one; see `Cube.unlike_atlas`. False without standard errors."""
+    """Whether no atlas entry has a colour near this one; see `Cube.unlike_atlas`. False
+    without standard errors.
+    """
     realisable: bool
-    """Whether a reflectance with the colour exists. If not, the answer has less chroma."""
+    """Whether a reflectance with the colour exists. If not, the answer has less chroma.
+    """
 
 
 def query(
@@ -69,8 +83,9 @@ def query(
 ) -> Iterator[QueryResult]:
     """Answer linear RGB (n, 3) in [0, 1] in full detail, block by block.
 
-    ``requested_rgb`` are the colours before gamut mapping, ``lights`` those of `QueryResult.standard_errors`. Colours
-    that are ``outside`` (n,) are answered as requested, not as mapped. Raises `UnknownNameError` for an unknown mode.
+    ``requested_rgb`` are the colours before gamut mapping, ``lights`` those of
+    `QueryResult.standard_errors`. Colours that are ``outside`` (n,) are answered as
+    requested, not as mapped. Raises `UnknownNameError` for an unknown mode.
     """
     if mode not in MODES:
         raise unknown_name(mode, MODES, "mode")
@@ -92,11 +107,14 @@ def query_xyz(
     mode: str = "spectra",
     lights: Sequence[Light] = (),
 ) -> Iterator[QueryResult]:
-    """Answer colours by XYZ (n, 3) under the illuminant of the cube, also those outside its RGB space.
+    """Answer colours by XYZ (n, 3) under the illuminant of the cube, also those outside
+    its RGB space.
 
-    The cube answers colours in its RGB space. The spectra of others are computed from the nearest one that it holds,
-    and from an atlas entry outside the space close to it; only those of such entries have a standard error. Raises
-    `ColourError` (``colour-unrealisable``) if no reflectance has a colour, or the model does not reach it.
+    The cube answers colours in its RGB space. The spectra of others are computed from
+    the nearest one that it holds, and from an atlas entry outside the space close to
+    it; only those of such entries have a standard error. Raises `ColourError`
+    (``colour-unrealisable``) if no reflectance has a colour, or the model does not
+    reach it.
     """
     from uplift.colorimetry.gamut import map_to_gamut
     from uplift.lookup.outside import MAPPING
@@ -138,7 +156,8 @@ def _block(
     xyz = at_sensor @ sensor.light.xyz.T
     delta_e = delta_e_rgb(sensor, answered, round_trip)
     relit = {light.name: at_sensor @ light.xyz.T for light in lights}
-    # Outside the RGB space a colour is that of an entry where its spectrum alone answers.
+    # Outside the RGB space a colour is that of an entry where its spectrum alone
+    # answers.
     entries: dict[int, int] = {}
     if data.atlas.outside is not None:
         found = data.outside_boxes.find(answered)
@@ -146,7 +165,8 @@ def _block(
         entries = dict(
             zip(found.rows[alone].tolist(), found.entry[alone].tolist(), strict=True)
         )
-    # Standard errors and error bounds (n, 2) under the light of the cube's errors and under each light, by name.
+    # Standard errors and error bounds (n, 2) under the light of the cube's errors and
+    # under each light, by name.
     wanted = [(None, None), *((light.name, light) for light in lights)]
     has_errors = data.points.standard_error is not None
     errors = {
@@ -208,7 +228,9 @@ def _errors(
     entries: Mapping[int, int],
     light: Light | None = None,
 ) -> Array:
-    """Standard errors and error bounds (n, 2) of a cube that has them, NaN ``outside`` (n,) where no entry answers."""
+    """Standard errors and error bounds (n, 2) of a cube that has them, NaN ``outside``
+    (n,) where no entry answers.
+    """
     errors = np.full((len(rgb), 2), np.nan)
     errors[~outside] = expected_errors(cube, rgb[~outside], light)
     if entries:

@@ -1,8 +1,9 @@
-"""Move spectra to exact colours: multipliers by minimum-norm steps, mixtures by a convex problem. Needs numpy only.
+"""Move spectra to exact colours: multipliers by minimum-norm steps, mixtures by a
+convex problem. Needs numpy only.
 
-Spectra are columns here, so that all arithmetic runs along contiguous memory. In minimum-norm steps
-(`uplift.models.minimum_norm`) a spectrum is evaluated once; later steps add its changes, which need no arc tangents of
-large numbers.
+Spectra are columns here, so that all arithmetic runs along contiguous memory. In
+minimum-norm steps (`uplift.models.minimum_norm`) a spectrum is evaluated once; later
+steps add its changes, which need no arc tangents of large numbers.
 """
 
 import numpy as np
@@ -25,9 +26,13 @@ TOLERANCE = 1e-8
 """Residual, max |linear RGB|, at which a colour is exact."""
 MAX_STEPS = 24
 FIRST_DAMPING = 1e-2
-"""μ after a rejected full step; nearly all colours need one or two full steps and no damping."""
+"""μ after a rejected full step; nearly all colours need one or two full steps and no
+damping.
+"""
 PULLED = 1e-11
-"""Residual, of scaled RGB, at which the convex problem ends: so small that spectra do not depend on the steps."""
+"""Residual, of scaled RGB, at which the convex problem ends: so small that spectra do
+not depend on the steps.
+"""
 MAX_PULLS = 100
 """Steps of the convex problem; most colours need four, few more than 20."""
 TRACE = [0, 2, 5]
@@ -35,21 +40,26 @@ TRACE = [0, 2, 5]
 MIN_CURVATURE = 0.01
 """Least ratio of the curvatures after and before a step."""
 REACH = 2.0
-"""Longest step of a linear part x of the convex problem, relative to 1 + |x|. Where spectra are nearly flat at 0 and 1,
-Newton's step may be longer by powers of ten."""
+"""Longest step of a linear part x of the convex problem, relative to 1 + |x|. Where
+spectra are nearly flat at 0 and 1, Newton's step may be longer by powers of ten.
+"""
 LEAST, SLOPE, MOST, STEEP = 3e-4, 0.03, 1e-2, 100.0
-"""Mixtures that are moved are clipped to a distance from 0 and 1, so that programs in single precision follow: the
-first, plus the second times the residual, at most the third, and at most the residual times the last: those that nearly
-have their colours hardly change."""
+"""Mixtures that are moved are clipped to a distance from 0 and 1, so that programs in
+single precision follow: the first, plus the second times the residual, at most the
+third, and at most the residual times the last: those that nearly have their colours
+hardly change.
+"""
 BLOCK_COLUMNS = 1024
 """Spectra processed at a time: their temporary arrays fit into the cache."""
 
 
 def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Array:
-    """Move multipliers ``start`` (n, C) of a model to linear RGB (n, 3), to the sensor and threshold of a cube.
+    """Move multipliers ``start`` (n, C) of a model to linear RGB (n, 3), to the sensor
+    and threshold of a cube.
 
-    Colours that do not converge are tried again, from their start and from grey, with unrealisable ones replaced by
-    realisable ones of less chroma (`within_solid`). Results that come no nearer to these are not taken.
+    Colours that do not converge are tried again, from their start and from grey, with
+    unrealisable ones replaced by realisable ones of less chroma (`within_solid`).
+    Results that come no nearer to these are not taken.
     """
     forward = forward_map(model, data.sensor.wavelengths, data.sensor.matrix)
     multipliers, target = np.array(start.T, order="C"), np.array(rgb.T, order="C")
@@ -72,8 +82,9 @@ def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Arr
 def pull(sensor: Sensor) -> tuple[Array, Array, Array]:
     """Return the directions in which mixtures move to their colours, with W Kᵀ = I.
 
-    W (3, N) maps reflectances to scaled RGB, K (3, N) are the curves of the sensor without the power of the light, so
-    that W = K diag(power), and the scale (3, 3) is that from linear to scaled RGB.
+    W (3, N) maps reflectances to scaled RGB, K (3, N) are the curves of the sensor
+    without the power of the light, so that W = K diag(power), and the scale (3, 3) is
+    that from linear to scaled RGB.
     """
     if sensor.sensitivities is None:
         shapes = sensor.cmfs @ sensor.xyz_to_rgb.T
@@ -86,10 +97,12 @@ def pull(sensor: Sensor) -> tuple[Array, Array, Array]:
 def with_colours(
     data: CubeData, spectra: Values, at_sensor: Array, rgb: Array, wavelengths: Array
 ) -> Values:
-    """Move mixtures to their colours (n, 3), or to realisable ones of less chroma (docs/mathematics.md, 9).
+    """Move mixtures to their colours (n, 3), or to realisable ones of less chroma
+    (docs/mathematics.md, 9).
 
-    ``spectra`` (n, N) are reflectances in [0, 1] at any wavelengths (N,) in nm, ``at_sensor`` (n, M) the same at those
-    of the sensor. They need not be of the model. Those that have their colour stay to the last bit.
+    ``spectra`` (n, N) are reflectances in [0, 1] at any wavelengths (N,) in nm,
+    ``at_sensor`` (n, M) the same at those of the sensor. They need not be of the model.
+    Those that have their colour stay to the last bit.
     """
     model, (weights, shapes, scale), moved = (
         data.model,
@@ -105,7 +118,8 @@ def with_colours(
     for first in range(0, pending.size, BLOCK_COLUMNS):
         rows = pending[first : first + BLOCK_COLUMNS]
         goal = scale @ within_solid(data, rgb[rows]).T
-        # Near 0 and 1 the linear part is large: the farther it moves, the farther it starts from there.
+        # Near 0 and 1 the linear part is large: the farther it moves, the farther it
+        # starts from there.
         off = np.abs(goal - weights @ at_sensor[rows].T).max(axis=0)
         least = np.minimum(np.minimum(LEAST + SLOPE * off, STEEP * off), MOST)
         linear = model.from_reflectance(np.clip(at_sensor[rows].T, least, 1 - least))
@@ -120,10 +134,11 @@ def _pull(
 ) -> Array:
     """Find y (3, n) with W S(x + Kᵀ y) = goal (3, n), from linear parts x (N, n).
 
-    As S increases, this is the minimum of a convex function Φ, whose gradient is the negative residual, and Newton's
-    steps (W diag(S') Kᵀ)⁻¹ r, shortened if need be, reach it for every colour inside the solid. A step is accepted
-    unless it goes too far: to where Φ rises more than half as steeply as it fell, or where it is much flatter.
-    It changes no x by more than `REACH` (1 + |x|).
+    As S increases, this is the minimum of a convex function Φ, whose gradient is the
+    negative residual, and Newton's steps (W diag(S') Kᵀ)⁻¹ r, shortened if need be,
+    reach it for every colour inside the solid. A step is accepted unless it goes too
+    far: to where Φ rises more than half as steeply as it fell, or where it is much
+    flatter. It changes no x by more than `REACH` (1 + |x|).
     """
     products = np.array(
         [weights[a] * shapes[b] for a in range(3) for b in range(a + 1)]
@@ -156,9 +171,11 @@ def _pull(
 
 
 def within_solid(data: CubeData, rgb: Array) -> Array:
-    """Return the linear RGB (n, 3) to which unrealisable colours are moved; others are unchanged.
+    """Return the linear RGB (n, 3) to which unrealisable colours are moved; others are
+    unchanged.
 
-    Half of the threshold inside the object-colour solid, on the line to the grey of the same luminance.
+    Half of the threshold inside the object-colour solid, on the line to the grey of the
+    same luminance.
     """
     margin = data.threshold / 2
     return toward_grey(
@@ -167,7 +184,9 @@ def within_solid(data: CubeData, rgb: Array) -> Array:
 
 
 def _descend(forward: ForwardMap, multipliers: Array, target: Array) -> Array:
-    """Move multipliers (C, n) in place towards linear RGB (3, n) and return the final distances (n,)."""
+    """Move multipliers (C, n) in place towards linear RGB (3, n) and return the final
+    distances (n,).
+    """
     residual, damping = np.empty_like(target), np.zeros(target.shape[1])
     for first in range(0, target.shape[1], BLOCK_COLUMNS):
         block = slice(first, first + BLOCK_COLUMNS)
@@ -196,7 +215,8 @@ def _move(
     columns: slice | Indices,
     linear: Array,
 ) -> None:
-    """Take one step of some columns with linear part (N, k); steps that do not reduce the residual are rejected.
+    """Take one step of some columns with linear part (N, k); steps that do not reduce
+    the residual are rejected.
 
     Multipliers (C, n), residual (3, n) and damping (n,) change in place.
     """
@@ -208,7 +228,8 @@ def _move(
             linear, blocked_matmul_columns(forward.basis, change)
         )
         trial_off = off - blocked_matmul_columns(forward.sensor, difference)
-    # Damped as by Levenberg and Marquardt: μ falls after a step that helped, and rises after one that did not.
+    # Damped as by Levenberg and Marquardt: μ falls after a step that helped, and rises
+    # after one that did not.
     better = (trial_off**2).sum(axis=0) < (off**2).sum(axis=0)
     better &= np.abs(trial).max(axis=0) <= MAX_MULTIPLIER
     multipliers[:, columns] = np.where(better, trial, current)

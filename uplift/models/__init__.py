@@ -1,4 +1,6 @@
-"""Spectrum models: families of reflectance spectra in (0, 1), one per file, behind the interface `Model`."""
+"""Spectrum models: families of reflectance spectra in (0, 1), one per file, behind the
+interface `Model`.
+"""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,11 +1,14 @@
-"""Arithmetic that dominates the cost of fits and lookups: the arc tangent, and products of tall and small matrices.
+"""Arithmetic that dominates the cost of fits and lookups: the arc tangent, and products
+of tall and small matrices.
 
-The arc tangent of XLA calls the scalar function of the C library. A polynomial vectorises: it is several times faster
-and as accurate (tests/models/test_arithmetic.py). numpy passes through memory for every term, so there the polynomial
-gains nothing, but a series for small differences of arc tangents does.
+The arc tangent of XLA calls the scalar function of the C library. A polynomial
+vectorises: it is several times faster and as accurate
+(tests/models/test_arithmetic.py). numpy passes through memory for every term, so there
+the polynomial gains nothing, but a series for small differences of arc tangents does.
 
-The BLAS of numpy distributes products of tall and small matrices over threads, which costs more than it saves, most of
-all where other processes use the cores. Slices below its threshold stay on one thread.
+The BLAS of numpy distributes products of tall and small matrices over threads, which
+costs more than it saves, most of all where other processes use the cores. Slices below
+its threshold stay on one thread.
 """
 
 from typing import Any
@@ -16,7 +19,8 @@ from uplift.common.arrays import Array
 
 SINGLE_THREAD_SIZE = 1 << 17
 """Multiplications per slice; OpenBLAS starts threads at twice as many."""
-# arctan(√u) / √u on [0, 1], interpolated at 20 Chebyshev nodes in 60 digits; to 3e-16 of the value.
+# arctan(√u) / √u on [0, 1], interpolated at 20 Chebyshev nodes in 60 digits; to 3e-16
+# of the value.
 _POLYNOMIAL = (
     1.0,
     -0.333333333333307,
@@ -41,7 +45,9 @@ _POLYNOMIAL = (
 )
 
 NEAR = 1 / 32
-"""Up to this argument, three terms of the Taylor series have a relative error below 2e-10."""
+"""Up to this argument, three terms of the Taylor series have a relative error below
+2e-10.
+"""
 
 
 def arctan(x: Any) -> Any:
@@ -60,10 +66,12 @@ def arctan(x: Any) -> Any:
 
 
 def arctan_difference(x: Array, change: Array) -> Array:
-    """Evaluate arctan(x + change) − arctan(x) of numpy arrays (N, n) to 1e-9 of the largest difference of a column.
+    """Evaluate arctan(x + change) − arctan(x) of numpy arrays (N, n) to 1e-9 of the
+    largest difference of a column.
 
-    The difference is the arc tangent of change / (1 + x (x + change)), whose argument is usually small. Columns with a
-    large argument, or with a difference of more than π/2, are computed from both arc tangents.
+    The difference is the arc tangent of change / (1 + x (x + change)), whose argument
+    is usually small. Columns with a large argument, or with a difference of more than
+    π/2, are computed from both arc tangents.
     """
     with np.errstate(all="ignore"):  # NaN counts as far
         denominator = x + change

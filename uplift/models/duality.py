@@ -1,9 +1,10 @@
-"""Conversion between trigonometric moments and multipliers of bounded maximum-entropy spectra.
+"""Conversion between trigonometric moments and multipliers of bounded maximum-entropy
+spectra.
 
 References
 ----------
-Peters, Merzbach, Hanika & Dachsbacher 2019, "Using moments to represent bounded signals for spectral rendering",
-ACM TOG 38(4). docs/mathematics.md, 4.
+Peters, Merzbach, Hanika & Dachsbacher 2019, "Using moments to represent bounded signals
+for spectral rendering", ACM TOG 38(4). docs/mathematics.md, 4.
 """
 
 from collections.abc import Callable
@@ -17,11 +18,16 @@ from uplift.common.text import pluralise
 from uplift.models.arithmetic import arctan
 
 MAX_MULTIPLIER = 1e9
-"""Larger multipliers are scaled down to this: spectra change by a billionth, and roots stay off the unit circle."""
+"""Larger multipliers are scaled down to this: spectra change by a billionth, and roots
+stay off the unit circle.
+"""
 MIN_LEADING = 1e-14
-"""Smallest leading coefficient relative to the largest; smaller ones are rounding errors with remote roots."""
+"""Smallest leading coefficient relative to the largest; smaller ones are rounding
+errors with remote roots.
+"""
 CONVERGED = 1e-8
-"""Change of moments by another doubling of the nodes at which a spectrum has converged."""
+"""Change of moments by another doubling of the nodes at which a spectrum has converged.
+"""
 _FIRST_NODES = 48
 _MAX_NODES = 96 << 6
 _SAMPLES = 1 << 18
@@ -40,7 +46,9 @@ def cosine_basis(phase: Array, count: int) -> Array:
 
 
 def integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
-    """Integrate spectra of multipliers (n, C) to (n, M): samples by ``synthesis`` (C, K), times ``analysis`` (K, M)."""
+    """Integrate spectra of multipliers (n, C) to (n, M): samples by ``synthesis`` (C,
+    K), times ``analysis`` (K, M).
+    """
     moments = np.empty((len(multipliers), analysis.shape[1]))
     for block in blocks(len(multipliers), max(_SAMPLES // len(analysis), 1)):
         moments[block] = (
@@ -54,13 +62,16 @@ def moments_from_multipliers(
     integrate: Callable[[Array, Array, Array], Array] = integrate,
     converged: float = CONVERGED,
 ) -> Array:
-    """Moments (n, C) of the spectra of multipliers (n, C), by the trapezoid rule over the phase.
+    """Moments (n, C) of the spectra of multipliers (n, C), by the trapezoid rule over
+    the phase.
 
-    The rule converges geometrically, so its error is about the square of the last change. The nodes are doubled for
-    spectra that still change by more than ``converged``. Nearly box-shaped ones would need too many nodes;
-    `moments_by_roots` handles them. ``integrate`` may be a faster equivalent of `integrate`.
+    The rule converges geometrically, so its error is about the square of the last
+    change. The nodes are doubled for spectra that still change by more than
+    ``converged``. Nearly box-shaped ones would need too many nodes; `moments_by_roots`
+    handles them. ``integrate`` may be a faster equivalent of `integrate`.
     """
-    # T_2K = (T_K + M_K) / 2: the first rule and its midpoints together, then midpoints of those that need more.
+    # T_2K = (T_K + M_K) / 2: the first rule and its midpoints together, then midpoints
+    # of those that need more.
     count, nodes = multipliers.shape[1], _FIRST_NODES
     both = integrate(multipliers, *_rule(nodes, count, with_trapezoid=True))
     moments, change = both[:, :count].copy(), (both[:, count:] - both[:, :count]) / 2
@@ -82,7 +93,8 @@ def moments_from_multipliers(
 def _rule(nodes: int, count: int, with_trapezoid: bool = False) -> tuple[Array, Array]:
     """Return synthesis (C, K) and analysis (K, C) of the midpoints of K intervals.
 
-    With the trapezoid rule, of 2 K + 1 nodes and 2 C moments: those of the trapezoid rule, then those of the midpoints.
+    With the trapezoid rule, of 2 K + 1 nodes and 2 C moments: those of the trapezoid
+    rule, then those of the midpoints.
     """
     phase, weights = (
         -np.pi * (np.arange(nodes) + 0.5) / nodes,
@@ -108,11 +120,12 @@ def _rule(nodes: int, count: int, with_trapezoid: bool = False) -> tuple[Array, 
 
 
 def moments_by_roots(multipliers: Array) -> Array:
-    """Compute moments (n, C) of nearly box-shaped spectra with multipliers (n, C), in closed form.
+    """Compute moments (n, C) of nearly box-shaped spectra with multipliers (n, C), in
+    closed form.
 
-    The linear part x is a polynomial of degree m in y = cos φ. Let y_k be the roots of x − i, and ζ_k the root of
-    ζ + 1/ζ = 2 y_k inside the unit circle. Then log(1 + ix) is a constant minus Σ_j (2/j) Σ_k ζ_k^j cos jφ, and its
-    imaginary part is π (g − ½).
+    The linear part x is a polynomial of degree m in y = cos φ. Let y_k be the roots of
+    x − i, and ζ_k the root of ζ + 1/ζ = 2 y_k inside the unit circle. Then log(1 + ix)
+    is a constant minus Σ_j (2/j) Σ_k ζ_k^j cos jφ, and its imaginary part is π (g − ½).
     """
     magnitude = np.abs(multipliers).max(axis=1, keepdims=True)
     limited = multipliers * (MAX_MULTIPLIER / np.maximum(magnitude, MAX_MULTIPLIER))
@@ -136,7 +149,8 @@ def moments_by_roots(multipliers: Array) -> Array:
 
 
 def _colleague(series: Complex) -> Complex:
-    """Create the matrices (n, m, m) whose eigenvalues are the roots of Chebyshev series (n, m + 1), m ≥ 2.
+    """Create the matrices (n, m, m) whose eigenvalues are the roots of Chebyshev series
+    (n, m + 1), m ≥ 2.
 
     Good 1961, "The colleague matrix, a Chebyshev analogue of the companion matrix".
     """
@@ -151,18 +165,22 @@ def _colleague(series: Complex) -> Complex:
 
 
 def _zeroth(lead: Complex, outer: Complex) -> Array:
-    """½ plus the argument of the constant over π, which is known modulo 2 and lies in [0, 1]."""
+    """½ plus the argument of the constant over π, which is known modulo 2 and lies in
+    [0, 1].
+    """
     turns = 1 + (np.angle(lead) + np.angle(-outer).sum(axis=1)) / np.pi
     zeroth = turns % 2
     return np.clip(np.where(zeroth > 1.5, zeroth - 2, zeroth), 0, 1)
 
 
 def try_multipliers(moments: Array) -> tuple[Array, Mask]:
-    """Multipliers (n, C) of moments (n, C), and where (n,) they are valid: moments of a reflectance.
+    """Multipliers (n, C) of moments (n, C), and where (n,) they are valid: moments of a
+    reflectance.
 
-    All reflection coefficients share one complex phase. Schur's algorithm (1917) therefore yields them from a real
-    series, and the orthogonal polynomials follow from two real recursions: half of the operations of Levinson's
-    recursion. Internally the order is the first axis, so that all arithmetic runs along contiguous spectra.
+    All reflection coefficients share one complex phase. Schur's algorithm (1917)
+    therefore yields them from a real series, and the orthogonal polynomials follow from
+    two real recursions: half of the operations of Levinson's recursion. Internally the
+    order is the first axis, so that all arithmetic runs along contiguous spectra.
     """
     multipliers, valid = np.empty_like(moments), np.empty(len(moments), dtype=bool)
     for block in blocks(len(moments), _ROWS):
@@ -186,9 +204,11 @@ def try_multipliers(moments: Array) -> tuple[Array, Mask]:
 
 
 def _series(moments: Array) -> tuple[Array, Array]:
-    """Compute the series (m, n) of sin X / z and sin(π c₀ + X), X = π Σ_l c_l z^l, of moments (m + 1, n).
+    """Compute the series (m, n) of sin X / z and sin(π c₀ + X), X = π Σ_l c_l z^l, of
+    moments (m + 1, n).
 
-    Both are parts of exp(iX), whose terms follow from its derivative iX' exp(iX), order by order.
+    Both are parts of exp(iX), whose terms follow from its derivative iX' exp(iX), order
+    by order.
     """
     count, spectra = moments.shape
     slopes = np.pi * np.arange(count)[:, None] * moments
@@ -206,9 +226,11 @@ def _series(moments: Array) -> tuple[Array, Array]:
 
 
 def _recursion(upper: Array, lower: Array) -> tuple[Array, Array, Mask]:
-    """Compute polynomials A and B (C, 2, n), Π (1 − g²) (n,), and whether (n,) all |g| < 1, of ``upper / lower``.
+    """Compute polynomials A and B (C, 2, n), Π (1 − g²) (n,), and whether (n,) all |g|
+    < 1, of ``upper / lower``.
 
-    Each g is the first term of the quotient; the remainder is a quotient again, one order shorter.
+    Each g is the first term of the quotient; the remainder is a quotient again, one
+    order shorter.
     """
     count, spectra = upper.shape
     polynomials = np.zeros((count + 1, 2, spectra))
@@ -227,10 +249,12 @@ def _recursion(upper: Array, lower: Array) -> tuple[Array, Array, Mask]:
 def multipliers_from_moments(
     moments: Any, solve: Callable[[Any], tuple[Any, Mask]] = try_multipliers
 ) -> Any:
-    """Multipliers (n, C) of the bounded maximum-entropy spectra with moments (n, C), by `try_multipliers` or its like.
+    """Multipliers (n, C) of the bounded maximum-entropy spectra with moments (n, C), by
+    `try_multipliers` or its like.
 
-    Near the boundary of the moment space the recursion breaks down. Such moments are blended with those of grey, with
-    a weight of 1e−10 at first and at most 1e−4. Raises `UpliftError` for moments that no reflectance has.
+    Near the boundary of the moment space the recursion breaks down. Such moments are
+    blended with those of grey, with a weight of 1e−10 at first and at most 1e−4. Raises
+    `UpliftError` for moments that no reflectance has.
     """
     grey = np.zeros_like(moments[:1])
     grey[:, 0] = 0.5
@@ -244,13 +268,19 @@ def multipliers_from_moments(
     if valid.all():
         return multipliers
     raise UpliftError(
-        f"not the moments of any reflectance: {pluralise((~valid).sum(), 'set')} of coefficients",
+        (
+            f"not the moments of any reflectance: {pluralise((~valid).sum(), 'set')} "
+            "of "
+            "coefficients"
+        ),
         code="invalid-moments",
     )
 
 
 def fourier_basis(phase: Array, count: int) -> Complex:
-    """Tabulate 1, 2 exp(iφ), …, 2 exp(imφ) as (N, C); with complex multipliers, its real part is the linear part."""
+    """Tabulate 1, 2 exp(iφ), …, 2 exp(imφ) as (N, C); with complex multipliers, its
+    real part is the linear part.
+    """
     table = 2 * np.exp(1j * phase[:, None] * np.arange(count))
     table[:, 0] = 1
     return table
@@ -259,16 +289,18 @@ def fourier_basis(phase: Array, count: int) -> Complex:
 def try_complex_multipliers(moments: Complex) -> tuple[Complex, Mask]:
     """Multipliers (n, C) of moments (n, C), and where (n,) they are valid.
 
-    Complex moments are (1/2π) ∫ g(φ) exp(−ijφ) dφ with a real zeroth moment, where g = ½ + arctan(Re Σ p_l w_l) / π and
-    w is the `fourier_basis`. Those of an even g are real, and `try_multipliers` needs half of the operations.
-    Internally the order is the first axis, so that all arithmetic runs along contiguous spectra.
+    Complex moments are (1/2π) ∫ g(φ) exp(−ijφ) dφ with a real zeroth moment, where g =
+    ½ + arctan(Re Σ p_l w_l) / π and w is the `fourier_basis`. Those of an even g are
+    real, and `try_multipliers` needs half of the operations. Internally the order is
+    the first axis, so that all arithmetic runs along contiguous spectra.
     """
     orders = np.ascontiguousarray(moments.T)
     with np.errstate(all="ignore"):
         # The recursion determines the zeroth moment only up to integers.
         bounded = (orders[0].real >= 0) & (orders[0].real <= 1)
         h = _exponential_moments(orders)
-        # T q = e₀ with the Toeplitz matrix of a_0 = Re h_0, a_l = h_l / 2; p_l = (1 / i q_0) Σ_k n_{k+l} q̄_k
+        # T q = e₀ with the Toeplitz matrix of a_0 = Re h_0, a_l = h_l / 2; p_l = (1 / i
+        # q_0) Σ_k n_{k+l} q̄_k
         column = h / 2
         column[0] = h[0].real
         q, scale, positive = levinson(column)
@@ -291,10 +323,12 @@ def _exponential_moments(moments: Complex) -> Complex:
 
 
 def levinson(column: Complex) -> tuple[Complex, Array, Mask]:
-    """Solve T q = e₀ for Hermitian Toeplitz matrices T with first ``column`` (C, n), by Levinson's recursion.
+    """Solve T q = e₀ for Hermitian Toeplitz matrices T with first ``column`` (C, n), by
+    Levinson's recursion.
 
-    In Durbin's form, a solution of order k + 1 combines the padded solution of order k with its mirror image.
-    Returns q / q_0 (C, n), 1 / q_0 (n,), and where (n,) T is positive definite.
+    In Durbin's form, a solution of order k + 1 combines the padded solution of order k
+    with its mirror image. Returns q / q_0 (C, n), 1 / q_0 (n,), and where (n,) T is
+    positive definite.
     """
     solution = np.zeros_like(column)
     solution[0] = 1

@@ -1,10 +1,14 @@
-"""Steps towards a colour: of all steps that reach it, the one that changes the spectrum least.
+"""Steps towards a colour: of all steps that reach it, the one that changes the spectrum
+least.
 
-Multipliers p are changed in the metric M = (R Rᵀ)⁻¹, as x = R⁻¹ p; A = ∂r/∂x is the Jacobian of the RGB r, and t the
-target (docs/mathematics.md, 5). With the damped pseudo-inverse A⁺ = Aᵀ (A Aᵀ + μ tr I)⁻¹,
+Multipliers p are changed in the metric M = (R Rᵀ)⁻¹, as x = R⁻¹ p; A = ∂r/∂x is the
+Jacobian of the RGB r, and t the target (docs/mathematics.md, 5). With the damped
+pseudo-inverse A⁺ = Aᵀ (A Aᵀ + μ tr I)⁻¹,
 
-- Δx = A⁺ (t − r) changes the current spectrum least: the minimum-norm step, of the lookup and of atlas entries,
-- Δx = A⁺ (t − r + A d) − d changes the prior spectrum least, from which x differs by d: the step of the nodes.
+- Δx = A⁺ (t − r) changes the current spectrum least: the minimum-norm step, of the
+  lookup and of atlas entries,
+- Δx = A⁺ (t − r + A d) − d changes the prior spectrum least, from which x differs by d:
+  the step of the nodes.
 """
 
 from collections.abc import Sequence
@@ -21,7 +25,9 @@ from uplift.models.model import Model
 
 @dataclass(frozen=True, eq=False)
 class ForwardMap:
-    """The map r = W S(B p) from multipliers p of a model to linear RGB, and the metric; a pytree for JAX."""
+    """The map r = W S(B p) from multipliers p of a model to linear RGB, and the metric;
+    a pytree for JAX.
+    """
 
     model: Model
     basis: Any
@@ -63,10 +69,11 @@ def anchored_step(
     damping: Any,
     displacement: Any,
 ) -> Any:
-    """Change Δx (n, C) that cancels residuals (n, 3) to first order, nearest to the prior; R Δx is that of multipliers.
+    """Change Δx (n, C) that cancels residuals (n, 3) to first order, nearest to the
+    prior; R Δx is that of multipliers.
 
-    ``damping`` (n,) is μ, ``displacement`` (n, C) the difference d of x from the prior, 0 for the minimum-norm step.
-    Spectra are rows of arrays of numpy or of JAX.
+    ``damping`` (n,) is μ, ``displacement`` (n, C) the difference d of x from the prior,
+    0 for the minimum-norm step. Spectra are rows of arrays of numpy or of JAX.
     """
     # A = W diag(S′(B p)) B R
     derivative = forward.model.derivative(blocked_matmul(multipliers, forward.basis.T))
@@ -85,9 +92,11 @@ def anchored_step(
 def minimum_norm_step(
     forward: ForwardMap, linear: Array, residual: Array, damping: Array
 ) -> Array:
-    """Change R Δx (C, n) of multipliers that cancels residuals (3, n) to first order, from the linear part (N, n).
+    """Change R Δx (C, n) of multipliers that cancels residuals (3, n) to first order,
+    from the linear part (N, n).
 
-    Spectra are columns of numpy arrays here, so that all arithmetic runs along contiguous memory.
+    Spectra are columns of numpy arrays here, so that all arithmetic runs along
+    contiguous memory.
     """
     # Aᵀ = Rᵀ Bᵀ diag(S′(x)) Wᵀ, by columns; Δx = Aᵀ (A Aᵀ + μ tr I)⁻¹ (t − r)
     jacobian = blocked_matmul_columns(
@@ -109,10 +118,12 @@ def minimum_norm_step(
 def solve_damped(
     gram: Sequence[Sequence[Any]], damping: Any, right: Any
 ) -> tuple[Any, Any, Any]:
-    """Solve (G + μ tr(G) I) y = b for n symmetric positive G by L D Lᵀ; all elements are arrays (n,).
+    """Solve (G + μ tr(G) I) y = b for n symmetric positive G by L D Lᵀ; all elements
+    are arrays (n,).
 
-    ``gram`` is the lower half of G, row by row. A pivot that rounding made zero or negative is replaced by a millionth
-    of an ulp of the trace. The step is then long, never NaN, and the caller's check of the residual rejects it.
+    ``gram`` is the lower half of G, row by row. A pivot that rounding made zero or
+    negative is replaced by a millionth of an ulp of the trace. The step is then long,
+    never NaN, and the caller's check of the residual rejects it.
     """
     (a00,), (a10, a11), (a20, a21, a22) = gram
     xp = a00.__array_namespace__()

@@ -1,4 +1,5 @@
-"""Interface of spectrum models: g = S(B p), a sigmoid S of a linear function of the multipliers p.
+"""Interface of spectrum models: g = S(B p), a sigmoid S of a linear function of the
+multipliers p.
 
 docs/mathematics.md, 2. The fit works on the multipliers; a cube stores coefficients c.
 """
@@ -18,8 +19,8 @@ from uplift.models.arithmetic import blocked_matmul
 class Model(ABC):
     """A family of reflectance spectra: all real multipliers p give values in (0, 1).
 
-    `to_reflectance` and `derivative` use the array API, so that numpy and JAX run the same code. The multipliers are
-    stored unless a model has better coefficients.
+    `to_reflectance` and `derivative` use the array API, so that numpy and JAX run the
+    same code. The multipliers are stored unless a model has better coefficients.
     """
 
     name: ClassVar[str]
@@ -35,7 +36,9 @@ class Model(ABC):
 
     @abstractmethod
     def to_reflectance(self, x: Any) -> Any:
-        """Map the linear part, an array of numpy or JAX, to reflectance S(x): increasing, ½ at 0."""
+        """Map the linear part, an array of numpy or JAX, to reflectance S(x):
+        increasing, ½ at 0.
+        """
 
     @abstractmethod
     def derivative(self, x: Any) -> Any:
@@ -43,10 +46,14 @@ class Model(ABC):
 
     @abstractmethod
     def from_reflectance(self, reflectance: Array) -> Array:
-        """Return the linear part of reflectances in (0, 1): the inverse of `to_reflectance`."""
+        """Return the linear part of reflectances in (0, 1): the inverse of
+        `to_reflectance`.
+        """
 
     def reflectance_change(self, x: Array, change: Array) -> Array:
-        """Evaluate S(x + change) − S(x), for columns (N, n) of linear parts and their changes."""
+        """Evaluate S(x + change) − S(x), for columns (N, n) of linear parts and their
+        changes.
+        """
         return np.asarray(self.to_reflectance(x + change) - self.to_reflectance(x))
 
     @abstractmethod
@@ -55,24 +62,33 @@ class Model(ABC):
 
     @abstractmethod
     def metric_diagonal(self) -> Array:
-        """Return the diagonal (C,) of the smoothness metric M (docs/mathematics.md, 5)."""
+        """Return the diagonal (C,) of the smoothness metric M
+        (docs/mathematics.md, 5).
+        """
 
     def to_storage(self, multipliers: ArrayLike) -> Array:
-        """Convert multipliers (..., C) to the coefficients (..., C) that cubes store."""
+        """Convert multipliers (..., C) to the coefficients (..., C) that
+        cubes store.
+        """
         return np.array(multipliers, dtype=float)
 
     def from_storage(self, coefficients: ArrayLike) -> Array:
-        """Convert coefficients (..., C) to multipliers (..., C); those of no reflectance raise `UpliftError`."""
+        """Convert coefficients (..., C) to multipliers (..., C); those of no
+        reflectance raise `UpliftError`.
+        """
         return np.array(coefficients, dtype=float)
 
     def try_from_storage(self, coefficients: Array) -> tuple[Array, Mask]:
-        """Convert coefficients (n, C) to multipliers (n, C), arbitrary where not valid (n,): of no reflectance."""
+        """Convert coefficients (n, C) to multipliers (n, C), arbitrary where not valid
+        (n,): of no reflectance.
+        """
         return np.array(coefficients, dtype=float), np.ones(
             len(coefficients), dtype=bool
         )
 
     def is_float32_safe(self, multipliers: Array) -> Mask:
-        """Return which spectra (n,) keep linear RGB to 2e-7 if their coefficients are rounded to single precision.
+        """Return which spectra (n,) keep linear RGB to 2e-7 if their coefficients are
+        rounded to single precision.
 
         False decides nothing.
         """

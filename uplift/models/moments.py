@@ -1,12 +1,14 @@
-"""The moments model: bounded maximum-entropy spectra, stored as trigonometric moments of the mirrored signal.
+"""The moments model: bounded maximum-entropy spectra, stored as trigonometric moments
+of the mirrored signal.
 
-g(φ) = ½ + arctan(p₀ + 2 Σ p_l cos lφ) / π. All real p give a valid spectrum, so the fit works on p. The moments c are
-linear in the spectrum, so cubes store c. `uplift.models.duality` converts between p and c.
+g(φ) = ½ + arctan(p₀ + 2 Σ p_l cos lφ) / π. All real p give a valid spectrum, so the fit
+works on p. The moments c are linear in the spectrum, so cubes store c.
+`uplift.models.duality` converts between p and c.
 
 References
 ----------
-Peters, Merzbach, Hanika & Dachsbacher 2019, "Using moments to represent bounded signals for spectral rendering",
-ACM TOG 38(4). docs/mathematics.md, 2 to 4.
+Peters, Merzbach, Hanika & Dachsbacher 2019, "Using moments to represent bounded signals
+for spectral rendering", ACM TOG 38(4). docs/mathematics.md, 2 to 4.
 """
 
 from collections.abc import Callable
@@ -26,26 +28,34 @@ from uplift.models.model import Model
 MIN_COUNT, MAX_COUNT = 3, 17
 """Numbers of coefficients: the zeroth and 2 to 16 moments."""
 MAX_SAFE_LINEAR = 30.0
-"""Bound of the linear part up to which single precision keeps colours (tests/models/test_models.py): reflectances
-from .01 to .99."""
+"""Bound of the linear part up to which single precision keeps colours
+(tests/models/test_models.py): reflectances from .01 to .99.
+"""
 GREY_SHARES = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
-"""Weights of grey that rounded moments are mixed with, in turn, until they are those of a reflectance."""
+"""Weights of grey that rounded moments are mixed with, in turn, until they are those of
+a reflectance.
+"""
 
 WARPS: dict[str, tuple[tuple[float, float, float], ...]] = {
     "none": (),
     "vision": ((1.0, 0.0072, 538.0),),
     "colour": ((1.0, 0.0263, 480.0), (1.066, 0.0227, 578.0)),
 }
-"""Terms (a, k, m) of increasing functions w(λ) = Σ a tanh(k (λ − m)); without any, w(λ) = λ.
+"""Terms (a, k, m) of increasing functions w(λ) = Σ a tanh(k (λ − m)); without any, w(λ)
+= λ.
 
-The density of ``vision`` is that by which hero-wavelength renderers sample, 1/cosh²(0.0072 (λ − 538)): Radziszewski,
-Boryczko & Alda 2009, "An improved technique for full spectral rendering". That of ``colour`` has a peak for blue and
-one for green and red, fitted to the colours of the shipped atlases at three coefficients (docs/reproductions.md).
+The density of ``vision`` is that by which hero-wavelength renderers sample,
+1/cosh²(0.0072 (λ − 538)): Radziszewski, Boryczko & Alda 2009, "An improved technique
+for full spectral rendering". That of ``colour`` has a peak for blue and one for green
+and red, fitted to the colours of the shipped atlases at three coefficients
+(docs/reproductions.md).
 """
 
 
 def warped(name: str, wavelengths: Any, tanh: Callable[[Any], Any] = np.tanh) -> Any:
-    """Return w(λ) of a warp at wavelengths in nm, by the hyperbolic tangent of their array library."""
+    """Return w(λ) of a warp at wavelengths in nm, by the hyperbolic tangent of their
+    array library.
+    """
     terms = WARPS[name]
     return (
         sum(a * tanh(k * (wavelengths - m)) for a, k, m in terms)
@@ -58,8 +68,8 @@ def warped(name: str, wavelengths: Any, tanh: Callable[[Any], Any] = np.tanh) ->
 class Moments(Model):
     """Bounded maximum-entropy spectra of given moments.
 
-    The phase φ increases from −π at the start of a range of wavelengths to 0 at its end; the spectrum is constant
-    outside.
+    The phase φ increases from −π at the start of a range of wavelengths to 0 at its
+    end; the spectrum is constant outside.
 
     Parameters
     ----------
@@ -68,7 +78,8 @@ class Moments(Model):
     start, end : float
         Range in nm.
     warp : {"none", "vision", "colour"}
-        Increasing function applied to the wavelength before its linear map to the phase.
+        Increasing function applied to the wavelength before its linear map to the
+        phase.
 
     Raises
     ------
@@ -100,11 +111,13 @@ class Moments(Model):
             raise unknown_name(str(self.warp), WARPS, "warp")
         if not 0 < self.start < self.end < np.inf:
             raise OptionError(
-                f"a phase needs 0 < start < end < inf, got start {self.start} and end {self.end}"
+                f"a phase needs 0 < start < end < inf, got start {self.start} and end "
+                f"{self.end}"
             )
         if not MIN_COUNT <= self.count <= MAX_COUNT:
             raise OptionError(
-                f"coefficients of the moments model must be in [{MIN_COUNT}, {MAX_COUNT}], "
+                f"coefficients of the moments model must be in [{MIN_COUNT}, "
+                f"{MAX_COUNT}], "
                 f"got {format_value(self.count)}",
                 hint="the count includes the zeroth moment",
             )
@@ -151,7 +164,8 @@ class Moments(Model):
         return np.eye(self.count)[0]
 
     def metric_diagonal(self) -> Array:
-        # A unit of p_j adds 1 to the squared value and j² to the squared derivative over φ.
+        # A unit of p_j adds 1 to the squared value and j² to the squared derivative
+        # over φ.
         return 1 + np.arange(self.count, dtype=float) ** 2
 
     def to_storage(self, multipliers: ArrayLike) -> Array:
@@ -180,10 +194,12 @@ class Moments(Model):
 
 
 def multipliers_of_rounded(model: Moments, moments: Array) -> tuple[Array, Mask]:
-    """Return multipliers (n, C) of moments (n, C) that were rounded or filtered, and their validity (n,).
+    """Return multipliers (n, C) of moments (n, C) that were rounded or filtered, and
+    their validity (n,).
 
-    Rounding can move moments of saturated colours out of the moment space. They are mixed with the least of
-    `GREY_SHARES` of grey that returns them; where none does, they are not valid.
+    Rounding can move moments of saturated colours out of the moment space. They are
+    mixed with the least of `GREY_SHARES` of grey that returns them; where none does,
+    they are not valid.
     """
     multipliers, valid = model.try_from_storage(moments)
     for share in GREY_SHARES:

@@ -1,8 +1,10 @@
-"""The sigmoid model: a sigmoid of a quadratic polynomial of the wavelength, three coefficients per spectrum.
+"""The sigmoid model: a sigmoid of a quadratic polynomial of the wavelength, three
+coefficients per spectrum.
 
 References
 ----------
-Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral upsampling", CGF 38(2), eq. 5.
+Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral
+upsampling", CGF 38(2), eq. 5.
 """
 
 from dataclasses import dataclass
@@ -15,17 +17,22 @@ from uplift.common.arrays import Array, Mask
 from uplift.models.model import Model
 
 MAX_SAFE_LINEAR = 1.0
-"""Bound of the linear part up to which single precision keeps colours (tests/models/test_models.py)."""
+"""Bound of the linear part up to which single precision keeps colours
+(tests/models/test_models.py).
+"""
 LEAST = 1e-30
-"""Lower limit of 1 − 4 (ρ − ½)² of a reflectance ρ, so that the linear parts of 0 and 1 are finite."""
+"""Lower limit of 1 − 4 (ρ − ½)² of a reflectance ρ, so that the linear parts of 0 and 1
+are finite.
+"""
 
 
 @dataclass(frozen=True)
 class Sigmoid(Model):
     """Spectra g(x) = S(c₀x² + c₁x + c₂) with S(t) = ½ + t / (2√(1 + t²)).
 
-    x is the wavelength scaled from [start, end] nm to [−1, 1], which gives the coefficients similar magnitudes. The
-    multipliers are stored unchanged. Outside [start, end] the spectrum is constant, as no data constrain it there.
+    x is the wavelength scaled from [start, end] nm to [−1, 1], which gives the
+    coefficients similar magnitudes. The multipliers are stored unchanged. Outside
+    [start, end] the spectrum is constant, as no data constrain it there.
 
     Parameters
     ----------
@@ -70,7 +77,9 @@ class Sigmoid(Model):
 
 
 def evaluate_unscaled(coefficients: Array, wavelengths: Array) -> Array:
-    """Evaluate eq. 5 of Jakob & Hanika 2019 for coefficients (n, 3), at wavelengths (N,) in nm that are not scaled."""
+    """Evaluate eq. 5 of Jakob & Hanika 2019 for coefficients (n, 3), at wavelengths
+    (N,) in nm that are not scaled.
+    """
     x = coefficients @ np.stack(
         [wavelengths**2, wavelengths, np.ones_like(wavelengths)]
     )

@@ -1,1 +1,3 @@
-"""The order of a build: options in, cube out; and the repetition of a recorded build."""
+"""The order of a build: options in, cube out; and the repetition of a
+recorded build.
+"""

@@ -1,4 +1,6 @@
-"""The order of a build: atlas → fitted entries → prior → lattice and seeds → growth → improvement → storage → cube."""
+"""The order of a build: atlas → fitted entries → prior → lattice and seeds → growth →
+improvement → storage → cube.
+"""
 
 from __future__ import annotations
 
@@ -62,11 +64,15 @@ if TYPE_CHECKING:
         def required_points(
             self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback
         ) -> Mask:
-            """Return the mask (dim³,) of the required nodes, and report events of stage ``"images"``."""
+            """Return the mask (dim³,) of the required nodes, and report events of stage
+            ``"images"``.
+            """
             ...
 
         def describe(self) -> list[dict[str, Any]]:
-            """Describe the sources of the colours for the provenance of the cube, in JSON values."""
+            """Describe the sources of the colours for the provenance of the cube, in
+            JSON values.
+            """
             ...
 
 
@@ -107,78 +113,95 @@ def build(
     scene: SceneLike | StrPath | Sequence[StrPath] | None = None,
     progress: ProgressCallback = ignore_progress,
 ) -> Cube:
-    """Build a spectral uplifting cube, constrained by measured spectra if an atlas is given.
+    """Build a spectral uplifting cube, constrained by measured spectra if an atlas is
+    given.
 
     Parameters
     ----------
     atlas : Atlas, path-like or sequence of path-like, optional
         Measured spectra, or the files that contain them.
     dim : int or {"auto"}, default 32
-        Nodes along each axis, at least 2. ``"auto"`` chooses the smallest lattice, and its axis, that
-        keeps every atlas entry within ``auto_tolerance``.
+        Nodes along each axis, at least 2. ``"auto"`` chooses the smallest lattice, and
+        its axis, that keeps every atlas entry within ``auto_tolerance``.
     model : {"moments", "sigmoid"}, default "moments"
         Spectrum model: bounded trigonometric moments, or the sigmoid of a quadratic.
     coefficients : int, default 9
-        Coefficients per spectrum of the moment model, 3 to 17: the number of moments plus one. The sigmoid has 3.
+        Coefficients per spectrum of the moment model, 3 to 17: the number of moments
+        plus one. The sigmoid has 3.
     entry_coefficients : int, default 17
-        Coefficients of the spectra of atlas entries in the moment model, from ``coefficients`` to 17. Entries are few,
-        so more of them cost little, and the answers at and near the colours of entries come closer to the measurements.
+        Coefficients of the spectra of atlas entries in the moment model, from
+        ``coefficients`` to 17. Entries are few, so more of them cost little, and the
+        answers at and near the colours of entries come closer to the measurements.
     warp : {"none", "vision", "colour"}, default "none"
-        Map from wavelengths to the phase of the moments. ``"vision"`` resolves wavelengths by the sensitivity
-        of the eye.
+        Map from wavelengths to the phase of the moments. ``"vision"`` resolves
+        wavelengths by the sensitivity of the eye.
     axis : {"srgb", "linear"}, default "srgb"
         Spacing of the axis nodes: equal steps of the sRGB encoding, or of linear RGB.
     space : str, default "sRGB"
-        RGB space of queries, by its name in colour-science, or ``"camera"``: raw values of a camera, balanced so that
-        a perfect white under the illuminant is (1, 1, 1).
+        RGB space of queries, by its name in colour-science, or ``"camera"``: raw values
+        of a camera, balanced so that a perfect white under the illuminant is (1, 1, 1).
     illuminant : str, default "D65"
         Illuminant under which reflectances have their RGB.
     observer : str or Camera, default "CIE 1931 2 Degree Standard Observer"
-        Colour-matching functions, by their name in colour-science. With ``space="camera"`` a camera: its name in
-        colour-science, a CSV file of its sensitivities, or a `Camera`.
+        Colour-matching functions, by their name in colour-science. With
+        ``space="camera"`` a camera: its name in colour-science, a CSV file of its
+        sensitivities, or a `Camera`.
     shortest, longest : float, default 380 and 780
-        Range of the spectra in nm, at most 300 to 1000. Outside the range of an entry, its spectrum continues as a
-        constant, and so does the learnt prior outside 380 to 780; outside the range of the cube, every spectrum does.
-        The coefficients are shared by the whole range, so a much wider one resolves less (docs/accuracy.md).
+        Range of the spectra in nm, at most 300 to 1000. Outside the range of an entry,
+        its spectrum continues as a constant, and so does the learnt prior outside 380
+        to 780; outside the range of the cube, every spectrum does. The coefficients are
+        shared by the whole range, so a much wider one resolves less (docs/accuracy.md).
     step : {1, 5, 10}, default 5
         Distance in nm of the wavelengths at which spectra are integrated and compared.
     lights : sequence of str or Lamp, default ("D65", "A", "FL2", "FL11", "LED-B3")
         Illuminants under which fitted atlas entries must keep their measured colours.
     prior : {"learnt", "smooth"}, default "learnt"
-        Spectra of colours that no entry constrains: those expected of real materials, or smooth ones.
+        Spectra of colours that no entry constrains: those expected of real materials,
+        or smooth ones.
     neutral : {"expected", "flat"}, default "expected"
-        Spectra of colours with equal components: as of all other colours, or flat, fading to those expected of real
-        materials from a CIE L*a*b* chroma of 4 to 12. Entries keep their measured spectra.
+        Spectra of colours with equal components: as of all other colours, or flat,
+        fading to those expected of real materials from a CIE L*a*b* chroma of 4 to 12.
+        Entries keep their measured spectra.
     library : Atlas, path-like or sequence of path-like, optional
-        Measured spectra that shape the learnt prior but are not constraints. Each file is a family of materials like
-        those to be expected; with an atlas, its weight is learnt.
+        Measured spectra that shape the learnt prior but are not constraints. Each file
+        is a family of materials like those to be expected; with an atlas, its weight is
+        learnt.
     looks : Look, path-like or sequence of Look, optional
-        Colours and what they are to be under other lights, or a TOML file of them; see `uplift.Look`. Each is an entry
-        of the cube like a measured one. Colours near it follow.
+        Colours and what they are to be under other lights, or a TOML file of them; see
+        `uplift.Look`. Each is an entry of the cube like a measured one. Colours near it
+        follow.
     leave_out : sequence of str, optional
-        Families of the shipped library that the learnt prior must not know, for tests on them.
+        Families of the shipped library that the learnt prior must not know, for tests
+        on them.
     threshold : float, default 1e-4
         Largest ``|target − stored|`` of a fitted node in linear RGB, in (0, 0.1].
     auto_tolerance : float, default 0.5
-        With ``dim="auto"``: largest ΔE00, under ``lights``, between an entry and the lattice.
+        With ``dim="auto"``: largest ΔE00, under ``lights``, between an entry and the
+        lattice.
     seed_corners : bool, default False
-        Start all eight corners of the cell of each atlas entry from the entry, as Tódová 2020 does. By default, seven
-        of them start half-way between entry and prior, and at colours unlike the entry's nearer to the prior.
+        Start all eight corners of the cell of each atlas entry from the entry, as
+        Tódová 2020 does. By default, seven of them start half-way between entry and
+        prior, and at colours unlike the entry's nearer to the prior.
         ``growth="neighbours"`` always does.
     growth : {"outward", "coarse-to-fine", "neighbours"}, default "outward"
-        Order in which nodes are fitted: outward from the atlas entries, in shells, or from a coarse lattice to
-        finer ones. Both start from the spectrum that the atlas lets expect at a colour, and have the same answers.
-        ``"neighbours"`` goes outward and starts from the spectra of fitted neighbours (Tódová 2020, section 3.1).
+        Order in which nodes are fitted: outward from the atlas entries, in shells, or
+        from a coarse lattice to finer ones. Both start from the spectrum that the atlas
+        lets expect at a colour, and have the same answers. ``"neighbours"`` goes
+        outward and starts from the spectra of fitted neighbours (Tódová 2020, section
+        3.1).
     solver : str or optimistix.AbstractLeastSquaresSolver, default "least-change"
         Solver of nodes, all of optimistix: ``"least-change"``, our own, ``"dogleg"``,
-        ``"levenberg-marquardt"``, ``"gauss-newton"``, or any least-squares solver or minimiser. The default is fastest;
-        answers agree except for nearly box-shaped spectra (docs/accuracy.md).
+        ``"levenberg-marquardt"``, ``"gauss-newton"``, or any least-squares solver or
+        minimiser. The default is fastest; answers agree except for nearly box-shaped
+        spectra (docs/accuracy.md).
     debug : bool, default False
         Store the round of growth in which each node was fitted.
     scene : SceneLike, path-like or sequence of path-like, optional
-        Images, or another set of colours. Only the nodes that answer these colours are fitted.
+        Images, or another set of colours. Only the nodes that answer these colours are
+        fitted.
     progress : callable, optional
-        Called with `Progress` events of the stages ``"images"``, ``"fit"`` and ``"store"``.
+        Called with `Progress` events of the stages ``"images"``, ``"fit"`` and
+        ``"store"``.
 
     Returns
     -------
@@ -188,23 +211,26 @@ def build(
     Raises
     ------
     AtlasError
-        An atlas file that cannot be read, or an atlas without an entry in the RGB space (``atlas-out-of-gamut``).
+        An atlas file that cannot be read, or an atlas without an entry in the RGB space
+        (``atlas-out-of-gamut``).
     OptionError
         An option outside its range, or a library without a learnt prior.
     LookError
-        A look that cannot be read, has the colour or the name of an entry or of another look, or needs a model with
-        more coefficients.
+        A look that cannot be read, has the colour or the name of an entry or of another
+        look, or needs a model with more coefficients.
     UnknownNameError
-        An unknown space, illuminant, observer, model, axis, prior, family, growth or solver.
+        An unknown space, illuminant, observer, model, axis, prior, family, growth or
+        solver.
 
     Warns
     -----
     UpliftWarning
-        Entries with the colour of another entry (``entry-duplicate``) or close to another entry
-        (``entry-crowded``). Spectra of a library out of gamut (``entry-out-of-gamut``) or outside [0, 1]
-        (``entry-clipped``). Looks that no reflectance meets (``look-impossible``), or that the coefficients of
-        entries do not reach (``look-not-reached``); the nearest colour is used. Entries out of gamut give no warning:
-        `Cube.outside_names` has them.
+        Entries with the colour of another entry (``entry-duplicate``) or close to
+        another entry (``entry-crowded``). Spectra of a library out of gamut
+        (``entry-out-of-gamut``) or outside [0, 1] (``entry-clipped``). Looks that no
+        reflectance meets (``look-impossible``), or that the coefficients of entries do
+        not reach (``look-not-reached``); the nearest colour is used. Entries out of
+        gamut give no warning: `Cube.outside_names` has them.
 
     Examples
     --------
@@ -234,7 +260,9 @@ def build(
 def problem_of(
     options: Options, observer: str | Camera, solver: str | Solver
 ) -> tuple[Options, Problem]:
-    """Return the problem of a build, and options with the names of the space and of a camera, not aliases or files."""
+    """Return the problem of a build, and options with the names of the space and of a
+    camera, not aliases or files.
+    """
     # r = W g, on the wavelengths of the build (docs/mathematics.md, 1)
     wavelengths = options.shortest, options.longest, options.step
     sensor = observers.sensor(options.space, options.illuminant, observer, wavelengths)
@@ -255,7 +283,8 @@ def problem_of(
             method = stock_solvers.stock_solver(solver, problem.tolerance)
         else:
             raise OptionError(
-                f"solver must be a name or a solver of optimistix, got {format_value(solver)}"
+                "solver must be a name or a solver of optimistix, got "
+                f"{format_value(solver)}"
             )
         problem = replace(problem, method=method)
     named: dict[str, Any] = {
@@ -271,14 +300,18 @@ def _choose_lattice(
     prior: Prior,
     blend: seeds.Blend,
 ) -> Options:
-    """Replace ``dim="auto"`` by the smallest lattice that keeps every entry, if it fits into memory."""
+    """Replace ``dim="auto"`` by the smallest lattice that keeps every entry, if it fits
+    into memory.
+    """
     axis, dim, lost = seeds.choose_lattice(
         problem, prior, blend, constraints.at_nodes, options.auto_tolerance
     )
     if lost:
         entries.warn(
-            f"no dim up to {seeds.DIMS[-1]} keeps every entry within ΔE00 {options.auto_tolerance:g}: "
-            f"{lost} of {len(constraints.names)} are too close to others; dim {dim} keeps the most",
+            f"no dim up to {seeds.DIMS[-1]} keeps every entry within ΔE00 "
+            f"{options.auto_tolerance:g}: "
+            f"{lost} of {len(constraints.names)} are too close to others; dim {dim} "
+            "keeps the most",
             code="no-dim-keeps-all-entries",
         )
     options = replace(options, axis=axis, dim=dim)
@@ -287,7 +320,9 @@ def _choose_lattice(
 
 
 Learnt = tuple[Constraints, Prior, tuple[float, ...]]
-"""Fitted entries, the prior, and the relevance of the families: they do not depend on the lattice."""
+"""Fitted entries, the prior, and the relevance of the families: they do not depend on
+the lattice.
+"""
 
 
 def learn(
@@ -315,7 +350,9 @@ def build_stages(
     progress: ProgressCallback = ignore_progress,
     learn: Callable[..., Learnt] = learn,
 ) -> Cube:
-    """Build a cube from checked options and the problem that they describe; builds may share what they ``learn``."""
+    """Build a cube from checked options and the problem that they describe; builds may
+    share what they ``learn``.
+    """
     sensor, model, entry_model = (
         problem.sensor,
         problem.model,
@@ -323,7 +360,8 @@ def build_stages(
     )
     neighbours = options.growth == "neighbours"
 
-    # The spectra: families of the library, entries of the atlas, and looks, which become further entries.
+    # The spectra: families of the library, entries of the atlas, and looks, which
+    # become further entries.
     libraries = () if library is None else entries.read_libraries(library)
     families = entries.families_of(options, libraries, sensor)
     atlas = entries.as_atlas(atlas)
@@ -340,7 +378,8 @@ def build_stages(
     if targets is not None:
         targets, constraints, prior = targets.fit(problem, constraints, prior)
 
-    # The lattice, the boxes of the entries in it (8), and the nodes that start from entries: c = w c_i + (1 − w) c(x).
+    # The lattice, the boxes of the entries in it (8), and the nodes that start from
+    # entries: c = w c_i + (1 − w) c(x).
     blend = seeds.FULL_ENTRY if options.seed_corners or neighbours else seeds.HALF_ENTRY
     is_chosen = options.dim == AUTO
     if is_chosen:
@@ -377,12 +416,16 @@ def build_stages(
     )
     points = store(grown, seeded, prior)
     if options.solver != SOLVERS[0] and (unfitted := points.counts()["unfitted"]):
-        problem_text = f"{pluralise(unfitted, 'node')} over the threshold with the solver '{options.solver}'"
+        problem_text = (
+            f"{pluralise(unfitted, 'node')} over the threshold with the solver "
+            f"'{options.solver}'"
+        )
         entries.warn(problem_text, code="nodes-unfitted", hint="use the default solver")
     points = points if kept is None else points.restricted_to(kept)
 
-    # Entries outside the RGB space constrain no node: their spectra answer XYZ and textures of other spaces.
-    # Errors are learnt from measured reflectances, and from those expected without each of them.
+    # Entries outside the RGB space constrain no node: their spectra answer XYZ and
+    # textures of other spaces. Errors are learnt from measured reflectances, and from
+    # those expected without each of them.
     known = [
         None if prior.left_out is None else each.reflectances.astype(np.float32)
         for each in (measured, outside)
@@ -395,7 +438,8 @@ def build_stages(
         entries.warn_of_close(outside.names, half_width)
         fitted = entries.fit_constraints(problem, entry_model, outside)
         table = replace(table, outside=fitted.table(model, half_width, known[1]))
-    # What the kriging learnt, if there is an atlas, and the errors, if it is large enough
+    # What the kriging learnt, if there is an atlas, and the errors, if it is large
+    # enough
     learnt = {} if prior.kriging is None else prior.kriging.kernel._asdict()
     if prior.errors is not None:
         standard, bound = prior.errors.radii

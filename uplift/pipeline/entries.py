@@ -1,4 +1,6 @@
-"""Spectra of a build: the entries of its atlas and the families of its library, with warnings of those not used."""
+"""Spectra of a build: the entries of its atlas and the families of its library, with
+warnings of those not used.
+"""
 
 import os
 import warnings
@@ -27,13 +29,17 @@ AtlasLike = Atlas | StrPath | Sequence[StrPath] | None
 """An atlas, or the files of one."""
 
 SPREAD, RELATED = 1.0, 0.5
-"""See `uplift.fit.families.Family`; by held-out halves of large sets (docs/prior.md)."""
+"""See `uplift.fit.families.Family`; by held-out halves of large sets (docs/prior.md).
+"""
 STACK_LEVEL = 6
-"""Frames between a warning and the caller of `uplift.build`, whose decorator adds two."""
+"""Frames between a warning and the caller of `uplift.build`, whose decorator adds two.
+"""
 
 
 class MeasuredEntries(NamedTuple):
-    """Names (E,) of atlas entries, their linear RGB (E, 3) and reflectances (E, N), all in [0, 1]."""
+    """Names (E,) of atlas entries, their linear RGB (E, 3) and reflectances (E, N), all
+    in [0, 1].
+    """
 
     names: tuple[str, ...]
     rgb: Array
@@ -42,7 +48,9 @@ class MeasuredEntries(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Constraints:
-    """The E entries of a cube, measured ones and then looks, in the spectrum models of the nodes and of entries."""
+    """The E entries of a cube, measured ones and then looks, in the spectrum models of
+    the nodes and of entries.
+    """
 
     names: tuple[str, ...]
     entry_model: Model
@@ -53,7 +61,8 @@ class Constraints:
     def truncated(self, model: Model) -> Array:
         """Multipliers (E, C) of the spectra of entries with the coefficients of nodes.
 
-        Fewer moments of the same spectrum are the first of them (Tódová 2020, section 3.1.3).
+        Fewer moments of the same spectrum are the first of them (Tódová 2020, section
+        3.1.3).
         """
         if self.at_entries is self.at_nodes or not len(self.names):
             return self.at_nodes.multipliers
@@ -65,7 +74,9 @@ class Constraints:
     def table(
         self, model: Model, half_width: Array, measured: NDArray[np.float32] | None
     ) -> AtlasTable:
-        """Return the part of a cube that records the constraints; entries with more coefficients have them there."""
+        """Return the part of a cube that records the constraints; entries with more
+        coefficients have them there.
+        """
         coefficients = model.to_storage(self.at_nodes.multipliers)
         spectra = EntrySpectra(model, coefficients)
         if self.at_entries is not self.at_nodes and len(self.names):
@@ -96,7 +107,9 @@ def as_atlas(atlas: AtlasLike) -> Atlas:
 def split_by_gamut(
     atlas: Atlas, sensor: Sensor
 ) -> tuple[MeasuredEntries, MeasuredEntries]:
-    """Return the entries in the RGB space, and those outside; all outside are an error."""
+    """Return the entries in the RGB space, and those outside; all outside
+    are an error.
+    """
     measured = on_grid(atlas, sensor.wavelengths)
     # t = W m of measured reflectances m
     rgb = sensor.rgb(measured)
@@ -105,7 +118,10 @@ def split_by_gamut(
         space = smallest_space(
             resample(atlas, grid()).values, sensor.illuminant, sensor.observer
         )
-        problem = f"no entry of the atlas is within {sensor.space}: {len(atlas)} outside, {len(atlas.skipped)} skipped"
+        problem = (
+            f"no entry of the atlas is within {sensor.space}: {len(atlas)} outside, "
+            f"{len(atlas.skipped)} skipped"
+        )
         hint = f"none of {', '.join(COMMON_SPACES)} holds all entries"
         if space is not None:
             hint = f'use space="{space}", which holds all entries'
@@ -122,7 +138,9 @@ def split_by_gamut(
 def fit_constraints(
     problem: Problem, entry_model: Model, entries: MeasuredEntries
 ) -> Constraints:
-    """Fit measured entries by the models of nodes and of entries, which may be the same."""
+    """Fit measured entries by the models of nodes and of entries, which may be the
+    same.
+    """
     at_nodes = at_entries = fit_entries(problem, entries.reflectances, entries.rgb)
     if entry_model != problem.model:
         at_entries = fit_entries(
@@ -134,15 +152,23 @@ def fit_constraints(
 def warn_of_close(
     names: Sequence[str], half_width: Array, crowded: Sequence[int] = ()
 ) -> None:
-    """Warn of entries of the same colour, and of ``crowded`` ones, whose nearest node a closer entry owns."""
+    """Warn of entries of the same colour, and of ``crowded`` ones, whose nearest node a
+    closer entry owns.
+    """
     if duplicates := np.flatnonzero(half_width == 0).tolist():
         problem = (
             "left out: an earlier entry has the same colour, which has only one answer"
         )
         warn(f"{_listed(names, duplicates)} {problem}", code="entry-duplicate")
     if near := [row for row in crowded if half_width[row]]:
-        problem = "crowded: closer entries own the nearest node. Queries at the entries' own colours stay exact"
-        hint = 'use dim="auto" for a lattice that is large enough, or see the report of the cube'
+        problem = (
+            "crowded: closer entries own the nearest node. Queries at the entries' "
+            "own colours stay exact"
+        )
+        hint = (
+            'use dim="auto" for a lattice that is large enough, or see the report of '
+            "the cube"
+        )
         warn(
             f"{_listed(names, near)} {problem}, queries near them are less accurate",
             code="entry-crowded",
@@ -159,7 +185,9 @@ def _listed(names: Sequence[str], rows: Sequence[int]) -> str:
 def read_libraries(
     library: Atlas | StrPath | Sequence[StrPath],
 ) -> tuple[tuple[Source, Atlas], ...]:
-    """Read libraries, a family per file, or spectra given as an atlas; the digest of these is empty."""
+    """Read libraries, a family per file, or spectra given as an atlas; the digest of
+    these is empty.
+    """
     atlases = map(
         as_atlas,
         [library] if isinstance(library, Atlas | str | os.PathLike) else library,
@@ -173,15 +201,23 @@ def read_libraries(
 def families_of(
     options: Options, libraries: Sequence[tuple[Source, Atlas]], sensor: Sensor
 ) -> tuple[Family, ...]:
-    """Return the families that shape the prior: the shipped library, then those of the user; none for smooth spectra.
+    """Return the families that shape the prior: the shipped library, then those of the
+    user; none for smooth spectra.
 
-    Shipped families are constant outside 380–780 nm. Warns of each library that is not used as measured.
+    Shipped families are constant outside 380–780 nm. Warns of each library that is not
+    used as measured.
     """
     learnt = options.prior == "learnt" and options.spectrum_model().count > NO_FREEDOM
     if libraries and not learnt:
         raise OptionError(
-            "a library shapes only the learnt prior of models with more than three coefficients",
-            hint='use prior="learnt" and the moments model with 4 to 17 coefficients, or leave out the library',
+            (
+                "a library shapes only the learnt prior of models with more than three "
+                "coefficients"
+            ),
+            hint=(
+                'use prior="learnt" and the moments model with 4 to 17 coefficients, '
+                "or leave out the library"
+            ),
         )
     shipped = shipped_library(options.leave_out)
     if not learnt:
@@ -204,10 +240,16 @@ def families_of(
         resampled = resample(library, sensor.wavelengths)
         outside = int((~in_unit_cube(sensor.rgb(resampled.values))).sum())
         if resampled.clips:
-            problem = f"clipped to [0, 1]: {len(resampled.clips)} spectra, first '{resampled.clips[0].name}'"
+            problem = (
+                f"clipped to [0, 1]: {len(resampled.clips)} spectra, first "
+                f"'{resampled.clips[0].name}'"
+            )
             warn(f"library '{source.name}': {problem}", code="entry-clipped")
         if outside:
-            problem = f"{outside} of {len(resampled.values)} spectra not used: their colours lie outside {sensor.space}"
+            problem = (
+                f"{outside} of {len(resampled.values)} spectra not used: their "
+                f"colours lie outside {sensor.space}"
+            )
             warn(f"library '{source.name}': {problem}", code="entry-out-of-gamut")
         own.append(Family(source.name, resampled.values, SPREAD, RELATED))
     return (*shipped, *own)

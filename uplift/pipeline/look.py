@@ -27,13 +27,15 @@ class Look:
     Parameters
     ----------
     rgb : str or sequence of float
-        The colour under the build illuminant, as ``"#rrggbb"`` in the encoding of the cube's RGB space, or as three
-        linear numbers in [0, 1].
+        The colour under the build illuminant, as ``"#rrggbb"`` in the encoding of the
+        cube's RGB space, or as three linear numbers in [0, 1].
     lights : mapping of str to str or sequence of float
-        Target colours by the names of illuminants, as ``"#rrggbb"`` in sRGB, or as linear sRGB. The white of the light
-        is the white of sRGB (Bradford), as in relit images.
+        Target colours by the names of illuminants, as ``"#rrggbb"`` in sRGB, or as
+        linear sRGB. The white of the light is the white of sRGB (Bradford), as in relit
+        images.
     weight : float, default 1
-        Weight of the targets, above 0 and at most 1; the rest is the colour that is expected without the look.
+        Weight of the targets, above 0 and at most 1; the rest is the colour that is
+        expected without the look.
     name : str, optional
         Name of the look, by default made of its colour.
     path : path-like, optional
@@ -84,7 +86,10 @@ class Look:
                     self, f"{key} {error.problem}", error.code, error.hint
                 ) from error
             if any(not low <= number <= high for number in linear):
-                problem = f"{key} must be linear RGB in [{low:g}, {high:g}], got {format_value(list(linear))}"
+                problem = (
+                    f"{key} must be linear RGB in [{low:g}, {high:g}], got "
+                    f"{format_value(list(linear))}"
+                )
                 raise look_error(
                     self, problem, hint="write '#rrggbb' for encoded values"
                 )
@@ -94,7 +99,9 @@ LooksLike = StrPath | Look | Sequence[Look]
 
 
 def about(look: Look, problem: str) -> str:
-    """Put the name of a look in front of a problem; that of a look without a name begins with "look" itself."""
+    """Put the name of a look in front of a problem; that of a look without a name
+    begins with "look" itself.
+    """
     label = (
         look.name if look.name.startswith("look ") else f"look '{shorten(look.name)}'"
     )

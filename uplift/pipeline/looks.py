@@ -1,4 +1,6 @@
-"""Looks of a build: checked, designed as reflectances, fitted as further entries, and recorded."""
+"""Looks of a build: checked, designed as reflectances, fitted as further entries, and
+recorded.
+"""
 
 import warnings
 from collections.abc import Mapping, Sequence
@@ -33,16 +35,20 @@ from uplift.pipeline.look import (
 )
 
 SAME_CODE = 0.5
-"""Colours whose 8-bit codes differ by at most this are the same: a query of one would return the other."""
+"""Colours whose 8-bit codes differ by at most this are the same: a query of one would
+return the other.
+"""
 DIGITS = 6
 """Decimals of recorded colours and distances."""
 
 
 @dataclass(frozen=True, eq=False)
 class LookTargets:
-    """k looks in the colours of a sensor, the sRGB sensors of the lights of each, and their goals.
+    """k looks in the colours of a sensor, the sRGB sensors of the lights of each, and
+    their goals.
 
-    ``designs`` (k, N) are reflectances that have the colours of the goals, or the nearest ones that are possible.
+    ``designs`` (k, N) are reflectances that have the colours of the goals, or the
+    nearest ones that are possible.
     """
 
     looks: tuple[Look, ...]
@@ -53,12 +59,15 @@ class LookTargets:
     def fit(
         self, problem: Problem, entries: Constraints, prior: Prior
     ) -> tuple["LookTargets", Constraints, Prior]:
-        """Design reflectances that differ as little as possible from those expected, and add them to the entries.
+        """Design reflectances that differ as little as possible from those expected,
+        and add them to the entries.
 
-        The spectra of colours near a look deviate as that of the look. Kernel and standard errors of the prior stay, as
-        looks are not measurements; the errors of looks are those that the prior states at their colours.
+        The spectra of colours near a look deviate as that of the look. Kernel and
+        standard errors of the prior stay, as looks are not measurements; the errors of
+        looks are those that the prior states at their colours.
         """
-        # The target becomes w y + (1 − w) y₀ in XYZ, with the colours y₀ of the spectrum p₀ that is expected at x.
+        # The target becomes w y + (1 − w) y₀ in XYZ, with the colours y₀ of the
+        # spectrum p₀ that is expected at x.
         rgb = np.array([goal.rgb for goal in self.goals])
         expected = solve_in_numpy(
             problem.forward, prior(rgb), rgb, problem.tolerance, MAX_STEPS
@@ -100,7 +109,9 @@ class LookTargets:
     def describe(
         self, table: AtlasTable, model: Model, sensor: Sensor
     ) -> dict[str, Any]:
-        """Return what a cube records of its looks, in JSON values, and warn of those that its answers miss."""
+        """Return what a cube records of its looks, in JSON values, and warn of those
+        that its answers miss.
+        """
         answers = table.spectra.reflectance(
             np.arange(table.measured_count, len(table.names)), sensor.wavelengths
         )
@@ -108,7 +119,8 @@ class LookTargets:
         for look, screens, goal, design, answer in zip(
             self.looks, self.screens, self.goals, self.designs, answers, strict=True
         ):
-            # Per light: target and answer in linear sRGB, ΔE00 of the answer, and the least that is possible
+            # Per light: target and answer in linear sRGB, ΔE00 of the answer, and the
+            # least that is possible
             rows = zip(
                 screens,
                 look.lights.values(),
@@ -146,17 +158,22 @@ def targets_of(
     atlas_names: Sequence[str],
     entries: MeasuredEntries,
 ) -> LookTargets | None:
-    """Return looks in the colours of a sensor, whose entries have a spectrum model; None without any.
+    """Return looks in the colours of a sensor, whose entries have a spectrum model;
+    None without any.
 
-    Raises `LookError` for two looks, or a look and an entry, of one colour or name, for a colour that no reflectance
-    has, for a light that is that of the build, unknown, or occurs twice, and for a model without freedom.
+    Raises `LookError` for two looks, or a look and an entry, of one colour or name, for
+    a colour that no reflectance has, for a light that is that of the build, unknown, or
+    occurs twice, and for a model without freedom.
     """
     looks = as_looks(looks)
     if not looks:
         return None
     if model.count <= NO_FREEDOM:
         raise LookError(
-            f"looks need spectra of more than three coefficients, got {model.name} with {model.count}",
+            (
+                f"looks need spectra of more than three coefficients, got {model.name} "
+                f"with {model.count}"
+            ),
             hint='use model="moments" with entry_coefficients of 4 to 17',
         )
     screens = tuple(_screens(look, sensor) for look in looks)
@@ -181,7 +198,10 @@ def targets_of(
             other = known[int(same.argmax())]
             raise look_error(
                 look,
-                f"its colour {format_rgb(look.rgb)} is that of {taken[other]}, '{other}'",
+                (
+                    f"its colour {format_rgb(look.rgb)} is that of {taken[other]}, "
+                    f"'{other}'"
+                ),
                 hint="a colour has one answer: change the look, or leave out the other",
             )
         taken[look.name] = "another look"
@@ -198,7 +218,10 @@ def _screens(look: Look, sensor: Sensor) -> tuple[Sensor, ...]:
         problem = f"two of its lights are the same: {', '.join(look.lights)}"
         raise look_error(look, problem, hint="remove one of the two")
     if sensor.illuminant in (screen.illuminant for screen in screens):
-        problem = f"{sensor.illuminant} is the illuminant of the build, under which the colour is that of rgb"
+        problem = (
+            f"{sensor.illuminant} is the illuminant of the build, under which the "
+            "colour is that of rgb"
+        )
         raise look_error(look, problem, hint="remove it")
     return screens
 
@@ -206,7 +229,10 @@ def _screens(look: Look, sensor: Sensor) -> tuple[Sensor, ...]:
 def _goal(look: Look, sensor: Sensor, screens: Sequence[Sensor]) -> LookGoal:
     rgb = parse_colour(look.rgb).rgb(sensor)
     if not solid(sensor.matrix).contains(rgb[None])[0]:
-        problem = f"no reflectance has the colour {format_rgb(look.rgb)} under {sensor.illuminant}"
+        problem = (
+            f"no reflectance has the colour {format_rgb(look.rgb)} under "
+            f"{sensor.illuminant}"
+        )
         raise look_error(look, problem, hint="choose one of less chroma")
     # Targets y in XYZ, of colours of sRGB whose white is that of the light
     targets = zip(look.lights.values(), screens, strict=True)
@@ -217,7 +243,9 @@ def _goal(look: Look, sensor: Sensor, screens: Sequence[Sensor]) -> LookGoal:
 
 
 def recorded_looks(provenance: Mapping[str, Any]) -> tuple[Look, ...]:
-    """Return the looks that a cube recorded, for a rebuild. Raises `LookError` for values that do not fit."""
+    """Return the looks that a cube recorded, for a rebuild. Raises `LookError` for
+    values that do not fit.
+    """
     looks = []
     for record in provenance.get("looks", ()):
         lights = {light["light"]: light["wish"] for light in record["lights"]}
@@ -228,7 +256,9 @@ def recorded_looks(provenance: Mapping[str, Any]) -> tuple[Look, ...]:
 def _warn_of_missed(
     looks: Sequence[Look], records: Sequence[Mapping[str, Any]]
 ) -> None:
-    """Warn once of the looks with impossible targets, and once of those that the model does not reach."""
+    """Warn once of the looks with impossible targets, and once of those that the model
+    does not reach.
+    """
     impossible, unreached = [], []
     for look, record in zip(looks, records, strict=True):
         missed = [light for light in record["lights"] if light["delta_e"] > MET]
@@ -250,7 +280,9 @@ def _warn_of_worst(
     code: str,
     hint: str = "",
 ) -> None:
-    """Warn of looks and the lights under which they are missed, by the one that is missed by most."""
+    """Warn of looks and the lights under which they are missed, by the one that is
+    missed by most.
+    """
     if not missed:
         return
     look, lights = max(
@@ -263,7 +295,8 @@ def _warn_of_worst(
             f" (at least {light['possible']:.2f})" if light["possible"] > MET else ""
         )
         shown.append(
-            f"under {light['light']} it is {answer}, ΔE00 {light['delta_e']:.2f} from {target}{least}"
+            f"under {light['light']} it is {answer}, ΔE00 {light['delta_e']:.2f} from "
+            f"{target}{least}"
         )
     text = about(look, f"{problem}: {', '.join(shown)}")
     if len(missed) > 1:

@@ -40,7 +40,9 @@ CHOICES: dict[str, tuple[str, ...]] = {
 MAX_AUTO_TOLERANCE = 100.0
 """ΔE00 between black and white."""
 MAX_RANGE = 300.0, 1000.0
-"""Limits of the range in nm: illuminants and observers have no shorter wavelengths, atlases hardly longer ones."""
+"""Limits of the range in nm: illuminants and observers have no shorter wavelengths,
+atlases hardly longer ones.
+"""
 STEPS = (1.0, 5.0, 10.0)
 """Steps of the sensor's wavelengths in nm."""
 Dim = int | Literal["auto"]
@@ -51,16 +53,20 @@ TYPES: dict[Any, tuple[Any, type, str]] = {
     str: (str, str, "text"),
     bool: (bool | np.bool_, bool, "True or False"),
 }
-"""By the annotation of an option: types that are accepted, that which is recorded as JSON, and their name."""
+"""By the annotation of an option: types that are accepted, that which is recorded as
+JSON, and their name.
+"""
 RENAMED = {"within": "auto_tolerance", "start": "growth"}
 """Options by the names that earlier versions recorded in cubes."""
 
 
 @dataclass(frozen=True)
 class Options:
-    """Options of `uplift.build`, recorded in the cube so that the build can be repeated.
+    """Options of `uplift.build`, recorded in the cube so that the build can be
+    repeated.
 
-    Raises `OptionError` for a value of another type or outside its range, and `UnknownNameError`.
+    Raises `OptionError` for a value of another type or outside its range, and
+    `UnknownNameError`.
     """
 
     dim: Dim = 32
@@ -108,9 +114,13 @@ class Options:
         """Yield problems of the values, with hints. The first one counts."""
         low, high = MAX_RANGE
         if not low <= self.shortest <= START < END <= self.longest <= high:
-            limits = f"the range must hold {START:g} to {END:g} nm and lie within {low:g} to {high:g} nm"
+            limits = (
+                f"the range must hold {START:g} to {END:g} nm and lie within {low:g} "
+                f"to {high:g} nm"
+            )
             yield f"{limits}, got {self.shortest:g} to {self.longest:g}", ""
-        # A rebuild has the sensitivities of a camera at the wavelengths of the cube only.
+        # A rebuild has the sensitivities of a camera at the wavelengths of the cube
+        # only.
         steps = [step for step in STEPS if step <= STEP or self.space != CAMERA]
         if self.step not in steps:
             allowed = ", ".join(f"{step:g}" for step in steps)
@@ -125,7 +135,10 @@ class Options:
                 "use a step of 1",
             )
         if self.neutral == "flat" and self.growth == "neighbours":
-            problem = "neutral 'flat' does not apply to growth 'neighbours', whose nodes start from their neighbours"
+            problem = (
+                "neutral 'flat' does not apply to growth 'neighbours', whose nodes "
+                "start from their neighbours"
+            )
             yield problem, "use another growth"
         if self.dim != AUTO and self.dim < 2:
             yield f"dim must be at least 2, got {format_value(self.dim)}", "use dim=2"
@@ -143,12 +156,17 @@ class Options:
         ):
             if not least <= value <= most:
                 yield (
-                    f"{name} must be in [{least:g}, {most:g}], got {format_value(value)}",
+                    (
+                        f"{name} must be in [{least:g}, {most:g}], got "
+                        f"{format_value(value)}"
+                    ),
                     "",
                 )
 
     def record(self) -> dict[str, Any]:
-        """Return the options as JSON can record them; `recorded_options` reads them. Lamps are recorded with power."""
+        """Return the options as JSON can record them; `recorded_options` reads them.
+        Lamps are recorded with power.
+        """
         values = asdict(self)
         return {
             name: list(value) if isinstance(value, tuple) else value
@@ -156,7 +174,9 @@ class Options:
         }
 
     def spectrum_model(self, coefficients: int | None = None) -> Model:
-        """Create the spectrum model, from `shortest` to `longest` nm, of the nodes or of other moments."""
+        """Create the spectrum model, from `shortest` to `longest` nm, of the nodes or
+        of other moments.
+        """
         if self.model == Sigmoid.name:
             return Sigmoid(self.shortest, self.longest)
         count = self.coefficients if coefficients is None else coefficients
@@ -213,7 +233,10 @@ def _plain(name: str, kind: Any, value: Any) -> Any:
             for each in values
         )
     if isinstance(value, Lamp):
-        hint = "build under an illuminant of colour-science, and give the lamp as one of the lights"
+        hint = (
+            "build under an illuminant of colour-science, and give the lamp as one of "
+            "the lights"
+        )
         raise OptionError(
             f"{name} must be a name, which a cube records, got the lamp '{value}'",
             hint=hint,
@@ -232,10 +255,13 @@ def _plain(name: str, kind: Any, value: Any) -> Any:
 
 
 def check_memory(options: Options) -> None:
-    """Raise `OptionError` if the lattice does not fit into the memory of this machine."""
+    """Raise `OptionError` if the lattice does not fit into the memory of
+    this machine.
+    """
     if not isinstance(options.dim, int):
         return
-    # Peak memory of a node: multipliers, and coefficients in single precision, and the other arrays.
+    # Peak memory of a node: multipliers, and coefficients in single precision, and the
+    # other arrays.
     node = 16 * options.spectrum_model().count + 60
     largest = int(
         max(((machine.free_memory() or 0) - machine.PROCESS_BYTES) / node, 8) ** (1 / 3)

@@ -38,7 +38,9 @@ SEARCH = "pass the folder that contains it, or build the cube again"
 
 @dataclass(frozen=True)
 class RecordedFile:
-    """A file that a cube recorded, with a warning if it has another content, or is a shipped atlas of another name."""
+    """A file that a cube recorded, with a warning if it has another content, or is a
+    shipped atlas of another name.
+    """
 
     path: Path
     warning: UpliftWarning | None = None
@@ -46,7 +48,9 @@ class RecordedFile:
 
 @dataclass(frozen=True, eq=False)
 class StoredScene:
-    """The scene of a cube that was built for images: its present nodes replace the images."""
+    """The scene of a cube that was built for images: its present nodes replace the
+    images.
+    """
 
     data: CubeData
 
@@ -56,7 +60,8 @@ class StoredScene:
         """Return the nodes that are present in the cube; see `SceneLike`."""
         if self.data.lattice.dim != boxes.lattice.dim:
             raise OptionError(
-                f"a stored scene of dim {self.data.lattice.dim} needs it, got {boxes.lattice.dim}"
+                f"a stored scene of dim {self.data.lattice.dim} needs it, got "
+                f"{boxes.lattice.dim}"
             )
         return self.data.points.present
 
@@ -72,11 +77,13 @@ def rebuild(
     *,
     progress: ProgressCallback = ignore_progress,
 ) -> Cube:
-    """Build a cube, read from ``path``, again. Warnings of the first build are not repeated.
+    """Build a cube, read from ``path``, again. Warnings of the first build are not
+    repeated.
 
-    Atlas files are searched as by `recorded_files`. A file that has changed is used, with the `UpliftWarning`
-    ``atlas-changed``. A cube of an earlier version of uplift gives the `UpliftWarning` ``older-version``. Raises
-    `CubeFileError` if the cube does not record its options, was filled from another cube, or an atlas file is missing.
+    Atlas files are searched as by `recorded_files`. A file that has changed is used,
+    with the `UpliftWarning` ``atlas-changed``. A cube of an earlier version of uplift
+    gives the `UpliftWarning` ``older-version``. Raises `CubeFileError` if the cube does
+    not record its options, was filled from another cube, or an atlas file is missing.
     """
     options = _read_options(stored.data, path)
     if "filled" in stored.data.provenance:
@@ -89,7 +96,10 @@ def rebuild(
     libraries = _find_all(stored.data, path, "libraries", folders)
     writer = stored.data.provenance.get("uplift", "")
     if is_older(writer, version()):
-        problem = f"was written by version {writer} of uplift, older than this one, {version()}"
+        problem = (
+            f"was written by version {writer} of uplift, older than this one, "
+            f"{version()}"
+        )
         warnings.warn(
             UpliftWarning(problem, code="older-version", path=path), stacklevel=2
         )
@@ -126,10 +136,11 @@ def rebuild(
 def recorded_atlas(
     data: CubeData, path: StrPath, folders: Sequence[StrPath] = ()
 ) -> Atlas | None:
-    """Read the atlas that a cube, read from ``path``, was built from; None for a cube without one.
+    """Read the atlas that a cube, read from ``path``, was built from; None for a cube
+    without one.
 
-    The files are those of `recorded_files`. Warnings of the build are not repeated. A shipped atlas of another name
-    gives the `UpliftWarning` ``shipped-atlas``.
+    The files are those of `recorded_files`. Warnings of the build are not repeated. A
+    shipped atlas of another name gives the `UpliftWarning` ``shipped-atlas``.
     """
     files = _unchanged_files(data, path, folders)
     for file in files:
@@ -143,9 +154,11 @@ def recorded_files(
 ) -> tuple[Path, ...]:
     """Find the files of the atlas that a cube, read from ``path``, was built from.
 
-    The first file of the recorded name decides, in ``folders``, in the folder of the cube, and in folders ``atlases``
-    in these. Where there is none, a shipped atlas of the recorded content counts. A recorded name never opens a file
-    elsewhere. Raises `CubeFileError` if the cube does not record its atlas, or a file is missing or has changed.
+    The first file of the recorded name decides, in ``folders``, in the folder of the
+    cube, and in folders ``atlases`` in these. Where there is none, a shipped atlas of
+    the recorded content counts. A recorded name never opens a file elsewhere. Raises
+    `CubeFileError` if the cube does not record its atlas, or a file is missing or has
+    changed.
     """
     return tuple(file.path for file in _unchanged_files(data, path, folders))
 
@@ -153,7 +166,9 @@ def recorded_files(
 def _unchanged_files(
     data: CubeData, path: StrPath, folders: Sequence[StrPath]
 ) -> list[RecordedFile]:
-    """Find the files of the atlas of a cube; raise `CubeFileError` for one that has changed."""
+    """Find the files of the atlas of a cube; raise `CubeFileError` for one that has
+    changed.
+    """
     files = _find_all(data, path, "atlases", folders)
     for file in files:
         if file.warning and file.warning.code == "atlas-changed":
@@ -177,7 +192,9 @@ def _read(data: CubeData, files: Sequence[RecordedFile]) -> Atlas | None:
 def _find_all(
     data: CubeData, path: StrPath, kind: str, folders: Sequence[StrPath]
 ) -> list[RecordedFile]:
-    """Find the recorded files of a kind. Only a plain name is searched in folders, no path on any system."""
+    """Find the recorded files of a kind. Only a plain name is searched in folders, no
+    path on any system.
+    """
     if kind == "atlases" and kind not in data.provenance:
         raise _missing_provenance(path)
     roots = [*map(Path, folders), Path(path).resolve().parent]
@@ -231,7 +248,10 @@ def _shipped(path: StrPath, name: str, digest: str) -> RecordedFile | None:
         return None
     if atlas.path.name == name:
         return RecordedFile(atlas.path)
-    problem = f"its atlas '{name}' was not found; the shipped atlas '{atlas.name}' has its content"
+    problem = (
+        f"its atlas '{name}' was not found; the shipped atlas '{atlas.name}' has its "
+        "content"
+    )
     return RecordedFile(
         atlas.path, UpliftWarning(problem, code="shipped-atlas", path=path)
     )
@@ -248,13 +268,19 @@ def _read_options(data: CubeData, path: StrPath) -> Options:
         raise _unknown_options(error, path) from error
     if options.solver == CUSTOM:
         raise CubeFileError(
-            "was built with a solver that was given as an object, which a cube cannot record",
+            (
+                "was built with a solver that was given as an object, which a cube "
+                "cannot record"
+            ),
             path=path,
             hint="build it again with that solver, or with a named one",
         )
     if options.dim != data.lattice.dim:
         raise CubeFileError(
-            f"records dim {options.dim}, but has {pluralise(data.lattice.dim, 'node')} along each axis",
+            (
+                f"records dim {options.dim}, but has "
+                f"{pluralise(data.lattice.dim, 'node')} along each axis"
+            ),
             path=path,
             hint=REBUILD,
         )

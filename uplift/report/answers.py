@@ -1,4 +1,6 @@
-"""Stored answers of a cube compared with those that it gives now: a test of what a renderer's users rely on."""
+"""Stored answers of a cube compared with those that it gives now: a test of what a
+renderer's users rely on.
+"""
 
 import math
 from dataclasses import dataclass
@@ -17,20 +19,25 @@ MAX_BYTES = 1 << 28
 
 @dataclass(frozen=True, eq=False)
 class StoredAnswers:
-    """Linear RGB (n, 3), wavelengths (N,) in nm, and reflectance (n, N), as ``query --format csv`` writes them."""
+    """Linear RGB (n, 3), wavelengths (N,) in nm, and reflectance (n, N), as ``query
+    --format csv`` writes them.
+    """
 
     rgb: Array
     wavelengths: Array
     reflectance: Array
 
     def differences(self, cube: Cube, mode: str = "spectra") -> Array:
-        """Return the largest absolute difference (n,) between a stored reflectance and that of a cube."""
+        """Return the largest absolute difference (n,) between a stored reflectance and
+        that of a cube.
+        """
         answers = cube.reflectance(self.rgb, self.wavelengths, mode=mode)
         return np.asarray(np.abs(answers - self.reflectance).max(axis=-1))
 
 
 def read_answers(path: StrPath) -> StoredAnswers:
-    """Read stored answers: columns ``r``, ``g``, ``b``, and one of reflectance for each wavelength. Others are ignored.
+    """Read stored answers: columns ``r``, ``g``, ``b``, and one of reflectance for each
+    wavelength. Others are ignored.
 
     Raises `ColourError` for a file that cannot be read, or that has no such table.
     """

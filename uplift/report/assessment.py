@@ -18,7 +18,8 @@ from uplift.report.charts import Histogram, linear_edges, log_edges, make_histog
 from uplift.report.fidelity import Answers, Crowding, EntryErrors
 from uplift.report.measures import Calibration, check_calibration
 
-MIN_ERROR = 1e-9  # smaller distances and ΔE00 are rounding errors and are counted in the lowest bin
+# smaller distances and ΔE00 are rounding errors and are counted in the lowest bin
+MIN_ERROR = 1e-9
 MIN_STEP = 1e-4  # smaller rms differences of reflectance are counted in the lowest bin
 
 
@@ -37,7 +38,8 @@ class Assessment:
     round_trips: dict[
         str, Histogram
     ]  # ΔE00 of random colours under the cube's illuminant, by mode of lookup
-    # Standard errors of the nodes, ΔE00 under ``data.error_illuminant``; None if the cube has none
+    # Standard errors of the nodes, ΔE00 under ``data.error_illuminant``; None if the
+    # cube has none
     standard_error: Histogram | None
     smoothness: Histogram  # rms difference of reflectance between neighbouring nodes
     steepest: Array  # (2, 3) Linear RGB of the two neighbours that differ most
@@ -57,15 +59,17 @@ class Assessment:
     not_covered: tuple[
         str, ...
     ]  # Entries of ``sources`` for which a sparse cube has no nodes
-    # Actual against predicted errors; None if the cube was built from the entries or has no standard errors
+    # Actual against predicted errors; None if the cube was built from the entries or
+    # has no standard errors
     calibration: Calibration | None
-    # The same under the other of ``lights``, by their names; empty without ``calibration``, and for cubes of
-    # earlier versions
+    # The same under the other of ``lights``, by their names; empty without
+    # ``calibration``, and for cubes of earlier versions
     light_calibrations: dict[str, Calibration]
-    # Share of the entries whose colours are unlike those of the cube's atlas; 0 without ``calibration``
+    # Share of the entries whose colours are unlike those of the cube's atlas; 0 without
+    # ``calibration``
     unlike: float
-    # Close entries of the cube, None if it has no entries. Errors are relative to the measured spectra if ``own``,
-    # otherwise relative to the stored ones
+    # Close entries of the cube, None if it has no entries. Errors are relative to the
+    # measured spectra if ``own``, otherwise relative to the stored ones
     crowding: Crowding | None
 
 
@@ -148,7 +152,9 @@ def _missing(names: Sequence[str], present: Sequence[str]) -> tuple[str, ...]:
 def _light_calibrations(
     cube: Cube, errors: EntryErrors, lights: tuple[Sensor, ...]
 ) -> dict[str, Calibration]:
-    """Calibrations under lights other than that of `Assessment.calibration`, and that of the build."""
+    """Calibrations under lights other than that of `Assessment.calibration`, and that
+    of the build.
+    """
     data = cube.data
     if data.atlas.left_out is None:
         return {}

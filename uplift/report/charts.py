@@ -1,4 +1,6 @@
-"""Small charts for pages, as svg elements: histograms with their statistics, and spectra."""
+"""Small charts for pages, as svg elements: histograms with their statistics, and
+spectra.
+"""
 
 from dataclasses import dataclass
 from typing import Any
@@ -22,7 +24,8 @@ from uplift.viz.format import format_power_of_ten
 SIZE = (3.3, 1.75)  # inches at 72 dpi; the page scales charts to its columns
 # Position of the axes in a chart with and without an axis label.
 WITH_LABEL, WITHOUT_LABEL = (0.13, 0.24, 0.84, 0.72), (0.1, 0.12, 0.87, 0.84)
-# Upper ends of reflectance axes: few enough to compare charts, and dark colours remain visible.
+# Upper ends of reflectance axes: few enough to compare charts, and dark colours remain
+# visible.
 REFLECTANCE_LIMITS = (0.1, 0.25, 0.5, 1.0)
 
 
@@ -33,7 +36,9 @@ def histogram_chart(
     top: int | None = None,
     threshold: float | None = None,
 ) -> Markup:
-    """Draw counts over ``label``; the axis holds counts up to ``top``, a dashed line marks the threshold."""
+    """Draw counts over ``label``; the axis holds counts up to ``top``, a dashed line
+    marks the threshold.
+    """
     with styled():
         figure, axes = _new_axes(WITH_LABEL)
         axes.stairs(values.counts, values.edges, fill=True, color=ACCENT)
@@ -57,7 +62,9 @@ def histogram_chart(
 def spectra_chart(
     wavelengths: Array, measured: Array, answered: Array, lattice: Array | None
 ) -> Markup:
-    """Draw reflectances (N,) over wavelengths (N,) in nm: the measured one as a broad band, the others as lines."""
+    """Draw reflectances (N,) over wavelengths (N,) in nm: the measured one as a broad
+    band, the others as lines.
+    """
     curves = [measured, answered] if lattice is None else [measured, answered, lattice]
     highest = max(float(curve.max()) for curve in curves)
     top = next(
@@ -112,7 +119,8 @@ class Histogram:
     p95: float  # 95 % quantile
     max: float
     edges: Array  # (B + 1,) Edges of the bins
-    counts: Indices  # (B,) Values per bin; values outside the edges are counted in the outermost bins
+    # (B,) Values per bin; values outside the edges are counted in the outermost bins
+    counts: Indices
 
     @property
     def logarithmic(self) -> bool:
@@ -136,7 +144,9 @@ def make_histogram(values: ArrayLike, edges: Array) -> Histogram:
 
 
 def log_edges(values: ArrayLike, floor: float) -> Array:
-    """Choose edges (B + 1,) of logarithmic bins; values below ``floor`` count as ``floor``."""
+    """Choose edges (B + 1,) of logarithmic bins; values below ``floor`` count as
+    ``floor``.
+    """
     array = np.maximum(np.asarray(values, dtype=float), floor)
     low = np.floor(np.log10(array.min()))
     high = max(np.ceil(np.log10(array.max())), low + 2)

@@ -1,4 +1,6 @@
-"""Two cubes compared: where their answers differ, under which lights, and which atlas entries changed."""
+"""Two cubes compared: where their answers differ, under which lights, and which atlas
+entries changed.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -27,7 +29,9 @@ NODE_BYTES = 200
 
 @dataclass(frozen=True, eq=False)
 class Changes:
-    """ΔE00 between the answers of two cubes to a set of colours: nodes, entries, or the pixels of an image."""
+    """ΔE00 between the answers of two cubes to a set of colours: nodes, entries, or the
+    pixels of an image.
+    """
 
     name: str
     rgb: Array
@@ -35,7 +39,9 @@ class Changes:
     delta_e: Array
     """(n, L) ΔE00 under each light; NaN for colours that a cube lacks."""
     lacking: Indices
-    """(n,) which cubes, built for a scene, lack the colour: 0 none, 1 the first, 2 the second, 3 both."""
+    """(n,) which cubes, built for a scene, lack the colour: 0 none, 1 the first, 2 the
+    second, 3 both.
+    """
 
     @property
     def largest(self) -> Array:
@@ -48,7 +54,9 @@ class Changes:
         return self.delta_e[self.lacking == 0]
 
     def worst(self, count: int) -> Indices:
-        """Rows of at most ``count`` colours that differ visibly, each once, largest ΔE00 first."""
+        """Rows of at most ``count`` colours that differ visibly, each once, largest
+        ΔE00 first.
+        """
         _, rows = np.unique(self.rgb, axis=0, return_index=True)
         order = rows[np.argsort(-self.largest[rows], kind="stable")[:count]]
         return order[self.largest[order] >= INVISIBLE]
@@ -100,7 +108,9 @@ class CubeDiff:
     cubes: tuple[Cube, Cube]
     lights: tuple[str, ...]
     nodes: Changes
-    """Nodes of the lattice of the first cube, then those of the second if it has another lattice."""
+    """Nodes of the lattice of the first cube, then those of the second if it has
+    another lattice.
+    """
     pairs: EntryPairs
     entries: Changes
     """Spectra of ``pairs``."""
@@ -115,7 +125,9 @@ class CubeDiff:
 
     @property
     def lacking(self) -> tuple[tuple[str, str, int], ...]:
-        """Colours without an answer: their set, the cubes that lack them, and their number."""
+        """Colours without an answer: their set, the cubes that lack them, and their
+        number.
+        """
         cubes = ("", *self.names, " and ".join(self.names))
         counts = [
             (each.name, np.bincount(each.lacking, minlength=4).tolist())
@@ -134,7 +146,9 @@ class CubeDiff:
         return float(np.max([each.compared.max(initial=0.0) for each in self.sets]))
 
     def is_within(self, tolerance: float) -> bool:
-        """Whether both cubes have the same entries and colours, and none differs by more than ΔE00 ``tolerance``."""
+        """Whether both cubes have the same entries and colours, and none differs by
+        more than ΔE00 ``tolerance``.
+        """
         has_same_colours = not any(
             np.isin(each.lacking, (1, 2)).any() for each in self.sets
         )
@@ -147,10 +161,12 @@ def diff_cubes(
     lights: Sequence[Illuminant],
     images: Mapping[str, Array] | None = None,
 ) -> CubeDiff:
-    """Compare two cubes, by name, at the nodes of both, at their entries, and at the colours of images.
+    """Compare two cubes, by name, at the nodes of both, at their entries, and at the
+    colours of images.
 
-    Entries are compared by name, each with the spectrum that the cube has for it, even where their colours differ.
-    ``images`` are linear RGB (…, 3) in [0, 1]. Raises `OptionError` for cubes of different RGB spaces.
+    Entries are compared by name, each with the spectrum that the cube has for it, even
+    where their colours differ. ``images`` are linear RGB (…, 3) in [0, 1]. Raises
+    `OptionError` for cubes of different RGB spaces.
     """
     sensor = common_sensor(cube.data for cube in cubes.values())
     first, second = cubes.values()

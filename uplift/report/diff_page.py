@@ -1,4 +1,6 @@
-"""Two cubes compared, as a page: figures, maps over the lattice and over images, and the spectra that differ most."""
+"""Two cubes compared, as a page: figures, maps over the lattice and over images, and
+the spectra that differ most.
+"""
 
 import math
 from collections.abc import Mapping
@@ -24,14 +26,18 @@ from uplift.viz.figure import (
 from uplift.viz.html import render
 
 MIN_LIMIT, SHARE = 1.0, 0.99
-"""Smallest ΔE00 at the dark end of maps, so that invisible differences stay pale; share of the nodes below the end."""
+"""Smallest ΔE00 at the dark end of maps, so that invisible differences stay pale; share
+of the nodes below the end.
+"""
 
 WIDTH = 10.5
 """Inches of a map; the page scales it to its columns."""
 
 
 def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
-    """Render a comparison, with the images (height, width, 3) in linear RGB that it was made for."""
+    """Render a comparison, with the images (height, width, 3) in linear RGB that it was
+    made for.
+    """
     worst_of = diff.nodes.compared.max(axis=1)
     limit = (
         max(MIN_LIMIT, math.ceil(np.quantile(worst_of, SHARE)))
@@ -43,7 +49,10 @@ def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
     return render(
         "report/templates/diff.html.j2",
         title=" and ".join(diff.names),
-        lead="Where the answers of two cubes differ: ΔE00 between their spectra, the largest under any of the lights.",
+        lead=(
+            "Where the answers of two cubes differ: ΔE00 between their spectra, the "
+            "largest under any of the lights."
+        ),
         diff=diff,
         figures=to_json(diff, None, worst),
         limit=limit,
@@ -61,7 +70,9 @@ def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
 
 
 def mosaic(slices: Array) -> Array:
-    """Arrange square slices (dim, dim, dim) in reading order, with a gap between them."""
+    """Arrange square slices (dim, dim, dim) in reading order, with a gap
+    between them.
+    """
     dim = len(slices)
     columns = math.ceil(math.sqrt(dim))
     rows = math.ceil(dim / columns)
@@ -75,7 +86,9 @@ def mosaic(slices: Array) -> Array:
 def _map(
     values: Array, limit: float, label: str, picture: NDArray[np.uint8] | None = None
 ) -> Markup:
-    """Draw a map of ΔE00 (height, width), next to a picture of 8-bit codes if one is given."""
+    """Draw a map of ΔE00 (height, width), next to a picture of 8-bit codes if one is
+    given.
+    """
     with styled():
         panels = 1 if picture is None else 2
         figure = new_figure(

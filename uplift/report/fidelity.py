@@ -1,4 +1,6 @@
-"""Errors of a cube at the colours of atlas entries, next to the answers of other methods; entries close to others."""
+"""Errors of a cube at the colours of atlas entries, next to the answers of other
+methods; entries close to others.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
@@ -27,7 +29,8 @@ class EntryQuery:
     """Colours to query, and the spectra that would be the best answers."""
 
     names: tuple[str, ...]  # Names of E entries
-    rgb: Array  # (E, 3) Linear RGB, outside [0, 1] for the cube's entries outside its space
+    # (E, 3) Linear RGB, outside [0, 1] for the cube's entries outside its space
+    rgb: Array
     target: Array  # (E, N) Reflectances at the sensor's wavelengths
     rows: (
         Indices | None
@@ -40,7 +43,9 @@ class EntryQuery:
 
 @dataclass(frozen=True, eq=False)
 class Answers:
-    """Answers of a method at the colours of E entries; NaN for colours that it does not answer."""
+    """Answers of a method at the colours of E entries; NaN for colours that it does not
+    answer.
+    """
 
     spectra: Array  # (E, N) Reflectances
     delta_e: Array  # (E, L) ΔE00 from the targets under L lights
@@ -57,28 +62,34 @@ class Answers:
 
     @property
     def answered(self) -> Array:
-        """Return the ΔE00 (k, L) of the colours that are answered; a row of NaN without any."""
+        """Return the ΔE00 (k, L) of the colours that are answered; a row of NaN without
+        any.
+        """
         known = self.delta_e[~np.isnan(self.delta_e).any(axis=1)]
         return known if len(known) else np.full((1, self.delta_e.shape[1]), np.nan)
 
 
 @dataclass(frozen=True, eq=False)
 class EntryErrors:
-    """Errors of E entries at their own RGB, worst first: by the largest ΔE00 under any of L lights."""
+    """Errors of E entries at their own RGB, worst first: by the largest ΔE00 under any
+    of L lights.
+    """
 
     names: tuple[str, ...]  # Names of the entries
     rgb: Array  # (E, 3) Linear RGB
     target: Array  # (E, N) Reflectances as measured or, without measurements, as stored
     answers: Answers  # Those of the cube
-    actual: Array  # (E,) ΔE00 between answer and ``target`` under the cube's error illuminant
+    # (E,) ΔE00 between answer and ``target`` under the cube's error illuminant
+    actual: Array
     predicted: (
         Array | None
     )  # (E,) Standard error of the cube at ``rgb``; None if it has none
     cells: Indices  # (E, 3) Position of the lowest corner of the cell along the axes
-    # Interpolated from the lattice without the entries. This and all further fields are None for entries that the
-    # cube was not built from
+    # Interpolated from the lattice without the entries. This and all further fields are
+    # None for entries that the cube was not built from
     lattice: Answers | None = None
-    # (E,) Lattice steps from the entry to the faces of its box; 0 if no colour returns the entry
+    # (E,) Lattice steps from the entry to the faces of its box; 0 if no colour returns
+    # the entry
     half_width: Array | None = None
     half_width_codes: Array | None = (
         None  # (E,) The same in 8-bit codes, to the nearest pair of faces
@@ -105,7 +116,9 @@ def take(table: Rows, rows: ArrayLike) -> Rows:
 
 
 def from_own_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
-    """Query the entries that the cube was built from; targets are the measured spectra."""
+    """Query the entries that the cube was built from; targets are the
+    measured spectra.
+    """
     table = data.atlas.with_outside
     row_of = {name: row for row, name in enumerate(table.names)}
     known = [row for row, name in enumerate(atlas.names) if name in row_of]
@@ -120,7 +133,9 @@ def from_own_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
 
 
 def from_other_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
-    """Query entries that the cube was not built from, as far as they lie in its RGB space."""
+    """Query entries that the cube was not built from, as far as they lie in its RGB
+    space.
+    """
     measured = resample(atlas, data.sensor.wavelengths).values
     rgb = data.sensor.rgb(measured)
     return take(
@@ -130,7 +145,9 @@ def from_other_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
 
 
 def from_stored_entries(data: CubeData) -> EntryQuery:
-    """Query the cube's own entries; without measurements, targets are the stored spectra."""
+    """Query the cube's own entries; without measurements, targets are the stored
+    spectra.
+    """
     table = data.atlas.with_outside
     rows, spectra = np.arange(len(table.names)), table.spectra
     return EntryQuery(
@@ -169,7 +186,9 @@ def entry_errors(
 def _with_lattice_errors(
     cube: Cube, errors: EntryErrors, rows: Indices, lights: tuple[Sensor, ...]
 ) -> EntryErrors:
-    """Add the fields that only the cube's own entries have; ``rows`` (E,) are those of all its entries."""
+    """Add the fields that only the cube's own entries have; ``rows`` (E,) are those of
+    all its entries.
+    """
     data, table = cube.data, cube.data.atlas.with_outside
     boxes, reach = data.outside_boxes, data.outside_boxes.half_width[:, None]
     lower, upper = data.entry_boxes.faces
@@ -199,7 +218,9 @@ def _with_lattice_errors(
 
 
 def _inside(data: CubeData, rgb: Array) -> Array:
-    """Colours (n, 3) of the lattice from which those outside the RGB space are answered; others are unchanged."""
+    """Colours (n, 3) of the lattice from which those outside the RGB space are
+    answered; others are unchanged.
+    """
     return map_to_gamut(rgb, data.sensor, MAPPING).rgb
 
 
@@ -215,7 +236,9 @@ WITHOUT_ATLAS, JAKOB_HANIKA = "without atlas", "Jakob & Hanika"
 def find_alternatives(
     data: CubeData, errors: EntryErrors, lights: tuple[Sensor, ...]
 ) -> dict[str, Answers]:
-    """Compute the answers of other methods at the colours of entries, by the name of the method."""
+    """Compute the answers of other methods at the colours of entries, by the name of
+    the method.
+    """
     spectra = {
         WITHOUT_ATLAS: _without_atlas(errors.target, data.sensor),
         JAKOB_HANIKA: _sigmoid(data, errors.rgb),
@@ -228,7 +251,9 @@ def find_alternatives(
 
 
 def _without_atlas(target: Array, assessed: Sensor) -> Array:
-    """Reflectance (E, N) of the packaged cube at the colours of measured spectra (E, N)."""
+    """Reflectance (E, N) of the packaged cube at the colours of measured spectra (E,
+    N).
+    """
     cube = load()
     rgb = on_range(cube.data.sensor, *assessed.range).rgb(target)
     inside = in_unit_cube(rgb)
@@ -238,7 +263,9 @@ def _without_atlas(target: Array, assessed: Sensor) -> Array:
 
 
 def _sigmoid(data: CubeData, rgb: Array) -> Array:
-    """Reflectance (E, N) of the sigmoid with exactly the colours (E, 3), from grey on."""
+    """Reflectance (E, N) of the sigmoid with exactly the colours (E, 3),
+    from grey on.
+    """
     model = Sigmoid()
     multipliers = refine_to_rgb(data, model, np.zeros((len(rgb), model.count)), rgb)
     answer = evaluate(model, multipliers, data.sensor.wavelengths)
@@ -253,12 +280,17 @@ MAX_DISTANCE = (
 
 @dataclass(frozen=True, eq=False)
 class Crowding:
-    """Entries of a cube that have another one within a lattice step, largest error of the lattice first."""
+    """Entries of a cube that have another one within a lattice step, largest error of
+    the lattice first.
+    """
 
     entries: EntryErrors  # Errors of the k close entries
     nearest: tuple[str, ...]  # Name of the nearest other entry, for each of the k
-    distances: Array  # (k,) Lattice steps to the nearest other entry, along the axis on which they differ most
-    # Entries that no colour returns because another one has the same colour, and the name of the other
+    # (k,) Lattice steps to the nearest other entry, along the axis on which they differ
+    # most
+    distances: Array
+    # Entries that no colour returns because another one has the same colour, and the
+    # name of the other
     lost: tuple[tuple[str, str], ...]
 
 
@@ -283,7 +315,9 @@ def find_crowding(data: CubeData, entries: EntryErrors) -> Crowding:
 
 
 def _nearest(steps: Array) -> tuple[Indices, Array]:
-    """Index of the nearest other row of ``steps`` (n, 3), and its maximum-norm distance, infinite for n < 2."""
+    """Index of the nearest other row of ``steps`` (n, 3), and its maximum-norm
+    distance, infinite for n < 2.
+    """
     from scipy.spatial import KDTree
 
     if len(steps) < 2:

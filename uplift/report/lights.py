@@ -1,4 +1,6 @@
-"""Quality of an emission table as a self-contained HTML page: exact colours, powers, and expected errors."""
+"""Quality of an emission table as a self-contained HTML page: exact colours, powers,
+and expected errors.
+"""
 
 from collections.abc import Callable
 from typing import Any
@@ -22,8 +24,11 @@ from uplift.viz.figure import styled, to_page_svg
 from uplift.viz.html import render
 from uplift.viz.scatter import new_panels
 
-MIN_DISTANCE = 1e-12  # smaller distances in u′v′ are rounding errors and are counted in the lowest bin
-PEAKS = 40  # exponent of the random powers: large ones leave few wavelengths, so that colours reach the spectral locus
+# smaller distances in u′v′ are rounding errors and are counted in the lowest bin
+MIN_DISTANCE = 1e-12
+# exponent of the random powers: large ones leave few wavelengths, so that colours reach
+# the spectral locus
+PEAKS = 40
 PANEL = (4.2, 4.05)  # inches of a diagram; the page scales it to its columns
 MARGINS = {"left": 0.11, "right": 0.98, "bottom": 0.11, "top": 0.98}
 # How each diagram is drawn, and what it shows, by its title.
@@ -43,9 +48,11 @@ DIAGRAMS = {
 def assess_lights(table: EmissionTable) -> dict[str, Any]:
     """Assess an emission table by random lights and by its lamps.
 
-    ``round_trip`` is the distance in u′v′ of random lights from the answers, ``smallest_power`` that of these,
-    ``expected_error`` the ΔE00 of the ColorChecker lit by them instead of a measured lamp. ``lamp_errors`` (E,) are
-    those expected of another lamp of the chromaticity of an exact one, which has ``lamp_rgb`` (E, 3) at luminance 1.
+    ``round_trip`` is the distance in u′v′ of random lights from the answers,
+    ``smallest_power`` that of these, ``expected_error`` the ΔE00 of the ColorChecker
+    lit by them instead of a measured lamp. ``lamp_errors`` (E,) are those expected of
+    another lamp of the chromaticity of an exact one, which has ``lamp_rgb`` (E, 3) at
+    luminance 1.
     """
     radiometry = table.data.radiometry
     xyz = (
@@ -69,7 +76,9 @@ def assess_lights(table: EmissionTable) -> dict[str, Any]:
 
 
 def render_light_report(table: EmissionTable, name: str, size: int) -> str:
-    """Render the page of a table in a file of a name and a size in bytes. The same table gives the same text."""
+    """Render the page of a table in a file of a name and a size in bytes. The same
+    table gives the same text.
+    """
     entries, assessment = table.data.entries, assess_lights(table)
     lamp_rgb = assessment["lamp_rgb"]
     brightest = np.clip(lamp_rgb / lamp_rgb.max(axis=1, keepdims=True), 0, 1)

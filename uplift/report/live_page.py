@@ -28,7 +28,9 @@ SPACE = "sRGB"
 
 
 def page(data: CubeData) -> str:
-    """Render the live page of a cube: it relights images by spectra, next to a product of RGB."""
+    """Render the live page of a cube: it relights images by spectra, next to a product
+    of RGB.
+    """
     check_complete(data, "a page")
     if data.sensor.space != SPACE:
         problem = f"a page shows images in sRGB, got a cube of {data.sensor.space}"
@@ -50,7 +52,8 @@ def page(data: CubeData) -> str:
         "report/templates/live_page.html.j2",
         title="Your images under other lights",
         lead=(
-            f"Spectra of a cube of {data.lattice.dim}³ nodes and {pluralise(len(data.atlas.names), 'atlas entry')}, "
+            f"Spectra of a cube of {data.lattice.dim}³ nodes and "
+            f"{pluralise(len(data.atlas.names), 'atlas entry')}, "
             f"evaluated in the browser for every pixel. Drop an image on the page."
         ),
         lights=names,
@@ -63,7 +66,9 @@ def page(data: CubeData) -> str:
 
 
 def _weights(data: CubeData) -> tuple[Array, dict[str, Array]]:
-    """Return wavelengths (N,) and, for each light, the weights (3, N) from reflectance to linear sRGB."""
+    """Return wavelengths (N,) and, for each light, the weights (3, N) from reflectance
+    to linear sRGB.
+    """
     sensor, at = data.sensor, data.sensor.wavelengths
     missing = -len(at) % GROUP
     return np.pad(at, (0, missing), mode="edge"), {

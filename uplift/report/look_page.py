@@ -1,8 +1,10 @@
-"""The page: a spectrum, its colours under some lights, and the regions that they can be moved in.
+"""The page: a spectrum, its colours under some lights, and the regions that they can be
+moved in.
 
-The browser moves the logarithm of the odds g / (1 − g) of the answer by cosines of the wavelength, so that every result
-is a reflectance in (0, 1). Steps of least change, in the metric of the fit (docs/mathematics.md, 5), lead to the chosen
-a* and b* and keep the RGB.
+The browser moves the logarithm of the odds g / (1 − g) of the answer by cosines of the
+wavelength, so that every result is a reflectance in (0, 1). Steps of least change, in
+the metric of the fit (docs/mathematics.md, 5), lead to the chosen a* and b* and keep
+the RGB.
 """
 
 from collections.abc import Sequence
@@ -24,17 +26,24 @@ from uplift.models import Moments
 from uplift.models.moments import MAX_COUNT
 from uplift.viz.html import render, resource
 
-DIGITS = 12  # digits of the numbers of the page: the RGB of its spectra is exact to far less than a code
+# digits of the numbers of the page: the RGB of its spectra is exact to far less than a
+# code
+DIGITS = 12
 MARGIN = 1e-6  # distance of the answer from 0 and 1, where the odds are 0 or infinite
 CODE_SLACK = 1e-6  # distance in encoded codes at which a colour is written as '#rrggbb'
 
 
 def page(cube: Cube, found: Sequence[Bounds]) -> str:
-    """Render a page on which the look of a colour is chosen, from its bounds under some lights."""
+    """Render a page on which the look of a colour is chosen, from its bounds under some
+    lights.
+    """
     if not found or len(found[0].xyz) != 1:
         count = len(found[0].xyz) if found else 0
         raise OptionError(
-            f"a page shows one colour under some lights, got {pluralise(count, 'colour')}",
+            (
+                "a page shows one colour under some lights, got "
+                f"{pluralise(count, 'colour')}"
+            ),
             hint="give a single colour",
         )
     sensor, rgb = cube.data.sensor, found[0].volumes.rgb[0]
@@ -45,9 +54,13 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
     lights = [_light(each, screen) for each, screen in zip(found, screens, strict=True)]
     return render(
         "report/templates/look_page.html.j2",
-        title=f"Looks of {written if isinstance(written, str) else ' '.join(f'{each:.4g}' for each in written)}",
+        title=(
+            "Looks of "
+            f"{written if isinstance(written, str) else ' '.join(f'{each:.4g}' for each in written)}"
+        ),
         lead=(
-            f"Many spectra have this RGB under {sensor.illuminant}. Drag its colour under another light: the spectrum "
+            f"Many spectra have this RGB under {sensor.illuminant}. Drag its colour "
+            "under another light: the spectrum "
             f"follows, and the colour under {sensor.illuminant} stays."
         ),
         build=sensor.illuminant,
@@ -64,7 +77,9 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
 
 
 def _model(sensor: Sensor, answer: Array, rgb: Array) -> dict[str, Any]:
-    """Linear part of the answer, basis in the metric of least change, and the RGB to keep."""
+    """Linear part of the answer, basis in the metric of least change, and the RGB to
+    keep.
+    """
     model = Moments(MAX_COUNT, *sensor.range[:2])
     inside = np.clip(answer, MARGIN, 1 - MARGIN)
     basis = model.basis(sensor.wavelengths) / np.sqrt(model.metric_diagonal())
@@ -97,7 +112,9 @@ def _view(light: Light, to_rgb: Array) -> dict[str, Any]:
 
 
 def _written(cube: Cube, rgb: Array) -> str | list[float]:
-    """The colour as a file of looks has it: '#rrggbb' where that is exact, else linear RGB."""
+    """The colour as a file of looks has it: '#rrggbb' where that is exact, else linear
+    RGB.
+    """
     codes = np.asarray(cube.encode(rgb))
     whole = np.rint(codes)
     if (np.abs(codes - whole) <= CODE_SLACK).all():

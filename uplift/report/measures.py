@@ -22,7 +22,9 @@ def delta_e_under(lights: Iterable[Light], first: Array, second: Array) -> Array
 
 
 def mean_p95_max(delta_e: Array) -> dict[str, float]:
-    """Summarise ΔE00 by the mean, the value that 95 % stay within, and the largest value."""
+    """Summarise ΔE00 by the mean, the value that 95 % stay within, and the largest
+    value.
+    """
     return {
         "mean": float(delta_e.mean()),
         "p95": float(np.quantile(delta_e, 0.95)),
@@ -34,9 +36,11 @@ MAX_LISTED = 24  # nodes over the threshold that a report lists
 
 
 def collect_failures(data: CubeData) -> dict[str, Any]:
-    """Failures that a cube records, as the report's JSON has them: the worst nodes over the threshold first.
+    """Failures that a cube records, as the report's JSON has them: the worst nodes over
+    the threshold first.
 
-    Entries are ``left_out`` by earlier versions only, and ``skipped`` where the atlas reader could not use them.
+    Entries are ``left_out`` by earlier versions only, and ``skipped`` where the atlas
+    reader could not use them.
     """
     points, recorded = data.points, data.provenance
     failed = np.isin(points.status, (Status.UNFITTED, Status.UNREALISABLE))
@@ -63,9 +67,11 @@ def collect_failures(data: CubeData) -> dict[str, Any]:
 
 
 def compute_smoothness(data: CubeData) -> tuple[NDArray[np.float32], Array]:
-    """rms differences (k,) over wavelength between neighbours, each pair once, and RGB (2, 3) of the largest's pair.
+    """rms differences (k,) over wavelength between neighbours, each pair once, and RGB
+    (2, 3) of the largest's pair.
 
-    The lattice is processed by planes of equal red: spectra of two planes are in memory at a time.
+    The lattice is processed by planes of equal red: spectra of two planes are in memory
+    at a time.
     """
     dim, wavelengths, parts = data.lattice.dim, data.sensor.wavelengths, []
     none = spectra = np.full(
@@ -102,7 +108,9 @@ SEED = 20200617  # all reports use the same random colours, so that they can be 
 
 
 def round_trip_errors(cube: Cube) -> dict[str, Array]:
-    """Compute ΔE00 (n,) between random colours and those of their spectra, by mode of lookup."""
+    """Compute ΔE00 (n,) between random colours and those of their spectra, by mode of
+    lookup.
+    """
     rgb, sensor = _random_rgb(cube.data), cube.data.sensor
     rgb = rgb[cube.covers(rgb)]
     return {
@@ -112,7 +120,9 @@ def round_trip_errors(cube: Cube) -> dict[str, Array]:
 
 
 def _random_rgb(data: CubeData) -> Array:
-    """Linear RGB (n, 3), uniform in the cube or, if it is sparse, in its complete cells."""
+    """Linear RGB (n, 3), uniform in the cube or, if it is sparse, in its complete
+    cells.
+    """
     random = np.random.default_rng(SEED)
     rgb = random.random((COLOURS, 3))
     if data.complete_cells is None:
@@ -125,12 +135,16 @@ def _random_rgb(data: CubeData) -> Array:
     )
 
 
-TOLERANCE = 1.25  # largest factor, in both directions, between actual and predicted errors that counts as agreement
+# largest factor, in both directions, between actual and predicted errors that counts as
+# agreement
+TOLERANCE = 1.25
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """Actual errors of entries against predicted ones, ΔE00 under the cube's error illuminant."""
+    """Actual errors of entries against predicted ones, ΔE00 under the cube's error
+    illuminant.
+    """
 
     count: int  # Number of entries
     actual: (
@@ -144,7 +158,9 @@ class Calibration:
 
     @property
     def verdict(self) -> int:
-        """Return 0 if both agree, 1 if the actual errors are larger, −1 if they are smaller."""
+        """Return 0 if both agree, 1 if the actual errors are larger, −1 if they are
+        smaller.
+        """
         if self.actual > TOLERANCE * self.predicted:
             return 1
         return -1 if self.predicted > TOLERANCE * self.actual else 0
@@ -163,7 +179,9 @@ class Calibration:
 def check_calibration(
     actual: Array, predicted: Array | None, bound: Array | None
 ) -> Calibration | None:
-    """Compare actual errors (n,) with standard errors and error bounds (n,); None if the cube has none."""
+    """Compare actual errors (n,) with standard errors and error bounds (n,); None if
+    the cube has none.
+    """
     if predicted is None or bound is None:
         return None
     mean, ratio = (

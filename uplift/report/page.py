@@ -68,7 +68,9 @@ def to_json(assessment: Assessment) -> dict[str, Any]:
 
 
 def swatches(errors: EntryErrors, sensor: Sensor) -> list[tuple[str, ...]]:
-    """``#rrggbb`` of every entry under a light: target, answer and, for the cube's own entries, the lattice."""
+    """``#rrggbb`` of every entry under a light: target, answer and, for the cube's own
+    entries, the lattice.
+    """
     spectra = [
         errors.target,
         errors.answers.spectra,
@@ -213,7 +215,9 @@ def _failed_points(assessment: Assessment) -> Iterator[dict[str, Any]]:
 
 
 def _compared(assessment: Assessment, count: int) -> Iterator[dict[str, list[Swatch]]]:
-    """Swatches and ΔE00 of the first entries: rows of measured, answered and alternatives, by light."""
+    """Swatches and ΔE00 of the first entries: rows of measured, answered and
+    alternatives, by light.
+    """
     if (entries := assessment.entries) is None:
         return
     answers = {"this cube": entries.answers, **assessment.alternatives}
@@ -229,7 +233,9 @@ def _compared(assessment: Assessment, count: int) -> Iterator[dict[str, list[Swa
 def _cells(
     lights: tuple[Sensor, ...], answer: Array, errors: Array | None
 ) -> list[Swatch]:
-    """Colour and ΔE00 of a spectrum (N,) under each light; an empty colour for an unknown spectrum."""
+    """Colour and ΔE00 of a spectrum (N,) under each light; an empty colour for an
+    unknown spectrum.
+    """
     if np.isnan(answer).any():
         return [("", None)] * len(lights)
     codes = [hex_codes(sensor.rgb(answer[None]))[0] for sensor in lights]
@@ -238,7 +244,9 @@ def _cells(
 
 
 def _describe(value: Any) -> str:
-    """Text of nested JSON values: names and values, separated by commas; the key ``name`` is omitted."""
+    """Text of nested JSON values: names and values, separated by commas; the key
+    ``name`` is omitted.
+    """
     if isinstance(value, Mapping):
         return ", ".join(
             _describe(inner)

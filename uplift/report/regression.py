@@ -1,4 +1,6 @@
-"""Comparison of a stored cube with a rebuilt one: whether this version reproduces stored cubes."""
+"""Comparison of a stored cube with a rebuilt one: whether this version reproduces
+stored cubes.
+"""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,23 +19,28 @@ from uplift.models import reflectance
 from uplift.report.diff import pair_entries
 from uplift.report.measures import delta_e_under
 
-# Largest differences allowed between machines: at least thirty times the effect of other instruction sets
-# (docs/data/stability-determinism.json). On one machine there are none, for any number of threads.
+# Largest differences allowed between machines: at least thirty times the effect of
+# other instruction sets (docs/data/stability-determinism.json). On one machine there
+# are none, for any number of threads.
 LIMITS = {"rgb": 1e-6, "spectra_max": 1e-5, "spectra_rms": 1e-7} | {
     f"delta_e_{name}": 1e-4 for name in REGRESSION_LIGHTS
 }
 MOVED = LIMITS[f"delta_e_{REGRESSION_LIGHTS[0]}"]
-# Largest difference of nodes. They are the same on every CPU since version 0.2. Cubes of earlier versions have
-# the powers of numpy, which instruction sets round differently.
+# Largest difference of nodes. They are the same on every CPU since version 0.2. Cubes
+# of earlier versions have the powers of numpy, which instruction sets round
+# differently.
 NODE_TOLERANCE = 1e-12
-# Linear RGB within the object-colour solid. Nodes of wide gamuts nearer to its boundary have spectra close to box
-# functions, and many of these meet the colour equally well: rounding decides between them.
+# Linear RGB within the object-colour solid. Nodes of wide gamuts nearer to its boundary
+# have spectra close to box functions, and many of these meet the colour equally well:
+# rounding decides between them.
 BOUNDARY_MARGIN = 1e-3
 
 
 @dataclass(frozen=True)
 class EntryChange:
-    """An atlas entry that was removed, added, or moved: by the largest ΔE00 under `REGRESSION_LIGHTS`."""
+    """An atlas entry that was removed, added, or moved: by the largest ΔE00 under
+    `REGRESSION_LIGHTS`.
+    """
 
     name: str
     change: Literal["removed", "added", "moved"]
@@ -45,8 +52,8 @@ class RebuildDifference:
     """Differences between a stored cube and a rebuilt one."""
 
     path: Path  # File of the stored cube
-    # Largest differences by the names in `LIMITS`, over the entries and the nodes whose spectra are well
-    # determined
+    # Largest differences by the names in `LIMITS`, over the entries and the nodes whose
+    # spectra are well determined
     measures: dict[str, float]
     stored_counts: dict[
         str, int
@@ -58,7 +65,9 @@ class RebuildDifference:
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Return the measures over their limits or NaN, ``status`` if the counts differ, and ``entries`` likewise."""
+        """Return the measures over their limits or NaN, ``status`` if the counts
+        differ, and ``entries`` likewise.
+        """
         over = [
             name for name, value in self.measures.items() if not value <= LIMITS[name]
         ]
@@ -131,9 +140,11 @@ def compare_rebuilt(
 
 
 def _well_determined(data: CubeData) -> Mask:
-    """Nodes (n,) whose spectra do not depend on the machine: all, if the space has no unrealisable nodes.
+    """Nodes (n,) whose spectra do not depend on the machine: all, if the space has no
+    unrealisable nodes.
 
-    The smallest lattices have only nodes on the boundary of realisable colours: those that were fitted are compared.
+    The smallest lattices have only nodes on the boundary of realisable colours: those
+    that were fitted are compared.
     """
     unrealisable = data.points.status == Status.UNREALISABLE
     if not unrealisable.any():

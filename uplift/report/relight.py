@@ -1,7 +1,8 @@
-"""Colours of an image under other lights, by products of RGB and by spectra of cubes; a figure and a page of them.
+"""Colours of an image under other lights, by products of RGB and by spectra of cubes; a
+figure and a page of them.
 
-The figure has a row per light, a column per method, and a map of the differences. The page has two methods on the two
-sides of a line that moves.
+The figure has a row per light, a column per method, and a map of the differences. The
+page has two methods on the two sides of a line that moves.
 """
 
 import base64
@@ -43,13 +44,17 @@ from uplift.viz.figure import (
 )
 from uplift.viz.html import render, resource
 
-RGB_PRODUCT = "RGB × light"  # name of the method that multiplies the RGB of the image by those of the light
+# name of the method that multiplies the RGB of the image by those of the light
+RGB_PRODUCT = "RGB × light"
 MIN_MAP_LIMIT = (
     4  # smallest ΔE00 at the dark end of maps: invisible differences stay pale
 )
-MAP_EXPONENT = 0.5  # maps are darker by the root of ΔE00, so that one scale serves daylight and sodium lamps
-# Share of the largest linear sRGB component of a light below which its smallest is that of a colour, not of a white:
-# lamps from 2500 K on are above, sodium lamps and candles below.
+# maps are darker by the root of ΔE00, so that one scale serves daylight and sodium
+# lamps
+MAP_EXPONENT = 0.5
+# Share of the largest linear sRGB component of a light below which its smallest is that
+# of a colour, not of a white: lamps from 2500 K on are above, sodium lamps and candles
+# below.
 MIN_WHITE = 0.05
 JPEG_QUALITY = 92
 
@@ -59,9 +64,12 @@ class Rendering:
     """An image under one light."""
 
     sensor: Sensor  # The light with an sRGB screen, whose white is that of the light
-    # Linear RGB (height, width, 3) of ``sensor`` by the name of the method; `RGB_PRODUCT` is the first
+    # Linear RGB (height, width, 3) of ``sensor`` by the name of the method;
+    # `RGB_PRODUCT` is the first
     colours: Mapping[str, Floats]
-    tint: Array  # (3, 3): from these colours, white-balanced, to linear sRGB that keeps the tint of the light
+    # (3, 3): from these colours, white-balanced, to linear sRGB that keeps the tint of
+    # the light
+    tint: Array
 
     @property
     def light(self) -> str:
@@ -76,7 +84,9 @@ class Rendering:
 
     @cached_property
     def differences(self) -> dict[tuple[str, str], Array]:
-        """ΔE00 (height, width) between two methods, relative to the white of the light, for all pairs of them."""
+        """ΔE00 (height, width) between two methods, relative to the white of the light,
+        for all pairs of them.
+        """
         lab = {
             method: rgb_to_lab(self.sensor, colours)
             for method, colours in self.colours.items()
@@ -93,13 +103,17 @@ class Rendering:
         return bool(white.min() >= MIN_WHITE * white.max())
 
     def is_balanced(self, adapt: bool | None) -> bool:
-        """Whether the light is shown as white: ``adapt``, or by default whether it looks white."""
+        """Whether the light is shown as white: ``adapt``, or by default whether it
+        looks white.
+        """
         return self.looks_white if adapt is None else adapt
 
     def screen_codes(self, method: str, *, balanced: bool) -> NDArray[np.uint8]:
-        """Return 8-bit sRGB codes (height, width, 3) of a method; colours outside the gamut are desaturated.
+        """Return 8-bit sRGB codes (height, width, 3) of a method; colours outside the
+        gamut are desaturated.
 
-        Colours that are not ``balanced`` have the tint of the light, as bright as its white fits the screen.
+        Colours that are not ``balanced`` have the tint of the light, as bright as its
+        white fits the screen.
         """
         colours = self.colours[method]
         if not balanced:
@@ -154,9 +168,11 @@ def relight(
     reduction: int = 1,
     threads: int = 2,
 ) -> Relit:
-    """Compute the colours of an image, linear RGB (height, width, 3), under lights, by each of the cubes.
+    """Compute the colours of an image, linear RGB (height, width, 3), under lights, by
+    each of the cubes.
 
-    ``opacity`` (height, width, 1) multiplies them; ``reduction`` is that of the image, along each side.
+    ``opacity`` (height, width, 1) multiplies them; ``reduction`` is that of the image,
+    along each side.
     """
     sensor = common_sensor(cube.data for cube in cubes.values())
     screens = display_sensors(lights, sensor.observer, *sensor.range)
@@ -183,7 +199,9 @@ def relight(
 
 
 def _by_product(sensor: Sensor, rgb: Floats, screen: Sensor) -> Floats:
-    """Multiply by the RGB of the light, as renderers do, and adapt the product to the white of the screen."""
+    """Multiply by the RGB of the light, as renderers do, and adapt the product to the
+    white of the screen.
+    """
     light = sensor.xyz_to_rgb @ screen.light.white
     to_screen = screen.xyz_to_rgb @ sensor.rgb_to_xyz
     return np.asarray((rgb * light) @ to_screen.T, dtype=np.float32)
@@ -212,7 +230,8 @@ def write_relit_sheet(
 ) -> None:
     """Write relit images as one figure: PNG, SVG or PDF, by the suffix of its file.
 
-    With ``adapt`` the white of each light is shown as white; by default if it `looks_white`.
+    With ``adapt`` the white of each light is shown as white; by default if it
+    `looks_white`.
     """
     rows = [(image, rendering) for image in relit for rendering in image.renderings]
     first, second = map(figure_text, relit[0].shown_pair)
@@ -268,7 +287,10 @@ def _draw_row(
         show_image(panel, codes, interpolation="antialiased")
         if method != RGB_PRODUCT:
             found = mean_p95_max(rendering.differences[RGB_PRODUCT, method])
-            text = f"ΔE00 from RGB × light: mean {found['mean']:.1f}, 95 % {found['p95']:.1f}"
+            text = (
+                f"ΔE00 from RGB × light: mean {found['mean']:.1f}, 95 % "
+                f"{found['p95']:.1f}"
+            )
             panel.set_xlabel(text, fontsize=9, color=GREY)
     state = "white-balanced" if balanced else "tinted"
     axes[0].set_ylabel(
@@ -282,9 +304,11 @@ def _draw_row(
 
 
 def relit_page(relit: Sequence[Relit], *, adapt: bool | None = None) -> str:
-    """Render relit images as one self-contained HTML page. It opens under the light with the largest differences.
+    """Render relit images as one self-contained HTML page. It opens under the light
+    with the largest differences.
 
-    The page has both white-balanced and tinted pictures, and begins with those that ``adapt`` names.
+    The page has both white-balanced and tinted pictures, and begins with those that
+    ``adapt`` names.
     """
     first = relit[0]
     changes = []
@@ -297,7 +321,10 @@ def relit_page(relit: Sequence[Relit], *, adapt: bool | None = None) -> str:
     return render(
         "report/templates/relight_page.html.j2",
         title="Images under other lights",
-        lead="RGB multiplied by the light, against spectra under the light. Drag the line, or use the arrow keys.",
+        lead=(
+            "RGB multiplied by the light, against spectra under the light. Drag the "
+            "line, or use the arrow keys."
+        ),
         lights=[rendering.light_label for rendering in first.renderings],
         balanced=[rendering.is_balanced(adapt) for rendering in first.renderings],
         methods=first.methods,
@@ -310,10 +337,12 @@ def relit_page(relit: Sequence[Relit], *, adapt: bool | None = None) -> str:
 
 
 def _section(image: Relit, limit: float) -> dict[str, Any]:
-    """One relit image: its layers, and a row of the table for each light and pair of methods.
+    """One relit image: its layers, and a row of the table for each light and pair of
+    methods.
 
-    A layer has the number of its ``light``, and ``shows`` the number of a method or 'first-second' of a map. The
-    original, whose number follows those of the methods, has no light. Only layers of methods are ``balanced`` or not.
+    A layer has the number of its ``light``, and ``shows`` the number of a method or
+    'first-second' of a map. The original, whose number follows those of the methods,
+    has no light. Only layers of methods are ``balanced`` or not.
     """
     layers = [_layer(image.name, image.original, shows=str(len(image.methods)))]
     rows = []
@@ -365,7 +394,9 @@ def _layer(
 
 
 def _encoded(codes: NDArray[np.uint8], kind: str) -> str:
-    """Encode 8-bit codes (height, width, 3) as the URL of a JPEG, or of a PNG, which has them exactly."""
+    """Encode 8-bit codes (height, width, 3) as the URL of a JPEG, or of a PNG, which
+    has them exactly.
+    """
     import OpenImageIO
 
     height, width, channels = codes.shape

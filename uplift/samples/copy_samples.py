@@ -24,10 +24,11 @@ def sample_path(name: str) -> Path:
 
 
 def copy_samples(folder: StrPath, *, force: bool = False) -> tuple[Path, ...]:
-    """Copy the sample files into a folder, which is created. Equal files that are there already stay as they are.
+    """Copy the sample files into a folder, which is created. Equal files that are there
+    already stay as they are.
 
-    Raises `OutputError` if the folder cannot be written, or without ``force`` has another file of the same name;
-    nothing is copied then.
+    Raises `OutputError` if the folder cannot be written, or without ``force`` has
+    another file of the same name; nothing is copied then.
     """
     copies = {Path(folder) / name: sample_path(name) for name in sample_names()}
     missing = {

@@ -1,1 +1,3 @@
-"""Choices for the rendering of a scene: smallest cube, fewest wavelengths, cheapest representation, quadrature."""
+"""Choices for the rendering of a scene: smallest cube, fewest wavelengths, cheapest
+representation, quadrature.
+"""

@@ -1,8 +1,9 @@
-"""Swatches whose measurement would lower the errors of a scene most, by the standard errors of a cube.
+"""Swatches whose measurement would lower the errors of a scene most, by the standard
+errors of a cube.
 
-The square of a standard error is a part that the measurement of a material lowers and a rest (docs/mathematics.md, 7).
-The first is supposed to fall as the posterior variance of the kriging does. Swatches are chosen one after the other,
-each of the largest gain.
+The square of a standard error is a part that the measurement of a material lowers and a
+rest (docs/mathematics.md, 7). The first is supposed to fall as the posterior variance
+of the kriging does. Swatches are chosen one after the other, each of the largest gain.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,7 +26,8 @@ from uplift.lookup.light_errors import light_errors
 from uplift.viz.figure import ACCENT, colour_map, figure_text, new_figure, show_image
 
 STEPS = (1, 2, 4, 8)
-"""Bins along each channel that are joined; the first that leave few colours are taken."""
+"""Bins along each channel that are joined; the first that leave few colours are taken.
+"""
 MAX_COLOURS = 2048
 BLOCK_ROWS = 256
 """Swatches whose gains are computed at a time."""
@@ -35,11 +37,15 @@ MIN_CHIPS = 8
 ALIKE = 1.0
 """Distance in L*a*b* of pixels that have the colour of a swatch, for a plot."""
 TINY = 1e-9
-"""Variance, relative to that of an unknown material, below which nothing is left to measure."""
+"""Variance, relative to that of an unknown material, below which nothing is left to
+measure.
+"""
 
 
 def colour_areas(images: Images, sensor: Sensor) -> PixelSample:
-    """Average the pixels of images in bins of encoded RGB. Raises `TextureError`, `ColourError` and `OptionError`."""
+    """Average the pixels of images in bins of encoded RGB. Raises `TextureError`,
+    `ColourError` and `OptionError`.
+    """
     sums = np.zeros((4, BINS**3))
     for path in images.paths:
         for rgb in images.colours(path, sensor):
@@ -64,9 +70,11 @@ def colour_areas(images: Images, sensor: Sensor) -> PixelSample:
 
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
-    """Standard errors of n colours of some area (n,) under L lights, √(c ``unknown`` + ``rest``).
+    """Standard errors of n colours of some area (n,) under L lights, √(c ``unknown`` +
+    ``rest``).
 
-    c is the diagonal of the posterior ``covariance`` (n, n) of kriging, the others are squares of ΔE00 (n, L).
+    c is the diagonal of the posterior ``covariance`` (n, n) of kriging, the others are
+    squares of ΔE00 (n, L).
     """
 
     area: Array
@@ -85,7 +93,9 @@ class Uncertainty:
         return float(self.errors.mean(axis=-1) @ self.area)
 
     def by_light(self) -> list[dict[str, float]]:
-        """Return the mean error under each light, and the error that 95 % of the area stays within."""
+        """Return the mean error under each light, and the error that 95 % of the area
+        stays within.
+        """
         p95 = np.quantile(
             self.errors, 0.95, axis=0, weights=self.area, method="inverted_cdf"
         )
@@ -93,7 +103,9 @@ class Uncertainty:
         return [{"mean": mean, "p95": bound} for mean, bound in pairs]
 
     def gains(self) -> Array:
-        """Return by how much the measurement of each colour (n,) lowers the mean error."""
+        """Return by how much the measurement of each colour (n,) lowers the
+        mean error.
+        """
         variance = np.diag(self.covariance)
         found = np.empty(len(variance))
         for rows in blocks(len(found), BLOCK_ROWS):
@@ -122,7 +134,9 @@ class Uncertainty:
 def uncertainty(
     cube: Cube, colours: PixelSample, lights: Sequence[Light]
 ) -> Uncertainty:
-    """Return the errors of a cube at the colours of a scene. Raises `OptionError` if it has no left-out entries."""
+    """Return the errors of a cube at the colours of a scene. Raises `OptionError` if it
+    has no left-out entries.
+    """
     data, prior = cube.data, cube.data.provenance.get("prior", {})
     kernel = Kernel(
         prior.get("length", DEFAULT.length), prior.get("noise", DEFAULT.noise)
@@ -144,8 +158,9 @@ def uncertainty(
 class Swatch:
     """A colour to measure, by its number in the scene.
 
-    ``error`` is the mean standard error of the colour before anything is measured, ``gain`` the amount by which the
-    mean error of the scene falls, and ``mean_after`` what remains.
+    ``error`` is the mean standard error of the colour before anything is measured,
+    ``gain`` the amount by which the mean error of the scene falls, and ``mean_after``
+    what remains.
     """
 
     colour: int
@@ -157,7 +172,9 @@ class Swatch:
 
 @single_threaded_blas()
 def advise(scene: Uncertainty, count: int) -> tuple[list[Swatch], Uncertainty]:
-    """Choose up to ``count`` swatches, the best first, and return what remains. Those without a gain are left out."""
+    """Choose up to ``count`` swatches, the best first, and return what remains. Those
+    without a gain are left out.
+    """
     if not 1 <= count <= MAX_SWATCHES:
         raise OptionError(f"count must be in [1, {MAX_SWATCHES}], got {count}")
     chosen: list[Swatch] = []
@@ -186,9 +203,11 @@ def draw_advice(
     lights: Sequence[Light],
     swatches: Sequence[tuple[str, Array]],
 ) -> Any:
-    """Draw images, linear RGB (height, width, 3) by path, their mean standard errors, and numbered swatches.
+    """Draw images, linear RGB (height, width, 3) by path, their mean standard errors,
+    and numbered swatches.
 
-    The swatches are linear RGB (3,) and the text below each. Their numbers stand at the pixels of the nearest colours.
+    The swatches are linear RGB (3,) and the text below each. Their numbers stand at the
+    pixels of the nearest colours.
     """
     sensor, estimates = (
         cube.data.sensor,
@@ -218,7 +237,10 @@ def draw_advice(
             vmax=largest,
         )
         names = ", ".join(light.name for light in lights)
-        title = f"expected ΔE00 between answer and measurement\naveraged over {names}; dark: large"
+        title = (
+            f"expected ΔE00 between answer and measurement\naveraged over {names}; "
+            "dark: large"
+        )
         errors.set_title(title, fontsize=9, loc="left")
         row.colorbar(shown, ax=errors, format="%.1f")
     box = {"boxstyle": "circle", "facecolor": "white", "edgecolor": ACCENT}

@@ -1,11 +1,14 @@
-"""Gaussian quadrature for weight functions given as samples, including functions that change sign.
+"""Gaussian quadrature for weight functions given as samples, including functions that
+change sign.
 
-The weight function is a discrete measure: points and their masses. For an evenly sampled function the masses are its
-samples, multiplied by the step where the scale of the weights matters.
+The weight function is a discrete measure: points and their masses. For an evenly
+sampled function the masses are its samples, multiplied by the step where the scale of
+the weights matters.
 
-The common three-term recurrence fails where a lower order has no orthogonal polynomial. Here the measure is expanded
-in polynomials that are orthonormal with respect to its absolute value (Stieltjes procedure), and the nodes are the
-generalised eigenvalues of two such matrices. For masses of one sign this is the method of Golub & Welsch 1969,
+The common three-term recurrence fails where a lower order has no orthogonal polynomial.
+Here the measure is expanded in polynomials that are orthonormal with respect to its
+absolute value (Stieltjes procedure), and the nodes are the generalised eigenvalues of
+two such matrices. For masses of one sign this is the method of Golub & Welsch 1969,
 "Calculation of Gauss quadrature rules", Mathematics of Computation 23.
 """
 
@@ -22,12 +25,16 @@ from uplift.common.errors import OptionError
 SINGULAR_TOLERANCE = 1e-11
 """Singular values below this fraction of the largest count as zero."""
 NODE_TOLERANCE = 1e-7
-"""Distances between nodes and imaginary parts below this fraction of half the range count as zero."""
+"""Distances between nodes and imaginary parts below this fraction of half the range
+count as zero.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class QuadratureRule:
-    """``sum(weights * f(nodes))`` approximates ``sum(masses * f(points))``; nodes (n,) ascend within the points."""
+    """``sum(weights * f(nodes))`` approximates ``sum(masses * f(points))``; nodes (n,)
+    ascend within the points.
+    """
 
     nodes: Array
     weights: Array
@@ -37,11 +44,13 @@ class QuadratureRule:
 
 
 def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRule:
-    """Compute the rule of ``order`` nodes that is exact for polynomials of degree below ``2 * order``.
+    """Compute the rule of ``order`` nodes that is exact for polynomials of degree below
+    ``2 * order``.
 
-    Points (N,) ascend. Masses (N,) of one sign have a rule of every order up to their number. Masses of both signs have
-    no rule of an order without orthogonal polynomial, or whose nodes are complex, coincide, or lie outside the points:
-    raises `OptionError` (``undefined-rule``) with the reason.
+    Points (N,) ascend. Masses (N,) of one sign have a rule of every order up to their
+    number. Masses of both signs have no rule of an order without orthogonal polynomial,
+    or whose nodes are complex, coincide, or lie outside the points: raises
+    `OptionError` (``undefined-rule``) with the reason.
 
     >>> gauss_rule([-1, 0, 1], [1, 1, 1], 2).nodes.round(4)
     array([-0.8165,  0.8165])
@@ -79,7 +88,9 @@ def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRu
 def interpolatory_rule(
     nodes: ArrayLike, points: Array, masses: Array
 ) -> QuadratureRule:
-    """Compute the rule at distinct nodes (n,) that is exact for polynomials of degree below their number."""
+    """Compute the rule at distinct nodes (n,) that is exact for polynomials of degree
+    below their number.
+    """
     nodes = np.sort(np.asarray(nodes, dtype=float))
     degree = len(nodes) - 1
     values = chebyshev.chebvander(_to_unit(nodes, points), degree)
@@ -94,9 +105,11 @@ def _undefined(reason: str) -> OptionError:
 
 
 def _orthonormal_basis(x: Array, masses: Array, count: int) -> Array:
-    """Polynomials of degree 0, 1, … at x, times √masses: orthonormal columns (N, count).
+    """Polynomials of degree 0, 1, … at x, times √masses: orthonormal columns (N,
+    count).
 
-    Each is orthogonalised twice against all lower ones, as the three-term recurrence loses orthogonality.
+    Each is orthogonalised twice against all lower ones, as the three-term recurrence
+    loses orthogonality.
     """
     columns = np.sqrt(masses / masses.sum())[:, None]
     for _ in range(count - 1):

@@ -1,1 +1,3 @@
-"""Figures, contact sheets, HTML pages and formatting of numbers, shared by the packages above the core."""
+"""Figures, contact sheets, HTML pages and formatting of numbers, shared by the packages
+above the core.
+"""

@@ -1,4 +1,6 @@
-"""Chromaticity diagrams (CIE 1976 u′v′) of an emission table: colours, expected errors, and the exact lamps."""
+"""Chromaticity diagrams (CIE 1976 u′v′) of an emission table: colours, expected errors,
+and the exact lamps.
+"""
 
 from dataclasses import dataclass
 from typing import Any
@@ -61,7 +63,9 @@ def light_figure(table: EmissionTable) -> Any:
 
 
 def draw_colours(axes: Any, table: EmissionTable) -> None:
-    """Draw the colours of lights, the triangle of the RGB space and the wavelengths of the spectral locus."""
+    """Draw the colours of lights, the triangle of the RGB space and the wavelengths of
+    the spectral locus.
+    """
     _draw_map(axes, table, ALL, _codes(table, ALL))
     corners = chromaticity(table.xyz(np.eye(3)[[0, 1, 2, 0]]))
     axes.plot(
@@ -89,7 +93,8 @@ def draw_errors(axes: Any, table: EmissionTable) -> None:
 
 
 def draw_lamps(axes: Any, table: EmissionTable) -> None:
-    """Draw the part of the diagram that has the lamps, and name the standard illuminants and those with large discs.
+    """Draw the part of the diagram that has the lamps, and name the standard
+    illuminants and those with large discs.
 
     Circles are the discs in which answers blend to a lamp.
     """
@@ -114,7 +119,9 @@ def draw_lamps(axes: Any, table: EmissionTable) -> None:
 
 
 def lamp_window(table: EmissionTable) -> Window:
-    """Return the part of the diagram that has the lamps, of the proportions of `ALL`."""
+    """Return the part of the diagram that has the lamps, of the proportions
+    of `ALL`.
+    """
     uv = np.concatenate([table.data.entries.uv, table.data.lattice.white[None]])
     low, high = uv.min(axis=0) - MARGIN, uv.max(axis=0) + MARGIN
     full = np.array([ALL.u[1] - ALL.u[0], ALL.v[1] - ALL.v[0]])
@@ -124,7 +131,9 @@ def lamp_window(table: EmissionTable) -> Window:
 
 
 def _pixels(table: EmissionTable, window: Window) -> Array:
-    """Linear RGB (H, W, 3) of luminance 1 at the pixels of a window, v′ upwards; outside the locus that of its edge."""
+    """Linear RGB (H, W, 3) of luminance 1 at the pixels of a window, v′ upwards;
+    outside the locus that of its edge.
+    """
     step = (window.u[1] - window.u[0]) / PIXELS
     u, v = (
         low + step * (np.arange(round((high - low) / step)) + 0.5)
@@ -138,7 +147,9 @@ def _pixels(table: EmissionTable, window: Window) -> Array:
 
 
 def _codes(table: EmissionTable, window: Window) -> NDArray[np.uint8]:
-    """Encoded sRGB (H, W, 3) of the brightest colours of the chromaticities in a window."""
+    """Encoded sRGB (H, W, 3) of the brightest colours of the chromaticities in a
+    window.
+    """
     rgb = _pixels(table, window)
     brightest = np.clip(rgb / rgb.max(axis=-1, keepdims=True), 0, 1)
     return np.asarray(to_display_codes(brightest, table), dtype=np.uint8)
@@ -197,7 +208,9 @@ def _draw_wavelengths(axes: Any, table: EmissionTable) -> None:
 
 
 def _locus(table: EmissionTable) -> Array:
-    """u′v′ (N, 2) of single wavelengths; that of white where the observer does not respond."""
+    """u′v′ (N, 2) of single wavelengths; that of white where the observer does not
+    respond.
+    """
     responds = table.data.cmfs.sum(axis=1) > 0
     xyz = np.where(responds[:, None], table.data.cmfs, table.rgb_to_xyz.sum(axis=1))
     return chromaticity(xyz)

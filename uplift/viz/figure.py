@@ -1,4 +1,6 @@
-"""Figures: colours and style in one place, empty figures and axes, PNG, SVG and PDF output."""
+"""Figures: colours and style in one place, empty figures and axes, PNG, SVG and PDF
+output.
+"""
 
 import hashlib
 import io
@@ -41,7 +43,8 @@ STYLE: dict[str, Any] = {
 
 SUFFIXES = (".png", ".svg", ".pdf")  # formats of figures
 HAIR_SPACE = "\u200a"
-# Properties of the style sheet of pages in place of colours; it lightens all other colours in the dark scheme.
+# Properties of the style sheet of pages in place of colours; it lightens all other
+# colours in the dark scheme.
 PAGE_COLOURS = {
     INK: "var(--ink)",
     GREY: "var(--grey)",
@@ -76,8 +79,8 @@ def styled() -> AbstractContextManager[None]:
 def figure_text(text: str) -> str:
     """Prepare text that comes from a file for a figure, which shows it as it is.
 
-    matplotlib reads text between dollar signs as mathematics, and leaves labels that begin with an underscore out of
-    legends.
+    matplotlib reads text between dollar signs as mathematics, and leaves labels that
+    begin with an underscore out of legends.
     """
     shown = printable(text).replace("$", r"\$")
     return f"{HAIR_SPACE}{shown}" if shown.startswith("_") else shown
@@ -86,7 +89,9 @@ def figure_text(text: str) -> str:
 def new_figure(
     width: float, height: float, layout: Literal["constrained"] | None = "constrained"
 ) -> Any:
-    """Create an empty figure without a window. Raises `OutputError` without matplotlib."""
+    """Create an empty figure without a window. Raises `OutputError` without
+    matplotlib.
+    """
     matplotlib()
     from matplotlib.figure import Figure
 
@@ -108,7 +113,9 @@ def style_spectrum_axes(axes: Any) -> None:
 
 
 def show_image(axes: Any, image: NDArray[Any], **options: Any) -> Any:
-    """Draw an image without ticks and frame. Return what matplotlib's ``imshow`` returns."""
+    """Draw an image without ticks and frame. Return what matplotlib's ``imshow``
+    returns.
+    """
     axes.set(xticks=(), yticks=())
     axes.spines[:].set_visible(False)
     return axes.imshow(image, **options)
@@ -120,7 +127,8 @@ def write_png(
     """Write a figure as PNG."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    # Without this entry matplotlib writes its name and version, and files would differ between versions.
+    # Without this entry matplotlib writes its name and version, and files would differ
+    # between versions.
     content = io.BytesIO()
     FigureCanvasAgg(figure).print_png(content, metadata={"Software": "uplift"})
     _write(content, path, force)
@@ -133,7 +141,9 @@ def _write(content: io.BytesIO, path: str | os.PathLike[str], force: bool) -> No
 
 
 def check_suffix(path: str | os.PathLike[str]) -> str:
-    """Return the format of a figure's file, by its suffix. Raises `OutputError`, also without matplotlib."""
+    """Return the format of a figure's file, by its suffix. Raises `OutputError`, also
+    without matplotlib.
+    """
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in SUFFIXES:
         problem = (
@@ -149,7 +159,9 @@ def check_suffix(path: str | os.PathLike[str]) -> str:
 def write_figure(
     figure: Any, path: str | os.PathLike[str], *, force: bool = False
 ) -> None:
-    """Write a figure as PNG, SVG or PDF, by the suffix of its file. Equal figures give equal files."""
+    """Write a figure as PNG, SVG or PDF, by the suffix of its file. Equal figures give
+    equal files.
+    """
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 

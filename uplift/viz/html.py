@@ -1,9 +1,11 @@
 """Self-contained HTML pages from Jinja2 templates.
 
-A page loads nothing and runs no script but its own, by its content security policy. Templates are named by their path
-below the package, as ``report/templates/page.html.j2``, and lie next to the code that renders them. All values are
-escaped unless they are `markupsafe.Markup`; a name that a template does not receive is an error. The filters are the
-functions of `uplift.viz.format` under their own names, and ``fixed``.
+A page loads nothing and runs no script but its own, by its content security policy.
+Templates are named by their path below the package, as
+``report/templates/page.html.j2``, and lie next to the code that renders them. All
+values are escaped unless they are `markupsafe.Markup`; a name that a template does not
+receive is an error. The filters are the functions of `uplift.viz.format` under their
+own names, and ``fixed``.
 """
 
 import base64
@@ -23,10 +25,12 @@ __all__ = ["Markup", "Tooltip", "render", "resource"]
 
 
 class Tooltip(TypedDict):
-    """Tooltip of the markers of one row, for pages that extend ``viz/templates/interactive.html.j2``.
+    """Tooltip of the markers of one row, for pages that extend
+    ``viz/templates/interactive.html.j2``.
 
-    The parts of the picture that belong to row r have the identifiers ``marker-<panel>-<r>``, ``whisker-<panel>-<r>``
-    and ``label-<panel>-<r>``. ``family`` is the checkbox that hides them; ``lines`` are names and values, a line
+    The parts of the picture that belong to row r have the identifiers
+    ``marker-<panel>-<r>``, ``whisker-<panel>-<r>`` and ``label-<panel>-<r>``.
+    ``family`` is the checkbox that hides them; ``lines`` are names and values, a line
     without a name takes the full width.
     """
 
@@ -54,7 +58,8 @@ def content_security_policy(script: str) -> str:
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     scripts = f"'sha256-{digest}'" if script else "'none'"
     return (
-        f"default-src 'none'; script-src {scripts}; style-src 'unsafe-inline'; img-src data:; "
+        f"default-src 'none'; script-src {scripts}; style-src 'unsafe-inline'; "
+        "img-src data:; "
         "base-uri 'none'; form-action 'none'"
     )
 
@@ -80,7 +85,9 @@ def _environment() -> jinja2.Environment:
 
 
 def _finalize(value: Any) -> Any:
-    """Escape control characters and marks of writing direction in texts, which come from files."""
+    """Escape control characters and marks of writing direction in texts, which come
+    from files.
+    """
     if isinstance(value, str) and not isinstance(value, Markup):
         return "\n".join(map(printable, value.split("\n")))
     return value

@@ -1,4 +1,6 @@
-"""Cubes and atlases in notebooks: figures of spectra, and HTML. `Cube` and `Atlas` import it when needed."""
+"""Cubes and atlases in notebooks: figures of spectra, and HTML. `Cube` and `Atlas`
+import it when needed.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,9 @@ SWATCH = "display:inline-block;width:1.4em;height:1.4em;margin:1px;background:"
 SPARKLINE = (
     120,
     24,
-)  # width and height of the plot of an entry in pixels; the height is reflectance from 0 to 1
+    # width and height of the plot of an entry in pixels; the height is reflectance from
+    # 0 to 1
+)
 
 
 def plot_cube(cube: Cube, rgb: Array) -> Figure:
@@ -66,7 +70,9 @@ def cube_html(cube: Cube) -> Markup:
 
 
 def atlas_html(atlas: Atlas) -> Markup:
-    """Format an atlas as a table: a swatch under D65, the name and a small plot of each entry."""
+    """Format an atlas as a table: a swatch under D65, the name and a small plot of each
+    entry.
+    """
     shown, screen = atlas[:MAX_ROWS], sensor()
     spectra = resample(shown, screen.wavelengths).values
     codes = hex_codes(screen.rgb(spectra), screen)
@@ -101,8 +107,13 @@ def _sparkline(values: Array) -> Markup:
 def _facts(cube: Cube) -> dict[str, str]:
     points, size = cube.data.points.present, cube.data.lattice.size
     return {
-        "model": f"{cube.data.model.name}, {pluralise(cube.coefficient_count, 'coefficient')}",
-        "lattice": f"dim {cube.dim}, {np.count_nonzero(points):,} of {pluralise(size, 'node')}",
+        "model": (
+            f"{cube.data.model.name}, "
+            f"{pluralise(cube.coefficient_count, 'coefficient')}"
+        ),
+        "lattice": (
+            f"dim {cube.dim}, {np.count_nonzero(points):,} of {pluralise(size, 'node')}"
+        ),
         "RGB space": f"{cube.space} under {cube.illuminant}",
         "observer": cube.observer,
         "atlas entries": f"{len(cube.atlas_names):,}",

@@ -1,4 +1,6 @@
-"""Plots that commands write: spectra, powers of lights, strips of colour, and bounds of metamers in a* and b*."""
+"""Plots that commands write: spectra, powers of lights, strips of colour, and bounds of
+metamers in a* and b*.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -60,7 +62,9 @@ def plot_lights(
     *,
     force: bool = False,
 ) -> None:
-    """Plot spectral powers over wavelength as PNG, SVG or PDF, each in its own colour."""
+    """Plot spectral powers over wavelength as PNG, SVG or PDF, each in its
+    own colour.
+    """
     figure = new_figure(7.2, 4.0)
     axes = figure.subplots()
     for rgb, wavelengths, power in lights:
@@ -133,7 +137,9 @@ def plot_bounds(
     *,
     force: bool = False,
 ) -> None:
-    """Plot the region of each colour under each light, as PNG, SVG or PDF: a row per colour, a column per light."""
+    """Plot the region of each colour under each light, as PNG, SVG or PDF: a row per
+    colour, a column per light.
+    """
     panels = [(found, row) for found in blocks for row in range(len(found[0].xyz))][
         :MAX_COLOURS
     ]
@@ -206,7 +212,9 @@ def _extent(points: Array) -> Array:
 
 
 def _colours(screen: Sensor, extent: Array, lightness: float) -> Array:
-    """Colours (P, P, 3) on a screen of one lightness over a* and b*; those outside its gamut are desaturated."""
+    """Colours (P, P, 3) on a screen of one lightness over a* and b*; those outside its
+    gamut are desaturated.
+    """
     a, b = (np.linspace(low, high, PIXELS) for low, high in extent.tolist())
     lab = np.stack(np.broadcast_arrays(lightness, a[None, :], b[:, None]), axis=-1)
     linear = lab_to_xyz(lab.reshape(-1, 3), screen.light.white) @ screen.xyz_to_rgb.T

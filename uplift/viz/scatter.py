@@ -1,4 +1,6 @@
-"""Labels next to markers where they cover nothing, and the panels that they are placed in."""
+"""Labels next to markers where they cover nothing, and the panels that they are placed
+in.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -27,7 +29,9 @@ _MAX_DISTANCE = (
 
 @dataclass(frozen=True)
 class Label:
-    """A text next to the point (x, y) that it names; ``gid`` identifies it in an SVG file."""
+    """A text next to the point (x, y) that it names; ``gid`` identifies it in an SVG
+    file.
+    """
 
     text: str
     point: tuple[float, float]
@@ -39,9 +43,11 @@ class Label:
 def new_panels(
     rows: int, columns: int, panel: tuple[float, float], margins: Mapping[str, float]
 ) -> tuple[Any, Any]:
-    """Create a figure with a renderer, so that positions are known at once, and its axes (rows, columns).
+    """Create a figure with a renderer, so that positions are known at once, and its
+    axes (rows, columns).
 
-    ``panel`` is the size of a panel in inches, ``margins`` are those of ``subplots_adjust``.
+    ``panel`` is the size of a panel in inches, ``margins`` are those of
+    ``subplots_adjust``.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -63,7 +69,9 @@ def draw_labels(
     line: Array,
     fontsize: float = 7.5,
 ) -> None:
-    """Write the labels that have room next to the ``markers`` (M, 2) and the ``line`` (k, 2), bold ones first."""
+    """Write the labels that have room next to the ``markers`` (M, 2) and the ``line``
+    (k, 2), bold ones first.
+    """
     if not labels:
         return
     labels = sorted(labels, key=lambda label: not label.bold)
@@ -121,9 +129,11 @@ DIRECTIONS = np.array(
 
 
 def place_labels(anchors: Array, sizes: Array, markers: Array, panel: Array) -> Array:
-    """Choose corners (L, 2) for labels in turn, each the nearest to its anchor that covers nothing; NaN for none.
+    """Choose corners (L, 2) for labels in turn, each the nearest to its anchor that
+    covers nothing; NaN for none.
 
-    Labels have sizes (L, 2); they keep clear of one another, of markers (M, 2), and stay within a panel (4,).
+    Labels have sizes (L, 2); they keep clear of one another, of markers (M, 2), and
+    stay within a panel (4,).
     """
     placed = np.empty((0, 4))
     corners = np.full_like(anchors, np.nan)

@@ -1,9 +1,10 @@
 """Contact sheets: all slices of constant blue of a cube on one image.
 
-One panel per quantity with one colour per node, one tile per blue slice, and a legend; OpenEXR for colour work, PNG for
-viewing. The palettes are suitable for colour-vision deficiencies: a ramp of one hue, dark to light, and orange as
-highlight. Status colours differ by at least 16 ΔE00 for protanopes, deuteranopes and tritanopes (Machado et al. 2009),
-and the frequent regular nodes are inconspicuous.
+One panel per quantity with one colour per node, one tile per blue slice, and a legend;
+OpenEXR for colour work, PNG for viewing. The palettes are suitable for colour-vision
+deficiencies: a ramp of one hue, dark to light, and orange as highlight. Status colours
+differ by at least 16 ΔE00 for protanopes, deuteranopes and tritanopes (Machado et al.
+2009), and the frequent regular nodes are inconspicuous.
 """
 
 import math
@@ -27,7 +28,8 @@ from uplift.io.exr import blue_slices
 from uplift.viz.figure import figure_text, matplotlib
 
 TEXT_GREY = 0.75  # linear grey of the text
-DPI = 64  # A power of two: division is exact, so the canvas of the text has the size of the sheet
+# A power of two: division is exact, so the canvas of the text has the size of the sheet
+DPI = 64
 # The font comes with matplotlib.
 STYLE: dict[str, Any] = {
     "family": "DejaVu Sans",
@@ -40,9 +42,11 @@ Image = NDArray[np.float32]
 
 
 def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
-    """Write the contact sheet of a cube: linear RGB in a single-part ``.exr``, or sRGB in a ``.png``.
+    """Write the contact sheet of a cube: linear RGB in a single-part ``.exr``, or sRGB
+    in a ``.png``.
 
-    Panels show lattice RGB, fitting distance, status, and, of cubes that store them, standard error and round.
+    Panels show lattice RGB, fitting distance, status, and, of cubes that store them,
+    standard error and round.
     """
     check_sheet(path)
     check_output(path, force=force)
@@ -76,7 +80,9 @@ def check_sheet(path: StrPath) -> None:
 
 
 def _draw_text(image: Image, labels: tuple["Label", ...]) -> Image:
-    """Draw the labels on the image (height, width, 3) in the font that comes with matplotlib."""
+    """Draw the labels on the image (height, width, 3) in the font that comes with
+    matplotlib.
+    """
     matplotlib()
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -94,7 +100,9 @@ def _draw_text(image: Image, labels: tuple["Label", ...]) -> Image:
     return image + cover * (np.float32(TEXT_GREY) - image)
 
 
-PANEL = 640  # approximate width of a panel in pixels; a node has at least one, so panels of large lattices are wider
+# approximate width of a panel in pixels; a node has at least one, so panels of large
+# lattices are wider
+PANEL = 640
 GAP = 3  # pixels between tiles
 PANELS_PER_ROW = {3: 3, 4: 2, 5: 3}  # panels per row, by the number of panels
 LINES = 3  # lines of the legend below every panel
@@ -118,7 +126,9 @@ class Sheet:
 
 
 class Layout:
-    """Positions in pixels from the top left, for a number of panels with ``dim`` tiles each."""
+    """Positions in pixels from the top left, for a number of panels with ``dim`` tiles
+    each.
+    """
 
     def __init__(self, dim: int, panels: int) -> None:
         self.dim = dim
@@ -156,7 +166,9 @@ class Layout:
         return x + column * self.pitch, y + row * self.pitch
 
     def keys(self, panel: int) -> Iterator[tuple[int, int]]:
-        """Yield the top left pixels of keys below a panel: the left column, then the right one."""
+        """Yield the top left pixels of keys below a panel: the left column, then the
+        right one.
+        """
         x, y = self.origin(panel)
         for half, line in product(range(2), range(LINES)):
             yield (
@@ -166,7 +178,9 @@ class Layout:
 
 
 def compose(data: CubeData) -> Sheet:
-    """Compose the sheet. Every node is a square of ``Layout.scale`` pixels, in the order of `blue_slices`."""
+    """Compose the sheet. Every node is a square of ``Layout.scale`` pixels, in the
+    order of `blue_slices`.
+    """
     all_panels = panels(data)
     layout = Layout(data.lattice.dim, len(all_panels))
     width, height = layout.size
@@ -211,7 +225,9 @@ def _heading(data: CubeData, layout: Layout) -> Label:
     return Label(2 * layout.em, 2.75 * layout.em, "  ·  ".join(facts), 1.4 * layout.em)
 
 
-BACKGROUND = 0.03  # Linear grey, on which both bright colours and black are visible. Absent nodes have this colour.
+# Linear grey, on which both bright colours and black are visible. Absent nodes have
+# this colour.
+BACKGROUND = 0.03
 DECADES = 3  # decades of fitting distance below the threshold that the ramp spans
 
 KEY_STEPS = np.linspace(0, 1, 64)  # positions along a ramp in a legend
@@ -224,7 +240,8 @@ def _linear(*codes: str) -> Array:
 
 RAMP = _linear("0b1d51", "20509a", "3f8fc5", "8fc7e0", "e6f4f7")
 HIGHLIGHT = _linear("ff5a00")
-# Colours of every `Status` but absent, in its order. Unfitted nodes have the highlight colour.
+# Colours of every `Status` but absent, in its order. Unfitted nodes have the highlight
+# colour.
 STATUS = _linear("f0e442", "9bd4f5", "53708a", "00a878", "ff5a00", "6a1b4d")
 
 
@@ -246,7 +263,9 @@ class Panel:
 
 
 def panels(data: CubeData) -> tuple[Panel, ...]:
-    """Return panels of lattice RGB, fitting distance and status, and of standard error and round if available."""
+    """Return panels of lattice RGB, fitting distance and status, and of standard error
+    and round if available.
+    """
     quantities = [_rgb_panel(data), _distance_panel(data), _status_panel(data)]
     if data.points.standard_error is not None:
         quantities.append(
@@ -282,7 +301,10 @@ def _distance_panel(data: CubeData) -> Panel:
     within = np.clip(data.points.distance / data.threshold, 10.0**-DECADES, 1)
     over = data.points.distance > data.threshold
     low, high = data.threshold / 10**DECADES, data.threshold
-    exceeding = f"over the threshold: {_count(over)}; largest distance {data.points.distance.max():.2g}"
+    exceeding = (
+        f"over the threshold: {_count(over)}; largest distance "
+        f"{data.points.distance.max():.2g}"
+    )
     keys = (
         Key(_ramp(KEY_STEPS), f"{low:g} or less to {high:g}, logarithmic"),
         Key(HIGHLIGHT, exceeding),

@@ -164,7 +164,9 @@ def test_a_plate_of_index_1_is_the_layer_alone(two):
 
 @pytest.mark.parametrize("surface", SURFACES)
 def test_duntley_s_paint_becomes_kubelka_and_munk_s_and_creates_no_energy(rng, surface):
-    """In the limit of strong forward scattering in a beam, constants mix as Duncan's. Clear paint leaves white."""
+    """In the limit of strong forward scattering in a beam, constants mix as Duncan's.
+    Clear paint leaves white.
+    """
     K, B = rng.uniform(0.1, 2, (2, 2, 5))
     constants = np.stack([K, B, np.full_like(K, 1e8), K, B, B], axis=1)
     for ground in (surface.outside, 0.5, 1.0):

@@ -1,4 +1,6 @@
-"""Layers agree with the sum over interreflections, surfaces with the integral of Fresnel's equations."""
+"""Layers agree with the sum over interreflections, surfaces with the integral of
+Fresnel's equations.
+"""
 
 import numpy as np
 import pytest
@@ -33,7 +35,9 @@ def test_reflectance_on_a_ground_is_the_sum_of_all_reflections():
 
 
 def integrated(n):
-    """Integrate Fresnel's reflectance of unpolarised light over the hemisphere by the midpoint rule."""
+    """Integrate Fresnel's reflectance of unpolarised light over the hemisphere by the
+    midpoint rule.
+    """
     cosine = (np.arange(200_000) + 0.5) / 200_000
     inner = np.sqrt(1 - (1 - cosine**2) / n**2)
     s = (cosine - n * inner) / (cosine + n * inner)
@@ -47,7 +51,9 @@ def test_duntley_s_formula_is_the_integral_of_fresnel_s(n):
 
 
 def test_published_values():
-    """The thesis for an index of 1.5: 4 % (9.3) and 9 % (10.3); Judd 1942: 0.596 from within."""
+    """The thesis for an index of 1.5: 4 % (9.3) and 9 % (10.3); Judd 1942: 0.596 from
+    within.
+    """
     assert optics.fresnel_reflectance(1.5) == pytest.approx(0.04)
     assert optics.diffuse_reflectance(1.5) == pytest.approx(0.0918, abs=5e-5)
     assert optics.internal_reflectance(1.5) == pytest.approx(0.596, abs=5e-4)

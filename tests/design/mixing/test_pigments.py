@@ -1,4 +1,6 @@
-"""Kubelka and Munk's and Duntley's theories: equations as printed, integration, limits; K and S from colours."""
+"""Kubelka and Munk's and Duntley's theories: equations as printed, integration, limits;
+K and S from colours.
+"""
 
 from itertools import product
 
@@ -258,7 +260,9 @@ def test_duntley_creates_no_energy(rng, X):
 
 
 def test_isotropic_paint_in_a_beam_is_two_r_over_three_minus_r(rng):
-    """Eq. 10.8 in the limit of thick layers against the closed form, and its inverse."""
+    """Eq. 10.8 in the limit of thick layers against the closed form, and
+    its inverse.
+    """
     K, S = rng.uniform(0.01, 4, 30), rng.uniform(0.2, 3, 30)
     r = Pigment(K, S).opaque_reflectance()
     thick = duntley_layer(Flux(K / 2, S / 2, S / 2), Flux(K, S, S), 400.0).reflectance

@@ -1,4 +1,6 @@
-"""Models by name: criteria of Fishkin 1983, 10.4, heuristics, and mixtures of measured paints."""
+"""Models by name: criteria of Fishkin 1983, 10.4, heuristics, and mixtures of measured
+paints.
+"""
 
 import colorsys
 
@@ -29,7 +31,8 @@ COLOURS = np.array(
         [0.9, 0.8, 0.7],
     ]
 )
-# Criteria that each model passes with some margin; with one constant, the green is at the limit.
+# Criteria that each model passes with some margin; with one constant, the green is at
+# the limit.
 EXPECTED = {
     "pigments": {SELF, DARKER, LIGHTER, GREEN},
     "pigments in oil": {SELF, DARKER, LIGHTER},

@@ -26,7 +26,9 @@ def lamp(sensor) -> SpectrumSpec:
 
 @pytest.fixture(scope="session")
 def metamers(sensor, day, lamp) -> Palette:
-    """Palette of two paints that share a free colour by day and differ under the lamp."""
+    """Palette of two paints that share a free colour by day and differ
+    under the lamp.
+    """
     return Palette(
         sensor,
         (day, lamp),

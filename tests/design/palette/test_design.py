@@ -1,4 +1,6 @@
-"""Designs: bounds, optimality, missed goals, rows of the equations against their criteria, atlases and plots."""
+"""Designs: bounds, optimality, missed goals, rows of the equations against their
+criteria, atlases and plots.
+"""
 
 import dataclasses
 from itertools import product
@@ -65,7 +67,9 @@ def test_bounded_solutions_satisfy_the_optimality_conditions(sensor, model, seed
 
 
 def at_random(sensor, draw):
-    """Up to three given lights and three open materials with goals that may contradict one another."""
+    """Up to three given lights and three open materials with goals that may contradict
+    one another.
+    """
     names = draw.choice(
         ["D65", "A", "FL2", "FL11", "LED-RGB1", "HP1"],
         draw.integers(1, 4),
@@ -131,7 +135,9 @@ def test_a_goal_with_open_light_and_material_is_refused(metamers, model):
 
 
 def test_colours_of_the_factor_model_can_be_fitted(metamers, model):
-    """Equation 19: the goals hold in the factor model, and no longer in full spectra."""
+    """Equation 19: the goals hold in the factor model, and no longer in
+    full spectra.
+    """
     weights = {"model_error": 0.0, "smoothness": 0.0}
     found = design(dataclasses.replace(metamers, fit="factor-model", **weights), model)
     target = np.array([found.free["coat"], found.free["coat"]])
@@ -142,7 +148,9 @@ def test_colours_of_the_factor_model_can_be_fitted(metamers, model):
 
 @pytest.fixture
 def black(metamers):
-    """A paint that reflects at least 10 %, with the goals of grey by day and black under the lamp."""
+    """A paint that reflects at least 10 %, with the goals of grey by day and black
+    under the lamp.
+    """
     goals = (
         ColourGoal("soot", "day", rgb=np.full(3, 0.2)),
         ColourGoal("soot", "lamp", rgb=np.zeros(3)),
@@ -217,7 +225,9 @@ def test_all_results_are_finite(model, tmp_path, text):
 
 
 def test_the_objective_is_the_weighted_sum_of_all_criteria(metamers, model):
-    """Eq. 18 and 20–22 written out for any spectra, with a light to be designed and goals of weights 7 and 0."""
+    """Eq. 18 and 20–22 written out for any spectra, with a light to be designed and
+    goals of weights 7 and 0.
+    """
     pairs = zip(metamers.goals, (1, 1, 7, 0), strict=True)
     goals = tuple(dataclasses.replace(goal, weight=weight) for goal, weight in pairs)
     paint, odd = (

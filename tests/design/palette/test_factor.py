@@ -1,4 +1,6 @@
-"""Factor model: span, white, products, and colour errors well below those of RGB; products without sharpening."""
+"""Factor model: span, white, products, and colour errors well below those of RGB;
+products without sharpening.
+"""
 
 import numpy as np
 import pytest

@@ -1,4 +1,6 @@
-"""Pictures from files: labels as colours or greys, and float weights; layers of the ball are where rays meet them."""
+"""Pictures from files: labels as colours or greys, and float weights; layers of the
+ball are where rays meet them.
+"""
 
 import matplotlib.image
 import numpy as np

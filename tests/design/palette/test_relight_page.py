@@ -1,4 +1,6 @@
-"""The relighting page: its contents, and in Chromium input by mouse, touch and keys, and pixels against numpy."""
+"""The relighting page: its contents, and in Chromium input by mouse, touch and keys,
+and pixels against numpy.
+"""
 
 import base64
 import json
@@ -21,7 +23,9 @@ DISC = 84
 
 
 def arbitrary(lights=3, materials=4, m=7, size=(40, 56), title="Arbitrary"):
-    """Relighting with empty rows of pixels, and with colours inside and outside the display gamut."""
+    """Relighting with empty rows of pixels, and with colours inside and outside the
+    display gamut.
+    """
     draw = np.random.default_rng(lights + 10 * materials + 100 * m)
     weights = draw.dirichlet(np.full(materials, 0.3), size) * draw.uniform(
         0, 1, (*size, 1)
@@ -71,7 +75,8 @@ def opened(tab, tmp_path):
 def position(tab):
     """(x, y) of the handle, in radii of the dial."""
     tab.evaluate(
-        "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))"
+        "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => "
+        "done(1))))"
     )
     value = tab.evaluate("document.getElementById('handle').getAttribute('transform')")
     return (
@@ -110,7 +115,9 @@ def codes(linear):
 
 
 def expected_codes(view, mix, stops=0.0):
-    """(H, W, 3) 8-bit codes: the light's coefficients times each pixel's, then the matrix; the background is grey."""
+    """(H, W, 3) 8-bit codes: the light's coefficients times each pixel's, then the
+    matrix; the background is grey.
+    """
     light = np.asarray(mix) @ view.light_coefficients
     signals = view.weights.astype(float) @ view.material_coefficients * light
     lit = 2.0**stops * signals @ view.to_rgb.T
@@ -118,7 +125,9 @@ def expected_codes(view, mix, stops=0.0):
 
 
 def largest_difference(tab, view, gains=1.0, stops=0.0):
-    """The largest difference in 8-bit codes between the displayed and the expected picture."""
+    """The largest difference in 8-bit codes between the displayed and the expected
+    picture.
+    """
     mix = shares(position(tab), len(view.lights)) * gains
     pixels = tab.canvas("picture")
     assert (pixels[..., 3] == 255).all()

@@ -116,7 +116,10 @@ def test_lights_have_their_luminance_or_their_norm(read, sensor):
     """The norm is the root mean square: 1 for a flat power of 1."""
     palette = read(
         HEAD
-        + 'lights.a = { planck = 2856, luminance = 0.5 }\nlights.b = { illuminant = "E", norm = 2 }'
+        + (
+            "lights.a = { planck = 2856, luminance = 0.5 }\nlights.b = { illuminant = "
+            '"E", norm = 2 }'
+        )
     )
     luminances = [
         sensor.xyz(screen_matrix(sensor) @ palette.light(name).samples)[1]

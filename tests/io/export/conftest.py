@@ -1,4 +1,6 @@
-"""Fixtures: a cube of unusual phase and number of moments, and one of sigmoids with an atlas."""
+"""Fixtures: a cube of unusual phase and number of moments, and one of sigmoids with an
+atlas.
+"""
 
 from dataclasses import replace
 
@@ -12,7 +14,9 @@ from uplift.models import Moments
 
 @pytest.fixture(scope="session", params=["vision", "colour"])
 def warped_cube(small_cube, request) -> Cube:
-    """Cube of five of nine moments, reinterpreted with another wavelength range and warp."""
+    """Cube of five of nine moments, reinterpreted with another wavelength range and
+    warp.
+    """
     data = small_cube.data
     model, coefficients = (
         Moments(5, 400, 700, request.param),

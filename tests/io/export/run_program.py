@@ -1,6 +1,8 @@
-"""Run exported programs: each function takes a program, linear RGB (n, 3), four wavelengths and the form of the table.
+"""Run exported programs: each function takes a program, linear RGB (n, 3), four
+wavelengths and the form of the table.
 
-It returns reflectances (n, 4), and skips the test if the compiler, the browser or the driver is lacking.
+It returns reflectances (n, 4), and skips the test if the compiler, the browser or the
+driver is lacking.
 """
 
 import base64
@@ -179,7 +181,9 @@ def glsl(path, rgb, wavelengths, form="file"):
 
 
 def _by_webgl(path, rgba, wavelengths):
-    """Return reflectances (side², 4) of colours (side², 4) at four wavelengths, given as text; None without WebGL 2."""
+    """Return reflectances (side², 4) of colours (side², 4) at four wavelengths, given
+    as text; None without WebGL 2.
+    """
     table = path.with_suffix(".bin").read_bytes()
     data = {
         "code": FRAGMENT.format(code=path.read_text(), wavelengths=wavelengths),

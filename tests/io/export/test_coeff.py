@@ -1,4 +1,6 @@
-"""Tables of sigmoid spectra, as Mitsuba, colour-science, pbrt and LuisaRender read them."""
+"""Tables of sigmoid spectra, as Mitsuba, colour-science, pbrt and LuisaRender read
+them.
+"""
 
 import json
 import struct
@@ -26,9 +28,12 @@ from uplift.models.sigmoid import evaluate_unscaled
 
 RES = 5
 DARK_RED = [0.00010678071, 0, 0.000010491596]
-"""A colour of pbrt's tests: its table gave it reflectances near 1 (mmp/pbrt-v4, issue 82)."""
+"""A colour of pbrt's tests: its table gave it reflectances near 1 (mmp/pbrt-v4, issue
+82).
+"""
 STRONG_RED = [0.78594791889190674, 0.10324395447969437, 0.12402211874723434]
-"""A colour of Rec. 2020 whose round trip by pbrt's table differed by 0.026 (issue 93)."""
+"""A colour of Rec. 2020 whose round trip by pbrt's table differed by 0.026 (issue 93).
+"""
 
 
 @pytest.fixture(scope="module")
@@ -110,7 +115,9 @@ for rgb in json.loads(sys.argv[2]):
 
 
 def test_colour_science_and_mitsuba_read_it(table, sensor):
-    """Mitsuba finds data/srgb.coeff by its file resolver, in the folder prepended here first."""
+    """Mitsuba finds data/srgb.coeff by its file resolver, in the folder prepended here
+    first.
+    """
     need(MITSUBA)
     level = struct.unpack_from(f"<{RES}f", table.read_bytes(), 8)[3]
     rgb = np.vstack(
@@ -145,7 +152,9 @@ def test_colour_science_and_mitsuba_read_it(table, sensor):
 
 
 def test_the_largest_reflectance_is_at_an_end_or_where_the_polynomial_turns(table):
-    """MaxValue of pbrt: a closed form, of which samples at every 0.01 nm come short by little."""
+    """MaxValue of pbrt: a closed form, of which samples at every 0.01 nm come short by
+    little.
+    """
     content = (
         np.frombuffer(table.read_bytes(), "<f4", 9 * RES**3, 8 + 4 * RES)
         .reshape(-1, 3)
@@ -173,7 +182,9 @@ WAVELENGTHS = np.arange(360.0, 831.0)
 
 
 def spectra_of(data, rgb):
-    """Spectra of RGB (n, 3) by a full table, of which only the directions around them are fitted."""
+    """Spectra of RGB (n, 3) by a full table, of which only the directions around them
+    are fitted.
+    """
     res, largest, rows = coeff.RES, rgb.argmax(axis=1), np.arange(len(rgb))
     at = [
         np.minimum(
@@ -196,7 +207,9 @@ def spectra_of(data, rgb):
 
 
 def pbrt_rgb(space, light, spectra):
-    """Linear RGB as pbrt computes them: sums at 1 nm, and a matrix from the primaries and the white of the light."""
+    """Linear RGB as pbrt computes them: sums at 1 nm, and a matrix from the primaries
+    and the white of the light.
+    """
     weights = (
         matching_functions(DEFAULT_OBSERVER, 360, 830, 1)
         * illuminant_spd(light, 360, 830, 1)[:, None]
@@ -219,7 +232,9 @@ def pbrt_rgb(space, light, spectra):
     ],
 )
 def test_round_trips_of_pbrt(small_cube, space, light, low, high, also):
-    """The cases of pbrt's color_test.cpp, with its tolerance: random colours within these bounds."""
+    """The cases of pbrt's color_test.cpp, with its tolerance: random colours within
+    these bounds.
+    """
     data = replace(small_cube.data, sensor=make_sensor(space, light))
     rgb = np.vstack([np.random.default_rng(4).uniform(low, high, (32, 3)), also])
     assert np.abs(pbrt_rgb(space, light, spectra_of(data, rgb)) - rgb).max() < 0.01

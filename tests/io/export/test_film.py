@@ -26,7 +26,9 @@ def power(name):
 
 
 def read(path, xyz):
-    """Spectra of XYZ (n, 3), by the layout that readers document: bilinear here, cubic there."""
+    """Spectra of XYZ (n, 3), by the layout that readers document: bilinear here, cubic
+    there.
+    """
     table = np.load(path).astype(float)
     total = xyz.sum(axis=1)
     x, y = (xyz[:, :2] / total[:, None]).T
@@ -39,7 +41,9 @@ def read(path, xyz):
 
 
 def test_a_table_of_reflectances_has_the_spectra_of_the_cube(small_cube, tmp_path):
-    """At the stored luminance they are those of a query, and at every luminance the colour is right."""
+    """At the stored luminance they are those of a query, and at every luminance the
+    colour is right.
+    """
     path = tmp_path / "paint.npy"
     write_film(small_cube, path)
     assert np.load(path).shape == (192, 192, 81)
@@ -77,6 +81,7 @@ def test_a_table_of_lights_has_unit_sums_and_no_gaps(small_cube, tmp_path):
     np.testing.assert_allclose((lights @ WEIGHTS).sum(axis=-1), 1, atol=2e-3)
     assert lights.min() >= 0
     assert 'kind = "irradiance"' in (tmp_path / "lit.toml").read_text()
-    # Neighbours resemble each other, also across the edge of the gamut: the XYZ of steps, where light exists.
+    # Neighbours resemble each other, also across the edge of the gamut: the XYZ of
+    # steps, where light exists.
     steps = np.abs(np.diff(lights @ WEIGHTS, axis=1)).max(axis=-1)
     assert steps[5:].max() < 0.08

@@ -21,7 +21,9 @@ def table():
 
 @pytest.fixture(scope="module")
 def colours(table):
-    """Linear RGB (6000, 3): bright ones, negative ones, those that no light has, and around lamps."""
+    """Linear RGB (6000, 3): bright ones, negative ones, those that no light has, and
+    around lamps.
+    """
     rng = np.random.default_rng(3)
     rgb = rng.random((6000, 3)) * np.exp(4 * rng.normal(size=(6000, 1)))
     rgb[2000:4000] = rng.normal(size=(2000, 3)) + 0.5
@@ -37,7 +39,9 @@ def colours(table):
 
 @pytest.fixture
 def worst(tmp_path, table):
-    """Function that returns the largest difference of power from Python, as a share of the largest of a colour."""
+    """Function that returns the largest difference of power from Python, as a share of
+    the largest of a colour.
+    """
 
     def measure(style, rgb, form):
         path = tmp_path / f"cube{LANGUAGES[style].suffix}"

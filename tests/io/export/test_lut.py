@@ -49,7 +49,9 @@ def test_a_table_of_codes_holds_the_relit_colours(small_cube, tmp_path):
 def test_a_clf_file_takes_linear_colours_and_states_its_largest_error(
     request, tmp_path, name, light, res
 ):
-    """Independent colours do not exceed it, and the colour with the largest error has it."""
+    """Independent colours do not exceed it, and the colour with the largest error has
+    it.
+    """
     cube = request.getfixturevalue(name)
     error = write_lut(cube, light, tmp_path / "relight.clf", res=res)
     pairs = OTHERS[

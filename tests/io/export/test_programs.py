@@ -17,12 +17,16 @@ from uplift.io.export import LANGUAGES, rounding_error, write_program
 
 WAVELENGTHS = [300.0, 455.0, 551.5, 700.0]
 EVERY = np.arange(380.0, 781.0)
-WITHIN = 1e-4  # tolerance of reflectance in single precision: multipliers of spectra near a box reach 4e6
+# tolerance of reflectance in single precision: multipliers of spectra near a box reach
+# 4e6
+WITHIN = 1e-4
 LANGUAGE = {"cpp": "c"}
 
 
 def colours(data):
-    """Return 10,000 linear RGB: random, on faces and corners of the cube, at entries, around them, on box faces."""
+    """Return 10,000 linear RGB: random, on faces and corners of the cube, at entries,
+    around them, on box faces.
+    """
     rng = np.random.default_rng(10)
     rgb = rng.random((10_000, 3))
     rgb[:1000] = np.round(rgb[:1000])
@@ -121,7 +125,9 @@ BOTH = [("spectra", "moments"), ("moments", "sigmoid")]
     + [("hlsl", "spectra", "sigmoid"), ("hlsl", "moments", "moments")],
 )
 def test_realisable_colours_around_unrealisable_nodes(wide, check, style, mode, model):
-    """They are moved to their colours as in Python: without it, reflectances differ by up to 0.9."""
+    """They are moved to their colours as in Python: without it, reflectances differ by
+    up to 0.9.
+    """
     rgb = colours(wide[model].data)[:3000]
     rgb = rgb[wide[model].data.solid.signed_distance(rgb) < -2e-3]
     check(
@@ -134,7 +140,9 @@ def test_realisable_colours_around_unrealisable_nodes(wide, check, style, mode, 
 
 
 def test_mixtures_that_start_from_flat_spectra(check):
-    """White weights are moved to strong colours, where Newton's steps are longer than numbers can be (seed 104)."""
+    """White weights are moved to strong colours, where Newton's steps are longer than
+    numbers can be (seed 104).
+    """
     cube = uplift.build(dim=5, space="ACES2065-1", model="sigmoid")
     rgb = np.concatenate(
         [[[0.75587261, 0.82532507, 0.21911287]], colours(cube.data)[2000:3000]]

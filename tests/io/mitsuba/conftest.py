@@ -1,4 +1,6 @@
-"""Fixtures: Mitsuba in its scalar spectral variant, with the texture plugin. Tests are skipped without it."""
+"""Fixtures: Mitsuba in its scalar spectral variant, with the texture plugin. Tests are
+skipped without it.
+"""
 
 import pytest
 
@@ -28,7 +30,9 @@ def cube_path(repository):
 
 @pytest.fixture
 def spectrum(mi):
-    """Function that evaluates reflectance (N,) of a texture at (u, v) and wavelengths (N,) in nm."""
+    """Function that evaluates reflectance (N,) of a texture at (u, v) and wavelengths
+    (N,) in nm.
+    """
     import drjit
 
     def spectrum(texture, uv, wavelengths):

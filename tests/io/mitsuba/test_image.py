@@ -1,4 +1,6 @@
-"""Images and spectral textures in Mitsuba: texels in scalar and JIT variants, and the spectra of models."""
+"""Images and spectral textures in Mitsuba: texels in scalar and JIT variants, and the
+spectra of models.
+"""
 
 import json
 import subprocess
@@ -75,7 +77,9 @@ def test_filtering_agrees_with_mitsuba_s_bitmap(mi, texture, spectrum, sensor, o
 def test_a_texel_of_an_entry_s_colour_has_the_entry_s_spectrum(
     texture, spectrum, small_cube
 ):
-    """The other texels of the image keep theirs, though they have more multipliers than without the entry."""
+    """The other texels of the image keep theirs, though they have more multipliers than
+    without the entry.
+    """
     atlas = small_cube.data.atlas
     image = np.array([[atlas.rgb[3], [0.01, 0.01, 0.2]]], dtype=np.float32)
     found = texture(image, filter_type="nearest")

@@ -1,4 +1,6 @@
-"""Scene descriptions of colours and of lights: properties, defaults, errors, and the environment."""
+"""Scene descriptions of colours and of lights: properties, defaults, errors, and the
+environment.
+"""
 
 import sys
 
@@ -39,7 +41,10 @@ def test_scenes_can_be_xml_and_cubes_are_found_by_the_file_resolver(
     mi, repository, tag
 ):
     mi.file_resolver().prepend(str(repository / "cubes"))
-    colour = f'<{tag} name="rgb" value="0.5, 0.25, 0.1"/><string name="cube" value="moments-8.uplift"/>'
+    colour = (
+        f'<{tag} name="rgb" value="0.5, 0.25, 0.1"/><string name="cube" '
+        'value="moments-8.uplift"/>'
+    )
     texture = f'<texture type="uplift" name="reflectance">{colour}</texture>'
     scene = mi.load_string(
         f'<scene version="3.0.0"><bsdf type="diffuse">{texture}</bsdf></scene>'
@@ -183,7 +188,8 @@ def test_an_environment_lies_as_mitsubas_does(mi, radiance, degrees):
 def test_samples_are_radiance_over_density(mi, sky, radiance, monkeypatch):
     import drjit
 
-    # Mitsuba keeps the names of a variant that was set earlier, which refuse emitters of scalar variants.
+    # Mitsuba keeps the names of a variant that was set earlier, which refuse emitters
+    # of scalar variants.
     monkeypatch.setattr(mi, "EmitterPtr", None, raising=False)
     scene = mi.load_dict(
         {"type": "scene", "sky": environment(mi, sky), "ball": {"type": "sphere"}}

@@ -38,7 +38,9 @@ def write_exr(path, planes, **header):
 
 
 def write_image(path, values, **attributes):
-    """Write values (h, w, n) in the format of the suffix. An attribute is a value, or a type and a value."""
+    """Write values (h, w, n) in the format of the suffix. An attribute is a value, or a
+    type and a value.
+    """
     spec = OpenImageIO.ImageSpec(
         values.shape[1], values.shape[0], values.shape[2], str(values.dtype)
     )
@@ -69,7 +71,9 @@ def small_tiles():
 
 @pytest.fixture(scope="session")
 def spectral(small_cube):
-    """Uplifter for nine wavelengths, as many as coefficients, so that both share one compilation."""
+    """Uplifter for nine wavelengths, as many as coefficients, so that both share one
+    compilation.
+    """
     return texture.prepare(
         small_cube, texture.Spectrum(WAVELENGTHS), depth="float", threads=1
     )

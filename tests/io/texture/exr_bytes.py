@@ -16,7 +16,9 @@ def exr_bytes(
     extra: bytes = b"",
     size: tuple[int, int] = (WIDTH, HEIGHT),
 ) -> bytes:
-    """An image of half-float zeros, uncompressed, with further attributes; its pixels end after `HEIGHT` rows."""
+    """An image of half-float zeros, uncompressed, with further attributes; its pixels
+    end after `HEIGHT` rows.
+    """
     width, height = size
     box = struct.pack("<4i", 0, 0, width - 1, height - 1)
     half = struct.pack("<iBBBBii", 1, 0, 0, 0, 0, 1, 1)

@@ -1,4 +1,6 @@
-"""PNG, TIFF and Radiance HDR files byte by byte, with any statements about their colours."""
+"""PNG, TIFF and Radiance HDR files byte by byte, with any statements about their
+colours.
+"""
 
 import struct
 import zlib
@@ -47,7 +49,9 @@ SRGB = png_chunk(b"sRGB", b"\0")
 
 
 def png_bytes(codes, *chunks, after=b""):
-    """A PNG file of codes (h, w, channels), uint8 or uint16, with chunks before its pixels."""
+    """A PNG file of codes (h, w, channels), uint8 or uint16, with chunks before its
+    pixels.
+    """
     height, width, channels = codes.shape
     depth = 8 * codes.dtype.itemsize
     head = struct.pack(
@@ -71,7 +75,9 @@ EXIF, INTEROPERABILITY = 0x8769, 0xA005
 
 
 def tiff_bytes(codes, tags, order="<", exif=None, interoperability=None):
-    """A TIFF file of codes (h, w, channels), or directories alone without; ``tags`` are type and values by number."""
+    """A TIFF file of codes (h, w, channels), or directories alone without; ``tags`` are
+    type and values by number.
+    """
     tags = dict(tags)
     body = bytearray(
         (b"II" if order == "<" else b"MM") + struct.pack(order + "HI", 42, 0)
@@ -124,7 +130,9 @@ def _directory(body, tags, order):
 
 
 def _packed(kind, values, order):
-    """Bytes and count of values: bytes, a text, or numbers, of which rationals have the denominator 1e6."""
+    """Bytes and count of values: bytes, a text, or numbers, of which rationals have the
+    denominator 1e6.
+    """
     if isinstance(values, bytes):
         return values, len(values)
     form = TIFF_FORMATS[kind] * len(values)
@@ -140,7 +148,9 @@ def _packed(kind, values, order):
 
 
 def hdr_bytes(mantissas, exponent, header=""):
-    """A Radiance HDR file of mantissas (h, w, 3), uint8, with one exponent: m / 256 · 2^(exponent − 128)."""
+    """A Radiance HDR file of mantissas (h, w, 3), uint8, with one exponent: m / 256 ·
+    2^(exponent − 128).
+    """
     height, width, _ = mantissas.shape
     head = f"#?RADIANCE\n{header}FORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n"
     exponents = np.full((height, width, 1), exponent, np.uint8)

@@ -1,4 +1,6 @@
-"""Colour spaces that image files state or the caller names, and the conversion of colours to the cube's."""
+"""Colour spaces that image files state or the caller names, and the conversion of
+colours to the cube's.
+"""
 
 import struct
 import zlib
@@ -25,7 +27,9 @@ SRGB_TABLE = struct.pack(">4sII1024H", b"curv", 0, 1024, *SRGB_1024)
 
 
 def d50(space):
-    """Return the matrix from linear RGB of a colour-science space to XYZ, adapted to D50."""
+    """Return the matrix from linear RGB of a colour-science space to XYZ, adapted to
+    D50.
+    """
     found = colour.RGB_COLOURSPACES[space]
     white = colour.xy_to_XYZ(found.whitepoint)
     adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(
@@ -88,7 +92,9 @@ def save(path, statement, codes=128):
 
 
 def convert(spectral, path):
-    """Convert an image; return linear RGB of its first pixel, the spaces converted from, and the codes of warnings."""
+    """Convert an image; return linear RGB of its first pixel, the spaces converted
+    from, and the codes of warnings.
+    """
     done = texture.convert(spectral, path, path.with_name("out.exr"), force=True)
     rgb = read_channels(done.target, "RGB")[0, 0]
     return rgb, done.spaces, tuple(warning.code for warning in done.warnings)

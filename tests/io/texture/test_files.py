@@ -1,4 +1,6 @@
-"""Textures are written completely or not at all, with a checksum; hostile headers are refused."""
+"""Textures are written completely or not at all, with a checksum; hostile headers are
+refused.
+"""
 
 import zlib
 from collections import namedtuple
@@ -78,7 +80,9 @@ HEIGHT, WIDTH = 50, 40
 
 
 def write_parts(path, count, rows=HEIGHT):
-    """Write parts of noise, which ZIP stores as it is, and zeros, and only some rows of the last part."""
+    """Write parts of noise, which ZIP stores as it is, and zeros, and only some rows of
+    the last part.
+    """
     window = Window(0, 0, WIDTH, HEIGHT, (0, 0, WIDTH, HEIGHT), 1.0)
     names = [f"part {number}" if count > 1 else "" for number in range(count)]
     parts = [

@@ -1,4 +1,6 @@
-"""Conversion of images: decoding, gamut mapping, alpha, channels that pass through; reduced pictures."""
+"""Conversion of images: decoding, gamut mapping, alpha, channels that pass through;
+reduced pictures.
+"""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -32,7 +34,9 @@ from uplift.models import evaluate
 
 @pytest.fixture
 def convert_image(spectral, tmp_path):
-    """Function that converts an image and returns the outcome and linear RGB (h, w, 3) of the texture."""
+    """Function that converts an image and returns the outcome and linear RGB (h, w, 3)
+    of the texture.
+    """
 
     def convert(source, uplifter=spectral):
         result = texture.convert(uplifter, source, tmp_path / "made.exr", force=True)

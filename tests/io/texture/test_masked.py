@@ -1,4 +1,6 @@
-"""Textures of several cubes: numbers and weights in masks, soft edges, and the errors of masks that do not fit."""
+"""Textures of several cubes: numbers and weights in masks, soft edges, and the errors
+of masks that do not fit.
+"""
 
 import numpy as np
 import pytest

@@ -33,7 +33,9 @@ def test_layers_are_the_spectra_under_the_lights(
 
 
 def test_colours_stay_in_the_space_of_the_image(small_cube, colours, tmp_path):
-    """Under the light of the cube the image is unchanged; white and black are white and black under every light."""
+    """Under the light of the cube the image is unchanged; white and black are white and
+    black under every light.
+    """
     source = write_exr(
         tmp_path / "in.exr", planes(0.3 + 0.2 * colours), chromaticities=AP1
     )

@@ -1,4 +1,6 @@
-"""Spectra of colours and of lights: what other readers evaluate from a texture reproduces the image."""
+"""Spectra of colours and of lights: what other readers evaluate from a texture
+reproduces the image.
+"""
 
 import json
 import warnings
@@ -164,7 +166,9 @@ def lights(table):
 
 @pytest.fixture
 def sky():
-    """Linear RGB (20, 30, 3), float32: a gradient, a sun of 1e5, a negative component, and black."""
+    """Linear RGB (20, 30, 3), float32: a gradient, a sun of 1e5, a negative component,
+    and black.
+    """
     rows, columns = np.mgrid[0:20, 0:30]
     rgb = np.stack(
         [0.2 + rows / 40, 0.4 + rows / 60, 1.3 - rows / 20 + columns / 300], axis=-1
@@ -182,7 +186,9 @@ def spectral_channels(path):
 
 
 def largest_difference(sensor, rgb, found):
-    """Largest ΔE00 after each pixel is scaled to a largest component of 1, as ΔE00 ends at white."""
+    """Largest ΔE00 after each pixel is scaled to a largest component of 1, as ΔE00 ends
+    at white.
+    """
     scale = np.maximum(rgb.max(axis=-1, keepdims=True), 1e-6)
     return delta_e_rgb(sensor, rgb / scale, found / scale).max()
 

@@ -1,4 +1,5 @@
-"""Statements about colours that OpenImageIO does not apply: chunks, tags, channels of CIE XYZ, light without alpha.
+"""Statements about colours that OpenImageIO does not apply: chunks, tags, channels of
+CIE XYZ, light without alpha.
 
 `tests.fuzz.images` draws images of all formats; these are the rules, one by one.
 """

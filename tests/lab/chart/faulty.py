@@ -1,4 +1,6 @@
-"""Peers of the chart that abort, hang or are not installed. A child process imports this module."""
+"""Peers of the chart that abort, hang or are not installed. A child process imports
+this module.
+"""
 
 import os
 import time

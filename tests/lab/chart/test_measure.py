@@ -160,7 +160,9 @@ def test_set_up_is_charged(small_task, build):
 
 
 def test_reference_sensor_is_the_stated_sensor_at_1_nm(small_task):
-    """Spectra that are exact for one sensor are not for another, and the tables of cubes come second."""
+    """Spectra that are exact for one sensor are not for another, and the tables of
+    cubes come second.
+    """
     weights = np.linalg.pinv(ours().matrix)
 
     def exact(rgb, wavelengths):

@@ -24,7 +24,8 @@ def shipped(repository, *names):
 
 
 def test_every_second_entry_builds_and_the_others_test(repository):
-    # The first atlas has an odd number of entries; counting starts again with each atlas.
+    # The first atlas has an odd number of entries; counting starts again with each
+    # atlas.
     atlases = shipped(repository, "vs", "macbeth")
     found = make_task(atlases, 16)
     names = [
@@ -132,7 +133,9 @@ def test_both_types_give_the_same_spectra(small_task, colours, name):
 
 
 def vectorised_and_table(task, colours):
-    """Reflectances by Mitsuba's vectorised variant and by its table, for one colour and for many."""
+    """Reflectances by Mitsuba's vectorised variant and by its table, for one colour and
+    for many.
+    """
     compiled, table = (
         prepared(name, task).uplift for name in ("mitsuba3-llvm", "mitsuba3-table")
     )

@@ -1,4 +1,6 @@
-"""CSV files of charts, Pareto fronts against their definition, the recommendation of a cube, pictures and pages."""
+"""CSV files of charts, Pareto fronts against their definition, the recommendation of a
+cube, pictures and pages.
+"""
 
 import json
 import re

@@ -1,4 +1,6 @@
-"""Held-out errors: an atlas with predictable spectra, results by hand, and plain predictors."""
+"""Held-out errors: an atlas with predictable spectra, results by hand, and plain
+predictors.
+"""
 
 import numpy as np
 import pytest
@@ -29,7 +31,9 @@ GRID = observer.grid()
 
 @pytest.fixture(scope="module")
 def family():
-    """24 spectra of similar colours that share ripples which a smooth spectrum does not have."""
+    """24 spectra of similar colours that share ripples which a smooth spectrum does not
+    have.
+    """
     ripple = np.cos((GRID - 380) / 400 * 6 * np.pi)
     return Atlas(
         tuple(

@@ -1,4 +1,6 @@
-"""The techniques against their definitions, the laws of the study, and the statements of its page."""
+"""The techniques against their definitions, the laws of the study, and the statements
+of its page.
+"""
 
 import warnings
 

@@ -43,7 +43,9 @@ def test_cubes_of_any_wavelengths_are_studied():
 
 
 def test_jumps_are_found_and_only_those():
-    """Answers that jump by hand, at a red of 0.5, and continuous ones as steep as a step of a code allows."""
+    """Answers that jump by hand, at a red of 0.5, and continuous ones as steep as a
+    step of a code allows.
+    """
     first, second = np.full((9, 3), 0.495), np.full((9, 3), 0.505)
     first[:, 0] += np.linspace(0, 0.004, 9)
     dark, bright = np.full(81, 0.2), np.linspace(0.2, 0.5, 81)
@@ -74,7 +76,9 @@ def test_otsu_2018_jumps_and_others_do_not(small_cube):
 
 
 def test_changed_atlases_and_their_effect(repository):
-    """Far nodes move a little: the weights of the families of spectra are learnt from the whole atlas."""
+    """Far nodes move a little: the weights of the families of spectra are learnt from
+    the whole atlas.
+    """
     entries = read_atlas(repository / "atlases" / "tcs.txt").entries
     before, name = rebuild(entries, {"dim": 8}), entries[0].name
     changes = {

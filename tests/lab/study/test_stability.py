@@ -1,4 +1,6 @@
-"""Stability study: evaluation of builds, the design, and synthetic atlases that are as difficult as their names."""
+"""Stability study: evaluation of builds, the design, and synthetic atlases that are as
+difficult as their names.
+"""
 
 import numpy as np
 import pytest
@@ -55,7 +57,9 @@ def test_unknown_atlas_raises_before_any_build(monkeypatch):
 
 
 def test_sample_covers_every_value_of_every_axis():
-    """A Latin hypercube of 12 has two points or more for each of up to five values of an axis."""
+    """A Latin hypercube of 12 has two points or more for each of up to five values of
+    an axis.
+    """
     space = DesignSpace()
     sample = space.sample()
     assert sample == space.sample()

@@ -1,4 +1,6 @@
-"""A scene so small that a plan for it takes seconds: few colours, few candidates, coarse lattices."""
+"""A scene so small that a plan for it takes seconds: few colours, few candidates,
+coarse lattices.
+"""
 
 import shutil
 import warnings
@@ -43,7 +45,10 @@ def kitchen(tmp_path_factory):
     shutil.copy(MACBETH, folder)
     path = folder / "kitchen.toml"
     path.write_text(
-        'textures = "wood.exr"\natlases = ["macbeth.txt"]\nlights = ["D65", "FL11"]\ntolerance = 3\n',
+        (
+            'textures = "wood.exr"\natlases = ["macbeth.txt"]\nlights = ["D65", '
+            '"FL11"]\ntolerance = 3\n'
+        ),
         encoding="utf-8",
     )
     return path

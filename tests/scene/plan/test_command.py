@@ -1,3 +1,4 @@
+# ruff: noqa: F811
 """``uplift plan``, ``uplift build --plan``, and the command lines of a plan."""
 
 import dataclasses
@@ -9,7 +10,7 @@ import click
 import pytest
 from uplift_cli.main import main
 
-from tests.cli.conftest import home, refuse, run, shown
+from tests.cli.conftest import home, refuse, run, shown  # noqa: F401
 from uplift.cube import read
 from uplift.scene.plan.candidates import PIXELS
 from uplift.scene.plan.files import cube_name
@@ -60,9 +61,9 @@ def test_a_plan_outside_the_folder_of_its_scene_is_refused_before_the_search(
     (here / "empty").mkdir()
     error = run("plan", "kitchen.toml", "-o", "empty/a.plan.json", code=2).stderr
     assert (
-        "must lie in the folder of wood.exr, or above it; write for example kitchen.plan.json"
-        in error
-    )
+        "must lie in the folder of wood.exr, or above it; write for example "
+        "kitchen.plan.json"
+    ) in error
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,6 @@
-"""Samples of pixels, colour errors against a slow oracle, and the choice among candidates."""
+"""Samples of pixels, colour errors against a slow oracle, and the choice among
+candidates.
+"""
 
 import numpy as np
 import pytest
@@ -63,7 +65,9 @@ def test_errors_agree_with_a_slow_oracle(tests):
 def test_other_representations_cost_less_or_are_more_accurate_than_fitted_wavelengths(
     tests,
 ):
-    """Each of them against all others, by its own numbers; the fitted ones are as without."""
+    """Each of them against all others, by its own numbers; the fitted ones are as
+    without.
+    """
 
     def numbers(each):
         return np.array(

@@ -9,7 +9,9 @@ from uplift.scene.plan import read_scene_file
 
 @pytest.fixture
 def read(tmp_path):
-    """A function that reads a scene file of this text, next to a.png, b.1.exr, b.2.exr and c.txt."""
+    """A function that reads a scene file of this text, next to a.png, b.1.exr, b.2.exr
+    and c.txt.
+    """
     for name in ("a.png", "b.1.exr", "b.2.exr", "c.txt"):
         (tmp_path / name).touch()
 
@@ -23,8 +25,10 @@ def read(tmp_path):
 
 def test_all_keys_are_read(read, tmp_path):
     scene = read(
-        'textures = ["a.png", "b.*.exr"]\natlases = "c.txt"\nlights = ["A", "FL11", "a"]\ntolerance = 2\n'
-        'quantile = 0.9\nencoding = "linear"\nspace = "ITU-R BT.2020"\nilluminant = "D50"\n'
+        'textures = ["a.png", "b.*.exr"]\natlases = "c.txt"\nlights = ["A", "FL11", '
+        '"a"]\ntolerance = 2\n'
+        'quantile = 0.9\nencoding = "linear"\nspace = "ITU-R BT.2020"\nilluminant = '
+        '"D50"\n'
         'observer = "CIE 1964 10 Degree Standard Observer"'
     )
     assert [path.name for path in scene.textures] == ["a.png", "b.1.exr", "b.2.exr"]

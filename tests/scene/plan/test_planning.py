@@ -1,4 +1,6 @@
-"""A complete plan, and its errors by an independent computation with numpy and colour-science."""
+"""A complete plan, and its errors by an independent computation with numpy and
+colour-science.
+"""
 
 import json
 import shutil
@@ -166,7 +168,9 @@ def test_a_list_of_spectra_is_written(tmp_path):
 
 @pytest.fixture
 def plan_file(planned, kitchen, tmp_path):
-    """Path of a plan file in a copy of the scene's folder, its values, and a function that writes them."""
+    """Path of a plan file in a copy of the scene's folder, its values, and a function
+    that writes them.
+    """
     path = tmp_path / "copy" / "kitchen.plan.json"
     shutil.copytree(kitchen.parent, path.parent)
     values = to_json(planned[0], kitchen.parent / path.name)

@@ -1,4 +1,6 @@
-"""The search against all candidates of small spaces, with errors that are injected, and of a real scene."""
+"""The search against all candidates of small spaces, with errors that are injected, and
+of a real scene.
+"""
 
 from dataclasses import replace
 from itertools import product
@@ -35,7 +37,9 @@ def measured(candidate, error):
 
 
 def independent_errors(rng, choice, samples):
-    """Coarse cubes and few samples have errors that add in squares, but for a factor from 0.9 to 1.3."""
+    """Coarse cubes and few samples have errors that add in squares, but for a factor
+    from 0.9 to 1.3.
+    """
     return rng.uniform(0.9, 1.3) * np.hypot(
         9 / choice.dim + 4 / choice.coefficients**1.5, 30 / samples**2
     )
@@ -46,7 +50,9 @@ def arbitrary_errors(rng, choice, samples):
 
 
 def small_space(errors, seed, looseness=1.0):
-    """72 candidates with bounds from 0.5 to 1 of their true errors, times the ``looseness``, and measured ones."""
+    """72 candidates with bounds from 0.5 to 1 of their true errors, times the
+    ``looseness``, and measured ones.
+    """
     rng, truth = np.random.default_rng(seed), {}
     for count, dim, samples, pixel in product(
         (3, 5, 9), (4, 8, 12), (3, 5, 7, 9), PIXELS

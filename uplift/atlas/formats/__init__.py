@@ -10,7 +10,9 @@ from uplift.atlas.document import Document
 from uplift.atlas.measurements import Measurements
 
 LIBRARY = ".sli"
-"""Suffix of the numbers of an ENVI library, which have no mark: its header is another file."""
+"""Suffix of the numbers of an ENVI library, which have no mark: its header is another
+file.
+"""
 
 
 @dataclass(frozen=True)
@@ -24,7 +26,8 @@ class Format:
     suffixes : tuple of str
         Usual suffixes. The content determines the format, but for ``.sli``.
     pattern : str or bytes
-        Regular expression that is found in the text, or the bytes, of a file of the format.
+        Regular expression that is found in the text, or the bytes, of a file of the
+        format.
     module : str
         Module of ``uplift.atlas.formats`` that reads it.
     library : str
@@ -66,7 +69,9 @@ FORMATS = (
 
 
 def read_any(document: Document) -> tuple[Format, Measurements | Atlas]:
-    """Read a document by the first format whose pattern it has, and return both. Raise `AtlasError`."""
+    """Read a document by the first format whose pattern it has, and return both. Raise
+    `AtlasError`.
+    """
     for each in FORMATS:
         content: Any = (
             document.data if isinstance(each.pattern, bytes) else document.text

@@ -1,7 +1,9 @@
-"""The ART measurement archive (``.ark``), the atlas text format of Tódová 2020, figure 3.1: reader and writer.
+"""The ART measurement archive (``.ark``), the atlas text format of Tódová 2020, figure
+3.1: reader and writer.
 
-An archive is a preamble and entries. An entry has two sections of ``key : value`` fields, and a list of samples:
-``{a, b, …}`` or ``{{x, y}, …}``. Keys compare without case and spacing.
+An archive is a preamble and entries. An entry has two sections of ``key : value``
+fields, and a list of samples: ``{a, b, …}`` or ``{{x, y}, …}``. Keys compare without
+case and spacing.
 """
 
 import itertools
@@ -28,7 +30,8 @@ from uplift.common.text import parse_float
 MAGIC = "ART measurement archive"
 ENTRY = "entry id"
 TITLES = ("Sampling information", "ASCII sample data")
-"""Key of the first line of an entry, and the lines before its second and third section."""
+"""Key of the first line of an entry, and the lines before its second and third section.
+"""
 REFLECTANCE = "reflectance spectrum"
 OTHER_TYPES = (
     "emission spectrum", "transmission spectrum", "colourimetric matching function", "colour matching function",
@@ -54,9 +57,13 @@ SAMPLINGS = {
 }
 """Fields of the sampling section, per type of sampling."""
 NOT_STATED = "not stated"
-"""Placeholder of a header line without a value: other readers require a value in every line."""
+"""Placeholder of a header line without a value: other readers require a value in every
+line.
+"""
 QUOTED = re.compile(r'"([^"]*|"(?:.*")?)"')
-"""A text in one pair of quotes, which do not belong to it; those of ``"a" and "b"`` do not enclose."""
+"""A text in one pair of quotes, which do not belong to it; those of ``"a" and "b"`` do
+not enclose.
+"""
 LIST = re.compile(r"\{((?:[^{}]++|\{[^{}]*+\})*+)\}")
 """Samples between braces, which may enclose pairs of them."""
 PAIR = re.compile(r"[\s,]*\{([^{}]*)\}")
@@ -89,7 +96,9 @@ class Fields:
         return "" if line is None else line.text.partition(":")[2].strip()
 
     def required(self, key: str) -> tuple[str, SourceLocation]:
-        """Return a required value and its location. Raise `AtlasError` if it is missing."""
+        """Return a required value and its location. Raise `AtlasError` if it is
+        missing.
+        """
         value = self.text(key)
         if not value:
             raise self.location.error(
@@ -163,7 +172,9 @@ def _content(lines: Iterable[str], first: int = 1) -> list[Line]:
 
 
 def _fields(lines: Iterable[Line], location: SourceLocation) -> Fields:
-    """Collect the lines of a section. Raise `AtlasError` for a line without a colon and for a repeated key."""
+    """Collect the lines of a section. Raise `AtlasError` for a line without a colon and
+    for a repeated key.
+    """
     found: dict[str, Line] = {}
     for line in lines:
         if ":" not in line.text:
@@ -208,7 +219,9 @@ def _read_entry(document: Document, lines: list[Line]) -> Entry | SkippedEntry:
 
 
 def _why_skipped(fields: Fields, sampling: Fields) -> str:
-    """Return why an entry of a known type cannot be used, empty if it can. Raise `AtlasError` for unknown types."""
+    """Return why an entry of a known type cannot be used, empty if it can. Raise
+    `AtlasError` for unknown types.
+    """
     kind, location = fields.required("Type")
     if one_line(kind).casefold() in OTHER_TYPES:
         return f"its type is '{kind}', not '{REFLECTANCE}'"
@@ -235,7 +248,9 @@ def _why_skipped(fields: Fields, sampling: Fields) -> str:
 def _sample_list(
     document: Document, lines: list[Line], location: SourceLocation
 ) -> tuple[str, SourceLocation]:
-    """Return the text between the braces that open on the first line with content, and the location of that line."""
+    """Return the text between the braces that open on the first line with content, and
+    the location of that line.
+    """
     if not lines or not lines[0].text.startswith("{"):
         raise location.error(
             "the sample list, opened by '{', is missing", COMPLETE_ENTRY
@@ -304,7 +319,9 @@ def _pairs(samples: str, start: SourceLocation) -> list[list[float]]:
 
 
 def _numbers(samples: str, first: int, last: int, start: SourceLocation) -> list[float]:
-    """Parse the numbers between two positions of a list that begins at ``start``. Raise `AtlasError`."""
+    """Parse the numbers between two positions of a list that begins at ``start``. Raise
+    `AtlasError`.
+    """
     numbers = []
     for token in samples[first:last].split(","):
         try:
@@ -375,7 +392,9 @@ def _entry_lines(entry: Entry) -> Iterator[str]:
 
 
 def _exact_step(wavelengths: Array) -> float | None:
-    """Return the step that gives exactly these wavelengths in the reader, None if there is none."""
+    """Return the step that gives exactly these wavelengths in the reader, None if there
+    is none.
+    """
     n = len(wavelengths)
     first, last = wavelengths[0], wavelengths[-1]
     for step in (

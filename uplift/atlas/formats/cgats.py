@@ -1,6 +1,8 @@
-"""Reader of CGATS text (ANSI CGATS.17, ISO 28178): exports of X-Rite programs, and ``.ti3`` and ``.sp`` of ArgyllCMS.
+"""Reader of CGATS text (ANSI CGATS.17, ISO 28178): exports of X-Rite programs, and
+``.ti3`` and ``.sp`` of ArgyllCMS.
 
-Keywords precede ``BEGIN_DATA_FORMAT``, which lists the fields of a set. ``BEGIN_DATA`` follows with a set per line.
+Keywords precede ``BEGIN_DATA_FORMAT``, which lists the fields of a set. ``BEGIN_DATA``
+follows with a set per line.
 """
 
 import itertools
@@ -27,7 +29,9 @@ LIGHT_SOURCES = re.compile(r'^\s*DEVICE_CLASS\s+"?DISPLAY', re.MULTILINE)
 
 
 def read(document: Document) -> Measurements:
-    """Read the sets of a CGATS file. Fields other than the name and the spectrum are not used."""
+    """Read the sets of a CGATS file. Fields other than the name and the spectrum are
+    not used.
+    """
     location = document.location
     preamble, rows = _parse(document)
     if not any(parse_label(cell.text) for cell in rows[0]):
@@ -60,7 +64,9 @@ def read(document: Document) -> Measurements:
 
 
 def _parse(document: Document) -> tuple[list[str], list[Row]]:
-    """Return the lines of keywords, and the fields and sets as rows. Raise `AtlasError`."""
+    """Return the lines of keywords, and the fields and sets as rows. Raise
+    `AtlasError`.
+    """
     preamble, fields, sets = list[str](), list[Cell](), list[Row]()
     section = ""
     for line, text in enumerate(_lines(document), 1):
@@ -89,7 +95,9 @@ def _parse(document: Document) -> tuple[list[str], list[Row]]:
 
 
 def _lines(document: Document) -> list[str]:
-    """Return the lines; those that a spreadsheet saved with commas or semicolons have tabs in their place."""
+    """Return the lines; those that a spreadsheet saved with commas or semicolons have
+    tabs in their place.
+    """
     labels = next(
         (after for line, after in itertools.pairwise(document.lines) if FORMAT in line),
         "",
@@ -106,7 +114,9 @@ def _lines(document: Document) -> list[str]:
 
 
 def _tokens(text: str, count: int | None) -> list[str]:
-    """Split a line at tabs if that gives ``count`` tokens, or else at blanks outside of quotes."""
+    """Split a line at tabs if that gives ``count`` tokens, or else at blanks outside of
+    quotes.
+    """
     by_tabs = [
         token.strip().strip('"') for token in text.strip("\n").strip(" ").split("\t")
     ]
@@ -116,7 +126,8 @@ def _tokens(text: str, count: int | None) -> list[str]:
         match[1].replace('""', '"') if match[2] is None else match[2]
         for match in TOKEN.finditer(text)
     ]
-    # tokens between tabs are labels of fields only if they are single words; those of a set can be any text
+    # tokens between tabs are labels of fields only if they are single words; those of a
+    # set can be any text
     words = count == len(by_tabs) or (
         count is None and not any(" " in token for token in by_tabs)
     )
@@ -126,7 +137,9 @@ def _tokens(text: str, count: int | None) -> list[str]:
 def _with_exact_wavelengths(
     found: Measurements, keywords: dict[str, str]
 ) -> Measurements:
-    """Replace wavelengths that ArgyllCMS rounds in labels, such as SPEC_383, by those of the keywords."""
+    """Replace wavelengths that ArgyllCMS rounds in labels, such as SPEC_383, by those
+    of the keywords.
+    """
     try:
         start, end, bands = (
             parse_float(keywords.get(f"SPECTRAL_{key}", ""))

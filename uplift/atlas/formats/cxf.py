@@ -1,4 +1,6 @@
-"""Reader of CxF3 (ISO 17972-1), the colour exchange format of X-Rite programs, by the package colour-cxf."""
+"""Reader of CxF3 (ISO 17972-1), the colour exchange format of X-Rite programs, by the
+package colour-cxf.
+"""
 
 import re
 from typing import Any
@@ -13,7 +15,9 @@ from uplift.common.text import listed
 START, STEP = 380.0, 10.0
 """Start and step in nm of spectra whose colour specification states none."""
 CONDITION = re.compile(r"(?<![A-Za-z])M[0-3](?![0-9A-Za-z])")
-"""Measurement conditions of ISO 13655: with incandescent light, daylight, without UV, with a polariser."""
+"""Measurement conditions of ISO 13655: with incandescent light, daylight, without UV,
+with a polariser.
+"""
 REFLECTANCE = "ReflectanceSpectrum"
 OTHER_SPECTRA = {
     "TransmittanceSpectrum": "transmittance",
@@ -23,7 +27,9 @@ OTHER_SPECTRA = {
 
 
 def read(document: Document) -> Measurements:
-    """Read the reflectance spectra of the objects of a CxF3 file; objects with other spectra only are skipped."""
+    """Read the reflectance spectra of the objects of a CxF3 file; objects with other
+    spectra only are skipped.
+    """
     document.check_xml()
     with parsed_by("colour-cxf", "CxF files", document):
         from colour_cxf import cxf3
@@ -114,7 +120,9 @@ def _content(cxf: Any, path: str) -> Measurements:
 
 
 def _measurements(resources: Any) -> dict[str, Any]:
-    """Return how spectra were measured by the identifier of the colour specification."""
+    """Return how spectra were measured by the identifier of the colour
+    specification.
+    """
     collection = resources.color_specification_collection if resources else None
     specifications = collection.color_specification if collection else []
     return {
@@ -125,12 +133,17 @@ def _measurements(resources: Any) -> dict[str, Any]:
 
 
 def _condition(choice: Any, specifications: dict[str, Any]) -> str:
-    """Return the measurement condition of ISO 13655, such as M1; empty if none is stated."""
+    """Return the measurement condition of ISO 13655, such as M1; empty if none is
+    stated.
+    """
     measured = specifications.get(choice.color_specification)
     light = (
         measured.device.device_illumination if measured and measured.device else None
     )
-    stated = f"{light.value.value if light and light.value else ''} {choice.color_specification or ''}"
+    stated = (
+        f"{light.value.value if light and light.value else ''} "
+        f"{choice.color_specification or ''}"
+    )
     found = CONDITION.search(stated)
     return found[0] if found else ""
 

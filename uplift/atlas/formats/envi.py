@@ -1,4 +1,6 @@
-"""Reader of ENVI spectral libraries (``.sli`` with ``.hdr``), by the package spectral."""
+"""Reader of ENVI spectral libraries (``.sli`` with ``.hdr``), by the
+package spectral.
+"""
 
 import os
 from collections.abc import Iterator
@@ -51,14 +53,18 @@ def read(document: Document) -> Measurements:
             raise location.error(
                 "is an ENVI image, not a spectral library", HINT, code="not-an-atlas"
             )
-        # The library allocates what the header states: samples are wavelengths, lines are spectra.
+        # The library allocates what the header states: samples are wavelengths, lines
+        # are spectra.
         count = int(fields["samples"]) * int(fields["lines"])
         if (
             count <= 0
             or count > data.stat().st_size
             or int(fields.get("header offset", 0)) != 0
         ):
-            problem = f"the header states {pluralise(count, 'value')}, which the file {data.name} does not hold"
+            problem = (
+                f"the header states {pluralise(count, 'value')}, which the file "
+                f"{data.name} does not hold"
+            )
             raise location.error(problem, HINT)
         library = envi.open(os.fspath(header), os.fspath(data))
         names = list(map(one_line, library.names))
@@ -104,7 +110,9 @@ def _scale(fields: dict[str, str], location: SourceLocation) -> Iterator[Scale]:
 
 
 def _pair(document: Document) -> tuple[Path, Path]:
-    """Return the paths of header and data. Raise `AtlasError` if one is missing, too large or not a file."""
+    """Return the paths of header and data. Raise `AtlasError` if one is missing, too
+    large or not a file.
+    """
     path = Path(document.path)
     is_header = document.data.lstrip().startswith(MAGIC)
     if is_header:

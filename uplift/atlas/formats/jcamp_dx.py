@@ -75,7 +75,9 @@ def read(document: Document) -> Measurements:
 
 
 def _with_points(text: str) -> str:
-    """Return a text with points in place of decimal commas. Commas between the numbers of pairs stay."""
+    """Return a text with points in place of decimal commas. Commas between the numbers
+    of pairs stay.
+    """
     pairs = [match for data in DATA.findall(text) for match in COMMA.finditer(data)]
     wavelengths = [float(match[1]) for match in pairs]
     are_pairs = wavelengths == sorted(wavelengths) or wavelengths == sorted(

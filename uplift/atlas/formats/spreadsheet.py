@@ -1,4 +1,6 @@
-"""Reader of spreadsheets (``.xlsx``, ``.xls``, ``.ods``), by the package python-calamine."""
+"""Reader of spreadsheets (``.xlsx``, ``.xls``, ``.ods``), by the package
+python-calamine.
+"""
 
 import functools
 import io
@@ -75,7 +77,9 @@ def _text(value: Any) -> str:
 
 
 def _check_content(document: Document) -> None:
-    """Raise `AtlasError` for an archive that is damaged, or too large when it is decompressed."""
+    """Raise `AtlasError` for an archive that is damaged, or too large when it is
+    decompressed.
+    """
     if document.data.startswith(OLE):
         return
     left = MAX_CONTENT
@@ -105,7 +109,9 @@ def _check_cells(height: int, width: int, document: Document) -> None:
 
 
 def _extent(content: bytes) -> tuple[int, int]:
-    """Return rows and columns with values of a sheet of ``.xlsx``. Opened by calamine, all its cells are allocated."""
+    """Return rows and columns with values of a sheet of ``.xlsx``. Opened by calamine,
+    all its cells are allocated.
+    """
     row = column = height = width = 0
     for kind, text in TAG.findall(content):
         place = PLACE.search(text)

@@ -54,7 +54,8 @@ def read(document: Document) -> Measurements:
 def _with_wavelengths(
     document: Document, title: str, values: Sequence[Row]
 ) -> tuple[str, list[Row]]:
-    """Join values, one a line, with the wavelengths of another file, as the library of the USGS has them.
+    """Join values, one a line, with the wavelengths of another file, as the library of
+    the USGS has them.
 
     Return the name of this file, and the rows.
     """
@@ -72,17 +73,25 @@ def _with_wavelengths(
         problem = (
             f"has {pluralise(len(values), 'value')} without wavelengths, one a line"
         )
-        hint = "put the file of their wavelengths, with 'Wavelengths' in its name and as many lines, next to it"
+        hint = (
+            "put the file of their wavelengths, with 'Wavelengths' in its name and as "
+            "many lines, next to it"
+        )
         raise document.location.error(problem, hint, code="not-an-atlas")
     return found[0]
 
 
 def text(atlas: Atlas) -> str:
-    """Format a row per entry; `read` returns the same wavelengths and values, bit for bit."""
+    """Format a row per entry; `read` returns the same wavelengths and values, bit for
+    bit.
+    """
     first = atlas[0]
     for entry in atlas:
         if not np.array_equal(entry.wavelengths, first.wavelengths):
-            problem = f"entries '{first.name}' and '{entry.name}' are sampled at different wavelengths"
+            problem = (
+                f"entries '{first.name}' and '{entry.name}' are sampled at different "
+                "wavelengths"
+            )
             raise OutputError(
                 problem,
                 hint="write atlas text, which keeps each sampling, or separate tables",

@@ -1,1 +1,3 @@
-"""Tables of spectra: where wavelengths, values, labels and text are in a grid of cells."""
+"""Tables of spectra: where wavelengths, values, labels and text are in a
+grid of cells.
+"""

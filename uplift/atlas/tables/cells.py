@@ -14,7 +14,9 @@ from uplift.common.csv import parse_decimal
 from uplift.common.text import parse_float
 
 SHORTEST = 100.0
-"""Wavelength in nm that distinguishes a row of wavelengths from a wavelength and its values."""
+"""Wavelength in nm that distinguishes a row of wavelengths from a wavelength and its
+values.
+"""
 MISSING = frozenset(
     (
         "",
@@ -37,7 +39,9 @@ LABEL = re.compile(
     r"([^\d.,+-]{0,40}?)[\s_([]*(\d{1,5}(?:[.,]\d{1,8})?)\s*[([]?\s*(nm|[µμu]m|microns?|å|1/cm)?\s*[)\]]?",
     re.IGNORECASE,
 )
-"""A prefix, a wavelength, and perhaps its unit: ``nm400``, ``R_400``, ``380[nm]``, ``Refl (400 nm)``."""
+"""A prefix, a wavelength, and perhaps its unit: ``nm400``, ``R_400``, ``380[nm]``,
+``Refl (400 nm)``.
+"""
 PREFIXES = frozenset(
     (
         "", "nm", "r", "%r", "r%", "%", "rnm", "ρ", "refl", "refl%", "rfl", "spec", "spectral", "spectrum",
@@ -45,7 +49,9 @@ PREFIXES = frozenset(
         "specex", "reflsci", "reflsce", "t", "%t", "t%", "tnm", "τ",
     )
 )  # fmt: skip
-"""What labels of wavelengths begin with, in lower case and without blanks, next to the names of quantities."""
+"""What labels of wavelengths begin with, in lower case and without blanks, next to the
+names of quantities.
+"""
 
 
 class Cell(NamedTuple):
@@ -72,7 +78,8 @@ def line_texts(rows: Iterable[Row]) -> list[str]:
 
 
 def parse_cell(text: str) -> float | None:
-    """Parse a number with a decimal point or comma, perhaps in percent; NaN for a missing one, None for other text.
+    """Parse a number with a decimal point or comma, perhaps in percent; NaN for a
+    missing one, None for other text.
 
     >>> [parse_cell(text) for text in ("0.5", "8,02 %", "n/a", "ochre")]
     [0.5, 8.02, nan, None]
@@ -95,7 +102,9 @@ def is_value(text: str) -> bool:
 
 
 class Label(NamedTuple):
-    """What the label of a wavelength begins with, the number, and the unit that it states."""
+    """What the label of a wavelength begins with, the number, and the unit that it
+    states.
+    """
 
     prefix: str
     number: float
@@ -131,7 +140,9 @@ def parse_label(text: str) -> Label | None:
 
 
 class Run(NamedTuple):
-    """Numbers of neighbouring wavelengths in cells ``first`` to ``last`` − 1, prefix of their labels, and unit."""
+    """Numbers of neighbouring wavelengths in cells ``first`` to ``last`` − 1, prefix of
+    their labels, and unit.
+    """
 
     first: int
     last: int
@@ -141,7 +152,9 @@ class Run(NamedTuple):
 
 
 def runs(cells: Sequence[Cell]) -> Iterator[Run]:
-    """Yield runs of two or more neighbouring wavelengths whose labels begin in the same way."""
+    """Yield runs of two or more neighbouring wavelengths whose labels begin in the same
+    way.
+    """
     labels = [parse_label(cell.text) for cell in cells]
     first = 0
     for kind, group in itertools.groupby(labels, key=_kind):
@@ -167,5 +180,7 @@ def covers_visible(nm: Array) -> bool:
 
 
 def is_visible(nm: Array) -> bool:
-    """Whether numbers are wavelengths in nm that cover the visible range, and not wavelengths next to their values."""
+    """Whether numbers are wavelengths in nm that cover the visible range, and not
+    wavelengths next to their values.
+    """
     return bool(nm.min() >= SHORTEST) and covers_visible(nm)

@@ -1,4 +1,6 @@
-"""Spectra in columns: a column of wavelengths with a column per spectrum, one before each, or pairs on a line."""
+"""Spectra in columns: a column of wavelengths with a column per spectrum, one before
+each, or pairs on a line.
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -38,7 +40,9 @@ EQUAL = 1e-6
 
 @dataclass(frozen=True)
 class Block:
-    """Neighbouring rows with wavelengths in one column, and the rows of labels above them."""
+    """Neighbouring rows with wavelengths in one column, and the rows of labels above
+    them.
+    """
 
     grid: Grid
     run: Run
@@ -103,7 +107,9 @@ class Block:
         return tuple(cell_at(row, column) for row in self.rows)
 
     def _is_head(self, row: Row) -> bool:
-        """Whether a row has labels: those of columns of text, or of numbers next to a label of wavelengths."""
+        """Whether a row has labels: those of columns of text, or of numbers next to a
+        label of wavelengths.
+        """
         if not self.column < len(row) <= self.width or row[self.column].text.endswith(
             ":"
         ):
@@ -128,7 +134,9 @@ def blocks(grid: Grid) -> Iterator[Block]:
 
 
 def spectra_of(block: Block, others: Sequence[Block]) -> Table:
-    """Return a spectrum for each column of values of a block; the ``others`` of the file are skipped."""
+    """Return a spectrum for each column of values of a block; the ``others`` of the
+    file are skipped.
+    """
     if pairs := _pairs(block):
         return Table([pairs], block.remarks, ("layout: several pairs a line",))
     series = list[Series]()
@@ -138,7 +146,8 @@ def spectra_of(block: Block, others: Sequence[Block]) -> Table:
     prefix = block.rows[0][axis].text if block.run.prefix else ""
     for column in range(block.width):
         if column in axes:
-            # Of neighbouring columns of wavelengths the first one counts: others repeat it in other units.
+            # Of neighbouring columns of wavelengths the first one counts: others repeat
+            # it in other units.
             axis = axis if column - 1 in axes else column
             continue
         cells = block.cells(column)
@@ -172,7 +181,9 @@ def spectra_of(block: Block, others: Sequence[Block]) -> Table:
 
 
 def _name(labels: Sequence[Cell]) -> Cell | None:
-    """Return the label that names a sample: the lowest one, as it stands above quantity and unit; None for none."""
+    """Return the label that names a sample: the lowest one, as it stands above quantity
+    and unit; None for none.
+    """
     names = [cell for cell in reversed(labels) if not is_plain(cell.text)]
     return next((cell for cell in names if len(cell.text) > 1), next(iter(names), None))
 
@@ -185,7 +196,9 @@ def _skipped(block: Block) -> SkippedEntry:
 
 
 def _axes(block: Block) -> dict[int, Array]:
-    """Return the wavelengths in nm of each column that has them, NaN where a cell is empty."""
+    """Return the wavelengths in nm of each column that has them, NaN where a cell is
+    empty.
+    """
     axes = {block.column: block.nm}
     own_labels = [cell.text for cell in block.labels(block.column)]
     for column in range(block.column + 1, block.width):
@@ -201,7 +214,9 @@ def _axes(block: Block) -> dict[int, Array]:
 
 
 def _pairs(block: Block) -> Series | None:
-    """Return the spectrum whose wavelengths go on from pair to pair in equal steps, and then to the next line."""
+    """Return the spectrum whose wavelengths go on from pair to pair in equal steps, and
+    then to the next line.
+    """
     labels = [cell.text for head in block.heads for cell in head]
     is_labelled = not all(
         is_plain(label) or names_wavelengths(label) for label in labels

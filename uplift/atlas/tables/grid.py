@@ -20,11 +20,15 @@ NAME_LABELS = (
     "samplename", "name", "colorname", "colourname", "patchname", "patch", "label", "title", "sample", "material",
     "spectrum", "sampleid", "patchid", "id", "sampleloc", "sampleno", "no", "number", "index",
 )  # fmt: skip
-"""Labels of names, in lower case without blanks and punctuation, the preferred ones first."""
+"""Labels of names, in lower case without blanks and punctuation, the preferred ones
+first.
+"""
 
 
 class Series(NamedTuple):
-    """The cells of one spectrum, their wavelengths in nm, what their label states, and the cell of the name if any."""
+    """The cells of one spectrum, their wavelengths in nm, what their label states, and
+    the cell of the name if any.
+    """
 
     label: str
     nm: Sequence[float]
@@ -63,7 +67,9 @@ class Grid:
         )
 
     def remarks(self, first: int, last: int | None = None) -> list[str]:
-        """Return the comments, and the lines before row ``first`` and from row ``last`` on."""
+        """Return the comments, and the lines before row ``first`` and from row ``last``
+        on.
+        """
         below = [] if last is None else line_texts(self.rows[last:])
         return [*self.comments, *line_texts(self.rows[:first]), *below]
 

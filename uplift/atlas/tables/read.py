@@ -1,7 +1,8 @@
 """Spectra of a grid of cells.
 
-Wavelengths lie in a row, with a row per spectrum below; in a column, with a column per spectrum; or in a column before
-each spectrum. All else is text: preamble, comments, lines below. It states scale, quantity and unit.
+Wavelengths lie in a row, with a row per spectrum below; in a column, with a column per
+spectrum; or in a column before each spectrum. All else is text: preamble, comments,
+lines below. It states scale, quantity and unit.
 """
 
 from uplift.atlas.document import SourceLocation, truncate
@@ -79,7 +80,9 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
 
 
 def _values(cells: Row, location: SourceLocation) -> tuple[list[float], Scale | None]:
-    """Parse the values of a spectrum, NaN where one is missing, and the scale that percent signs in cells state."""
+    """Parse the values of a spectrum, NaN where one is missing, and the scale that
+    percent signs in cells state.
+    """
     values = list[float]()
     percents = [cell.text for cell in cells if cell.text.endswith("%")]
     for cell in cells:
@@ -93,7 +96,10 @@ def _values(cells: Row, location: SourceLocation) -> tuple[list[float], Scale | 
     if not percents:
         return values, None
     if len(percents) < (~is_missing(values)).sum():
-        problem = f"{len(percents)} of {pluralise(len(cells), 'value')} are in percent, such as '{percents[0]}'"
+        problem = (
+            f"{len(percents)} of {pluralise(len(cells), 'value')} are in percent, "
+            f"such as '{percents[0]}'"
+        )
         raise location.at(cells[0].line).error(
             problem, "give all or none in percent", code="mixed-scales"
         )
@@ -101,7 +107,9 @@ def _values(cells: Row, location: SourceLocation) -> tuple[list[float], Scale | 
 
 
 def _rows_or_columns(grid: Grid) -> Table:
-    """Find the row or the column of wavelengths. Raise `AtlasError` if there is none, or if both may be meant."""
+    """Find the row or the column of wavelengths. Raise `AtlasError` if there is none,
+    or if both may be meant.
+    """
     header = max(headers(grid), key=lambda header: len(header.nm), default=None)
     found = list(blocks(grid))
     block = max(found, key=lambda block: len(block.rows), default=None)
@@ -134,8 +142,14 @@ def _no_table(grid: Grid) -> AtlasError:
         for run in runs(cells):
             nm = to_nm(run.numbers, run.unit or grid.unit or NANOMETRE)
             if len(nm) > 2 and (run.prefix or nm.min() >= SHORTEST):
-                problem = f"wavelengths must cover 400–700 nm, got {nm.min():g}–{nm.max():g} nm"
-                hint = "add the missing wavelengths, or state their unit in a label, such as 'Wavelength (µm)'"
+                problem = (
+                    "wavelengths must cover 400–700 nm, got "
+                    f"{nm.min():g}–{nm.max():g} nm"
+                )
+                hint = (
+                    "add the missing wavelengths, or state their unit in a label, "
+                    "such as 'Wavelength (µm)'"
+                )
                 return grid.location.at(cells[run.first].line).error(problem, hint)
     # A line with numbers was meant to be understood.
     first = next(
@@ -143,5 +157,8 @@ def _no_table(grid: Grid) -> AtlasError:
         grid.rows[0],
     )
     text = truncate(line_texts([first])[0])
-    problem = f"{NO_TABLE}; read as a table, this line has {pluralise(len(first), 'cell')}: '{text}'"
+    problem = (
+        f"{NO_TABLE}; read as a table, this line has {pluralise(len(first), 'cell')}: "
+        f"'{text}'"
+    )
     return grid.location.at(first[0].line).error(problem, LAYOUT, code="not-an-atlas")

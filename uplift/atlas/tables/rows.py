@@ -1,4 +1,6 @@
-"""Spectra in rows: a row of wavelengths with a row per spectrum below it, or a row per sample."""
+"""Spectra in rows: a row of wavelengths with a row per spectrum below it, or a row per
+sample.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
@@ -43,7 +45,9 @@ from uplift.common.text import pluralise
 
 
 class Header(NamedTuple):
-    """A row of wavelengths: its index, the cells of the wavelengths, and their numbers in nm."""
+    """A row of wavelengths: its index, the cells of the wavelengths, and their numbers
+    in nm.
+    """
 
     at: int
     run: Run
@@ -51,7 +55,9 @@ class Header(NamedTuple):
 
 
 def headers(grid: Grid) -> Iterator[Header]:
-    """Yield the indices of rows with wavelengths in nm, and numbers in the row below."""
+    """Yield the indices of rows with wavelengths in nm, and numbers in the
+    row below.
+    """
     for index, row in enumerate(grid.rows[:MAX_PREAMBLE]):
         for run in runs(row):
             nm = to_nm(
@@ -83,7 +89,9 @@ def headers(grid: Grid) -> Iterator[Header]:
 
 
 def spectra_below(grid: Grid, wavelengths: Header) -> Table:
-    """Return a spectrum for each row below a row of wavelengths that has a value at one of them."""
+    """Return a spectrum for each row below a row of wavelengths that has a value at one
+    of them.
+    """
     index, run, nm = wavelengths
     header = grid.rows[index]
     remarks = grid.remarks(index)
@@ -94,8 +102,14 @@ def spectra_below(grid: Grid, wavelengths: Header) -> Table:
             remarks += line_texts([row])
             continue
         if len(row) > len(header):
-            problem = f"a row must have {pluralise(len(header), 'cell')} like the header row, got {len(row)}"
-            hint = "put a name that contains the separator in quotes, or remove the other cells"
+            problem = (
+                f"a row must have {pluralise(len(header), 'cell')} like the header "
+                f"row, got {len(row)}"
+            )
+            hint = (
+                "put a name that contains the separator in quotes, or remove the "
+                "other cells"
+            )
             raise grid.location.at(line).error(problem, hint)
         body.append((*row, *[Cell("", line)] * (len(header) - len(row))))
     others = [*range(run.first), *range(run.last, len(header))]
@@ -115,7 +129,9 @@ def spectra_below(grid: Grid, wavelengths: Header) -> Table:
 
 
 def _name_column(header: Row, body: Sequence[Row], others: Sequence[int]) -> int | None:
-    """Return the column of the names: that of a usual label whose texts differ, or else the first one."""
+    """Return the column of the names: that of a usual label whose texts differ, or else
+    the first one.
+    """
     # Labels that state a name come before those of numbers, unless they repeat a name.
     labels = {index: plain_label(header[index].text) for index in others}
     known = [
@@ -132,7 +148,9 @@ def _name_column(header: Row, body: Sequence[Row], others: Sequence[int]) -> int
 
 
 def find_samples(grid: Grid) -> Table | None:
-    """Read a table with a row per sample: a name, a wavelength and a reflectance, in any order of columns."""
+    """Read a table with a row per sample: a name, a wavelength and a reflectance, in
+    any order of columns.
+    """
     for index, header in enumerate(grid.rows[:MAX_PREAMBLE]):
         if is_value(header[-1].text):
             continue
@@ -154,7 +172,9 @@ def _first(header: Row, is_wanted: Callable[[str], bool]) -> int | None:
 def _sample_table(
     grid: Grid, index: int, columns: tuple[int, int, int]
 ) -> Table | None:
-    """Return a spectrum for each name in the first of three columns; the header is the row of an index."""
+    """Return a spectrum for each name in the first of three columns; the header is the
+    row of an index.
+    """
     header = grid.rows[index]
     remarks = grid.remarks(index)
     found: dict[str, list[tuple[float, Cell]]] = {}

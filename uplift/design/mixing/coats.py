@@ -1,15 +1,18 @@
-"""Mixtures by kind of component, and coats of paint or dye on any ground: a uniform colour or the pixels of an image.
+"""Mixtures by kind of component, and coats of paint or dye on any ground: a uniform
+colour or the pixels of an image.
 
-All reflectances include the surface. A coat of thickness 0 therefore leaves its ground unchanged. Grounds darker than
-the surface alone are treated as black beneath it.
+All reflectances include the surface. A coat of thickness 0 therefore leaves its ground
+unchanged. Grounds darker than the surface alone are treated as black beneath it.
 
-Dyes absorb and do not scatter (Fishkin 1983, eq. 9.3–9.7). Of the light that enters, 1 − ρ, the i-th pass contributes
-(1 − ρ) (1 − ρ_i) (T² R_g)^i ρ_i^(i−1), so that a dye on a ground R_g in optical contact has
+Dyes absorb and do not scatter (Fishkin 1983, eq. 9.3–9.7). Of the light that enters, 1
+− ρ, the i-th pass contributes (1 − ρ) (1 − ρ_i) (T² R_g)^i ρ_i^(i−1), so that a dye on
+a ground R_g in optical contact has
 
     R = ρ + (1 − ρ) (1 − ρ_i) T² R_g / (1 − ρ_i T² R_g),
 
-which is Saunderson's correction (eq. 10.10) of T² R_g, or Kubelka and Munk's result without scattering. The thesis
-prints, with ρ_i = ρ, (1 − ρ)² / (ρ (1 − ρ T² R_g)): its sum starts at 1, but the term i = 0 was not subtracted.
+which is Saunderson's correction (eq. 10.10) of T² R_g, or Kubelka and Munk's result
+without scattering. The thesis prints, with ρ_i = ρ, (1 − ρ)² / (ρ (1 − ρ T² R_g)): its
+sum starts at 1, but the term i = 0 was not subtracted.
 """
 
 import json
@@ -38,7 +41,8 @@ from uplift.lookup.blocks import blockwise
 
 COATS = ("pigment", "dye", "duntley")
 KINDS = (*COATS, "filter", "light")
-DARKEST = 1e-6  # smallest transmittance that the absorption of a dye is derived from; it diverges at 0
+# smallest transmittance that the absorption of a dye is derived from; it diverges at 0
+DARKEST = 1e-6
 MAX_THICKNESS = 1e9  # as it is multiplied with other numbers
 
 
@@ -50,7 +54,9 @@ class Coat:
     surface: Surface = optics.NO_SURFACE
 
     def over(self, ground: ArrayLike) -> Array:
-        """Return the reflectance (..., N) on a ground (..., N), both surface included."""
+        """Return the reflectance (..., N) on a ground (..., N), both
+        surface included.
+        """
         beneath = _beneath(self.surface, ground)
         return self.surface.apply(
             self.layer.over(beneath), self.layer.diffuse.over(beneath)
@@ -64,10 +70,12 @@ class Ingredients:
     Parameters
     ----------
     spectra : ndarray of shape (n, N)
-        Reflectance of opaque pigments, reflectance of dyes one unit thick on white, transmittance of filters, or power
-        of lights. Of paints by Duntley's theory their constants, (n, 6, N).
+        Reflectance of opaque pigments, reflectance of dyes one unit thick on white,
+        transmittance of filters, or power of lights. Of paints by Duntley's theory
+        their constants, (n, 6, N).
     on_black : tuple of ndarray of shape (N,) or None, one for each component, optional
-        Reflectance on black of the pigments that ``spectra`` gives on white, one unit thick. None for the others.
+        Reflectance on black of the pigments that ``spectra`` gives on white, one unit
+        thick. None for the others.
     """
 
     spectra: Array
@@ -86,13 +94,15 @@ class Medium:
     Parameters
     ----------
     thickness : float, optional
-        Thickness in units, by default opaque for pigments and 1 for dyes and Duntley's paints.
+        Thickness in units, by default opaque for pigments and 1 for dyes and Duntley's
+        paints.
     surface : Surface
         Surface of the vehicle.
     scattering : callable, optional
         S of pigments that are given by one colour, which need it; see `dispersive`.
     plate : bool
-        Whether dyes are in a free plate with a surface on both sides, and the ground is behind a gap of air.
+        Whether dyes are in a free plate with a surface on both sides, and the ground is
+        behind a gap of air.
     """
 
     thickness: float | None = None
@@ -111,7 +121,8 @@ def make_coat(
     kind : {"pigment", "dye", "duntley"}
         Kind of the components.
     ingredients : Ingredients
-        The n components. A warning states how many are darker than the surface alone at some wavelengths.
+        The n components. A warning states how many are darker than the surface alone at
+        some wavelengths.
     parts : array_like of shape (..., n)
         Amounts of the components.
     medium : Medium
@@ -125,8 +136,8 @@ def make_coat(
     Raises
     ------
     OptionError
-        An argument is invalid, a dye has a colour on black, a plate has no dye, or the scattering of a pigment is
-        missing.
+        An argument is invalid, a dye has a colour on black, a plate has no dye, or the
+        scattering of a pigment is missing.
     ColourError
         No pigment has the given reflectances on white and on black.
     """
@@ -159,7 +170,10 @@ def make_coat(
     )
     dark = sum(bool((surface.remove(one) < -SLACK).any()) for one in spectra)
     if dark:
-        problem = f"{dark} of {pluralise(len(spectra), 'colour')} partly darker than the surface alone: black there"
+        problem = (
+            f"{dark} of {pluralise(len(spectra), 'colour')} partly darker than the "
+            "surface alone: black there"
+        )
         warnings.warn(UpliftWarning(problem), stacklevel=2)
     if kind == "dye":
         if ingredients.measured_on_black:
@@ -234,7 +248,10 @@ def mix(
         medium.surface,
         medium.plate,
     ) != usual or ingredients.measured_on_black:
-        problem = f"{kind}s must not have a thickness, a surface, a plate or a colour on black"
+        problem = (
+            f"{kind}s must not have a thickness, a surface, a plate or a colour on "
+            "black"
+        )
         raise OptionError(
             problem, hint="leave them out; parts of filters are their thickness"
         )
@@ -244,9 +261,11 @@ def mix(
 
 
 def ramp(parts: ArrayLike, steps: int) -> Array:
-    """Return proportions (steps, n) from the first component alone, through the others, to the last alone.
+    """Return proportions (steps, n) from the first component alone, through the others,
+    to the last alone.
 
-    ``parts`` (n,) are the amounts at which each component stands alone. The shape is (0, 1) for a single component.
+    ``parts`` (n,) are the amounts at which each component stands alone. The shape is
+    (0, 1) for a single component.
 
     >>> ramp([2, 1], 3).tolist()
     [[2.0, 0.0], [1.0, 0.5], [0.0, 1.0]]
@@ -263,14 +282,18 @@ def ramp(parts: ArrayLike, steps: int) -> Array:
 
 
 def dye_transmittance(absorption: ArrayLike, thickness: float) -> Array:
-    """Return T = exp(−K X) of absorption (..., N) (Beer, eq. 9.5). A concentration multiplies the thickness."""
+    """Return T = exp(−K X) of absorption (..., N) (Beer, eq. 9.5). A concentration
+    multiplies the thickness.
+    """
     return np.exp(-thickness * np.asarray(absorption, dtype=float))
 
 
 def dye_absorption(
     reflectance: ArrayLike, surface: Surface = optics.NO_SURFACE
 ) -> Array:
-    """Return the absorption (..., N) of a dye, one unit thick, from its reflectance on perfect white (eq. 9.7, 9.5)."""
+    """Return the absorption (..., N) of a dye, one unit thick, from its reflectance on
+    perfect white (eq. 9.7, 9.5).
+    """
     transmittance = np.sqrt(_beneath(surface, reflectance))
     return -np.log(np.clip(transmittance, DARKEST, 1))
 
@@ -295,7 +318,9 @@ def _beneath(surface: Surface, reflectance: ArrayLike) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Overpainter(Converter):
-    """Converter that lays a coat over images, made by `overpainter`. The gamut is mapped before and after painting."""
+    """Converter that lays a coat over images, made by `overpainter`. The gamut is
+    mapped before and after painting.
+    """
 
     coat: Coat  # at the wavelengths of the sensor
     reflectance: Callable[
@@ -304,13 +329,17 @@ class Overpainter(Converter):
     threads: int  # that share a band
 
     def paint(self, rgb: Floats) -> Floats:
-        """Lay the coat over linear RGB (..., 3) in [0, 1]; the result may be outside."""
+        """Lay the coat over linear RGB (..., 3) in [0, 1]; the result may
+        be outside.
+        """
         return blockwise(
             self._paint_block, rgb.astype(float), 3, np.float32, self.threads
         )
 
     def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
-        """Lay the coat over a block of colours (..., 3) and map the result to the gamut, counting pixels outside."""
+        """Lay the coat over a block of colours (..., 3) and map the result to the
+        gamut, counting pixels outside.
+        """
         mapped = map_to_gamut(self.paint(rgb), self.sensor, self.out_of_gamut)
         return (mapped.rgb,), Counts(painted_outside=mapped.count)
 
@@ -339,9 +368,11 @@ def overpainter(
     recipe : mapping, optional
         Description of the coat in JSON values, written to the header.
     encoding : {"auto", "linear", "encoded"}
-        Interpretation of the numbers in images; ``auto`` takes integers as encoded, floats as linear.
+        Interpretation of the numbers in images; ``auto`` takes integers as encoded,
+        floats as linear.
     out_of_gamut : str
-        Gamut mapping for pixels outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
+        Gamut mapping for pixels outside [0, 1], one of
+        `uplift.colorimetry.gamut.METHODS`.
     threads : int
         Threads that share a band.
     space : ImageSpace, optional

@@ -1,8 +1,10 @@
-"""Amounts of components, lights and filters, layers on a ground, and the surface between air and a vehicle of paint.
+"""Amounts of components, lights and filters, layers on a ground, and the surface
+between air and a vehicle of paint.
 
-Incident light is a perpendicular beam (Fresnel; Fishkin 1983, eq. 9.3) or diffuse (Duntley 1942, eq. 10.9); light
-within is diffuse. Saunderson's correction (J. Opt. Soc. Am. 32, 1942, eq. 10.10) converts between the internal
-reflectance, as in Kubelka and Munk's theory, and the measured one. Also D. B. Judd, J. Res. NBS 29, 1942.
+Incident light is a perpendicular beam (Fresnel; Fishkin 1983, eq. 9.3) or diffuse
+(Duntley 1942, eq. 10.9); light within is diffuse. Saunderson's correction (J. Opt. Soc.
+Am. 32, 1942, eq. 10.10) converts between the internal reflectance, as in Kubelka and
+Munk's theory, and the measured one. Also D. B. Judd, J. Res. NBS 29, 1942.
 """
 
 from dataclasses import dataclass
@@ -18,11 +20,17 @@ TINY = np.finfo(float).tiny
 
 
 def as_amounts(parts: ArrayLike) -> Array:
-    """Return parts (…, n) as floats. Raises `OptionError` unless they are finite and not negative."""
+    """Return parts (…, n) as floats. Raises `OptionError` unless they are finite and
+    not negative.
+    """
     array = np.asarray(parts, dtype=float)
     if array.ndim == 0 or not (np.isfinite(array) & (array >= 0)).all():
         raise OptionError(
-            f"parts of a mixture must be a sequence of finite numbers of at least 0, got {array.tolist()}",
+            (
+                "parts of a mixture must be a sequence of finite numbers of at least "
+                "0, "
+                f"got {array.tolist()}"
+            ),
             hint="pass one for each component",
         )
     return array
@@ -48,17 +56,23 @@ def weighted_sum(spectra: ArrayLike, weights: Array) -> Array:
 
 
 def add_lights(spectra: ArrayLike, strengths: ArrayLike) -> Array:
-    """Superpose lights (…, n, N) of some strengths (…, n) (eq. 8.1, 8.2): linear in spectra, XYZ and linear RGB."""
+    """Superpose lights (…, n, N) of some strengths (…, n) (eq. 8.1, 8.2): linear in
+    spectra, XYZ and linear RGB.
+    """
     return weighted_sum(spectra, as_amounts(strengths))
 
 
 def average_areas(spectra: ArrayLike, parts: ArrayLike) -> Array:
-    """Average the reflectances (…, n, N) of dots too small to resolve by the areas (…, n) that they cover (eq. 8.3)."""
+    """Average the reflectances (…, n, N) of dots too small to resolve by the areas (…,
+    n) that they cover (eq. 8.3).
+    """
     return weighted_sum(spectra, as_shares(parts))
 
 
 def stack_filters(transmittance: ArrayLike, thickness: ArrayLike) -> Array:
-    """Multiply transmittances (…, n, N), each to the power of its thickness (…, n), without reflections (eq. 9.1)."""
+    """Multiply transmittances (…, n, N), each to the power of its thickness (…, n),
+    without reflections (eq. 9.1).
+    """
     powers = as_amounts(thickness)[..., None]
     return np.prod(np.asarray(transmittance, dtype=float) ** powers, axis=-2)
 
@@ -78,7 +92,8 @@ class Layer:
     def over(self, ground: ArrayLike) -> Array:
         """Return the reflectance (..., N) on a ground (..., N)."""
         ground = np.asarray(ground, dtype=float)
-        # Light travels back and forth between both: R + T² g Σ (R g)^i. The sum diverges only where no light gets.
+        # Light travels back and forth between both: R + T² g Σ (R g)^i. The sum
+        # diverges only where no light gets.
         escaping = np.maximum(1 - self.reflectance * ground, TINY)
         return self.reflectance + self.transmittance**2 * ground / escaping
 
@@ -95,7 +110,9 @@ class DirectedLayer(Layer):
         return self.inner
 
     def over(self, ground: ArrayLike) -> Array:
-        """Return the reflectance (..., N) of a beam on a ground (..., N): R + T g τ Σ (r g)^i."""
+        """Return the reflectance (..., N) of a beam on a ground (..., N): R + T g τ Σ
+        (r g)^i.
+        """
         ground = np.asarray(ground, dtype=float)
         escaping = np.maximum(1 - self.inner.reflectance * ground, TINY)
         return (
@@ -105,9 +122,11 @@ class DirectedLayer(Layer):
 
 
 def plate(transmittance: ArrayLike, rho: float) -> Layer:
-    """Return a free plate of an internal transmittance T (..., N), whose two surfaces reflect ρ (eq. 9.4).
+    """Return a free plate of an internal transmittance T (..., N), whose two surfaces
+    reflect ρ (eq. 9.4).
 
-    Nothing scatters, so that the light within keeps the direction in which both surfaces reflect ρ, from either side.
+    Nothing scatters, so that the light within keeps the direction in which both
+    surfaces reflect ρ, from either side.
     """
     once = np.asarray(transmittance, dtype=float)
     rest = 1 - (rho * once) ** 2
@@ -117,12 +136,15 @@ def plate(transmittance: ArrayLike, rho: float) -> Layer:
 
 
 def fresnel_reflectance(index: float) -> float:
-    """Return the reflectance of a perpendicular beam, from either side (eq. 9.3): 0.04 for an index of 1.5."""
+    """Return the reflectance of a perpendicular beam, from either side (eq. 9.3): 0.04
+    for an index of 1.5.
+    """
     return ((index - 1) / (index + 1)) ** 2
 
 
 def diffuse_reflectance(index: float) -> float:
-    """Return the reflectance of diffuse light from air: Fresnel's, integrated (eq. 10.9); 0.092 for an index of 1.5.
+    """Return the reflectance of diffuse light from air: Fresnel's, integrated (eq.
+    10.9); 0.092 for an index of 1.5.
 
     Fishkin 1983 prints 8n + 1² for 6 (n + 1)².
     """
@@ -139,7 +161,9 @@ def diffuse_reflectance(index: float) -> float:
 
 
 def internal_reflectance(index: float) -> float:
-    """Return the reflectance of diffuse light from within, 1 − (1 − ρ) / n², total reflection included (Judd 1942)."""
+    """Return the reflectance of diffuse light from within, 1 − (1 − ρ) / n², total
+    reflection included (Judd 1942).
+    """
     return 1 - (1 - diffuse_reflectance(index)) / index**2
 
 
@@ -149,7 +173,8 @@ INCIDENCES = {"perpendicular": fresnel_reflectance, "diffuse": diffuse_reflectan
 
 @dataclass(frozen=True)
 class Surface:
-    """Reflectances of a surface; the default is a vehicle with the refractive index of air.
+    """Reflectances of a surface; the default is a vehicle with the refractive index of
+    air.
 
     Parameters
     ----------
@@ -170,7 +195,8 @@ class Surface:
 
     @classmethod
     def of_index(cls, index: float, incidence: str = "perpendicular") -> Self:
-        """Compute the reflectances of a surface from the refractive index of the vehicle.
+        """Compute the reflectances of a surface from the refractive index of the
+        vehicle.
 
         Parameters
         ----------
@@ -195,14 +221,16 @@ class Surface:
         return cls(INCIDENCES[incidence](index), internal_reflectance(index))
 
     def apply(self, internal: ArrayLike, diffuse: ArrayLike | None = None) -> Array:
-        """Return the reflectance measured through the surface (Saunderson's correction, eq. 10.10).
+        """Return the reflectance measured through the surface (Saunderson's correction,
+        eq. 10.10).
 
         Parameters
         ----------
         internal : array_like
             Reflectance beneath the surface.
         diffuse : array_like, optional
-            The same for light that the surface sends back, if it differs as that light is diffuse.
+            The same for light that the surface sends back, if it differs as that light
+            is diffuse.
 
         Returns
         -------
@@ -225,7 +253,8 @@ class Surface:
         Returns
         -------
         ndarray
-            Internal reflectance, negative where the measured one is below that of the surface alone.
+            Internal reflectance, negative where the measured one is below that of the
+            surface alone.
         """
         rest = np.asarray(measured, dtype=float) - self.outside
         return rest / ((1 - self.outside) * (1 - self.inside) + self.inside * rest)

@@ -1,32 +1,41 @@
-"""Paints that absorb (K) and scatter (S) light, per unit thickness, by the theories of Kubelka and Munk and of Duntley.
+"""Paints that absorb (K) and scatter (S) light, per unit thickness, by the theories of
+Kubelka and Munk and of Duntley.
 
 With γ = √(K (K + 2S)) a layer of thickness X has (Fishkin 1983, eq. 10.2)
 
     T = γ / Δ,    R = S sinh γX / Δ,    Δ = (K + S) sinh γX + γ cosh γX.
 
-Mixtures average K and S (Duncan, eq. 10.7). Reflectances on two grounds determine both. The reflectance R of opaque
-paint determines K/S only (eq. 10.6, where Fishkin 1983 prints 1 − R² for (1 − R)²), so S must be assumed: as R^p, where
-p = 0 is the single-constant theory, or as Y^¾ exp(h / 4), where Y is the luminance factor and h(λ) the mean of √(K/S)
-below λ less that above it, weighted by exp(−abs(λ − λ') / 40 nm). The refractive index of a pigment rises on the
-long-wave side of an absorption band (anomalous dispersion), and scattering grows with its difference from the binder's:
-yellow pigments scatter most in the green, blue ones little, and both together are green. docs/mixing.md compares them.
+Mixtures average K and S (Duncan, eq. 10.7). Reflectances on two grounds determine both.
+The reflectance R of opaque paint determines K/S only (eq. 10.6, where Fishkin 1983
+prints 1 − R² for (1 − R)²), so S must be assumed: as R^p, where p = 0 is the
+single-constant theory, or as Y^¾ exp(h / 4), where Y is the luminance factor and h(λ)
+the mean of √(K/S) below λ less that above it, weighted by exp(−abs(λ − λ') / 40 nm).
+The refractive index of a pigment rises on the long-wave side of an absorption band
+(anomalous dispersion), and scattering grows with its difference from the binder's:
+yellow pigments scatter most in the green, blue ones little, and both together are
+green. docs/mixing.md compares them.
 
-Duntley's theory has eight constants, as collimated incident light and diffuse light within a layer differ: a fraction
-K' of the beam is absorbed, B' is scattered backward and F' forward; K, B and F are those of diffuse light (F has no
-effect), S' = B' + F' and S = B + F. With μ = K' + B' + F' and γ² = K (K + 2B), the beam e^−μx feeds two diffuse fluxes,
+Duntley's theory has eight constants, as collimated incident light and diffuse light
+within a layer differ: a fraction K' of the beam is absorbed, B' is scattered backward
+and F' forward; K, B and F are those of diffuse light (F has no effect), S' = B' + F'
+and S = B + F. With μ = K' + B' + F' and γ² = K (K + 2B), the beam e^−μx feeds two
+diffuse fluxes,
 
-    t' = F' e^−μx − (K + B) t + B s,    −s' = B' e^−μx − (K + B) s + B t,    t(0) = 0,  s(X) = 0.
+    t' = F' e^−μx − (K + B) t + B s,    −s' = B' e^−μx − (K + B) s + B t,    t(0) = 0,
+    s(X) = 0.
 
-−Q' e^−μx and −P' e^−μx are a particular solution. The rest is Kubelka and Munk's layer (r, τ) with S = B, so that
+−Q' e^−μx and −P' e^−μx are a particular solution. The rest is Kubelka and Munk's layer
+(r, τ) with S = B, so that
 
     R = Q' r + P' e^−μX τ − P',    T = Q' τ + P' e^−μX r − (Q' − 1) e^−μX,
 
-which is eq. 10.8 of Fishkin 1983. Where the denominator μ² − γ² of P' and Q' vanishes, the mean of both sides is taken.
-Particles that scatter in all directions alike leave two constants: K' = K / 2, B' = F' = S / 2 and B = F = S.
+which is eq. 10.8 of Fishkin 1983. Where the denominator μ² − γ² of P' and Q' vanishes,
+the mean of both sides is taken. Particles that scatter in all directions alike leave
+two constants: K' = K / 2, B' = F' = S / 2 and B = F = S.
 
-P. Kubelka and F. Munk 1931; P. Kubelka, J. Opt. Soc. Am. 38, 1948; D. R. Duncan, Proc. Phys. Soc. 52, 1940; S. Q.
-Duntley, J. Opt. Soc. Am. 1942; C. F. Bohren & D. R. Huffman, *Absorption and Scattering of Light by Small Particles*,
-1983, chapter 9.
+P. Kubelka and F. Munk 1931; P. Kubelka, J. Opt. Soc. Am. 38, 1948; D. R. Duncan, Proc.
+Phys. Soc. 52, 1940; S. Q. Duntley, J. Opt. Soc. Am. 1942; C. F. Bohren & D. R. Huffman,
+*Absorption and Scattering of Light by Small Particles*, 1983, chapter 9.
 """
 
 from collections.abc import Callable
@@ -50,12 +59,15 @@ from uplift.design.mixing.optics import (
 )
 
 DARKEST = 1e-4  # smallest reflectance that K and S are derived from; K diverges at 0
-SLACK = 1e-3  # contradiction between measurements on two grounds that is accepted as rounding
+# contradiction between measurements on two grounds that is accepted as rounding
+SLACK = 1e-3
 MIN_TRANSMITTANCE = 1e-3  # smallest transmittance at which K and S can be separated
 REACH = 40.0  # distance in nm at which the weight of absorption in h falls to 1/e
-# Smallest reflectance that h is computed from; √(K/S) diverges at 0, where the colour no longer determines it.
+# Smallest reflectance that h is computed from; √(K/S) diverges at 0, where the colour
+# no longer determines it.
 DARKEST_DISPERSED = 0.01
-# Relative difference of μ and γ below which the mean of both sides is taken; its error is the square of this.
+# Relative difference of μ and γ below which the mean of both sides is taken; its error
+# is the square of this.
 MIN_RELATIVE_GAP = 1e-5
 CONSTANTS = (
     "K'",
@@ -66,7 +78,8 @@ CONSTANTS = (
     "F",
 )  # of Duntley's eight, those that the others are sums of
 
-# From reflectances (..., N) in (0, 1] to S (..., N), greater than 0, of which white has 1.
+# From reflectances (..., N) in (0, 1] to S (..., N), greater than 0, of which white has
+# 1.
 Scattering = Callable[[Array], Array]
 
 
@@ -109,7 +122,8 @@ def dispersive(sensor: Sensor, further: ArrayLike = ()) -> Dispersive:
     sensor : Sensor
         Y, for light of equal energy, and h are sums over its wavelengths.
     further : array_like of shape (n,), optional
-        Wavelengths in nm of samples that follow those of the sensor and enter no sum; beyond its range h is constant.
+        Wavelengths in nm of samples that follow those of the sensor and enter no sum;
+        beyond its range h is constant.
 
     Returns
     -------
@@ -153,14 +167,18 @@ class Pigment:
         )
 
     def opaque_reflectance(self) -> Array:
-        """Return the reflectance (..., N) of opaque paint, the limit X → ∞ (eq. 10.5)."""
+        """Return the reflectance (..., N) of opaque paint, the limit X → ∞
+        (eq. 10.5).
+        """
         K, S = self.absorption, self.scattering
         return np.asarray(S / np.maximum(K + S + self.gamma, TINY))
 
     def layer(self, thickness: ArrayLike) -> Layer:
-        """Return the optical properties of a layer of a thickness X (...) in units of 1/K and 1/S (eq. 10.2).
+        """Return the optical properties of a layer of a thickness X (...) in units of
+        1/K and 1/S (eq. 10.2).
 
-        Numerators and denominators are divided by γ e^γX, which prevents overflow and covers K → 0 and S → 0.
+        Numerators and denominators are divided by γ e^γX, which prevents overflow and
+        covers K → 0 and S → 0.
         """
         X = np.asarray(thickness, dtype=float)[..., None]
         gamma = self.gamma
@@ -171,7 +189,9 @@ class Pigment:
         return Layer(self.scattering * sinh / delta, np.exp(-path / 2) / delta)
 
     def amy_opaque_reflectance(self) -> Array:
-        """Return the reflectance (..., N) of opaque paint in Amy's approximation for strong absorption (eq. 10.4)."""
+        """Return the reflectance (..., N) of opaque paint in Amy's approximation for
+        strong absorption (eq. 10.4).
+        """
         K, S = self.absorption, self.scattering
         return np.asarray(S / np.maximum(2 * (K + S), TINY))
 
@@ -184,11 +204,13 @@ def from_opaque(reflectance: ArrayLike, scattering: Scattering) -> Pigment:
 
 
 def from_black_and_white(on_black: ArrayLike, on_white: ArrayLike) -> Pigment:
-    """Derive K and S from the reflectances (..., N) of a layer of unit thickness on black and on white.
+    """Derive K and S from the reflectances (..., N) of a layer of unit thickness on
+    black and on white.
 
-    Paint on white has R = R₀ + T² / (1 − R₀). With the absorptance A = 1 − R₀ − T: cosh γ = 1 + A (A + 2R₀) / 2T,
-    S = γ R₀ / (T sinh γ) and K = γ A (1 − R₀ + T) / (2T sinh γ). These forms do not cancel for S → 0 or K → 0.
-    Raises `ColourError` if no paint has both reflectances, or if they do not differ enough.
+    Paint on white has R = R₀ + T² / (1 − R₀). With the absorptance A = 1 − R₀ − T: cosh
+    γ = 1 + A (A + 2R₀) / 2T, S = γ R₀ / (T sinh γ) and K = γ A (1 − R₀ + T) / (2T sinh
+    γ). These forms do not cancel for S → 0 or K → 0. Raises `ColourError` if no paint
+    has both reflectances, or if they do not differ enough.
     """
     R0, R1 = np.asarray(on_black, dtype=float), np.asarray(on_white, dtype=float)
     T = np.sqrt(np.maximum(R1 - (1 + R1) * R0 + R0**2, 0))
@@ -209,7 +231,9 @@ def from_black_and_white(on_black: ArrayLike, on_white: ArrayLike) -> Pigment:
 
 @dataclass(frozen=True, eq=False)
 class Flux:
-    """Fractions (..., N) of a kind of light that are absorbed, scattered backward and forward per unit thickness."""
+    """Fractions (..., N) of a kind of light that are absorbed, scattered backward and
+    forward per unit thickness.
+    """
 
     absorption: Array
     backward: Array
@@ -217,7 +241,9 @@ class Flux:
 
 
 def duntley_layer(beam: Flux, diffuse: Flux, thickness: float) -> DirectedLayer:
-    """Return the optical properties of a layer for collimated light by Duntley's theory (eq. 10.8)."""
+    """Return the optical properties of a layer for collimated light by Duntley's theory
+    (eq. 10.8).
+    """
     inner = Pigment(diffuse.absorption, diffuse.backward)
     layer = inner.layer(thickness)
     r, tau = layer.reflectance, layer.transmittance
@@ -249,9 +275,11 @@ def duntley_layer(beam: Flux, diffuse: Flux, thickness: float) -> DirectedLayer:
 
 
 def read_constants(path: StrPath, wavelengths: Array) -> Array:
-    """Read Duntley's constants (6, N) of a paint, in the order of `CONSTANTS`, linear between the samples of a table.
+    """Read Duntley's constants (6, N) of a paint, in the order of `CONSTANTS`, linear
+    between the samples of a table.
 
-    S' = B' + F' and S = B + F may be in the table too; they must be these sums. Raises `AtlasError`.
+    S' = B' + F' and S = B + F may be in the table too; they must be these sums. Raises
+    `AtlasError`.
     """
     document = read_document(path)
     (_, found), samples = read_any(document), {}
@@ -270,7 +298,10 @@ def read_constants(path: StrPath, wavelengths: Array) -> Array:
         samples[spectrum.name] = np.interp(wavelengths, nm[order], values[order])
     missing = [name for name in CONSTANTS if name not in samples]
     if missing:
-        problem = f"a table of Duntley's constants must have {', '.join(CONSTANTS)}; {', '.join(missing)} missing"
+        problem = (
+            f"a table of Duntley's constants must have {', '.join(CONSTANTS)}; "
+            f"{', '.join(missing)} missing"
+        )
         raise document.location.error(
             problem, "write a column for each, and one of wavelengths in nm"
         )
@@ -286,7 +317,9 @@ def read_constants(path: StrPath, wavelengths: Array) -> Array:
 
 
 def diffuse_to_beam(diffuse: ArrayLike) -> Array:
-    """Return the reflectance R = 2r / (3 − r) in a beam of an opaque layer that scatters in all directions alike."""
+    """Return the reflectance R = 2r / (3 − r) in a beam of an opaque layer that
+    scatters in all directions alike.
+    """
     r = np.asarray(diffuse, dtype=float)
     return 2 * r / (3 - r)
 

@@ -1,15 +1,19 @@
-"""All mixing models of RGB by name: spectral ones, by uplifting with a cube, and heuristics of RGB.
+"""All mixing models of RGB by name: spectral ones, by uplifting with a cube, and
+heuristics of RGB.
 
-HSL: hue, saturation and lightness in [0, 1], hue 0 is red, 1/3 green, 2/3 blue (GSPC, "Status Report of the Graphics
-Standards Planning Committee", 1979; Fishkin 1983, section 5.3.5).
+HSL: hue, saturation and lightness in [0, 1], hue 0 is red, 1/3 green, 2/3 blue (GSPC,
+"Status Report of the Graphics Standards Planning Committee", 1979; Fishkin 1983,
+section 5.3.5).
 
-RYB-HSL (Fishkin 1983, section 10.4): the centroid in the double cone of figure 10.3, whose radius is chroma. Two errors
-in the printed hue map are corrected: its middle third subtracts 1/3, but only adding continues from yellow (1/6 → 1/3);
-and its slope of 1/2 jumps to 2/3 at blue, where a slope of 2/3 joins both ends. Green, 1/3, maps to 4/9.
+RYB-HSL (Fishkin 1983, section 10.4): the centroid in the double cone of figure 10.3,
+whose radius is chroma. Two errors in the printed hue map are corrected: its middle
+third subtracts 1/3, but only adding continues from yellow (1/6 → 1/3); and its slope of
+1/2 jumps to 2/3 at blue, where a slope of 2/3 joins both ends. Green, 1/3, maps to 4/9.
 
-Phosphor curves (Fishkin 1983, chapter 7): the curve of a colour is the sum of the monitor's phosphor spectra that
-display it (eq. 7.1). Curves are treated as transmittances and multiplied as filters (eq. 9.1). The result is the
-monitor RGB that matches the product.
+Phosphor curves (Fishkin 1983, chapter 7): the curve of a colour is the sum of the
+monitor's phosphor spectra that display it (eq. 7.1). Curves are treated as
+transmittances and multiplied as filters (eq. 9.1). The result is the monitor RGB that
+matches the product.
 """
 
 from collections.abc import Callable
@@ -41,7 +45,8 @@ Mix = Callable[
 CRT = "Typical CRT Brainard 1997"
 """Phosphors of a cathode-ray tube, measured by D. H. Brainard."""
 OIL = Surface.of_index(1.5)
-# For each sixth of the hues: indices of red, green and blue among (largest, rising, smallest, falling).
+# For each sixth of the hues: indices of red, green and blue among (largest, rising,
+# smallest, falling).
 SEXTANTS = np.array([[0, 1, 2], [3, 0, 2], [2, 0, 1], [2, 3, 0], [1, 2, 0], [0, 2, 3]])
 RGB_WHEEL = (0.0, 1 / 6, 2 / 3, 1.0)
 RYB_WHEEL = (0.0, 1 / 3, 2 / 3, 1.0)  # hues of red, yellow, blue and red again
@@ -53,11 +58,15 @@ class Mixer:
 
     name: str  # for programs
     title: str  # for readers
-    mix: Mix  # from linear RGB (n, 3) and parts (..., n) to linear RGB (..., 3), which may leave the gamut
+    # from linear RGB (n, 3) and parts (..., n) to linear RGB (..., 3), which may leave
+    # the gamut
+    mix: Mix
 
 
 def mixers(cube: Cube) -> tuple[Mixer, ...]:
-    """Return the spectral models, for colours uplifted by a cube, and the RGB heuristics."""
+    """Return the spectral models, for colours uplifted by a cube, and the RGB
+    heuristics.
+    """
     sensor = cube.data.sensor
 
     def uplifted(mix: Mix) -> Mix:
@@ -79,7 +88,9 @@ def mixers(cube: Cube) -> tuple[Mixer, ...]:
 
 
 def spectral_models(sensor: Sensor) -> dict[str, tuple[str, Mix]]:
-    """Return the models of spectra (title, function) at the wavelengths of a sensor, by name."""
+    """Return the models of spectra (title, function) at the wavelengths of a sensor, by
+    name.
+    """
     paints = _paints(pigments.dispersive(sensor))
     return {
         "pigments": ("Kubelka–Munk", paints),
@@ -126,8 +137,9 @@ def _paints(
 def hsl_to_rgb(hsl: ArrayLike) -> Array:
     """Convert hue, saturation and lightness (..., 3) to RGB.
 
-    The largest and the smallest component follow from lightness and saturation as in HSL, the third as in HSV. Only
-    the sixth of the hue circle that contains the hue is computed (Fishkin 1983, 5.3.5).
+    The largest and the smallest component follow from lightness and saturation as in
+    HSL, the third as in HSV. Only the sixth of the hue circle that contains the hue is
+    computed (Fishkin 1983, 5.3.5).
     """
     hue, saturation, lightness = np.moveaxis(np.asarray(hsl, dtype=float), -1, 0)
     largest = np.where(
@@ -165,7 +177,9 @@ def rgb_to_hsl(rgb: ArrayLike) -> Array:
 
 
 def mix_ryb(rgb: ArrayLike, parts: ArrayLike) -> Array:
-    """Mix RGB (..., n, 3) in [0, 1] by parts (..., n) as paints on the wheel of red, yellow and blue."""
+    """Mix RGB (..., n, 3) in [0, 1] by parts (..., n) as paints on the wheel of red,
+    yellow and blue.
+    """
     rgb = np.asarray(rgb, dtype=float)
     # To the double cone: x, y and lightness.
     hue, _, lightness = np.moveaxis(rgb_to_hsl(rgb), -1, 0)
@@ -185,7 +199,9 @@ def mix_ryb(rgb: ArrayLike, parts: ArrayLike) -> Array:
 
 
 def mix_phosphors(rgb: ArrayLike, thickness: ArrayLike) -> Array:
-    """Mix linear RGB (..., n, 3) as filters of a thickness (..., n) with phosphor curves."""
+    """Mix linear RGB (..., n, 3) as filters of a thickness (..., n) with phosphor
+    curves.
+    """
     curves, to_rgb = phosphor_curves()
     return np.maximum(
         stack_filters(np.asarray(rgb, dtype=float) @ curves, thickness) @ to_rgb.T, 0
@@ -194,9 +210,11 @@ def mix_phosphors(rgb: ArrayLike, thickness: ArrayLike) -> Array:
 
 @cache
 def phosphor_curves() -> tuple[Array, Array]:
-    """Return the curves (3, N) of a cathode-ray tube's primaries, and the matrix (3, N) from a curve to its RGB.
+    """Return the curves (3, N) of a cathode-ray tube's primaries, and the matrix (3, N)
+    from a curve to its RGB.
 
-    The curve of white is scaled to a maximum of 1 (Fishkin 1983, section 7.2), so that no curve amplifies light.
+    The curve of white is scaled to a maximum of 1 (Fishkin 1983, section 7.2), so that
+    no curve amplifies light.
     """
     phosphors = samples("display", CRT).T
     matching = observer.matching_functions()

@@ -1,6 +1,8 @@
-"""Palettes: lights and materials designed for the colours that they must produce together (docs/palette.md).
+"""Palettes: lights and materials designed for the colours that they must produce
+together (docs/palette.md).
 
-Sections and equations are those of S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004.
+Sections and equations are those of S. Bergner, T. Möller, M. S. Drew, *A Spectral
+Engine for Visualization*, 2004.
 """
 
 from uplift.design.palette.colours import illuminant

@@ -1,4 +1,6 @@
-"""Colours on a display: linear RGB of spectral powers without adaptation, their derivatives, and powers of lights."""
+"""Colours on a display: linear RGB of spectral powers without adaptation, their
+derivatives, and powers of lights.
+"""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,7 +11,9 @@ from uplift.colorimetry.lights import Illuminant
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 
-MID_GREY = 0.18  # luminance to which single colours are exposed, so that dark colours have the weight of bright ones
+# luminance to which single colours are exposed, so that dark colours have the weight of
+# bright ones
+MID_GREY = 0.18
 C2 = 1.438776877e7  # second radiation constant in nm K (CODATA 2018)
 MIN_KELVIN, MAX_KELVIN = (
     500.0,
@@ -21,7 +25,8 @@ REFERENCE_NM = (
 
 
 def screen_matrix(sensor: Sensor) -> Array:
-    """Return the matrix Q (3, N) from power to linear RGB, without adaptation: the colour of a light remains visible.
+    """Return the matrix Q (3, N) from power to linear RGB, without adaptation: the
+    colour of a light remains visible.
 
     A flat power of 1 has luminance 1; the sensor's illuminant at luminance 1 is white.
     """
@@ -29,12 +34,16 @@ def screen_matrix(sensor: Sensor) -> Array:
 
 
 def exposure(sensor: Sensor, rgb: ArrayLike) -> Array:
-    """Return the factor (…) that takes linear RGB (…, 3) to the luminance of mid-grey."""
+    """Return the factor (…) that takes linear RGB (…, 3) to the luminance
+    of mid-grey.
+    """
     return np.asarray(MID_GREY / sensor.xyz(rgb)[..., 1])
 
 
 def lab_per_rgb(sensor: Sensor, rgb: ArrayLike) -> Array:
-    """Return the derivative (…, 3, 3) of L*a*b* by linear RGB (…, 3) exposed to mid-grey; the last axis is RGB."""
+    """Return the derivative (…, 3, 3) of L*a*b* by linear RGB (…, 3) exposed to
+    mid-grey; the last axis is RGB.
+    """
     rgb = np.asarray(rgb, dtype=float)
     gain = exposure(sensor, rgb)[..., None]
     jacobian = lab_jacobian(sensor.xyz(rgb * gain), sensor.light.white)

@@ -1,4 +1,6 @@
-"""Design of the open spectra of a palette by linear least squares (section 3.3), its colours, and goals it misses."""
+"""Design of the open spectra of a palette by linear least squares (section 3.3), its
+colours, and goals it misses.
+"""
 
 import dataclasses
 import math
@@ -24,7 +26,9 @@ from uplift.design.palette.palette import (
     SpectrumSpec,
 )
 
-VISIBLE = 0.5  # ΔE00 above which a goal is missed: about half of a difference that is visible side by side
+# ΔE00 above which a goal is missed: about half of a difference that is visible side by
+# side
+VISIBLE = 0.5
 MAX_REMAINING = 0.8  # fraction of the ΔE00 that a useful relaxation may leave
 MAX_RELAXATIONS = 3  # relaxations that are listed for a goal
 
@@ -66,7 +70,11 @@ def design(palette: Palette, model: FactorModel) -> Design:
             and palette.light(goal.light).designed
         ):
             raise PaletteError(
-                f"light or material of a goal must be given, got {goal}, both to be designed",
+                (
+                    f"light or material of a goal must be given, got {goal}, both to "
+                    "be "
+                    "designed"
+                ),
                 hint="give one of them, or remove the goal",
             )
     where, x = unknowns(palette), solve(equations(palette, model))
@@ -96,7 +104,8 @@ class Matrix:
     target: Array  # (M, L, 3) of the goals; NaN without a goal
     obtained: Array  # (M, L, 3) by full spectra
     factor: Array  # (M, L, 3) by the factor model
-    delta_e: Array  # (M, L) ΔE00 from target to the colour that the palette fits; NaN without a goal
+    # (M, L) ΔE00 from target to the colour that the palette fits; NaN without a goal
+    delta_e: Array
     model_error: Array  # (M, L) ΔE00 from full spectra to the factor model
     whites: Array  # (L, 3) of the perfect reflector under each light
 
@@ -112,7 +121,8 @@ def matrix(design: Design) -> Matrix:
     Returns
     -------
     Matrix
-        Targets and colours (M, L, 3) of M materials under L lights, and their ΔE00 against the white of the display.
+        Targets and colours (M, L, 3) of M materials under L lights, and their ΔE00
+        against the white of the display.
     """
     palette, model = design.palette, design.model
     screen = screen_matrix(palette.sensor)
@@ -148,14 +158,16 @@ class UnmetGoal:
 
     goal: ColourGoal | MinDifference
     delta_e: float  # ΔE00 from the target, or between the materials
-    # Names of the criteria to relax, the most effective first, and the ΔE00 of the goal without them.
+    # Names of the criteria to relax, the most effective first, and the ΔE00 of the goal
+    # without them.
     relaxations: tuple[tuple[str, float], ...] = ()
 
     def __str__(self) -> str:
         if isinstance(self.goal, MinDifference):
             first, second = self.goal.materials
             return (
-                f"{first} and {second} under {self.goal.light}: ΔE00 must be at least {self.goal.delta_e:g}, "
+                f"{first} and {second} under {self.goal.light}: ΔE00 must be at least "
+                f"{self.goal.delta_e:g}, "
                 f"got {self.delta_e:.2f}; choose colours that differ more"
             )
         criteria = ", ".join(
@@ -166,7 +178,8 @@ class UnmetGoal:
 
 
 def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
-    """Find the goals that a design misses. The palette is designed again without each criterion in turn.
+    """Find the goals that a design misses. The palette is designed again without each
+    criterion in turn.
 
     Parameters
     ----------
@@ -256,12 +269,14 @@ def _relaxed(palette: Palette) -> Iterator[tuple[str, Palette]]:
 
 
 def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int:
-    """Write the designed materials as an atlas file, so that they can constrain a cube like measured ones.
+    """Write the designed materials as an atlas file, so that they can constrain a cube
+    like measured ones.
 
     Parameters
     ----------
     design : Design
-        The design. A warning lists the materials outside the range of reflectances of an atlas, which are left out.
+        The design. A warning lists the materials outside the range of reflectances of
+        an atlas, which are left out.
     path : path-like
         The file, in the format of `uplift.write_atlas`.
     force : bool
@@ -308,7 +323,10 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
         )
     if skipped:
         materials = pluralise(len(skipped), "material")
-        text = f"{materials} left out of the atlas: reflectance must be in [{LOWEST:g}, {HIGHEST:g}]"
+        text = (
+            f"{materials} left out of the atlas: reflectance must be in [{LOWEST:g}, "
+            f"{HIGHEST:g}]"
+        )
         warnings.warn(
             UpliftWarning(f"{text}, but {listed(skipped)}", code="material-skipped"),
             stacklevel=2,

@@ -1,8 +1,9 @@
-"""Stacked equations of a palette, M x ≈ y, where x holds free colours and spectra, and their solution.
+"""Stacked equations of a palette, M x ≈ y, where x holds free colours and spectra, and
+their solution.
 
-Colours are weighted by 1/√3 and smoothness by 1/(√rows ‖(−1, 2, −1)‖), so that weights of 1 are comparable.
-Bergner, Möller & Drew 2004, sections 3.2–3.3, eq. 18–24; but differences are scaled as for samples 10 nm apart, and
-none extends beyond the ends.
+Colours are weighted by 1/√3 and smoothness by 1/(√rows ‖(−1, 2, −1)‖), so that weights
+of 1 are comparable. Bergner, Möller & Drew 2004, sections 3.2–3.3, eq. 18–24; but
+differences are scaled as for samples 10 nm apart, and none extends beyond the ends.
 """
 
 from collections.abc import Iterator
@@ -44,7 +45,9 @@ class Equations:
 
 
 def unknowns(palette: Palette) -> Unknowns:
-    """Return the positions of all unknowns: first free colours, then designed spectra (eq. 24)."""
+    """Return the positions of all unknowns: first free colours, then designed spectra
+    (eq. 24).
+    """
     samples = len(palette.sensor.wavelengths)
     sizes = {("free", name): 3 for name in palette.free}
     sizes |= {("light", spec.name): samples for spec in palette.lights if spec.designed}
@@ -59,7 +62,9 @@ def unknowns(palette: Palette) -> Unknowns:
 
 
 def equations(palette: Palette, model: FactorModel) -> Equations:
-    """Stack all criteria of non-zero weight (eq. 22), with the bounds of the unknowns."""
+    """Stack all criteria of non-zero weight (eq. 22), with the bounds of
+    the unknowns.
+    """
     where = unknowns(palette)
     rows = [
         *_colours(palette, model, where),
@@ -89,7 +94,8 @@ def equations(palette: Palette, model: FactorModel) -> Equations:
 def solve(given: Equations) -> Array:
     """Minimise ‖M x − y‖ within the bounds, x (n,).
 
-    Without bounds the pseudo-inverse gives the minimum of least norm. Independent blocks are solved one by one.
+    Without bounds the pseudo-inverse gives the minimum of least norm. Independent
+    blocks are solved one by one.
     """
     x = np.zeros(given.matrix.shape[1])
     for rows, columns in _independent_blocks(given.matrix):
@@ -121,7 +127,9 @@ def _independent_blocks(matrix: Array) -> Iterator[tuple[Indices, Indices]]:
 
 
 def _colours(palette: Palette, model: FactorModel, where: Unknowns) -> Iterator[Rows]:
-    """Target colours (eq. 18, or 19 in the factor model), and free ones, which are unknowns too (eq. 24)."""
+    """Target colours (eq. 18, or 19 in the factor model), and free ones, which are
+    unknowns too (eq. 24).
+    """
     for goal in palette.goals:
         material, light = palette.material(goal.material), palette.light(goal.light)
         weight, blocks = goal.weight / np.sqrt(3), []
@@ -157,7 +165,9 @@ def _smoothness(palette: Palette, where: Unknowns) -> Iterator[Rows]:
 def _model_error(
     palette: Palette, model: FactorModel, where: Unknowns
 ) -> Iterator[Rows]:
-    """Colours of the factor model less those of full spectra, for every product with a designed spectrum (eq. 20)."""
+    """Colours of the factor model less those of full spectra, for every product with a
+    designed spectrum (eq. 20).
+    """
     weight = palette.model_error / np.sqrt(3)
     for material, light in product(palette.materials, palette.lights) if weight else ():
         for key, by_spectra, by_model in _colour_maps(palette, model, material, light):
@@ -170,9 +180,11 @@ def _model_error(
 def _colour_maps(
     palette: Palette, model: FactorModel, material: SpectrumSpec, light: SpectrumSpec
 ) -> Iterator[tuple[tuple[str, str], Array, Array]]:
-    """Yield the kind and name of a spectrum, and the matrices (3, N) from it to its colour with the given other one.
+    """Yield the kind and name of a spectrum, and the matrices (3, N) from it to its
+    colour with the given other one.
 
-    The first matrix is by full spectra, the second by the factor model. There are none if neither spectrum is given.
+    The first matrix is by full spectra, the second by the factor model. There are none
+    if neither spectrum is given.
     """
     screen = screen_matrix(palette.sensor)
     if (power := light.samples) is not None:

@@ -1,4 +1,6 @@
-"""Factor model (section 2): m coefficients per spectrum, whose products are those of products of spectra."""
+"""Factor model (section 2): m coefficients per spectrum, whose products are those of
+products of spectra.
+"""
 
 import itertools
 from dataclasses import dataclass
@@ -15,8 +17,10 @@ from uplift.design.palette.colours import illuminant, lab_per_rgb, screen_matrix
 from uplift.design.palette.sharpen import make_light_paths, sharpen
 
 COUNTS = range(3, 13)  # supported numbers of coefficients; Bergner uses 5 to 7
-MIN_WEIGHT = 0.002  # least weight of a wavelength, so that those of low sensitivity are fitted too
-# Linear R, G and B of the colours whose spectra stand for all materials; denser among dark colours.
+# least weight of a wavelength, so that those of low sensitivity are fitted too
+MIN_WEIGHT = 0.002
+# Linear R, G and B of the colours whose spectra stand for all materials; denser among
+# dark colours.
 NODES = np.linspace(0.02, 0.98, 5) ** 2
 
 
@@ -24,18 +28,21 @@ NODES = np.linspace(0.02, 0.98, 5) ** 2
 class FactorModel:
     """Sharpened basis of spectra with its maps from spectra and to colours.
 
-    Light reflected several times has the product of the `light` coefficients of the source and of the `reflectance`
-    coefficients of the surfaces; `rgb` gives its colour. The light may be the last factor: it then changes at the
-    cost of m products and a 3 × m matrix per pixel.
+    Light reflected several times has the product of the `light` coefficients of the
+    source and of the `reflectance` coefficients of the surfaces; `rgb` gives its
+    colour. The light may be the last factor: it then changes at the cost of m products
+    and a 3 × m matrix per pixel.
     """
 
     wavelengths: Array  # (N,) in nm
     basis: Array  # (N, m)
-    transform: Array  # (m, m) from coefficients of the principal basis to those of the sharpened one
+    # (m, m) from coefficients of the principal basis to those of the sharpened one
+    transform: Array
     projection: (
         Array  # (m, N) from spectra to coefficients, which are 1 for the flat spectrum
     )
-    light_projection: Array  # (m, N) from powers to the coefficients that tint reflectances as the power does
+    # (m, N) from powers to the coefficients that tint reflectances as the power does
+    light_projection: Array
     matrix: Array  # (3, m) from coefficients to linear RGB (eq. 17)
 
     @property
@@ -48,7 +55,9 @@ class FactorModel:
         return np.asarray(spectra, dtype=float) @ self.projection.T
 
     def light(self, power: ArrayLike) -> Array:
-        """Convert powers (..., N) to coefficients (..., m). The map is linear: lights mix as their coefficients do."""
+        """Convert powers (..., N) to coefficients (..., m). The map is linear: lights
+        mix as their coefficients do.
+        """
         return np.asarray(power, dtype=float) @ self.light_projection.T
 
     def product(self, *coefficients: ArrayLike) -> Array:
@@ -96,10 +105,12 @@ def standard_model(sensor: Sensor, count: int = 7) -> FactorModel:
 def factor_model(
     sensor: Sensor, reflectances: Array, lights: Array, count: int = 7
 ) -> FactorModel:
-    """Fit a factor model of ``count`` coefficients to materials (E, N) and lights (L, N).
+    """Fit a factor model of ``count`` coefficients to materials (E, N) and lights (L,
+    N).
 
-    Smooth lights give the better model for spiky ones too. A spike would take a basis function away from the other
-    spectra, whereas `FactorModel.light` finds coefficients that tint surfaces as the spike does.
+    Smooth lights give the better model for spiky ones too. A spike would take a basis
+    function away from the other spectra, whereas `FactorModel.light` finds coefficients
+    that tint surfaces as the spike does.
     """
     if count not in COUNTS:
         raise OptionError(f"count must be in [{COUNTS[0]}, {COUNTS[-1]}], got {count}")
@@ -114,7 +125,8 @@ def factor_model(
 
 
 def linear_product(model: FactorModel, first: ArrayLike, *others: ArrayLike) -> Array:
-    """Multiply spectra of the span of the basis, given by coefficients (..., m), without sharpening (eq. 5–7).
+    """Multiply spectra of the span of the basis, given by coefficients (..., m),
+    without sharpening (eq. 5–7).
 
     Every factor is an m × m matrix Λ: products are exact, projected into the span.
     """
@@ -129,9 +141,11 @@ def linear_product(model: FactorModel, first: ArrayLike, *others: ArrayLike) -> 
 
 
 def _principal_basis(sensor: Sensor, signals: Array, count: int) -> tuple[Array, Array]:
-    """Return the principal basis (N, m) of signals (n, N) weighted by the sensitivity, and its inverse (m, N).
+    """Return the principal basis (N, m) of signals (n, N) weighted by the sensitivity,
+    and its inverse (m, N).
 
-    Signals are scaled half-way to equal luminance: dark ones matter less, but are not negligible.
+    Signals are scaled half-way to equal luminance: dark ones matter less, but are not
+    negligible.
     """
     weights = np.sqrt(sensor.cmfs.sum(axis=1) + MIN_WEIGHT)
     luminances = signals @ sensor.cmfs[:, 1] / sensor.cmfs[:, 1].sum()
@@ -143,7 +157,9 @@ def _principal_basis(sensor: Sensor, signals: Array, count: int) -> tuple[Array,
 def _light_projection(
     sensor: Sensor, surfaces: Array, projection: Array, matrix: Array
 ) -> Array:
-    """Return least squares (m, N) over surfaces (n, N): matrix · (e * s) against the colour of the full product."""
+    """Return least squares (m, N) over surfaces (n, N): matrix · (e * s) against the
+    colour of the full product.
+    """
     weights = lab_per_rgb(sensor, surfaces @ screen_matrix(sensor).T)
     factor = np.einsum("nij,jm,nm->nim", weights, matrix, surfaces @ projection.T)
     full = np.einsum("nij,jl,nl->nil", weights, screen_matrix(sensor), surfaces)

@@ -8,7 +8,8 @@ from typing import Literal
 from uplift.colorimetry import Sensor
 from uplift.common.arrays import Array
 
-# Colours that goals are about: of full spectra (eq. 18), or of the factor model (eq. 19).
+# Colours that goals are about: of full spectra (eq. 18), or of the factor model (eq.
+# 19).
 Fit = Literal["spectra", "factor-model"]
 
 
@@ -45,7 +46,9 @@ class ColourGoal:
 
 @dataclass(frozen=True)
 class MinDifference:
-    """Least difference between two materials under a light. It is checked, not optimised."""
+    """Least difference between two materials under a light. It is checked, not
+    optimised.
+    """
 
     materials: tuple[str, str]
     light: str
@@ -81,7 +84,9 @@ class Palette:
         return next(material for material in self.materials if material.name == name)
 
     def cell(self, material: str, light: str) -> tuple[int, int]:
-        """Return row and column of a material under a light in the matrix of a design."""
+        """Return row and column of a material under a light in the matrix
+        of a design.
+        """
         rows, columns = (
             [spec.name for spec in specs] for specs in (self.materials, self.lights)
         )

@@ -1,7 +1,9 @@
-"""Pictures of materials: amounts of each in each pixel, from a file or of an opened ball.
+"""Pictures of materials: amounts of each in each pixel, from a file or of an opened
+ball.
 
-The ball has the materials as layers, above a bead of each. The first material is a translucent skin around the others.
-Layers of equal colour merge until a light separates them: none has an outline or a highlight.
+The ball has the materials as layers, above a bead of each. The first material is a
+translucent skin around the others. Layers of equal colour merge until a light separates
+them: none has an outline or a highlight.
 """
 
 import re
@@ -25,7 +27,8 @@ SKIN = 0.93  # radius of the layers below the skin, relative to the skin
 CORE = 1.6  # thickness of the innermost layer in layers
 DEPTH = 0.13  # optical depth of the skin at normal incidence
 BALL, RADIUS = (0.0, 0.2), 0.74  # centre and radius of the ball in a square of ±1
-# Height of the row of beads, largest radius, width of the row, and largest distance between beads.
+# Height of the row of beads, largest radius, width of the row, and largest distance
+# between beads.
 BEADS, BEAD, SPAN, STEP = -0.79, 0.135, 1.76, 0.42
 AMBIENT = 0.22
 # Directions of two lights (x right, y up, z to the viewer), and their strengths.
@@ -40,7 +43,9 @@ OFFSETS = (-0.25, 0.25)  # subpixel positions, four samples per pixel
 
 
 def cutaway(count: int, size: int = SIZE) -> Weights:
-    """Render the opened ball of ``count`` materials: amounts (size, size, count) in [0, 1]."""
+    """Render the opened ball of ``count`` materials: amounts (size, size, count) in [0,
+    1].
+    """
     weights = np.zeros((size, size, count), dtype=np.float32)
     steps = (np.arange(size) + 0.5) * 2 / size - 1
     for dx in OFFSETS:
@@ -82,7 +87,9 @@ def _opacity(cosine: Array) -> Array:
 def _intersect_sphere(
     x: Array, y: Array, centre: tuple[float, float], radius: float
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], Array]:
-    """Return rows and columns (k,) of the samples on a sphere, and its normals (k, 3) there."""
+    """Return rows and columns (k,) of the samples on a sphere, and its normals (k, 3)
+    there.
+    """
     dx, dy = (x - centre[0]) / radius, (y - centre[1]) / radius
     square = 1 - dx**2 - dy[:, None] ** 2
     rows, columns = np.nonzero(square > 0)
@@ -96,9 +103,11 @@ def _intersect_sphere(
 def _intersect_opened(
     points: Array,
 ) -> tuple[NDArray[np.bool_], Array, Array, NDArray[np.bool_]]:
-    """Intersect the sphere without its octant. Rays that enter there reach a wall, or leave it (mask False).
+    """Intersect the sphere without its octant. Rays that enter there reach a wall, or
+    leave it (mask False).
 
-    For the other rays, return positions in radii from the centre, normals, and whether they lie on the cut.
+    For the other rays, return positions in radii from the centre, normals, and whether
+    they lie on the cut.
     """
     axes = cut_axes()
     rotated, direction = points @ axes, axes[2]
@@ -111,7 +120,9 @@ def _intersect_opened(
 
 
 def cut_axes() -> Array:
-    """Return the rotation (3, 3) whose rows are right, up and to the viewer in the axes of the cut."""
+    """Return the rotation (3, 3) whose rows are right, up and to the viewer in the axes
+    of the cut.
+    """
     (a, b), (c, d) = (np.cos(YAW), np.sin(YAW)), (np.cos(PITCH), np.sin(PITCH))
     return np.array([[a, 0, -b], [-d * b, c, -d * a], [c * b, d, c * a]])
 
@@ -130,8 +141,9 @@ def read_weights(
 ) -> Weights:
     """Read the amounts (H, W, n) of n materials in each pixel of an image.
 
-    Float channels are weights by name. In an 8-bit image each colour is a label of a material, by default the greys 1,
-    2, …, and alpha is its weight. Black that is not a label has weight 0.
+    Float channels are weights by name. In an 8-bit image each colour is a label of a
+    material, by default the greys 1, 2, …, and alpha is its weight. Black that is not a
+    label has weight 0.
     """
     greys = {0x10101 * (row + 1): row for row in range(min(len(names), 255))}
     codes = greys if labels is None else _parse_labels(names, labels)
@@ -192,7 +204,10 @@ def _weights_of_labels(
         listed = ", ".join(f"#{code:06x}" for code in frequent)
         more = ", …" if unknown.sum() > MAX_LISTED else ""
         raise TextureError(
-            f"every colour must be a label, got {pluralise(counts[unknown].sum(), 'pixel')} of {listed}{more}",
+            (
+                "every colour must be a label, got "
+                f"{pluralise(counts[unknown].sum(), 'pixel')} of {listed}{more}"
+            ),
             hint="give each colour a label, and draw without antialiasing",
         )
     weights = np.zeros((*pixels.shape, count), dtype=np.float32)
@@ -205,7 +220,10 @@ def _weights_of_channels(part: Part, values: Values, names: Sequence[str]) -> We
     present = [row for row, name in enumerate(names) if name in part.channels]
     if not present:
         raise TextureError(
-            f"an image of weights must have a channel named after a material ({', '.join(names)})",
+            (
+                "an image of weights must have a channel named after a material "
+                f"({', '.join(names)})"
+            ),
             hint="rename its channels, or use an 8-bit image of labels",
         )
     weights = np.zeros((*values.shape[:2], len(names)), dtype=np.float32)

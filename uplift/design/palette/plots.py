@@ -1,4 +1,6 @@
-"""Plots of a design: its matrix of three-way patches (Bergner, figure 2), and its spectra."""
+"""Plots of a design: its matrix of three-way patches (Bergner, figure 2), and its
+spectra.
+"""
 
 from typing import Any
 
@@ -28,14 +30,19 @@ PATCH, SMALL = (
     8.0,
 )  # size of a patch against that of its cell; font size of the numbers below it
 MIN_WIDTH = 5.2  # inches that the legend takes
-LEGEND = "left: target; right: obtained, above by spectra,\nbelow by factor model; ΔE00 to the target, of the model"
+LEGEND = (
+    "left: target; right: obtained, above by spectra,\nbelow by factor model; ΔE00 to "
+    "the target, of the model"
+)
 MAX_NAME = 18  # characters of a name that fit
 
 
 def plot_matrix(
     design: Design, colours: Matrix, path: StrPath, *, force: bool = False
 ) -> None:
-    """Draw the matrix: targets on the left of each patch, obtained colours right above, modelled ones right below."""
+    """Draw the matrix: targets on the left of each patch, obtained colours right above,
+    modelled ones right below.
+    """
     rows, columns = colours.delta_e.shape
     width, height = (
         max(NAMES + CELL[0] * columns, MIN_WIDTH),
@@ -77,7 +84,9 @@ def plot_matrix(
 
 
 def plot_spectra(design: Design, path: StrPath, *, force: bool = False) -> None:
-    """Draw powers of lights and reflectances of materials over wavelength; given spectra are dashed."""
+    """Draw powers of lights and reflectances of materials over wavelength; given
+    spectra are dashed.
+    """
     figure = new_figure(10.0, 3.8)
     for axes, title, label, specs, samples in zip(
         figure.subplots(1, 2),

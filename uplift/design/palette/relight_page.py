@@ -1,4 +1,6 @@
-"""Page that mixes the lights of a palette on a picture of its materials in real time (sections 2.2.2 and 5.1)."""
+"""Page that mixes the lights of a palette on a picture of its materials in real time
+(sections 2.2.2 and 5.1).
+"""
 
 import base64
 import zlib
@@ -22,7 +24,9 @@ MAX_STOPS = 3  # range of the exposure in both directions, in powers of two
 
 @dataclass(frozen=True, eq=False)
 class Relighting:
-    """A picture of n materials rendered without light, which is applied last, and L lights for it."""
+    """A picture of n materials rendered without light, which is applied last, and L
+    lights for it.
+    """
 
     title: str
     weights: NDArray[
@@ -30,7 +34,8 @@ class Relighting:
     ]  # (H, W, n) amount of each material in each pixel, including shading; 0 or more
     materials: tuple[str, ...]
     material_coefficients: Array  # (n, m) of the factor model
-    colours: Array  # (n, L, 3) linear sRGB of the materials under each light, by full spectra
+    # (n, L, 3) linear sRGB of the materials under each light, by full spectra
+    colours: Array
     lights: tuple[str, ...]
     light_coefficients: Array  # (L, m) of the factor model
     power: Array  # (L, N) spectral powers; a flat power of 1 has luminance 1
@@ -52,7 +57,9 @@ class Relighting:
 
     @property
     def start_light(self) -> int:
-        """Light that the page starts with: the one under which the materials look most different."""
+        """Light that the page starts with: the one under which the materials look most
+        different.
+        """
         colours = self.colours.clip(0, 1) ** DISPLAY_EXPONENT
         return int(
             np.linalg.norm(colours - colours.mean(axis=0), axis=-1)
@@ -61,17 +68,22 @@ class Relighting:
         )
 
     def rgb(self, mix: ArrayLike) -> Array:
-        """Light the picture by weights (L,) of the lights: linear sRGB (H, W, 3), not clipped."""
+        """Light the picture by weights (L,) of the lights: linear sRGB (H, W, 3), not
+        clipped.
+        """
         light = np.asarray(mix, dtype=float) @ self.light_coefficients
         return self.pixels @ (self.to_rgb * light).T
 
 
 def relighting(title: str, design: Design, weights: NDArray[np.float32]) -> Relighting:
-    """Prepare a picture, weights (H, W, n), of a palette's materials to be lit by its lights."""
+    """Prepare a picture, weights (H, W, n), of a palette's materials to be lit by its
+    lights.
+    """
     palette, model, colours = design.palette, design.model, matrix(design)
     if len(palette.materials) > MAX_MATERIALS:
         raise OptionError(
-            f"a picture must have at most {MAX_MATERIALS} materials, got {len(palette.materials)}"
+            f"a picture must have at most {MAX_MATERIALS} materials, got "
+            f"{len(palette.materials)}"
         )
     return Relighting(
         title=title,
@@ -94,7 +106,9 @@ def page(view: Relighting) -> str:
     modelled = (
         view.material_coefficients[:, None] * view.light_coefficients @ view.to_rgb.T
     )
-    patches = [  # for every material under every light the colours by full spectra and by the factor model
+    # for every material under every light the colours by full spectra and by the factor
+    # model
+    patches = [
         list(zip(hex_codes(full), hex_codes(factor), strict=True))
         for full, factor in zip(view.colours, modelled, strict=True)
     ]
@@ -102,7 +116,8 @@ def page(view: Relighting) -> str:
         "design/palette/templates/relight_page.html.j2",
         title=view.title,
         lead=(
-            f"{pluralise(len(view.materials), 'material')} under any mix of {pluralise(len(view.lights), 'light')}: "
+            f"{pluralise(len(view.materials), 'material')} under any mix of "
+            f"{pluralise(len(view.lights), 'light')}: "
             "move the dial to relight the picture."
         ),
         width=width,
@@ -137,7 +152,9 @@ def _numbers(view: Relighting) -> dict[str, Any]:
 
 
 def pack(values: NDArray[Any]) -> str:
-    """Deflate an array byte plane by byte plane, which makes half-precision numbers a third smaller, as base64."""
+    """Deflate an array byte plane by byte plane, which makes half-precision numbers a
+    third smaller, as base64.
+    """
     planes = (
         np.ascontiguousarray(values)
         .reshape(-1)

@@ -1,9 +1,11 @@
-"""Sharpening: the transform of a basis in which products of spectra are nearly products of coefficients.
+"""Sharpening: the transform of a basis in which products of spectra are nearly products
+of coefficients.
 
-The papers leave the choice of the transform to an optimisation. Here it minimises the colour errors of products over
-light paths: a light and up to three reflections.
+The papers leave the choice of the transform to an optimisation. Here it minimises the
+colour errors of products over light paths: a light and up to three reflections.
 
-S. Bergner, T. Möller, M. S. Drew, 2004, section 2.2; M. S. Drew, G. D. Finlayson, JOSA A 20(7), 2003.
+S. Bergner, T. Möller, M. S. Drew, 2004, section 2.2; M. S. Drew, G. D. Finlayson, JOSA
+A 20(7), 2003.
 """
 
 from dataclasses import dataclass
@@ -16,14 +18,17 @@ from uplift.common.machine import single_threaded_blas
 from uplift.design.palette.colours import lab_per_rgb, screen_matrix
 
 MAX_REFLECTIONS = 3
-OUTLIER = 2.0  # L*a*b* error above which the loss grows linearly, so that no single light dominates
+# L*a*b* error above which the loss grows linearly, so that no single light dominates
+OUTLIER = 2.0
 MAX_ITERATIONS = 100
 
 
 def make_light_paths(reflectances: Array, lights: Array) -> Array:
-    """Return the factors (MAX_REFLECTIONS + 1, n, N) of paths, from lights (L, N) and reflectances (E, N).
+    """Return the factors (MAX_REFLECTIONS + 1, n, N) of paths, from lights (L, N) and
+    reflectances (E, N).
 
-    A light comes first, then one to three reflectances, two of them random, then ones. Their product reaches the eye.
+    A light comes first, then one to three reflectances, two of them random, then ones.
+    Their product reaches the eye.
     """
     rng = np.random.default_rng(0)
     white = np.ones_like(reflectances)
@@ -43,10 +48,12 @@ def make_light_paths(reflectances: Array, lights: Array) -> Array:
 
 
 def sharpen(sensor: Sensor, basis: Array, projection: Array, paths: Array) -> Array:
-    """Compute the transform T (m, m) of coefficients; the sharpened basis is ``basis @ inv(T)``.
+    """Compute the transform T (m, m) of coefficients; the sharpened basis is ``basis @
+    inv(T)``.
 
-    T minimises the L*a*b* errors of products over ``paths`` (k, n, N) among the transforms that give the flat spectrum
-    coefficients of 1. It keeps the span of the basis (N, m), whose coefficients ``projection`` (m, N) gives.
+    T minimises the L*a*b* errors of products over ``paths`` (k, n, N) among the
+    transforms that give the flat spectrum coefficients of 1. It keeps the span of the
+    basis (N, m), whose coefficients ``projection`` (m, N) gives.
     """
     from scipy.linalg import null_space, qr
     from scipy.optimize import least_squares
@@ -78,7 +85,9 @@ def sharpen(sensor: Sensor, basis: Array, projection: Array, paths: Array) -> Ar
 
 @dataclass(frozen=True, eq=False)
 class SharpeningProblem:
-    """Residuals as a function of Z (m, m − 1), T = fixed + Z freeᵀ: the transforms that keep white at 1."""
+    """Residuals as a function of Z (m, m − 1), T = fixed + Z freeᵀ: the transforms that
+    keep white at 1.
+    """
 
     fixed: Array  # (m, m)
     free: Array  # (m, m − 1)
@@ -99,7 +108,9 @@ class SharpeningProblem:
         return np.einsum("nij,nj->ni", self.weights, rgb - self.target).ravel()
 
     def jacobian(self, z: Array) -> Array:
-        """Return the derivative (3n, m(m − 1)): through every factor, and through the inverse transform."""
+        """Return the derivative (3n, m(m − 1)): through every factor, and through the
+        inverse transform.
+        """
         transform = self.transform(z)
         inverse = np.linalg.inv(transform)
         sharp = self.factors @ transform.T

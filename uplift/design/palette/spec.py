@@ -1,4 +1,6 @@
-"""Palette spec as a TOML file (docs/palette.md): lights and materials by kind, goals, free colours, differences."""
+"""Palette spec as a TOML file (docs/palette.md): lights and materials by kind, goals,
+free colours, differences.
+"""
 
 import math
 import os
@@ -157,7 +159,10 @@ def _parse_bounds(value: Any) -> tuple[float, float]:
 
 def _check_name(name: str) -> str:
     if not NAME.fullmatch(name):
-        text = f"must consist of letters, digits, spaces and .+-_, got {format_value(name)}"
+        text = (
+            "must consist of letters, digits, spaces and .+-_, got "
+            f"{format_value(name)}"
+        )
         raise problem(text, "begin with a letter or digit, and do not end with a space")
     return name
 
@@ -177,9 +182,11 @@ _Bounds = Annotated[tuple[float, float], PlainValidator(_parse_bounds)]
 
 
 class _KnownLight(SpecModel):
-    """A light whose spectrum is known up to its scale: the luminance of white, or the norm.
+    """A light whose spectrum is known up to its scale: the luminance of white, or the
+    norm.
 
-    The norm is the root mean square of the power, the L2 norm of Bergner et al. 2004, section 4, for any sampling.
+    The norm is the root mean square of the power, the L2 norm of Bergner et al. 2004,
+    section 4, for any sampling.
     """
 
     luminance: _NonNegative | None = None
@@ -316,7 +323,9 @@ class _FreeGoal(SpecModel):
 
 
 class _FreeRange(SpecModel):
-    """Lowest and highest values of a free colour, by default all that a display shows."""
+    """Lowest and highest values of a free colour, by default all that a
+    display shows.
+    """
 
     low: _Colour = WrittenColour(codes=(0, 0, 0))
     high: _Colour = WrittenColour(codes=(255, 255, 255))
@@ -338,7 +347,10 @@ def _check_kind(*kinds: str) -> BeforeValidator:
             raise problem(f"must be a table, got {format_value(value)}")
         present = [kind for kind in kinds if kind in value]
         if len(present) != 1:
-            text = f"must have exactly one of {', '.join(kinds)}, got {', '.join(present) or 'none'}"
+            text = (
+                f"must have exactly one of {', '.join(kinds)}, got "
+                f"{', '.join(present) or 'none'}"
+            )
             raise problem(text)
         return value
 
@@ -418,7 +430,10 @@ def _free_range(
 ) -> tuple[Array, Array]:
     low, high = colours.low.rgb(sensor), colours.high.rgb(sensor)
     if not (low < high).all():
-        text = f"must have low < high in every channel, got {low.round(4).tolist()} and {high.round(4).tolist()}"
+        text = (
+            f"must have low < high in every channel, got {low.round(4).tolist()} and "
+            f"{high.round(4).tolist()}"
+        )
         file.fail(("free", name), text, hint="widen the range")
     return low, high
 

@@ -1,4 +1,6 @@
-"""Cubes and emission tables in the formats of other programs, a module for each kind of format."""
+"""Cubes and emission tables in the formats of other programs, a module for each kind of
+format.
+"""
 
 from uplift.io.export.arrays import write_csv, write_npz
 from uplift.io.export.coeff import write_coeff

@@ -1,4 +1,6 @@
-"""Cubes as arrays and tables: the contents of a cube file as npz, and its nodes as CSV."""
+"""Cubes as arrays and tables: the contents of a cube file as npz, and its
+nodes as CSV.
+"""
 
 import json
 
@@ -15,12 +17,14 @@ BLOCK = 1 << 12
 
 
 def write_npz(data: CubeData, path: StrPath, *, force: bool = False) -> int:
-    """Write a cube as an ``.npz`` file without pickled objects; return the number of arrays.
+    """Write a cube as an ``.npz`` file without pickled objects; return the number of
+    arrays.
 
-    The file has the arrays of docs/cube-file.md under their names. In addition, it has ``multipliers`` (n, C) of the
-    nodes in ``model`` and ``atlas.multipliers`` (E, K) of the entries in ``entry_model``, from which spectra are
-    evaluated directly, ``atlas.names`` (E,), the same of the entries outside the RGB space as ``outside.…``, if there
-    are any, and ``metadata``, the JSON text with both models.
+    The file has the arrays of docs/cube-file.md under their names. In addition, it has
+    ``multipliers`` (n, C) of the nodes in ``model`` and ``atlas.multipliers`` (E, K) of
+    the entries in ``entry_model``, from which spectra are evaluated directly,
+    ``atlas.names`` (E,), the same of the entries outside the RGB space as
+    ``outside.…``, if there are any, and ``metadata``, the JSON text with both models.
     """
     tensors, metadata = contents(data)
     arrays = tensors | {
@@ -39,10 +43,12 @@ def write_npz(data: CubeData, path: StrPath, *, force: bool = False) -> int:
 
 
 def write_csv(data: CubeData, path: StrPath, *, force: bool = False) -> int:
-    """Write the nodes of a cube as CSV, below a line of column names; return their number.
+    """Write the nodes of a cube as CSV, below a line of column names; return their
+    number.
 
-    Columns are linear target and lattice RGB, fitting distance, status, the atlas entry that the node is based on, if
-    any, round and standard error of cubes that have them, and the coefficients. Absent nodes are left out.
+    Columns are linear target and lattice RGB, fitting distance, status, the atlas entry
+    that the node is based on, if any, round and standard error of cubes that have them,
+    and the coefficients. Absent nodes are left out.
     """
     points = data.points
     columns: dict[str, Values | None] = {

@@ -1,20 +1,25 @@
-"""The table of rgb2spec: sigmoid spectra, for Mitsuba and colour-science, pbrt and LuisaRender.
+"""The table of rgb2spec: sigmoid spectra, for Mitsuba and colour-science, pbrt and
+LuisaRender.
 
-The first axis of the table is the largest component l. The second axis is its value, scale[k]. The last two are the
-other components as even fractions of it, l + 2 before l + 1 (modulo 3). A spectrum is S(c₀λ² + c₁λ + c₂) with λ in nm
-and S(t) = ½ + t / (2√(1 + t²)). Programs hold the same numbers in three layouts:
+The first axis of the table is the largest component l. The second axis is its value,
+scale[k]. The last two are the other components as even fractions of it, l + 2 before l
++ 1 (modulo 3). A spectrum is S(c₀λ² + c₁λ + c₂) with λ in nm and S(t) = ½ + t / (2√(1 +
+t²)). Programs hold the same numbers in three layouts:
 
-- coeff, little-endian: "SPEC", u32 res, f32 scale[res], f32 data[3][res][res][res][3]. The sensor follows, which
-  Mitsuba 3.9 and later require and other programs ignore: u32 count, f32 wavelength[count] as fractions of 360–830 nm,
-  f32 rgb[3][count] of a reflectance there, f32 rgb_to_xyz[3][3], f32 white_xyz[3].
+- coeff, little-endian: "SPEC", u32 res, f32 scale[res], f32 data[3][res][res][res][3].
+  The sensor follows, which Mitsuba 3.9 and later require and other programs ignore: u32
+  count, f32 wavelength[count] as fractions of 360–830 nm, f32 rgb[3][count] of a
+  reflectance there, f32 rgb_to_xyz[3][3], f32 white_xyz[3].
 - pbrt, a source file in C++: ``NAMEToSpectrumTable_Res``, ``_Scale`` and ``_Data``.
-- luisa, a source file in C++: ``sRGBToSpectrumTable_Data``, with a fourth number, 0, after the three.
+- luisa, a source file in C++: ``sRGBToSpectrumTable_Data``, with a fourth number, 0,
+  after the three.
 
-Three coefficients per spectrum determine a colour. The table therefore reproduces the cube's colours, but not the
-spectra of its atlas. Colours are those of the readers' tables, 360–830 nm at 5 nm.
+Three coefficients per spectrum determine a colour. The table therefore reproduces the
+cube's colours, but not the spectra of its atlas. Colours are those of the readers'
+tables, 360–830 nm at 5 nm.
 
-W. Jakob and J. Hanika, "A Low-Dimensional Function Space for Efficient Spectral Upsampling", CGF 38(2), 2019, and its
-reference implementation ``rgb2spec``.
+W. Jakob and J. Hanika, "A Low-Dimensional Function Space for Efficient Spectral
+Upsampling", CGF 38(2), 2019, and its reference implementation ``rgb2spec``.
 """
 
 import struct
@@ -43,9 +48,11 @@ RES = 64
 """Resolution of Mitsuba's own table."""
 MIN_RES, MAX_RES = 2, 256
 DARK, DARK_COLOUR = 1e-3, 1e-4
-"""Up to this level, the difference ε of a component of linear RGB that weighs as much as the distance of a spectrum
-from grey; above, ε falls with the level. Very dark colours of high purity would else have reflectances near 1 where the
-eye hardly responds."""
+"""Up to this level, the difference ε of a component of linear RGB that weighs as much
+as the distance of a spectrum from grey; above, ε falls with the level. Very dark
+colours of high purity would else have reflectances near 1 where the eye hardly
+responds.
+"""
 FAINT = 1e-6
 """Reflectance of black, and 1 minus that of white, whose multipliers are infinite."""
 FIRST_DAMPING, MAX_DAMPING, MAX_STEPS, SMALL_GAIN, SMALL_PART = (
@@ -84,12 +91,14 @@ def write_coeff(
     res: int = RES,
     force: bool = False,
 ) -> TableError:
-    """Write a cube as a table of sigmoid spectra with ``res`` points along each axis, 2 to 256.
+    """Write a cube as a table of sigmoid spectra with ``res`` points along each axis, 2
+    to 256.
 
-    The layout is one of `LAYOUTS`; pbrt and LuisaRender are compiled for 64 points. Readers interpret RGB in the cube's
-    space under its illuminant; Mitsuba and LuisaRender assume sRGB under D65. Returns the errors of
-    colours that rgb2spec interpolates, under the light of the cube. Raises `ColourError` for the cube of a camera,
-    `OptionError` for a space or an illuminant without a table in the program.
+    The layout is one of `LAYOUTS`; pbrt and LuisaRender are compiled for 64 points.
+    Readers interpret RGB in the cube's space under its illuminant; Mitsuba and
+    LuisaRender assume sRGB under D65. Returns the errors of colours that rgb2spec
+    interpolates, under the light of the cube. Raises `ColourError` for the cube of a
+    camera, `OptionError` for a space or an illuminant without a table in the program.
     """
     data.sensor.require_xyz()
     if not MIN_RES <= res <= MAX_RES:
@@ -106,7 +115,11 @@ def write_coeff(
             if symbol in LAYOUTS[layout]
         ]
         raise OptionError(
-            f"a {layout} table needs {' or '.join(known)}, got {sensor.space} under {sensor.illuminant}",
+            (
+                f"a {layout} table needs {' or '.join(known)}, got {sensor.space} "
+                "under "
+                f"{sensor.illuminant}"
+            ),
             hint="build a cube of this space and illuminant",
         )
     with atomic_write(path, force=force) as temporary:
@@ -153,7 +166,9 @@ def _rows(numbers: Values) -> str:
 
 
 def _scale(res: int) -> Array:
-    """Return values (res,) of the largest component, dense near 0 and 1, where spectra change most."""
+    """Return values (res,) of the largest component, dense near 0 and 1, where spectra
+    change most.
+    """
     x = np.linspace(0, 1, res)
     for _ in range(2):
         x = x * x * (3 - 2 * x)
@@ -161,7 +176,9 @@ def _scale(res: int) -> Array:
 
 
 def _directions(res: int) -> Array:
-    """Return linear RGB (3·res·res, 3) of the table's points whose largest component is 1."""
+    """Return linear RGB (3·res·res, 3) of the table's points whose largest component is
+    1.
+    """
     share = np.linspace(0, 1, res)
     second, first = np.meshgrid(share, share, indexing="ij")
     shares = np.stack([np.ones_like(first), first, second], axis=-1)
@@ -173,8 +190,9 @@ def _directions(res: int) -> Array:
 def _fit(data: CubeData, sensor: Sensor, scale: Array, directions: Array) -> Floats:
     """Fit coefficients (res, n, 3) of the levels of directions (n, 3).
 
-    Levels are fitted upwards and downwards from a medium one. Each starts from the multipliers of the previous level,
-    so that neighbours are similar and can be interpolated.
+    Levels are fitted upwards and downwards from a medium one. Each starts from the
+    multipliers of the previous level, so that neighbours are similar and can be
+    interpolated.
     """
     middle = len(scale) // 5
     table = np.empty((len(scale), len(directions), 3), dtype=np.float32)
@@ -196,7 +214,8 @@ def _fit(data: CubeData, sensor: Sensor, scale: Array, directions: Array) -> Flo
 def _nearest_to_grey(
     sensor: Sensor, start: Array, target: Array, level: float
 ) -> Array:
-    """Minimise |t − r(p)|² / ε² + |p − g|² / s² over p (n, 3) from a start, by damped Gauss-Newton steps.
+    """Minimise |t − r(p)|² / ε² + |p − g|² / s² over p (n, 3) from a start, by damped
+    Gauss-Newton steps.
 
     g are the multipliers of the grey of this level, and s their size, at least 1.
     """
@@ -271,7 +290,9 @@ def _errors(data: CubeData, sensor: Sensor, scale: Array, table: Floats) -> Tabl
 
 
 def _interpolated(scale: Array, table: Floats, rgb: Array) -> Array:
-    """Return coefficients (n, 3) as rgb2spec interpolates them: linearly between the eight points around a colour."""
+    """Return coefficients (n, 3) as rgb2spec interpolates them: linearly between the
+    eight points around a colour.
+    """
     from scipy.interpolate import RegularGridInterpolator
 
     largest, rows, even = (

@@ -1,19 +1,21 @@
 """A cube as the table that film simulations read: a spectrum for every chromaticity.
 
-spektrafilm, and programs after it, turn RGB into the exposure of the layers of a film by a float16 array of shape
-(size, size, 81): spectra from 380 to 780 nm at 5 nm of lights with X + Y + Z = 1 under the CIE 1931 observer, where the
-equal-energy light of power 1 has Y = 1. Row i and column j, as fractions of size − 1, are the square coordinates
-((1 − x)², y / (1 − x)) of the chromaticity (x, y). A pixel has the spectrum of its chromaticity times its X + Y + Z.
-The table has kind ``irradiance``, light that reaches the film, or ``reflectance``, which readers multiply by a light of
-their own. A TOML file next to it has the kind, the sizes and the illuminant of the chromaticities.
+spektrafilm, and programs after it, turn RGB into the exposure of the layers of a film
+by a float16 array of shape (size, size, 81): spectra from 380 to 780 nm at 5 nm of
+lights with X + Y + Z = 1 under the CIE 1931 observer, where the equal-energy light of
+power 1 has Y = 1. Row i and column j, as fractions of size − 1, are the square
+coordinates ((1 − x)², y / (1 − x)) of the chromaticity (x, y). A pixel has the spectrum
+of its chromaticity times its X + Y + Z. The table has kind ``irradiance``, light that
+reaches the film, or ``reflectance``, which readers multiply by a light of their own. A
+TOML file next to it has the kind, the sizes and the illuminant of the chromaticities.
 
-A chromaticity has reflectances from black to the brightest that is possible; the table keeps one of them. Beyond the
-gamut of the cube, light at its edge is mixed with light of a narrow band, and beyond such bands there is light of the
-band alone.
+A chromaticity has reflectances from black to the brightest that is possible; the table
+keeps one of them. Beyond the gamut of the cube, light at its edge is mixed with light
+of a narrow band, and beyond such bands there is light of the band alone.
 
-spektrafilm, `spectral_upsampling.py`: the layout of the table, and how RGB become a chromaticity and a factor.
-Li et al. 2017, "Comprehensive color solutions: CAM16, CAT16, and CAM16-UCS": the adaptation of RGB to the light, as in
-spektrafilm.
+spektrafilm, `spectral_upsampling.py`: the layout of the table, and how RGB become a
+chromaticity and a factor. Li et al. 2017, "Comprehensive color solutions: CAM16, CAT16,
+and CAM16-UCS": the adaptation of RGB to the light, as in spektrafilm.
 """
 
 from dataclasses import dataclass
@@ -45,13 +47,16 @@ from uplift.lookup import Cube
 
 SIZE, MIN_SIZE, MAX_SIZE = 192, 2, 1024
 SHARE = 0.5
-"""Luminance of a stored reflectance, as a fraction of the largest of its chromaticity."""
+"""Luminance of a stored reflectance, as a fraction of the largest of its chromaticity.
+"""
 MIDGRAY = 0.184
 """Reflectance that readers expose as medium grey."""
 MARGIN = 1e-3
 """Smallest component of RGB inside the gamut of the cube, relative to that of white."""
 LAYERS, LAYER_WIDTH = np.array([450.0, 550.0, 640.0]), 30.0
-"""Peaks and standard deviation in nm of the sensitivity of layers, for the stated error."""
+"""Peaks and standard deviation in nm of the sensitivity of layers, for the stated
+error.
+"""
 SAMPLES, SEED = 4096, 7
 """Random colours of the stated error, even in codes."""
 REACH = 10.0
@@ -60,7 +65,9 @@ TINY = 1e-12
 BAND = 10.0
 """Standard deviation of the narrow bands in nm."""
 WEAKEST = 0.05
-"""Bands at the ends of the spectrum are left out where the eye has less than this fraction of its largest response."""
+"""Bands at the ends of the spectrum are left out where the eye has less than this
+fraction of its largest response.
+"""
 CAT16 = np.array(
     [
         [0.401288, 0.650173, -0.051461],
@@ -75,9 +82,12 @@ class FilmTable:
     """How well a written table stands for the cube."""
 
     inside: float
-    """Fraction of its points, of those that lights have, within the gamut of the cube."""
+    """Fraction of its points, of those that lights have, within the gamut of the cube.
+    """
     stops: float
-    """Mean error of exposure of random colours, from the table instead of the cube, in powers of 2."""
+    """Mean error of exposure of random colours, from the table instead of the cube, in
+    powers of 2.
+    """
 
 
 def write_film(
@@ -89,21 +99,28 @@ def write_film(
     share: float = SHARE,
     force: bool = False,
 ) -> FilmTable:
-    """Write a cube as a film table of chromaticities, .npy, and the TOML file that describes it.
+    """Write a cube as a film table of chromaticities, .npy, and the TOML file that
+    describes it.
 
-    ``light``, for the kind ``irradiance`` in place of ``reflectance``, is that of the cube. ``res`` are rows and
-    columns, 2 to 1024; ``share`` in (0, 1) is the luminance of the stored reflectances as a fraction of the largest
-    possible one. Raises `OptionError`, also for an observer other than CIE 1931, and `ColourError` for a camera.
+    ``light``, for the kind ``irradiance`` in place of ``reflectance``, is that of the
+    cube. ``res`` are rows and columns, 2 to 1024; ``share`` in (0, 1) is the luminance
+    of the stored reflectances as a fraction of the largest possible one. Raises
+    `OptionError`, also for an observer other than CIE 1931, and `ColourError` for a
+    camera.
     """
     sensor = cube.data.sensor
     sensor.require_xyz()
     if sensor.observer != DEFAULT_OBSERVER:
         raise OptionError(
-            f"a film table needs the {DEFAULT_OBSERVER}, got a cube of {sensor.observer}"
+            f"a film table needs the {DEFAULT_OBSERVER}, got a cube of "
+            f"{sensor.observer}"
         )
     if not MIN_SIZE <= res <= MAX_SIZE or not 0 < share < 1:
         raise OptionError(
-            f"res must be from {MIN_SIZE} to {MAX_SIZE} and share in (0, 1), got {res} and {share:g}",
+            (
+                f"res must be from {MIN_SIZE} to {MAX_SIZE} and share in (0, 1), got "
+                f"{res} and {share:g}"
+            ),
             hint=f"readers expect {SIZE} rows; the usual share is {SHARE}",
         )
     files = output_files(path, "film")
@@ -144,7 +161,8 @@ def _scene(sensor: Sensor, light: Illuminant | None) -> Scene:
     given, cmfs = light or sensor.illuminant, matching_functions(DEFAULT_OBSERVER)
     xyz, power = cmfs / cmfs[:, 1].sum(), illuminant_spd(given)
     power = power / (power @ xyz[:, 1])
-    # The reader's RGB are adapted to the light by CAT16; the cube's have the white of its illuminant.
+    # The reader's RGB are adapted to the light by CAT16; the cube's have the white of
+    # its illuminant.
     cones = CAT16 @ np.stack([power @ xyz, sensor.light.white], axis=1)
     adapt = np.linalg.solve(CAT16, (cones[:, 1] / cones[:, 0])[:, None] * CAT16)
     return Scene(str(given), xyz, power, power @ xyz, sensor.xyz_to_rgb @ adapt)
@@ -163,9 +181,12 @@ def _chromaticities(size: int) -> Array:
 def _spectra(
     cube: Cube, scene: Scene, unit: Array, share: float
 ) -> tuple[Array, float]:
-    """Return spectra (n, N) of lights with the unit XYZ (n, 3), and the fraction of real ones that the cube answers."""
+    """Return spectra (n, N) of lights with the unit XYZ (n, 3), and the fraction of
+    real ones that the cube answers.
+    """
     white = scene.white / scene.white.sum()
-    # white + f (c − white) leaves the gamut of the cube at f = inside, and that of lights of narrow bands at f = real.
+    # white + f (c − white) leaves the gamut of the cube at f = inside, and that of
+    # lights of narrow bands at f = real.
     start, change = scene.xyz_to_rgb @ white, (unit - white) @ scene.xyz_to_rgb.T
     room = np.divide(
         (1 - MARGIN) * start,
@@ -179,7 +200,8 @@ def _spectra(
     )
     edge = np.minimum(np.minimum(inside, real), 1)
     rgb = start + edge[:, None] * change
-    # The brightest reflectance of a direction r is t r, on the surface of the solid; steps of 15 nm are enough for t.
+    # The brightest reflectance of a direction r is t r, on the surface of the solid;
+    # steps of 15 nm are enough for t.
     coarse = np.add.reduceat(
         cube.data.sensor.matrix, range(0, len(cube.data.sensor.wavelengths), 3), axis=1
     )
@@ -194,9 +216,11 @@ def _spectra(
 
 
 def _outer_lights(xyz: Array, white: Array, change: Array) -> tuple[Array, Array]:
-    """Return where rays from white in unit XYZ (n, 3) reach lights of narrow bands, as a fraction, and those lights.
+    """Return where rays from white in unit XYZ (n, 3) reach lights of narrow bands, as
+    a fraction, and those lights.
 
-    Shapes: ``xyz`` (N, 3) → (n,), (n, N). The lights are mixtures of two neighbouring bands, or of both ends: purples.
+    Shapes: ``xyz`` (N, 3) → (n,), (n, N). The lights are mixtures of two neighbouring
+    bands, or of both ends: purples.
     """
     bands = np.exp(-0.5 * ((grid()[:, None] - grid()) / BAND) ** 2)
     sums = (bands @ xyz).sum(axis=1)
@@ -214,7 +238,9 @@ def _unit_sum(power: Array, xyz: Array) -> Array:
 
 
 def _stops(cube: Cube, scene: Scene, table: Array) -> float:
-    """Mean |log₂| of the ratio of exposures by the table, as readers interpolate it, and by the cube."""
+    """Mean |log₂| of the ratio of exposures by the table, as readers interpolate it,
+    and by the cube.
+    """
     from scipy.interpolate import RegularGridInterpolator
 
     rgb = decode(np.random.default_rng(SEED).random((SAMPLES, 3)))

@@ -28,7 +28,9 @@ def write_light_program(
     form: str | None = None,
     force: bool = False,
 ) -> list[Path]:
-    """Write an emission table as a program in C or GLSL, as `uplift.io.export.write_program` does for a cube."""
+    """Write an emission table as a program in C or GLSL, as
+    `uplift.io.export.write_program` does for a cube.
+    """
     if style not in STYLES:
         raise OptionError(
             f"emission tables cannot be written in '{style}'",
@@ -47,7 +49,9 @@ def write_light_program(
 
 
 def make_light_table(data: EmissionData) -> Table:
-    """Lay out spectra of the nodes, with the first knot repeated at the end, spectra of lamps, and what finds them."""
+    """Lay out spectra of the nodes, with the first knot repeated at the end, spectra of
+    lamps, and what finds them.
+    """
     lattice, lamps = data.lattice, data.entries
     kept = lamps.radius >= MIN_RADIUS
     uv, radius = lamps.uv[kept], lamps.radius[kept]
@@ -75,7 +79,9 @@ def make_light_table(data: EmissionData) -> Table:
 
 
 def _matrix(data: EmissionData) -> Array:
-    """Return rows from linear RGB to u′ and v′ from white times the size, the size X + 15 Y + 3 Z, and white's size."""
+    """Return rows from linear RGB to u′ and v′ from white times the size, the size X +
+    15 Y + 3 Z, and white's size.
+    """
     white = data.lattice.white
     rows = np.array(
         [
@@ -96,7 +102,9 @@ def _first_angle(lattice: ChromaticityLattice) -> float:
 
 
 def _bins(uv: Array, radius: Array) -> Array:
-    """Return the position of each bin's list of lamps, and the lists, each after its length."""
+    """Return the position of each bin's list of lamps, and the lists, each after its
+    length.
+    """
     places, lists = np.full((BIN_COUNT, BIN_COUNT), BIN_COUNT**2), [0]
     for (row, column), listed in touched_bins(uv, radius, BIN_COUNT).items():
         places[row, column] = BIN_COUNT**2 + len(lists)

@@ -1,18 +1,23 @@
-"""Look-up tables of colours: a cube's relighting for colour grading, and Fourier sRGB for textures of 8 bits.
+"""Look-up tables of colours: a cube's relighting for colour grading, and Fourier sRGB
+for textures of 8 bits.
 
-Relighting: RGB under the illuminant of the cube in, RGB under another light out, in the RGB space of the cube. Nodes
-are even steps of the sRGB curve, which are nearly even to the eye. A ``.cube`` table has encoded components in and out.
-A ``.clf`` file has linear ones: curve, table, and the inverse of the curve.
+Relighting: RGB under the illuminant of the cube in, RGB under another light out, in the
+RGB space of the cube. Nodes are even steps of the sRGB curve, which are nearly even to
+the eye. A ``.cube`` table has encoded components in and out. A ``.clf`` file has linear
+ones: curve, table, and the inverse of the curve.
 
-Fourier sRGB: colours of three numbers in [0, 1] that are linear in the spectrum. The moments c of a cube of three
-coefficients are a linear function of the linear components f of this colour space. f are near linear RGB, grey is
-f = (g, g, g), and the codes of f have the sRGB curve. Textures with such codes are filtered, and compressed in blocks,
-as those of sRGB are. A shader evaluates their spectra: its file is next to the table from sRGB to Fourier sRGB, a
-``.png`` image of all 256³ codes or a ``.cube`` table of fewer. The image is a Hald image of level 16: pixels row by
-row, with red varying fastest, then green, then blue.
+Fourier sRGB: colours of three numbers in [0, 1] that are linear in the spectrum. The
+moments c of a cube of three coefficients are a linear function of the linear components
+f of this colour space. f are near linear RGB, grey is f = (g, g, g), and the codes of f
+have the sRGB curve. Textures with such codes are filtered, and compressed in blocks, as
+those of sRGB are. A shader evaluates their spectra: its file is next to the table from
+sRGB to Fourier sRGB, a ``.png`` image of all 256³ codes or a ``.cube`` table of fewer.
+The image is a Hald image of level 16: pixels row by row, with red varying fastest, then
+green, then blue.
 
-Cube LUT Specification 1.0, Adobe 2013; Common LUT Format 3.0, AMPAS S-2014-006.
-Peters, Merzbach, Hanika & Dachsbacher 2019, "Spectral rendering with the bounded MESE and sRGB data", MAM 2019.
+Cube LUT Specification 1.0, Adobe 2013; Common LUT Format 3.0, AMPAS S-2014-006. Peters,
+Merzbach, Hanika & Dachsbacher 2019, "Spectral rendering with the bounded MESE and sRGB
+data", MAM 2019.
 """
 
 import os
@@ -57,10 +62,12 @@ def write_lut(
     adapt: bool = True,
     force: bool = False,
 ) -> TableError:
-    """Write the colours of reflectances under a light as a table of ``res``³ nodes, 2 to 129, ``.clf`` or ``.cube``.
+    """Write the colours of reflectances under a light as a table of ``res``³ nodes, 2
+    to 129, ``.clf`` or ``.cube``.
 
-    With ``adapt`` the white of the light is shown as white (Bradford); otherwise colours have its tint. Returns the
-    errors with OpenColorIO's interpolation. The cube of a camera is a `ColourError`.
+    With ``adapt`` the white of the light is shown as white (Bradford); otherwise
+    colours have its tint. Returns the errors with OpenColorIO's interpolation. The cube
+    of a camera is a `ColourError`.
     """
     if not MIN_SIZE <= res <= MAX_SIZE:
         raise OptionError(
@@ -70,7 +77,8 @@ def write_lut(
     own = cube.data.sensor
     own.require_xyz()
     (lit,) = display_sensors([light], own.observer, *own.range, space=own.space)
-    # RGB = M XYZ: M adapted to the white of the light, or that of the cube's own illuminant.
+    # RGB = M XYZ: M adapted to the white of the light, or that of the cube's own
+    # illuminant.
     screen = lit if adapt else replace(lit, xyz_to_rgb=own.xyz_to_rgb)
     codes = np.linspace(0, 1, res)
     nodes = np.stack(np.meshgrid(codes, codes, codes, indexing="ij"), axis=-1).reshape(
@@ -109,8 +117,10 @@ def _encode(linear: Array) -> Array:
 
 
 def _linear_to_linear(table: Values, size: int) -> Any:
-    """Return the table between the sRGB curve and its inverse, as a transform of OpenColorIO."""
-    import PyOpenColorIO as ocio
+    """Return the table between the sRGB curve and its inverse, as a transform of
+    OpenColorIO.
+    """
+    import PyOpenColorIO as ocio  # noqa: N813
 
     lut = ocio.Lut3DTransform(gridSize=size)
     lut.setData(table.ravel())
@@ -123,7 +133,7 @@ def _linear_to_linear(table: Values, size: int) -> Any:
 
 
 def _clf(transform: Any, title: str) -> str:
-    import PyOpenColorIO as ocio
+    import PyOpenColorIO as ocio  # noqa: N813
 
     transform.getFormatMetadata().addChildElement("Description", title)
     return str(transform.write(formatName=CLF, config=ocio.Config.CreateRaw()))
@@ -135,11 +145,14 @@ def cube_text(table: Values, title: str, size: int) -> str:
     lines = "\n".join(
         " ".join(f"{value:.7g}" for value in row) for row in rows.tolist()
     )
-    return f"# {title}\n# sRGB-encoded components in and out\nLUT_3D_SIZE {size}\n{lines}\n"
+    return (
+        f"# {title}\n# sRGB-encoded components in and out\nLUT_3D_SIZE "
+        f"{size}\n{lines}\n"
+    )
 
 
 def _errors(cube: Cube, transform: Any, screen: Sensor) -> TableError:
-    import PyOpenColorIO as ocio
+    import PyOpenColorIO as ocio  # noqa: N813
 
     processor = ocio.Config.CreateRaw().getProcessor(transform).getDefaultCPUProcessor()
 
@@ -154,11 +167,13 @@ def _errors(cube: Cube, transform: Any, screen: Sensor) -> TableError:
 def write_fourier(
     cube: Cube, path: StrPath, *, res: int | None = None, force: bool = False
 ) -> TableError:
-    """Write the table from sRGB to Fourier sRGB, and the shader of its spectra as a ``.glsl`` file.
+    """Write the table from sRGB to Fourier sRGB, and the shader of its spectra as a
+    ``.glsl`` file.
 
-    The cube has three moments, and sRGB or another space with its curve; `OptionError` otherwise. A ``.cube`` file has
-    ``res`` nodes along each axis, 2 to 129, by default 33; a ``.png`` has all codes. Returns the errors under
-    the light of the cube, with codes of 8 bits before and after.
+    The cube has three moments, and sRGB or another space with its curve; `OptionError`
+    otherwise. A ``.cube`` file has ``res`` nodes along each axis, 2 to 129, by default
+    33; a ``.png`` has all codes. Returns the errors under the light of the cube, with
+    codes of 8 bits before and after.
     """
     data, path = cube.data, Path(path)
     if not isinstance(data.model, Moments) or data.model.count != FOURIER_COUNT:
@@ -173,7 +188,8 @@ def write_fourier(
     is_image = path.suffix.lower() == ".png"
     if res is not None and (is_image or not MIN_SIZE <= res <= MAX_SIZE):
         raise OptionError(
-            f"res must be from {MIN_SIZE} to {MAX_SIZE}, and of a .cube table, got {res}"
+            f"res must be from {MIN_SIZE} to {MAX_SIZE}, and of a .cube table, got "
+            f"{res}"
         )
     files = output_files(path, "fourier")
     check_outputs(files, force=force)
@@ -197,8 +213,8 @@ def write_fourier(
 def _to_moments(data: CubeData) -> Array:
     """Return the matrix (3, 3) from linear Fourier sRGB to moments.
 
-    Its inverse takes c to c₀ + S (c₁, c₂), where S minimises the distance to the RGB of the nodes. Rows of S are scaled
-    down so that all nodes are in [0, 1].
+    Its inverse takes c to c₀ + S (c₁, c₂), where S minimises the distance to the RGB of
+    the nodes. Rows of S are scaled down so that all nodes are in [0, 1].
     """
     moments, rgb = (
         data.points.coefficients[data.points.present],
@@ -215,7 +231,9 @@ def _to_moments(data: CubeData) -> Array:
 
 
 def _fourier_table(cube: Cube, nodes: Array, matrix: Array) -> Floats:
-    """Return codes in [0, 1] (res, res, res, 3) of sRGB codes, by blue, green and red."""
+    """Return codes in [0, 1] (res, res, res, 3) of sRGB codes, by blue,
+    green and red.
+    """
     size, inverse = len(nodes), np.linalg.inv(matrix)
     table = np.empty((size, size, size, 3), dtype=np.float32)
     rgb = np.empty((size, size, 3))
@@ -260,7 +278,9 @@ def _shader(model: Moments, matrix: Array, stem: str) -> str:
 
 
 def _fourier_errors(cube: Cube, table: Floats, matrix: Array) -> TableError:
-    """Compare colours of the spectra of 8-bit codes with the requested colours, linearly between nodes."""
+    """Compare colours of the spectra of 8-bit codes with the requested colours,
+    linearly between nodes.
+    """
     from scipy.interpolate import RegularGridInterpolator
 
     sensor, model = cube.data.sensor, cube.data.model

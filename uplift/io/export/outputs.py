@@ -9,7 +9,9 @@ SECOND_SUFFIXES = {"film": ".toml", "fourier": ".glsl", "file": ".bin"}
 
 
 def output_files(path: StrPath, form: str) -> list[Path]:
-    """Return all files of an export in a format, or of a program whose table has a form: ``path`` first."""
+    """Return all files of an export in a format, or of a program whose table has a
+    form: ``path`` first.
+    """
     path = Path(path)
     return (
         [path, path.with_suffix(SECOND_SUFFIXES[form])]

@@ -1,6 +1,8 @@
-"""Programs for renderers and shaders: one C-like source, preceded by macros of each language.
+"""Programs for renderers and shaders: one C-like source, preceded by macros of each
+language.
 
-In ``source/``, ``UP_READS`` and ``UP_TABLE`` are the parameter and the argument by which CUDA passes the table.
+In ``source/``, ``UP_READS`` and ``UP_TABLE`` are the parameter and the argument by
+which CUDA passes the table.
 """
 
 import re
@@ -31,7 +33,8 @@ from uplift.io.export.table import (
 LARGE = 16_000_000
 """Size in bytes above which compilation of a header is slow."""
 LOOP = re.compile(
-    r"^(?P<indent> *)UP_UNROLL\n *for \(int (?P<name>\w+) = (?P<start>.+); \w+ < (?P<stop>.+); \+\+\w+\) "
+    r"^(?P<indent> *)UP_UNROLL\n *for \(int (?P<name>\w+) = (?P<start>.+); \w+ < "
+    r"(?P<stop>.+); \+\+\w+\) "
     r"(?P<body>\{\n(?:(?P=indent) .*\n)*(?P=indent)\}\n|[^{].*\n)",
     re.MULTILINE,
 )
@@ -40,10 +43,11 @@ LOOP = re.compile(
 
 @dataclass(frozen=True)
 class Language:
-    """Suffix of programs, files of macros, suffix of the file of public functions, and wavelengths of one call.
+    """Suffix of programs, files of macros, suffix of the file of public functions, and
+    wavelengths of one call.
 
-    The table is, by ``forms``, the default first: in the program, a ``"header"``, or in a ``"file"`` of numbers.
-    ``vector`` is what types such as ``vec3`` begin with.
+    The table is, by ``forms``, the default first: in the program, a ``"header"``, or in
+    a ``"file"`` of numbers. ``vector`` is what types such as ``vec3`` begin with.
     """
 
     suffix: str
@@ -72,13 +76,15 @@ def write_program(
     form: str | None = None,
     force: bool = False,
 ) -> list[Path]:
-    """Write a cube as a program in C, CUDA, GLSL or HLSL that evaluates it in single precision; return the files.
+    """Write a cube as a program in C, CUDA, GLSL or HLSL that evaluates it in single
+    precision; return the files.
 
-    It begins with a list of its functions. Names in the program begin with the name of the file, converted to an
-    identifier. ``mode`` is what it interpolates, as in `Cube.reflectance`: "spectra", with exact colours, or
-    coefficients, "moments". The table is by ``form`` in the program, a "header", the default of C; or in a "file"
-    with the same stem: float32 numbers, little-endian. A cube that was built for a scene is an `OptionError` of the
-    code ``sparse-cube``.
+    It begins with a list of its functions. Names in the program begin with the name of
+    the file, converted to an identifier. ``mode`` is what it interpolates, as in
+    `Cube.reflectance`: "spectra", with exact colours, or coefficients, "moments". The
+    table is by ``form`` in the program, a "header", the default of C; or in a "file"
+    with the same stem: float32 numbers, little-endian. A cube that was built for a
+    scene is an `OptionError` of the code ``sparse-cube``.
     """
     if style not in LANGUAGES:
         raise unknown_name(style, LANGUAGES, "language")
@@ -103,7 +109,9 @@ def write_program(
 def cube_program(
     data: CubeData, table: Table, style: str, mode: str, stem: str, form: str
 ) -> str:
-    """Return the program of a cube, with ``${numbers}`` in place of the numbers of a header."""
+    """Return the program of a cube, with ``${numbers}`` in place of the numbers of a
+    header.
+    """
     sensor = data.sensor
     words = {
         "digest": digest(data),
@@ -117,7 +125,9 @@ def cube_program(
 
 
 def check_form(style: str, form: str | None) -> str:
-    """Return the form of the table, the default of the language if None; raise `OptionError` if it has no such form."""
+    """Return the form of the table, the default of the language if None; raise
+    `OptionError` if it has no such form.
+    """
     forms = LANGUAGES[style].forms
     if form is not None and form not in forms:
         raise OptionError(
@@ -130,7 +140,8 @@ def check_form(style: str, form: str | None) -> str:
 def compose(
     kind: str, table: Table, style: str, stem: str, form: str, words: dict[str, Any]
 ) -> str:
-    """Return the program of ``kind``, "cube" or "lights", with ``${numbers}`` in place of the numbers of a header.
+    """Return the program of ``kind``, "cube" or "lights", with ``${numbers}`` in place
+    of the numbers of a header.
 
     ``up_`` and ``UP_`` in the source become the name of the program.
     """
@@ -169,7 +180,9 @@ def compose(
 def write_files(
     text: str, table: Table, path: Path, form: str, *, per_line: int, force: bool
 ) -> list[Path]:
-    """Write a program, and its table to a file of the same stem unless it is a header; return the files."""
+    """Write a program, and its table to a file of the same stem unless it is a header;
+    return the files.
+    """
     files = output_files(path, form)
     check_outputs(files, force=True)
     image = table.image().tobytes()
@@ -196,9 +209,11 @@ def _holds(path: Path, content: bytes) -> bool:
 
 
 def _check_table(table: Path, image: bytes, program: Path, *, force: bool) -> None:
-    """Check that a table may be written. Programs of one cube in several languages share theirs.
+    """Check that a table may be written. Programs of one cube in several languages
+    share theirs.
 
-    Another table is an `OutputError`; with ``force`` it is replaced, with a warning if other programs read it.
+    Another table is an `OutputError`; with ``force`` it is replaced, with a warning if
+    other programs read it.
     """
     if not table.exists() or _holds(table, image):
         return
@@ -220,7 +235,9 @@ def _check_table(table: Path, image: bytes, program: Path, *, force: bool) -> No
 
 
 def identifier(stem: str) -> str:
-    """Convert a file name to an identifier: 'macbeth-32' → 'macbeth_32', '32' → 'cube_32'."""
+    """Convert a file name to an identifier: 'macbeth-32' → 'macbeth_32', '32' →
+    'cube_32'.
+    """
     name = re.sub(r"\W+|__+", "_", stem, flags=re.ASCII)
     return name if re.match(r"[A-Za-z]", name) else f"cube_{name}".rstrip("_")
 
@@ -241,7 +258,9 @@ def read_source(name: str) -> str:
 
 
 def _unroll(text: str, constants: dict[str, Any]) -> str:
-    """Write out loops marked by ``UP_UNROLL``, outer ones first: few compilers of shaders unroll, none all loops."""
+    """Write out loops marked by ``UP_UNROLL``, outer ones first: few compilers of
+    shaders unroll, none all loops.
+    """
 
     def copies(loop: re.Match[str]) -> str:
         bounds = (

@@ -1,4 +1,6 @@
-"""The numbers that programs read: one array in single precision, laid out alike for all languages."""
+"""The numbers that programs read: one array in single precision, laid out alike for all
+languages.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,15 +23,21 @@ BIN_COUNT = 1024
 TEXEL = 4
 """Rows are padded to whole texels of four channels."""
 COLUMNS = 2048
-"""Texels in a row of the table as an image: every graphics card that can run the program has textures of this width."""
+"""Texels in a row of the table as an image: every graphics card that can run the
+program has textures of this width.
+"""
 PROGRAM_MODES = ("spectra", "moments")
 """What programs interpolate."""
 SPECTRA, SAMPLES, SEED = 1 << 13, 1 << 9, 0
-"""Spectra, and random colours of two kinds, by which the change by single precision is bounded."""
+"""Spectra, and random colours of two kinds, by which the change by single precision is
+bounded.
+"""
 SPACING, WAVELENGTH_ERROR = 2.0, 5e-5
 """Step of their wavelengths, and error of wavelengths in single precision, in nm."""
 OPERATIONS, LEAST_ERROR = 4, 3e-6
-"""Factor from a product of matrices to all operations, and error of the arctangent and of sums."""
+"""Factor from a product of matrices to all operations, and error of the arctangent and
+of sums.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,13 +48,17 @@ class Table:
     constants: dict[str, Any]
 
     def image(self) -> Floats:
-        """Return the numbers as a little-endian image of (rows, COLUMNS, 4), filled up with zeros."""
+        """Return the numbers as a little-endian image of (rows, COLUMNS, 4), filled up
+        with zeros.
+        """
         numbers = np.pad(self.numbers, (0, -len(self.numbers) % (COLUMNS * TEXEL)))
         return numbers.astype("<f4").reshape(-1, COLUMNS, TEXEL)
 
 
 def check_complete(data: CubeData, name: str) -> None:
-    """Raise `OptionError` for a cube that was built for a scene: programs, and pages with one, need all nodes."""
+    """Raise `OptionError` for a cube that was built for a scene: programs, and pages
+    with one, need all nodes.
+    """
     if data.complete_cells is not None:
         problem = (
             f"{name} needs all nodes, but the cube was built for the colours of a scene"
@@ -57,9 +69,11 @@ def check_complete(data: CubeData, name: str) -> None:
 
 
 def make_table(data: CubeData, mode: str) -> Table:
-    """Lay out a cube with all lattice points: sections by the constants that locate them.
+    """Lay out a cube with all lattice points: sections by the constants that locate
+    them.
 
-    Rows hold multipliers, whose spectra are interpolated, in mode ``spectra``, or coefficients in mode ``moments``.
+    Rows hold multipliers, whose spectra are interpolated, in mode ``spectra``, or
+    coefficients in mode ``moments``.
     """
     model, size = data.model, data.lattice.size
     stride = -(-(model.count + 1) // TEXEL) * TEXEL
@@ -100,7 +114,8 @@ def make_table(data: CubeData, mode: str) -> Table:
 
 
 def moved_cells(data: CubeData, mode: str) -> Mask:
-    """Return the cells (dim³,) whose answers are moved to their colours: next to nodes that have not theirs.
+    """Return the cells (dim³,) whose answers are moved to their colours: next to nodes
+    that have not theirs.
 
     In mode ``moments`` these are all cells around corners of such cells.
     """
@@ -112,9 +127,11 @@ def moved_cells(data: CubeData, mode: str) -> Mask:
 
 
 def rounding_error(data: CubeData, mode: str) -> float:
-    """Return a bound of the change of reflectances by single precision, of colours in cells whose answers stay.
+    """Return a bound of the change of reflectances by single precision, of colours in
+    cells whose answers stay.
 
-    In cells next to unrealisable nodes answers are moved. They may be steps, which single precision cannot place.
+    In cells next to unrealisable nodes answers are moved. They may be steps, which
+    single precision cannot place.
     """
     first, last, _ = data.sensor.range
     wavelengths = np.arange(first, last + 1, SPACING)
@@ -131,9 +148,11 @@ def rounding_error(data: CubeData, mode: str) -> float:
 
 
 def _mixing_error(data: CubeData, wavelengths: Array) -> float:
-    """Return the largest change of spectra of mixtures of coefficients, whose sums and weights are rounded.
+    """Return the largest change of spectra of mixtures of coefficients, whose sums and
+    weights are rounded.
 
-    The colours are random ones, many of them dark, and some level with nodes, where weights are 0.
+    The colours are random ones, many of them dark, and some level with nodes, where
+    weights are 0.
 
     Moments are rounded as numbers near 1 are: that much is lost in their conversion.
     """
@@ -158,7 +177,9 @@ def _mixing_error(data: CubeData, wavelengths: Array) -> float:
 
 
 def _arithmetic_error(model: Model, multipliers: Array, wavelengths: Array) -> float:
-    """Return the largest change of spectra in single precision, of those with the largest multipliers (n, C)."""
+    """Return the largest change of spectra in single precision, of those with the
+    largest multipliers (n, C).
+    """
     steepest = np.argsort(-np.abs(multipliers).sum(axis=1))[:SPECTRA]
     exact = multipliers[steepest]
     basis = model.basis(wavelengths).T
@@ -174,7 +195,9 @@ def _arithmetic_error(model: Model, multipliers: Array, wavelengths: Array) -> f
 
 
 def concatenate(sections: Mapping[str, Values]) -> tuple[Floats, dict[str, int]]:
-    """Return sections one after the other, filled up with zeros to whole texels, and the index where each begins."""
+    """Return sections one after the other, filled up with zeros to whole texels, and
+    the index where each begins.
+    """
     ends = np.cumsum([section.size for section in sections.values()]).tolist()
     parts = [section.ravel() for section in sections.values()]
     numbers = np.concatenate([*parts, np.zeros(-ends[-1] % TEXEL)], dtype=np.float32)
@@ -189,10 +212,12 @@ def _bins(nodes: Floats) -> Floats:
 
 
 def _lists(data: CubeData, mode: str) -> tuple[Floats, Floats]:
-    """Return lists of entries, each after its length, and the position of each cell's list, 0 for none.
+    """Return lists of entries, each after its length, and the position of each cell's
+    list, 0 for none.
 
-    Positions are negative in cells whose answers are moved; the list at 1 is then empty. In mode ``moments`` these are
-    all cells around corners of inexact ones, whose positions have a fraction of 1/2.
+    Positions are negative in cells whose answers are moved; the list at 1 is then
+    empty. In mode ``moments`` these are all cells around corners of inexact ones, whose
+    positions have a fraction of 1/2.
     """
     cells, entries = data.entry_boxes.cells
     tags = np.zeros(data.lattice.size, dtype=np.float32)
@@ -210,9 +235,11 @@ def _lists(data: CubeData, mode: str) -> tuple[Floats, Floats]:
 
 
 def _moving(data: CubeData) -> tuple[dict[str, Values], dict[str, Any]]:
-    """Return sections and constants by which answers are moved to their colours (`uplift.lookup.refine`).
+    """Return sections and constants by which answers are moved to their colours
+    (`uplift.lookup.refine`).
 
-    ``FACETS`` are the normals of the object-colour solid, and half its width along each, around a grey of 1/2.
+    ``FACETS`` are the normals of the object-colour solid, and half its width along
+    each, around a grey of 1/2.
     """
     (weights, shapes, scale), sensor = pull(data.sensor), data.sensor
     half = len(data.solid.normals) // 2  # the others are opposite ones
@@ -242,7 +269,9 @@ def _moving(data: CubeData) -> tuple[dict[str, Values], dict[str, Any]]:
 
 
 def _boxes(boxes: EntryBoxes) -> Floats:
-    """Return centres, the rest that they round off, and reciprocals of distances to the faces, (E, 12); 0 for none."""
+    """Return centres, the rest that they round off, and reciprocals of distances to the
+    faces, (E, 12); 0 for none.
+    """
     low, high = boxes.faces
     below, above = (
         np.divide(1, room, out=np.zeros_like(room), where=room > 0)
@@ -255,7 +284,9 @@ def _boxes(boxes: EntryBoxes) -> Floats:
 
 
 def model_constants(model: object) -> dict[str, float]:
-    """Return the model, its wavelength range in nm, and the start and reciprocal length of the warped range."""
+    """Return the model, its wavelength range in nm, and the start and reciprocal length
+    of the warped range.
+    """
     if isinstance(model, Sigmoid):
         return {"SIGMOIDS": 1, "START": model.start, "END": model.end}
     assert isinstance(model, Moments)

@@ -1,4 +1,6 @@
-"""Errors of tables of colours: the mean of random colours, and the largest that a search finds."""
+"""Errors of tables of colours: the mean of random colours, and the largest that a
+search finds.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -32,9 +34,11 @@ class TableError:
 
 
 def find_errors(error: ErrorFunction, atlas: Array) -> TableError:
-    """Find the mean error, and the largest near the worst of random codes, pairs of equal ones and an atlas (E, 3).
+    """Find the mean error, and the largest near the worst of random codes, pairs of
+    equal ones and an atlas (E, 3).
 
-    The atlas is in linear RGB. Interpolation within tetrahedra has its largest errors where two components are equal.
+    The atlas is in linear RGB. Interpolation within tetrahedra has its largest errors
+    where two components are equal.
     """
     random = np.random.default_rng(SEED)
     even = random.random((SAMPLES, 3))
@@ -60,7 +64,9 @@ def find_errors(error: ErrorFunction, atlas: Array) -> TableError:
 def _climb(
     error: ErrorFunction, codes: Array, errors: Array, changes: Array
 ) -> tuple[Array, Array]:
-    """Return codes (n, 3) moved by one of changes (t, n, 3), or not, to the largest error, and the errors (n,)."""
+    """Return codes (n, 3) moved by one of changes (t, n, 3), or not, to the largest
+    error, and the errors (n,).
+    """
     trials = np.clip(codes + changes, 0, 1)
     trial_errors = error(trials.reshape(-1, 3)).reshape(trials.shape[:2])
     all_codes = np.concatenate([codes[None], trials])

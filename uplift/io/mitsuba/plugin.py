@@ -41,19 +41,22 @@ HINTS = {
         "rgb-out-of-gamut",
     ): f"set the property out_of_gamut to {', '.join(METHODS[1:])}",
 }
-"""Hints in terms of Mitsuba's properties, by class and code; the library's own name parameters of Python."""
+"""Hints in terms of Mitsuba's properties, by class and code; the library's own name
+parameters of Python.
+"""
 
 
 def register() -> None:
-    """Register the plugins ``uplift`` and ``uplift_envmap`` in Mitsuba's current variant.
+    """Register the plugins ``uplift`` and ``uplift_envmap`` in Mitsuba's current
+    variant.
 
     Call it after each `mitsuba.set_variant`.
 
     Raises
     ------
     OptionError
-        Mitsuba is not installed (code ``extra-not-installed``), or the variant is not set, not spectral, or
-        polarised.
+        Mitsuba is not installed (code ``extra-not-installed``), or the variant is not
+        set, not spectral, or polarised.
     """
     with needs_package("plugins", OptionError):
         import mitsuba
@@ -68,7 +71,9 @@ def register() -> None:
 
 
 def _make_plugin(make: Callable[[Any], Any], props: Any) -> Any:
-    """Make the object of a scene description. Mitsuba shows the message of exceptions, and rejects unknown keys."""
+    """Make the object of a scene description. Mitsuba shows the message of exceptions,
+    and rejects unknown keys.
+    """
     try:
         return make(props)
     except UpliftError as error:
@@ -134,7 +139,9 @@ def _source(props: Any, names: tuple[str, ...]) -> str:
 
 
 def _texels(props: Any, *, is_light: bool) -> texels.Texels:
-    """Read the spectra of a spectral texture, or uplift an image; colours outside [0, 1] are mapped, with a warning."""
+    """Read the spectra of a spectral texture, or uplift an image; colours outside [0,
+    1] are mapped, with a warning.
+    """
     import mitsuba
 
     path = _resolve(props["filename"]) if "filename" in props else None
@@ -182,7 +189,9 @@ def _cube(props: Any) -> Cube:
 
 @lru_cache(maxsize=4)
 def _load(path: Path, modified: int) -> Cube:
-    """Read the cube once for all textures of a scene, and again when the file was modified."""
+    """Read the cube once for all textures of a scene, and again when the file was
+    modified.
+    """
     return load(path)
 
 
@@ -220,7 +229,9 @@ def _constant(values: Array) -> Any:
 
 
 def _linear(decoding: Callable[[Array], Array], bitmap: Any) -> Array:
-    """Return linear RGB (h, w, 3) of a `mitsuba.Bitmap`. Codes in [0, 1] are decoded."""
+    """Return linear RGB (h, w, 3) of a `mitsuba.Bitmap`. Codes in [0, 1]
+    are decoded.
+    """
     import mitsuba
 
     rgb = bitmap.convert(pixel_format=mitsuba.Bitmap.PixelFormat.RGB)

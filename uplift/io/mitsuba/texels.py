@@ -1,4 +1,6 @@
-"""Texels: the numbers of their spectra, uplifted from RGB or read from spectral textures, and where they lie."""
+"""Texels: the numbers of their spectra, uplifted from RGB or read from spectral
+textures, and where they lie.
+"""
 
 import contextlib
 import json
@@ -25,15 +27,21 @@ from uplift.models.model import Model
 from uplift.models.moments import multipliers_of_rounded
 
 MEAN_WAVELENGTHS = np.arange(380.0, 781.0, 25.0)
-"""Wavelengths in nm of the mean reflectance, by which Mitsuba chooses between lobes; it need not be exact."""
+"""Wavelengths in nm of the mean reflectance, by which Mitsuba chooses between lobes; it
+need not be exact.
+"""
 THREADS = 2
 PADDING = 1
-"""Texels around the padded image, which repeat those of the other edge or of the same, as the mode beyond requires."""
+"""Texels around the padded image, which repeat those of the other edge or of the same,
+as the mode beyond requires.
+"""
 FILTERS = ("bilinear", "nearest", "stochastic")
 WRAPS = {"repeat": "wrap", "mirror": "symmetric", "clamp": "edge"}
 """Modes beyond the edges, and the modes of `numpy.pad` for them."""
 QUANTITIES = ("T", "S0")
-"""Beginnings of the names of channels of reflectance and of power in the layout of Fichet et al. 2021."""
+"""Beginnings of the names of channels of reflectance and of power in the layout of
+Fichet et al. 2021.
+"""
 WAVELENGTH = re.compile(r"(\d+)(?:,(\d+))?nm")
 NUMBERED = re.compile(r"(moment|multiplier)\.\d+")
 EVEN = 1e-3
@@ -42,7 +50,9 @@ EVEN = 1e-3
 
 @dataclass(frozen=True)
 class Samples:
-    """Reflectances, or powers, at ``count`` even wavelengths from ``start`` to ``end`` nm, constant outside."""
+    """Reflectances, or powers, at ``count`` even wavelengths from ``start`` to ``end``
+    nm, constant outside.
+    """
 
     start: float
     end: float
@@ -54,7 +64,8 @@ class Samples:
 class Texels:
     """Numbers (h, w, C), float32, of the texels' spectra, and the mean reflectance.
 
-    The numbers are the multipliers of a model, or reflectances or powers if ``model`` is `Samples`.
+    The numbers are the multipliers of a model, or reflectances or powers if ``model``
+    is `Samples`.
     """
 
     model: Model | Samples
@@ -65,19 +76,25 @@ class Texels:
         """Return a summary for Mitsuba, with the mode beyond the edges."""
         height, width, count = self.numbers.shape
         numbers = "samples" if isinstance(self.model, Samples) else "multipliers"
-        return f"UpliftTexture[{width} × {height}, {self.model.name}, {count} {numbers}, {wrap}]"
+        return (
+            f"UpliftTexture[{width} × {height}, {self.model.name}, {count} {numbers}, "
+            f"{wrap}]"
+        )
 
 
 def prepare_texels(cube: Cube, method: str, *, of_entries: bool = False) -> Uplifter:
-    """Prepare a cube for texels, with as many multipliers as its nodes or ``of_entries`` have."""
+    """Prepare a cube for texels, with as many multipliers as its nodes or
+    ``of_entries`` have.
+    """
     return prepare(cube, Multipliers(of_entries), out_of_gamut=method, threads=THREADS)
 
 
 def uplift_texels(uplifter: Uplifter, rgb: Floats) -> tuple[Texels, Counts]:
-    """Uplift linear RGB (h, w, 3) of its decoder to multipliers of spectra that have exactly these colours.
+    """Uplift linear RGB (h, w, 3) of its decoder to multipliers of spectra that have
+    exactly these colours.
 
-    All texels have one number of multipliers: that of the cube's entries if a texel lies in the box of an entry, else
-    that of its nodes.
+    All texels have one number of multipliers: that of the cube's entries if a texel
+    lies in the box of an entry, else that of its nodes.
     """
     data, colours = uplifter.cube.data, rgb.reshape(-1, 3).astype(float)
     if any(
@@ -106,7 +123,8 @@ def model_texels(model: Model, multipliers: Values) -> Texels:
 
 
 def light_texels(table: EmissionTable, rgb: Array) -> Texels:
-    """Uplift linear RGB (h, w, 3) of lights to power; colours that no light has are moved towards white.
+    """Uplift linear RGB (h, w, 3) of lights to power; colours that no light has are
+    moved towards white.
 
     Raises `ColourError` for values that are not finite.
     """
@@ -121,7 +139,9 @@ def light_texels(table: EmissionTable, rgb: Array) -> Texels:
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """How texels lie on a surface: filter, mode beyond the edges, and transform (3, 3) of the coordinates."""
+    """How texels lie on a surface: filter, mode beyond the edges, and transform (3, 3)
+    of the coordinates.
+    """
 
     filter: str
     wrap: str
@@ -129,7 +149,9 @@ class Placement:
 
     @staticmethod
     def read(props: Any) -> "Placement":
-        """Read the properties ``filter_type``, ``wrap_mode`` and ``to_uv``. Raises `UnknownNameError`."""
+        """Read the properties ``filter_type``, ``wrap_mode`` and ``to_uv``. Raises
+        `UnknownNameError`.
+        """
         matrix = (
             np.array(props["to_uv"].matrix, dtype=float)
             if "to_uv" in props
@@ -143,7 +165,9 @@ class Placement:
         return Placement(*chosen, matrix[np.ix_(axes, axes)])
 
     def pad(self, numbers: Floats) -> Floats:
-        """Return numbers (h, w, C) with `PADDING` texels around them, so that no lookup needs to wrap."""
+        """Return numbers (h, w, C) with `PADDING` texels around them, so that no lookup
+        needs to wrap.
+        """
         return np.pad(
             numbers, ((PADDING, PADDING), (PADDING, PADDING), (0, 0)), WRAPS[self.wrap]
         )  # type: ignore[call-overload]
@@ -158,10 +182,11 @@ def _choice(props: Any, name: str, choices: tuple[str, ...]) -> str:
 
 
 def read_texels(path: Path) -> Texels | None:
-    """Read a spectral texture; None if the file is not OpenEXR, or has no channels of spectra, moments or multipliers.
+    """Read a spectral texture; None if the file is not OpenEXR, or has no channels of
+    spectra, moments or multipliers.
 
-    Raises `TextureError` if its numbers are not finite or not moments of a reflectance, its wavelengths not
-    equidistant, or its header lacks the description of the model.
+    Raises `TextureError` if its numbers are not finite or not moments of a reflectance,
+    its wavelengths not equidistant, or its header lacks the description of the model.
     """
     if not (path.is_file() and exr_file.is_exr(path)):
         return None
@@ -195,9 +220,11 @@ def read_texels(path: Path) -> Texels | None:
 def read_colours(
     path: Path, converter: Converter
 ) -> tuple[Floats, Counts, tuple[UpliftWarning, ...]]:
-    """Read linear RGB (h, w, 3) of an image as `uplift.io.texture.convert` does, with counts and warnings of its space.
+    """Read linear RGB (h, w, 3) of an image as `uplift.io.texture.convert` does, with
+    counts and warnings of its space.
 
-    The first part with colours counts, other channels do not. Raises `TextureError`, `ColourError` and `OptionError`.
+    The first part with colours counts, other channels do not. Raises `TextureError`,
+    `ColourError` and `OptionError`.
     """
     with open_image(path) as image:
         part, found = coloured_parts(image)[0]
@@ -257,8 +284,14 @@ def _model(description: str, count: int) -> Model:
         if model.count == count:
             return model
     raise TextureError(
-        "the header of a texture must describe the model of its channels in uplift.model",
-        hint="write the texture with 'uplift texture', and keep its header in other programs",
+        (
+            "the header of a texture must describe the model of its channels in "
+            "uplift.model"
+        ),
+        hint=(
+            "write the texture with 'uplift texture', and keep its header in other "
+            "programs"
+        ),
     )
 
 

@@ -1,4 +1,6 @@
-"""Texture and environment of Mitsuba, whose spectra Dr.Jit evaluates at the wavelengths of a ray."""
+"""Texture and environment of Mitsuba, whose spectra Dr.Jit evaluates at the wavelengths
+of a ray.
+"""
 
 from collections.abc import Sequence
 from functools import cache
@@ -24,13 +26,17 @@ ARCTAN = (
     0.048598712,
     -0.010096807,
 )
-"""arccos(c) / (π √(1 − c²)) on [0, 1] as a polynomial of c, lowered by its error to keep reflectances in [0, 1]."""
+"""arccos(c) / (π √(1 − c²)) on [0, 1] as a polynomial of c, lowered by its error to
+keep reflectances in [0, 1].
+"""
 
 
 def blend(
     model: Model, multipliers: Sequence[Any], weights: Sequence[Any], wavelengths: Any
 ) -> Any:
-    """Return the weighted sum of spectra at ``wavelengths``, a Mitsuba spectrum; each has C multipliers."""
+    """Return the weighted sum of spectra at ``wavelengths``, a Mitsuba spectrum; each
+    has C multipliers.
+    """
     first, *functions = _basis(model, wavelengths)
     total = dr.zeros(type(wavelengths))
     for each, weight in zip(multipliers, weights, strict=True):
@@ -59,8 +65,9 @@ def _basis(model: Model, wavelengths: Any) -> list[Any]:
 def _to_reflectance(model: Model, linear: Any) -> Any:
     """Return the reflectance of a linear part x.
 
-    The arc tangent is x c f(c) with c = 1 / √(1 + x²), its cosine, and f a polynomial. This needs no division, no
-    branch and no range reduction. Reflectances differ by less than 1e-6.
+    The arc tangent is x c f(c) with c = 1 / √(1 + x²), its cosine, and f a polynomial.
+    This needs no division, no branch and no range reduction. Reflectances differ by
+    less than 1e-6.
     """
     cosine = dr.rsqrt(dr.fma(linear, linear, 1))
     sine = linear * cosine
@@ -83,7 +90,9 @@ def _texture_class(variant: str) -> type:
     """Define the class for a variant, as each variant has its own base class."""
 
     class UpliftTexture(mi.Texture):  # type: ignore[misc]
-        """Texture of spectra. Filters blend the spectra of texels, and thus their colours."""
+        """Texture of spectra. Filters blend the spectra of texels, and thus their
+        colours.
+        """
 
         def __init__(self, props: Any, texels: Texels, placement: Placement) -> None:
             super().__init__(props)
@@ -119,7 +128,9 @@ def _texture_class(variant: str) -> type:
             )
 
         def _texel(self, uv: Any) -> Any:
-            """Return the place of coordinates in the padded image, in texels; centres of texels are at ½."""
+            """Return the place of coordinates in the padded image, in texels; centres
+            of texels are at ½.
+            """
             if self.placement.wrap == "clamp":
                 folded = dr.clip(uv, 0, 1)
             elif self.placement.wrap == "repeat":
@@ -130,9 +141,11 @@ def _texture_class(variant: str) -> type:
             return dr.fma(folded, mi.Vector2f(width, height), PADDING)
 
         def _offset(self, si: Any) -> Any:
-            """Return up to half a texel, by which the nearest texel is one of four with the probability of its weight.
+            """Return up to half a texel, by which the nearest texel is one of four with
+            the probability of its weight.
 
-            Textures have no sampler: pseudo-random numbers are hashed from coordinates and wavelengths.
+            Textures have no sampler: pseudo-random numbers are hashed from coordinates
+            and wavelengths.
             """
             u, v, wavelength = (
                 _bits(each) for each in (si.uv.x, si.uv.y, si.wavelengths[0])
@@ -141,7 +154,9 @@ def _texture_class(variant: str) -> type:
             return mi.Vector2f(mi.Float(first), mi.Float(second)) * 2.0**-32 - 0.5
 
         def _interpolated(self, place: Any, wavelengths: Any, active: Any) -> Any:
-            """Return reflectances between samples, which lie along the first axis of the texture."""
+            """Return reflectances between samples, which lie along the first axis of
+            the texture.
+            """
             model, (height, width, depth, _) = self.texels.model, self.numbers.shape
             assert isinstance(model, Samples)
             if self.placement.filter != "bilinear":
@@ -182,7 +197,9 @@ def make_texture(props: Any, texels: Texels, placement: Placement) -> Any:
 @cache
 def _environment_class(variant: str) -> type:
     class UpliftEnvironment(mi.Emitter):  # type: ignore[misc]
-        """Mitsuba's ``envmap`` in grey samples directions, and the spectra give the radiance."""
+        """Mitsuba's ``envmap`` in grey samples directions, and the spectra give the
+        radiance.
+        """
 
         def __init__(self, props: Any, texels: Texels) -> None:
             super().__init__(props)
@@ -211,7 +228,9 @@ def _environment_class(variant: str) -> type:
             return self._radiance(ds.d, it.wavelengths, active)
 
         def sample_direction(self, it: Any, sample: Any, active: Any = True) -> Any:
-            """Sample a direction in proportion to the mean power, and return it with radiance over density."""
+            """Sample a direction in proportion to the mean power, and return it with
+            radiance over density.
+            """
             ds, _ = self.sampler.sample_direction(it, sample, active)
             radiance = self._radiance(ds.d, it.wavelengths, active)
             ds.emitter = self if variant.startswith("scalar") else mi.EmitterPtr(self)
@@ -239,7 +258,9 @@ def _environment_class(variant: str) -> type:
             return ray, dr.select(grey > 0, weight * radiance / grey, 0)
 
         def sample_wavelengths(self, si: Any, sample: Any, active: Any = True) -> Any:
-            """Sample wavelengths as Mitsuba does for sensors, and return them with radiance over density."""
+            """Sample wavelengths as Mitsuba does for sensors, and return them with
+            radiance over density.
+            """
             wavelengths, weight = mi.sample_rgb_spectrum(mi.sample_shifted(sample))
             return wavelengths, weight * self._radiance(-si.wi, wavelengths, active)
 
@@ -253,7 +274,9 @@ def _environment_class(variant: str) -> type:
             )
 
         def _radiance(self, direction: Any, wavelengths: Any, active: Any) -> Any:
-            """Return the radiance from a direction, with the layout of Mitsuba's ``envmap``."""
+            """Return the radiance from a direction, with the layout of Mitsuba's
+            ``envmap``.
+            """
             local = self.to_local @ direction
             u, v = (
                 dr.atan2(local.x, -local.z) / (2 * dr.pi),

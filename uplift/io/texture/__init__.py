@@ -1,4 +1,5 @@
-"""Spectral textures: images whose pixels are uplifted and written as OpenEXR (docs/textures.md).
+"""Spectral textures: images whose pixels are uplifted and written as OpenEXR
+(docs/textures.md).
 
 Examples
 --------

@@ -11,11 +11,18 @@ from uplift.io.texture.image import Image, Part
 
 COLOUR_TYPES = {"uint8", "uint16", "half", "float", "double"}
 BRIGHTEST = 65504.0
-"""The largest half float. Colours that alpha would make brighter are light, and not divided."""
+"""The largest half float. Colours that alpha would make brighter are light, and not
+divided.
+"""
 HALF_ROUNDING = 1e-3
-"""Linear RGB by which half floats, converted or divided by one another, can leave [0, 1] by rounding."""
+"""Linear RGB by which half floats, converted or divided by one another, can leave [0,
+1] by rounding.
+"""
 VECTORS = re.compile(
-    r"(.*[._ ])?(n|ns|ng|p|po|pos|pref|uv)|.*(normal|position|vector|velocity|motion|tangent|world).*",
+    (
+        r"(.*[._ "
+        r"])?(n|ns|ng|p|po|pos|pref|uv)|.*(normal|position|vector|velocity|motion|tangent|world).*"
+    ),
     re.I,
 )
 """Names of layers of renderers whose X, Y and Z are vectors, not CIE XYZ."""
@@ -26,7 +33,8 @@ XYZ, CHROMA = {"X", "Y", "Z"}, {"RY", "BY"}
 class ColourChannels:
     """Indices of the colour channels, and of the alpha that multiplies them, if any.
 
-    ``rgb`` are red, green and blue, all the same for a grey image, or CIE XYZ if ``is_xyz``.
+    ``rgb`` are red, green and blue, all the same for a grey image, or CIE XYZ if
+    ``is_xyz``.
     """
 
     rgb: tuple[int, int, int]
@@ -34,10 +42,11 @@ class ColourChannels:
     is_xyz: bool = False
 
     def straight(self, values: Values) -> Values:
-        """Return the colours (…, 3) of values (…, channels), divided by alpha if they are multiplied by it.
+        """Return the colours (…, 3) of values (…, channels), divided by alpha if they
+        are multiplied by it.
 
-        Light without opacity, such as a glow of alpha 0, is not divided. Integers are rounded, and limited to the
-        largest.
+        Light without opacity, such as a glow of alpha 0, is not divided. Integers are
+        rounded, and limited to the largest.
         """
         colours = values[..., self.rgb]
         if self.alpha is None:
@@ -54,7 +63,8 @@ class ColourChannels:
         return straight if self.is_xyz else without_rounding(straight)
 
     def opacity(self, values: Values) -> Floats | None:
-        """Return the factor (…, 1) in [0, 1] of converted colours; None if no colours are divided.
+        """Return the factor (…, 1) in [0, 1] of converted colours; None if no colours
+        are divided.
 
         It is 0 for NaN, and 1 for colours that `straight` does not divide.
         """
@@ -69,7 +79,9 @@ class ColourChannels:
         return np.where(self._is_light(values), 1, opacity).astype(np.float32)
 
     def _is_light(self, values: Values) -> Mask:
-        """Return the mask (…, 1) of finite colours that alpha would make brighter than half floats hold."""
+        """Return the mask (…, 1) of finite colours that alpha would make brighter than
+        half floats hold.
+        """
         assert self.alpha is not None
         with np.errstate(invalid="ignore"):  # signalling NaN
             colours = np.abs(values[..., self.rgb].astype(float))
@@ -95,10 +107,12 @@ def all_inside(colours: Values) -> bool:
 
 
 def colour_channels(part: Part) -> ColourChannels | None:
-    """Find the colour channels of a part: R, G and B, else X, Y and Z (CIE XYZ), else a grey Y; or None.
+    """Find the colour channels of a part: R, G and B, else X, Y and Z (CIE XYZ), else a
+    grey Y; or None.
 
-    R, G and B, and X, Y and Z, may be those of a layer, if it is the only one that has them. Raises `TextureError` for
-    several layers of colours, and for integers of unknown scale.
+    R, G and B, and X, Y and Z, may be those of a layer, if it is the only one that has
+    them. Raises `TextureError` for several layers of colours, and for integers of
+    unknown scale.
     """
     names, alpha = _colour_names(part)
     if not names:
@@ -120,7 +134,9 @@ def colour_channels(part: Part) -> ColourChannels | None:
 
 
 def _colour_names(part: Part) -> tuple[list[str], str]:
-    """Return the names of the colour channels, none if there are none, and the name of their alpha."""
+    """Return the names of the colour channels, none if there are none, and the name of
+    their alpha.
+    """
     for letters in ("RGB", "XYZ"):
         layers = _layers(part, letters)
         if len(layers) > 1:
@@ -136,7 +152,9 @@ def _colour_names(part: Part) -> tuple[list[str], str]:
 
 
 def _layers(part: Part, letters: str) -> list[str]:
-    """Return the layers with channels of these letters, ``foo.`` for ``foo.R``; only "" if the part itself has them."""
+    """Return the layers with channels of these letters, ``foo.`` for ``foo.R``; only ""
+    if the part itself has them.
+    """
     names = set(part.channels)
     first, others = letters[0], letters[1:]
     ends = [
@@ -155,14 +173,22 @@ def _layers(part: Part, letters: str) -> list[str]:
 
 
 def colour_channels_by_part(image: Image) -> list[tuple[Part, ColourChannels | None]]:
-    """Return every part and its colour channels. Raises `TextureError` if no part has any."""
+    """Return every part and its colour channels. Raises `TextureError` if no part has
+    any.
+    """
     parts = [(part, colour_channels(part)) for part in image.parts]
     if not any(colours for _, colours in parts):
         names = dict.fromkeys(name for part in image.parts for name in part.channels)
         if set(names) & CHROMA:
-            hint = "convert luminance and chroma to R, G and B, or remove the chroma for a grey image"
+            hint = (
+                "convert luminance and chroma to R, G and B, or remove the chroma for "
+                "a grey image"
+            )
         else:
-            hint = "name them R, G and B, or X, Y and Z for CIE XYZ, or Y alone for a grey image"
+            hint = (
+                "name them R, G and B, or X, Y and Z for CIE XYZ, or Y alone for a "
+                "grey image"
+            )
         raise TextureError(f"no colour channels among {', '.join(names)}", hint=hint)
     return parts
 

@@ -1,6 +1,8 @@
-"""Colour primaries and transfer characteristics by the numbers of ITU-T H.273, which PNG files state.
+"""Colour primaries and transfer characteristics by the numbers of ITU-T H.273, which
+PNG files state.
 
-Light of 100 cd/m² is 1, as in OpenColorIO, whose curve of PQ and display of HLG (ITU-R BT.2100, 1000 cd/m²) are used.
+Light of 100 cd/m² is 1, as in OpenColorIO, whose curve of PQ and display of HLG (ITU-R
+BT.2100, 1000 cd/m²) are used.
 """
 
 from collections.abc import Callable, Sequence
@@ -51,13 +53,15 @@ def _decode_pq(codes: Array) -> Array:
 
 
 def _hlg_to_xyz(codes: Array) -> Array:
-    """Decode ITU-R BT.2100 HLG to CIE XYZ in units of 100 cd/m², on a display of 1000 cd/m²."""
+    """Decode ITU-R BT.2100 HLG to CIE XYZ in units of 100 cd/m², on a display of 1000
+    cd/m².
+    """
     return _built_in(XYZ_TO_HLG, is_inverse=True).convert(codes)
 
 
 def _built_in(name: str, *, is_inverse: bool = False) -> OcioSpace:
     """Return a transform of OpenColorIO."""
-    import PyOpenColorIO as ocio
+    import PyOpenColorIO as ocio  # noqa: N813
 
     direction = ocio.TRANSFORM_DIR_INVERSE if is_inverse else ocio.TRANSFORM_DIR_FORWARD
     transform = ocio.BuiltinTransform(name, direction)
@@ -76,11 +80,15 @@ TRANSFERS: dict[int, Curve] = {
     16: _decode_pq,
     17: lambda codes: power(2.6)(codes) * 52.37 / 48,
 }
-"""Inverse transfer characteristics of table 3, without HLG, which is not a curve of each channel."""
+"""Inverse transfer characteristics of table 3, without HLG, which is not a curve of
+each channel.
+"""
 
 
 def find_space(name: str, points: Sequence[int], bits: int) -> ImageSpace | None:
-    """Return the space of primaries, transfer, matrix and range of codes of ``bits`` bits; None if it is not known."""
+    """Return the space of primaries, transfer, matrix and range of codes of ``bits``
+    bits; None if it is not known.
+    """
     if len(points) != 4:
         return None
     primaries, transfer, matrix, is_full = points
@@ -107,6 +115,8 @@ def _as_given(codes: Array) -> Array:
 
 
 def _widen(bits: int) -> Curve:
-    """Return the map from codes of narrow range, 16 to 235 of 8 bits, to [0, 1]. Codes below black are black."""
+    """Return the map from codes of narrow range, 16 to 235 of 8 bits, to [0, 1]. Codes
+    below black are black.
+    """
     unit = 2.0 ** (bits - 8) / (2**bits - 1)
     return lambda codes: np.maximum((codes - 16 * unit) / (219 * unit), 0)

@@ -1,7 +1,8 @@
-"""Colour space that an image file states; docs/textures.md lists the statements in their order.
+"""Colour space that an image file states; docs/textures.md lists the statements in
+their order.
 
-OpenColorIO reads matrix profiles, as displays have them, with their primaries and tone curves. Profiles of grey images,
-and those with lookup tables, are not used.
+OpenColorIO reads matrix profiles, as displays have them, with their primaries and tone
+curves. Profiles of grey images, and those with lookup tables, are not used.
 """
 
 import contextlib
@@ -31,7 +32,9 @@ ADOBE = ImageSpace(
     code_points.power(563 / 256),
 )
 EXIF_SRGB, EXIF_ADOBE = 1, 2
-"""Values of the EXIF tag ColorSpace. The standard has the first, and cameras write the second."""
+"""Values of the EXIF tag ColorSpace. The standard has the first, and cameras write the
+second.
+"""
 ADOBE_INDEX = "R03"
 """EXIF interoperability index of Adobe RGB (DCF 2.0)."""
 CMYK = "CMYK"
@@ -40,7 +43,8 @@ CODE_BITS = {"uint8": 8, "uint16": 16}
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """Statement of an image file about its colour space; ``space`` is None if it cannot be used.
+    """Statement of an image file about its colour space; ``space`` is None if it cannot
+    be used.
 
     ``unusable`` are the names of it or of preceding statements that cannot be used.
     """
@@ -51,9 +55,11 @@ class Profile:
 
 
 def read_profile(spec: Any, header: Mapping[str, Any]) -> Profile | None:
-    """Return the first usable statement of a file, else an unusable one, or None if it states no colour space.
+    """Return the first usable statement of a file, else an unusable one, or None if it
+    states no colour space.
 
-    ``spec`` is an `OpenImageIO.ImageSpec`, and ``header`` has the statements that it lacks.
+    ``spec`` is an `OpenImageIO.ImageSpec`, and ``header`` has the statements that it
+    lacks.
     """
     unusable: list[str] = []
     if CMYK in (
@@ -99,7 +105,9 @@ def _statements(spec: Any, header: Mapping[str, Any]) -> Iterator[Profile]:
 
 
 def xyz_space(spec: Any) -> ImageSpace:
-    """Return the space of channels of CIE XYZ, relative to the white that an OpenEXR file states, else to D65."""
+    """Return the space of channels of CIE XYZ, relative to the white that an OpenEXR
+    file states, else to D65.
+    """
     primaries = _primaries(spec.getattribute("chromaticities")) or SRGB
     luminance = spec.get_float_attribute("whiteLuminance", 1.0)
     name = "CIE XYZ"
@@ -114,7 +122,9 @@ def xyz_space(spec: Any) -> ImageSpace:
 
 
 def _interop_space(name: str) -> ImageSpace | None:
-    """Return the space of a name of the Color Interop Forum, which the configuration of OpenColorIO has as alias."""
+    """Return the space of a name of the Color Interop Forum, which the configuration of
+    OpenColorIO has as alias.
+    """
     found = None
     with contextlib.suppress(OptionError):
         found = find_ocio_space(name)
@@ -135,7 +145,9 @@ def _by_code_points(points: Any, bits: int) -> Profile:
 
 
 def _png_gamma(header: Mapping[str, Any]) -> Iterator[Profile]:
-    """Yield the space of the chunks gAMA and cHRM of PNG. One alone has the other of sRGB."""
+    """Yield the space of the chunks gAMA and cHRM of PNG. One alone has the other of
+    sRGB.
+    """
     gamut: Primaries | None = SRGB
     curve: code_points.Curve | None = decode
     names = []
@@ -151,7 +163,9 @@ def _png_gamma(header: Mapping[str, Any]) -> Iterator[Profile]:
 
 
 def _tiff_tags(header: Mapping[str, Any]) -> Iterator[Profile]:
-    """Yield the space of the tags TransferFunction, WhitePoint and PrimaryChromaticities of TIFF."""
+    """Yield the space of the tags TransferFunction, WhitePoint and
+    PrimaryChromaticities of TIFF.
+    """
     gamut: Primaries | None = SRGB
     curve: code_points.Curve | None = decode
     names = [
@@ -196,7 +210,9 @@ def _table_curve(numbers: tuple[float, ...]) -> code_points.Curve | None:
 
 
 def _exif_adobe(header: Mapping[str, Any]) -> Iterator[Profile]:
-    """Yield Adobe RGB if the EXIF tag ColorSpace or the interoperability index states it."""
+    """Yield Adobe RGB if the EXIF tag ColorSpace or the interoperability index states
+    it.
+    """
     number = header.get("ColorSpace")
     is_index = (
         number != EXIF_SRGB and header.get("InteroperabilityIndex") == ADOBE_INDEX
@@ -206,7 +222,9 @@ def _exif_adobe(header: Mapping[str, Any]) -> Iterator[Profile]:
 
 
 def _exif_other(header: Mapping[str, Any]) -> Iterator[Profile]:
-    """Yield sRGB if the EXIF tag ColorSpace states it, and an unusable statement for other numbers."""
+    """Yield sRGB if the EXIF tag ColorSpace states it, and an unusable statement for
+    other numbers.
+    """
     number = header.get("ColorSpace")
     if number == EXIF_SRGB:
         yield Profile("sRGB", SRGB_SPACE)
@@ -215,7 +233,9 @@ def _exif_other(header: Mapping[str, Any]) -> Iterator[Profile]:
 
 
 def _primaries(numbers: Any) -> Primaries | None:
-    """Return primaries; None for impossible ones, and for values of another type, as an attribute may have any."""
+    """Return primaries; None for impossible ones, and for values of another type, as an
+    attribute may have any.
+    """
     try:
         return Primaries.of([float(number) for number in numbers])
     except (OptionError, TypeError, ValueError):
@@ -223,8 +243,10 @@ def _primaries(numbers: Any) -> Primaries | None:
 
 
 def _icc_space(name: str, data: bytes) -> ImageSpace | None:
-    """Return the space of a matrix profile by OpenColorIO; None for others, and for damaged ones."""
-    import PyOpenColorIO as ocio
+    """Return the space of a matrix profile by OpenColorIO; None for others, and for
+    damaged ones.
+    """
+    import PyOpenColorIO as ocio  # noqa: N813
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "image.icc"

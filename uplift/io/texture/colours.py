@@ -23,7 +23,9 @@ from uplift.io.texture.image import Image, Part
 from uplift.lattice.entry_boxes import NO_ROWS, OutsideBoxes
 
 ENCODINGS = ("auto", "linear", "encoded")
-"""How the numbers of an image are interpreted; ``auto`` takes integers as encoded, floats as linear."""
+"""How the numbers of an image are interpreted; ``auto`` takes integers as encoded,
+floats as linear.
+"""
 PAST_TENSE = {
     "error": "refused",
     "clip": "clamped",
@@ -148,8 +150,9 @@ def source_space(
 ) -> ImageSpace | None:
     """Return the space of the colours of a part, None if it is that of the sensor.
 
-    The one that the caller names comes first, then the statement of the file, then sRGB for codes and the space of the
-    sensor for floats. Channels X, Y and Z are CIE XYZ. Raises `TextureError` if the caller names an RGB space for them.
+    The one that the caller names comes first, then the statement of the file, then sRGB
+    for codes and the space of the sensor for floats. Channels X, Y and Z are CIE XYZ.
+    Raises `TextureError` if the caller names an RGB space for them.
     """
     if is_xyz(part):
         if chosen is not None and chosen.to_gamut is None:
@@ -170,7 +173,9 @@ def source_space(
 def space_warnings(
     image: Image, sensor: Sensor, chosen: ImageSpace | None = None
 ) -> tuple[UpliftWarning, ...]:
-    """Return warnings about parts whose space is not known: unusable statements, and assumptions."""
+    """Return warnings about parts whose space is not known: unusable statements, and
+    assumptions.
+    """
     found: dict[str, UpliftWarning] = {}
     for part in image.parts if chosen is None else ():
         if problem := _space_problem(part, sensor):
@@ -191,7 +196,10 @@ def _space_problem(part: Part, sensor: Sensor) -> str:
         read_as = "sRGB" if part.max_code else f"linear {sensor.space}"
     if stated is not None and stated.unusable:
         names = ", ".join(stated.unusable)
-        return f"the image states a colour space that cannot be used ({names}); its colours are read as {read_as}"
+        return (
+            f"the image states a colour space that cannot be used ({names}); its "
+            f"colours are read as {read_as}"
+        )
     if (
         stated is None
         and not is_xyz(part)
@@ -203,12 +211,15 @@ def _space_problem(part: Part, sensor: Sensor) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Decoder:
-    """Conversion of the colours (…, 3) of a part to linear RGB of a sensor, made by `make_decoder`.
+    """Conversion of the colours (…, 3) of a part to linear RGB of a sensor, made by
+    `make_decoder`.
 
-    ``function`` maps the numbers of the part, integers if ``is_integer``, to linear values of its space. With
-    ``maps_codes``, codes outside [0, 1] are mapped before decoding, as the encoding ends at 0 and 1. ``matrix`` (3, 3)
-    leads from the space of the part to that of the sensor; None if they agree. Linear RGB in the boxes of entries
-    ``outside`` [0, 1] are not mapped, and those outside [0, 1] by no more than ``rounding`` are clipped.
+    ``function`` maps the numbers of the part, integers if ``is_integer``, to linear
+    values of its space. With ``maps_codes``, codes outside [0, 1] are mapped before
+    decoding, as the encoding ends at 0 and 1. ``matrix`` (3, 3) leads from the space of
+    the part to that of the sensor; None if they agree. Linear RGB in the boxes of
+    entries ``outside`` [0, 1] are not mapped, and those outside [0, 1] by no more than
+    ``rounding`` are clipped.
     """
 
     function: Callable[[Values], Values]
@@ -221,10 +232,11 @@ class Decoder:
     rounding: float = FLOAT_ROUNDING
 
     def __call__(self, colours: Values) -> tuple[Floats, Counts]:
-        """Return linear RGB (…, 3) in [0, 1] or in boxes, and counts of the pixels that were changed.
+        """Return linear RGB (…, 3) in [0, 1] or in boxes, and counts of the pixels that
+        were changed.
 
-        Colours outside are mapped to the gamut and NaN is replaced by 0. With the method ``error`` both raise a
-        `ColourError`.
+        Colours outside are mapped to the gamut and NaN is replaced by 0. With the
+        method ``error`` both raise a `ColourError`.
         """
         not_finite = outside = 0
         max_change = 0.0
@@ -242,7 +254,9 @@ class Decoder:
         return rgb.astype(np.float32, copy=False), counts
 
     def _finite(self, colours: Values) -> tuple[Values, int]:
-        """Return colours without NaN and infinity, and their number; with the method ``error`` they stay."""
+        """Return colours without NaN and infinity, and their number; with the method
+        ``error`` they stay.
+        """
         if all_inside(colours):
             return colours, 0
         finite = np.asarray(np.isfinite(colours).all(axis=-1))
@@ -256,7 +270,9 @@ class Decoder:
     def _mapped(
         self, colours: Values, boxes: OutsideBoxes | None = None
     ) -> tuple[Values, int, float]:
-        """Return colours in [0, 1] or in boxes, the number of those that were moved, and the largest change."""
+        """Return colours in [0, 1] or in boxes, the number of those that were moved,
+        and the largest change.
+        """
         if all_inside(colours):
             return colours, 0, 0.0
         flat = colours.reshape(-1, 3)
@@ -283,12 +299,14 @@ def make_decoder(
     space: ImageSpace | None = None,
     outside: OutsideBoxes | None = None,
 ) -> Decoder:
-    """Make the decoder of a part to linear RGB of a sensor, for the gamut mapping ``method``.
+    """Make the decoder of a part to linear RGB of a sensor, for the gamut mapping
+    ``method``.
 
-    ``encoding`` ``auto`` takes 8-bit and 16-bit integers as encoded, all else as linear. ``space`` is by default the
-    one that the file states. Colours in the boxes of entries ``outside`` [0, 1] stay. Raises `OptionError` for encoded
-    floats with a mapping other than ``clip`` or ``error``, as the encoding ends at 0 and 1, and for ``linear`` with a
-    space whose floats are encoded.
+    ``encoding`` ``auto`` takes 8-bit and 16-bit integers as encoded, all else as
+    linear. ``space`` is by default the one that the file states. Colours in the boxes
+    of entries ``outside`` [0, 1] stay. Raises `OptionError` for encoded floats with a
+    mapping other than ``clip`` or ``error``, as the encoding ends at 0 and 1, and for
+    ``linear`` with a space whose floats are encoded.
     """
     source = source_space(part, sensor, space)
     matrix = None if source is None else source.matrix_to(sensor)
@@ -302,7 +320,10 @@ def make_decoder(
         raise OptionError(
             f"encoded floats must use the gamut mapping clip or error, got '{method}'",
             code="encoded-floats-not-mapped",
-            hint="their encoding ends at 0 and 1; pass out_of_gamut='clip' or encoding='linear'",
+            hint=(
+                "their encoding ends at 0 and 1; pass out_of_gamut='clip' or "
+                "encoding='linear'"
+            ),
         )
     if is_encoded and source is not None and source.to_gamut is not None:
         raise OptionError("CIE XYZ must be linear", hint="leave out encoding='encoded'")
@@ -321,7 +342,9 @@ def make_decoder(
 
 
 def _rounding(part: Part, matrix: Array | None) -> float:
-    """Return linear RGB by which white of a part, converted by a matrix, can leave [0, 1] by rounding."""
+    """Return linear RGB by which white of a part, converted by a matrix, can leave [0,
+    1] by rounding.
+    """
     if matrix is None:
         return FLOAT_ROUNDING
     if "half" not in part.types:
@@ -332,14 +355,18 @@ def _rounding(part: Part, matrix: Array | None) -> float:
 
 
 def reads_codes(part: Part, source: ImageSpace | None) -> bool:
-    """Return whether the numbers of a part are codes of their space, independent of the encoding of floats."""
+    """Return whether the numbers of a part are codes of their space, independent of the
+    encoding of floats.
+    """
     return bool(part.max_code) or (source is not None and source.floats_are_codes)
 
 
 def linear_reader(
     sensor: Sensor, part: Part, encoding: str, source: ImageSpace | None
 ) -> Callable[[Values], Values]:
-    """Return the function from the numbers (…, 3) of a part to linear values of its space, None for the sensor's."""
+    """Return the function from the numbers (…, 3) of a part to linear values of its
+    space, None for the sensor's.
+    """
     to_linear = (source and source.decode) or (lambda codes: sensor.decode(255 * codes))
     if not part.max_code:
         return (

@@ -1,4 +1,6 @@
-"""Conversion of one image, a band of rows at a time, so that memory does not grow with its height."""
+"""Conversion of one image, a band of rows at a time, so that memory does not grow with
+its height.
+"""
 
 import os
 import time
@@ -19,7 +21,9 @@ from uplift.io.texture.uplifter import Converter, ConvertRows, ReadColours
 from uplift.io.texture.writer import OutputPart, Writer, open_writer
 
 SOURCE = "uplift.source"
-"""Attribute with the size and the SHA-256 digest of the image that a texture was made of."""
+"""Attribute with the size and the SHA-256 digest of the image that a texture was made
+of.
+"""
 
 
 @dataclass(frozen=True)
@@ -33,11 +37,13 @@ class Conversion:
     counts : Counts
         Numbers of pixels by kind.
     warnings : tuple of UpliftWarning
-        Warnings about the image. They are data: `convert` does not emit them, as it may run in another process.
+        Warnings about the image. They are data: `convert` does not emit them, as it may
+        run in another process.
     seconds : float
         Wall-clock time.
     spaces : tuple of str
-        RGB spaces in which colours were read, ``linear sRGB`` for floats of the cube's space.
+        RGB spaces in which colours were read, ``linear sRGB`` for floats of the cube's
+        space.
     """
 
     source: Path
@@ -58,14 +64,15 @@ def convert(
 ) -> Conversion:
     """Convert the colours of an image and write the result as OpenEXR, atomically.
 
-    Channels that are not colours pass through, parts and windows stay. Colours that the file holds multiplied by alpha
-    are divided by it before the conversion and multiplied after.
+    Channels that are not colours pass through, parts and windows stay. Colours that the
+    file holds multiplied by alpha are divided by it before the conversion and
+    multiplied after.
 
     Parameters
     ----------
     converter : Converter
-        Made by `prepare`, `prepare_masked`, `prepare_lights` or `prepare_relighter`, or a coat of paint
-        (`uplift.design.mixing.overpainter`).
+        Made by `prepare`, `prepare_masked`, `prepare_lights` or `prepare_relighter`, or
+        a coat of paint (`uplift.design.mixing.overpainter`).
     source : path-like
         OpenEXR, Radiance HDR, PNG, JPEG or TIFF image.
     target : path-like
@@ -87,10 +94,11 @@ def convert(
     OutputError
         ``target`` cannot be written, exists and ``force`` is off, or is ``source``.
     OptionError
-        The image has encoded floats, and the gamut mapping is neither ``clip`` nor ``error``.
+        The image has encoded floats, and the gamut mapping is neither ``clip`` nor
+        ``error``.
     ColourError
-        A colour lies outside [0, 1] and the gamut mapping is ``error``, or the cube, built for a scene, lacks
-        the nodes for it.
+        A colour lies outside [0, 1] and the gamut mapping is ``error``, or the cube,
+        built for a scene, lacks the nodes for it.
     """
     begin = time.perf_counter()
     check_output(target, inputs=[source], force=force)
@@ -146,12 +154,16 @@ def _space_name(converter: Converter, part: Part) -> str:
 
 
 LOSSLESS = {"half": "half", "uint": "uint", "uint8": "half"}
-"""OpenEXR types that hold all values of a type, by that type; float for others. Integers become [0, 1]."""
+"""OpenEXR types that hold all values of a type, by that type; float for others.
+Integers become [0, 1].
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class _Layout:
-    """Which channels of a part are colours, which pass through (indices ``others``), and how it is written."""
+    """Which channels of a part are colours, which pass through (indices ``others``),
+    and how it is written.
+    """
 
     part: Part
     colours: ColourChannels | None
@@ -176,7 +188,11 @@ def _layout(
         converted = (*"RGB", *converter.channels)
         if duplicates := set(converted) & set(names):
             raise TextureError(
-                f"channel '{min(duplicates)}' exists next to the colour and would be written twice",
+                (
+                    f"channel '{min(duplicates)}' exists next to the colour and would "
+                    "be "
+                    "written twice"
+                ),
                 hint="remove that channel",
             )
         names, types = (
@@ -214,7 +230,9 @@ def _write_band(
     first: int,
     band: Values,
 ) -> Counts:
-    """Convert and write a band. Its arrays are gone before those of the next, which halves the memory."""
+    """Convert and write a band. Its arrays are gone before those of the next, which
+    halves the memory.
+    """
     others, counts = band[..., layout.others], Counts()
     values: tuple[Values, ...] = ()
     if layout.part.max_code:

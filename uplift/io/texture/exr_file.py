@@ -1,6 +1,8 @@
-"""Structure of OpenEXR files, read without their pixels: limits of the headers, and a checksum of the file.
+"""Structure of OpenEXR files, read without their pixels: limits of the headers, and a
+checksum of the file.
 
-Reference: "OpenEXR File Layout", Academy Software Foundation, https://openexr.com/en/latest/OpenEXRFileLayout.html.
+Reference: "OpenEXR File Layout", Academy Software Foundation,
+https://openexr.com/en/latest/OpenEXRFileLayout.html.
 """
 
 import os
@@ -17,7 +19,9 @@ MULTI_PART = 0x1000
 MAX_CHANNELS = 1024
 """Channels of all parts together."""
 MAX_ATTRIBUTES = 8192
-"""Attributes of all parts together. OpenImageIO takes a second for them, and four for twice as many."""
+"""Attributes of all parts together. OpenImageIO takes a second for them, and four for
+twice as many.
+"""
 CHANNEL_BYTES = 16
 """Size of a channel in a list of channels, after its name."""
 MAX_NAME = 255
@@ -37,7 +41,9 @@ def is_exr(path: Path) -> bool:
 
 
 def check_size(path: Path) -> None:
-    """Raise `TextureError` for damaged headers, and for those that would take libraries minutes to read."""
+    """Raise `TextureError` for damaged headers, and for those that would take libraries
+    minutes to read.
+    """
     with path.open("rb") as file:
         end = os.fstat(file.fileno()).st_size
         start = _read(file, 8)
@@ -45,8 +51,8 @@ def check_size(path: Path) -> None:
             raise _damaged()
         is_multi_part = bool(int.from_bytes(start[4:], "little") & MULTI_PART)
         is_first, attributes, channels = True, 0, 0
-        # Headers of attributes: name, type, size, value. An empty name ends a header, and another one the last header
-        # of several.
+        # Headers of attributes: name, type, size, value. An empty name ends a header,
+        # and another one the last header of several.
         while (name := _name(file)) or (is_multi_part and not is_first):
             is_first = not name
             if is_first:
@@ -67,7 +73,10 @@ def check_size(path: Path) -> None:
                     channels += 1
             file.seek(value + size)
             if attributes > MAX_ATTRIBUTES or channels > MAX_CHANNELS:
-                problem = f"an image must have at most {MAX_CHANNELS} channels and {MAX_ATTRIBUTES} attributes"
+                problem = (
+                    f"an image must have at most {MAX_CHANNELS} channels and "
+                    f"{MAX_ATTRIBUTES} attributes"
+                )
                 raise TextureError(
                     problem,
                     hint="write the channels to several files, or remove attributes",
@@ -75,7 +84,9 @@ def check_size(path: Path) -> None:
 
 
 def seal(path: Path) -> None:
-    """Store the checksum of a file in its attribute `CHECKSUM`, which must be `NO_CHECKSUM`."""
+    """Store the checksum of a file in its attribute `CHECKSUM`, which must be
+    `NO_CHECKSUM`.
+    """
     with path.open("rb+") as file:
         place = _checksum_place(file)
         crc = _crc(file, place)
@@ -84,7 +95,9 @@ def seal(path: Path) -> None:
 
 
 def is_intact(path: Path) -> bool:
-    """Return whether a file has a checksum and agrees with it. All of the file is read."""
+    """Return whether a file has a checksum and agrees with it. All of the
+    file is read.
+    """
     try:
         with path.open("rb") as file:
             place = _checksum_place(file)
@@ -95,7 +108,9 @@ def is_intact(path: Path) -> bool:
 
 
 def _checksum_place(file: BinaryIO) -> int:
-    """Return the offset of the checksum, which lies in the first header. Raises `TextureError` if there is none."""
+    """Return the offset of the checksum, which lies in the first header. Raises
+    `TextureError` if there is none.
+    """
     head = file.read(BLOCK)
     place = head.find(CHECKSUM_MARK)
     if not head.startswith(MAGIC) or place < 0:

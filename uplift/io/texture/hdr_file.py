@@ -1,6 +1,7 @@
 """Header of Radiance HDR files, of which OpenImageIO does not read the primaries.
 
-Reference: G. Ward, "Radiance File Formats", https://radsite.lbl.gov/radiance/refer/filefmts.pdf.
+Reference: G. Ward, "Radiance File Formats",
+https://radsite.lbl.gov/radiance/refer/filefmts.pdf.
 """
 
 from pathlib import Path
@@ -12,7 +13,9 @@ PRIMARIES = b"PRIMARIES="
 
 
 def read_primaries(path: Path) -> dict[str, Any]:
-    """Return ``PRIMARIES``, words that should be x, y of red, green, blue and white, if the file states them."""
+    """Return ``PRIMARIES``, words that should be x, y of red, green, blue and white, if
+    the file states them.
+    """
     with path.open("rb") as file:
         header, _, _ = file.read(MAX_HEADER).partition(b"\n\n")
     stated: dict[str, Any] = {}

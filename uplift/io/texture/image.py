@@ -1,4 +1,5 @@
-"""Image files as they are: parts, channels, and rows a band at a time (OpenEXR, Radiance HDR, PNG, JPEG, TIFF).
+"""Image files as they are: parts, channels, and rows a band at a time (OpenEXR,
+Radiance HDR, PNG, JPEG, TIFF).
 
 OpenImageIO reads all formats. Bands hold the numbers of the file, unconverted.
 """
@@ -42,7 +43,9 @@ SIGNATURES = (
 )
 """First bytes of the formats."""
 PNG_INTERLACE = 28
-"""Offset of the byte that marks an interlaced PNG file, which can only be decoded in one piece."""
+"""Offset of the byte that marks an interlaced PNG file, which can only be decoded in
+one piece.
+"""
 TECHNICAL = frozenset(
     ("compression", "colorInteropID", "DateTime", "ICCProfile", "lineOrder", "name", "type", "view", "planarconfig",
      "ResolutionUnit", "Orientation", "chunkCount", "version", "PixelAspectRatio", "textureformat",
@@ -50,23 +53,33 @@ TECHNICAL = frozenset(
 )  # fmt: skip
 """Attributes that textures do not keep, as they describe the file that is read."""
 FILM = frozenset(("smpte:KeyCode", "smpte:TimeCode"))
-"""Attributes that are kept although OpenImageIO gives them a prefix, as it does to those of other formats."""
+"""Attributes that are kept although OpenImageIO gives them a prefix, as it does to
+those of other formats.
+"""
 ENVIRONMENTS = ("LatLong Environment", "CubeFace Environment")
-"""Values of ``textureformat`` that are kept: they stand for the attribute ``envmap`` of OpenEXR."""
+"""Values of ``textureformat`` that are kept: they stand for the attribute ``envmap`` of
+OpenEXR.
+"""
 MAX_METADATA, MAX_METADATA_LENGTH = 100, 10_000
 """Numbers of attributes, and of their characters or numbers, that textures keep."""
 OTHER_COLOURS = {8, 9, 10, 32844, 32845}
-"""Photometric interpretations of TIFF that OpenImageIO reads as RGB: CIELAB, ICCLab, ITULab, LogL and LogLuv."""
+"""Photometric interpretations of TIFF that OpenImageIO reads as RGB: CIELAB, ICCLab,
+ITULab, LogL and LogLuv.
+"""
 FORMAT_HINT = "use an EXR, HDR, PNG, JPEG or TIFF image"
 SUBSAMPLED = "ubsampled"
-"""Part of the error of OpenImageIO for channels of another resolution, such as the chroma of luminance and chroma."""
+"""Part of the error of OpenImageIO for channels of another resolution, such as the
+chroma of luminance and chroma.
+"""
 SUBSAMPLED_HINT = "write R, G and B at full resolution"
 MEMORY_HINT = "write the image with smaller tiles or strips, or without interlacing"
 
 
 @dataclass(frozen=True)
 class Window:
-    """Data window of a part, its display window (x, y, width, height) and its pixel aspect ratio."""
+    """Data window of a part, its display window (x, y, width, height) and its pixel
+    aspect ratio.
+    """
 
     x: int
     y: int
@@ -88,8 +101,9 @@ class Attribute:
 class Part:
     """One part of a file; files of formats other than OpenEXR have one.
 
-    ``types`` of the channels are half, float, uint, uint8 or uint16. ``rows_per_block`` rows are decoded together.
-    ``metadata`` are statements of the file that textures keep, such as its author, frame rate or camera.
+    ``types`` of the channels are half, float, uint, uint8 or uint16. ``rows_per_block``
+    rows are decoded together. ``metadata`` are statements of the file that textures
+    keep, such as its author, frame rate or camera.
     """
 
     number: int
@@ -109,7 +123,9 @@ class Part:
 
     @property
     def max_code(self) -> int:
-        """Largest value if all channels are 8-bit or all are 16-bit integers, else 0."""
+        """Largest value if all channels are 8-bit or all are 16-bit
+        integers, else 0.
+        """
         types = set(self.types)
         return (
             {"uint8": 255, "uint16": 65535}.get(types.pop(), 0)
@@ -127,7 +143,9 @@ class Image:
     handle: Any
 
     def bands(self, part: Part) -> Iterator[tuple[int, Values]]:
-        """Yield row numbers and rows (k, width, channels): integers if all channels are, else floats."""
+        """Yield row numbers and rows (k, width, channels): integers if all channels
+        are, else floats.
+        """
         window = part.window
         row = window.width * len(part.channels) * 4
         step = part.rows_per_block * max(
@@ -140,7 +158,9 @@ class Image:
             )
 
     def rows(self, part: Part, first: int, count: int) -> Values:
-        """Read rows (count, width, channels) from row ``first`` of the window, as `bands` does."""
+        """Read rows (count, width, channels) from row ``first`` of the window, as
+        `bands` does.
+        """
         self.handle.seek_subimage(part.number, 0)
         first, end = part.window.y + first, part.window.y + first + count
         if part.max_code:
@@ -151,7 +171,8 @@ class Image:
             numbers = self._read(part, first, end, "uint", index)[..., 0]
             if numbers.max(initial=0) > MAX_EXACT_INTEGER:
                 raise TextureError(
-                    f"integers must be at most {MAX_EXACT_INTEGER}, got {numbers.max()} in channel "
+                    f"integers must be at most {MAX_EXACT_INTEGER}, got "
+                    f"{numbers.max()} in channel "
                     f"'{part.channels[index]}'",
                     hint="remove that channel",
                 )
@@ -179,7 +200,10 @@ class Image:
         problem = read_error(self.handle)  # the only sign of a truncated JPEG
         if rows is None or problem:
             raise TextureError(
-                f"rows {first} to {end - 1} cannot be read: {problem or UNKNOWN_PROBLEM}",
+                (
+                    f"rows {first} to {end - 1} cannot be read: "
+                    f"{problem or UNKNOWN_PROBLEM}"
+                ),
                 code="file-unreadable",
                 path=self.path,
                 hint="the file is damaged: write it again",
@@ -189,10 +213,12 @@ class Image:
 
 @contextlib.contextmanager
 def open_image(path: StrPath) -> Iterator[Image]:
-    """Open an image file. A `TextureError` or `ColourError` in the block without a path gets this one.
+    """Open an image file. A `TextureError` or `ColourError` in the block without a path
+    gets this one.
 
-    Raises `TextureError` if the file is missing, damaged, of another format, has several values per pixel, too many
-    channels or attributes, names that are not text, or blocks of rows that do not fit into memory.
+    Raises `TextureError` if the file is missing, damaged, of another format, has
+    several values per pixel, too many channels or attributes, names that are not text,
+    or blocks of rows that do not fit into memory.
     """
     import OpenImageIO
 
@@ -327,7 +353,9 @@ def _is_kept(name: str, value: Any) -> bool:
 
 
 def _is_kept_value(value: Any) -> bool:
-    """Return whether a value is text, a number, or a tuple of either, and neither empty nor long. Bytes are not."""
+    """Return whether a value is text, a number, or a tuple of either, and neither empty
+    nor long. Bytes are not.
+    """
     if isinstance(value, str | tuple):
         parts = (
             all(map(_is_kept_value, value))
@@ -339,12 +367,16 @@ def _is_kept_value(value: Any) -> bool:
 
 
 def _is_text(name: str) -> bool:
-    """Return whether a text of OpenImageIO is Unicode. Bytes that are not UTF-8 become lone surrogates."""
+    """Return whether a text of OpenImageIO is Unicode. Bytes that are not UTF-8 become
+    lone surrogates.
+    """
     return not any("\ud800" <= letter <= "\udfff" for letter in name)
 
 
 def read_error(source: Any) -> str:
-    """Return the pending error of OpenImageIO or one of its objects on one line, empty if there is none."""
+    """Return the pending error of OpenImageIO or one of its objects on one line, empty
+    if there is none.
+    """
     try:
         return " ".join(source.geterror().split())
     except UnicodeDecodeError:  # it quotes bytes of the file
@@ -352,7 +384,9 @@ def read_error(source: Any) -> str:
 
 
 def utf8_name(path: Path, error: type[UpliftError]) -> str:
-    """Return the name of a file for OpenImageIO, which opens only names that are UTF-8. Raises ``error``."""
+    """Return the name of a file for OpenImageIO, which opens only names that are UTF-8.
+    Raises ``error``.
+    """
     name = os.fspath(path)
     try:
         name.encode()

@@ -1,4 +1,6 @@
-"""An emission table prepared for images of lights: environment maps, screens, textures of lamps."""
+"""An emission table prepared for images of lights: environment maps, screens, textures
+of lamps.
+"""
 
 import json
 from dataclasses import dataclass, replace
@@ -26,14 +28,17 @@ UNITS = "W.m^-2.sr^-1"
 
 @dataclass(frozen=True, eq=False)
 class LightUplifter(uplifter.Converter):
-    """A converter of the colours of lights to power at ``wavelengths`` (N,) nm, made by `prepare_lights`."""
+    """A converter of the colours of lights to power at ``wavelengths`` (N,) nm, made by
+    `prepare_lights`.
+    """
 
     table: EmissionTable
     wavelengths: Array
     threads: int
 
     def colour_channels(self, found: ColourChannels) -> ColourChannels:
-        # Colours stay multiplied by alpha: a spectrum scales with its light, and light needs no opacity.
+        # Colours stay multiplied by alpha: a spectrum scales with its light, and light
+        # needs no opacity.
         return replace(found, alpha=None)
 
     def decoder(self, part: Part) -> uplifter.ReadColours:
@@ -102,9 +107,11 @@ def prepare_lights(
     depth : {"float", "half"}, optional
         Type of the channels, by default ``float``; half floats end at 65504.
     encoding : {"auto", "linear", "encoded"}, default "auto"
-        Interpretation of whole numbers; ``auto`` takes them as encoded. Floats are linear.
+        Interpretation of whole numbers; ``auto`` takes them as encoded. Floats are
+        linear.
     space : str, optional
-        RGB space of images, as for `uplift.colorimetry.spaces.find_space`, by default the one that each file states.
+        RGB space of images, as for `uplift.colorimetry.spaces.find_space`, by default
+        the one that each file states.
     threads : int, default 2
         Threads that share a band.
 

@@ -1,10 +1,12 @@
 """Masks: images of which cube a pixel belongs to (docs/looks.md).
 
-A grey mask holds the numbers of the cubes, 0 for the first; or, for two cubes, weights: black is the first, white the
-second, and grey mixes. A coloured mask holds the weights of three cubes in R, G and B.
+A grey mask holds the numbers of the cubes, 0 for the first; or, for two cubes, weights:
+black is the first, white the second, and grey mixes. A coloured mask holds the weights
+of three cubes in R, G and B.
 
-Spectra and moments of a mixture of cubes are those of its parts, weighted: moments are linear in the reflectance, so
-the mixture of two reflectances of one colour has this colour, and stays in [0, 1]. Multipliers are mixed as moments.
+Spectra and moments of a mixture of cubes are those of its parts, weighted: moments are
+linear in the reflectance, so the mixture of two reflectances of one colour has this
+colour, and stays in [0, 1]. Multipliers are mixed as moments.
 """
 
 import contextlib
@@ -28,11 +30,18 @@ from uplift.lattice.entry_boxes import OutsideBoxes
 from uplift.lookup.refine import refine_to_rgb
 
 MIN_WHITE = 0.5
-"""Share of white that the largest weight of an integer mask has; smaller ones may be numbers of too many cubes."""
-HINT = "paint a grey mask with the numbers of the cubes, or with weights of the second of two cubes up to white"
+"""Share of white that the largest weight of an integer mask has; smaller ones may be
+numbers of too many cubes.
+"""
+HINT = (
+    "paint a grey mask with the numbers of the cubes, or with weights of the second "
+    "of two cubes up to white"
+)
 
 ReadWeights = Callable[[int, int], Floats]
-"""From the first row, counted from 0, and the number of rows k to weights (k, width, n) of n cubes, of sum 1."""
+"""From the first row, counted from 0, and the number of rows k to weights (k, width, n)
+of n cubes, of sum 1.
+"""
 
 
 @contextlib.contextmanager
@@ -41,15 +50,20 @@ def open_mask(
 ) -> Iterator[ReadWeights]:
     """Open a mask of at least two cubes, for an image of this width and height.
 
-    Its rows are read once to find out what its numbers are. Raises `TextureError` for a file that cannot be read or has
-    another size, and for numbers that are neither numbers of the cubes nor weights.
+    Its rows are read once to find out what its numbers are. Raises `TextureError` for a
+    file that cannot be read or has another size, and for numbers that are neither
+    numbers of the cubes nor weights.
     """
     with open_image(path) as image:
         part = image.parts[0]
         size = part.window.width, part.window.height
         if size != window:
             raise TextureError(
-                f"a mask must have the size of its image, {window[0]} × {window[1]}, got {size[0]} × {size[1]}",
+                (
+                    f"a mask must have the size of its image, {window[0]} × "
+                    f"{window[1]}, "
+                    f"got {size[0]} × {size[1]}"
+                ),
                 hint="scale the mask",
             )
         found = colour_channels(part)
@@ -67,7 +81,9 @@ def open_mask(
 def _interpret(
     image: Image, part: Part, rgb: tuple[int, int, int], cubes: int
 ) -> Callable[[Values], Floats]:
-    """Return the function from the numbers (…, 3) of a mask to weights (…, n). Raises `TextureError` for others."""
+    """Return the function from the numbers (…, 3) of a mask to weights (…, n). Raises
+    `TextureError` for others.
+    """
     low, high, is_grey, has_black = np.inf, -np.inf, True, False
     for _, band in image.bands(part):
         colours = band[..., rgb]
@@ -99,7 +115,8 @@ def _interpret(
         3: "0 to 2, or weights in R, G and B that are not all 0",
     }
     raise TextureError(
-        f"a mask of {pluralise(cubes, 'cube')} must hold {meanings.get(cubes, f'0 to {cubes - 1}')}, "
+        f"a mask of {pluralise(cubes, 'cube')} must hold "
+        f"{meanings.get(cubes, f'0 to {cubes - 1}')}, "
         f"got {'grey' if is_grey else 'coloured'} values from {low:g} to {high:g}",
         hint=HINT,
     )
@@ -116,7 +133,9 @@ def _normalised(numbers: Values) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class MaskedUplifter(Converter):
-    """A converter of colours to the spectra of n cubes, chosen by an image, made by `prepare_masked`."""
+    """A converter of colours to the spectra of n cubes, chosen by an image, made by
+    `prepare_masked`.
+    """
 
     uplifters: tuple[Uplifter, ...]
     mask: Path
@@ -158,10 +177,12 @@ class MaskedUplifter(Converter):
         )
 
     def mix(self, rgb: Floats, weights: Floats) -> Converted:
-        """Uplift linear RGB (k, width, 3) of the decoder by the cubes, with weights (k, width, n) of sum 1.
+        """Uplift linear RGB (k, width, 3) of the decoder by the cubes, with weights (k,
+        width, n) of sum 1.
 
-        A colour in the box of an entry outside [0, 1] is answered so by the cube that has the entry, and mapped by the
-        others. The colours of these answers are mixed likewise.
+        A colour in the box of an entry outside [0, 1] is answered so by the cube that
+        has the entry, and mapped by the others. The colours of these answers are mixed
+        likewise.
         """
         is_mixed: Mask = np.all(
             weights < (1 if self.uplifters[0].model else 0), axis=-1
@@ -223,8 +244,8 @@ def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
     Raises
     ------
     OptionError
-        One cube only, standard errors, cubes of different spaces, or with different channels or, for moments and
-        multipliers, models.
+        One cube only, standard errors, cubes of different spaces, or with different
+        channels or, for moments and multipliers, models.
     TextureError
         The mask cannot be read.
     """
@@ -244,8 +265,15 @@ def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
         is_model_stored and len(models) > 1
     ):
         raise OptionError(
-            "cubes of one texture must have the same wavelengths or, for moments and multipliers, the same model",
-            hint="write spectra at given wavelengths, or build the cubes with the same options",
+            (
+                "cubes of one texture must have the same wavelengths or, for moments "
+                "and "
+                "multipliers, the same model"
+            ),
+            hint=(
+                "write spectra at given wavelengths, or build the cubes with the "
+                "same options"
+            ),
         )
     if first.errors:
         raise OptionError(

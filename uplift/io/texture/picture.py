@@ -20,7 +20,8 @@ from uplift.io.texture.image import Part, open_image
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """Linear RGB (height, width, 3) in [0, 1], divided by alpha, and the alpha (height, width, 1) of divided colours.
+    """Linear RGB (height, width, 3) in [0, 1], divided by alpha, and the alpha (height,
+    width, 1) of divided colours.
 
     ``reduction`` pixels of the image make one of the picture, along each side.
     """
@@ -40,11 +41,12 @@ def read_picture(
     out_of_gamut: str = "clip",
     space: ImageSpace | None = None,
 ) -> Picture:
-    """Read the first part of an image that has colours, at most ``max_side`` wide and high.
+    """Read the first part of an image that has colours, at most ``max_side`` wide and
+    high.
 
-    Pixels of a larger image are averaged in linear RGB, weighted by alpha where the file holds colours multiplied by
-    it. Warnings are returned, not emitted. Raises `TextureError`, `ColourError` and `OptionError` as
-    `uplift.io.texture.convert`.
+    Pixels of a larger image are averaged in linear RGB, weighted by alpha where the
+    file holds colours multiplied by it. Warnings are returned, not emitted. Raises
+    `TextureError`, `ColourError` and `OptionError` as `uplift.io.texture.convert`.
     """
     check_encoding(encoding)
     with open_image(path) as image:

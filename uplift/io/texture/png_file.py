@@ -1,6 +1,8 @@
-"""Structure of PNG files, checked before OpenImageIO reads them, as libpng prints its own errors; and their colours.
+"""Structure of PNG files, checked before OpenImageIO reads them, as libpng prints its
+own errors; and their colours.
 
-Reference: "Portable Network Graphics (PNG) Specification", World Wide Web Consortium, https://www.w3.org/TR/png-3/.
+Reference: "Portable Network Graphics (PNG) Specification", World Wide Web Consortium,
+https://www.w3.org/TR/png-3/.
 """
 
 import struct
@@ -25,12 +27,15 @@ BLOCK = 1 << 24
 
 
 def read_chunks(path: Path) -> dict[str, Any]:
-    """Return the colour statements of a file: ``cICP``, ``iCCP``, ``sRGB``, ``gAMA`` and ``cHRM``, if it has them.
+    """Return the colour statements of a file: ``cICP``, ``iCCP``, ``sRGB``, ``gAMA``
+    and ``cHRM``, if it has them.
 
-    Those of cHRM are x, y of red, green, blue and white. OpenImageIO has the profile, but not the others. Numbers of
-    another size than theirs are NaN, which no colours have.
+    Those of cHRM are x, y of red, green, blue and white. OpenImageIO has the profile,
+    but not the others. Numbers of another size than theirs are NaN, which no colours
+    have.
 
-    Raises `TextureError` for a file that is truncated, or whose chunks differ from their checksums.
+    Raises `TextureError` for a file that is truncated, or whose chunks differ from
+    their checksums.
     """
     chunks: dict[bytes, bytes] = {}
     with path.open("rb") as file:

@@ -1,4 +1,6 @@
-"""Images of full size under other lights, as OpenEXR in the RGB space of the image (docs/textures.md)."""
+"""Images of full size under other lights, as OpenEXR in the RGB space of the image
+(docs/textures.md).
+"""
 
 import contextlib
 import json
@@ -28,7 +30,9 @@ from uplift.lookup.node_table import prepare_products
 
 @dataclass(frozen=True, eq=False)
 class Relighter(Converter):
-    """A converter to colours under L lights, by ``sample`` from linear RGB (…, 3) to (…, 3 L) of the sensor."""
+    """A converter to colours under L lights, by ``sample`` from linear RGB (…, 3) to
+    (…, 3 L) of the sensor.
+    """
 
     sample: Sampler
 
@@ -73,8 +77,8 @@ def prepare_relighter(
 ) -> Relighter:
     """Prepare a cube for images under other lights.
 
-    R, G and B of the result are colours under the first light. Each further light is a layer of its name, such as
-    ``FL11.R``, ``FL11.G`` and ``FL11.B``.
+    R, G and B of the result are colours under the first light. Each further light is a
+    layer of its name, such as ``FL11.R``, ``FL11.G`` and ``FL11.B``.
 
     Parameters
     ----------
@@ -83,7 +87,8 @@ def prepare_relighter(
     lights : sequence of str or Lamp
         At least one light, as for `uplift.colorimetry.observer.light`.
     adapt : bool, default True
-        Whether the white of each light is the white of the RGB space (Bradford). Otherwise colours have its tint.
+        Whether the white of each light is the white of the RGB space (Bradford).
+        Otherwise colours have its tint.
     encoding, out_of_gamut, space, threads
         As for `uplift.io.texture.prepare`.
 

@@ -38,12 +38,14 @@ DASK_CLOSE_SECONDS = 2
 
 @dataclass(frozen=True)
 class TextureSettings:
-    """Settings that all images of a sequence share. They are small enough to send to other processes.
+    """Settings that all images of a sequence share. They are small enough to send to
+    other processes.
 
     Parameters
     ----------
     cubes : tuple of str or None
-        Path of the cube, or of the emission table; None for the default one. Several for a ``mask``.
+        Path of the cube, or of the emission table; None for the default one. Several
+        for a ``mask``.
     pixel_encoding : PixelEncoding
         Numbers that a pixel holds: a `Spectrum` for ``emission``.
     depth : {"half", "float"} or None
@@ -57,11 +59,13 @@ class TextureSettings:
     errors : tuple of str or Lamp
         Lights whose standard errors have a channel; not used for ``emission``.
     mask : str or None
-        Path of the image of which cube a pixel belongs to; see `uplift.io.texture.mask`.
+        Path of the image of which cube a pixel belongs to; see
+        `uplift.io.texture.mask`.
     emission : bool
         Whether pixels are light; see `prepare_lights`.
     fill_missing : bool
-        Whether to add the nodes that a cube built for a scene lacks (`Cube.fill_missing`).
+        Whether to add the nodes that a cube built for a scene lacks
+        (`Cube.fill_missing`).
     threads : int
         Threads per process.
     """
@@ -168,7 +172,9 @@ converter_for = lru_cache(maxsize=1)(TextureSettings.prepare)
 
 
 def run(job: Job, progress: ProgressCallback = ignore_progress) -> Outcome:
-    """Convert the image of a job. Errors are returned, so that one bad image does not stop the others."""
+    """Convert the image of a job. Errors are returned, so that one bad image does not
+    stop the others.
+    """
     try:
         return _run(job, progress)
     except UpliftError as error:
@@ -183,7 +189,9 @@ def run(job: Job, progress: ProgressCallback = ignore_progress) -> Outcome:
 
 
 def _run(job: Job, progress: ProgressCallback) -> Outcome:
-    """Convert the image of a job, unless another process does so while it is to resume."""
+    """Convert the image of a job, unless another process does so while it
+    is to resume.
+    """
     make_folder(job.target.parent)
     if job.resume and is_complete(job):
         return Skipped(job.source)
@@ -206,8 +214,8 @@ def convert_all(
 ) -> Generator[Outcome]:
     """Convert images one after the other, in several processes, or on a Dask cluster.
 
-    An exception and closing the iterator end the conversions. Unfinished files are removed, also when this process
-    ends.
+    An exception and closing the iterator end the conversions. Unfinished files are
+    removed, also when this process ends.
 
     Parameters
     ----------
@@ -216,7 +224,8 @@ def convert_all(
     processes : int
         Number of processes; 1 converts in the current process.
     scheduler : str, optional
-        Address of a Dask scheduler, such as ``tcp://10.0.0.5:8786``, whose workers share the file system.
+        Address of a Dask scheduler, such as ``tcp://10.0.0.5:8786``, whose workers
+        share the file system.
 
     Yields
     ------
@@ -226,10 +235,11 @@ def convert_all(
     Raises
     ------
     OptionError
-        The number of processes is below 1, Dask is not installed, or no scheduler responds.
+        The number of processes is below 1, Dask is not installed, or no scheduler
+        responds.
     TextureError
-        The workers ended before all images were converted. Textures that are finished stay; no other file
-        remains.
+        The workers ended before all images were converted. Textures that are finished
+        stay; no other file remains.
     """
     if processes < 1:
         raise OptionError(
@@ -268,14 +278,19 @@ def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
             with contextlib.suppress(OSError):
                 remove_stale(job.target, seconds=0)
     return TextureError(
-        f"the workers ended unexpectedly; finished: {len(finished)} of {pluralise(len(jobs), 'texture')}",
+        (
+            f"the workers ended unexpectedly; finished: {len(finished)} of "
+            f"{pluralise(len(jobs), 'texture')}"
+        ),
         code="workers-lost",
         hint="resume with the others, with fewer processes if memory ran out",
     )
 
 
 def import_distributed() -> Any:
-    """Import Dask's package for clusters. Raises `OptionError` if it is not installed."""
+    """Import Dask's package for clusters. Raises `OptionError` if it is not
+    installed.
+    """
     with needs_package("clusters", OptionError):
         import distributed
     return distributed
@@ -293,8 +308,12 @@ def _dask_executor(address: str) -> Iterator[Executor]:
             handler.setLevel(logging.CRITICAL + 1)
         try:
             client = distributed.Client(address, timeout=DASK_TIMEOUT)
-        except Exception as error:  # each protocol has its own, such as RuntimeError for missing certificates
-            problem = f"no Dask scheduler can be used at '{address}': {' '.join(str(error).split())}"
+        # each protocol has its own, such as RuntimeError for missing certificates
+        except Exception as error:
+            problem = (
+                f"no Dask scheduler can be used at '{address}': "
+                f"{' '.join(str(error).split())}"
+            )
             raise OptionError(problem, hint="start one: dask scheduler") from error
         try:
             yield client.get_executor()
@@ -304,7 +323,8 @@ def _dask_executor(address: str) -> Iterator[Executor]:
 
 
 def pending(jobs: Iterable[Job]) -> list[Job]:
-    """Return the jobs that remain, and check that their targets can be written, without creating folders.
+    """Return the jobs that remain, and check that their targets can be written, without
+    creating folders.
 
     Parameters
     ----------
@@ -314,14 +334,15 @@ def pending(jobs: Iterable[Job]) -> list[Job]:
     Returns
     -------
     list of Job
-        The jobs but those that resume and whose textures are complete: these agree with their checksums, and are of
-        the same cube, settings and image.
+        The jobs but those that resume and whose textures are complete: these agree with
+        their checksums, and are of the same cube, settings and image.
 
     Raises
     ------
     OutputError
-        A target cannot be written, exists, or is an image or the cube of any job, or two images have the same target.
-        A texture from which a job could resume was written otherwise (``texture-differs``).
+        A target cannot be written, exists, or is an image or the cube of any job, or
+        two images have the same target. A texture from which a job could resume was
+        written otherwise (``texture-differs``).
     """
     jobs = list(jobs)
     inputs = [
@@ -347,9 +368,11 @@ def _check_targets(
 
 
 def is_complete(job: Job) -> bool:
-    """Return whether the texture of a job is there, intact, and of the same cube, settings and image.
+    """Return whether the texture of a job is there, intact, and of the same cube,
+    settings and image.
 
-    Raises `OutputError` (``texture-differs``) if another file is there that the job may not replace.
+    Raises `OutputError` (``texture-differs``) if another file is there that the job may
+    not replace.
     """
     if not os.path.lexists(job.target):
         return False

@@ -1,7 +1,7 @@
 """Colour tags of TIFF and JPEG files, which OpenImageIO does not give.
 
-References: "TIFF Revision 6.0", Adobe 1992, section 20; "Exchangeable image file format for digital still cameras: Exif
-Version 2.32", CIPA DC-008, sections 4.6.5 and 4.6.7.
+References: "TIFF Revision 6.0", Adobe 1992, section 20; "Exchangeable image file format
+for digital still cameras: Exif Version 2.32", CIPA DC-008, sections 4.6.5 and 4.6.7.
 """
 
 import io
@@ -24,7 +24,8 @@ NUMBERS = {1: "B", 3: "H", 4: "I", 5: "II", 11: "f", 12: "d", 13: "I", 16: "Q"}
 """Formats of the types of numbers."""
 TEXT = 2
 MAX_BYTES = 6 << 16
-"""Bytes of the largest value that is read: three transfer functions of 16-bit images."""
+"""Bytes of the largest value that is read: three transfer functions of 16-bit images.
+"""
 MAX_ENTRIES = 4096
 """Entries of a directory that are read."""
 JPEG = b"\xff\xd8"
@@ -32,7 +33,9 @@ EXIF_START = b"Exif\0\0"
 
 
 def read_tags(path: Path) -> dict[str, Any]:
-    """Return the colour tags of a file by name. Damaged ones are missing, as OpenImageIO ignores them, too."""
+    """Return the colour tags of a file by name. Damaged ones are missing, as
+    OpenImageIO ignores them, too.
+    """
     with path.open("rb") as file:
         try:
             if file.read(2) != JPEG:
@@ -44,7 +47,9 @@ def read_tags(path: Path) -> dict[str, Any]:
 
 
 def _find_exif(file: BinaryIO) -> bytes | None:
-    """Return the EXIF data of a JPEG file, which are a TIFF file, after its first two bytes."""
+    """Return the EXIF data of a JPEG file, which are a TIFF file, after its first two
+    bytes.
+    """
     while True:
         mark, kind, length = struct.unpack(">BBH", file.read(4))
         is_header = mark == 0xFF and 0xC0 <= kind != 0xDA
@@ -97,7 +102,9 @@ def _directory(file: BinaryIO, order: str, offset: int, is_big: bool) -> dict[in
 
 
 def _value(file: BinaryIO, order: str, kind: int, length: int, value: bytes) -> Any:
-    """Return the value of an entry, which stands in the entry or at the offset that the entry has; empty if damaged."""
+    """Return the value of an entry, which stands in the entry or at the offset that the
+    entry has; empty if damaged.
+    """
     form = NUMBERS.get(kind, "s")
     size = length * struct.calcsize("=" + form)
     if size > MAX_BYTES:

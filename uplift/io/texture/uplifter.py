@@ -1,4 +1,6 @@
-"""Converters, which `uplift.io.texture.convert` applies to an image, and the numbers of a pixel of a texture."""
+"""Converters, which `uplift.io.texture.convert` applies to an image, and the numbers of
+a pixel of a texture.
+"""
 
 import contextlib
 import json
@@ -40,19 +42,26 @@ Sampler = Callable[[Floats], Floats]
 SPECTRAL_LAYOUT = {"spectralLayoutVersion": "1.0"}
 """Attribute of files in the layout of Fichet et al. 2021."""
 ReadColours = Callable[[Values], tuple[Floats, Counts]]
-"""From the numbers of an image (…, 3) to linear RGB (…, 3), and counts of unusual pixels."""
+"""From the numbers of an image (…, 3) to linear RGB (…, 3), and counts of unusual
+pixels.
+"""
 Converted = tuple[tuple[Floats, ...], Counts]
-"""Arrays that make the channels (…, 3 + N) side by side, and pixels that the conversion could not represent."""
+"""Arrays that make the channels (…, 3 + N) side by side, and pixels that the conversion
+could not represent.
+"""
 ConvertRows = Callable[[Part, int, Floats], Converted]
-"""Conversion of rows (k, width, 3) of a part, from the row of this number in its window."""
+"""Conversion of rows (k, width, 3) of a part, from the row of this number in its
+window.
+"""
 
 
 @dataclass(frozen=True, eq=False)
 class Converter(ABC):
     """Conversion of linear RGB of a sensor to the channels of an OpenEXR file.
 
-    ``depth`` is the type of the channels, ``channels`` (N,) the names of those after R, G and B, ``header`` the
-    attributes of every file, and ``space`` the RGB space of images, None for the one that each file states.
+    ``depth`` is the type of the channels, ``channels`` (N,) the names of those after R,
+    G and B, ``header`` the attributes of every file, and ``space`` the RGB space of
+    images, None for the one that each file states.
     """
 
     sensor: Sensor
@@ -65,7 +74,9 @@ class Converter(ABC):
 
     @abstractmethod
     def convert(self, rgb: Floats) -> Converted:
-        """Arrays that make R, G, B and the channels (…, 3 + N) side by side, for linear RGB (…, 3) of `decoder`."""
+        """Arrays that make R, G, B and the channels (…, 3 + N) side by side, for linear
+        RGB (…, 3) of `decoder`.
+        """
 
     def multiply(
         self, values: tuple[Floats, ...], opacity: Floats
@@ -74,22 +85,30 @@ class Converter(ABC):
         return tuple(each * opacity for each in values)
 
     def colour_channels(self, found: ColourChannels) -> ColourChannels:
-        """How the colour channels that a part has are read: by default as they were found."""
+        """How the colour channels that a part has are read: by default as they were
+        found.
+        """
         return found
 
     @property
     def boxes(self) -> OutsideBoxes | None:
-        """Boxes outside [0, 1] whose colours are converted as they are, if there are any."""
+        """Boxes outside [0, 1] whose colours are converted as they are, if there are
+        any.
+        """
         return None
 
     def decoder(self, part: Part) -> ReadColours:
-        """Conversion of the numbers of a part to linear RGB, by default in [0, 1] or in `boxes`."""
+        """Conversion of the numbers of a part to linear RGB, by default in [0, 1] or in
+        `boxes`.
+        """
         return make_decoder(
             self.sensor, part, self.encoding, self.out_of_gamut, self.space, self.boxes
         )
 
     def mapped(self, rgb: Values) -> tuple[Floats, Counts]:
-        """Return linear RGB (…, 3) in [0, 1] or in `boxes`, as `decoder` does for parts, and the changed ones."""
+        """Return linear RGB (…, 3) in [0, 1] or in `boxes`, as `decoder` does for
+        parts, and the changed ones.
+        """
         return Decoder(
             np.asarray, False, False, None, self.sensor, self.out_of_gamut, self.boxes
         )(rgb)
@@ -100,7 +119,9 @@ class Converter(ABC):
 
     @contextlib.contextmanager
     def opened(self, image: Image) -> Iterator[ConvertRows]:
-        """Yield the conversion of rows of an image: by default `convert`, wherever they are."""
+        """Yield the conversion of rows of an image: by default `convert`, wherever they
+        are.
+        """
         yield lambda part, first, rgb: self.convert(rgb)
 
 
@@ -108,8 +129,8 @@ class Converter(ABC):
 class Pixels:
     """Numbers of a pixel encoding of a cube.
 
-    ``channels`` (N,) are named, and described by ``details`` as JSON values. ``sample``, ``outside`` and ``model`` are
-    those of `Uplifter`.
+    ``channels`` (N,) are named, and described by ``details`` as JSON values.
+    ``sample``, ``outside`` and ``model`` are those of `Uplifter`.
     """
 
     channels: tuple[str, ...]
@@ -120,7 +141,9 @@ class Pixels:
 
 
 class PixelEncoding(ABC):
-    """The numbers of a pixel, the channels for them, and their description in the header."""
+    """The numbers of a pixel, the channels for them, and their description in the
+    header.
+    """
 
     name: ClassVar[str]
     """Name of the encoding."""
@@ -145,7 +168,8 @@ class Spectrum(PixelEncoding):
 
     References
     ----------
-    A. Fichet, R. Pacanowski, A. Wilkie, "An OpenEXR Layout for Spectral Images", JCGT 10(3), 2021.
+    A. Fichet, R. Pacanowski, A. Wilkie, "An OpenEXR Layout for Spectral Images", JCGT
+    10(3), 2021.
     """
 
     wavelengths: tuple[float, ...] | None = None
@@ -171,7 +195,9 @@ class Spectrum(PixelEncoding):
 
 @dataclass(frozen=True)
 class Moments(PixelEncoding):
-    """Coefficients of a moments cube. They are linear in the spectrum, so textures can be filtered and mip-mapped."""
+    """Coefficients of a moments cube. They are linear in the spectrum, so textures can
+    be filtered and mip-mapped.
+    """
 
     name = "moments"
     depths = ("float", "half")
@@ -192,7 +218,8 @@ class Moments(PixelEncoding):
 
 @dataclass(frozen=True)
 class Multipliers(PixelEncoding):
-    """Multipliers, from which spectra are evaluated at once. They are refined to the pixel's exact colour.
+    """Multipliers, from which spectra are evaluated at once. They are refined to the
+    pixel's exact colour.
 
     Every model has them. They do not interpolate, so textures must not be filtered.
 
@@ -245,7 +272,9 @@ PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {
 
 
 def _different(rgb: Floats) -> tuple[Floats, Indices]:
-    """Return the different colours (n, 3) of an image (…, 3), and the row (…) of each pixel among them."""
+    """Return the different colours (n, 3) of an image (…, 3), and the row (…) of each
+    pixel among them.
+    """
     flat = np.ascontiguousarray(rgb, dtype=np.float32).reshape(-1, 3)
     words = flat.view(np.uint32).astype(np.uint64)
     keys = (words[:, 0] << 32 | words[:, 1]) * np.uint64(0x9E3779B97F4A7C15) ^ words[
@@ -258,10 +287,12 @@ def _different(rgb: Floats) -> tuple[Floats, Indices]:
 
 
 def spectral_channels(quantity: str, wavelengths: Array) -> tuple[str, ...]:
-    """Name the channels of ascending wavelengths (N,) in nm, such as ``T.550,000000nm``.
+    """Name the channels of ascending wavelengths (N,) in nm, such as
+    ``T.550,000000nm``.
 
-    The layout is that of Fichet et al. 2021: the quantity is T, reflectance, or S0, power that is not polarised. Raises
-    `OptionError` for wavelengths that do not ascend.
+    The layout is that of Fichet et al. 2021: the quantity is T, reflectance, or S0,
+    power that is not polarised. Raises `OptionError` for wavelengths that do not
+    ascend.
     """
     names = tuple(
         f"{quantity}." + f"{wavelength:.6f}nm".replace(".", ",")
@@ -279,9 +310,10 @@ def spectral_channels(quantity: str, wavelengths: Array) -> tuple[str, ...]:
 class Uplifter(Converter):
     """A converter of colours to spectra, made by `prepare`, for any number of images.
 
-    ``sample`` maps linear RGB (…, 3) to the numbers (…, N) of a pixel, the multipliers of ``model``, or linear in the
-    spectrum without one. ``outside`` are the numbers (O, N) of the entries outside the RGB space, if there are any.
-    Pixels have a standard error for each of ``errors``.
+    ``sample`` maps linear RGB (…, 3) to the numbers (…, N) of a pixel, the multipliers
+    of ``model``, or linear in the spectrum without one. ``outside`` are the numbers (O,
+    N) of the entries outside the RGB space, if there are any. Pixels have a standard
+    error for each of ``errors``.
     """
 
     cube: Cube
@@ -328,7 +360,9 @@ class Uplifter(Converter):
     def _convert_outside(
         self, rgb: Floats, hits: BoxHits, entries: Floats
     ) -> Converted:
-        """Mix the answers to mapped colours with those of entries, as their colours: t · mapped + (1 − t) · entry."""
+        """Mix the answers to mapped colours with those of entries, as their colours: t
+        · mapped + (1 − t) · entry.
+        """
         data, colours = self.cube.data, rgb.reshape(-1, 3).copy()
         requested, is_mixed, weight = (
             colours[hits.rows],
@@ -383,14 +417,18 @@ def prepare(
     depth : {"half", "float"}, optional
         Type of the channels, by default the smallest that is precise enough.
     encoding : {"auto", "linear", "encoded"}
-        Interpretation of the numbers in images; ``auto`` takes integers as encoded, floats as linear.
+        Interpretation of the numbers in images; ``auto`` takes integers as encoded,
+        floats as linear.
     out_of_gamut : str
-        Gamut mapping for pixels outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`. Pixels of the colour of an
-        atlas entry outside the RGB space have its spectrum.
+        Gamut mapping for pixels outside [0, 1], one of
+        `uplift.colorimetry.gamut.METHODS`. Pixels of the colour of an atlas entry
+        outside the RGB space have its spectrum.
     space : str, optional
-        RGB space of images, as for `uplift.colorimetry.spaces.find_space`, by default the one that each file states.
+        RGB space of images, as for `uplift.colorimetry.spaces.find_space`, by default
+        the one that each file states.
     errors : sequence of str
-        Lights, as for `uplift.colorimetry.observer.light`, each with a channel of standard errors such as ``error.A``.
+        Lights, as for `uplift.colorimetry.observer.light`, each with a channel of
+        standard errors such as ``error.A``.
     threads : int
         Threads that share a band.
 
@@ -402,8 +440,8 @@ def prepare(
     Raises
     ------
     OptionError
-        The depth is not precise enough, the cube has no moments or no standard errors, the wavelengths do not ascend,
-        or the encoding or gamut mapping is unknown.
+        The depth is not precise enough, the cube has no moments or no standard errors,
+        the wavelengths do not ascend, or the encoding or gamut mapping is unknown.
     UnknownNameError
         The RGB space or a light is unknown.
     """
@@ -452,7 +490,9 @@ def channel_name(light: str) -> str:
 
 
 def resolve_depth(depth: str | None, depths: tuple[str, ...], name: str) -> str:
-    """Return the depth, by default the first of ``depths``. Raises `OptionError` for others."""
+    """Return the depth, by default the first of ``depths``. Raises `OptionError` for
+    others.
+    """
     if depth is not None and depth not in depths:
         raise OptionError(
             f"depth of {name} must be {' or '.join(depths)}, got '{depth}'",

@@ -19,16 +19,24 @@ from uplift.io.texture.image import Attribute, Window, open_image, read_error, u
 ROWS_PER_CHUNK = 16
 """Rows that OpenEXR compresses together as ZIP."""
 MIN_BAND_BYTES, MAX_BAND_BYTES = 1 << 24, 1 << 27
-"""Sizes of a band to write, as floats: larger ones than the first are for more processors, which compress it."""
+"""Sizes of a band to write, as floats: larger ones than the first are for more
+processors, which compress it.
+"""
 COMPRESSION = "zip:1"
-"""ZIP at its lowest level: the same pixels in files a few per cent larger, compressed in 2/3 of the time."""
+"""ZIP at its lowest level: the same pixels in files a few per cent larger, compressed
+in 2/3 of the time.
+"""
 SPACE_MARGIN = 2
-"""Factor by which the rest of an image may compress better than the rows written so far."""
+"""Factor by which the rest of an image may compress better than the rows written so
+far.
+"""
 
 
 @dataclass(frozen=True)
 class OutputPart:
-    """A part to write: its channels with their types, its header attributes and its date."""
+    """A part to write: its channels with their types, its header attributes and its
+    date.
+    """
 
     name: str
     window: Window
@@ -39,7 +47,9 @@ class OutputPart:
 
     @property
     def rows_per_band(self) -> int:
-        """Rows to convert and write at a time: chunks of at most `MAX_BAND_BYTES`, at least one."""
+        """Rows to convert and write at a time: chunks of at most `MAX_BAND_BYTES`, at
+        least one.
+        """
         chunk = self.window.width * len(self.channels) * 4 * ROWS_PER_CHUNK
         wanted = max(MIN_BAND_BYTES // chunk, os.cpu_count() or 1)
         return max(min(wanted, MAX_BAND_BYTES // chunk), 1) * ROWS_PER_CHUNK
@@ -75,7 +85,9 @@ class OutputPart:
 
 
 class Writer:
-    """Writer of rows in order, from the first row of the first part to the last row of the last."""
+    """Writer of rows in order, from the first row of the first part to the last row of
+    the last.
+    """
 
     def __init__(self, path: Path, parts: Sequence[OutputPart]) -> None:
         import OpenImageIO
@@ -108,7 +120,9 @@ class Writer:
             )
 
     def write_rows(self, first: int, values: Values) -> None:
-        """Write rows (k, width, channels) from row ``first``. Raises `OSError`, and `OutputError` as `_check_space`."""
+        """Write rows (k, width, channels) from row ``first``. Raises `OSError`, and
+        `OutputError` as `_check_space`.
+        """
         self._check(
             self._handle.write_scanlines(
                 first, first + len(values), 0, np.ascontiguousarray(values)
@@ -118,7 +132,9 @@ class Writer:
         self._check_space()
 
     def close(self) -> None:
-        """Finish the file, check that all of it is there, and add its checksum. Raises `OSError` and `OutputError`."""
+        """Finish the file, check that all of it is there, and add its checksum. Raises
+        `OSError` and `OutputError`.
+        """
         self._check(self._handle.close())
         self._handle = None  # closed only now, if the image is an environment map
         self._check_end()
@@ -131,7 +147,9 @@ class Writer:
             read_error(self._handle)  # otherwise it is printed when the process ends
 
     def _check_end(self) -> None:
-        """Raise `OutputError` if the last rows cannot be read: a disk that fills up with them gives no other sign."""
+        """Raise `OutputError` if the last rows cannot be read: a disk that fills up
+        with them gives no other sign.
+        """
         try:
             with open_image(self._path) as image:
                 for part in image.parts:
@@ -142,15 +160,22 @@ class Writer:
             ) from error
 
     def _check_space(self) -> None:
-        """Raise `OutputError` at the first rows if the rest of the image will not fit on the disk."""
+        """Raise `OutputError` at the first rows if the rest of the image will not fit
+        on the disk.
+        """
         size = self._path.stat().st_size
         rest = size * (self._total - self._written) / self._written
         free = shutil.disk_usage(self._path.parent).free
         if rest / SPACE_MARGIN > free:
             raise OutputError(
-                f"the file needs about {(size + rest) / 1e9:.2g} GB, and {(size + free) / 1e9:.2g} GB are free",
+                (
+                    f"the file needs about {(size + rest) / 1e9:.2g} GB, and "
+                    f"{(size + free) / 1e9:.2g} GB are free"
+                ),
                 code="not-enough-space",
-                hint="free space on the disk, or write fewer wavelengths or half floats",
+                hint=(
+                    "free space on the disk, or write fewer wavelengths or half floats"
+                ),
             )
 
     def _check(self, ok: bool) -> None:
@@ -160,7 +185,8 @@ class Writer:
 
 @contextlib.contextmanager
 def _compression_threads(chunks: int) -> Iterator[None]:
-    """Open files with no more buffers than ``chunks`` that are written at once need: OpenEXR has two per thread.
+    """Open files with no more buffers than ``chunks`` that are written at once need:
+    OpenEXR has two per thread.
 
     The buffers of an image of 16384 columns at 81 wavelengths take 88 MB each.
     """
@@ -181,7 +207,9 @@ def _compression_threads(chunks: int) -> Iterator[None]:
 def open_writer(
     path: StrPath, parts: Sequence[OutputPart], *, force: bool = False
 ) -> Iterator[Writer]:
-    """Open a writer. The file appears under its name once all rows are written. Raises `OutputError`."""
+    """Open a writer. The file appears under its name once all rows are written. Raises
+    `OutputError`.
+    """
     with atomic_write(path, force=force) as temporary:
         writer = Writer(temporary, parts)
         try:

@@ -1,1 +1,3 @@
-"""Speed against accuracy: methods of spectral upsampling on the same colours and measured spectra."""
+"""Speed against accuracy: methods of spectral upsampling on the same colours and
+measured spectra.
+"""

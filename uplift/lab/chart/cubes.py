@@ -1,7 +1,9 @@
-"""Cubes of this package: both models, several sizes, with and without an atlas, by lookup in Python, in bulk and in C.
+"""Cubes of this package: both models, several sizes, with and without an atlas, by
+lookup in Python, in bulk and in C.
 
-Domain: linear sRGB in [0, 1] under D65. Range: reflectance in [0, 1] at any wavelengths. C is the program of
-`uplift.io.export.write_program`, compiled with the system's compiler. A call takes all colours, on one thread.
+Domain: linear sRGB in [0, 1] under D65. Range: reflectance in [0, 1] at any
+wavelengths. C is the program of `uplift.io.export.write_program`, compiled with the
+system's compiler. A call takes all colours, on one thread.
 """
 
 import ctypes
@@ -63,12 +65,17 @@ class CubeOptions:
             if self.model == Moments.name
             else f"--model {self.model}"
         )
-        return f"uplift build {'--atlas FILE ' if self.atlas else ''}--dim {self.dim} {model}"
+        return (
+            f"uplift build {'--atlas FILE ' if self.atlas else ''}--dim {self.dim} "
+            f"{model}"
+        )
 
 
 @cache
 def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
-    """Build, store and load a cube once for all methods; return it and the CPU seconds to build and to load it."""
+    """Build, store and load a cube once for all methods; return it and the CPU seconds
+    to build and to load it.
+    """
     from uplift.fit.families import families_with
     from uplift.pipeline.build import build
 
@@ -87,7 +94,9 @@ def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
 
 
 def within(cube: Cube, wavelengths: Array) -> Array:
-    """Return the nearest wavelengths (N,) in the range of a cube, outside of which its spectra count as constant."""
+    """Return the nearest wavelengths (N,) in the range of a cube, outside of which its
+    spectra count as constant.
+    """
     return np.clip(wavelengths, *cube.wavelengths[[0, -1]])
 
 
@@ -113,7 +122,9 @@ def prepare_lookup(
 
 
 def prepare_bulk(task: Task, options: CubeOptions) -> PreparedMethod:
-    """Prepare a bulk sampler of the sensor's wavelengths, without the compiled code of earlier ones."""
+    """Prepare a bulk sampler of the sensor's wavelengths, without the compiled code of
+    earlier ones.
+    """
     import jax
 
     from uplift.lookup import bulk
@@ -168,14 +179,17 @@ def prepare_c(task: Task, options: CubeOptions, mode: str) -> PreparedMethod:
             lambda: compile_cube(cube.data, mode, Path(folder))
         )
         uplift, loading = stopwatch(lambda: load_library(library))
-        # The file may go: the loaded library stays in memory, except on Windows, which has no cc.
+        # The file may go: the loaded library stays in memory, except on Windows, which
+        # has no cc.
         return PreparedMethod(
             uplift, library.stat().st_size, seconds + compiling, loading
         )
 
 
 def compile_cube(data: CubeData, mode: str, folder: Path) -> Path:
-    """Export a cube and compile it to a shared library, whose file is returned. Raises `NotInstalledError`."""
+    """Export a cube and compile it to a shared library, whose file is returned. Raises
+    `NotInstalledError`.
+    """
     if shutil.which("cc") is None:
         raise NotInstalledError(f"needs {COMPILER}")
     write_program(data, folder / "cube.h", mode=mode)
@@ -188,7 +202,9 @@ def compile_cube(data: CubeData, mode: str, folder: Path) -> Path:
 
 
 def load_library(path: Path) -> Uplift:
-    """Load a shared library of `compile_cube`; return the function of colours and wavelengths."""
+    """Load a shared library of `compile_cube`; return the function of colours and
+    wavelengths.
+    """
     function: Any = ctypes.CDLL(str(path)).uplift_colours
     floats = np.ctypeslib.ndpointer(np.float32, flags="C_CONTIGUOUS")
     function.argtypes = [floats, floats, ctypes.c_int, ctypes.c_long, floats]
@@ -231,12 +247,15 @@ JOBS = {
     CubeOptions("sigmoid", 3, 32): f"{_BOTH} c-moments c-spectra",
     CubeOptions("sigmoid", 3, 64): "spectra moments c-moments",
 }
-"""Cubes and their lookups: modes of `Cube.reflectance`, in float64 or float32, in bulk with JAX, and by C."""
+"""Cubes and their lookups: modes of `Cube.reflectance`, in float64 or float32, in bulk
+with JAX, and by C.
+"""
 
 
 def _method(options: CubeOptions, lookup: str) -> Method:
     mode = lookup.removeprefix("c-").removesuffix(FLOAT32)
-    # Nodes of all modes are exact; colours between them are not in ``moments`` and ``nearest``, and refined sigmoids.
+    # Nodes of all modes are exact; colours between them are not in ``moments`` and
+    # ``nearest``, and refined sigmoids.
     exact = mode in ("spectra", "bulk") or (
         mode == "refined" and options.model == Moments.name
     )
@@ -257,7 +276,10 @@ def _method(options: CubeOptions, lookup: str) -> Method:
             f"C {label}",
         )
         family, prepare = "uplift, C export", partial(prepare_c, mode=mode)
-        call = f"uplift export CUBE -o cube.h --mode {mode}; cube_reflectances(rgb, wavelengths, count, out)"
+        call = (
+            f"uplift export CUBE -o cube.h --mode {mode}; cube_reflectances(rgb, "
+            "wavelengths, count, out)"
+        )
         fields |= {
             "note": f"cc {' '.join(FLAGS[:5])}, called by ctypes",
             "needs": COMPILER,

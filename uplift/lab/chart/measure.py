@@ -1,4 +1,6 @@
-"""Selection and measurement of methods: their answers are checked first, and only correct ones are timed."""
+"""Selection and measurement of methods: their answers are checked first, and only
+correct ones are timed.
+"""
 
 import time
 import warnings
@@ -60,7 +62,10 @@ def select_methods(patterns: Sequence[str] = ()) -> list[Method]:
     """Select methods by name, by default all. Raises `OptionError`."""
     for pattern in patterns:
         if not any(fnmatchcase(method.method, pattern) for method in METHODS):
-            hint = "names are 'mallett2019', 'moments9-32-spectra' and others; '*' matches any characters"
+            hint = (
+                "names are 'mallett2019', 'moments9-32-spectra' and others; '*' "
+                "matches any characters"
+            )
             raise OptionError(f"no method matches '{pattern}'", hint=hint)
     return [
         method
@@ -72,7 +77,9 @@ def select_methods(patterns: Sequence[str] = ()) -> list[Method]:
 def perturb_method(
     method: Method, light: Light, count: int = COLOURS
 ) -> list[dict[str, Any]]:
-    """Perturb queries of a method, in sRGB under D65, as `uplift.lab.study.sensitivity`. Raises `OptionError`."""
+    """Perturb queries of a method, in sRGB under D65, as
+    `uplift.lab.study.sensitivity`. Raises `OptionError`.
+    """
     task = make_task({"macbeth": read_atlas("macbeth")})
     grid, lights = task.sensor.wavelengths, (light, task.sensor.light)
     with warnings.catch_warnings(
@@ -94,7 +101,8 @@ def perturb_method(
 
 
 GROWTH = 10
-"""Factor between the numbers of colours from which the duration of a call is estimated."""
+"""Factor between the numbers of colours from which the duration of a call is estimated.
+"""
 INPUTS, INPUT_COLOURS = 64, 1 << 16
 """Different inputs of repeated calls: at most so many, with so many colours in all."""
 UpliftRgb = Callable[[Array], Values]
@@ -103,7 +111,8 @@ UpliftRgb = Callable[[Array], Values]
 def call_times(uplift: UpliftRgb, dtype: str, effort: Effort) -> dict[str, float]:
     """Time calls with each number of colours of an effort, in ns per colour.
 
-    A call of more than `Effort.longest` seconds takes fewer colours. All larger batches then have its times.
+    A call of more than `Effort.longest` seconds takes fewer colours. All larger batches
+    then have its times.
     """
     numbers: dict[str, float] = {}
     count = last = 0
@@ -137,7 +146,9 @@ def _time_batch(
 
 
 def affordable(uplift: UpliftRgb, dtype: str, size: int, longest: float) -> int:
-    """Return the number of colours, at most ``size``, of a call of ``longest`` CPU seconds."""
+    """Return the number of colours, at most ``size``, of a call of ``longest`` CPU
+    seconds.
+    """
     count = 1
     while True:
         rgb = _colours(1, count, dtype)[0]
@@ -154,11 +165,15 @@ def _colours(inputs: int, count: int, dtype: str) -> Values:
 
 
 MAX_CLAIM_RATIO = 10
-"""A method is broken if its mean round-trip error is larger than the claimed one by more than this factor."""
+"""A method is broken if its mean round-trip error is larger than the claimed one by
+more than this factor.
+"""
 SLOW_STEP = 3
 """Colours of slow methods between two looks at the time."""
 SAMPLE, SAMPLE_TOLERANCE = 50, 2e-5
-"""Colours of a large batch that are computed again in a small one, and the reflectance that rounding may change."""
+"""Colours of a large batch that are computed again in a small one, and the reflectance
+that rounding may change.
+"""
 
 
 class BrokenError(Exception):
@@ -179,9 +194,12 @@ def measure_methods(
         results.append(measure_method(method, task))
         progress(Progress("methods", len(results), len(methods)))
     summary = (
-        f"CPU time of all threads; up to {effort.runs} runs of calls of at most {effort.longest:g} s, spectra at "
-        f"{pluralise(len(task.sensor.wavelengths), 'wavelength')}; errors of slow methods are of the colours of "
-        f"{effort.seconds_per_error:g} s; {(time.perf_counter() - begin) / 60:.1f} minutes in all"
+        f"CPU time of all threads; up to {effort.runs} runs of calls of at most "
+        f"{effort.longest:g} s, spectra at "
+        f"{pluralise(len(task.sensor.wavelengths), 'wavelength')}; errors of slow "
+        "methods are of the colours of "
+        f"{effort.seconds_per_error:g} s; {(time.perf_counter() - begin) / 60:.1f} "
+        "minutes in all"
     )
     return Chart({**machine, **task.facts, "effort": summary}, tuple(results))
 
@@ -190,7 +208,8 @@ def measure_method(method: Method, task: Task) -> MethodResult:
     """Measure one method."""
     state, why, numbers = State.MEASURED, "", {}
     try:
-        # Other packages warn, and so do cubes about the entries that all of them leave out.
+        # Other packages warn, and so do cubes about the entries that all of them leave
+        # out.
         with warnings.catch_warnings(action="ignore"):
             if method.needs:
                 numbers = call_in_child(
@@ -250,7 +269,8 @@ def _guarded(method: Method, prepared: PreparedMethod, wavelengths: Array) -> Up
             raise BrokenError(f"raises {_text(error)}") from error
         if spectra.shape != (len(rgb), len(wavelengths)):
             raise BrokenError(
-                f"spectra have shape {spectra.shape} instead of ({len(rgb)}, {len(wavelengths)})"
+                f"spectra have shape {spectra.shape} instead of ({len(rgb)}, "
+                f"{len(wavelengths)})"
             )
         if spectra.dtype != method.dtype:
             raise BrokenError(f"spectra are {spectra.dtype} instead of {method.dtype}")
@@ -266,7 +286,9 @@ def _text(error: Exception) -> str:
 def _round_trips(
     method: Method, prepared: PreparedMethod, uplift: UpliftRgb, task: Task
 ) -> dict[str, float]:
-    """Judge at 1 nm with the stated white and matrix, and with the tables that cubes are fitted to."""
+    """Judge at 1 nm with the stated white and matrix, and with the tables that cubes
+    are fitted to.
+    """
     sensor = method.reference_sensor()
     rgb, spectra = _spectra(
         method, _guarded(method, prepared, sensor.wavelengths), task, task.rgb
@@ -308,7 +330,9 @@ def _errors(method: Method, uplift: UpliftRgb, task: Task) -> dict[str, float]:
 def _spectra(
     method: Method, uplift: UpliftRgb, task: Task, rgb: Array
 ) -> tuple[Array, Array]:
-    """As many of the colours as time allows, (k, 3), and their spectra (k, N) in float64."""
+    """As many of the colours as time allows, (k, 3), and their spectra (k, N) in
+    float64.
+    """
     uplift(rgb[:1])
     step = len(rgb) if method.batch else SLOW_STEP
     parts, begin = [], time.process_time()
@@ -327,7 +351,9 @@ def _spectra(
 
 
 def _check_batch(uplift: UpliftRgb, dtype: str, effort: Effort) -> None:
-    """Large batches are timed; check that they give the same spectra as small ones, whose errors are measured."""
+    """Large batches are timed; check that they give the same spectra as small ones,
+    whose errors are measured.
+    """
     count = affordable(
         uplift, dtype, min(effort.batches[-1], REFERENCE), effort.longest
     )
@@ -336,7 +362,8 @@ def _check_batch(uplift: UpliftRgb, dtype: str, effort: Effort) -> None:
     difference = np.abs(uplift(rgb)[rows] - uplift(rgb[rows])).max()
     if not difference <= SAMPLE_TOLERANCE:
         raise BrokenError(
-            f"{pluralise(count, 'colour')} per call give other reflectances than {SAMPLE}, by {difference:.2g}"
+            f"{pluralise(count, 'colour')} per call give other reflectances than "
+            f"{SAMPLE}, by {difference:.2g}"
         )
 
 

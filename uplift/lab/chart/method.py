@@ -1,7 +1,9 @@
-"""Interface of methods of spectral upsampling to the chart, and the sensors by which their round trips are measured.
+"""Interface of methods of spectral upsampling to the chart, and the sensors by which
+their round trips are measured.
 
-Round trips are measured at 1 nm, with the observer, the illuminant, the white and the matrix that a method states. No
-method was fitted at 1 nm. Cubes are fitted to 380–780 nm at 5 nm: errors there would favour our range, step and matrix.
+Round trips are measured at 1 nm, with the observer, the illuminant, the white and the
+matrix that a method states. No method was fitted at 1 nm. Cubes are fitted to 380–780
+nm at 5 nm: errors there would favour our range, step and matrix.
 """
 
 import time
@@ -26,12 +28,16 @@ RANGE = (360.0, 830.0, 1.0)
 
 
 def at_1_nm(sensor: Sensor) -> Sensor:
-    """Return a sensor on `RANGE`, where the perfect reflector is white again: the statement of a cube."""
+    """Return a sensor on `RANGE`, where the perfect reflector is white again: the
+    statement of a cube.
+    """
     return observer.on_range(sensor, *RANGE)
 
 
 def stated_sensor(xyz_to_rgb: Array, illuminant: str = DEFAULT_ILLUMINANT) -> Sensor:
-    """Return the sensor on `RANGE` of a stated matrix. Shapes: ``xyz_to_rgb`` (3, 3)."""
+    """Return the sensor on `RANGE` of a stated matrix. Shapes:
+    ``xyz_to_rgb`` (3, 3).
+    """
     return replace(
         at_1_nm(observer.sensor(illuminant=illuminant)), xyz_to_rgb=xyz_to_rgb
     )
@@ -52,7 +58,9 @@ def published_srgb() -> Sensor:
 COLOURS, MIN_COLOURS, SEED = 2000, 16, 1
 """Default and smallest number of random colours, and the seed of their generator."""
 EDGE_STEPS = 9
-"""Colours along each edge of the RGB cube and along its grey diagonal, corners included."""
+"""Colours along each edge of the RGB cube and along its grey diagonal, corners
+included.
+"""
 MIN_SPECTRA = 2
 
 
@@ -60,11 +68,11 @@ MIN_SPECTRA = 2
 class Effort:
     """Time spent on a method.
 
-    ``seconds_per_error``: CPU time for the answers of one error; slow methods process fewer colours.
-    ``lap``: shortest duration of a repetition in seconds.
-    ``longest``: CPU seconds of a call; slower ones take fewer colours than the batch has.
-    ``builds``: number of builds of each cube; the last one is timed.
-    ``limit``: wall seconds after which a method in a child process counts as hung.
+    ``seconds_per_error``: CPU time for the answers of one error; slow methods process
+    fewer colours. ``lap``: shortest duration of a repetition in seconds. ``longest``:
+    CPU seconds of a call; slower ones take fewer colours than the batch has.
+    ``builds``: number of builds of each cube; the last one is timed. ``limit``: wall
+    seconds after which a method in a child process counts as hung.
     """
 
     seconds_per_error: float = 6.0
@@ -89,12 +97,13 @@ QUICK = Effort(
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """Colours and spectra in random order, so that slow methods may process the first of them only.
+    """Colours and spectra in random order, so that slow methods may process the first
+    of them only.
 
-    ``sensor``: linear sRGB under D65.
-    ``rgb`` (n, 3): random colours, and those along the edges and the grey diagonal of the RGB cube.
-    ``kept``: entries that cubes with an atlas are built from.
-    ``own``, ``unseen`` (k, N) and (m, N): measured spectra of the kept entries and of the others, within sRGB.
+    ``sensor``: linear sRGB under D65. ``rgb`` (n, 3): random colours, and those along
+    the edges and the grey diagonal of the RGB cube. ``kept``: entries that cubes with
+    an atlas are built from. ``own``, ``unseen`` (k, N) and (m, N): measured spectra of
+    the kept entries and of the others, within sRGB.
     """
 
     sensor: Sensor
@@ -109,7 +118,8 @@ class Task:
 def make_task(
     atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effort | None = None
 ) -> Task:
-    """Make a task from measured spectra: of each atlas the first, third, … entry builds cubes, the others test them.
+    """Make a task from measured spectra: of each atlas the first, third, … entry builds
+    cubes, the others test them.
 
     Raises `OptionError`, `AtlasError`.
     """
@@ -138,16 +148,23 @@ def make_task(
     rng = np.random.default_rng(SEED)
     rgb = np.concatenate([rng.random((colours, 3)), edges()])
     facts = {
-        "colours": f"{colours:,} random and {len(edges())} along edges and greys of linear sRGB, under D65",
-        "spectra": f"{len(kept)} of {pluralise(len(kept) + len(others), 'entry')} of {', '.join(atlases)} (every "
-        f"second) build the cubes with an atlas; of the others, {len(unseen)} within sRGB test all methods",
+        "colours": (
+            f"{colours:,} random and {len(edges())} along edges and greys of linear "
+            "sRGB, under D65"
+        ),
+        "spectra": f"{len(kept)} of {pluralise(len(kept) + len(others), 'entry')} of "
+        f"{', '.join(atlases)} (every "
+        f"second) build the cubes with an atlas; of the others, {len(unseen)} within "
+        "sRGB test all methods",
     }
     rgb, own, unseen = (rng.permutation(each) for each in (rgb, own, unseen))
     return Task(sensor, rgb, kept, own, unseen, effort or Effort(), facts)
 
 
 def edges() -> Array:
-    """Return linear RGB (n, 3) along the edges and the grey diagonal of the RGB cube, each once."""
+    """Return linear RGB (n, 3) along the edges and the grey diagonal of the RGB cube,
+    each once.
+    """
     along = np.linspace(0, 1, EDGE_STEPS)
     grid = np.stack(np.meshgrid(along, along, along, indexing="ij"), axis=-1).reshape(
         -1, 3
@@ -158,7 +175,9 @@ def edges() -> Array:
 
 Result = TypeVar("Result")
 Uplift = Callable[[Values, Array], Values]
-"""From linear sRGB (n, 3) in [0, 1] and wavelengths (N,) in nm to reflectances (n, N), in the method's data type."""
+"""From linear sRGB (n, 3) in [0, 1] and wavelengths (N,) in nm to reflectances (n, N),
+in the method's data type.
+"""
 
 
 class NotInstalledError(Exception):
@@ -169,9 +188,11 @@ class NotInstalledError(Exception):
 class PreparedMethod:
     """A method ready for use.
 
-    ``build_s``: CPU seconds to compute its tables, once; 0 if there are none to compute, None if they come from
+    ``build_s``: CPU seconds to compute its tables, once; 0 if there are none to
+    compute, None if they come from
         elsewhere.
-    ``load_s``: CPU seconds to read and prepare them in a process. The first call, which may compile, is charged
+    ``load_s``: CPU seconds to read and prepare them in a process. The first call, which
+    may compile, is charged
         separately.
     """
 
@@ -185,11 +206,11 @@ class PreparedMethod:
 class Description:
     """Texts about a method: columns of the table of a chart.
 
-    ``method``, ``title``: name for the command line, and name to display.
-    ``label``: label of its marker, by default the title.
-    ``family``, ``source``: name in the legend, and publication.
-    ``mode``: mode of lookup of a cube, which determines the shape of the marker.
-    ``build``, ``call``: command and call that give a user of this package the same; empty for other methods.
+    ``method``, ``title``: name for the command line, and name to display. ``label``:
+    label of its marker, by default the title. ``family``, ``source``: name in the
+    legend, and publication. ``mode``: mode of lookup of a cube, which determines the
+    shape of the marker. ``build``, ``call``: command and call that give a user of this
+    package the same; empty for other methods.
     """
 
     method: str
@@ -206,14 +227,16 @@ class Description:
 
 @dataclass(frozen=True, kw_only=True)
 class Method(Description):
-    """A method of spectral upsampling. A method far off the claims of its authors is broken and is not drawn.
+    """A method of spectral upsampling. A method far off the claims of its authors is
+    broken and is not drawn.
 
     ``prepare``: from a `Task` to a `PreparedMethod`. Raises `NotInstalledError`.
-    ``reference_sensor``: returns the sensor of the white and the matrix that the method states, see `published_srgb`.
-    ``claimed_error``: mean ΔE00 of round trips that its authors claim.
-    ``claimed_range``: range of reflectances that its authors claim.
+    ``reference_sensor``: returns the sensor of the white and the matrix that the method
+    states, see `published_srgb`. ``claimed_error``: mean ΔE00 of round trips that its
+    authors claim. ``claimed_range``: range of reflectances that its authors claim.
     ``batch``: whether it accepts many colours per call; otherwise it loops over them.
-    ``needs``: native code beyond this package and how to install it; empty if there is none. A method that needs some
+    ``needs``: native code beyond this package and how to install it; empty if there is
+    none. A method that needs some
         is measured in a child process, as it may crash or hang.
     """
 

@@ -1,11 +1,13 @@
-"""Sigmoids of quadratic polynomials from the table of Mitsuba 3: from Python a colour per call, and compiled by LLVM.
+"""Sigmoids of quadratic polynomials from the table of Mitsuba 3: from Python a colour
+per call, and compiled by LLVM.
 
-Domain: linear sRGB in [0, 1]. Range: reflectance in [0, 1] at any wavelengths. The table of 64 points along each edge
-is part of Mitsuba. From Python its lookup takes one colour per call. A bitmap texture looks up those of all its texels
-when it is loaded, and its evaluation is vectorised.
+Domain: linear sRGB in [0, 1]. Range: reflectance in [0, 1] at any wavelengths. The
+table of 64 points along each edge is part of Mitsuba. From Python its lookup takes one
+colour per call. A bitmap texture looks up those of all its texels when it is loaded,
+and its evaluation is vectorised.
 
-Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral upsampling", Computer Graphics Forum
-38(2).
+Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral
+upsampling", Computer Graphics Forum 38(2).
 """
 
 import math
@@ -42,7 +44,10 @@ XYZ_TO_RGB = np.array(
 AT_ONCE = 4
 """Wavelengths of an evaluation."""
 MITSUBA = "Mitsuba 3: pip install mitsuba"
-LLVM = "LLVM 19, with which Mitsuba 3.9 works: apt install libllvm19, or name its library by DRJIT_LIBLLVM_PATH"
+LLVM = (
+    "LLVM 19, with which Mitsuba 3.9 works: apt install libllvm19, or name its "
+    "library by DRJIT_LIBLLVM_PATH"
+)
 """What the methods need."""
 
 
@@ -53,7 +58,9 @@ def reference_sensor() -> Sensor:
 
 
 def table_file() -> Path:
-    """Return the file of the table, without loading Mitsuba; raise `NotInstalledError` if it is not installed."""
+    """Return the file of the table, without loading Mitsuba; raise `NotInstalledError`
+    if it is not installed.
+    """
     found = find_spec("mitsuba")
     if found is None or found.origin is None:
         raise NotInstalledError(f"needs {MITSUBA}")
@@ -72,7 +79,9 @@ def prepare(task: Task) -> PreparedMethod:
 
 
 def spectra(rgb: Array, wavelengths: Array) -> Array:
-    """Return the reflectances (n, N) that Mitsuba gives linear sRGB (n, 3) at wavelengths (N,) in nm."""
+    """Return the reflectances (n, N) that Mitsuba gives linear sRGB (n, 3) at
+    wavelengths (N,) in nm.
+    """
     mitsuba = _mitsuba(VARIANT)
     coefficients = [mitsuba.srgb_model_fetch(colour) for colour in rgb.tolist()]
     return evaluate_unscaled(np.array(coefficients, dtype=float), wavelengths)
@@ -93,7 +102,9 @@ def prepare_compiled(task: Task) -> PreparedMethod:
 
 
 def compiled_spectra(rgb: Array, wavelengths: Array) -> Array:
-    """Return the reflectances (n, N) of a bitmap texture with the texels ``rgb`` (n, 3), computed on one thread."""
+    """Return the reflectances (n, N) of a bitmap texture with the texels ``rgb`` (n,
+    3), computed on one thread.
+    """
     mitsuba, drjit = _mitsuba(COMPILED), import_module("drjit")
     threads = drjit.thread_count()
     drjit.set_thread_count(1)
@@ -148,7 +159,10 @@ METHODS = (
         title="Mitsuba 3, LLVM, table of 64",
         prepare=prepare_compiled,
         dtype="float32",
-        note="a bitmap texture with a texel for each colour, loaded and evaluated, on one thread",
+        note=(
+            "a bitmap texture with a texel for each colour, loaded and evaluated, on "
+            "one thread"
+        ),
         needs=LLVM,
     ),
 )

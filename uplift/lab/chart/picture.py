@@ -1,6 +1,8 @@
 """The chart as a figure for readers in a hurry, and as a page of panels with tooltips.
 
-Of the cubes of this package a panel of the page shows those that no other cube of the same kind and mode beats."""
+Of the cubes of this package a panel of the page shows those that no other cube of the
+same kind and mode beats.
+"""
 
 from typing import Any
 
@@ -48,7 +50,9 @@ NAMES = {
     "meng2015": "Meng 2015",
     "c-moments9-32-spectra": OURS,
 }
-"""Methods of the figure and their names in it; a chart without these shows all of its methods."""
+"""Methods of the figure and their names in it; a chart without these shows all of its
+methods.
+"""
 ATLAS = "c-moments9-32-atlas-spectra"
 """Cube of the figure whose error is that of the materials of its atlas."""
 TITLE = "Spectral upsampling: speed against accuracy"
@@ -63,7 +67,9 @@ ERRORS = {
 
 
 def drawn_results(criterion: Criterion, chart: Chart) -> list[MethodResult]:
-    """Cubes of this package that none of the same kind and mode beats, then all other methods, above them."""
+    """Cubes of this package that none of the same kind and mode beats, then all other
+    methods, above them.
+    """
     groups: dict[tuple[str, str], dict[MethodResult, tuple[float, float]]] = {}
     others = []
     for result in chart.measured:
@@ -96,13 +102,17 @@ def panel(criterion: Criterion, chart: Chart) -> Panel:
 
 
 def write_picture(chart: Chart, path: StrPath, *, force: bool = False) -> None:
-    """Write the mean error of unseen materials over the time per RGB as PNG. Raises `OutputError`."""
+    """Write the mean error of unseen materials over the time per RGB as PNG. Raises
+    `OutputError`.
+    """
     with styled():
         write_png(draw_picture(chart), path, force=force)
 
 
 def draw_picture(chart: Chart) -> Any:
-    """Return the matplotlib figure of `write_picture`: every method has its name, this package the only colour."""
+    """Return the matplotlib figure of `write_picture`: every method has its name, this
+    package the only colour.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     unseen, own = (criteria(reference_batch(chart))[panel] for panel in (1, 4))
@@ -181,7 +191,9 @@ def draw_picture(chart: Chart) -> Any:
 
 
 def reference_batch(chart: Chart) -> int:
-    """Return the number of colours per call that the figure shows, and the page at first."""
+    """Return the number of colours per call that the figure shows, and the page at
+    first.
+    """
     return max((batch for batch in chart.batches if batch <= REFERENCE), default=0)
 
 

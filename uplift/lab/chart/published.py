@@ -1,14 +1,17 @@
-"""Published methods in Python: Jakob 2019, Mallett 2019, Meng 2015, Otsu 2018 and Smits 1999.
+"""Published methods in Python: Jakob 2019, Mallett 2019, Meng 2015, Otsu 2018 and Smits
+1999.
 
-Domain: linear sRGB in [0, 1] under D65; Smits was made for an equal-energy white and is used with sRGB as renderers do.
-Range: reflectance in [0, 1], of Smits up to 1.015, of Meng not limited to 1. Spectra in steps of up to 10 nm are
-interpolated linearly. All use the tables and programs of colour-science.
+Domain: linear sRGB in [0, 1] under D65; Smits was made for an equal-energy white and is
+used with sRGB as renderers do. Range: reflectance in [0, 1], of Smits up to 1.015, of
+Meng not limited to 1. Spectra in steps of up to 10 nm are interpolated linearly. All
+use the tables and programs of colour-science.
 
-Smits 1999, "An RGB-to-spectrum conversion for reflectances", Journal of Graphics Tools 4(4).
-Meng, Simon, Hanika & Dachsbacher 2015, "Physically meaningful rendering using tristimulus colours", CGF 34(4).
-Otsu, Yamamoto & Hachisuka 2018, "Reproducing spectral reflectances from tristimulus colours", CGF 37(6).
-Mallett & Yuksel 2019, "Spectral primary decomposition for rendering with sRGB reflectance", EGSR.
-Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral upsampling", CGF 38(2).
+Smits 1999, "An RGB-to-spectrum conversion for reflectances", Journal of Graphics Tools
+4(4). Meng, Simon, Hanika & Dachsbacher 2015, "Physically meaningful rendering using
+tristimulus colours", CGF 34(4). Otsu, Yamamoto & Hachisuka 2018, "Reproducing spectral
+reflectances from tristimulus colours", CGF 37(6). Mallett & Yuksel 2019, "Spectral
+primary decomposition for rendering with sRGB reflectance", EGSR. Jakob & Hanika 2019,
+"A low-dimensional function space for efficient spectral upsampling", CGF 38(2).
 """
 
 from collections.abc import Callable
@@ -43,7 +46,9 @@ OTSU_GRID = (380.0, 730.0, 10.0)
 def prepare_one_by_one(
     task: Task, name: str, grid: tuple[float, float, float] = (START, END, STEP)
 ) -> PreparedMethod:
-    """Prepare a function of colour-science from one XYZ, an observer and an illuminant to a spectrum."""
+    """Prepare a function of colour-science from one XYZ, an observer and an illuminant
+    to a spectrum.
+    """
     recovery = colour_science().recovery
     convert = getattr(recovery, name)
     named = ("observer", task.sensor.observer), ("illuminant", task.sensor.illuminant)
@@ -88,7 +93,9 @@ def prepare_basis(
     weights: Callable[[Values], Values],
     dtype: str = "float64",
 ) -> PreparedMethod:
-    """Prepare a method whose spectra are sums of K basis spectra; ``weights`` has shapes (n, 3) to (n, K)."""
+    """Prepare a method whose spectra are sums of K basis spectra; ``weights`` has
+    shapes (n, 3) to (n, K).
+    """
     (centres, basis), seconds = stopwatch(read)
 
     def uplift(rgb: Values, wavelengths: Array) -> Values:
@@ -110,7 +117,9 @@ def _smits_basis() -> tuple[Array, Array]:
 
 
 def _smits_weights(rgb: Values) -> Values:
-    """White by the smallest component, a secondary by the middle one, and a primary by the largest: (n, 7)."""
+    """White by the smallest component, a secondary by the middle one, and a primary by
+    the largest: (n, 7).
+    """
     order, rows = rgb.argsort(axis=1), np.arange(len(rgb))
     low, middle, high = np.take_along_axis(rgb, order, axis=1).T
     weights = np.zeros((len(rgb), 7), rgb.dtype)
@@ -122,7 +131,9 @@ def _smits_weights(rgb: Values) -> Values:
 
 @cache
 def smits_sensor() -> Sensor:
-    """Return the sensor of the stated space, sRGB primaries with an equal-energy white."""
+    """Return the sensor of the stated space, sRGB primaries with an
+    equal-energy white.
+    """
     space = colour_science().recovery.smits1999.RGB_COLOURSPACE_SMITS1999
     return stated_sensor(space.matrix_XYZ_to_RGB, space.whitepoint_name)
 
@@ -157,11 +168,17 @@ def _in_single(method: Method) -> Method:
     )
 
 
-JAKOB = "Jakob & Hanika, A low-dimensional function space for efficient spectral upsampling, CGF 38(2), 2019"
+JAKOB = (
+    "Jakob & Hanika, A low-dimensional function space for efficient spectral "
+    "upsampling, CGF 38(2), 2019"
+)
 MALLETT = _method(
     "mallett2019",
     "Mallett 2019",
-    "Mallett & Yuksel, Spectral primary decomposition for rendering with sRGB reflectance, EGSR 2019",
+    (
+        "Mallett & Yuksel, Spectral primary decomposition for rendering with sRGB "
+        "reflectance, EGSR 2019"
+    ),
     partial(prepare_basis, read=_mallett_basis, weights=np.asarray),
     claimed_error=0.01,
     claimed_range=(0, 1 + 1e-6),
@@ -170,7 +187,10 @@ MALLETT = _method(
 SMITS = _method(
     "smits1999",
     "Smits 1999",
-    "Smits, An RGB-to-spectrum conversion for reflectances, Journal of Graphics Tools 4(4), 1999",
+    (
+        "Smits, An RGB-to-spectrum conversion for reflectances, Journal of Graphics "
+        "Tools 4(4), 1999"
+    ),
     partial(prepare_basis, read=_smits_basis, weights=_smits_weights),
     claimed_range=(0, 1.02),
     reference_sensor=smits_sensor,
@@ -200,19 +220,28 @@ METHODS = (
     _method(
         "meng2015",
         "Meng 2015",
-        "Meng, Simon, Hanika & Dachsbacher, Physically meaningful rendering using tristimulus colours, CGF 34(4), 2015",
+        (
+            "Meng, Simon, Hanika & Dachsbacher, Physically meaningful rendering using "
+            "tristimulus colours, CGF 34(4), 2015"
+        ),
         partial(
             prepare_one_by_one, name="XYZ_to_sd_Meng2015", grid=(START, END, MENG_STEP)
         ),
         claimed_error=0.5,
         claimed_range=(0, 1000),
         batch=False,
-        note=f"colour-science at {MENG_STEP:g} nm, interpolated; reflectances may exceed 1",
+        note=(
+            f"colour-science at {MENG_STEP:g} nm, interpolated; reflectances may "
+            "exceed 1"
+        ),
     ),
     _method(
         "otsu2018",
         "Otsu 2018",
-        "Otsu, Yamamoto & Hachisuka, Reproducing spectral reflectances from tristimulus colours, CGF 37(6), 2018",
+        (
+            "Otsu, Yamamoto & Hachisuka, Reproducing spectral reflectances from "
+            "tristimulus colours, CGF 37(6), 2018"
+        ),
         partial(prepare_one_by_one, name="XYZ_to_sd_Otsu2018", grid=OTSU_GRID),
         batch=False,
         note="colour-science with its own data, clipped to [0, 1]",

@@ -1,4 +1,6 @@
-"""A chart as rows of numbers and as CSV, its panels with Pareto fronts, and the recommendation of a cube."""
+"""A chart as rows of numbers and as CSV, its panels with Pareto fronts, and the
+recommendation of a cube.
+"""
 
 import re
 from collections.abc import Mapping
@@ -50,12 +52,14 @@ class State(StrEnum):
 class MethodResult(Description):
     """Result of a method. The fields are the columns of the CSV file.
 
-    ``numbers``: ``bytes``; CPU seconds ``build_s``, ``load_s`` and ``setup_s``, their sum; ``ns_N`` per RGB with N
-        colours per call, see `uplift.lab.chart.measure.call_times`; ``time_ns``, that of the recommendation. Errors
-        ``round_trip`` (judged at 1 nm), ``coarse_round_trip`` (with the tables of cubes), of every light, ``lights``
-        (their mean) and ``rms``, and prefixed by ``own_`` those at entries that cubes were built from, each with
-        ``_mean``, ``_p99`` and ``_max``. Sizes ``round_trip_colours``, ``unseen_spectra`` and ``own_spectra`` of the
-        test set.
+    ``numbers``: ``bytes``; CPU seconds ``build_s``, ``load_s`` and ``setup_s``, their
+    sum; ``ns_N`` per RGB with N
+        colours per call, see `uplift.lab.chart.measure.call_times`; ``time_ns``, that
+        of the recommendation. Errors ``round_trip`` (judged at 1 nm),
+        ``coarse_round_trip`` (with the tables of cubes), of every light, ``lights``
+        (their mean) and ``rms``, and prefixed by ``own_`` those at entries that cubes
+        were built from, each with ``_mean``, ``_p99`` and ``_max``. Sizes
+        ``round_trip_colours``, ``unseen_spectra`` and ``own_spectra`` of the test set.
     """
 
     state: State
@@ -68,7 +72,9 @@ TEXTS = tuple(field.name for field in fields(MethodResult) if field.name != "num
 
 @dataclass(frozen=True)
 class Chart:
-    """Results of all methods, and ``facts`` about machine, versions and test set; see `FACTS`."""
+    """Results of all methods, and ``facts`` about machine, versions and test set; see
+    `FACTS`.
+    """
 
     facts: Mapping[str, str]
     results: tuple[MethodResult, ...]
@@ -163,16 +169,18 @@ def _number(name: str, text: str) -> float:
 MIN_TIME = 1.0
 """Left end of the time axes in ns."""
 MIN_ERROR = 1e-4
-"""Smaller errors are not visible and are drawn here, so that the faster of two such methods is on the front."""
+"""Smaller errors are not visible and are drawn here, so that the faster of two such
+methods is on the front.
+"""
 
 
 @dataclass(frozen=True)
 class Criterion:
     """An error over a time: what a panel compares.
 
-    ``error``: name of the error in `MethodResult.numbers`, without ``_mean``; the mean is drawn.
-    ``batch``: number of colours per call.
-    ``whole``: whether time is that of all colours of the batch and of the set-up, instead of that per RGB.
+    ``error``: name of the error in `MethodResult.numbers`, without ``_mean``; the mean
+    is drawn. ``batch``: number of colours per call. ``whole``: whether time is that of
+    all colours of the batch and of the set-up, instead of that per RGB.
     """
 
     title: str
@@ -214,7 +222,9 @@ class Criterion:
         )
 
     def front(self, chart: Chart) -> tuple[MethodResult, ...]:
-        """Return the Pareto front, fastest first: each is clearly more accurate than all faster methods."""
+        """Return the Pareto front, fastest first: each is clearly more accurate than
+        all faster methods.
+        """
         points = {
             result: point
             for result in chart.measured
@@ -244,14 +254,15 @@ def criteria(batch: int) -> tuple[Criterion, ...]:
 
 @dataclass(frozen=True)
 class Requirement:
-    """Limits for time and error; at least one is required. Raises `OptionError`, `UnknownNameError`.
+    """Limits for time and error; at least one is required. Raises `OptionError`,
+    `UnknownNameError`.
 
-    ``time_ns``: largest CPU time per RGB, in ns.
-    ``delta_e``: largest mean ΔE00.
-    ``light``: light of the ΔE00, by default all lights of the chart; the illuminant D65 stands for round trips.
-    ``own``: whether the ΔE00 is of materials of the atlas itself, not of unseen ones.
-    ``plain``: whether the cube must have no atlas.
-    ``smallest``: whether the smallest cube within the limits is chosen, instead of the fastest.
+    ``time_ns``: largest CPU time per RGB, in ns. ``delta_e``: largest mean ΔE00.
+    ``light``: light of the ΔE00, by default all lights of the chart; the illuminant D65
+    stands for round trips. ``own``: whether the ΔE00 is of materials of the atlas
+    itself, not of unseen ones. ``plain``: whether the cube must have no atlas.
+    ``smallest``: whether the smallest cube within the limits is chosen, instead of the
+    fastest.
     """
 
     time_ns: float | None = None
@@ -301,7 +312,9 @@ SITUATIONS = {
 
 
 def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
-    """Choose the fastest or smallest cube within the limits, or the most accurate in time. Raises `OptionError`."""
+    """Choose the fastest or smallest cube within the limits, or the most accurate in
+    time. Raises `OptionError`.
+    """
     name, longest, largest = requirement.error, requirement.time_ns, requirement.delta_e
     cubes = [
         result for result in chart.measured if result.build and name in result.numbers

@@ -1,1 +1,3 @@
-"""Comparison of spectral representations for renderers: errors, cost, filters, recommendations and pictures."""
+"""Comparison of spectral representations for renderers: errors, cost, filters,
+recommendations and pictures.
+"""

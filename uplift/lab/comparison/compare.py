@@ -1,8 +1,11 @@
-"""Error and cost of representations: products of lights and surfaces against densely sampled ones.
+"""Error and cost of representations: products of lights and surfaces against densely
+sampled ones.
 
-Measured reflectances under sets of lights, with the statistics of Kment 2011, section 5.4. A grid search finds the
-low-pass filters before point sampling that leave the smallest errors (section 6.3, tables A.1 and A.2); lights and
-surfaces are filtered alike."""
+Measured reflectances under sets of lights, with the statistics of Kment 2011, section
+5.4. A grid search finds the low-pass filters before point sampling that leave the
+smallest errors (section 6.3, tables A.1 and A.2); lights and surfaces are filtered
+alike.
+"""
 
 import math
 import warnings
@@ -81,7 +84,9 @@ class Scene:
 def make_scene(
     atlases: Mapping[str, Atlas], lights: Sequence[Illuminant] = ()
 ) -> Scene:
-    """Combine the entries of atlases with sets of lights. Raises `AtlasError`, `UnknownNameError`."""
+    """Combine the entries of atlases with sets of lights. Raises `AtlasError`,
+    `UnknownNameError`.
+    """
     merged = merge(atlases.values())
     if not merged.entries:
         raise AtlasError(
@@ -115,7 +120,9 @@ HEADINGS = ("mean", "σ", "median", "2.5 %", "25 %", "75 %", "97.5 %")
 
 
 class Statistics(NamedTuple):
-    """Mean, standard deviation, median and quantiles of ΔE00, of 2.5, 25, 75 and 97.5 %."""
+    """Mean, standard deviation, median and quantiles of ΔE00, of 2.5, 25, 75 and 97.5
+    %.
+    """
 
     mean: float
     deviation: float
@@ -157,7 +164,9 @@ class RepresentationResult:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Results by mean error within each set of lights, titles of the ``sets`` by name, and ``facts`` of the machine."""
+    """Results by mean error within each set of lights, titles of the ``sets`` by name,
+    and ``facts`` of the machine.
+    """
 
     facts: Mapping[str, str]
     sets: Mapping[str, str]
@@ -175,7 +184,9 @@ def compare(
     quick: bool = False,
     progress: ProgressCallback = ignore_progress,
 ) -> Comparison:
-    """Measure representations under all lights of a scene, with few repetitions if ``quick``. Raises `UpliftError`."""
+    """Measure representations under all lights of a scene, with few repetitions if
+    ``quick``. Raises `UpliftError`.
+    """
     sets, results = {light_set.name: light_set.title for light_set in scene.sets}, []
     for done, representation in enumerate(representations, 1):
         for light_set in scene.sets:
@@ -204,10 +215,12 @@ def compare(
 def represent(
     representation: Representation, scene: Scene, names: Sequence[str]
 ) -> tuple[Atlas, Atlas]:
-    """Return the surfaces of a scene, with ``names``, and its lights as a representation stores them.
+    """Return the surfaces of a scene, with ``names``, and its lights as a
+    representation stores them.
 
-    The largest power of a light is 1. Spectra that leave [0, 1], as those of lines after a filter with negative lobes,
-    are clipped with a warning. Raises `UpliftError`.
+    The largest power of a light is 1. Spectra that leave [0, 1], as those of lines
+    after a filter with negative lobes, are clipped with a warning. Raises
+    `UpliftError`.
     """
     lights = [light for light_set in scene.sets for light in light_set.lights]
     powers, surfaces = representation.stored(scene.powers, scene.surfaces)
@@ -216,7 +229,10 @@ def represent(
         clipped = np.clip(spectra, 0, 1)
         outside = int((np.abs(spectra - clipped) > SLACK).any(axis=1).sum())
         if outside:
-            problem = f"{outside} of {len(names)} spectra leave [0, 1] as {representation.name} and are clipped"
+            problem = (
+                f"{outside} of {len(names)} spectra leave [0, 1] as "
+                f"{representation.name} and are clipped"
+            )
             warnings.warn(UpliftWarning(problem, code="entry-clipped"), stacklevel=3)
         pairs = zip(names, clipped, strict=True)
         return Atlas(
@@ -229,12 +245,15 @@ def represent(
 
 
 def error_statistics(representation: Representation, light_set: LightSet) -> Statistics:
-    """Compute the errors of a representation under a set of lights. Raises `UpliftError`."""
+    """Compute the errors of a representation under a set of lights. Raises
+    `UpliftError`.
+    """
     xyz = representation.reflected(light_set.powers, light_set.reflectances)
     errors = delta_e_2000(light_set.to_lab(xyz), light_set.lab)
     if not np.isfinite(errors).all():
         raise UpliftError(
-            f"{representation.name} returns values that are not finite under {light_set.title}"
+            f"{representation.name} returns values that are not finite under "
+            f"{light_set.title}"
         )
     return compute_statistics(errors)
 
@@ -242,7 +261,9 @@ def error_statistics(representation: Representation, light_set: LightSet) -> Sta
 def _time(
     representation: Representation, light_set: LightSet, quick: bool
 ) -> TimingStats:
-    """CPU time of a product, in ns: each light of a set in turn, with many surfaces per call."""
+    """CPU time of a product, in ns: each light of a set in turn, with many surfaces per
+    call.
+    """
     rows, lap, runs = QUICK_TIMING if quick else TIMING
     spectra = np.resize(light_set.reflectances, (rows, len(light_set.wavelengths)))
     surfaces = representation.encode_surface(spectra)
@@ -268,10 +289,12 @@ def check_target(target: float) -> float:
 def cheapest(
     comparison: Comparison, lights: str, target: float
 ) -> RepresentationResult | None:
-    """Choose the representation that stores least among those accurate enough under a set of lights.
+    """Choose the representation that stores least among those accurate enough under a
+    set of lights.
 
-    Of equally small ones the smaller light, then the smaller error decides. Times are not considered: among
-    representations of equal size they depend on other work of the machine. Raises `OptionError`.
+    Of equally small ones the smaller light, then the smaller error decides. Times are
+    not considered: among representations of equal size they depend on other work of the
+    machine. Raises `OptionError`.
     """
     check_target(target)
     return min(
@@ -290,7 +313,9 @@ def cheapest(
 
 
 def pareto(comparison: Comparison, lights: str) -> list[RepresentationResult]:
-    """Return the results that no other dominates in floats of a surface, floats of a light, and error of 97.5 %."""
+    """Return the results that no other dominates in floats of a surface, floats of a
+    light, and error of 97.5 %.
+    """
     results = comparison.of(lights)
     rows = np.array(
         [(row.floats, row.light_floats, row.statistics.q97_5) for row in results]
@@ -322,7 +347,9 @@ FINE_STRIDE, COARSE_STRIDE = 1, 5
 
 @dataclass(frozen=True)
 class TunedFilter:
-    """The best filter of a kind, ``none`` for unfiltered samples, and its errors under a set of lights."""
+    """The best filter of a kind, ``none`` for unfiltered samples, and its errors under
+    a set of lights.
+    """
 
     kind: str
     count: int
@@ -347,7 +374,9 @@ class TunedFilter:
 
 
 def candidates(kind: str, stride: int = FINE_STRIDE) -> list[Filter]:
-    """Filters of a kind for a grid search over every ``stride``-th choice of each parameter."""
+    """Filters of a kind for a grid search over every ``stride``-th choice of each
+    parameter.
+    """
     choices = [values[::stride] for values in filters.KINDS[kind].choices.values()]
     return [
         Filter(kind, extent, values)
@@ -363,7 +392,9 @@ def tune_filters(
     counts: Sequence[int] = COUNTS,
     progress: ProgressCallback = ignore_progress,
 ) -> tuple[TunedFilter, ...]:
-    """Search the best filter of each kind, for each number of samples and each set of lights."""
+    """Search the best filter of each kind, for each number of samples and each set of
+    lights.
+    """
     results = []
     for count, light_set in product(counts, scene.sets):
         errors = error_statistics(samples.point_samples(count), light_set)
@@ -383,7 +414,9 @@ def tune_filters(
 
 
 def _mean_errors(light_set: LightSet, count: int, encoders: Iterable[Array]) -> Array:
-    """Mean ΔE00 of encoders (81, count) of the 5 nm table, faster than `error_statistics`."""
+    """Mean ΔE00 of encoders (81, count) of the 5 nm table, faster than
+    `error_statistics`.
+    """
     surfaces, lights = (
         each[:, :: samples.TABLE_STRIDE]
         for each in (light_set.reflectances, light_set.powers)

@@ -1,4 +1,6 @@
-"""Representations that are fitted to a scene: wavelengths, Bergner's factor model, and moments as cubes have them."""
+"""Representations that are fitted to a scene: wavelengths, Bergner's factor model, and
+moments as cubes have them.
+"""
 
 from collections.abc import Iterator
 from functools import partial
@@ -23,7 +25,9 @@ STRIDE = 40
 
 
 def _known_rows(known: Array, codes: Array, spectra: Array) -> Array:
-    """Codes (n, C) of spectra (n, 401), from those (k, C) of the known spectra (k, 401) that they are."""
+    """Codes (n, C) of spectra (n, 401), from those (k, C) of the known spectra (k, 401)
+    that they are.
+    """
     difference = spectra[:, None, ::STRIDE] - known[:, ::STRIDE]
     return np.asarray(codes[(difference**2).sum(axis=-1).argmin(axis=1)])
 
@@ -35,7 +39,9 @@ def scene_representations(scene: Scene) -> tuple[Representation, ...]:
 
 
 def _wavelengths(scene: Scene) -> Iterator[Representation]:
-    """Wavelengths, weights, and powers of the lights, as `uplift.scene.wavelengths` fits them together."""
+    """Wavelengths, weights, and powers of the lights, as `uplift.scene.wavelengths`
+    fits them together.
+    """
     lights = [light for light_set in scene.sets for light in light_set.illuminants]
     setup = make_setup(scene.surfaces, lights, wavelengths=samples.wavelengths())
     for count in WAVELENGTHS:
@@ -75,7 +81,9 @@ def _factors(scene: Scene) -> Iterator[Representation]:
 
 
 def _moments(scene: Scene) -> Iterator[Representation]:
-    """Moments of the surfaces, fitted to their spectra, their colours under the lights, and RGB."""
+    """Moments of the surfaces, fitted to their spectra, their colours under the lights,
+    and RGB.
+    """
     sensor = observer.sensor()
     lights = tuple(
         observer.light(light)

@@ -1,4 +1,6 @@
-"""Figures of a comparison, and its page: box plots as in Kment 2011, figures 6.1 and 6.2, and error over cost."""
+"""Figures of a comparison, and its page: box plots as in Kment 2011, figures 6.1 and
+6.2, and error over cost.
+"""
 
 from collections.abc import Callable, Sequence
 from itertools import product
@@ -58,9 +60,11 @@ VISIBLE = 1.0
 """ΔE00 that is just visible side by side; the thesis prints smaller ones in bold."""
 TITLE = "Representations of spectra"
 SOURCES = (
-    "Kment 2011, Spectral data representation techniques for realistic image synthesis: point sampling, Riemann sums "
+    "Kment 2011, Spectral data representation techniques for realistic image "
+    "synthesis: point sampling, Riemann sums "
     "and their enhancement, the lights and the statistics.",
-    "Sun, Drew & Fracchia 1999: the composite model. Peercy 1993: linear models. Wilkie et al. 2014: hero wavelengths. "
+    "Sun, Drew & Fracchia 1999: the composite model. Peercy 1993: linear models. "
+    "Wilkie et al. 2014: hero wavelengths. "
     "Peters et al. 2019: trigonometric moments. Jakob & Hanika 2019: the sigmoid.",
 )
 
@@ -129,7 +133,9 @@ def page_boxes(comparison: Comparison) -> list[tuple[str, Markup]]:
 def draw_boxes(
     comparison: Comparison, sets: Sequence[str], *, titles: bool = True
 ) -> Any:
-    """Return the matplotlib figure of sets of lights side by side: quartiles, median, and 2.5 to 97.5 %."""
+    """Return the matplotlib figure of sets of lights side by side: quartiles, median,
+    and 2.5 to 97.5 %.
+    """
     width, height = BOX_SIZE
     figure = new_figure(width * len(sets), height * len(names(comparison)) + 0.9)
     for axes, name in zip(
@@ -193,7 +199,10 @@ def _tooltip(name: str, comparison: Comparison) -> Tooltip:
     results = [result for result in comparison.results if result.name == name]
     lines = [("floats of a surface", f"{results[0].floats:.1f}")]
     for result in results:
-        errors = f"{format_error(result.statistics.mean)} / {format_error(result.statistics.q97_5)}"
+        errors = (
+            f"{format_error(result.statistics.mean)} / "
+            f"{format_error(result.statistics.q97_5)}"
+        )
         lines += [
             (f"{result.lights}: ΔE00, mean / 97.5 %", errors),
             (f"{result.lights}: floats of a light", f"{result.light_floats:.1f}"),

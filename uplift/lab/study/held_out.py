@@ -1,4 +1,6 @@
-"""Errors on held-out measurements: cubes and a plain baseline that know half of an atlas predict the other half."""
+"""Errors on held-out measurements: cubes and a plain baseline that know half of an
+atlas predict the other half.
+"""
 
 import warnings
 from collections.abc import Iterator, Sequence
@@ -38,9 +40,10 @@ LOCAL_LINEAR = "local-linear regression"
 class HoldoutSplit:
     """Half of an atlas, and the errors on the other half of n entries.
 
-    ``errors``: errors by the name of the cube or of the baseline.
-    ``actual`` (n,): ΔE00 of the cube with half the atlas, under its reference illuminant.
-    ``predicted``, ``bound`` (n,): standard errors and error bounds that this cube predicts, if it has any.
+    ``errors``: errors by the name of the cube or of the baseline. ``actual`` (n,): ΔE00
+    of the cube with half the atlas, under its reference illuminant. ``predicted``,
+    ``bound`` (n,): standard errors and error bounds that this cube predicts, if it has
+    any.
     """
 
     errors: dict[str, Answers]
@@ -55,7 +58,8 @@ def holdout(
     progress: ProgressCallback = ignore_progress,
     **options: Any,
 ) -> tuple[HoldoutSplit, ...]:
-    """Divide an atlas in random halves, and predict each half by a cube of the other one: two results per split.
+    """Divide an atlas in random halves, and predict each half by a cube of the other
+    one: two results per split.
 
     By default the prior does not know the families that contain spectra of the atlas.
     """
@@ -69,7 +73,10 @@ def holdout(
     measured = resample(atlas, sensor.wavelengths).values
     inside = np.flatnonzero(in_unit_cube(sensor.rgb(measured)))
     if len(inside) < MIN_ENTRIES:
-        problem = f"a split needs at least {MIN_ENTRIES} entries within {sensor.space}, got {len(inside)}"
+        problem = (
+            f"a split needs at least {MIN_ENTRIES} entries within {sensor.space}, got "
+            f"{len(inside)}"
+        )
         raise AtlasError(problem, code="too-few-entries", hint="use a larger atlas")
     with warnings.catch_warnings(action="ignore", category=UpliftWarning):
         others = {
@@ -88,7 +95,9 @@ def holdout(
 
 
 def halves_both_ways(rows: Indices, splits: int) -> Iterator[tuple[Indices, Indices]]:
-    """Yield random halves of rows, known and queried, in both directions: every row is queried equally often."""
+    """Yield random halves of rows, known and queried, in both directions: every row is
+    queried equally often.
+    """
     for seed in range(splits):
         first, second = (rows[half] for half in random_halves(len(rows), seed))
         yield first, second
@@ -96,13 +105,17 @@ def halves_both_ways(rows: Indices, splits: int) -> Iterator[tuple[Indices, Indi
 
 
 def random_halves(count: int, seed: int) -> tuple[Indices, Indices]:
-    """Divide the numbers up to ``count`` at random; the first half is the larger one."""
+    """Divide the numbers up to ``count`` at random; the first half is the
+    larger one.
+    """
     first, second = np.array_split(np.random.default_rng(seed).permutation(count), 2)
     return first, second
 
 
 def _evaluate(cubes: dict[str, Cube], known: Array, measured: Array) -> HoldoutSplit:
-    """Predict reflectances (n, N) by cubes, and by a baseline that knows others (E, N)."""
+    """Predict reflectances (n, N) by cubes, and by a baseline that knows
+    others (E, N).
+    """
     cube = cubes[HALF]
     sensor = cube.data.sensor
     rgb = np.clip(sensor.rgb(measured), 0, 1)
@@ -126,7 +139,9 @@ def spectrum_errors(
 
 
 def split_records(splits: Sequence[HoldoutSplit]) -> list[dict[str, Any]]:
-    """Return mean errors over the splits by method; that of the cube with half the atlas has its calibration too."""
+    """Return mean errors over the splits by method; that of the cube with half the
+    atlas has its calibration too.
+    """
     records: list[dict[str, Any]] = []
     for method in splits[0].errors:
         means = np.mean(
@@ -150,18 +165,26 @@ def split_records(splits: Sequence[HoldoutSplit]) -> list[dict[str, Any]]:
 
 
 BANDWIDTHS = (7.0, 10.0, 14.0, 20.0, 28.0, 40.0, 80.0, 1e4)
-"""Standard deviations of the Gaussian weights, in CIE L*a*b*; the last one weighs all materials alike."""
+"""Standard deviations of the Gaussian weights, in CIE L*a*b*; the last one weighs all
+materials alike.
+"""
 RIDGES = (1e-6, 1e-4, 1e-3, 1e-2, 1e-1, 1e3)
-"""Weights of small slopes, relative to the sum of the weights; with the last one, predictions are weighted means."""
+"""Weights of small slopes, relative to the sum of the weights; with the last one,
+predictions are weighted means.
+"""
 LOWEST = 1e-4
-"""Least distance of predicted reflectances from 0 and 1 before they move to their colours."""
+"""Least distance of predicted reflectances from 0 and 1 before they move to their
+colours.
+"""
 
 
 def local_linear(data: CubeData, known: Array, rgb: Array) -> Array:
-    """Predict reflectances (n, N) of linear RGB (n, 3) by a local-linear regression on known ones (E, N).
+    """Predict reflectances (n, N) of linear RGB (n, 3) by a local-linear regression on
+    known ones (E, N).
 
-    Bandwidth and ridge have the least mean leave-one-out ΔE00 of the known materials under the lights of a build.
-    Predictions are moved to their colours. Cleveland & Devlin 1988, "Locally weighted regression", JASA 83(403).
+    Bandwidth and ridge have the least mean leave-one-out ΔE00 of the known materials
+    under the lights of a build. Predictions are moved to their colours. Cleveland &
+    Devlin 1988, "Locally weighted regression", JASA 83(403).
     """
     lights = [
         observer.light(name, data.sensor.observer, *data.sensor.range)
@@ -189,7 +212,9 @@ def local_linear(data: CubeData, known: Array, rgb: Array) -> Array:
 
 
 def with_least_change(data: CubeData, spectra: Array, rgb: Array) -> Array:
-    """Move spectra (n, N) to linear RGB (n, 3) by multipliers that are added to them and change them least."""
+    """Move spectra (n, N) to linear RGB (n, 3) by multipliers that are added to them
+    and change them least.
+    """
     model, sensor = data.model, data.sensor
     forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     linear, damping = model.from_reflectance(spectra.T), np.zeros(len(rgb))
@@ -202,7 +227,8 @@ def with_least_change(data: CubeData, spectra: Array, rgb: Array) -> Array:
                 forward, linear, missed, damping
             )
             left = rgb.T - sensor.matrix @ model.to_reflectance(trial)
-        # As by Levenberg and Marquardt: the damping falls after a step that helped, and rises after one that did not.
+        # As by Levenberg and Marquardt: the damping falls after a step that helped, and
+        # rises after one that did not.
         better = (left**2).sum(axis=0) < (missed**2).sum(axis=0)
         linear, missed = np.where(better, trial, linear), np.where(better, left, missed)
         damping = np.where(
@@ -219,7 +245,9 @@ def regress(
     ridge: float,
     leave_out: bool = False,
 ) -> Array:
-    """Local-linear predictions (n, N) at linear RGB (n, 3); ``leave_out`` gives no weight to a query's own row."""
+    """Local-linear predictions (n, N) at linear RGB (n, 3); ``leave_out`` gives no
+    weight to a query's own row.
+    """
     colours = np.clip(sensor.rgb(known), 0, 1)
     squares = cdist(rgb_to_lab(sensor, rgb), rgb_to_lab(sensor, colours), "sqeuclidean")
     if leave_out:

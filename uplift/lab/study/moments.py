@@ -1,7 +1,9 @@
-"""Loss of trigonometric moments: four techniques and several counts, measured on atlases.
+"""Loss of trigonometric moments: four techniques and several counts, measured on
+atlases.
 
-Every measured spectrum is reduced to its moments, reconstructed, and compared with the measurement, as in Tódová 2020,
-*Constrained Spectral Uplifting*, table 4.1, sections 2.2.1 and 4.1.1, and appendix B.1.
+Every measured spectrum is reduced to its moments, reconstructed, and compared with the
+measurement, as in Tódová 2020, *Constrained Spectral Uplifting*, table 4.1, sections
+2.2.1 and 4.1.1, and appendix B.1.
 """
 
 from collections.abc import Mapping
@@ -26,9 +28,11 @@ from uplift.scene.representations import samples
 class Technique:
     """A mapping of the spectrum to the circle.
 
-    ``mirrored``: map [start, end] nm to the half circle [−π, 0] and mirror it, which makes the moments real.
+    ``mirrored``: map [start, end] nm to the half circle [−π, 0] and mirror it, which
+    makes the moments real.
         Otherwise the range covers the circle [−π, π], and its two ends meet.
-    ``warped``: warp the phase towards wavelengths to which the eye is sensitive, by the ``warp`` of this name.
+    ``warped``: warp the phase towards wavelengths to which the eye is sensitive, by the
+    ``warp`` of this name.
     """
 
     mirrored: bool
@@ -43,7 +47,10 @@ class Technique:
     @property
     def label(self) -> str:
         """Full name, such as ``mirrored, warped``."""
-        return f"{'mirrored' if self.mirrored else 'unmirrored'}, {'warped' if self.warped else 'unwarped'}"
+        return (
+            f"{'mirrored' if self.mirrored else 'unmirrored'}, "
+            f"{'warped' if self.warped else 'unwarped'}"
+        )
 
     def floats(self, moments: int) -> int:
         """Real numbers stored per spectrum."""
@@ -57,13 +64,14 @@ class Technique:
     def moments(
         self, reflectance: Array, wavelengths: ArrayLike, moments: int
     ) -> Complex | Array:
-        """Moments (n, moments + 1) of reflectances (n, N), exact for the interpolant that is linear in the phase.
+        """Moments (n, moments + 1) of reflectances (n, N), exact for the interpolant
+        that is linear in the phase.
 
         Samples within [0, 1] have moments of a reflectance.
         """
         phase = self.phase(wavelengths)
-        # Integrals of g exp(−ijφ) dφ by parts, twice: a term of the two ends, and the slopes of g times the change of
-        # exp(−ijφ) in each interval.
+        # Integrals of g exp(−ijφ) dφ by parts, twice: a term of the two ends, and the
+        # slopes of g times the change of exp(−ijφ) in each interval.
         orders = np.arange(1, moments + 1)
         turn = np.exp(-1j * phase[:, None] * orders)
         ends = reflectance[:, -1:] * turn[-1] - reflectance[:, :1] * turn[0]
@@ -97,15 +105,21 @@ TECHNIQUES = tuple(
 
 
 DEFAULT_MAX_MOMENTS, MAX_MOMENTS = 15, 32
-"""Largest number of moments above the zeroth: in the thesis, and of cosines that a 5 nm grid still resolves."""
+"""Largest number of moments above the zeroth: in the thesis, and of cosines that a 5 nm
+grid still resolves.
+"""
 MEASURES = ("delta_e_76_D65", *(f"delta_e_00_{name}" for name in REPORT_LIGHTS), "rms")
-"""Error measures: ΔE76 under D65 as in the thesis, ΔE00 under every light, rms difference of the spectra."""
+"""Error measures: ΔE76 under D65 as in the thesis, ΔE00 under every light, rms
+difference of the spectra.
+"""
 ALL_ATLASES = "all"
 """Name of the group of all entries."""
 
 
 class MomentsResult(NamedTuple):
-    """Mean and largest errors (len(MEASURES),) of a group, and the entry with the largest ΔE76."""
+    """Mean and largest errors (len(MEASURES),) of a group, and the entry with the
+    largest ΔE76.
+    """
 
     mean: Array
     max: Array
@@ -116,9 +130,10 @@ class MomentsResult(NamedTuple):
 class MomentsStudy:
     """Errors of every entry for every technique and number of moments.
 
-    ``names``, ``atlases``: names and atlases of the E entries.
-    ``measured`` (E, N): reflectances at `uplift.scene.representations.samples.wavelengths`.
-    ``errors`` (4, max_moments + 1, E, len(MEASURES)): errors, by the order of `TECHNIQUES` and by moments from 0.
+    ``names``, ``atlases``: names and atlases of the E entries. ``measured`` (E, N):
+    reflectances at `uplift.scene.representations.samples.wavelengths`. ``errors`` (4,
+    max_moments + 1, E, len(MEASURES)): errors, by the order of `TECHNIQUES` and by
+    moments from 0.
     """
 
     names: tuple[str, ...]
@@ -157,7 +172,9 @@ class MomentsStudy:
         )
 
     def curves(self) -> dict[Technique, Array]:
-        """Numbers stored, mean and largest ΔE76 (max_moments + 1, 3) of all entries together, by technique."""
+        """Numbers stored, mean and largest ΔE76 (max_moments + 1, 3) of all entries
+        together, by technique.
+        """
         floats = [
             [technique.floats(n) for n in range(self.max_moments + 1)]
             for technique in TECHNIQUES
@@ -167,7 +184,9 @@ class MomentsStudy:
         return dict(zip(TECHNIQUES, curves, strict=True))
 
     def records(self) -> list[dict[str, Any]]:
-        """Return a flat record for every group, technique and count, with mean and maximum of every measure."""
+        """Return a flat record for every group, technique and count, with mean and
+        maximum of every measure.
+        """
         return [
             self._record(*each)
             for each in product(self.groups, TECHNIQUES, range(self.max_moments + 1))
@@ -201,7 +220,9 @@ def study_moments(
     max_moments: int = DEFAULT_MAX_MOMENTS,
     progress: ProgressCallback = ignore_progress,
 ) -> MomentsStudy:
-    """Reduce every entry to 0 … ``max_moments`` moments, and reconstruct it, by all four techniques."""
+    """Reduce every entry to 0 … ``max_moments`` moments, and reconstruct it, by all
+    four techniques.
+    """
     if not 0 <= max_moments <= MAX_MOMENTS:
         raise OptionError(
             f"max_moments must be in [0, {MAX_MOMENTS}], got {max_moments}"

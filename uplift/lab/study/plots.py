@@ -1,4 +1,6 @@
-"""Figures of the studies: reconstructions from moments, failures of builds, and how far an entry affects a cube."""
+"""Figures of the studies: reconstructions from moments, failures of builds, and how far
+an entry affects a cube.
+"""
 
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
@@ -25,7 +27,9 @@ from uplift.viz.figure import (
 )
 
 FLOATS = 9
-"""Numbers stored of the spectra that are drawn, as in figures 4.1 and 4.2 of the thesis."""
+"""Numbers stored of the spectra that are drawn, as in figures 4.1 and 4.2 of the
+thesis.
+"""
 PATCHES = ("neutral 5 (.70 D)", "blue flower")
 """Patches of the ColorChecker in the thesis."""
 WARPED, UNWARPED = TECHNIQUES[:2]
@@ -42,9 +46,11 @@ UNWARPED_STYLE: dict[str, Any] = {
 def plot_errors(
     rows: Mapping[str, Mapping[Technique, Array]], path: StrPath, *, force: bool = False
 ) -> None:
-    """Write mean and largest ΔE76 over the numbers stored as PNG, a row of panels per name.
+    """Write mean and largest ΔE76 over the numbers stored as PNG, a row of panels per
+    name.
 
-    Each technique has an array (n, 3) of numbers stored, mean and largest error, as of `MomentsStudy.curves`.
+    Each technique has an array (n, 3) of numbers stored, mean and largest error, as of
+    `MomentsStudy.curves`.
     """
     figure = new_figure(9.0, 0.7 + 3.3 * len(rows))
     panels = figure.subplots(len(rows), 2, sharex=True, sharey=True, squeeze=False)
@@ -79,7 +85,9 @@ def plot_errors(
 
 
 def plot_patches(study: MomentsStudy, path: StrPath, *, force: bool = False) -> None:
-    """Write the patches of the thesis, or the first entries of other atlases, as PNG."""
+    """Write the patches of the thesis, or the first entries of other
+    atlases, as PNG.
+    """
     patches = [study.names.index(name) for name in PATCHES if name in study.names]
     _plot_spectra(
         study, [patches or range(min(2, len(study.names)))], path, force=force
@@ -101,7 +109,9 @@ def _drawn_moments(study: MomentsStudy) -> int:
 def _plot_spectra(
     study: MomentsStudy, rows: Sequence[Iterable[int]], path: StrPath, *, force: bool
 ) -> None:
-    """Draw a panel for every entry, measured and reconstructed; all rows have equal lengths."""
+    """Draw a panel for every entry, measured and reconstructed; all rows have equal
+    lengths.
+    """
     entries, moments = [list(row) for row in rows], _drawn_moments(study)
     figure = new_figure(9.0, 3.6 * len(entries))
     panels = figure.subplots(len(entries), len(entries[0]), squeeze=False)
@@ -128,7 +138,10 @@ def _plot_spectra(
         style_spectrum_axes(axes)
         # Dark entries fill their panel, with room for the legend above.
         axes.set_ylim(0, min(1.02, 1.5 * measured.max() + 0.02))
-        title = f"{study.names[entry]} ({study.atlases[entry]}), mirrored, {pluralise(moments + 1, 'number')}"
+        title = (
+            f"{study.names[entry]} ({study.atlases[entry]}), mirrored, "
+            f"{pluralise(moments + 1, 'number')}"
+        )
         axes.set_title(figure_text(title), loc="left", fontsize=10)
         axes.legend(frameon=False, fontsize=9)
     for axes in panels[:, 1:].flat:
@@ -141,16 +154,19 @@ def _plot_spectra(
 PANELS = ("model", "space", "threshold", "dim", "atlas")
 """Options of builds, each with a panel in the figure of failures."""
 RATIOS = (1e-3, 3.0)
-"""Range of that figure: largest residual over the threshold; smaller ones are drawn at its left end."""
+"""Range of that figure: largest residual over the threshold; smaller ones are drawn at
+its left end.
+"""
 
 
 def plot_map(
     runs: Sequence[Mapping[str, Any]], path: StrPath, *, force: bool = False
 ) -> None:
-    """Write the largest residual of realisable nodes over the threshold as PNG: a dot for each build, in every panel.
+    """Write the largest residual of realisable nodes over the threshold as PNG: a dot
+    for each build, in every panel.
 
-    Dots to the right of the line are failures, hollow ones builds with failed stand-ins of unrealisable nodes. ``runs``
-    are records of `uplift.lab.study.stability.run`.
+    Dots to the right of the line are failures, hollow ones builds with failed stand-ins
+    of unrealisable nodes. ``runs`` are records of `uplift.lab.study.stability.run`.
     """
     names = [
         each["model"]
@@ -207,7 +223,9 @@ BINS = 40
 def plot_locality(
     changes: Sequence[Change], path: StrPath, *, force: bool = False
 ) -> None:
-    """Write the changes of nodes by an entry left out, over the distance from it, as PNG."""
+    """Write the changes of nodes by an entry left out, over the distance from it, as
+    PNG.
+    """
     changes = [change for change in changes if change.description.endswith("left out")]
     figure = new_figure(10.0, 4.0)
     panels = figure.subplots(1, 2, sharey=True)

@@ -25,15 +25,21 @@ from uplift.pipeline.options import recorded_options
 
 COLOURS = 4096
 CONTINUOUS_MODES = tuple(mode for mode in MODES if mode != "nearest")
-"""Modes in which answers depend continuously on the query; the nearest node changes abruptly."""
+"""Modes in which answers depend continuously on the query; the nearest node changes
+abruptly.
+"""
 CODE_STEPS = {"1/255": 1.0, "1/1023": 255 / 1023}
 """Steps of one code of 8 and of 10 bits, in 8-bit codes."""
 ROUNDING, ROUNDING_STEP = "1e-7", 1e-7
 """Rounding of a float32, in linear RGB."""
 NOISE, NOISE_DRAWS = 0.002, 3
-"""Repeatability of a spectrophotometer: standard deviation of a reflectance; and the number of atlases with noise."""
+"""Repeatability of a spectrophotometer: standard deviation of a reflectance; and the
+number of atlases with noise.
+"""
 HALVINGS, HALVED = 16, 16
-"""Halvings of a step, after which that of an 8-bit code is rounding, and number of colours whose steps are halved."""
+"""Halvings of a step, after which that of an 8-bit code is rounding, and number of
+colours whose steps are halved.
+"""
 MOVED_DELTA_E = 0.5
 """ΔE00 above which a node counts as moved: half of a just noticeable difference."""
 Record = dict[str, Any]
@@ -45,9 +51,10 @@ Answer = Callable[[Array], Array]
 class Change:
     """Effect of a change of the atlas on n nodes.
 
-    ``rms`` (n,): change of the spectra, rms over wavelength. ``delta_e`` (n,): the same, ΔE00 under a light.
-    ``distance`` (2, n): in linear RGB and in ΔE*ab from the nearer of the old and the new colour of the changed entry;
-    None if all entries changed.
+    ``rms`` (n,): change of the spectra, rms over wavelength. ``delta_e`` (n,): the
+    same, ΔE00 under a light. ``distance`` (2, n): in linear RGB and in ΔE*ab from the
+    nearer of the old and the new colour of the changed entry; None if all entries
+    changed.
     """
 
     description: str
@@ -61,7 +68,9 @@ class Change:
         return np.asarray(self.delta_e > MOVED_DELTA_E)
 
     def record(self) -> Record:
-        """Convert to JSON values; the radii are the largest distances of moved nodes, 0 if no node moved."""
+        """Convert to JSON values; the radii are the largest distances of moved nodes, 0
+        if no node moved.
+        """
         radii = (
             [None, None]
             if self.distance is None
@@ -82,7 +91,8 @@ def study_sensitivity(
     entries: int,
     progress: ProgressCallback = ignore_progress,
 ) -> tuple[list[Record], list[Change]]:
-    """Perturb queries, and rebuild the cube with changes of its atlas, ``entries`` of them one at a time.
+    """Perturb queries, and rebuild the cube with changes of its atlas, ``entries`` of
+    them one at a time.
 
     Returns the changes of the answers, and those of the nodes, none without an atlas.
     """
@@ -106,13 +116,15 @@ def study_sensitivity(
 
 
 def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Record]:
-    """Move random colours, uniform in 8-bit codes, by every step and compare the answers of every mode.
+    """Move random colours, uniform in 8-bit codes, by every step and compare the
+    answers of every mode.
 
-    Every channel moves up or down, at random, by the full step. ``rms`` is the change of the reflectance over
-    wavelength, ``largest`` that at any wavelength; ``light`` and ``own`` are ΔE00 under a light and under the
-    illuminant of the cube, where the change of the query causes it. ``_mean`` and ``_most`` are over the colours.
-    ``jump`` is the largest ΔE00 under the light that remains when steps are halved: 0 but for rounding, unless answers
-    jump.
+    Every channel moves up or down, at random, by the full step. ``rms`` is the change
+    of the reflectance over wavelength, ``largest`` that at any wavelength; ``light``
+    and ``own`` are ΔE00 under a light and under the illuminant of the cube, where the
+    change of the query causes it. ``_mean`` and ``_most`` are over the colours.
+    ``jump`` is the largest ΔE00 under the light that remains when steps are halved: 0
+    but for rounding, unless answers jump.
     """
     lights = light, cube.data.sensor.light
     moves: list[Record] = []
@@ -130,7 +142,9 @@ def perturb_answers(
     lights: tuple[Light, Light],
     count: int = COLOURS,
 ) -> list[Record]:
-    """Perturb the queries of a function, as `perturb` does; of two lights the second one defines its RGB."""
+    """Perturb the queries of a function, as `perturb` does; of two lights the second
+    one defines its RGB.
+    """
     rng = np.random.default_rng(5)
     codes = rng.uniform(1, 254, (count, 3))
     signs = rng.choice([-1.0, 1.0], (count, 3))
@@ -157,7 +171,9 @@ def perturb_answers(
 
 
 def _largest_jump(answer: Answer, light: Light, first: Array, second: Array) -> float:
-    """Halve the steps between colours (n, 3), keep the halves with the larger ΔE00, and return the largest one left."""
+    """Halve the steps between colours (n, 3), keep the halves with the larger ΔE00, and
+    return the largest one left.
+    """
     before, after = answer(first), answer(second)
     for _ in range(HALVINGS):
         middle = (first + second) / 2
@@ -180,10 +196,11 @@ def _largest_jump(answer: Answer, light: Light, first: Array, second: Array) -> 
 def changed_atlases(
     entries: Sequence[Entry], names: Sequence[str]
 ) -> Iterator[tuple[str, str, list[Entry]]]:
-    """Yield descriptions of changes, the changed entry, empty if all changed, and the changed entries.
+    """Yield descriptions of changes, the changed entry, empty if all changed, and the
+    changed entries.
 
-    Changes are `NOISE` on all entries, an entry with its wavelengths in reverse order, as an example of a wrong
-    measurement, and an entry left out.
+    Changes are `NOISE` on all entries, an entry with its wavelengths in reverse order,
+    as an example of a wrong measurement, and an entry left out.
     """
     for seed in range(NOISE_DRAWS):
         rng = np.random.default_rng(seed)
@@ -209,7 +226,9 @@ def changed_atlases(
 def compare(
     before: CubeData, after: CubeData, light: Light, description: str, name: str = ""
 ) -> Change:
-    """Compare the nodes of a cube with those after a change of its atlas, of all entries or of a named one."""
+    """Compare the nodes of a cube with those after a change of its atlas, of all
+    entries or of a named one.
+    """
     spectra = [
         reflectance(data.model, data.points.coefficients, data.sensor.wavelengths)
         for data in (before, after)
@@ -237,7 +256,9 @@ def compare(
 
 
 def rebuild(entries: Sequence[Entry], options: Record) -> CubeData:
-    """Build a cube from entries without warnings, as those of changed entries are expected."""
+    """Build a cube from entries without warnings, as those of changed entries are
+    expected.
+    """
     with warnings.catch_warnings(action="ignore", category=UpliftWarning):
         return build(Atlas(tuple(entries)), **options).data
 

@@ -1,7 +1,9 @@
-"""Failures of the fit: builds over lattice sizes, models, RGB spaces, thresholds and atlases.
+"""Failures of the fit: builds over lattice sizes, models, RGB spaces, thresholds and
+atlases.
 
-A grid varies one axis against the model variants, with the other axes at values for which it has an effect. A Latin
-hypercube sample of all combinations covers the rest. Synthetic atlases are difficult to fit.
+A grid varies one axis against the model variants, with the other axes at values for
+which it has an effect. A Latin hypercube sample of all combinations covers the rest.
+Synthetic atlases are difficult to fit.
 """
 
 import time
@@ -28,7 +30,9 @@ from uplift.pipeline.options import ModelName
 CROWDED_ENTRIES, ENTRIES = 120, 24
 """Numbers of entries of the crowded atlas and of the others."""
 ATLAS_NOISE = 0.05
-"""Standard deviation of the reflectances of the noisy atlas, as of a poor instrument in a dark room."""
+"""Standard deviation of the reflectances of the noisy atlas, as of a poor instrument in
+a dark room.
+"""
 PEAK_HALF_WIDTH = 8.0
 """Half-width in nm of the peaks of the spiky atlas."""
 HIGHEST = 1.05
@@ -49,7 +53,9 @@ def crowded() -> Atlas:
 
 
 def spiky() -> Atlas:
-    """Make spectra of two narrow peaks on black, or two narrow dips on white, which few moments cannot represent."""
+    """Make spectra of two narrow peaks on black, or two narrow dips on white, which few
+    moments cannot represent.
+    """
     rng, spectra = np.random.default_rng(2), []
     for number in range(ENTRIES):
         offset = observer.grid()[:, None] - rng.uniform(430, 670, 2)
@@ -123,7 +129,9 @@ def study_stability(
     atlases: Mapping[str, Atlas],
     progress: ProgressCallback = ignore_progress,
 ) -> dict[RunConfig, Record]:
-    """Run every configuration once, ordered by model so that compiled functions are reused."""
+    """Run every configuration once, ordered by model so that compiled functions are
+    reused.
+    """
     ordered = sorted(set(configs))
     for config in ordered:
         if config.atlas not in (NO_ATLAS, *atlases):
@@ -136,14 +144,17 @@ def study_stability(
 
 
 def run(config: RunConfig, atlases: Mapping[str, Atlas]) -> Record:
-    """Build one configuration, count the realisable nodes that failed, and find the worst.
+    """Build one configuration, count the realisable nodes that failed, and find the
+    worst.
 
-    The record has the options; the share ``success`` of the realisable nodes that are fitted; ``points``, all nodes;
-    ``realisable``, those whose colour some reflectance has; ``unfitted``, realisable nodes farther from their colour
-    than the threshold; ``stand_ins``, unrealisable ones farther from the realisable colour that they are fitted to;
-    ``rounds`` of growth after the first; ``calls``, nodes that improvement was tried on, summed over its steps;
-    ``worst``, the largest distance of a realisable node, max |linear RGB|, and its colour ``r``, ``g``, ``b``;
-    ``seconds`` of wall time, including compilation.
+    The record has the options; the share ``success`` of the realisable nodes that are
+    fitted; ``points``, all nodes; ``realisable``, those whose colour some reflectance
+    has; ``unfitted``, realisable nodes farther from their colour than the threshold;
+    ``stand_ins``, unrealisable ones farther from the realisable colour that they are
+    fitted to; ``rounds`` of growth after the first; ``calls``, nodes that improvement
+    was tried on, summed over its steps; ``worst``, the largest distance of a realisable
+    node, max |linear RGB|, and its colour ``r``, ``g``, ``b``; ``seconds`` of wall
+    time, including compilation.
     """
     steps = [0]
     options = asdict(config)
@@ -175,7 +186,9 @@ def run(config: RunConfig, atlases: Mapping[str, Atlas]) -> Record:
 
 SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 SMALL_DIM = 9
-"""Size of slow builds: thresholds near the rounding of stored numbers, in wide-gamut spaces."""
+"""Size of slow builds: thresholds near the rounding of stored numbers, in wide-gamut
+spaces.
+"""
 MAX_SAMPLED_DIM = 17
 """Largest size in the sample."""
 SEED = 4
@@ -185,7 +198,8 @@ SEED = 4
 class DesignSpace:
     """Values of each axis of the design, and the size of the Latin hypercube sample.
 
-    Grids vary one axis at the other values of `RunConfig`, in a lattice of the size that is nearest to its own.
+    Grids vary one axis at the other values of `RunConfig`, in a lattice of the size
+    that is nearest to its own.
     """
 
     dims: tuple[int, ...] = (4, 8, 17, 32, 64)
@@ -221,7 +235,9 @@ class DesignSpace:
                 yield replace(variant, **fixed | {axis: value})
 
     def sample(self) -> tuple[RunConfig, ...]:
-        """Draw configurations up to `MAX_SAMPLED_DIM` from a Latin hypercube with a fixed seed."""
+        """Draw configurations up to `MAX_SAMPLED_DIM` from a Latin hypercube with a
+        fixed seed.
+        """
         from scipy.stats import qmc
 
         dims = [dim for dim in self.dims if dim <= MAX_SAMPLED_DIM]

@@ -1,6 +1,8 @@
-"""Plans: the smallest cube, wavelengths and texture format that keep a scene's colours within a tolerance.
+"""Plans: the smallest cube, wavelengths and texture format that keep a scene's colours
+within a tolerance.
 
-Each decision is measured on colours of the scene's own textures; docs/plan.md describes the method.
+Each decision is measured on colours of the scene's own textures; docs/plan.md describes
+the method.
 
     from uplift.scene import plan
 

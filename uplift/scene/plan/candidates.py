@@ -1,4 +1,6 @@
-"""Candidates of a plan, what they cost (bytes, operations per pixel and light, samples per ray), and the search."""
+"""Candidates of a plan, what they cost (bytes, operations per pixel and light, samples
+per ray), and the search.
+"""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -31,10 +33,11 @@ MODELS: Mapping[str, tuple[int, ...]] = {
 class SearchGrid:
     """Candidates, in ascending order, and sizes of the pixel samples.
 
-    ``models`` are numbers of coefficients of moments by warp. ``samples`` are numbers of wavelengths, which other
-    representations are compared with if ``others``. The reference has the last number of coefficients without a warp,
-    and ``reference`` nodes along each axis. Candidates are chosen by ``predicting`` pixels and verified on
-    ``confirming`` ones.
+    ``models`` are numbers of coefficients of moments by warp. ``samples`` are numbers
+    of wavelengths, which other representations are compared with if ``others``. The
+    reference has the last number of coefficients without a warp, and ``reference``
+    nodes along each axis. Candidates are chosen by ``predicting`` pixels and verified
+    on ``confirming`` ones.
     """
 
     models: Mapping[str, tuple[int, ...]] = field(default_factory=lambda: MODELS)
@@ -64,15 +67,16 @@ DEPTHS: dict[str, np.dtype[Any]] = {
     "float": np.dtype(np.float32),
 }
 RGB, INDEX = "rgb", "index"
-"""Forms of pixels without a pixel encoding: colours, and numbers of a list of spectra."""
+"""Forms of pixels without a pixel encoding: colours, and numbers of a list of spectra.
+"""
 
 
 class Cost(NamedTuple):
     """Costs of a candidate.
 
-    ``memory``: bytes of the cube file, of a list of spectra, and of the pixels of all textures.
-    ``time``: floating-point operations of a pixel that one light illuminates: its lookup, the product with the light,
-    and the share of a sample in the sum to XYZ.
+    ``memory``: bytes of the cube file, of a list of spectra, and of the pixels of all
+    textures. ``time``: floating-point operations of a pixel that one light illuminates:
+    its lookup, the product with the light, and the share of a sample in the sum to XYZ.
     ``samples``: numbers of a ray.
     """
 
@@ -81,7 +85,9 @@ class Cost(NamedTuple):
     samples: float
 
     def ranked(self, minimise: Minimised) -> tuple[float, ...]:
-        """Sort key: the minimised cost, and the product of all three where that is equal."""
+        """Sort key: the minimised cost, and the product of all three where that is
+        equal.
+        """
         product = prod(self)
         return (
             (product,) if minimise == "balance" else (getattr(self, minimise), product)
@@ -90,10 +96,12 @@ class Cost(NamedTuple):
 
 @dataclass(frozen=True)
 class Pixel:
-    """What a texture stores per pixel: a pixel encoding, RGB, or an index; and a renderer does with it.
+    """What a texture stores per pixel: a pixel encoding, RGB, or an index; and a
+    renderer does with it.
 
-    ``depth`` is "half" or "float", empty for the numbers of the image itself, and ``mode`` the lookup in the cube that
-    RGB need: "spectra" or "moments", as programs of ``uplift export`` have them.
+    ``depth`` is "half" or "float", empty for the numbers of the image itself, and
+    ``mode`` the lookup in the cube that RGB need: "spectra" or "moments", as programs
+    of ``uplift export`` have them.
     """
 
     form: str
@@ -112,15 +120,18 @@ class Pixel:
         )
 
     def size(self, count: int, samples: int) -> int:
-        """Bytes of a pixel of a texture for a cube of ``count`` coefficients, 0 for the numbers of the image itself."""
+        """Bytes of a pixel of a texture for a cube of ``count`` coefficients, 0 for the
+        numbers of the image itself.
+        """
         numbers = samples if self.form == texture.Spectrum.name else count
         return numbers * DEPTHS[self.depth].itemsize if self.depth else 0
 
     def operations(self, cube: Options, samples: int) -> int:
         """Floating-point operations until the reflectances of a pixel are known.
 
-        Sums of cosines by Clenshaw's recurrence and an arctangent are 4 C + 15 for each sample, a sigmoid 10. From
-        moments to multipliers there are 28 C² (docs/mathematics.md, 4), between eight nodes 16 for each number.
+        Sums of cosines by Clenshaw's recurrence and an arctangent are 4 C + 15 for each
+        sample, a sigmoid 10. From moments to multipliers there are 28 C²
+        (docs/mathematics.md, 4), between eight nodes 16 for each number.
         """
         count, is_sigmoid = cube.coefficients, cube.model == Sigmoid.name
         evaluation = samples * (10 if is_sigmoid else 4 * count + 15)
@@ -134,7 +145,8 @@ class Pixel:
         }[self.mode or self.form]
 
     def decoded(self, cube: Cube, rgb: Array, nm: Array) -> Array:
-        """Reflectances (n, W) at wavelengths (W,) in nm that a renderer reads for linear RGB (n, 3).
+        """Reflectances (n, W) at wavelengths (W,) in nm that a renderer reads for
+        linear RGB (n, 3).
 
         NaN where no spectrum has the rounded moments.
         """
@@ -169,10 +181,11 @@ PIXELS = (
 
 @dataclass(frozen=True)
 class Candidate:
-    """A complete choice: pixels, wavelengths or None for RGB × light, a cube with all cells or those of the textures.
+    """A complete choice: pixels, wavelengths or None for RGB × light, a cube with all
+    cells or those of the textures.
 
-    Without a cube, pixels are RGB or an index. ``bound`` is a lower bound of its ΔE00, ``error`` that of the test
-    colours once it is measured.
+    Without a cube, pixels are RGB or an index. ``bound`` is a lower bound of its ΔE00,
+    ``error`` that of the test colours once it is measured.
     """
 
     pixel: Pixel
@@ -221,11 +234,14 @@ Measure = Callable[[Options | None, Sequence[Candidate]], list[Candidate]]
 def explore(
     candidates: Iterable[Candidate], measure: Measure, floor: float
 ) -> list[Candidate]:
-    """Measure the candidates that may be on the Pareto front, by branch and bound, cubes of few bytes first.
+    """Measure the candidates that may be on the Pareto front, by branch and bound,
+    cubes of few bytes first.
 
-    Candidates that share a cube are measured together, as they cost one build. One is left out if a measured one
-    dominates it: no cost is larger, and its error is at most the lower bound of the other's. Errors below the ``floor``
-    count as equal. If every bound holds, none that is left out costs less than the cheapest measured one of its error.
+    Candidates that share a cube are measured together, as they cost one build. One is
+    left out if a measured one dominates it: no cost is larger, and its error is at most
+    the lower bound of the other's. Errors below the ``floor`` count as equal. If every
+    bound holds, none that is left out costs less than the cheapest measured one of its
+    error.
     """
     groups: dict[Options | None, list[Candidate]] = defaultdict(list)
     for candidate in candidates:
@@ -245,7 +261,9 @@ def explore(
 
 
 def front(rows: Array) -> list[int]:
-    """Numbers of the rows (m, k) that no other dominates, smallest rows first; of equal rows the first."""
+    """Numbers of the rows (m, k) that no other dominates, smallest rows first; of equal
+    rows the first.
+    """
     kept: list[int] = []
     for row in np.lexsort(
         rows.T[::-1]
@@ -263,7 +281,9 @@ def positions(measured: Sequence[Candidate], floor: float = 0.0) -> Array:
 
 
 def pareto_front(measured: Sequence[Candidate]) -> list[Candidate]:
-    """Candidates that no other dominates in cost and error, by ascending error; one of equal ones."""
+    """Candidates that no other dominates in cost and error, by ascending error; one of
+    equal ones.
+    """
     return sorted(
         (measured[row] for row in front(positions(measured))),
         key=lambda each: each.error.quantile,

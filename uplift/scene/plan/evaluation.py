@@ -1,4 +1,6 @@
-"""Colour errors on test colours under the lights of the scene: of any XYZ, of few wavelengths, of RGB times light."""
+"""Colour errors on test colours under the lights of the scene: of any XYZ, of few
+wavelengths, of RGB times light.
+"""
 
 import contextlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -22,9 +24,13 @@ WORST_DELTA_E = 100.0
 FEW = 200
 """Colours of each group that wavelengths are fitted to."""
 DIGITS = 2
-"""Decimals of a wavelength in nm, so that the measured wavelengths are those of the command line."""
+"""Decimals of a wavelength in nm, so that the measured wavelengths are those of the
+command line.
+"""
 SAMPLE_OPERATIONS = 7
-"""Operations for a product of light and surface at one wavelength, and its share in the sum to XYZ."""
+"""Operations for a product of light and surface at one wavelength, and its share in the
+sum to XYZ.
+"""
 MAX_MEYER = 12
 """Meyer's wavelengths that are tried; more take long."""
 FAMILIES = ("PS", "PF", "RS", "RE", "CS", "GQ", "LM")
@@ -33,7 +39,9 @@ FAMILIES = ("PS", "PF", "RS", "RE", "CS", "GQ", "LM")
 
 @dataclass(frozen=True)
 class GroupError:
-    """ΔE00 of a group under one light: weighted mean, the quantile of the scene, and the largest."""
+    """ΔE00 of a group under one light: weighted mean, the quantile of the scene, and
+    the largest.
+    """
 
     group: str
     light: str
@@ -64,11 +72,13 @@ UNMEASURED = ErrorSummary(())
 
 @dataclass(frozen=True, eq=False)
 class Rendering:
-    """Numbers that a renderer traces in place of a spectrum, and the ``error`` of the spectra of the reference.
+    """Numbers that a renderer traces in place of a spectrum, and the ``error`` of the
+    spectra of the reference.
 
-    ``samples`` of a ray, ``operations`` of a product of light and surface with its share in the sum to XYZ, numbers of
-    a ``surface``, and ``xyz``, from reflectances (n, W) at ``wavelengths`` (W,) in nm to XYZ (K, n, 3) under the
-    lights. ``sampling`` is None for representations that are not wavelengths.
+    ``samples`` of a ray, ``operations`` of a product of light and surface with its
+    share in the sum to XYZ, numbers of a ``surface``, and ``xyz``, from reflectances
+    (n, W) at ``wavelengths`` (W,) in nm to XYZ (K, n, 3) under the lights. ``sampling``
+    is None for representations that are not wavelengths.
     """
 
     name: str
@@ -82,7 +92,9 @@ class Rendering:
 
     @classmethod
     def of_sampling(cls, name: str, sampling: Sampling) -> "Rendering":
-        """Return the rendering with the wavelengths of a sampling, rounded to `DIGITS` and all distinct."""
+        """Return the rendering with the wavelengths of a sampling, rounded to `DIGITS`
+        and all distinct.
+        """
         count = len(sampling)
         steps = np.arange(count) / 10**DIGITS
         nm = np.round(
@@ -104,10 +116,12 @@ class Rendering:
 
 @dataclass(frozen=True, eq=False)
 class EvaluationSet:
-    """Test colours: n spectra under the lights of the scene, linear RGB (n, 3), and weights (n,).
+    """Test colours: n spectra under the lights of the scene, linear RGB (n, 3), and
+    weights (n,).
 
-    The spectra are those of the ``reference``, or measured. Weights have the sum 1 in each group, a slice of the rows
-    with one statistic. ``quantile`` is the share of the colours whose largest ΔE00 is the error of a group.
+    The spectra are those of the ``reference``, or measured. Weights have the sum 1 in
+    each group, a slice of the rows with one statistic. ``quantile`` is the share of the
+    colours whose largest ΔE00 is the error of a group.
     """
 
     reference: Cube
@@ -118,11 +132,15 @@ class EvaluationSet:
     quantile: float
 
     def xyz(self, reflectances: Array) -> Array:
-        """XYZ (K, n, 3) of reflectances (n, N) on the grid of the lights, where white has Y = 1."""
+        """XYZ (K, n, 3) of reflectances (n, N) on the grid of the lights, where white
+        has Y = 1.
+        """
         return replace(self.setup, reflectances=reflectances).xyz
 
     def subsample(self, count: int) -> Indices:
-        """Rows of at most ``count`` colours of each group, drawn at equal steps of the cumulative weight."""
+        """Rows of at most ``count`` colours of each group, drawn at equal steps of the
+        cumulative weight.
+        """
         found = []
         for rows in self.groups.values():
             drawn, size = np.arange(rows.start, rows.stop), rows.stop - rows.start
@@ -157,7 +175,9 @@ class EvaluationSet:
         return ErrorSummary(tuple(parts))
 
     def matrices(self) -> Array:
-        """Matrices (K, 3, 3) from linear RGB to XYZ under each light: least squares of small differences in ΔE00."""
+        """Matrices (K, 3, 3) from linear RGB to XYZ under each light: least squares of
+        small differences in ΔE00.
+        """
         xyz, whites = self.setup.xyz, self.setup.whites[:, None]
         # ΔE00 ≈ |F (M r − x)|
         factors = delta_e_2000_weights(self.setup.lab) @ lab_jacobian(xyz, whites)
@@ -179,10 +199,12 @@ def renderings(
     progress: ProgressCallback,
     others: str | None,
 ) -> list[Rendering]:
-    """Fit wavelengths, of ``counts`` in ascending order, up to an error of ``floor``; all of them if none reaches it.
+    """Fit wavelengths, of ``counts`` in ascending order, up to an error of ``floor``;
+    all of them if none reaches it.
 
-    Those that do not lower the error are left out. Meyer's wavelengths and other representations follow for an
-    observer of that name, ``others``, unless another rendering costs no more and is as accurate.
+    Those that do not lower the error are left out. Meyer's wavelengths and other
+    representations follow for an observer of that name, ``others``, unless another
+    rendering costs no more and is as accurate.
     """
 
     def measured(each: Rendering) -> Rendering:
@@ -267,7 +289,9 @@ def _represented_xyz(
     tests: EvaluationSet,
     reflectances: Array,
 ) -> Array:
-    """XYZ (K, n, 3) of dense reflectances (n, 401): those of the 5 nm table, and what the representation changes."""
+    """XYZ (K, n, 3) of dense reflectances (n, 401): those of the 5 nm table, and what
+    the representation changes.
+    """
     found = representation.reflected(powers, reflectances)
     exact = (powers[:, None] * reflectances) @ samples.xyz_weights()
     return tests.xyz(reflectances[:, :: samples.TABLE_STRIDE]) + found - exact

@@ -1,4 +1,6 @@
-"""Files of a plan: SCENE.toml, and the plan as `uplift build --plan` reads it. Both may come from a stranger."""
+"""Files of a plan: SCENE.toml, and the plan as `uplift build --plan` reads it. Both may
+come from a stranger.
+"""
 
 import glob
 import os
@@ -51,7 +53,10 @@ Minimised = Literal["balance", CostName]
 
 def _check_path(name: Any) -> str:
     if not isinstance(name, str) or not 0 < len(name) <= MAX_PATH or "\0" in name:
-        text = f"must be a path of 1 to {MAX_PATH} characters without null bytes, got {format_value(name)}"
+        text = (
+            f"must be a path of 1 to {MAX_PATH} characters without null bytes, got "
+            f"{format_value(name)}"
+        )
         raise problem(text, "name a file, or a pattern")
     return check_inside(name)
 
@@ -61,7 +66,9 @@ def _as_list(value: Any) -> Any:
 
 
 def _check_light(name: Any) -> str:
-    """Check the name of an illuminant, or else that of a file in the folder of the scene file."""
+    """Check the name of an illuminant, or else that of a file in the folder of the
+    scene file.
+    """
     if not isinstance(name, str):
         raise problem(f"must be text, got {format_value(name)}")
     try:
@@ -91,7 +98,8 @@ Observer = Annotated[str, resolves(observer.matching_functions)]
 
 @dataclass(frozen=True)
 class SceneFile:
-    """Contents of a scene file, by its keys. Paths are relative to the working directory, not to the file.
+    """Contents of a scene file, by its keys. Paths are relative to the working
+    directory, not to the file.
 
     Parameters
     ----------
@@ -106,10 +114,11 @@ class SceneFile:
     tolerance : float
         Tolerated ΔE00, in [0.01, 100].
     quantile : float
-        Share of the textures' pixels and of the atlas's entries that must stay within the tolerance under every
-        light, in [0.5, 1].
+        Share of the textures' pixels and of the atlas's entries that must stay within
+        the tolerance under every light, in [0.5, 1].
     minimise : str
-        Cost that the choice minimises: "memory", "time", "samples", or "balance", the product of all three.
+        Cost that the choice minimises: "memory", "time", "samples", or "balance", the
+        product of all three.
     limits : mapping
         Largest cost by name: "memory" in bytes, "time" in operations, "samples".
     sparse : bool
@@ -190,7 +199,9 @@ def read_scene_file(path: StrPath) -> SceneFile:
 def _read_lights(
     file: SpecFile, names: tuple[str, ...]
 ) -> tuple[tuple[Illuminant, ...], tuple[Path, ...]]:
-    """Return each light once, with lamps read from the folder of the scene file, and the files of the lamps."""
+    """Return each light once, with lamps read from the folder of the scene file, and
+    the files of the lamps.
+    """
     lights, files = list[Illuminant](), list[Path]()
     for number, name in enumerate(dict.fromkeys(names)):
         try:
@@ -218,7 +229,9 @@ def _read_lights(
 
 
 def _expand(file: SpecFile, key: str, names: tuple[Path, ...]) -> tuple[Path, ...]:
-    """Expand patterns in the folder of the scene file. Raises `PlanFileError` for names of no file."""
+    """Expand patterns in the folder of the scene file. Raises `PlanFileError` for names
+    of no file.
+    """
     folder, found = file.path.parent, list[Path]()
     for number, name in enumerate(map(str, names)):
         is_pattern = glob.has_magic(name) and not os.path.exists(folder / name)
@@ -243,7 +256,9 @@ def cube_name(plan_path: StrPath) -> str:
 
 @dataclass(frozen=True)
 class PlanFile:
-    """What a build needs of a plan: its unchanged sources, the ``options`` of the build, and whether it is sparse."""
+    """What a build needs of a plan: its unchanged sources, the ``options`` of the
+    build, and whether it is sparse.
+    """
 
     images: Images
     atlases: tuple[Path, ...]
@@ -277,7 +292,9 @@ class _Scene(SpecModel, extra="ignore"):
 
 
 def _check_options(values: dict[str, Any]) -> None:
-    """Raise `UpliftError` unless a build accepts the options and opens no file for them, as for a camera."""
+    """Raise `UpliftError` unless a build accepts the options and opens no file for
+    them, as for a camera.
+    """
     known = [field.name for field in fields(Options)]
     for name in values:
         if name not in known:
@@ -297,7 +314,9 @@ class _PlanTable(SpecModel, extra="ignore"):
 
 
 def read_plan(path: StrPath) -> PlanFile:
-    """Read a plan. Raises `PlanFileError`, also if a texture or an atlas is missing, has changed, or lies elsewhere."""
+    """Read a plan. Raises `PlanFileError`, also if a texture or an atlas is missing,
+    has changed, or lies elsewhere.
+    """
     file = read_json(path, PlanFileError)
     table = file.validate(_PlanTable, hint=HINT)
     if table.build is None:

@@ -1,4 +1,6 @@
-"""Plans: components are measured, cubes that may suffice are built, the choice is confirmed on other pixels."""
+"""Plans: components are measured, cubes that may suffice are built, the choice is
+confirmed on other pixels.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,7 +27,9 @@ from uplift.viz.format import format_error, format_size
 FINALISTS = 6
 """Candidates that are confirmed, at most."""
 CLEARLY_SMALLER = 0.97
-"""Share of the error of a candidate that was not confirmed; the next finalist has a smaller one."""
+"""Share of the error of a candidate that was not confirmed; the next finalist has a
+smaller one.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +55,9 @@ class Plan:
     spectra : tuple of ndarray, or None
         Colours (n, 3) and reflectances (n, W) of a list of spectra.
     expected_error : float or None
-        Mean standard error of the textures' colours under the worst light: the ΔE00 to expect between a measurement of
-        such a colour and any answer. None if the cube does not store standard errors.
+        Mean standard error of the textures' colours under the worst light: the ΔE00 to
+        expect between a measurement of such a colour and any answer. None if the cube
+        does not store standard errors.
     """
 
     scene: SceneFile
@@ -103,7 +108,8 @@ def plan(
     grid: SearchGrid | None = None,
     progress: ProgressCallback = ignore_progress,
 ) -> Plan:
-    """Search the cheapest sufficient cube, wavelengths and texture format for a scene, or less.
+    """Search the cheapest sufficient cube, wavelengths and texture format for a scene,
+    or less.
 
     Parameters
     ----------
@@ -122,7 +128,8 @@ def plan(
     Raises
     ------
     PlanFileError
-        If no candidate is within the tolerance, or within the limits as well (``no-candidate``).
+        If no candidate is within the tolerance, or within the limits as well
+        (``no-candidate``).
     AtlasError, TextureError
         If a file cannot be read.
     """
@@ -164,7 +171,9 @@ def plan(
 def _confirm(
     space: CandidateSpace, finalists: Sequence[Candidate]
 ) -> tuple[Candidate, ErrorSummary]:
-    """The first finalist within the tolerance on other pixels, or else the one of the smallest error there."""
+    """The first finalist within the tolerance on other pixels, or else the one of the
+    smallest error there.
+    """
     space.progress(Progress("confirmation", 0, 1))
     tests = space.evaluation_set(space.colours.confirming)
     tried: list[tuple[Candidate, ErrorSummary]] = []
@@ -185,7 +194,9 @@ def _confirm(
 
 
 def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileError:
-    """The error if no candidate is within the tolerance, or within the limits as well."""
+    """The error if no candidate is within the tolerance, or within the
+    limits as well.
+    """
     enough = sufficient(measured, scene.tolerance, scene.minimise, {})
     if enough:
         cost, allowance = enough[0].cost, enough[0].cost._replace(**scene.limits)
@@ -196,11 +207,17 @@ def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileErr
             " and ".join(cost_text(each, key) for key in over)
             for each in (cost, allowance)
         )
-        problem = f"the cheapest within {scene.tolerance:g} needs {needs}; limits allow {allowed}"
+        problem = (
+            f"the cheapest within {scene.tolerance:g} needs {needs}; limits allow "
+            f"{allowed}"
+        )
         hint = f"raise limits.{over[0]} or the tolerance"
     else:
         best = min(measured, key=lambda each: each.error.quantile).error.worst
-        found = f"the smallest error is ΔE00 {format_error(best.quantile)}, of {best.group} under {best.light}"
+        found = (
+            f"the smallest error is ΔE00 {format_error(best.quantile)}, of "
+            f"{best.group} under {best.light}"
+        )
         problem = f"{found}; tolerance allows {scene.tolerance:g}"
         hint = f"set tolerance = {np.ceil(best.quantile * 110) / 100:g} or more"
     return PlanFileError(

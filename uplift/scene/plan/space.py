@@ -1,7 +1,9 @@
-"""The candidates for a scene: their costs, lower bounds of their errors, and their measurement.
+"""The candidates for a scene: their costs, lower bounds of their errors, and their
+measurement.
 
-What a model of spectra, a lattice, and few wavelengths change is measured once each. Changes of XYZ by a model and by
-a lattice add, to predict the error of a cube. The squares of the errors of a cube and of the wavelengths add.
+What a model of spectra, a lattice, and few wavelengths change is measured once each.
+Changes of XYZ by a model and by a lattice add, to predict the error of a cube. The
+squares of the errors of a cube and of the wavelengths add.
 """
 
 import warnings
@@ -54,7 +56,9 @@ from uplift.scene.plan.files import SceneFile
 from uplift.scene.wavelengths import make_setup
 
 FLOOR, CEILING = 0.5, 2.0
-"""Shares of the tolerance below which errors count as equal, and above which candidates are not measured."""
+"""Shares of the tolerance below which errors count as equal, and above which candidates
+are not measured.
+"""
 MARGIN = 0.85
 """Share of a predicted error that is its lower bound."""
 FINE = 64
@@ -62,13 +66,17 @@ FINE = 64
 PROBE = 9
 """Coefficients of the cubes that measure lattices."""
 LEAST_BYTES, POINT_NUMBER = 4, 4
-"""Bytes of a coefficient, unless colours need 8, and of the number of a node in a sparse file."""
+"""Bytes of a coefficient, unless colours need 8, and of the number of a node in a
+sparse file.
+"""
 
 
 class CandidateSpace:
-    """A scene with its files read, and the candidates for it, measured with the pixels of the first sample.
+    """A scene with its files read, and the candidates for it, measured with the pixels
+    of the first sample.
 
-    ``materials`` are the atlas entries within the RGB space. Raises `AtlasError`, `TextureError`, `PlanFileError`.
+    ``materials`` are the atlas entries within the RGB space. Raises `AtlasError`,
+    `TextureError`, `PlanFileError`.
     """
 
     def __init__(
@@ -135,7 +143,9 @@ class CandidateSpace:
             )
 
     def evaluation_set(self, sample: PixelSample) -> EvaluationSet:
-        """Pixels with the spectra of a reference cube for them, and the materials as measured."""
+        """Pixels with the spectra of a reference cube for them, and the materials as
+        measured.
+        """
         rgb = np.concatenate([sample.rgb, self.materials.rgb])
         reference = self.cube(rgb, self.reference)
         spectra = np.concatenate(
@@ -155,9 +165,11 @@ class CandidateSpace:
         )
 
     def candidates(self) -> list[Candidate]:
-        """All candidates with their costs and the lower bounds of their errors; RGB alone is the first.
+        """All candidates with their costs and the lower bounds of their errors; RGB
+        alone is the first.
 
-        Cubes are left out where they cannot save anything: where RGB have no error, or colours are few.
+        Cubes are left out where they cannot save anything: where RGB have no error, or
+        colours are few.
         """
         colours = self.colours
         found = [Candidate(Pixel(RGB), Cost(colours.size, 3 * SAMPLE_OPERATIONS, 3))]
@@ -217,7 +229,8 @@ class CandidateSpace:
             choice = replace(model, dim=lattice.dim, axis=lattice.axis)
             of_cube = _quantiles(self.tests.error(self.base + by_model + by_lattice))
             for rendering in self.renderings:
-                # Errors of independent choices add in squares; both include that of the reference.
+                # Errors of independent choices add in squares; both include that of the
+                # reference.
                 squares = of_cube**2 + _quantiles(rendering.error) ** 2 - base**2
                 bound = MARGIN * float(np.sqrt(squares.max()))
                 candidates = list(
@@ -234,7 +247,9 @@ class CandidateSpace:
         rendering: Rendering,
         bound: float,
     ) -> Iterator[Candidate]:
-        """Candidates of a cube, of ``points`` nodes with all cells and with those of the textures, and a rendering."""
+        """Candidates of a cube, of ``points`` nodes with all cells and with those of
+        the textures, and a rendering.
+        """
         colours, count = self.colours, round(rendering.surface)
         for sparse, pixel in product((False, True)[: 1 + self.scene.sparse], PIXELS):
             if choice.model == Sigmoid.name and pixel.form == texture.Moments.name:
@@ -263,7 +278,9 @@ class CandidateSpace:
             )
 
     def _models(self) -> dict[Options, Array]:
-        """Changes of XYZ (K, n, 3) by models of spectra, on a fine lattice: the sigmoid, and moments of each warp."""
+        """Changes of XYZ (K, n, 3) by models of spectra, on a fine lattice: the
+        sigmoid, and moments of each warp.
+        """
         fine = replace(self.reference, dim=min(FINE, self.grid.reference))
         series = {
             warp: [replace(fine, coefficients=count, warp=warp) for count in counts]
@@ -273,7 +290,9 @@ class CandidateSpace:
         return self._changes("models of spectra", list(series.values()), fine)
 
     def _lattices(self) -> dict[Options, Array]:
-        """Changes of XYZ (K, n, 3) by lattices, with `PROBE` coefficients: more and more nodes along each axis."""
+        """Changes of XYZ (K, n, 3) by lattices, with `PROBE` coefficients: more and
+        more nodes along each axis.
+        """
         probe = replace(self.reference, coefficients=PROBE)
         series = [
             [replace(probe, dim=dim, axis=axis) for dim in self.grid.dims]
@@ -284,7 +303,9 @@ class CandidateSpace:
     def _changes(
         self, stage: str, series: Sequence[Sequence[Options]], finest: Options
     ) -> dict[Options, Array]:
-        """Changes of XYZ from the ``finest``, of each series up to the first below the floor."""
+        """Changes of XYZ from the ``finest``, of each series up to the first below the
+        floor.
+        """
         found, reference = dict[Options, Array](), self._xyz(finest)
         for done, choices in enumerate(series):
             self.progress(Progress(stage, done, len(series)))
@@ -304,7 +325,9 @@ class CandidateSpace:
         return self.cubes[choice]
 
     def _points(self, choice: Options) -> tuple[int, int]:
-        """Numbers of the nodes of a lattice, and of those around one colour of every bin of the textures."""
+        """Numbers of the nodes of a lattice, and of those around one colour of every
+        bin of the textures.
+        """
         lattice = Lattice(axis_nodes(choice.axis, int(choice.dim)))
         needed = lattice.corner_points(
             lattice.mask(cells_touched(lattice, self.colours.colour_bins))

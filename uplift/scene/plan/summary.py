@@ -1,4 +1,6 @@
-"""A plan as text, as the JSON values of a plan file, and as the command lines that carry it out."""
+"""A plan as text, as the JSON values of a plan file, and as the command lines that
+carry it out.
+"""
 
 import os
 import shlex
@@ -21,14 +23,18 @@ HEADINGS = ("ΔE00", "memory", "time", "samples", "cube", "traced", "pixel")
 CLEARLY_SMALLER = 0.95
 """Share of the error of a cheaper candidate that is worth a row."""
 SHARE = 0.5
-"""Share of the expected error of measurements below which a plan spends more than its colours are worth."""
+"""Share of the expected error of measurements below which a plan spends more than its
+colours are worth.
+"""
 CUBE_KEYS = ("model", "coefficients", "warp", "dim", "axis")
 """Options of a build that a plan chooses."""
 SCENE_KEYS = ("tolerance", "quantile", "encoding", "minimise", "limits")
 
 
 def front_rows(plan: Plan) -> list[Candidate]:
-    """The choice, and candidates whose error is clearly below that of all cheaper ones, by what the scene minimises."""
+    """The choice, and candidates whose error is clearly below that of all cheaper ones,
+    by what the scene minimises.
+    """
     found: list[Candidate] = []
     for each in cheapest_first(plan.measured, plan.scene.minimise):
         smallest = min((other.error.quantile for other in found), default=float("inf"))
@@ -55,13 +61,16 @@ def verdict(plan: Plan) -> str:
         else "; the tolerance is EXCEEDED: plan for a smaller one"
     )
     return (
-        f"ΔE00 {format_error(plan.chosen.error.quantile)} predicted, {format_error(plan.confirmed.quantile)} confirmed "
+        f"ΔE00 {format_error(plan.chosen.error.quantile)} predicted, "
+        f"{format_error(plan.confirmed.quantile)} confirmed "
         f"on other pixels, tolerance {plan.scene.tolerance:g}{end}"
     )
 
 
 def notes(plan: Plan) -> list[str]:
-    """What the choice costs, whether the scene needs spectra, and what its colours are worth."""
+    """What the choice costs, whether the scene needs spectra, and what its colours are
+    worth.
+    """
     found = [f"It costs {_costs(plan.chosen)}."]
     if plan.chosen.rendering is None:
         found.append(
@@ -70,17 +79,20 @@ def notes(plan: Plan) -> list[str]:
     else:
         rgb = format_error(plan.without_spectra.quantile)
         found.append(
-            f"Without spectra, by RGB and the best 3 × 3 matrix per light, ΔE00 is {rgb}."
+            "Without spectra, by RGB and the best 3 × 3 matrix per light, ΔE00 is "
+            f"{rgb}."
         )
     if plan.chosen.pixel.form == INDEX and plan.spectra is not None:
         found.append(
-            f"The textures have {pluralise(len(plan.spectra[0]), 'colour')}: a list of spectra suffices."
+            f"The textures have {pluralise(len(plan.spectra[0]), 'colour')}: a list "
+            "of spectra suffices."
         )
     if (
         known := plan.expected_error
     ) is not None:  # RGB alone does not identify a material
         found.append(
-            f"Your colours are known within ΔE00 {known:.2g}; this plan adds {plan.confirmed.quantile:.2g}."
+            f"Your colours are known within ΔE00 {known:.2g}; this plan adds "
+            f"{plan.confirmed.quantile:.2g}."
         )
         cheaper = plan.cheapest(known)
         if cheaper is not None and plan.confirmed.quantile <= SHARE * known:
@@ -100,15 +112,20 @@ def describe_error(plan: Plan) -> str:
     lights = ", ".join(map(str, scene.lights))
     measured = ", entries with their measurements" if scene.atlases else ""
     return (
-        f"ΔE00 of {100 * scene.quantile:.4g} % of the textures' pixels{materials} is at most this value, under the "
-        f"worst of {lights}. Pixels are compared with a cube of the finest lattice and the most "
+        f"ΔE00 of {100 * scene.quantile:.4g} % of the textures' pixels{materials} is "
+        "at most this value, under the "
+        f"worst of {lights}. Pixels are compared with a cube of the finest lattice "
+        "and the most "
         f"coefficients at all wavelengths{measured}. {len(plan.measured):,} of "
-        f"{pluralise(plan.considered, 'candidate')} were measured; the bounds of the others exclude them."
+        f"{pluralise(plan.considered, 'candidate')} were measured; the bounds of the "
+        "others exclude them."
     )
 
 
 def check_path(scene: SceneFile, path: Path) -> None:
-    """Check that the folder of a plan holds the sources of its scene. `read_plan` opens no others."""
+    """Check that the folder of a plan holds the sources of its scene. `read_plan` opens
+    no others.
+    """
     folder = os.path.abspath(path.parent)
     for source in (*scene.textures, *scene.atlases):
         if not Path(os.path.abspath(source)).is_relative_to(folder):
@@ -119,9 +136,11 @@ def check_path(scene: SceneFile, path: Path) -> None:
 
 
 def to_json(plan: Plan, path: Path) -> dict[str, Any]:
-    """The choice of a plan, its wavelengths and command lines, and the Pareto front, as JSON values.
+    """The choice of a plan, its wavelengths and command lines, and the Pareto front, as
+    JSON values.
 
-    Paths of textures and atlases are relative to the folder of ``path``, the file. Raises `OutputError` for others.
+    Paths of textures and atlases are relative to the folder of ``path``, the file.
+    Raises `OutputError` for others.
     """
     scene, chosen = plan.scene, plan.chosen
     check_path(scene, path)
@@ -169,7 +188,9 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
 
 
 def _rendering_json(plan: Plan) -> dict[str, Any]:
-    """Wavelengths and their weights, the name of a representation, or matrices of RGB."""
+    """Wavelengths and their weights, the name of a representation, or
+    matrices of RGB.
+    """
     if plan.chosen.rendering is None:
         return {
             "rgb_to_xyz": dict(
@@ -197,7 +218,9 @@ def _sources(paths: Iterable[Path], plan: Path) -> list[dict[str, str]]:
 
 
 def commands(plan: Plan, path: Path) -> tuple[str, ...]:
-    """Command lines for a plan at ``path``: its build, and its textures or the program that looks colours up."""
+    """Command lines for a plan at ``path``: its build, and its textures or the program
+    that looks colours up.
+    """
     scene, pixel = plan.scene, plan.chosen.pixel
     if plan.chosen.cube is None:
         return ()

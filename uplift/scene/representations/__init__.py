@@ -1,7 +1,7 @@
 """Spectral representations for renderers, each a `Representation`, and their registry.
 
-Kment 2011, "Spectral data representation techniques for realistic image synthesis", thesis, Vienna. Abbreviations,
-sections and equations in this package refer to it.
+Kment 2011, "Spectral data representation techniques for realistic image synthesis",
+thesis, Vienna. Abbreviations, sections and equations in this package refer to it.
 """
 
 import math
@@ -24,7 +24,9 @@ __all__ = [
 SIZES = (4, 8, 16, 32)
 """Numbers of samples."""
 MAX_SIZE = 401
-"""Largest number of samples of a representation that is given by its name: that of dense spectra."""
+"""Largest number of samples of a representation that is given by its name: that of
+dense spectra.
+"""
 COMPONENTS = (4, 8, 16)
 """Numbers of components of the linear model."""
 
@@ -45,11 +47,15 @@ FACTORIES: Mapping[str, tuple[Callable[[int], Representation], tuple[int, ...]]]
     "SG": (models.sigmoid_coefficients, (3,)),
     "HW": (models.hero_wavelengths, (4, 16, 64, 256)),  # wavelengths per pixel
 }
-"""Factory and sizes by abbreviation. The linear model (LM) is not included, as it depends on the scene."""
+"""Factory and sizes by abbreviation. The linear model (LM) is not included, as it
+depends on the scene.
+"""
 
 
 def all_representations(lights: Array, surfaces: Array) -> tuple[Representation, ...]:
-    """Every registered representation, and the linear models of a scene of lights (L, 401) and surfaces (E, 401)."""
+    """Every registered representation, and the linear models of a scene of lights (L,
+    401) and surfaces (E, 401).
+    """
     registered = (make(size) for make, sizes in FACTORIES.values() for size in sizes)
     return (
         *registered,
@@ -58,9 +64,11 @@ def all_representations(lights: Array, surfaces: Array) -> tuple[Representation,
 
 
 def find_representation(text: str) -> Representation:
-    """Return the representation of a name such as ``PF16``, or of ``PS16:KIND:EXTENT:PARAMETERS``, with a filter.
+    """Return the representation of a name such as ``PF16``, or of
+    ``PS16:KIND:EXTENT:PARAMETERS``, with a filter.
 
-    The kinds and parameters of filters are those of `filters.KINDS`. Raises `OptionError`.
+    The kinds and parameters of filters are those of `filters.KINDS`. Raises
+    `OptionError`.
     """
     name, *low_pass = text.split(":")
     try:
@@ -80,7 +88,10 @@ def find_representation(text: str) -> Representation:
             count, filters.Filter(kind, int(extent), values)
         )
     except (KeyError, ValueError) as error:
-        hint = "write for example PF16, RS32 or TM9; a filter as PS16:gaussian:7:0.5, with an odd extent from 3 to 21"
+        hint = (
+            "write for example PF16, RS32 or TM9; a filter as PS16:gaussian:7:0.5, "
+            "with an odd extent from 3 to 21"
+        )
         raise OptionError(
             f"unknown representation {format_value(text)}", hint=hint
         ) from error

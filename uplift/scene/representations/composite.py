@@ -1,8 +1,9 @@
 """Composite models: a smooth part in few coefficients, and spikes.
 
-Sun, Drew & Fracchia 1999, "Representing spectral functions by a composite model of smooth and spiky components for
-efficient full-spectrum photorealism". Deville, Merzouk, Cazier & Paul 1994, "Spectral data modeling for a lighting
-application". Kment 2011, sections 4.3, 5.4 and 5.5.
+Sun, Drew & Fracchia 1999, "Representing spectral functions by a composite model of
+smooth and spiky components for efficient full-spectrum photorealism". Deville, Merzouk,
+Cazier & Paul 1994, "Spectral data modeling for a lighting application". Kment 2011,
+sections 4.3, 5.4 and 5.5.
 """
 
 import functools
@@ -23,7 +24,9 @@ SUN_THRESHOLD, ENHANCED_THRESHOLD = 0.3, 0.2
 
 
 class CompositeCode(NamedTuple):
-    """Code of the smooth part, and heights (n, P) of spikes, or 0, at ``positions`` (P,) of the 5 nm table."""
+    """Code of the smooth part, and heights (n, P) of spikes, or 0, at ``positions``
+    (P,) of the 5 nm table.
+    """
 
     smooth: Array
     positions: Indices
@@ -37,11 +40,13 @@ class CompositeCode(NamedTuple):
 
 
 def split_spikes(spectra: Array, threshold: float) -> CompositeCode:
-    """Split dense spectra (n, 401) into a smooth part (n, 401), linear between 5 nm, and spikes.
+    """Split dense spectra (n, 401) into a smooth part (n, 401), linear between 5 nm,
+    and spikes.
 
-    Choices that the text leaves open: the gradient is that between two samples of the 5 nm table, relative to the
-    highest sample of the spectrum. The smooth part is the largest spectrum below the given one that is nowhere steeper
-    than the threshold. The spikes are the difference.
+    Choices that the text leaves open: the gradient is that between two samples of the 5
+    nm table, relative to the highest sample of the spectrum. The smooth part is the
+    largest spectrum below the given one that is nowhere steeper than the threshold. The
+    spikes are the difference.
     """
     table = spectra[:, :: samples.TABLE_STRIDE]
     highest = table.max(axis=1)
@@ -64,7 +69,9 @@ def split_spikes(spectra: Array, threshold: float) -> CompositeCode:
 
 @functools.cache
 def spike_xyz() -> Array:
-    """XYZ (81, 3) of a spike of height 1 at each position: a triangle as wide as linear interpolation makes it."""
+    """XYZ (81, 3) of a spike of height 1 at each position: a triangle as wide as linear
+    interpolation makes it.
+    """
     return samples.hat_functions(observer.grid()) @ samples.xyz_weights()
 
 
@@ -73,9 +80,10 @@ def composite(
 ) -> Representation:
     """Smooth part in another representation, and spikes steeper than a threshold.
 
-    ``code @ decoder`` (C, 81) is the smooth part at 5 nm. ``threshold`` is the largest relative gradient of the smooth
-    part between samples of the 5 nm table. In a product, a spike meets the spike and the smooth part of the other
-    spectrum at its position.
+    ``code @ decoder`` (C, 81) is the smooth part at 5 nm. ``threshold`` is the largest
+    relative gradient of the smooth part between samples of the 5 nm table. In a
+    product, a spike meets the spike and the smooth part of the other spectrum at its
+    position.
     """
 
     def encode(power: Array) -> CompositeCode:
@@ -106,13 +114,16 @@ def composite(
 
 
 def fourier_coefficients(count: int) -> Representation:
-    """Coefficients a_0 to a_m and b_1 to b_m of a real Fourier basis: the smooth part of Sun's composite model.
+    """Coefficients a_0 to a_m and b_1 to b_m of a real Fourier basis: the smooth part
+    of Sun's composite model.
 
-    The period is 380–780 nm, so a spectrum whose ends differ has a jump there. Choices that the text leaves open: the
-    coefficients are those of eq. 4.7 over the 5 nm table, with the mean of both ends where they meet. A product,
-    computed point by point as in the text, keeps as many coefficients as its factors have: it has twice the highest
-    frequency, and at 2C points in the period none of it is aliased to a lower one (the "Shannon theorem" of the text).
-    Raises `OptionError` unless the number is odd and positive.
+    The period is 380–780 nm, so a spectrum whose ends differ has a jump there. Choices
+    that the text leaves open: the coefficients are those of eq. 4.7 over the 5 nm
+    table, with the mean of both ends where they meet. A product, computed point by
+    point as in the text, keeps as many coefficients as its factors have: it has twice
+    the highest frequency, and at 2C points in the period none of it is aliased to a
+    lower one (the "Shannon theorem" of the text). Raises `OptionError` unless the
+    number is odd and positive.
     """
     if count < 1 or count % 2 == 0:
         hint = "a mean and pairs of cosine and sine are an odd number"
@@ -158,12 +169,16 @@ def _waves(phase: Array, count: int) -> Array:
 
 
 def _analyse(values: Array, waves: Array) -> Array:
-    """Coefficients (n, C) of values (n, K) at K evenly spaced points of a period, for waves (C, K)."""
+    """Coefficients (n, C) of values (n, K) at K evenly spaced points of a period, for
+    waves (C, K).
+    """
     return np.asarray(values @ waves.T / (waves**2).sum(axis=1))
 
 
 def sun_composite(count: int, threshold: float = SUN_THRESHOLD) -> Representation:
-    """Sun's composite model (CS): spikes, and ``count`` Fourier coefficients of the smooth part."""
+    """Sun's composite model (CS): spikes, and ``count`` Fourier coefficients of the
+    smooth part.
+    """
     smooth, decoder = (
         fourier_coefficients(count),
         waves(count)[:, :: samples.TABLE_STRIDE],
@@ -174,7 +189,9 @@ def sun_composite(count: int, threshold: float = SUN_THRESHOLD) -> Representatio
 def enhanced_riemann(
     count: int, threshold: float = ENHANCED_THRESHOLD
 ) -> Representation:
-    """Enhanced Riemann sums (RE): spikes, which meet the mean of their cell, and Riemann sums of the smooth part."""
+    """Enhanced Riemann sums (RE): spikes, which meet the mean of their cell, and
+    Riemann sums of the smooth part.
+    """
     decoder = samples.cell_overlaps(count)[:, :: samples.TABLE_STRIDE]
     return composite(
         f"RE{count}",

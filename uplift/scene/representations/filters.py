@@ -1,12 +1,15 @@
-"""Point sampling after a low-pass filter (PF), which is a sampling-rate conversion by L/M.
+"""Point sampling after a low-pass filter (PF), which is a sampling-rate conversion by
+L/M.
 
-Kment 2011, section 4.4 (conversion), section 4.5, eq. 4.13–4.19 (filters), and section 6.3. The 81 samples of the
-5 nm table are upsampled L times with zeros, filtered, and every M-th sample is kept. L/M = (n − 1)/80, so that the ends
-remain those of point sampling. Values outside 380–780 nm count as 0 (section 6.1).
+Kment 2011, section 4.4 (conversion), section 4.5, eq. 4.13–4.19 (filters), and section
+6.3. The 81 samples of the 5 nm table are upsampled L times with zeros, filtered, and
+every M-th sample is kept. L/M = (n − 1)/80, so that the ends remain those of point
+sampling. Values outside 380–780 nm count as 0 (section 6.1).
 
-Choices that the text leaves open: ``extent``, an odd number, is the number of table samples that a filter covers. x
-runs from −1 to 1 across it, −2 to 2 for Mitchell, at any extent. Lanczos is the windowed sinc of Pharr & Humphreys
-2004, cited in the text: τ cycles of sinc under the main lobe of another.
+Choices that the text leaves open: ``extent``, an odd number, is the number of table
+samples that a filter covers. x runs from −1 to 1 across it, −2 to 2 for Mitchell, at
+any extent. Lanczos is the windowed sinc of Pharr & Humphreys 2004, cited in the text: τ
+cycles of sinc under the main lobe of another.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -23,14 +26,18 @@ from uplift.scene.representations.samples import Representation
 MITCHELL_B, MITCHELL_C = -0.4, 1.0
 """Parameters of the best Mitchell filter in table A.2."""
 FILTER_SPACINGS = 4
-"""Width of that filter in spacings of its 16 points, which is the usual width of cubic filters."""
+"""Width of that filter in spacings of its 16 points, which is the usual width of cubic
+filters.
+"""
 EXTENTS = range(3, 22, 2)
 """Extents tried in the thesis."""
 
 
 @dataclass(frozen=True)
 class FilterKind:
-    """A family of filters: its curve over x from −1 to 1 with the parameters, and the values that a search tries."""
+    """A family of filters: its curve over x from −1 to 1 with the parameters, and the
+    values that a search tries.
+    """
 
     curve: Callable[..., Array]
     choices: Mapping[str, Sequence[float]]
@@ -38,7 +45,9 @@ class FilterKind:
 
 @dataclass(frozen=True)
 class Filter:
-    """A filter: the name of its kind in `KINDS`, its extent in samples of the table, and the parameters of the kind."""
+    """A filter: the name of its kind in `KINDS`, its extent in samples of the table,
+    and the parameters of the kind.
+    """
 
     kind: str
     extent: int
@@ -51,7 +60,9 @@ class Filter:
         return f"{self.kind}({', '.join([str(self.extent), *(f'{key}={value:g}' for key, value in named)])})"
 
     def taps(self, upsampling: int) -> Array:
-        """Compute an odd number of taps with sum 1, ``upsampling`` per sample of the table."""
+        """Compute an odd number of taps with sum 1, ``upsampling`` per sample of the
+        table.
+        """
         x = np.linspace(-1, 1, 2 * (self.extent * upsampling // 2) + 3)[1:-1]
         taps = KINDS[self.kind].curve(x, *self.parameters)
         return np.asarray(taps / taps.sum())
@@ -62,7 +73,8 @@ def resampling_matrix(low_pass: Filter, count: int) -> Array:
     size = len(observer.grid())
     rate = Fraction(count - 1, size - 1)
     taps = low_pass.taps(rate.numerator)
-    # Sample i is at L i, and result j at M j, of the upsampled table; the taps are centred there.
+    # Sample i is at L i, and result j at M j, of the upsampled table; the taps are
+    # centred there.
     offsets = (
         rate.denominator * np.arange(count)[:, None]
         - rate.numerator * np.arange(size)
@@ -118,7 +130,9 @@ def filtered_point_samples(count: int, low_pass: Filter) -> Representation:
 
 
 def mitchell_point_samples(count: int) -> Representation:
-    """Representation with the best Mitchell filter of table A.2, `FILTER_SPACINGS` wide for any count."""
+    """Representation with the best Mitchell filter of table A.2, `FILTER_SPACINGS` wide
+    for any count.
+    """
     spacing = (len(observer.grid()) - 1) / (count - 1)
     extent = 2 * round((FILTER_SPACINGS * spacing - 1) / 2) + 1
     low_pass = Filter("mitchell", extent, (MITCHELL_B, MITCHELL_C))

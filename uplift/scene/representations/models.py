@@ -1,4 +1,6 @@
-"""Representations by models of reflectance (TM, SG), by components of a scene (LM), and by random wavelengths (HW)."""
+"""Representations by models of reflectance (TM, SG), by components of a scene (LM), and
+by random wavelengths (HW).
+"""
 
 from collections.abc import Callable
 
@@ -19,7 +21,8 @@ from uplift.scene.representations.composite import spike_xyz
 from uplift.scene.representations.samples import Representation
 
 SHAPE_WEIGHT = 1e-4
-"""Weight of the residual of a sigmoid at one wavelength relative to that of the colour."""
+"""Weight of the residual of a sigmoid at one wavelength relative to that of the colour.
+"""
 MAX_STEPS = 60
 WAVELENGTHS_PER_PATH = 4
 SEED = 7
@@ -30,10 +33,11 @@ STEEPNESS, CENTRE = 0.0072, 538.0
 def tabulated(
     name: str, family: str, model: Model, encode: Callable[[Array], Array]
 ) -> Representation:
-    """Representation by a model of reflectance: lights and products are 5 nm tables (n, 81).
+    """Representation by a model of reflectance: lights and products are 5 nm tables (n,
+    81).
 
-    A product evaluates the model at the 81 wavelengths of the light. It is not encoded again: no renderer does so, and
-    the sigmoid could not represent it.
+    A product evaluates the model at the 81 wavelengths of the light. It is not encoded
+    again: no renderer does so, and the sigmoid could not represent it.
     """
     table = observer.grid()
     hats = samples.hat_functions(table)
@@ -50,10 +54,12 @@ def tabulated(
 
 
 def trigonometric_moments(count: int) -> Representation:
-    """Trigonometric moments (TM): the zeroth and those above it, mirrored, as many as a cube has coefficients.
+    """Trigonometric moments (TM): the zeroth and those above it, mirrored, as many as a
+    cube has coefficients.
 
-    Peters et al. 2019, "Using moments to represent bounded signals for spectral rendering". These are the moments of
-    the spectrum itself. The coefficients of cubes are fitted to colours as well (docs/mathematics.md, 6).
+    Peters et al. 2019, "Using moments to represent bounded signals for spectral
+    rendering". These are the moments of the spectrum itself. The coefficients of cubes
+    are fitted to colours as well (docs/mathematics.md, 6).
     """
     model = Moments(count)
     phase = model.phase(samples.wavelengths())
@@ -69,15 +75,18 @@ def trigonometric_moments(count: int) -> Representation:
 
 
 def sigmoid_coefficients(count: int = 3) -> Representation:
-    """Sigmoid (SG): the three coefficients of Jakob & Hanika 2019 (`uplift.models.sigmoid`)."""
+    """Sigmoid (SG): the three coefficients of Jakob & Hanika 2019
+    (`uplift.models.sigmoid`).
+    """
     return tabulated(f"SG{count}", "sigmoid", Sigmoid(), fit_sigmoids)
 
 
 def fit_sigmoids(spectra: Array) -> Array:
-    """Fit coefficients (n, 3) to reflectances (n, 401) by the Levenberg–Marquardt method.
+    """Fit coefficients (n, 3) to reflectances (n, 401) by the Levenberg–Marquardt
+    method.
 
-    The objective is the colour under D65. Values at 5 nm, with a small weight, determine the fit where the colour does
-    not or cannot be met.
+    The objective is the colour under D65. Values at 5 nm, with a small weight,
+    determine the fit where the colour does not or cannot be met.
     """
     model, table, light = (
         Sigmoid(),
@@ -110,8 +119,8 @@ def fit_sigmoids(spectra: Array) -> Array:
 def principal_components(count: int, lights: Array, surfaces: Array) -> Array:
     """First ``count`` principal components (401, count), about the origin, of a scene.
 
-    They are those of every product of its lights (L, 401), normalised to equal Y, with its surfaces (E, 401), and of
-    the lights.
+    They are those of every product of its lights (L, 401), normalised to equal Y, with
+    its surfaces (E, 401), and of the lights.
     """
     scatter = np.zeros((lights.shape[1],) * 2)
     for power in lights / (lights @ samples.xyz_weights()[:, 1:2]):
@@ -121,10 +130,12 @@ def principal_components(count: int, lights: Array, surfaces: Array) -> Array:
 
 
 def linear_model(count: int, lights: Array, surfaces: Array) -> Representation:
-    """Linear model (LM): coordinates in `principal_components`. A light is n of them, a surface an n × n matrix.
+    """Linear model (LM): coordinates in `principal_components`. A light is n of them, a
+    surface an n × n matrix.
 
-    Peercy 1993, "Linear color representations for full speed spectral rendering". Spectra that the basis was not made
-    from have larger errors. Kment 2011, section 5.4, omits linear models because they need this prior knowledge.
+    Peercy 1993, "Linear color representations for full speed spectral rendering".
+    Spectra that the basis was not made from have larger errors. Kment 2011, section
+    5.4, omits linear models because they need this prior knowledge.
     """
     basis = principal_components(count, lights, surfaces)
     return Representation(
@@ -140,23 +151,28 @@ def linear_model(count: int, lights: Array, surfaces: Array) -> Representation:
 
 
 def hero_wavelengths(count: int) -> Representation:
-    """Hero wavelengths (HW): Monte Carlo sampling with ``count`` wavelengths per pixel, in paths of four each.
+    """Hero wavelengths (HW): Monte Carlo sampling with ``count`` wavelengths per pixel,
+    in paths of four each.
 
-    Wilkie, Nawaz, Droske, Weidlich & Hanika 2014, "Hero wavelength spectral sampling": a hero, and three more at
-    distances of a quarter of the range. They follow the density of Radziszewski, Boryczko & Alda 2009, as in pbrt. The
-    heroes of a pixel are stratified: one in each of as many equal strata as it has paths. A row is a pixel with its
-    own, reproducible random numbers. Spectra remain tables, evaluated at the wavelengths of a path. Raises
-    `OptionError` unless the count is a multiple of four.
+    Wilkie, Nawaz, Droske, Weidlich & Hanika 2014, "Hero wavelength spectral sampling":
+    a hero, and three more at distances of a quarter of the range. They follow the
+    density of Radziszewski, Boryczko & Alda 2009, as in pbrt. The heroes of a pixel are
+    stratified: one in each of as many equal strata as it has paths. A row is a pixel
+    with its own, reproducible random numbers. Spectra remain tables, evaluated at the
+    wavelengths of a path. Raises `OptionError` unless the count is a multiple of four.
     """
     paths, rest = divmod(count, WAVELENGTHS_PER_PATH)
     if rest or not paths:
         raise OptionError(
-            f"number of hero wavelengths must be a positive multiple of four, got {count}"
+            "number of hero wavelengths must be a positive multiple of four, got "
+            f"{count}"
         )
     low, high = np.tanh(STEEPNESS * (np.array([observer.START, observer.END]) - CENTRE))
 
     def draw(pixels: int) -> Array:
-        """Wavelengths (pixels, 4 · paths) in nm, by the inverse of the density's antiderivative."""
+        """Wavelengths (pixels, 4 · paths) in nm, by the inverse of the density's
+        antiderivative.
+        """
         rng = np.random.default_rng(SEED)
         heroes = (np.arange(paths) + rng.random((pixels, paths))) / paths
         rotated = (

@@ -76,15 +76,17 @@ def choose(
 ) -> Choice:
     """Choose ``count`` wavelengths, or the fewest that meet a target.
 
-    One set of wavelengths and weights serves all lights, so that their radiances may be added. The powers differ
-    by light: they account for the spectrum of the light between the wavelengths.
+    One set of wavelengths and weights serves all lights, so that their radiances may be
+    added. The powers differ by light: they account for the spectrum of the light
+    between the wavelengths.
 
     Parameters
     ----------
     setup : RenderSetup
         Materials and lights.
     count : int, optional
-        Number of wavelengths, 1 to `MAX_COUNT`. Exactly one of ``count`` and ``target`` is required.
+        Number of wavelengths, 1 to `MAX_COUNT`. Exactly one of ``count`` and ``target``
+        is required.
     target : float, optional
         Largest accepted ``measure`` of ΔE00, above 0.
     measure : {"max", "p95", "mean"}, optional
@@ -100,8 +102,9 @@ def choose(
     Raises
     ------
     OptionError
-        Both or neither of ``count`` and ``target``, a value out of range, a count without a rule of the method
-        (``undefined-rule``), or a target that no count meets.
+        Both or neither of ``count`` and ``target``, a value out of range, a count
+        without a rule of the method (``undefined-rule``), or a target that no count
+        meets.
     UnknownNameError
         The method or the measure does not exist.
     """
@@ -133,7 +136,10 @@ def choose(
         error = setups.statistics(choice.errors)[measure]
         if target is None or error <= target:
             return choice
-    missed = f"no count up to {MAX_COUNT} meets a {measure} ΔE00 of {target:g} by method '{method}'"
+    missed = (
+        f"no count up to {MAX_COUNT} meets a {measure} ΔE00 of {target:g} by method "
+        f"'{method}'"
+    )
     reached = f"{pluralise(len(choice.sampling), 'wavelength')} reach {error:.3g}"
     raise OptionError(
         f"{missed}; {reached}", hint="raise the target or choose another method"
@@ -168,7 +174,8 @@ def choose_orders(
 ) -> Choice:
     """Apply Meyer's quadrature with a given order for each channel.
 
-    Meyer 1988, section 4.1: tables 1a and 1b have the rules of the opponent channels, figure 6 compares the spaces.
+    Meyer 1988, section 4.1: tables 1a and 1b have the rules of the opponent channels,
+    figure 6 compares the spaces.
 
     Parameters
     ----------

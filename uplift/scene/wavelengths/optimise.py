@@ -1,4 +1,6 @@
-"""Wavelengths, weights and prefiltered lights fitted to the materials and lights of a setup, by least squares."""
+"""Wavelengths, weights and prefiltered lights fitted to the materials and lights of a
+setup, by least squares.
+"""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -27,22 +29,30 @@ MIN_EIGENVALUE = 1e-3
 MAX_EVALUATIONS = 60
 """More evaluations gain nothing on materials outside the fit."""
 START_RANGES = ((400.0, 700.0), (410.0, 680.0))
-"""Ranges in nm of the two starting points: least squares ends in the nearest local minimum."""
+"""Ranges in nm of the two starting points: least squares ends in the nearest local
+minimum.
+"""
 MAX_FITTED_PAIRS = 1600
-"""Most pairs of material and light that are fitted. Materials are thinned evenly; the errors cover all of them."""
+"""Most pairs of material and light that are fitted. Materials are thinned evenly; the
+errors cover all of them.
+"""
 MIN_FITTED = 32
 """Fewest materials that are fitted, however many lights there are."""
 
 
 @dataclass(frozen=True, eq=False)
 class FitProblem:
-    """Least-squares problem over a vector of wavelengths (n,), weights (n, 3) and powers (K, n), in this order."""
+    """Least-squares problem over a vector of wavelengths (n,), weights (n, 3) and
+    powers (K, n), in this order.
+    """
 
     setup: RenderSetup
 
     @cached_property
     def factors(self) -> Array:
-        """Factors T (K, M, 3, 3) at every material and light: |T (XYZ' − XYZ)| ≈ ΔE00 of close colours."""
+        """Factors T (K, M, 3, 3) at every material and light: |T (XYZ' − XYZ)| ≈ ΔE00
+        of close colours.
+        """
         lab, steps = self.setup.lab[..., None, :], np.eye(3) * STEP
 
         def squared(difference: Array) -> Array:
@@ -77,7 +87,9 @@ class FitProblem:
         )
 
     def residuals(self, unknowns: Array) -> Array:
-        """Differences (K · M · 3,) from the colours of the full grid; the length of each triple is ΔE00."""
+        """Differences (K · M · 3,) from the colours of the full grid; the length of
+        each triple is ΔE00.
+        """
         sampling = self.unpack(unknowns)
         difference = (
             sampling.xyz(self.setup.curves(sampling.wavelengths)) - self.setup.xyz
@@ -107,7 +119,9 @@ class FitProblem:
 def local_fit(
     problem: FitProblem, start: Sampling, *, fix_wavelengths: bool = False
 ) -> Sampling:
-    """Find the local minimum nearest to ``start`` with weights and powers of at least 0."""
+    """Find the local minimum nearest to ``start`` with weights and powers of at least
+    0.
+    """
     count, unknowns = len(start), problem.pack(start)
     low, high = np.zeros_like(unknowns), np.full_like(unknowns, np.inf)
     low[:count], high[:count] = problem.setup.wavelengths[[0, -1]]
@@ -129,7 +143,9 @@ def local_fit(
 
 
 def optimise(setup: RenderSetup, count: int) -> Sampling:
-    """Fit ``count`` wavelengths, their weights and powers, all at least 0, for the least mean ΔE00."""
+    """Fit ``count`` wavelengths, their weights and powers, all at least 0, for the
+    least mean ΔE00.
+    """
     problem = FitProblem(_thinned(setup))
     starts = (
         prefiltered(problem.setup, midpoints(count, *span)) for span in START_RANGES
@@ -159,7 +175,8 @@ def fit_at(setup: RenderSetup, wavelengths: ArrayLike) -> Sampling:
 
 
 def _with_nearby_powers(setup: RenderSetup, sampling: Sampling) -> Sampling:
-    """Move a factor from weights to powers at each wavelength so that the powers resemble the lights.
+    """Move a factor from weights to powers at each wavelength so that the powers
+    resemble the lights.
 
     Colours depend only on the product of weight and power.
     """
@@ -174,7 +191,9 @@ def _with_nearby_powers(setup: RenderSetup, sampling: Sampling) -> Sampling:
 
 
 def _thinned(setup: RenderSetup) -> RenderSetup:
-    """Thin the materials to `MAX_FITTED_PAIRS` and append the perfect reflector, which keeps white neutral."""
+    """Thin the materials to `MAX_FITTED_PAIRS` and append the perfect reflector, which
+    keeps white neutral.
+    """
     limit = max(MAX_FITTED_PAIRS // len(setup.lights), MIN_FITTED)
     thinned = setup.only(
         np.unique(np.linspace(0, len(setup.reflectances) - 1, limit).astype(int))

@@ -18,12 +18,16 @@ CHANNEL_COLOURS = {"X": "#c0392b", "Y": "#2e8b57", "Z": "#2f5fb3"}
 def plot_choice(
     setup: RenderSetup, choice: Choice, path: StrPath, *, force: bool = False
 ) -> None:
-    """Write a figure with a panel per light, showing its powers, and a panel of the weights. Raises `OutputError`."""
+    """Write a figure with a panel per light, showing its powers, and a panel of the
+    weights. Raises `OutputError`.
+    """
     sampling = choice.sampling
     nm, chosen = setup.wavelengths, sampling.wavelengths
 
     def area(values: Array) -> Array:
-        """Sum of the interpolated values of samples: per wavelength and per sample, units differ."""
+        """Sum of the interpolated values of samples: per wavelength and per sample,
+        units differ.
+        """
         return np.asarray(np.interp(nm, chosen, values).sum())
 
     with styled():

@@ -1,4 +1,6 @@
-"""Materials under lights on a full grid, and a few wavelengths in its place, with the colour errors they cause."""
+"""Materials under lights on a full grid, and a few wavelengths in its place, with the
+colour errors they cause.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,7 +18,9 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 
 START, END, STEP = 380.0, 770.0, 1.0
-"""Visible range of Meyer 1988 in nm, with a step that resolves the lines of fluorescent lamps."""
+"""Visible range of Meyer 1988 in nm, with a step that resolves the lines of fluorescent
+lamps.
+"""
 MIN_SAMPLES = 16
 """Fewest samples of a wavelength grid."""
 MEASURES: Mapping[str, Callable[[Array], Any]] = {
@@ -33,9 +37,10 @@ UNIFORM_START, UNIFORM_END = 400.0, 700.0
 class RenderSetup:
     """Materials under lights; `make_setup` makes one from names.
 
-    Wavelengths (N,) in nm ascend evenly; reflectances are (M, N), the ``powers`` of the K ``lights`` (K, N), scaled so
-    that the perfect reflector has Y = 1 under each, and the colour-matching functions ``cmfs`` (N, 3). ``lights`` are
-    the names of the K ``illuminants``.
+    Wavelengths (N,) in nm ascend evenly; reflectances are (M, N), the ``powers`` of the
+    K ``lights`` (K, N), scaled so that the perfect reflector has Y = 1 under each, and
+    the colour-matching functions ``cmfs`` (N, 3). ``lights`` are the names of the K
+    ``illuminants``.
     """
 
     wavelengths: Array
@@ -57,7 +62,9 @@ class RenderSetup:
 
     @cached_property
     def lab(self) -> Array:
-        """CIE L*a*b* (K, M, 3) of the materials, relative to the white of each light."""
+        """CIE L*a*b* (K, M, 3) of the materials, relative to the white of
+        each light.
+        """
         return self.to_lab(self.xyz)
 
     @cached_property
@@ -92,7 +99,8 @@ def make_setup(
     wavelengths: ArrayLike | None = None,
     observer_name: str = DEFAULT_OBSERVER,
 ) -> RenderSetup:
-    """Combine materials with illuminants and an observer from the tables of colour-science.
+    """Combine materials with illuminants and an observer from the tables of
+    colour-science.
 
     Parameters
     ----------
@@ -101,7 +109,8 @@ def make_setup(
     lights : sequence of str or Lamp
         Names of illuminants, such as ``"FL11"``. Repeated names count once.
     wavelengths : array_like, shape (N,), optional
-        Wavelengths of the samples in nm, ascending and evenly spaced, at least 16. By default `grid`.
+        Wavelengths of the samples in nm, ascending and evenly spaced, at least 16. By
+        default `grid`.
     observer_name : str, optional
         Name of the observer.
 
@@ -115,7 +124,8 @@ def make_setup(
     UnknownNameError
         The light or the observer does not exist.
     OptionError
-        No lights, an uneven grid, reflectances of another shape, or values that are not reflectances.
+        No lights, an uneven grid, reflectances of another shape, or values that are not
+        reflectances.
     """
     nm = grid() if wavelengths is None else np.asarray(wavelengths, dtype=float)
     materials = np.asarray(reflectances, dtype=float)
@@ -131,7 +141,10 @@ def make_setup(
         )
         raise OptionError(problem, hint="give a grid such as 380, 381, …, 770 nm")
     if materials.ndim != 2 or not len(materials) or materials.shape[1] != len(nm):
-        problem = f"reflectances must have shape (M, {len(nm)}) with M > 0, got {materials.shape}"
+        problem = (
+            f"reflectances must have shape (M, {len(nm)}) with M > 0, got "
+            f"{materials.shape}"
+        )
         raise OptionError(problem, hint="give one row per material")
     if not np.isfinite(materials).all() or materials.min() < 0:
         raise OptionError(
@@ -164,7 +177,9 @@ def make_setup(
 
 
 def interp_curves(wavelengths: Array, known: Array, curves: Array) -> Array:
-    """Interpolate curves (C, N), sampled at ``known`` (N,) nm, linearly at wavelengths (n,) nm to (C, n)."""
+    """Interpolate curves (C, N), sampled at ``known`` (N,) nm, linearly at wavelengths
+    (n,) nm to (C, n).
+    """
     return np.stack([np.interp(wavelengths, known, curve) for curve in curves])
 
 
@@ -172,8 +187,9 @@ def interp_curves(wavelengths: Array, known: Array, curves: Array) -> Array:
 class Sampling:
     """Wavelengths to trace, powers of the lights there, and weights of the sum.
 
-    A renderer traces ``powers[k] * reflectance(wavelengths)`` for light k; ``radiance @ to_xyz`` is its XYZ. One set
-    of weights serves all lights, so radiances of several lights may be added first.
+    A renderer traces ``powers[k] * reflectance(wavelengths)`` for light k; ``radiance @
+    to_xyz`` is its XYZ. One set of weights serves all lights, so radiances of several
+    lights may be added first.
 
     Parameters
     ----------
@@ -235,7 +251,9 @@ def balanced(sampling: Sampling) -> Sampling:
 
 
 def ordered(sampling: Sampling) -> Sampling:
-    """Sort the wavelengths and scale the weights so that equal energy has Y = 1; colours stay."""
+    """Sort the wavelengths and scale the weights so that equal energy has Y = 1;
+    colours stay.
+    """
     order, scale = np.argsort(sampling.wavelengths), sampling.to_xyz[:, 1].sum()
     weights, powers = sampling.to_xyz[order] / scale, sampling.powers[:, order] * scale
     return replace(
@@ -244,7 +262,9 @@ def ordered(sampling: Sampling) -> Sampling:
 
 
 def evaluate(setup: RenderSetup, sampling: Sampling) -> Array:
-    """ΔE00 (K, M) of a sampling for the lights of the setup, in place of the full grid."""
+    """ΔE00 (K, M) of a sampling for the lights of the setup, in place of
+    the full grid.
+    """
     xyz = sampling.xyz(setup.curves(sampling.wavelengths))
     return delta_e_2000(setup.lab, setup.to_lab(xyz))
 
@@ -262,7 +282,9 @@ def midpoints(
 
 
 def uniform(setup: RenderSetup, count: int) -> Sampling:
-    """Point sample the lights and the colour-matching functions at even spacing; whites balanced."""
+    """Point sample the lights and the colour-matching functions at even spacing; whites
+    balanced.
+    """
     nm = midpoints(count)
     weights = interp_curves(nm, setup.wavelengths, setup.cmfs.T).T
     return balanced(
@@ -276,9 +298,11 @@ def uniform(setup: RenderSetup, count: int) -> Sampling:
 
 
 def prefiltered(setup: RenderSetup, wavelengths: Array) -> Sampling:
-    """Distribute lights and colour-matching functions over wavelengths (n,) nm by the weights of linear interpolation.
+    """Distribute lights and colour-matching functions over wavelengths (n,) nm by the
+    weights of linear interpolation.
 
-    Power outside the first and the last wavelength counts for these. The Y of white is exact.
+    Power outside the first and the last wavelength counts for these. The Y of white is
+    exact.
     """
     hats = interp_curves(setup.wavelengths, wavelengths, np.eye(len(wavelengths)))
     powers = setup.powers @ hats.T / hats.sum(axis=1)
