@@ -14,12 +14,11 @@ from uplift.common.progress import Progress
 from uplift.lab.timing import write_record
 
 ROOT = Path(__file__).parents[1]
-DOCS, DATA = ROOT / "docs", ROOT / "docs" / "data"
-ATLASES, CUBES, REFERENCE = (
-    ROOT / "atlases",
-    ROOT / "cubes",
-    ROOT / "tests" / "reference",
-)
+DOCS = ROOT / "docs"
+DATA = ROOT / "docs" / "data"
+ATLASES = ROOT / "atlases"
+CUBES = ROOT / "cubes"
+REFERENCE = ROOT / "tests" / "reference"
 MACBETH = ATLASES / "macbeth.txt"
 Row = dict[str, Any]
 

@@ -43,7 +43,9 @@ ON_FACES = np.where(np.abs(QUERIES - 0.5) > 0.4, np.round(QUERIES), QUERIES)
 """The same colours, those near faces, edges and corners of the lattice on them."""
 STARTS = 256
 """Colours from which the largest error is searched."""
-ORDER_DIM, SOLVER_DIM, RUNS = 32, 16, 3
+ORDER_DIM = 32
+SOLVER_DIM = 16
+RUNS = 3
 SPACES = ("sRGB", "ITU-R BT.2020", "ProPhoto RGB")
 OTHERS = ("rawtoaces", "cie2017")
 """Materials that a cube of the ColorChecker answers for."""
@@ -59,7 +61,8 @@ def main() -> None:
 
 def measure_round_trips() -> None:
     """Measure what cubes return for a colour, by their model, dim and range."""
-    fitted, round_trips = [], []
+    fitted = []
+    round_trips = []
     for name, cube in cubes():
         fitted.append({"cube": name, **fit_quality(cube)})
         fine = at_1_nm(cube.data.sensor)
@@ -146,7 +149,8 @@ def round_trip(cube: Cube, sensor: Sensor, mode: str = "spectra") -> list[float]
 
 def largest(error: Callable[[Array], Array], rgb: Array) -> float:
     """Search the largest error, from the worst of colours (n, 3) on."""
-    limits, worst = [(0, 1)] * 3, rgb[np.argsort(error(rgb))[-STARTS:]]
+    limits = [(0, 1)] * 3
+    worst = rgb[np.argsort(error(rgb))[-STARTS:]]
     found = differential_evolution(
         lambda rgb: -error(rgb.T),
         limits,
@@ -164,10 +168,8 @@ def at_range(shortest: int, longest: int, step: int) -> Row:
     """Build the ColorChecker at a range; return errors at 1 nm, and those of the
     spectra of its entries.
     """
-    cube, atlas = (
-        uplift.build(MACBETH, shortest=shortest, longest=longest, step=step),
-        uplift.read_atlas(MACBETH),
-    )
+    cube = uplift.build(MACBETH, shortest=shortest, longest=longest, step=step)
+    atlas = uplift.read_atlas(MACBETH)
     measured = dict(zip(atlas.names, on_grid(atlas, VISIBLE), strict=True))
     off = cube.reflectance(cube.data.atlas.rgb, VISIBLE) - [
         measured[name] for name in cube.data.atlas.names
@@ -227,7 +229,8 @@ def share_outward(cube: Cube) -> float:
     """Return the share of nodes whose round is their distance from the nearest seed, in
     steps to 26 neighbours.
     """
-    points, lattice = cube.data.points, cube.data.lattice
+    points = cube.data.points
+    lattice = cube.data.lattice
     seeds = np.flatnonzero(
         np.isin(points.status, (Status.ATLAS_PRIMARY, Status.ATLAS_CORNER))
     )
@@ -240,7 +243,8 @@ def solver(name: str) -> Row:
     """Build a small cube with a solver, and compare it with the default."""
     build = partial(uplift.build, MACBETH, dim=SOLVER_DIM, solver=name)
     _, first = time_calls(build, 1)
-    default, cube = uplift.build(MACBETH, dim=SOLVER_DIM), build()
+    default = uplift.build(MACBETH, dim=SOLVER_DIM)
+    cube = build()
     _, seconds = time_calls(build, RUNS)
     improvements = cube.data.provenance["improvements"]
     difference = np.abs(node_spectra(cube) - node_spectra(default)).max(axis=1)
@@ -259,7 +263,8 @@ def solver(name: str) -> Row:
 
 def steps_per_node(build: Callable[[], Cube]) -> float:
     """Return the mean steps of a node's batches."""
-    solve, steps = Problem.solve, []
+    solve = Problem.solve
+    steps = []
 
     def counted(*args: Any) -> Any:
         steps.append((solution := solve(*args)).steps.sum())

@@ -26,14 +26,17 @@ has at most.
 COUNTS = (3, 6, 12, 24)
 DRAWS = 2
 """Random choices of each kind."""
-ADVICE, PIXELS, COLOURS = "advice", "random pixels", "random colours"
+ADVICE = "advice"
+PIXELS = "random pixels"
+COLOURS = "random colours"
 
 
 def run_scene(entries: Atlas, measured: Array, seed: int) -> list[dict[str, Any]]:
     """Return mean ΔE00 of a scene whose areas are exponentially distributed, by choice
     and number of swatches.
     """
-    rng, sensor = np.random.default_rng(seed), observer.sensor()
+    rng = np.random.default_rng(seed)
+    sensor = observer.sensor()
     known, hidden = np.split(
         rng.permutation(len(measured))[: KNOWN + MATERIALS], [KNOWN]
     )
@@ -91,10 +94,8 @@ def main() -> None:
         sensor = observer.sensor()
         measured = resample(atlas, sensor.wavelengths).values
         rows = np.flatnonzero(in_unit_cube(sensor.rgb(measured)))
-        atlas, measured = (
-            Atlas(tuple(atlas.entries[row] for row in rows)),
-            measured[rows],
-        )
+        atlas = Atlas(tuple(atlas.entries[row] for row in rows))
+        measured = measured[rows]
         found = [
             row for seed in range(SCENES) for row in run_scene(atlas, measured, seed)
         ]

@@ -67,7 +67,9 @@ class Browser:
     """
 
     def __init__(self, write: int, read: int) -> None:
-        self._write, self._read, self._rest = write, read, b""
+        self._write = write
+        self._read = read
+        self._rest = b""
         self._numbers, self._session = itertools.count(1), {}
         self.errors: list[str] = []
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
@@ -185,7 +187,8 @@ class Browser:
         return dict(json.loads(message))
 
     def _note(self, message: Answer) -> None:
-        method, params = message.get("method"), message.get("params", {})
+        method = message.get("method")
+        params = message.get("params", {})
         if method == "Runtime.exceptionThrown":
             self.errors.append(json.dumps(params["exceptionDetails"]))
         elif method == "Runtime.consoleAPICalled" and params["type"] in (

@@ -65,7 +65,8 @@ def methods(
     library = np.concatenate(
         [family.measured for family in shipped_library(families_with(measured))]
     )
-    half, more = measured[training], np.concatenate([measured[training], library])
+    half = measured[training]
+    more = np.concatenate([measured[training], library])
     cube = _build(
         Atlas(tuple(atlas.entries[row] for row in training)), sensor, measured
     )
@@ -113,9 +114,12 @@ def realisable_share(sensor: Sensor, dim: int = DIM) -> float:
 
 def compare(camera: str, illuminant: str) -> dict[str, Any]:
     """Compare the methods on the held-out halves of all splits."""
-    atlas, sensor = read_atlas(ATLAS), observer.sensor(CAMERA, illuminant, camera)
-    measured, white = on_grid(atlas, sensor.wavelengths), sensor.light.white
-    raw, expected = sensor.rgb(measured), lab(measured @ sensor.light.xyz.T, white)
+    atlas = read_atlas(ATLAS)
+    sensor = observer.sensor(CAMERA, illuminant, camera)
+    measured = on_grid(atlas, sensor.wavelengths)
+    white = sensor.light.white
+    raw = sensor.rgb(measured)
+    expected = lab(measured @ sensor.light.xyz.T, white)
     plain = _build(None, sensor, measured)
     errors: dict[str, list[Array]] = {}
     for seed in range(SPLITS):

@@ -19,7 +19,8 @@ from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.viz.figure import new_figure, show_image, write_png
 
-COLUMNS, ROWS = 6, 4
+COLUMNS = 6
+ROWS = 4
 BACKGROUND = 0.03
 """Reflectance between the patches."""
 INSET = 0.3
@@ -55,7 +56,8 @@ class Chart:
 
 def chart() -> Chart:
     """Read the shipped ColorChecker."""
-    sensor, spectra = observer.sensor(), read_atlas(MACBETH)
+    sensor = observer.sensor()
+    spectra = read_atlas(MACBETH)
     measured = on_grid(spectra, sensor.wavelengths)
     rgb = sensor.rgb(measured)
     return Chart(
@@ -146,7 +148,8 @@ def draw(
     grid = figure.subplots(len(to_screen), len(methods), squeeze=False)
     for row, (name, matrix) in enumerate(to_screen.items()):
         for column, method in enumerate(methods):
-            axes, image = grid[row, column], images[name, method].copy()
+            axes = grid[row, column]
+            image = images[name, method].copy()
             for place in reference:
                 image[place] = images[name, methods[0]][place]
             height, width, _ = image.shape

@@ -12,7 +12,8 @@ from benchmarks.materials import MIXTURE, SHIPPED
 from uplift.lab.study.held_out import HALF, LOCAL_LINEAR, NO_ATLAS
 
 CHOSEN_ON = ("rawtoaces", "babelcolor", "pmc", "tcs", "vs")
-OURS, OURS_SMOOTH = HALF, f"{HALF}, smooth prior"
+OURS = HALF
+OURS_SMOOTH = f"{HALF}, smooth prior"
 ALONE, ALONE_SMOOTH = NO_ATLAS, f"{NO_ATLAS}, smooth prior"
 """Methods: cubes of moments with and without an atlas."""
 MARK = " ○"

@@ -55,7 +55,8 @@ class Chips:
         equal chroma.
         """
         low = min(int(value), 8)
-        below, above = self.lines[hue, low], self.lines[hue, low + 1]
+        below = self.lines[hue, low]
+        above = self.lines[hue, low + 1]
         count = min(len(below), len(above))
         return below[:count] + (value - low) * (above[:count] - below[:count])
 
@@ -141,7 +142,8 @@ def draw(path: Path) -> None:
 PICTURE = DOCS / "display" / "ways.png"
 TIMED = 1 << 16
 """Colours, all of them outside."""
-LAP, RUNS = 0.02, 7
+LAP = 0.02
+RUNS = 7
 
 
 def main() -> None:
@@ -164,7 +166,8 @@ def main() -> None:
 
 def errors(found: Chips, mapped: Array) -> dict[str, Any]:
     """Return statistics of the hue shift, |ΔL*| and ΔE00 of mapped colours."""
-    original, changed = _lab(found.rgb), _lab(mapped)
+    original = _lab(found.rgb)
+    changed = _lab(mapped)
     values = {
         "hue": found.hue_shift(mapped),
         "lightness": np.abs(original[:, 0] - changed[:, 0]),

@@ -42,19 +42,25 @@ SAME_COLOURS = 0.5
 """Mean ΔE00 of the relit ColorChecker up to which two lamps are near-duplicates."""
 SURFACES = {"ColorChecker": "macbeth", "CIE 2017": "cie2017"}
 TABLE = "emission table"
-DIRECTIONS, STEPS = 720, 101
-COLOURS, RUNS = 200_000, 15
-NEAREST, THIRDS, WORST = 8, 3, 8
+DIRECTIONS = 720
+STEPS = 101
+COLOURS = 200_000
+RUNS = 15
+NEAREST = 8
+THIRDS = 3
+WORST = 8
 
 
 def main() -> None:
     """Measure and store."""
-    table, lamps = uplift.load_emission(), known_lamps()
+    table = uplift.load_emission()
+    lamps = known_lamps()
     surfaces = {
         label: on_grid(read_atlas(name), observers.grid())
         for label, name in SURFACES.items()
     }
-    radiometry, checker = table.data.radiometry, surfaces["ColorChecker"]
+    radiometry = table.data.radiometry
+    checker = surfaces["ColorChecker"]
     uv = chromaticity(lamps.power @ radiometry)
     unknown = unknown_lamps(lamps, checker, radiometry)
     found = predict(lamps, unknown)
@@ -126,7 +132,8 @@ def predict(
     Returns power (L, N) and expected errors (L,) by rule.
     """
     shape = (len(unknown), len(lamps))
-    power, expected = np.empty((*shape, lamps.power.shape[1])), np.empty(shape)
+    power = np.empty((*shape, lamps.power.shape[1]))
+    expected = np.empty(shape)
     sets, member = np.unique(
         np.stack(list(unknown.values())).reshape(-1, len(lamps)),
         axis=0,
@@ -179,7 +186,8 @@ def sigmoid_times_d65(power: Array, table: EmissionTable, d65: Array) -> Array:
     radiometry = table.data.radiometry
     sensor = table.rgb_of_xyz(radiometry * (d65 / (d65 @ radiometry[:, 1]))[:, None]).T
     rgb = table.rgb(power)
-    model, wavelengths = Sigmoid(0.0, 1.0), np.linspace(0.0, 1.0, len(radiometry))
+    model = Sigmoid(0.0, 1.0)
+    wavelengths = np.linspace(0.0, 1.0, len(radiometry))
     found = solve(
         forward_map(model, wavelengths, sensor),
         np.zeros((len(rgb), model.count)),
@@ -273,7 +281,8 @@ def lookups(count: int, runs: int) -> Iterator[Row]:
     their medians, by type.
     """
     rgb = np.random.default_rng(1).random((count, 3))
-    table, cube = uplift.load_emission(), uplift.load()
+    table = uplift.load_emission()
+    cube = uplift.load()
     for at, dtype in product(
         (np.linspace(400, 700, 16), table.wavelengths), ("float64", "float32")
     ):

@@ -48,7 +48,8 @@ from uplift.lab.study import held_out
 from uplift.lookup import Cube
 from uplift.report.measures import check_calibration
 
-DIM, COARSE = 32, 16
+DIM = 32
+COARSE = 16
 COUNTS = (9, 13, 17)
 SETS = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017")
 """Shipped sets of at least 20 entries. The others are too small to split."""
@@ -242,7 +243,9 @@ def learning_curve(parts: int) -> Row:
     """Return the errors at each part of the mixture of cubes that know the other ones:
     what more measurements give.
     """
-    some, left_out, found = materials(MIXTURE), shipped_families(MIXTURE), []
+    some = materials(MIXTURE)
+    left_out = shipped_families(MIXTURE)
+    found = []
     rows = np.arange(len(some.rgb))
     for seed in range(SPLITS):
         for queried in np.array_split(
@@ -328,7 +331,8 @@ def with_atlas(name: str) -> Row:
     """Return the mean error over the lights of ColorChecker cubes, queried for a set
     that the prior does not know.
     """
-    some, left_out = materials(name), [*family(name), "checker"]
+    some = materials(name)
+    left_out = [*family(name), "checker"]
     found = {
         "smooth": means(build("macbeth", dim=COARSE, prior="smooth"), some),
         "learnt": means(build("macbeth", dim=COARSE, leave_out=left_out), some),

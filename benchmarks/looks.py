@@ -39,19 +39,23 @@ LIGHTS = ("A", "FL11", "HP1", "LED-RGB1")
 PICTURE = DOCS / "looks" / "regions.png"
 DRAWN, DRAWN_LIGHTS = ((0x8A, 0x2A, 0x20), (0x5F, 0x7F, 0x9F)), 3
 """Encoded colours of the picture, between entries, and the number of lights."""
-PAGE_DIVISIONS, FINE_DIVISIONS = 3, 4
+PAGE_DIVISIONS = 3
+FINE_DIVISIONS = 4
 MANY, RUNS = 1000, 3
 """Colours that are timed."""
 LIKELY_LIGHTS, COEFFICIENTS = ("FL11", "A", "HP1"), 9
 """Lights of the share of held-out materials, and coefficients of the cubes that do not
 know them.
 """
-SCREENSHOT, WINDOW, SCALE = DOCS / "looks" / "page.jpg", (1440, 1400), 0.85
+SCREENSHOT = DOCS / "looks" / "page.jpg"
+WINDOW = (1440, 1400)
+SCALE = 0.85
 CHOICE = (("region-1", "ArrowLeft", 6), ("region-1", "ArrowDown", 2))
 """Keys that are pressed for the screenshot, with Shift, and how often: 30 less a*, 10
 less b* under FL11.
 """
-LOOKS_ATLAS, DIM = "macbeth", 32
+LOOKS_ATLAS = "macbeth"
+DIM = 32
 IMPOSSIBLE = (
     ("#4060a0", "A", "#5060a0"),
     ("#8a2a20", "A", "#8a4020"),
@@ -63,9 +67,11 @@ PIXELS, SPP = 220, 256
 
 def main() -> None:
     """Measure and store."""
-    cube, atlas = load(CUBE), read_atlas(MACBETH)
+    cube = load(CUBE)
+    atlas = read_atlas(MACBETH)
     own = cube.data.sensor
-    rgb, drawn = own.rgb(resample(atlas, own.wavelengths).values), own.decode(DRAWN)
+    rgb = own.rgb(resample(atlas, own.wavelengths).values)
+    drawn = own.decode(DRAWN)
     lights = [light(name, own.observer, *own.range) for name in LIGHTS]
 
     def search(colours: Array) -> list[Bounds]:
@@ -116,7 +122,8 @@ def likely(name: str) -> Iterator[dict[str, Any]]:
     """Yield the share of held-out materials in the likely region, by light."""
     pairs = other_halves(name, dim=32, coefficients=COEFFICIENTS)
     for each in map(light, LIKELY_LIGHTS):
-        distances, radii = [], []
+        distances = []
+        radii = []
         for cube, some in pairs:
             errors = lab_errors(cube.data, each)
             measured, answered = (
@@ -127,7 +134,8 @@ def likely(name: str) -> Iterator[dict[str, Any]]:
                 mahalanobis(errors.covariance(some.rgb)[:, 1:, 1:], measured - answered)
             )
             radii.append(np.full(len(measured), errors.likely_radius))
-        distance, radius = np.concatenate(distances), np.concatenate(radii)
+        distance = np.concatenate(distances)
+        radius = np.concatenate(radii)
         yield {
             "atlas": name,
             "light": each.name,
@@ -203,8 +211,10 @@ def render(plain: Cube, looked: Cube) -> Row:
     """Render two balls of one RGB, of two cubes, under daylight and under the light of
     a look, and draw them.
     """
-    version, look = start_mitsuba(), looked.data.provenance["looks"][0]
-    lamps, found = ("D65", look["lights"][0]["light"]), {}
+    version = start_mitsuba()
+    look = looked.data.provenance["looks"][0]
+    lamps = ("D65", look["lights"][0]["light"])
+    found = {}
     figure = new_figure(4.5, 4.3)
     with tempfile.TemporaryDirectory() as folder:
         paths = [str(Path(folder, f"{stem}.uplift")) for stem in ("plain", "looks")]

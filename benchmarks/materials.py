@@ -87,7 +87,8 @@ def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:
     """Return cubes of random halves of a set, and the other halves: every material is
     queried equally often.
     """
-    some, left_out = materials(name), shipped_families(name)
+    some = materials(name)
+    left_out = shipped_families(name)
     return [
         (some.take(kept).cube(leave_out=left_out, **options), some.take(queried))
         for kept, queried in halves_both_ways(np.arange(len(some.rgb)), SPLITS)

@@ -59,7 +59,8 @@ DRAWN = (
 
 # --- criteria ---
 
-BLACK, WHITE = np.zeros(3), np.ones(3)
+BLACK = np.zeros(3)
+WHITE = np.ones(3)
 COMPLEMENTS = (((0, 0, 1), (1, 0.5, 0)), ((1, 0, 0), (0, 1, 0)), ((1, 1, 0), (1, 0, 1)))
 """Blue and orange, red and green, yellow and purple, as saturated linear RGB."""
 BLUE_YELLOW = np.array([[0.0, 0, 1], [1.0, 1, 0]])
@@ -332,10 +333,8 @@ def draw(cube: Cube, smooth: Cube, folder: Path) -> None:
     ``smooth``.
     """
     folder.mkdir(exist_ok=True)
-    by_name, parts = (
-        {mixer.name: mixer for mixer in mixers(cube)},
-        ramp(np.ones(2), STEPS),
-    )
+    by_name = {mixer.name: mixer for mixer in mixers(cube)}
+    parts = ramp(np.ones(2), STEPS)
     for name, pair in PAIRS.items():
         rgb = np.array([colour(cube, word) for word in pair])
         strips = {by_name[each].title: by_name[each].mix(rgb, parts) for each in DRAWN}
@@ -359,7 +358,8 @@ def _tools(cube: Cube) -> dict[str, Array]:
     """Return the ramp of two artists' paints by RGB, by us, and as other tools publish
     it.
     """
-    steps, mixbox = published("coloraide", cube), published("mixbox", cube).expected[:1]
+    steps = published("coloraide", cube)
+    mixbox = published("mixbox", cube).expected[:1]
     ends = steps.paints[:2]
     parts = np.concatenate([[[1, 0]], steps.shares, [[0, 1]]])
     by_name = {mixer.name: mixer for mixer in mixers(cube)}
@@ -380,8 +380,10 @@ def _tools(cube: Cube) -> dict[str, Array]:
 def mixture_times(cube: Cube) -> Iterator[Row]:
     """Yield nanoseconds per mixture of two, from RGB to RGB and between spectra."""
     rng = np.random.default_rng(0)
-    rgb, parts = rng.random((MIXTURES, 2, 3)), rng.random((MIXTURES, 2)) + 0.1
-    spectra, spectral_mixers = cube.reflectance(rgb), spectral_models(cube.data.sensor)
+    rgb = rng.random((MIXTURES, 2, 3))
+    parts = rng.random((MIXTURES, 2)) + 0.1
+    spectra = cube.reflectance(rgb)
+    spectral_mixers = spectral_models(cube.data.sensor)
     for mixer in mixers(cube):
         pairs = zip(rgb[:CHECKED], parts[:CHECKED], strict=True)
         if not np.allclose(
@@ -405,7 +407,8 @@ def mixture_times(cube: Cube) -> Iterator[Row]:
 
 def main() -> None:
     """Measure, draw and store."""
-    cube, smooth = uplift.load(CUBES / "moments-16-macbeth.uplift"), uplift.load()
+    cube = uplift.load(CUBES / "moments-16-macbeth.uplift")
+    smooth = uplift.load()
     draw(cube, smooth, DOCS / "mixing")
     record(
         "mixing",

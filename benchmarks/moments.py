@@ -28,7 +28,8 @@ from uplift.scene.representations import samples
 
 PICTURES = DOCS / "moments"
 FLOATS = (3, 5, 9, 13, 16)
-CUBE_DIM, COEFFICIENTS = 16, (3, 5, 9)
+CUBE_DIM = 16
+COEFFICIENTS = (3, 5, 9)
 Pair = list[float]
 """Mean and largest error."""
 Errors = Mapping[tuple[Technique, int], Pair]
@@ -40,7 +41,8 @@ def main() -> None:
     atlases = {
         path.stem: uplift.read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))
     }
-    study, thesis = study_moments(atlases), read_thesis()
+    study = study_moments(atlases)
+    thesis = read_thesis()
     counts = range(study.max_moments + 1)
     ours = {
         (one, count): pairs(study, one, count)[0]
@@ -154,10 +156,8 @@ def warp_errors(measured: Array, warp: str, floats: int) -> dict[str, Any]:
     """Return ΔE76 under D65 and the rms difference of reflectances (E, 401) from those
     of their mirrored moments.
     """
-    technique, light = (
-        Technique(mirrored=True, warped=warp != "none", warp=warp),
-        observer.light("D65"),
-    )
+    technique = Technique(mirrored=True, warped=warp != "none", warp=warp)
+    light = observer.light("D65")
     original = measured[:, :: samples.TABLE_STRIDE]
     spectra = technique.reconstruct(
         technique.moments(measured, samples.wavelengths(), floats - 1), observer.grid()

@@ -47,7 +47,8 @@ class LightPaths:
         """Return ΔE00 (n,) between a product's colours and those of complete spectra,
         both exposed to mid-grey.
         """
-        power, met = self.powers[light], self.reflectances[bounces]
+        power = self.powers[light]
+        met = self.reflectances[bounces]
         full = (power * met.prod(axis=1)) @ screen_matrix(self.sensor).T
         gain = exposure(self.sensor, full)[:, None]
         return delta_e_rgb(self.sensor, gain * full, gain * product(power, met))

@@ -49,7 +49,9 @@ of no material.
 SMOOTHING = 0.01
 """Blur of the normals, in widths of the scan."""
 YAW, PITCH = np.radians([-35, 28])
-LIGHT, AMBIENT, EXPOSURE = np.array([-0.5, 0.6, 0.62]), 0.25, 1.5
+LIGHT = np.array([-0.5, 0.6, 0.62])
+AMBIENT = 0.25
+EXPOSURE = 1.5
 BORES = (-0.48, 0.0, 0.48)
 
 

@@ -140,7 +140,8 @@ def ours(runs: int) -> list[Peer]:
     return rows
 
 
-CERES_SOURCE, CERES_BUILT = ROOT / "benchmarks" / "ceres", ROOT / "out" / "ceres"
+CERES_SOURCE = ROOT / "benchmarks" / "ceres"
+CERES_BUILT = ROOT / "out" / "ceres"
 CERES_NEEDS = "install Ceres, cmake and a C++ compiler: libceres-dev, cmake, g++"
 CERES_STEPS = 12
 """Iterations from each start. The default of Ceres, 50, doubles the time for moments
@@ -172,7 +173,8 @@ def ceres(runs: int) -> list[Peer]:
 def _ceres_row(
     program: Path, name: str, count: int, unknowns: str, least: float, runs: int
 ) -> Peer:
-    model, points = Sigmoid() if name == "sigmoid" else Moments(count), LATTICE.points
+    model = Sigmoid() if name == "sigmoid" else Moments(count)
+    points = LATTICE.points
     done = [_run_ceres(program, unknowns, count) for _ in range(runs)]
     solution, facts = done[-1]
     multipliers = model.from_storage(solution) if unknowns == "moments" else solution
@@ -203,7 +205,8 @@ def _run_ceres(
         + "\n"
     )
     with tempfile.TemporaryDirectory() as folder:
-        scene, solution = Path(folder, "scene.txt"), Path(folder, "found")
+        scene = Path(folder, "scene.txt")
+        solution = Path(folder, "found")
         scene.write_text(text)
         command = [
             str(program),
@@ -226,7 +229,8 @@ def _run_ceres(
         return np.fromfile(solution).reshape(-1, count), json.loads(done.stdout)
 
 
-RGB2SPEC, RGB2SPEC_DIM = ROOT / "out" / "rgb2spec", 64
+RGB2SPEC = ROOT / "out" / "rgb2spec"
+RGB2SPEC_DIM = 64
 RGB2SPEC_NEEDS = (
     "get the source of rgb2spec by `make peers`, and install a C++ compiler: g++"
 )
@@ -255,10 +259,8 @@ def rgb2spec(runs: int) -> list[Peer]:
     """
     rows = []
     for (commit, method, least), flags in product(RGB2SPEC_VERSIONS, RGB2SPEC_FLAGS):
-        program, source = (
-            RGB2SPEC / "rgb2spec_opt",
-            RGB2SPEC / commit / "rgb2spec_opt.cpp",
-        )
+        program = RGB2SPEC / "rgb2spec_opt"
+        source = RGB2SPEC / commit / "rgb2spec_opt.cpp"
         _install(
             RGB2SPEC_NEEDS,
             ["c++", *flags.split(), *RGB2SPEC_COMPILES, source, "-o", program],
@@ -299,7 +301,8 @@ def table_sensor() -> Sensor:
         np.interp(wavelengths, wide.wavelengths, each)
         for each in (*wide.cmfs.T, wide.power)
     ]
-    cmfs, power = np.stack(tables[:3], axis=-1), tables[3] * weights
+    cmfs = np.stack(tables[:3], axis=-1)
+    power = tables[3] * weights
     return replace(
         wide, wavelengths=wavelengths, cmfs=cmfs, power=power, xyz_to_rgb=XYZ_TO_RGB
     )
@@ -313,10 +316,8 @@ def table_colours(path: Path) -> tuple[Array, Array]:
         path.read_bytes()
     )  # "SPEC", u32 dim, f32 scale[dim], f32 data[3][dim][dim][dim][3]
     dim = int.from_bytes(data[4:8], "little")
-    level, even = (
-        np.frombuffer(data, "<f4", dim, 8).astype(float),
-        np.linspace(0, 1, dim),
-    )
+    level = np.frombuffer(data, "<f4", dim, 8).astype(float)
+    even = np.linspace(0, 1, dim)
     planes = (
         np.frombuffer(data, "<f4", 9 * dim**3, 8 + 4 * dim)
         .astype(float)

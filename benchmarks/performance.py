@@ -21,8 +21,10 @@ UPLIFT = str(Path(sys.executable).parent / "uplift")
 RUNS, FEW_RUNS = 5, 3
 """Runs, and those of large lattices, which take long and vary little."""
 MODELS = (("sigmoid", 3), *(("moments", count) for count in (3, 5, 9, 13, 17)))
-DIMS, MODEL_DIM = (16, 32, 64, 128), 64
-MIXTURE_DIM, MIXTURES = 32, (24, 396, 10_000)
+DIMS = (16, 32, 64, 128)
+MODEL_DIM = 64
+MIXTURE_DIM = 32
+MIXTURES = (24, 396, 10_000)
 WAVELENGTHS = np.linspace(400, 700, 16)
 BULK, MAX_ERROR = 1_000_000, 1e-6
 """Colours of `uplift.bulk`, and its largest permitted difference of reflectance."""
@@ -87,10 +89,8 @@ def time_build(model: str, count: int, dim: int, runs: int) -> Row:
     """Time builds in this process, which has compiled."""
     build = partial(_build, dim=dim, model=model, coefficients=count)
     data = build().data
-    unfitted, worst = (
-        data.points.counts()["unfitted"],
-        float(data.points.distance.max()),
-    )
+    unfitted = data.points.counts()["unfitted"]
+    worst = float(data.points.distance.max())
     if unfitted:
         raise RuntimeError(f"{unfitted} nodes are unfitted: nothing to time")
     wall, cpu = time_calls(build, runs)
@@ -116,13 +116,12 @@ def time_atlas(count: int) -> Row:
     known = np.concatenate(
         [materials(each.path.stem).measured for each in shipped_atlases()]
     )
-    random, entries = np.random.default_rng(1), []
+    random = np.random.default_rng(1)
+    entries = []
     for number in range(count):
         rows = random.integers(0, len(known), random.integers(2, 4))
-        logarithmic, weights = (
-            random.random() < 0.5,
-            random.dirichlet(np.full(len(rows), 0.6)),
-        )
+        logarithmic = random.random() < 0.5
+        weights = random.dirichlet(np.full(len(rows), 0.6))
         mixed = (
             np.exp(weights @ np.log(known[rows] + 1e-3))
             if logarithmic
@@ -197,7 +196,8 @@ def time_bulk(cube: Any) -> list[Row]:
     from uplift.lookup import bulk
 
     rgb = np.random.default_rng(1).random((BULK, 3))
-    expected, rows = cube.reflectance(rgb, WAVELENGTHS), []
+    expected = cube.reflectance(rgb, WAVELENGTHS)
+    rows = []
     for threads in (1, 2):
         sample = bulk.spectra(cube, WAVELENGTHS, threads=threads)
         error = float(np.abs(sample(rgb) - expected).max())

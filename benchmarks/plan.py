@@ -54,7 +54,8 @@ class Case:
     def scene(self) -> str:
         """Return the text of the scene file."""
         atlas = f'atlases = "{self.atlas}"\n' if self.atlas else ""
-        textures, lights = json.dumps(self.pictures), json.dumps(self.lights)
+        textures = json.dumps(self.pictures)
+        lights = json.dumps(self.lights)
         return (
             f"textures = {textures}\n{atlas}lights = {lights}\ntolerance = "
             f"{self.tolerance}\n"
@@ -255,6 +256,7 @@ def largest_difference(sparse: Cube, complete: Cube, picture: Picture) -> float:
         list(Images((picture.path,)).colours(picture.path, sensor))
     )
     sample = np.random.default_rng(0).permutation(colours)[:SAMPLE]
-    ours, theirs = sparse.reflectance(sample), complete.reflectance(sample)
+    ours = sparse.reflectance(sample)
+    theirs = complete.reflectance(sample)
     lights = [light(name, sensor.observer, *sensor.range) for name in SCENE_LIGHTS]
     return float(max(delta_e_spectra(light, ours, theirs).max() for light in lights))

@@ -26,16 +26,15 @@ from uplift.common.arrays import Array
 from uplift.io.processes import call_in_child
 
 LIGHTS = ("D65", "A", "FL11")
-REFERENCE, MITSUBA, PLAIN, ATLAS, ATLAS_17 = (
-    "measured spectra",
-    "Mitsuba 3",
-    "cube, no atlas",
-    "cube, ColorChecker",
-    "cube, ColorChecker, 17 coefficients",
-)
+REFERENCE = "measured spectra"
+MITSUBA = "Mitsuba 3"
+PLAIN = "cube, no atlas"
+ATLAS = "cube, ColorChecker"
+ATLAS_17 = "cube, ColorChecker, 17 coefficients"
 OTHER_SEED = "measured spectra, another seed"
 DIM = 32
-LAYOUT, SPP = Layout(patch=32, gap=4), 256
+LAYOUT = Layout(patch=32, gap=4)
+SPP = 256
 VARIANTS = ("llvm_ad_spectral", "cuda_ad_spectral")
 BITMAP = "Mitsuba's bitmap"
 SIZE = 512
@@ -62,7 +61,8 @@ class Renders:
 
 def main() -> None:
     """Render, draw and store."""
-    version, painted = checker.start_mitsuba(), checker.chart()
+    version = checker.start_mitsuba()
+    painted = checker.chart()
     with tempfile.TemporaryDirectory() as folder:
         renders = render(methods(painted, Path(folder), DIM), LAYOUT, SPP)
     to_screen = {name: sensor(illuminant=name).xyz_to_rgb for name in LIGHTS}
@@ -112,9 +112,11 @@ def render(methods: dict[str, Reflectances], layout: Layout, spp: int) -> Render
     """Render all methods under all lights with one seed, and the reference with another
     seed too.
     """
-    images, delta_e = {}, {}
+    images = {}
+    delta_e = {}
     for name in LIGHTS:
-        emitter, white = checker.constant_light(name), light(name).white
+        emitter = checker.constant_light(name)
+        white = light(name).white
         for method, reflectances in methods.items():
             images[name, method] = render_chart(
                 emitter, reflectances, layout, spp, seed=0
@@ -244,7 +246,8 @@ def _textures(folder: Path) -> dict[str, dict[str, Any]]:
         )
         return {"type": "uplift", "filename": str(target)}
 
-    spectra, multipliers = convert(texture.Spectrum()), convert(texture.Multipliers())
+    spectra = convert(texture.Spectrum())
+    multipliers = convert(texture.Multipliers())
     entries = {
         "type": "uplift",
         "cube": ATLAS_CUBE,

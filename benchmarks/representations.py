@@ -148,10 +148,8 @@ def filter_rows(
     }
     rows = []
     for one in tuned:
-        printed, bare = (
-            thesis[one.lights, one.count, one.kind],
-            thesis[one.lights, one.count, compare.NONE],
-        )
+        printed = thesis[one.lights, one.count, one.kind]
+        bare = thesis[one.lights, one.count, compare.NONE]
         mean = one.statistics.mean
         changes = (
             mean / unfiltered[one.lights, one.count] - 1,
@@ -217,7 +215,8 @@ def enhanced(count: int) -> Representation:
     """Return enhanced sums over the same cells; a spike on a border is multiplied by
     the mean of both.
     """
-    inside, family = _cells(count), "enhanced Riemann sums, closed cells"
+    inside = _cells(count)
+    family = "enhanced Riemann sums, closed cells"
     return composite(
         f"RE{count}",
         family,
@@ -230,5 +229,6 @@ def enhanced(count: int) -> Representation:
 def _cells(count: int) -> Array:
     """Return (count, 81) whether a sample of the 5 nm table lies in a cell."""
     edges = np.linspace(observer.START, observer.END, count + 1)
-    low, high = edges[:-1, None] - 1e-9, edges[1:, None] + 1e-9
+    low = edges[:-1, None] - 1e-9
+    high = edges[1:, None] + 1e-9
     return ((observer.grid() >= low) & (observer.grid() <= high)).astype(float)

@@ -43,11 +43,14 @@ METHODS = MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
     "uplift, with the chart",
 )
 Cubes = dict[str, uplift.Cube]
-FILM_LIGHT, FILM_SIZE = "D55", (11.2, 2.9)
+FILM_LIGHT = "D55"
+FILM_SIZE = (11.2, 2.9)
 LAYOUT = Layout(patch=32, gap=4)
 SIZE = (11.2, 5.2)
-TRUTH_LIGHTS, TRUTH_SIZE = RELIGHT_LIGHTS[:2], (7.4, 3.8)
-JPEG_WIDTH, JPEG_QUALITY = 1500, 88
+TRUTH_LIGHTS = RELIGHT_LIGHTS[:2]
+TRUTH_SIZE = (7.4, 3.8)
+JPEG_WIDTH = 1500
+JPEG_QUALITY = 88
 DIM = 32
 SESSION = (
     "uplift samples",
@@ -103,13 +106,16 @@ def draw_charts(cubes: Cubes) -> list[dict[str, Any]]:
 
     Patches have a measured square by all methods, and a measured left half by two.
     """
-    painted, srgb = chart(), sensor()
+    painted = chart()
+    srgb = sensor()
     spectra = {
         MEASURED: painted.measured,
         MITSUBA: mitsuba3.spectra(painted.painted, painted.wavelengths),
         **{name: cube.reflectance(painted.painted) for name, cube in cubes.items()},
     }
-    images, errors, to_screen = {}, {}, {}
+    images = {}
+    errors = {}
+    to_screen = {}
     rows: dict[str, dict[str, Any]] = {name: {"method": name} for name in METHODS}
     for lamp in map(light, RELIGHT_LIGHTS):
         to_screen[lamp.name] = sensor(illuminant=lamp.name).xyz_to_rgb
@@ -170,16 +176,15 @@ def expose_film(cubes: Cubes) -> None:
     """Expose the chart on a film by tables, draw the layers as red, green and blue, and
     store the errors in stops.
     """
-    painted, daylight, luminous = (
-        chart(),
-        light(FILM_LIGHT),
-        matching_functions(DEFAULT_OBSERVER)[:, 1],
-    )
+    painted = chart()
+    daylight = light(FILM_LIGHT)
+    luminous = matching_functions(DEFAULT_OBSERVER)[:, 1]
     power = illuminant_spd(FILM_LIGHT) / (
         illuminant_spd(FILM_LIGHT) @ luminous / luminous.sum()
     )
     layers = np.exp(-0.5 * ((grid()[:, None] - LAYERS[::-1]) / LAYER_WIDTH) ** 2)
-    exposures, figures = {MEASURED: painted.measured * power @ layers}, {}
+    exposures = {MEASURED: painted.measured * power @ layers}
+    figures = {}
     for name, cube in cubes.items():
         with tempfile.TemporaryDirectory() as folder:
             stated = write_film(cube, Path(folder) / "film.npy", light=FILM_LIGHT).stops
@@ -211,10 +216,8 @@ def expose_film(cubes: Cubes) -> None:
         image = LAYOUT.paint(exposure / (power @ layers), np.full(3, BACKGROUND))
         for number, place in enumerate(LAYOUT.patches()):
             if name in figures:
-                corner, dark = (
-                    (place[1].start + 2, place[0].stop - 3),
-                    image[place].mean() < 0.25,
-                )
+                corner = (place[1].start + 2, place[0].stop - 3)
+                dark = image[place].mean() < 0.25
                 axes.text(
                     *corner,
                     f"{figures[name]['patches'][number]:.2f}",

@@ -31,7 +31,8 @@ from uplift.lookup import Cube
 from uplift.pipeline.rebuild import recorded_atlas
 
 FOLDER = DOCS / "stability"
-PLAIN, CONSTRAINED = "moments-16", "moments-16-macbeth"
+PLAIN = "moments-16"
+CONSTRAINED = "moments-16-macbeth"
 STORED = (
     PLAIN,
     CONSTRAINED,
@@ -51,7 +52,8 @@ KINDS = {
     "one entry left out": " left out",
 }
 """Kinds of changed atlases by a part of their descriptions."""
-EXPORT_DIM, VISIBLE = 12, 1e-3
+EXPORT_DIM = 12
+VISIBLE = 1e-3
 SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB", "ACES2065-1")
 EXPORTED = ((9, 9, None), (3, 3, None), (9, 13, MACBETH))
 """Coefficients of nodes and of entries, and the atlas, of exported cubes."""

@@ -54,7 +54,8 @@ def round_trips(
     ]
     for picture in images:
         linear = np.clip(picture.linear(), 0, 1)
-        errors, colour_science = {}, {}
+        errors = {}
+        colour_science = {}
         for name, form, uplifter in uplifters:
             texture.convert(uplifter, picture.path, target, force=True)
             found = delta_e_rgb(
@@ -76,7 +77,8 @@ def round_trips(
 
 def _rgb(cube: Cube, form: PixelEncoding, names: tuple[str, ...], path: Path) -> Array:
     """Return the linear RGB (h, w, 3) of a texture, read as Mitsuba reads it."""
-    sensor, model = cube.data.sensor, cube.data.model
+    sensor = cube.data.sensor
+    model = cube.data.model
     channels = OpenEXR.File(str(path), separate_channels=True).channels()
     shape = channels["R"].pixels.shape
     values = np.stack([channels[name].pixels.ravel() for name in names], axis=-1)
@@ -119,7 +121,8 @@ def fewer_wavelengths(
         float(wavelength) for wavelength in range(first, last + 1, step)
     )
     uplifter = texture.prepare(cube, texture.Spectrum(wavelengths))
-    means, worst = [], 0.0
+    means = []
+    worst = 0.0
     for picture in images:
         texture.convert(uplifter, picture.path, target, force=True)
         linear = np.clip(picture.linear(), 0, 1)
@@ -159,7 +162,8 @@ def _write(path: Path, size: int) -> None:
     photo = np.asarray(
         Image.open(next(iter(pictures())).path).convert("RGB"), dtype=int
     )
-    rng, height = np.random.default_rng(0), photo.shape[0]
+    rng = np.random.default_rng(0)
+    height = photo.shape[0]
     tiled = np.tile(photo, (1, size // photo.shape[1], 1))
     image = OpenImageIO.ImageOutput.create("png")
     if image is None or not image.open(
@@ -179,7 +183,8 @@ def time_textures(
 ) -> dict[str, Any]:
     """Time a process that uplifts size² pixels."""
     with tempfile.TemporaryDirectory() as folder:
-        source, target = Path(folder) / "in.png", Path(folder) / "out.exr"
+        source = Path(folder) / "in.png"
+        target = Path(folder) / "out.exr"
         _write(source, size)
         command = [
             UPLIFT,
@@ -207,7 +212,8 @@ def main() -> None:
     # First: a process started from a large one counts the memory of its parent as its
     # own.
     speed = [time_textures(CUBES / "moments-16-macbeth.uplift", *job) for job in JOBS]
-    cube, images = uplift.build(MACBETH, dim=32), list(pictures())
+    cube = uplift.build(MACBETH, dim=32)
+    images = list(pictures())
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "texture.exr"
         found = list(round_trips(cube, images, target))

@@ -34,7 +34,8 @@ from uplift.viz.figure import (
 SPACES = {"AC1C2": "opponent", "SML": "cones", "XYZ": "xyz"}
 """Names of the paper, and of `uplift.scene.wavelengths.choose_orders`."""
 CHANNELS = ("A", "C1", "C2")
-OPTIMISED, FITTED = "optimised", "fitted"
+OPTIMISED = "optimised"
+FITTED = "fitted"
 OTHERS = ("meyer", "uniform", "bins")
 """Methods that are not fitted to materials."""
 COUNTS = range(4, 17)
@@ -125,7 +126,8 @@ def compared(expected: Array, ours: Array) -> Row:
 
 def compare_meyer(setup: RenderSetup, spaces: Mapping[str, Array]) -> Row:
     """Recompute the matrices, tables 1a and 1b, and table 2."""
-    space, expected = spaces["AC1C2"], printed_rules("meyer1988_table1.csv", "order")
+    space = spaces["AC1C2"]
+    expected = printed_rules("meyer1988_table1.csv", "order")
     rules = paper.quadrature_rules(space, setup.wavelengths, setup.cmfs)
     orders = [
         (key, order, rule)
@@ -223,10 +225,11 @@ def four_wavelengths(
         if row["error"]
     }
     for number, allocation in (("1", separate), ("2", shared)):
-        row, errors = (
-            number,
-            {"printed": stated[number], "ours": mean_error(setup, space, allocation)},
-        )
+        row = number
+        errors = {
+            "printed": stated[number],
+            "ours": mean_error(setup, space, allocation),
+        }
         for channel, rule in zip(CHANNELS, allocation, strict=True):
             wavelengths, weights = expected[channel, number]
             yield {
@@ -236,7 +239,8 @@ def four_wavelengths(
                 "ours": {"wavelengths": rule.nodes, "weights": factor * rule.weights},
                 "delta_e": errors,
             }
-            row, errors = "", {"printed": None, "ours": None}
+            row = ""
+            errors = {"printed": None, "ours": None}
 
 
 # --- methods ---
@@ -255,7 +259,8 @@ def compare_methods(materials: Array, lights: tuple[str, ...]) -> dict[str, Erro
     """
     setup = make_setup(materials, lights)
     odd = np.arange(len(materials)) % 2 == 1
-    fitted, tested = setup.only(~odd), setup.only(odd)
+    fitted = setup.only(~odd)
+    tested = setup.only(odd)
     keys = [(method, count) for count in COUNTS for method in METHODS]
 
     def unseen(method: str, count: int) -> Array:

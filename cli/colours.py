@@ -188,7 +188,8 @@ def find_colours(
     """
     space = None if input_space is None else find_input_space(input_space)
     if colour == ("-",):
-        colour, input_path = (), input_path or "-"
+        colour = ()
+        input_path = input_path or "-"
     if (xy is None) != (luminance is None) or (xyz is not None and xy is not None):
         raise click.UsageError(
             "--xy X Y and --luminance Y require each other, and --xyz is an "
@@ -217,7 +218,9 @@ def _row_blocks(
         codecs.getincrementaldecoder("utf-8-sig")(), translate=True
     )
     read = getattr(file, "read1", file.read)
-    first, rest, at_end = 1, "", False
+    first = 1
+    rest = ""
+    at_end = False
     while not at_end:
         chunk = read(CHUNK)
         at_end = not chunk

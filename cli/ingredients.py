@@ -58,10 +58,12 @@ class SpectrumResolver:
             if kind == "duntley"
             else (*self.cube.data.atlas.names, *self.atlas.names)
         )
-        parts, name = 1.0, word.strip()
+        parts = 1.0
+        name = word.strip()
         match = None if name in entries else PARTS.match(name)
         if match:
-            parts, name = _positive(match[1], word), match[2].strip()
+            parts = _positive(match[1], word)
+            name = match[2].strip()
         if kind == "duntley":
             return name, parts, read_constants(name, self.wavelengths), None
         if name in entries or "/" not in name:

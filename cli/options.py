@@ -227,11 +227,15 @@ class OutputFile(Checked):
     """The name of a file or folder that a command writes."""
 
 
-NUMBER, WHOLE = Number(), Whole()
+NUMBER = Number()
+WHOLE = Whole()
 WHOLE_OR_AUTO = Whole(word="auto")
 WAVELENGTHS = Parsed(parse_wavelengths)
-LIGHT, INPUT_SPACE = Light(find_light), Checked(find_input_space)
-OUTPUT, PAGE, PLOT = OutputFile(str), OutputFile(check_page), OutputFile(check_plot)
+LIGHT = Light(find_light)
+INPUT_SPACE = Checked(find_input_space)
+OUTPUT = OutputFile(str)
+PAGE = OutputFile(check_page)
+PLOT = OutputFile(check_plot)
 FIGURE_PAGE = OutputFile(check_figure_page)
 
 
@@ -578,7 +582,8 @@ def space(camera: str = "") -> Decorator:
 
 def observer(camera: str = "") -> Decorator:
     """``--observer``."""
-    default, text = "CIE 1931 2 Degree Standard Observer", f"Standard observer{camera}."
+    default = "CIE 1931 2 Degree Standard Observer"
+    text = f"Standard observer{camera}."
     metavar = "NAME|FILE" if camera else "NAME"
     return click.option(
         "--observer",

@@ -175,7 +175,8 @@ def _exposure(folder: Path) -> str | None:
     """Return how other users could change the files of a folder, or put another folder
     in its place; None if not.
     """
-    user, status = os.getuid(), folder.stat()
+    user = os.getuid()
+    status = folder.stat()
     if status.st_uid != user or status.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
         return "other users can write to it"
     for place in folder.parents:
@@ -196,7 +197,8 @@ def _is_private(group: int) -> bool:
     import pwd
 
     with contextlib.suppress(KeyError):  # a user without a name
-        name, found = pwd.getpwuid(os.getuid()).pw_name, grp.getgrgid(group)
+        name = pwd.getpwuid(os.getuid()).pw_name
+        found = grp.getgrgid(group)
         return found.gr_name == name and set(found.gr_mem) <= {name}
     return False
 

@@ -83,14 +83,16 @@ class Cube:
         if not set(self.meta["features"]) <= FEATURES:
             raise ValueError("a feature that this reader does not know")
         self.sigmoid = self.meta["model"]["name"] == "sigmoid"
-        self.nodes, self.threshold = self.arrays["nodes"], self.meta["threshold"]
+        self.nodes = self.arrays["nodes"]
+        self.threshold = self.meta["threshold"]
         self.entries = self.arrays.get(
             "atlas.entry_coefficients", self.arrays["atlas.coefficients"]
         )
         points = self.arrays.get("points", np.arange(len(self.nodes) ** 3))
         self.row = {int(number): row for row, number in enumerate(points)}
         # RGB of a reflectance is W g; K are the curves of the sensor without the light
-        to_rgb, power = self.arrays["sensor.xyz_to_rgb"], self.arrays["sensor.power"]
+        to_rgb = self.arrays["sensor.xyz_to_rgb"]
+        power = self.arrays["sensor.power"]
         self.curves = self.arrays["sensor.cmfs"] @ to_rgb.T
         scale = power @ self.arrays["sensor.cmfs"][:, 1]
         if "sensor.sensitivities" in self.arrays:
@@ -105,14 +107,17 @@ class Cube:
         """Reflectances at wavelengths in nm: a mixture, moved to its colour where nodes
         have not theirs.
         """
-        rgb, sensor = np.asarray(rgb, float), self.arrays["sensor.wavelengths"]
+        rgb = np.asarray(rgb, float)
+        sensor = self.arrays["sensor.wavelengths"]
         mixed, is_exact = self.mixture(rgb, np.asarray(wavelengths, float))
         at_sensor, _ = self.mixture(rgb, sensor)
         if is_exact or np.abs(self.matrix @ at_sensor - rgb).max() <= 1e-8:
             return mixed
         # g′ = S(x + K y) with W g′ = t, by Newton's steps, which are shortened where
         # they go too far
-        goal, y, part = self.realisable(rgb), np.zeros(3), 1.0
+        goal = self.realisable(rgb)
+        y = np.zeros(3)
+        part = 1.0
         scale = np.linalg.inv(np.linalg.cholesky(self.matrix @ self.curves))
         least = min(
             LEAST + SLOPE * np.abs(scale @ (goal - self.matrix @ at_sensor)).max(), MOST
@@ -145,7 +150,8 @@ class Cube:
             np.searchsorted(self.nodes, at, side="right") - 1, 0, len(self.nodes) - 2
         )
         along = (at - self.nodes[low]) / (self.nodes[low + 1] - self.nodes[low])
-        rows, weights = [], []
+        rows = []
+        weights = []
         for corner in product((0, 1), repeat=3):
             red, green, blue = low + corner
             rows.append(
@@ -269,21 +275,21 @@ def limited(found, limits):
 
 def multipliers(moments):
     """Multipliers (n, C) of moments (n, C)."""
-    found, pending = np.zeros_like(moments), np.arange(len(moments))
+    found = np.zeros_like(moments)
+    pending = np.arange(len(moments))
     for weight in GREY:
         c = ((1 - weight) * moments[pending]).T
         c[0] += weight / 2
-        count, turn, tangent = (
-            len(c),
-            np.exp(1j * np.pi * c[0]),
-            np.tan(np.pi * c[0] / 2),
-        )
+        count = len(c)
+        turn = np.exp(1j * np.pi * c[0])
+        tangent = np.tan(np.pi * c[0] / 2)
         with np.errstate(all="ignore"):
             series = [np.ones_like(turn)]  # exp(iX), X = π Σ c_l z^l
             for order in range(1, count):
                 terms = ((order - k) * c[order - k] * series[k] for k in range(order))
                 series.append(1j * np.pi / order * sum(terms))
-            upper, lower = np.imag(series)[1:], np.imag(turn * np.array(series))[:-1]
+            upper = np.imag(series)[1:]
+            lower = np.imag(turn * np.array(series))[:-1]
             a, b = np.zeros((2, *c.shape))
             a[0], b[0], scale, valid = 1, 1, 1, (c[0] >= 0) & (c[0] <= 1)
             for order in range(count - 1):
@@ -291,7 +297,8 @@ def multipliers(moments):
                 upper, lower = upper[1:] - g * lower[1:], lower[:-1] - g * upper[:-1]
                 a[1 : order + 2] += g * a[order::-1]
                 b[1 : order + 2] -= g * b[order::-1]
-                scale, valid = scale * (1 - g * g), valid & (g * g < 1)
+                scale = scale * (1 - g * g)
+                valid = valid & (g * g < 1)
             lags = [
                 (
                     tangent * a[k:] * a[: count - k] - b[k:] * b[: count - k] / tangent
@@ -313,7 +320,8 @@ def warp(name, wavelength):
 
 
 if __name__ == "__main__":
-    cube, numbers = Cube(sys.argv[1]), [float(word) for word in sys.argv[2:]]
+    cube = Cube(sys.argv[1])
+    numbers = [float(word) for word in sys.argv[2:]]
     at = numbers[3:] or cube.arrays["sensor.wavelengths"]
     for wavelength, value in zip(at, cube.reflectance(numbers[:3], at), strict=True):
         print(f"{wavelength:g}\t{value:.12g}")

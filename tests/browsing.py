@@ -17,7 +17,8 @@ import pytest
 from benchmarks.browser import browser
 from tests.parts import CHROMIUM, need
 
-WIDTHS, HEIGHT = (390, 1440), 900
+WIDTHS = (390, 1440)
+HEIGHT = 900
 SCHEMES = ("light", "dark")
 AXE = Path(__file__).parents[1] / "out" / "axe" / "axe_playwright_python" / "axe.min.js"
 """Rules of accessibility, axe-core, which `make axe` puts there."""

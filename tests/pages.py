@@ -36,13 +36,11 @@ class Page(HTMLParser):
 
     def __init__(self, html):
         super().__init__()
-        self.open, self.tags, self.attributes, self.words, self.tables = (
-            [],
-            [],
-            [],
-            [],
-            [],
-        )
+        self.open = []
+        self.tags = []
+        self.attributes = []
+        self.words = []
+        self.tables = []
         self.feed(html)
         self.close()
         assert self.open == []

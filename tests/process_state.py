@@ -20,7 +20,9 @@ def kept_process_state() -> Iterator[None]:
     """Restore it after the block. A variant of Mitsuba cannot be unset: the first one
     stays.
     """
-    environment, folder, variant = dict(os.environ), os.getcwd(), _variant()
+    environment = dict(os.environ)
+    folder = os.getcwd()
+    variant = _variant()
     try:
         yield
     finally:

@@ -66,7 +66,8 @@ def test_a_page_makes_the_cubes_and_plans_that_it_uses(name, lines):
     """Help texts may use the cube of README. No file is written twice
     without --force.
     """
-    written, made = set(), [CUBE] if name.endswith("--help") else []
+    written = set()
+    made = [CUBE] if name.endswith("--help") else []
     for line in lines:
         words = shlex.split(line)
         outputs = {

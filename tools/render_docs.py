@@ -174,7 +174,8 @@ def render(name: str, data: Mapping[str, Any] | None = None) -> dict[Path, str]:
     """Return the text of a page and of its CSV files, from its template and its data,
     by default the stored one.
     """
-    page, tables = (ROOT if name == "README" else DOCS) / f"{name}.md", {}
+    page = (ROOT if name == "README" else DOCS) / f"{name}.md"
+    tables = {}
 
     def long_table(
         rows: Iterable[Row], table_name: str, parts: Sequence[str] = ()

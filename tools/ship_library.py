@@ -139,7 +139,8 @@ def shares(xy: Array, clusters: int) -> Array:
 
 def farthest(points: Array, count: int) -> list[int]:
     """Rows of points, each the farthest from all before."""
-    rows, distance = [0], np.linalg.norm(points - points[0], axis=1)
+    rows = [0]
+    distance = np.linalg.norm(points - points[0], axis=1)
     while len(rows) < count:
         rows.append(int(distance.argmax()))
         distance = np.minimum(

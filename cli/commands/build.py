@@ -338,8 +338,10 @@ def _default_name(
 
 
 def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
-    data, counts = cube.data, cube.data.points.counts()
-    measured, looks = data.atlas.measured_count, data.atlas.looks
+    data = cube.data
+    counts = cube.data.points.counts()
+    measured = data.atlas.measured_count
+    looks = data.atlas.looks
     facts = [f"{data.lattice.dim}³ nodes"]
     if data.complete_cells is not None:
         count = int(data.points.present.sum())

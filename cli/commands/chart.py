@@ -122,10 +122,8 @@ def command(
         if source is not None
         else _measure(files, patterns, quick=quick)
     )
-    table, page = (
-        partial(write_text, chart_csv(chart)),
-        partial(write_text, render_chart(chart)),
-    )
+    table = partial(write_text, chart_csv(chart))
+    page = partial(write_text, render_chart(chart))
     write_files(output, FILES, table, partial(write_picture, chart), page)
     _print_fronts(chart)
 

@@ -87,7 +87,8 @@ def print_facts(name: str, fields: dict[str, Any], style: str) -> None:
 def _as_options(settings: dict[str, Any]) -> str:
     """Return recorded parameters of `uplift.build` as options of `uplift build`."""
     settings.pop("start", None)  # of earlier versions
-    first, last = settings.pop("shortest", 380), settings.pop("longest", 780)
+    first = settings.pop("shortest", 380)
+    last = settings.pop("longest", 780)
     words = []
     for key, value in (settings | {"range": f"{first:g}:{last:g}"}).items():
         option = "--" + OPTIONS.get(key, key).replace("_", "-")

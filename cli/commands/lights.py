@@ -337,7 +337,8 @@ def _answers(
     for xyz in blocks:
         answers = table.rgb(table.spectrum_of_xyz(xyz, outside=outside))
         power = table.spectrum_of_xyz(xyz, at, outside=outside)
-        errors, requested = table.expected_error(answers), table.rgb_of_xyz(xyz)
+        errors = table.expected_error(answers)
+        requested = table.rgb_of_xyz(xyz)
         for rgb, answer, row, error in zip(
             requested, answers, power, errors, strict=True
         ):

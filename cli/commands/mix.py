@@ -253,10 +253,8 @@ def command(
         )
     check_outputs(plot_path, output, inputs=[word.partition(":")[2] for word in words])
     cube = load(cube_path)
-    sensor, space = (
-        cube.data.sensor,
-        None if input_space is None else find_input_space(input_space),
-    )
+    sensor = cube.data.sensor
+    space = None if input_space is None else find_input_space(input_space)
     if wavelengths is not None:
         check_range(wavelengths, cube.wavelengths)
     further = (

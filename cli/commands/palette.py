@@ -194,7 +194,8 @@ def _print_table(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
 
 
 def _print_json(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
-    palette, model = design.palette, design.model
+    palette = design.palette
+    model = design.model
     cells = []
     for at in product(range(len(palette.materials)), range(len(palette.lights))):
         has_goal = not math.isnan(colours.delta_e[at])

@@ -105,15 +105,14 @@ class Answers:
         self.cube = load(cube_path)
         if wavelengths is not None:
             check_range(wavelengths, self.cube.wavelengths)
-        self.wavelengths, self.mode, self.method, self.fill_missing = (
-            wavelengths,
-            mode,
-            method,
-            fill_missing,
-        )
+        self.wavelengths = wavelengths
+        self.mode = mode
+        self.method = method
+        self.fill_missing = fill_missing
         data = self.cube.data
         atlases = [source["name"] for source in data.provenance.get("atlases", ())]
-        file, dim = cube_path or PACKAGED, data.lattice.dim
+        file = cube_path or PACKAGED
+        dim = data.lattice.dim
         self.origin: dict[str, Any] = {"file": file, "dim": dim, "atlases": atlases}
         self.title = (
             f"{Path(file).name}: {dim}³ nodes, {', '.join(atlases) or 'no atlas'}"
@@ -161,11 +160,9 @@ class Answers:
                 from uplift.colorimetry.gamut import map_to_gamut
 
                 inside = map_to_gamut(requested, self.cube.data.sensor, self.method)
-                rgb, mapped, change = (
-                    inside.rgb,
-                    mapped + inside.count,
-                    max(change, inside.max_change),
-                )
+                rgb = inside.rgb
+                mapped = mapped + inside.count
+                change = max(change, inside.max_change)
             count += len(rgb)
             if self.fill_missing:
                 filled += int((~self.cube.covers(rgb)).sum())
@@ -392,7 +389,9 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
     from uplift.colorimetry.sensor import SLACK
 
     cube = answers.cube
-    data, atlas, rgb = cube.data, cube.data.atlas, result.rgb
+    data = cube.data
+    atlas = cube.data.atlas
+    rgb = result.rgb
     fields = {}
     if (abs(result.requested_rgb - rgb) > 2 * SLACK).any():
         moved = float(
@@ -443,7 +442,8 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
 
 
 def _print_csv(answers: Answers, results: Iterable[QueryResult]) -> None:
-    cube, lights = answers.cube, [light.name for light in answers.lights]
+    cube = answers.cube
+    lights = [light.name for light in answers.lights]
     known = lights if cube.data.points.standard_error is not None else []
     columns = [*"rgb", "delta_e_2000", "standard_error", "error_bound"]
     columns += [

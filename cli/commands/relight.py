@@ -28,8 +28,10 @@ if TYPE_CHECKING:
     from uplift.lookup import Cube
     from uplift.report.relight import Relit
 
-SAMPLE, SAMPLE_ATLAS = "still-life.png", "macbeth"
-PAGE, IMAGE = ".html", ".exr"
+SAMPLE = "still-life.png"
+SAMPLE_ATLAS = "macbeth"
+PAGE = ".html"
+IMAGE = ".exr"
 SPECTRAL = "spectral"
 """Method of the packaged cube, which knows no atlas."""
 DIM = 32
@@ -158,10 +160,8 @@ def command(
                 {"output": output, "lights": shown, "pixels": conversion.counts.pixels}
             )
         else:
-            names, count = (
-                ", ".join(shown),
-                pluralise(conversion.counts.pixels, "pixel"),
-            )
+            names = ", ".join(shown)
+            count = pluralise(conversion.counts.pixels, "pixel")
             paragraph(f"{output}: {Path(paths[0]).name} under {names}, {count}")
     else:
         with progress_bar("computing spectra"):

@@ -106,14 +106,16 @@ def _summary(assessment: Assessment) -> str:
         f"{pluralise(assessment.failures['over_threshold'], 'node')} over the threshold"
     ]
     if assessment.entries is not None:
-        names, answers = assessment.entries.names, assessment.entries.answers
+        names = assessment.entries.names
+        answers = assessment.entries.answers
         parts.append(pluralise(len(names), "entry"))
         parts.append(
             f"ΔE00 mean {answers.delta_e.mean():.2f}, worst {answers.worst[0]:.2f} "
             f"('{names[0]}')"
         )
     if assessment.calibration is not None:
-        calibration, light = assessment.calibration, assessment.data.error_illuminant
+        calibration = assessment.calibration
+        light = assessment.data.error_illuminant
         parts.append(
             f"68 % within {calibration.actual:.2f} under {light}, predicted "
             f"{calibration.predicted:.2f}"

@@ -290,10 +290,8 @@ def stability(
     if style == "table":
         failed = [row["unfitted"] for row in records if row["unfitted"]]
         nodes = sum(row["realisable"] for row in records)
-        builds, missed = (
-            pluralise(len(records), "build"),
-            pluralise(len(failed), "build"),
-        )
+        builds = pluralise(len(records), "build")
+        missed = pluralise(len(failed), "build")
         say(
             f"{builds}, {pluralise(nodes, 'realisable node')}: {sum(failed)} unfitted "
             f"in {missed}"

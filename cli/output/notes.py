@@ -67,7 +67,8 @@ def _describe_outside(cube: Cube) -> str:
     table = cube.data.atlas.with_outside
     spectra = table.spectra.reflectance(np.arange(len(table.names)), grid())
     space = smallest_space(spectra, cube.illuminant, cube.observer)
-    count, total = len(cube.outside_names), len(table.names) - cube.data.atlas.looks
+    count = len(cube.outside_names)
+    total = len(table.names) - cube.data.atlas.looks
     kept = f'--space "{space}"' if space else "wider spaces"
     verb = "lies" if count == 1 else "lie"
     return (

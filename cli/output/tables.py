@@ -64,7 +64,8 @@ class SafeTable(Table):
             column.min_width = narrowest(column)
         keys = self._keys(width)
         part = list(keys)
-        caption, self.caption = self.caption, None
+        caption = self.caption
+        self.caption = None
         for column in self.columns[len(keys) :]:
             if len(part) > len(keys) and table_width([*part, column]) > width:
                 yield self._with_columns(part)

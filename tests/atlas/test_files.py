@@ -73,11 +73,9 @@ def test_several_files_make_one_atlas_in_order(save):
 
 
 def test_duplicate_name_reports_both_locations(save):
-    first, second, twice = (
-        save(PLAIN, "a.txt"),
-        save(PLAIN, "b.txt"),
-        save(PLAIN + PLAIN, "c.txt"),
-    )
+    first = save(PLAIN, "a.txt")
+    second = save(PLAIN, "b.txt")
+    twice = save(PLAIN + PLAIN, "c.txt")
     for paths, at, known in (
         ([first, second], f"{second}:1", first),
         ([twice], f"{twice}:19", twice),
@@ -141,7 +139,8 @@ def samplings(draw):
     """
     if draw(st.booleans()):
         return np.unique([400.0, 700.0, *draw(st.lists(INNER, max_size=8))])
-    start, step = draw(st.floats(300.0, 400.0)), draw(st.floats(5.0, 100.0))
+    start = draw(st.floats(300.0, 400.0))
+    step = draw(st.floats(5.0, 100.0))
     return start + step * np.arange(int(np.ceil((701.0 - start) / step)) + 1)
 
 

@@ -138,7 +138,10 @@ def archive(text: str) -> bytes:
     return buffer.getvalue()
 
 
-TABLE, CGATS, ENVI, SHEET = "table", "CGATS", "ENVI spectral library", "spreadsheet"
+TABLE = "table"
+CGATS = "CGATS"
+ENVI = "ENVI spectral library"
+SHEET = "spreadsheet"
 VENDORS = (
     Vendor(TABLE, "plain_csv.csv", "programs with tables"),
     Vendor(

@@ -12,7 +12,8 @@ from benchmarks import peers
 from uplift.models import Sigmoid, evaluate
 from uplift.models.sigmoid import unscaled
 
-LEVELS, MODEL = (0.25, 0.5), Sigmoid(360, 830)
+LEVELS = (0.25, 0.5)
+MODEL = Sigmoid(360, 830)
 
 
 def fit(rgb, sensor):
@@ -29,10 +30,8 @@ def fit(rgb, sensor):
 @pytest.fixture(scope="module")
 def table(tmp_path_factory):
     """A table of two levels; component l + 1 varies fastest."""
-    sensor, path = (
-        peers.table_sensor(),
-        tmp_path_factory.mktemp("table") / "small.coeff",
-    )
+    sensor = peers.table_sensor()
+    path = tmp_path_factory.mktemp("table") / "small.coeff"
     colours = [
         np.roll([level, middle * level, last * level], largest)
         for largest, level, last, middle in product(range(3), LEVELS, (0, 1), (0, 1))

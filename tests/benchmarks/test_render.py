@@ -12,7 +12,8 @@ from benchmarks import render as demo
 from benchmarks.checker import Layout, chart, measured_spectra, start_mitsuba
 from uplift.colorimetry.observer import light
 
-LAYOUT, SPP = Layout(patch=4, gap=2), 32
+LAYOUT = Layout(patch=4, gap=2)
+SPP = 32
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,8 @@ from uplift.samples import sample_path
 
 
 def test_command_prints_and_draws_its_advice(run, ask, refuse, cubes, home):
-    file, wood = cubes / "moments-16-macbeth.uplift", sample_path("wood.png")
+    file = cubes / "moments-16-macbeth.uplift"
+    wood = sample_path("wood.png")
     found = ask(
         "advise",
         wood,
@@ -42,7 +43,8 @@ def test_command_prints_and_draws_its_advice(run, ask, refuse, cubes, home):
 
 
 def test_textures_have_the_standard_errors_of_their_pixels(run, refuse, cubes, home):
-    file, source = cubes / "moments-16-macbeth.uplift", sample_path("wood.png")
+    file = cubes / "moments-16-macbeth.uplift"
+    source = sample_path("wood.png")
     arguments = ("--representation", "moments", "--depth", "float", "--errors", "FL11")
     run("texture", source, "-o", "a.exr", "--cube", file, *arguments)
     texture = OpenEXR.File("a.exr", separate_channels=True)

@@ -175,7 +175,9 @@ def test_a_changed_atlas_is_explained_and_the_cube_updated(run, ask, home):
             "".join(",".join(map(str, row)) + "\n" for row in rows)
         )
 
-    red, grey, dark = np.linspace(0.1, 0.6, 41), np.full(41, 0.5), np.full(41, 0.3)
+    red = np.linspace(0.1, 0.6, 41)
+    grey = np.full(41, 0.5)
+    dark = np.full(41, 0.3)
     write(red=red, grey=grey, dark=dark)
     uplift.build(home / "mine.csv", dim=9, coefficients=4).save(home / "cube.uplift")
     assert ask("check", "cube.uplift")[0]["passed"]

@@ -44,7 +44,8 @@ def test_help_lists_every_command_under_a_heading(run):
 
 
 def test_help_shows_the_options_of_every_day_and_help_all_shows_all(run):
-    short, full = run("build", "--help").stdout, run("build", "--help-all").stdout
+    short = run("build", "--help").stdout
+    full = run("build", "--help-all").stdout
     every, shown = (
         {word for word in text.split() if word.startswith("--")}
         for text in (full, short)
@@ -207,7 +208,8 @@ COMMANDS_BY_PATH = commands(main)
     ],
 )
 def test_a_group_alone_prints_its_help(run, path):
-    alone, requested = run(*path.split()), run(*path.split(), "--help")
+    alone = run(*path.split())
+    requested = run(*path.split(), "--help")
     assert alone.stdout == requested.stdout
     assert (alone.exit_code, alone.stderr) == (0, "")
     assert alone.stdout.startswith("Usage: ")

@@ -9,7 +9,8 @@ from uplift.samples import sample_path
 
 from .conftest import warning_lines
 
-BLUE, YELLOW = "#005fa0", "#ffd200"
+BLUE = "#005fa0"
+YELLOW = "#ffd200"
 
 
 def test_blue_and_yellow_are_green(ask):
@@ -27,10 +28,8 @@ def test_blue_and_yellow_are_green(ask):
 
 def test_entries_by_name_have_their_measured_spectra(ask, cubes, macbeth):
     cube = ("--cube", cubes / "moments-8-macbeth.uplift")
-    from_cube, measured = (
-        ask("mix", "2:blue sky", "yellow", *cube),
-        ask("mix", "2:blue sky", "yellow", "--atlas", macbeth),
-    )
+    from_cube = ask("mix", "2:blue sky", "yellow", *cube)
+    measured = ask("mix", "2:blue sky", "yellow", "--atlas", macbeth)
     assert from_cube["names"] == measured["names"] == ["blue sky", "yellow"]
     np.testing.assert_allclose(
         from_cube["spectrum"][4:], measured["spectrum"][4:], atol=0.03

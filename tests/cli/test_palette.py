@@ -61,7 +61,8 @@ def test_the_matrix_and_goals_that_cannot_be_met_are_printed(run, spec, home):
 def test_json_reproduces_the_matrix(ask, spec):
     found = ask("palette", spec())
     assert [part["designed"] for part in found["materials"]] == [False, True]
-    light, material = found["lights"][0], found["materials"][1]
+    light = found["lights"][0]
+    material = found["materials"][1]
     product = np.array(light["coefficients"]) * material["coefficients"]
     (cell,) = (cell for cell in found["colours"] if cell["material"] == "new")
     np.testing.assert_allclose(

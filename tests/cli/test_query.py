@@ -416,7 +416,9 @@ def test_csv_has_a_row_per_colour(run, table):
 
 
 def test_standard_errors_under_other_lights(ask, run, table, macbeth_cube):
-    cube, rgb, lights = uplift.load(macbeth_cube), [0.8, 0.2, 0.1], ("FL11", "HP1")
+    cube = uplift.load(macbeth_cube)
+    rgb = [0.8, 0.2, 0.1]
+    lights = ("FL11", "HP1")
     words = [
         "--cube",
         macbeth_cube,

@@ -30,7 +30,8 @@ def rows(run):
 
 def compute_once(monkeypatch, module, name):
     """Give every command of a test the first result of a study."""
-    compute, results = getattr(module, name), []
+    compute = getattr(module, name)
+    results = []
 
     def repeat(*args, **options):
         results.append(results[0] if results else compute(*args, **options))

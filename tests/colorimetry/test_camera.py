@@ -14,7 +14,8 @@ from uplift.colorimetry.camera import CAMERA, Camera, read_camera
 from uplift.colorimetry.spaces import find_space
 from uplift.common.errors import ColourError, OptionError, UnknownNameError
 
-NIKON, SIGMA = "Nikon 5100 (NPL)", "Sigma SDMerill (NPL)"
+NIKON = "Nikon 5100 (NPL)"
+SIGMA = "Sigma SDMerill (NPL)"
 TABLE = "# made by hand\nnm,R,G,B\n400,0,0,2\n500,0,4,1\n\n600,2,1,0\n700,1,0,0\n"
 
 
@@ -26,10 +27,8 @@ def write(folder, text):
 
 @pytest.mark.parametrize(("camera", "illuminant"), [(NIKON, "A"), (SIGMA, "D65")])
 def test_raw_values_are_sums_of_sensitivities_balanced_to_white(camera, illuminant):
-    sensor, reflectance = (
-        observer.sensor(CAMERA, illuminant, camera),
-        np.random.default_rng(1).random(81),
-    )
+    sensor = observer.sensor(CAMERA, illuminant, camera)
+    reflectance = np.random.default_rng(1).random(81)
     power = (
         colour.SDS_ILLUMINANTS[illuminant]
         .copy()
@@ -40,7 +39,8 @@ def test_raw_values_are_sums_of_sensitivities_balanced_to_white(camera, illumina
     given = {
         float(nm): row for nm, row in zip(table.wavelengths, table.values, strict=True)
     }
-    raw, white = np.zeros(3), np.zeros(3)
+    raw = np.zeros(3)
+    white = np.zeros(3)
     for nm, light, value in zip(range(380, 781, 5), power, reflectance, strict=True):
         near = [
             given[float(each)]
@@ -50,7 +50,8 @@ def test_raw_values_are_sums_of_sensitivities_balanced_to_white(camera, illumina
         row = given.get(
             float(nm), np.mean(near, axis=0) if len(near) == 2 else np.zeros(3)
         )
-        raw, white = raw + light * value * row, white + light * row
+        raw = raw + light * value * row
+        white = white + light * row
     np.testing.assert_allclose(sensor.rgb(reflectance), raw / white, rtol=1e-12)
     assert (sensor.space, sensor.observer) == (camera, observer.DEFAULT_OBSERVER)
     wide = observer.on_range(sensor, 360.0, 830.0, 1.0)
@@ -218,7 +219,8 @@ def test_a_camera_and_its_space_require_each_other():
 
 
 def test_raw_values_are_not_converted():
-    sensor, space = observer.sensor(CAMERA, observer=NIKON), find_space("sRGB")
+    sensor = observer.sensor(CAMERA, observer=NIKON)
+    space = find_space("sRGB")
     assert not space.agrees_with(sensor, encoded=False)
     with raises(ColourError, "camera-without-xyz"):
         space.matrix_to(sensor)

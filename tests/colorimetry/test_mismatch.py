@@ -108,7 +108,8 @@ def test_the_outline_of_a_mesh_is_that_of_its_projection():
     radius = np.hypot(*(outline(moved, found.faces) - np.array([3.0, -2.0])).T)
     assert 0.99 < radius.min() <= radius.max() <= 1 + 1e-12
     skew = found.directions[:, :2] * [2.0, 1.0] + 0.2 * found.directions[:, 2:]
-    limits, centre = outline(skew, found.faces, angles=360), skew.mean(axis=0)
+    limits = outline(skew, found.faces, angles=360)
+    centre = skew.mean(axis=0)
     assert Path(centre + 1.01 * (limits - centre)).contains_points(skew).all()
     assert not Path(centre + 0.95 * (limits - centre)).contains_points(skew).all()
 
@@ -148,7 +149,8 @@ def test_volumes_that_are_points(sensor):
 
 def test_the_volume_is_that_of_the_hull_of_linear_programs(sensor):
     """Directions, solver and volume are independent of the module."""
-    light, rgb = observer.light("FL11"), np.array([0.2, 0.4, 0.1])
+    light = observer.light("FL11")
+    rgb = np.array([0.2, 0.4, 0.1])
     directions = np.random.default_rng(3).normal(size=(250, 3))
     hull = ConvexHull(
         np.array(
@@ -175,11 +177,9 @@ def test_the_volume_is_that_of_the_hull_of_linear_programs(sensor):
 @pytest.mark.parametrize("name", ["A", "FL11"])
 def test_no_metamer_differs_more(plain_cube, name):
     """Against extremes in random directions, and mixtures of pairs of them."""
-    light, sensor, rng = (
-        observer.light(name),
-        plain_cube.data.sensor,
-        np.random.default_rng(6),
-    )
+    light = observer.light(name)
+    sensor = plain_cube.data.sensor
+    rng = np.random.default_rng(6)
     rgb = rng.uniform(0.05, 0.95, size=(6, 3))
     answers = plain_cube.reflectance(rgb) @ light.xyz.T
     volumes = mismatch_volumes(sensor, light, rgb, divisions=3)

@@ -89,7 +89,8 @@ def test_a_response_is_0_outside_its_table_and_a_light_keeps_its_last_value(
     for name in tables.names(kind):
         first, *_, last = tables.look_up(kind, name).wavelengths
         samples = tables.samples(kind, name, *limits)
-        is_below, is_above = wavelengths < first, wavelengths > last
+        is_below = wavelengths < first
+        is_above = wavelengths > last
         low, *_, high = samples[~(is_below | is_above)] * (kind == "illuminant")
         assert (samples[is_below] == low).all(), name
         assert (samples[is_above] == high).all(), name
@@ -167,7 +168,8 @@ def test_other_ranges_agree_with_colour_science(limits, sensor):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_spaces_convert_as_colour_science_does(name):
-    found, sensor = find_space(name), observer.sensor("sRGB")
+    found = find_space(name)
+    sensor = observer.sensor("sRGB")
     assert look_up_space(name).name == observer.sensor(name).space == NAMES[name]
     codes = np.array([[0.2, 0.5, 0.8], [1, 1, 1]])
     linear, decoded = (

@@ -74,7 +74,8 @@ def test_colours_move_toward_grey_until_they_are_a_margin_inside():
     np.testing.assert_array_equal(moved[deep], target[deep])
     assert limits.contains(moved).all()
     for row in np.flatnonzero(~limits.contains(target)):
-        low, high = 0.0, 1.0
+        low = 0.0
+        high = 1.0
         for _ in range(50):
             middle = (low + high) / 2
             at = grey[row] + middle * (target[row] - grey[row])

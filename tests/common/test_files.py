@@ -141,7 +141,8 @@ def test_folders_and_devices_are_not_replaced(path):
 
 @pytest.mark.parametrize("exists", [True, False])
 def test_link_is_kept_and_its_target_replaced(tmp_path, exists):
-    target, link = tmp_path / "far" / "target", tmp_path / "link"
+    target = tmp_path / "far" / "target"
+    link = tmp_path / "link"
     target.parent.mkdir()
     if exists:
         target.write_text("old")

@@ -25,7 +25,8 @@ def two_threads():
 
 
 def test_the_limit_holds_until_the_last_of_overlapping_threads_is_done(two_threads):
-    first, second = single_threaded_blas(), single_threaded_blas()
+    first = single_threaded_blas()
+    second = single_threaded_blas()
     with ThreadPoolExecutor(1) as one, ThreadPoolExecutor(1) as other:
         one.submit(first.__enter__).result()
         other.submit(second.__enter__).result()

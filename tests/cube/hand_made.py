@@ -32,7 +32,8 @@ def hand_made(dim: int = 4, **changes: object) -> CubeData:
     """A cube of ``dim``³ nodes with random coefficients; node 0 is 0.25 off, over the
     threshold.
     """
-    lattice, rng = Lattice(axis_nodes("srgb", dim)), np.random.default_rng(7)
+    lattice = Lattice(axis_nodes("srgb", dim))
+    rng = np.random.default_rng(7)
     points = np.arange(lattice.size)
     rgb = (lattice.points + rng.uniform(-1e-4, 1e-4, lattice.points.shape)).astype(
         np.float32

@@ -18,7 +18,8 @@ from uplift.cube.file import ARRAYS, MAX_LIGHTS, METADATA, VERSION
 from uplift.lattice import Status
 from uplift.models import Moments
 
-FLIPS, CUTS = 500, 60
+FLIPS = 500
+CUTS = 60
 STORED = [name for name in ARRAYS if name not in ("points", "sensor.sensitivities")]
 """Arrays of the cube of these tests."""
 FORMAT_3 = Path(__file__).parent / "format-3.uplift"
@@ -127,10 +128,8 @@ def test_truncated_and_longer_files_are_refused(path, content):
 def test_every_flipped_bit_is_refused(path, content):
     rng = np.random.default_rng(2)
     start = 8 + header_length(content)
-    in_header, in_arrays = (
-        rng.integers(0, start, FLIPS // 2),
-        rng.integers(start, len(content), FLIPS // 2),
-    )
+    in_header = rng.integers(0, start, FLIPS // 2)
+    in_arrays = rng.integers(start, len(content), FLIPS // 2)
     for place, bit in zip(
         [*in_header, *in_arrays], rng.integers(0, 8, FLIPS).tolist(), strict=True
     ):

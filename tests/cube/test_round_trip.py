@@ -68,7 +68,8 @@ def cubes(draw):
 
 def check_round_trip(data):
     with tempfile.TemporaryDirectory() as folder:
-        first, second = Path(folder, "first"), Path(folder, "second")
+        first = Path(folder, "first")
+        second = Path(folder, "second")
         write(data, first)
         found = read(first)
         write(found, second)

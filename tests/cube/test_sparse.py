@@ -40,7 +40,8 @@ def test_sparse_cubes_are_read_back_and_take_no_space_for_absent_points(data, tm
 
 
 def test_corner_points_and_complete_cells_are_inverse():
-    lattice, cells = Lattice(np.linspace(0, 1, 4)), np.zeros(64, dtype=bool)
+    lattice = Lattice(np.linspace(0, 1, 4))
+    cells = np.zeros(64, dtype=bool)
     cells[lattice.index(np.array([[0, 1, 2], [2, 2, 2]]))] = True
     points = lattice.corner_points(cells)
     assert points.sum() == 16

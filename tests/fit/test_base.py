@@ -36,7 +36,8 @@ def entries_of(sensor, measured):
     """Entries in gamut; only their colours and measurements matter to the base."""
     rgb = sensor.rgb(measured)
     inside = in_unit_cube(rgb)
-    rgb, measured = np.clip(rgb[inside], 0, 1), measured[inside]
+    rgb = np.clip(rgb[inside], 0, 1)
+    measured = measured[inside]
     return FittedEntries(rgb, measured, np.zeros((len(rgb), 9)), np.zeros(len(rgb)))
 
 

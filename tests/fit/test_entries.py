@@ -122,7 +122,8 @@ def test_normal_equations_are_those_of_central_differences(sensor, measured, mod
             for step in 1e-5 * np.eye(model.count)
         ]
         numeric = [(after - before) / 2e-5 for after, before in around]
-        plain, residuals = jacobian(goal, at), goal.residuals(at, measured[0], colours)
+        plain = jacobian(goal, at)
+        residuals = goal.residuals(at, measured[0], colours)
         np.testing.assert_allclose(plain, np.transpose(numeric), rtol=1e-5, atol=1e-8)
         gram, slope = goal.normal_equations(at[None], residuals[None])
         np.testing.assert_allclose(gram[0], plain.T @ plain, rtol=1e-10, atol=1e-14)

@@ -40,11 +40,9 @@ def fitted(model, sensor, lattice, rgb=NO_COLOURS, grow=grow_outward):
     """Fit a lattice with entries of grey spectra at linear RGB (E, 3): table of nodes,
     improvements.
     """
-    problem, nodes, seeds = (
-        Problem(sensor, model),
-        all_nodes(lattice),
-        seed(lattice, rgb),
-    )
+    problem = Problem(sensor, model)
+    nodes = all_nodes(lattice)
+    seeds = seed(lattice, rgb)
     prior = prior_of(problem)
     grey = np.zeros((len(rgb), model.count))
 
@@ -198,10 +196,8 @@ def test_an_unrealisable_colour_has_status_unfitted(sensor):
 def test_improvement_fixes_points_with_a_vanishing_gradient(sensor):
     """Spectra so near black that only a new start helps."""
     problem = Problem(sensor, MODEL)
-    growth, forward = (
-        Growth(problem, all_nodes(LATTICE), ignore_progress),
-        problem.forward,
-    )
+    growth = Growth(problem, all_nodes(LATTICE), ignore_progress)
+    forward = problem.forward
     growth.multipliers[:, 0] = -1e9
     growth.distance[:] = np.abs(
         forward.residual(growth.multipliers, LATTICE.points)
@@ -225,7 +221,8 @@ def test_seeds_are_the_entries_with_the_coefficients_of_the_nodes(repository):
         coefficients=9,
         growth="neighbours",
     )
-    points, entries = cube.data.points, cube.data.atlas.spectra.coefficients
+    points = cube.data.points
+    entries = cube.data.atlas.spectra.coefficients
     assert points.distance.max() <= 1e-4
     primary = points.status == Status.ATLAS_PRIMARY
     moved = np.abs(

@@ -104,10 +104,8 @@ def test_close_spectra_are_averaged_where_there_are_many():
     few = average_close(PLACES, DEVIATIONS)
     assert few.locations is PLACES
     np.testing.assert_array_equal(few.counts, 1)
-    places, deviations = (
-        RNG.uniform(0, 60, (20 * MAX_POINTS, 3)),
-        RNG.normal(size=(20 * MAX_POINTS, 4)),
-    )
+    places = RNG.uniform(0, 60, (20 * MAX_POINTS, 3))
+    deviations = RNG.normal(size=(20 * MAX_POINTS, 4))
     many = average_close(places, deviations)
     assert len(many.locations) <= MAX_POINTS
     np.testing.assert_array_equal(many.counts, np.bincount(many.point))

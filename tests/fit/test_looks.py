@@ -86,7 +86,8 @@ def test_nearest_colour_is_that_of_a_linear_program(sensor, materials):
     assert goal.delta_e(found)[0] > 1
     np.testing.assert_allclose(sensor.rgb(found), goal.rgb, atol=1e-4)
     (light,), (wish,), xyz = goal.lights, goal.xyz, goal.colours(found)[0]
-    wished, answered = lab(wish, light.white), lab(xyz, light.white)
+    wished = lab(wish, light.white)
+    answered = lab(xyz, light.white)
     weights = delta_e_2000_weights(wished)
     towards = (weights @ (wished - answered)) @ (
         weights @ lab_jacobian(xyz, light.white) @ light.xyz
@@ -114,6 +115,7 @@ def test_the_prior_follows_looks_nearby_only(sensor, materials):
     changed = plain.with_entries(join_entries(entries, look), 1)
     assert changed.errors is plain.errors
     assert changed.kriging.kernel == plain.kriging.kernel
-    near, far = goal.rgb[None] * 1.01, np.array([[0.9, 0.9, 0.2]])
+    near = goal.rgb[None] * 1.01
+    far = np.array([[0.9, 0.9, 0.2]])
     move = [np.abs(changed(rgb) - plain(rgb)).max() for rgb in (near, far)]
     assert move[0] > 10 * move[1]

@@ -81,12 +81,11 @@ def test_a_deviation_that_leaves_the_moment_space_is_shrunk(problem):
 
 def test_a_deviation_that_ends_in_a_box_is_shrunk(problem):
     model = problem.model
-    grey, away = (
-        model.to_storage(np.zeros((1, model.count))),
-        np.zeros((1, model.count)),
-    )
+    grey = model.to_storage(np.zeros((1, model.count)))
+    away = np.zeros((1, model.count))
     away[:, 3] = 1.0
-    low, high = 0.0, 1e3
+    low = 0.0
+    high = 1e3
     for _ in range(60):
         middle = (low + high) / 2
         valid = model.try_from_storage(grey + middle * away)[1].all()
@@ -118,7 +117,8 @@ def test_errors_of_left_out_entries_agree_with_the_standard_error(
     Errors of materials have heavy tails: a single split is off by up to half.
     """
     rng = np.random.default_rng(0)
-    missed, stated = [], []
+    missed = []
+    stated = []
     for _ in range(SPLITS):
         order = rng.permutation(len(materials.rgb))
         half = len(order) // 2
@@ -128,7 +128,8 @@ def test_errors_of_left_out_entries_agree_with_the_standard_error(
         spectra = evaluate(problem.model, found, sensor.wavelengths)
         missed.append(delta_e_spectra(LIGHT, spectra, queried.measured))
         stated.append(prior.standard_error(queried.rgb))
-    missed, stated = np.concatenate(missed), np.concatenate(stated)
+    missed = np.concatenate(missed)
+    stated = np.concatenate(stated)
     assert 0.8 < np.sqrt((missed**2).mean() / (stated**2).mean()) < 1.25
     assert 0.63 < (missed < stated).mean() < 0.73
     assert 0.92 < (missed < 2 * stated).mean() < 0.98

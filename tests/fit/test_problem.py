@@ -57,7 +57,8 @@ def test_the_nearest_colour_has_the_same_hue_and_luminance(sensor):
     wide = observer.sensor("ITU-R BT.2020")
     lattice = Lattice(axis_nodes("srgb", 9))
     beyond = nodes_of(lattice, wide)
-    target, nearest = lattice.target(beyond.unrealisable), beyond.nearest
+    target = lattice.target(beyond.unrealisable)
+    nearest = beyond.nearest
     luminance = wide.xyz(target)[:, 1:2]
     np.testing.assert_allclose(wide.xyz(nearest)[:, 1:2], luminance, atol=1e-12)
     share = (nearest - luminance) / (target - luminance)
@@ -89,7 +90,8 @@ def store_spectra(path):
     platform.machine() not in ("x86_64", "AMD64"), reason="sets of x86-64"
 )
 def test_spectra_do_not_depend_on_the_instruction_set(tmp_path):
-    here, there = tmp_path / "here.npy", tmp_path / "there.npy"
+    here = tmp_path / "here.npy"
+    there = tmp_path / "there.npy"
     store_spectra(here)
     code = (
         "from tests.fit.test_problem import store_spectra; "

@@ -59,7 +59,8 @@ def test_all_corners_of_the_cells_of_entries_are_seeds_once(rgb):
 def test_seeds_do_not_depend_on_the_order_of_the_atlas(rgb, random):
     order = list(range(len(rgb)))
     random.shuffle(order)
-    here, there = seed(LATTICE, rgb), seed(LATTICE, rgb[order])
+    here = seed(LATTICE, rgb)
+    there = seed(LATTICE, rgb[order])
     owners = dict(zip(here.points, here.entry, strict=True))
     assert owners == {
         point: order[entry]
@@ -90,7 +91,8 @@ def test_the_share_of_the_entry_falls_from_near_to_far_corners(prior):
     for dim in (6, 12, 16, 24):
         lattice = Lattice(np.linspace(0, 1, dim))
         seeds = seed(lattice, RGB)
-        nodes, own = lattice.points[seeds.points], ENTRIES[seeds.entry]
+        nodes = lattice.points[seeds.points]
+        own = ENTRIES[seeds.entry]
         distance = delta_e_1976(
             *(rgb_to_lab(prior.sensor, rgb) for rgb in (nodes, RGB[seeds.entry]))
         )

@@ -68,7 +68,8 @@ def test_solutions_do_not_depend_on_the_batch(sensor, max_passes):
     """
     model = Moments(9)
     forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    dark, wild = [[2e-4, 1e-3, 1e-5]], [[0.9, 0.0, 0.9], [1.2, -0.3, 0.5]]
+    dark = [[2e-4, 1e-3, 1e-5]]
+    wild = [[0.9, 0.0, 0.9], [1.2, -0.3, 0.5]]
     few = np.concatenate([TARGETS[:5], dark, wild])
     many = np.resize(few, (CPU_ROWS[0] + len(few), 3))
     crowd = solve(
@@ -154,7 +155,8 @@ def test_stock_solvers_give_the_same_cube():
         "gauss-newton",
         CUSTOM,
     ]
-    sensor, nodes = cubes[0].data.sensor, cubes[0].data.lattice.points
+    sensor = cubes[0].data.sensor
+    nodes = cubes[0].data.lattice.points
     default, *stock = (
         evaluate(
             MODEL, MODEL.from_storage(cube.data.points.coefficients), sensor.wavelengths
@@ -208,14 +210,16 @@ uplift.build(sys.argv[1], dim=5).save(sys.argv[2])
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
 def test_several_devices_build_the_same_cube(repository, tmp_path):
     """Three simulated devices distribute the rows unevenly."""
-    macbeth, path = repository / "atlases" / "macbeth.txt", tmp_path / "several.uplift"
+    macbeth = repository / "atlases" / "macbeth.txt"
+    path = tmp_path / "several.uplift"
     flags = {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"}
     subprocess.run(
         [sys.executable, "-W", "ignore", "-c", SEVERAL, macbeth, path],
         env=os.environ | flags,
         check=True,
     )
-    one, several = build(macbeth, dim=5).data, load(path).data
+    one = build(macbeth, dim=5).data
+    several = load(path).data
     np.testing.assert_allclose(
         several.points.coefficients, one.points.coefficients, rtol=0, atol=1e-9
     )

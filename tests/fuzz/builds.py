@@ -76,7 +76,8 @@ class Kind:
     ranges: tuple[tuple[int, int, int], ...] = RANGES
 
 
-SMALL, LARGE = Kind((2, 3, 4, 6)), Kind((12, 16, 40), (0, 1, 300))
+SMALL = Kind((2, 3, 4, 6))
+LARGE = Kind((12, 16, 40), (0, 1, 300))
 QUICK = Kind((2, 3), (0, 1, 30), COUNTS[:2], RANGES[:1])
 """Builds of the test suite, which have few programs."""
 TABLE = Lattice(np.linspace(0, 1, 5) ** 2)
@@ -102,10 +103,8 @@ def little_work() -> Iterator[None]:
 
 def odd_options(random: Random, kind: Kind) -> dict[str, Any]:
     """Return options of a build, without atlas, library and looks."""
-    space, model = (
-        choose(random, SPACES),
-        choose(random, ("moments", "moments", "moments", "sigmoid")),
-    )
+    space = choose(random, SPACES)
+    model = choose(random, ("moments", "moments", "moments", "sigmoid"))
     options: dict[str, Any] = {
         "space": space,
         "dim": choose(random, kind.dims),
@@ -135,12 +134,11 @@ def odd_options(random: Random, kind: Kind) -> dict[str, Any]:
 
 def odd_atlas(random: Random, size: int) -> uplift.Atlas:
     """Return an atlas of 1, 2 or 300 entries of one shape."""
-    shape, at = choose(random, SHAPES), np.arange(380.0, 781.0, 10)
-    middle, width, level = (
-        random.uniform(380, 780, size),
-        random.uniform(5, 200, size),
-        random.uniform(0.02, 0.9, size),
-    )
+    shape = choose(random, SHAPES)
+    at = np.arange(380.0, 781.0, 10)
+    middle = random.uniform(380, 780, size)
+    width = random.uniform(5, 200, size)
+    level = random.uniform(0.02, 0.9, size)
     values = (
         level[:, None] * np.exp(-(((at - middle[:, None]) / width[:, None]) ** 2))
         + 0.02
@@ -188,9 +186,11 @@ def miss(matrix: Array, rgb: Array) -> float:
     """Return the least max |linear RGB| from a colour (3,) that reflectances in [0, 1]
     have, by a linear program.
     """
-    count, off = matrix.shape[1], np.ones((3, 1))
+    count = matrix.shape[1]
+    off = np.ones((3, 1))
     rows = np.block([[matrix, -off], [-matrix, -off]])
-    cost, limits = np.append(np.zeros(count), 1), [(0, 1)] * count + [(0, None)]
+    cost = np.append(np.zeros(count), 1)
+    limits = [(0, 1)] * count + [(0, None)]
     return float(
         linprog(
             cost,
@@ -271,7 +271,8 @@ def _file_laws(cube: uplift.Cube, folder: Path, check: bool) -> Iterator[str]:
 
 
 def _colour_laws(cube: uplift.Cube, rgb: Array, folder: Path) -> Iterator[str]:
-    sensor, at = cube.data.sensor, np.array(AT)
+    sensor = cube.data.sensor
+    at = np.array(AT)
     for mode in MODES:
         spectra = cube.reflectance(rgb, mode=mode)
         if not (
@@ -324,7 +325,8 @@ def _program_laws(cube: uplift.Cube, mode: str, rgb: Array) -> Iterator[str]:
     if not (np.isfinite(found).all() and found.min() >= 0 and found.max() <= 1):
         yield f"C, {mode}: reflectances outside [0, 1]: {found.min()} {found.max()}"
     difference = np.abs(found - cube.reflectance(rgb, AT, mode)).max(axis=1)
-    stated, stays = rounding_error(cube.data, mode), stay(cube.data, mode, rgb)
+    stated = rounding_error(cube.data, mode)
+    stays = stay(cube.data, mode, rgb)
     for row in np.flatnonzero(stays & (difference > stated)):
         yield (
             f"C, {mode}: states {stated:.1e}, but differs by {difference[row]:.1e}: "
@@ -346,7 +348,8 @@ def stay(data: CubeData, mode: str, rgb: Array) -> Mask:
     hits = data.entry_boxes.locate(rgb)[2]
     place = rgb.copy()
     place[hits.rows] = hits.exit_rgb
-    moved, lattice = moved_cells(data, mode), data.lattice
+    moved = moved_cells(data, mode)
+    lattice = data.lattice
     corners = (np.clip(place + NEAR * corner, 0, 1) for corner in 2 * CORNERS - 1)
     return ~np.any(
         [moved[lattice.index(lattice.cell(corner)[0])] for corner in corners], axis=0

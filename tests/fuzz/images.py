@@ -71,7 +71,8 @@ def xyz_to_srgb(xyz: Array, white: Array) -> Array:
     Bradford.
     """
     srgb = colour.RGB_COLOURSPACES["sRGB"]
-    from_white, to_white = colour.xy_to_XYZ(white), colour.xy_to_XYZ(srgb.whitepoint)
+    from_white = colour.xy_to_XYZ(white)
+    to_white = colour.xy_to_XYZ(srgb.whitepoint)
     adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(
         from_white, to_white, transform="Bradford"
     )
@@ -179,7 +180,9 @@ def draw_png(random: Random, folder: Path) -> Drawn:
     bits = 8 * np.dtype(dtype).itemsize
     channels = int(random.integers(1, 5))
     codes = draw_codes(random, channels, dtype)
-    chunks, stated, text = [], [], [dtype, f"{channels} channels"]
+    chunks = []
+    stated = []
+    text = [dtype, f"{channels} channels"]
     if random.random() < 0.4:
         points = choose(random, list(POINTS))
         space = POINTS[points]
@@ -201,8 +204,10 @@ def draw_png(random: Random, folder: Path) -> Drawn:
         chunks.append(files.SRGB)
         stated.append(Space())
         text.append("sRGB")
-    gamut, curve = "sRGB", colour.models.eotf_sRGB
-    has_gamma, has_chrm = random.random() < 0.5, random.random() < 0.4
+    gamut = "sRGB"
+    curve = colour.models.eotf_sRGB
+    has_gamma = random.random() < 0.5
+    has_chrm = random.random() < 0.4
     if has_gamma:
         gamma = choose(random, GAMMAS)
         chunks.append(files.gama(gamma))
@@ -289,7 +294,8 @@ def draw_tags(
     tags: dict[int, Any] = {}
     stated: list[Space | None] = []
     text = ""
-    gamut, curve = "sRGB", colour.models.eotf_sRGB
+    gamut = "sRGB"
+    curve = colour.models.eotf_sRGB
     kinds = random.random(3) < 0.4
     if kinds[0]:
         gamut = choose(random, GAMUTS)
@@ -397,7 +403,8 @@ def draw_hdr(random: Random, folder: Path) -> Drawn:
     mantissas[..., 0] |= 128
     mantissas[0, 0] = 255, 3, 4  # not the start of a run
     exponent = int(random.integers(124, 132))
-    gamut, header = "sRGB", ""
+    gamut = "sRGB"
+    header = ""
     if random.random() < 0.7:
         gamut = choose(random, GAMUTS)
         header = f"PRIMARIES= {' '.join(map(str, numbers(gamut)))}\n"

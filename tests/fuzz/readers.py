@@ -400,7 +400,8 @@ def _change_metadata(
     nested one.
     """
     place, key = choose(random, list(_places(metadata)))
-    value, draw = choose(random, VALUES), random.random()
+    value = choose(random, VALUES)
+    draw = random.random()
     for _ in range(
         choose(random, (1, 2, 3, 20, 33, 300)) if random.random() < 0.2 else 0
     ):

@@ -108,7 +108,8 @@ def spectra(writing: Writing, generator: np.random.Generator) -> dict[str, np.nd
     count = 1 if writing.head == "none" else 3
     found = {}
     for name in ("ochre", "umber 2", "grey 50%")[:count]:
-        centre, width = generator.uniform(450, 650), generator.uniform(30, 90)
+        centre = generator.uniform(450, 650)
+        width = generator.uniform(30, 90)
         shape = 1 / (1 + np.exp((centre - NM) / width))
         found[name.replace(" ", "_") if writing.separator == " " else name] = np.round(
             low + (high - low) * shape, 6

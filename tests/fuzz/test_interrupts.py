@@ -34,7 +34,8 @@ for cube in itertools.cycle(cubes):
 
 @pytest.mark.parametrize("exists", [False, True])
 def test_a_killed_writer_leaves_a_complete_file_or_none(tmp_path, exists):
-    path, complete = tmp_path / "cube.uplift", {OLD.read_bytes(), NEW.read_bytes()}
+    path = tmp_path / "cube.uplift"
+    complete = {OLD.read_bytes(), NEW.read_bytes()}
     for turn in range(3):
         path.unlink(missing_ok=True)
         if exists:

@@ -32,7 +32,8 @@ def photo_colours(scene_cube):
 
 
 def test_points_are_those_of_the_complete_cube(scene_cube, macbeth_cube):
-    part, whole = scene_cube.data, macbeth_cube.data
+    part = scene_cube.data
+    whole = macbeth_cube.data
     there = part.points.present
     assert 0 < there.sum() < 0.3 * len(there)
     for name in (

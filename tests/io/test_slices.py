@@ -22,7 +22,8 @@ def parts(path: Path) -> list[OpenEXR.Part]:
 
 @pytest.fixture
 def hand_made_slices(tmp_path):
-    data, path = hand_made(), tmp_path / "slices.exr"
+    data = hand_made()
+    path = tmp_path / "slices.exr"
     write_slices(data, path)
     return data, parts(path)
 

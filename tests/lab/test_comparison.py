@@ -80,7 +80,9 @@ def test_dense_data_have_no_error(checker):
 
 
 def test_errors_match_explicit_loops(checker):
-    part, samples, apart = checker.sets[1], point_samples(16), []
+    part = checker.sets[1]
+    samples = point_samples(16)
+    apart = []
     for power in part.powers:
         white = power @ xyz_weights()
         for surface in checker.surfaces:
@@ -146,16 +148,15 @@ def test_written_spectra_have_the_colours_of_the_representation(
     checker, name, tmp_path
 ):
     """They are read again as surfaces and lamps."""
-    made, atlas = find_representation(name), read_atlas(MACBETH)
+    made = find_representation(name)
+    atlas = read_atlas(MACBETH)
     scene = replace(checker, sets=checker.sets[:1])
     for part, file in zip(
         represent(made, scene, atlas.names), ("surfaces.csv", "lights.csv"), strict=True
     ):
         write_atlas(part, tmp_path / file)
-    surfaces, lamps = (
-        read_atlas(tmp_path / "surfaces.csv"),
-        read_lamps(tmp_path / "lights.csv"),
-    )
+    surfaces = read_atlas(tmp_path / "surfaces.csv")
+    lamps = read_lamps(tmp_path / "lights.csv")
     assert (surfaces.names, lamps.names) == (atlas.names, scene.sets[0].lights)
     code = made.encode_surface(scene.surfaces)
     # A linear code of samples is that of a light too; models are multiplied with a flat

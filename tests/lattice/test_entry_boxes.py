@@ -52,7 +52,8 @@ def test_boxes_are_those_of_an_exhaustive_search(entries, rgb):
             strict=True,
         )
     )
-    steps, middles = LATTICE.to_steps(rgb), LATTICE.to_steps(entries)
+    steps = LATTICE.to_steps(rgb)
+    middles = LATTICE.to_steps(entries)
     for row in range(len(rgb)):
         apart = (
             np.abs(steps[row] - middles).max(axis=1) if len(entries) else np.zeros(0)

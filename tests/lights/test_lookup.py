@@ -31,13 +31,15 @@ def plain_spectrum(xyz):
     data = TABLE.data
     size = xyz @ DENOMINATOR
     uv = xyz[:2] * (4, 9) / size
-    share, entry = 0.0, 0
+    share = 0.0
+    entry = 0
     for number, (centre, radius) in enumerate(
         zip(data.entries.uv, data.entries.radius, strict=True)
     ):
         distance = np.linalg.norm(uv - centre)
         if distance < radius:
-            share, entry = 1 - distance / radius, number
+            share = 1 - distance / radius
+            entry = number
             uv = centre + (uv - centre) * radius / distance
             break
     nodes = data.lattice.nodes
@@ -53,7 +55,8 @@ def plain_spectrum(xyz):
             continue
         j = min(int(np.sum(data.lattice.rings <= a + b)) - 1, rings - 2)
         low, high = data.lattice.rings[[j, j + 1]]
-        t, s = b / (a + b), (a + b - low) / (high - low)
+        t = b / (a + b)
+        s = (a + b - low) / (high - low)
         inner = (1 - t) * data.spectra[k, j] + t * data.spectra[following, j]
         outer = (1 - t) * data.spectra[k, j + 1] + t * data.spectra[following, j + 1]
         lattice = (1 - s) * inner + s * outer

@@ -24,7 +24,8 @@ def forge(data, path, change):
     """Write ``data`` after ``change(tensors, metadata)``, with the digest of the
     changed content.
     """
-    tensors, metadata = table._tensors(data), table._metadata(data)
+    tensors = table._tensors(data)
+    metadata = table._metadata(data)
     change(tensors, metadata)
     container.save((tensors, metadata), path, table.KIND, lambda _: None, force=True)
     return path

@@ -56,10 +56,8 @@ def test_spectra_are_those_of_numpy(cube):
 
 @pytest.mark.parametrize("count", [None, "entries"])
 def test_coefficients_are_those_of_numpy(cube, count):
-    rgb, count = (
-        colours(cube.data),
-        None if count is None else cube.entry_coefficient_count,
-    )
+    rgb = colours(cube.data)
+    count = None if count is None else cube.entry_coefficient_count
     expected = cube.coefficients(rgb, count)
     # A sigmoid's coefficients run into hundreds, and are steep in the colour.
     found = bulk.coefficients(cube, count)(rgb)

@@ -80,7 +80,8 @@ def test_a_table_of_all_points_gives_equal_spectra(small_cube, monkeypatch, mode
     )
 
 
-NAN, RAGGED = np.nan, [[0.5, 0.5, 0.5], [0.5, 0.5]]
+NAN = np.nan
+RAGGED = [[0.5, 0.5, 0.5], [0.5, 0.5]]
 COLOURS = [
     (NAN, 0, 0),
     (-0.001, 0, 0),

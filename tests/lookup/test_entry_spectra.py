@@ -65,7 +65,8 @@ def test_an_entry_is_answered_with_all_its_coefficients(small_cube, data, mode):
 
 def test_spectra_in_boxes_mix_entry_and_lattice(small_cube, data):
     """One colour at a time, by the definition of docs/mathematics.md, 8."""
-    at, own = data.sensor.wavelengths, data.atlas.spectra
+    at = data.sensor.wavelengths
+    own = data.atlas.spectra
     for colour in in_boxes(data, 1):
         hit = data.entry_boxes.find(colour[None])
         corners, weights = data.lattice.corners(hit.exit_rgb)

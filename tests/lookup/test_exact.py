@@ -85,7 +85,8 @@ def test_unrealisable_colours_become_the_nearest_realisable_of_their_hue(
 
 @pytest.mark.parametrize("mode", EXACT_MODES)
 def test_answers_are_continuous_across_the_boundary_of_the_solid(wide, mode):
-    grey, target = np.full(3, 0.3), np.array([0.9, 0.05, 0.02])
+    grey = np.full(3, 0.3)
+    target = np.array([0.9, 0.05, 0.02])
     path = grey + np.linspace(0.7, 1, 101)[:, None] * (target - grey)
     assert inside(wide, path).any()
     assert not inside(wide, path).all()

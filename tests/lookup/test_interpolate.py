@@ -37,11 +37,13 @@ def test_a_point_has_its_stored_spectrum(cube, mode):
 
 
 def test_coefficients_are_those_stored_at_a_point_and_trilinear_in_a_cell(cube):
-    nodes, stored = cube.data.lattice.nodes, cube.data.points.coefficients
+    nodes = cube.data.lattice.nodes
+    stored = cube.data.points.coefficients
     np.testing.assert_allclose(
         cube.coefficients(cube.data.lattice.points), stored, rtol=1e-15, atol=1e-15
     )
-    low, high = nodes[[3, 5, 2]], nodes[[4, 6, 3]]
+    low = nodes[[3, 5, 2]]
+    high = nodes[[4, 6, 3]]
     fraction = np.array([0.25, 0.5, 0.9])
     expected = np.zeros(cube.data.model.count)
     for r in (0, 1):
@@ -54,7 +56,8 @@ def test_coefficients_are_those_stored_at_a_point_and_trilinear_in_a_cell(cube):
 
 
 def test_refined_spectra_and_multipliers_have_the_colour(small_cube):
-    rgb, data = random_colours(200), small_cube.data
+    rgb = random_colours(200)
+    data = small_cube.data
     found = data.sensor.rgb(small_cube.reflectance(rgb, mode="refined"))
     np.testing.assert_allclose(found, rgb, rtol=0, atol=2 * TOLERANCE)
     spectra = data.model.to_reflectance(
@@ -77,11 +80,9 @@ def test_answers_are_continuous_across_the_faces_of_cells(small_cube, mode):
 
 
 def test_the_nearest_lattice_point_answers_where_no_entry_is_near(plain_cube):
-    rgb, nodes, points = (
-        random_colours(200),
-        plain_cube.data.lattice.nodes,
-        plain_cube.data.lattice.points,
-    )
+    rgb = random_colours(200)
+    nodes = plain_cube.data.lattice.nodes
+    points = plain_cube.data.lattice.points
     low, fraction = plain_cube.data.lattice.cell(rgb)
     wanted = nodes[low + (fraction > 0.5)]
     rows = [int(np.flatnonzero((points == point).all(axis=1))[0]) for point in wanted]
@@ -113,7 +114,8 @@ def test_nearest_is_the_entry_or_the_point_of_larger_weight(small_cube):
 def test_weights_are_a_partition_of_unity_and_reproduce_the_colour_including_entries(
     small_cube, rgb
 ):
-    data, nodes = small_cube.data, around(small_cube.data, rgb)
+    data = small_cube.data
+    nodes = around(small_cube.data, rgb)
     assert (nodes.weights >= 0).all()
     assert ((nodes.hits.lattice_weight >= 0) & (nodes.hits.lattice_weight <= 1)).all()
     ones = nodes.weighted_sum(

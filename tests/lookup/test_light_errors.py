@@ -98,7 +98,8 @@ def test_the_likely_region_holds_95_percent_of_the_other_halves(halves, sensor):
 
 
 def test_an_entry_has_its_own_error(small_cube, sensor):
-    data, light = small_cube.data, observer.light("FL11")
+    data = small_cube.data
+    light = observer.light("FL11")
     np.testing.assert_allclose(
         small_cube.standard_error(data.atlas.rgb), data.atlas.error, atol=1e-12
     )

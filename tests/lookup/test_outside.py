@@ -25,7 +25,8 @@ def sparse(whole):
 
 def test_filling_keeps_present_points_and_has_exact_colours(whole, sparse):
     full = sparse.fill_missing()
-    data, there = full.data, sparse.data.points.present
+    data = full.data
+    there = sparse.data.points.present
     assert data.points.present.all()
     assert data.points.distance.max() <= data.threshold
     np.testing.assert_allclose(
@@ -41,12 +42,10 @@ def test_filling_keeps_present_points_and_has_exact_colours(whole, sparse):
 
 def test_filled_spectra_are_those_of_the_default_cube(plain_cube):
     """At nodes of the same model, up to single precision."""
-    own, full = (
-        uplift.load(),
-        Cube(
-            with_absent_points(plain_cube.data, near_black(plain_cube.data))
-        ).fill_missing(),
-    )
+    own = uplift.load()
+    full = Cube(
+        with_absent_points(plain_cube.data, near_black(plain_cube.data))
+    ).fill_missing()
     points = full.data.lattice.points[~near_black(plain_cube.data)]
     np.testing.assert_allclose(
         full.reflectance(points), own.reflectance(points, mode="refined"), atol=1e-5

@@ -48,7 +48,8 @@ def test_cell_and_statuses_are_those_around_the_colour(small_cube):
     data = small_cube.data
     grid = data.points.status.reshape(8, 8, 8)
     rgb = np.random.default_rng(5).random((100, 3))
-    found_statuses, nodes = set(), data.lattice.nodes
+    found_statuses = set()
+    nodes = data.lattice.nodes
     for answer in query(small_cube, rgb):
         r, g, b = answer.cell
         assert (
@@ -79,10 +80,8 @@ def test_entries_are_found_at_their_nearest_codes_and_not_two_codes_away(small_c
 
 @pytest.mark.parametrize("mode", MODES)
 def test_round_trip_and_difference_agree_with_colour_science(small_cube, mode):
-    xy, to_rgb = (
-        colour.XYZ_to_xy(xyz(small_cube, np.ones(81))),
-        small_cube.data.sensor.xyz_to_rgb,
-    )
+    xy = colour.XYZ_to_xy(xyz(small_cube, np.ones(81)))
+    to_rgb = small_cube.data.sensor.xyz_to_rgb
     differences = []
     for answer in query(
         small_cube, np.random.default_rng(8).random((10, 3)), mode=mode
@@ -118,12 +117,11 @@ def colours_outside(cube, count=200):
     """Return XYZ of smooth band-pass and band-stop reflectances that lie outside the
     space of a cube.
     """
-    sensor, rng = cube.data.sensor, np.random.default_rng(0)
+    sensor = cube.data.sensor
+    rng = np.random.default_rng(0)
     nm = sensor.wavelengths
-    edges, width = (
-        np.sort(rng.uniform(380, 780, (count, 2, 1)), axis=1),
-        rng.uniform(5, 40, (count, 1)),
-    )
+    edges = np.sort(rng.uniform(380, 780, (count, 2, 1)), axis=1)
+    width = rng.uniform(5, 40, (count, 1))
     band = (
         1
         / (1 + np.exp(-(nm - edges[:, 0]) / width))
@@ -156,7 +154,8 @@ def without_outside(cube):
 
 @pytest.mark.parametrize("digits", [4, 16])
 def test_an_entry_outside_the_space_has_its_spectrum_and_its_colour(cyan_cube, digits):
-    atlas, table = read_atlas(MACBETH), cyan_cube.data.atlas.outside
+    atlas = read_atlas(MACBETH)
+    table = cyan_cube.data.atlas.outside
     measured = on_grid(atlas, cyan_cube.wavelengths)[[atlas.names.index("cyan")]]
     colour = xyz(cyan_cube, measured[0]).round(digits)
     (answer,) = query_xyz(cyan_cube, [colour], lights=[light("FL11")])
@@ -207,7 +206,8 @@ def test_files_without_its_measurement_have_its_error_under_their_own_light(
 
 
 def test_answers_change_only_in_the_box_of_an_entry_outside_and_continuously(cyan_cube):
-    sensor, boxes = cyan_cube.data.sensor, cyan_cube.data.outside_boxes
+    sensor = cyan_cube.data.sensor
+    boxes = cyan_cube.data.outside_boxes
     assert boxes.rgb[0, 0] + boxes.half_width[0] <= 0
     for axis in np.eye(3):
         for share, is_same in (

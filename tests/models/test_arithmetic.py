@@ -41,7 +41,8 @@ def test_difference_of_arc_tangents(change):
 
 
 def test_columns_are_independent():
-    x, change = np.zeros((2, 3)), np.array([[1e-3, 1e-3, 9.0], [1e-3, np.nan, 1e-3]])
+    x = np.zeros((2, 3))
+    change = np.array([[1e-3, 1e-3, 9.0], [1e-3, np.nan, 1e-3]])
     found = arctan_difference(x, change)
     np.testing.assert_allclose(found, np.arctan(change), rtol=1e-9)
 
@@ -58,7 +59,8 @@ def test_columns_are_independent():
 )
 def test_slices_do_not_change_the_product(count, shape):
     rng = np.random.default_rng(count)
-    rows, matrix = rng.normal(size=(count, shape[0])), rng.normal(size=shape)
+    rows = rng.normal(size=(count, shape[0]))
+    matrix = rng.normal(size=shape)
     for one, other in ((rows, matrix), (rows.copy("F"), matrix.copy("F"))):
         np.testing.assert_allclose(
             blocked_matmul(one, other), rows @ matrix, rtol=1e-12, atol=1e-12

@@ -60,10 +60,8 @@ def test_step_agrees_with_its_formula(sensor):
 def test_anchored_step_agrees_with_its_formula(sensor):
     """Δx = A⁺ (t − r + A d) − d."""
     forward = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
-    residuals, displacement = (
-        forward.residual(POINTS, TARGETS),
-        RNG.normal(size=POINTS.shape),
-    )
+    residuals = forward.residual(POINTS, TARGETS)
+    displacement = RNG.normal(size=POINTS.shape)
     found = anchored_step(
         forward, POINTS, residuals, np.zeros(len(POINTS)), displacement
     )
@@ -97,7 +95,8 @@ def lower_half(matrices):
 def test_damped_solution_agrees_with_a_dense_solver():
     roots = RNG.normal(size=(50, 3, 5))
     matrices = roots @ roots.transpose(0, 2, 1)
-    right, damping = RNG.normal(size=(50, 3)), RNG.random(50)
+    right = RNG.normal(size=(50, 3))
+    damping = RNG.random(50)
     shift = damping * np.trace(matrices, axis1=1, axis2=2)
     expected = np.linalg.solve(
         matrices + shift[:, None, None] * np.eye(3), right[..., None]

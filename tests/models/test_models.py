@@ -112,8 +112,11 @@ def test_count_of_moments_out_of_range_raises(count):
 def test_sigmoid_agrees_with_colour_science():
     """Equation 5 of Jakob & Hanika 2019 with coefficients per nm², per nm and 1."""
     model = Sigmoid()
-    c0, c1, c2 = 1.3, -0.7, 0.4
-    half, middle = 200.0, 580.0
+    c0 = 1.3
+    c1 = -0.7
+    c2 = 0.4
+    half = 200.0
+    middle = 580.0
     per_nm = [
         c0 / half**2,
         c1 / half - 2 * c0 * middle / half**2,

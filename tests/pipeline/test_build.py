@@ -66,7 +66,8 @@ def test_20000_random_colours_have_small_round_trip_errors(
 def test_entries_have_their_measurements_and_so_better_colours_under_other_lights(
     macbeth_cube,
 ):
-    atlas, spectra = macbeth_cube.data.atlas, read_atlas(MACBETH)
+    atlas = macbeth_cube.data.atlas
+    spectra = read_atlas(MACBETH)
     measured = on_grid(spectra, GRID)[
         [spectra.names.index(name) for name in atlas.names]
     ]

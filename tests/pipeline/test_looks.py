@@ -195,7 +195,8 @@ def test_models_without_freedom_are_refused(options):
 def test_half_a_look_is_half_way(cubes):
     plain, looked = cubes
     (screen,) = display_sensors(["A"], plain.observer)
-    rgb, wish = LOOKS[2].rgb, np.array(LOOKS[2].lights["A"])
+    rgb = LOOKS[2].rgb
+    wish = np.array(LOOKS[2].lights["A"])
     expected = screen.rgb(plain.reflectance(rgb))
     halfway = (wish + expected) / 2
     assert delta_e_rgb(screen, screen.rgb(looked.reflectance(rgb)), halfway) < 0.5

@@ -42,7 +42,8 @@ def infrared():
 
 
 def test_entries_have_their_own_values_where_measured(infrared):
-    data, rgb = infrared.data, infrared.data.atlas.rgb
+    data = infrared.data
+    rgb = infrared.data.atlas.rgb
     assert infrared.wavelengths[[0, -1]].tolist() == [380, 1000]
     assert data.atlas.names == ("leaf", "short")
     beyond = infrared.wavelengths > 780
@@ -70,7 +71,8 @@ def test_steps_change_spectra_little_and_all_meet_the_colour(step, model):
     usual, other = (quiet_build(atlas, **options, step=each) for each in (5, step))
     assert len(other.wavelengths) == 470 / step + 1
     assert other.data.points.distance.max() <= 1e-4
-    at, colours = np.arange(400, 701, 10), np.random.default_rng(0).random((100, 3))
+    at = np.arange(400, 701, 10)
+    colours = np.random.default_rng(0).random((100, 3))
     difference = usual.reflectance(colours, at) - other.reflectance(colours, at)
     assert np.sqrt((difference**2).mean()) < 0.01
     judge = on_range(other.data.sensor, 360, 830, 1)

@@ -126,7 +126,8 @@ def test_the_first_file_of_the_recorded_name_decides(tiny_cube, repository, tmp_
     """
     text = (repository / "atlases" / "macbeth.txt").read_text(encoding="utf-8")
     (tmp_path / "macbeth.txt").write_text(text + "\n", encoding="utf-8")
-    path, folder = tmp_path / "cube.uplift", repository / "atlases"
+    path = tmp_path / "cube.uplift"
+    folder = repository / "atlases"
     for folders in ((), [tmp_path, folder]):
         with warns("atlas-changed") as caught:
             rebuild(tiny_cube, path, folders)

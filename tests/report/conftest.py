@@ -38,7 +38,8 @@ def crowded_cube(macbeth):
 @pytest.fixture(scope="session")
 def lossy_cube(small_cube):
     """Cube of two entries of one colour: no colour returns the second."""
-    data, atlas = small_cube.data, small_cube.data.atlas
+    data = small_cube.data
+    atlas = small_cube.data.atlas
     pair = table(
         ("grey", "über"),
         atlas.rgb[[0, 0]],
@@ -52,10 +53,8 @@ def lossy_cube(small_cube):
 @pytest.fixture(scope="session")
 def spoilt(small_cube):
     """The same cube with two nodes over the threshold."""
-    distance, status = (
-        small_cube.data.points.distance.copy(),
-        small_cube.data.points.status.copy(),
-    )
+    distance = small_cube.data.points.distance.copy()
+    status = small_cube.data.points.status.copy()
     distance[[100, 300]] = 0.01, 0.02
     status[[100, 300]] = Status.UNFITTED
     return Cube(with_points(small_cube.data, distance=distance, status=status))

@@ -52,7 +52,8 @@ def test_the_node_that_changed_is_the_worst(small_cube, changed):
     found = diff_cubes({"a": small_cube, "b": changed}, LIGHTS)
     assert found.nodes.worst(3)[0] == 210
     assert found.entries.largest.max() == 0
-    rgb, nm = small_cube.data.lattice.points[210], small_cube.data.sensor.wavelengths
+    rgb = small_cube.data.lattice.points[210]
+    nm = small_cube.data.sensor.wavelengths
     expected = delta_e_spectra(
         light("A"), small_cube.reflectance(rgb, nm), changed.reflectance(rgb, nm)
     )

@@ -79,7 +79,8 @@ def test_entry_errors_match_colour_science(judged, small_cube, macbeth):
 def test_lattice_errors_are_those_of_the_lattice_without_the_entries(
     judged, small_cube, macbeth
 ):
-    data, found = small_cube.data, judged.entries
+    data = small_cube.data
+    found = judged.entries
     measured = dict(
         zip(macbeth.names, on_grid(macbeth, data.sensor.wavelengths), strict=True)
     )
@@ -141,14 +142,13 @@ def test_smoothness_matches_explicit_loops(model):
 
 
 def test_crowding_matches_brute_force(crowded_cube):
-    data, lights = (
-        crowded_cube.data,
-        display_sensors(("A",), crowded_cube.data.sensor.observer),
-    )
+    data = crowded_cube.data
+    lights = display_sensors(("A",), crowded_cube.data.sensor.observer)
     found = find_crowding(
         data, entry_errors(crowded_cube, from_stored_entries(data), lights)
     )
-    nodes, names = data.lattice.nodes, data.atlas.names
+    nodes = data.lattice.nodes
+    names = data.atlas.names
     steps = np.interp(data.atlas.rgb, nodes, np.arange(len(nodes)))
     expected = {}
     for row, name in enumerate(names):
@@ -174,7 +174,10 @@ def test_crowding_matches_brute_force(crowded_cube):
 def test_calibration_against_an_unknown_atlas(small_cube, repository):
     other = uplift.read_atlas(repository / "atlases" / "cie2017.txt")
     found = assess(small_cube, "small.uplift", 1, other, ("D65", "FL11", "A"))
-    ratios, errors, within, bounded = [], [], 0, 0
+    ratios = []
+    errors = []
+    within = 0
+    bounded = 0
     for entry in other.entries:
         (measured,) = on_grid(uplift.Atlas((entry,)), small_cube.wavelengths)
         rgb = small_cube.data.sensor.rgb(measured)

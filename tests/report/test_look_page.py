@@ -171,7 +171,8 @@ def test_colours_equal_those_of_python_and_goals_of_two_lights_hold_together(ope
 def test_the_mouse_does_not_leave_the_region(opened, found):
     drag(opened, 0, 3.0, 0.0)
     goal = np.array(shown_lab(opened, 0)[1:])
-    low, high = found[0].outline(0).min(axis=0), found[0].outline(0).max(axis=0)
+    low = found[0].outline(0).min(axis=0)
+    high = found[0].outline(0).max(axis=0)
     assert ((goal >= low - 0.1) & (goal <= high + 0.1)).all()
     assert goal[0] > found[0].lab[0, 1] + 5
 

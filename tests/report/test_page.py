@@ -104,8 +104,10 @@ def test_lost_entries_are_named(lossy_cube):
 def test_predicted_and_actual_errors_are_shown(small_cube, repository):
     other = read_atlas(repository / "atlases" / "cie2017.txt")
     found = assess(small_cube, "small.uplift", 1, other, ("D65", "FL11"))
-    read, values = Page(render_report(found, worst=0)), to_json(found)
-    measured, under = found.calibration, found.light_calibrations["FL11"]
+    read = Page(render_report(found, worst=0))
+    values = to_json(found)
+    measured = found.calibration
+    under = found.light_calibrations["FL11"]
     assert (
         values["standard_error"]["calibration"]["within_bound"] == measured.within_bound
     )
@@ -145,7 +147,8 @@ def test_json_holds_the_numbers_of_the_assessment(judged):
     assert found["fitting_distance"]["max"] == judged.distance.max
     crowded = [entry["name"] for entry in found["crowding"]["entries"]]
     assert crowded == list(judged.crowding.entries.names)
-    first, entries = found["entries"][0], judged.entries
+    first = found["entries"][0]
+    entries = judged.entries
     assert (
         list(first["delta_e_2000_lattice"].values())
         == entries.lattice.delta_e[0].tolist()

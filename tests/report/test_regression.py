@@ -138,7 +138,8 @@ def test_nodes_may_differ_by_rounding_only(data):
 
 def test_entries_outside_the_space_are_compared(cyan_cube, small_cube):
     data = cyan_cube.data
-    outside, spectra = data.atlas.outside, data.atlas.outside.spectra
+    outside = data.atlas.outside
+    spectra = data.atlas.outside.spectra
 
     def changed(**changes):
         atlas = dataclasses.replace(

@@ -56,7 +56,8 @@ def test_no_measurement_raises_a_variance_and_each_swatch_has_the_largest_gain(
 
 def test_posterior_is_that_of_the_joint_covariance(cube):
     """A Schur complement of the covariance of known and other materials."""
-    kernel, known = Kernel(12.0, 0.3), cube.data.entry_lab
+    kernel = Kernel(12.0, 0.3)
+    known = cube.data.entry_lab
     lab = known[:3] + 2.0
     both = np.concatenate([known, lab])
     joint = np.linalg.inv(

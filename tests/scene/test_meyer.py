@@ -61,7 +61,8 @@ def test_eigenvalues_equal_the_printed_ones(cmfs):
 def test_rules_equal_tables_1a_and_1b(cmfs, opponent):
     rules = quadrature_rules(opponent, grid(), cmfs)
     printed = read_reference("meyer1988_table1.csv")
-    pairs, undefined = [], []
+    pairs = []
+    undefined = []
     for channel, orders in zip(CHANNELS, rules, strict=True):
         for order, rule in orders.items():
             own = [

@@ -22,7 +22,8 @@ def _moment_error(rule, points, masses, degree):
     """Largest error over Legendre polynomials up to ``degree``, relative to the sum of
     the absolute masses.
     """
-    middle, half = (points[0] + points[-1]) / 2, (points[-1] - points[0]) / 2
+    middle = (points[0] + points[-1]) / 2
+    half = (points[-1] - points[0]) / 2
     exact = masses @ legendre.legvander((points - middle) / half, degree)
     result = rule.weights @ legendre.legvander((rule.nodes - middle) / half, degree)
     return float(np.abs(result - exact).max() / np.abs(masses).sum())

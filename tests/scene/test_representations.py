@@ -96,7 +96,8 @@ def test_grey_under_constant_light_is_exact(every, name):
 def test_colour_is_linear_in_the_light_and_products_can_be_multiplied_again(
     every, checker, light_powers, name
 ):
-    one, surfaces = every[name], every[name].encode_surface(checker.surfaces)
+    one = every[name]
+    surfaces = every[name].encode_surface(checker.surfaces)
     products = [
         one.multiply(one.encode_light(factor * light_powers("FL11")), surfaces)
         for factor in (1, 2)
@@ -121,7 +122,8 @@ RANDOM = np.random.default_rng(5).random((3, 401))
 
 @pytest.mark.parametrize("count", [4, 9, 32])
 def test_point_samples_are_linear_interpolation_both_ways(count):
-    samples, places = point_samples(count), np.linspace(380, 780, count)
+    samples = point_samples(count)
+    places = np.linspace(380, 780, count)
     assert sample_points(count)[[0, -1]].tolist() == [380, 780]
     taken = samples.encode_light(RANDOM)
     np.testing.assert_allclose(
@@ -214,7 +216,8 @@ def test_fourier_coefficients_equal_equation_4_7(count):
 
 @pytest.mark.parametrize("count", [3, 7])
 def test_product_of_fourier_series_is_not_aliased(count):
-    one, rng = fourier_coefficients(count), np.random.default_rng(7)
+    one = fourier_coefficients(count)
+    rng = np.random.default_rng(7)
     first, second = rng.random((2, 4, count))
     whole = (first @ waves(count)) * (second @ waves(count))
     table = np.concatenate([np.ones((1, 400)), waves(count)[1:, :400]])
@@ -225,7 +228,8 @@ def test_product_of_fourier_series_is_not_aliased(count):
 @pytest.mark.parametrize("make", [sun_composite, enhanced_riemann])
 def test_spikes_multiply_exactly_on_constant_spectra(make):
     one = make(7, threshold=1e-9)  # all of a spike belongs to the spikes
-    light, surface = np.full((1, 81), 2.0), np.full((1, 81), 0.25)
+    light = np.full((1, 81), 2.0)
+    surface = np.full((1, 81), 0.25)
     light[0, 40] += 30.0
     surface[0, 60] += 0.5
     surface[0, 40] += 0.6
@@ -248,7 +252,8 @@ def test_moments_equal_the_integrals(checker):
 
 
 def test_linear_model_of_all_components_is_exact(checker, light_powers):
-    power, surfaces = checker.powers[:1], checker.surfaces[:5]
+    power = checker.powers[:1]
+    surfaces = checker.surfaces[:5]
     model = linear_model(6, power, surfaces)  # five products and the light
     light = model.encode_light(np.tile(power, (5, 1)))
     actual = model.xyz(model.multiply(light, model.encode_surface(surfaces)))

@@ -25,10 +25,8 @@ def test_the_map_has_the_expected_errors(table):
     assert image.get_extent() == [*ALL.u, *ALL.v]
     white = table.data.lattice.white
     step = (ALL.u[1] - ALL.u[0]) / errors.shape[1]
-    row, column = (
-        errors.shape[0] - int((white[1] - ALL.v[0]) / step) - 1,
-        int((white[0] - ALL.u[0]) / step),
-    )
+    row = errors.shape[0] - int((white[1] - ALL.v[0]) / step) - 1
+    column = int((white[0] - ALL.u[0]) / step)
     assert errors[row, column] == pytest.approx(
         float(table.expected_error([1.0, 1.0, 1.0])), rel=0.1
     )

@@ -21,17 +21,16 @@ def test_labels_of_close_points_do_not_overlap():
     assert overlapping(anchors, sizes) > 10
     placed = ~np.isnan(corners).any(axis=1)
     assert placed.sum() >= 5
-    corners, sizes = corners[placed], sizes[placed]
+    corners = corners[placed]
+    sizes = sizes[placed]
     assert overlapping(corners, sizes) == 0
     assert (corners >= PANEL[:2]).all()
     assert (corners + sizes <= PANEL[2:]).all()
 
 
 def test_label_does_not_cover_a_marker():
-    anchors, markers = (
-        np.array([[100.0, 100.0]]),
-        np.array([[100.0, 100.0], [120.0, 100.0]]),
-    )
+    anchors = np.array([[100.0, 100.0]])
+    markers = np.array([[100.0, 100.0], [120.0, 100.0]])
     (corner,) = place_labels(anchors, np.array([[40.0, 8.0]]), markers, PANEL)
     assert (
         not ((markers > corner) & (markers < corner + np.array([40, 8])))

@@ -381,7 +381,8 @@ def _faults(name: str, wavelengths: Array, values: Array) -> Iterator[tuple[str,
             f"sample {i + 1} is not finite: {values[i]:g} at {wavelengths[i]:g} nm"
         )
         yield problem, "replace it by the measured value or remove the entry"
-    first, last = wavelengths[0], wavelengths[-1]
+    first = wavelengths[0]
+    last = wavelengths[-1]
     if first <= 0 or last > LONGEST:
         problem = (
             f"wavelengths must be in (0, {LONGEST:g}] nm, got "

@@ -70,10 +70,13 @@ class Document:
 
         Raises `AtlasError` if it is empty, has a NUL character, or is damaged UTF-16.
         """
-        data, encoding, hint = self.data, None, "save the atlas as UTF-8 text"
+        data = self.data
+        encoding = None
+        hint = "save the atlas as UTF-8 text"
         # One byte of every ASCII character in UTF-16 is 0: the first one if the order
         # of bytes is big-endian.
-        even, odd = data[:UTF_16_START:2], data[1:UTF_16_START:2]
+        even = data[:UTF_16_START:2]
+        odd = data[1:UTF_16_START:2]
         if data.startswith((b"\xff\xfe", b"\xfe\xff")):
             encoding = "utf-16"
         elif (
@@ -120,7 +123,8 @@ class Document:
 
         def start(name: str, attributes: Any) -> None:
             nonlocal depth, count
-            depth, count = depth + 1, count + 1
+            depth = depth + 1
+            count = count + 1
             if depth > MAX_DEPTH or count > MAX_ELEMENTS:
                 problem = (
                     f"an XML file must have at most {MAX_ELEMENTS:,} elements, and "
@@ -139,11 +143,9 @@ class Document:
             )
 
         parser = expat.ParserCreate()
-        (
-            parser.StartElementHandler,
-            parser.EndElementHandler,
-            parser.StartDoctypeDeclHandler,
-        ) = start, end, doctype
+        parser.StartElementHandler = start
+        parser.EndElementHandler = end
+        parser.StartDoctypeDeclHandler = doctype
         try:
             parser.Parse(self.data, True)
         except AtlasError:

@@ -118,7 +118,8 @@ def _reflectances(
     """Separate reflectances from other spectra. Raise `AtlasError` if none may be a
     reflectance.
     """
-    kept, skipped = list[Spectrum](), list[SkippedEntry]()
+    kept = list[Spectrum]()
+    skipped = list[SkippedEntry]()
     refusals = list[AtlasError]()
     for spectrum in measurements.spectra:
         quantity = spectrum.quantity or measurements.quantity
@@ -141,7 +142,9 @@ def _entry(samples: Samples, scale: float, document: Document) -> Entry:
     """Make an entry of samples on a scale. Invalid ones outside the range that is used
     are cut off.
     """
-    spectrum, nm, scaled = samples.spectrum, samples.nm, samples.values / scale
+    spectrum = samples.spectrum
+    nm = samples.nm
+    scaled = samples.values / scale
     location = document.location.at(spectrum.line, spectrum.name)
     outside = (scaled > HIGHEST) | (scaled < LOWEST)
     if nm.shape == scaled.shape and nm.ndim == 1:
@@ -149,7 +152,9 @@ def _entry(samples: Samples, scale: float, document: Document) -> Entry:
         invalid[1:] |= np.diff(nm) < SLACK
         first = np.flatnonzero(invalid & (nm < USED[0])).max(initial=-1) + 1
         last = np.flatnonzero(invalid & (nm > USED[1])).min(initial=len(nm))
-        nm, scaled, outside = nm[first:last], scaled[first:last], outside[first:last]
+        nm = nm[first:last]
+        scaled = scaled[first:last]
+        outside = outside[first:last]
     if (
         scale != 1 and outside.any()
     ):  # an entry would name the scaled value, which is not in the file
@@ -167,7 +172,9 @@ def warn_of_odd(entries: Sequence[Entry]) -> None:
     """Warn of values that are ten times both neighbours, or a tenth."""
     for entry in entries:
         values = np.maximum(entry.values, FLOOR / PERCENT)
-        before, value, after = values[:-2], values[1:-1], values[2:]
+        before = values[:-2]
+        value = values[1:-1]
+        after = values[2:]
         above = value > ODD * np.maximum(before, after)
         below = value * ODD < np.minimum(before, after)
         is_near = entry.wavelengths[2:] - entry.wavelengths[:-2] <= 2 * COARSE

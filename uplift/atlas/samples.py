@@ -80,7 +80,8 @@ def in_order(spectrum: Spectrum, location: SourceLocation, missing: str) -> Samp
             else "not in order of wavelength, sorted"
         )
         order = np.argsort(nm, kind="stable")
-        nm, values = nm[order], values[order]
+        nm = nm[order]
+        values = values[order]
     absent = is_missing(values)
     is_used = (nm >= USED[0]) & (nm <= USED[1])
     is_visible = (nm >= VISIBLE[0]) & (nm <= VISIBLE[1])

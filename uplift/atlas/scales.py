@@ -108,7 +108,8 @@ def _check_one_scale(
     """Raise `AtlasError` for a row in units of 1 among rows in percent, or the reverse,
     or within one row.
     """
-    problem, odd = "", samples[0].spectrum
+    problem = ""
+    odd = samples[0].spectrum
     # A row that never exceeds 1, where others are in percent, is in units of 1, or the
     # reverse; the minority is named.
     dark = [row for row, top in enumerate(highest) if top <= DARKEST]

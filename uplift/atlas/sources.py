@@ -185,7 +185,8 @@ def from_distributions(distributions: Any) -> Atlas:
     entries = list[Entry]()
     for name, each in named.items():
         try:
-            nm, values = each.wavelengths, each.values
+            nm = each.wavelengths
+            values = each.values
         except AttributeError:
             problem = f"'{type(each).__name__}' is not a spectral distribution"
             raise SourceLocation(entry=str(name)).error(problem, FORMS) from None
@@ -298,7 +299,8 @@ def find_atlas_file(path: StrPath, folder: StrPath = "") -> StrPath:
     a shipped atlas, in any case, with or without the suffix. Warnings refer to the
     caller of the caller.
     """
-    name, paths = os.fspath(path), _shipped_paths()
+    name = os.fspath(path)
+    paths = _shipped_paths()
     file = os.path.join(folder, path)
     if os.path.lexists(file) and not os.path.isdir(file):
         return file

@@ -257,7 +257,8 @@ def unit_by_values(numbers: ArrayLike) -> float:
     micrometres and metres are plain.
     """
     numbers = np.asarray(numbers, dtype=float)
-    low, high = numbers.min(), numbers.max()
+    low = numbers.min()
+    high = numbers.max()
     is_sorted = len(set(np.sign(np.diff(numbers)))) == 1
     if is_sorted and len(numbers) >= FEW and 0.1 <= low <= 0.4 and 0.7 <= high <= 100:
         return MICROMETRE

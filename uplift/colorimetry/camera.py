@@ -103,7 +103,8 @@ def camera_sensor(camera: Camera, standard: Sensor) -> Sensor:
     reflectances, whose values at two wavelengths correlate as exp(−|Δλ| /
     `CORRELATED`).
     """
-    nm, light = standard.wavelengths, standard.light
+    nm = standard.wavelengths
+    light = standard.light
     sensitivities = camera.at(nm)
     weights = sensitivities * standard.power[:, None]
     if not (weights.sum(axis=0) > 0).all():
@@ -139,10 +140,12 @@ def read_camera(path: StrPath) -> Camera:
     """
     if is_json(path):
         spectra = read_spectra(path, RGB, OptionError)
-        wavelengths, sensitivities = spectra.wavelengths, spectra.values
+        wavelengths = spectra.wavelengths
+        sensitivities = spectra.values
     else:
         table = _read_table(path)
-        wavelengths, sensitivities = table[:, 0], table[:, 1:]
+        wavelengths = table[:, 0]
+        sensitivities = table[:, 1:]
     name = Path(path).stem.encode(errors="backslashreplace").decode()
     try:
         return Camera(name, wavelengths, sensitivities)

@@ -126,15 +126,19 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     )
     # a′ = (1 + G) a, and from it C′ and h′ (eq. 2–7).
     g = 1.5 - 0.5 * _weight_7((np.hypot(a1, b1) + np.hypot(a2, b2)) / 2)
-    a1, a2 = g * a1, g * a2
-    c1, c2 = np.hypot(a1, b1), np.hypot(a2, b2)
-    h1, h2 = np.degrees(np.arctan2(b1, a1)) % 360, np.degrees(np.arctan2(b2, a2)) % 360
+    a1 = g * a1
+    a2 = g * a2
+    c1 = np.hypot(a1, b1)
+    c2 = np.hypot(a2, b2)
+    h1 = np.degrees(np.arctan2(b1, a1)) % 360
+    h2 = np.degrees(np.arctan2(b2, a2)) % 360
     coloured = c1 * c2 > 0
     turn = np.where(coloured, (h2 - h1 + 180) % 360 - 180, 0)
     # The paper defines a difference of exactly half a turn as +180 if h2 is larger.
     turn = np.where((turn == -180) & (h2 > h1), 180, turn)
     # Means of L′, C′ and h′ (eq. 12–14).
-    light, chroma = (l1 + l2) / 2, (c1 + c2) / 2
+    light = (l1 + l2) / 2
+    chroma = (c1 + c2) / 2
     total = h1 + h2
     across = np.where(
         total < 360, total + 360, total - 360
@@ -177,8 +181,10 @@ def delta_e_2000_weights(lab: ArrayLike) -> Array:
     neutral colour). Shapes: ``lab`` (…, 3) → (…, 3, 3).
     """
     light, a, b = np.moveaxis(np.asarray(lab, dtype=float), -1, 0)
-    chroma, hue = np.hypot(a, b), np.arctan2(b, a)
-    chroma_weight, hue_weight = 1 / (1 + 0.045 * chroma), 1 / (1 + 0.015 * chroma)
+    chroma = np.hypot(a, b)
+    hue = np.arctan2(b, a)
+    chroma_weight = 1 / (1 + 0.045 * chroma)
+    hue_weight = 1 / (1 + 0.015 * chroma)
     weights = np.zeros((*light.shape, 3, 3))
     weights[..., 0, 0] = 1 / (
         1 + 0.015 * (light - 50) ** 2 / np.sqrt(20 + (light - 50) ** 2)

@@ -47,12 +47,14 @@ def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
     if not colour.sum() > 0:
         return GREY
     responds = sensor.cmfs.any(axis=1)
-    wavelengths, locus = sensor.wavelengths[responds], sensor.cmfs[responds]
+    wavelengths = sensor.wavelengths[responds]
+    locus = sensor.cmfs[responds]
     # x, y of white, and from there to the spectrum locus and the line of purples around
     # it (n + 1, 2)
     curves = np.concatenate([sensor.light.white[None], locus, locus[:1]])
     xy = curves[:, :2] / curves.sum(axis=1, keepdims=True)
-    white, outline = xy[0], xy[1:] - xy[0]
+    white = xy[0]
+    outline = xy[1:] - xy[0]
     direction = colour[:2] / colour.sum() - white
     if np.hypot(*direction) < ACHROMATIC:
         return GREY
@@ -80,10 +82,12 @@ def crossing(path: Array, direction: Array) -> tuple[Any, Array, Array]:
     """
     # t · direction = start + f · edge, solved by Cramer's rule
     (x, y), (u, v) = path[:-1].T, np.diff(path, axis=0).T
-    a, b = direction[..., :1], direction[..., 1:]
+    a = direction[..., :1]
+    b = direction[..., 1:]
     determinant = a * v - b * u
     safe = np.where(determinant == 0, 1, determinant)
-    distance, fraction = (x * v - y * u) / safe, (x * b - y * a) / safe
+    distance = (x * v - y * u) / safe
+    fraction = (x * b - y * a) / safe
     met = (
         (determinant != 0)
         & (distance > 0)

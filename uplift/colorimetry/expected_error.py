@@ -111,7 +111,8 @@ def expected_error(
     # length) of the nearest other one
     nearest = np.concatenate([others(part).min(axis=1) for part in parts])
     variance = np.maximum(1 - np.exp(nearest / -LENGTH) ** 2, MIN_VARIANCE)
-    floor, products_floor = (kept**2).mean(), kept_products.mean(axis=0)
+    floor = (kept**2).mean()
+    products_floor = kept_products.mean(axis=0)
     # Part of each square that the other entries explain, per unit of variance: (e² − f)
     # / v e².
     share = np.maximum(1 - floor / np.maximum(left_out**2, TINY), 0) / variance

@@ -70,7 +70,8 @@ def first_basis(matrix: Array) -> Indices:
     """Choose three wavelengths (3,) with independent colours: the largest part that
     those before do not share.
     """
-    rest, chosen = matrix.copy(), []
+    rest = matrix.copy()
+    chosen = []
     for _ in range(3):
         lengths = np.linalg.norm(rest, axis=0)
         chosen.append(int(lengths.argmax()))

@@ -238,8 +238,10 @@ def _toward_grey(rgb: Array, grey: Array, top: float) -> Array:
     """
     # grey + f (rgb − grey) meets 0 at f = grey / (grey − low), and the top at (top −
     # grey) / (high − grey).
-    low, high = rgb.min(axis=1, keepdims=True), rgb.max(axis=1, keepdims=True)
-    below, above = np.ones_like(grey), np.ones_like(grey)
+    low = rgb.min(axis=1, keepdims=True)
+    high = rgb.max(axis=1, keepdims=True)
+    below = np.ones_like(grey)
+    above = np.ones_like(grey)
     np.divide(grey, grey - low, out=below, where=low < 0)
     np.divide(top - grey, high - grey, out=above, where=high > top)
     return grey + np.minimum(below, above) * (rgb - grey)
@@ -255,13 +257,15 @@ def desaturate_oklab(rgb: Array, gamut: Gamut) -> Array:
     grey = np.ascontiguousarray(cube_roots(np.clip(lab[:, :1], 0, 1) * [1, 0, 0]).T)
     chroma = np.ascontiguousarray(cube_roots(lab * [0, 1, 1]).T)
     to_rgb = np.linalg.inv(cone_responses(gamut))
-    inner, outer = np.zeros(len(rgb)), np.ones(len(rgb))
+    inner = np.zeros(len(rgb))
+    outer = np.ones(len(rgb))
     for _ in range(HALVINGS):
         middle = (inner + outer) / 2
         trial = to_rgb @ _cube(grey + middle * chroma)
         high = trial.max(axis=0)
         fits = (trial.min(axis=0) >= -NEARLY * high) & (high <= 1 + NEARLY)
-        inner, outer = np.where(fits, middle, inner), np.where(fits, outer, middle)
+        inner = np.where(fits, middle, inner)
+        outer = np.where(fits, outer, middle)
     return desaturate((to_rgb @ _cube(grey + inner * chroma)).T, gamut)
 
 

@@ -118,10 +118,8 @@ class Lamp:
     power: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        wavelengths, power = (
-            tuple(map(float, self.wavelengths)),
-            tuple(map(float, self.power)),
-        )
+        wavelengths = tuple(map(float, self.wavelengths))
+        power = tuple(map(float, self.power))
         problem = ""
         if not len(wavelengths) == len(power) >= 2:
             problem = (
@@ -152,7 +150,8 @@ class Lamp:
         so that no narrow line is lost. Others are interpolated linearly.
         """
         nm = np.asarray(wavelengths, dtype=float)
-        step, own = np.diff(nm[:2]).sum(), float(np.median(np.diff(self.wavelengths)))
+        step = np.diff(nm[:2]).sum()
+        own = float(np.median(np.diff(self.wavelengths)))
         count = math.ceil(step / own - 1e-6) if step > own else 1
         offsets = step / count * np.arange(1 - count, count)
         weights = count - np.abs(np.arange(1 - count, count))

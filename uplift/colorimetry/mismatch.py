@@ -168,7 +168,8 @@ class MismatchVolumes:
         """XYZ (n, F, 3) whose convex hull contains the body: where the planes of three
         neighbours meet.
         """
-        faces, directions = self.directions.faces, self.directions.directions
+        faces = self.directions.faces
+        directions = self.directions.directions
         scaled = self.xyz @ np.linalg.inv(self.scale).T
         support = np.einsum("kdi,di->kd", scaled, directions)[:, faces]
         return np.asarray(
@@ -195,7 +196,8 @@ def mismatch_volumes(
             f"no reflectance has the colour {format_rgb(rgb[outside[0]])} under "
             f"{sensor.illuminant}"
         )
-    directions, scale = sphere(divisions), _scale(sensor, light)
+    directions = sphere(divisions)
+    scale = _scale(sensor, light)
     # A direction d of the scaled space S⁻¹ x is maximised by the response dᵀ S⁻¹ X of
     # each wavelength.
     response = directions.directions @ np.linalg.solve(scale, light.xyz)
@@ -249,10 +251,8 @@ def _solve(
         if first >= len(parents):
             break
         start = basis[:, parents[first:last]] if first else basis[:, :last]
-        colours, responses = (
-            np.repeat(rgb, last - first, axis=0),
-            np.tile(response[first:last], (len(rgb), 1)),
-        )
+        colours = np.repeat(rgb, last - first, axis=0)
+        responses = np.tile(response[first:last], (len(rgb), 1))
         found = extreme_spectra(sensor.matrix, colours, responses, start.reshape(-1, 3))
         if not found.solved.all():
             raise _unrealisable(
@@ -287,7 +287,8 @@ def largest_difference(volumes: MismatchVolumes, xyz: Array) -> LargestDifferenc
     faces = outer.reshape(len(outer), -1, PARTS).argmax(axis=1) * PARTS + np.arange(
         PARTS
     )
-    row, faces = np.repeat(np.arange(len(xyz)), PARTS), faces.ravel()
+    row = np.repeat(np.arange(len(xyz)), PARTS)
+    faces = faces.ravel()
     basis = volumes.basis[row, volumes.directions.faces[faces, 0]]
     search = _Search(volumes, reference)
     slope = search.slope(row, corners[row, faces])
@@ -386,7 +387,8 @@ class _Search:
 
     def slope(self, row: Indices, xyz: Array) -> Array:
         """Derivative (m, 3) of ΔE00 with respect to XYZ (m, 3)."""
-        at, steps = self._lab(xyz)[:, None], DIFFERENCE_STEP * np.eye(3)
+        at = self._lab(xyz)[:, None]
+        steps = DIFFERENCE_STEP * np.eye(3)
         reference = self.reference[row, None]
         rise = delta_e_2000(at + steps, reference) - delta_e_2000(at - steps, reference)
         jacobian = lab_jacobian(xyz, self.volumes.light.white)
@@ -424,7 +426,8 @@ def outline(points: Array, faces: Indices, angles: int = ANGLES) -> Array:
         np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0
     )
     first, second = (round_points[edges[:, end]] for end in (0, 1))
-    side_1, side_2 = first @ across, second @ across
+    side_1 = first @ across
+    side_2 = second @ across
     crosses = (side_1 <= 0) != (side_2 <= 0)
     share = np.divide(side_1, side_1 - side_2, out=np.zeros_like(side_1), where=crosses)
     radius = np.where(

@@ -219,10 +219,8 @@ def check_distinct(illuminants: Iterable[Illuminant]) -> None:
     """
     known: dict[str, Lamp | None] = {}
     for each in illuminants:
-        name, lamp = (
-            tables.stated_name("illuminant", each),
-            each if isinstance(each, Lamp) else None,
-        )
+        name = tables.stated_name("illuminant", each)
+        lamp = each if isinstance(each, Lamp) else None
         if known.setdefault(name, lamp) != lamp:
             raise OptionError(
                 f"two lights have the name '{name}'", hint="rename one of them"

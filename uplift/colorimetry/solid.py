@@ -54,7 +54,8 @@ class Solid:
         """
         fractions = [np.zeros(0)]
         for first in range(0, len(target), BLOCK):
-            start, end = origin[first : first + BLOCK], target[first : first + BLOCK]
+            start = origin[first : first + BLOCK]
+            end = target[first : first + BLOCK]
             # On start + f · (end − start), facet i is met at f = (offset_i − n_i ·
             # start) / n_i · (end − start).
             margin = np.maximum(self.offsets - start @ self.normals.T, 0)

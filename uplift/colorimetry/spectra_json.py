@@ -81,7 +81,8 @@ def _parse(table: dict[str, Any]) -> LabelledSpectra:
             raise ValueError("the range does not fit the number of rows")
         return LabelledSpectra(labels, nm, values)
     spectra = table["spectral_data"]
-    labels, rows = tuple(map(str, spectra["index"]["main"])), spectra["data"]["main"]
+    labels = tuple(map(str, spectra["index"]["main"]))
+    rows = spectra["data"]["main"]
     wavelengths: Array = np.array([parse_float(nm) for nm in rows])
     values = np.array(list(rows.values()), dtype=float).reshape(len(rows), len(labels))
     return LabelledSpectra(labels, wavelengths, values)

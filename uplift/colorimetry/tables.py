@@ -162,10 +162,8 @@ def rgb_space(name: str) -> RgbSpace | None:
     """Return an RGB space by a name of colour-science or one of `SHORT_NAMES`, None if
     it has none of the name.
     """
-    known, name = (
-        names("RGB space"),
-        SHORT_NAMES.get(re.sub(r"[ ._-]", "", name.casefold()), name),
-    )
+    known = names("RGB space")
+    name = SHORT_NAMES.get(re.sub(r"[ ._-]", "", name.casefold()), name)
     if name not in known:
         table = colour_science().RGB_COLOURSPACES
         if name not in table:

@@ -46,8 +46,11 @@ class Diagnostic(Exception):  # noqa: N818
         entry: str | None = None,
         hint: str = "",
     ) -> None:
-        self.problem, self.path, self.line = problem, path, line
-        self.entry, self.hint = entry, hint
+        self.problem = problem
+        self.path = path
+        self.line = line
+        self.entry = entry
+        self.hint = hint
         if code is not None:
             self.code = code
         super().__init__(self.describe(hint))

@@ -114,7 +114,8 @@ def check_outputs(
     """Check all outputs of a program before it reads and writes anything, as
     `check_output`; None are left out.
     """
-    outputs, inputs = [path for path in paths if path is not None], list(inputs)
+    outputs = [path for path in paths if path is not None]
+    inputs = list(inputs)
     for path in outputs:
         check_output(path, inputs=inputs, force=force)
     _check_distinct(outputs)

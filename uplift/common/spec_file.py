@@ -111,7 +111,8 @@ class SpecFile:
             error = next(
                 (each for each in errors if each["type"] in UNKNOWN_KEY), errors[0]
             )
-            context, kind = error.get("ctx", {}), error["type"]
+            context = error.get("ctx", {})
+            kind = error["type"]
             text = TEXTS.get(kind) or re.sub(r"^\w+ should", "must", error["msg"])
             if kind != "uplift" and text.startswith("must"):
                 text = f"{text}, got {format_value(error['input'])}"

@@ -175,10 +175,8 @@ def _check_readable(metadata: dict[str, Any], kind: Kind, path: Path) -> None:
     )
     hint = f"build the {kind.noun} again, or use {version} that wrote it"
     if metadata.get("version") not in kind.readable:
-        versions, version = (
-            " or ".join(map(str, kind.readable)),
-            format_value(metadata.get("version")),
-        )
+        versions = " or ".join(map(str, kind.readable))
+        version = format_value(metadata.get("version"))
         problem = f"must have format version {versions}, got {version}"
         raise CubeFileError(problem, code="cube-version", path=path, hint=hint)
     features = metadata.get("features")
@@ -232,7 +230,9 @@ def check_arrays(
     """
     for name, stored in schema.items():
         require(name in tensors, f"has no array {name}")
-        array, low, high = tensors[name], stored.low, stored.high
+        array = tensors[name]
+        low = stored.low
+        high = stored.high
         shape = tuple(
             sizes[axis] if axis in sizes else int(axis) for axis in stored.shape.split()
         )
@@ -256,27 +256,19 @@ def check_metadata(value: Any, schema: Any, path: str = "metadata") -> None:
     if schema is None:
         return
     if schema is str:
-        fits, expected = (
-            isinstance(value, str) and len(value) <= MAX_TEXT,
-            f"text of at most {MAX_TEXT} characters",
-        )
+        fits = isinstance(value, str) and len(value) <= MAX_TEXT
+        expected = f"text of at most {MAX_TEXT} characters"
     elif schema is int:
-        fits, expected = (
-            type(value) is int and 0 <= value <= MAX_VALUE,
-            "a whole number from 0",
-        )
+        fits = type(value) is int and 0 <= value <= MAX_VALUE
+        expected = "a whole number from 0"
     elif isinstance(schema, tuple):
         low, high = schema
-        fits, expected = (
-            type(value) in (int, float) and low <= value <= high,
-            f"a number in [{low:g}, {high:g}]",
-        )
+        fits = type(value) in (int, float) and low <= value <= high
+        expected = f"a number in [{low:g}, {high:g}]"
     elif isinstance(schema, list):
         item, limit = schema
-        fits, expected = (
-            isinstance(value, list) and len(value) <= limit,
-            f"a list of at most {limit:,} items",
-        )
+        fits = isinstance(value, list) and len(value) <= limit
+        expected = f"a list of at most {limit:,} items"
         items = (
             [(each, item, f"{path}[{number}]") for number, each in enumerate(value)]
             if fits

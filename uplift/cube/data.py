@@ -146,7 +146,8 @@ class CubeData:
     """
 
     def __repr__(self) -> str:
-        sensor, own = self.sensor, self.atlas.spectra.model
+        sensor = self.sensor
+        own = self.atlas.spectra.model
         more = (
             "" if own == self.model else f" with {pluralise(own.count, 'coefficient')}"
         )

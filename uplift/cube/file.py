@@ -104,7 +104,8 @@ ARRAYS = {
 of nodes along an axis.
 """
 
-NUMBER, POSITIVE = (-1e30, 1e30), (0, 1e30)
+NUMBER = (-1e30, 1e30)
+POSITIVE = (0, 1e30)
 ENTRIES = [str, 1_000_000]
 RGB = [NUMBER, 3]
 FILE = {"name": str, "digest": str}
@@ -270,10 +271,8 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
         alike and entry_model.count >= model.count,
         "the model of the entries must extend that of the nodes",
     )
-    names, looks = (
-        tuple(metadata["entries"]),
-        len(metadata["provenance"].get("looks", ())),
-    )
+    names = tuple(metadata["entries"])
+    looks = len(metadata["provenance"].get("looks", ()))
     outside = tuple(metadata["provenance"].get("left_out", ()))
     schema = {
         name: stored
@@ -347,7 +346,8 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
                 data.points, arrays["points"].astype(np.int64), data.lattice
             ),
         )
-    size, count = data.lattice.size, data.points.status.size
+    size = data.lattice.size
+    count = data.points.status.size
     require(count == size, f"there must be {pluralise(size, 'node')}, got {count}")
     return data
 
@@ -356,7 +356,9 @@ def _check(data: CubeData) -> None:
     """Check what a lookup relies on beyond types and ranges. The nodes of a sparse cube
     are those in its file.
     """
-    atlas, sensor, nodes = data.atlas, data.sensor, data.lattice.nodes
+    atlas = data.atlas
+    sensor = data.sensor
+    nodes = data.lattice.nodes
     names = (*atlas.names, *(() if atlas.outside is None else atlas.outside.names))
     looks = tuple(look["name"] for look in data.provenance.get("looks", ()))
     with np.errstate(all="ignore"):
@@ -436,7 +438,8 @@ def _expand(points: PointTable, numbers: Indices, lattice: Lattice) -> PointTabl
 def summarise(data: CubeData) -> dict[str, Any]:
     """Return facts about a cube in JSON values, for ``uplift info`` and reports."""
     points = data.points
-    present, errors = points.present, points.standard_error
+    present = points.present
+    errors = points.standard_error
     return {
         "model": data.model.describe(),
         "coefficients": data.model.count,

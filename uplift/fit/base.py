@@ -40,7 +40,8 @@ bright as possible.
 GREY = 2 / 3
 """Power of the mean of x' that gives the reflectance of the grey to start from."""
 TABLE = Lattice(np.linspace(0, 1, 17) ** 2)
-MIN_LEVEL, MAX_LEVEL = 1e-4, 0.98
+MIN_LEVEL = 1e-4
+MAX_LEVEL = 0.98
 SAME_SENSOR = 1e-14
 """Difference of elements of W up to which a stored table is that of a sensor: they
 differ between instruction sets.
@@ -152,7 +153,8 @@ def learn_base(
     table = nodes_of(TABLE, problem.sensor)
     bright = table.goal(table.points)
     plain = smooth_table(problem, bright)  # s(x′)
-    model, sensor = problem.model, problem.sensor
+    model = problem.model
+    sensor = problem.sensor
     if not families or plain.nodes is None or not isinstance(model, Moments):
         return plain, (1.0,) * len(families)
     kriging = krige_families(
@@ -208,7 +210,8 @@ def _samples(
     sensor = problem.sensor
     rgb = sensor.rgb(measured)
     rows = np.flatnonzero(in_unit_cube(rgb))
-    rgb, measured = np.clip(rgb[rows], 0, 1), measured[rows]
+    rgb = np.clip(rgb[rows], 0, 1)
+    measured = measured[rows]
     locations = rgb_to_lab(sensor, rgb)
     if entries is not None:
         close = distances(locations, rgb_to_lab(sensor, entries.rgb)) <= SAME_COLOUR
@@ -221,7 +224,9 @@ def _samples(
             for row, squares in enumerate(apart)
             if squares.min(initial=np.inf) > SAME_SPECTRUM**2
         ]
-        rgb, measured, locations = rgb[new], measured[new], locations[new]
+        rgb = rgb[new]
+        measured = measured[new]
+        locations = locations[new]
     expected = reflectance(plain.model, plain.coefficients(rgb), sensor.wavelengths)
     deviations = (measured - expected) / plain.brightness(rgb)
     return average_close(locations, deviations)
@@ -245,7 +250,8 @@ def match_spectra(
         blocked_matmul(reflectances, moment_matrix(model, wavelengths))
     )
     for block in blocks(len(multipliers), MATCH_ROWS):
-        p, measured = multipliers[block], reflectances[block]
+        p = multipliers[block]
+        measured = reflectances[block]
         colours = goal.colours(measured)
         # p − (JᵀJ + μ I)⁻¹ Jᵀ r minimises mean (g − m)² + Σ |w ΔL*a*b*|², linearised
         residual = goal.residuals(p, measured, colours)

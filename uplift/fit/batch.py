@@ -49,7 +49,8 @@ def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any) -> A
     Batches run side by side.
     """
     require_memory_of_xla()
-    devices, parts = len(jax.devices()), []
+    devices = len(jax.devices())
+    parts = []
     width, chunk = CPU_ROWS if jax.default_backend() == "cpu" else ACCELERATOR_ROWS
     total = len(jax.tree.leaves(arrays)[0])
     with jax.enable_x64(True):
@@ -113,7 +114,8 @@ def _program(
 
     if devices == 1:
         return jax.jit(run)
-    mesh, given = Mesh(np.array(jax.devices()), ("rows",)), (EVERYWHERE, ROWS, ROWS)
+    mesh = Mesh(np.array(jax.devices()), ("rows",))
+    given = (EVERYWHERE, ROWS, ROWS)
     run = jax.shard_map(run, mesh=mesh, in_specs=given, out_specs=ROWS, check_vma=False)
     return jax.jit(run, in_shardings=tuple(NamedSharding(mesh, spec) for spec in given))
 
@@ -137,10 +139,8 @@ def _integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
         # Each part is as large as the first rule, which has two sets of moments: the
         # rest has no weight.
         part = slice(first, first + PART_NODES)
-        points, weights = (
-            np.zeros((count, PART_NODES)),
-            np.zeros((PART_NODES, 2 * count)),
-        )
+        points = np.zeros((count, PART_NODES))
+        weights = np.zeros((PART_NODES, 2 * count))
         points[:, : nodes - first], weights[: nodes - first, :columns] = (
             synthesis[:, part],
             analysis[part],

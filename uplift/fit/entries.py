@@ -108,10 +108,8 @@ class Objective:
 
         J itself, which has a row for each residual, is not formed.
         """
-        x, shape = (
-            multipliers @ self.basis.T,
-            (*multipliers.shape, multipliers.shape[1]),
-        )
+        x = multipliers @ self.basis.T
+        shape = (*multipliers.shape, multipliers.shape[1])
         spectra, lights, own = np.split(
             residuals, [len(self.basis), residuals.shape[1] - shape[1]], axis=1
         )
@@ -293,7 +291,8 @@ def fit_entries(
     """
     goal = objective(problem.model, problem.forward.basis, problem.lights, **weights)
     order = np.lexsort(rgb.T)
-    measured, rgb = measured[order], rgb[order]
+    measured = measured[order]
+    rgb = rgb[order]
     near = minimise(goal, measured)
     # The minimum has nearly the colour; minimum-norm steps from there reach it.
     multipliers = solve_in_numpy(

@@ -99,7 +99,8 @@ def families_with(measured: Array) -> tuple[str, ...]:
 
     if not len(measured):
         return ()
-    tree, limit = cKDTree(measured), SAME_RMS * np.sqrt(measured.shape[1])
+    tree = cKDTree(measured)
+    limit = SAME_RMS * np.sqrt(measured.shape[1])
     nearest = {
         family.name: tree.query(family.measured)[0].min()
         for family in shipped_library()

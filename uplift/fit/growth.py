@@ -30,7 +30,8 @@ from uplift.fit.solver import Solution
 from uplift.lattice import NOT_FITTED
 from uplift.models.arithmetic import blocked_matmul
 
-MAX_PASSES, IMPROVEMENT_PASSES = 24, 192
+MAX_PASSES = 24
+IMPROVEMENT_PASSES = 192
 BLOCK_POINTS = 1 << 15
 """Nodes processed at a time."""
 MAX_CORRECTION = 0.1
@@ -79,7 +80,9 @@ class Growth:
     def __init__(
         self, problem: Problem, nodes: Nodes, progress: ProgressCallback
     ) -> None:
-        self.problem, self.nodes, self.progress = problem, nodes, progress
+        self.problem = problem
+        self.nodes = nodes
+        self.progress = progress
         size = nodes.lattice.size
         self.multipliers, self.distance = (
             np.zeros((size, problem.model.count)),
@@ -151,11 +154,14 @@ def retry(growth: Growth, number: int) -> None:
     """Try failed nodes again from the mean of their fitted neighbours, while one more
     of these has been fitted.
     """
-    lattice, multipliers = growth.nodes.lattice, growth.multipliers
+    lattice = growth.nodes.lattice
+    multipliers = growth.multipliers
     fresh = np.flatnonzero(growth.round != NOT_FITTED)
     while fresh.size:
-        fitted, is_fresh = growth.round != NOT_FITTED, lattice.mask(fresh)
-        points, means = [fresh[:0]], [multipliers[:0]]
+        fitted = growth.round != NOT_FITTED
+        is_fresh = lattice.mask(fresh)
+        points = [fresh[:0]]
+        means = [multipliers[:0]]
         for block in growth.waiting_blocks():
             neighbours, inside = lattice.neighbours(block)
             adjacent = (inside & is_fresh[neighbours]).any(axis=1)
@@ -187,7 +193,9 @@ def improve(growth: Growth, steps: Sequence[str] = STEPS) -> list[tuple[str, int
     Returns each step with the numbers of nodes that it tried, and of those that are
     within the threshold afterwards.
     """
-    problem, points, done = growth.problem, growth.nodes.points, []
+    problem = growth.problem
+    points = growth.nodes.points
+    done = []
     # Alternating nudges, the same for every node and every run: no direction is better
     # justified than another.
     alternating = NUDGE * (-1.0) ** np.arange(problem.model.count)
@@ -198,10 +206,8 @@ def improve(growth: Growth, steps: Sequence[str] = STEPS) -> list[tuple[str, int
         # A linear part of +1 for goals nearer to white, −1 for those nearer to black,
         # at all wavelengths.
         sign = np.where(growth.nodes.goal(points).mean(axis=1) >= 0.5, 1.0, -1.0)
-        best, extreme = (
-            growth.multipliers[points],
-            sign[:, None] * problem.model.constant(),
-        )
+        best = growth.multipliers[points]
+        extreme = sign[:, None] * problem.model.constant()
         start = {
             "more iterations": best,
             "from grey": np.zeros_like(best),

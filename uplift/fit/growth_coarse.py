@@ -35,15 +35,15 @@ def grow_coarse_to_fine(
     """Fit nodes from the prior. Seeds (S,) are fitted in the first round, and give and
     take no correction.
     """
-    growth, lattice = Growth(problem, nodes, progress), nodes.lattice
-    waiting, seeded = lattice.mask(nodes.points), lattice.mask(seeds)
+    growth = Growth(problem, nodes, progress)
+    lattice = nodes.lattice
+    waiting = lattice.mask(nodes.points)
+    seeded = lattice.mask(seeds)
     # Corrections p − p₀ at every second node, whose last column is the weight of a
     # known one, and the rows of nodes.
     half, numbers = lattice.thinned(2)
-    corrections, row = (
-        np.zeros((half.size, problem.model.count + 1)),
-        np.full(lattice.size, -1, dtype=np.int32),
-    )
+    corrections = np.zeros((half.size, problem.model.count + 1))
+    row = np.full(lattice.size, -1, dtype=np.int32)
     row[numbers] = np.arange(half.size)
     row[seeds] = -1
 

@@ -27,13 +27,15 @@ def grow_outward(
     Seeds start from entries, or half-way between entry and prior, and give and take no
     correction.
     """
-    growth, lattice = Growth(problem, nodes, progress), nodes.lattice
+    growth = Growth(problem, nodes, progress)
+    lattice = nodes.lattice
     middle = lattice.index(np.full((1, 3), lattice.dim // 2))
     distance, toward = shells(lattice, seeds if seeds.size else middle)
     # δ = p − p₀ of the nodes, in single precision as it is only a start, and whether it
     # is known and smooth
     corrections = np.zeros((lattice.size, problem.model.count), dtype=np.float32)
-    known, seeded = np.zeros(lattice.size, dtype=bool), lattice.mask(seeds)
+    known = np.zeros(lattice.size, dtype=bool)
+    seeded = lattice.mask(seeds)
     order = nodes.points[np.argsort(distance[nodes.points], kind="stable")]
     ends = np.searchsorted(distance[order], np.arange(1, distance.max() + 2))
 
@@ -44,7 +46,8 @@ def grow_outward(
             prior = expected(points, nodes.goal(points))
             # δ ≈ 2 δ₁ − δ₂ with the corrections one and two steps towards a seed, δ₁
             # where δ₂ is not known, or else 0.
-            near, far = toward[points], toward[toward[points]]
+            near = toward[points]
+            far = toward[toward[points]]
             one = known[near] & (distance[near] < number)
             two = one & known[far] & (distance[far] < distance[near])
             change = np.add(one, two, dtype=np.float32)[:, None] * corrections.take(
@@ -104,7 +107,8 @@ def shells(
         steps = np.moveaxis(np.minimum(before, after), -1, axis)
     toward = np.arange(lattice.size, dtype=np.int32).reshape(lattice.shape)
     for axis, stride in enumerate((dim * dim, dim, 1)):
-        along, result = np.moveaxis(steps, axis, 0), np.moveaxis(toward, axis, 0)
+        along = np.moveaxis(steps, axis, 0)
+        result = np.moveaxis(toward, axis, 0)
         down = np.zeros(along.shape, dtype=bool)
         down[1:] = along[:-1] < along[1:]
         result[1:] -= stride * down[1:]

@@ -29,7 +29,8 @@ def grow_from_neighbours(
     Without seeds, growth starts at the node of ``nodes`` that is nearest to the middle,
     from grey.
     """
-    growth, lattice = Growth(problem, nodes, progress), nodes.lattice
+    growth = Growth(problem, nodes, progress)
+    lattice = nodes.lattice
     seeds = np.intersect1d(seeds, nodes.points)
     if seeds.size:
         start = expected(seeds, nodes.goal(seeds))
@@ -62,7 +63,9 @@ def _try_neighbours(
     neighbours, inside = growth.nodes.lattice.neighbours(points)
     known = inside & is_fresh[neighbours]
     adjacent = known.any(axis=1)
-    points, neighbours, known = points[adjacent], neighbours[adjacent], known[adjacent]
+    points = points[adjacent]
+    neighbours = neighbours[adjacent]
+    known = known[adjacent]
     order = np.argsort(~known, axis=1, kind="stable")
     waiting = np.arange(len(points))
     for turn in range(known.shape[1]):

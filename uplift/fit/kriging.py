@@ -147,7 +147,8 @@ def _krige(
 ) -> tuple[Kriging, Array]:
     variances = np.ones(len(deviations)) if variances is None else variances
     noise = kernel.noise * np.bincount(points.point, variances) / points.counts
-    distance, spread = distances(points.locations, points.locations), np.sqrt(noise)
+    distance = distances(points.locations, points.locations)
+    spread = np.sqrt(noise)
     white = WHITE * noise / points.counts
     own = spread * _own(distance) * spread[:, None]
     precision = np.linalg.inv(_shared(distance, kernel.length) + own + np.diag(white))
@@ -212,7 +213,8 @@ def posterior(kernel: Kernel, known: Array, lab: Array) -> Array:
 
     It is relative to the variance of a material if none is known.
     """
-    points, at = average_close(known * METRIC, np.zeros_like(known)), lab * METRIC
+    points = average_close(known * METRIC, np.zeros_like(known))
+    at = lab * METRIC
 
     def covariance(first: Array, second: Array) -> Array:
         distance = distances(first, second)
@@ -220,7 +222,8 @@ def posterior(kernel: Kernel, known: Array, lab: Array) -> Array:
             _shared(distance, kernel.length) + kernel.noise * _own(distance)
         )
 
-    white, across = WHITE * kernel.noise, covariance(at, points.locations)
+    white = WHITE * kernel.noise
+    across = covariance(at, points.locations)
     between = covariance(points.locations, points.locations) + np.diag(
         white / points.counts
     )
@@ -242,7 +245,8 @@ def kernel_sums(
     ``own`` (P,) weigh the part of the noise that is not white.
     """
     rows = max(min(BLOCK_NUMBERS // max(len(locations), 1), BLOCK_ROWS), 1)
-    sums, nearest = np.empty((len(at), columns.shape[1])), np.empty(len(at))
+    sums = np.empty((len(at), columns.shape[1]))
+    nearest = np.empty(len(at))
     with jax.enable_x64(True):
         for block in blocks(len(at), rows):
             count = block.stop - block.start
@@ -292,10 +296,8 @@ def visible_change(problem: Problem, measured: Array) -> Array:
     again. Moments are linear in the spectrum, which they determine up to its roughest
     parts: their basis approximates the change of the spectrum.
     """
-    basis, sensor = (
-        problem.forward.basis,
-        problem.forward.sensor @ problem.forward.basis,
-    )
+    basis = problem.forward.basis
+    sensor = problem.forward.sensor @ problem.forward.basis
     # Of changes of the coefficients, only the part remains that a smooth change of the
     # same colour does not undo: I − M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ J with J = W B.
     smooth = sensor.T / problem.model.metric_diagonal()[:, None]

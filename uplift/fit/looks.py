@@ -93,10 +93,8 @@ def design_reflectance(sensor: Sensor, goal: LookGoal, expected: Array) -> Array
     for weight in SHAPES:
         shape = weight * _shape(sensor.wavelengths)
         for _ in range(MAX_TURNS):
-            before, design = (
-                design,
-                _linear_design(sensor, goal, expected, design, shape),
-            )
+            before = design
+            design = _linear_design(sensor, goal, expected, design, shape)
             if goal.delta_e(design).max() <= ENOUGH:
                 return design
             if np.abs(design - before).max() <= ENOUGH / EXACT:
@@ -108,7 +106,8 @@ def _shape(wavelengths: Array) -> Array:
     """Rows (2 N − 1, N) whose squares sum to the mean square of a change and of
     `SMOOTH` times its slope.
     """
-    count, slope = len(wavelengths), np.diff(np.eye(len(wavelengths)), axis=0)
+    count = len(wavelengths)
+    slope = np.diff(np.eye(len(wavelengths)), axis=0)
     slope *= SMOOTH / np.diff(wavelengths)[:, None]
     return np.concatenate([np.eye(count), slope]) / np.sqrt(count)
 
@@ -120,22 +119,19 @@ def _linear_design(
     reflectance ``near``.
     """
     # |E (W g − rgb)|² + Σ_lights |ΔE00|² + |shape (g − expected)|² in the change of the reflectance g, 0 ≤ g ≤ 1
-    rows, values = (
-        [EXACT * sensor.matrix],
-        [EXACT * (goal.rgb - sensor.matrix @ expected)],
-    )
+    rows = [EXACT * sensor.matrix]
+    values = [EXACT * (goal.rgb - sensor.matrix @ expected)]
     for light, target, xyz in zip(
         goal.lights, goal.xyz, goal.colours(near), strict=True
     ):
-        requested, current = lab(target, light.white), lab(xyz, light.white)
+        requested = lab(target, light.white)
+        current = lab(xyz, light.white)
         weights = delta_e_2000_weights(requested)
         derivative = weights @ lab_jacobian(xyz, light.white) @ light.xyz
         rows.append(derivative)
         values.append(weights @ (requested - current) + derivative @ (near - expected))
-    matrix, goals = (
-        np.concatenate([*rows, shape]),
-        np.concatenate([*values, np.zeros(len(shape))]),
-    )
+    matrix = np.concatenate([*rows, shape])
+    goals = np.concatenate([*values, np.zeros(len(shape))])
     change = solve_bounded(matrix, goals, -expected, 1 - expected)
     return np.clip(expected + change, 0, 1)
 

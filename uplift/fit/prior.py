@@ -96,7 +96,8 @@ class Prior:
             np.interp(chroma, FLAT_CHROMA, (1, 0)),
             np.ptp(lattice.to_steps(rgb), axis=1) < 1.5,
         )
-        near, grey = weight > 0, np.clip(self.sensor.grey(rgb), *FLAT_LEVELS)
+        near = weight > 0
+        grey = np.clip(self.sensor.grey(rgb), *FLAT_LEVELS)
         # y + Σ (x_i − y) b_i with Σ b_i = 1, of the grey y of x: flat for greys, linear
         # in x and so flat between nodes
         flat = grey[near, :1] * self.model.constant()
@@ -154,9 +155,11 @@ class Prior:
         # Of the same entries in any order, sums round alike.
         order = np.lexsort([*entries.rgb.T, np.arange(len(entries.rgb)) >= measured])
         deviations, _ = _deviations(self.model, self.base, entries.rows(order))
-        kernel, variances = DEFAULT, np.zeros(0)
+        kernel = DEFAULT
+        variances = np.zeros(0)
         if self.kriging is not None:
-            kernel, variances = self.kriging.kernel, self.kriging.variances
+            kernel = self.kriging.kernel
+            variances = self.kriging.variances
         variances = np.append(variances, np.full(looks, LOOK_VARIANCE))
         kriging, _ = krige(
             rgb_to_lab(self.sensor, entries.rgb[order]), deviations, kernel, variances
@@ -171,7 +174,8 @@ def fit_prior(
 
     The order of the entries does not change the rounding of sums.
     """
-    model, sensor = problem.model, problem.sensor
+    model = problem.model
+    sensor = problem.sensor
     base = base or learn_base(problem)[0]
     if not len(entries.rgb):
         return Prior(model, sensor, base)

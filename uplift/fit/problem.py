@@ -99,7 +99,8 @@ def nodes_of(lattice: Lattice, sensor: Sensor, points: Indices | None = None) ->
     points = np.arange(lattice.size) if points is None else points
     limits = solid(sensor.matrix)
     # Of each block, the colours outside the solid {W g: 0 ≤ g ≤ 1}
-    outside, nearest = [points[:0]], [np.zeros((0, 3))]
+    outside = [points[:0]]
+    nearest = [np.zeros((0, 3))]
     # The solid is convex: with the corners of RGB it contains everything between them.
     if not limits.contains(CORNERS.astype(float)).all():
         for block in blocks(len(points), BLOCK_NODES):

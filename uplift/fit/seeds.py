@@ -42,7 +42,8 @@ def half_widths(steps: Array) -> Array:
     for rows in blocks(len(steps), BLOCK):
         same = _apart(steps[rows], steps) <= SAME_COLOUR
         unique[rows] = ~np.tril(same, rows.start - 1).any(axis=1)  # no earlier entry
-    widths, own = np.zeros(len(steps)), steps[unique]
+    widths = np.zeros(len(steps))
+    own = steps[unique]
     nearest = np.empty(len(own))
     for rows in blocks(len(own), BLOCK):
         apart = _apart(own[rows], own)

@@ -237,7 +237,8 @@ def solve(
         start.copy(), unknown, unknown[:, 0].copy(), np.zeros(count, dtype=np.int64)
     )
     rows: Any = slice(None)
-    stale, options = np.zeros(count, dtype=np.int64), method.options(start, prior)
+    stale = np.zeros(count, dtype=np.int64)
+    options = method.options(start, prior)
     for steps in islice(method.schedule(), max_passes):
         if not stale.size:
             break
@@ -260,7 +261,8 @@ def solve(
             column[rows] = values
         # Converged and abandoned problems leave the batch.
         kept = (distance > tolerance) & (stale < PATIENCE)
-        rows, stale = np.arange(count)[rows][kept], stale[kept]
+        rows = np.arange(count)[rows][kept]
+        stale = stale[kept]
         options = {name: array[kept] for name, array in (options | changed).items()}
     return solution
 
@@ -284,7 +286,8 @@ def _advance(method: Method) -> Callable[..., Any]:
         constants: Any, y: jax.Array, target: jax.Array, options: Options
     ) -> Any:
         forward, tolerance, max_steps = constants
-        solver, residual = method(forward, tolerance), jax.jit(ForwardMap.residual)
+        solver = method(forward, tolerance)
+        residual = jax.jit(ForwardMap.residual)
         y, state, steps = iterate(
             solver,
             lambda p, goal: (residual(forward, p, goal), None),
@@ -355,10 +358,8 @@ def iterate_rows(
                 fn, found[rows], rows, options(block), state, NO_TAGS
             )
             kept = ~solver.done(state)
-            rows, state = (
-                rows[kept],
-                jax.tree.map(lambda each, kept=kept: each[kept], state),
-            )
+            rows = rows[kept]
+            state = jax.tree.map(lambda each, kept=kept: each[kept], state)
             if not rows.size:
                 break
     return found

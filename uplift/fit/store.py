@@ -29,11 +29,9 @@ def store(growth: Growth, seeds: Seeds, prior: Prior) -> PointTable:
     Unrealisable nodes are fitted to a realisable colour of less chroma; their distance
     is measured from their own.
     """
-    nodes, lattice, threshold = (
-        growth.nodes,
-        growth.nodes.lattice,
-        growth.problem.threshold,
-    )
+    nodes = growth.nodes
+    lattice = growth.nodes.lattice
+    threshold = growth.problem.threshold
     coefficients, distance, standard_error = _store_coefficients(growth, prior)
     # The entry that a node started from, and its status: later lines overrule earlier
     # ones.
@@ -69,11 +67,11 @@ def _store_coefficients(
     colour is that of the solver; elsewhere it is evaluated from the rounded
     coefficients. They overwrite the multipliers, as memory for both may not suffice.
     """
-    problem, nodes, kind = growth.problem, growth.nodes, SINGLE
-    coefficients, distance = (
-        growth.multipliers,
-        np.zeros(len(growth.rgb), dtype=np.float32),
-    )
+    problem = growth.problem
+    nodes = growth.nodes
+    kind = SINGLE
+    coefficients = growth.multipliers
+    distance = np.zeros(len(growth.rgb), dtype=np.float32)
     standard_error = None if prior.errors is None else np.zeros_like(distance)
 
     def evaluate(points: Indices) -> None:

@@ -68,10 +68,8 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
     They are new ones, as JAX cannot be forked, and load no module from the working
     folder in place of one of Python's.
     """
-    others, before = (
-        set(multiprocessing.active_children()),
-        os.environ.get("PYTHONSAFEPATH", ""),
-    )
+    others = set(multiprocessing.active_children())
+    before = os.environ.get("PYTHONSAFEPATH", "")
     os.environ["PYTHONSAFEPATH"] = "1"
     pool = ProcessPoolExecutor(
         count, mp_context=multiprocessing.get_context("spawn"), initializer=_tie

@@ -201,11 +201,9 @@ def sample_colours(
     step = -(-total // MAX_PIXELS)
     first = sizes[0] * step / total
     last = first + sizes[1] * step / total
-    rng, bins, few = (
-        np.random.default_rng(0),
-        np.full((BINS**3, 3), np.nan),
-        np.empty((0, 3)),
-    )
+    rng = np.random.default_rng(0)
+    bins = np.full((BINS**3, 3), np.nan)
+    few = np.empty((0, 3))
     samples: tuple[list[Array], list[Array]] = [], []
     for done, path in enumerate(images.paths):
         progress(Progress("textures", done, len(images.paths)))

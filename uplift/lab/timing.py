@@ -78,9 +78,11 @@ def time_calls(
     The caller has called the function once to warm up. Asynchronous results must be
     complete when it returns.
     """
-    wall, cpu = [], []
+    wall = []
+    cpu = []
     for _ in range(runs):
-        begin, begin_cpu = time.perf_counter(), time.process_time()
+        begin = time.perf_counter()
+        begin_cpu = time.process_time()
         function()
         wall.append(time.perf_counter() - begin)
         cpu.append(time.process_time() - begin_cpu)
@@ -116,7 +118,8 @@ def time_process(
     """Measure the wall seconds of a process, and its peak memory in MB (Linux counts in
     kB).
     """
-    wall, peak = [], 0
+    wall = []
+    peak = 0
     for _ in range(runs):
         begin = time.perf_counter()
         quiet = subprocess.DEVNULL

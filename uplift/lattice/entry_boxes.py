@@ -126,19 +126,13 @@ class EntryBoxes:
         Where an entry is within `MARGIN` of the edge, the face lies beyond: between the
         two, rounding would decide.
         """
-        rgb, steps, half = (
-            self.rgb,
-            self.lattice.to_steps(self.rgb),
-            self.half_width[:, None],
-        )
-        low, high = (
-            self.lattice.from_steps(steps - half),
-            self.lattice.from_steps(steps + half),
-        )
-        at_start, at_end = (
-            rgb < self.lattice.nodes[0] + MARGIN,
-            rgb > self.lattice.nodes[-1] - MARGIN,
-        )
+        rgb = self.rgb
+        steps = self.lattice.to_steps(self.rgb)
+        half = self.half_width[:, None]
+        low = self.lattice.from_steps(steps - half)
+        high = self.lattice.from_steps(steps + half)
+        at_start = rgb < self.lattice.nodes[0] + MARGIN
+        at_end = rgb > self.lattice.nodes[-1] - MARGIN
         return np.where(at_start, 2 * rgb - high, low), np.where(
             at_end, 2 * rgb - low, high
         )
@@ -223,11 +217,13 @@ class EntryBoxes:
         )
         for turn in range(int((last - first).max(initial=0))):
             near = np.flatnonzero(first + turn < last)
-            candidate, colour = entries[first[near] + turn], rgb[rows[near]]
+            candidate = entries[first[near] + turn]
+            colour = rgb[rows[near]]
             low, high = (face[candidate] for face in self.faces)
             inside = ((colour >= low) & (colour <= high)).all(axis=1)
             entry[near[inside]] = candidate[inside]
-        rows, entry = rows[entry != NO_ENTRY], entry[entry != NO_ENTRY]
+        rows = rows[entry != NO_ENTRY]
+        entry = entry[entry != NO_ENTRY]
         centre = self.rgb[entry]
         ray = rgb[rows] - centre
         low, high = (face[entry] for face in self.faces)
@@ -237,7 +233,8 @@ class EntryBoxes:
         weight = np.divide(
             np.abs(ray), room, out=np.zeros_like(ray), where=ray != 0
         ).max(axis=1)
-        exit_rgb, moved = rgb[rows], weight > 0
+        exit_rgb = rgb[rows]
+        moved = weight > 0
         exit_rgb[moved] = np.clip(
             centre[moved] + ray[moved] / weight[moved, None], 0, 1
         )
@@ -267,7 +264,8 @@ class OutsideBoxes:
             if len(self.rgb)
             else NO_ROWS
         )
-        entry, distance = np.full(len(rows), NO_ENTRY), np.ones(len(rows))
+        entry = np.full(len(rows), NO_ENTRY)
+        distance = np.ones(len(rows))
         for box in np.flatnonzero(self.half_width > 0):
             from_centre = np.abs(rgb[rows] - self.rgb[box]).max(axis=1)
             inside = from_centre < self.half_width[box]

@@ -199,10 +199,8 @@ def axis_nodes(spacing: str, dim: int) -> Array:
         return even
     # The transfer curve of IEC 61966-2-1: c / 12.92 near black, else ((c + 0.055) /
     # 1.055)^2.4
-    context, exponent = (
-        decimal.Context(prec=POWER_DIGITS),
-        decimal.Decimal.from_float(2.4),
-    )
+    context = decimal.Context(prec=POWER_DIGITS)
+    exponent = decimal.Decimal.from_float(2.4)
     bases = ((even + 0.055) / 1.055).tolist()
     powers = [float(context.power(decimal.Decimal(base), exponent)) for base in bases]
     return np.where(even <= 0.04045, even / 12.92, powers)

@@ -84,7 +84,8 @@ class PointTable:
         """
         columns = {}
         for name, rows in self.columns.items():
-            shape, absent = (size, *rows.shape[1:]), ABSENT_VALUES.get(name)
+            shape = (size, *rows.shape[1:])
+            absent = ABSENT_VALUES.get(name)
             # Pages of zeros take no memory before they are written.
             columns[name] = (
                 np.zeros(shape, rows.dtype)

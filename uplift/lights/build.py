@@ -30,7 +30,8 @@ ERROR_LENGTH = 0.02
 """Distance in u′v′ over which errors of left-out lamps are averaged."""
 FAR_SHARE = 1e-2
 """Weight of the mean error of all lamps, which far from them is the expected one."""
-MAX_KNOTS, MAX_RINGS = 1024, 512
+MAX_KNOTS = 1024
+MAX_RINGS = 512
 SURFACES = "macbeth"
 """Atlas of the surfaces by which predictions of lamps are judged."""
 STACK_LEVEL = 4

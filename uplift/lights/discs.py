@@ -87,12 +87,17 @@ class LampEntries:
         near = np.flatnonzero(listed >= 0)
         candidates = lists[listed[near]]
         row, column = np.nonzero(candidates >= 0)
-        rows, entry = near[row], candidates[row, column]
+        rows = near[row]
+        entry = candidates[row, column]
         offset = uv[rows] - self.uv[entry]
-        distance, radius = np.hypot(offset[:, 0], offset[:, 1]), self.radius[entry]
+        distance = np.hypot(offset[:, 0], offset[:, 1])
+        radius = self.radius[entry]
         inside = distance < radius
-        rows, entry, radius = rows[inside], entry[inside], radius[inside]
-        offset, distance = offset[inside], distance[inside]
+        rows = rows[inside]
+        entry = entry[inside]
+        radius = radius[inside]
+        offset = offset[inside]
+        distance = distance[inside]
         direction = np.divide(
             offset,
             distance[:, None],

@@ -194,7 +194,8 @@ def mix_with_locus(
     ) / safe
     inside = valid & (length > 0) & (along >= -1e-9) & (along <= 1 + 1e-9)
     length = np.where(inside, length, np.inf)
-    rows, sector = np.arange(len(uv)), length.argmin(axis=1)
+    rows = np.arange(len(uv))
+    sector = length.argmin(axis=1)
     share = (1 / np.maximum(length[rows, sector], 1.0))[:, None]
     position = np.clip(along[rows, sector], 0.0, 1.0)[:, None]
     edge = (1 - position) * locus[sector] + position * locus[(sector + 1) % len(locus)]

@@ -108,7 +108,8 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
     >>> cube.standard_error([0.8, 0.2, 0.1], lamp)  # doctest: +SKIP
     """
     lamps = _read_json(path) if is_json(path) else read_lamps(path)
-    location, file = SourceLocation(os.fspath(path)), printable(os.path.basename(path))
+    location = SourceLocation(os.fspath(path))
+    file = printable(os.path.basename(path))
     if name is not None and name not in lamps.names:
         raise unknown_name(name, lamps.names, f"lamp of {file}")
     if name is None and len(lamps) != 1:

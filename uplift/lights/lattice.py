@@ -35,7 +35,8 @@ def unit_xyz(uv: Array) -> Array:
     """Compute XYZ (..., 3) of unit X + 15 Y + 3 Z of u′v′ (..., 2), the inverse of
     `chromaticity`.
     """
-    x, y = uv[..., 0] / 4, uv[..., 1] / 9
+    x = uv[..., 0] / 4
+    y = uv[..., 1] / 9
     return np.stack([x, y, (1 - x - 15 * y) / 3], axis=-1)
 
 
@@ -53,7 +54,8 @@ class Cells:
     @property
     def weights(self) -> Array:
         """(n, 4) weights of the corners; they sum to 1."""
-        t, s = self.along, self.across
+        t = self.along
+        s = self.across
         return np.stack([(1 - t) * (1 - s), (1 - t) * s, t * (1 - s), t * s], axis=1)
 
 
@@ -87,7 +89,8 @@ class ChromaticityLattice:
             and (np.diff(self.rings) > 0).all()
         ):
             raise _error("must have rings that increase from 0 to 1")
-        first, second = self._spokes, np.roll(self._spokes, -1, axis=0)
+        first = self._spokes
+        second = np.roll(self._spokes, -1, axis=0)
         turns_left = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0] > 0
         if not turns_left.all() or not (np.diff(self._angles) > 0).all():
             raise _error("must have knots counterclockwise around the centre")
@@ -197,6 +200,7 @@ def _pseudo_angle(offset: Array) -> Array:
     """Increase with the angle counterclockwise from the u′ axis, from 0 to 4, without
     transcendental functions.
     """
-    u, v = offset[..., 0], offset[..., 1]
+    u = offset[..., 0]
+    v = offset[..., 1]
     slope = u / np.maximum(np.abs(u) + np.abs(v), TINY)
     return np.asarray(2.0 - np.copysign(1.0 + slope, v))

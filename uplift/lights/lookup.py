@@ -193,7 +193,8 @@ class EmissionTable:
                 hint=f"use one of {', '.join(OUTSIDE)}",
             )
         at = as_wavelengths(wavelengths, self.wavelengths)
-        kind, count = as_float_type(dtype), as_thread_count(threads)
+        kind = as_float_type(dtype)
+        count = as_thread_count(threads)
         nodes, entries = (
             _resample(spectra, self.wavelengths, at).astype(kind, copy=False)
             for spectra in (

@@ -210,7 +210,8 @@ def _check(data: EmissionData) -> None:
         require(bool(there), "every spectrum must have the chromaticity of its place")
     realisable = bool(data.lattice.contains(data.entries.uv).all())
     require(realisable, "lamps must be realisable")
-    uv, radius = data.entries.uv, data.entries.radius
+    uv = data.entries.uv
+    radius = data.entries.radius
     apart = np.linalg.norm(uv[:, None] - uv, axis=-1) - radius[:, None] - radius
     overlap = bool((apart[~np.eye(len(uv), dtype=bool)] < -MAX_OFFSET).any())
     valid = not overlap and bool((radius <= MAX_RADIUS).all())

@@ -71,7 +71,8 @@ class Grid(NamedTuple):
 
 def _sampler(table: NodeTable, threads: int) -> "Sampler":
     """Put the arrays of a table on the device of JAX."""
-    lattice, boxes = table.data.lattice, table.data.entry_boxes
+    lattice = table.data.lattice
+    boxes = table.data.entry_boxes
     bins, most = _bins(lattice)
     values = np.concatenate([table.lattice.ravel(), table.atlas.ravel()])
     grid = Grid(
@@ -315,7 +316,8 @@ def coefficients(cube: Cube, count: int | None = None, *, threads: int = 2) -> S
     Sampler
         From linear RGB (..., 3) to coefficients (..., count).
     """
-    width, threads = as_coefficient_count(count, cube.data), as_thread_count(threads)
+    width = as_coefficient_count(count, cube.data)
+    threads = as_thread_count(threads)
     return _sampler(
         tabulate_coefficients(cube.data, width, np.float32, threads), threads
     )

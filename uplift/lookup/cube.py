@@ -163,7 +163,8 @@ class Cube:
         """
         width = blocks.as_coefficient_count(count, self.data)
         colours = blocks.as_colours(rgb, self.data.sensor)
-        kind, threads = blocks.as_float_type(dtype), blocks.as_thread_count(threads)
+        kind = blocks.as_float_type(dtype)
+        threads = blocks.as_thread_count(threads)
         function: blocks.Function = partial(coefficients, self.data)
         if width != self.coefficient_count:
             function = partial(extended_coefficients, self.data)
@@ -216,7 +217,8 @@ class Cube:
         if mode not in MODES:
             raise unknown_name(str(mode), MODES, "mode")
         at = blocks.as_wavelengths(wavelengths, self.data.sensor.wavelengths)
-        kind, count = blocks.as_float_type(dtype), blocks.as_thread_count(threads)
+        kind = blocks.as_float_type(dtype)
+        count = blocks.as_thread_count(threads)
         colours = blocks.as_colours(rgb, self.data.sensor)
         function: blocks.Function = partial(MODES[mode], self.data, wavelengths=at)
         if mode in TABULATED and self._is_table_worthwhile(

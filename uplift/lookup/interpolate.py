@@ -255,7 +255,8 @@ def extended_multipliers(data: CubeData, rgb: Array) -> Array:
     Outside entry boxes they have the spectra of mode ``refined``, inside the same
     coefficients.
     """
-    nodes, model = around(data, rgb), data.atlas.spectra.model
+    nodes = around(data, rgb)
+    model = data.atlas.spectra.model
     extended = _append_zeros(data, _exact_lattice(data, nodes, rgb))
     inside = nodes.hits._replace(rows=np.arange(len(nodes.hits.rows)))
     mixed = inside.mix(
@@ -272,7 +273,8 @@ def node_errors(data: CubeData, rgb: Array) -> Array:
     """Standard errors and error bounds (n, 2) from those of the nodes, for a cube that
     has them.
     """
-    nodes, factors = around(data, rgb), np.array([1, data.error_bound_factor])
+    nodes = around(data, rgb)
+    factors = np.array([1, data.error_bound_factor])
     errors = np.asarray(data.points.standard_error, dtype=float)[:, None]
     entries = np.repeat(data.atlas.error[:, None], 2, axis=1)
     entries[data.atlas.measured_count :] *= factors  # errors of looks are expected ones

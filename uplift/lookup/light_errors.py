@@ -53,7 +53,8 @@ class LightErrors:
         In an entry box, the error that remains at entries is mixed with that of the
         entry, as spectra are.
         """
-        nodes, radii = around(self.data, rgb), np.array(self.expected.radii)
+        nodes = around(self.data, rgb)
+        radii = np.array(self.expected.radii)
         squares = self.expected(rgb_to_lab(self.data.sensor, rgb))
         # e² = radius² E[e²] + e₀², with the error e₀ that remains at the entries
         # themselves
@@ -67,7 +68,8 @@ def light_errors(data: CubeData, light: Light) -> LightErrors:
     left-out entries.
     """
     measured, left_out = _evidence(data)
-    at, rows = data.sensor.wavelengths, np.arange(len(measured))
+    at = data.sensor.wavelengths
+    rows = np.arange(len(measured))
     missed = delta_e_spectra(light, left_out, measured)
     plain = delta_e_spectra(
         light, reflectance(data.model, data.atlas.coefficients[rows], at), measured

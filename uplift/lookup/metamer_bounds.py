@@ -100,8 +100,11 @@ def bounds(
         data, rgb, data.sensor.wavelengths, mode, ~in_unit_cube(rgb)
     )
     xyz = spectra @ light.xyz.T
-    largest, covariance, radius = mismatch.largest_difference(volumes, xyz), None, None
+    largest = mismatch.largest_difference(volumes, xyz)
+    covariance = None
+    radius = None
     if data.atlas.left_out is not None:
         errors = lab_errors(data, light)
-        covariance, radius = errors.covariance(rgb), errors.likely_radius
+        covariance = errors.covariance(rgb)
+        radius = errors.likely_radius
     return Bounds(light, spectra, xyz, volumes, largest, covariance, radius)

@@ -132,7 +132,8 @@ def tabulate_coefficients(
     the entries have.
     """
     present = data.points.coefficients[data.points.present]
-    entries, coefficients = data.atlas.coefficients, interpolate.coefficients
+    entries = data.atlas.coefficients
+    coefficients = interpolate.coefficients
     if count != data.model.count:
         present = blockwise(
             partial(interpolate.extend_coefficients, data),
@@ -141,10 +142,8 @@ def tabulate_coefficients(
             dtype,
             threads,
         )
-        entries, coefficients = (
-            data.atlas.spectra.coefficients,
-            interpolate.extended_coefficients,
-        )
+        entries = data.atlas.spectra.coefficients
+        coefficients = interpolate.extended_coefficients
     exact = partial(
         _exact, partial(interpolate.fading_share, data), partial(coefficients, data)
     )

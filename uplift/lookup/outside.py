@@ -56,10 +56,8 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
     # Start from the nearest colour inside, and near an entry outside from its spectrum,
     # unless that answers alone. A cube without entries outside has no boxes there, and
     # no hits.
-    hits, entries = (
-        data.outside_boxes.find(rgb),
-        (data.atlas.outside or data.atlas).spectra,
-    )
+    hits = data.outside_boxes.find(rgb)
+    entries = (data.atlas.outside or data.atlas).spectra
     has_lattice = ~np.isin(np.arange(len(rgb)), hits.rows[hits.lattice_weight == 0])
     start = data.model.from_storage(
         coefficients(data, map_to_gamut(rgb[has_lattice], data.sensor, MAPPING).rgb)
@@ -114,7 +112,8 @@ def fill_missing(
     is unknown.
     """
     common_sensor([data, other])
-    target, table = data.lattice.target(points), data.points
+    target = data.lattice.target(points)
+    table = data.points
     multipliers = blockwise(
         partial(_fit_to_other, data, other), target, data.model.count, threads=threads
     )

@@ -141,7 +141,8 @@ def _block(
     mode: str,
     lights: Sequence[Light],
 ) -> Iterator[QueryResult]:
-    data, sensor = cube.data, cube.data.sensor
+    data = cube.data
+    sensor = cube.data.sensor
     count = len(sensor.wavelengths)
     grid = np.concatenate([sensor.wavelengths, at])
     answered = np.where(outside[:, None], requested, rgb)
@@ -180,7 +181,8 @@ def _block(
         else np.zeros(len(rgb), dtype=bool)
     )
     # A colour is that of an entry if their 8-bit codes are close.
-    codes, entry_codes = cube.encode(rgb), cube.encode(data.atlas.rgb)
+    codes = cube.encode(rgb)
+    entry_codes = cube.encode(data.atlas.rgb)
     low, fraction = data.lattice.cell(rgb)
     statuses = data.points.status[data.lattice.cell_corners(low, fraction)[0]]
     realisable = data.solid.contains(answered)

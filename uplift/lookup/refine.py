@@ -62,7 +62,8 @@ def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Arr
     Results that come no nearer to these are not taken.
     """
     forward = forward_map(model, data.sensor.wavelengths, data.sensor.matrix)
-    multipliers, target = np.array(start.T, order="C"), np.array(rgb.T, order="C")
+    multipliers = np.array(start.T, order="C")
+    target = np.array(rgb.T, order="C")
     distance = _descend(forward, multipliers, target)
     failed = np.flatnonzero(distance > data.threshold)
     if failed.size:
@@ -143,11 +144,10 @@ def _pull(
     products = np.array(
         [weights[a] * shapes[b] for a in range(3) for b in range(a + 1)]
     )
-    found, length = np.zeros_like(goal), np.ones(goal.shape[1])
-    gram, residual = (
-        products @ model.derivative(linear),
-        goal - weights @ model.to_reflectance(linear),
-    )
+    found = np.zeros_like(goal)
+    length = np.ones(goal.shape[1])
+    gram = products @ model.derivative(linear)
+    residual = goal - weights @ model.to_reflectance(linear)
     for _ in range(MAX_PULLS):
         pending = np.flatnonzero(np.abs(residual).max(axis=0) > PULLED)
         if not pending.size:
@@ -187,7 +187,8 @@ def _descend(forward: ForwardMap, multipliers: Array, target: Array) -> Array:
     """Move multipliers (C, n) in place towards linear RGB (3, n) and return the final
     distances (n,).
     """
-    residual, damping = np.empty_like(target), np.zeros(target.shape[1])
+    residual = np.empty_like(target)
+    damping = np.zeros(target.shape[1])
     for first in range(0, target.shape[1], BLOCK_COLUMNS):
         block = slice(first, first + BLOCK_COLUMNS)
         linear = blocked_matmul_columns(forward.basis, multipliers[:, block])
@@ -220,7 +221,9 @@ def _move(
 
     Multipliers (C, n), residual (3, n) and damping (n,) change in place.
     """
-    current, off, mu = multipliers[:, columns], residual[:, columns], damping[columns]
+    current = multipliers[:, columns]
+    off = residual[:, columns]
+    mu = damping[columns]
     with np.errstate(over="ignore", invalid="ignore"):  # overflowing steps are rejected
         change = minimum_norm_step(forward, linear, off, mu)
         trial = current + change

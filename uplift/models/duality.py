@@ -72,9 +72,11 @@ def moments_from_multipliers(
     """
     # T_2K = (T_K + M_K) / 2: the first rule and its midpoints together, then midpoints
     # of those that need more.
-    count, nodes = multipliers.shape[1], _FIRST_NODES
+    count = multipliers.shape[1]
+    nodes = _FIRST_NODES
     both = integrate(multipliers, *_rule(nodes, count, with_trapezoid=True))
-    moments, change = both[:, :count].copy(), (both[:, count:] - both[:, :count]) / 2
+    moments = both[:, :count].copy()
+    change = (both[:, count:] - both[:, :count]) / 2
     pending = np.arange(len(multipliers))
     while True:
         moments[pending] += change
@@ -96,17 +98,13 @@ def _rule(nodes: int, count: int, with_trapezoid: bool = False) -> tuple[Array, 
     With the trapezoid rule, of 2 K + 1 nodes and 2 C moments: those of the trapezoid
     rule, then those of the midpoints.
     """
-    phase, weights = (
-        -np.pi * (np.arange(nodes) + 0.5) / nodes,
-        np.full(nodes, 1 / nodes),
-    )
+    phase = -np.pi * (np.arange(nodes) + 0.5) / nodes
+    weights = np.full(nodes, 1 / nodes)
     if with_trapezoid:
         ends = np.full(nodes + 1, 1 / nodes)
         ends[[0, -1]] /= 2
-        phase, weights = (
-            np.append(np.linspace(-np.pi, 0, nodes + 1), phase),
-            np.append(ends, weights),
-        )
+        phase = np.append(np.linspace(-np.pi, 0, nodes + 1), phase)
+        weights = np.append(ends, weights)
     table = cosine_basis(phase, count)
     # c_j = (1/π) ∫ g cos jφ dφ over [−π, 0]
     analysis = weights[:, None] * table
@@ -182,7 +180,8 @@ def try_multipliers(moments: Array) -> tuple[Array, Mask]:
     two real recursions: half of the operations of Levinson's recursion. Internally the
     order is the first axis, so that all arithmetic runs along contiguous spectra.
     """
-    multipliers, valid = np.empty_like(moments), np.empty(len(moments), dtype=bool)
+    multipliers = np.empty_like(moments)
+    valid = np.empty(len(moments), dtype=bool)
     for block in blocks(len(moments), _ROWS):
         orders = np.ascontiguousarray(moments[block].T)
         zeroth = orders[0]
@@ -220,7 +219,8 @@ def _series(moments: Array) -> tuple[Array, Array]:
         )
         parts[order, 0] /= -order
         parts[order, 1] /= order
-    cosine, sine = parts[:, 0], parts[:, 1]
+    cosine = parts[:, 0]
+    sine = parts[:, 1]
     angle = np.pi * moments[0]
     return sine[1:], np.sin(angle) * cosine[:-1] + np.cos(angle) * sine[:-1]
 
@@ -235,7 +235,8 @@ def _recursion(upper: Array, lower: Array) -> tuple[Array, Array, Mask]:
     count, spectra = upper.shape
     polynomials = np.zeros((count + 1, 2, spectra))
     polynomials[0] = 1
-    scale, positive = np.ones(spectra), np.ones(spectra, dtype=bool)
+    scale = np.ones(spectra)
+    positive = np.ones(spectra, dtype=bool)
     for order in range(count):
         g = upper[0] / lower[0]
         upper, lower = upper[1:] - g * lower[1:], lower[:-1] - g * upper[:-1]

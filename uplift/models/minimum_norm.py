@@ -128,10 +128,12 @@ def solve_damped(
     (a00,), (a10, a11), (a20, a21, a22) = gram
     xp = a00.__array_namespace__()
     trace = a00 + a11 + a22
-    shift, floor = damping * trace, 1e-22 * trace + 1e-300
+    shift = damping * trace
+    floor = 1e-22 * trace + 1e-300
     # G + μ tr(G) I = L D Lᵀ
     d0 = xp.maximum(a00 + shift, floor)
-    l10, l20 = a10 / d0, a20 / d0
+    l10 = a10 / d0
+    l20 = a20 / d0
     d1 = xp.maximum(a11 + shift - l10 * a10, floor)
     l21 = (a21 - l20 * a10) / d1
     d2 = xp.maximum(a22 + shift - l20 * a20 - l21 * l21 * d1, floor)

@@ -50,7 +50,8 @@ class Sigmoid(Model):
     count = 3
 
     def basis(self, wavelengths: ArrayLike) -> Array:
-        middle, half = (self.start + self.end) / 2, (self.end - self.start) / 2
+        middle = (self.start + self.end) / 2
+        half = (self.end - self.start) / 2
         x = (np.clip(wavelengths, self.start, self.end) - middle) / half
         return np.stack([x * x, x, np.ones_like(x)], axis=-1)
 
@@ -88,7 +89,8 @@ def evaluate_unscaled(coefficients: Array, wavelengths: Array) -> Array:
 
 def unscaled(model: Sigmoid, multipliers: Array) -> Array:
     """Convert multipliers (n, 3) to the coefficients of `evaluate_unscaled`."""
-    middle, half = (model.start + model.end) / 2, (model.end - model.start) / 2
+    middle = (model.start + model.end) / 2
+    half = (model.end - model.start) / 2
     square, linear, constant = (multipliers / half ** np.array([2, 1, 0])).T
     return np.column_stack(
         [

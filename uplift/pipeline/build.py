@@ -353,11 +353,9 @@ def build_stages(
     """Build a cube from checked options and the problem that they describe; builds may
     share what they ``learn``.
     """
-    sensor, model, entry_model = (
-        problem.sensor,
-        problem.model,
-        options.spectrum_model(options.entry_coefficients),
-    )
+    sensor = problem.sensor
+    model = problem.model
+    entry_model = options.spectrum_model(options.entry_coefficients)
     neighbours = options.growth == "neighbours"
 
     # The spectra: families of the library, entries of the atlas, and looks, which
@@ -384,10 +382,8 @@ def build_stages(
     is_chosen = options.dim == AUTO
     if is_chosen:
         options = _choose_lattice(options, problem, constraints, prior, blend)
-    lattice, rgb = (
-        Lattice(axis_nodes(options.axis, int(options.dim))),
-        constraints.at_nodes.rgb,
-    )
+    lattice = Lattice(axis_nodes(options.axis, int(options.dim)))
+    rgb = constraints.at_nodes.rgb
     boxes = EntryBoxes(lattice, rgb, seeds.half_widths(lattice.to_steps(rgb)))
     seeded = seeds.seed(lattice, rgb)
     crowded = (

@@ -84,7 +84,8 @@ class Constraints:
                 self.entry_model,
                 self.entry_model.to_storage(self.at_entries.multipliers),
             )
-        rgb, error = self.at_nodes.rgb, self.at_entries.error
+        rgb = self.at_nodes.rgb
+        error = self.at_entries.error
         return AtlasTable(
             self.names,
             rgb,

@@ -259,7 +259,8 @@ def _warn_of_missed(
     """Warn once of the looks with impossible targets, and once of those that the model
     does not reach.
     """
-    impossible, unreached = [], []
+    impossible = []
+    unreached = []
     for look, record in zip(looks, records, strict=True):
         missed = [light for light in record["lights"] if light["delta_e"] > MET]
         if any(light["possible"] > MET for light in missed):

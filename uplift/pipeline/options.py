@@ -25,7 +25,8 @@ PriorName = Literal["learnt", "smooth"]
 NeutralName = Literal["expected", "flat"]
 GrowthName = Literal["outward", "coarse-to-fine", "neighbours"]
 SolverName = Literal["least-change", "dogleg", "levenberg-marquardt", "gauss-newton"]
-MODELS, SOLVERS = get_args(ModelName), get_args(SolverName)
+MODELS = get_args(ModelName)
+SOLVERS = get_args(SolverName)
 CUSTOM = "custom"
 """Recorded in place of a solver that was given as an object, and cannot be repeated."""
 CHOICES: dict[str, tuple[str, ...]] = {

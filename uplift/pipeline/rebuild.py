@@ -204,7 +204,8 @@ def _find_all(
     digests = {source["digest"] for source in sources}
     files = []
     for source in sources:
-        name, digest = source["name"], source["digest"]
+        name = source["name"]
+        digest = source["digest"]
         is_plain = not set(name) & set("/\\:")
         named = [
             folder / name

@@ -92,7 +92,8 @@ def assess(
             if own
             else fidelity.from_other_atlas(data, atlas)
         )
-        in_gamut, query = query.names, query.answerable_by(cube)
+        in_gamut = query.names
+        query = query.answerable_by(cube)
         errors = fidelity.entry_errors(cube, query, sensors) if query.names else None
     unseen = None if own else errors
     calibration = None
@@ -161,10 +162,8 @@ def _light_calibrations(
     found = {}
     for light, actual in _by_light(errors, lights).items():
         if light not in (data.error_illuminant, data.sensor.illuminant):
-            predicted, bound = (
-                cube.standard_error(errors.rgb, light),
-                cube.error_bound(errors.rgb, light),
-            )
+            predicted = cube.standard_error(errors.rgb, light)
+            bound = cube.error_bound(errors.rgb, light)
             found[light] = check_calibration(actual, predicted, bound)
     return {light: each for light, each in found.items() if each is not None}
 

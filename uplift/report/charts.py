@@ -23,7 +23,8 @@ from uplift.viz.format import format_power_of_ten
 
 SIZE = (3.3, 1.75)  # inches at 72 dpi; the page scales charts to its columns
 # Position of the axes in a chart with and without an axis label.
-WITH_LABEL, WITHOUT_LABEL = (0.13, 0.24, 0.84, 0.72), (0.1, 0.12, 0.87, 0.84)
+WITH_LABEL = (0.13, 0.24, 0.84, 0.72)
+WITHOUT_LABEL = (0.1, 0.12, 0.87, 0.84)
 # Upper ends of reflectance axes: few enough to compare charts, and dark colours remain
 # visible.
 REFLECTANCE_LIMITS = (0.1, 0.25, 0.5, 1.0)

@@ -195,10 +195,8 @@ def diff_cubes(
 
     changes = []
     for name, rgb in colours.items():
-        delta_e, lacking = (
-            np.full((len(rgb), len(under)), np.nan),
-            ~first.covers(rgb) + 2 * ~second.covers(rgb),
-        )
+        delta_e = np.full((len(rgb), len(under)), np.nan)
+        lacking = ~first.covers(rgb) + 2 * ~second.covers(rgb)
         delta_e[lacking == 0] = blockwise(difference, rgb[lacking == 0], len(under))
         changes.append(Changes(name, rgb, delta_e, lacking))
 

@@ -121,15 +121,15 @@ def _image(
 
 def _spectra(diff: CubeDiff, changes: Changes, row: int) -> dict[str, object]:
     """The two spectra of a colour, or of an entry."""
-    sensor, rgb = diff.cubes[0].data.sensor, changes.rgb[row]
+    sensor = diff.cubes[0].data.sensor
+    rgb = changes.rgb[row]
     wavelengths = sensor.wavelengths
     if changes is diff.entries:
-        name, answers = (
-            diff.pairs.names[row],
-            [each[row] for each in diff.pairs.spectra],
-        )
+        name = diff.pairs.names[row]
+        answers = [each[row] for each in diff.pairs.spectra]
     else:
-        name, answers = "", [cube.reflectance(rgb, wavelengths) for cube in diff.cubes]
+        name = ""
+        answers = [cube.reflectance(rgb, wavelengths) for cube in diff.cubes]
     (code,) = hex_codes(rgb[None], sensor)
     return {
         "title": name or code,

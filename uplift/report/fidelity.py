@@ -149,7 +149,8 @@ def from_stored_entries(data: CubeData) -> EntryQuery:
     spectra.
     """
     table = data.atlas.with_outside
-    rows, spectra = np.arange(len(table.names)), table.spectra
+    rows = np.arange(len(table.names))
+    spectra = table.spectra
     return EntryQuery(
         table.names, table.rgb, spectra.reflectance(rows, data.sensor.wavelengths), rows
     )
@@ -159,7 +160,8 @@ def entry_errors(
     cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]
 ) -> EntryErrors:
     """Compare the answers of a cube in its default mode with the targets of a query."""
-    data, target = cube.data, query.target
+    data = cube.data
+    target = query.target
     inside = _inside(data, query.rgb)
     spectra = reflectance_anywhere(
         data, query.rgb, data.sensor.wavelengths, "spectra", ~in_unit_cube(query.rgb)
@@ -189,8 +191,10 @@ def _with_lattice_errors(
     """Add the fields that only the cube's own entries have; ``rows`` (E,) are those of
     all its entries.
     """
-    data, table = cube.data, cube.data.atlas.with_outside
-    boxes, reach = data.outside_boxes, data.outside_boxes.half_width[:, None]
+    data = cube.data
+    table = cube.data.atlas.with_outside
+    boxes = data.outside_boxes
+    reach = data.outside_boxes.half_width[:, None]
     lower, upper = data.entry_boxes.faces
     faces = (
         np.concatenate([lower, boxes.rgb - reach]),
@@ -230,7 +234,8 @@ def compare_spectra(spectra: Array, target: Array, lights: Iterable[Light]) -> A
     return Answers(spectra, delta_e, np.sqrt(((spectra - target) ** 2).mean(axis=1)))
 
 
-WITHOUT_ATLAS, JAKOB_HANIKA = "without atlas", "Jakob & Hanika"
+WITHOUT_ATLAS = "without atlas"
+JAKOB_HANIKA = "Jakob & Hanika"
 
 
 def find_alternatives(
@@ -330,7 +335,8 @@ def _nearest(steps: Array) -> tuple[Indices, Array]:
 
 
 def _lost(data: CubeData) -> tuple[tuple[str, str], ...]:
-    names, rows = data.atlas.names, np.flatnonzero(data.atlas.half_width == 0)
+    names = data.atlas.names
+    rows = np.flatnonzero(data.atlas.half_width == 0)
     hits = data.entry_boxes.find(data.atlas.rgb[rows])
     return tuple(
         (names[rows[row]], names[other])

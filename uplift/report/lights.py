@@ -79,7 +79,8 @@ def render_light_report(table: EmissionTable, name: str, size: int) -> str:
     """Render the page of a table in a file of a name and a size in bytes. The same
     table gives the same text.
     """
-    entries, assessment = table.data.entries, assess_lights(table)
+    entries = table.data.entries
+    assessment = assess_lights(table)
     lamp_rgb = assessment["lamp_rgb"]
     brightest = np.clip(lamp_rgb / lamp_rgb.max(axis=1, keepdims=True), 0, 1)
     codes = hex_codes(brightest, table) if len(entries.names) else []

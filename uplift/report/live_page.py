@@ -69,7 +69,8 @@ def _weights(data: CubeData) -> tuple[Array, dict[str, Array]]:
     """Return wavelengths (N,) and, for each light, the weights (3, N) from reflectance
     to linear sRGB.
     """
-    sensor, at = data.sensor, data.sensor.wavelengths
+    sensor = data.sensor
+    at = data.sensor.wavelengths
     missing = -len(at) % GROUP
     return np.pad(at, (0, missing), mode="edge"), {
         name: np.pad(

@@ -46,7 +46,8 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
             ),
             hint="give a single colour",
         )
-    sensor, rgb = cube.data.sensor, found[0].volumes.rgb[0]
+    sensor = cube.data.sensor
+    rgb = found[0].volumes.rgb[0]
     written = _written(cube, rgb)
     screens = display_sensors(
         [each.light.name for each in found], cube.observer, *sensor.range

@@ -42,7 +42,8 @@ def collect_failures(data: CubeData) -> dict[str, Any]:
     Entries are ``left_out`` by earlier versions only, and ``skipped`` where the atlas
     reader could not use them.
     """
-    points, recorded = data.points, data.provenance
+    points = data.points
+    recorded = data.provenance
     failed = np.isin(points.status, (Status.UNFITTED, Status.UNREALISABLE))
     rows = np.flatnonzero(failed | ~(points.distance <= data.threshold))
     worst = rows[np.argsort(-points.distance[rows], kind="stable")][:MAX_LISTED]
@@ -73,16 +74,16 @@ def compute_smoothness(data: CubeData) -> tuple[NDArray[np.float32], Array]:
     The lattice is processed by planes of equal red: spectra of two planes are in memory
     at a time.
     """
-    dim, wavelengths, parts = data.lattice.dim, data.sensor.wavelengths, []
+    dim = data.lattice.dim
+    wavelengths = data.sensor.wavelengths
+    parts = []
     none = spectra = np.full(
         (dim, dim, len(wavelengths)), np.nan
     )  # of a plane; NaN for absent nodes
     for first in range(0, dim**3, dim**2):
-        before, spectra, nodes = (
-            spectra,
-            none,
-            first + np.arange(dim**2).reshape(dim, dim),
-        )
+        before = spectra
+        spectra = none
+        nodes = first + np.arange(dim**2).reshape(dim, dim)
         present = data.points.present[nodes]
         if not present.any():
             continue
@@ -111,7 +112,8 @@ def round_trip_errors(cube: Cube) -> dict[str, Array]:
     """Compute ΔE00 (n,) between random colours and those of their spectra, by mode of
     lookup.
     """
-    rgb, sensor = _random_rgb(cube.data), cube.data.sensor
+    rgb = _random_rgb(cube.data)
+    sensor = cube.data.sensor
     rgb = rgb[cube.covers(rgb)]
     return {
         mode: delta_e_rgb(sensor, rgb, sensor.rgb(cube.reflectance(rgb, mode=mode)))
@@ -184,10 +186,8 @@ def check_calibration(
     """
     if predicted is None or bound is None:
         return None
-    mean, ratio = (
-        float(predicted.mean()),
-        actual / np.maximum(predicted, np.finfo(float).tiny),
-    )
+    mean = float(predicted.mean())
+    ratio = actual / np.maximum(predicted, np.finfo(float).tiny)
     return Calibration(
         count=len(actual),
         actual=mean * float(np.quantile(ratio, COVERAGE[0][0])),

@@ -98,7 +98,8 @@ def _crowding(assessment: Assessment) -> dict[str, Any] | None:
 def _entries(errors: EntryErrors, lights: tuple[Sensor, ...]) -> list[dict[str, Any]]:
     names = [sensor.illuminant for sensor in lights]
     codes = {sensor.illuminant: swatches(errors, sensor) for sensor in lights}
-    answers, lattice = errors.answers, errors.lattice
+    answers = errors.answers
+    lattice = errors.lattice
 
     def at(values: Any, row: int) -> Any:
         return None if values is None else values[row]
@@ -204,7 +205,8 @@ def _looks(assessment: Assessment) -> Iterator[dict[str, Any]]:
 
 def _failed_points(assessment: Assessment) -> Iterator[dict[str, Any]]:
     for each in assessment.failures["worst"]:
-        target, actual = each["rgb"], each["lattice_rgb"].astype(float)
+        target = each["rgb"]
+        actual = each["lattice_rgb"].astype(float)
         codes = hex_codes(np.array([target, actual]), assessment.data.sensor)
         yield {
             "codes": codes,

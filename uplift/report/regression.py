@@ -79,7 +79,8 @@ def compare_rebuilt(
     path: Path, stored: CubeData, rebuilt: CubeData
 ) -> RebuildDifference:
     """Compare a stored cube with a rebuilt one."""
-    nodes, other = stored.lattice.nodes, rebuilt.lattice.nodes
+    nodes = stored.lattice.nodes
+    other = rebuilt.lattice.nodes
     if nodes.shape != other.shape or (np.abs(nodes - other) > NODE_TOLERANCE).any():
         raise CubeFileError(
             "its lattice is not the one of its options",

@@ -137,7 +137,8 @@ def uncertainty(
     """Return the errors of a cube at the colours of a scene. Raises `OptionError` if it
     has no left-out entries.
     """
-    data, prior = cube.data, cube.data.provenance.get("prior", {})
+    data = cube.data
+    prior = cube.data.provenance.get("prior", {})
     kernel = Kernel(
         prior.get("length", DEFAULT.length), prior.get("noise", DEFAULT.noise)
     )
@@ -209,10 +210,8 @@ def draw_advice(
     The swatches are linear RGB (3,) and the text below each. Their numbers stand at the
     pixels of the nearest colours.
     """
-    sensor, estimates = (
-        cube.data.sensor,
-        [light_errors(cube.data, light) for light in lights],
-    )
+    sensor = cube.data.sensor
+    estimates = [light_errors(cube.data, light) for light in lights]
     flat = {name: rgb.reshape(-1, 3).astype(float) for name, rgb in pictures.items()}
     maps = {
         name: np.mean([estimate(rgb)[:, 0] for estimate in estimates], axis=0)
@@ -224,7 +223,8 @@ def draw_advice(
     *rows, last = figure.subfigures(
         len(pictures) + 1, 1, height_ratios=[*heights, 1.5], squeeze=False
     )[:, 0]
-    chips, panels = last.subplots(1, max(len(swatches), MIN_CHIPS)), {}
+    chips = last.subplots(1, max(len(swatches), MIN_CHIPS))
+    panels = {}
     for row, (name, rgb) in zip(rows, pictures.items(), strict=True):
         panels[name], errors = row.subplots(1, 2)
         show_image(panels[name], to_display_codes(rgb, sensor) / 255)

@@ -55,20 +55,24 @@ def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRu
     >>> gauss_rule([-1, 0, 1], [1, 1, 1], 2).nodes.round(4)
     array([-0.8165,  0.8165])
     """
-    points, masses = np.asarray(points, dtype=float), np.asarray(masses, dtype=float)
+    points = np.asarray(points, dtype=float)
+    masses = np.asarray(masses, dtype=float)
     used = masses != 0
-    x, masses = _to_unit(points, points)[used], masses[used]
+    x = _to_unit(points, points)[used]
+    masses = masses[used]
     basis = _orthonormal_basis(x, np.abs(masses), order)
     # Inner products of the basis under the measure, without and with a factor x.
     signed = basis * np.sign(masses)[:, None]
-    gram, position = basis.T @ signed, basis.T @ (x[:, None] * signed)
+    gram = basis.T @ signed
+    position = basis.T @ (x[:, None] * signed)
     if np.linalg.svd(gram, compute_uv=False).min() <= SINGULAR_TOLERANCE:
         raise _undefined("no polynomial of that order is orthogonal")
     values, vectors = scipy.linalg.eig(position, gram)
     if np.abs(values.imag).max() > NODE_TOLERANCE:
         raise _undefined("its nodes are not real")
     ascending = np.argsort(values.real)
-    unit, vectors = values.real[ascending], vectors.real[:, ascending]
+    unit = values.real[ascending]
+    vectors = vectors.real[:, ascending]
     if len(unit) > 1 and np.diff(unit).min() <= NODE_TOLERANCE:
         raise _undefined("two of its nodes coincide")
     nodes = (points[0] + points[-1] + unit * (points[-1] - points[0])) / 2

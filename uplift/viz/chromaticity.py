@@ -100,7 +100,8 @@ def draw_lamps(axes: Any, table: EmissionTable) -> None:
     """
     from matplotlib.patches import Circle
 
-    entries, window = table.data.entries, lamp_window(table)
+    entries = table.data.entries
+    window = lamp_window(table)
     _draw_map(axes, table, window, _codes(table, window), alpha=FADED)
     for uv, radius in zip(entries.uv, entries.radius, strict=True):
         axes.add_patch(
@@ -123,7 +124,8 @@ def lamp_window(table: EmissionTable) -> Window:
     of `ALL`.
     """
     uv = np.concatenate([table.data.entries.uv, table.data.lattice.white[None]])
-    low, high = uv.min(axis=0) - MARGIN, uv.max(axis=0) + MARGIN
+    low = uv.min(axis=0) - MARGIN
+    high = uv.max(axis=0) + MARGIN
     full = np.array([ALL.u[1] - ALL.u[0], ALL.v[1] - ALL.v[0]])
     half = full * ((high - low) / full).max() / 2
     (u, v), (du, dv) = ((low + high) / 2).tolist(), half.tolist()

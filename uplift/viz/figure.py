@@ -19,7 +19,10 @@ from uplift.common.errors import OutputError, needs_package
 from uplift.common.files import atomic_write
 from uplift.common.text import printable
 
-INK, GREY, PALE, ACCENT = "#262626", "#6e6e6e", "#d6d6d6", "#20509a"
+INK = "#262626"
+GREY = "#6e6e6e"
+PALE = "#d6d6d6"
+ACCENT = "#20509a"
 # A broad line below others.
 BAND = "#c2c2c2"
 # A group that has no colour.

@@ -73,7 +73,8 @@ def atlas_html(atlas: Atlas) -> Markup:
     """Format an atlas as a table: a swatch under D65, the name and a small plot of each
     entry.
     """
-    shown, screen = atlas[:MAX_ROWS], sensor()
+    shown = atlas[:MAX_ROWS]
+    screen = sensor()
     spectra = resample(shown, screen.wavelengths).values
     codes = hex_codes(screen.rgb(spectra), screen)
     rows = Markup().join(
@@ -105,7 +106,8 @@ def _sparkline(values: Array) -> Markup:
 
 
 def _facts(cube: Cube) -> dict[str, str]:
-    points, size = cube.data.points.present, cube.data.lattice.size
+    points = cube.data.points.present
+    size = cube.data.lattice.size
     return {
         "model": (
             f"{cube.data.model.name}, "
@@ -123,10 +125,8 @@ def _facts(cube: Cube) -> dict[str, str]:
 def _swatches(cube: Cube) -> Markup:
     names = cube.atlas_names[:MAX_SWATCHES]
     rgb: Array = cube.data.atlas.rgb[:MAX_SWATCHES]
-    swatch, codes = (
-        Markup("<span title='{}' style='{}{}'></span>"),
-        hex_codes(rgb, cube.data.sensor),
-    )
+    swatch = Markup("<span title='{}' style='{}{}'></span>")
+    codes = hex_codes(rgb, cube.data.sensor)
     swatches = Markup().join(
         swatch.format(printable(name), SWATCH, code)
         for name, code in zip(names, codes, strict=True)

@@ -98,7 +98,9 @@ def _write_curves(figure: Any, count: int, path: StrPath, force: bool) -> None:
 
 
 # Inches of a picture's width, and of the heights of a strip and its title.
-WIDTH, HEIGHT, TITLE_HEIGHT = 7.2, 0.62, 0.24
+WIDTH = 7.2
+HEIGHT = 0.62
+TITLE_HEIGHT = 0.24
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,7 +160,8 @@ def plot_bounds(
 
 
 def _plot_region(axes: Any, screen: Sensor, bounds: Bounds, row: int) -> None:
-    region, answer = bounds.outline(row), bounds.lab[row]
+    region = bounds.outline(row)
+    answer = bounds.lab[row]
     likely = bounds.likely(row)
     extent = _extent(
         np.concatenate(
@@ -205,7 +208,8 @@ def _plot_region(axes: Any, screen: Sensor, bounds: Bounds, row: int) -> None:
 
 def _extent(points: Array) -> Array:
     """Limits (2, 2) of a* and b* of a square around points (n, 2)."""
-    low, high = points.min(axis=0), points.max(axis=0)
+    low = points.min(axis=0)
+    high = points.max(axis=0)
     half = max(float((high - low).max()) * (0.5 + MARGIN), MIN_EXTENT / 2)
     middle = (low + high) / 2
     return np.stack([middle - half, middle + half], axis=1)

@@ -71,10 +71,8 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
 def check_sheet(path: StrPath) -> None:
     """Check the suffix of a contact sheet, which needs matplotlib."""
     if Path(path).suffix.lower() not in (".exr", ".png"):
-        problem, hint = (
-            "the name of a sheet must end in .exr or .png",
-            "name the file .exr or .png",
-        )
+        problem = "the name of a sheet must end in .exr or .png"
+        hint = "name the file .exr or .png"
         raise OutputError(problem, path=path, hint=hint)
     matplotlib()
 
@@ -185,7 +183,8 @@ def compose(data: CubeData) -> Sheet:
     layout = Layout(data.lattice.dim, len(all_panels))
     width, height = layout.size
     image = np.full((height, width, 3), BACKGROUND, dtype=np.float32)
-    em, labels = layout.em, [_heading(data, layout)]
+    em = layout.em
+    labels = [_heading(data, layout)]
     for number, panel in enumerate(all_panels):
         for blue, plane in enumerate(blue_slices(panel.colours, layout.dim)):
             large = plane.repeat(layout.scale, axis=0).repeat(layout.scale, axis=1)
@@ -209,7 +208,9 @@ def _paint(image: NDArray[np.float32], corner: tuple[int, int], patch: Array) ->
 
 
 def _heading(data: CubeData, layout: Layout) -> Label:
-    model, sensor, points = data.model, data.sensor, data.points
+    model = data.model
+    sensor = data.sensor
+    points = data.points
     present = (
         ""
         if data.complete_cells is None
@@ -300,7 +301,8 @@ def _rgb_panel(data: CubeData) -> Panel:
 def _distance_panel(data: CubeData) -> Panel:
     within = np.clip(data.points.distance / data.threshold, 10.0**-DECADES, 1)
     over = data.points.distance > data.threshold
-    low, high = data.threshold / 10**DECADES, data.threshold
+    low = data.threshold / 10**DECADES
+    high = data.threshold
     exceeding = (
         f"over the threshold: {_count(over)}; largest distance "
         f"{data.points.distance.max():.2g}"
@@ -331,7 +333,8 @@ def _error_panel(errors: NDArray[np.float32], light: str) -> Panel:
 
 
 def _round_panel(rounds: NDArray[np.int16], not_fitted: Mask) -> Panel:
-    none, last = rounds < 0, max(int(rounds.max()), 0)
+    none = rounds < 0
+    last = max(int(rounds.max()), 0)
     keys = (
         Key(_ramp(KEY_STEPS), f"0 to {last}"),
         Key(HIGHLIGHT, f"fitted in no round: {_count(not_fitted)}"),

@@ -24,7 +24,8 @@ from uplift.io.texture import convert
 
 WHITE = np.ones(5)
 PLAIN = Medium(scattering=SQUARE_ROOT)
-OIL, DIFFUSE = Surface.of_index(1.5), Surface.of_index(1.5, "diffuse")
+OIL = Surface.of_index(1.5)
+DIFFUSE = Surface.of_index(1.5, "diffuse")
 SURFACES = [NO_SURFACE, OIL, DIFFUSE]
 T = np.array([0.0, 0.05, 0.5, 0.9, 1.0])
 
@@ -52,7 +53,8 @@ def test_a_single_colour_is_unchanged_and_thickness_0_leaves_the_ground(
 
 def test_paint_measured_on_white_and_black_round_trip(rng):
     layer = from_opaque(rng.uniform(0.2, 0.8, 5), SQUARE_ROOT).layer(1.0)
-    white, black = OIL.apply(layer.over(1.0)), OIL.apply(layer.over(0.0))
+    white = OIL.apply(layer.over(1.0))
+    black = OIL.apply(layer.over(0.0))
     for ground, expected in ((1.0, white), (0.04, black)):
         found = mix(
             "pigment", Ingredients(white[None], (black,)), [2], Medium(1.0, OIL), ground
@@ -74,7 +76,8 @@ def test_filters_and_lights(two):
 def test_ramps_of_proportions(two):
     np.testing.assert_allclose(ramp([1, 4, 1], 5)[:, 1], [0, 2, 4, 2, 0])
     assert ramp([1], 5).shape == (0, 1)
-    parts, medium = ramp([2, 1], 4), Medium(0.5, scattering=SQUARE_ROOT)
+    parts = ramp([2, 1], 4)
+    medium = Medium(0.5, scattering=SQUARE_ROOT)
     found = mix("pigment", two, parts, medium, WHITE)
     np.testing.assert_allclose(
         found, [mix("pigment", two, each, medium, WHITE) for each in parts]
@@ -122,13 +125,12 @@ def test_colours_darker_than_the_surface_trigger_a_warning(two):
 @pytest.mark.parametrize("surface", [*SURFACES, Surface(0.04, 0.04)])
 def test_a_dye_on_a_ground_is_the_sum_over_passes(surface, ground):
     """The light that leaves at each pass (9.6)."""
-    light, expected = (1 - surface.outside) * np.ones_like(T), surface.outside
+    light = (1 - surface.outside) * np.ones_like(T)
+    expected = surface.outside
     for _ in range(500):
         light = light * T * ground * T
-        expected, light = (
-            expected + (1 - surface.inside) * light,
-            surface.inside * light,
-        )
+        expected = expected + (1 - surface.inside) * light
+        light = surface.inside * light
     np.testing.assert_allclose(
         surface.apply(Layer(np.zeros_like(T), T).over(ground)), expected, atol=1e-12
     )
@@ -137,12 +139,10 @@ def test_a_dye_on_a_ground_is_the_sum_over_passes(surface, ground):
 @pytest.mark.parametrize("rho", [0.0, 0.04, 0.3])
 def test_a_plate_is_the_sum_over_passes_and_keeps_the_energy_of_clear_light(rho):
     """Eq. 9.4: what leaves above and below at each pass."""
-    found, light, above, below = (
-        plate(T, rho),
-        (1 - rho) * T,
-        np.full_like(T, rho),
-        np.zeros_like(T),
-    )
+    found = plate(T, rho)
+    light = (1 - rho) * T
+    above = np.full_like(T, rho)
+    below = np.zeros_like(T)
     for number in range(200):
         (above if number % 2 else below)[:] += (1 - rho) * light
         light = rho * light * T

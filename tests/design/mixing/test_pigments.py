@@ -151,7 +151,8 @@ def test_h_is_the_mean_on_one_side_less_that_on_the_other(sensor, rng):
 
 
 def test_further_wavelengths_change_nothing_and_are_consistent(sensor, rng):
-    reflectance, assumed = rng.uniform(0.01, 1, (3, 81)), dispersive(sensor)
+    reflectance = rng.uniform(0.01, 1, (3, 81))
+    assumed = dispersive(sensor)
     columns = [14, 34, 0, 80]
     extended = np.concatenate([reflectance, reflectance[:, columns]], axis=1)
     found = dispersive(sensor, [450.0, 550.0, 300.0, 900.0])(extended)
@@ -179,7 +180,8 @@ def test_duntley_s_differential_equations_are_satisfied(beam):
             each[place]
             for each in (DIFFUSE.absorption, DIFFUSE.backward, beam.absorption)
         )
-        B1, F1 = beam.backward[place], beam.forward[place]
+        B1 = beam.backward[place]
+        F1 = beam.forward[place]
         mu = mu + B1 + F1
 
         def slopes(x, flux, K=K, B=B, B1=B1, F1=F1, mu=mu):
@@ -205,16 +207,15 @@ def test_duntley_s_differential_equations_are_satisfied(beam):
 def test_strong_forward_scattering_gives_the_two_constant_theory():
     """The beam becomes diffuse before anything else happens."""
     beam = Flux(BEAMS[0].absorption, BEAMS[0].backward, np.full(2, 1e7))
-    two, found = (
-        Pigment(DIFFUSE.absorption, DIFFUSE.backward).layer(0.9),
-        duntley_layer(beam, DIFFUSE, 0.9),
-    )
+    two = Pigment(DIFFUSE.absorption, DIFFUSE.backward).layer(0.9)
+    found = duntley_layer(beam, DIFFUSE, 0.9)
     np.testing.assert_allclose(found.reflectance, two.reflectance, atol=1e-6)
     np.testing.assert_allclose(found.transmittance, two.transmittance, atol=1e-6)
 
 
 def test_constants_are_read_from_rows_and_columns(tmp_path):
-    nm, rows = [400.0, 500.0, 700.0], np.arange(24.0).reshape(8, 3)
+    nm = [400.0, 500.0, 700.0]
+    rows = np.arange(24.0).reshape(8, 3)
     names = (*pigments.CONSTANTS, "S'", "S")
     rows[6:] = rows[1] + rows[2], rows[4] + rows[5]
     lines = [
@@ -263,7 +264,8 @@ def test_isotropic_paint_in_a_beam_is_two_r_over_three_minus_r(rng):
     """Eq. 10.8 in the limit of thick layers against the closed form, and
     its inverse.
     """
-    K, S = rng.uniform(0.01, 4, 30), rng.uniform(0.2, 3, 30)
+    K = rng.uniform(0.01, 4, 30)
+    S = rng.uniform(0.2, 3, 30)
     r = Pigment(K, S).opaque_reflectance()
     thick = duntley_layer(Flux(K / 2, S / 2, S / 2), Flux(K, S, S), 400.0).reflectance
     np.testing.assert_allclose(diffuse_to_beam(r), thick, rtol=1e-6)

@@ -116,7 +116,10 @@ def test_ryb_shades_keep_their_chromaticity_and_tints_their_hue(other):
 
 def test_the_thesis_s_complements():
     """Blue and orange, yellow and purple are opposite; red and green nearly are."""
-    blue, orange, yellow, purple = [0, 0, 1], [1, 0.5, 0], [1, 1, 0], [1, 0, 1]
+    blue = [0, 0, 1]
+    orange = [1, 0.5, 0]
+    yellow = [1, 1, 0]
+    purple = [1, 0, 1]
     np.testing.assert_allclose(
         mix_ryb([[blue, orange], [yellow, purple]], [1, 1]), 0.5, atol=1e-12
     )

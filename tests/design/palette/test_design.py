@@ -40,7 +40,8 @@ def test_spectra_and_free_colours_stay_within_their_bounds(found, metamers, mode
     tight = tuple(
         dataclasses.replace(part, low=0.1, high=0.6) for part in metamers.materials
     )
-    low, high = np.array([0.05, 0.2, 0.1]), np.array([0.2, 0.3, 0.15])
+    low = np.array([0.05, 0.2, 0.1])
+    high = np.array([0.2, 0.3, 0.15])
     narrow = design(
         dataclasses.replace(metamers, materials=tight, free={"coat": (low, high)}),
         model,
@@ -60,7 +61,8 @@ def test_bounded_solutions_satisfy_the_optimality_conditions(sensor, model, seed
     assert ((x >= problem.low) & (x <= problem.high)).all()
     slope = problem.matrix.T @ (problem.matrix @ x - problem.values)
     slack = 1e-7 * np.abs(problem.matrix.T @ problem.values).max()
-    low, high = x <= problem.low + 1e-12, x >= problem.high - 1e-12
+    low = x <= problem.low + 1e-12
+    high = x >= problem.high - 1e-12
     assert np.abs(slope[~low & ~high]).max(initial=0) < slack
     assert slope[low].min(initial=0) > -slack
     assert slope[high].max(initial=0) < slack
@@ -118,7 +120,8 @@ def of_light(metamers, samples, rgb, **settings):
 def test_lights_are_designed_like_materials(metamers, model):
     """Colours of two paints under a lamp determine a light with the same colours."""
     paints = [np.linspace(0, 1, 81) ** 2, np.linspace(1, 0, 81) ** 2]
-    power, screen = illuminant(metamers.sensor, "A"), screen_matrix(metamers.sensor)
+    power = illuminant(metamers.sensor, "A")
+    screen = screen_matrix(metamers.sensor)
     found = design(
         of_light(metamers, paints, [screen @ (power * paint) for paint in paints]),
         model,
@@ -187,11 +190,9 @@ def test_contradicting_goals_name_one_another(metamers, model):
     ] == [True] * 2
 
 
-DAY, GIVEN, NEW = (
-    'lights.day.illuminant = "D65"\n',
-    'materials.grey.rgb = "#808080"\n',
-    "materials.new.design = true\n",
-)
+DAY = 'lights.day.illuminant = "D65"\n'
+GIVEN = 'materials.grey.rgb = "#808080"\n'
+NEW = "materials.new.design = true\n"
 
 
 @pytest.mark.parametrize(
@@ -230,20 +231,17 @@ def test_the_objective_is_the_weighted_sum_of_all_criteria(metamers, model):
     """
     pairs = zip(metamers.goals, (1, 1, 7, 0), strict=True)
     goals = tuple(dataclasses.replace(goal, weight=weight) for goal, weight in pairs)
-    paint, odd = (
-        SpectrumSpec("paint", np.linspace(0.1, 0.9, 81)),
-        SpectrumSpec("odd", None),
-    )
-    lights, materials = (*metamers.lights, odd), (*metamers.materials, paint)
+    paint = SpectrumSpec("paint", np.linspace(0.1, 0.9, 81))
+    odd = SpectrumSpec("odd", None)
+    lights = (*metamers.lights, odd)
+    materials = (*metamers.materials, paint)
     weights = {"smoothness": 2.0, "model_error": 3.0}
     palette = dataclasses.replace(
         metamers, lights=lights, materials=materials, goals=goals, **weights
     )
-    where, problem, screen = (
-        unknowns(palette),
-        equations(palette, model),
-        screen_matrix(palette.sensor),
-    )
+    where = unknowns(palette)
+    problem = equations(palette, model)
+    screen = screen_matrix(palette.sensor)
     x = np.random.default_rng(5).random(problem.matrix.shape[1])
     power = {
         each.name: x[where["light", "odd"]] if each.designed else each.samples
@@ -264,7 +262,8 @@ def test_the_objective_is_the_weighted_sum_of_all_criteria(metamers, model):
         )
     for material, light in product(materials, lights):
         if material.designed != light.designed:
-            one, other = surface[material.name], power[light.name]
+            one = surface[material.name]
+            other = power[light.name]
             wrong = screen @ (one * other) - model.rgb(
                 model.light(other) * model.reflectance(one)
             )

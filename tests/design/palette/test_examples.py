@@ -22,7 +22,8 @@ def examples(model):
 
 
 def delta_e(found, first, second, light):
-    obtained, palette = matrix(found).obtained, found.palette
+    obtained = matrix(found).obtained
+    palette = found.palette
     pair = (obtained[palette.cell(material, light)] for material in (first, second))
     return float(delta_e_rgb(palette.sensor, *pair))
 
@@ -58,7 +59,8 @@ def test_the_infeasible_example_is_missed_because_of_its_bounds(model, tmp_path)
 def test_metamers_differ_under_the_second_light_and_the_figure_vanishes_on_its_ground(
     examples,
 ):
-    metamers, light = examples["metamers"], examples["light"]
+    metamers = examples["metamers"]
+    light = examples["light"]
     assert delta_e(metamers, "fox", "moss", "day") <= 0.1
     assert (
         delta_e(metamers, "fox", "moss", "lamp")

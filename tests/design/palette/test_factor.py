@@ -43,8 +43,10 @@ def test_colours_of_spectra_in_the_span_are_exact(model, sensor):
 def test_two_reflections_are_five_times_more_accurate_than_in_rgb(
     model, sensor, measured, light
 ):
-    power, screen = illuminant(sensor, light), screen_matrix(sensor)
-    first, second = measured[:-1], measured[1:]
+    power = illuminant(sensor, light)
+    screen = screen_matrix(sensor)
+    first = measured[:-1]
+    second = measured[1:]
     full = (power * first * second) @ screen.T
     modelled = model.rgb(
         model.product(

@@ -13,7 +13,9 @@ from uplift.design.palette.picture import cutaway, read_weights
 
 NAMES = ("skin", "bone")
 LABELS = {"skin": "#ff8000", "bone": "#00ff10"}
-SKIN, BONE, BLACK = (255, 128, 0), (0, 255, 16), (0, 0, 0)
+SKIN = (255, 128, 0)
+BONE = (0, 255, 16)
+BLACK = (0, 0, 0)
 
 
 def png(path, pixels):

@@ -282,7 +282,8 @@ def test_sliders_scale_their_light_exposure_scales_all_and_reset_restores(opened
     assert largest_difference(tab, view, gains=[0.4, 1, 0], stops=-1.5) <= 1
     slide(tab, "exposure", 2)
     tab.evaluate("document.querySelector('[data-light=\"1\"]').click()")
-    pixels, mix = tab.canvas("picture")[..., :3], np.array([0, 1, 0])
+    pixels = tab.canvas("picture")[..., :3]
+    mix = np.array([0, 1, 0])
     assert np.abs(pixels - expected_codes(view, mix, 2)).max() <= 1
     linear = view.rgb(4 * mix)
     clipped = ((linear < -1 / 510) | (linear > 1 + 1 / 510)).any(axis=-1).mean()

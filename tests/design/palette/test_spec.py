@@ -79,11 +79,9 @@ def test_a_complete_spec(read, sensor):
         True,
         True,
     ]
-    odd, new, wild = (
-        palette.light("odd"),
-        palette.material("new"),
-        palette.material("wild"),
-    )
+    odd = palette.light("odd")
+    new = palette.material("new")
+    wild = palette.material("wild")
     assert [(part.low, part.high) for part in (odd, new, wild)] == [
         (0, 3),
         (0, 1),
@@ -102,7 +100,9 @@ def test_a_complete_spec(read, sensor):
 
 
 def test_given_spectra_are_those_of_their_sources(read, sensor):
-    palette, atlas, cube = read(COMPLETE), read_atlas(MACBETH), uplift.load()
+    palette = read(COMPLETE)
+    atlas = read_atlas(MACBETH)
+    cube = uplift.load()
     orange = on_grid(atlas, sensor.wavelengths)[atlas.names.index("orange")]
     np.testing.assert_array_equal(palette.material("orange").samples, orange)
     rose = cube.reflectance(cube.decode([0xCC, 0x33, 0x66]), sensor.wavelengths)

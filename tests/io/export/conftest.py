@@ -18,10 +18,8 @@ def warped_cube(small_cube, request) -> Cube:
     warp.
     """
     data = small_cube.data
-    model, coefficients = (
-        Moments(5, 400, 700, request.param),
-        data.atlas.coefficients[:, :5],
-    )
+    model = Moments(5, 400, 700, request.param)
+    coefficients = data.atlas.coefficients[:, :5]
     atlas = replace(
         data.atlas, coefficients=coefficients, spectra=EntrySpectra(model, coefficients)
     )

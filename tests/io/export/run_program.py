@@ -208,7 +208,8 @@ def _by_webgl(path, rgba, wavelengths):
 def hlsl(path, rgb, wavelengths, form="file"):
     """Compiled to SPIR-V, and by Vulkan: needs glslangValidator and wgpu."""
     need(GLSLANG, VULKAN)
-    folder, count = path.parent, -(-len(rgb) // 64) * 64
+    folder = path.parent
+    count = -(-len(rgb) // 64) * 64
     (folder / "main.hlsl").write_text(
         PIXEL.format(code=path.read_text(), wavelengths=listed(wavelengths))
     )
@@ -233,7 +234,8 @@ def _by_vulkan(path, rgb, count):
     import wgpu
 
     device = vulkan_device()
-    storage, source = wgpu.BufferUsage.STORAGE, wgpu.BufferUsage.COPY_SRC
+    storage = wgpu.BufferUsage.STORAGE
+    source = wgpu.BufferUsage.COPY_SRC
     colours = padded(rgb, count)
     table = device.create_buffer_with_data(
         data=path.with_suffix(".bin").read_bytes(), usage=storage

@@ -134,7 +134,8 @@ def test_colour_science_and_mitsuba_read_it(table, sensor):
             [line.split() for line in done.stdout.splitlines()], dtype=float
         )
 
-    ours, default = fetch(table.parents[1]), fetch(table.parent)
+    ours = fetch(table.parents[1])
+    default = fetch(table.parent)
     assert not np.allclose(ours[:2], default[:2], rtol=1e-4)
     greys = ours[2:]
     assert not np.isnan(greys).any()
@@ -185,7 +186,9 @@ def spectra_of(data, rgb):
     """Spectra of RGB (n, 3) by a full table, of which only the directions around them
     are fitted.
     """
-    res, largest, rows = coeff.RES, rgb.argmax(axis=1), np.arange(len(rgb))
+    res = coeff.RES
+    largest = rgb.argmax(axis=1)
+    rows = np.arange(len(rgb))
     at = [
         np.minimum(
             (rgb[rows, (largest + k) % 3] / rgb.max(axis=1) * (res - 1)).astype(int),
@@ -196,7 +199,8 @@ def spectra_of(data, rgb):
     used = np.zeros((3, res, res), dtype=bool)
     for dy, dx in product((0, 1), repeat=2):
         used[largest, at[0] + dy, at[1] + dx] = True
-    scale, table = coeff._scale(res), np.full((res, 3, res, res, 3), np.nan, np.float32)
+    scale = coeff._scale(res)
+    table = np.full((res, 3, res, res, 3), np.nan, np.float32)
     fitted_to = on_range(data.sensor, coeff.START, coeff.END, coeff.STEP)
     table[:, used] = coeff._fit(
         data, fitted_to, scale, coeff._directions(res)[used.ravel()]
@@ -277,7 +281,8 @@ def test_sources_compile_to_the_numbers_of_the_table(
     small_cube, tmp_path, layout, namespace, name, width, space, light
 ):
     need(CXX)
-    data, res = replace(small_cube.data, sensor=make_sensor(space, light)), 3
+    data = replace(small_cube.data, sensor=make_sensor(space, light))
+    res = 3
     write_coeff(data, tmp_path / "table.coeff", res=res)
     write_coeff(data, tmp_path / "table.cpp", layout=layout, res=res)
     (tmp_path / "main.cpp").write_text(

@@ -61,7 +61,8 @@ def hald(path):
 
 def test_codes_have_the_colours_of_srgb(three, folder):
     """Of the spectra of 8-bit codes, which are also near the codes themselves."""
-    codes, sensor = hald(folder / "hald.png").reshape(-1, 3), three.data.sensor
+    codes = hald(folder / "hald.png").reshape(-1, 3)
+    sensor = three.data.sensor
     nodes = np.linspace(0, 1, LEVEL**2)
     requested = np.array(list(product(nodes, repeat=3)))
     moments = decode(codes / 255) @ lut._to_moments(three.data).T

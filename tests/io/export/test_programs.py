@@ -65,10 +65,8 @@ def check(tmp_path):
 
     def check(cube, style, mode, rgb, form=None, within=WITHIN):
         language = LANGUAGE.get(style, style)
-        path, form = (
-            tmp_path / f"cube{LANGUAGES[language].suffix}",
-            form or LANGUAGES[language].forms[0],
-        )
+        path = tmp_path / f"cube{LANGUAGES[language].suffix}"
+        form = form or LANGUAGES[language].forms[0]
         write_program(cube.data, path, style=language, mode=mode, form=form, force=True)
         found = getattr(run_program, style)(path, rgb, WAVELENGTHS, form)
         clipped = np.clip(np.nan_to_num(rgb, posinf=1), 0, 1)

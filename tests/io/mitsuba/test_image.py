@@ -59,11 +59,9 @@ def texture(mi, cube_path):
 def test_filtering_agrees_with_mitsuba_s_bitmap(mi, texture, spectrum, sensor, options):
     import drjit
 
-    ours, reference = (
-        texture(**options),
-        mi.load_dict(
-            {"type": "bitmap", "bitmap": mi.Bitmap(IMAGE), "raw": True, **options}
-        ),
+    ours = texture(**options)
+    reference = mi.load_dict(
+        {"type": "bitmap", "bitmap": mi.Bitmap(IMAGE), "raw": True, **options}
     )
     si = drjit.zeros(mi.SurfaceInteraction3f)
     for uv in POSITIONS:
@@ -100,7 +98,8 @@ def test_texels_of_an_entry_outside_the_space_have_its_spectrum(
 ):
     """A bitmap, an OpenEXR file and a colour; beyond the entry a colour is mapped."""
     cyan_cube.save(tmp_path / "cyan.uplift")
-    at, rgb = np.array([450.0, 650.0]), cyan_cube.data.atlas.outside.rgb[0]
+    at = np.array([450.0, 650.0])
+    rgb = cyan_cube.data.atlas.outside.rgb[0]
     entry = cyan_cube.data.atlas.outside.spectra.reflectance(np.array([0]), at)[0]
     pixels = np.array([[rgb, [1, 0.2, 0]]], dtype=np.float32)
     write_exr(tmp_path / "image.exr", planes(pixels))

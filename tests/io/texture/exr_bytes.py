@@ -3,7 +3,8 @@
 import struct
 from collections.abc import Sequence
 
-WIDTH, HEIGHT = 5, 4
+WIDTH = 5
+HEIGHT = 4
 
 
 def attribute(name: bytes, kind: bytes, value: bytes) -> bytes:

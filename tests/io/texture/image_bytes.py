@@ -71,7 +71,8 @@ def png_bytes(codes, *chunks, after=b""):
 
 TIFF_FORMATS = {3: "H", 4: "I", 5: "II", 11: "f"}
 """struct formats of the types of numbers."""
-EXIF, INTEROPERABILITY = 0x8769, 0xA005
+EXIF = 0x8769
+INTEROPERABILITY = 0xA005
 
 
 def tiff_bytes(codes, tags, order="<", exif=None, interoperability=None):

@@ -56,7 +56,9 @@ def icc(space, tags):
         + text,
         **tags,
     }
-    start, table, body = 132 + 12 * len(tags), b"", b""
+    start = 132 + 12 * len(tags)
+    table = b""
+    body = b""
     for name, tag in tags.items():
         table += struct.pack(">4sII", name, start + len(body), len(tag))
         body += tag + b"\0" * (-len(tag) % 4)
@@ -80,7 +82,8 @@ def save(path, statement, codes=128):
         path, icc_profile=statement if isinstance(statement, bytes) else None
     )
     if isinstance(statement, tuple):
-        data, chunk = path.read_bytes(), b"cICP" + bytes([*statement, 0, 1])
+        data = path.read_bytes()
+        chunk = b"cICP" + bytes([*statement, 0, 1])
         path.write_bytes(
             data[:33]
             + struct.pack(">I", 4)
@@ -115,7 +118,9 @@ def test_srgb_profiles_change_nothing(data, spectral, tmp_path):
     np.testing.assert_array_equal(rgb, plain)
 
 
-P3, ADOBE, BT2020 = "Display P3", "Adobe RGB (1998)", "ITU-R BT.2020"
+P3 = "Display P3"
+ADOBE = "Adobe RGB (1998)"
+BT2020 = "ITU-R BT.2020"
 
 
 @pytest.mark.parametrize(
@@ -137,7 +142,8 @@ P3, ADOBE, BT2020 = "Display P3", "Adobe RGB (1998)", "ITU-R BT.2020"
 def test_colours_of_profiles_and_code_points_are_converted(
     suffix, statement, space, curve, spectral, tmp_path
 ):
-    path, name = save(tmp_path / f"a.{suffix}", statement, CODES), space
+    path = save(tmp_path / f"a.{suffix}", statement, CODES)
+    name = space
     if isinstance(statement, tuple):
         name = f"CICP {statement[0]}, {statement[1]}"
     rgb, spaces, codes = convert(spectral, path)
@@ -174,10 +180,8 @@ def exr(path, rgb, **header):
 
 ACES = colour.RGB_COLOURSPACES["ACEScg"]
 AP1 = tuple(float(number) for number in (*ACES.primaries.ravel(), *ACES.whitepoint))
-INTEROP, OTHER = (
-    {"colorInteropID": "lin_ap1_scene"},
-    {"colorInteropID": "lin_rec2020_scene"},
-)
+INTEROP = {"colorInteropID": "lin_ap1_scene"}
+OTHER = {"colorInteropID": "lin_rec2020_scene"}
 
 
 @pytest.mark.parametrize(

@@ -76,7 +76,8 @@ def test_an_interruption_leaves_nothing(spectral, source, tmp_path):
     assert list(tmp_path.iterdir()) == [source]
 
 
-HEIGHT, WIDTH = 50, 40
+HEIGHT = 50
+WIDTH = 40
 
 
 def write_parts(path, count, rows=HEIGHT):

@@ -147,11 +147,10 @@ def test_several_parts_tiles_windows_and_other_channels(
     kind, band, spectral, tmp_path, monkeypatch
 ):
     monkeypatch.setattr("uplift.io.texture.image.MAX_BAND_BYTES", band)
-    shape, rng = (70, 45), np.random.default_rng(2)
-    rgb, depth = (
-        rng.random((*shape, 3)).astype(np.float16),
-        rng.normal(0, 1e6, shape).astype(np.float32),
-    )
+    shape = (70, 45)
+    rng = np.random.default_rng(2)
+    rgb = rng.random((*shape, 3)).astype(np.float16)
+    depth = rng.normal(0, 1e6, shape).astype(np.float32)
     depth[0, :3] = (np.nan, np.inf, -np.inf)
     ids = rng.integers(0, 1 << 24, shape, dtype=np.uint32, endpoint=True)
     others = {"mask": rng.random(shape).astype(np.float16), "Z": depth, "id": ids}
@@ -327,7 +326,8 @@ def test_moments_are_multiplied_and_multipliers_are_not(
         for source in (solid, multiplied):
             texture.convert(uplifter, source, tmp_path / "out.exr", force=True)
             numbers.append(read_channels(tmp_path / "out.exr", uplifter.channels))
-        visible, expected = alpha > 1e-3, numbers[0] * weight[..., None]
+        visible = alpha > 1e-3
+        expected = numbers[0] * weight[..., None]
         np.testing.assert_allclose(
             numbers[1][visible], expected[visible], rtol=1e-3, atol=2e-3
         )
@@ -410,10 +410,8 @@ def test_pictures_are_means_weighted_by_alpha(
     max_side, band, multiplied, colours, alpha, sensor, monkeypatch
 ):
     monkeypatch.setattr("uplift.io.texture.image.MAX_BAND_BYTES", band)
-    found, step = (
-        read_picture(multiplied, sensor, max_side=max_side),
-        -(-30 // max_side),
-    )
+    found = read_picture(multiplied, sensor, max_side=max_side)
+    step = -(-30 // max_side)
     assert found.reduction == step
     for row in range(found.rgb.shape[0]):
         for column in range(found.rgb.shape[1]):
@@ -451,8 +449,10 @@ def test_pictures_without_alpha(tmp_path, sensor):
 def test_pixels_of_an_entry_outside_the_space_have_its_spectrum(
     cyan_cube, convert_image, tmp_path, encoding, method
 ):
-    data, space = cyan_cube.data, find_space("P3-D65")
-    boxes, model = data.outside_boxes, data.model
+    data = cyan_cube.data
+    space = find_space("P3-D65")
+    boxes = data.outside_boxes
+    model = data.model
     pixels = np.stack([boxes.rgb[0], [0.2, 0.3, 0.4]])[None]
     if method != "error":  # halfway from the core of the box to its face, and outside
         shift = np.array([0, boxes.half_width[0], 0])

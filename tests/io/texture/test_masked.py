@@ -83,7 +83,8 @@ def test_grey_mixes_two_cubes(converted, cubes, colours, tmp_path, sensor, kind)
     else:
         dtype, white = (np.uint8, 255) if kind == "png" else (np.uint16, 65535)
         codes = np.rint(ramp * white).astype(dtype)
-        ramp, mask = codes / white, png(tmp_path / "mask.png", codes)
+        ramp = codes / white
+        mask = png(tmp_path / "mask.png", codes)
     found = converted(cubes[:2], mask)
     one, two = (spectra(cube, colours) for cube in cubes[:2])
     np.testing.assert_allclose(
@@ -105,7 +106,8 @@ def test_moments_and_multipliers_mix_as_reflectances_do(
     converted, cubes, colours, tmp_path, sensor
 ):
     mask = png(tmp_path / "mask.png", np.tile(np.uint8([0, 128, 255]), (SHAPE[0], 10)))
-    found, model = converted(cubes[:2], mask, texture.Moments()), cubes[0].data.model
+    found = converted(cubes[:2], mask, texture.Moments())
+    model = cubes[0].data.model
     parts = [
         cube.coefficients(colours.reshape(-1, 3)).reshape(*SHAPE, -1)[:, 1::3]
         for cube in cubes[:2]
@@ -179,7 +181,8 @@ def test_an_entry_outside_the_space_answers_where_its_cube_is_chosen(
     cyan_cube, plain_cube, tmp_path, encoding
 ):
     """Three pixels of its colour: of its cube, of one without it, and half of each."""
-    boxes, data = cyan_cube.data.outside_boxes, plain_cube.data
+    boxes = cyan_cube.data.outside_boxes
+    data = plain_cube.data
     rgb = np.tile(boxes.rgb[0], (1, 3, 1)).astype(np.float32)
     image = write_exr(
         tmp_path / "cyan.exr",

@@ -126,7 +126,8 @@ def test_missing_mitsuba_is_not_installed(small_task, monkeypatch):
 )
 def test_both_types_give_the_same_spectra(small_task, colours, name):
     at = small_task.sensor.wavelengths
-    double, single = prepared(name, small_task), prepared(f"{name}-float32", small_task)
+    double = prepared(name, small_task)
+    single = prepared(f"{name}-float32", small_task)
     found = single.uplift(colours.astype(np.float32), at)
     assert found.dtype == np.float32
     np.testing.assert_allclose(found, double.uplift(colours, at), atol=2e-6)
@@ -139,7 +140,8 @@ def vectorised_and_table(task, colours):
     compiled, table = (
         prepared(name, task).uplift for name in ("mitsuba3-llvm", "mitsuba3-table")
     )
-    at, some = task.sensor.wavelengths, (colours[:1], colours)
+    at = task.sensor.wavelengths
+    some = (colours[:1], colours)
     drjit = import_module("drjit")
     threads = drjit.thread_count()
     found = [compiled(each, at) for each in some]

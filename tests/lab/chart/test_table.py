@@ -78,7 +78,8 @@ def test_invalid_table_is_an_error(spoil):
 
 
 ROUND_TRIP, LIGHTS, WITH_SET_UP, *_ = criteria(64)
-times, errors = st.sampled_from([1.0, 10.0, 11.0, 100.0, 1e5]), st.floats(1e-6, 10)
+times = st.sampled_from([1.0, 10.0, 11.0, 100.0, 1e5])
+errors = st.floats(1e-6, 10)
 
 
 @given(st.lists(st.tuples(times, errors), min_size=1, max_size=12))

@@ -115,7 +115,8 @@ def test_local_linear_reproduces_spectra_that_are_linear_in_rgb(data):
     spectra = (
         0.5 + np.random.default_rng(0).uniform(-2, 2, (45, 3)) @ observer.light("A").xyz
     )
-    known, queried = spectra[:40], spectra[40:]
+    known = spectra[:40]
+    queried = spectra[40:]
     np.testing.assert_allclose(
         local_linear(data, known, data.sensor.rgb(queried)), queried, atol=1e-3
     )

@@ -46,9 +46,11 @@ def test_jumps_are_found_and_only_those():
     """Answers that jump by hand, at a red of 0.5, and continuous ones as steep as a
     step of a code allows.
     """
-    first, second = np.full((9, 3), 0.495), np.full((9, 3), 0.505)
+    first = np.full((9, 3), 0.495)
+    second = np.full((9, 3), 0.505)
     first[:, 0] += np.linspace(0, 0.004, 9)
-    dark, bright = np.full(81, 0.2), np.linspace(0.2, 0.5, 81)
+    dark = np.full(81, 0.2)
+    bright = np.linspace(0.2, 0.5, 81)
 
     def sudden(rgb):
         return np.where(rgb[:, :1] < 0.5, dark, bright)
@@ -80,7 +82,8 @@ def test_changed_atlases_and_their_effect(repository):
     the whole atlas.
     """
     entries = read_atlas(repository / "atlases" / "tcs.txt").entries
-    before, name = rebuild(entries, {"dim": 8}), entries[0].name
+    before = rebuild(entries, {"dim": 8})
+    name = entries[0].name
     changes = {
         description: changed
         for description, _, changed in changed_atlases(entries, [name])

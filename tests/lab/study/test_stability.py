@@ -24,7 +24,8 @@ from uplift.lattice import Lattice, axis_nodes
 
 def test_build_is_evaluated_over_its_realisable_nodes():
     result = run(RunConfig(dim=4, space="ITU-R BT.2020"), {})
-    sensor, lattice = observer.sensor("ITU-R BT.2020"), Lattice(axis_nodes("srgb", 4))
+    sensor = observer.sensor("ITU-R BT.2020")
+    lattice = Lattice(axis_nodes("srgb", 4))
     assert result["points"] == 64
     assert (
         result["realisable"] == solid(sensor.matrix).contains(lattice.points).sum() < 64
@@ -41,7 +42,8 @@ def test_study_runs_every_configuration_once_ordered_by_model(monkeypatch):
         RunConfig(dim=4),
         RunConfig(dim=8),
     ]
-    runs, events = [], []
+    runs = []
+    events = []
     monkeypatch.setattr(
         stability, "run", lambda config, atlases: runs.append(config) or {}
     )

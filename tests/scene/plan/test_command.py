@@ -70,7 +70,8 @@ def test_a_plan_outside_the_folder_of_its_scene_is_refused_before_the_search(
     "pixel", PIXELS, ids=lambda pixel: f"{pixel.form}-{pixel.depth}{pixel.mode}"
 )
 def test_command_lines_are_accepted(planned, tmp_path, pixel):
-    found, path = planned[0], tmp_path / "my plan.plan.json"
+    found = planned[0]
+    path = tmp_path / "my plan.plan.json"
     assert cube_name(path) == "my plan.uplift"
     chosen = dataclasses.replace(found.chosen, pixel=pixel)
     for line in commands(dataclasses.replace(found, chosen=chosen), path):

@@ -74,7 +74,8 @@ def test_other_representations_cost_less_or_are_more_accurate_than_fitted_wavele
             [each.samples, each.operations, each.surface, each.error.quantile]
         )
 
-    counts, floor = (3, 16), 1e-3
+    counts = (3, 16)
+    floor = 1e-3
     fitted = renderings(counts, tests, floor, ignore_progress, None)
     found = renderings(counts, tests, floor, ignore_progress, observer.DEFAULT_OBSERVER)
     others = found[len(fitted) :]

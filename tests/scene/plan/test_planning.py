@@ -54,10 +54,8 @@ def integrated(reflectances, light):
 def test_an_independent_computation_on_every_pixel_agrees(planned, kitchen):
     found, _ = planned
     rgb = painted().reshape(-1, 3).astype(float)
-    scene, atlas = (
-        Images((kitchen.parent / "wood.exr",)),
-        kitchen.parent / "macbeth.txt",
-    )
+    scene = Images((kitchen.parent / "wood.exr",))
+    atlas = kitchen.parent / "macbeth.txt"
     best = uplift.build(
         atlas, scene=scene, dim=SMALL.reference, coefficients=9, lights=LIGHTS
     )
@@ -181,7 +179,8 @@ def plan_file(planned, kitchen, tmp_path):
 def test_the_plan_file_builds_the_cube_whose_cost_was_estimated(planned, plan_file):
     path, _, write = plan_file
     write()
-    cube, chosen = read_plan(path).build(), planned[0].chosen
+    cube = read_plan(path).build()
+    chosen = planned[0].chosen
     assert (cube.data.lattice.dim, cube.data.model.count) == (
         chosen.cube.dim,
         chosen.cube.coefficients,

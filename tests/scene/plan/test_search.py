@@ -53,7 +53,8 @@ def small_space(errors, seed, looseness=1.0):
     """72 candidates with bounds from 0.5 to 1 of their true errors, times the
     ``looseness``, and measured ones.
     """
-    rng, truth = np.random.default_rng(seed), {}
+    rng = np.random.default_rng(seed)
+    truth = {}
     for count, dim, samples, pixel in product(
         (3, 5, 9), (4, 8, 12), (3, 5, 7, 9), PIXELS
     ):

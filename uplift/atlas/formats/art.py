@@ -199,10 +199,8 @@ def _read_entry(document: Document, lines: list[Line]) -> Entry | SkippedEntry:
             )
     # Fields of the entry, fields of its sampling, samples
     middle, end = (keys.index(title.lower()) for title in TITLES)
-    fields, sampling = (
-        _fields(lines[1:middle], location),
-        _fields(lines[middle + 1 : end], location),
-    )
+    fields = _fields(lines[1:middle], location)
+    sampling = _fields(lines[middle + 1 : end], location)
     samples, start = _sample_list(document, lines[end + 1 :], location)
     reason = _why_skipped(fields, sampling)
     if reason:
@@ -255,7 +253,8 @@ def _sample_list(
         raise location.error(
             "the sample list, opened by '{', is missing", COMPLETE_ENTRY
         )
-    first, last = lines[0].number, lines[-1].number
+    first = lines[0].number
+    last = lines[-1].number
     start = location.at(first)
     text = "\n".join(document.lines[first - 1 : last]).strip()
     found = LIST.match(text)
@@ -305,7 +304,8 @@ def _sampled(
 
 def _pairs(samples: str, start: SourceLocation) -> list[list[float]]:
     """Parse ``{x, y}, {x, y}, …``. Raise `AtlasError`."""
-    pairs, end = list[list[float]](), 0
+    pairs = list[list[float]]()
+    end = 0
     while match := PAIR.match(samples, end):
         pairs.append(_numbers(samples, *match.span(1), start))
         if len(pairs[-1]) != 2:
@@ -375,7 +375,8 @@ def _entry_lines(entry: Entry) -> Iterator[str]:
             yield field(key, value)
     yield from (TITLES[0], "-" * 20)
     # Wavelengths that no start and step give exactly are written one by one.
-    step, values = _exact_step(entry.wavelengths), entry.values.tolist()
+    step = _exact_step(entry.wavelengths)
+    values = entry.values.tolist()
     if step is None:
         yield field("Type", "point sampled")
         samples = [
@@ -396,7 +397,8 @@ def _exact_step(wavelengths: Array) -> float | None:
     is none.
     """
     n = len(wavelengths)
-    first, last = wavelengths[0], wavelengths[-1]
+    first = wavelengths[0]
+    last = wavelengths[-1]
     for step in (
         wavelengths[1] - first,
         (last - first) / (n - 1),

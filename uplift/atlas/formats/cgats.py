@@ -21,7 +21,8 @@ from uplift.atlas.tables.read import read_grid
 from uplift.common.csv import split_line
 from uplift.common.text import parse_float
 
-FORMAT, DATA = "DATA_FORMAT", "DATA"
+FORMAT = "DATA_FORMAT"
+DATA = "DATA"
 TOKEN = re.compile(r'"((?:[^"]|"")*)"|(\S+)')
 KEYWORD = re.compile(r'(\w+)\s+(?:"((?:[^"]|"")*)"|(.+))')
 LIGHT_SOURCES = re.compile(r'^\s*DEVICE_CLASS\s+"?DISPLAY', re.MULTILINE)
@@ -67,7 +68,9 @@ def _parse(document: Document) -> tuple[list[str], list[Row]]:
     """Return the lines of keywords, and the fields and sets as rows. Raise
     `AtlasError`.
     """
-    preamble, fields, sets = list[str](), list[Cell](), list[Row]()
+    preamble = list[str]()
+    fields = list[Cell]()
+    sets = list[Row]()
     section = ""
     for line, text in enumerate(_lines(document), 1):
         word = text.strip()

@@ -44,23 +44,24 @@ def read(document: Document) -> Measurements:
             XmlParser(config=lenient).from_bytes(document.data, cxf3.CxF), document.path
         )
     if not found.spectra and not found.skipped:
-        problem, hint = (
-            "has no object with a spectrum",
-            "export the spectra with the colours",
-        )
+        problem = "has no object with a spectrum"
+        hint = "export the spectra with the colours"
         raise document.location.error(problem, hint, code="not-an-atlas")
     return found
 
 
 def _content(cxf: Any, path: str) -> Measurements:
-    resources, information = cxf.resources, cxf.file_information
+    resources = cxf.resources
+    information = cxf.file_information
     objects = (
         resources.object_collection.object_value
         if resources and resources.object_collection
         else []
     )
     specifications = _measurements(resources)
-    spectra, skipped, colours = list[Spectrum](), list[SkippedEntry](), set[str]()
+    spectra = list[Spectrum]()
+    skipped = list[SkippedEntry]()
+    colours = set[str]()
     conditions = set[str]()
     for each in objects:
         name = (each.name or each.id or "").strip()

@@ -30,7 +30,8 @@ from uplift.common.errors import AtlasError
 from uplift.common.files import read_bytes
 from uplift.common.text import pluralise
 
-HEADER, LIBRARY = ".hdr", ".sli"
+HEADER = ".hdr"
+LIBRARY = ".sli"
 MAGIC = b"ENVI"
 FILE_TYPE = "ENVI Spectral Library"
 FACTOR, IGNORED = "reflectance scale factor", "data ignore value"
@@ -68,10 +69,8 @@ def read(document: Document) -> Measurements:
             raise location.error(problem, HINT)
         library = envi.open(os.fspath(header), os.fspath(data))
         names = list(map(one_line, library.names))
-        centers, values = (
-            library.bands.centers,
-            np.asarray(library.spectra, dtype=float),
-        )
+        centers = library.bands.centers
+        values = np.asarray(library.spectra, dtype=float)
         scales = tuple(_scale(fields, location))
         if IGNORED in fields:
             values[np.isclose(values, float(fields[IGNORED]), rtol=1e-6, atol=0)] = (

@@ -116,7 +116,8 @@ def _extent(content: bytes) -> tuple[int, int]:
     for kind, text in TAG.findall(content):
         place = PLACE.search(text)
         if kind == b"row":
-            row, column = (int(place[2]) if place else row + 1), 0
+            row = int(place[2]) if place else row + 1
+            column = 0
             continue
         if place:
             row = int(place[2])
@@ -126,5 +127,6 @@ def _extent(content: bytes) -> tuple[int, int]:
         else:
             column += 1
         if not text.endswith(b"/"):  # a format without a value
-            height, width = max(height, row), max(width, column)
+            height = max(height, row)
+            width = max(width, column)
     return height, width

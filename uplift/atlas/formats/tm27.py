@@ -19,11 +19,10 @@ def read(document: Document) -> Measurements:
     with parsed_by("colour-science", "IES TM-27 files", document):
         found = colour.SpectralDistribution_IESTM2714(document.path).read()
         quantity = one_line(found.spectral_quantity).lower()
-        described, date = (
-            one_line(found.header.description),
-            one_line(found.header.report_date),
-        )
-        nm, values = found.wavelengths.tolist(), found.values.tolist()
+        described = one_line(found.header.description)
+        date = one_line(found.header.report_date)
+        nm = found.wavelengths.tolist()
+        values = found.values.tolist()
     name = "reflectance" if quantity in REFLECTANCES else quantity
     return Measurements(
         (

@@ -127,10 +127,8 @@ def parse_label(text: str) -> Label | None:
     match = LABEL.fullmatch(text.strip())
     if match is None:
         return None
-    prefix, unit = (
-        re.sub(r"[^a-zλρτ%]", "", match[1].casefold()),
-        find_unit(match[3] or ""),
-    )
+    prefix = re.sub(r"[^a-zλρτ%]", "", match[1].casefold())
+    unit = find_unit(match[3] or "")
     # Without a unit, R9 is a colour and R400 a wavelength.
     if unit is None and len(re.split("[.,]", match[2])[0]) not in (3, 4):
         return None

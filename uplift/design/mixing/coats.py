@@ -164,10 +164,8 @@ def make_coat(
             pigments.duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), thickness),
             medium.surface,
         )
-    surface, spectra = (
-        medium.surface,
-        [*ingredients.spectra, *ingredients.measured_on_black],
-    )
+    surface = medium.surface
+    spectra = [*ingredients.spectra, *ingredients.measured_on_black]
     dark = sum(bool((surface.remove(one) < -SLACK).any()) for one in spectra)
     if dark:
         problem = (
@@ -277,7 +275,8 @@ def ramp(parts: ArrayLike, steps: int) -> Array:
     ends = np.diag(optics.as_amounts(parts))
     if len(ends) < 2:
         return np.empty((0, len(ends)))
-    positions, stops = np.linspace(0, len(ends) - 1, steps), np.arange(len(ends))
+    positions = np.linspace(0, len(ends) - 1, steps)
+    stops = np.arange(len(ends))
     return np.stack([np.interp(positions, stops, column) for column in ends.T], axis=-1)
 
 

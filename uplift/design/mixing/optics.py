@@ -148,7 +148,9 @@ def diffuse_reflectance(index: float) -> float:
 
     Fishkin 1983 prints 8n + 1² for 6 (n + 1)².
     """
-    n, n2, n4 = index, index**2, index**4
+    n = index
+    n2 = index**2
+    n4 = index**4
     if n == 1:
         return 0.0
     return float(

@@ -93,7 +93,8 @@ class PowerOfReflectance:
         return np.asarray(reflectance**self.exponent)
 
 
-SQUARE_ROOT, CONSTANT = PowerOfReflectance(0.5), PowerOfReflectance(0.0)
+SQUARE_ROOT = PowerOfReflectance(0.5)
+CONSTANT = PowerOfReflectance(0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +137,8 @@ def dispersive(sensor: Sensor, further: ArrayLike = ()) -> Dispersive:
     )
     distance = outer[:, None] - inner
     weights = np.exp(-np.abs(distance) / REACH)
-    below, above = weights * (distance >= 0), weights * (distance <= 0)
+    below = weights * (distance >= 0)
+    above = weights * (distance <= 0)
     imbalance = np.zeros((len(outer), len(outer)))
     imbalance[:, : len(inner)] = (
         below / below.sum(axis=1)[:, None] - above / above.sum(axis=1)[:, None]
@@ -170,7 +172,8 @@ class Pigment:
         """Return the reflectance (..., N) of opaque paint, the limit X → ∞
         (eq. 10.5).
         """
-        K, S = self.absorption, self.scattering
+        K = self.absorption
+        S = self.scattering
         return np.asarray(S / np.maximum(K + S + self.gamma, TINY))
 
     def layer(self, thickness: ArrayLike) -> Layer:
@@ -192,7 +195,8 @@ class Pigment:
         """Return the reflectance (..., N) of opaque paint in Amy's approximation for
         strong absorption (eq. 10.4).
         """
-        K, S = self.absorption, self.scattering
+        K = self.absorption
+        S = self.scattering
         return np.asarray(S / np.maximum(2 * (K + S), TINY))
 
 
@@ -212,7 +216,8 @@ def from_black_and_white(on_black: ArrayLike, on_white: ArrayLike) -> Pigment:
     γ). These forms do not cancel for S → 0 or K → 0. Raises `ColourError` if no paint
     has both reflectances, or if they do not differ enough.
     """
-    R0, R1 = np.asarray(on_black, dtype=float), np.asarray(on_white, dtype=float)
+    R0 = np.asarray(on_black, dtype=float)
+    R1 = np.asarray(on_white, dtype=float)
     T = np.sqrt(np.maximum(R1 - (1 + R1) * R0 + R0**2, 0))
     if not (T > MIN_TRANSMITTANCE).all():
         problem = "the layer hides the ground, or is lighter on the darker ground"
@@ -246,9 +251,14 @@ def duntley_layer(beam: Flux, diffuse: Flux, thickness: float) -> DirectedLayer:
     """
     inner = Pigment(diffuse.absorption, diffuse.backward)
     layer = inner.layer(thickness)
-    r, tau = layer.reflectance, layer.transmittance
-    K, B, gamma = inner.absorption, inner.scattering, inner.gamma
-    B1, F1, S1 = beam.backward, beam.forward, beam.backward + beam.forward
+    r = layer.reflectance
+    tau = layer.transmittance
+    K = inner.absorption
+    B = inner.scattering
+    gamma = inner.gamma
+    B1 = beam.backward
+    F1 = beam.forward
+    S1 = beam.backward + beam.forward
 
     def one_side(K1: Array) -> Array:
         mu = K1 + S1
@@ -284,10 +294,8 @@ def read_constants(path: StrPath, wavelengths: Array) -> Array:
     document = read_document(path)
     (_, found), samples = read_any(document), {}
     for spectrum in () if isinstance(found, Atlas) else found.spectra:
-        nm, values = (
-            np.asarray(spectrum.wavelengths, dtype=float),
-            np.asarray(spectrum.values, dtype=float),
-        )
+        nm = np.asarray(spectrum.wavelengths, dtype=float)
+        values = np.asarray(spectrum.values, dtype=float)
         if not (np.isfinite(values) & (values >= 0)).all():
             location = document.location.at(spectrum.line, spectrum.name)
             raise location.error(

@@ -158,8 +158,10 @@ def hsl_to_rgb(hsl: ArrayLike) -> Array:
 def rgb_to_hsl(rgb: ArrayLike) -> Array:
     """Convert RGB (..., 3) in [0, 1] to hue, saturation and lightness."""
     rgb = np.asarray(rgb, dtype=float)
-    largest, smallest = rgb.max(axis=-1), rgb.min(axis=-1)
-    chroma, lightness = largest - smallest, (largest + smallest) / 2
+    largest = rgb.max(axis=-1)
+    smallest = rgb.min(axis=-1)
+    chroma = largest - smallest
+    lightness = (largest + smallest) / 2
     max_chroma = np.minimum(2 * lightness, 2 - 2 * lightness)
     red, green, blue = np.moveaxis(rgb, -1, 0)
     safe = np.where(chroma > 0, chroma, 1)

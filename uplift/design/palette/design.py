@@ -77,7 +77,8 @@ def design(palette: Palette, model: FactorModel) -> Design:
                 ),
                 hint="give one of them, or remove the goal",
             )
-    where, x = unknowns(palette), solve(equations(palette, model))
+    where = unknowns(palette)
+    x = solve(equations(palette, model))
 
     def spectra(kind: str, specs: tuple[SpectrumSpec, ...]) -> Array:
         return np.array(
@@ -124,13 +125,12 @@ def matrix(design: Design) -> Matrix:
         Targets and colours (M, L, 3) of M materials under L lights, and their ΔE00
         against the white of the display.
     """
-    palette, model = design.palette, design.model
+    palette = design.palette
+    model = design.model
     screen = screen_matrix(palette.sensor)
     obtained = (design.reflectances[:, None] * design.powers) @ screen.T
-    surfaces, lights = (
-        model.reflectance(design.reflectances),
-        model.light(design.powers),
-    )
+    surfaces = model.reflectance(design.reflectances)
+    lights = model.light(design.powers)
     factor = model.rgb(model.product(surfaces[:, None], lights))
     target = np.full_like(obtained, np.nan)
     for goal in palette.goals:
@@ -191,7 +191,8 @@ def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
     tuple of UnmetGoal
         Colours missed by a visible difference, then differences that are too small.
     """
-    colours, palette = matrix(found), found.palette
+    colours = matrix(found)
+    palette = found.palette
     fitted = colours.factor if palette.fit == "factor-model" else colours.obtained
     errors = {
         goal: float(colours.delta_e[palette.cell(goal.material, goal.light)])
@@ -292,7 +293,8 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
     PaletteError
         If no material can be written.
     """
-    entries, skipped = [], []
+    entries = []
+    skipped = []
     for material, values in zip(
         design.palette.materials, design.reflectances, strict=True
     ):

@@ -79,7 +79,8 @@ def equations(palette: Palette, model: FactorModel) -> Equations:
         for position, block in part.blocks:
             matrix[top : top + len(part.values), position] = block
         top += len(part.values)
-    low, high = np.empty(count), np.empty(count)
+    low = np.empty(count)
+    high = np.empty(count)
     specs = {("light", spec.name): spec for spec in palette.lights}
     specs |= {("material", spec.name): spec for spec in palette.materials}
     for key, position in where.items():
@@ -99,8 +100,10 @@ def solve(given: Equations) -> Array:
     """
     x = np.zeros(given.matrix.shape[1])
     for rows, columns in _independent_blocks(given.matrix):
-        matrix, values = given.matrix[np.ix_(rows, columns)], given.values[rows]
-        low, high = given.low[columns], given.high[columns]
+        matrix = given.matrix[np.ix_(rows, columns)]
+        values = given.values[rows]
+        low = given.low[columns]
+        high = given.high[columns]
         if len(values) and np.isfinite([low, high]).any():
             x[columns] = solve_bounded(matrix, values, low, high)
         else:
@@ -131,8 +134,10 @@ def _colours(palette: Palette, model: FactorModel, where: Unknowns) -> Iterator[
     unknowns too (eq. 24).
     """
     for goal in palette.goals:
-        material, light = palette.material(goal.material), palette.light(goal.light)
-        weight, blocks = goal.weight / np.sqrt(3), []
+        material = palette.material(goal.material)
+        light = palette.light(goal.light)
+        weight = goal.weight / np.sqrt(3)
+        blocks = []
         target = np.zeros(3) if goal.rgb is None else goal.rgb
         for key, by_spectra, by_model in _colour_maps(palette, model, material, light):
             block = by_model if palette.fit == "factor-model" else by_spectra

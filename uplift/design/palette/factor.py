@@ -117,7 +117,8 @@ def factor_model(
     paths = make_light_paths(reflectances, lights)
     principal, projection = _principal_basis(sensor, paths.prod(axis=0), count)
     transform = sharpen(sensor, principal, projection, paths)
-    basis, projection = principal @ np.linalg.inv(transform), transform @ projection
+    basis = principal @ np.linalg.inv(transform)
+    projection = transform @ projection
     matrix = screen_matrix(sensor) @ basis
     single = make_light_paths(reflectances, np.ones((1, len(sensor.wavelengths))))
     tint = _light_projection(sensor, single.prod(axis=0), projection, matrix)

@@ -29,10 +29,14 @@ DEPTH = 0.13  # optical depth of the skin at normal incidence
 BALL, RADIUS = (0.0, 0.2), 0.74  # centre and radius of the ball in a square of ±1
 # Height of the row of beads, largest radius, width of the row, and largest distance
 # between beads.
-BEADS, BEAD, SPAN, STEP = -0.79, 0.135, 1.76, 0.42
+BEADS = -0.79
+BEAD = 0.135
+SPAN = 1.76
+STEP = 0.42
 AMBIENT = 0.22
 # Directions of two lights (x right, y up, z to the viewer), and their strengths.
-KEY, FILL = (np.array([-0.55, 0.57, 0.61]), 0.68), (np.array([0.75, 0.05, 0.66]), 0.22)
+KEY = (np.array([-0.55, 0.57, 0.61]), 0.68)
+FILL = (np.array([0.75, 0.05, 0.66]), 0.22)
 YAW, PITCH = np.radians(
     [40, 27]
 )  # rotation of the removed octant x, y, z > 0 towards the viewer
@@ -74,7 +78,8 @@ def _add_samples(weights: Weights, x: Array, y: Array) -> None:
     dark = np.exp(-np.maximum(points, 0) / CORNER).sum(axis=1) - 1
     shade = _shade(normals) * np.where(is_cut, 1 - 0.3 * np.clip(dark, 0, 2), 1)
     if first:
-        dx, dy = x[columns[met]] - BALL[0], y[rows[met]] - BALL[1]
+        dx = x[columns[met]] - BALL[0]
+        dy = y[rows[met]] - BALL[1]
         shade *= 1 - _opacity(np.sqrt(RADIUS**2 - dx**2 - dy**2) / RADIUS)
     weights[rows[met], columns[met], first + layer] += shade
 
@@ -90,7 +95,8 @@ def _intersect_sphere(
     """Return rows and columns (k,) of the samples on a sphere, and its normals (k, 3)
     there.
     """
-    dx, dy = (x - centre[0]) / radius, (y - centre[1]) / radius
+    dx = (x - centre[0]) / radius
+    dy = (y - centre[1]) / radius
     square = 1 - dx**2 - dy[:, None] ** 2
     rows, columns = np.nonzero(square > 0)
     return (
@@ -110,7 +116,8 @@ def _intersect_opened(
     they lie on the cut.
     """
     axes = cut_axes()
-    rotated, direction = points @ axes, axes[2]
+    rotated = points @ axes
+    direction = axes[2]
     cut = np.asarray((rotated > 0).all(axis=1))
     steps = rotated / direction
     wall_point = rotated - steps.min(axis=1, keepdims=True) * direction
@@ -149,7 +156,8 @@ def read_weights(
     codes = greys if labels is None else _parse_labels(names, labels)
     with open_image(path) as image:
         part = image.parts[0]
-        width, height = part.window.width, part.window.height
+        width = part.window.width
+        height = part.window.height
         if width * height > MAX_PIXELS:
             problem = (
                 f"image must have at most {MAX_PIXELS:,} pixels, got {width} × {height}"

@@ -44,10 +44,8 @@ def plot_matrix(
     modelled ones right below.
     """
     rows, columns = colours.delta_e.shape
-    width, height = (
-        max(NAMES + CELL[0] * columns, MIN_WIDTH),
-        TOP + CELL[1] * rows + 0.4,
-    )
+    width = max(NAMES + CELL[0] * columns, MIN_WIDTH)
+    height = TOP + CELL[1] * rows + 0.4
     figure = new_figure(width, height, layout=None)
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(0, width), ylim=(height, 0))

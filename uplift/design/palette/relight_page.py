@@ -79,7 +79,9 @@ def relighting(title: str, design: Design, weights: NDArray[np.float32]) -> Reli
     """Prepare a picture, weights (H, W, n), of a palette's materials to be lit by its
     lights.
     """
-    palette, model, colours = design.palette, design.model, matrix(design)
+    palette = design.palette
+    model = design.model
+    colours = matrix(design)
     if len(palette.materials) > MAX_MATERIALS:
         raise OptionError(
             f"a picture must have at most {MAX_MATERIALS} materials, got "

@@ -58,7 +58,8 @@ def sharpen(sensor: Sensor, basis: Array, projection: Array, paths: Array) -> Ar
     from scipy.linalg import null_space, qr
     from scipy.optimize import least_squares
 
-    white, screen = projection.sum(axis=1), screen_matrix(sensor)
+    white = projection.sum(axis=1)
+    screen = screen_matrix(sensor)
     target = paths.prod(axis=0) @ screen.T
     problem = SharpeningProblem(
         fixed=np.outer(np.ones_like(white), white) / (white @ white),

@@ -73,7 +73,8 @@ def read_palette(path: StrPath) -> Palette:
     """
     file = read_toml(path, PaletteError)
     table = file.validate(_PaletteTable)
-    sensor, folder = observer.sensor(), file.path.parent
+    sensor = observer.sensor()
+    folder = file.path.parent
     for number, difference in enumerate(table.apart):
         for material in difference.materials:
             _check_known(
@@ -428,7 +429,8 @@ def _goals(
 def _free_range(
     file: SpecFile, name: str, colours: _FreeRange, sensor: Sensor
 ) -> tuple[Array, Array]:
-    low, high = colours.low.rgb(sensor), colours.high.rgb(sensor)
+    low = colours.low.rgb(sensor)
+    high = colours.high.rgb(sensor)
     if not (low < high).all():
         text = (
             f"must have low < high in every channel, got {low.round(4).tolist()} and "

@@ -46,7 +46,8 @@ from uplift.models.sigmoid import evaluate_unscaled, unscaled
 MAGIC = b"SPEC"
 RES = 64
 """Resolution of Mitsuba's own table."""
-MIN_RES, MAX_RES = 2, 256
+MIN_RES = 2
+MAX_RES = 256
 DARK, DARK_COLOUR = 1e-3, 1e-4
 """Up to this level, the difference ε of a component of linear RGB that weighs as much
 as the distance of a spectrum from grey; above, ε falls with the level. Very dark
@@ -55,13 +56,11 @@ responds.
 """
 FAINT = 1e-6
 """Reflectance of black, and 1 minus that of white, whose multipliers are infinite."""
-FIRST_DAMPING, MAX_DAMPING, MAX_STEPS, SMALL_GAIN, SMALL_PART = (
-    1e-6,
-    1e6,
-    200,
-    1e-2,
-    1e-4,
-)
+FIRST_DAMPING = 1e-6
+MAX_DAMPING = 1e6
+MAX_STEPS = 200
+SMALL_GAIN = 1e-2
+SMALL_PART = 1e-4
 BLOCK = 1 << 10
 """Points of a level that are fitted at a time."""
 START, END, STEP = 360.0, 830.0, 5.0
@@ -220,15 +219,11 @@ def _nearest_to_grey(
     g are the multipliers of the grey of this level, and s their size, at least 1.
     """
     grey = MODEL.from_reflectance(np.clip(level, FAINT, 1 - FAINT)) * MODEL.constant()
-    size, unit = (
-        np.maximum(np.abs(grey).max(), 1),
-        DARK_COLOUR * DARK / max(level, DARK),
-    )
-    p, rows, damping = (
-        start.copy(),
-        np.arange(len(start)),
-        np.full(len(start), FIRST_DAMPING),
-    )
+    size = np.maximum(np.abs(grey).max(), 1)
+    unit = DARK_COLOUR * DARK / max(level, DARK)
+    p = start.copy()
+    rows = np.arange(len(start))
+    damping = np.full(len(start), FIRST_DAMPING)
     left, jacobian = _linearised(sensor, p, target, unit)
     cost = (left**2).sum(axis=0) + (((grey - p) / size) ** 2).sum(axis=1)
     for _ in range(MAX_STEPS):
@@ -247,14 +242,14 @@ def _nearest_to_grey(
         better = gain > 0
         p[rows[better]], cost[rows[better]] = trial[better], reached[better]
         damping[rows] *= np.where(better, 1 / 4, 4)
-        left, jacobian = (
-            np.where(better, after, left),
-            np.where(better, there, jacobian),
-        )
+        left = np.where(better, after, left)
+        jacobian = np.where(better, there, jacobian)
         going = ~better & (damping[rows] < MAX_DAMPING) | (
             gain > SMALL_GAIN + SMALL_PART * reached
         )
-        rows, left, jacobian = rows[going], left[:, going], jacobian[:, :, going]
+        rows = rows[going]
+        left = left[:, going]
+        jacobian = jacobian[:, :, going]
         if not rows.size:
             break
     return p
@@ -295,11 +290,9 @@ def _interpolated(scale: Array, table: Floats, rgb: Array) -> Array:
     """
     from scipy.interpolate import RegularGridInterpolator
 
-    largest, rows, even = (
-        rgb.argmax(axis=1),
-        np.arange(len(rgb)),
-        np.linspace(0, 1, len(scale)),
-    )
+    largest = rgb.argmax(axis=1)
+    rows = np.arange(len(rgb))
+    even = np.linspace(0, 1, len(scale))
     level = np.maximum(rgb[rows, largest], np.finfo(float).tiny)  # of black
     places = np.stack(
         [level, *(rgb[rows, (largest + step) % 3] / level for step in (2, 1))], axis=-1

@@ -45,7 +45,9 @@ from uplift.io.export.outputs import output_files
 from uplift.io.export.program import read_source
 from uplift.lookup import Cube
 
-SIZE, MIN_SIZE, MAX_SIZE = 192, 2, 1024
+SIZE = 192
+MIN_SIZE = 2
+MAX_SIZE = 1024
 SHARE = 0.5
 """Luminance of a stored reflectance, as a fraction of the largest of its chromaticity.
 """
@@ -158,8 +160,10 @@ class Scene:
 
 
 def _scene(sensor: Sensor, light: Illuminant | None) -> Scene:
-    given, cmfs = light or sensor.illuminant, matching_functions(DEFAULT_OBSERVER)
-    xyz, power = cmfs / cmfs[:, 1].sum(), illuminant_spd(given)
+    given = light or sensor.illuminant
+    cmfs = matching_functions(DEFAULT_OBSERVER)
+    xyz = cmfs / cmfs[:, 1].sum()
+    power = illuminant_spd(given)
     power = power / (power @ xyz[:, 1])
     # The reader's RGB are adapted to the light by CAT16; the cube's have the white of
     # its illuminant.
@@ -187,7 +191,8 @@ def _spectra(
     white = scene.white / scene.white.sum()
     # white + f (c − white) leaves the gamut of the cube at f = inside, and that of
     # lights of narrow bands at f = real.
-    start, change = scene.xyz_to_rgb @ white, (unit - white) @ scene.xyz_to_rgb.T
+    start = scene.xyz_to_rgb @ white
+    change = (unit - white) @ scene.xyz_to_rgb.T
     room = np.divide(
         (1 - MARGIN) * start,
         -change,

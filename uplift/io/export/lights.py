@@ -36,7 +36,9 @@ def write_light_program(
             f"emission tables cannot be written in '{style}'",
             hint=f"use {' or '.join(STYLES)}",
         )
-    path, form, table = Path(path), check_form(style, form), make_light_table(data)
+    path = Path(path)
+    form = check_form(style, form)
+    table = make_light_table(data)
     words = {
         "digest": emission_digest(data),
         "space": comment(data.space),
@@ -52,9 +54,11 @@ def make_light_table(data: EmissionData) -> Table:
     """Lay out spectra of the nodes, with the first knot repeated at the end, spectra of
     lamps, and what finds them.
     """
-    lattice, lamps = data.lattice, data.entries
+    lattice = data.lattice
+    lamps = data.entries
     kept = lamps.radius >= MIN_RADIUS
-    uv, radius = lamps.uv[kept], lamps.radius[kept]
+    uv = lamps.uv[kept]
+    radius = lamps.radius[kept]
     knots, rings = lattice.shape
     angles, inverses = lattice.sectors()
     numbers, offsets = concatenate(
@@ -105,7 +109,8 @@ def _bins(uv: Array, radius: Array) -> Array:
     """Return the position of each bin's list of lamps, and the lists, each after its
     length.
     """
-    places, lists = np.full((BIN_COUNT, BIN_COUNT), BIN_COUNT**2), [0]
+    places = np.full((BIN_COUNT, BIN_COUNT), BIN_COUNT**2)
+    lists = [0]
     for (row, column), listed in touched_bins(uv, radius, BIN_COUNT).items():
         places[row, column] = BIN_COUNT**2 + len(lists)
         lists += [len(listed), *listed]

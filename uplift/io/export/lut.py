@@ -46,11 +46,14 @@ from uplift.lookup.blocks import blockwise
 from uplift.models import Moments, evaluate
 from uplift.models.moments import WARPS, multipliers_of_rounded
 
-SIZE, MIN_SIZE, MAX_SIZE = 33, 2, 129
+SIZE = 33
+MIN_SIZE = 2
+MAX_SIZE = 129
 CLF = "Academy/ASC Common LUT Format"
 CURVE = {"gamma": [2.4, 2.4, 2.4, 1.0], "offset": [0.055, 0.055, 0.055, 0.0]}
 """The sRGB curve, as OpenColorIO states it."""
-FOURIER_COUNT, LEVEL = 3, 16
+FOURIER_COUNT = 3
+LEVEL = 16
 
 
 def write_lut(
@@ -175,7 +178,8 @@ def write_fourier(
     33; a ``.png`` has all codes. Returns the errors under the light of the cube, with
     codes of 8 bits before and after.
     """
-    data, path = cube.data, Path(path)
+    data = cube.data
+    path = Path(path)
     if not isinstance(data.model, Moments) or data.model.count != FOURIER_COUNT:
         raise OptionError(
             "Fourier sRGB needs a cube of three moments",
@@ -216,10 +220,8 @@ def _to_moments(data: CubeData) -> Array:
     Its inverse takes c to c₀ + S (c₁, c₂), where S minimises the distance to the RGB of
     the nodes. Rows of S are scaled down so that all nodes are in [0, 1].
     """
-    moments, rgb = (
-        data.points.coefficients[data.points.present],
-        data.points.rgb[data.points.present],
-    )
+    moments = data.points.coefficients[data.points.present]
+    rgb = data.points.rgb[data.points.present]
     slopes = np.linalg.lstsq(moments[:, 1:], rgb - moments[:, :1])[0]
     chroma = moments[:, 1:] @ slopes
     room = np.where(chroma < 0, moments[:, :1], 1 - moments[:, :1])
@@ -234,7 +236,8 @@ def _fourier_table(cube: Cube, nodes: Array, matrix: Array) -> Floats:
     """Return codes in [0, 1] (res, res, res, 3) of sRGB codes, by blue,
     green and red.
     """
-    size, inverse = len(nodes), np.linalg.inv(matrix)
+    size = len(nodes)
+    inverse = np.linalg.inv(matrix)
     table = np.empty((size, size, size, 3), dtype=np.float32)
     rgb = np.empty((size, size, 3))
     rgb[..., 1], rgb[..., 0] = np.meshgrid(decode(nodes), decode(nodes), indexing="ij")
@@ -283,7 +286,8 @@ def _fourier_errors(cube: Cube, table: Floats, matrix: Array) -> TableError:
     """
     from scipy.interpolate import RegularGridInterpolator
 
-    sensor, model = cube.data.sensor, cube.data.model
+    sensor = cube.data.sensor
+    model = cube.data.model
     assert isinstance(model, Moments)
     interpolator = RegularGridInterpolator([np.linspace(0, 1, len(table))] * 3, table)
 

@@ -91,7 +91,9 @@ def write_program(
     if mode not in PROGRAM_MODES:
         raise unknown_name(mode, PROGRAM_MODES, "mode")
     check_complete(data, "a program")
-    path, form, table = Path(path), check_form(style, form), make_table(data, mode)
+    path = Path(path)
+    form = check_form(style, form)
+    table = make_table(data, mode)
     text = cube_program(data, table, style, mode, path.stem, form)
     written = write_files(
         text, table, path, form, per_line=table.constants["STRIDE"], force=force
@@ -145,7 +147,9 @@ def compose(
 
     ``up_`` and ``UP_`` in the source become the name of the program.
     """
-    language, name, image = LANGUAGES[style], identifier(stem), table.image()
+    language = LANGUAGES[style]
+    name = identifier(stem)
+    image = table.image()
     text = read_source(f"{kind}.c")
     text = text.replace(
         "${macros}", "".join(read_source(each) for each in language.macros)

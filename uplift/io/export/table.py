@@ -75,7 +75,8 @@ def make_table(data: CubeData, mode: str) -> Table:
     Rows hold multipliers, whose spectra are interpolated, in mode ``spectra``, or
     coefficients in mode ``moments``.
     """
-    model, size = data.model, data.lattice.size
+    model = data.model
+    size = data.lattice.size
     stride = -(-(model.count + 1) // TEXEL) * TEXEL
     lists, tags = _lists(data, mode)
     stored = [data.points.coefficients, data.atlas.coefficients]

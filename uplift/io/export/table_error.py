@@ -50,7 +50,8 @@ def find_errors(error: ErrorFunction, atlas: Array) -> TableError:
     codes = np.concatenate([even, special])
     errors = np.concatenate([even_errors, error(special)])
     starts = np.argsort(-errors)[:STARTS]
-    codes, errors = codes[starts], errors[starts]
+    codes = codes[starts]
+    errors = errors[starts]
     for step in STEPS:
         codes, errors = _climb(
             error, codes, errors, random.uniform(-step, step, (TRIALS, STARTS, 3))
@@ -71,5 +72,6 @@ def _climb(
     trial_errors = error(trials.reshape(-1, 3)).reshape(trials.shape[:2])
     all_codes = np.concatenate([codes[None], trials])
     all_errors = np.concatenate([errors[None], trial_errors])
-    best, columns = all_errors.argmax(axis=0), np.arange(len(codes))
+    best = all_errors.argmax(axis=0)
+    columns = np.arange(len(codes))
     return all_codes[best, columns], all_errors[best, columns]

@@ -87,10 +87,12 @@ def _make(props: Any) -> Any:
 
     is_light = props.get("emission", False)
     if _source(props, SOURCES) == "rgb":
-        rgb, at = _parse_rgb(props["rgb"]), np.arange(START, END + 1)
+        rgb = _parse_rgb(props["rgb"])
+        at = np.arange(START, END + 1)
         if is_light:
             return _constant(_table(props).spectrum(rgb, at))
-        cube, method = _cube(props), str(props.get("out_of_gamut", "error"))
+        cube = _cube(props)
+        method = str(props.get("out_of_gamut", "error"))
         if cube.data.outside_boxes.find(rgb[None]).rows.size:
             uplifter = texels.prepare_texels(cube, method, of_entries=True)
             (_, multipliers), _ = uplifter.convert(rgb[None].astype(np.float32))
@@ -102,7 +104,8 @@ def _make(props: Any) -> Any:
         return _constant(
             cube.reflectance(map_to_gamut(rgb, cube.data.sensor, method).rgb, at)
         )
-    spectra, placement = _texels(props, is_light=is_light), texels.Placement.read(props)
+    spectra = _texels(props, is_light=is_light)
+    placement = texels.Placement.read(props)
     _warn_in_scalar_variants("texture")
     return make_texture(props, spectra, placement)
 
@@ -149,7 +152,8 @@ def _texels(props: Any, *, is_light: bool) -> texels.Texels:
         return spectra
     rgb: Values
     found: tuple[UpliftWarning, ...] = ()
-    counts, method = Counts(), "clip"
+    counts = Counts()
+    method = "clip"
     if is_light:
         table = _table(props)
         if path is None:
@@ -160,7 +164,8 @@ def _texels(props: Any, *, is_light: bool) -> texels.Texels:
             )
         spectra = texels.light_texels(table, rgb.astype(float))
     else:
-        cube, method = _cube(props), str(props.get("out_of_gamut", method))
+        cube = _cube(props)
+        method = str(props.get("out_of_gamut", method))
         uplifter = texels.prepare_texels(cube, method)
         if path is not None and path.is_file() and is_exr(path):
             rgb, counts, found = texels.read_colours(path, uplifter)

@@ -96,7 +96,8 @@ def uplift_texels(uplifter: Uplifter, rgb: Floats) -> tuple[Texels, Counts]:
     All texels have one number of multipliers: that of the cube's entries if a texel
     lies in the box of an entry, else that of its nodes.
     """
-    data, colours = uplifter.cube.data, rgb.reshape(-1, 3).astype(float)
+    data = uplifter.cube.data
+    colours = rgb.reshape(-1, 3).astype(float)
     if any(
         found.rows.size
         for found in (
@@ -205,10 +206,8 @@ def read_texels(path: Path) -> Texels | None:
         numbered = sorted(name for name in channels if NUMBERED.fullmatch(name))
         if not numbered:
             return None
-        model, numbers = (
-            _model(image.header_text("uplift.model"), len(numbered)),
-            _numbers(image, numbered),
-        )
+        model = _model(image.header_text("uplift.model"), len(numbered))
+        numbers = _numbers(image, numbered)
         if numbered[0].startswith("moment"):
             assert isinstance(model, Moments)
             numbers = blockwise(
@@ -228,7 +227,8 @@ def read_colours(
     """
     with open_image(path) as image:
         part, found = coloured_parts(image)[0]
-        channels, decode = converter.colour_channels(found), converter.decoder(part)
+        channels = converter.colour_channels(found)
+        decode = converter.decoder(part)
         bands, counts = zip(
             *(decode(channels.straight(rows)) for _, rows in image.bands(part)),
             strict=True,

@@ -51,7 +51,8 @@ def _basis(model: Model, wavelengths: Any) -> list[Any]:
     """Return the C basis functions of the linear part at ``wavelengths``."""
     one = dr.ones(type(wavelengths))
     if isinstance(model, Sigmoid):
-        middle, half = (model.start + model.end) / 2, (model.end - model.start) / 2
+        middle = (model.start + model.end) / 2
+        half = (model.end - model.start) / 2
         x = (dr.clip(wavelengths, model.start, model.end) - middle) / half
         return [x * x, x, one]
     assert isinstance(model, Moments)
@@ -96,10 +97,12 @@ def _texture_class(variant: str) -> type:
 
         def __init__(self, props: Any, texels: Texels, placement: Placement) -> None:
             super().__init__(props)
-            self.texels, self.placement = texels, placement
+            self.texels = texels
+            self.placement = placement
             self.to_uv = mi.Transform3f(placement.to_uv.astype(np.float32))
             numbers = placement.pad(texels.numbers)
-            nearest, linear = dr.FilterMode.Nearest, dr.FilterMode.Linear
+            nearest = dr.FilterMode.Nearest
+            linear = dr.FilterMode.Linear
             if isinstance(texels.model, Samples):
                 tensor = mi.TensorXf(numbers[..., None])
                 self.numbers = mi.Texture3f(tensor, filter_mode=linear, use_accel=False)
@@ -252,7 +255,8 @@ def _environment_class(variant: str) -> type:
                 time, sample1, sample2, sample3, active
             )
             si = dr.zeros(mi.SurfaceInteraction3f)
-            si.wavelengths, si.wi = ray.wavelengths, ray.d
+            si.wavelengths = ray.wavelengths
+            si.wi = ray.d
             grey = self.sampler.eval(si, active)
             radiance = self._radiance(-ray.d, ray.wavelengths, active)
             return ray, dr.select(grey > 0, weight * radiance / grey, 0)
@@ -278,10 +282,8 @@ def _environment_class(variant: str) -> type:
             ``envmap``.
             """
             local = self.to_local @ direction
-            u, v = (
-                dr.atan2(local.x, -local.z) / (2 * dr.pi),
-                dr.safe_acos(local.y) / dr.pi,
-            )
+            u = dr.atan2(local.x, -local.z) / (2 * dr.pi)
+            v = dr.safe_acos(local.y) / dr.pi
             height = self.texture.texels.numbers.shape[0]
             si = dr.zeros(mi.SurfaceInteraction3f)
             # The first and the last row lie at the poles.
@@ -298,8 +300,10 @@ def make_environment(props: Any, texels: Texels) -> Any:
 
 
 def _bilinear_weights(place: Any) -> tuple[Any, ...]:
-    x, y = place.x - 0.5, place.y - 0.5
-    x, y = x - dr.floor(x), y - dr.floor(y)
+    x = place.x - 0.5
+    y = place.y - 0.5
+    x = x - dr.floor(x)
+    y = y - dr.floor(y)
     return (1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y
 
 

@@ -26,7 +26,8 @@ VECTORS = re.compile(
     re.I,
 )
 """Names of layers of renderers whose X, Y and Z are vectors, not CIE XYZ."""
-XYZ, CHROMA = {"X", "Y", "Z"}, {"RY", "BY"}
+XYZ = {"X", "Y", "Z"}
+CHROMA = {"RY", "BY"}
 
 
 @dataclass(frozen=True)
@@ -156,7 +157,8 @@ def _layers(part: Part, letters: str) -> list[str]:
     if the part itself has them.
     """
     names = set(part.channels)
-    first, others = letters[0], letters[1:]
+    first = letters[0]
+    others = letters[1:]
     ends = [
         name[:-1]
         for name in part.channels

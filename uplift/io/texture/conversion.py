@@ -109,7 +109,8 @@ def convert(
             _layout(converter, image, part, colours, made_of) for part, colours in parts
         ]
         total = sum(layout.part.window.height for layout in layouts)
-        counts, done = Counts(), 0
+        counts = Counts()
+        done = 0
         with open_writer(
             target, [each.output for each in layouts], force=force
         ) as writer:
@@ -195,10 +196,8 @@ def _layout(
                 ),
                 hint="remove that channel",
             )
-        names, types = (
-            (*converted, *names),
-            (*(converter.depth,) * len(converted), *types),
-        )
+        names = (*converted, *names)
+        types = (*(converter.depth,) * len(converted), *types)
     modified = time.strftime(
         "%Y:%m:%d %H:%M:%S", time.gmtime(image.path.stat().st_mtime)
     )  # as EXIF writes it
@@ -233,7 +232,8 @@ def _write_band(
     """Convert and write a band. Its arrays are gone before those of the next, which
     halves the memory.
     """
-    others, counts = band[..., layout.others], Counts()
+    others = band[..., layout.others]
+    counts = Counts()
     values: tuple[Values, ...] = ()
     if layout.part.max_code:
         others = others / np.float32(layout.part.max_code)

@@ -50,7 +50,9 @@ def check_size(path: Path) -> None:
         if start[:4] != MAGIC:
             raise _damaged()
         is_multi_part = bool(int.from_bytes(start[4:], "little") & MULTI_PART)
-        is_first, attributes, channels = True, 0, 0
+        is_first = True
+        attributes = 0
+        channels = 0
         # Headers of attributes: name, type, size, value. An empty name ends a header,
         # and another one the last header of several.
         while (name := _name(file)) or (is_multi_part and not is_first):

@@ -188,7 +188,8 @@ class Image:
     ) -> Values:
         import OpenImageIO
 
-        window, kind = part.window, OpenImageIO.TypeDesc(dtype)
+        window = part.window
+        kind = OpenImageIO.TypeDesc(dtype)
         channels = (
             (0, len(part.channels)) if channel is None else (channel, channel + 1)
         )
@@ -222,7 +223,9 @@ def open_image(path: StrPath) -> Iterator[Image]:
     """
     import OpenImageIO
 
-    path, config, handle = Path(path), OpenImageIO.ImageSpec(), None
+    path = Path(path)
+    config = OpenImageIO.ImageSpec()
+    handle = None
     header: Mapping[str, Any] = {}
     config["oiio:UnassociatedAlpha"] = (
         1  # keep colours as stored, not multiplied by alpha

@@ -64,10 +64,8 @@ class LightUplifter(uplifter.Converter):
         return read
 
     def convert(self, rgb: Floats) -> uplifter.Converted:
-        lights, limit = (
-            rgb.astype(float),
-            np.finfo(np.float16 if self.depth == "half" else np.float32).max,
-        )
+        lights = rgb.astype(float)
+        limit = np.finfo(np.float16 if self.depth == "half" else np.float32).max
         wrong = ~self.table.contains(lights)
         lights[wrong] = self.table.rgb(
             self.table.spectrum(lights[wrong], outside="clip")

@@ -84,7 +84,10 @@ def _interpret(
     """Return the function from the numbers (…, 3) of a mask to weights (…, n). Raises
     `TextureError` for others.
     """
-    low, high, is_grey, has_black = np.inf, -np.inf, True, False
+    low = np.inf
+    high = -np.inf
+    is_grey = True
+    has_black = False
     for _, band in image.bands(part):
         colours = band[..., rgb]
         low, high = (
@@ -93,7 +96,8 @@ def _interpret(
         )  # NaN remains NaN
         is_grey &= bool((colours == colours[..., :1]).all())
         has_black |= bool((colours == 0).all(axis=-1).any())
-    is_integer, white = part.max_code > 0, part.max_code or 1
+    is_integer = part.max_code > 0
+    white = part.max_code or 1
     is_weight = low >= 0 and high <= white
     if is_integer and is_grey and high < cubes:
         return lambda numbers: np.asarray(
@@ -205,7 +209,8 @@ class MaskedUplifter(Converter):
             answered[rows & is_outside] += (
                 weight[rows & is_outside][:, None] * colours[kept]
             )
-            mixed, shared = is_mixed[rows], rows[is_mixed]
+            mixed = is_mixed[rows]
+            shared = rows[is_mixed]
             values[rows & ~is_mixed] += (
                 weight[rows & ~is_mixed][:, None] * found[~mixed]
             )

@@ -52,7 +52,8 @@ def read_picture(
     with open_image(path) as image:
         part, channels = coloured_parts(image)[0]
         decode = make_decoder(sensor, part, encoding, out_of_gamut, space)
-        mean, opacities = _Reducer(part, max_side, 3), _Reducer(part, max_side, 1)
+        mean = _Reducer(part, max_side, 3)
+        opacities = _Reducer(part, max_side, 1)
         counts = Counts()
         for first, band in image.bands(part):
             rgb, decoded = decode(channels.straight(band))
@@ -76,7 +77,8 @@ class _Reducer:
     """Means of squares of pixels, from bands of rows."""
 
     def __init__(self, part: Part, max_side: int, channels: int) -> None:
-        width, height = part.window.width, part.window.height
+        width = part.window.width
+        height = part.window.height
         self.step = -(-max(width, height) // max_side)
         self._columns = np.arange(0, width, self.step)
         self._total = np.zeros((-(-height // self.step), len(self._columns), channels))

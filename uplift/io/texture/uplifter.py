@@ -180,11 +180,10 @@ class Spectrum(PixelEncoding):
     def pixels(self, cube: Cube, threads: int) -> Pixels:
         from uplift.lookup import bulk
 
-        at, entries = (
-            as_wavelengths(self.wavelengths, cube.wavelengths),
-            cube.data.atlas.outside,
-        )
-        channels, outside = spectral_channels("T", at), None
+        at = as_wavelengths(self.wavelengths, cube.wavelengths)
+        entries = cube.data.atlas.outside
+        channels = spectral_channels("T", at)
+        outside = None
         if entries is not None:
             outside = entries.spectra.reflectance(
                 np.arange(len(entries.names)), at
@@ -205,7 +204,8 @@ class Moments(PixelEncoding):
     def pixels(self, cube: Cube, threads: int) -> Pixels:
         from uplift.lookup import bulk
 
-        model, entries = cube.data.model, cube.data.atlas.outside
+        model = cube.data.model
+        entries = cube.data.atlas.outside
         if not isinstance(model, models.Moments):
             raise OptionError(
                 f"moments need a moments cube, got a {model.name} cube",
@@ -234,13 +234,14 @@ class Multipliers(PixelEncoding):
     depths = ("float",)
 
     def pixels(self, cube: Cube, threads: int) -> Pixels:
-        data, entries = cube.data, cube.data.atlas.outside
-        function, model, outside = partial(refined_multipliers, data), data.model, None
+        data = cube.data
+        entries = cube.data.atlas.outside
+        function = partial(refined_multipliers, data)
+        model = data.model
+        outside = None
         if self.of_entries:
-            function, model = (
-                partial(extended_multipliers, data),
-                data.atlas.spectra.model,
-            )
+            function = partial(extended_multipliers, data)
+            model = data.atlas.spectra.model
         if entries is not None:
             own = (
                 entries.spectra.multipliers
@@ -348,7 +349,8 @@ class Uplifter(Converter):
             hits = self.boxes.find(rgb.reshape(-1, 3))
             if hits.rows.size:
                 return self._convert_outside(rgb, hits, self.outside)
-        data, colours = self.cube.data, rgb.reshape(-1, 3).astype(float)
+        data = self.cube.data
+        colours = rgb.reshape(-1, 3).astype(float)
         near = colours[is_inexact(data, colours)]
         is_off = (
             data.solid.signed_distance(near) > data.threshold if near.size else near
@@ -363,12 +365,11 @@ class Uplifter(Converter):
         """Mix the answers to mapped colours with those of entries, as their colours: t
         · mapped + (1 − t) · entry.
         """
-        data, colours = self.cube.data, rgb.reshape(-1, 3).copy()
-        requested, is_mixed, weight = (
-            colours[hits.rows],
-            hits.lattice_weight > 0,
-            hits.lattice_weight[:, None],
-        )
+        data = self.cube.data
+        colours = rgb.reshape(-1, 3).copy()
+        requested = colours[hits.rows]
+        is_mixed = hits.lattice_weight > 0
+        weight = hits.lattice_weight[:, None]
         # With the method "error", only the core of a box is answered.
         map_to_gamut(requested[is_mixed], self.sensor, self.out_of_gamut)
         method = "clip" if self.out_of_gamut == "error" else self.out_of_gamut

@@ -65,7 +65,8 @@ class OutputPart:
         spec.channelnames = self.channels
         if len(set(self.types)) > 1:
             spec.channelformats = tuple(map(OpenImageIO.TypeDesc, self.types))
-        spec.x, spec.y = window.x, window.y
+        spec.x = window.x
+        spec.y = window.y
         spec.full_x, spec.full_y, spec.full_width, spec.full_height = window.display
         spec.attribute("PixelAspectRatio", window.aspect)
         spec.attribute("compression", COMPRESSION)

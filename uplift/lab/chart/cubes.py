@@ -79,7 +79,8 @@ def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
     from uplift.fit.families import families_with
     from uplift.pipeline.build import build
 
-    atlas, unknown = task.kept if options.atlas else None, families_with(task.unseen)
+    atlas = task.kept if options.atlas else None
+    unknown = families_with(task.unseen)
     model: dict[str, Any] = {
         "dim": options.dim,
         "model": options.model,
@@ -262,20 +263,17 @@ def _method(options: CubeOptions, lookup: str) -> Method:
     fields: dict[str, Any] = {
         "dtype": "float64" if lookup == mode and mode != "bulk" else "float32"
     }
-    name, title = (
-        f"{options.name}-{lookup}",
-        f"{options.title}, {lookup.replace('-', ', ')}",
-    )
+    name = f"{options.name}-{lookup}"
+    title = f"{options.title}, {lookup.replace('-', ', ')}"
     label = f"{options.count} · {options.dim}³ {mode}"
     family = f"uplift, {options.model}{' with atlas' if options.atlas else ''}"
     prepare: Callable[..., PreparedMethod]
     if lookup.startswith("c-"):
-        name, title, label = (
-            f"c-{options.name}-{mode}",
-            f"C, {options.title}, {mode}",
-            f"C {label}",
-        )
-        family, prepare = "uplift, C export", partial(prepare_c, mode=mode)
+        name = f"c-{options.name}-{mode}"
+        title = f"C, {options.title}, {mode}"
+        label = f"C {label}"
+        family = "uplift, C export"
+        prepare = partial(prepare_c, mode=mode)
         call = (
             f"uplift export CUBE -o cube.h --mode {mode}; cube_reflectances(rgb, "
             "wavelengths, count, out)"
@@ -285,11 +283,9 @@ def _method(options: CubeOptions, lookup: str) -> Method:
             "needs": COMPILER,
         }
     elif mode == "bulk":
-        label, prepare, call = (
-            f"{label} f32",
-            prepare_bulk,
-            "uplift.bulk.spectra(cube)(rgb)",
-        )
+        label = f"{label} f32"
+        prepare = prepare_bulk
+        call = "uplift.bulk.spectra(cube)(rgb)"
     else:
         of_dtype = ', dtype="float32"' if lookup.endswith(FLOAT32) else ""
         label += " f32" if of_dtype else ""

@@ -81,7 +81,8 @@ def perturb_method(
     `uplift.lab.study.sensitivity`. Raises `OptionError`.
     """
     task = make_task({"macbeth": read_atlas("macbeth")})
-    grid, lights = task.sensor.wavelengths, (light, task.sensor.light)
+    grid = task.sensor.wavelengths
+    lights = (light, task.sensor.light)
     with warnings.catch_warnings(
         action="ignore"
     ):  # colour-science reports how it aligns wavelengths
@@ -184,12 +185,10 @@ def measure_methods(
     methods: Sequence[Method], task: Task, progress: ProgressCallback = ignore_progress
 ) -> Chart:
     """Measure methods at a task."""
-    results, begin, machine, effort = (
-        [],
-        time.perf_counter(),
-        environment(),
-        task.effort,
-    )
+    results = []
+    begin = time.perf_counter()
+    machine = environment()
+    effort = task.effort
     for method in methods:
         results.append(measure_method(method, task))
         progress(Progress("methods", len(results), len(methods)))
@@ -206,7 +205,9 @@ def measure_methods(
 
 def measure_method(method: Method, task: Task) -> MethodResult:
     """Measure one method."""
-    state, why, numbers = State.MEASURED, "", {}
+    state = State.MEASURED
+    why = ""
+    numbers = {}
     try:
         # Other packages warn, and so do cubes about the entries that all of them leave
         # out.
@@ -218,12 +219,11 @@ def measure_method(method: Method, task: Task) -> MethodResult:
             else:
                 numbers = _numbers(method, task)
     except NotInstalledError as error:
-        state, why = State.MISSING, str(error)
+        state = State.MISSING
+        why = str(error)
     except (BrokenError, ChildError) as error:
-        state, why = (
-            State.BROKEN,
-            f"{error}; it needs {method.needs}" if method.needs else str(error),
-        )
+        state = State.BROKEN
+        why = f"{error}; it needs {method.needs}" if method.needs else str(error)
     texts = {field.name: getattr(method, field.name) for field in fields(Description)}
     return MethodResult(
         **texts | {"label": method.label or method.title},
@@ -293,10 +293,8 @@ def _round_trips(
     rgb, spectra = _spectra(
         method, _guarded(method, prepared, sensor.wavelengths), task, task.rgb
     )
-    errors, claimed = (
-        delta_e_rgb(sensor, rgb, sensor.rgb(spectra)),
-        method.claimed_error,
-    )
+    errors = delta_e_rgb(sensor, rgb, sensor.rgb(spectra))
+    claimed = method.claimed_error
     if claimed is not None and errors.mean() > MAX_CLAIM_RATIO * claimed:
         raise BrokenError(
             f"mean round-trip ΔE00 is {errors.mean():.3g}, {claimed:g} is claimed"
@@ -335,7 +333,8 @@ def _spectra(
     """
     uplift(rgb[:1])
     step = len(rgb) if method.batch else SLOW_STEP
-    parts, begin = [], time.process_time()
+    parts = []
+    begin = time.process_time()
     for first in range(0, len(rgb), step):
         parts.append(uplift(rgb[first : first + step]))
         if time.process_time() - begin > task.effort.seconds_per_error:

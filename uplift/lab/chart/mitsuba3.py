@@ -89,7 +89,8 @@ def spectra(rgb: Array, wavelengths: Array) -> Array:
 
 def prepare_compiled(task: Task) -> PreparedMethod:
     """Load Mitsuba's vectorised variant, without the kernels of earlier calls."""
-    size, drjit = table_file().stat().st_size, import_module("drjit")
+    size = table_file().stat().st_size
+    drjit = import_module("drjit")
     if not drjit.has_backend(
         drjit.JitBackend.LLVM
     ):  # true does not mean that LLVM works
@@ -105,7 +106,8 @@ def compiled_spectra(rgb: Array, wavelengths: Array) -> Array:
     """Return the reflectances (n, N) of a bitmap texture with the texels ``rgb`` (n,
     3), computed on one thread.
     """
-    mitsuba, drjit = _mitsuba(COMPILED), import_module("drjit")
+    mitsuba = _mitsuba(COMPILED)
+    drjit = import_module("drjit")
     threads = drjit.thread_count()
     drjit.set_thread_count(1)
     try:

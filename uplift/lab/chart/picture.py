@@ -90,7 +90,8 @@ def panel(criterion: Criterion, chart: Chart) -> Panel:
     """Return the panel of a criterion."""
     points = []
     for result in drawn_results(criterion, chart):
-        place, row = criterion.point(result) or (1.0, 1.0), chart.results.index(result)
+        place = criterion.point(result) or (1.0, 1.0)
+        row = chart.results.index(result)
         style = COLOURS.get(result.family, OTHER), MODES.get(result.mode, "*")
         is_part = result.numbers[f"ns_{criterion.batch}_colours"] < criterion.batch
         is_named = not result.build and not result.method.endswith("-float32")
@@ -149,7 +150,8 @@ def draw_picture(chart: Chart) -> Any:
     axes.annotate("just visible: 1", (0.99, 1), color=GREY, size=11, **pinned)
     labels = []
     for name, place, what in drawn:
-        colour, face = (ACCENT if name == OURS else GREY), ("white" if what else None)
+        colour = ACCENT if name == OURS else GREY
+        face = "white" if what else None
         axes.plot(
             *place,
             "o",
@@ -225,7 +227,8 @@ def render_chart(chart: Chart) -> str:
 
 
 def _tooltip(chart: Chart, result: MethodResult) -> Tooltip:
-    numbers, lines = result.numbers, []
+    numbers = result.numbers
+    lines = []
     if result.state == State.MEASURED:
         times = {
             size: numbers[f"ns_{size}"]

@@ -75,7 +75,8 @@ def prepare_one_by_one(
 
 def prepare_jakob_table(task: Task) -> PreparedMethod:
     """Let colour-science read the table of 64 that is part of Mitsuba 3."""
-    path, table = mitsuba3.table_file(), colour_science().recovery.LUT3D_Jakob2019()
+    path = mitsuba3.table_file()
+    table = colour_science().recovery.LUT3D_Jakob2019()
     _, seconds = stopwatch(lambda: table.read(str(path)))
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
@@ -120,7 +121,8 @@ def _smits_weights(rgb: Values) -> Values:
     """White by the smallest component, a secondary by the middle one, and a primary by
     the largest: (n, 7).
     """
-    order, rows = rgb.argsort(axis=1), np.arange(len(rgb))
+    order = rgb.argsort(axis=1)
+    rows = np.arange(len(rgb))
     low, middle, high = np.take_along_axis(rgb, order, axis=1).T
     weights = np.zeros((len(rgb), 7), rgb.dtype)
     weights[:, 0] = low

@@ -208,7 +208,8 @@ class Criterion:
 
     def point(self, result: MethodResult) -> tuple[float, float] | None:
         """Return time and mean error, None if either is unknown."""
-        time, error = self.time(result), result.numbers.get(f"{self.error}_mean")
+        time = self.time(result)
+        error = result.numbers.get(f"{self.error}_mean")
         return (
             None
             if time is None or error is None
@@ -315,7 +316,9 @@ def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
     """Choose the fastest or smallest cube within the limits, or the most accurate in
     time. Raises `OptionError`.
     """
-    name, longest, largest = requirement.error, requirement.time_ns, requirement.delta_e
+    name = requirement.error
+    longest = requirement.time_ns
+    largest = requirement.delta_e
     cubes = [
         result for result in chart.measured if result.build and name in result.numbers
     ]

@@ -95,7 +95,8 @@ def make_scene(
     observer.check_distinct(lights)
     given: dict[str, tuple[Illuminant, ...]] = {NAMED_SET: tuple(dict.fromkeys(lights))}
     named = given if lights else KMENT_LIGHTS
-    nm, weights = samples.wavelengths(), samples.xyz_weights()
+    nm = samples.wavelengths()
+    weights = samples.xyz_weights()
     surfaces = on_grid(merged, nm)
 
     def light_set(name: str, members: tuple[Illuminant, ...]) -> LightSet:
@@ -187,16 +188,15 @@ def compare(
     """Measure representations under all lights of a scene, with few repetitions if
     ``quick``. Raises `UpliftError`.
     """
-    sets, results = {light_set.name: light_set.title for light_set in scene.sets}, []
+    sets = {light_set.name: light_set.title for light_set in scene.sets}
+    results = []
     for done, representation in enumerate(representations, 1):
         for light_set in scene.sets:
             light_floats, floats = representation.numbers(
                 light_set.powers, scene.surfaces
             )
-            errors, ns = (
-                error_statistics(representation, light_set),
-                _time(representation, light_set, quick),
-            )
+            errors = error_statistics(representation, light_set)
+            ns = _time(representation, light_set, quick)
             names = representation.name, representation.family, light_set.name
             results.append(
                 RepresentationResult(*names, errors, floats, light_floats, ns)

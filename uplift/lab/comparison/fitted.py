@@ -19,7 +19,9 @@ from uplift.scene.representations import Representation, all_representations, sa
 from uplift.scene.representations.models import tabulated
 from uplift.scene.wavelengths import Sampling, choose, make_setup
 
-WAVELENGTHS, FACTORS, MOMENTS = (5, 7, 9, 12), (5, 7, 9), (9, 13, 17)
+WAVELENGTHS = (5, 7, 9, 12)
+FACTORS = (5, 7, 9)
+MOMENTS = (9, 13, 17)
 STRIDE = 40
 """Dense samples between those by which a spectrum is recognised."""
 
@@ -62,7 +64,8 @@ def fitted_wavelengths(sampling: Sampling, lights: Array) -> Representation:
 
 def _factors(scene: Scene) -> Iterator[Representation]:
     """Coefficients of a factor model for sRGB (Bergner, Möller & Drew 2004)."""
-    sensor, step = observer.sensor(), samples.TABLE_STRIDE
+    sensor = observer.sensor()
+    step = samples.TABLE_STRIDE
 
     def of_size(count: int) -> Representation:
         model = factor_model(

@@ -79,10 +79,8 @@ def cost_panels(comparison: Comparison) -> list[Panel]:
     rows = names(comparison)
 
     def point(result: RepresentationResult, cost: float) -> Point:
-        error, colour = (
-            max(result.statistics.q97_5, MIN_ERROR),
-            COLOURS.get(result.family, OTHER),
-        )
+        error = max(result.statistics.q97_5, MIN_ERROR)
+        colour = COLOURS.get(result.family, OTHER)
         return Point(
             rows.index(result.name),
             result.name,
@@ -142,7 +140,8 @@ def draw_boxes(
         figure.subplots(1, len(sets), squeeze=False)[0], sets, strict=True
     ):
         for row, result in enumerate(comparison.of(name)):
-            values, colour = result.statistics, COLOURS.get(result.family, OTHER)
+            values = result.statistics
+            colour = COLOURS.get(result.family, OTHER)
             axes.hlines(
                 row,
                 max(values.q2_5, MIN_ERROR),

@@ -31,7 +31,9 @@ from uplift.report.measures import check_calibration
 
 MIN_ENTRIES = 8
 """Fewest entries within the RGB space of an atlas that is split."""
-HALF, NO_ATLAS, SIGMOID = "half the atlas", "without an atlas", "sigmoid"
+HALF = "half the atlas"
+NO_ATLAS = "without an atlas"
+SIGMOID = "sigmoid"
 LOCAL_LINEAR = "local-linear regression"
 """Names of cubes, and of a baseline that knows the same half of the atlas."""
 
@@ -215,9 +217,11 @@ def with_least_change(data: CubeData, spectra: Array, rgb: Array) -> Array:
     """Move spectra (n, N) to linear RGB (n, 3) by multipliers that are added to them
     and change them least.
     """
-    model, sensor = data.model, data.sensor
+    model = data.model
+    sensor = data.sensor
     forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    linear, damping = model.from_reflectance(spectra.T), np.zeros(len(rgb))
+    linear = model.from_reflectance(spectra.T)
+    damping = np.zeros(len(rgb))
     missed = rgb.T - sensor.matrix @ spectra.T
     for _ in range(MAX_STEPS):
         with np.errstate(
@@ -230,7 +234,8 @@ def with_least_change(data: CubeData, spectra: Array, rgb: Array) -> Array:
         # As by Levenberg and Marquardt: the damping falls after a step that helped, and
         # rises after one that did not.
         better = (left**2).sum(axis=0) < (missed**2).sum(axis=0)
-        linear, missed = np.where(better, trial, linear), np.where(better, left, missed)
+        linear = np.where(better, trial, linear)
+        missed = np.where(better, left, missed)
         damping = np.where(
             better, damping / 10, np.maximum(10 * damping, FIRST_DAMPING)
         )

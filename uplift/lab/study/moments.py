@@ -241,16 +241,15 @@ def study_moments(
     def labs(spectra: Array) -> list[Array]:
         return [lab(spectra @ light.xyz.T, light.white) for light in lights]
 
-    expected, counts = labs(original), max_moments + 1
+    expected = labs(original)
+    counts = max_moments + 1
     errors = np.empty((len(TECHNIQUES), counts, len(measured), len(MEASURES)))
     for row, technique in enumerate(TECHNIQUES):
         moments = technique.moments(measured, samples.wavelengths(), max_moments)
         for count in range(counts):
             spectra = technique.reconstruct(moments[:, : count + 1], observer.grid())
-            actual, rms = (
-                labs(spectra),
-                np.sqrt(((spectra - original) ** 2).mean(axis=1)),
-            )
+            actual = labs(spectra)
+            rms = np.sqrt(((spectra - original) ** 2).mean(axis=1))
             delta_e = [
                 delta_e_1976(actual[0], expected[0]),
                 *map(delta_e_2000, actual, expected),

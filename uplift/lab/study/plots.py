@@ -112,7 +112,8 @@ def _plot_spectra(
     """Draw a panel for every entry, measured and reconstructed; all rows have equal
     lengths.
     """
-    entries, moments = [list(row) for row in rows], _drawn_moments(study)
+    entries = [list(row) for row in rows]
+    moments = _drawn_moments(study)
     figure = new_figure(9.0, 3.6 * len(entries))
     panels = figure.subplots(len(entries), len(entries[0]), squeeze=False)
     for axes, entry in zip(panels.flat, itertools.chain(*entries), strict=True):

@@ -151,7 +151,8 @@ def perturb_answers(
     rgb = decode(codes)
     moved = {name: decode(codes + step * signs) for name, step in CODE_STEPS.items()}
     moved[ROUNDING] = np.clip(rgb + ROUNDING_STEP * signs, 0, 1)
-    before, found = answer(rgb), []
+    before = answer(rgb)
+    found = []
     for step, colours in moved.items():
         after = answer(colours)
         delta_e = delta_e_spectra(lights[0], before, after)
@@ -174,7 +175,8 @@ def _largest_jump(answer: Answer, light: Light, first: Array, second: Array) -> 
     """Halve the steps between colours (n, 3), keep the halves with the larger ΔE00, and
     return the largest one left.
     """
-    before, after = answer(first), answer(second)
+    before = answer(first)
+    after = answer(second)
     for _ in range(HALVINGS):
         middle = (first + second) / 2
         between = answer(middle)
@@ -182,14 +184,10 @@ def _largest_jump(answer: Answer, light: Light, first: Array, second: Array) -> 
             delta_e_spectra(light, before, between)
             > delta_e_spectra(light, between, after)
         )[:, None]
-        first, second = (
-            np.where(is_first, first, middle),
-            np.where(is_first, middle, second),
-        )
-        before, after = (
-            np.where(is_first, before, between),
-            np.where(is_first, between, after),
-        )
+        first = np.where(is_first, first, middle)
+        second = np.where(is_first, middle, second)
+        before = np.where(is_first, before, between)
+        after = np.where(is_first, between, after)
     return float(delta_e_spectra(light, before, after).max())
 
 
@@ -233,7 +231,9 @@ def compare(
         reflectance(data.model, data.points.coefficients, data.sensor.wavelengths)
         for data in (before, after)
     ]
-    atlases, points, distance = (before.atlas, after.atlas), before.lattice.points, None
+    atlases = (before.atlas, after.atlas)
+    points = before.lattice.points
+    distance = None
     if name:
         rgb = np.array(
             [

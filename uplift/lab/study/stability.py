@@ -56,7 +56,8 @@ def spiky() -> Atlas:
     """Make spectra of two narrow peaks on black, or two narrow dips on white, which few
     moments cannot represent.
     """
-    rng, spectra = np.random.default_rng(2), []
+    rng = np.random.default_rng(2)
+    spectra = []
     for number in range(ENTRIES):
         offset = observer.grid()[:, None] - rng.uniform(430, 670, 2)
         peaks = np.exp(-((offset / PEAK_HALF_WIDTH) ** 2)).max(axis=1)
@@ -66,7 +67,8 @@ def spiky() -> Atlas:
 
 def noisy() -> Atlas:
     """Make smooth spectra with noise that leaves [0, 1] as far as readers allow."""
-    rng, spectra = np.random.default_rng(3), []
+    rng = np.random.default_rng(3)
+    spectra = []
     for level in np.linspace(0.05, 0.95, ENTRIES):
         noise = rng.normal(0, ATLAS_NOISE, len(observer.grid()))
         spectra.append(
@@ -168,7 +170,8 @@ def run(config: RunConfig, atlases: Mapping[str, Atlas]) -> Record:
     realisable = solid(data.sensor.matrix).contains(data.lattice.points)
     distance = np.where(realisable, data.points.distance, -1)
     worst = int(distance.argmax())
-    count, unfitted = int(realisable.sum()), int((distance > config.threshold).sum())
+    count = int(realisable.sum())
+    unfitted = int((distance > config.threshold).sum())
     return {
         **asdict(config),
         "success": 1 - unfitted / count,

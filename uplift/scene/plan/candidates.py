@@ -133,7 +133,8 @@ class Pixel:
         sample, a sigmoid 10. From moments to multipliers there are 28 C²
         (docs/mathematics.md, 4), between eight nodes 16 for each number.
         """
-        count, is_sigmoid = cube.coefficients, cube.model == Sigmoid.name
+        count = cube.coefficients
+        is_sigmoid = cube.model == Sigmoid.name
         evaluation = samples * (10 if is_sigmoid else 4 * count + 15)
         conversion = 0 if is_sigmoid else 28 * count**2
         return {
@@ -246,7 +247,8 @@ def explore(
     groups: dict[Options | None, list[Candidate]] = defaultdict(list)
     for candidate in candidates:
         groups[candidate.cube].append(candidate)
-    measured, best = list[Candidate](), np.empty((0, 4))
+    measured = list[Candidate]()
+    best = np.empty((0, 4))
     for cube in sorted(
         groups, key=lambda cube: min(each.cost.memory for each in groups[cube])
     ):

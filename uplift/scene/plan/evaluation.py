@@ -143,7 +143,8 @@ class EvaluationSet:
         """
         found = []
         for rows in self.groups.values():
-            drawn, size = np.arange(rows.start, rows.stop), rows.stop - rows.start
+            drawn = np.arange(rows.start, rows.stop)
+            size = rows.stop - rows.start
             if size > count:
                 steps = np.searchsorted(
                     np.cumsum(self.weights[rows]), (np.arange(count) + 0.5) / count
@@ -159,7 +160,8 @@ class EvaluationSet:
         for light, difference in zip(self.setup.lights, differences, strict=True):
             delta_e = np.where(np.isfinite(difference), difference, WORST_DELTA_E)
             for name, rows in self.groups.items():
-                errors, weights = delta_e[rows], self.weights[rows]
+                errors = delta_e[rows]
+                weights = self.weights[rows]
                 quantile = np.quantile(
                     errors, self.quantile, weights=weights, method="inverted_cdf"
                 )
@@ -178,7 +180,8 @@ class EvaluationSet:
         """Matrices (K, 3, 3) from linear RGB to XYZ under each light: least squares of
         small differences in ΔE00.
         """
-        xyz, whites = self.setup.xyz, self.setup.whites[:, None]
+        xyz = self.setup.xyz
+        whites = self.setup.whites[:, None]
         # ΔE00 ≈ |F (M r − x)|
         factors = delta_e_2000_weights(self.setup.lab) @ lab_jacobian(xyz, whites)
         factors *= np.sqrt(self.weights)[:, None, None]

@@ -186,10 +186,8 @@ def read_scene_file(path: StrPath) -> SceneFile:
     file = read_toml(path, PlanFileError)
     # No value of a TOML file is a path: the key is refused there.
     scene = replace(file, values={"path": file.path, **file.values}).validate(SceneFile)
-    textures, atlases = (
-        _expand(file, "textures", scene.textures),
-        _expand(file, "atlases", scene.atlases),
-    )
+    textures = _expand(file, "textures", scene.textures)
+    atlases = _expand(file, "atlases", scene.atlases)
     lights, lamp_files = _read_lights(file, scene.lights)
     return replace(
         scene, textures=textures, atlases=atlases, lights=lights, lamp_files=lamp_files
@@ -202,7 +200,8 @@ def _read_lights(
     """Return each light once, with lamps read from the folder of the scene file, and
     the files of the lamps.
     """
-    lights, files = list[Illuminant](), list[Path]()
+    lights = list[Illuminant]()
+    files = list[Path]()
     for number, name in enumerate(dict.fromkeys(names)):
         try:
             lights.append(
@@ -232,7 +231,8 @@ def _expand(file: SpecFile, key: str, names: tuple[Path, ...]) -> tuple[Path, ..
     """Expand patterns in the folder of the scene file. Raises `PlanFileError` for names
     of no file.
     """
-    folder, found = file.path.parent, list[Path]()
+    folder = file.path.parent
+    found = list[Path]()
     for number, name in enumerate(map(str, names)):
         is_pattern = glob.has_magic(name) and not os.path.exists(folder / name)
         paths = sorted(glob.glob(name, root_dir=folder)) if is_pattern else [name]

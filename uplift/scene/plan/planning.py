@@ -139,7 +139,8 @@ def plan(
     if not finalists:
         raise no_candidate(scene, measured)
     chosen, confirmed = _confirm(space, finalists)
-    textures, few = space.colours.predicting, space.colours.few
+    textures = space.colours.predicting
+    few = space.colours.few
     known = (
         space.tests.reference.standard_error(textures.rgb, light)
         for light in scene.lights
@@ -199,7 +200,8 @@ def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileErr
     """
     enough = sufficient(measured, scene.tolerance, scene.minimise, {})
     if enough:
-        cost, allowance = enough[0].cost, enough[0].cost._replace(**scene.limits)
+        cost = enough[0].cost
+        allowance = enough[0].cost._replace(**scene.limits)
         over = [
             key for key, limit in scene.limits.items() if getattr(cost, key) > limit
         ]

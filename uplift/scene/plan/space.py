@@ -92,10 +92,8 @@ class CandidateSpace:
         # `uplift build --plan` repeats the warnings, also those of trial builds.
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
             self.materials, _ = split_by_gamut(self.atlas or Atlas(), self.sensor)
-        images, sizes = (
-            Images(scene.textures, scene.encoding),
-            (grid.predicting, grid.confirming),
-        )
+        images = Images(scene.textures, scene.encoding)
+        sizes = (grid.predicting, grid.confirming)
         self.colours = sample_colours(images, self.sensor, sizes, progress)
         self.learnt: dict[tuple[Model, Model], Learnt] = {}
         self.floor, self.ceiling = (
@@ -151,12 +149,14 @@ class CandidateSpace:
         spectra = np.concatenate(
             [reference.reflectance(sample.rgb), self.materials.reflectances]
         )
-        pixels, count = len(sample.rgb), len(self.materials.rgb)
+        pixels = len(sample.rgb)
+        count = len(self.materials.rgb)
         weights = np.concatenate([sample.share, np.full(count, 1 / max(count, 1))])
         groups = {"textures": slice(0, pixels)} | (
             {"materials": slice(pixels, pixels + count)} if count else {}
         )
-        nm, observer_name = self.sensor.wavelengths, self.sensor.observer
+        nm = self.sensor.wavelengths
+        observer_name = self.sensor.observer
         setup = make_setup(
             spectra, self.scene.lights, wavelengths=nm, observer_name=observer_name
         )
@@ -207,7 +207,8 @@ class CandidateSpace:
             dict.fromkeys(each.rendering for each in candidates if each.rendering)
         )
         needed = [each.wavelengths for each in traced]
-        nm, ends = np.concatenate([[], *needed]), np.cumsum([0, *map(len, needed)])
+        nm = np.concatenate([[], *needed])
+        ends = np.cumsum([0, *map(len, needed)])
         columns = dict(zip(traced, map(slice, ends, ends[1:]), strict=False))
         spectra = cache(lambda pixel: pixel.decoded(cube, tests.rgb, nm))
 
@@ -221,7 +222,8 @@ class CandidateSpace:
     def _with_cubes(self) -> Iterator[Candidate]:
         """Candidates that need a cube and whose bounds are below the ceiling."""
         base = _quantiles(self.tests.error(self.base))
-        lattices, models = self._lattices(), self._models()
+        lattices = self._lattices()
+        models = self._models()
         points = {lattice: self._points(lattice) for lattice in lattices}
         for (model, by_model), (lattice, by_lattice) in product(
             models.items(), lattices.items()
@@ -250,7 +252,8 @@ class CandidateSpace:
         """Candidates of a cube, of ``points`` nodes with all cells and with those of
         the textures, and a rendering.
         """
-        colours, count = self.colours, round(rendering.surface)
+        colours = self.colours
+        count = round(rendering.surface)
         for sparse, pixel in product((False, True)[: 1 + self.scene.sparse], PIXELS):
             if choice.model == Sigmoid.name and pixel.form == texture.Moments.name:
                 continue
@@ -306,7 +309,8 @@ class CandidateSpace:
         """Changes of XYZ from the ``finest``, of each series up to the first below the
         floor.
         """
-        found, reference = dict[Options, Array](), self._xyz(finest)
+        found = dict[Options, Array]()
+        reference = self._xyz(finest)
         for done, choices in enumerate(series):
             self.progress(Progress(stage, done, len(series)))
             for choice in choices:

@@ -45,10 +45,8 @@ def front_rows(plan: Plan) -> list[Candidate]:
 
 def front_row(measured: Candidate) -> tuple[str, ...]:
     """Texts of a candidate in the order of `HEADINGS`."""
-    cost, words = (
-        measured.cost,
-        (measured.cube_name, measured.traced, measured.pixel.name),
-    )
+    cost = measured.cost
+    words = (measured.cube_name, measured.traced, measured.pixel.name)
     costs = (format_size(cost.memory), f"{cost.time:,.0f}", f"{cost.samples:g}")
     return format_error(measured.error.quantile), *costs, *words
 
@@ -142,7 +140,8 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
     Paths of textures and atlases are relative to the folder of ``path``, the file.
     Raises `OutputError` for others.
     """
-    scene, chosen = plan.scene, plan.chosen
+    scene = plan.scene
+    chosen = plan.chosen
     check_path(scene, path)
     return {
         "format": FORMAT,
@@ -221,10 +220,12 @@ def commands(plan: Plan, path: Path) -> tuple[str, ...]:
     """Command lines for a plan at ``path``: its build, and its textures or the program
     that looks colours up.
     """
-    scene, pixel = plan.scene, plan.chosen.pixel
+    scene = plan.scene
+    pixel = plan.chosen.pixel
     if plan.chosen.cube is None:
         return ()
-    build, cube = f"uplift build --plan {shlex.quote(str(path))}", cube_name(path)
+    build = f"uplift build --plan {shlex.quote(str(path))}"
+    cube = cube_name(path)
     if pixel.mode:
         return build, shlex.join(
             ["uplift", "export", cube, "--format", "c", "--mode", pixel.mode]

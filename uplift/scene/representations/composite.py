@@ -92,7 +92,8 @@ def composite(
 
     def multiply(light: CompositeCode, surface: CompositeCode) -> CompositeCode:
         positions = np.union1d(light.positions, surface.positions)
-        of_light, of_surface = light.at(positions), surface.at(positions)
+        of_light = light.at(positions)
+        of_surface = surface.at(positions)
         below_light, below_surface = (
             code.smooth @ decoder[:, positions] for code in (light, surface)
         )
@@ -131,7 +132,8 @@ def fourier_coefficients(count: int) -> Representation:
             f"number of Fourier coefficients must be odd and positive, got {count}",
             hint=hint,
         )
-    dense, product = waves(count), _waves(np.pi * np.arange(2 * count) / count, count)
+    dense = waves(count)
+    product = _waves(np.pi * np.arange(2 * count) / count, count)
 
     def encode(power: Array) -> Array:
         periodic = power[:, : -1 : samples.TABLE_STRIDE].copy()
@@ -179,10 +181,8 @@ def sun_composite(count: int, threshold: float = SUN_THRESHOLD) -> Representatio
     """Sun's composite model (CS): spikes, and ``count`` Fourier coefficients of the
     smooth part.
     """
-    smooth, decoder = (
-        fourier_coefficients(count),
-        waves(count)[:, :: samples.TABLE_STRIDE],
-    )
+    smooth = fourier_coefficients(count)
+    decoder = waves(count)[:, :: samples.TABLE_STRIDE]
     return composite(f"CS{count}", "Sun's composite", smooth, decoder, threshold)
 
 

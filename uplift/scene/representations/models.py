@@ -88,11 +88,9 @@ def fit_sigmoids(spectra: Array) -> Array:
     The objective is the colour under D65. Values at 5 nm, with a small weight,
     determine the fit where the colour does not or cannot be met.
     """
-    model, table, light = (
-        Sigmoid(),
-        spectra[:, :: samples.TABLE_STRIDE],
-        observer.light(DEFAULT_ILLUMINANT),
-    )
+    model = Sigmoid()
+    table = spectra[:, :: samples.TABLE_STRIDE]
+    light = observer.light(DEFAULT_ILLUMINANT)
     basis = model.basis(observer.grid())
     measurement = np.concatenate(
         [light.xyz / light.white[:, None], SHAPE_WEIGHT * np.eye(len(basis))]
@@ -109,10 +107,8 @@ def fit_sigmoids(spectra: Array) -> Array:
         )
         return jacobian.mT @ jacobian, (jacobian.mT @ residuals[..., None])[..., 0]
 
-    start, options = (
-        np.zeros((len(table), model.count)),
-        {"normal_equations": normal_equations},
-    )
+    start = np.zeros((len(table), model.count))
+    options = {"normal_equations": normal_equations}
     return iterate_rows(Marquardt(), residuals, start, lambda _: options, MAX_STEPS)
 
 

@@ -87,7 +87,8 @@ class Representation:
 
     def numbers(self, powers: Array, reflectances: Array) -> tuple[float, float]:
         """Return the mean numbers stored of a light, and of a surface."""
-        light, surface = self.encode_light(powers), self.encode_surface(reflectances)
+        light = self.encode_light(powers)
+        surface = self.encode_surface(reflectances)
         return float(self.storage(light).mean()), float(self.storage(surface).mean())
 
     def reflected(self, powers: Array, reflectances: Array) -> Array:
@@ -179,7 +180,8 @@ def cell_overlaps(count: int) -> Array:
     for either side, where eq. 5.3 as printed counts it twice.
     """
     edges = np.linspace(observer.START - STEP / 2, observer.END + STEP / 2, count + 1)
-    low, high = wavelengths() - STEP / 2, wavelengths() + STEP / 2
+    low = wavelengths() - STEP / 2
+    high = wavelengths() + STEP / 2
     overlap = np.minimum(edges[1:, None], high) - np.maximum(edges[:-1, None], low)
     return np.asarray(np.maximum(overlap, 0) / STEP)
 

@@ -49,7 +49,8 @@ def cone_space(wavelengths: Array, cmfs: Array) -> Array:
     def response(nm: float) -> Array:
         return unscaled @ [np.interp(nm, wavelengths, cmf) for cmf in cmfs.T]
 
-    yellow, blue = response(UNIQUE_YELLOW), response(UNIQUE_BLUE)
+    yellow = response(UNIQUE_YELLOW)
+    blue = response(UNIQUE_BLUE)
     long = 1 / (cmfs @ unscaled[2]).max()
     medium = long * yellow[2] / yellow[1] / L_TO_M_AT_YELLOW
     short = S_TO_ML_AT_BLUE * (medium * blue[1] + long * blue[2]) / blue[0]

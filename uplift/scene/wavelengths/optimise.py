@@ -53,7 +53,8 @@ class FitProblem:
         """Factors T (K, M, 3, 3) at every material and light: |T (XYZ' − XYZ)| ≈ ΔE00
         of close colours.
         """
-        lab, steps = self.setup.lab[..., None, :], np.eye(3) * STEP
+        lab = self.setup.lab[..., None, :]
+        steps = np.eye(3) * STEP
 
         def squared(difference: Array) -> Array:
             return (delta_e_2000(lab, lab + difference) / STEP) ** 2
@@ -122,10 +123,13 @@ def local_fit(
     """Find the local minimum nearest to ``start`` with weights and powers of at least
     0.
     """
-    count, unknowns = len(start), problem.pack(start)
-    low, high = np.zeros_like(unknowns), np.full_like(unknowns, np.inf)
+    count = len(start)
+    unknowns = problem.pack(start)
+    low = np.zeros_like(unknowns)
+    high = np.full_like(unknowns, np.inf)
     low[:count], high[:count] = problem.setup.wavelengths[[0, -1]]
-    unknowns, fixed = np.clip(unknowns, low, high), count if fix_wavelengths else 0
+    unknowns = np.clip(unknowns, low, high)
+    fixed = count if fix_wavelengths else 0
 
     def with_fixed(free: Array) -> Array:
         return np.concatenate([unknowns[:fixed], free])

@@ -22,7 +22,8 @@ def plot_choice(
     weights. Raises `OutputError`.
     """
     sampling = choice.sampling
-    nm, chosen = setup.wavelengths, sampling.wavelengths
+    nm = setup.wavelengths
+    chosen = sampling.wavelengths
 
     def area(values: Array) -> Array:
         """Sum of the interpolated values of samples: per wavelength and per sample,

@@ -254,8 +254,10 @@ def ordered(sampling: Sampling) -> Sampling:
     """Sort the wavelengths and scale the weights so that equal energy has Y = 1;
     colours stay.
     """
-    order, scale = np.argsort(sampling.wavelengths), sampling.to_xyz[:, 1].sum()
-    weights, powers = sampling.to_xyz[order] / scale, sampling.powers[:, order] * scale
+    order = np.argsort(sampling.wavelengths)
+    scale = sampling.to_xyz[:, 1].sum()
+    weights = sampling.to_xyz[order] / scale
+    powers = sampling.powers[:, order] * scale
     return replace(
         sampling, wavelengths=sampling.wavelengths[order], to_xyz=weights, powers=powers
     )
