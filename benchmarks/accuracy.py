@@ -15,16 +15,16 @@ from benchmarks.materials import errors, materials
 from uplift.atlas import on_grid
 from uplift.colorimetry import Sensor, delta_e_rgb
 from uplift.common.arrays import Array
+from uplift.extras.images.exr import blue_slices
+from uplift.extras.pages.figure import colour_map, new_figure, show_image, write_figure
+from uplift.extras.report.diff_page import mosaic
 from uplift.fit.growth_outward import shells
 from uplift.fit.problem import Problem
-from uplift.io.exr import blue_slices
 from uplift.lab.chart.method import at_1_nm, published_srgb
 from uplift.lab.timing import time_calls
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
-from uplift.report.diff_page import mosaic
-from uplift.viz.figure import colour_map, new_figure, show_image, write_figure
 
 RANGES = (
     (380, 780, 10),

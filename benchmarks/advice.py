@@ -13,10 +13,10 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.lights import RELIGHT_LIGHTS
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array, Indices
+from uplift.extras.report.measures import delta_e_under
+from uplift.extras.scene.advice import advise, uncertainty
+from uplift.extras.texture.scene_colours import ColourSet, PixelSample
 from uplift.fit.families import families_with
-from uplift.io.scene_colours import ColourSet, PixelSample
-from uplift.report.measures import delta_e_under
-from uplift.scene.advice import advise, uncertainty
 
 SETS = ("rawtoaces", "cie2017")
 SCENES, KNOWN, MATERIALS = 6, 10, 60

@@ -17,7 +17,7 @@ from uplift.colorimetry.lights import DESCRIPTIONS
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
-from uplift.viz.figure import new_figure, show_image, write_png
+from uplift.extras.pages.figure import new_figure, show_image, write_png
 
 COLUMNS = 6
 ROWS = 4
@@ -175,7 +175,7 @@ def start_mitsuba(variant: str = VARIANT) -> str:
     """Select the variant and register the plug-ins; return Mitsuba's version."""
     import mitsuba
 
-    from uplift.io.mitsuba import register
+    from uplift.extras.mitsuba import register
 
     mitsuba.set_variant(variant)
     register()

@@ -2,7 +2,7 @@
 
 Threads, cores and devices must not change a byte. Instruction sets must not change
 where the nodes lie. They may change spectra; the largest difference is what `uplift
-check` has to allow between machines (`uplift.report.regression`).
+check` has to allow between machines (`uplift.extras.report.regression`).
 """
 
 import os
@@ -18,7 +18,7 @@ import numpy as np
 import uplift
 from benchmarks import ROOT, Row, record
 from uplift.atlas import Atlas
-from uplift.report.regression import LIMITS, compare_rebuilt
+from uplift.extras.report.regression import LIMITS, compare_rebuilt
 
 CASES: dict[str, tuple[tuple[str, ...], Row]] = {
     "moments, Macbeth, 16³": (("macbeth",), {"dim": 16}),

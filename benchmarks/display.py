@@ -16,8 +16,8 @@ from uplift.colorimetry import delta_e_2000, lab
 from uplift.colorimetry.gamut import METHODS, SRGB, Primaries, conversion, map_to_gamut
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
+from uplift.extras.pages.figure import new_figure, write_png
 from uplift.lab.timing import TimingStats, time_laps
-from uplift.viz.figure import new_figure, write_png
 
 BRIGHTEST, DARKEST = 9, 2
 """Munsell values between which hues are well known."""

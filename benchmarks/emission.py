@@ -14,14 +14,14 @@ from benchmarks import Row, record
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer as observers
 from uplift.common.arrays import Array, Mask
+from uplift.extras.emission.discs import Lamps
+from uplift.extras.emission.fit import nearest_lights
+from uplift.extras.emission.lamps import known_lamps
+from uplift.extras.emission.lattice import chromaticity, unit_xyz
+from uplift.extras.emission.lookup import EmissionTable
+from uplift.extras.emission.prior import fit_lamp_prior, relit_delta_e
 from uplift.fit.solver import solve
 from uplift.lab.timing import time_calls
-from uplift.lights.discs import Lamps
-from uplift.lights.fit import nearest_lights
-from uplift.lights.lamps import known_lamps
-from uplift.lights.lattice import chromaticity, unit_xyz
-from uplift.lights.lookup import EmissionTable
-from uplift.lights.prior import fit_lamp_prior, relit_delta_e
 from uplift.models import Sigmoid
 from uplift.models.minimum_norm import forward_map
 

@@ -41,12 +41,12 @@ from uplift.colorimetry import Light, delta_e_spectra, observer
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.arrays import Array
 from uplift.cube import contents
+from uplift.extras.report.measures import check_calibration
 from uplift.fit.families import LENGTH, NUGGET, shipped_library
 from uplift.lab.chart.measure import select_methods
 from uplift.lab.chart.method import make_task
 from uplift.lab.study import held_out
 from uplift.lookup import Cube
-from uplift.report.measures import check_calibration
 
 DIM = 32
 COARSE = 16

@@ -16,9 +16,10 @@ from uplift.colorimetry import Sensor
 from uplift.colorimetry.delta_e import delta_e_rgb, rgb_to_lab
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
-from uplift.design.mixing import dispersive
-from uplift.design.mixing.coats import ramp
-from uplift.design.mixing.pigments import (
+from uplift.extras.pages.plots import Strip, plot_strips
+from uplift.extras.paint import dispersive
+from uplift.extras.paint.coats import ramp
+from uplift.extras.paint.pigments import (
     CONSTANT,
     SQUARE_ROOT,
     Pigment,
@@ -26,10 +27,9 @@ from uplift.design.mixing.pigments import (
     Scattering,
     from_opaque,
 )
-from uplift.design.mixing.theories import Mixer, mixers, spectral_models
+from uplift.extras.paint.theories import Mixer, mixers, spectral_models
 from uplift.lab.timing import time_laps
 from uplift.lookup import Cube
-from uplift.viz.plots import Strip, plot_strips
 
 SHARES = np.array([(0.75, 0.25), (0.5, 0.5), (0.25, 0.75)])
 """Proportions of shades, tints and greens."""

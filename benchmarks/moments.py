@@ -15,6 +15,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, lab
 from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.common.arrays import Array
+from uplift.extras.scene.representations import samples
 from uplift.lab.study.moments import (
     ALL_ATLASES,
     TECHNIQUES,
@@ -24,7 +25,6 @@ from uplift.lab.study.moments import (
 )
 from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
 from uplift.models.moments import WARPS
-from uplift.scene.representations import samples
 
 PICTURES = DOCS / "moments"
 FLOATS = (3, 5, 9, 13, 16)

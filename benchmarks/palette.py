@@ -12,16 +12,16 @@ from benchmarks import ATLASES, DOCS, record
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import Sensor, delta_e_rgb, observer
 from uplift.common.arrays import Array
-from uplift.design.palette import (
+from uplift.extras.palette import (
     design,
     illuminant,
     matrix,
     read_palette,
     standard_model,
 )
-from uplift.design.palette.colours import exposure, screen_matrix
-from uplift.design.palette.factor import FactorModel, linear_product
-from uplift.design.palette.plots import plot_matrix, plot_spectra
+from uplift.extras.palette.colours import exposure, screen_matrix
+from uplift.extras.palette.factor import FactorModel, linear_product
+from uplift.extras.palette.plots import plot_matrix, plot_spectra
 from uplift.samples import sample_path
 
 LIGHTS = ("D65", "D50", "A", "E", "FL2", "FL7", "FL11", "LED-B3", "HP1")

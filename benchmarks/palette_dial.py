@@ -24,9 +24,9 @@ from benchmarks import DOCS
 from benchmarks.browser import browser
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
-from uplift.design.palette import design, read_palette, standard_model
-from uplift.design.palette.picture import cutaway
-from uplift.design.palette.relight_page import page, relighting
+from uplift.extras.palette import design, read_palette, standard_model
+from uplift.extras.palette.picture import cutaway
+from uplift.extras.palette.relight_page import page, relighting
 from uplift.samples import sample_path
 
 FOLDER = DOCS / "palette-dial"

@@ -253,7 +253,7 @@ def run_header(
     """Return reflectances (CHECKED, N) of the first colours by the C header, and the
     CPU seconds of its functions.
     """
-    from uplift.io.export import write_program
+    from uplift.extras.export import write_program
 
     source = ROOT / "benchmarks" / "rates.c"
     with tempfile.TemporaryDirectory() as name:

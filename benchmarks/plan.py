@@ -20,15 +20,15 @@ from benchmarks.pictures import Picture, pictures
 from uplift.colorimetry import delta_e_spectra
 from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.colorimetry.observer import light
-from uplift.io.scene_colours import MAX_LIST, MAX_PIXELS, Images
+from uplift.extras.pages.figure import ACCENT, INK
+from uplift.extras.pages.format import format_size
+from uplift.extras.scene.plan.candidates import SearchGrid
+from uplift.extras.scene.plan.space import CEILING, FLOOR, MARGIN
+from uplift.extras.texture.scene_colours import MAX_LIST, MAX_PIXELS, Images
 from uplift.lab.panels import Panel, Point, write_panels
 from uplift.lab.timing import TimingStats, children_cpu, time_calls
 from uplift.lookup import Cube
 from uplift.samples import copy_samples
-from uplift.scene.plan.candidates import SearchGrid
-from uplift.scene.plan.space import CEILING, FLOOR, MARGIN
-from uplift.viz.figure import ACCENT, INK
-from uplift.viz.format import format_size
 
 LATTICES = (("sRGB", 32), ("sRGB", 64), ("sRGB", 128), ("ACEScg", 32))
 RUNS = 3

@@ -23,7 +23,7 @@ from benchmarks.checker import render as render_chart
 from uplift.colorimetry import delta_e_2000, lab
 from uplift.colorimetry.observer import light, sensor
 from uplift.common.arrays import Array
-from uplift.io.processes import call_in_child
+from uplift.extras.images.processes import call_in_child
 
 LIGHTS = ("D65", "A", "FL11")
 REFERENCE = "measured spectra"
@@ -231,8 +231,8 @@ def _rows(
 def _textures(folder: Path) -> dict[str, dict[str, Any]]:
     import mitsuba
 
-    from uplift.io import texture
-    from uplift.io.texture.uplifter import PixelEncoding
+    from uplift.extras import texture
+    from uplift.extras.texture.uplifter import PixelEncoding
 
     image = _image(SIZE)
     mitsuba.Bitmap(image).write(str(folder / "image.exr"))

@@ -13,16 +13,16 @@ import uplift
 from benchmarks import ATLASES, DOCS, Row, read_reference, record
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.lab.comparison import compare
-from uplift.lab.comparison.compare import Comparison, Scene, TunedFilter
-from uplift.lab.comparison.pictures import write_boxes, write_costs
-from uplift.scene.representations import all_representations, samples
-from uplift.scene.representations.composite import (
+from uplift.extras.scene.representations import all_representations, samples
+from uplift.extras.scene.representations.composite import (
     ENHANCED_THRESHOLD,
     composite,
     enhanced_riemann,
 )
-from uplift.scene.representations.samples import Representation, linear
+from uplift.extras.scene.representations.samples import Representation, linear
+from uplift.lab.comparison import compare
+from uplift.lab.comparison.compare import Comparison, Scene, TunedFilter
+from uplift.lab.comparison.pictures import write_boxes, write_costs
 
 OTHER_LIGHTS = ("LED-B3", "LED-RGB1", "HP1")
 TARGETS = (2.0, 1.0, 0.5)

@@ -27,12 +27,12 @@ from uplift.colorimetry.observer import (
     sensor,
 )
 from uplift.colorimetry.srgb import encode
-from uplift.io.export import write_film
-from uplift.io.export.film import CAT16, LAYER_WIDTH, LAYERS
+from uplift.extras.export import write_film
+from uplift.extras.export.film import CAT16, LAYER_WIDTH, LAYERS
+from uplift.extras.pages.figure import new_figure, show_image, write_png
+from uplift.extras.relight.relight import relight, write_relit_sheet
 from uplift.lab.chart import mitsuba3
-from uplift.report.relight import relight, write_relit_sheet
 from uplift.samples import sample_path
-from uplift.viz.figure import new_figure, show_image, write_png
 
 FOLDER = DOCS / "showcase"
 METHODS = MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
@@ -157,7 +157,7 @@ def draw_charts(cubes: Cubes) -> list[dict[str, Any]]:
 
 def draw_still_life(cubes: Cubes) -> None:
     """Draw what ``uplift relight`` shows, as JPEG."""
-    from uplift.io.texture.picture import read_picture
+    from uplift.extras.texture.picture import read_picture
 
     path = sample_path("still-life.png")
     picture = read_picture(path, sensor(), max_side=960)

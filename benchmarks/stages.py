@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from benchmarks import MACBETH, record
-from uplift.io.processes import call_in_child
+from uplift.extras.images.processes import call_in_child
 from uplift.lab.timing import timing_stats
 from uplift.samples import sample_path
 
@@ -33,15 +33,15 @@ RELIGHT = {
     "uplift.lookup:load": "packaged cube",
     "uplift_cli.commands.relight:_cube_of_user": "cube of the atlas",
     "uplift_cli.commands.relight:read_pictures": "reading of the image",
-    "uplift.report.relight:relight": "spectra and colours",
-    "uplift.report.relight:relit_page": "page",
-    "uplift.io.texture:prepare_relighter": "tables of the lights",
-    "uplift.io.texture:convert": "rows of pixels",
+    "uplift.extras.relight.relight:relight": "spectra and colours",
+    "uplift.extras.relight.relight:relit_page": "page",
+    "uplift.extras.relight.relighter:prepare_relighter": "tables of the lights",
+    "uplift.extras.texture:convert": "rows of pixels",
 }
 TEXTURE = {
-    "uplift.io.texture.sequence:load": "packaged cube",
-    "uplift.io.texture.sequence:converter_for": "encoding",
-    "uplift.io.texture:convert": "rows of pixels",
+    "uplift.extras.texture.sequence:load": "packaged cube",
+    "uplift.extras.texture.sequence:converter_for": "encoding",
+    "uplift.extras.texture:convert": "rows of pixels",
 }
 """Functions by the stage that they are; what one of them calls is counted there alone.
 """

@@ -15,8 +15,8 @@ from benchmarks.performance import UPLIFT
 from benchmarks.pictures import Picture, colour, pictures
 from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
-from uplift.io import texture
-from uplift.io.texture.uplifter import PixelEncoding
+from uplift.extras import texture
+from uplift.extras.texture.uplifter import PixelEncoding
 from uplift.lab.timing import time_process
 from uplift.lookup import Cube
 from uplift.models import Moments, evaluate

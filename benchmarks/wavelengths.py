@@ -12,16 +12,7 @@ from benchmarks import ATLASES, DOCS, MACBETH, Row, read_reference, record
 from uplift.atlas import on_grid
 from uplift.colorimetry import delta_e_1976, lab
 from uplift.common.arrays import Array
-from uplift.scene.quadrature import QuadratureRule
-from uplift.scene.wavelengths import METHODS, choose, grid, make_setup
-from uplift.scene.wavelengths import meyer as paper
-from uplift.scene.wavelengths.sampling import (
-    RenderSetup,
-    evaluate,
-    interp_curves,
-    statistics,
-)
-from uplift.viz.figure import (
+from uplift.extras.pages.figure import (
     GREY,
     INK,
     colour_map,
@@ -30,9 +21,18 @@ from uplift.viz.figure import (
     styled,
     write_png,
 )
+from uplift.extras.scene.quadrature import QuadratureRule
+from uplift.extras.scene.wavelengths import METHODS, choose, grid, make_setup
+from uplift.extras.scene.wavelengths import meyer as paper
+from uplift.extras.scene.wavelengths.sampling import (
+    RenderSetup,
+    evaluate,
+    interp_curves,
+    statistics,
+)
 
 SPACES = {"AC1C2": "opponent", "SML": "cones", "XYZ": "xyz"}
-"""Names of the paper, and of `uplift.scene.wavelengths.choose_orders`."""
+"""Names of the paper, and of `uplift.extras.scene.wavelengths.choose_orders`."""
 CHANNELS = ("A", "C1", "C2")
 OPTIMISED = "optimised"
 FITTED = "fitted"

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
     from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
-    from uplift.io.texture.picture import Picture
+    from uplift.extras.texture.picture import Picture
 
 LOCAL = "atlases/*.txt"
 DEFAULT_ATLASES = f"{LOCAL} if there are any, or else the shipped atlases"
@@ -97,7 +97,7 @@ def read_pictures(
     """Return images, reduced to `MAX_SIDE`, with the options of `options.pixels`, and
     emit their warnings.
     """
-    from uplift.io.texture.picture import read_picture
+    from uplift.extras.texture.picture import read_picture
 
     found = None if space is None else find_input_space(space)
     pictures = [
@@ -148,7 +148,7 @@ def find_light(text: str) -> Illuminant:
     ):
         tables.stated_name("illuminant", text)
         return text
-    from uplift.lights import lamps
+    from uplift.extras.emission import lamps
 
     return lamps.find_light(text)
 
@@ -165,7 +165,7 @@ def check_page(path: str) -> None:
 
 def check_figure_page(path: str) -> None:
     """Check the name of a page with figures, which matplotlib draws."""
-    from uplift.viz.figure import matplotlib
+    from uplift.extras.pages.figure import matplotlib
 
     matplotlib()
     check_page(path)
@@ -173,7 +173,7 @@ def check_figure_page(path: str) -> None:
 
 def check_plot(path: str) -> None:
     """Check the name of a plot, whose suffix must be that of a figure."""
-    from uplift.viz.figure import check_suffix
+    from uplift.extras.pages.figure import check_suffix
 
     hide_drawing_notes()
     check_suffix(path)

@@ -405,7 +405,7 @@ def out_of_gamut(
 
 def pixels() -> Decorator:
     """``--encoding``, ``--input-space`` and ``--out-of-gamut`` of images, as
-    `uplift.io.texture` names them.
+    `uplift.extras.texture` names them.
     """
     return stacked(
         encoding,

@@ -34,7 +34,7 @@ def check_folder(
     if path is None:
         return
     if any(name.endswith(".png") for name in names):
-        from uplift.viz.figure import matplotlib
+        from uplift.extras.pages.figure import matplotlib
 
         matplotlib()
     files.check_folder(

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from benchmarks.browser import browser
-from uplift.io.processes import call_in_child
+from uplift.extras.images.processes import call_in_child
 
 PATIENCE = 60.0
 """Seconds that a trial may take."""

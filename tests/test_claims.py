@@ -13,7 +13,7 @@ import pytest
 
 from tests.conftest import ROOT
 from tools.render_docs import pages
-from uplift.io.export import write_program
+from uplift.extras.export import write_program
 
 CLAIMS = tomllib.loads((ROOT / "docs/data/claims.toml").read_text(encoding="utf-8"))[
     "claim"

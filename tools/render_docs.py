@@ -25,8 +25,8 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Undefined
 
 from uplift.common.csv import csv_text
+from uplift.extras.pages import format as viz_format
 from uplift.lab.chart.table import SITUATIONS, recommend_cube, shipped_chart
-from uplift.viz import format as viz_format
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -38,7 +38,7 @@ def number(value: Any, spec: str = "") -> str:
     """Format a value of the data by a format specification of Python, or "time",
     "size", "error" or "build_time".
 
-    "time" takes nanoseconds, "size" bytes: the functions of `uplift.viz.format`. None
+    "time" takes nanoseconds, "size" bytes: the functions of `uplift.extras.pages.format`. None
     is an empty string, a bool a filled or an empty circle. The items of a list are
     joined by slashes, or by commas after "list ". ``{median, min, max}`` is written as
     "median (min–max)", ``{mean, std}`` as "mean ± std".

@@ -8,7 +8,7 @@ from itertools import product
 from pathlib import Path
 
 import uplift
-from uplift.lights.lookup import EMISSION
+from uplift.extras.emission.lookup import EMISSION
 
 ROOT = Path(__file__).parents[1]
 LOOKUP = ROOT / "uplift" / "lookup"

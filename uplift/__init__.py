@@ -38,9 +38,9 @@ if TYPE_CHECKING:
         UpliftError,
         UpliftWarning,
     )
-    from uplift.lights.build import build_emission
-    from uplift.lights.lamps import read_lamp
-    from uplift.lights.lookup import EmissionTable, load_emission
+    from uplift.extras.emission.build import build_emission
+    from uplift.extras.emission.lamps import read_lamp
+    from uplift.extras.emission.lookup import EmissionTable, load_emission
     from uplift.lookup import Cube, load
     from uplift.pipeline.build import build
     from uplift.pipeline.look import Look, read_looks
@@ -77,9 +77,9 @@ __all__ = [
 
 _EXPORTS = {
     "uplift.atlas": ("Atlas", "Entry", "read_atlas", "write_atlas"),
-    "uplift.lights.build": ("build_emission",),
-    "uplift.lights.lamps": ("read_lamp",),
-    "uplift.lights.lookup": ("EmissionTable", "load_emission"),
+    "uplift.extras.emission.build": ("build_emission",),
+    "uplift.extras.emission.lamps": ("read_lamp",),
+    "uplift.extras.emission.lookup": ("EmissionTable", "load_emission"),
     "uplift.lookup": ("Cube", "load"),
     "uplift.pipeline.build": ("build",),
     "uplift.pipeline.look": ("Look", "read_looks"),

@@ -65,9 +65,9 @@ def command(
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
     from uplift.colorimetry.observer import check_distinct, light
     from uplift.colorimetry.srgb import hex_codes
-    from uplift.io.scene_colours import Images
+    from uplift.extras.scene import advice
+    from uplift.extras.texture.scene_colours import Images
     from uplift.lookup import load
-    from uplift.scene import advice
 
     paths = expand_patterns(images)
     check_outputs(plot_path, inputs=paths)
@@ -84,7 +84,7 @@ def command(
     rgb = colours.rgb[[each.colour for each in chosen]]
     codes = hex_codes(rgb, sensor)
     if plot_path is not None:
-        from uplift.viz.figure import write_figure
+        from uplift.extras.pages.figure import write_figure
 
         shown = paths[:SHOWN]
         pictures = {

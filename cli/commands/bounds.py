@@ -100,14 +100,14 @@ def command(
     if plot_path is not None or html is not None:
         blocks = list(blocks)
     if plot_path is not None:
-        from uplift.viz.plots import plot_bounds
+        from uplift.extras.pages.plots import plot_bounds
 
         plot_bounds(
             answers.cube, [found for _, found in blocks], plot_path, force=force
         )
         say(f"{plot_path}: bounds", err=True)
     if html is not None:
-        from uplift.report.look_page import page
+        from uplift.extras.report.look_page import page
 
         write_text(page(answers.cube, next(iter(blocks))[1]), html, force=force)
         say(f"{html}: page to choose a look on", err=True)

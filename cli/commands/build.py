@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 ALLOWED_WITH_PLAN = {"plan_path", "output", "debug", "force", "quiet", "verbose"}
 """Parameters that may accompany --plan."""
 OF_IMAGES = ("encoding", "method", "input_space")
-"""Parameters of --scene images, in the order of `uplift.io.scene_colours.Images`."""
+"""Parameters of --scene images, in the order of `uplift.extras.texture.scene_colours.Images`."""
 
 
 def parse_range(
@@ -256,7 +256,7 @@ def command(
             raise click.UsageError(
                 f"The plan already sets these options: leave out {', '.join(others)}."
             )
-        from uplift.scene.plan.files import cube_name, read_plan
+        from uplift.extras.scene.plan.files import cube_name, read_plan
 
         plan = read_plan(plan_path)
         make: Callable[..., Cube] = partial(plan.build, debug=settings["debug"])
@@ -274,7 +274,7 @@ def command(
         settings["shortest"], settings["longest"] = settings.pop("limits")
         pixels = [settings.pop(name) for name in OF_IMAGES]
         if images:
-            from uplift.io.scene_colours import Images
+            from uplift.extras.texture.scene_colours import Images
 
             settings["scene"] = Images(
                 tuple(map(Path, expand_patterns(images))), *pixels
@@ -300,7 +300,7 @@ def command(
     notes += notes_of_build
     cube.save(path, force=force)
     if slices is not None:
-        from uplift.io.exr import write_slices
+        from uplift.extras.images.exr import write_slices
 
         write_slices(cube.data, slices, force=force)
     if quiet:

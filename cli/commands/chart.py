@@ -130,6 +130,7 @@ def command(
 
 def _recommend(source: str | None, required: dict[str, Any]) -> None:
     """Print the cube that meets the requirement, or those of common situations."""
+    from uplift.extras.pages.format import format_error, format_size, format_time
     from uplift.lab.chart.table import (
         SITUATIONS,
         Requirement,
@@ -137,7 +138,6 @@ def _recommend(source: str | None, required: dict[str, Any]) -> None:
         recommend_cube,
         shipped_chart,
     )
-    from uplift.viz.format import format_error, format_size, format_time
 
     chart = read_chart(source) if source is not None else shipped_chart()
     for title, each in (
@@ -169,8 +169,8 @@ def _measure(
 
 
 def _print_fronts(chart: Chart) -> None:
+    from uplift.extras.pages.format import format_size
     from uplift.lab.chart.table import State, criteria
-    from uplift.viz.format import format_size
 
     say("Pareto fronts, from the fastest to the most accurate")
     tables = []

@@ -103,9 +103,9 @@ def _check(
     """Return the record of a check, the rebuilt cube if there is one, and the error
     that prevented the comparison.
     """
+    from uplift.extras.report.regression import compare_rebuilt
     from uplift.lookup import load
     from uplift.pipeline.rebuild import rebuild
-    from uplift.report.regression import compare_rebuilt
 
     rebuilt = comparison = error = None
     noted: list[UpliftWarning] = []
@@ -154,7 +154,7 @@ def _short(value: float) -> str:
 def _print_table(records: Sequence[dict[str, Any]]) -> None:
     from rich.text import Text
 
-    from uplift.report.regression import LIMITS
+    from uplift.extras.report.regression import LIMITS
 
     headings = {
         "rgb": "RGB",

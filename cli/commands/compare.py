@@ -146,8 +146,8 @@ def _write_spectra(
     name: str, files: tuple[str, ...], lights: tuple[Illuminant, ...], output: str
 ) -> None:
     from uplift.atlas import merge, write_atlas
+    from uplift.extras.scene.representations import find_representation
     from uplift.lab.comparison.compare import make_scene, represent
-    from uplift.scene.representations import find_representation
 
     representation = find_representation(name)
     check_folder(output, SPECTRA, inputs=atlas_files(files))
@@ -192,8 +192,8 @@ def _measure(
 
 
 def _print_advice(comparison: Comparison, tolerance: float) -> None:
+    from uplift.extras.pages.format import format_error, format_time
     from uplift.lab.comparison.compare import cheapest
-    from uplift.viz.format import format_error, format_time
 
     for name, title in comparison.sets.items():
         row = cheapest(comparison, name, tolerance)
@@ -217,8 +217,8 @@ def _print_advice(comparison: Comparison, tolerance: float) -> None:
 def _print_table(
     comparison: Comparison, tuned: tuple[TunedFilter, ...], *, every: bool
 ) -> None:
+    from uplift.extras.pages.format import format_time
     from uplift.lab.comparison.compare import HEADINGS, pareto
-    from uplift.viz.format import format_time
 
     tables = []
     for name, title in comparison.sets.items():

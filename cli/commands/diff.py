@@ -68,8 +68,8 @@ def command(
     from uplift.colorimetry.lights import SCENE_LIGHTS
     from uplift.common.errors import OptionError
     from uplift.common.files import write_text
+    from uplift.extras.report.diff import diff_cubes, to_json
     from uplift.lookup import load
-    from uplift.report.diff import diff_cubes, to_json
 
     if tolerance is not None and tolerance < 0:
         raise OptionError(f"tolerance must not be negative, got {tolerance:g}")
@@ -85,7 +85,7 @@ def command(
         }
         found = diff_cubes(cubes, lights or SCENE_LIGHTS, pictures)
         if output is not None:
-            from uplift.report.diff_page import render_diff
+            from uplift.extras.report.diff_page import render_diff
 
             write_text(render_diff(found, pictures, worst), output, force=force)
     figures = to_json(found, tolerance, worst)

@@ -16,7 +16,7 @@ from ..outputs import stated_inputs
 
 if TYPE_CHECKING:
     from uplift.cube import CubeData
-    from uplift.io.export import TableError
+    from uplift.extras.export import TableError
     from uplift.lookup import Cube
 
 PROGRAMS = {"c": ".h", "cuda": ".cuh", "glsl": ".glsl", "hlsl": ".hlsl"}
@@ -151,7 +151,7 @@ def command(
             "as HP1."
         )
     from uplift.common.files import check_output, check_outputs
-    from uplift.io.export import check_form, output_files
+    from uplift.extras.export import check_form, output_files
     from uplift.lookup import load
 
     form = check_form(style, settings.get("table")) if style in PROGRAMS else style
@@ -168,8 +168,8 @@ def command(
 def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     """Write a cube, and return a description of the file."""
     from uplift.common.files import write_text
-    from uplift.io import export
-    from uplift.report.live_page import page
+    from uplift.extras import export
+    from uplift.extras.report.live_page import page
 
     data = cube.data
     if style in LUTS:
@@ -209,7 +209,7 @@ def _write_program(
     table: str | None = None,
 ) -> str:
     """Write a program, and return a description of it."""
-    from uplift.io import export
+    from uplift.extras import export
 
     written = export.write_program(
         data, path, style=style, mode=mode, form=table, force=force

@@ -23,12 +23,12 @@ from .texture import as_tuple, convert, image_options
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.lights.lookup import EmissionTable
+    from uplift.extras.emission.lookup import EmissionTable
 
 PACKAGED = "emission"
 """Name of the packaged table."""
 LANGUAGES = {".h": "c", ".glsl": "glsl"}
-"""Languages of `uplift.io.export.write_light_program` by suffix."""
+"""Languages of `uplift.extras.export.write_light_program` by suffix."""
 
 table_argument = click.argument(
     "table_path", metavar="[TABLE]", required=False, default=PACKAGED, type=click.Path()
@@ -89,7 +89,7 @@ def build(
     force: bool,
     quiet: bool,
 ) -> None:
-    from uplift.lights.build import build_emission
+    from uplift.extras.emission.build import build_emission
 
     stem = "+".join(Path(file).stem for file in files)
     name = f"{stem}-emission.uplift" if stem else "emission.uplift"
@@ -133,18 +133,18 @@ def build(
 def info(
     table_path: str, style: str, plot_path: str | None, html: str | None, force: bool
 ) -> None:
-    from uplift.lights.lookup import find_table, load_emission
-    from uplift.lights.table import summarise
+    from uplift.extras.emission.lookup import find_table, load_emission
+    from uplift.extras.emission.table import summarise
 
     check_outputs((plot_path, html), inputs=[table_path], force=force)
     table = load_emission(table_path)
     if plot_path is not None:
-        from uplift.viz.chromaticity import light_figure
-        from uplift.viz.figure import write_figure
+        from uplift.extras.pages.chromaticity import light_figure
+        from uplift.extras.pages.figure import write_figure
 
         write_figure(light_figure(table), plot_path, force=force)
     if html is not None:
-        from uplift.report.lights import render_light_report
+        from uplift.extras.report.lights import render_light_report
 
         file = Path(find_table(table_path))
         write_text(
@@ -172,8 +172,8 @@ def info(
 @options.table
 @options.force
 def export(table_path: str, output: str, table: str | None, force: bool) -> None:
-    from uplift.io.export import check_form, output_files, write_light_program
-    from uplift.lights.lookup import load_emission
+    from uplift.extras.emission.lookup import load_emission
+    from uplift.extras.export import check_form, output_files, write_light_program
 
     language = LANGUAGES.get(Path(output).suffix.lower())
     if language is None:
@@ -214,8 +214,8 @@ def export(table_path: str, output: str, table: str | None, force: bool) -> None
 @options.encoding
 @options.input_space("the images", name="space")
 def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) -> None:
-    from uplift.io.texture import Spectrum
-    from uplift.lights.lookup import find_table, load_emission
+    from uplift.extras.emission.lookup import find_table, load_emission
+    from uplift.extras.texture import Spectrum
 
     table = None if table_path is None else os.path.abspath(find_table(table_path))
     own = load_emission(
@@ -269,7 +269,7 @@ def query(
     import numpy as np
 
     from uplift.colorimetry.observer import sensor
-    from uplift.lights.lookup import load_emission
+    from uplift.extras.emission.lookup import load_emission
 
     check_outputs((plot_path,), inputs=(table_path, colours["input_path"]), force=force)
     source = find_colours(**colours)
@@ -283,7 +283,7 @@ def query(
     )
     results: Iterable[dict[str, Any]] = _answers(table, blocks, at, outside)
     if plot_path is not None:
-        from uplift.viz.plots import plot_lights
+        from uplift.extras.pages.plots import plot_lights
 
         results = list(results)
         plot_lights(

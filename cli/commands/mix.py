@@ -31,7 +31,7 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.design.mixing.pigments import Scattering
+    from uplift.extras.paint.pigments import Scattering
     from uplift.lookup import Cube
 
 
@@ -209,7 +209,7 @@ def command(
     import numpy as np
 
     from uplift.atlas import Atlas, read_atlas
-    from uplift.design.mixing import (
+    from uplift.extras.paint import (
         Ingredients,
         Medium,
         Surface,
@@ -217,8 +217,8 @@ def command(
         mix,
         overpainter,
     )
-    from uplift.design.mixing.coats import COATS, ramp
-    from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, dispersive
+    from uplift.extras.paint.coats import COATS, ramp
+    from uplift.extras.paint.pigments import CONSTANT, SQUARE_ROOT, dispersive
     from uplift.lookup import load
     from uplift.lookup.blocks import as_wavelengths
 
@@ -294,7 +294,7 @@ def command(
     medium = Medium(thickness, surface, law, plate is not None)
     if over is not None and output is not None:
         enable_jit_cache()
-        from uplift.io.texture import convert
+        from uplift.extras.texture import convert
 
         recipe = {
             "kind": kind,
@@ -335,7 +335,7 @@ def command(
     )
     if plot_path is not None:
         from uplift.colorimetry.srgb import to_display_codes
-        from uplift.viz.plots import Strip, plot_strips
+        from uplift.extras.pages.plots import Strip, plot_strips
 
         codes = to_display_codes(mapped.rgb, sensor) / 255
         strips = [
@@ -399,7 +399,7 @@ def _print_theories(
     from rich.text import Text
 
     from uplift.colorimetry.gamut import map_to_gamut
-    from uplift.design.mixing.theories import mixers
+    from uplift.extras.paint.theories import mixers
 
     sensor = cube.data.sensor
     rgb = np.clip(sensor.rgb(spectra), 0, 1)

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from uplift.common.arrays import Array
-    from uplift.design.palette.design import Design, Matrix
-    from uplift.design.palette.palette import Palette, SpectrumSpec
+    from uplift.extras.palette.design import Design, Matrix
+    from uplift.extras.palette.palette import Palette, SpectrumSpec
 
 LEGEND = "requested, obtained, factor model, ΔE00 of obtained/model; * designed"
 
@@ -90,7 +90,7 @@ def command(
     force: bool,
 ) -> None:
     from uplift.common.files import write_text
-    from uplift.design.palette import (
+    from uplift.extras.palette import (
         design,
         matrix,
         read_palette,
@@ -98,9 +98,9 @@ def command(
         unmet_goals,
         write_designed,
     )
-    from uplift.design.palette.picture import cutaway
-    from uplift.design.palette.plots import plot_matrix, plot_spectra
-    from uplift.design.palette.relight_page import page, relighting
+    from uplift.extras.palette.picture import cutaway
+    from uplift.extras.palette.plots import plot_matrix, plot_spectra
+    from uplift.extras.palette.relight_page import page, relighting
 
     palette = read_palette(spec)
     check_outputs(output, plot_path, spectra_path, html, inputs=palette.sources)
@@ -143,7 +143,7 @@ def _read_picture(
         return None
     if html is None:
         raise click.UsageError("--image requires --html, the page to write.")
-    from uplift.design.palette.picture import read_weights
+    from uplift.extras.palette.picture import read_weights
 
     colours: dict[str, str] = {}
     for label in labels:

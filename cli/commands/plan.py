@@ -54,9 +54,9 @@ def command(
 ) -> None:
     enable_jit_cache()
     from uplift.common.files import write_text
-    from uplift.scene.plan import plan, read_scene_file, summary
-    from uplift.scene.plan.candidates import QUICK, SearchGrid
-    from uplift.scene.plan.files import SUFFIX
+    from uplift.extras.scene.plan import plan, read_scene_file, summary
+    from uplift.extras.scene.plan.candidates import QUICK, SearchGrid
+    from uplift.extras.scene.plan.files import SUFFIX
 
     scene_file = read_scene_file(scene)
     path = scene_file.path.with_suffix(SUFFIX) if output is None else Path(output)

@@ -282,7 +282,7 @@ def command(
     answers = Answers(lights=lights, **colours)
     results: Iterable[QueryResult] = chain.from_iterable(answers)
     if plot_path is not None:
-        from uplift.viz.plots import plot_spectra
+        from uplift.extras.pages.plots import plot_spectra
 
         results = list(results)
         plot_spectra(answers.cube, results, plot_path, force=force)
@@ -321,8 +321,8 @@ def _check(
     """Compare stored answers with those of a cube; exit with 1 if one differs by more
     than the tolerance.
     """
+    from uplift.extras.report.answers import read_answers
     from uplift.lookup import load
-    from uplift.report.answers import read_answers
 
     stored = read_answers(path)
     differences = stored.differences(load(cube_path), mode)

@@ -25,8 +25,8 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.colorimetry.lights import Illuminant
+    from uplift.extras.relight.relight import Relit
     from uplift.lookup import Cube
-    from uplift.report.relight import Relit
 
 SAMPLE = "still-life.png"
 SAMPLE_ATLAS = "macbeth"
@@ -40,7 +40,7 @@ DIM = 32
 
 def _check_output(path: str) -> str:
     from uplift.common.errors import OutputError
-    from uplift.viz.figure import SUFFIXES, check_suffix
+    from uplift.extras.pages.figure import SUFFIXES, check_suffix
 
     suffixes = (*SUFFIXES, PAGE, IMAGE)
     suffix = Path(path).suffix.lower()
@@ -122,9 +122,10 @@ def command(
     enable_jit_cache()
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
     from uplift.common.files import write_text
-    from uplift.io import texture
+    from uplift.extras import texture
+    from uplift.extras.relight.relight import relight, relit_page, write_relit_sheet
+    from uplift.extras.relight.relighter import prepare_relighter
     from uplift.lookup import load
-    from uplift.report.relight import relight, relit_page, write_relit_sheet
     from uplift.samples import sample_path
 
     if cube_path is not None and files:
@@ -147,7 +148,7 @@ def command(
             extra, notes = _cube_of_user(cube_path, atlases)
             balanced = adapt is not False
             threads = os.cpu_count() or 1
-            converter = texture.prepare_relighter(
+            converter = prepare_relighter(
                 extra or load(), lights, adapt=balanced, threads=threads, **pixels
             )
             conversion = texture.convert(
@@ -202,8 +203,8 @@ def _setting(cube: Cube) -> tuple[str, str, str]:
 
 def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:
     """Print ΔE00 of every method from the products of RGB."""
-    from uplift.report.measures import mean_p95_max
-    from uplift.report.relight import RGB_PRODUCT
+    from uplift.extras.relight.relight import RGB_PRODUCT
+    from uplift.extras.report.measures import mean_p95_max
 
     rows = []
     for image in relit:

@@ -15,7 +15,7 @@ from ..outputs import check_outputs
 
 if TYPE_CHECKING:
     from uplift.colorimetry.lights import Illuminant
-    from uplift.report.assessment import Assessment
+    from uplift.extras.report.assessment import Assessment
 
 
 @click.command(
@@ -68,11 +68,11 @@ def command(
     from uplift.atlas import read_atlas
     from uplift.colorimetry.lights import REPORT_LIGHTS
     from uplift.common.files import write_text
+    from uplift.extras.report.assessment import assess
+    from uplift.extras.report.page import render_report, to_json
     from uplift.lookup import load
     from uplift.lookup.cube import find_file
     from uplift.pipeline.rebuild import recorded_atlas, recorded_files
-    from uplift.report.assessment import assess
-    from uplift.report.page import render_report, to_json
 
     path = output
     if style == "html":

@@ -12,7 +12,7 @@ from ..outputs import check_outputs
 
 
 def _check_sheet(path: str) -> None:
-    from uplift.viz.sheet import check_sheet
+    from uplift.extras.pages.sheet import check_sheet
 
     check_sheet(path)
 
@@ -61,9 +61,9 @@ def command(cube: str, output: str | None, sheet: str | None, force: bool) -> No
     if output is None and sheet is None:
         output = f"{Path(cube).stem}.exr"
     from uplift.cube import read
-    from uplift.io.exr import write_slices
+    from uplift.extras.images.exr import write_slices
+    from uplift.extras.pages.sheet import write_sheet
     from uplift.lookup.cube import find_file
-    from uplift.viz.sheet import write_sheet
 
     check_outputs(output, sheet)
     data = read(find_file(cube))

@@ -27,12 +27,12 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.io.texture.sequence import Outcome
-    from uplift.io.texture.uplifter import PixelEncoding
+    from uplift.extras.texture.sequence import Outcome
+    from uplift.extras.texture.uplifter import PixelEncoding
 
 
 def _check_scheduler(address: str) -> None:
-    from uplift.io.texture.sequence import import_distributed
+    from uplift.extras.texture.sequence import import_distributed
 
     import_distributed()
 
@@ -155,7 +155,7 @@ def command(
     wavelengths: Array | None,
     **settings: Any,
 ) -> None:
-    from uplift.io import texture
+    from uplift.extras import texture
     from uplift.lookup.cube import find_file, load
 
     encode = texture.PIXEL_ENCODINGS[kind]
@@ -197,8 +197,8 @@ def convert(
     and `image_options`.
     """
     enable_jit_cache()
-    from uplift.io import texture
-    from uplift.io.texture.sequence import converter_for, run
+    from uplift.extras import texture
+    from uplift.extras.texture.sequence import converter_for, run
 
     pairs = _texture_paths(sources, target)
     existing = [path for _, path in pairs if path.exists()]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from uplift.colorimetry.lights import Illuminant
     from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
-    from uplift.scene.wavelengths import Choice
+    from uplift.extras.scene.wavelengths import Choice
 
 
 @click.command(
@@ -116,7 +116,7 @@ def command(
         raise click.UsageError("--channels requires --orders.")
     from uplift.atlas import merge, on_grid
     from uplift.colorimetry import observer
-    from uplift.scene import wavelengths as library
+    from uplift.extras.scene import wavelengths as library
 
     check_outputs(plot_path, inputs=atlas_files(files))
     observer.require_observer(camera["observer"], "weights of wavelengths")
@@ -142,7 +142,7 @@ def command(
                 method=method or "optimised",
             )
     if plot_path is not None:
-        from uplift.scene.wavelengths.plots import plot_choice
+        from uplift.extras.scene.wavelengths.plots import plot_choice
 
         plot_choice(setting, choice, plot_path, force=force)
         say(f"{plot_path}: lights, wavelengths and weights", err=True)
@@ -152,7 +152,7 @@ def command(
 def _print(
     choice: Choice, camera: Sensor, materials: tuple[str, ...], style: str
 ) -> None:
-    from uplift.scene.wavelengths.sampling import statistics
+    from uplift.extras.scene.wavelengths.sampling import statistics
 
     sampling = choice.sampling
     to_rgb = sampling.to_rgb(camera)

@@ -9,7 +9,7 @@ from tests.fuzz.tables import check
 from tests.helpers import raises, warns
 from uplift.atlas import read_atlas
 from uplift.common.errors import AtlasError, UnknownNameError
-from uplift.lights.lamps import read_lamps
+from uplift.extras.emission.lamps import read_lamps
 
 NM = np.arange(380, 781, 20)
 VALUES = np.round(0.08 + 0.47 / (1 + np.exp((600 - NM) / 20)), 4)

@@ -20,10 +20,10 @@ from benchmarks.emission import (
 )
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
-from uplift.lights.discs import Lamps
-from uplift.lights.lamps import known_lamps
-from uplift.lights.lattice import chromaticity
-from uplift.lights.lookup import EmissionTable
+from uplift.extras.emission.discs import Lamps
+from uplift.extras.emission.lamps import known_lamps
+from uplift.extras.emission.lattice import chromaticity
+from uplift.extras.emission.lookup import EmissionTable
 
 LAMPS = known_lamps()
 TABLE = uplift.load_emission()

@@ -16,8 +16,8 @@ from benchmarks.representations import (
     printed_tables,
 )
 from uplift.colorimetry import observer, tables
-from uplift.design.palette.picture import read_weights
-from uplift.scene.representations.samples import xyz_weights
+from uplift.extras.palette.picture import read_weights
+from uplift.extras.scene.representations.samples import xyz_weights
 
 WHITE = np.array([0.95, 1.0, 1.09])
 

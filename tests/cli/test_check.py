@@ -11,8 +11,8 @@ import pytest
 import uplift
 from tests.helpers import with_points
 from uplift.cube import write
+from uplift.extras.report.regression import LIMITS
 from uplift.lattice import Lattice
-from uplift.report.regression import LIMITS
 
 ROOT = Path(__file__).parents[2]
 CUBES = [

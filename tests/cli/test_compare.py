@@ -11,8 +11,8 @@ from uplift_cli.commands import compare
 from uplift_cli.main import main
 
 from uplift.atlas import read_atlas
+from uplift.extras.emission.lamps import read_lamps
 from uplift.lab.timing import ONE_THREAD
-from uplift.lights.lamps import read_lamps
 
 FILES = ["compare-boxes.png", "compare-cost.png", "compare.html"]
 measure = cache(compare._measure)

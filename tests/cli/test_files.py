@@ -14,7 +14,7 @@ import pytest
 from uplift_cli.main import main
 from uplift_cli.options import OutputFile
 
-from tests.io.texture.conftest import planes, write_exr
+from tests.extras.texture.conftest import planes, write_exr
 
 from .conftest import commands
 
@@ -119,7 +119,7 @@ def inputs(home, cubes, macbeth, monkeypatch):
         (home / name).write_text(text)
     images = SimpleNamespace(paths=("image.exr",))
     plan = SimpleNamespace(images=images, atlases=("atlas.txt",), build=print)
-    monkeypatch.setattr("uplift.scene.plan.files.read_plan", lambda path: plan)
+    monkeypatch.setattr("uplift.extras.scene.plan.files.read_plan", lambda path: plan)
     return {path.name: path.read_bytes() for path in home.iterdir()}
 
 

@@ -9,8 +9,8 @@ import pytest
 from uplift_cli.output.diagnostics import hint_for
 
 import uplift
-from uplift.lights.build import build_emission
-from uplift.lights.table import emission_digest
+from uplift.extras.emission.build import build_emission
+from uplift.extras.emission.table import emission_digest
 
 
 def test_a_light_has_its_colour_and_power_of_any_size(run):
@@ -56,7 +56,8 @@ def test_colours_that_no_light_has(run):
 
 def test_a_table_of_measured_lamps_is_built_and_queried(run, home, monkeypatch):
     monkeypatch.setattr(
-        "uplift.lights.build.build_emission", partial(build_emission, knots=32, rings=4)
+        "uplift.extras.emission.build.build_emission",
+        partial(build_emission, knots=32, rings=4),
     )
     at = np.arange(400, 701, 10)
     power = np.exp(-(((at - 600) / 40) ** 2)) + 0.1

@@ -4,7 +4,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 
-from tests.io.texture.conftest import planes, read_channels, write_exr
+from tests.extras.texture.conftest import planes, read_channels, write_exr
 from uplift.samples import sample_path
 
 from .conftest import warning_lines

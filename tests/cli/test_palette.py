@@ -121,7 +121,7 @@ def test_invalid_input_is_reported_before_any_work(
     refuse, pair, home, monkeypatch, arguments, code
 ):
     monkeypatch.setattr(
-        "uplift.design.palette.design", lambda *_: pytest.fail("designed")
+        "uplift.extras.palette.design", lambda *_: pytest.fail("designed")
     )
     assert refuse("palette", pair, *arguments).code == code
     assert not (home / "a.html").exists()

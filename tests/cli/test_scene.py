@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
+from tests.extras.texture.conftest import planes, write_exr
 from tests.helpers import near_black, with_absent_points
-from tests.io.texture.conftest import planes, write_exr
 from uplift.cube import read, write
 
 from .conftest import warning_lines

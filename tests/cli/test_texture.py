@@ -6,8 +6,8 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from tests.io.texture.conftest import planes, write_exr
-from uplift.io.texture.sequence import converter_for
+from tests.extras.texture.conftest import planes, write_exr
+from uplift.extras.texture.sequence import converter_for
 
 from .conftest import warning_lines
 

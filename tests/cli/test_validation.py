@@ -12,29 +12,29 @@ from uplift_cli.commands.slices import SHEET
 from uplift_cli.main import main
 from uplift_cli.options import FIGURE_PAGE, PLOT
 
-from tests.io.texture.conftest import planes, write_exr
+from tests.extras.texture.conftest import planes, write_exr
 
 from .conftest import commands
 
 CUBE = "cube.uplift"
 COMPUTES = {
-    "advise": "uplift.scene.advice.posterior",
+    "advise": "uplift.extras.scene.advice.posterior",
     "build": "uplift.pipeline.entries.fit_constraints",
     "chart": "uplift.lab.chart.measure.measure_methods",
     "check": "uplift.pipeline.rebuild.rebuild",
     "compare": "uplift.lab.comparison.compare.error_statistics",
-    "diff": "uplift.report.diff.diff_cubes",
-    "lights build": "uplift.lights.build.EmissionTable",
-    "palette": "uplift.design.palette.design",
-    "plan": "uplift.scene.plan.space.sample_colours",
+    "diff": "uplift.extras.report.diff.diff_cubes",
+    "lights build": "uplift.extras.emission.build.EmissionTable",
+    "palette": "uplift.extras.palette.design",
+    "plan": "uplift.extras.scene.plan.space.sample_colours",
     "relight": "uplift.pipeline.entries.fit_constraints",
-    "report": "uplift.report.assessment.assess",
+    "report": "uplift.extras.report.assessment.assess",
     "study held-out": "uplift.pipeline.entries.fit_constraints",
     "study moments": "uplift.lab.study.moments.Technique.moments",
     "study sensitivity": "uplift.lab.study.sensitivity.study_sensitivity",
     "study stability": "uplift.lab.study.stability.study_stability",
-    "texture": "uplift.io.texture.sequence.convert",
-    "wavelengths": "uplift.scene.wavelengths.sampling.evaluate",
+    "texture": "uplift.extras.texture.sequence.convert",
+    "wavelengths": "uplift.extras.scene.wavelengths.sampling.evaluate",
 }
 """Functions that do the long work of commands, and must not be called."""
 INVALID = """

@@ -16,8 +16,8 @@ from uplift.colorimetry.observer import COMMON_SPACES, smallest_space
 from uplift.colorimetry.spaces import BUILT_IN, find_space, look_up_space, primaries_of
 from uplift.colorimetry.srgb import decode, encode, to_display_codes
 from uplift.common.errors import OptionError, UnknownNameError
+from uplift.extras.emission.lamps import known_lamps
 from uplift.lattice import axis_nodes
-from uplift.lights.lamps import known_lamps
 
 SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 NAMES = {

@@ -14,9 +14,9 @@ from uplift.common import machine
 from uplift.common.errors import CubeFileError, OutputError
 from uplift.cube import digest, read, write
 from uplift.cube.file import POINTS
-from uplift.io.exr import write_slices
+from uplift.extras.images.exr import write_slices
+from uplift.extras.pages.sheet import write_sheet
 from uplift.lattice import CORNERS, Lattice, Status
-from uplift.viz.sheet import write_sheet
 
 
 @pytest.fixture
@@ -120,7 +120,7 @@ def test_small_files_of_large_lattices_take_little_memory(plain_cube, tmp_path):
     path = forge(sparse, tmp_path / "forged.uplift", of_dim(160))
     assert path.stat().st_size < 20_000
     code = (
-        "import sys, uplift\nfrom uplift.report.measures import compute_smoothness\n"
+        "import sys, uplift\nfrom uplift.extras.report.measures import compute_smoothness\n"
         "cube = uplift.load(sys.argv[1]).fill_missing([[0.5, 0.5, "
         "0.5]])\ncompute_smoothness(cube.data)\n"
         "print(next(line.split()[1] for line in open('/proc/self/status') if "

@@ -34,9 +34,9 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import UpliftWarning
 from uplift.common.files import write_text
 from uplift.cube import CubeData, digest
+from uplift.extras import texture
+from uplift.extras.export import moved_cells, rounding_error
 from uplift.fit import base, batch
-from uplift.io import texture
-from uplift.io.export import moved_cells, rounding_error
 from uplift.lab.timing import environment
 from uplift.lattice import CORNERS, Lattice
 from uplift.lookup import MODES

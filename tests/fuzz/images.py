@@ -19,14 +19,20 @@ import OpenEXR
 from PIL import Image
 
 import uplift
+from tests.extras.texture import image_bytes as files
+from tests.extras.texture.test_colour_profile import (
+    ADOBE,
+    GAMMA,
+    P3,
+    SRGB_TABLE,
+    by_matrix,
+)
 from tests.fuzz.fuzzing import Random, choose
-from tests.io.texture import image_bytes as files
-from tests.io.texture.test_colour_profile import ADOBE, GAMMA, P3, SRGB_TABLE, by_matrix
 from uplift.common.arrays import Array
-from uplift.io import texture
-from uplift.io.texture.channels import coloured_parts
-from uplift.io.texture.colours import make_decoder, space_warnings
-from uplift.io.texture.image import open_image
+from uplift.extras import texture
+from uplift.extras.texture.channels import coloured_parts
+from uplift.extras.texture.colours import make_decoder, space_warnings
+from uplift.extras.texture.image import open_image
 
 WIDTH = 7
 LIGHTS = texture.prepare_lights(uplift.load_emission(), threads=1)

@@ -12,8 +12,8 @@ import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
-from uplift.io.export.program import cube_program
-from uplift.io.export.table import make_table
+from uplift.extras.export.program import cube_program
+from uplift.extras.export.table import make_table
 
 READ = (
     "DIM",

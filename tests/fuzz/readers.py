@@ -18,9 +18,9 @@ from uplift_cli.colours import ColourSource
 
 from tests.atlas.vendor_files import VENDORS, Files, sample
 from tests.cube.cube_files import forge, header_length, with_header, with_header_length
+from tests.extras.texture.exr_bytes import attribute, exr_bytes
+from tests.extras.texture.image_bytes import BT2020, hdr_bytes, tiff_bytes
 from tests.fuzz.fuzzing import ROOT, Random, Seeds, Target, choose, mutate, mutated
-from tests.io.texture.exr_bytes import attribute, exr_bytes
-from tests.io.texture.image_bytes import BT2020, hdr_bytes, tiff_bytes
 from uplift.atlas import read_atlas, resample, write_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import METHODS, map_to_gamut
@@ -29,17 +29,17 @@ from uplift.common.errors import UpliftError
 from uplift.common.files import file_digest
 from uplift.cube import CubeData, read, summarise
 from uplift.cube.file import POINTS
-from uplift.design.palette import design, matrix, read_palette, standard_model
-from uplift.io.texture import Counts, convert
-from uplift.io.texture.uplifter import Converter
+from uplift.extras.palette import design, matrix, read_palette, standard_model
+from uplift.extras.scene.plan import read_scene_file
+from uplift.extras.scene.plan.files import FORMAT, read_plan
+from uplift.extras.texture import Counts, convert
+from uplift.extras.texture.uplifter import Converter
 from uplift.lab.chart.table import Requirement, criteria, read_chart, recommend_cube
 from uplift.lattice import Lattice, PointTable
 from uplift.lookup import MODES, Cube, load
 from uplift.lookup.query import query
 from uplift.pipeline.options import Options
 from uplift.pipeline.rebuild import recorded_atlas
-from uplift.scene.plan import read_scene_file
-from uplift.scene.plan.files import FORMAT, read_plan
 
 # --- atlases ---
 

@@ -18,6 +18,21 @@ from tests.pages import Page
 from uplift.atlas import Atlas, on_grid, read_atlas, write_atlas
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError, UpliftError
+from uplift.extras.emission.lamps import read_lamps
+from uplift.extras.scene.representations import find_representation
+from uplift.extras.scene.representations.composite import (
+    enhanced_riemann,
+    sun_composite,
+)
+from uplift.extras.scene.representations.filters import filtered_point_samples
+from uplift.extras.scene.representations.models import trigonometric_moments
+from uplift.extras.scene.representations.samples import (
+    linear,
+    point_samples,
+    riemann_sums,
+    wavelengths,
+    xyz_weights,
+)
 from uplift.lab.comparison.compare import (
     COARSE_STRIDE,
     NONE,
@@ -42,18 +57,6 @@ from uplift.lab.comparison.pictures import (
     write_costs,
 )
 from uplift.lab.timing import TimingStats
-from uplift.lights.lamps import read_lamps
-from uplift.scene.representations import find_representation
-from uplift.scene.representations.composite import enhanced_riemann, sun_composite
-from uplift.scene.representations.filters import filtered_point_samples
-from uplift.scene.representations.models import trigonometric_moments
-from uplift.scene.representations.samples import (
-    linear,
-    point_samples,
-    riemann_sums,
-    wavelengths,
-    xyz_weights,
-)
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.camera import CAMERA
 from uplift.common.errors import ColourError, CubeFileError
 from uplift.cube import digest
-from uplift.io.export.coeff import write_coeff
+from uplift.extras.export.coeff import write_coeff
 from uplift.lookup.query import query, query_xyz
 from uplift.pipeline.rebuild import rebuild
 

@@ -12,10 +12,10 @@ from tests.helpers import quiet_build
 from uplift.atlas import Atlas, Entry, read_atlas
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import on_range
-from uplift.report.assessment import assess
-from uplift.report.live_page import page
-from uplift.report.regression import compare_rebuilt
-from uplift.report.relight import relight
+from uplift.extras.relight.relight import relight
+from uplift.extras.report.assessment import assess
+from uplift.extras.report.live_page import page
+from uplift.extras.report.regression import compare_rebuilt
 
 MEASURED = np.arange(360, 1001, 10.0)
 

@@ -40,7 +40,7 @@ ASSUMED = ", assumed: "
 
 MAX_NAME = 1000
 """Characters of a name."""
-NOTEBOOK = "uplift.viz.notebook"
+NOTEBOOK = "uplift.extras.pages.notebook"
 """Module of the HTML table. It lies above this one, so it is imported by name, when a
 notebook shows an atlas.
 """

@@ -11,7 +11,7 @@ import numpy as np
 from markupsafe import Markup
 
 from uplift.common.arrays import Array, StrPath
-from uplift.viz.figure import (
+from uplift.extras.pages.figure import (
     GREY,
     INK,
     OTHER,
@@ -22,7 +22,7 @@ from uplift.viz.figure import (
     to_page_svg,
     write_png,
 )
-from uplift.viz.scatter import LEGEND, Label, draw_labels, style_title
+from uplift.extras.pages.scatter import LEGEND, Label, draw_labels, style_title
 
 CLEAR_RATIO = 0.99
 """Share of an error below which another one is clearly smaller; the rest is noise."""

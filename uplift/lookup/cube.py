@@ -46,7 +46,7 @@ TABULATED = ("spectra", "nearest")
 OBSERVER = "uplift.colorimetry.observer"
 """Module that reads the tables of illuminants. It is imported by name, when a light is.
 """
-NOTEBOOK = "uplift.viz.notebook"
+NOTEBOOK = "uplift.extras.pages.notebook"
 """Module of the HTML. It lies above this one, so it is imported by name, when HTML is
 requested.
 """

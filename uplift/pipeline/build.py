@@ -245,7 +245,7 @@ def build(
     recorded["solver"] = solver if isinstance(solver, str) else CUSTOM
     options = Options(**recorded)
     if isinstance(scene, str | os.PathLike | Sequence):
-        from uplift.io.scene_colours import (
+        from uplift.extras.texture.scene_colours import (
             Images,
         )  # a build without images needs no image code
 

@@ -11,8 +11,8 @@ from tests.parts import LLVM, need
 from uplift.atlas import Atlas, Entry, merge, on_grid, read_atlas
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import AtlasError, OptionError
+from uplift.extras.images.processes import call_in_child
 from uplift.fit.families import families_with
-from uplift.io.processes import call_in_child
 from uplift.lab.chart import mitsuba3
 from uplift.lab.chart.cubes import CubeOptions, built_cube
 from uplift.lab.chart.measure import METHODS, select_methods

@@ -15,6 +15,7 @@ from uplift.colorimetry.lights import HELD_OUT_LIGHTS, SCENE_LIGHTS
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import AtlasError
 from uplift.common.progress import Progress
+from uplift.extras.report.fidelity import Answers
 from uplift.lab.study import held_out
 from uplift.lab.study.held_out import (
     HoldoutSplit,
@@ -24,7 +25,6 @@ from uplift.lab.study.held_out import (
     split_records,
 )
 from uplift.pipeline.build import build
-from uplift.report.fidelity import Answers
 
 GRID = observer.grid()
 

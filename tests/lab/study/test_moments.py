@@ -14,9 +14,9 @@ from tests.helpers import raises
 from uplift.atlas import Atlas, read_atlas
 from uplift.colorimetry import observer
 from uplift.common.errors import AtlasError, OptionError
+from uplift.extras.scene.representations.samples import wavelengths
 from uplift.lab.study.moments import ALL_ATLASES, MAX_MOMENTS, TECHNIQUES, study_moments
 from uplift.models import Moments, duality, evaluate
-from uplift.scene.representations.samples import wavelengths
 
 MIRRORED = [technique for technique in TECHNIQUES if technique.mirrored]
 UNMIRRORED = [technique for technique in TECHNIQUES if not technique.mirrored]

@@ -2,7 +2,7 @@
 lookup in Python, in bulk and in C.
 
 Domain: linear sRGB in [0, 1] under D65. Range: reflectance in [0, 1] at any
-wavelengths. C is the program of `uplift.io.export.write_program`, compiled with the
+wavelengths. C is the program of `uplift.extras.export.write_program`, compiled with the
 system's compiler. A call takes all colours, on one thread.
 """
 
@@ -20,7 +20,7 @@ import numpy as np
 
 from uplift.common.arrays import Array, Values
 from uplift.cube import CubeData
-from uplift.io.export import write_program
+from uplift.extras.export import write_program
 from uplift.lab.chart.method import (
     Method,
     NotInstalledError,

@@ -21,7 +21,7 @@ from uplift.common.arrays import Array, Values
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
-from uplift.io.processes import ChildError, call_in_child
+from uplift.extras.images.processes import ChildError, call_in_child
 from uplift.lab.chart import cubes, mitsuba3, published
 from uplift.lab.chart.method import (
     Description,

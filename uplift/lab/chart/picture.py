@@ -10,6 +10,23 @@ import numpy as np
 
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.arrays import StrPath
+from uplift.extras.pages.figure import (
+    ACCENT,
+    GREY,
+    OTHER,
+    PALE,
+    new_figure,
+    styled,
+    write_png,
+)
+from uplift.extras.pages.format import (
+    format_build_time,
+    format_error,
+    format_size,
+    format_time,
+)
+from uplift.extras.pages.html import Tooltip, render
+from uplift.extras.pages.scatter import Label, draw_labels
 from uplift.lab.chart.table import (
     REFERENCE,
     Chart,
@@ -19,10 +36,6 @@ from uplift.lab.chart.table import (
     criteria,
 )
 from uplift.lab.panels import Panel, Point, family_colours, page_panel, pareto_front
-from uplift.viz.figure import ACCENT, GREY, OTHER, PALE, new_figure, styled, write_png
-from uplift.viz.format import format_build_time, format_error, format_size, format_time
-from uplift.viz.html import Tooltip, render
-from uplift.viz.scatter import Label, draw_labels
 
 COLOURS = {
     "uplift, moments with atlas": "#0b3c8c",

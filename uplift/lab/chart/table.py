@@ -14,9 +14,9 @@ from uplift.common.csv import csv_text, parse_csv
 from uplift.common.errors import ChartFileError, OptionError, unknown_name
 from uplift.common.files import read_bytes
 from uplift.common.text import format_value, parse_float, pluralise, shorten
+from uplift.extras.pages.format import format_error, format_time
 from uplift.lab.chart.method import Description
 from uplift.lab.panels import CLEAR_RATIO, pareto_front
-from uplift.viz.format import format_error, format_time
 
 FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
 """Columns with the same text in all rows."""

@@ -25,12 +25,12 @@ from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, OptionError, UpliftError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
+from uplift.extras.scene.plan.candidates import front
+from uplift.extras.scene.representations import filters, samples
+from uplift.extras.scene.representations.filters import Filter
+from uplift.extras.scene.representations.samples import Representation
+from uplift.extras.scene.wavelengths.sampling import RenderSetup
 from uplift.lab.timing import TimingStats, environment, time_laps
-from uplift.scene.plan.candidates import front
-from uplift.scene.representations import filters, samples
-from uplift.scene.representations.filters import Filter
-from uplift.scene.representations.samples import Representation
-from uplift.scene.wavelengths.sampling import RenderSetup
 
 NAMED_SET = "given"
 """Name of the set of lights that a user lists."""

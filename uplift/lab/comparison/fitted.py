@@ -10,14 +10,18 @@ import numpy as np
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.design.palette.factor import factor_model
+from uplift.extras.palette.factor import factor_model
+from uplift.extras.scene.representations import (
+    Representation,
+    all_representations,
+    samples,
+)
+from uplift.extras.scene.representations.models import tabulated
+from uplift.extras.scene.wavelengths import Sampling, choose, make_setup
 from uplift.fit.entries import fit_entries
 from uplift.fit.problem import Problem
 from uplift.lab.comparison.compare import Scene
 from uplift.models import Moments
-from uplift.scene.representations import Representation, all_representations, samples
-from uplift.scene.representations.models import tabulated
-from uplift.scene.wavelengths import Sampling, choose, make_setup
 
 WAVELENGTHS = (5, 7, 9, 12)
 FACTORS = (5, 7, 9)
@@ -41,7 +45,7 @@ def scene_representations(scene: Scene) -> tuple[Representation, ...]:
 
 
 def _wavelengths(scene: Scene) -> Iterator[Representation]:
-    """Wavelengths, weights, and powers of the lights, as `uplift.scene.wavelengths`
+    """Wavelengths, weights, and powers of the lights, as `uplift.extras.scene.wavelengths`
     fits them together.
     """
     lights = [light for light_set in scene.sets for light in light_set.illuminants]

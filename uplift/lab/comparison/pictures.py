@@ -9,14 +9,7 @@ from typing import Any
 from markupsafe import Markup
 
 from uplift.common.arrays import StrPath
-from uplift.lab.comparison.compare import (
-    HEADINGS,
-    Comparison,
-    RepresentationResult,
-    TunedFilter,
-)
-from uplift.lab.panels import Panel, Point, family_colours, page_panel, write_panels
-from uplift.viz.figure import (
+from uplift.extras.pages.figure import (
     INK,
     OTHER,
     new_figure,
@@ -25,9 +18,16 @@ from uplift.viz.figure import (
     to_page_svg,
     write_png,
 )
-from uplift.viz.format import capitalise, format_error, format_time
-from uplift.viz.html import Tooltip, render
-from uplift.viz.scatter import style_title
+from uplift.extras.pages.format import capitalise, format_error, format_time
+from uplift.extras.pages.html import Tooltip, render
+from uplift.extras.pages.scatter import style_title
+from uplift.lab.comparison.compare import (
+    HEADINGS,
+    Comparison,
+    RepresentationResult,
+    TunedFilter,
+)
+from uplift.lab.panels import Panel, Point, family_colours, page_panel, write_panels
 
 COLOURS = {
     "point sampling": "#1f6fb4",

@@ -20,14 +20,14 @@ from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.cube import CubeData
+from uplift.extras.report.fidelity import Answers, compare_spectra
+from uplift.extras.report.measures import check_calibration
 from uplift.fit.families import families_with
 from uplift.lookup import Cube
 from uplift.lookup.refine import FIRST_DAMPING, MAX_STEPS
 from uplift.models.minimum_norm import forward_map, minimum_norm_step
 from uplift.pipeline.build import build, problem_of
 from uplift.pipeline.options import Options
-from uplift.report.fidelity import Answers, compare_spectra
-from uplift.report.measures import check_calibration
 
 MIN_ENTRIES = 8
 """Fewest entries within the RGB space of an atlas that is split."""

@@ -20,8 +20,8 @@ from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.common.arrays import Array, Complex, Indices
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.extras.scene.representations import samples
 from uplift.models import Moments, duality
-from uplift.scene.representations import samples
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ class MomentsStudy:
     """Errors of every entry for every technique and number of moments.
 
     ``names``, ``atlases``: names and atlases of the E entries. ``measured`` (E, N):
-    reflectances at `uplift.scene.representations.samples.wavelengths`. ``errors`` (4,
+    reflectances at `uplift.extras.scene.representations.samples.wavelengths`. ``errors`` (4,
     max_moments + 1, E, len(MEASURES)): errors, by the order of `TECHNIQUES` and by
     moments from 0.
     """

@@ -11,11 +11,7 @@ import numpy as np
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.arrays import Array, StrPath
 from uplift.common.text import pluralise
-from uplift.lab.study.moments import TECHNIQUES, MomentsStudy, Technique
-from uplift.lab.study.sensitivity import MOVED_DELTA_E, Change
-from uplift.models import Sigmoid
-from uplift.scene.representations import samples
-from uplift.viz.figure import (
+from uplift.extras.pages.figure import (
     ACCENT,
     GREY,
     colour_map,
@@ -25,6 +21,10 @@ from uplift.viz.figure import (
     style_spectrum_axes,
     write_png,
 )
+from uplift.extras.scene.representations import samples
+from uplift.lab.study.moments import TECHNIQUES, MomentsStudy, Technique
+from uplift.lab.study.sensitivity import MOVED_DELTA_E, Change
+from uplift.models import Sigmoid
 
 FLOATS = 9
 """Numbers stored of the spectra that are drawn, as in figures 4.1 and 4.2 of the

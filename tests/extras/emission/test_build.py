@@ -1,0 +1,124 @@
+"""Emission tables of measured lamps: exact lamps, and input that is refused."""
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.helpers import raises, warns
+from uplift.atlas import Atlas, Entry
+from uplift.common.errors import AtlasError, OptionError
+from uplift.extras.emission.build import build_emission
+from uplift.extras.emission.lamps import read_lamps
+
+AT = np.arange(380.0, 781.0, 5.0)
+SMALL = {"knots": 64, "rings": 4}
+WARM = np.exp((AT - 560) / 90)
+BANDS = sum(np.exp(-(((AT - peak) / 12) ** 2)) for peak in (455, 540, 620)) + 0.01
+
+
+def lamps(*entries):
+    return Atlas(tuple(Entry(name, AT, power / power.max()) for name, power in entries))
+
+
+@pytest.fixture(scope="module")
+def table():
+    """Table of two lamps, of which one has bands."""
+    return build_emission(lamps(("warm", WARM), ("bands", BANDS)), **SMALL)
+
+
+def test_lamps_come_first_and_keep_known_ones_away(table):
+    entries = table.data.entries
+    assert entries.names[:2] == ("warm", "bands")
+    assert "A" in entries.names
+    apart = np.linalg.norm(entries.uv[2:, None] - entries.uv[:2], axis=-1)
+    assert apart.min() > 2e-3
+
+
+def test_a_known_lamp_in_the_atlas_is_not_there_twice():
+    known = uplift.load_emission().data.entries
+    row = known.names.index("FL2")
+    table = build_emission(lamps(("mine", known.spectra[row])), **SMALL)
+    assert table.lamp_names[0] == "mine"
+    assert "FL2" not in table.lamp_names
+
+
+def test_lamps_of_one_colour_are_left_out_with_a_warning():
+    with warns("entry-duplicate") as found:
+        table = build_emission(
+            lamps(("first", WARM), ("second", 0.5 * WARM), ("third", 2 * WARM)), **SMALL
+        )
+    assert "'second'" in found[0].problem
+    assert table.data.provenance["left_out"] == ["second", "third"]
+    assert "second" not in table.lamp_names
+
+
+def test_expected_errors_are_numbers_where_sodium_has_no_z():
+    """The 10° observer does not respond to 590 nm by Z, so the white of sodium light
+    has none.
+    """
+    found = build_emission(observer="CIE 1964 10 Degree Standard Observer", **SMALL)
+    assert np.isfinite(found.data.error).all()
+
+
+@pytest.mark.parametrize(
+    ("problem", "atlas"),
+    [
+        ("got none", Atlas(())),
+        ("none of 'dark'", Atlas((Entry("dark", AT, np.zeros(81)),))),
+    ],
+)
+def test_atlases_without_light_are_refused(problem, atlas):
+    with pytest.raises(OptionError, match=problem):
+        build_emission(atlas, **SMALL)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"knots": 2}, {"rings": 2}, {"knots": True}, {"rings": 4.0}, {"knots": 10**6}],
+)
+def test_bad_numbers_of_nodes_are_refused(options):
+    with pytest.raises(OptionError, match="whole number from 3"):
+        build_emission(**options)
+
+
+def test_a_lamp_without_power_is_refused(tmp_path):
+    path = tmp_path / "lamps.csv"
+    path.write_text("# spectral irradiance\nname,400,500,600,700\nbulb,0,0,0,0\n")
+    with raises(AtlasError, "atlas"):
+        read_lamps(path)
+
+
+TM27 = (
+    "<IESTM2714 "
+    'xmlns="iestm2714"><SpectralDistribution><SpectralQuantity>{}</SpectralQuantity>'
+    '<SpectralData wavelength="400">0.1</SpectralData><SpectralData '
+    'wavelength="700">0.4</SpectralData>'
+    "</SpectralDistribution></IESTM2714>"
+)
+JCAMP = (
+    "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS={}\n##XYPOINTS=(XY..XY)\n400, 0.1\n700, "
+    "0.4\n##END=\n"
+)
+
+
+@pytest.mark.parametrize("quantity", ["flux", "irradiance", "Relative"])
+def test_lamps_of_the_lighting_standard_state_power(tmp_path, quantity):
+    path = tmp_path / "lamp.spdx"
+    path.write_text(TM27.format(quantity))
+    assert read_lamps(path)[0].values == pytest.approx([0.25, 1])
+
+
+@pytest.mark.parametrize(
+    ("layout", "quantity"),
+    [
+        (TM27, "reflectance"),
+        (TM27, "R-Factor"),
+        (TM27, "transmittance"),
+        (JCAMP, "REFLECTANCE"),
+    ],
+)
+def test_stated_quantities_of_materials_are_refused(tmp_path, layout, quantity):
+    path = tmp_path / "material.txt"
+    path.write_text(layout.format(quantity))
+    with raises(AtlasError, "not-a-lamp"):
+        read_lamps(path)

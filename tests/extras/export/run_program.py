@@ -1,0 +1,265 @@
+"""Run exported programs: each function takes a program, linear RGB (n, 3), four
+wavelengths and the form of the table.
+
+It returns reflectances (n, 4), and skips the test if the compiler, the browser or the
+driver is lacking.
+"""
+
+import base64
+import json
+import subprocess
+
+import numpy as np
+import pytest
+
+from benchmarks.browser import browser
+from tests.parts import CC, CHROMIUM, CXX, GLSLANG, NVCC, VULKAN, need, vulkan_device
+from uplift.extras.images.processes import call_in_child
+
+HOST = r"""
+#include <stdio.h>
+#include <stdlib.h>
+#define CUBE_WIDTH 4
+#include "{header}"
+
+int main(void)
+{{
+    float rgb[3], wavelengths[4] = {{{wavelengths}}}, found[4];
+    {load}
+    while (fread(rgb, sizeof rgb, 1, stdin) == 1) {{
+        cube_reflectances({call});
+        fwrite(found, sizeof found, 1, stdout);
+    }}
+    return 0;
+}}
+"""
+LOAD_FILE = """const char *problem = cube_load("cube.bin");
+    if (problem) return fputs(problem, stderr), 1;"""
+LOAD = """static float table[{size}];
+    FILE *file = fopen("cube.bin", "rb");
+    if (!file || fread(table, 1, sizeof table, file) != sizeof table) return 1;"""
+STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-O1")
+KERNEL = """#include "{header}"
+extern "C" __global__ void lookup(const float *table, const float *rgb, const float *wavelengths, float *found)
+{{
+    int at = blockIdx.x * blockDim.x + threadIdx.x;
+    cube_reflectances(table, rgb + 3 * at, wavelengths, found + 4 * at);
+}}
+"""
+PIXEL = """{code}
+StructuredBuffer<float4> colours : register(t1);
+RWStructuredBuffer<float4> found : register(u2);
+[numthreads(64, 1, 1)]
+void main(uint3 id : SV_DispatchThreadID) {{
+    found[id.x] = cube_reflectances(colours[id.x].xyz, float4({wavelengths}));
+}}
+"""
+
+FRAGMENT = """#version 300 es
+{code}
+uniform sampler2D colours;
+out vec4 found;
+void main() {{
+    found = cube_reflectances(texelFetch(colours, ivec2(gl_FragCoord.xy), 0).rgb, vec4({wavelengths}));
+}}
+"""
+WEBGL = """(() => {
+  const floats = text => new Float32Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
+  const { code, table, rows, columns, colours, side } = DATA;
+  const gl = Object.assign(document.createElement("canvas"), { width: side, height: side }).getContext("webgl2");
+  if (!gl || !gl.getExtension("EXT_color_buffer_float")) return null;
+  const program = gl.createProgram();
+  const vertex = `#version 300 es
+    void main() { gl_Position = vec4(gl_VertexID == 1 ? 3. : -1., gl_VertexID == 2 ? 3. : -1., 0., 1.); }`;
+  for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, code]]) {
+    const shader = gl.createShader(kind);
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+    gl.attachShader(program, shader);
+  }
+  gl.linkProgram(program);
+  gl.useProgram(program);
+  const upload = (unit, name, width, height, values) => {
+    gl.activeTexture(gl.TEXTURE0 + unit);
+    gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, values);
+    for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
+      gl.texParameteri(gl.TEXTURE_2D, side, gl.NEAREST);
+    if (name) gl.uniform1i(gl.getUniformLocation(program, name), unit);
+  };
+  upload(2, "cube_table", columns, rows, floats(table));
+  upload(0, "colours", side, side, floats(colours));
+  upload(1, "", side, side, null);
+  const target = gl.getParameter(gl.TEXTURE_BINDING_2D);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
+  gl.viewport(0, 0, side, side);
+  gl.drawArrays(gl.TRIANGLES, 0, 3);
+  const found = new Float32Array(4 * side * side);
+  gl.readPixels(0, 0, side, side, gl.RGBA, gl.FLOAT, found);
+  let text = "";
+  for (const byte of new Uint8Array(found.buffer)) text += String.fromCharCode(byte);
+  return btoa(text);
+})()"""
+
+
+def c(path, rgb, wavelengths, form="header", compiler=("cc", "-std=c99")):
+    load = LOAD_FILE if form == "file" else ""
+    return _compiled(
+        path, rgb, wavelengths, compiler, "rgb, wavelengths, 4, found", load
+    )
+
+
+def cpp(path, rgb, wavelengths, form="header"):
+    return c(path, rgb, wavelengths, form, ("c++", "-std=c++11", "-x", "c++"))
+
+
+def cuda(path, rgb, wavelengths, form="file"):
+    """On the host, where the same functions are C++."""
+    load = LOAD.format(size=path.with_suffix(".bin").stat().st_size // 4)
+    compiler = ("c++", "-std=c++11", "-x", "c++")
+    return _compiled(
+        path, rgb, wavelengths, compiler, "table, rgb, wavelengths, found", load
+    )
+
+
+def ptx(path):
+    """Compile to PTX, the assembly language of graphics processors. Returns it."""
+    need(NVCC)
+    path.with_suffix(".cu").write_text(KERNEL.format(header=path.name))
+    options = ("-ptx", "-Werror", "all-warnings")
+    subprocess.run(
+        ["nvcc", *options, path.with_suffix(".cu"), "-o", path.with_suffix(".ptx")],
+        check=True,
+    )
+    return path.with_suffix(".ptx").read_text()
+
+
+def _compiled(path, rgb, wavelengths, compiler, call, load):
+    need({"cc": CC, "c++": CXX}[compiler[0]])
+    folder = path.parent
+    text = HOST.format(
+        header=path.name, wavelengths=listed(wavelengths), call=call, load=load
+    )
+    (folder / "main.c").write_text(text)
+    casts = ["-Wold-style-cast"] if compiler[0] == "c++" else []
+    subprocess.run(
+        [*compiler, *STRICT, *casts, "main.c", "-o", "main", "-lm"],
+        cwd=folder,
+        check=True,
+    )
+    done = subprocess.run(
+        [folder / "main"],
+        cwd=folder,
+        input=rgb.astype(np.float32).tobytes(),
+        capture_output=True,
+        check=True,
+    )
+    return np.frombuffer(done.stdout, np.float32).reshape(-1, 4)
+
+
+def listed(wavelengths):
+    return ", ".join(str(float(nm)) for nm in wavelengths)
+
+
+def padded(rgb, count):
+    """Return colours (count, 4) with a fourth channel."""
+    colours = np.zeros((count, 4), np.float32)
+    colours[: len(rgb), :3] = rgb
+    return colours
+
+
+def glsl(path, rgb, wavelengths, form="file"):
+    """In Chromium, by WebGL 2."""
+    need(CHROMIUM)
+    side = int(np.ceil(np.sqrt(len(rgb))))
+    found = _by_webgl(path, padded(rgb, side * side), listed(wavelengths))
+    if found is None:
+        pytest.skip("the browser has no WebGL 2")
+    return found[: len(rgb)]
+
+
+def _by_webgl(path, rgba, wavelengths):
+    """Return reflectances (side², 4) of colours (side², 4) at four wavelengths, given
+    as text; None without WebGL 2.
+    """
+    table = path.with_suffix(".bin").read_bytes()
+    data = {
+        "code": FRAGMENT.format(code=path.read_text(), wavelengths=wavelengths),
+        "table": base64.b64encode(table).decode(),
+        "columns": 2048,
+        "rows": len(table) // (2048 * 16),
+        "colours": base64.b64encode(rgba.tobytes()).decode(),
+        "side": int(np.sqrt(len(rgba))),
+    }
+    page = path.with_suffix(".html")
+    page.write_text("<!doctype html><main aria-busy='false'></main>")
+    with browser() as opened:
+        opened.open(page)
+        found = opened.evaluate(WEBGL.replace("DATA", json.dumps(data)))
+    return (
+        None
+        if found is None
+        else np.frombuffer(base64.b64decode(found), np.float32).reshape(-1, 4)
+    )
+
+
+def hlsl(path, rgb, wavelengths, form="file"):
+    """Compiled to SPIR-V, and by Vulkan: needs glslangValidator and wgpu."""
+    need(GLSLANG, VULKAN)
+    folder = path.parent
+    count = -(-len(rgb) // 64) * 64
+    (folder / "main.hlsl").write_text(
+        PIXEL.format(code=path.read_text(), wavelengths=listed(wavelengths))
+    )
+    command = [
+        "glslangValidator",
+        "-D",
+        "-V",
+        "-S",
+        "comp",
+        "-e",
+        "main",
+        "main.hlsl",
+        "-o",
+        "main.spv",
+    ]
+    subprocess.run(command, cwd=folder, check=True, capture_output=True)
+    return call_in_child(_by_vulkan, path, rgb, count, seconds=60)
+
+
+def _by_vulkan(path, rgb, count):
+    """Run in a child process: drivers may crash."""
+    import wgpu
+
+    device = vulkan_device()
+    storage = wgpu.BufferUsage.STORAGE
+    source = wgpu.BufferUsage.COPY_SRC
+    colours = padded(rgb, count)
+    table = device.create_buffer_with_data(
+        data=path.with_suffix(".bin").read_bytes(), usage=storage
+    )
+    given = device.create_buffer_with_data(data=colours.tobytes(), usage=storage)
+    found = device.create_buffer(size=colours.nbytes, usage=storage | source)
+    module = device.create_shader_module(code=path.with_name("main.spv").read_bytes())
+    compute = {"module": module, "entry_point": "main"}
+    pipeline = device.create_compute_pipeline(layout="auto", compute=compute)
+    buffers = enumerate((table, given, found))
+    entries = [
+        {"binding": k, "resource": {"buffer": each, "offset": 0, "size": each.size}}
+        for k, each in buffers
+    ]
+    group = device.create_bind_group(
+        layout=pipeline.get_bind_group_layout(0), entries=entries
+    )
+    commands = device.create_command_encoder()
+    work = commands.begin_compute_pass()
+    work.set_pipeline(pipeline)
+    work.set_bind_group(0, group)
+    work.dispatch_workgroups(count // 64)
+    work.end()
+    device.queue.submit([commands.finish()])
+    return np.frombuffer(device.queue.read_buffer(found), np.float32).reshape(-1, 4)[
+        : len(rgb)
+    ]

@@ -1,0 +1,91 @@
+"""Bad input to exports: an error, and no file."""
+
+from dataclasses import replace
+
+import pytest
+
+from uplift.colorimetry.observer import sensor
+from uplift.common.errors import OptionError, OutputError, UnknownNameError
+from uplift.extras import export
+from uplift.extras.emission.lookup import load_emission
+from uplift.lookup import Cube
+from uplift.models import Moments
+
+
+@pytest.fixture(scope="module")
+def cubes(small_cube, plain_cube):
+    """Cubes, data and tables by name."""
+    wide = replace(small_cube.data, sensor=sensor("ACEScg", "D60"))
+    three = replace(plain_cube.data, model=Moments(3))
+    return {
+        "cube": small_cube,
+        "data": small_cube.data,
+        "wide": wide,
+        "three": Cube(three),
+        "curve": Cube(replace(three, sensor=sensor("ProPhoto RGB"))),
+        "lights": load_emission().data,
+    }
+
+
+@pytest.mark.parametrize(
+    ("write", "source", "name", "options", "error"),
+    [
+        *(
+            (export.write_coeff, "data", "a.coeff", {"res": res}, OptionError)
+            for res in (1, 257)
+        ),
+        *(
+            (
+                export.write_coeff,
+                "wide",
+                "a.cpp",
+                {"layout": each, "res": 2},
+                OptionError,
+            )
+            for each in ("pbrt", "luisa")
+        ),
+        (export.write_film, "cube", "a.npy", {"res": 1}, OptionError),
+        *(
+            (export.write_film, "cube", "a.npy", {"share": share}, OptionError)
+            for share in (1.0, float("nan"))
+        ),
+        (export.write_film, "cube", "a.npy", {"light": "moonlight"}, UnknownNameError),
+        (export.write_film, "cube", "a.npy", {"res": 4}, OutputError),
+        *(
+            (export.write_fourier, each, "a.cube", {"res": 2}, OptionError)
+            for each in ("cube", "curve")
+        ),
+        (export.write_fourier, "three", "a.cube", {"res": 1}, OptionError),
+        (export.write_fourier, "three", "a.png", {"res": 33}, OptionError),
+        (export.write_light_program, "lights", "a.h", {"style": "hlsl"}, OptionError),
+        (
+            export.write_light_program,
+            "lights",
+            "a.h",
+            {"style": "glsl", "form": "header"},
+            OptionError,
+        ),
+        (export.write_lut, "cube", "a.cube", {"light": "HP1", "res": 1}, OptionError),
+        (export.write_lut, "cube", "a.cube", {"light": "moonlight"}, UnknownNameError),
+        *(
+            (export.write_program, "data", "a.h", {key: "x"}, UnknownNameError)
+            for key in ("style", "mode")
+        ),
+        (export.write_program, "data", "a.h", {"form": "textures"}, OptionError),
+        (
+            export.write_program,
+            "data",
+            "a.h",
+            {"style": "glsl", "form": "header"},
+            OptionError,
+        ),
+    ],
+)
+def test_bad_input_writes_nothing(cubes, tmp_path, write, source, name, options, error):
+    if error is OutputError:  # the file that goes with it exists
+        (tmp_path / "a.toml").touch()
+    with pytest.raises(error):
+        write(cubes[source], path=tmp_path / name, **options)
+    assert [each.name for each in tmp_path.iterdir()] == ["a.toml"] * (
+        error is OutputError
+    )

@@ -1,0 +1,87 @@
+"""Tables of spectra per chromaticity, as film simulations read them."""
+
+import tomllib
+
+import numpy as np
+from scipy.ndimage import map_coordinates
+
+from uplift.colorimetry.observer import (
+    DEFAULT_OBSERVER,
+    grid,
+    illuminant_spd,
+    matching_functions,
+)
+from uplift.extras.export import write_film
+from uplift.extras.export.film import SHARE
+
+WEIGHTS = (
+    matching_functions(DEFAULT_OBSERVER)
+    / matching_functions(DEFAULT_OBSERVER)[:, 1].sum()
+)
+
+
+def power(name):
+    """The illuminant with Y = 1."""
+    return illuminant_spd(name) / (illuminant_spd(name) @ WEIGHTS[:, 1])
+
+
+def read(path, xyz):
+    """Spectra of XYZ (n, 3), by the layout that readers document: bilinear here, cubic
+    there.
+    """
+    table = np.load(path).astype(float)
+    total = xyz.sum(axis=1)
+    x, y = (xyz[:, :2] / total[:, None]).T
+    places = np.array([(1 - x) ** 2, y / (1 - x)]) * (len(table) - 1)
+    bands = [
+        map_coordinates(table[..., band], places, order=1)
+        for band in range(table.shape[-1])
+    ]
+    return np.array(bands).T * total[:, None]
+
+
+def test_a_table_of_reflectances_has_the_spectra_of_the_cube(small_cube, tmp_path):
+    """At the stored luminance they are those of a query, and at every luminance the
+    colour is right.
+    """
+    path = tmp_path / "paint.npy"
+    write_film(small_cube, path)
+    assert np.load(path).shape == (192, 192, 81)
+    assert np.load(path).dtype == np.float16
+    described = tomllib.loads(path.with_suffix(".toml").read_text())
+    assert described["file"] == "paint.npy"
+    assert described["kind"] == "reflectance"
+    sizes = {"lut_size": 192, "bands": 81, "spectral_shape": [380.0, 780.0, 5.0]}
+    assert described["array"] == {
+        **sizes,
+        "dtype": "float16",
+        "observer": DEFAULT_OBSERVER,
+    }
+    assert described["reflectance"] == {
+        "scene_illuminant": "D65",
+        "midgray": 0.184,
+        "bounded": False,
+    }
+    rgb = np.random.default_rng(3).uniform(0.1, 0.3, (200, 3))
+    xyz = rgb @ small_cube.data.sensor.rgb_to_xyz.T
+    reflectance = read(path, xyz)
+    np.testing.assert_allclose(reflectance * power("D65") @ WEIGHTS, xyz, atol=2e-3)
+    greys = np.array([[SHARE] * 3])
+    found = read(path, greys @ small_cube.data.sensor.rgb_to_xyz.T)
+    np.testing.assert_allclose(
+        found, small_cube.reflectance(greys, grid()), atol=0.02
+    )  # of a neighbouring luminance
+
+
+def test_a_table_of_lights_has_unit_sums_and_no_gaps(small_cube, tmp_path):
+    table = write_film(small_cube, tmp_path / "lit.npy", light="D55", res=48)
+    assert 0.2 < table.inside < 0.6
+    assert 0 < table.stops < 0.2
+    lights = np.load(tmp_path / "lit.npy").astype(float)
+    np.testing.assert_allclose((lights @ WEIGHTS).sum(axis=-1), 1, atol=2e-3)
+    assert lights.min() >= 0
+    assert 'kind = "irradiance"' in (tmp_path / "lit.toml").read_text()
+    # Neighbours resemble each other, also across the edge of the gamut: the XYZ of
+    # steps, where light exists.
+    steps = np.abs(np.diff(lights @ WEIGHTS, axis=1)).max(axis=-1)
+    assert steps[5:].max() < 0.08

@@ -1,0 +1,79 @@
+"""docs/integrate.md: the code blocks run and agree with the cube."""
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.parts import CC, CXX, MITSUBA, SANITIZED, SANITIZERS, need
+from uplift.extras.export import write_program
+
+PAGE = (Path(__file__).parents[3] / "docs" / "integrate.md").read_text(encoding="utf-8")
+STORED = "moments-8-macbeth.uplift"
+COLOURS = [[0.8, 0.2, 0.1], [0.1, 0.2, 0.8]]
+
+
+def code(section, language):
+    """Return the only code block of a section in a language."""
+    (text,) = re.findall(
+        rf"^## {section}\n(.*?)(?=^## |\Z)", PAGE, re.DOTALL | re.MULTILINE
+    )
+    (block,) = re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
+    return block
+
+
+@pytest.fixture
+def folder(repository, tmp_path, monkeypatch):
+    """Working folder with the cube of the page."""
+    shutil.copy(repository / "cubes" / STORED, tmp_path / "paints.uplift")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_python(folder, small_cube):
+    names = {}
+    exec(compile(code("Python", "python"), "integrate.md", "exec"), names)
+    expected = small_cube.reflectance(
+        names["texels"][2, 3:4], names["hero"], mode="moments"
+    )
+    np.testing.assert_allclose(names["reflectance"], expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("compiler", "language", "part"), [("cc", "c", CC), ("c++", "c++", CXX)]
+)
+def test_c_and_cpp(folder, small_cube, compiler, language, part):
+    need(part, SANITIZERS)
+    write_program(small_cube.data, folder / "paints.h")
+    (folder / "main.c").write_text(code("C and C\\+\\+", "c"))
+    subprocess.run(
+        [compiler, "-x", language, "-O1", *SANITIZED, "main.c", "-o", "main", "-lm"],
+        check=True,
+    )
+    done = subprocess.run(["./main"], capture_output=True, text=True, check=True)
+    wavelengths, *found = np.array(
+        [line.split() for line in done.stdout.splitlines()], dtype=float
+    ).T
+    assert len(wavelengths) == 7
+    expected = small_cube.reflectance(
+        [COLOURS[0], *COLOURS], wavelengths, mode="spectra"
+    )
+    np.testing.assert_allclose(found, expected, atol=2e-5)
+
+
+def test_mitsuba(folder, small_cube):
+    need(MITSUBA)
+    import mitsuba as mi
+
+    names = {}
+    exec(compile(code("Mitsuba", "python"), "integrate.md", "exec"), names)
+    image = np.array(names["image"])
+    assert image.shape == (64, 64, 3)
+    assert mi.variant() == "scalar_spectral"
+    np.testing.assert_allclose(
+        image[30:34, 30:34].mean(axis=(0, 1)), COLOURS[0], atol=0.05
+    )
+    np.testing.assert_allclose(image[:4, :4].mean(axis=(0, 1)), 1, atol=0.05)

@@ -1,0 +1,301 @@
+"""Exported programs agree with Python, in every language and mode."""
+
+import subprocess
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.extras.export import run_program
+from tests.fuzz.builds import stay
+from tests.fuzz.programs import c_reflectances
+from tests.helpers import raises, warns
+from tests.parts import CC, CLANG, SANITIZED, SANITIZERS, need
+from uplift.common.errors import OutputError
+from uplift.extras.export import LANGUAGES, rounding_error, write_program
+
+WAVELENGTHS = [300.0, 455.0, 551.5, 700.0]
+EVERY = np.arange(380.0, 781.0)
+# tolerance of reflectance in single precision: multipliers of spectra near a box reach
+# 4e6
+WITHIN = 1e-4
+LANGUAGE = {"cpp": "c"}
+
+
+def colours(data):
+    """Return 10,000 linear RGB: random, on faces and corners of the cube, at entries,
+    around them, on box faces.
+    """
+    rng = np.random.default_rng(10)
+    rgb = rng.random((10_000, 3))
+    rgb[:1000] = np.round(rgb[:1000])
+    rgb[1000:2000, 1] = np.round(rgb[1000:2000, 1])
+    if len(data.atlas.rgb):
+        around = np.tile(data.atlas.rgb, (200, 1))[:4000]
+        spread = np.repeat([0, 1e-3, 0.02, 0.1], len(around) // 4 + 1)[
+            : len(around), None
+        ]
+        rgb[2000 : 2000 + len(around)] = np.clip(
+            around + spread * rng.normal(size=around.shape), 0, 1
+        )
+        low, high = data.entry_boxes.faces
+        face = np.where(
+            rng.random((1000, 3)) < 0.5,
+            np.resize(low, (1000, 3)),
+            np.resize(high, (1000, 3)),
+        )
+        along = (
+            np.resize(data.atlas.rgb, (1000, 3))
+            + (2 * rng.random((1000, 3)) - 1) * 0.01
+        )
+        rgb[6000:7000] = np.where(
+            np.eye(3)[rng.integers(3, size=1000)] > 0, face, np.clip(along, 0, 1)
+        )
+    return rgb.astype(np.float32).astype(float)
+
+
+def test_the_results_of_every_language_are_compared():
+    assert [name for name in LANGUAGES if not hasattr(run_program, name)] == []
+
+
+@pytest.fixture
+def check(tmp_path):
+    """Function that compares reflectances of a program with those of Python."""
+
+    def check(cube, style, mode, rgb, form=None, within=WITHIN):
+        language = LANGUAGE.get(style, style)
+        path = tmp_path / f"cube{LANGUAGES[language].suffix}"
+        form = form or LANGUAGES[language].forms[0]
+        write_program(cube.data, path, style=language, mode=mode, form=form, force=True)
+        found = getattr(run_program, style)(path, rgb, WAVELENGTHS, form)
+        clipped = np.clip(np.nan_to_num(rgb, posinf=1), 0, 1)
+        expected = cube.reflectance(clipped, np.clip(WAVELENGTHS, 380, 780), mode=mode)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=within)
+
+    return check
+
+
+@pytest.mark.parametrize("mode", ["spectra", "moments"])
+@pytest.mark.parametrize(
+    ("style", "form"),
+    [(style, form) for style in LANGUAGES for form in LANGUAGES[style].forms],
+)
+def test_ten_thousand_colours_equal_those_of_python(
+    small_cube, check, style, form, mode
+):
+    check(small_cube, style, mode, colours(small_cube.data), form)
+
+
+@pytest.mark.parametrize("mode", ["spectra", "moments"])
+def test_plain_and_sigmoid_cubes_and_other_phases(
+    plain_cube, sigmoid_cube, warped_cube, check, mode
+):
+    for cube, within in ((plain_cube, 1), (sigmoid_cube, 1), (warped_cube, 5)):
+        check(cube, "c", mode, colours(cube.data), within=within * WITHIN)
+
+
+@pytest.fixture(scope="module")
+def wide():
+    """Cubes with unrealisable nodes, by model."""
+    atlas = uplift.Atlas(
+        (uplift.Entry("paint", np.array([380.0, 780.0]), np.array([0.1, 0.6])),)
+    )
+    return {
+        model: uplift.build(atlas, dim=4, space="ITU-R BT.2020", model=model)
+        for model in ("moments", "sigmoid")
+    }
+
+
+BOTH = [("spectra", "moments"), ("moments", "sigmoid")]
+
+
+@pytest.mark.parametrize(
+    ("style", "mode", "model"),
+    [
+        *(
+            ("c", *each)
+            for each in [*BOTH, ("moments", "moments"), ("spectra", "sigmoid")]
+        ),
+        ("cuda", *BOTH[0]),
+    ]
+    + [("glsl", *each) for each in BOTH]
+    + [("hlsl", "spectra", "sigmoid"), ("hlsl", "moments", "moments")],
+)
+def test_realisable_colours_around_unrealisable_nodes(wide, check, style, mode, model):
+    """They are moved to their colours as in Python: without it, reflectances differ by
+    up to 0.9.
+    """
+    rgb = colours(wide[model].data)[:3000]
+    rgb = rgb[wide[model].data.solid.signed_distance(rgb) < -2e-3]
+    check(
+        wide[model],
+        style,
+        mode,
+        rgb,
+        within=(2 if style in ("c", "cuda") else 50) * WITHIN,
+    )
+
+
+def test_mixtures_that_start_from_flat_spectra(check):
+    """White weights are moved to strong colours, where Newton's steps are longer than
+    numbers can be (seed 104).
+    """
+    cube = uplift.build(dim=5, space="ACES2065-1", model="sigmoid")
+    rgb = np.concatenate(
+        [[[0.75587261, 0.82532507, 0.21911287]], colours(cube.data)[2000:3000]]
+    )
+    rgb = (
+        rgb[cube.data.solid.signed_distance(rgb) < -2e-3]
+        .astype(np.float32)
+        .astype(float)
+    )
+    check(cube, "c", "moments", rgb, within=2 * WITHIN)
+
+
+@pytest.mark.parametrize("style", ["glsl", "hlsl"])
+def test_other_phases_in_shaders(warped_cube, check, style):
+    check(warped_cube, style, "spectra", colours(warped_cube.data))
+
+
+@pytest.mark.parametrize("mode", ["spectra", "moments"])
+def test_cuda_compiles_for_graphics_processors(small_cube, tmp_path, mode):
+    write_program(small_cube.data, tmp_path / "cube.cuh", style="cuda", mode=mode)
+    assert ".entry lookup" in run_program.ptx(tmp_path / "cube.cuh")
+
+
+@pytest.mark.parametrize("style", ["c", "cpp", "cuda"])
+def test_colours_outside_are_clipped_and_nan_is_0(small_cube, check, style):
+    check(small_cube, style, "spectra", np.array([[2, -1, 0.5], [np.nan, 0.2, np.inf]]))
+
+
+@pytest.mark.parametrize("mode", ["spectra", "moments"])
+def test_what_single_precision_changes_is_a_bound(
+    small_cube, sigmoid_cube, warped_cube, wide, mode
+):
+    """At every wavelength, of colours whose answers are not moved."""
+    need(CC)
+    for cube in (small_cube, sigmoid_cube, warped_cube, *wide.values()):
+        rgb = colours(cube.data)[:4000:2]
+        rgb = rgb[stay(cube.data, mode, rgb)]
+        found = c_reflectances(cube.data, mode, rgb, EVERY)
+        assert np.abs(found - cube.reflectance(rgb, EVERY, mode)).max(
+            initial=0
+        ) < rounding_error(cube.data, mode)
+
+
+def test_programs_of_one_cube_share_a_table(small_cube, plain_cube, tmp_path):
+    """Another table is refused, and replaced only with force."""
+    data = small_cube.data
+    _, table = write_program(data, tmp_path / "a.glsl", style="glsl")
+    shared = write_program(data, tmp_path / "a.hlsl", style="hlsl")
+    assert shared == [tmp_path / "a.hlsl", table]
+    before = table.read_bytes()
+    with raises(OutputError, "file-exists"):
+        write_program(plain_cube.data, tmp_path / "a.cuh", style="cuda")
+    assert table.read_bytes() == before
+    assert not (tmp_path / "a.cuh").exists()
+    with warns("warning"):
+        write_program(plain_cube.data, tmp_path / "a.cuh", style="cuda", force=True)
+    assert table.read_bytes() != before
+
+
+MANY = r"""
+#include <stdio.h>
+#include "cube.h"
+
+int main(void)
+{
+    float rgb[63], at[21], found[441];
+    for (int k = 0; k < 63; ++k) rgb[k] = (float)(k * 7 % 33) / 32.0f;
+    for (int k = 0; k < 21; ++k) at[k] = 400 + 15.0f * (float)k;
+    cube_reflectances_n(rgb, 21, at, 21, found);
+    fwrite(found, sizeof found, 1, stdout);
+    for (int k = 0; k < 21; ++k) cube_reflectances(rgb + 3 * k, at, 21, found + 21 * k);
+    fwrite(found, sizeof found, 1, stdout);
+#if !CUBE_SPECTRA
+    float coefficients[21 * CUBE_COUNT], multipliers[21 * CUBE_COUNT];
+    for (int k = 0; k < 21; ++k) cube_coefficients(rgb + 3 * k, coefficients + CUBE_COUNT * k);
+    if (cube_multipliers_n(coefficients, 21, multipliers)) return 1;
+    for (int k = 0; k < 21; ++k) cube_evaluate(multipliers + CUBE_COUNT * k, at, 21, found + 21 * k);
+    fwrite(found, sizeof found, 1, stdout);
+    coefficients[0] = coefficients[10 * CUBE_COUNT] = 2;
+    if (cube_multipliers_n(coefficients, 21, multipliers) != 2) return 2;
+    return cube_multipliers(coefficients, multipliers);
+#endif
+    return 0;
+}
+"""
+ROW = (np.arange(63, dtype=np.float32) * 7 % 33 / 32).reshape(21, 3)
+
+
+def run_c(code, folder, *options, compiler="cc"):
+    need({"cc": CC, "clang": CLANG}[compiler])
+    (folder / "main.c").write_text(code)
+    subprocess.run(
+        [compiler, *run_program.STRICT, *options, "main.c", "-o", "main", "-lm"],
+        cwd=folder,
+        check=True,
+    )
+    return subprocess.run(
+        [folder / "main"], cwd=folder, capture_output=True, check=True
+    ).stdout
+
+
+@pytest.mark.parametrize(("mode", "count"), [("spectra", 2), ("moments", 3)])
+def test_many_colours_at_any_number_of_wavelengths_and_stored_multipliers(
+    small_cube, tmp_path, mode, count
+):
+    write_program(small_cube.data, tmp_path / "cube.h", mode=mode)
+    need(SANITIZERS)
+    found = np.frombuffer(run_c(MANY, tmp_path, *SANITIZED), np.float32).reshape(
+        count, 21, 21
+    )
+    expected = small_cube.reflectance(ROW, 400 + 15.0 * np.arange(21), mode=mode)
+    np.testing.assert_allclose(found, [expected] * count, rtol=0, atol=WITHIN)
+
+
+@pytest.mark.parametrize("level", ["-O0", "-O1", "-Og", "-O2", "-Os", "-Oz", "-O3"])
+def test_clang_is_silent_at_every_level(sigmoid_cube, tmp_path, level):
+    """It reports loops that a pragma requests to vectorise and that it does not."""
+    write_program(sigmoid_cube.data, tmp_path / "cube.h")
+    assert len(run_c(MANY, tmp_path, level, compiler="clang")) == 2 * 21 * 21 * 4
+
+
+def test_names_in_a_cube_cannot_end_a_comment(small_cube, check):
+    sensor = replace(
+        small_cube.data.sensor, space="*/ #error äöü\n /*", illuminant="*//* ${table}"
+    )
+    check(
+        replace(small_cube, data=replace(small_cube.data, sensor=sensor)),
+        "c",
+        "spectra",
+        np.full((1, 3), 0.5),
+    )
+
+
+LOADING = r"""
+#include "cube.h"
+
+int main(void)
+{
+    const char *problem = cube_load("cube.bin");
+    if (problem) puts(problem);
+    return !problem != !!cube_table;
+}
+"""
+
+
+@pytest.mark.parametrize("damage", [None, "bit", "end", "start", "missing"])
+def test_a_header_loads_only_the_table_of_its_cube(small_cube, tmp_path, damage):
+    _, table = write_program(small_cube.data, tmp_path / "cube.h", form="file")
+    numbers = table.read_bytes()
+    changed = {
+        "bit": numbers[:100] + bytes([numbers[100] ^ 1]) + numbers[101:],
+        "end": numbers[:-4],
+        "start": bytes(4) + numbers,
+    }
+    table.write_bytes(changed.get(damage, numbers))
+    if damage == "missing":
+        table.unlink()
+    assert bool(run_c(LOADING, tmp_path)) == (damage is not None)

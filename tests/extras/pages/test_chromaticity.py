@@ -1,0 +1,51 @@
+"""Chromaticity diagrams of an emission table."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import uplift
+from uplift.extras.emission.discs import LampEntries
+from uplift.extras.emission.lookup import EmissionTable
+from uplift.extras.pages.chromaticity import ALL, MARGIN, draw_errors, lamp_window
+from uplift.extras.pages.scatter import new_panels
+
+
+@pytest.fixture(scope="module")
+def table():
+    return uplift.load_emission()
+
+
+def test_the_map_has_the_expected_errors(table):
+    _, ((axes,),) = new_panels(1, 1, (2, 2), {})
+    draw_errors(axes, table)
+    (image,) = axes.images
+    errors = image.get_array()
+    assert image.get_extent() == [*ALL.u, *ALL.v]
+    white = table.data.lattice.white
+    step = (ALL.u[1] - ALL.u[0]) / errors.shape[1]
+    row = errors.shape[0] - int((white[1] - ALL.v[0]) / step) - 1
+    column = int((white[0] - ALL.u[0]) / step)
+    assert errors[row, column] == pytest.approx(
+        float(table.expected_error([1.0, 1.0, 1.0])), rel=0.1
+    )
+    assert image.get_clim() == (0, float(table.data.error.max()))
+
+
+@pytest.mark.parametrize("count", [0, 1, 92])
+def test_the_window_of_lamps_has_all_of_them(table, count):
+    entries = table.data.entries
+    some = LampEntries(
+        entries.names[:count],
+        *(each[:count] for each in (entries.uv, entries.spectra, entries.radius)),
+    )
+    window = lamp_window(EmissionTable(replace(table.data, entries=some)))
+    low, high = np.array([window.u, window.v]).T
+    assert (some.uv >= low + 0.999 * MARGIN).all()
+    assert (some.uv <= high - 0.999 * MARGIN).all()
+    shape = [
+        (high - low)[i] / (full[1] - full[0]) for i, full in enumerate((ALL.u, ALL.v))
+    ]
+    assert shape[0] == pytest.approx(shape[1])
+    assert shape[0] < 0.5

@@ -1,0 +1,44 @@
+"""Fixtures: random spectra, pigments and colours."""
+
+import numpy as np
+import pytest
+
+from uplift.extras.paint.pigments import Pigment
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(10)
+
+
+@pytest.fixture
+def spectra(rng):
+    """Spectra (4, 3, 7): three for each of four mixtures, with values of 0 and 1."""
+    found = rng.random((4, 3, 7))
+    found[0, 0, :2] = 0, 1
+    return found
+
+
+@pytest.fixture
+def parts(rng):
+    """Parts (4, 3)."""
+    return rng.random((4, 3))
+
+
+@pytest.fixture
+def paint(rng):
+    """Pigments with K and S over five decades, including zeros."""
+    K, S = 10 ** rng.uniform(-4, 1, (2, 60))
+    K[:2], S[1:3] = 0, 0
+    return Pigment(K, S)
+
+
+@pytest.fixture(scope="session")
+def paints(small_cube):
+    """Linear RGB (3,) of the ColorChecker's coloured patches, by name."""
+    atlas = small_cube.data.atlas
+    return {
+        name: rgb
+        for name, rgb in zip(atlas.names, atlas.rgb, strict=True)
+        if np.ptp(rgb) > 0.1 * rgb.max()
+    }

@@ -1,0 +1,251 @@
+"""Mixtures by kind of component, coats on grounds, and painting over images."""
+
+import json
+
+import numpy as np
+import OpenEXR
+import pytest
+
+from tests.extras.texture.conftest import channels, planes, read_channels, write_exr
+from tests.helpers import raises, warns
+from uplift.common.errors import ColourError, OptionError
+from uplift.extras.paint import (
+    Ingredients,
+    Medium,
+    Surface,
+    make_coat,
+    mix,
+    overpainter,
+)
+from uplift.extras.paint.coats import DARKEST, dye_absorption, dye_transmittance, ramp
+from uplift.extras.paint.optics import NO_SURFACE, Layer, plate
+from uplift.extras.paint.pigments import CONSTANT, SQUARE_ROOT, Pigment, from_opaque
+from uplift.extras.texture import convert
+
+WHITE = np.ones(5)
+PLAIN = Medium(scattering=SQUARE_ROOT)
+OIL = Surface.of_index(1.5)
+DIFFUSE = Surface.of_index(1.5, "diffuse")
+SURFACES = [NO_SURFACE, OIL, DIFFUSE]
+T = np.array([0.0, 0.05, 0.5, 0.9, 1.0])
+
+
+@pytest.fixture
+def two(rng):
+    """Two spectra, not darker than the surface of oil."""
+    return Ingredients(rng.uniform(0.1, 0.9, (2, 5)))
+
+
+@pytest.mark.parametrize("kind", ["pigment", "dye"])
+@pytest.mark.parametrize("surface", SURFACES)
+@pytest.mark.parametrize("rule", [SQUARE_ROOT, CONSTANT])
+def test_a_single_colour_is_unchanged_and_thickness_0_leaves_the_ground(
+    two, rng, kind, surface, rule
+):
+    for parts, expected in (([1, 0], two.spectra[0]), ([0, 3], two.spectra[1])):
+        found = mix(kind, two, parts, Medium(surface=surface, scattering=rule), WHITE)
+        np.testing.assert_allclose(found, expected, rtol=1e-9)
+    ground = rng.uniform(0.1, 1, 5)
+    np.testing.assert_allclose(
+        mix(kind, two, [1, 1], Medium(0.0, surface, rule), ground), ground
+    )
+
+
+def test_paint_measured_on_white_and_black_round_trip(rng):
+    layer = from_opaque(rng.uniform(0.2, 0.8, 5), SQUARE_ROOT).layer(1.0)
+    white = OIL.apply(layer.over(1.0))
+    black = OIL.apply(layer.over(0.0))
+    for ground, expected in ((1.0, white), (0.04, black)):
+        found = mix(
+            "pigment", Ingredients(white[None], (black,)), [2], Medium(1.0, OIL), ground
+        )
+        np.testing.assert_allclose(found, expected, rtol=1e-6)
+
+
+def test_filters_and_lights(two):
+    np.testing.assert_allclose(
+        mix("light", two, [2, 1], PLAIN, 0.0), 2 * two.spectra[0] + two.spectra[1]
+    )
+    # 9.2.1.2 of the thesis: cyan light through an orange and a grey filter.
+    filters = Ingredients(np.array([[0, 1, 1], [1, 0.5, 0], [0.5, 0.5, 0.5]]))
+    np.testing.assert_allclose(
+        mix("filter", filters, [1, 1, 1], Medium(), 0.0), [0, 0.25, 0]
+    )
+
+
+def test_ramps_of_proportions(two):
+    np.testing.assert_allclose(ramp([1, 4, 1], 5)[:, 1], [0, 2, 4, 2, 0])
+    assert ramp([1], 5).shape == (0, 1)
+    parts = ramp([2, 1], 4)
+    medium = Medium(0.5, scattering=SQUARE_ROOT)
+    found = mix("pigment", two, parts, medium, WHITE)
+    np.testing.assert_allclose(
+        found, [mix("pigment", two, each, medium, WHITE) for each in parts]
+    )
+    with raises(OptionError):
+        ramp([1, 1], 1)
+
+
+@pytest.mark.parametrize(
+    ("kind", "medium", "on_black", "code"),
+    [
+        ("paint", PLAIN, None, "option"),
+        ("filter", Medium(2.0), None, "option"),
+        ("light", Medium(surface=OIL, scattering=SQUARE_ROOT), None, "option"),
+        ("light", PLAIN, WHITE, "option"),
+        ("dye", PLAIN, WHITE, "option"),
+        ("dye", Medium(-1.0), None, "option"),
+        ("pigment", Medium(float("inf"), scattering=SQUARE_ROOT), None, "option"),
+        ("pigment", Medium(), None, "option"),
+        ("pigment", Medium(scattering=SQUARE_ROOT, plate=True), None, "option"),
+        ("filter", Medium(plate=True), None, "option"),
+    ],
+)
+def test_inapplicable_settings_raise(two, kind, medium, on_black, code):
+    with raises(OptionError, code):
+        mix(kind, Ingredients(two.spectra, (on_black, None)), [1, 1], medium, WHITE)
+
+
+@pytest.mark.parametrize("parts", [[1, -1], [1, np.nan], [1, np.inf], 3.0, [0, 0]])
+def test_invalid_parts_raise(two, parts):
+    with raises(OptionError):
+        mix("dye", two, parts, PLAIN, WHITE)
+
+
+def test_colours_darker_than_the_surface_trigger_a_warning(two):
+    dark = Ingredients(np.stack([two.spectra[0], np.full(5, 0.03)]))
+    with warns("warning"):
+        found = mix(
+            "pigment", dark, [0, 1], Medium(surface=OIL, scattering=SQUARE_ROOT), WHITE
+        )
+    np.testing.assert_allclose(found, 0.04, atol=1e-4)
+
+
+@pytest.mark.parametrize("ground", [0.0, 0.3, 1.0])
+@pytest.mark.parametrize("surface", [*SURFACES, Surface(0.04, 0.04)])
+def test_a_dye_on_a_ground_is_the_sum_over_passes(surface, ground):
+    """The light that leaves at each pass (9.6)."""
+    light = (1 - surface.outside) * np.ones_like(T)
+    expected = surface.outside
+    for _ in range(500):
+        light = light * T * ground * T
+        expected = expected + (1 - surface.inside) * light
+        light = surface.inside * light
+    np.testing.assert_allclose(
+        surface.apply(Layer(np.zeros_like(T), T).over(ground)), expected, atol=1e-12
+    )
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.04, 0.3])
+def test_a_plate_is_the_sum_over_passes_and_keeps_the_energy_of_clear_light(rho):
+    """Eq. 9.4: what leaves above and below at each pass."""
+    found = plate(T, rho)
+    light = (1 - rho) * T
+    above = np.full_like(T, rho)
+    below = np.zeros_like(T)
+    for number in range(200):
+        (above if number % 2 else below)[:] += (1 - rho) * light
+        light = rho * light * T
+    np.testing.assert_allclose(
+        [found.reflectance, found.transmittance], [above, below], atol=1e-12
+    )
+    assert found.reflectance[-1] + found.transmittance[-1] == pytest.approx(1)
+    assert (found.reflectance + found.transmittance <= 1 + 1e-12).all()
+
+
+def test_a_plate_of_index_1_is_the_layer_alone(two):
+    for ground in (0.0, 0.3, 1.0):
+        found = mix("dye", two, [1, 2], Medium(1.5, plate=True), ground)
+        np.testing.assert_allclose(found, mix("dye", two, [1, 2], Medium(1.5), ground))
+    assert (
+        mix("dye", two, [1, 2], Medium(1.5, OIL, plate=True), 0.0) >= OIL.outside
+    ).all()
+
+
+@pytest.mark.parametrize("surface", SURFACES)
+def test_duntley_s_paint_becomes_kubelka_and_munk_s_and_creates_no_energy(rng, surface):
+    """In the limit of strong forward scattering in a beam, constants mix as Duncan's.
+    Clear paint leaves white.
+    """
+    K, B = rng.uniform(0.1, 2, (2, 2, 5))
+    constants = np.stack([K, B, np.full_like(K, 1e8), K, B, B], axis=1)
+    for ground in (surface.outside, 0.5, 1.0):
+        found = mix(
+            "duntley", Ingredients(constants), [2, 1], Medium(0.7, surface), ground
+        )
+        layer = Pigment(K, B).mix([2, 1]).layer(0.7)
+        np.testing.assert_allclose(
+            found, surface.apply(layer.over(surface.remove(ground))), atol=1e-6
+        )
+    clear = rng.uniform(0, 2, (3, 6, 5)) * [[0], [1], [1], [0], [1], [1]]
+    np.testing.assert_allclose(
+        mix("duntley", Ingredients(clear), [1, 2, 3], Medium(0.7, surface), WHITE), 1
+    )
+
+
+def test_thicknesses_of_dyes_compose_and_black_is_finite():
+    K = np.array([0.2, 3])
+    np.testing.assert_allclose(
+        dye_transmittance(K, 5), dye_transmittance(K, 2) * dye_transmittance(K, 3)
+    )
+    np.testing.assert_allclose(
+        dye_transmittance(dye_absorption(T**2), 1), np.maximum(T, DARKEST)
+    )
+
+
+@pytest.fixture
+def image():
+    return np.random.default_rng(1).random((6, 5, 3)).astype(np.float32)
+
+
+def test_painted_colours_are_those_of_the_coated_spectra(small_cube, image, tmp_path):
+    """Half a unit of the ColorChecker's red in oil. Other channels pass through."""
+    atlas = small_cube.data.atlas
+    red = small_cube.reflectance(atlas.rgb[atlas.names.index("red")])
+    glaze = make_coat(
+        "pigment", Ingredients(red[None]), [1], Medium(0.5, OIL, SQUARE_ROOT)
+    )
+    mask = np.linspace(0, 1, 30, dtype=np.float16).reshape(6, 5)
+    write_exr(tmp_path / "in.exr", {**planes(image), "mask": mask})
+    painter = overpainter(small_cube, glaze, {"of": "red"}, threads=1)
+    result = convert(painter, tmp_path / "in.exr", tmp_path / "out.exr")
+    assert (result.counts.pixels, result.counts.painted_outside, result.warnings) == (
+        30,
+        0,
+        (),
+    )
+    expected = small_cube.data.sensor.rgb(glaze.over(small_cube.reflectance(image)))
+    np.testing.assert_allclose(
+        read_channels(tmp_path / "out.exr", "RGB"), expected, atol=2e-6
+    )
+    np.testing.assert_array_equal(channels(tmp_path / "out.exr")["mask"], mask)
+    header = OpenEXR.File(str(tmp_path / "out.exr"), separate_channels=True).header()
+    assert json.loads(header["uplift.mix"]) == {"of": "red"}
+
+
+def test_pixels_outside_are_mapped_before_and_after_with_warnings(
+    small_cube, image, tmp_path
+):
+    """A thick dye is saturated enough to leave the gamut."""
+    dye = make_coat(
+        "dye", Ingredients(small_cube.reflectance([[0.9, 0.1, 0.02]])), [1], Medium(3.0)
+    )
+    write_exr(tmp_path / "in.exr", planes(image + 0.5))
+    result = convert(
+        overpainter(small_cube, dye, threads=1),
+        tmp_path / "in.exr",
+        tmp_path / "out.exr",
+    )
+    assert 0 < result.counts.outside < 30
+    assert result.counts.painted_outside > 0
+    assert [each.code for each in result.warnings] == [
+        "pixels-out-of-gamut",
+        "painted-pixels-out-of-gamut",
+    ]
+    found = read_channels(tmp_path / "out.exr", "RGB")
+    assert ((found >= 0) & (found <= 1)).all()
+    with raises(ColourError, "rgb-out-of-gamut") as caught:
+        strict = overpainter(small_cube, dye, out_of_gamut="error", threads=1)
+        convert(strict, tmp_path / "in.exr", tmp_path / "strict.exr")
+    assert caught.value.path == tmp_path / "in.exr"
+    assert not (tmp_path / "strict.exr").exists()

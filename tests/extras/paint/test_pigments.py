@@ -1,0 +1,272 @@
+"""Kubelka and Munk's and Duntley's theories: equations as printed, integration, limits;
+K and S from colours.
+"""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_bvp
+
+from tests.helpers import raises
+from uplift.common.errors import AtlasError, ColourError
+from uplift.extras.paint import dispersive, pigments
+from uplift.extras.paint.pigments import (
+    CONSTANT,
+    SQUARE_ROOT,
+    Flux,
+    Pigment,
+    PowerOfReflectance,
+    beam_to_diffuse,
+    diffuse_to_beam,
+    duntley_layer,
+    from_black_and_white,
+    from_opaque,
+)
+
+SEVERAL = Pigment(np.array([0.3, 2.0, 0.01]), np.array([1.5, 0.2, 4.0]))
+R = np.linspace(pigments.DARKEST, 1, 200)
+RULES = [CONSTANT, SQUARE_ROOT, PowerOfReflectance(1.0)]
+
+
+@pytest.mark.parametrize(
+    ("X", "ground"), list(product([0.01, 1.0, 20.0], [0.0, 0.5, 1.0]))
+)
+def test_reflectance_on_a_ground_follows_kubelka_1948(X, ground):
+    """Eq. 10.11 as printed, which is undefined for S = 0 or K = 0."""
+    a = 1 + SEVERAL.absorption / SEVERAL.scattering
+    b = np.sqrt(a**2 - 1)
+    coth = 1 / np.tanh(b * SEVERAL.scattering * X)
+    expected = (1 - ground * (a - b * coth)) / (a - ground + b * coth)
+    np.testing.assert_allclose(SEVERAL.layer(X).over(ground), expected)
+
+
+def test_the_thesis_s_example():
+    """10.2.3: K .1 and .3, S .4 and .2, mixed 2:1: S/K = 2 and R = .38."""
+    mixture = Pigment(np.array([[0.1], [0.3]]), np.array([[0.4], [0.2]])).mix([2, 1])
+    assert mixture.scattering / mixture.absorption == pytest.approx(2)
+    assert mixture.opaque_reflectance()[0] == pytest.approx(0.38, abs=0.005)
+
+
+def test_two_layers_equal_one_of_their_total_thickness(paint):
+    for ground in (0.0, 0.3, 1.0):
+        both = paint.layer(0.7).over(paint.layer(1.6).over(ground))
+        np.testing.assert_allclose(both, paint.layer(2.3).over(ground), rtol=1e-10)
+
+
+def check_energy(layer):
+    assert (layer.reflectance >= -1e-12).all()
+    assert (layer.transmittance >= -1e-12).all()
+    assert (layer.reflectance + layer.transmittance <= 1 + 1e-9).all()
+
+
+@pytest.mark.parametrize("X", [0.0, 1e-9, 1.0, 1e3, 1e9, 1e300])
+def test_energy_is_not_created(paint, X):
+    check_energy(paint.layer(X))
+
+
+def test_limits_without_absorption_and_without_scattering():
+    """K → 0: R = SX / (1 + SX), and T = 1 − R. S → 0: Beer's law."""
+    for tiny in (0.0, 1e-12):
+        white = Pigment(np.full(2, tiny), np.array([0.5, 3.0])).layer(2.0)
+        np.testing.assert_allclose(white.reflectance, [1 / 2, 6 / 7], atol=1e-6)
+        np.testing.assert_allclose(white.transmittance, [1 / 2, 1 / 7], atol=1e-6)
+        dye = Pigment(np.array([0.5, 3.0]), np.full(2, tiny)).layer(2.0)
+        np.testing.assert_allclose(dye.transmittance, np.exp([-1, -6]), atol=1e-6)
+        np.testing.assert_allclose(dye.reflectance, 0, atol=1e-6)
+
+
+def test_thick_paint_hides_its_ground_and_thickness_0_shows_it(paint):
+    opaque = Pigment(paint.absorption[3:], paint.scattering[3:])
+    for ground in (0.0, 1.0):
+        np.testing.assert_allclose(
+            opaque.layer(1e7).over(ground), opaque.opaque_reflectance(), rtol=1e-9
+        )
+    np.testing.assert_array_equal(SEVERAL.layer(0.0).over([0.1, 0.5, 1]), [0.1, 0.5, 1])
+    limits = Pigment(np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]))
+    np.testing.assert_array_equal(limits.opaque_reflectance(), [1, 0, 0])
+
+
+def test_amy_is_exact_for_strong_absorption_and_half_for_white():
+    """Eq. 10.4 compared with eq. 10.5, and the example of 10.2.2."""
+    found = Pigment(
+        np.array([5.0, 1e-9, 1 / 6, 0.0]), np.array([0.05, 1.0, 1 / 3, 0.0])
+    )
+    dark, *others = found.amy_opaque_reflectance()
+    assert dark == pytest.approx(found.opaque_reflectance()[0], rel=1e-3)
+    assert others == pytest.approx([0.5, 1 / 3, 0])
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_opaque_reflectance_round_trip_alone_and_mixed(rule, spectra, parts):
+    np.testing.assert_allclose(from_opaque(R, rule).opaque_reflectance(), R, rtol=1e-9)
+    np.testing.assert_allclose(
+        from_opaque(np.stack([R, R]), rule).mix([3, 2]).opaque_reflectance(),
+        R,
+        rtol=1e-9,
+    )
+    found = from_opaque(spectra, rule).mix(parts).opaque_reflectance()
+    paints = np.maximum(spectra, pigments.DARKEST)
+    assert (found >= paints.min(axis=1) - 1e-12).all()
+    assert (found <= paints.max(axis=1) + 1e-12).all()
+
+
+def test_two_grounds_determine_k_and_s(paint):
+    layer = paint.layer(1.0)
+    known = layer.transmittance > 0.02
+    assert known.sum() > 30
+    found = from_black_and_white(layer.over(0.0)[known], layer.over(1.0)[known])
+    np.testing.assert_allclose(
+        found.absorption, paint.absorption[known], rtol=1e-6, atol=1e-8
+    )
+    np.testing.assert_allclose(
+        found.scattering, paint.scattering[known], rtol=1e-6, atol=1e-8
+    )
+
+
+@pytest.mark.parametrize(("on_black", "on_white"), [(0.3, 0.3), (0.5, 0.2), (0.6, 1.3)])
+def test_contradictory_reflectances_raise(on_black, on_white):
+    with raises(ColourError):
+        from_black_and_white([on_black], [on_white])
+
+
+def test_h_is_the_mean_on_one_side_less_that_on_the_other(sensor, rng):
+    """The matrix against sums written out."""
+    reflectance = rng.uniform(pigments.DARKEST_DISPERSED, 1, 81)
+    strength = np.sqrt((1 - reflectance) ** 2 / (2 * reflectance))
+    expected = []
+    for wavelength in sensor.wavelengths:
+        weights = np.exp(-np.abs(sensor.wavelengths - wavelength) / pigments.REACH)
+        sides = sensor.wavelengths <= wavelength, sensor.wavelengths >= wavelength
+        below, above = (
+            np.average(strength[side], weights=weights[side]) for side in sides
+        )
+        expected.append(below - above)
+    Y = (sensor.cmfs[:, 1] * reflectance).sum() / sensor.cmfs[:, 1].sum()
+    np.testing.assert_allclose(
+        dispersive(sensor)(reflectance),
+        Y**0.75 * np.exp(np.array(expected) / 4),
+        rtol=1e-12,
+    )
+
+
+def test_further_wavelengths_change_nothing_and_are_consistent(sensor, rng):
+    reflectance = rng.uniform(0.01, 1, (3, 81))
+    assumed = dispersive(sensor)
+    columns = [14, 34, 0, 80]
+    extended = np.concatenate([reflectance, reflectance[:, columns]], axis=1)
+    found = dispersive(sensor, [450.0, 550.0, 300.0, 900.0])(extended)
+    np.testing.assert_allclose(found[:, :81], assumed(reflectance), rtol=1e-12)
+    np.testing.assert_allclose(
+        found[:, 81:], assumed(reflectance)[:, columns], rtol=1e-12
+    )
+
+
+DIFFUSE = Flux(np.array([0.6, 0.3]), np.array([1.1, 0.5]), np.array([0.8, 2.0]))
+GAMMA = np.sqrt(DIFFUSE.absorption * (DIFFUSE.absorption + 2 * DIFFUSE.backward))
+BEAMS = [Flux(np.array([0.4, 0.1]), np.array([0.7, 0.2]), np.array([0.9, 1.5]))]
+# The beam decays as fast as diffuse light, or nearly.
+BEAMS += [
+    Flux(GAMMA - 0.4 + off, np.full(2, 0.1), np.full(2, 0.3))
+    for off in (0, 1e-14, 1e-9, 1e-7, 1e-5, 3e-5)
+]
+
+
+@pytest.mark.parametrize("beam", BEAMS)
+def test_duntley_s_differential_equations_are_satisfied(beam):
+    found = duntley_layer(beam, DIFFUSE, 1.3)
+    for place in range(2):
+        K, B, mu = (
+            each[place]
+            for each in (DIFFUSE.absorption, DIFFUSE.backward, beam.absorption)
+        )
+        B1 = beam.backward[place]
+        F1 = beam.forward[place]
+        mu = mu + B1 + F1
+
+        def slopes(x, flux, K=K, B=B, B1=B1, F1=F1, mu=mu):
+            (t, s), left = flux, np.exp(-mu * x)
+            return np.stack(
+                [F1 * left - (K + B) * t + B * s, (K + B) * s - B * t - B1 * left]
+            )
+
+        x = np.linspace(0, 1.3, 80)
+        solved = solve_bvp(
+            slopes,
+            lambda top, bottom: np.array([top[0], bottom[1]]),
+            x,
+            np.zeros((2, 80)),
+            tol=1e-9,
+        )
+        assert found.reflectance[place] == pytest.approx(solved.y[1, 0], abs=1e-7)
+        assert found.transmittance[place] == pytest.approx(
+            solved.y[0, -1] + np.exp(-mu * 1.3), abs=1e-7
+        )
+
+
+def test_strong_forward_scattering_gives_the_two_constant_theory():
+    """The beam becomes diffuse before anything else happens."""
+    beam = Flux(BEAMS[0].absorption, BEAMS[0].backward, np.full(2, 1e7))
+    two = Pigment(DIFFUSE.absorption, DIFFUSE.backward).layer(0.9)
+    found = duntley_layer(beam, DIFFUSE, 0.9)
+    np.testing.assert_allclose(found.reflectance, two.reflectance, atol=1e-6)
+    np.testing.assert_allclose(found.transmittance, two.transmittance, atol=1e-6)
+
+
+def test_constants_are_read_from_rows_and_columns(tmp_path):
+    nm = [400.0, 500.0, 700.0]
+    rows = np.arange(24.0).reshape(8, 3)
+    names = (*pigments.CONSTANTS, "S'", "S")
+    rows[6:] = rows[1] + rows[2], rows[4] + rows[5]
+    lines = [
+        ["name", *nm],
+        *([name, *row] for name, row in zip(names, rows, strict=True)),
+    ]
+    for number, cells in enumerate((lines, zip(*lines, strict=True))):
+        path = tmp_path / f"{number}.csv"
+        path.write_text(
+            "\n".join(",".join(map(str, row)) for row in cells), encoding="utf-8"
+        )
+        found = pigments.read_constants(path, np.array([380, 450, 700]))
+        np.testing.assert_allclose(
+            found,
+            np.stack([rows[:6, 0], rows[:6, :2].mean(axis=1), rows[:6, 2]], axis=1),
+        )
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        ("K',", "K'',", "must have K'"),
+        (",1,", ",-1,", "at least 0"),
+        ("S,", "S,9", "S must be B \\+ F"),
+    ],
+)
+def test_invalid_constants_raise(tmp_path, old, new, problem):
+    text = "".join(f"{name},1,1\n" for name in ("nm", *pigments.CONSTANTS)).replace(
+        "nm,1,1", "nm,380,780"
+    )
+    (tmp_path / "paint.csv").write_text(
+        (text + "S,2,2\n").replace(old, new, 1), encoding="utf-8"
+    )
+    with pytest.raises(AtlasError, match=problem):
+        pigments.read_constants(tmp_path / "paint.csv", np.array([500.0]))
+
+
+@pytest.mark.parametrize("X", [0.01, 1.0, 30.0])
+def test_duntley_creates_no_energy(rng, X):
+    check_energy(
+        duntley_layer(*(Flux(*10 ** rng.uniform(-3, 1, (3, 200))) for _ in range(2)), X)
+    )
+
+
+def test_isotropic_paint_in_a_beam_is_two_r_over_three_minus_r(rng):
+    """Eq. 10.8 in the limit of thick layers against the closed form, and
+    its inverse.
+    """
+    K = rng.uniform(0.01, 4, 30)
+    S = rng.uniform(0.2, 3, 30)
+    r = Pigment(K, S).opaque_reflectance()
+    thick = duntley_layer(Flux(K / 2, S / 2, S / 2), Flux(K, S, S), 400.0).reflectance
+    np.testing.assert_allclose(diffuse_to_beam(r), thick, rtol=1e-6)
+    np.testing.assert_allclose(beam_to_diffuse(diffuse_to_beam(r)), r, rtol=1e-12)

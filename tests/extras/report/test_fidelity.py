@@ -1,0 +1,302 @@
+"""Numbers of an assessment against slow reference implementations."""
+
+import dataclasses
+import itertools
+
+import colour
+import numpy as np
+import pytest
+
+import uplift
+from tests.helpers import with_points
+from uplift.atlas import on_grid
+from uplift.colorimetry.observer import display_sensors, light
+from uplift.extras.report.assessment import assess
+from uplift.extras.report.fidelity import (
+    JAKOB_HANIKA,
+    WITHOUT_ATLAS,
+    entry_errors,
+    find_alternatives,
+    find_crowding,
+    from_stored_entries,
+    take,
+)
+from uplift.extras.report.measures import (
+    MAX_LISTED,
+    check_calibration,
+    collect_failures,
+    compute_smoothness,
+)
+from uplift.lookup.interpolate import lattice_spectra
+from uplift.models import reflectance
+
+OUTSIDE = "cyan"
+"""The entry outside sRGB, which a lattice does not answer."""
+
+
+def delta_e(first, second, name):
+    """ΔE00 of two spectra (N,) under a light, as colour-science has it."""
+    lit = light(name)
+    labs = [
+        colour.XYZ_to_Lab(lit.xyz @ spectrum, colour.XYZ_to_xy(lit.white))
+        for spectrum in (first, second)
+    ]
+    return colour.delta_E(*labs, method="CIE 2000")
+
+
+def test_entry_errors_match_colour_science(judged, small_cube, macbeth):
+    measured = dict(
+        zip(
+            macbeth.names,
+            on_grid(macbeth, small_cube.data.sensor.wavelengths),
+            strict=True,
+        )
+    )
+    atlas = small_cube.data.atlas
+    found = judged.entries
+    assert sorted(found.names) == sorted((*atlas.names, OUTSIDE))
+    for row, name in enumerate(found.names):
+        if name == OUTSIDE:
+            continue
+        own = atlas.names.index(name)
+        answered = small_cube.reflectance(atlas.rgb[own])
+        assert found.answers.spectra[row] == pytest.approx(answered, abs=1e-12)
+        assert found.answers.rms[row] == pytest.approx(
+            np.sqrt(np.mean((answered - measured[name]) ** 2)), rel=1e-9
+        )
+        assert found.actual[row] == pytest.approx(
+            delta_e(answered, measured[name], "A"), abs=1e-6
+        )
+        assert found.predicted[row] == pytest.approx(atlas.error[own], abs=1e-12)
+        assert found.half_width[row] == atlas.half_width[own]
+        for column, sensor in enumerate(judged.lights):
+            expected = delta_e(answered, measured[name], sensor.illuminant)
+            assert found.answers.delta_e[row, column] == pytest.approx(
+                expected, abs=1e-6
+            )
+
+
+def test_lattice_errors_are_those_of_the_lattice_without_the_entries(
+    judged, small_cube, macbeth
+):
+    data = small_cube.data
+    found = judged.entries
+    measured = dict(
+        zip(macbeth.names, on_grid(macbeth, data.sensor.wavelengths), strict=True)
+    )
+    inside = [row for row, name in enumerate(found.names) if name != OUTSIDE]
+    spectra = lattice_spectra(data, found.rgb[inside], data.sensor.wavelengths)
+    np.testing.assert_allclose(found.lattice.spectra[inside], spectra, atol=1e-12)
+    for row, spectrum in zip(inside, spectra, strict=True):
+        missed = [
+            delta_e(spectrum, measured[found.names[row]], sensor.illuminant)
+            for sensor in judged.lights
+        ]
+        assert found.lattice.delta_e[row] == pytest.approx(missed, abs=1e-6)
+    assert (found.lattice.worst > found.answers.worst + 0.1).any()
+
+
+def test_entries_of_another_atlas_have_no_lattice_errors(small_cube, repository):
+    other = uplift.read_atlas(repository / "atlases" / "babelcolor.txt")
+    found = assess(small_cube, "small.uplift", 1, other, ("D65", "A"))
+    assert not found.own
+    assert found.sources == ("babelcolor.txt",)
+    own = ("lattice", "half_width", "half_width_codes")
+    assert {getattr(found.entries, name) for name in own} == {None}
+    assert sorted((*found.entries.names, *found.out_of_gamut)) == sorted(other.names)
+
+
+def test_without_an_atlas_there_are_no_entries(small_sigmoid_cube):
+    found = assess(small_sigmoid_cube, "sigmoid.uplift", 1, None, ("A",))
+    assert (found.entries, found.delta_e, found.crowding, found.sources) == (
+        None,
+        {},
+        None,
+        (),
+    )
+    assert (found.standard_error, found.calibration) == (None, None)
+
+
+@pytest.mark.parametrize("model", ["moments", "sigmoid"])
+def test_smoothness_matches_explicit_loops(model):
+    data = uplift.build(
+        dim=4, model=model, **({"coefficients": 5} if model == "moments" else {})
+    ).data
+    spectra = reflectance(
+        data.model, data.points.coefficients, data.sensor.wavelengths
+    ).reshape(4, 4, 4, -1)
+    expected = {}
+    for first in itertools.product(range(4), repeat=3):
+        for axis in range(3):
+            second = tuple(place + (axis == i) for i, place in enumerate(first))
+            if max(second) < 4:
+                expected[first, second] = np.sqrt(
+                    np.mean((spectra[first] - spectra[second]) ** 2)
+                )
+    differences, steepest_rgb = compute_smoothness(data)
+    assert np.sort(differences) == pytest.approx(sorted(expected.values()), rel=1e-5)
+    steepest = max(expected, key=expected.get)
+    assert {tuple(rgb) for rgb in steepest_rgb.tolist()} == {
+        tuple(data.lattice.nodes[list(place)].tolist()) for place in steepest
+    }
+
+
+def test_crowding_matches_brute_force(crowded_cube):
+    data = crowded_cube.data
+    lights = display_sensors(("A",), crowded_cube.data.sensor.observer)
+    found = find_crowding(
+        data, entry_errors(crowded_cube, from_stored_entries(data), lights)
+    )
+    nodes = data.lattice.nodes
+    names = data.atlas.names
+    steps = np.interp(data.atlas.rgb, nodes, np.arange(len(nodes)))
+    expected = {}
+    for row, name in enumerate(names):
+        apart = {
+            other: np.abs(steps[row] - steps[i]).max()
+            for i, other in enumerate(names)
+            if i != row
+        }
+        if min(apart.values()) <= 1:
+            expected[name] = min(apart.values())
+    listed = dict(zip(found.entries.names, found.distances, strict=True))
+    assert listed == pytest.approx(expected)
+    for name, other in zip(found.entries.names, found.nearest, strict=True):
+        apart = np.abs(steps[names.index(name)] - steps[names.index(other)]).max()
+        assert (name != other, apart) == (True, pytest.approx(expected[name]))
+    assert len(expected) > 0
+    assert found.entries.lattice.worst.tolist() == sorted(
+        found.entries.lattice.worst, reverse=True
+    )
+    assert found.lost == ()
+
+
+def test_calibration_against_an_unknown_atlas(small_cube, repository):
+    other = uplift.read_atlas(repository / "atlases" / "cie2017.txt")
+    found = assess(small_cube, "small.uplift", 1, other, ("D65", "FL11", "A"))
+    ratios = []
+    errors = []
+    within = 0
+    bounded = 0
+    for entry in other.entries:
+        (measured,) = on_grid(uplift.Atlas((entry,)), small_cube.wavelengths)
+        rgb = small_cube.data.sensor.rgb(measured)
+        if rgb.min() < 0 or rgb.max() > 1:
+            continue
+        actual = delta_e(small_cube.reflectance(rgb), measured, "A")
+        error = float(small_cube.standard_error(rgb))
+        ratios.append(actual / error)
+        errors.append(error)
+        within += actual <= error
+        bounded += actual <= small_cube.error_bound(rgb)
+    count = len(ratios)
+    mean = sum(errors) / count
+    expected = (mean * np.quantile(ratios, 0.68), mean, within / count, bounded / count)
+    measured = found.calibration
+    found_numbers = (
+        measured.actual,
+        measured.predicted,
+        measured.within_error,
+        measured.within_bound,
+    )
+    assert found_numbers == pytest.approx(expected, abs=1e-6)
+    assert measured.count == count == len(found.entries.names)
+    assert (
+        measured.actual > measured.predicted
+    )  # these materials are unlike the ColorChecker
+    assert list(found.light_calibrations) == ["FL11"]
+    rgb = found.entries.rgb
+    predicted = (
+        small_cube.standard_error(rgb, "FL11"),
+        small_cube.error_bound(rgb, "FL11"),
+    )
+    assert found.light_calibrations["FL11"] == check_calibration(
+        found.entries.answers.delta_e[:, 1], *predicted
+    )
+    assert found.unlike == small_cube.unlike_atlas(found.entries.rgb).mean()
+
+
+def test_own_entries_give_no_calibration(judged, plain_cube, macbeth):
+    assert (judged.calibration, judged.light_calibrations, judged.unlike) == (
+        None,
+        {},
+        0,
+    )
+    assert judged.standard_error.counts.sum() == 512
+    assert judged.standard_error.mean == pytest.approx(
+        judged.facts["mean_standard_error"]
+    )
+    unknowing = assess(plain_cube, "plain.uplift", 1, macbeth, ("A",))
+    assert (unknowing.standard_error, unknowing.facts["mean_standard_error"]) == (
+        None,
+        None,
+    )
+    assert (
+        check_calibration(unknowing.entries.actual, unknowing.entries.predicted, None)
+        is None
+    )
+    assert unknowing.calibration is None
+
+
+def test_failures_list_the_worst_points_first(spoilt, small_cube):
+    assert collect_failures(small_cube.data)["over_threshold"] == 0
+    found = collect_failures(spoilt.data)
+    worst = spoilt.data.lattice.points[[300, 100]].tolist()
+    assert (
+        found["over_threshold"],
+        [each["rgb"].tolist() for each in found["worst"]],
+    ) == (2, worst)
+    assert found["left_out"] == ()  # the cyan is kept
+    nothing = dataclasses.replace(
+        with_points(spoilt.data, distance=np.full(512, np.nan, np.float32)),
+        provenance={},
+    )
+    found = collect_failures(nothing)
+    assert (found["over_threshold"], len(found["worst"])) == (512, MAX_LISTED)
+
+
+def test_all_have_the_colours_of_the_entries(judged):
+    sensor = judged.data.sensor
+    for other in judged.alternatives.values():
+        inside = np.array(judged.entries.names) != OUTSIDE
+        spectra = other.spectra[inside]
+        np.testing.assert_allclose(
+            sensor.rgb(spectra), judged.entries.rgb[inside], rtol=0, atol=2e-3
+        )
+        assert spectra.min() >= 0
+        assert spectra.max() <= 1
+
+
+def test_jakob_hanika_is_a_sigmoid_of_a_parabola(judged):
+    answer = judged.alternatives[JAKOB_HANIKA].spectra
+    t = 2 * answer - 1
+    linear = t / np.sqrt(1 - t**2)  # inverse of equation 5
+    wavelengths = judged.data.sensor.wavelengths
+    fit = np.polynomial.polynomial.polyfit(wavelengths, linear.T, 2)
+    scale = np.abs(linear).max(axis=1, keepdims=True)
+    parabola = np.polynomial.polynomial.polyval(wavelengths, fit)
+    assert np.abs(parabola - linear).max() <= 1e-6 * scale.max()
+
+
+def test_the_atlas_helps(judged):
+    lit = slice(1, None)  # all but the light that colours are matched under
+    for other in judged.alternatives.values():
+        assert judged.entries.answers.delta_e[:, lit].mean() < np.nanmean(
+            other.delta_e[:, lit]
+        )
+
+
+def test_colours_outside_srgb_have_no_answer(judged):
+    inside = take(
+        judged.entries, np.flatnonzero(np.array(judged.entries.names) != OUTSIDE)
+    )
+    target = inside.target.copy()
+    target[0] = np.where(judged.data.sensor.wavelengths > 600, 1.0, 0.0)
+    errors = dataclasses.replace(inside, target=target)
+    other = find_alternatives(
+        judged.data, errors, display_sensors(("A",), judged.data.sensor.observer)
+    )[WITHOUT_ATLAS]
+    assert np.isnan(other.delta_e[0]).all()
+    assert np.isnan(other.spectra[0]).all()
+    assert np.isfinite(other.delta_e[1:]).all()
+    assert np.isfinite(other.answered).all()

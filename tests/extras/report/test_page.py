@@ -1,0 +1,179 @@
+"""Page and JSON of a report: complete, self-contained, and safe for any entry name."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+from tests.browsing import check_page
+from tests.extras.report.conftest import HOSTILE
+from tests.pages import Page, external_links
+from uplift.atlas import read_atlas
+from uplift.extras.report.assessment import assess
+from uplift.extras.report.charts import linear_edges, log_edges, make_histogram
+from uplift.extras.report.page import render_report, to_json
+
+
+@pytest.fixture(scope="module")
+def html(judged):
+    return render_report(judged, worst=3)
+
+
+def test_page_fits_and_is_accessible(html, tmp_path):
+    check_page(html, tmp_path)
+
+
+def test_page_is_well_formed_and_complete(html, judged):
+    read = Page(html)
+    for heading in (
+        "Build",
+        "Failures",
+        "Distributions",
+        "Standard error",
+        "Crowding",
+        "Entries",
+    ):
+        assert heading in read.text
+    for name in judged.entries.names:
+        assert name in read.text
+    assert "No failures: all 512 nodes" in read.text
+    assert judged.facts["digest"] in read.text
+    assert "Left out" not in read.text
+    assert not re.search(r"\b(nan|inf|None(?!\.))\b", read.text)
+
+
+def test_page_loads_nothing(html):
+    assert external_links(html) == []
+    assert "@import" not in html
+    assert set(re.findall(r"url\((.)", html)) <= {"#"}
+
+
+def test_table_and_spectra_are_sorted_worst_first(html, judged):
+    rows = Page(html).table("entry", "worst")
+    assert [row[0].parts[0] for row in rows] == list(judged.entries.names)
+    assert [row[1].value for row in rows] == pytest.approx(
+        judged.entries.answers.worst.tolist()
+    )
+    drawn = re.findall(r'<figcaption><b title="[^"]*">([^<]*)</b>', html)
+    assert drawn == list(judged.entries.names[:3])
+
+
+def test_names_are_escaped(small_cube, hostile):
+    found = assess(small_cube, HOSTILE, 1, hostile, ("D65",))
+    assert found.entries.names == (HOSTILE,)
+    html = render_report(found, worst=24)
+    assert HOSTILE not in html
+    read = Page(html)
+    assert read.tags.count("script") == 1  # the page's own
+    assert HOSTILE in read.text
+    assert "laser" + HOSTILE in read.text
+    assert "which the cube was not built from" in read.text
+    assert (
+        "lattice alone"
+        not in read.text.split("Table of entries")[1].split("Crowding")[0]
+    )
+
+
+def test_points_over_the_threshold_are_listed(spoilt, macbeth):
+    read = Page(
+        render_report(assess(spoilt, "spoilt.uplift", 1, macbeth, ("D65",)), worst=0)
+    )
+    assert "2 nodes of 512 over the threshold of 0.0001." in read.text
+    for point in (100, 300):
+        assert (
+            ", ".join(f"{value:.4f}" for value in spoilt.data.lattice.points[point])
+            in read.text
+        )
+
+
+def test_lost_entries_are_named(lossy_cube):
+    found = assess(lossy_cube, "lossy.uplift", 1, None, ("D65",))
+    assert (
+        "Lost, as an earlier entry has the same colour: über (that of grey)."
+        in Page(render_report(found, worst=0)).text
+    )
+    values = json.loads(json.dumps(to_json(found), allow_nan=False))["crowding"]
+    assert values["lost"] == [{"name": "über", "same_colour": "grey"}]
+    assert {entry["name"]: entry["reach"] for entry in values["entries"]} == {
+        "grey": 0.5,
+        "über": 0,
+    }
+
+
+def test_predicted_and_actual_errors_are_shown(small_cube, repository):
+    other = read_atlas(repository / "atlases" / "cie2017.txt")
+    found = assess(small_cube, "small.uplift", 1, other, ("D65", "FL11"))
+    read = Page(render_report(found, worst=0))
+    values = to_json(found)
+    measured = found.calibration
+    under = found.light_calibrations["FL11"]
+    assert (
+        values["standard_error"]["calibration"]["within_bound"] == measured.within_bound
+    )
+    assert values["standard_error"]["calibrations"]["FL11"]["real"] == under.actual
+    assert values["standard_error"]["unlike_atlas"] == found.unlike
+    rows = read.table("entry", "worst", "D65", "FL11", "rms", "predicted", "actual")
+    assert [[cell.value for cell in row[-2:]] for row in rows] == pytest.approx(
+        np.array(
+            [
+                (entry["standard_error"], entry["delta_e_2000_reference"])
+                for entry in values["entries"]
+            ]
+        )
+    )
+
+
+def test_histogram_counts_every_value():
+    values = np.array([0.0, 1e-12, 3e-7, 0.2, 0.2, 5.0])
+    for edges in (log_edges(values, 1e-9), linear_edges(values)):
+        found = make_histogram(values, edges)
+        assert found.counts.sum() == 6
+        assert (np.diff(edges) > 0).all()
+        assert (found.mean, found.max) == (values.mean(), 5.0)
+        assert edges[-1] >= 5
+    assert make_histogram(values, log_edges(values, 1e-9)).logarithmic
+    assert not make_histogram(values, linear_edges(values)).logarithmic
+
+
+def test_json_holds_the_numbers_of_the_assessment(judged):
+    found = json.loads(json.dumps(to_json(judged), allow_nan=False))
+    assert [entry["name"] for entry in found["entries"]] == list(judged.entries.names)
+    assert (
+        list(found["entries"][0]["delta_e_2000"].values())
+        == judged.entries.answers.delta_e[0].tolist()
+    )
+    assert found["entries"][0]["srgb"]["A"]["answered"].startswith("#")
+    assert found["fitting_distance"]["max"] == judged.distance.max
+    crowded = [entry["name"] for entry in found["crowding"]["entries"]]
+    assert crowded == list(judged.crowding.entries.names)
+    first = found["entries"][0]
+    entries = judged.entries
+    assert (
+        list(first["delta_e_2000_lattice"].values())
+        == entries.lattice.delta_e[0].tolist()
+    )
+    assert (first["reach"], first["standard_error"]) == (
+        entries.half_width[0],
+        entries.predicted[0],
+    )
+
+
+def test_entries_outside_the_space_are_among_the_entries(cyan_cube, macbeth):
+    found = assess(cyan_cube, "cube.uplift", 1, macbeth, ("D65", "A"))
+    assert (
+        len(found.entries.names),
+        found.out_of_gamut,
+        found.failures["left_out"],
+    ) == (24, (), ())
+    (facts,) = [entry for entry in to_json(found)["entries"] if entry["name"] == "cyan"]
+    assert facts["delta_e_2000"]["D65"] < 1e-6
+    assert facts["delta_e_2000"]["A"] == pytest.approx(
+        cyan_cube.data.atlas.outside.error[0], abs=1e-4
+    )
+    assert facts["delta_e_2000_lattice"]["A"] > 1
+    assert 0 < facts["reach"] < 1
+    assert "cyan" not in found.crowding.entries.names
+    read = Page(render_report(found, worst=24))
+    assert "Outside sRGB, and so queried as XYZ" in read.text
+    assert not re.search(r"\b(nan|inf)\b", read.text)

@@ -1,0 +1,172 @@
+"""Comparison of a stored cube with a rebuilt one: what passes, and that all
+else fails.
+"""
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.helpers import raises, with_points
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.lights import REGRESSION_LIGHTS
+from uplift.colorimetry.observer import light
+from uplift.common.errors import CubeFileError
+from uplift.extras.report.regression import (
+    LIMITS,
+    EntryChange,
+    RebuildDifference,
+    compare_rebuilt,
+)
+from uplift.lattice import Lattice, Status
+
+PATH = Path("cube.uplift")
+
+
+@pytest.fixture
+def data(small_cube):
+    return small_cube.data
+
+
+def with_point(data, name, point, value):
+    array = getattr(data.points, name).copy()
+    array[point] = value
+    return with_points(data, **{name: array})
+
+
+def test_cube_equals_itself(data):
+    found = compare_rebuilt(PATH, data, data)
+    assert found.failures == ()
+    assert set(found.measures.values()) == {0.0}
+    assert found.stored_counts == found.rebuilt_counts == data.points.counts()
+
+
+def test_a_rounding_error_passes_and_a_changed_colour_or_status_fails(data):
+    nudged = with_point(
+        data, "coefficients", (300, 4), data.points.coefficients[300, 4] * (1 + 1e-14)
+    )
+    assert compare_rebuilt(PATH, data, nudged).failures == ()
+    nudged = with_point(
+        data, "rgb", (300, 1), data.points.rgb[300, 1] + 2 * LIMITS["rgb"]
+    )
+    assert compare_rebuilt(PATH, data, nudged).failures == ("rgb",)
+    assert data.points.status[300] != Status.UNFITTED
+    found = compare_rebuilt(
+        PATH, data, with_point(data, "status", 300, Status.UNFITTED)
+    )
+    assert found.failures == ("status",)
+    assert found.rebuilt_counts["unfitted"] == found.stored_counts["unfitted"] + 1
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_measures_fail_above_their_limits_and_as_nan(name):
+    measures = dict.fromkeys(LIMITS, 0.0)
+    for value, failures in [
+        (LIMITS[name], ()),
+        (LIMITS[name] * 1.001, (name,)),
+        (float("nan"), (name,)),
+        (float("inf"), (name,)),
+    ]:
+        assert (
+            RebuildDifference(PATH, measures | {name: value}, {}, {}, ()).failures
+            == failures
+        )
+
+
+def with_atlas(data, **changes):
+    return dataclasses.replace(data, atlas=dataclasses.replace(data.atlas, **changes))
+
+
+def test_entries_are_compared_by_name(data):
+    names = ("new", *data.atlas.names[1:])
+    found = compare_rebuilt(PATH, data, with_atlas(data, names=names))
+    assert found.entries == (
+        EntryChange(data.atlas.names[0], "removed"),
+        EntryChange("new", "added"),
+    )
+    assert found.failures == ("entries",)
+    assert max(found.measures.values()) == 0
+    reordered = compare_rebuilt(
+        PATH, data, with_atlas(data, names=data.atlas.names[::-1])
+    )
+    assert {entry.change for entry in reordered.entries} == {"moved"}
+    assert max(entry.delta_e for entry in reordered.entries) > 1
+
+
+def test_measures_are_the_largest_and_the_rms(plain_cube):
+    data = plain_cube.data
+    other = with_points(data, coefficients=data.points.coefficients[::-1].copy())
+    at = data.sensor.wavelengths
+    first, second = (
+        data.model.to_reflectance(
+            data.model.from_storage(cube.points.coefficients) @ data.model.basis(at).T
+        )
+        for cube in (data, other)
+    )
+    measures = compare_rebuilt(PATH, data, other).measures
+    assert measures["spectra_max"] == np.abs(first - second).max()
+    assert measures["spectra_rms"] == pytest.approx(
+        np.sqrt(np.mean((first - second) ** 2)), rel=1e-12
+    )
+    for name in REGRESSION_LIGHTS:
+        assert (
+            measures[f"delta_e_{name}"]
+            == delta_e_spectra(light(name), first, second).max()
+        )
+
+
+def with_nodes_moved(data, distance):
+    nodes = data.lattice.nodes.copy()
+    nodes[3] += distance
+    return dataclasses.replace(data, lattice=Lattice(nodes))
+
+
+def test_nodes_may_differ_by_rounding_only(data):
+    assert not np.array_equal(
+        with_nodes_moved(data, 1e-15).lattice.nodes, data.lattice.nodes
+    )
+    assert compare_rebuilt(PATH, data, with_nodes_moved(data, 1e-15)).failures == ()
+    moved = with_nodes_moved(data, 1e-11).lattice.nodes
+    for nodes in (moved, np.linspace(0, 1, 8), np.linspace(0, 1, 5)):
+        other = dataclasses.replace(data, lattice=Lattice(nodes))
+        with raises(CubeFileError, "cube-file") as caught:
+            compare_rebuilt(PATH, data, other)
+        assert caught.value.path == PATH
+
+
+def test_entries_outside_the_space_are_compared(cyan_cube, small_cube):
+    data = cyan_cube.data
+    outside = data.atlas.outside
+    spectra = data.atlas.outside.spectra
+
+    def changed(**changes):
+        atlas = dataclasses.replace(
+            data.atlas, outside=dataclasses.replace(outside, **changes)
+        )
+        return dataclasses.replace(data, atlas=atlas)
+
+    assert compare_rebuilt(PATH, data, changed()).failures == ()
+    other = dataclasses.replace(spectra, coefficients=0.99 * spectra.coefficients)
+    assert [
+        change.name
+        for change in compare_rebuilt(PATH, data, changed(spectra=other)).entries
+    ] == ["cyan"]
+    assert (
+        compare_rebuilt(PATH, small_cube.data, data).entries == ()
+    )  # an earlier version stored its name only
+    renamed = dataclasses.replace(
+        changed(names=("turquoise",)), provenance={"left_out": ["turquoise"]}
+    )
+    found = [
+        (change.name, change.change)
+        for change in compare_rebuilt(PATH, data, renamed).entries
+    ]
+    assert found == [("cyan", "removed"), ("turquoise", "added")]
+
+
+def test_a_lattice_without_a_point_inside_the_realisable_colours_equals_itself():
+    data = uplift.build(dim=2, coefficients=3, space="ACEScg").data
+    assert Status.UNREALISABLE in data.points.status
+    assert compare_rebuilt(PATH, data, data).failures == ()

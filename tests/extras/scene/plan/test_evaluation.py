@@ -1,0 +1,197 @@
+"""Samples of pixels, colour errors against a slow oracle, and the choice among
+candidates.
+"""
+
+import numpy as np
+import pytest
+
+from tests.extras.texture.conftest import planes, write_exr
+from tests.helpers import raises
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.common.errors import TextureError, UpliftWarning
+from uplift.common.progress import ignore_progress
+from uplift.extras.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet, renderings
+from uplift.extras.scene.wavelengths import make_setup
+from uplift.extras.texture.scene_colours import Images, sample_colours
+
+LIGHTS = ("D65", "FL11")
+ROWS = {"textures": slice(0, 40), "materials": slice(40, 47)}
+
+
+@pytest.fixture(scope="module")
+def tests(plain_cube):
+    rng = np.random.default_rng(0)
+    weights = rng.random(40)
+    weights = np.concatenate([weights / weights.sum(), np.full(7, 1 / 7)])
+    rgb = rng.random((47, 3))
+    setup = make_setup(rng.random((47, 81)), LIGHTS, wavelengths=observer.grid())
+    return EvaluationSet(plain_cube, setup, rgb, weights, ROWS, 0.8)
+
+
+def weighted_quantile(values, weights, share):
+    """Smallest value that bounds this share of the weights."""
+    total = 0.0
+    for value, weight in sorted(zip(values, weights, strict=True)):
+        total += weight
+        if total >= share - 1e-12:
+            return value
+    raise AssertionError
+
+
+def test_errors_agree_with_a_slow_oracle(tests):
+    spectra = np.clip(
+        tests.setup.reflectances + np.random.default_rng(1).normal(0, 0.02, (47, 81)),
+        0,
+        1,
+    )
+    error = tests.error(tests.xyz(spectra))
+    assert len(error.parts) == 4
+    for part in error.parts:
+        rows = ROWS[part.group]
+        delta_e = delta_e_spectra(
+            observer.light(part.light), tests.setup.reflectances[rows], spectra[rows]
+        )
+        assert part.quantile == pytest.approx(
+            weighted_quantile(delta_e, tests.weights[rows], 0.8), rel=1e-9
+        )
+        assert part.mean == pytest.approx(
+            np.average(delta_e, weights=tests.weights[rows]), rel=1e-9
+        )
+        assert part.largest == pytest.approx(delta_e.max(), rel=1e-9)
+    assert error.quantile == max(part.quantile for part in error.parts)
+
+
+def test_other_representations_cost_less_or_are_more_accurate_than_fitted_wavelengths(
+    tests,
+):
+    """Each of them against all others, by its own numbers; the fitted ones are as
+    without.
+    """
+
+    def numbers(each):
+        return np.array(
+            [each.samples, each.operations, each.surface, each.error.quantile]
+        )
+
+    counts = (3, 16)
+    floor = 1e-3
+    fitted = renderings(counts, tests, floor, ignore_progress, None)
+    found = renderings(counts, tests, floor, ignore_progress, observer.DEFAULT_OBSERVER)
+    others = found[len(fitted) :]
+    assert [each.name for each in found[: len(fitted)]] == [
+        each.name for each in fitted
+    ]
+    assert any(each.sampling is None for each in others)
+    for row, each in enumerate(others, start=len(fitted)):
+        assert not any(
+            (numbers(before) <= numbers(each)).all() for before in found[:row]
+        )
+
+
+def test_reference_spectra_have_no_error_and_nan_has_the_largest(tests):
+    assert tests.error(tests.xyz(tests.setup.reflectances)).quantile == pytest.approx(
+        0, abs=1e-9
+    )
+    broken = tests.setup.reflectances.copy()
+    broken[3] = np.nan
+    error = tests.error(tests.xyz(broken))
+    assert {part.largest for part in error.parts if part.group == "textures"} == {
+        WORST_DELTA_E
+    }
+
+
+@pytest.fixture
+def image(tmp_path):
+    """A file of linear RGB (h, w, 3)."""
+    return lambda rgb, name="a.exr": write_exr(
+        tmp_path / name, planes(np.asarray(rgb, np.float32))
+    )
+
+
+def sample(paths, sensor, sizes):
+    return sample_colours(Images(tuple(paths)), sensor, sizes, lambda progress: None)
+
+
+def test_small_textures_are_sampled_completely(image, sensor):
+    rgb = np.array(
+        [[[0.1, 0.2, 0.3], [0.1, 0.2, 0.3], [0.5, 0.5, 0.5], [0.1, 0.2, 0.3]]]
+    )
+    found = sample([image(rgb), image(rgb, "b.exr")], sensor, (4, 6))
+    for each in (found.predicting, found.confirming):
+        np.testing.assert_allclose(
+            each.rgb, [[0.1, 0.2, 0.3], [0.5, 0.5, 0.5]], rtol=1e-6
+        )
+        np.testing.assert_allclose(each.share, [0.75, 0.25])
+    assert len(found.colour_bins) == len(found.few) == 2
+    assert (found.pixels, found.size) == (8, 8 * 12)
+
+
+def test_the_two_samples_of_a_large_texture_are_disjoint(image, sensor):
+    rgb = np.random.default_rng(1).random((100, 90, 3))
+    path = image(rgb)
+    found = sample([path], sensor, (300, 600))
+    first, second = (
+        set(map(tuple, each.rgb.tolist()))
+        for each in (found.predicting, found.confirming)
+    )
+    assert not first & second
+    assert 240 < len(first) < 360
+    assert 500 < len(second) < 700
+    assert first | second <= set(
+        map(tuple, rgb.astype(np.float32).reshape(-1, 3).astype(float).tolist())
+    )
+    assert found.few is None
+    for each in (found.predicting, found.confirming):
+        assert each.share.sum() == pytest.approx(1)
+        np.testing.assert_allclose(
+            each.share @ each.rgb, 0.5, atol=0.06
+        )  # equal probability
+    again = sample([path], sensor, (300, 600))
+    np.testing.assert_array_equal(again.predicting.rgb, found.predicting.rgb)
+
+
+def test_rare_colours_have_a_bin(image, sensor):
+    rgb = np.full((80, 80, 3), 0.25)
+    rgb[40, 40] = [0.9, 0.05, 0.1]
+    found = sample([image(rgb)], sensor, (50, 50))
+    np.testing.assert_allclose(np.sort(found.colour_bins[:, 0]), [0.25, 0.9], rtol=1e-6)
+
+
+def test_colours_outside_the_space_are_warned_of(image, sensor):
+    with pytest.warns(UpliftWarning, match="outside"):
+        found = sample([image([[[1.5, 0.2, -0.1], [0.1, 0.2, 0.3]]])], sensor, (5, 5))
+    assert found.predicting.rgb.max() <= 1
+
+
+def test_of_many_pixels_only_some_are_read(image, sensor, monkeypatch):
+    rgb = np.random.default_rng(2).random((64, 64, 3))
+    monkeypatch.setattr("uplift.extras.texture.scene_colours.MAX_PIXELS", 1000)
+    found = sample([image(rgb)], sensor, (100, 200))
+    assert len(found.colour_bins) <= 1000
+    assert 60 < len(found.predicting.rgb) < 150
+    assert found.pixels == 4096
+
+
+def test_images_without_pixels_are_refused(image, sensor, monkeypatch):
+    monkeypatch.setattr(
+        "uplift.extras.texture.scene_colours._pixel_count", lambda path: (0, 0)
+    )
+    with raises(TextureError):
+        sample([image([[[0.1, 0.2, 0.3]]])], sensor, (5, 5))
+
+
+def test_the_best_matrices_map_rgb_under_the_light_of_the_space_exactly(
+    sensor, plain_cube
+):
+    spectra = np.random.default_rng(4).random((30, 81)) ** 2
+    rgb = spectra @ sensor.matrix.T
+    setup = make_setup(spectra, ("D65", "A"), wavelengths=observer.grid())
+    tests = EvaluationSet(
+        plain_cube, setup, rgb, np.full(30, 1 / 30), {"textures": slice(0, 30)}, 0.9
+    )
+    matrices = tests.matrices()
+    np.testing.assert_allclose(matrices[0], np.linalg.inv(sensor.xyz_to_rgb), atol=1e-9)
+    fitted = tests.error(rgb @ matrices.mT)
+    plain = tests.error(rgb @ np.stack([matrices[0], matrices[0]]).mT)
+    assert fitted.quantile < plain.quantile

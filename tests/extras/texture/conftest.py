@@ -1,0 +1,87 @@
+"""Fixtures: image files of all kinds, and textures read by the OpenEXR package."""
+
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import OpenEXR
+import OpenImageIO
+import pytest
+
+from uplift.extras import texture
+
+PHOTO = Path(matplotlib.get_data_path()) / "sample_data" / "grace_hopper.jpg"
+WAVELENGTHS = (400.0, 430.0, 460.0, 500.0, 540.0, 580.0, 620.0, 660.0, 700.0)
+"""nm"""
+
+
+def channels(path, part=0):
+    """Read every channel (h, w) of a part."""
+    return {
+        name: channel.pixels
+        for name, channel in OpenEXR.File(str(path), separate_channels=True)
+        .parts[part]
+        .channels.items()
+    }
+
+
+def read_channels(path, names, part=0):
+    """Read named channels (h, w, N) of a part."""
+    found = channels(path, part)
+    return np.stack([found[name] for name in names], axis=-1)
+
+
+def write_exr(path, planes, **header):
+    """Write planes (h, w) as a single part."""
+    OpenEXR.File({"type": OpenEXR.scanlineimage, **header}, planes).write(str(path))
+    return path
+
+
+def write_image(path, values, **attributes):
+    """Write values (h, w, n) in the format of the suffix. An attribute is a value, or a
+    type and a value.
+    """
+    spec = OpenImageIO.ImageSpec(
+        values.shape[1], values.shape[0], values.shape[2], str(values.dtype)
+    )
+    for name, value in attributes.items():
+        spec.attribute(name, *value) if isinstance(value, tuple) else spec.attribute(
+            name, value
+        )
+    image = OpenImageIO.ImageOutput.create(str(path))
+    assert image.open(str(path), spec)
+    assert image.write_image(values)
+    image.close()
+    return path
+
+
+def planes(rgb):
+    return {
+        letter: np.ascontiguousarray(rgb[..., place])
+        for place, letter in enumerate("RGB")
+    }
+
+
+def small_tiles():
+    """Describe tiles of 16 × 16 pixels."""
+    found = OpenEXR.TileDescription()
+    found.xSize = found.ySize = 16
+    return found
+
+
+@pytest.fixture(scope="session")
+def spectral(small_cube):
+    """Uplifter for nine wavelengths, as many as coefficients, so that both share one
+    compilation.
+    """
+    return texture.prepare(
+        small_cube, texture.Spectrum(WAVELENGTHS), depth="float", threads=1
+    )
+
+
+@pytest.fixture(scope="session")
+def colours():
+    """Linear RGB (20, 30, 3) in [0, 1], float32, with the corners of the RGB cube."""
+    rgb = np.random.default_rng(0).random((20, 30, 3)).astype(np.float32)
+    rgb[0, :8] = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1]), axis=-1).reshape(8, 3)
+    return rgb

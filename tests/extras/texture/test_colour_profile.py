@@ -1,0 +1,251 @@
+"""Colour spaces that image files state or the caller names, and the conversion of
+colours to the cube's.
+"""
+
+import struct
+import zlib
+
+import colour
+import numpy as np
+import pytest
+from PIL import Image, ImageCms
+
+from tests.extras.texture.conftest import WAVELENGTHS, planes, read_channels, write_exr
+from tests.helpers import raises
+from uplift.colorimetry.gamut import SRGB, conversion
+from uplift.colorimetry.spaces import look_up_space, primaries_of
+from uplift.common.errors import OptionError
+from uplift.extras import texture
+from uplift.pipeline.build import build
+
+GAMMA = struct.pack(">4sIIHxx", b"curv", 0, 1, round(2.2 * 256))
+LINEAR = struct.pack(">4sIIHxx", b"curv", 0, 1, 256)
+SRGB_1024 = (
+    (65535 * colour.models.eotf_sRGB(np.linspace(0, 1, 1024))).round().astype(int)
+)
+SRGB_TABLE = struct.pack(">4sII1024H", b"curv", 0, 1024, *SRGB_1024)
+
+
+def d50(space):
+    """Return the matrix from linear RGB of a colour-science space to XYZ, adapted to
+    D50.
+    """
+    found = colour.RGB_COLOURSPACES[space]
+    white = colour.xy_to_XYZ(found.whitepoint)
+    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(
+        white, [0.9642, 1, 0.8249], transform="Bradford"
+    )
+    return adapt @ colour.normalised_primary_matrix(found.primaries, found.whitepoint)
+
+
+def by_matrix(space, curve):
+    """Build a display profile of three colorants and a tone curve."""
+    tags = {
+        name: struct.pack(
+            ">4sI3i", b"XYZ ", 0, *(round(65536 * value) for value in column)
+        )
+        for name, column in zip((b"rXYZ", b"gXYZ", b"bXYZ"), d50(space).T, strict=True)
+    }
+    return icc(space, tags | dict.fromkeys((b"rTRC", b"gTRC", b"bTRC"), curve))
+
+
+def icc(space, tags):
+    text = space.encode("utf-16-be")
+    tags = {
+        b"desc": struct.pack(">4sIII4sII", b"mluc", 0, 1, 12, b"enUS", len(text), 28)
+        + text,
+        **tags,
+    }
+    start = 132 + 12 * len(tags)
+    table = b""
+    body = b""
+    for name, tag in tags.items():
+        table += struct.pack(">4sII", name, start + len(body), len(tag))
+        body += tag + b"\0" * (-len(tag) % 4)
+    size = start + len(body)
+    head = struct.pack(
+        ">I4sI4s4s4s12x4s",
+        size,
+        b"lcms",
+        0x04400000,
+        b"mntr",
+        b"RGB ",
+        b"XYZ ",
+        b"acsp",
+    )
+    return head.ljust(128, b"\0") + struct.pack(">I", len(tags)) + table + body
+
+
+def save(path, statement, codes=128):
+    """Save an image with a profile, or with code points of a PNG file."""
+    Image.fromarray(np.full((3, 4, 3), codes, np.uint8)).save(
+        path, icc_profile=statement if isinstance(statement, bytes) else None
+    )
+    if isinstance(statement, tuple):
+        data = path.read_bytes()
+        chunk = b"cICP" + bytes([*statement, 0, 1])
+        path.write_bytes(
+            data[:33]
+            + struct.pack(">I", 4)
+            + chunk
+            + struct.pack(">I", zlib.crc32(chunk))
+            + data[33:]
+        )
+    return path
+
+
+def convert(spectral, path):
+    """Convert an image; return linear RGB of its first pixel, the spaces converted
+    from, and the codes of warnings.
+    """
+    done = texture.convert(spectral, path, path.with_name("out.exr"), force=True)
+    rgb = read_channels(done.target, "RGB")[0, 0]
+    return rgb, done.spaces, tuple(warning.code for warning in done.warnings)
+
+
+SRGB_PROFILES = {
+    "by lcms": ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes(),
+    "a table": by_matrix("sRGB", SRGB_TABLE),
+}
+CODES = np.array([120, 128, 110])
+
+
+@pytest.mark.parametrize("data", SRGB_PROFILES.values(), ids=SRGB_PROFILES)
+def test_srgb_profiles_change_nothing(data, spectral, tmp_path):
+    plain, *_ = convert(spectral, save(tmp_path / "b.png", None))
+    rgb, spaces, codes = convert(spectral, save(tmp_path / "a.png", data))
+    assert (spaces, codes) == (("sRGB",), ())
+    np.testing.assert_array_equal(rgb, plain)
+
+
+P3 = "Display P3"
+ADOBE = "Adobe RGB (1998)"
+BT2020 = "ITU-R BT.2020"
+
+
+@pytest.mark.parametrize(
+    ("suffix", "statement", "space", "curve"),
+    [
+        ("png", by_matrix(P3, SRGB_TABLE), P3, colour.models.eotf_sRGB),
+        (
+            "tif",
+            by_matrix(ADOBE, GAMMA),
+            ADOBE,
+            lambda codes: codes ** (round(2.2 * 256) / 256),
+        ),
+        ("jpg", by_matrix("sRGB", LINEAR), "sRGB", lambda codes: codes),
+        ("png", (12, 13), P3, colour.models.eotf_sRGB),
+        ("png", (9, 14), BT2020, colour.models.oetf_inverse_BT2020),
+        ("png", (1, 4), "sRGB", lambda codes: codes**2.2),
+    ],
+)
+def test_colours_of_profiles_and_code_points_are_converted(
+    suffix, statement, space, curve, spectral, tmp_path
+):
+    path = save(tmp_path / f"a.{suffix}", statement, CODES)
+    name = space
+    if isinstance(statement, tuple):
+        name = f"CICP {statement[0]}, {statement[1]}"
+    rgb, spaces, codes = convert(spectral, path)
+    given = np.asarray(Image.open(path))[0, 0] / 255
+    expected = conversion(primaries_of(look_up_space(space)), SRGB) @ curve(given)
+    assert (spaces, codes) == ((name,), ())
+    np.testing.assert_allclose(
+        rgb, expected, rtol=0, atol=1e-3 if statement == (9, 14) else 2e-4
+    )
+
+
+@pytest.mark.parametrize(
+    ("suffix", "statement"),
+    [
+        ("png", by_matrix("sRGB", b"mft2 and so on")),
+        (
+            "jpg",
+            by_matrix("sRGB", GAMMA)[:300],
+        ),  # PNG files lose damaged profiles when they are read
+        ("tif", b"no profile"),
+        ("png", (1, 18)),
+    ],
+)
+def test_unusable_statements_trigger_a_warning(suffix, statement, spectral, tmp_path):
+    path = save(tmp_path / f"a.{suffix}", statement)
+    assert convert(spectral, path)[1:] == (("sRGB",), ("colour-space-assumed",))
+
+
+def exr(path, rgb, **header):
+    return write_exr(
+        path, planes(np.broadcast_to(np.asarray(rgb, np.float32), (3, 4, 3))), **header
+    )
+
+
+ACES = colour.RGB_COLOURSPACES["ACEScg"]
+AP1 = tuple(float(number) for number in (*ACES.primaries.ravel(), *ACES.whitepoint))
+INTEROP = {"colorInteropID": "lin_ap1_scene"}
+OTHER = {"colorInteropID": "lin_rec2020_scene"}
+
+
+@pytest.mark.parametrize(
+    ("header", "name"),
+    [
+        (INTEROP, None),
+        ({"chromaticities": AP1}, None),
+        ({**INTEROP, "chromaticities": AP1}, None),
+        ({"colorInteropID": "unknown", "chromaticities": AP1}, None),
+        *(
+            (OTHER, name)
+            for name in ("AP1", "ACEScg", "lin_ap1_scene", ",".join(map(str, AP1)))
+        ),
+    ],
+)
+def test_spaces_of_openexr_are_converted_and_the_caller_overrides_them(
+    header, name, spectral, small_cube, tmp_path
+):
+    named = (
+        texture.prepare(small_cube, depth="float", space=name, threads=1)
+        if name
+        else spectral
+    )
+    rgb, spaces, codes = convert(
+        named, exr(tmp_path / "a.exr", [0.3, 0.4, 0.2], **header)
+    )
+    expected = conversion(primaries_of(look_up_space("ACEScg")), SRGB) @ [0.3, 0.4, 0.2]
+    assert (len(spaces), codes) == (1, ())
+    np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-5)
+
+
+def test_encoded_spaces_of_opencolorio_decode_floats(small_cube, tmp_path):
+    named = texture.prepare(
+        small_cube, depth="float", space="sRGB - Texture", threads=1
+    )
+    rgb, spaces, _ = convert(named, exr(tmp_path / "a.exr", [0.5, 0.6, 0.4]))
+    assert spaces == ("sRGB Encoded Rec.709 (sRGB)",)
+    np.testing.assert_allclose(
+        rgb, colour.models.eotf_sRGB(np.array([0.5, 0.6, 0.4])), rtol=0, atol=2e-5
+    )
+    codes, *_ = convert(named, save(tmp_path / "b.png", None, CODES))
+    np.testing.assert_allclose(
+        codes, colour.models.eotf_sRGB(CODES / 255), rtol=0, atol=2e-5
+    )
+    linear = texture.prepare(
+        small_cube, encoding="linear", space="sRGB - Texture", threads=1
+    )
+    with raises(OptionError):
+        convert(linear, tmp_path / "a.exr")
+
+
+def test_images_without_a_statement_are_srgb_codes_or_floats_of_the_cube(tmp_path):
+    wide = texture.prepare(
+        build(dim=5, space="AP1"),
+        texture.Spectrum(WAVELENGTHS),
+        depth="float",
+        threads=1,
+    )
+    rgb, spaces, codes = convert(wide, save(tmp_path / "a.png", None, CODES))
+    expected = conversion(
+        SRGB, primaries_of(look_up_space("ACEScg"))
+    ) @ colour.models.eotf_sRGB(CODES / 255)
+    assert (spaces, codes) == (("sRGB",), ("colour-space-assumed",))
+    np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-5)
+    rgb, spaces, codes = convert(wide, exr(tmp_path / "b.exr", [0.3, 0.4, 0.2]))
+    assert (spaces, codes) == (("linear ACEScg",), ("colour-space-assumed",))
+    np.testing.assert_allclose(rgb, [0.3, 0.4, 0.2], rtol=0, atol=1e-7)

@@ -1,0 +1,215 @@
+"""Lamps: spectral powers of colour-science, and from the formats of atlas files."""
+
+import os
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+from uplift.atlas.atlas import Atlas, Entry, merge, skipped_warning
+from uplift.atlas.document import Document, SourceLocation, truncate
+from uplift.atlas.formats import read_any
+from uplift.atlas.measurements import Measurements, to_atlas
+from uplift.atlas.samples import is_missing
+from uplift.atlas.sources import find_atlas_file, read_named
+from uplift.colorimetry import tables
+from uplift.colorimetry.lights import Illuminant, Lamp
+from uplift.colorimetry.observer import (
+    DEFAULT_OBSERVER,
+    END,
+    START,
+    STEP,
+    matching_functions,
+)
+from uplift.colorimetry.spectra_json import POWER, is_json, read_spectra
+from uplift.common.arrays import Array, StrPath
+from uplift.common.errors import AtlasError, UnknownNameError, UpliftError, unknown_name
+from uplift.common.text import listed, printable
+from uplift.extras.emission.discs import Lamps
+
+VISIBLE = (400.0, 700.0)
+"""Range in nm that a lamp must cover."""
+SAME_LAMP = 1e-3
+"""Difference, as a fraction of the largest power, below which two lamps are one."""
+
+
+def known_lamps(
+    observer: str = DEFAULT_OBSERVER,
+    start: float = START,
+    end: float = END,
+    step: float = STEP,
+) -> Lamps:
+    """Return the lights of colour-science: CIE illuminants and measured lamps.
+
+    Lights that are measured on less than 400–700 nm, and lights with the spectrum of an
+    earlier one, are left out.
+    """
+    luminance = matching_functions(observer, start, end, step)[:, 1]
+    found: dict[str, Array] = {}
+    for kind in ("illuminant", "light source"):
+        for name in tables.names(kind):
+            nm = tables.look_up(kind, name).wavelengths
+            if nm[0] > VISIBLE[0] or nm[-1] < VISIBLE[1]:
+                continue
+            power = np.maximum(tables.samples(kind, name, start, end, step), 0.0)
+            power = power * (luminance.sum() / (power @ luminance))
+            if all(
+                np.abs(power - other).max() > SAME_LAMP * other.max()
+                for other in found.values()
+            ):
+                found[name] = power
+    return Lamps(tuple(found), np.array(list(found.values())))
+
+
+def read_lamps(*paths: StrPath) -> Atlas:
+    """Read files of spectral powers into one atlas, in the formats of
+    `uplift.atlas.read_atlas`.
+
+    Powers have no common scale: the largest one of each lamp is 1. `AtlasError` for
+    files of reflectances and lamps without power.
+    """
+    atlas = merge(map(_read, map(read_named, map(find_atlas_file, paths))))
+    if atlas.skipped:
+        warnings.warn(skipped_warning(atlas.skipped, code="lamp-skipped"), stacklevel=2)
+    return atlas
+
+
+def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
+    """Read a measured lamp, for functions that take the name of an illuminant.
+
+    Parameters
+    ----------
+    path : path-like
+        File of spectral powers, in a format of `uplift.read_atlas`: such as CSV or SPD
+        with lines of a wavelength in nm and a power, CGATS, IES TM-27 (.spdx) or a
+        spreadsheet, or JSON of rawtoaces. The powers have any one unit.
+    name : str, optional
+        Name of a lamp in a file of several.
+
+    Returns
+    -------
+    Lamp
+        The lamp, with the name of the file without its suffix, or its own name if the
+        file has several. Names that are those of illuminants are not shortened.
+        Negative powers, which are noise, are 0.
+
+    Raises
+    ------
+    AtlasError
+        The file cannot be read, states reflectances, or has several lamps and no
+        ``name`` is given.
+    UnknownNameError
+        No lamp of the file has the name.
+
+    Examples
+    --------
+    >>> import uplift
+    >>> lamp = uplift.read_lamp("lamp.csv")  # doctest: +SKIP
+    >>> cube.standard_error([0.8, 0.2, 0.1], lamp)  # doctest: +SKIP
+    """
+    lamps = _read_json(path) if is_json(path) else read_lamps(path)
+    location = SourceLocation(os.fspath(path))
+    file = printable(os.path.basename(path))
+    if name is not None and name not in lamps.names:
+        raise unknown_name(name, lamps.names, f"lamp of {file}")
+    if name is None and len(lamps) != 1:
+        names = listed([f"'{each}'" for each in lamps.names])
+        problem = f"a light is one lamp, got a file of {len(lamps)}: {names}"
+        raise location.error(
+            problem,
+            f"name one of them, as in '{file}:{lamps.names[0]}'" if len(lamps) else "",
+        )
+    entry = lamps[0] if name is None else lamps[name]
+    short = os.path.splitext(file)[0] if len(lamps) == 1 else entry.name
+    long = file if len(lamps) == 1 else f"{file}:{entry.name}"
+    return Lamp(
+        long if is_illuminant(short) else short,
+        tuple(entry.wavelengths.tolist()),
+        tuple(np.maximum(entry.values, 0.0).tolist()),
+    )
+
+
+def find_light(text: str) -> Illuminant:
+    """Return the name of an illuminant, or read the lamp of a file: ``lamp.csv``, or
+    ``lamps.csv:NAME`` of several.
+
+    A name takes precedence over a file. Raises the errors of `read_lamp`, and
+    `UnknownNameError` for a text that is neither.
+    """
+    file = lamp_file(text)
+    try:
+        tables.stated_name("illuminant", text)
+    except UnknownNameError:
+        if os.path.lexists(file):
+            return read_lamp(file, text[len(file) + 1 :] if file != text else None)
+        raise
+    return text
+
+
+def lamp_file(text: str) -> str:
+    """Return the file of ``lamp.csv``, or of ``lamps.csv:NAME``, if there is one."""
+    file = text.rpartition(":")[0]
+    return file if not os.path.lexists(text) and os.path.isfile(file) else text
+
+
+def _read_json(path: StrPath) -> Atlas:
+    """Read the lamp of a file of rawtoaces."""
+    spectra = read_spectra(path, POWER, AtlasError)
+    powers = spectra.values[:, 0]
+    stem = os.path.splitext(os.path.basename(path))[0]
+    if not powers.max(initial=0) > 0:
+        raise SourceLocation(os.fspath(path)).error(
+            "a lamp must have power, got none above 0", "name another file"
+        )
+    return Atlas(
+        (Entry(stem, spectra.wavelengths, powers / powers.max(), path=os.fspath(path)),)
+    )
+
+
+def is_illuminant(name: str) -> bool:
+    """Whether an illuminant has the name."""
+    try:
+        tables.stated_name("illuminant", name)
+    except UpliftError:
+        return False
+    return True
+
+
+def _read(document: Document) -> Atlas:
+    chosen, found = read_any(document)
+    if isinstance(found, Atlas):
+        raise _not_a_lamp("reflectance spectrum", document)
+    stated = [spectrum.quantity or found.quantity for spectrum in found.spectra]
+    of_material = [
+        quantity
+        for quantity in stated
+        if quantity is not None and not quantity.of_light
+    ]
+    if of_material and len(of_material) == len(stated):
+        raise _not_a_lamp(of_material[0].text, document)
+    return to_atlas(document, _scaled(document, found), chosen.name, "fraction")
+
+
+def _not_a_lamp(stated: str, document: Document) -> AtlasError:
+    problem = f"the file states '{truncate(stated)}', not the power of a lamp"
+    return document.location.error(
+        problem, "give spectral powers, such as a CSV table", code="not-a-lamp"
+    )
+
+
+def _scaled(document: Document, measurements: Measurements) -> Measurements:
+    """Divide each lamp by its largest power."""
+    spectra = []
+    for spectrum in measurements.spectra:
+        quantity = spectrum.quantity or measurements.quantity
+        if quantity is not None and not quantity.of_light:
+            continue
+        values = np.array(spectrum.values, dtype=float)
+        values[is_missing(values)] = np.nan
+        highest = float(np.nan_to_num(values).max(initial=0))
+        if highest <= 0:
+            raise document.location.at(spectrum.line, spectrum.name).error(
+                "a lamp must have power, got none above 0", "remove the lamp"
+            )
+        spectra.append(replace(spectrum, values=values / highest, quantity=None))
+    return replace(measurements, spectra=tuple(spectra), quantity=None)

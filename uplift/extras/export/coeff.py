@@ -1,0 +1,306 @@
+"""The table of rgb2spec: sigmoid spectra, for Mitsuba and colour-science, pbrt and
+LuisaRender.
+
+The first axis of the table is the largest component l. The second axis is its value,
+scale[k]. The last two are the other components as even fractions of it, l + 2 before l
++ 1 (modulo 3). A spectrum is S(c₀λ² + c₁λ + c₂) with λ in nm and S(t) = ½ + t / (2√(1 +
+t²)). Programs hold the same numbers in three layouts:
+
+- coeff, little-endian: "SPEC", u32 res, f32 scale[res], f32 data[3][res][res][res][3].
+  The sensor follows, which Mitsuba 3.9 and later require and other programs ignore: u32
+  count, f32 wavelength[count] as fractions of 360–830 nm, f32 rgb[3][count] of a
+  reflectance there, f32 rgb_to_xyz[3][3], f32 white_xyz[3].
+- pbrt, a source file in C++: ``NAMEToSpectrumTable_Res``, ``_Scale`` and ``_Data``.
+- luisa, a source file in C++: ``sRGBToSpectrumTable_Data``, with a fourth number, 0,
+  after the three.
+
+Three coefficients per spectrum determine a colour. The table therefore reproduces the
+cube's colours, but not the spectra of its atlas. Colours are those of the readers'
+tables, 360–830 nm at 5 nm.
+
+W. Jakob and J. Hanika, "A Low-Dimensional Function Space for Efficient Spectral
+Upsampling", CGF 38(2), 2019, and its reference implementation ``rgb2spec``.
+"""
+
+import struct
+from string import Template
+
+import numpy as np
+
+from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.observer import on_range
+from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.srgb import decode
+from uplift.common.arrays import Array, Floats, StrPath, Values, blocks
+from uplift.common.errors import OptionError
+from uplift.common.files import atomic_write
+from uplift.cube import CubeData
+from uplift.extras.export.program import read_source
+from uplift.extras.export.table_error import TableError, find_errors
+from uplift.lookup.interpolate import around
+from uplift.models import Sigmoid
+from uplift.models.arithmetic import blocked_matmul_columns
+from uplift.models.minimum_norm import solve_damped
+from uplift.models.sigmoid import evaluate_unscaled, unscaled
+
+MAGIC = b"SPEC"
+RES = 64
+"""Resolution of Mitsuba's own table."""
+MIN_RES = 2
+MAX_RES = 256
+DARK, DARK_COLOUR = 1e-3, 1e-4
+"""Up to this level, the difference ε of a component of linear RGB that weighs as much
+as the distance of a spectrum from grey; above, ε falls with the level. Very dark
+colours of high purity would else have reflectances near 1 where the eye hardly
+responds.
+"""
+FAINT = 1e-6
+"""Reflectance of black, and 1 minus that of white, whose multipliers are infinite."""
+FIRST_DAMPING = 1e-6
+MAX_DAMPING = 1e6
+MAX_STEPS = 200
+SMALL_GAIN = 1e-2
+SMALL_PART = 1e-4
+BLOCK = 1 << 10
+"""Points of a level that are fitted at a time."""
+START, END, STEP = 360.0, 830.0, 5.0
+"""Range and step in nm of rgb2spec, and of the programs that read its tables."""
+MODEL = Sigmoid(START, END)
+SYMBOLS = {
+    ("sRGB", "D65"): "sRGB",
+    ("P3-D65", "D65"): "DCI_P3",
+    ("Display P3", "D65"): "DCI_P3",
+    ("ITU-R BT.2020", "D65"): "REC2020",
+    ("ACES2065-1", "D60"): "ACES2065_1",
+}
+"""Names of the tables of pbrt by space and illuminant."""
+LAYOUTS = {
+    "coeff": {"", *SYMBOLS.values()},
+    "pbrt": set(SYMBOLS.values()),
+    "luisa": {"sRGB"},
+}
+"""Tables that a layout can hold; that of rgb2spec has those without a name as well."""
+
+
+def write_coeff(
+    data: CubeData,
+    path: StrPath,
+    *,
+    layout: str = "coeff",
+    res: int = RES,
+    force: bool = False,
+) -> TableError:
+    """Write a cube as a table of sigmoid spectra with ``res`` points along each axis, 2
+    to 256.
+
+    The layout is one of `LAYOUTS`; pbrt and LuisaRender are compiled for 64 points.
+    Readers interpret RGB in the cube's space under its illuminant; Mitsuba and
+    LuisaRender assume sRGB under D65. Returns the errors of colours that rgb2spec
+    interpolates, under the light of the cube. Raises `ColourError` for the cube of a
+    camera, `OptionError` for a space or an illuminant without a table in the program.
+    """
+    data.sensor.require_xyz()
+    if not MIN_RES <= res <= MAX_RES:
+        raise OptionError(
+            f"res must be from {MIN_RES} to {MAX_RES}, got {res}",
+            hint=f"{RES} is the default",
+        )
+    sensor = on_range(data.sensor, START, END, STEP)
+    name = SYMBOLS.get((sensor.space, sensor.illuminant), "")
+    if name not in LAYOUTS[layout]:
+        known = [
+            f"{space} under {light}"
+            for (space, light), symbol in SYMBOLS.items()
+            if symbol in LAYOUTS[layout]
+        ]
+        raise OptionError(
+            (
+                f"a {layout} table needs {' or '.join(known)}, got {sensor.space} "
+                "under "
+                f"{sensor.illuminant}"
+            ),
+            hint="build a cube of this space and illuminant",
+        )
+    with atomic_write(path, force=force) as temporary:
+        scale = _scale(res)
+        table = (
+            _fit(data, sensor, scale, _directions(res))
+            .reshape(res, 3, res, res, 3)
+            .swapaxes(0, 1)
+        )
+        content = (
+            _binary(sensor, scale, table)
+            if layout == "coeff"
+            else _source(layout, name, scale, table).encode()
+        )
+        temporary.write_bytes(content)
+    return _errors(data, sensor, scale, table)
+
+
+def _binary(sensor: Sensor, scale: Array, table: Floats) -> bytes:
+    at = (sensor.wavelengths - START) / (END - START)
+    forward = (at, sensor.matrix, sensor.rgb_to_xyz, sensor.xyz(np.ones(3)))
+    sizes = (struct.pack("<I", len(each)) for each in (scale, at))
+    numbers = (
+        b"".join(each.astype("<f4").tobytes() for each in part)
+        for part in ((scale, table), forward)
+    )
+    return MAGIC + b"".join(map(bytes.__add__, sizes, numbers))
+
+
+def _source(layout: str, name: str, scale: Array, table: Floats) -> str:
+    numbers = np.pad(table, [(0, 0)] * 4 + [(0, 1)]) if layout == "luisa" else table
+    words = {
+        "name": name,
+        "res": str(len(scale)),
+        "scale": _rows(scale),
+        "data": _rows(numbers),
+    }
+    return Template(read_source(f"{layout}.cpp")).substitute(words)
+
+
+def _rows(numbers: Values) -> str:
+    rows = numbers.reshape(-1, numbers.shape[-1]).tolist()
+    return "\n".join(",".join(f"{number:.9g}" for number in row) + "," for row in rows)
+
+
+def _scale(res: int) -> Array:
+    """Return values (res,) of the largest component, dense near 0 and 1, where spectra
+    change most.
+    """
+    x = np.linspace(0, 1, res)
+    for _ in range(2):
+        x = x * x * (3 - 2 * x)
+    return x
+
+
+def _directions(res: int) -> Array:
+    """Return linear RGB (3·res·res, 3) of the table's points whose largest component is
+    1.
+    """
+    share = np.linspace(0, 1, res)
+    second, first = np.meshgrid(share, share, indexing="ij")
+    shares = np.stack([np.ones_like(first), first, second], axis=-1)
+    return np.stack(
+        [np.roll(shares, largest, axis=-1) for largest in range(3)]
+    ).reshape(-1, 3)
+
+
+def _fit(data: CubeData, sensor: Sensor, scale: Array, directions: Array) -> Floats:
+    """Fit coefficients (res, n, 3) of the levels of directions (n, 3).
+
+    Levels are fitted upwards and downwards from a medium one. Each starts from the
+    multipliers of the previous level, so that neighbours are similar and can be
+    interpolated.
+    """
+    middle = len(scale) // 5
+    table = np.empty((len(scale), len(directions), 3), dtype=np.float32)
+    for rows in blocks(len(directions), BLOCK):
+        start = np.zeros((len(directions[rows]), 3))
+        for levels in (range(middle, len(scale)), range(middle - 1, -1, -1)):
+            multipliers = start
+            for level in levels:
+                target = _targets(data, scale[level] * directions[rows])
+                multipliers = _nearest_to_grey(
+                    sensor, multipliers, target, scale[level]
+                )
+                if level == middle:
+                    start = multipliers
+                table[level, rows] = unscaled(MODEL, multipliers)
+    return table
+
+
+def _nearest_to_grey(
+    sensor: Sensor, start: Array, target: Array, level: float
+) -> Array:
+    """Minimise |t − r(p)|² / ε² + |p − g|² / s² over p (n, 3) from a start, by damped
+    Gauss-Newton steps.
+
+    g are the multipliers of the grey of this level, and s their size, at least 1.
+    """
+    grey = MODEL.from_reflectance(np.clip(level, FAINT, 1 - FAINT)) * MODEL.constant()
+    size = np.maximum(np.abs(grey).max(), 1)
+    unit = DARK_COLOUR * DARK / max(level, DARK)
+    p = start.copy()
+    rows = np.arange(len(start))
+    damping = np.full(len(start), FIRST_DAMPING)
+    left, jacobian = _linearised(sensor, p, target, unit)
+    cost = (left**2).sum(axis=0) + (((grey - p) / size) ** 2).sum(axis=1)
+    for _ in range(MAX_STEPS):
+        # (JᵀJ + I / s² + μ tr I) Δ = Jᵀ (t − r) / ε + (g − p) / s²
+        products = (
+            np.einsum("abn,acn->bcn", jacobian, jacobian)
+            + np.eye(3)[:, :, None] / size**2
+        )
+        goal = np.einsum("abn,an->bn", jacobian, left) + (grey - p[rows]).T / size**2
+        lower = [products[row, : row + 1] for row in range(3)]
+        change = np.stack(solve_damped(lower, damping[rows], goal), axis=-1)
+        trial = p[rows] + change
+        after, there = _linearised(sensor, trial, target[rows], unit)
+        reached = (after**2).sum(axis=0) + (((grey - trial) / size) ** 2).sum(axis=1)
+        gain = cost[rows] - reached
+        better = gain > 0
+        p[rows[better]], cost[rows[better]] = trial[better], reached[better]
+        damping[rows] *= np.where(better, 1 / 4, 4)
+        left = np.where(better, after, left)
+        jacobian = np.where(better, there, jacobian)
+        going = ~better & (damping[rows] < MAX_DAMPING) | (
+            gain > SMALL_GAIN + SMALL_PART * reached
+        )
+        rows = rows[going]
+        left = left[:, going]
+        jacobian = jacobian[:, :, going]
+        if not rows.size:
+            break
+    return p
+
+
+def _linearised(
+    sensor: Sensor, p: Array, target: Array, unit: float
+) -> tuple[Array, Array]:
+    """Return (t − r(p)) / ε, (3, n), and the Jacobian of r / ε, (3, 3, n)."""
+    basis = MODEL.basis(sensor.wavelengths)
+    x = blocked_matmul_columns(basis, p.T)
+    products = (sensor.matrix[:, None, :] * basis.T).reshape(-1, len(basis))
+    jacobian = blocked_matmul_columns(products, MODEL.derivative(x)).reshape(3, 3, -1)
+    return (
+        target.T - blocked_matmul_columns(sensor.matrix, MODEL.to_reflectance(x))
+    ) / unit, jacobian / unit
+
+
+def _targets(data: CubeData, rgb: Array) -> Array:
+    """Return linear RGB (n, 3) of the spectra that the cube answers."""
+    return around(data, rgb).weighted_sum(data.points.rgb.astype(float), data.atlas.rgb)
+
+
+def _errors(data: CubeData, sensor: Sensor, scale: Array, table: Floats) -> TableError:
+    def error(codes: Array) -> Array:
+        rgb = decode(codes)
+        spectra = evaluate_unscaled(
+            _interpolated(scale, table, rgb), sensor.wavelengths
+        )
+        return delta_e_rgb(sensor, sensor.rgb(spectra), _targets(data, rgb))
+
+    return find_errors(error, data.atlas.rgb)
+
+
+def _interpolated(scale: Array, table: Floats, rgb: Array) -> Array:
+    """Return coefficients (n, 3) as rgb2spec interpolates them: linearly between the
+    eight points around a colour.
+    """
+    from scipy.interpolate import RegularGridInterpolator
+
+    largest = rgb.argmax(axis=1)
+    rows = np.arange(len(rgb))
+    even = np.linspace(0, 1, len(scale))
+    level = np.maximum(rgb[rows, largest], np.finfo(float).tiny)  # of black
+    places = np.stack(
+        [level, *(rgb[rows, (largest + step) % 3] / level for step in (2, 1))], axis=-1
+    )
+    found = np.zeros((len(rgb), 3))
+    for axis in range(3):
+        own = largest == axis
+        found[own] = RegularGridInterpolator((scale, even, even), table[axis])(
+            places[own]
+        )
+    return found

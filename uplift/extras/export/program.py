@@ -1,0 +1,290 @@
+"""Programs for renderers and shaders: one C-like source, preceded by macros of each
+language.
+
+In ``source/``, ``UP_READS`` and ``UP_TABLE`` are the parameter and the argument by
+which CUDA passes the table.
+"""
+
+import re
+import warnings
+import zlib
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from string import Template
+from typing import Any
+
+import numpy as np
+
+from uplift.common.arrays import StrPath
+from uplift.common.errors import OptionError, OutputError, UpliftWarning, unknown_name
+from uplift.common.files import atomic_write, check_outputs, write_text
+from uplift.common.version import version
+from uplift.cube import CubeData, digest
+from uplift.extras.export.outputs import output_files
+from uplift.extras.export.table import (
+    COLUMNS,
+    PROGRAM_MODES,
+    Table,
+    check_complete,
+    make_table,
+)
+
+LARGE = 16_000_000
+"""Size in bytes above which compilation of a header is slow."""
+LOOP = re.compile(
+    r"^(?P<indent> *)UP_UNROLL\n *for \(int (?P<name>\w+) = (?P<start>.+); \w+ < "
+    r"(?P<stop>.+); \+\+\w+\) "
+    r"(?P<body>\{\n(?:(?P=indent) .*\n)*(?P=indent)\}\n|[^{].*\n)",
+    re.MULTILINE,
+)
+"""A loop to be written out: its statement is on the same line, or in braces."""
+
+
+@dataclass(frozen=True)
+class Language:
+    """Suffix of programs, files of macros, suffix of the file of public functions, and
+    wavelengths of one call.
+
+    The table is, by ``forms``, the default first: in the program, a ``"header"``, or in
+    a ``"file"`` of numbers. ``vector`` is what types such as ``vec3`` begin with.
+    """
+
+    suffix: str
+    macros: tuple[str, ...]
+    calls: str
+    width: int = 4
+    forms: tuple[str, ...] = ("file",)
+    vector: str = ""
+
+
+LANGUAGES = {
+    "c": Language(".h", ("c.h", "host.c"), ".c", 16, ("header", "file")),
+    "cuda": Language(".cuh", ("cuda.cuh", "host.c"), ".cuh"),
+    "glsl": Language(".glsl", ("glsl.glsl", "shader.glsl"), ".glsl", vector="vec"),
+    "hlsl": Language(".hlsl", ("hlsl.hlsl", "shader.glsl"), ".glsl", vector="float"),
+}
+"""Languages of `write_program`."""
+
+
+def write_program(
+    data: CubeData,
+    path: StrPath,
+    *,
+    style: str = "c",
+    mode: str = "spectra",
+    form: str | None = None,
+    force: bool = False,
+) -> list[Path]:
+    """Write a cube as a program in C, CUDA, GLSL or HLSL that evaluates it in single
+    precision; return the files.
+
+    It begins with a list of its functions. Names in the program begin with the name of
+    the file, converted to an identifier. ``mode`` is what it interpolates, as in
+    `Cube.reflectance`: "spectra", with exact colours, or coefficients, "moments". The
+    table is by ``form`` in the program, a "header", the default of C; or in a "file"
+    with the same stem: float32 numbers, little-endian. A cube that was built for a
+    scene is an `OptionError` of the code ``sparse-cube``.
+    """
+    if style not in LANGUAGES:
+        raise unknown_name(style, LANGUAGES, "language")
+    if mode not in PROGRAM_MODES:
+        raise unknown_name(mode, PROGRAM_MODES, "mode")
+    check_complete(data, "a program")
+    path = Path(path)
+    form = check_form(style, form)
+    table = make_table(data, mode)
+    text = cube_program(data, table, style, mode, path.stem, form)
+    written = write_files(
+        text, table, path, form, per_line=table.constants["STRIDE"], force=force
+    )
+    size = path.stat().st_size
+    if size > LARGE:
+        problem = f"the header has {size / 1e6:.0f} MB and is slow to compile"
+        warnings.warn(
+            UpliftWarning(problem, path=path, hint="use a cube of smaller dim"),
+            stacklevel=2,
+        )
+    return written
+
+
+def cube_program(
+    data: CubeData, table: Table, style: str, mode: str, stem: str, form: str
+) -> str:
+    """Return the program of a cube, with ``${numbers}`` in place of the numbers of a
+    header.
+    """
+    sensor = data.sensor
+    words = {
+        "digest": digest(data),
+        "space": comment(sensor.space),
+        "illuminant": comment(sensor.illuminant),
+        "observer": comment(sensor.observer),
+        "entries": len(data.atlas.names),
+        "mode": mode,
+    }
+    return compose("cube", table, style, stem, form, words)
+
+
+def check_form(style: str, form: str | None) -> str:
+    """Return the form of the table, the default of the language if None; raise
+    `OptionError` if it has no such form.
+    """
+    forms = LANGUAGES[style].forms
+    if form is not None and form not in forms:
+        raise OptionError(
+            f"a program in {style} has no table of the form '{form}'",
+            hint=f"use {' or '.join(forms)}",
+        )
+    return form or forms[0]
+
+
+def compose(
+    kind: str, table: Table, style: str, stem: str, form: str, words: dict[str, Any]
+) -> str:
+    """Return the program of ``kind``, "cube" or "lights", with ``${numbers}`` in place
+    of the numbers of a header.
+
+    ``up_`` and ``UP_`` in the source become the name of the program.
+    """
+    language = LANGUAGES[style]
+    name = identifier(stem)
+    image = table.image()
+    text = read_source(f"{kind}.c")
+    text = text.replace(
+        "${macros}", "".join(read_source(each) for each in language.macros)
+    )
+    calls = read_source(f"{kind}_calls{language.calls}")
+    overview, _, calls = calls.partition(" */\n")
+    text = text.replace("${calls}", calls)
+    text = text.replace(
+        "${overview}", overview.removeprefix("/* ").replace("UP_VEC", language.vector)
+    )
+    text = text.replace("${table}", read_source(f"table_{form}.c"))
+    text = _unroll(text, {f"UP_{key}": value for key, value in table.constants.items()})
+    text = re.sub(r"\bup_", f"{name}_", text)
+    text = re.sub(r"\bUP_", f"{name.upper()}_", text)
+    constants = (
+        f"#define {name.upper()}_{key} {literal(value)}"
+        for key, value in table.constants.items()
+    )
+    shared = {
+        "version": version(),
+        "stem": comment(stem),
+        "width": language.width,
+        "constants": "\n".join(constants),
+        "columns": COLUMNS,
+        "rows": len(image),
+        "size": image.size,
+        "checksum": zlib.crc32(image.tobytes()),
+    }
+    return Template(text).safe_substitute(shared | words)
+
+
+def write_files(
+    text: str, table: Table, path: Path, form: str, *, per_line: int, force: bool
+) -> list[Path]:
+    """Write a program, and its table to a file of the same stem unless it is a header;
+    return the files.
+    """
+    files = output_files(path, form)
+    check_outputs(files, force=True)
+    image = table.image().tobytes()
+    if form == "file":
+        _check_table(files[1], image, path, force=force)
+        write_text(text, path, force=force)
+        if not _holds(files[1], image):
+            with atomic_write(files[1], force=True) as temporary:
+                temporary.write_bytes(image)
+        return files
+    rows = np.split(table.numbers, range(per_line, len(table.numbers), per_line))
+    lines = "".join(", ".join(map(literal, row.tolist())) + ",\n" for row in rows)
+    write_text(text.replace("${numbers}", lines), path, force=force)
+    return files
+
+
+def _holds(path: Path, content: bytes) -> bool:
+    """Whether a file exists and has this content."""
+    return (
+        path.exists()
+        and path.stat().st_size == len(content)
+        and path.read_bytes() == content
+    )
+
+
+def _check_table(table: Path, image: bytes, program: Path, *, force: bool) -> None:
+    """Check that a table may be written. Programs of one cube in several languages
+    share theirs.
+
+    Another table is an `OutputError`; with ``force`` it is replaced, with a warning if
+    other programs read it.
+    """
+    if not table.exists() or _holds(table, image):
+        return
+    others = (program.with_suffix(language.suffix) for language in LANGUAGES.values())
+    existing = [path for path in others if path != program and path.exists()]
+    readers = [
+        path.name for path in existing if table.name.encode() in path.read_bytes()
+    ]
+    if not force:
+        owner = f"of {' and '.join(readers)}" if readers else "of another program"
+        problem = f"exists already with other numbers, {owner}"
+        hint = "pass force=True to replace it, or choose another name"
+        raise OutputError(problem, path=table, code="file-exists", hint=hint)
+    if readers:
+        problem = f"replaced; {' and '.join(readers)} can no longer read it"
+        warnings.warn(
+            UpliftWarning(problem, path=table, hint="export them again"), stacklevel=4
+        )
+
+
+def identifier(stem: str) -> str:
+    """Convert a file name to an identifier: 'macbeth-32' → 'macbeth_32', '32' →
+    'cube_32'.
+    """
+    name = re.sub(r"\W+|__+", "_", stem, flags=re.ASCII)
+    return name if re.match(r"[A-Za-z]", name) else f"cube_{name}".rstrip("_")
+
+
+def comment(text: str) -> str:
+    """Return text that cannot end a comment; names in a cube file are arbitrary."""
+    return (
+        text.encode("ascii", "replace")
+        .decode()
+        .replace("*", "")
+        .replace("\n", " ")
+        .replace("$", "")
+    )
+
+
+def read_source(name: str) -> str:
+    return (files("uplift.extras.export") / "source" / name).read_text(encoding="ascii")
+
+
+def _unroll(text: str, constants: dict[str, Any]) -> str:
+    """Write out loops marked by ``UP_UNROLL``, outer ones first: few compilers of
+    shaders unroll, none all loops.
+    """
+
+    def copies(loop: re.Match[str]) -> str:
+        bounds = (
+            eval(each.replace("/", "//"), {}, constants)
+            for each in (loop["start"], loop["stop"])
+        )
+        numbered = (
+            re.sub(rf"\b{loop['name']}\b", str(value), loop["body"])
+            for value in range(*bounds)
+        )
+        return _unroll(
+            "".join(f"{loop['indent']}{body}" for body in numbered), constants
+        )
+
+    return LOOP.sub(copies, text)
+
+
+def literal(value: float) -> str:
+    """Return an integer, or a number of single precision in nine digits."""
+    if isinstance(value, int):
+        return str(value)
+    text = f"{value:.9g}"
+    return f"{text}f" if {".", "e"} & set(text) else f"{text}.0f"

@@ -1,0 +1,396 @@
+"""Mixtures by kind of component, and coats of paint or dye on any ground: a uniform
+colour or the pixels of an image.
+
+All reflectances include the surface. A coat of thickness 0 therefore leaves its ground
+unchanged. Grounds darker than the surface alone are treated as black beneath it.
+
+Dyes absorb and do not scatter (Fishkin 1983, eq. 9.3–9.7). Of the light that enters, 1
+− ρ, the i-th pass contributes (1 − ρ) (1 − ρ_i) (T² R_g)^i ρ_i^(i−1), so that a dye on
+a ground R_g in optical contact has
+
+    R = ρ + (1 − ρ) (1 − ρ_i) T² R_g / (1 − ρ_i T² R_g),
+
+which is Saunderson's correction (eq. 10.10) of T² R_g, or Kubelka and Munk's result
+without scattering. The thesis prints, with ρ_i = ρ, (1 − ρ)² / (ρ (1 − ρ T² R_g)): its
+sum starts at 1, but the term i = 0 was not subtracted.
+"""
+
+import json
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from uplift.colorimetry.gamut import check_method, map_to_gamut
+from uplift.colorimetry.sensor import SLACK
+from uplift.colorimetry.spaces import ImageSpace
+from uplift.common.arrays import Array, Floats
+from uplift.common.errors import OptionError, UpliftWarning
+from uplift.common.text import pluralise
+from uplift.extras.images import exr
+from uplift.extras.paint import optics, pigments
+from uplift.extras.paint.optics import Layer, Surface
+from uplift.extras.paint.pigments import Flux, Pigment, Scattering
+from uplift.extras.texture.colours import Counts, check_encoding
+from uplift.extras.texture.uplifter import Converter
+from uplift.lookup import Cube
+from uplift.lookup.blocks import blockwise
+
+COATS = ("pigment", "dye", "duntley")
+KINDS = (*COATS, "filter", "light")
+# smallest transmittance that the absorption of a dye is derived from; it diverges at 0
+DARKEST = 1e-6
+MAX_THICKNESS = 1e9  # as it is multiplied with other numbers
+
+
+@dataclass(frozen=True, eq=False)
+class Coat:
+    """A layer of paint or dye beneath the surface of its vehicle."""
+
+    layer: Layer
+    surface: Surface = optics.NO_SURFACE
+
+    def over(self, ground: ArrayLike) -> Array:
+        """Return the reflectance (..., N) on a ground (..., N), both
+        surface included.
+        """
+        beneath = _beneath(self.surface, ground)
+        return self.surface.apply(
+            self.layer.over(beneath), self.layer.diffuse.over(beneath)
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Ingredients:
+    """Spectra of the components of a mixture.
+
+    Parameters
+    ----------
+    spectra : ndarray of shape (n, N)
+        Reflectance of opaque pigments, reflectance of dyes one unit thick on white,
+        transmittance of filters, or power of lights. Of paints by Duntley's theory
+        their constants, (n, 6, N).
+    on_black : tuple of ndarray of shape (N,) or None, one for each component, optional
+        Reflectance on black of the pigments that ``spectra`` gives on white, one unit
+        thick. None for the others.
+    """
+
+    spectra: Array
+    on_black: tuple[Array | None, ...] = ()
+
+    @property
+    def measured_on_black(self) -> list[Array]:
+        """The spectra (N,) on black that are given."""
+        return [one for one in self.on_black if one is not None]
+
+
+@dataclass(frozen=True)
+class Medium:
+    """Properties of a coat.
+
+    Parameters
+    ----------
+    thickness : float, optional
+        Thickness in units, by default opaque for pigments and 1 for dyes and Duntley's
+        paints.
+    surface : Surface
+        Surface of the vehicle.
+    scattering : callable, optional
+        S of pigments that are given by one colour, which need it; see `dispersive`.
+    plate : bool
+        Whether dyes are in a free plate with a surface on both sides, and the ground is
+        behind a gap of air.
+    """
+
+    thickness: float | None = None
+    surface: Surface = optics.NO_SURFACE
+    scattering: Scattering | None = None
+    plate: bool = False
+
+
+def make_coat(
+    kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium
+) -> Coat:
+    """Make a coat of pigments or dyes.
+
+    Parameters
+    ----------
+    kind : {"pigment", "dye", "duntley"}
+        Kind of the components.
+    ingredients : Ingredients
+        The n components. A warning states how many are darker than the surface alone at
+        some wavelengths.
+    parts : array_like of shape (..., n)
+        Amounts of the components.
+    medium : Medium
+        Thickness, surface and scattering.
+
+    Returns
+    -------
+    Coat
+        The coat; ``coat.over(ground)`` is its reflectance on a ground.
+
+    Raises
+    ------
+    OptionError
+        An argument is invalid, a dye has a colour on black, a plate has no dye, or the
+        scattering of a pigment is missing.
+    ColourError
+        No pigment has the given reflectances on white and on black.
+    """
+    if kind not in COATS:
+        raise OptionError(
+            f"a coat cannot be of kind '{kind}'", hint=f"use {' or '.join(COATS)}"
+        )
+    if medium.thickness is not None and not 0 <= medium.thickness <= MAX_THICKNESS:
+        problem = f"thickness must be in [0, {MAX_THICKNESS:g}], got {medium.thickness}"
+        raise OptionError(problem, hint="1 is the unit")
+    if medium.plate and kind != "dye":
+        raise OptionError(
+            f"a plate must be of kind 'dye', got '{kind}'",
+            hint="what scatters has no free plate",
+        )
+    thickness = 1.0 if medium.thickness is None else medium.thickness
+    if kind == "duntley":
+        constants = ingredients.spectra
+        mixed = optics.weighted_sum(
+            constants.reshape(len(constants), -1), optics.as_shares(parts)
+        )
+        fluxes = np.moveaxis(mixed.reshape(*mixed.shape[:-1], 6, -1), -2, 0)
+        return Coat(
+            pigments.duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), thickness),
+            medium.surface,
+        )
+    surface = medium.surface
+    spectra = [*ingredients.spectra, *ingredients.measured_on_black]
+    dark = sum(bool((surface.remove(one) < -SLACK).any()) for one in spectra)
+    if dark:
+        problem = (
+            f"{dark} of {pluralise(len(spectra), 'colour')} partly darker than the "
+            "surface alone: black there"
+        )
+        warnings.warn(UpliftWarning(problem), stacklevel=2)
+    if kind == "dye":
+        if ingredients.measured_on_black:
+            raise OptionError(
+                "dyes must not have a colour on black",
+                hint="pass their colour on white only",
+            )
+        absorption = optics.weighted_sum(
+            dye_absorption(ingredients.spectra, surface), optics.as_shares(parts)
+        )
+        transmittance = dye_transmittance(absorption, thickness)
+        if medium.plate:
+            return Coat(optics.plate(transmittance, surface.outside))
+        return Coat(Layer(np.zeros_like(transmittance), transmittance), surface)
+    on_black = ingredients.on_black or (None,) * len(ingredients.spectra)
+    paints = [
+        _pigment(*pair, medium)
+        for pair in zip(ingredients.spectra, on_black, strict=True)
+    ]
+    stacked = Pigment(
+        np.stack([one.absorption for one in paints]),
+        np.stack([one.scattering for one in paints]),
+    )
+    mixture = stacked.mix(parts)
+    if medium.thickness is not None:
+        return Coat(mixture.layer(medium.thickness), surface)
+    reflectance = mixture.opaque_reflectance()
+    return Coat(Layer(reflectance, np.zeros_like(reflectance)), surface)
+
+
+def mix(
+    kind: str,
+    ingredients: Ingredients,
+    parts: ArrayLike,
+    medium: Medium,
+    ground: ArrayLike,
+) -> Array:
+    """Mix components.
+
+    Parameters
+    ----------
+    kind : {"pigment", "dye", "duntley", "filter", "light"}
+        Kind of the components.
+    ingredients : Ingredients
+        The n components.
+    parts : array_like of shape (..., n)
+        Amounts; for filters their thickness.
+    medium : Medium
+        Thickness, surface and scattering of pigments and dyes.
+    ground : array_like of shape (N,)
+        Reflectance of the ground below pigments and dyes.
+
+    Returns
+    -------
+    ndarray of shape (..., N)
+        Reflectance, transmittance of filters or power of lights.
+
+    Raises
+    ------
+    OptionError, ColourError
+        As `make_coat`, or the medium does not apply to the kind.
+    """
+    if kind in COATS:
+        return make_coat(kind, ingredients, parts, medium).over(ground)
+    if kind not in KINDS:
+        raise OptionError(
+            f"unknown kind of mixture '{kind}'", hint=f"use one of {', '.join(KINDS)}"
+        )
+    usual = (None, optics.NO_SURFACE, False)
+    if (
+        medium.thickness,
+        medium.surface,
+        medium.plate,
+    ) != usual or ingredients.measured_on_black:
+        problem = (
+            f"{kind}s must not have a thickness, a surface, a plate or a colour on "
+            "black"
+        )
+        raise OptionError(
+            problem, hint="leave them out; parts of filters are their thickness"
+        )
+    return (optics.stack_filters if kind == "filter" else optics.add_lights)(
+        ingredients.spectra, parts
+    )
+
+
+def ramp(parts: ArrayLike, steps: int) -> Array:
+    """Return proportions (steps, n) from the first component alone, through the others,
+    to the last alone.
+
+    ``parts`` (n,) are the amounts at which each component stands alone. The shape is
+    (0, 1) for a single component.
+
+    >>> ramp([2, 1], 3).tolist()
+    [[2.0, 0.0], [1.0, 0.5], [0.0, 1.0]]
+    """
+    if steps < 2:
+        raise OptionError(
+            f"a ramp must have at least 2 steps, got {steps}", hint="use 2 or more"
+        )
+    ends = np.diag(optics.as_amounts(parts))
+    if len(ends) < 2:
+        return np.empty((0, len(ends)))
+    positions = np.linspace(0, len(ends) - 1, steps)
+    stops = np.arange(len(ends))
+    return np.stack([np.interp(positions, stops, column) for column in ends.T], axis=-1)
+
+
+def dye_transmittance(absorption: ArrayLike, thickness: float) -> Array:
+    """Return T = exp(−K X) of absorption (..., N) (Beer, eq. 9.5). A concentration
+    multiplies the thickness.
+    """
+    return np.exp(-thickness * np.asarray(absorption, dtype=float))
+
+
+def dye_absorption(
+    reflectance: ArrayLike, surface: Surface = optics.NO_SURFACE
+) -> Array:
+    """Return the absorption (..., N) of a dye, one unit thick, from its reflectance on
+    perfect white (eq. 9.7, 9.5).
+    """
+    transmittance = np.sqrt(_beneath(surface, reflectance))
+    return -np.log(np.clip(transmittance, DARKEST, 1))
+
+
+def _pigment(spectrum: Array, on_black: Array | None, medium: Medium) -> Pigment:
+    internal = _beneath(medium.surface, spectrum)
+    if on_black is not None:
+        return pigments.from_black_and_white(
+            _beneath(medium.surface, on_black), internal
+        )
+    if medium.scattering is None:
+        problem = "one colour does not determine the scattering of a pigment"
+        raise OptionError(
+            problem, hint="set the scattering of the medium, or give a colour on black"
+        )
+    return pigments.from_opaque(internal, medium.scattering)
+
+
+def _beneath(surface: Surface, reflectance: ArrayLike) -> Array:
+    return np.clip(surface.remove(reflectance), 0, 1)
+
+
+@dataclass(frozen=True, eq=False)
+class Overpainter(Converter):
+    """Converter that lays a coat over images, made by `overpainter`. The gamut is
+    mapped before and after painting.
+    """
+
+    coat: Coat  # at the wavelengths of the sensor
+    reflectance: Callable[
+        [Floats], Floats
+    ]  # from linear RGB (..., 3) to reflectances (..., N)
+    threads: int  # that share a band
+
+    def paint(self, rgb: Floats) -> Floats:
+        """Lay the coat over linear RGB (..., 3) in [0, 1]; the result may
+        be outside.
+        """
+        return blockwise(
+            self._paint_block, rgb.astype(float), 3, np.float32, self.threads
+        )
+
+    def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
+        """Lay the coat over a block of colours (..., 3) and map the result to the
+        gamut, counting pixels outside.
+        """
+        mapped = map_to_gamut(self.paint(rgb), self.sensor, self.out_of_gamut)
+        return (mapped.rgb,), Counts(painted_outside=mapped.count)
+
+    def _paint_block(self, rgb: Array) -> Array:
+        return self.sensor.rgb(self.coat.over(self.reflectance(rgb.astype(np.float32))))
+
+
+def overpainter(
+    cube: Cube,
+    coat: Coat,
+    recipe: Mapping[str, Any] | None = None,
+    *,
+    encoding: str = "auto",
+    out_of_gamut: str = "scale",
+    threads: int = 2,
+    space: ImageSpace | None = None,
+) -> Overpainter:
+    """Prepare to paint over images.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube that uplifts.
+    coat : Coat
+        The coat, at the wavelengths of the cube's sensor.
+    recipe : mapping, optional
+        Description of the coat in JSON values, written to the header.
+    encoding : {"auto", "linear", "encoded"}
+        Interpretation of the numbers in images; ``auto`` takes integers as encoded,
+        floats as linear.
+    out_of_gamut : str
+        Gamut mapping for pixels outside [0, 1], one of
+        `uplift.colorimetry.gamut.METHODS`.
+    threads : int
+        Threads that share a band.
+    space : ImageSpace, optional
+        RGB space of images, by default the one that each file states.
+
+    Returns
+    -------
+    Overpainter
+        The converter to pass to `uplift.extras.texture.convert`.
+    """
+    from uplift.lookup import bulk
+
+    check_encoding(encoding)
+    check_method(out_of_gamut)
+    sensor = cube.data.sensor
+    header = {
+        "chromaticities": exr.chromaticities(sensor),
+        "uplift.mix": json.dumps(dict(recipe or {}), allow_nan=False),
+    }
+    sampler = bulk.spectra(cube, threads=1)
+    settings = (sensor, "float", encoding, out_of_gamut, (), header)
+    return Overpainter(*settings, coat, sampler, threads, space=space)

@@ -1,0 +1,338 @@
+"""Paints that absorb (K) and scatter (S) light, per unit thickness, by the theories of
+Kubelka and Munk and of Duntley.
+
+With γ = √(K (K + 2S)) a layer of thickness X has (Fishkin 1983, eq. 10.2)
+
+    T = γ / Δ,    R = S sinh γX / Δ,    Δ = (K + S) sinh γX + γ cosh γX.
+
+Mixtures average K and S (Duncan, eq. 10.7). Reflectances on two grounds determine both.
+The reflectance R of opaque paint determines K/S only (eq. 10.6, where Fishkin 1983
+prints 1 − R² for (1 − R)²), so S must be assumed: as R^p, where p = 0 is the
+single-constant theory, or as Y^¾ exp(h / 4), where Y is the luminance factor and h(λ)
+the mean of √(K/S) below λ less that above it, weighted by exp(−abs(λ − λ') / 40 nm).
+The refractive index of a pigment rises on the long-wave side of an absorption band
+(anomalous dispersion), and scattering grows with its difference from the binder's:
+yellow pigments scatter most in the green, blue ones little, and both together are
+green. docs/mixing.md compares them.
+
+Duntley's theory has eight constants, as collimated incident light and diffuse light
+within a layer differ: a fraction K' of the beam is absorbed, B' is scattered backward
+and F' forward; K, B and F are those of diffuse light (F has no effect), S' = B' + F'
+and S = B + F. With μ = K' + B' + F' and γ² = K (K + 2B), the beam e^−μx feeds two
+diffuse fluxes,
+
+    t' = F' e^−μx − (K + B) t + B s,    −s' = B' e^−μx − (K + B) s + B t,    t(0) = 0,
+    s(X) = 0.
+
+−Q' e^−μx and −P' e^−μx are a particular solution. The rest is Kubelka and Munk's layer
+(r, τ) with S = B, so that
+
+    R = Q' r + P' e^−μX τ − P',    T = Q' τ + P' e^−μX r − (Q' − 1) e^−μX,
+
+which is eq. 10.8 of Fishkin 1983. Where the denominator μ² − γ² of P' and Q' vanishes,
+the mean of both sides is taken. Particles that scatter in all directions alike leave
+two constants: K' = K / 2, B' = F' = S / 2 and B = F = S.
+
+P. Kubelka and F. Munk 1931; P. Kubelka, J. Opt. Soc. Am. 38, 1948; D. R. Duncan, Proc.
+Phys. Soc. 52, 1940; S. Q. Duntley, J. Opt. Soc. Am. 1942; C. F. Bohren & D. R. Huffman,
+*Absorption and Scattering of Light by Small Particles*, 1983, chapter 9.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from uplift.atlas import Atlas
+from uplift.atlas.document import read_document
+from uplift.atlas.formats import read_any
+from uplift.colorimetry import Sensor
+from uplift.common.arrays import Array, StrPath
+from uplift.common.errors import ColourError
+from uplift.extras.paint.optics import (
+    TINY,
+    DirectedLayer,
+    Layer,
+    as_shares,
+    weighted_sum,
+)
+
+DARKEST = 1e-4  # smallest reflectance that K and S are derived from; K diverges at 0
+# contradiction between measurements on two grounds that is accepted as rounding
+SLACK = 1e-3
+MIN_TRANSMITTANCE = 1e-3  # smallest transmittance at which K and S can be separated
+REACH = 40.0  # distance in nm at which the weight of absorption in h falls to 1/e
+# Smallest reflectance that h is computed from; √(K/S) diverges at 0, where the colour
+# no longer determines it.
+DARKEST_DISPERSED = 0.01
+# Relative difference of μ and γ below which the mean of both sides is taken; its error
+# is the square of this.
+MIN_RELATIVE_GAP = 1e-5
+CONSTANTS = (
+    "K'",
+    "B'",
+    "F'",
+    "K",
+    "B",
+    "F",
+)  # of Duntley's eight, those that the others are sums of
+
+# From reflectances (..., N) in (0, 1] to S (..., N), greater than 0, of which white has
+# 1.
+Scattering = Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class PowerOfReflectance:
+    """S = R^p."""
+
+    exponent: float
+
+    def __call__(self, reflectance: Array) -> Array:
+        return np.asarray(reflectance**self.exponent)
+
+
+SQUARE_ROOT = PowerOfReflectance(0.5)
+CONSTANT = PowerOfReflectance(0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Dispersive:
+    """S = Y^exponent exp(weight · h), made by `dispersive`."""
+
+    luminance: Array  # (N,) weights of Y, of sum 1
+    imbalance: (
+        Array  # (N, N) from √(K/S) to h; rows sum to 0, so that a grey paint has h = 0
+    )
+    exponent: float = 0.75
+    weight: float = 0.25
+
+    def __call__(self, reflectance: Array) -> Array:
+        R = np.maximum(reflectance, DARKEST_DISPERSED)
+        h = ((1 - R) / np.sqrt(2 * R)) @ self.imbalance.T
+        Y = (reflectance @ self.luminance)[..., None]
+        return np.asarray(Y**self.exponent * np.exp(self.weight * h))
+
+
+def dispersive(sensor: Sensor, further: ArrayLike = ()) -> Dispersive:
+    """Make the dispersive scattering of spectra at the wavelengths of a sensor.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        Y, for light of equal energy, and h are sums over its wavelengths.
+    further : array_like of shape (n,), optional
+        Wavelengths in nm of samples that follow those of the sensor and enter no sum;
+        beyond its range h is constant.
+
+    Returns
+    -------
+    Dispersive
+        The scattering of spectra (..., N + n).
+    """
+    inner = sensor.wavelengths
+    outer = np.concatenate(
+        [inner, np.clip(np.asarray(further, dtype=float), inner[0], inner[-1])]
+    )
+    distance = outer[:, None] - inner
+    weights = np.exp(-np.abs(distance) / REACH)
+    below = weights * (distance >= 0)
+    above = weights * (distance <= 0)
+    imbalance = np.zeros((len(outer), len(outer)))
+    imbalance[:, : len(inner)] = (
+        below / below.sum(axis=1)[:, None] - above / above.sum(axis=1)[:, None]
+    )
+    luminance = np.zeros(len(outer))
+    luminance[: len(inner)] = sensor.cmfs[:, 1] / sensor.cmfs[:, 1].sum()
+    return Dispersive(luminance, imbalance)
+
+
+@dataclass(frozen=True, eq=False)
+class Pigment:
+    """Absorption and scattering of paint, in Kubelka and Munk's theory."""
+
+    absorption: Array  # (..., N) K per unit thickness, at least 0
+    scattering: Array  # (..., N) S per unit thickness, at least 0
+
+    @property
+    def gamma(self) -> Array:
+        """γ = √(K (K + 2S)), shape (..., N)."""
+        return np.sqrt(self.absorption * (self.absorption + 2 * self.scattering))
+
+    def mix(self, parts: ArrayLike) -> "Pigment":
+        """Mix the pigments along the last axis but one by parts (..., n) (eq. 10.7)."""
+        weights = as_shares(parts)
+        return Pigment(
+            weighted_sum(self.absorption, weights),
+            weighted_sum(self.scattering, weights),
+        )
+
+    def opaque_reflectance(self) -> Array:
+        """Return the reflectance (..., N) of opaque paint, the limit X → ∞
+        (eq. 10.5).
+        """
+        K = self.absorption
+        S = self.scattering
+        return np.asarray(S / np.maximum(K + S + self.gamma, TINY))
+
+    def layer(self, thickness: ArrayLike) -> Layer:
+        """Return the optical properties of a layer of a thickness X (...) in units of
+        1/K and 1/S (eq. 10.2).
+
+        Numerators and denominators are divided by γ e^γX, which prevents overflow and
+        covers K → 0 and S → 0.
+        """
+        X = np.asarray(thickness, dtype=float)[..., None]
+        gamma = self.gamma
+        path = 2 * gamma * X
+        sinh = np.where(path > 0, -np.expm1(-path) / np.maximum(2 * gamma, TINY), X)
+        cosh = (1 + np.exp(-path)) / 2
+        delta = (self.absorption + self.scattering) * sinh + cosh
+        return Layer(self.scattering * sinh / delta, np.exp(-path / 2) / delta)
+
+    def amy_opaque_reflectance(self) -> Array:
+        """Return the reflectance (..., N) of opaque paint in Amy's approximation for
+        strong absorption (eq. 10.4).
+        """
+        K = self.absorption
+        S = self.scattering
+        return np.asarray(S / np.maximum(2 * (K + S), TINY))
+
+
+def from_opaque(reflectance: ArrayLike, scattering: Scattering) -> Pigment:
+    """Derive K and S from the reflectance (..., N) of opaque paint (eq. 10.6)."""
+    R = np.clip(np.asarray(reflectance, dtype=float), DARKEST, 1)
+    S = scattering(R)
+    return Pigment(S * ((1 - R) ** 2 / (2 * R)), S)
+
+
+def from_black_and_white(on_black: ArrayLike, on_white: ArrayLike) -> Pigment:
+    """Derive K and S from the reflectances (..., N) of a layer of unit thickness on
+    black and on white.
+
+    Paint on white has R = R₀ + T² / (1 − R₀). With the absorptance A = 1 − R₀ − T: cosh
+    γ = 1 + A (A + 2R₀) / 2T, S = γ R₀ / (T sinh γ) and K = γ A (1 − R₀ + T) / (2T sinh
+    γ). These forms do not cancel for S → 0 or K → 0. Raises `ColourError` if no paint
+    has both reflectances, or if they do not differ enough.
+    """
+    R0 = np.asarray(on_black, dtype=float)
+    R1 = np.asarray(on_white, dtype=float)
+    T = np.sqrt(np.maximum(R1 - (1 + R1) * R0 + R0**2, 0))
+    if not (T > MIN_TRANSMITTANCE).all():
+        problem = "the layer hides the ground, or is lighter on the darker ground"
+        raise ColourError(problem, hint="measure a thinner layer")
+    if not ((R0 >= -SLACK) & (R0 + T <= 1 + SLACK)).all():
+        problem = "no paint has these reflectances on these grounds"
+        raise ColourError(problem, hint="check the order of the grounds")
+    R0 = np.maximum(R0, 0)
+    A = np.maximum(1 - R0 - T, 0)
+    cosh_minus_1 = A * (A + 2 * R0) / (2 * T)
+    sinh = np.sqrt(cosh_minus_1 * (cosh_minus_1 + 2))
+    safe = np.where(sinh > 0, sinh, 1)
+    ratio = np.where(sinh > 0, np.log1p(cosh_minus_1 + sinh) / safe, 1) / T
+    return Pigment(ratio * A * (1 - R0 + T) / 2, ratio * R0)
+
+
+@dataclass(frozen=True, eq=False)
+class Flux:
+    """Fractions (..., N) of a kind of light that are absorbed, scattered backward and
+    forward per unit thickness.
+    """
+
+    absorption: Array
+    backward: Array
+    forward: Array
+
+
+def duntley_layer(beam: Flux, diffuse: Flux, thickness: float) -> DirectedLayer:
+    """Return the optical properties of a layer for collimated light by Duntley's theory
+    (eq. 10.8).
+    """
+    inner = Pigment(diffuse.absorption, diffuse.backward)
+    layer = inner.layer(thickness)
+    r = layer.reflectance
+    tau = layer.transmittance
+    K = inner.absorption
+    B = inner.scattering
+    gamma = inner.gamma
+    B1 = beam.backward
+    F1 = beam.forward
+    S1 = beam.backward + beam.forward
+
+    def one_side(K1: Array) -> Array:
+        mu = K1 + S1
+        unscattered = np.exp(-mu * thickness)
+        denominator = mu**2 - K * (K + 2 * B)
+        safe = np.where(denominator == 0, 1, denominator)
+        # A beam that is not scattered feeds nothing.
+        P = np.where(S1 > 0, ((K - K1) * B1 + (B - B1) * S1) / safe, 0)
+        Q = np.where(S1 > 0, ((K + K1) * F1 + (B + F1) * S1) / safe, 0)
+        return np.stack(
+            [
+                Q * r + P * unscattered * tau - P,
+                Q * tau + P * unscattered * r - (Q - 1) * unscattered,
+            ]
+        )
+
+    mu = beam.absorption + S1
+    step = MIN_RELATIVE_GAP * np.maximum(mu, gamma)
+    offset = np.where(np.abs(mu - gamma) < step, 2 * step, 0.0)
+    reflectance, transmittance = (
+        one_side(beam.absorption + offset) + one_side(beam.absorption - offset)
+    ) / 2
+    return DirectedLayer(reflectance, transmittance, layer)
+
+
+def read_constants(path: StrPath, wavelengths: Array) -> Array:
+    """Read Duntley's constants (6, N) of a paint, in the order of `CONSTANTS`, linear
+    between the samples of a table.
+
+    S' = B' + F' and S = B + F may be in the table too; they must be these sums. Raises
+    `AtlasError`.
+    """
+    document = read_document(path)
+    (_, found), samples = read_any(document), {}
+    for spectrum in () if isinstance(found, Atlas) else found.spectra:
+        nm = np.asarray(spectrum.wavelengths, dtype=float)
+        values = np.asarray(spectrum.values, dtype=float)
+        if not (np.isfinite(values) & (values >= 0)).all():
+            location = document.location.at(spectrum.line, spectrum.name)
+            raise location.error(
+                "constants of a paint must be finite and at least 0",
+                "correct the table",
+            )
+        order = np.argsort(nm)
+        samples[spectrum.name] = np.interp(wavelengths, nm[order], values[order])
+    missing = [name for name in CONSTANTS if name not in samples]
+    if missing:
+        problem = (
+            f"a table of Duntley's constants must have {', '.join(CONSTANTS)}; "
+            f"{', '.join(missing)} missing"
+        )
+        raise document.location.error(
+            problem, "write a column for each, and one of wavelengths in nm"
+        )
+    for total, parts in (("S'", ("B'", "F'")), ("S", ("B", "F"))):
+        if total in samples and not np.allclose(
+            samples[total], sum(samples[part] for part in parts), rtol=1e-3
+        ):
+            raise document.location.error(
+                f"{total} must be {' + '.join(parts)}",
+                f"correct {total} or leave it out",
+            )
+    return np.stack([samples[name] for name in CONSTANTS])
+
+
+def diffuse_to_beam(diffuse: ArrayLike) -> Array:
+    """Return the reflectance R = 2r / (3 − r) in a beam of an opaque layer that
+    scatters in all directions alike.
+    """
+    r = np.asarray(diffuse, dtype=float)
+    return 2 * r / (3 - r)
+
+
+def beam_to_diffuse(directed: ArrayLike) -> Array:
+    """Return the reflectance in diffuse light of such a layer, r = 3R / (2 + R)."""
+    R = np.asarray(directed, dtype=float)
+    return 3 * R / (2 + R)

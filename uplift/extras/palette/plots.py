@@ -1,0 +1,177 @@
+"""Plots of a design: its matrix of three-way patches (Bergner, figure 2), and its
+spectra.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from uplift.colorimetry.srgb import hex_codes
+from uplift.common.arrays import Array, StrPath
+from uplift.extras.pages.figure import (
+    BAND,
+    GREY,
+    INK,
+    figure_text,
+    new_figure,
+    style_axes,
+    write_figure,
+)
+from uplift.extras.palette.design import Design, Matrix
+from uplift.extras.palette.palette import SpectrumSpec
+
+CELL, NAMES, TOP = (
+    (1.5, 1.0),
+    1.35,
+    0.75,
+)  # sizes in inches of a cell, the column of names, and the row of lights
+PATCH, SMALL = (
+    (0.92, 0.66),
+    8.0,
+)  # size of a patch against that of its cell; font size of the numbers below it
+MIN_WIDTH = 5.2  # inches that the legend takes
+LEGEND = (
+    "left: target; right: obtained, above by spectra,\nbelow by factor model; ΔE00 to "
+    "the target, of the model"
+)
+MAX_NAME = 18  # characters of a name that fit
+
+
+def plot_matrix(
+    design: Design, colours: Matrix, path: StrPath, *, force: bool = False
+) -> None:
+    """Draw the matrix: targets on the left of each patch, obtained colours right above,
+    modelled ones right below.
+    """
+    rows, columns = colours.delta_e.shape
+    width = max(NAMES + CELL[0] * columns, MIN_WIDTH)
+    height = TOP + CELL[1] * rows + 0.4
+    figure = new_figure(width, height, layout=None)
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set(xlim=(0, width), ylim=(height, 0))
+    axes.set_axis_off()
+    for column, (light, white) in enumerate(
+        zip(design.palette.lights, colours.whites, strict=True)
+    ):
+        x = NAMES + CELL[0] * column
+        # The colour of a light, scaled down to the range of the display.
+        _patch(
+            axes,
+            (x, TOP - 0.22),
+            (CELL[0] * PATCH[0], 0.14),
+            white / max(float(white.max()), 1.0),
+        )
+        _frame(axes, (x, TOP - 0.22), (CELL[0] * PATCH[0], 0.14))
+        _name(axes, (x, TOP - 0.36), light, ha="left")
+    for row, material in enumerate(design.palette.materials):
+        _name(
+            axes,
+            (NAMES - 0.12, TOP + CELL[1] * (row + PATCH[1] / 2)),
+            material,
+            ha="right",
+        )
+        for column in range(columns):
+            _cell(
+                axes,
+                (NAMES + CELL[0] * column, TOP + CELL[1] * row),
+                colours,
+                (row, column),
+            )
+    axes.text(NAMES, height - 0.24, LEGEND, fontsize=SMALL, color=GREY, va="center")
+    write_figure(figure, path, force=force)
+
+
+def plot_spectra(design: Design, path: StrPath, *, force: bool = False) -> None:
+    """Draw powers of lights and reflectances of materials over wavelength; given
+    spectra are dashed.
+    """
+    figure = new_figure(10.0, 3.8)
+    for axes, title, label, specs, samples in zip(
+        figure.subplots(1, 2),
+        ("lights", "materials"),
+        ("power", "reflectance"),
+        (design.palette.lights, design.palette.materials),
+        (design.powers, design.reflectances),
+        strict=True,
+    ):
+        for spec, row in zip(specs, samples, strict=True):
+            dash = "-" if spec.designed else (0, (4, 2))
+            name = figure_text(_short(spec.name))
+            axes.plot(
+                design.palette.sensor.wavelengths,
+                row,
+                linewidth=1.8,
+                linestyle=dash,
+                label=name,
+            )
+        axes.margins(x=0.01)
+        axes.legend(frameon=False, fontsize=8)
+        style_axes(axes)
+        axes.set(xlabel="wavelength / nm", ylabel=label)
+        axes.set_title(title, loc="left", fontsize=10, fontweight="bold", color=INK)
+    write_figure(figure, path, force=force)
+
+
+def _cell(
+    axes: Any, corner: tuple[float, float], colours: Matrix, at: tuple[int, int]
+) -> None:
+    (x, y), (width, height) = corner, (CELL[0] * PATCH[0], CELL[1] * PATCH[1])
+    has_goal = not np.isnan(colours.delta_e[at])
+    split = width / 2 if has_goal else 0.0
+    if has_goal:
+        _patch(axes, (x, y), (split, height), colours.target[at])
+    _patch(axes, (x + split, y), (width - split, height / 2), colours.obtained[at])
+    _patch(
+        axes,
+        (x + split, y + height / 2),
+        (width - split, height / 2),
+        colours.factor[at],
+    )
+    _frame(axes, (x, y), (width, height))
+    numbers = [f"{colours.delta_e[at]:.2f}"] * has_goal + [
+        f"model {colours.model_error[at]:.2f}"
+    ]
+    axes.text(
+        x,
+        y + height + 0.11,
+        " · ".join(numbers),
+        fontsize=SMALL,
+        color=INK,
+        va="center",
+    )
+
+
+def _patch(
+    axes: Any, corner: tuple[float, float], size: tuple[float, float], rgb: Array
+) -> None:
+    from matplotlib.patches import Rectangle
+
+    axes.add_patch(
+        Rectangle(corner, *size, facecolor=hex_codes(rgb[None])[0], edgecolor="none")
+    )
+
+
+def _frame(axes: Any, corner: tuple[float, float], size: tuple[float, float]) -> None:
+    """Draw an outline, so that white is visible on white."""
+    from matplotlib.patches import Rectangle
+
+    axes.add_patch(
+        Rectangle(corner, *size, facecolor="none", edgecolor=BAND, linewidth=0.6)
+    )
+
+
+def _name(axes: Any, at: tuple[float, float], spec: SpectrumSpec, ha: str) -> None:
+    weight = "bold" if spec.designed else "normal"
+    axes.text(
+        *at,
+        figure_text(_short(spec.name)),
+        fontsize=9,
+        fontweight=weight,
+        color=INK,
+        ha=ha,
+        va="center",
+    )
+
+
+def _short(name: str) -> str:
+    return name if len(name) <= MAX_NAME else name[: MAX_NAME - 1] + "…"

@@ -1,0 +1,1 @@
+"""Images under other lights: as figures, as a page, and at full size."""

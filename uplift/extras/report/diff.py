@@ -1,0 +1,263 @@
+"""Two cubes compared: where their answers differ, under which lights, and which atlas
+entries changed.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.observer import check_distinct, light
+from uplift.common.arrays import Array, Indices
+from uplift.common.errors import OptionError
+from uplift.common.machine import check_memory
+from uplift.common.text import pluralise
+from uplift.cube import CubeData, common_sensor
+from uplift.extras.report.measures import delta_e_under, mean_p95_max
+from uplift.lookup import Cube
+from uplift.lookup.blocks import blockwise
+
+NODES, ENTRIES = "nodes", "entries"
+"""Names of the sets of colours that come from the cubes."""
+INVISIBLE = 5e-4
+"""Largest ΔE00 that is shown as 0.000."""
+NODE_BYTES = 200
+"""Memory of the comparison of a node."""
+
+
+@dataclass(frozen=True, eq=False)
+class Changes:
+    """ΔE00 between the answers of two cubes to a set of colours: nodes, entries, or the
+    pixels of an image.
+    """
+
+    name: str
+    rgb: Array
+    """(n, 3) linear RGB."""
+    delta_e: Array
+    """(n, L) ΔE00 under each light; NaN for colours that a cube lacks."""
+    lacking: Indices
+    """(n,) which cubes, built for a scene, lack the colour: 0 none, 1 the first, 2 the
+    second, 3 both.
+    """
+
+    @property
+    def largest(self) -> Array:
+        """(n,) largest ΔE00 of each colour under any light."""
+        return np.asarray(self.delta_e.max(axis=1))
+
+    @property
+    def compared(self) -> Array:
+        """(m, L) ΔE00 of the colours that both cubes answer."""
+        return self.delta_e[self.lacking == 0]
+
+    def worst(self, count: int) -> Indices:
+        """Rows of at most ``count`` colours that differ visibly, each once, largest
+        ΔE00 first.
+        """
+        _, rows = np.unique(self.rgb, axis=0, return_index=True)
+        order = rows[np.argsort(-self.largest[rows], kind="stable")[:count]]
+        return order[self.largest[order] >= INVISIBLE]
+
+
+@dataclass(frozen=True, eq=False)
+class EntryPairs:
+    """The entries of two cubes, matched by name, in the RGB space and outside it."""
+
+    names: tuple[str, ...]
+    """Entries that both cubes have."""
+    rgb: Array
+    """(E, 3) their linear RGB in the first cube."""
+    spectra: tuple[Array, Array]
+    """(E, N) their reflectances in each, at the wavelengths of the first."""
+    removed: tuple[str, ...]
+    """Entries of the first cube alone."""
+    added: tuple[str, ...]
+    """Entries of the second cube alone."""
+
+
+def pair_entries(first: CubeData, second: CubeData) -> EntryPairs:
+    """Match the entries of two cubes by name."""
+    tables = first.atlas.with_outside, second.atlas.with_outside
+    row_of = [{name: row for row, name in enumerate(table.names)} for table in tables]
+    shared = tuple(name for name in row_of[0] if name in row_of[1])
+    rows = [
+        np.array([each[name] for name in shared], dtype=np.int64) for each in row_of
+    ]
+    wavelengths = first.sensor.wavelengths
+    one, other = (
+        table.spectra.reflectance(row, wavelengths)
+        for table, row in zip(tables, rows, strict=True)
+    )
+    return EntryPairs(
+        names=shared,
+        rgb=tables[0].rgb[rows[0]],
+        spectra=(one, other),
+        removed=tuple(name for name in row_of[0] if name not in row_of[1]),
+        added=tuple(name for name in row_of[1] if name not in row_of[0]),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class CubeDiff:
+    """Differences between two cubes of one RGB space, illuminant and observer."""
+
+    names: tuple[str, str]
+    cubes: tuple[Cube, Cube]
+    lights: tuple[str, ...]
+    nodes: Changes
+    """Nodes of the lattice of the first cube, then those of the second if it has
+    another lattice.
+    """
+    pairs: EntryPairs
+    entries: Changes
+    """Spectra of ``pairs``."""
+    images: tuple[Changes, ...]
+
+    @property
+    def sets(self) -> tuple[Changes, ...]:
+        """All sets of colours that were compared."""
+        return tuple(
+            each for each in (self.nodes, self.entries, *self.images) if len(each.rgb)
+        )
+
+    @property
+    def lacking(self) -> tuple[tuple[str, str, int], ...]:
+        """Colours without an answer: their set, the cubes that lack them, and their
+        number.
+        """
+        cubes = ("", *self.names, " and ".join(self.names))
+        counts = [
+            (each.name, np.bincount(each.lacking, minlength=4).tolist())
+            for each in self.sets
+        ]
+        return tuple(
+            (name, cubes[code], count[code])
+            for name, count in counts
+            for code in (1, 2, 3)
+            if count[code]
+        )
+
+    @property
+    def largest(self) -> float:
+        """Largest ΔE00 of all colours under all lights."""
+        return float(np.max([each.compared.max(initial=0.0) for each in self.sets]))
+
+    def is_within(self, tolerance: float) -> bool:
+        """Whether both cubes have the same entries and colours, and none differs by
+        more than ΔE00 ``tolerance``.
+        """
+        has_same_colours = not any(
+            np.isin(each.lacking, (1, 2)).any() for each in self.sets
+        )
+        has_same_entries = not (self.pairs.removed or self.pairs.added)
+        return has_same_colours and has_same_entries and self.largest <= tolerance
+
+
+def diff_cubes(
+    cubes: Mapping[str, Cube],
+    lights: Sequence[Illuminant],
+    images: Mapping[str, Array] | None = None,
+) -> CubeDiff:
+    """Compare two cubes, by name, at the nodes of both, at their entries, and at the
+    colours of images.
+
+    Entries are compared by name, each with the spectrum that the cube has for it, even
+    where their colours differ. ``images`` are linear RGB (…, 3) in [0, 1]. Raises
+    `OptionError` for cubes of different RGB spaces.
+    """
+    sensor = common_sensor(cube.data for cube in cubes.values())
+    first, second = cubes.values()
+    check_distinct(lights)
+    under = [light(name, sensor.observer, *sensor.range) for name in lights]
+
+    size = sum(cube.data.lattice.size for cube in cubes.values())
+    check_memory(
+        size * NODE_BYTES,
+        pluralise(size, "node"),
+        OptionError,
+        "use cubes of a smaller dim",
+    )
+    nodes, others = (cube.data.lattice.points for cube in (first, second))
+    nodes = nodes if np.array_equal(nodes, others) else np.concatenate([nodes, others])
+    colours = {
+        NODES: nodes,
+        **{name: rgb.reshape(-1, 3) for name, rgb in (images or {}).items()},
+    }
+
+    def difference(rgb: Array) -> Array:
+        answers = [
+            cube.reflectance(rgb, sensor.wavelengths) for cube in (first, second)
+        ]
+        return delta_e_under(under, *answers)
+
+    changes = []
+    for name, rgb in colours.items():
+        delta_e = np.full((len(rgb), len(under)), np.nan)
+        lacking = ~first.covers(rgb) + 2 * ~second.covers(rgb)
+        delta_e[lacking == 0] = blockwise(difference, rgb[lacking == 0], len(under))
+        changes.append(Changes(name, rgb, delta_e, lacking))
+
+    pairs = pair_entries(first.data, second.data)
+    first_name, second_name = cubes
+    return CubeDiff(
+        names=(first_name, second_name),
+        cubes=(first, second),
+        lights=tuple(each.name for each in under),
+        nodes=changes[0],
+        pairs=pairs,
+        entries=Changes(
+            ENTRIES,
+            pairs.rgb,
+            delta_e_under(under, *pairs.spectra),
+            np.zeros(len(pairs.names), np.int64),
+        ),
+        images=tuple(changes[1:]),
+    )
+
+
+def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, object]:
+    """Return the figures of a comparison, with the worst colours of each set, for JSON.
+
+    Rows without a difference come last.
+    """
+    differences: list[dict[str, Any]] = [
+        {
+            "set": each.name,
+            "light": name,
+            **mean_p95_max(values),
+            **({} if tolerance is None else {"moved": int((values > tolerance).sum())}),
+        }
+        for each in diff.sets
+        for name, values in zip(diff.lights, each.compared.T, strict=True)
+        if values.size
+    ]
+    return {
+        "cubes": list(diff.names),
+        "largest": diff.largest,
+        **(
+            {}
+            if tolerance is None
+            else {"tolerance": tolerance, "passed": diff.is_within(tolerance)}
+        ),
+        "differences": sorted(differences, key=lambda row: row["max"] < INVISIBLE),
+        "worst": [
+            {
+                "set": each.name,
+                **({"entry": diff.pairs.names[row]} if each is diff.entries else {}),
+                "rgb": each.rgb[row].tolist(),
+                "light": diff.lights[each.delta_e[row].argmax()],
+                "delta_e": float(each.largest[row]),
+            }
+            for each in diff.sets
+            for row in each.worst(worst)
+        ],
+        "entries_removed": list(diff.pairs.removed),
+        "entries_added": list(diff.pairs.added),
+        "lacking": [
+            {"set": name, "cubes": cubes, "colours": count}
+            for name, cubes, count in diff.lacking
+        ],
+    }

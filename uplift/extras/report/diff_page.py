@@ -1,0 +1,141 @@
+"""Two cubes compared, as a page: figures, maps over the lattice and over images, and
+the spectra that differ most.
+"""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from markupsafe import Markup
+from numpy.typing import NDArray
+
+from uplift.colorimetry.srgb import hex_codes, to_display_codes
+from uplift.common.arrays import Array
+from uplift.extras.images.exr import blue_slices
+from uplift.extras.pages.figure import (
+    PALE,
+    RAMP,
+    colour_map,
+    new_figure,
+    show_image,
+    styled,
+    to_page_svg,
+)
+from uplift.extras.pages.html import render
+from uplift.extras.report.charts import spectra_chart
+from uplift.extras.report.diff import Changes, CubeDiff, to_json
+
+MIN_LIMIT, SHARE = 1.0, 0.99
+"""Smallest ΔE00 at the dark end of maps, so that invisible differences stay pale; share
+of the nodes below the end.
+"""
+
+WIDTH = 10.5
+"""Inches of a map; the page scales it to its columns."""
+
+
+def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
+    """Render a comparison, with the images (height, width, 3) in linear RGB that it was
+    made for.
+    """
+    worst_of = diff.nodes.compared.max(axis=1)
+    limit = (
+        max(MIN_LIMIT, math.ceil(np.quantile(worst_of, SHARE)))
+        if worst_of.size
+        else MIN_LIMIT
+    )
+    dim = diff.cubes[0].data.lattice.dim
+    nodes = blue_slices(diff.nodes.largest[: dim**3], dim)
+    return render(
+        "extras/report/templates/diff.html.j2",
+        title=" and ".join(diff.names),
+        lead=(
+            "Where the answers of two cubes differ: ΔE00 between their spectra, the "
+            "largest under any of the lights."
+        ),
+        diff=diff,
+        figures=to_json(diff, None, worst),
+        limit=limit,
+        ramp=RAMP,
+        lattice=_map(
+            mosaic(nodes), limit, "ΔE00 over the lattice, a tile for each blue"
+        ),
+        images=[_image(diff, each, images[each.name], limit) for each in diff.images],
+        spectra=[
+            _spectra(diff, each, int(row))
+            for each in diff.sets
+            for row in each.worst(worst)
+        ],
+    )
+
+
+def mosaic(slices: Array) -> Array:
+    """Arrange square slices (dim, dim, dim) in reading order, with a gap
+    between them.
+    """
+    dim = len(slices)
+    columns = math.ceil(math.sqrt(dim))
+    rows = math.ceil(dim / columns)
+    sheet = np.full((rows * (dim + 1) - 1, columns * (dim + 1) - 1), np.nan)
+    for number, plane in enumerate(slices):
+        top, left = (dim + 1) * np.array(divmod(number, columns))
+        sheet[top : top + dim, left : left + dim] = plane
+    return sheet
+
+
+def _map(
+    values: Array, limit: float, label: str, picture: NDArray[np.uint8] | None = None
+) -> Markup:
+    """Draw a map of ΔE00 (height, width), next to a picture of 8-bit codes if one is
+    given.
+    """
+    with styled():
+        panels = 1 if picture is None else 2
+        figure = new_figure(
+            WIDTH, 0.94 * WIDTH * values.shape[0] / values.shape[1] / panels
+        )
+        grid = figure.subplots(1, panels, squeeze=False)[0]
+        if picture is not None:
+            show_image(grid[0], picture, interpolation="antialiased")
+        show_image(
+            grid[-1],
+            values,
+            cmap=colour_map(),
+            vmin=0,
+            vmax=limit,
+            interpolation="nearest",
+        )
+        grid[-1].set_facecolor(PALE)
+        return to_page_svg(figure, label)
+
+
+def _image(
+    diff: CubeDiff, changes: Changes, rgb: Array, limit: float
+) -> tuple[str, Markup]:
+    codes = to_display_codes(rgb, diff.cubes[0].data.sensor).astype(np.uint8)
+    values = changes.largest.reshape(rgb.shape[:2])
+    return changes.name, _map(
+        values, limit, f"{changes.name}, and ΔE00 of its pixels", codes
+    )
+
+
+def _spectra(diff: CubeDiff, changes: Changes, row: int) -> dict[str, object]:
+    """The two spectra of a colour, or of an entry."""
+    sensor = diff.cubes[0].data.sensor
+    rgb = changes.rgb[row]
+    wavelengths = sensor.wavelengths
+    if changes is diff.entries:
+        name = diff.pairs.names[row]
+        answers = [each[row] for each in diff.pairs.spectra]
+    else:
+        name = ""
+        answers = [cube.reflectance(rgb, wavelengths) for cube in diff.cubes]
+    (code,) = hex_codes(rgb[None], sensor)
+    return {
+        "title": name or code,
+        "set": changes.name,
+        "code": code,
+        "light": diff.lights[int(changes.delta_e[row].argmax())],
+        "delta_e": float(changes.largest[row]),
+        "chart": spectra_chart(wavelengths, answers[0], answers[1], None),
+    }

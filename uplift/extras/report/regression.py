@@ -1,0 +1,164 @@
+"""Comparison of a stored cube with a rebuilt one: whether this version reproduces
+stored cubes.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from uplift.colorimetry.lights import REGRESSION_LIGHTS
+from uplift.colorimetry.observer import light
+from uplift.colorimetry.solid import solid
+from uplift.common.arrays import Mask
+from uplift.common.errors import CubeFileError
+from uplift.cube import CubeData
+from uplift.extras.report.diff import pair_entries
+from uplift.extras.report.measures import delta_e_under
+from uplift.lattice import Status
+from uplift.models import reflectance
+
+# Largest differences allowed between machines: at least thirty times the effect of
+# other instruction sets (docs/data/stability-determinism.json). On one machine there
+# are none, for any number of threads.
+LIMITS = {"rgb": 1e-6, "spectra_max": 1e-5, "spectra_rms": 1e-7} | {
+    f"delta_e_{name}": 1e-4 for name in REGRESSION_LIGHTS
+}
+MOVED = LIMITS[f"delta_e_{REGRESSION_LIGHTS[0]}"]
+# Largest difference of nodes. They are the same on every CPU since version 0.2. Cubes
+# of earlier versions have the powers of numpy, which instruction sets round
+# differently.
+NODE_TOLERANCE = 1e-12
+# Linear RGB within the object-colour solid. Nodes of wide gamuts nearer to its boundary
+# have spectra close to box functions, and many of these meet the colour equally well:
+# rounding decides between them.
+BOUNDARY_MARGIN = 1e-3
+
+
+@dataclass(frozen=True)
+class EntryChange:
+    """An atlas entry that was removed, added, or moved: by the largest ΔE00 under
+    `REGRESSION_LIGHTS`.
+    """
+
+    name: str
+    change: Literal["removed", "added", "moved"]
+    delta_e: float | None = None
+
+
+@dataclass(frozen=True)
+class RebuildDifference:
+    """Differences between a stored cube and a rebuilt one."""
+
+    path: Path  # File of the stored cube
+    # Largest differences by the names in `LIMITS`, over the entries and the nodes whose
+    # spectra are well determined
+    measures: dict[str, float]
+    stored_counts: dict[
+        str, int
+    ]  # Number of these nodes by status, and of all unfitted nodes
+    rebuilt_counts: dict[
+        str, int
+    ]  # Number of these nodes by status, and of all unfitted nodes
+    entries: tuple[EntryChange, ...]  # Entries that differ
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """Return the measures over their limits or NaN, ``status`` if the counts
+        differ, and ``entries`` likewise.
+        """
+        over = [
+            name for name, value in self.measures.items() if not value <= LIMITS[name]
+        ]
+        status = ["status"] if self.stored_counts != self.rebuilt_counts else []
+        return (*over, *status, *(["entries"] if self.entries else []))
+
+
+def compare_rebuilt(
+    path: Path, stored: CubeData, rebuilt: CubeData
+) -> RebuildDifference:
+    """Compare a stored cube with a rebuilt one."""
+    nodes = stored.lattice.nodes
+    other = rebuilt.lattice.nodes
+    if nodes.shape != other.shape or (np.abs(nodes - other) > NODE_TOLERANCE).any():
+        raise CubeFileError(
+            "its lattice is not the one of its options",
+            path=path,
+            hint="build the cube again",
+        )
+    compared = _well_determined(stored) & (
+        stored.points.present | rebuilt.points.present
+    )
+    pairs = pair_entries(stored, rebuilt)
+    first, second = (
+        np.concatenate(
+            [
+                reflectance(
+                    data.model,
+                    data.points.coefficients[compared],
+                    stored.sensor.wavelengths,
+                ),
+                own,
+            ]
+        )
+        for data, own in zip((stored, rebuilt), pairs.spectra, strict=True)
+    )
+    difference = np.abs(first - second)
+    lights = [
+        light(name, stored.sensor.observer, *stored.sensor.range)
+        for name in REGRESSION_LIGHTS
+    ]
+    delta_e = delta_e_under(lights, first, second)
+    measures = {
+        "rgb": float(
+            np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[compared].max(
+                initial=0
+            )
+        ),
+        "spectra_max": float(difference.max(initial=0)),
+        "spectra_rms": float(np.sqrt((difference**2).sum() / max(difference.size, 1))),
+    } | dict(
+        zip(
+            (f"delta_e_{name}" for name in REGRESSION_LIGHTS),
+            delta_e.max(axis=0, initial=0).tolist(),
+            strict=True,
+        )
+    )
+    moved = delta_e[np.count_nonzero(compared) :].max(axis=1)
+    # Cubes of earlier versions have the names of entries outside their RGB space only.
+    old, new = (data.provenance.get("left_out", ()) for data in (stored, rebuilt))
+    changes = [
+        EntryChange(name, "removed") for name in pairs.removed if name not in new
+    ]
+    changes += [EntryChange(name, "added") for name in pairs.added if name not in old]
+    changes += [
+        EntryChange(pairs.names[row], "moved", float(moved[row]))
+        for row in np.flatnonzero(moved > MOVED)
+    ]
+    before, after = (_counts(data, compared) for data in (stored, rebuilt))
+    return RebuildDifference(path, measures, before, after, tuple(changes))
+
+
+def _well_determined(data: CubeData) -> Mask:
+    """Nodes (n,) whose spectra do not depend on the machine: all, if the space has no
+    unrealisable nodes.
+
+    The smallest lattices have only nodes on the boundary of realisable colours: those
+    that were fitted are compared.
+    """
+    unrealisable = data.points.status == Status.UNREALISABLE
+    if not unrealisable.any():
+        return np.ones(data.lattice.size, dtype=bool)
+    inside = np.asarray(
+        solid(data.sensor.matrix).signed_distance(data.lattice.points)
+        < -BOUNDARY_MARGIN
+    )
+    return inside if inside.any() else ~unrealisable
+
+
+def _counts(data: CubeData, compared: Mask) -> dict[str, int]:
+    counts = replace(data.points, status=data.points.status[compared]).counts()
+    return counts | {
+        Status.UNFITTED.label: int((data.points.status == Status.UNFITTED).sum())
+    }

@@ -1,0 +1,270 @@
+"""Swatches whose measurement would lower the errors of a scene most, by the standard
+errors of a cube.
+
+The square of a standard error is a part that the measurement of a material lowers and a
+rest (docs/mathematics.md, 7). The first is supposed to fall as the posterior variance
+of the kriging does. Swatches are chosen one after the other, each of the largest gain.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from uplift.colorimetry import Light, Sensor
+from uplift.colorimetry.delta_e import rgb_to_lab
+from uplift.colorimetry.srgb import to_display_codes
+from uplift.common.arrays import Array, Values, blocks, distances
+from uplift.common.errors import OptionError
+from uplift.common.machine import single_threaded_blas
+from uplift.extras.pages.figure import (
+    ACCENT,
+    colour_map,
+    figure_text,
+    new_figure,
+    show_image,
+)
+from uplift.extras.texture.scene_colours import BINS, Images, PixelSample, bin_index
+from uplift.fit.kriging import DEFAULT, Kernel, posterior
+from uplift.lookup import Cube
+from uplift.lookup.light_errors import light_errors
+
+STEPS = (1, 2, 4, 8)
+"""Bins along each channel that are joined; the first that leave few colours are taken.
+"""
+MAX_COLOURS = 2048
+BLOCK_ROWS = 256
+"""Swatches whose gains are computed at a time."""
+MAX_SWATCHES = 100
+MIN_CHIPS = 8
+"""Swatches that a row of a plot has place for."""
+ALIKE = 1.0
+"""Distance in L*a*b* of pixels that have the colour of a swatch, for a plot."""
+TINY = 1e-9
+"""Variance, relative to that of an unknown material, below which nothing is left to
+measure.
+"""
+
+
+def colour_areas(images: Images, sensor: Sensor) -> PixelSample:
+    """Average the pixels of images in bins of encoded RGB. Raises `TextureError`,
+    `ColourError` and `OptionError`.
+    """
+    sums = np.zeros((4, BINS**3))
+    for path in images.paths:
+        for rgb in images.colours(path, sensor):
+            index = bin_index(sensor, rgb)
+            sums += [np.bincount(index, values, BINS**3) for values in (*rgb.T, None)]
+    if not sums.any():
+        raise OptionError(
+            "images must have pixels, got none", hint="name an image with pixels"
+        )
+    for step in STEPS:
+        size = BINS // step
+        totals = (
+            sums.reshape(4, size, step, size, step, size, step)
+            .sum(axis=(2, 4, 6))
+            .reshape(4, -1)
+        )
+        found = totals[:, totals[3] > 0]
+        if found.shape[1] <= MAX_COLOURS:
+            break
+    return PixelSample(np.clip(found[:3] / found[3], 0, 1).T, found[3] / found[3].sum())
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertainty:
+    """Standard errors of n colours of some area (n,) under L lights, √(c ``unknown`` +
+    ``rest``).
+
+    c is the diagonal of the posterior ``covariance`` (n, n) of kriging, the others are
+    squares of ΔE00 (n, L).
+    """
+
+    area: Array
+    covariance: Array
+    unknown: Array
+    rest: Array
+
+    @property
+    def errors(self) -> Array:
+        """Standard errors (n, L)."""
+        return self._errors(np.diag(self.covariance))
+
+    @property
+    def mean(self) -> float:
+        """Mean error over the area and the lights."""
+        return float(self.errors.mean(axis=-1) @ self.area)
+
+    def by_light(self) -> list[dict[str, float]]:
+        """Return the mean error under each light, and the error that 95 % of the area
+        stays within.
+        """
+        p95 = np.quantile(
+            self.errors, 0.95, axis=0, weights=self.area, method="inverted_cdf"
+        )
+        pairs = zip((self.area @ self.errors).tolist(), p95.tolist(), strict=True)
+        return [{"mean": mean, "p95": bound} for mean, bound in pairs]
+
+    def gains(self) -> Array:
+        """Return by how much the measurement of each colour (n,) lowers the
+        mean error.
+        """
+        variance = np.diag(self.covariance)
+        found = np.empty(len(variance))
+        for rows in blocks(len(found), BLOCK_ROWS):
+            # c(x) − c(x, s)² / c(s)
+            known = (
+                self.covariance[rows] ** 2 / np.maximum(variance[rows], TINY)[:, None]
+            )
+            found[rows] = self._errors(variance - known).mean(axis=-1) @ self.area
+        return np.maximum(self.mean - found, 0)
+
+    def measured(self, colour: int) -> "Uncertainty":
+        """Return what remains once a colour, by its number, is measured."""
+        row = self.covariance[colour]
+        return replace(
+            self,
+            covariance=self.covariance - np.outer(row, row / max(row[colour], TINY)),
+        )
+
+    def _errors(self, variance: Array) -> Array:
+        return np.asarray(
+            np.sqrt(np.maximum(variance, 0)[..., None] * self.unknown + self.rest)
+        )
+
+
+@single_threaded_blas()
+def uncertainty(
+    cube: Cube, colours: PixelSample, lights: Sequence[Light]
+) -> Uncertainty:
+    """Return the errors of a cube at the colours of a scene. Raises `OptionError` if it
+    has no left-out entries.
+    """
+    data = cube.data
+    prior = cube.data.provenance.get("prior", {})
+    kernel = Kernel(
+        prior.get("length", DEFAULT.length), prior.get("noise", DEFAULT.noise)
+    )
+    errors = [light_errors(data, light) for light in lights]
+    squares = np.stack([each(colours.rgb)[:, 0] ** 2 for each in errors], axis=1)
+    floors = np.concatenate(
+        [each.expected.radii[0] ** 2 * each.expected.floor for each in errors]
+    )
+    rest = np.minimum(floors, squares)
+    covariance = posterior(kernel, data.entry_lab, rgb_to_lab(data.sensor, colours.rgb))
+    variance = np.maximum(np.diag(covariance), TINY)
+    return Uncertainty(
+        colours.share, covariance, (squares - rest) / variance[:, None], rest
+    )
+
+
+@dataclass(frozen=True)
+class Swatch:
+    """A colour to measure, by its number in the scene.
+
+    ``error`` is the mean standard error of the colour before anything is measured,
+    ``gain`` the amount by which the mean error of the scene falls, and ``mean_after``
+    what remains.
+    """
+
+    colour: int
+    area: float
+    error: float
+    gain: float
+    mean_after: float
+
+
+@single_threaded_blas()
+def advise(scene: Uncertainty, count: int) -> tuple[list[Swatch], Uncertainty]:
+    """Choose up to ``count`` swatches, the best first, and return what remains. Those
+    without a gain are left out.
+    """
+    if not 1 <= count <= MAX_SWATCHES:
+        raise OptionError(f"count must be in [1, {MAX_SWATCHES}], got {count}")
+    chosen: list[Swatch] = []
+    errors = scene.errors.mean(axis=1)
+    for _ in range(count):
+        gains = scene.gains()
+        best = int(gains.argmax())
+        if not gains[best] > 0:
+            break
+        scene = scene.measured(best)
+        chosen.append(
+            Swatch(
+                best,
+                float(scene.area[best]),
+                float(errors[best]),
+                float(gains[best]),
+                scene.mean,
+            )
+        )
+    return chosen, scene
+
+
+def draw_advice(
+    cube: Cube,
+    pictures: Mapping[str, Values],
+    lights: Sequence[Light],
+    swatches: Sequence[tuple[str, Array]],
+) -> Any:
+    """Draw images, linear RGB (height, width, 3) by path, their mean standard errors,
+    and numbered swatches.
+
+    The swatches are linear RGB (3,) and the text below each. Their numbers stand at the
+    pixels of the nearest colours.
+    """
+    sensor = cube.data.sensor
+    estimates = [light_errors(cube.data, light) for light in lights]
+    flat = {name: rgb.reshape(-1, 3).astype(float) for name, rgb in pictures.items()}
+    maps = {
+        name: np.mean([estimate(rgb)[:, 0] for estimate in estimates], axis=0)
+        for name, rgb in flat.items()
+    }
+    largest = max(float(np.quantile(each, 0.99)) for each in maps.values())
+    heights = [3.5 * rgb.shape[0] / rgb.shape[1] + 0.3 for rgb in pictures.values()]
+    figure = new_figure(7.6, sum(heights) + 1.5)
+    *rows, last = figure.subfigures(
+        len(pictures) + 1, 1, height_ratios=[*heights, 1.5], squeeze=False
+    )[:, 0]
+    chips = last.subplots(1, max(len(swatches), MIN_CHIPS))
+    panels = {}
+    for row, (name, rgb) in zip(rows, pictures.items(), strict=True):
+        panels[name], errors = row.subplots(1, 2)
+        show_image(panels[name], to_display_codes(rgb, sensor) / 255)
+        panels[name].set_title(figure_text(Path(name).name), fontsize=9, loc="left")
+        shown = show_image(
+            errors,
+            maps[name].reshape(rgb.shape[:2]),
+            cmap=colour_map(),
+            vmin=0,
+            vmax=largest,
+        )
+        names = ", ".join(light.name for light in lights)
+        title = (
+            f"expected ΔE00 between answer and measurement\naveraged over {names}; "
+            "dark: large"
+        )
+        errors.set_title(title, fontsize=9, loc="left")
+        row.colorbar(shown, ax=errors, format="%.1f")
+    box = {"boxstyle": "circle", "facecolor": "white", "edgecolor": ACCENT}
+    labs = {name: rgb_to_lab(sensor, rgb) for name, rgb in flat.items()}
+    for number, (text, rgb) in enumerate(swatches):
+        away = {
+            name: distances(lab, rgb_to_lab(sensor, rgb[None]))[:, 0]
+            for name, lab in labs.items()
+        }
+        name = min(away, key=lambda name: away[name].min())
+        like = np.flatnonzero(away[name] <= away[name].min() + ALIKE)
+        y, x = divmod(int(like[len(like) // 2]), pictures[name].shape[1])
+        panels[name].text(
+            x, y, str(number + 1), ha="center", va="center", fontsize=7, bbox=box
+        )
+        show_image(chips[number], to_display_codes(rgb[None, None], sensor) / 255)
+        chips[number].set_title(f"{number + 1}", fontsize=8, pad=2)
+        chips[number].set_xlabel(text, fontsize=7)
+    for unused in chips[len(swatches) :]:
+        unused.set_axis_off()
+    return figure

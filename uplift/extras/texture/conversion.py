@@ -1,0 +1,250 @@
+"""Conversion of one image, a band of rows at a time, so that memory does not grow with
+its height.
+"""
+
+import os
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from uplift.common.arrays import StrPath, Values
+from uplift.common.errors import TextureError, UpliftWarning
+from uplift.common.files import check_output, file_digest
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.extras.texture.channels import ColourChannels, colour_channels_by_part
+from uplift.extras.texture.colours import Counts, source_space, space_warnings
+from uplift.extras.texture.image import Image, Part, open_image
+from uplift.extras.texture.uplifter import Converter, ConvertRows, ReadColours
+from uplift.extras.texture.writer import OutputPart, Writer, open_writer
+
+SOURCE = "uplift.source"
+"""Attribute with the size and the SHA-256 digest of the image that a texture was made
+of.
+"""
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """Outcome of the conversion of an image.
+
+    Parameters
+    ----------
+    source, target : Path
+        The image read and the file written.
+    counts : Counts
+        Numbers of pixels by kind.
+    warnings : tuple of UpliftWarning
+        Warnings about the image. They are data: `convert` does not emit them, as it may
+        run in another process.
+    seconds : float
+        Wall-clock time.
+    spaces : tuple of str
+        RGB spaces in which colours were read, ``linear sRGB`` for floats of the cube's
+        space.
+    """
+
+    source: Path
+    target: Path
+    counts: Counts
+    warnings: tuple[UpliftWarning, ...]
+    seconds: float
+    spaces: tuple[str, ...] = ()
+
+
+def convert(
+    converter: Converter,
+    source: StrPath,
+    target: StrPath,
+    *,
+    force: bool = False,
+    progress: ProgressCallback = ignore_progress,
+) -> Conversion:
+    """Convert the colours of an image and write the result as OpenEXR, atomically.
+
+    Channels that are not colours pass through, parts and windows stay. Colours that the
+    file holds multiplied by alpha are divided by it before the conversion and
+    multiplied after.
+
+    Parameters
+    ----------
+    converter : Converter
+        Made by `prepare`, `prepare_masked`, `prepare_lights` or `uplift.extras.relight.relighter`, or
+        a coat of paint (`uplift.extras.paint.overpainter`).
+    source : path-like
+        OpenEXR, Radiance HDR, PNG, JPEG or TIFF image.
+    target : path-like
+        OpenEXR file to write.
+    force : bool
+        Whether to replace an existing file.
+    progress : callable
+        Receives a `Progress` of stage ``rows`` after every band.
+
+    Returns
+    -------
+    Conversion
+        Counts, warnings and time.
+
+    Raises
+    ------
+    TextureError
+        The image cannot be read, or has no colour channels.
+    OutputError
+        ``target`` cannot be written, exists and ``force`` is off, or is ``source``.
+    OptionError
+        The image has encoded floats, and the gamut mapping is neither ``clip`` nor
+        ``error``.
+    ColourError
+        A colour lies outside [0, 1] and the gamut mapping is ``error``, or the cube,
+        built for a scene, lacks the nodes for it.
+    """
+    begin = time.perf_counter()
+    check_output(target, inputs=[source], force=force)
+    made_of = {SOURCE: source_stamp(source)}
+    with open_image(source) as image, converter.opened(image) as convert_rows:
+        parts = colour_channels_by_part(image)
+        layouts = [
+            _layout(converter, image, part, colours, made_of) for part, colours in parts
+        ]
+        total = sum(layout.part.window.height for layout in layouts)
+        counts = Counts()
+        done = 0
+        with open_writer(
+            target, [each.output for each in layouts], force=force
+        ) as writer:
+            for layout in layouts:
+                writer.start_part(layout.part.number)
+                for first, band in _bands(image, layout):
+                    counts += _write_band(
+                        converter, convert_rows, layout, writer, first, band
+                    )
+                    done += len(band)
+                    progress(Progress("rows", done, total))
+        notes = space_warnings(image, converter.sensor, converter.space)
+    warnings = (*counts.warnings(converter.out_of_gamut, source), *notes)
+    spaces = tuple(
+        dict.fromkeys(
+            _space_name(converter, each.part) for each in layouts if each.colours
+        )
+    )
+    return Conversion(
+        Path(source),
+        Path(target),
+        counts,
+        warnings,
+        time.perf_counter() - begin,
+        spaces,
+    )
+
+
+def source_stamp(source: StrPath) -> str:
+    """Return the attribute `SOURCE` of textures of an image. Raises `TextureError`."""
+    digest = file_digest(source, TextureError)
+    return f"{os.stat(source).st_size} {digest}"
+
+
+def _space_name(converter: Converter, part: Part) -> str:
+    space = source_space(part, converter.sensor, converter.space)
+    if space is not None:
+        return space.name
+    return (
+        converter.sensor.space if part.max_code else f"linear {converter.sensor.space}"
+    )
+
+
+LOSSLESS = {"half": "half", "uint": "uint", "uint8": "half"}
+"""OpenEXR types that hold all values of a type, by that type; float for others.
+Integers become [0, 1].
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class _Layout:
+    """Which channels of a part are colours, which pass through (indices ``others``),
+    and how it is written.
+    """
+
+    part: Part
+    colours: ColourChannels | None
+    others: tuple[int, ...]
+    decoder: ReadColours
+    output: OutputPart
+
+
+def _layout(
+    converter: Converter,
+    image: Image,
+    part: Part,
+    found: ColourChannels | None,
+    made_of: Mapping[str, str],
+) -> _Layout:
+    colours = None if found is None else converter.colour_channels(found)
+    rgb = () if colours is None else colours.rgb
+    others = tuple(index for index in range(len(part.channels)) if index not in rgb)
+    names = tuple(part.channels[index] for index in others)
+    types = tuple(LOSSLESS.get(part.types[index], "float") for index in others)
+    if colours is not None:
+        converted = (*"RGB", *converter.channels)
+        if duplicates := set(converted) & set(names):
+            raise TextureError(
+                (
+                    f"channel '{min(duplicates)}' exists next to the colour and would "
+                    "be "
+                    "written twice"
+                ),
+                hint="remove that channel",
+            )
+        names = (*converted, *names)
+        types = (*(converter.depth,) * len(converted), *types)
+    modified = time.strftime(
+        "%Y:%m:%d %H:%M:%S", time.gmtime(image.path.stat().st_mtime)
+    )  # as EXIF writes it
+    header = {
+        **part.metadata,
+        **converter.header,
+        **converter.part_header(part),
+        **made_of,
+    }
+    output = OutputPart(
+        part.name, part.window, names, types, header, part.date or modified
+    )
+    return _Layout(part, colours, others, converter.decoder(part), output)
+
+
+def _bands(image: Image, layout: _Layout) -> Iterator[tuple[int, Values]]:
+    """Yield bands to write, with the number of their first row."""
+    step = layout.output.rows_per_band
+    for first, band in image.bands(layout.part):
+        for start in range(0, len(band), step):
+            yield first + start, band[start : start + step]
+
+
+def _write_band(
+    converter: Converter,
+    convert_rows: ConvertRows,
+    layout: _Layout,
+    writer: Writer,
+    first: int,
+    band: Values,
+) -> Counts:
+    """Convert and write a band. Its arrays are gone before those of the next, which
+    halves the memory.
+    """
+    others = band[..., layout.others]
+    counts = Counts()
+    values: tuple[Values, ...] = ()
+    if layout.part.max_code:
+        others = others / np.float32(layout.part.max_code)
+    if layout.colours is not None:
+        rgb, decoded = layout.decoder(layout.colours.straight(band))
+        values, converted = convert_rows(layout.part, first, rgb)
+        if (opacity := layout.colours.opacity(band)) is not None:
+            values = converter.multiply(values, opacity)
+        counts = decoded + converted
+    # OpenImageIO would convert floats to half floats in another array.
+    is_half = set(layout.output.types) == {"half"}
+    dtype = np.float16 if is_half else np.result_type(np.float32, others)
+    writer.write_rows(first, np.concatenate([*values, others], axis=-1, dtype=dtype))
+    return counts

@@ -1,0 +1,400 @@
+"""Image files as they are: parts, channels, and rows a band at a time (OpenEXR,
+Radiance HDR, PNG, JPEG, TIFF).
+
+OpenImageIO reads all formats. Bands hold the numbers of the file, unconverted.
+"""
+
+import contextlib
+import itertools
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from uplift.colorimetry.spaces import ImageSpace
+from uplift.common.arrays import StrPath, Values
+from uplift.common.errors import ColourError, TextureError, UpliftError
+from uplift.common.files import check_regular
+from uplift.common.machine import check_memory
+from uplift.common.text import pluralise
+from uplift.extras.texture import exr_file, hdr_file, png_file, tiff_file
+from uplift.extras.texture.colour_profile import Profile, read_profile, xyz_space
+
+FORMATS = ("openexr", "hdr", "png", "jpeg", "tiff")
+MAX_BAND_BYTES = 1 << 25
+"""Size of a band to read, unless the file's own blocks of rows are larger."""
+UINT32_SCALE = 2**32 - 1
+"""OpenImageIO divides 32-bit integers by this number."""
+MAX_EXACT_INTEGER = 1 << 24
+"""Integers up to this number pass through 32-bit floats."""
+UNKNOWN_PROBLEM = "the image cannot be read"
+SIGNATURES = (
+    exr_file.MAGIC,
+    hdr_file.MAGIC,
+    png_file.SIGNATURE,
+    b"\xff\xd8",
+    b"II*\0",
+    b"MM\0*",
+    b"II+\0",
+    b"MM\0+",
+)
+"""First bytes of the formats."""
+PNG_INTERLACE = 28
+"""Offset of the byte that marks an interlaced PNG file, which can only be decoded in
+one piece.
+"""
+TECHNICAL = frozenset(
+    ("compression", "colorInteropID", "DateTime", "ICCProfile", "lineOrder", "name", "type", "view", "planarconfig",
+     "ResolutionUnit", "Orientation", "chunkCount", "version", "PixelAspectRatio", "textureformat",
+     "wrapmodes", "CICP", "chromaticities", "multiView", "XResolution", "YResolution")
+)  # fmt: skip
+"""Attributes that textures do not keep, as they describe the file that is read."""
+FILM = frozenset(("smpte:KeyCode", "smpte:TimeCode"))
+"""Attributes that are kept although OpenImageIO gives them a prefix, as it does to
+those of other formats.
+"""
+ENVIRONMENTS = ("LatLong Environment", "CubeFace Environment")
+"""Values of ``textureformat`` that are kept: they stand for the attribute ``envmap`` of
+OpenEXR.
+"""
+MAX_METADATA, MAX_METADATA_LENGTH = 100, 10_000
+"""Numbers of attributes, and of their characters or numbers, that textures keep."""
+OTHER_COLOURS = {8, 9, 10, 32844, 32845}
+"""Photometric interpretations of TIFF that OpenImageIO reads as RGB: CIELAB, ICCLab,
+ITULab, LogL and LogLuv.
+"""
+FORMAT_HINT = "use an EXR, HDR, PNG, JPEG or TIFF image"
+SUBSAMPLED = "ubsampled"
+"""Part of the error of OpenImageIO for channels of another resolution, such as the
+chroma of luminance and chroma.
+"""
+SUBSAMPLED_HINT = "write R, G and B at full resolution"
+MEMORY_HINT = "write the image with smaller tiles or strips, or without interlacing"
+
+
+@dataclass(frozen=True)
+class Window:
+    """Data window of a part, its display window (x, y, width, height) and its pixel
+    aspect ratio.
+    """
+
+    x: int
+    y: int
+    width: int
+    height: int
+    display: tuple[int, int, int, int]
+    aspect: float
+
+
+@dataclass(frozen=True)
+class Attribute:
+    """Value of an attribute, with its type as `OpenImageIO.TypeDesc`."""
+
+    type: Any
+    value: Any
+
+
+@dataclass(frozen=True)
+class Part:
+    """One part of a file; files of formats other than OpenEXR have one.
+
+    ``types`` of the channels are half, float, uint, uint8 or uint16. ``rows_per_block``
+    rows are decoded together. ``metadata`` are statements of the file that textures
+    keep, such as its author, frame rate or camera.
+    """
+
+    number: int
+    name: str
+    window: Window
+    channels: tuple[str, ...]
+    types: tuple[str, ...]
+    rows_per_block: int
+    is_tiled: bool
+    profile: Profile | None
+    date: str | None
+    metadata: Mapping[str, Attribute] = field(default_factory=dict)
+    has_associated_alpha: bool = False
+    """Whether colours next to an alpha are multiplied by it."""
+    xyz: ImageSpace | None = None
+    """Space of channels of CIE XYZ."""
+
+    @property
+    def max_code(self) -> int:
+        """Largest value if all channels are 8-bit or all are 16-bit
+        integers, else 0.
+        """
+        types = set(self.types)
+        return (
+            {"uint8": 255, "uint16": 65535}.get(types.pop(), 0)
+            if len(types) == 1
+            else 0
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """An open image file."""
+
+    path: Path
+    parts: tuple[Part, ...]
+    handle: Any
+
+    def bands(self, part: Part) -> Iterator[tuple[int, Values]]:
+        """Yield row numbers and rows (k, width, channels): integers if all channels
+        are, else floats.
+        """
+        window = part.window
+        row = window.width * len(part.channels) * 4
+        step = part.rows_per_block * max(
+            1, MAX_BAND_BYTES // (row * part.rows_per_block)
+        )
+        for first in range(0, window.height, step):
+            yield (
+                window.y + first,
+                self.rows(part, first, min(step, window.height - first)),
+            )
+
+    def rows(self, part: Part, first: int, count: int) -> Values:
+        """Read rows (count, width, channels) from row ``first`` of the window, as
+        `bands` does.
+        """
+        self.handle.seek_subimage(part.number, 0)
+        first, end = part.window.y + first, part.window.y + first + count
+        if part.max_code:
+            return self._read(part, first, end, part.types[0])
+        integers = [index for index, name in enumerate(part.types) if name == "uint"]
+        values = self._read(part, first, end, "double" if integers else "float")
+        for index in integers:
+            numbers = self._read(part, first, end, "uint", index)[..., 0]
+            if numbers.max(initial=0) > MAX_EXACT_INTEGER:
+                raise TextureError(
+                    f"integers must be at most {MAX_EXACT_INTEGER}, got "
+                    f"{numbers.max()} in channel "
+                    f"'{part.channels[index]}'",
+                    hint="remove that channel",
+                )
+            values[..., index] = numbers / UINT32_SCALE
+        return values
+
+    def header_text(self, name: str) -> str:
+        """Return a text attribute of the first part, empty if it is missing."""
+        return str(self.handle.spec(0).get_string_attribute(name))
+
+    def _read(
+        self, part: Part, first: int, end: int, dtype: str, channel: int | None = None
+    ) -> Values:
+        import OpenImageIO
+
+        window = part.window
+        kind = OpenImageIO.TypeDesc(dtype)
+        channels = (
+            (0, len(part.channels)) if channel is None else (channel, channel + 1)
+        )
+        if part.is_tiled:
+            columns = (window.x, window.x + window.width)
+            rows = self.handle.read_tiles(*columns, first, end, 0, 1, *channels, kind)
+        else:
+            rows = self.handle.read_scanlines(first, end, 0, *channels, kind)
+        problem = read_error(self.handle)  # the only sign of a truncated JPEG
+        if rows is None or problem:
+            raise TextureError(
+                (
+                    f"rows {first} to {end - 1} cannot be read: "
+                    f"{problem or UNKNOWN_PROBLEM}"
+                ),
+                code="file-unreadable",
+                path=self.path,
+                hint="the file is damaged: write it again",
+            )
+        return np.asarray(rows)
+
+
+@contextlib.contextmanager
+def open_image(path: StrPath) -> Iterator[Image]:
+    """Open an image file. A `TextureError` or `ColourError` in the block without a path
+    gets this one.
+
+    Raises `TextureError` if the file is missing, damaged, of another format, has
+    several values per pixel, too many channels or attributes, names that are not text,
+    or blocks of rows that do not fit into memory.
+    """
+    import OpenImageIO
+
+    path = Path(path)
+    config = OpenImageIO.ImageSpec()
+    handle = None
+    header: Mapping[str, Any] = {}
+    config["oiio:UnassociatedAlpha"] = (
+        1  # keep colours as stored, not multiplied by alpha
+    )
+    OpenImageIO.attribute(
+        "limits:imagesize_MB", 0
+    )  # bands are read, which are compared with memory
+    try:
+        start = _read_start(path)
+        if start.startswith(exr_file.MAGIC):
+            exr_file.check_size(path)
+        elif start.startswith(png_file.SIGNATURE):
+            header = png_file.read_chunks(path)
+        elif start.startswith(hdr_file.MAGIC):
+            header = hdr_file.read_primaries(path)
+        else:
+            header = tiff_file.read_tags(path)
+        handle = OpenImageIO.ImageInput.open(utf8_name(path, TextureError), config)
+        if handle is None:
+            problem = read_error(OpenImageIO) or UNKNOWN_PROBLEM
+            hint = SUBSAMPLED_HINT if SUBSAMPLED in problem else FORMAT_HINT
+            raise TextureError(problem, code="file-unreadable", hint=hint)
+        parts = tuple(_parts(handle, header))
+        for part in parts:
+            for name in (part.name, *part.channels):
+                if not _is_text(name):
+                    raise TextureError(
+                        f"names of parts and channels must be UTF-8, got {name!a}",
+                        hint="rename it",
+                    )
+            is_interlaced = (
+                start.startswith(png_file.SIGNATURE) and start[PNG_INTERLACE:] == b"\1"
+            )
+            rows = (
+                part.window.height
+                if is_interlaced
+                else min(part.rows_per_block, part.window.height)
+            )
+            need = rows * part.window.width * len(part.channels) * 4
+            check_memory(
+                need,
+                f"a block of {pluralise(rows, 'row')}, decoded together,",
+                TextureError,
+                MEMORY_HINT,
+            )
+        yield Image(path, parts, handle)
+    except (TextureError, ColourError) as error:
+        error.path = path if error.path is None else error.path
+        raise
+    finally:
+        if handle is not None:
+            handle.close()
+
+
+def _read_start(path: Path) -> bytes:
+    check_regular(path, TextureError, hint=FORMAT_HINT)
+    try:
+        with path.open("rb") as file:
+            start = file.read(PNG_INTERLACE + 1)
+    except OSError as error:
+        raise TextureError(
+            f"cannot be read: {error.strerror}",
+            code="file-unreadable",
+            hint=FORMAT_HINT,
+        ) from error
+    if not start.startswith(
+        SIGNATURES
+    ):  # OpenImageIO would try all its formats, for minutes if the file is large
+        raise TextureError("unsupported image format", hint=FORMAT_HINT)
+    return start
+
+
+def _parts(handle: Any, header: Mapping[str, Any]) -> Iterator[Part]:
+    if handle.format_name() not in FORMATS:
+        raise TextureError(
+            f"unsupported image format {handle.format_name()}", hint=FORMAT_HINT
+        )
+    number = 0
+    while handle.seek_subimage(number, 0):
+        yield _part(handle.spec(), number, header)
+        number += 1
+        if handle.format_name() != "openexr":  # pages of a TIFF are separate images
+            return
+
+
+def _part(spec: Any, number: int, header: Mapping[str, Any]) -> Part:
+    if spec.deep or spec.depth > 1:
+        raise TextureError("an image must have one value per pixel", hint="flatten it")
+    if spec.get_int_attribute("tiff:PhotometricInterpretation") in OTHER_COLOURS:
+        raise TextureError(
+            "the colours of a TIFF must be RGB, grey or CMYK", hint="convert it to RGB"
+        )
+    formats = spec.channelformats or (spec.format,) * spec.nchannels
+    display = (spec.full_x, spec.full_y, spec.full_width, spec.full_height)
+    aspect = spec.get_float_attribute("PixelAspectRatio", 1.0)
+    date = str(spec.get_string_attribute("DateTime"))
+    return Part(
+        number=number,
+        name=spec.get_string_attribute("oiio:subimagename"),
+        window=Window(spec.x, spec.y, spec.width, spec.height, display, aspect),
+        channels=tuple(spec.channelnames),
+        types=tuple(map(str, formats)),
+        rows_per_block=spec.tile_height
+        or max(spec.get_int_attribute("oiio:RowsPerChunk", 1), 1),
+        is_tiled=bool(spec.tile_width),
+        profile=read_profile(spec, header),
+        date=date if _is_text(date) and date else None,
+        metadata=_metadata(spec),
+        has_associated_alpha=not spec.get_int_attribute("oiio:UnassociatedAlpha"),
+        xyz=xyz_space(spec),
+    )
+
+
+def _metadata(spec: Any) -> dict[str, Attribute]:
+    """Return the attributes that are not about how the image is stored."""
+    kept = (each for each in spec.extra_attribs if _is_kept(each.name, each.value))
+    return {
+        each.name: Attribute(each.type, each.value)
+        for each in itertools.islice(kept, MAX_METADATA)
+    }
+
+
+def _is_kept(name: str, value: Any) -> bool:
+    if name == "textureformat":
+        return value in ENVIRONMENTS
+    is_own = name in FILM or not set(name) & set(":.")
+    return is_own and name not in TECHNICAL and _is_text(name) and _is_kept_value(value)
+
+
+def _is_kept_value(value: Any) -> bool:
+    """Return whether a value is text, a number, or a tuple of either, and neither empty
+    nor long. Bytes are not.
+    """
+    if isinstance(value, str | tuple):
+        parts = (
+            all(map(_is_kept_value, value))
+            if isinstance(value, tuple)
+            else _is_text(value)
+        )
+        return 0 < len(value) <= MAX_METADATA_LENGTH and parts
+    return isinstance(value, int | float)
+
+
+def _is_text(name: str) -> bool:
+    """Return whether a text of OpenImageIO is Unicode. Bytes that are not UTF-8 become
+    lone surrogates.
+    """
+    return not any("\ud800" <= letter <= "\udfff" for letter in name)
+
+
+def read_error(source: Any) -> str:
+    """Return the pending error of OpenImageIO or one of its objects on one line, empty
+    if there is none.
+    """
+    try:
+        return " ".join(source.geterror().split())
+    except UnicodeDecodeError:  # it quotes bytes of the file
+        return UNKNOWN_PROBLEM
+
+
+def utf8_name(path: Path, error: type[UpliftError]) -> str:
+    """Return the name of a file for OpenImageIO, which opens only names that are UTF-8.
+    Raises ``error``.
+    """
+    name = os.fspath(path)
+    try:
+        name.encode()
+    except UnicodeEncodeError as cause:
+        raise error(
+            "the file name is not UTF-8", path=path, hint="rename the file"
+        ) from cause
+    return name

@@ -1,0 +1,259 @@
+"""The colours of images as a scene: `uplift.build` fits only the nodes that answer
+them.
+"""
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from uplift.colorimetry.gamut import check_method
+from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.spaces import find_space
+from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.errors import OptionError, TextureError
+from uplift.common.files import file_digest
+from uplift.common.progress import Progress, ProgressCallback
+from uplift.extras.texture.channels import coloured_parts
+from uplift.extras.texture.colours import (
+    Counts,
+    check_encoding,
+    make_decoder,
+    space_warnings,
+)
+from uplift.extras.texture.image import open_image
+from uplift.lattice import CORNERS, EntryBoxes, Lattice
+from uplift.lattice.entry_boxes import MARGIN
+
+BLOCK_PIXELS = 1 << 16
+"""Pixels decoded at a time."""
+BINS = 64
+"""Bins along each channel of encoded RGB: four 8-bit codes wide."""
+MAX_PIXELS = 1 << 24
+"""Pixels of all textures that are read."""
+MAX_LIST = 256
+"""Most colours whose spectra a list holds, with an index of one byte per pixel."""
+TYPE_BYTES = {"uint8": 1, "uint16": 2, "half": 2}
+
+
+@dataclass(frozen=True)
+class Images:
+    """A scene of at least one image; a `SceneLike` of `uplift.build`. Memory holds the
+    cells of the colours only.
+
+    ``encoding``, ``out_of_gamut`` and ``space`` are those of
+    `uplift.extras.texture.prepare`. Raises `OptionError`.
+    """
+
+    paths: tuple[Path, ...]
+    encoding: str = "auto"
+    out_of_gamut: str = "clip"
+    space: str | None = None
+
+    def __post_init__(self) -> None:
+        check_encoding(self.encoding)
+        check_method(self.out_of_gamut)
+        if not self.paths:
+            raise OptionError(
+                "a scene must have at least one image, got none",
+                hint="name one, or build without a scene",
+            )
+
+    def required_points(
+        self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback
+    ) -> Mask:
+        """Return the mask (dim³,) of the nodes that answer the colours of the images;
+        see `SceneLike`.
+
+        Raises `TextureError`, and `ColourError` with ``out_of_gamut="error"``. Warns of
+        images in another RGB space.
+        """
+        cells = np.zeros(boxes.lattice.size, dtype=bool)
+        for done, path in enumerate(self.paths):
+            progress(Progress("images", done, len(self.paths)))
+            for rgb in self.colours(path, sensor):
+                cells[cells_touched(boxes.lattice, rgb)] = True
+        return boxes.required_points(cells)
+
+    def describe(self) -> list[dict[str, Any]]:
+        """Return name and digest of each image, and how it was decoded, as
+        JSON values.
+        """
+        decoding = {"encoding": self.encoding, "out_of_gamut": self.out_of_gamut}
+        decoding |= {} if self.space is None else {"space": self.space}
+        return [
+            {"name": path.name, "digest": file_digest(path), **decoding}
+            for path in self.paths
+        ]
+
+    def colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
+        """Yield the colours of an image, linear RGB (n, 3) in [0, 1] of a sensor, block
+        by block.
+        """
+        return (rgb for rgb, _ in self.blocks(path, sensor))
+
+    def blocks(
+        self, path: Path, sensor: Sensor, step: int = 1
+    ) -> Iterator[tuple[Array, Counts]]:
+        """Yield the colours of every pixel of this ``step``, as `colours`, and counts
+        of those that had to change.
+        """
+        space = None if self.space is None else find_space(self.space)
+        with open_image(path) as image:
+            for warning in space_warnings(image, sensor, space):
+                warnings.warn(warning, stacklevel=6)
+            for part, channels in coloured_parts(image):
+                decode = make_decoder(
+                    sensor, part, self.encoding, self.out_of_gamut, space
+                )
+                for _, band in image.bands(part):
+                    pixels = band.reshape(-1, band.shape[-1])
+                    for first in range(0, len(pixels), BLOCK_PIXELS * step):
+                        rgb, counts = decode(
+                            channels.straight(
+                                pixels[first : first + BLOCK_PIXELS * step : step]
+                            )
+                        )
+                        yield rgb.astype(float), counts
+
+
+def cells_touched(lattice: Lattice, rgb: Array) -> Indices:
+    """Return the numbers (m,) of the cells around linear RGB (n, 3), and of those
+    within rounding error of them.
+    """
+    (low, _), (high, _) = lattice.cell(rgb - MARGIN), lattice.cell(rgb + MARGIN)
+    on_face = (low != high).any(axis=1)
+    adjacent = np.where(CORNERS[:, None, :] == 1, high[on_face], low[on_face]).reshape(
+        -1, 3
+    )
+    return np.concatenate([lattice.index(low), lattice.index(adjacent)])
+
+
+@dataclass(frozen=True, eq=False)
+class ColourSet:
+    """Scene of linear RGB (n, 3) for `uplift.build`: the cube gets the nodes that the
+    colours need.
+    """
+
+    rgb: Array
+
+    def required_points(
+        self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback
+    ) -> Mask:
+        """Nodes (dim³,) that the colours need."""
+        return boxes.required_points(
+            boxes.lattice.mask(cells_touched(boxes.lattice, self.rgb))
+        )
+
+    def describe(self) -> list[dict[str, Any]]:
+        """An empty list: colours have no source files."""
+        return []
+
+
+@dataclass(frozen=True, eq=False)
+class PixelSample:
+    """Distinct linear RGB (n, 3), and the share (n,) of the sampled pixels that have
+    each; shares sum to 1.
+    """
+
+    rgb: Array
+    share: Array
+
+
+@dataclass(frozen=True, eq=False)
+class SampledColours:
+    """Disjoint samples of the textures' pixels, to choose candidates by and to verify
+    the result.
+
+    Textures with fewer pixels than both need together have all pixels in both.
+    ``colour_bins`` (n, 3) has a colour of every bin that has any pixel, in linear RGB.
+    ``pixels`` are all those of the textures, ``size`` their bytes as RGB, and ``few``
+    (n, 3) their different colours if these are at most `MAX_LIST`.
+    """
+
+    predicting: PixelSample
+    confirming: PixelSample
+    colour_bins: Array
+    pixels: int
+    size: int
+    few: Array | None
+
+
+def sample_colours(
+    images: Images, sensor: Sensor, sizes: tuple[int, int], progress: ProgressCallback
+) -> SampledColours:
+    """Sample about ``sizes`` pixels to predict and to confirm, all pixels with equal
+    probability.
+
+    The sample is the same every time. Of more than `MAX_PIXELS`, only every so many are
+    read. Warns of colours that change. Raises `TextureError`, also for images without
+    pixels.
+    """
+    counts = [_pixel_count(path) for path in images.paths]
+    total, size = map(sum, zip(*counts, strict=True))
+    if not total:
+        raise TextureError(
+            "images must have pixels, got none", hint="name an image with pixels"
+        )
+    step = -(-total // MAX_PIXELS)
+    first = sizes[0] * step / total
+    last = first + sizes[1] * step / total
+    rng = np.random.default_rng(0)
+    bins = np.full((BINS**3, 3), np.nan)
+    few = np.empty((0, 3))
+    samples: tuple[list[Array], list[Array]] = [], []
+    for done, path in enumerate(images.paths):
+        progress(Progress("textures", done, len(images.paths)))
+        changed = Counts()
+        for rgb, found in images.blocks(path, sensor, step):
+            changed += found
+            bins[bin_index(sensor, rgb)] = rgb
+            lot = rng.random(len(rgb))
+            samples[0].append(rgb[(lot < first) | (last > 1)])
+            samples[1].append(rgb[(lot >= first) & (lot < last) | (last > 1)])
+            if step == 1 and len(few) <= MAX_LIST:
+                few = np.unique(np.concatenate([few, rgb]), axis=0)
+        for warning in changed.warnings(path=path):
+            warnings.warn(warning, stacklevel=4)
+    occupied = bins[~np.isnan(bins[:, 0])]
+    predicting, confirming = (
+        _distinct(np.concatenate(each), occupied) for each in samples
+    )
+    is_few = step == 1 and len(few) <= MAX_LIST
+    return SampledColours(
+        predicting, confirming, occupied, total, size, few if is_few else None
+    )
+
+
+def _pixel_count(path: Path) -> tuple[int, int]:
+    """Pixels of the parts of an image that have colour channels, and the bytes of their
+    RGB.
+    """
+    with open_image(path) as image:
+        parts = [
+            (part.window.width * part.window.height, part)
+            for part, _ in coloured_parts(image)
+        ]
+    return sum(count for count, _ in parts), sum(
+        3 * count * TYPE_BYTES.get(part.types[0], 4) for count, part in parts
+    )
+
+
+def bin_index(sensor: Sensor, rgb: Array) -> Any:
+    """Return the numbers (n,) of the bins of linear RGB (n, 3), of `BINS` along each
+    channel of encoded RGB.
+    """
+    codes = np.interp(rgb, sensor.decoding, np.linspace(0, BINS, 256))
+    red, green, blue = np.minimum(codes, BINS - 1).astype(int).T
+    return (red * BINS + green) * BINS + blue
+
+
+def _distinct(sample: Array, occupied: Array) -> PixelSample:
+    """Each sampled colour once; the colours of the bins for an empty sample."""
+    rgb, counts = np.unique(
+        sample if len(sample) else occupied, axis=0, return_counts=True
+    )
+    return PixelSample(rgb, counts / counts.sum())
