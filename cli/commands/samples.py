@@ -13,8 +13,8 @@ from ..output.console import paragraph, say
 
 @click.command(
     "samples",
-    help="""Copy images, scenes, palettes and measurements into FOLDER, as files to try
-    uplift with.
+    help="""Copy images, scenes, palettes and measurements into FOLDER, as files to
+    try uplift with.
 
     All commands in the documentation and in these help texts run in that folder, those
     of a help text after 'uplift build --atlas macbeth --dim 32'. Files that are there

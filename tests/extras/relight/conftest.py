@@ -1,0 +1,5 @@
+"""Fixtures of the tests of textures."""
+
+from tests.extras.texture.conftest import colours
+
+__all__ = ["colours"]
