@@ -10,7 +10,7 @@ import numpy as np
 
 from benchmarks import record
 from tests.atlas.vendor_files import VENDORS, Vendor, sample
-from uplift.atlas import FORMATS, Atlas, read_atlas
+from uplift.atlas import Atlas, known_formats, read_atlas
 from uplift.common.errors import UpliftWarning
 
 UPLIFT = "uplift"
@@ -39,7 +39,7 @@ def main() -> None:
     atlas = sample(read_atlas("macbeth"))
     found = {vendor.name: largest_difference(vendor, atlas) for vendor in VENDORS}
     rows = []
-    for each in FORMATS:
+    for each in known_formats():
         names = [vendor.name for vendor in VENDORS if vendor.format == each.name]
         largest = max((found[name] for name in names), default=None)
         row = {

@@ -12,6 +12,7 @@ from benchmarks.performance import CHECKED, MODES, run_header
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.arrays import Array
+from uplift.extras.report.rebuild import recorded_atlas
 from uplift.lab.chart.measure import perturb_method, select_methods
 from uplift.lab.study.plots import plot_locality, plot_map
 from uplift.lab.study.sensitivity import (
@@ -28,7 +29,6 @@ from uplift.lab.study.stability import (
     study_stability,
 )
 from uplift.lookup import Cube
-from uplift.pipeline.rebuild import recorded_atlas
 
 FOLDER = DOCS / "stability"
 PLAIN = "moments-16"

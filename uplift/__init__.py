@@ -11,14 +11,16 @@ out.
     cube = uplift.load("macbeth.uplift")
     cube.reflectance([0.8, 0.2, 0.1], wavelengths=range(380, 781, 5))
 
-``import uplift`` loads no other module of the package. The first use of a name below
-imports its module.
+``import uplift`` loads no room of the package. The first use of a name below imports
+its module, and that of a part which the core does not have imports the part.
 """
 
 from __future__ import annotations
 
 import importlib
 from typing import TYPE_CHECKING, Any
+
+from uplift.common.extensions import register
 
 if TYPE_CHECKING:
     from uplift import bulk
@@ -41,9 +43,9 @@ if TYPE_CHECKING:
     from uplift.extras.emission.build import build_emission
     from uplift.extras.emission.lamps import read_lamp
     from uplift.extras.emission.lookup import EmissionTable, load_emission
+    from uplift.extras.looks.look import Look, read_looks
     from uplift.lookup import Cube, load
     from uplift.pipeline.build import build
-    from uplift.pipeline.look import Look, read_looks
 
 __all__ = [
     "Atlas",
@@ -82,8 +84,26 @@ _EXPORTS = {
     "uplift.extras.emission.lookup": ("EmissionTable", "load_emission"),
     "uplift.lookup": ("Cube", "load"),
     "uplift.pipeline.build": ("build",),
-    "uplift.pipeline.look": ("Look", "read_looks"),
+    "uplift.extras.looks.look": ("Look", "read_looks"),
 }
+_PARTS = {
+    ("formats", "outside"): "uplift.extras.formats:FORMATS",
+    (
+        "growth",
+        "coarse-to-fine",
+    ): "uplift.extras.thesis.growth_coarse:grow_coarse_to_fine",
+    (
+        "growth",
+        "neighbours",
+    ): "uplift.extras.thesis.growth_neighbours:grow_from_neighbours",
+    ("solver", "stock"): "uplift.extras.thesis.stock_solvers:as_method",
+    ("looks", "targets"): "uplift.extras.looks.targets:targets_of",
+    ("scene", "images"): "uplift.extras.texture.scene_colours:as_images",
+    ("notebook", "atlas"): "uplift.extras.pages.notebook:atlas_html",
+    ("notebook", "cube"): "uplift.extras.pages.notebook:cube_html",
+}
+for (_kind, _name), _location in _PARTS.items():
+    register(_kind, _name, _location)
 _HOMES = {name: module for module, names in _EXPORTS.items() for name in names}
 
 

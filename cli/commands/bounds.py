@@ -24,8 +24,8 @@ from .query import Answers, colour_options, result_object
 
 if TYPE_CHECKING:
     from uplift.colorimetry.lights import Illuminant
+    from uplift.extras.looks.metamer_bounds import Bounds
     from uplift.lookup import Cube
-    from uplift.lookup.metamer_bounds import Bounds
     from uplift.lookup.query import QueryResult
 
 Block = tuple[Sequence["QueryResult"], Sequence["Bounds"]]
@@ -81,7 +81,7 @@ def command(
     import numpy as np
 
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
-    from uplift.lookup.metamer_bounds import bounds
+    from uplift.extras.looks.metamer_bounds import bounds
 
     check_outputs(plot_path, html)
     answers = Answers(lights=lights or RELIGHT_LIGHTS, **colours)

@@ -103,9 +103,9 @@ def _check(
     """Return the record of a check, the rebuilt cube if there is one, and the error
     that prevented the comparison.
     """
+    from uplift.extras.report.rebuild import rebuild
     from uplift.extras.report.regression import compare_rebuilt
     from uplift.lookup import load
-    from uplift.pipeline.rebuild import rebuild
 
     rebuilt = comparison = error = None
     noted: list[UpliftWarning] = []

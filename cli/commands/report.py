@@ -70,9 +70,9 @@ def command(
     from uplift.common.files import write_text
     from uplift.extras.report.assessment import assess
     from uplift.extras.report.page import render_report, to_json
+    from uplift.extras.report.rebuild import recorded_atlas, recorded_files
     from uplift.lookup import load
     from uplift.lookup.cube import find_file
-    from uplift.pipeline.rebuild import recorded_atlas, recorded_files
 
     path = output
     if style == "html":

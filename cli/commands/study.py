@@ -352,10 +352,10 @@ def sensitivity(
     enable_jit_cache()
     from uplift.colorimetry import observer
     from uplift.colorimetry.lights import NARROW_BAND_LIGHT
+    from uplift.extras.report.rebuild import recorded_atlas, recorded_files
     from uplift.lab.chart.measure import perturb_method, select_methods
     from uplift.lab.study.sensitivity import study_sensitivity
     from uplift.lookup import load
-    from uplift.pipeline.rebuild import recorded_atlas, recorded_files
 
     others = select_methods(methods) if methods else ()
     loaded = load(cube)

@@ -151,7 +151,7 @@ def test_update_replaces_failed_cubes_that_can_be_rebuilt(
 def test_atlases_are_searched_for_in_given_folders(
     run, shown, home, monkeypatch, macbeth
 ):
-    monkeypatch.setattr("uplift.pipeline.rebuild.shipped_atlases", tuple)
+    monkeypatch.setattr("uplift.extras.report.rebuild.shipped_atlases", tuple)
     with pytest.warns(uplift.UpliftWarning):
         uplift.build(macbeth, dim=3, coefficients=4).save(home / "cube.uplift")
     result = run("check", "cube.uplift", code=2)

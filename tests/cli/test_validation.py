@@ -21,7 +21,7 @@ COMPUTES = {
     "advise": "uplift.extras.scene.advice.posterior",
     "build": "uplift.pipeline.entries.fit_constraints",
     "chart": "uplift.lab.chart.measure.measure_methods",
-    "check": "uplift.pipeline.rebuild.rebuild",
+    "check": "uplift.extras.report.rebuild.rebuild",
     "compare": "uplift.lab.comparison.compare.error_statistics",
     "diff": "uplift.extras.report.diff.diff_cubes",
     "lights build": "uplift.extras.emission.build.EmissionTable",

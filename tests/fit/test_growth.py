@@ -14,9 +14,9 @@ from hypothesis.extra.numpy import arrays
 from uplift import build
 from uplift.colorimetry import observer
 from uplift.common.progress import ignore_progress
+from uplift.extras.thesis.growth_coarse import grow_coarse_to_fine, strides
 from uplift.fit.base import smooth
 from uplift.fit.growth import Growth, improve
-from uplift.fit.growth_coarse import grow_coarse_to_fine, strides
 from uplift.fit.growth_outward import grow_outward, shells
 from uplift.fit.prior import Prior
 from uplift.fit.problem import Nodes, Problem, nodes_of
@@ -163,7 +163,7 @@ def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch, 
     ]
     for order in ([1], [4, 2, 1]):
         monkeypatch.setattr(
-            "uplift.fit.growth_coarse.strides", lambda dim, order=order: order
+            "uplift.extras.thesis.growth_coarse.strides", lambda dim, order=order: order
         )
         points = fitted(MODEL, sensor, lattice, rgb, grow_coarse_to_fine)[0]
         assert points.round.max() == len(order) - 1

@@ -30,6 +30,7 @@ from uplift.common.files import file_digest
 from uplift.cube import CubeData, read, summarise
 from uplift.cube.file import POINTS
 from uplift.extras.palette import design, matrix, read_palette, standard_model
+from uplift.extras.report.rebuild import recorded_atlas
 from uplift.extras.scene.plan import read_scene_file
 from uplift.extras.scene.plan.files import FORMAT, read_plan
 from uplift.extras.texture import Counts, convert
@@ -39,7 +40,6 @@ from uplift.lattice import Lattice, PointTable
 from uplift.lookup import MODES, Cube, load
 from uplift.lookup.query import query
 from uplift.pipeline.options import Options
-from uplift.pipeline.rebuild import recorded_atlas
 
 # --- atlases ---
 

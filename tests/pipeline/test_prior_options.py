@@ -14,8 +14,8 @@ from uplift.atlas import Atlas, Entry, read_atlas
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.observer import light
 from uplift.common.errors import CubeFileError, OptionError, UnknownNameError
+from uplift.extras.report.rebuild import rebuild
 from uplift.lookup import load
-from uplift.pipeline.rebuild import rebuild
 
 SMALL = {"dim": 8, "coefficients": 9}
 TCS = ATLASES / "tcs.txt"

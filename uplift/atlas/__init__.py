@@ -3,7 +3,7 @@ resampling.
 """
 
 from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source, merge
-from uplift.atlas.formats import FORMATS, Format
+from uplift.atlas.formats import Format, known_formats
 from uplift.atlas.resample import Clip, Resampled, on_grid, resample
 from uplift.atlas.sources import (
     ShippedAtlas,
@@ -14,7 +14,6 @@ from uplift.atlas.sources import (
 )
 
 __all__ = [
-    "FORMATS",
     "Atlas",
     "Clip",
     "Entry",
@@ -25,6 +24,7 @@ __all__ = [
     "SkippedEntry",
     "Source",
     "from_distributions",
+    "known_formats",
     "merge",
     "on_grid",
     "read_atlas",

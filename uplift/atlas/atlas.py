@@ -4,7 +4,6 @@ every writer.
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
-from importlib import import_module
 from typing import overload
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from uplift.atlas.document import SourceLocation
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning, unknown_name
+from uplift.common.extensions import extension
 from uplift.common.text import listed, pluralise
 
 VISIBLE = (400.0, 700.0)
@@ -40,10 +40,6 @@ ASSUMED = ", assumed: "
 
 MAX_NAME = 1000
 """Characters of a name."""
-NOTEBOOK = "uplift.extras.pages.notebook"
-"""Module of the HTML table. It lies above this one, so it is imported by name, when a
-notebook shows an atlas.
-"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -317,7 +313,7 @@ class Atlas:
         return f"Atlas({', '.join(parts)})"
 
     def _repr_html_(self) -> str:
-        return str(import_module(NOTEBOOK).atlas_html(self))
+        return str(extension("notebook", "atlas")(self))
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -43,7 +43,7 @@ def read_atlas(
     *paths: StrPath, measured: Measured = "auto", missing: Missing = "refuse"
 ) -> Atlas:
     """Read atlas files into one atlas. The content of a file determines its format, one
-    of `FORMATS`.
+    of `known_formats`.
 
     Parameters
     ----------

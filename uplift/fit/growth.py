@@ -4,8 +4,8 @@
 Nodes are fitted in rounds, in one of three orders (docs/accuracy.md):
 
 - `uplift.fit.growth_outward`, the default: outward from the seeds, in shells.
-- `uplift.fit.growth_coarse`: from a coarse lattice to finer ones.
-- `uplift.fit.growth_thesis`: outward, each node from a fitted neighbour, as Tódová 2020
+- `uplift.extras.thesis.growth_coarse`: from a coarse lattice to finer ones.
+- `uplift.extras.thesis.growth_neighbours`: outward, each node from a fitted neighbour, as Tódová 2020
   does.
 
 In the first two the answer at a node is the spectrum of its colour that is nearest to

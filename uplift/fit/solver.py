@@ -4,7 +4,7 @@
 minimise |R⁻¹ (p − p₀)|² subject to r(p) = t, by damped steps (Nocedal & Wright 2006,
 "Numerical optimization", 18.1). `LeastChange` is a solver of optimistix for many
 problems at a time, each with its own damping. `solve` steps it, or any other solver of
-optimistix (`uplift.fit.stock_solvers`), over batches of fixed shapes.
+optimistix (`uplift.extras.thesis.stock_solvers`), over batches of fixed shapes.
 """
 
 import abc

@@ -7,7 +7,6 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from functools import partial
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +17,7 @@ from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.lights import Illuminant
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import unknown_name
+from uplift.common.extensions import extension
 from uplift.cube import CubeData, read, write
 from uplift.lookup import blocks
 from uplift.lookup.interpolate import (
@@ -42,13 +42,6 @@ MAX_TABLE_BYTES = 1 << 28
 TABULATED = ("spectra", "nearest")
 """Modes that can use a table, which are methods of
 `uplift.lookup.node_table.NodeTable`.
-"""
-OBSERVER = "uplift.colorimetry.observer"
-"""Module that reads the tables of illuminants. It is imported by name, when a light is.
-"""
-NOTEBOOK = "uplift.extras.pages.notebook"
-"""Module of the HTML. It lies above this one, so it is imported by name, when HTML is
-requested.
 """
 
 
@@ -80,7 +73,7 @@ class Cube:
 
     def _repr_html_(self) -> str:
         """HTML for notebooks: facts, swatches of the atlas entries, and spectra."""
-        return str(import_module(NOTEBOOK).cube_html(self))
+        return str(extension("notebook", "cube")(self))
 
     @property
     def dim(self) -> int:
@@ -447,7 +440,9 @@ def expected_errors(
         return None
     lit: Light | None = light if not isinstance(light, Illuminant) else None
     if isinstance(light, Illuminant):
-        lit = import_module(OBSERVER).light(light, cube.observer, *data.sensor.range)
+        from uplift.colorimetry import observer  # reads tables of illuminants
+
+        lit = observer.light(light, cube.observer, *data.sensor.range)
     function: blocks.Function = partial(node_errors, data)
     if lit is not None and lit.name != data.error_illuminant:
         from uplift.lookup.light_errors import light_errors

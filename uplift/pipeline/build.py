@@ -8,7 +8,6 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
@@ -23,15 +22,16 @@ from uplift.colorimetry.lights import (
 )
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Mask, StrPath
-from uplift.common.errors import OptionError
+from uplift.common.extensions import extension
 from uplift.common.machine import single_threaded_blas
 from uplift.common.progress import ProgressCallback, ignore_progress
-from uplift.common.text import format_value, pluralise
+from uplift.common.text import pluralise
 from uplift.common.version import version
 from uplift.cube import CubeData
-from uplift.fit import growth, growth_coarse, growth_outward, growth_thesis, seeds
+from uplift.fit import growth, seeds
 from uplift.fit.base import learn_base
 from uplift.fit.families import Family
+from uplift.fit.growth_outward import grow_outward
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.store import store
@@ -44,19 +44,17 @@ from uplift.pipeline.entries import AtlasLike, Constraints, MeasuredEntries
 from uplift.pipeline.options import (
     AUTO,
     CUSTOM,
+    OUTWARD,
     SOLVERS,
     GrowthName,
     ModelName,
     NeutralName,
     Options,
     PriorName,
-    SolverName,
     check_memory,
 )
 
 if TYPE_CHECKING:
-    from uplift.fit.stock_solvers import Solver
-    from uplift.pipeline.look import LooksLike
 
     class SceneLike(Protocol):
         """Colours that restrict a build to the nodes that they require."""
@@ -74,13 +72,6 @@ if TYPE_CHECKING:
             JSON values.
             """
             ...
-
-
-GROWTH: dict[str, Callable[..., growth.Growth]] = {
-    "outward": growth_outward.grow_outward,
-    "coarse-to-fine": growth_coarse.grow_coarse_to_fine,
-    "neighbours": growth_thesis.grow_from_neighbours,
-}
 
 
 def build(
@@ -102,13 +93,13 @@ def build(
     prior: PriorName = "learnt",
     neutral: NeutralName = "expected",
     library: AtlasLike = None,
-    looks: LooksLike | None = None,
+    looks: Any = None,
     leave_out: Sequence[str] = (),
     threshold: float = 1e-4,
     auto_tolerance: float = 0.5,
     seed_corners: bool = False,
     growth: GrowthName = "outward",
-    solver: SolverName | Solver = "least-change",
+    solver: Any = "least-change",
     debug: bool = False,
     scene: SceneLike | StrPath | Sequence[StrPath] | None = None,
     progress: ProgressCallback = ignore_progress,
@@ -245,20 +236,16 @@ def build(
     recorded["solver"] = solver if isinstance(solver, str) else CUSTOM
     options = Options(**recorded)
     if isinstance(scene, str | os.PathLike | Sequence):
-        from uplift.extras.texture.scene_colours import (
-            Images,
-        )  # a build without images needs no image code
-
-        scene = Images(
-            tuple(map(Path, [scene] if isinstance(scene, str | os.PathLike) else scene))
-        )
+        colours: SceneLike | None = extension("scene", "images")(scene)
+    else:
+        colours = scene
     check_memory(options)
     options, problem = problem_of(options, observer, solver)
-    return build_stages(atlas, options, problem, library, looks, scene, progress)
+    return build_stages(atlas, options, problem, library, looks, colours, progress)
 
 
 def problem_of(
-    options: Options, observer: str | Camera, solver: str | Solver
+    options: Options, observer: str | Camera, solver: Any
 ) -> tuple[Options, Problem]:
     """Return the problem of a build, and options with the names of the space and of a
     camera, not aliases or files.
@@ -275,17 +262,7 @@ def problem_of(
         sensor, options.spectrum_model(), tuple(lights), error_light, options.threshold
     )
     if solver != SOLVERS[0]:
-        from uplift.fit import stock_solvers
-
-        if isinstance(solver, stock_solvers.Solver):
-            method = stock_solvers.RowByRow(solver)
-        elif isinstance(solver, str) and solver != CUSTOM:
-            method = stock_solvers.stock_solver(solver, problem.tolerance)
-        else:
-            raise OptionError(
-                "solver must be a name or a solver of optimistix, got "
-                f"{format_value(solver)}"
-            )
+        method = extension("solver", "stock")(solver, problem.tolerance)
         problem = replace(problem, method=method)
     named: dict[str, Any] = {
         "space" if sensor.sensitivities is None else "observer": sensor.space
@@ -345,7 +322,7 @@ def build_stages(
     options: Options,
     problem: Problem,
     library: AtlasLike = None,
-    looks: LooksLike | None = None,
+    looks: Any = None,
     scene: SceneLike | None = None,
     progress: ProgressCallback = ignore_progress,
     learn: Callable[..., Learnt] = learn,
@@ -366,8 +343,7 @@ def build_stages(
     measured, outside = entries.split_by_gamut(atlas, sensor)
     targets = None
     if looks is not None:
-        from uplift.pipeline.looks import targets_of
-
+        targets_of = extension("looks", "targets")
         targets = targets_of(looks, entry_model, sensor, atlas.names, measured)
 
     constraints, prior, relevance = learn(problem, entry_model, measured, families)
@@ -406,7 +382,10 @@ def build_stages(
     expected = partial(
         seeds.initial_guess, prior=prior, seeds=seeded, entries=own, blend=blend
     )
-    grown = GROWTH[options.growth](problem, nodes, expected, seeded.points, progress)
+    grow = grow_outward
+    if options.growth != OUTWARD:
+        grow = extension("growth", options.growth)
+    grown = grow(problem, nodes, expected, seeded.points, progress)
     improvements = growth.improve(
         grown, growth.THESIS_STEPS if neighbours else growth.STEPS
     )

@@ -24,6 +24,7 @@ ModelName = Literal["moments", "sigmoid"]
 PriorName = Literal["learnt", "smooth"]
 NeutralName = Literal["expected", "flat"]
 GrowthName = Literal["outward", "coarse-to-fine", "neighbours"]
+OUTWARD = "outward"
 SolverName = Literal["least-change", "dogleg", "levenberg-marquardt", "gauss-newton"]
 MODELS = get_args(ModelName)
 SOLVERS = get_args(SolverName)

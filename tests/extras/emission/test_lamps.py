@@ -14,7 +14,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.lights import Lamp
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError
 from uplift.extras.emission.lamps import find_light, read_lamp
-from uplift.pipeline.rebuild import rebuild
+from uplift.extras.report.rebuild import rebuild
 
 NM = np.arange(380.0, 781.0, 5.0)
 WARM = np.exp((NM - 560) / 90)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from uplift.colorimetry import observer
+from uplift.extras.looks.metamer_bounds import bounds
 from uplift.extras.pages.plots import plot_bounds
-from uplift.lookup.metamer_bounds import bounds
 
 
 @pytest.fixture(scope="module")

@@ -19,8 +19,8 @@ from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.srgb import hex_codes, to_display_codes
 from uplift.common.errors import OptionError
+from uplift.extras.looks.metamer_bounds import bounds
 from uplift.extras.report.look_page import page
-from uplift.lookup.metamer_bounds import bounds
 
 LIGHTS = ("A", "FL11")
 

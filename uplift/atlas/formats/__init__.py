@@ -8,11 +8,10 @@ from typing import Any
 from uplift.atlas.atlas import Atlas
 from uplift.atlas.document import Document
 from uplift.atlas.measurements import Measurements
+from uplift.common.extensions import installed, registered
 
-LIBRARY = ".sli"
-"""Suffix of the numbers of an ENVI library, which have no mark: its header is another
-file.
-"""
+KIND = "formats"
+"""Kind of the extensions that are sequences of `Format`."""
 
 
 @dataclass(frozen=True)
@@ -24,18 +23,21 @@ class Format:
     name : str
         Name for listings.
     suffixes : tuple of str
-        Usual suffixes. The content determines the format, but for ``.sli``.
+        Usual suffixes. The content determines the format.
     pattern : str or bytes
         Regular expression that is found in the text, or the bytes, of a file of the
         format.
     module : str
-        Module of ``uplift.atlas.formats`` that reads it.
+        Module whose function ``read`` takes a `Document` and returns `Measurements`.
     library : str
         Distribution that parses the format; empty for uplift itself.
     extra : str
         Extra that installs the distribution; empty if it is required.
     written : bool
         Whether `write_atlas` writes the format.
+    unmarked : str
+        Suffix of files that have no mark, which determines the format; empty if there
+        are none.
     """
 
     name: str
@@ -45,40 +47,47 @@ class Format:
     library: str = ""
     extra: str = ""
     written: bool = False
+    unmarked: str = ""
+
+    def has(self, document: Document) -> bool:
+        """Return whether a document is of this format."""
+        if self.unmarked and document.path.lower().endswith(self.unmarked):
+            return True
+        content: Any = (
+            document.data if isinstance(self.pattern, bytes) else document.text
+        )
+        return re.search(self.pattern, content) is not None
 
 
-XML = r"\A\s*<(?s:.{0,4000}?<)?(?:[\w.-]+:)?"
-"""Text before the name of an element near the beginning of an XML file."""
-FORMATS = (
-    Format(
-        "spreadsheet", (".xlsx", ".xls", ".ods"), rb"\A(PK\x03\x04|\xd0\xcf\x11\xe0)", "spreadsheet",
-        "python-calamine", "io",
-    ),
-    Format("ENVI spectral library", (LIBRARY, ".hdr"), rb"\A\s*ENVI", "envi", "spectral", "io"),
-    Format("CxF3", (".cxf",), XML + r"CxF\s[^>]{0,4000}colorexchangeformat\.com/CxF3-core", "cxf", "colour-cxf", "io"),
-    Format("IES TM-27-14", (".spdx",), XML + r"IESTM2714[\s/>]", "tm27", "colour-science"),
-    Format("JCAMP-DX", (".dx", ".jdx"), r"(?i)\A(\s*\$\$.*\n)*\s*##\s*TITLE\s*=", "jcamp_dx", "jcamp", "io"),
-    Format("CGATS", (".txt", ".ti3", ".sp"), r"(?m)^[^\S\n]*\"?BEGIN_DATA_FORMAT[\"\t ,;]*$", "cgats"),
-    Format(
-        "ART measurement archive", (".txt", ".ark"),
-        r"(?im)\A\s*ART\s+measurement\s+archive|^[^\S\n]*Entry\s+ID\s*:", "art", written=True,
-    ),
-    Format("table", (".csv", ".txt", ".spd"), "", "table", written=True),
-)  # fmt: skip
-"""Formats; the last one takes all other files."""
+ART = Format(
+    name="ART measurement archive",
+    suffixes=(".txt", ".ark"),
+    pattern=r"(?im)\A\s*ART\s+measurement\s+archive|^[^\S\n]*Entry\s+ID\s*:",
+    module="uplift.atlas.formats.art",
+    written=True,
+)
+TABLE = Format(
+    name="table",
+    suffixes=(".csv", ".txt", ".spd"),
+    pattern="",
+    module="uplift.atlas.formats.table",
+    written=True,
+)
+
+
+def known_formats() -> tuple[Format, ...]:
+    """Return the formats of this package; the last one takes all other files."""
+    outside = [form for forms in registered(KIND) for form in forms]
+    return (*outside, ART, TABLE)
 
 
 def read_any(document: Document) -> tuple[Format, Measurements | Atlas]:
-    """Read a document by the first format whose pattern it has, and return both. Raise
+    """Read a document by the first format that it has, and return both. Raise
     `AtlasError`.
     """
-    for each in FORMATS:
-        content: Any = (
-            document.data if isinstance(each.pattern, bytes) else document.text
-        )
-        is_library = LIBRARY in each.suffixes and document.path.lower().endswith(
-            LIBRARY
-        )
-        if is_library or re.search(each.pattern, content):
-            break  # the last one has every document
-    return each, import_module(f"{__name__}.{each.module}").read(document)
+    *marked, table = known_formats()
+    chosen = next((form for form in marked if form.has(document)), None)
+    if chosen is None:
+        installed_forms = [form for forms in installed(KIND) for form in forms]
+        chosen = next((form for form in installed_forms if form.has(document)), table)
+    return chosen, import_module(chosen.module).read(document)

@@ -14,6 +14,7 @@ from uplift.colorimetry.gamut import SRGB, Gamut
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array, StrPath
+from uplift.extras.looks.metamer_bounds import Bounds
 from uplift.extras.pages.figure import (
     ACCENT,
     GREY,
@@ -27,7 +28,6 @@ from uplift.extras.pages.figure import (
 )
 from uplift.lookup import Cube
 from uplift.lookup.light_errors import LIKELY
-from uplift.lookup.metamer_bounds import Bounds
 from uplift.lookup.query import QueryResult
 
 MAX_LEGEND = 12  # largest number of lines with a legend

@@ -19,10 +19,10 @@ from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
+from uplift.extras.looks.metamer_bounds import Bounds
 from uplift.extras.pages.html import render, resource
 from uplift.lookup import Cube
 from uplift.lookup.light_errors import LIKELY
-from uplift.lookup.metamer_bounds import Bounds
 from uplift.models import Moments
 from uplift.models.moments import MAX_COUNT
 

@@ -2,8 +2,9 @@
 them.
 """
 
+import os
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ import numpy as np
 from uplift.colorimetry.gamut import check_method
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import find_space
-from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.arrays import Array, Indices, Mask, StrPath
 from uplift.common.errors import OptionError, TextureError
 from uplift.common.files import file_digest
 from uplift.common.progress import Progress, ProgressCallback
@@ -37,6 +38,12 @@ MAX_PIXELS = 1 << 24
 MAX_LIST = 256
 """Most colours whose spectra a list holds, with an index of one byte per pixel."""
 TYPE_BYTES = {"uint8": 1, "uint16": 2, "half": 2}
+
+
+def as_images(paths: StrPath | Sequence[StrPath]) -> "Images":
+    """Return the scene of one image or several."""
+    named = [paths] if isinstance(paths, str | os.PathLike) else paths
+    return Images(tuple(map(Path, named)))
 
 
 @dataclass(frozen=True)

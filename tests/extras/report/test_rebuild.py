@@ -9,14 +9,14 @@ import uplift
 from tests.helpers import quiet_build, raises, warns
 from uplift.common.errors import CubeFileError
 from uplift.cube import digest
+from uplift.extras.report.rebuild import rebuild, recorded_atlas
 from uplift.lookup import Cube
-from uplift.pipeline.rebuild import rebuild, recorded_atlas
 
 
 @pytest.fixture
 def home(tmp_path, monkeypatch):
     """An empty working folder, without shipped atlases."""
-    monkeypatch.setattr("uplift.pipeline.rebuild.shipped_atlases", tuple)
+    monkeypatch.setattr("uplift.extras.report.rebuild.shipped_atlases", tuple)
     (tmp_path / "home").mkdir()
     monkeypatch.chdir(tmp_path / "home")
     return tmp_path / "home"
@@ -81,7 +81,7 @@ def test_a_recorded_name_opens_no_file_outside_the_folder_of_the_cube(
     shutil.copy(repository / "atlases" / "macbeth.txt", elsewhere)
     monkeypatch.chdir(elsewhere)
     opened = []
-    monkeypatch.setattr("uplift.pipeline.rebuild.read_document", opened.append)
+    monkeypatch.setattr("uplift.extras.report.rebuild.read_document", opened.append)
     digest = tiny_cube.data.provenance["atlases"][0]["digest"]
     cube = with_provenance(
         tiny_cube, atlases=[{"name": name.format(elsewhere), "digest": digest}]

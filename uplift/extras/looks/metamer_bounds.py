@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry import mismatch
 from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.sensor import Light, in_unit_cube
 from uplift.colorimetry.solid import solid_volume
 from uplift.common.arrays import Array
+from uplift.extras.looks import mismatch
 from uplift.lookup.cube import Cube
 from uplift.lookup.light_errors import lab_errors
 from uplift.lookup.outside import reflectance_anywhere
@@ -91,7 +91,7 @@ def bounds(
     wavelengths of the sensor.
 
     Colours outside [0, 1] are answered by `reflectance_anywhere`; ``divisions`` (0 to
-    4) sets the number of boundary points, see `uplift.colorimetry.mismatch.COUNTS`.
+    4) sets the number of boundary points, see `uplift.extras.looks.mismatch.COUNTS`.
     Raises `ColourError` if no reflectance has a colour.
     """
     data = cube.data

@@ -16,16 +16,8 @@ from uplift.colorimetry.srgb import hex_codes, parse_colour
 from uplift.common.arrays import Array
 from uplift.common.errors import LookError, UpliftError, UpliftWarning
 from uplift.cube import AtlasTable
-from uplift.fit.base import NO_FREEDOM
-from uplift.fit.entries import MAX_STEPS, join_entries
-from uplift.fit.looks import MET, LookGoal, design_reflectance, fit_designs
-from uplift.fit.prior import Prior
-from uplift.fit.problem import Problem
-from uplift.fit.solver import solve_in_numpy
-from uplift.models import evaluate
-from uplift.models.model import Model
-from uplift.pipeline.entries import STACK_LEVEL, Constraints, MeasuredEntries
-from uplift.pipeline.look import (
+from uplift.extras.looks.design import MET, LookGoal, design_reflectance, fit_designs
+from uplift.extras.looks.look import (
     Look,
     LooksLike,
     about,
@@ -33,6 +25,14 @@ from uplift.pipeline.look import (
     format_rgb,
     look_error,
 )
+from uplift.fit.base import NO_FREEDOM
+from uplift.fit.entries import MAX_STEPS, join_entries
+from uplift.fit.prior import Prior
+from uplift.fit.problem import Problem
+from uplift.fit.solver import solve_in_numpy
+from uplift.models import evaluate
+from uplift.models.model import Model
+from uplift.pipeline.entries import STACK_LEVEL, Constraints, MeasuredEntries
 
 SAME_CODE = 0.5
 """Colours whose 8-bit codes differ by at most this are the same: a query of one would

@@ -10,11 +10,12 @@ from scipy.spatial import ConvexHull
 
 from tests.helpers import raises
 from uplift.atlas import read_atlas, resample, shipped_atlases
-from uplift.colorimetry import extreme_spectra as extremes
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
-from uplift.colorimetry.extreme_spectra import extreme_spectra
-from uplift.colorimetry.mismatch import (
+from uplift.common.errors import ColourError
+from uplift.extras.looks import extreme_spectra as extremes
+from uplift.extras.looks.extreme_spectra import extreme_spectra
+from uplift.extras.looks.mismatch import (
     COUNTS,
     largest_difference,
     mesh_volume,
@@ -22,7 +23,6 @@ from uplift.colorimetry.mismatch import (
     outline,
     sphere,
 )
-from uplift.common.errors import ColourError
 
 LIGHTS = ("A", "FL11", "HP1", "LED-B3")
 ROUNDING = 1e-9

@@ -24,10 +24,10 @@ from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.common.version import is_older, version
 from uplift.cube import CubeData
+from uplift.extras.looks.targets import recorded_looks
 from uplift.lattice import EntryBoxes
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
-from uplift.pipeline.looks import recorded_looks
 from uplift.pipeline.options import CUSTOM, Options, recorded_options
 
 REBUILD = "build the cube again"

@@ -20,6 +20,8 @@ import numpy as np
 import optimistix
 
 from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
+from uplift.common.text import format_value
 from uplift.fit.solver import NO_TAGS, BatchSolver, Options, Stepped
 from uplift.models.minimum_norm import ForwardMap
 
@@ -65,6 +67,19 @@ class RowByRow:
     def schedule(self) -> Iterator[int]:
         """Yield the steps of each pass: solvers start again in each."""
         return repeat(MAX_STEPS, MAX_PASSES)
+
+
+def as_method(solver: Any, tolerance: float) -> RowByRow:
+    """Return the method of a solver, or of the name of one, that stops at a residual in
+    linear RGB. Raise `OptionError` for anything else.
+    """
+    if isinstance(solver, Solver):
+        return RowByRow(solver)
+    if isinstance(solver, str) and solver in STOCK:
+        return stock_solver(solver, tolerance)
+    raise OptionError(
+        f"solver must be a name or a solver of optimistix, got {format_value(solver)}"
+    )
 
 
 @cache

@@ -4,7 +4,7 @@ light.
 Of all reflectances in [0, 1] with linear RGB r under the build illuminant, the XYZ
 under a second light fill a convex body: the object-colour solid of the six sensors, cut
 at r. In each direction its boundary is the XYZ of one extreme reflectance
-(`uplift.colorimetry.extreme_spectra`).
+(`uplift.extras.looks.extreme_spectra`).
 
 ΔE00 is not convex, so the search for the metamer that differs most from a given one
 starts in 20 parts of the volume: the triangles of directions within each triangle of
@@ -26,11 +26,11 @@ from typing import NamedTuple
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000, lab, lab_jacobian
-from uplift.colorimetry.extreme_spectra import extreme_spectra, first_basis
 from uplift.colorimetry.sensor import Light, Sensor, format_rgb
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Indices, blocks
 from uplift.common.errors import ColourError
+from uplift.extras.looks.extreme_spectra import extreme_spectra, first_basis
 
 COUNTS = (12, 42, 162, 642, 2562)
 """Directions after 0 to 4 divisions of the icosahedron."""

@@ -11,9 +11,9 @@ import pytest
 
 from tests.atlas.vendor_files import VENDORS, sample
 from tests.helpers import raises, warns
-from uplift.atlas import FORMATS, read_atlas
-from uplift.atlas.formats import spreadsheet
+from uplift.atlas import known_formats, read_atlas
 from uplift.common.errors import AtlasError, UnknownNameError
+from uplift.extras.formats import spreadsheet
 
 MACBETH = sample(read_atlas("macbeth"))
 LAYOUTS = {vendor.name: vendor for vendor in VENDORS}
@@ -176,7 +176,9 @@ def test_transmittances_of_cxf_are_skipped(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "format", [each for each in FORMATS if each.extra], ids=lambda each: each.name
+    "format",
+    [form for form in known_formats() if form.extra],
+    ids=lambda form: form.name,
 )
 def test_missing_packages_are_named(tmp_path, monkeypatch, format):
     modules = {"colour-cxf": "colour_cxf", "python-calamine": "python_calamine"}

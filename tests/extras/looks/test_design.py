@@ -14,8 +14,8 @@ from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
 from uplift.colorimetry.sensor import in_unit_cube
+from uplift.extras.looks.design import MET, LookGoal, design_reflectance, fit_designs
 from uplift.fit.entries import fit_entries, join_entries
-from uplift.fit.looks import MET, LookGoal, design_reflectance, fit_designs
 from uplift.fit.prior import fit_prior
 from uplift.fit.problem import Problem
 from uplift.models import Moments, evaluate

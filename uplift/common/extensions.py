@@ -1,0 +1,44 @@
+"""Parts that rooms outside the core, and other distributions, add to it.
+
+The core knows their kinds and names, not their modules. `uplift` registers its own when
+it is imported; another distribution has an entry point in the group ``uplift.KIND``.
+"""
+
+from importlib import import_module
+from typing import Any
+
+from uplift.common.errors import OptionError
+
+_LOCATIONS: dict[tuple[str, str], str] = {}
+
+
+def register(kind: str, name: str, location: str) -> None:
+    """Register a part by its location, ``"module:name"``, which is imported when it is
+    first used.
+    """
+    _LOCATIONS[kind, name] = location
+
+
+def extension(kind: str, name: str) -> Any:
+    """Import the part that is registered under a kind and a name. Raise `OptionError`
+    for a part that is not installed.
+    """
+    if (kind, name) not in _LOCATIONS:
+        raise OptionError(
+            f"{kind} '{name}' is not a part of this installation",
+            hint="install all of uplift",
+        )
+    module, _, attribute = _LOCATIONS[kind, name].partition(":")
+    return getattr(import_module(module), attribute)
+
+
+def registered(kind: str) -> list[Any]:
+    """Import all parts of a kind, first those of this package, in order."""
+    return [extension(kind, name) for known, name in _LOCATIONS if known == kind]
+
+
+def installed(kind: str) -> list[Any]:
+    """Import the parts of a kind that other distributions have as entry points."""
+    from importlib.metadata import entry_points
+
+    return [point.load() for point in entry_points(group=f"uplift.{kind}")]

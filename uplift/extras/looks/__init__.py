@@ -1,0 +1,3 @@
+"""Looks: colours with given colours under other lights, and the bounds of what is
+possible.
+"""

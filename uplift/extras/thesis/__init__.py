@@ -1,0 +1,1 @@
+"""What the papers did, kept to compare: other orders of growth, and other solvers."""
