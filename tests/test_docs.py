@@ -20,7 +20,8 @@ from tests.conftest import ROOT
 from tests.examples import BLOCKS, CUBE, examples, examples_by_page, page_examples
 from tests.helpers import warns
 from tests.parts import MITSUBA, need
-from uplift.atlas import formats
+from uplift.atlas import Format
+from uplift.extras import formats
 from uplift.samples import sample_path
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -99,13 +100,11 @@ def test_the_skeleton_of_a_reader_and_its_test_run(tmp_path, monkeypatch):
     reader, registration, test = re.findall(
         r"```python\n(.*?)```", CONTRIBUTING, re.DOTALL
     )
-    module = ModuleType(f"{formats.__name__}.spectrograph")
+    module = ModuleType("uplift.extras.formats.spectrograph")
     exec(compile(reader, "reader", "exec"), module.__dict__)
     monkeypatch.setitem(sys.modules, module.__name__, module)
-    spectrograph = eval(registration, {"Format": formats.Format})
-    monkeypatch.setattr(
-        formats, "FORMATS", (*formats.FORMATS[:-1], spectrograph, formats.FORMATS[-1])
-    )
+    spectrograph = eval(registration, {"Format": Format})
+    monkeypatch.setattr(formats, "FORMATS", (*formats.FORMATS, spectrograph))
     tests: dict = {}
     exec(compile(test, "test", "exec"), tests)
     functions = [value for name, value in tests.items() if name.startswith("test_")]

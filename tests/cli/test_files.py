@@ -111,7 +111,8 @@ def inputs(home, cubes, macbeth, monkeypatch):
     for name in ("cube.uplift", "cube2.uplift", "recorded.uplift"):
         shutil.copy(cubes / "moments-8-macbeth.uplift", home / name)
     shutil.copy(
-        cubes.parent / "uplift" / "lights" / "emission.uplift", home / "lights.uplift"
+        cubes.parent / "uplift" / "extras" / "emission" / "emission.uplift",
+        home / "lights.uplift",
     )
     for name in ("image.exr", "mask.exr", "wood.1.exr", "wood.2.exr"):
         write_exr(home / name, planes(np.full((2, 2, 3), 0.5, np.float32)))
