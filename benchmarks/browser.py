@@ -45,11 +45,13 @@ SETTLE = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(
 CANVAS = """(async () => {
   await SETTLE;
   const canvas = document.getElementById("NAME");
-  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
+  const read = { willReadFrequently: true };
+  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", read);
   copy.drawImage(canvas, 0, 0);
   const codes = copy.getImageData(0, 0, canvas.width, canvas.height).data;
   let text = "";
-  for (let at = 0; at < codes.length; at += 8192) text += String.fromCharCode(...codes.subarray(at, at + 8192));
+  for (let at = 0; at < codes.length; at += 8192)
+    text += String.fromCharCode(...codes.subarray(at, at + 8192));
   return [canvas.width, canvas.height, btoa(text)];
 })()""".replace("SETTLE", SETTLE)
 """Read from a copy: the page's own canvas is drawn to and never read."""

@@ -51,7 +51,8 @@ PAIRS = {
 """Names of entries, or codes."""
 STEPS = 11
 DRAWN = (
-    "pigments", "pigments in oil", "pigments, S = √R", "pigments, S = 1", "dyes", "average", "ryb", "phosphors",
+    "pigments", "pigments in oil", "pigments, S = √R", "pigments, S = 1", "dyes",
+    "average", "ryb", "phosphors",
     "product",
 )  # fmt: skip
 """Shares are the thickness of filters and products, so that a ramp ends at its colours.

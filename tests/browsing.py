@@ -25,9 +25,11 @@ AXE = Path(__file__).parents[1] / "out" / "axe" / "axe_playwright_python" / "axe
 PLAIN_BOXES = ".scroll { background: none !important; }"
 """Contrast over gradients cannot be computed: without the cue of tables that scroll."""
 RUN = """(() => {
-  document.head.append(Object.assign(document.createElement("style"), { textContent: STYLE }));
+  const style = document.createElement("style");
+  document.head.append(Object.assign(style, { textContent: STYLE }));
+  const shown = nodes => nodes.map(node => node.html.slice(0, 200)).join(" | ");
   return axe.run(document, { resultTypes: ["violations"] }).then(({ violations }) =>
-    violations.map(({ id, nodes }) => `${id}: ${nodes.map(node => node.html.slice(0, 200)).join(" | ")}`));
+    violations.map(({ id, nodes }) => `${id}: ${shown(nodes)}`));
 })()"""
 
 

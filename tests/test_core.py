@@ -1,4 +1,4 @@
-"""The core by itself: nine rooms, copied, build a cube, load it and query it."""
+"""The core alone: nine rooms, copied, build a cube, load it and query it."""
 
 import shutil
 import subprocess

@@ -38,10 +38,11 @@ def number(value: Any, spec: str = "") -> str:
     """Format a value of the data by a format specification of Python, or "time",
     "size", "error" or "build_time".
 
-    "time" takes nanoseconds, "size" bytes: the functions of `uplift.extras.pages.format`. None
-    is an empty string, a bool a filled or an empty circle. The items of a list are
-    joined by slashes, or by commas after "list ". ``{median, min, max}`` is written as
-    "median (min–max)", ``{mean, std}`` as "mean ± std".
+    "time" takes nanoseconds, "size" bytes: the functions of
+    `uplift.extras.pages.format`. None is an empty string, a bool a filled or an empty
+    circle. The items of a list are joined by slashes, or by commas after "list ".
+    ``{median, min, max}`` is written as "median (min–max)", ``{mean, std}`` as "mean ±
+    std".
     """
     if value is None:
         return ""

@@ -57,8 +57,8 @@ one.
       uplift bounds '#8a2a20' --light A --light FL11 --html red.html
       uplift bounds --cube macbeth-32.uplift 0.8 0.2 0.1 --format json
 
-    The page of --html shows the bounds of one colour and a spectrum for every choice in them; it writes the TOML for
-    'uplift build --look'.
+    The page of --html shows the bounds of one colour and a spectrum for every choice in
+    them; it writes the TOML for 'uplift build --look'.
     """,
 )
 @colour_options

@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 ALLOWED_WITH_PLAN = {"plan_path", "output", "debug", "force", "quiet", "verbose"}
 """Parameters that may accompany --plan."""
 OF_IMAGES = ("encoding", "method", "input_space")
-"""Parameters of --scene images, in the order of `uplift.extras.texture.scene_colours.Images`."""
+"""Parameters of --scene images, in the order of
+`uplift.extras.texture.scene_colours.Images`.
+"""
 
 
 def parse_range(
@@ -50,7 +52,9 @@ def parse_range(
     "build",
     cls=options.Command,
     everyday=("files", "output", "dim", "space", "coefficients", "force"),
-    no_arguments="Measured spectra are named with --atlas: uplift build --atlas macbeth.",
+    no_arguments=(
+        "Measured spectra are named with --atlas: uplift build --atlas macbeth."
+    ),
     help="""Build an uplifting cube constrained by measured spectra.
 
     \b

@@ -10,7 +10,9 @@ from ..output.diagnostics import BAD_INPUT, EXIT_CODES, FAILED_CHECK, INTERNAL_E
 EXIT_CODE_MEANINGS = {
     "0": "success, or help was shown",
     f"{FAILED_CHECK}": "a check failed, or the reader of the output closed the pipe",
-    f"{BAD_INPUT}": "bad input: a file, a value, an option, or an output that cannot be written",
+    f"{BAD_INPUT}": (
+        "bad input: a file, a value, an option, or an output that cannot be written"
+    ),
     f"{INTERNAL_ERROR}": "an error of uplift itself: please report it",
     f"{EXIT_CODES['interrupted']}": "interrupted by Ctrl-C",
     "128 + N": "ended by signal N",
@@ -29,30 +31,34 @@ GAMUT_MEANINGS = {
         "then divide by the largest"
     ),
     "desaturate": "move towards white at constant luminance and dominant wavelength",
-    "desaturate-oklab": "move towards grey at constant lightness and hue of Oklab, which keeps the "
-    "hue of reds and "
-    "yellows better",
+    "desaturate-oklab": (
+        "move towards grey at constant lightness and hue of Oklab, which keeps the hue "
+        "of reds and yellows better"
+    ),
 }
 TEMPERATURES = """
-Temperatures such as 3200K are names too. From 4000K to 25000K they are CIE daylight of this nominal temperature, as D65
-is 6500K; below, from 1000K, black bodies.
+Temperatures such as 3200K are names too. From 4000K to 25000K they are CIE daylight of
+this nominal temperature, as D65 is 6500K; below, from 1000K, black bodies.
 """
 DEFAULT_LIGHTS = """
-Without --light, 'relight', 'bounds' and 'advise' take A, FL11 and HP1, under which RGB goes wrong most. 'build' and
-'diff' take the lights of ordinary scenes, D65, A, FL2, FL11 and LED-B3, and 'report' adds FL7, which builds do not use.
-'compare' has a smooth set and a spiky one, 'wavelengths' the illuminant of sRGB, and 'query' none: errors cost time.
+Without --light, 'relight', 'bounds' and 'advise' take A, FL11 and HP1, under which RGB
+goes wrong most. 'build' and 'diff' take the lights of ordinary scenes, D65, A, FL2,
+FL11 and LED-B3, and 'report' adds FL7, which builds do not use. 'compare' has a smooth
+set and a spiky one, 'wavelengths' the illuminant of sRGB, and 'query' none: errors cost
+time.
 """
 LAMP_FILES = """
-The file of a measured lamp is a light as well: wavelengths in nm and powers of any unit as CSV, SPD, CGATS, TM-27
-(.spdx) or another format of 'uplift atlas', or JSON of rawtoaces. 'lamps.csv:NAME' is one lamp of several.
+The file of a measured lamp is a light as well: wavelengths in nm and powers of any unit
+as CSV, SPD, CGATS, TM-27 (.spdx) or another format of 'uplift atlas', or JSON of
+rawtoaces. 'lamps.csv:NAME' is one lamp of several.
 """
 CAMERA_FILES = """
-The file of a camera is used with --space camera: wavelengths in nm and sensitivities of red, green and blue as .csv,
-.tsv or .txt, or .json of rawtoaces.
+The file of a camera is used with --space camera: wavelengths in nm and sensitivities of
+red, green and blue as .csv, .tsv or .txt, or .json of rawtoaces.
 """
 OCIO_SPACES = """
-Spaces of the configuration $OCIO, or else of OpenColorIO's built-in ACES studio configuration, are valid too, and for
---input-space x,y of red, green, blue and white.
+Spaces of the configuration $OCIO, or else of OpenColorIO's built-in ACES studio
+configuration, are valid too, and for --input-space x,y of red, green, blue and white.
 """
 Part = str | Mapping[str, str]
 """A paragraph, or a table of names and their meanings."""

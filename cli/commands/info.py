@@ -99,13 +99,9 @@ def _as_options(settings: dict[str, Any]) -> str:
             values = [
                 each["name"] if isinstance(each, dict) else each for each in values
             ]
-            words += [
-                (
-                    f"{option} "
-                    f"{shlex.quote(f'{each:g}' if isinstance(each, float) else str(each))}"
-                )
-                for each in values
-            ]
+            for item in values:
+                text = f"{item:g}" if isinstance(item, float) else str(item)
+                words.append(f"{option} {shlex.quote(text)}")
     return " ".join(words)
 
 

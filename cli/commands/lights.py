@@ -118,8 +118,8 @@ def build(
       uplift lights info --plot lights.png --html lights.html
       uplift lights info lights.uplift --format json
 
-    Expected errors are ΔE00 of the ColorChecker under the light, over the nodes of the table; the page has those of
-    random lights, which differ.
+    Expected errors are ΔE00 of the ColorChecker under the light, over the nodes of the
+    table; the page has those of random lights, which differ.
     """,
 )
 @table_argument

@@ -34,19 +34,31 @@ EXIT_CODES = {"internal-error": INTERNAL_ERROR, "interrupted": 128 + signal.SIGI
 MAX_DETAIL = 200
 """Characters of the message of an internal error."""
 HINTS = {
-    "atlas-out-of-gamut": "use --scale percent if the values are in percent, or else a wider --space",
+    "atlas-out-of-gamut": (
+        "use --scale percent if the values are in percent, or else a wider --space"
+    ),
     "atlas-changed": (
         "name the folder of the recorded file with --atlas-dir, or build the cube again"
     ),
     "atlas-not-found": "name its folder with --atlas-dir, or build the cube again",
-    "colour-not-a-light": "use --out-of-gamut clip for the nearest colour towards white",
-    "colour-not-in-scene": "use --fill-missing, or build the cube with the image in --scene",
+    "colour-not-a-light": (
+        "use --out-of-gamut clip for the nearest colour towards white"
+    ),
+    "colour-not-in-scene": (
+        "use --fill-missing, or build the cube with the image in --scene"
+    ),
     "entry-skipped": "'uplift atlas' states the reason for each",
     "invalid-codes": "leave out --encoded for linear floats",
-    "scale-not-stated": "use --scale percent, or --scale fraction for values from 0 to 1",
-    "scales-contradict": "use --scale percent, or --scale fraction for values from 0 to 1",
+    "scale-not-stated": (
+        "use --scale percent, or --scale fraction for values from 0 to 1"
+    ),
+    "scales-contradict": (
+        "use --scale percent, or --scale fraction for values from 0 to 1"
+    ),
     "dark-percent": "use --scale fraction if they are from 0 to 1",
-    "mixed-scales": "correct the row, or use --scale percent or fraction if it is right",
+    "mixed-scales": (
+        "correct the row, or use --scale percent or fraction if it is right"
+    ),
     "not-a-cube": (
         "'uplift build --atlas FILE' makes one of spectra, and 'uplift lights' reads "
         "emission tables"
@@ -59,10 +71,16 @@ HINTS = {
         "name an atlas; a cube is used with --cube, an image with 'uplift texture' "
         "and 'uplift relight'"
     ),
-    "rgb-like-codes": "write 8-bit codes as '#rrggbb', or use --encoded where the command has it",
+    "rgb-like-codes": (
+        "write 8-bit codes as '#rrggbb', or use --encoded where the command has it"
+    ),
     "rgb-out-of-gamut": "map it inside with --out-of-gamut desaturate",
-    "sparse-cube": "use --fill-missing where the command has it, or a cube built without --scene",
-    "texture-differs": "use --resume with --force to convert the image again, or choose another name",
+    "sparse-cube": (
+        "use --fill-missing where the command has it, or a cube built without --scene"
+    ),
+    "texture-differs": (
+        "use --resume with --force to convert the image again, or choose another name"
+    ),
 }
 """Hints in place of the library's, by the code of an error or a warning."""
 IN_COMMANDS = {

@@ -142,7 +142,8 @@ def test_quantities_of_labels(text, expected, of_light):
 
 @pytest.mark.parametrize(
     "text",
-    ["LUX 250.5", "CCT: 3050", "CCT(K)=3050", "fc 23.3", "Duv 0.001", "CRI(Ra) 92", "Tcp [K] 3000", "PPFD 3",
+    ["LUX 250.5", "CCT: 3050", "CCT(K)=3050", "fc 23.3", "Duv 0.001", "CRI(Ra) 92",
+    "Tcp [K] 3000", "PPFD 3",
      "LUX 250,5", "Illuminance [lx] 300", "Color temperature 3000 K"],
 )  # fmt: skip
 def test_keys_of_light_meters(text):
@@ -157,9 +158,12 @@ def test_keys_of_light_meters(text):
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("Wavelength (nm)", 1), ("[nm]", 1), ("Wavelength nm.", 1), ("WavelengthNM", 1), ("Wavelength_um", 1e3),
-        ("λ/µm", 1e3), ("microns", 1e3), ("micrometers", 1e3), ("Å", 0.1), ("Wavelength (A)", 0.1), ("angstroms", 0.1),
-        ("cm-1", WAVE_NUMBER), ("Wavenumber (cm⁻¹)", WAVE_NUMBER), ("1/cm", WAVE_NUMBER), ("wavelength [m]", 1e9),
+        ("Wavelength (nm)", 1), ("[nm]", 1), ("Wavelength nm.", 1), ("WavelengthNM", 1),
+        ("Wavelength_um", 1e3),
+        ("λ/µm", 1e3), ("microns", 1e3), ("micrometers", 1e3), ("Å", 0.1),
+        ("Wavelength (A)", 0.1), ("angstroms", 0.1),
+        ("cm-1", WAVE_NUMBER), ("Wavenumber (cm⁻¹)", WAVE_NUMBER),
+        ("1/cm", WAVE_NUMBER), ("wavelength [m]", 1e9),
         ("umber", None), ("name", None), ("Mean", None),
     ],
 )  # fmt: skip

@@ -217,8 +217,10 @@ def test_samples_in_any_order_are_sorted_with_a_note(save):
 @pytest.mark.parametrize(
     "outside",
     [
-        ["350 -0.2", "352 -0.37"], ["350 -9999", "360 -1.23e34"], ["2400 0.4", "2401 -9999"],
-        ["973 0.7", "975 0.5", "975 0.6"], ["350 NaN", "900 n/a"], ["820 --", "840 -999"],
+        ["350 -0.2", "352 -0.37"], ["350 -9999", "360 -1.23e34"],
+        ["2400 0.4", "2401 -9999"],
+        ["973 0.7", "975 0.5", "975 0.6"], ["350 NaN", "900 n/a"],
+        ["820 --", "840 -999"],
     ],
 )  # fmt: skip
 def test_faults_outside_the_used_range_are_cut_off(save, outside):

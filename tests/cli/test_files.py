@@ -53,12 +53,16 @@ advise image.exr wood.*.exr --cube cube.uplift --light lamp.csv | --plot x.png |
 atlas atlas.txt library.txt | -o x.txt | x.txt
 bounds --cube cube.uplift --input colours.csv | --plot x.pdf | x.pdf
 bounds --cube cube.uplift --input colours.csv | --html x.html | x.html
-build --atlas atlas.txt --library library.txt --look looks.toml --observer camera.csv | -o x.uplift | x.uplift
-build --atlas atlas.txt --library library.txt --scene image.exr --light lamp.csv | -o x.uplift --debug | x.exr
+build --atlas atlas.txt --library library.txt --look looks.toml --observer camera.csv \
+| -o x.uplift | x.uplift
+build --atlas atlas.txt --library library.txt --scene image.exr --light lamp.csv \
+| -o x.uplift --debug | x.exr
 build --plan plan.json | -o x.uplift | x.uplift
 build --plan plan.json | | plan.uplift
-chart --from chart.csv --atlas atlas.txt | -o out | out/chart.csv out/chart.png out/chart.html
-compare --atlas atlas.txt --atlas library.txt | -o out | out/compare-boxes.png out/compare-cost.png out/compare.html
+chart --from chart.csv --atlas atlas.txt \
+| -o out | out/chart.csv out/chart.png out/chart.html
+compare --atlas atlas.txt --atlas library.txt \
+| -o out | out/compare-boxes.png out/compare-cost.png out/compare.html
 compare --atlas atlas.txt --write PF16 | -o out | out/surfaces.csv out/lights.csv
 diff cube.uplift cube2.uplift image.exr wood.*.exr | -o x.html | x.html
 export cube.uplift | -o x.npz | x.npz
@@ -89,9 +93,11 @@ slices cube.uplift | --plot x.png | x.png
 study moments --atlas atlas.txt | -o out | out/moments.png out/moments-patches.png
 study stability --atlas atlas.txt | -o out | out/stability.png
 study sensitivity recorded.uplift | -o out | out/sensitivity-locality.png
-texture image.exr --cube cube.uplift --cube cube2.uplift --mask mask.exr | -o x.exr | x.exr
+texture image.exr --cube cube.uplift --cube cube2.uplift --mask mask.exr \
+| -o x.exr | x.exr
 texture image.exr wood.*.exr --errors lamp.csv | -o out | out/image.exr out/wood.2.exr
-wavelengths --count 4 --atlas atlas.txt --observer camera.csv --light lamp.csv | --plot x.png | x.png
+wavelengths --count 4 --atlas atlas.txt --observer camera.csv --light lamp.csv \
+| --plot x.png | x.png
 """
 """Commands with all their inputs | the outputs that are added | the files that these
 are.

@@ -236,7 +236,8 @@ import json, click
 from uplift_cli.commands.help import TOPICS
 from uplift_cli.main import main
 from tests.cli.conftest import commands
-texts = [command.get_help(click.Context(command)) for command in (main, *commands(main).values())]
+every = (main, *commands(main).values())
+texts = [command.get_help(click.Context(command)) for command in every]
 print(json.dumps([texts, [str(parts()) for _, parts in TOPICS.values()]]))
 """
 

@@ -43,7 +43,8 @@ def test_one_image(run, refuse, frames, cubes):
 def test_sequences_continue_after_an_invalid_image(run, shown, frames, cubes):
     (frames / "shot.2.exr").write_text("not an image")
     result = run(
-        "texture", "shot.*.exr", "-o", "out", "--cube", cubes / "moments-8.uplift", "--representation", "moments",
+        "texture", "shot.*.exr", "-o", "out", "--cube", cubes / "moments-8.uplift",
+        "--representation", "moments",
         "--processes", 1, code=2,
     )  # fmt: skip
     assert result.stdout.startswith("out: 2 textures, 60 pixels, ")

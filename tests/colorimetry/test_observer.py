@@ -21,9 +21,12 @@ from uplift.lattice import axis_nodes
 
 SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 NAMES = {
-    "AP1": "ACEScg", "ACES - ACEScg": "ACEScg", "lin_ap1_scene": "ACEScg", "rec2020": "ITU-R BT.2020",
-    "Rec.2020": "ITU-R BT.2020", "lin_rec2020": "ITU-R BT.2020", "rec709": "ITU-R BT.709", "lin_rec709": "sRGB",
-    "sRGB - Texture": "sRGB", "srgb_texture": "sRGB", "lin_p3d65": "Display P3", "AP0": "ACES2065-1",
+    "AP1": "ACEScg", "ACES - ACEScg": "ACEScg", "lin_ap1_scene": "ACEScg",
+    "rec2020": "ITU-R BT.2020",
+    "Rec.2020": "ITU-R BT.2020", "lin_rec2020": "ITU-R BT.2020",
+    "rec709": "ITU-R BT.709", "lin_rec709": "sRGB",
+    "sRGB - Texture": "sRGB", "srgb_texture": "sRGB", "lin_p3d65": "Display P3",
+    "AP0": "ACES2065-1",
     "adobergb": "Adobe RGB (1998)",
 }  # fmt: skip
 ENCODED = {

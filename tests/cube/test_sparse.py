@@ -120,9 +120,10 @@ def test_small_files_of_large_lattices_take_little_memory(plain_cube, tmp_path):
     path = forge(sparse, tmp_path / "forged.uplift", of_dim(160))
     assert path.stat().st_size < 20_000
     code = (
-        "import sys, uplift\nfrom uplift.extras.report.measures import compute_smoothness\n"
-        "cube = uplift.load(sys.argv[1]).fill_missing([[0.5, 0.5, "
-        "0.5]])\ncompute_smoothness(cube.data)\n"
+        "import sys, uplift\n"
+        "from uplift.extras.report.measures import compute_smoothness\n"
+        "cube = uplift.load(sys.argv[1]).fill_missing([[0.5, 0.5, 0.5]])\n"
+        "compute_smoothness(cube.data)\n"
         "print(next(line.split()[1] for line in open('/proc/self/status') if "
         "line.startswith('VmHWM:')))"
     )

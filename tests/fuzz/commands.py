@@ -25,11 +25,16 @@ from uplift.common.errors import UpliftError
 from uplift.common.text import printable
 
 TOKENS = (
-    "\x1b]0;title\x07", "\x1b]52;c;cm0gLXJm\x07", "\x1b[2J", "\x1b[31m", "\x9b2J", "\r", "\n", "\0", "\t", "\x7f",
-    "\b", "\x85", "\u202e", "\u2066", "\u200f", "\u2028", "\ufeff", "\ud800", "\udcff", "\U000e0041", "\uffff", "[/]",
-    "[bold]", "[red]x[/red]", "[link=x]", ":smile:", r"$\frac{A$", "$", "$x^2$", r"\$", "_x", "%s", "%", "{0}", "{",
-    "{{ 1 }}", "{% raw %}", "</script>", "<b>", "&amp;", '"', "'", "=1+2", "+1", "-x", "@x", "|", ",", ";", "\\",
-    "\\n", "*/", "??/", "//", "#", "Entry ID:", "../..", "~", "青", "é", "e\u0301", "👩\u200d🔬", "العربية", "a" * 300,
+    "\x1b]0;title\x07", "\x1b]52;c;cm0gLXJm\x07", "\x1b[2J", "\x1b[31m", "\x9b2J", "\r",
+    "\n", "\0", "\t", "\x7f",
+    "\b", "\x85", "\u202e", "\u2066", "\u200f", "\u2028", "\ufeff", "\ud800", "\udcff",
+    "\U000e0041", "\uffff", "[/]",
+    "[bold]", "[red]x[/red]", "[link=x]", ":smile:", r"$\frac{A$", "$", "$x^2$", r"\$",
+    "_x", "%s", "%", "{0}", "{",
+    "{{ 1 }}", "{% raw %}", "</script>", "<b>", "&amp;", '"', "'", "=1+2", "+1", "-x",
+    "@x", "|", ",", ";", "\\",
+    "\\n", "*/", "??/", "//", "#", "Entry ID:", "../..", "~", "青", "é", "e\u0301",
+    "👩\u200d🔬", "العربية", "a" * 300,
     " ", "a", "grey", "", "nan", "--force", "-",
 )  # fmt: skip
 """Parts of names that terminals, spreadsheets, templates, browsers or parsers may obey.
@@ -56,10 +61,14 @@ LINES = (
     "--format csv"), ("query --cube c.uplift "
     "--input colours.csv "
     "--plot x.png"),
-    "query {}", "query --cube {} 0 0 0", "query --input {}", "{}", "--{}", "query --{}", "query 0 0 0 --wavelengths {}",
-    "query 0 0 0 --input-space {}", "query 0 0 0 --format {}", "query 0 0 0 --plot {}/x.png", "atlas a.txt",
-    "atlas a.txt --format json", "atlas a.txt --format csv", "atlas a.csv", "atlas a.csv --format csv",
-    "atlas a.csv -o b.csv", "atlas a.csv a.txt", "atlas {}", "atlas a.txt --space {}", "atlas a.txt --observer {}",
+    "query {}", "query --cube {} 0 0 0", "query --input {}", "{}", "--{}", "query --{}",
+    "query 0 0 0 --wavelengths {}",
+    "query 0 0 0 --input-space {}", "query 0 0 0 --format {}",
+    "query 0 0 0 --plot {}/x.png", "atlas a.txt",
+    "atlas a.txt --format json", "atlas a.txt --format csv", "atlas a.csv",
+    "atlas a.csv --format csv",
+    "atlas a.csv -o b.csv", "atlas a.csv a.txt", "atlas {}", "atlas a.txt --space {}",
+    "atlas a.txt --observer {}",
     "mix 1:{} --cube c.uplift", ("mix 1:{} 1:#ff0000 "
     "--atlas a.csv"), "mix {}:#ff0000 --ground {}",
     ("wavelengths --count 3 "
@@ -70,9 +79,12 @@ LINES = (
     "--plot-spectra s.png"), "palette p.toml --html p.html",
     ("palette p.toml --html "
     "p.html --label {}"), "chart --recommend --tolerance 1 --from chart.csv",
-    "chart --recommend --light {}", "export c.uplift -o x.csv", "export c.uplift -o x.h", "export c.uplift -o x.npz",
-    "report c.uplift --format json", "check c.uplift{}", "plan {}", "plan p.toml", "build --plan p.toml",
-    "build --model {} --dim 4", "build --space {} --dim 4", "build --atlas {} --dim 4", "texture {} -o x.exr",
+    "chart --recommend --light {}", "export c.uplift -o x.csv",
+    "export c.uplift -o x.h", "export c.uplift -o x.npz",
+    "report c.uplift --format json", "check c.uplift{}", "plan {}", "plan p.toml",
+    "build --plan p.toml",
+    "build --model {} --dim 4", "build --space {} --dim 4", "build --atlas {} --dim 4",
+    "texture {} -o x.exr",
 )  # fmt: skip
 """Commands, in which ``{}`` is a hostile text."""
 
@@ -118,7 +130,10 @@ def _generate(random: Random, path: Path) -> None:
     files = {
         CUBE: json.dumps([name, other, int(random.integers(4))]),
         "a.txt": "".join(ART_ENTRY % (text, *REGULAR) for text in (name, other)),
-        "a.csv": f"name,400,500,600,700\n{cells[0]},0.1,0.2,0.3,0.4\n{cells[1]},0.2,0.3,0.4,0.5\n",
+        "a.csv": (
+            "name,400,500,600,700\n"
+            f"{cells[0]},0.1,0.2,0.3,0.4\n{cells[1]},0.2,0.3,0.4,0.5\n"
+        ),
         "chart.csv": CHART_TEXT.replace("Mallett", name).replace("uplift", other),
         "p.toml": PALETTE.format(name=json.dumps(name)),
         "colours.csv": choose(

@@ -32,14 +32,20 @@ Random = np.random.Generator
 Seeds = tuple[bytes, ...]
 
 NUMBERS = (
-    b"nan", b"inf", b"-inf", b"-1", b"0", b"-0.0", b"1e999", b"1e-999", b"1_000", b"9" * 400, b"0x10", b"1,5",
-    b"1e308", b"5e-324", b"4294967296", b"1000000000", b"18446744073709551616", b"\xd9\xa3", b"\xef\xbc\x91", b"",
+    b"nan", b"inf", b"-inf", b"-1", b"0", b"-0.0", b"1e999", b"1e-999", b"1_000",
+    b"9" * 400, b"0x10", b"1,5",
+    b"1e308", b"5e-324", b"4294967296", b"1000000000", b"18446744073709551616",
+    b"\xd9\xa3", b"\xef\xbc\x91", b"",
 )  # fmt: skip
 HOSTILE = (
-    *NUMBERS, b"\0", b"\0" * 999, b"\xff", b"\xff\xfe", b"\xff" * 4, b"\xff\xff\xff\x7f", b"\1\0\0\0", b"\xef\xbb\xbf",
-    b"\xe2\x80\xa8", b"\r", b"\r\n", b"\n" * 999, b"\t", b",", b"," * 999, b'"' * 999, b"[" * 100_000, b"{" * 999,
-    b'{"a":' * 20_000, b"a." * 2000, b"a" * 200_000, b"0" * 70_000, b"\\u0000", b"\\ud800", b"null", b"true", b"yes",
-    b"<a>" * 99, b"<!DOCTYPE a>", b"<!ENTITY a 'b'>", b"&a;", b"sep=|\n", b"PK\x03\x04", b"PK\x05\x06", b"\x1b]52;c;\7",
+    *NUMBERS, b"\0", b"\0" * 999, b"\xff", b"\xff\xfe", b"\xff" * 4,
+    b"\xff\xff\xff\x7f", b"\1\0\0\0", b"\xef\xbb\xbf",
+    b"\xe2\x80\xa8", b"\r", b"\r\n", b"\n" * 999, b"\t", b",", b"," * 999, b'"' * 999,
+    b"[" * 100_000, b"{" * 999,
+    b'{"a":' * 20_000, b"a." * 2000, b"a" * 200_000, b"0" * 70_000, b"\\u0000",
+    b"\\ud800", b"null", b"true", b"yes",
+    b"<a>" * 99, b"<!DOCTYPE a>", b"<!ENTITY a 'b'>", b"&a;", b"sep=|\n", b"PK\x03\x04",
+    b"PK\x05\x06", b"\x1b]52;c;\7",
 )  # fmt: skip
 """Texts that parsers of any format may mishandle."""
 WORD = re.compile(rb"[A-Za-z][\w-]{2,}|[^\w\0-\x08\x0e-\x1f\x7f-\xff]")

@@ -49,7 +49,8 @@ int main(void)
     READ_ALL
     fread(&size, sizeof size, 1, stdin);
     cube_table = malloc(size * sizeof(float));
-    if (!cube_table || fread(cube_table, sizeof(float), size, stdin) != (size_t)size) return 1;
+    if (!cube_table) return 1;
+    if (fread(cube_table, sizeof(float), size, stdin) != (size_t)size) return 1;
     fread(at, sizeof at, 1, stdin);
     while (fread(rgb, sizeof rgb, 1, stdin) == 1) {
         cube_reflectances(rgb, at, WAVELENGTHS, found);

@@ -274,9 +274,12 @@ DTYPES = (
     np.complex64,
 )
 VALUES = (
-    None, True, False, 0, -1, 1, 3, 1 << 40, 1 << 70, 10**400, 5e-324, 1e-13, 1e300, float("nan"), float("inf"), "",
-    "grey", "moments", "D65", "../macbeth.txt", "/etc/shadow", "/proc/kmsg", "\0", "\n", "\x1b]0;t\x07", "\u202e",
-    "=1+1", "ü" * 9999, "x" * 100_000, ["grey"] * 65, ["grey"] * 100_000, [], [None], {}, {"name": "moments"}, ["x"],
+    None, True, False, 0, -1, 1, 3, 1 << 40, 1 << 70, 10**400, 5e-324, 1e-13, 1e300,
+    float("nan"), float("inf"), "",
+    "grey", "moments", "D65", "../macbeth.txt", "/etc/shadow", "/proc/kmsg", "\0", "\n",
+    "\x1b]0;t\x07", "\u202e",
+    "=1+1", "ü" * 9999, "x" * 100_000, ["grey"] * 65, ["grey"] * 100_000, [], [None],
+    {}, {"name": "moments"}, ["x"],
     [1 << 40] * 3, "BF16", "F8_E4M3", "BOOL",
 )  # fmt: skip
 CUBE_FILES = tuple(

@@ -23,8 +23,10 @@ NM = np.arange(350.0, 901.0, 10.0)
 ROUNDING = 2e-5
 """Largest difference by the digits of a table."""
 UNITS = {
-    "nm": (1.0, "Wavelength (nm)"), "plain": (1.0, "Wavelength"), "um": (1e-3, "Wavelength_um"),
-    "angstrom": (10.0, "Wavelength [Å]"), "metre": (1e-9, "wavelength [m]"), "wave number": (None, "Wavenumber (cm-1)"),
+    "nm": (1.0, "Wavelength (nm)"), "plain": (1.0, "Wavelength"),
+    "um": (1e-3, "Wavelength_um"),
+    "angstrom": (10.0, "Wavelength [Å]"), "metre": (1e-9, "wavelength [m]"),
+    "wave number": (None, "Wavenumber (cm-1)"),
     "plain um": (1e-3, "Wavelength"),
 }  # fmt: skip
 """Factor from nm, None for 1/cm, and the label of a column."""
@@ -55,7 +57,8 @@ CHOICES = {
     "unit": tuple(UNITS),
     "values": tuple(VALUES),
     "scale": (
-        "fraction", "stated fraction", "percent", "percent in label", "percent in comment", "percent in key",
+        "fraction", "stated fraction", "percent", "percent in label",
+        "percent in comment", "percent in key",
         "percent in cells",
     ),
     "order": ("ascending", "descending", "shuffled"),
@@ -64,7 +67,9 @@ CHOICES = {
     "mark": ("none", *MARKS),
     "preamble": ("none", "keys", "program", "numbers"),
     "head": ("names", "none", "two rows"),
-    "ending": ("plain", "blank lines", "trailing separators", "footer", "crlf", "utf-16"),
+    "ending": (
+        "plain", "blank lines", "trailing separators", "footer", "crlf", "utf-16",
+    ),
 }  # fmt: skip
 
 

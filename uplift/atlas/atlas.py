@@ -242,7 +242,8 @@ class Atlas:
 
     Examples
     --------
-    >>> atlas = Atlas((Entry("grey", [380, 780], [0.5, 0.5]), Entry("white", [380, 780], [0.9, 0.9])))
+    >>> grey = Entry("grey", [380, 780], [0.5, 0.5])
+    >>> atlas = Atlas((grey, Entry("white", [380, 780], [0.9, 0.9])))
     >>> atlas
     Atlas(2 entries, 380–780 nm)
     >>> atlas["white"].values.tolist(), "black" in atlas, atlas[:1].names

@@ -40,7 +40,8 @@ _SCALED = _any(
 )  # fmt: skip
 """What a remark on the scale is about."""
 _UNSCALED = _any(
-    "humid", "moist", "gloss", "opacity", "haze", "cover", "batter", "confiden", "uncertain", "error", "accura",
+    "humid", "moist", "gloss", "opacity", "haze", "cover", "batter", "confiden",
+    "uncertain", "error", "accura",
     "precis", "toleran", "noise", "deviat", r"\bink", "dot",
 )  # fmt: skip
 """What another percentage is about."""
@@ -58,14 +59,19 @@ _REFLECTANCE = _any(
     r"\br ?[\[(]?%",
 )
 _MATERIAL = _any(
-    "transmi(?:ttance|ssion|ssive|ssivity)", "absor(?:bance|ptance|ption|ptivity)", "extinction", "optical density",
-    r"\bk/s\b", "emissivity", "t-factor", "fluorescence", r"\bst(?:d|andard)?[ .]*dev", r"r[eé]fl.*\bstd\b",
+    "transmi(?:ttance|ssion|ssive|ssivity)", "absor(?:bance|ptance|ption|ptivity)",
+    "extinction", "optical density",
+    r"\bk/s\b", "emissivity", "t-factor", "fluorescence", r"\bst(?:d|andard)?[ .]*dev",
+    r"r[eé]fl.*\bstd\b",
     "uncertaint", r"log ?\(? ?1/r",
 )  # fmt: skip
 _LIGHT = _any(
-    "irradiance", "radiance", "radiant", r"\brad\b", "exitance", "emissi(?:on|ve)", "emittance", "illuminance",
-    "luminance(?! factor)", "luminous (?:flux|intensity)", r"\bspd\b", "(?:spectral|relative) power",
-    "(?:spectral|photon) flux", r"\bcounts?\b(?!\W*\d)", r"[µμumn]?w ?[/·* ] ?\(?[cm]?m ?\^?(?:[²2]|-2|⁻²)", r"\bcd/m",
+    "irradiance", "radiance", "radiant", r"\brad\b", "exitance", "emissi(?:on|ve)",
+    "emittance", "illuminance",
+    "luminance(?! factor)", "luminous (?:flux|intensity)", r"\bspd\b",
+    "(?:spectral|relative) power",
+    "(?:spectral|photon) flux", r"\bcounts?\b(?!\W*\d)",
+    r"[µμumn]?w ?[/·* ] ?\(?[cm]?m ?\^?(?:[²2]|-2|⁻²)", r"\bcd/m",
 )  # fmt: skip
 _TRANSMITTANCE = _any(
     r"\W*(?:%?\W*t\W*%\W*|%\W*t|t ?\d{3,4}(?:\D.*)?|trans|t ?nm.*|τ.*)\W*"
@@ -86,7 +92,8 @@ _UNCERTAINTY = _any(
 
 _PLAIN = frozenset(
     (
-        "r", "y", "refl", "rfl", "remission", "albedo", "value", "values", "intensity", "percent", "pct", "fraction",
+        "r", "y", "refl", "rfl", "remission", "albedo", "value", "values", "intensity",
+        "percent", "pct", "fraction",
         "factor", "spectral", "data",
     )
 )  # fmt: skip
@@ -162,7 +169,8 @@ def label_quantity(text: str) -> Quantity | None:
     """Return the quantity that the label of values states; that of a material wins over
     that of a light.
 
-    >>> [found and found.name for found in map(label_quantity, ("%T", "R [%]", "SPD", "ochre"))]
+    >>> quantities = map(label_quantity, ("%T", "R [%]", "SPD", "ochre"))
+    >>> [quantity and quantity.name for quantity in quantities]
     ['transmittance', 'reflectance', 'spd', None]
     """
     if found := _MATERIAL.search(text):

@@ -38,7 +38,8 @@ others beyond it.
 class Camera:
     """Spectral sensitivities of a camera with three channels, validated on creation.
 
-    >>> Camera("narrow", [400, 550, 700], [[0, 0, 2], [0, 4, 0], [3, 0, 0]]).sensitivities.tolist()
+    >>> sensitivities = [[0, 0, 2], [0, 4, 0], [3, 0, 0]]
+    >>> Camera("narrow", [400, 550, 700], sensitivities).sensitivities.tolist()
     [[0.0, 0.0, 0.5], [0.0, 1.0, 0.0], [0.75, 0.0, 0.0]]
     """
 

@@ -55,7 +55,8 @@ nearly one wavelength.
 
 DESCRIPTIONS = {
     "A": "tungsten", "D50": "warm daylight", "D65": "daylight", "HP1": "sodium lamp",
-    "FL2": "fluorescent", "FL7": "broadband fluorescent", "FL11": "three-band fluorescent",
+    "FL2": "fluorescent", "FL7": "broadband fluorescent",
+    "FL11": "three-band fluorescent",
     "LED-B3": "white LED", "LED-RGB1": "red, green and blue LED",
 }  # fmt: skip
 """Words for readers who do not know the names."""

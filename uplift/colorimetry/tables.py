@@ -57,8 +57,10 @@ RESPONSES = ("observer", "camera")
 Others keep their last value.
 """
 SHORT_NAMES = {
-    "ap0": "ACES2065-1", "ap1": "ACEScg", "p3": "Display P3", "prophoto": "ProPhoto RGB",
-    "rec709": "ITU-R BT.709", "bt709": "ITU-R BT.709", "rec2020": "ITU-R BT.2020", "bt2020": "ITU-R BT.2020",
+    "ap0": "ACES2065-1", "ap1": "ACEScg", "p3": "Display P3",
+    "prophoto": "ProPhoto RGB",
+    "rec709": "ITU-R BT.709", "bt709": "ITU-R BT.709", "rec2020": "ITU-R BT.2020",
+    "bt2020": "ITU-R BT.2020",
 }  # fmt: skip
 """RGB spaces by short names, in lower case and without punctuation."""
 

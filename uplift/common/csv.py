@@ -104,7 +104,8 @@ def find_delimiter(lines: Iterable[str]) -> str:
     Of lines without numbers it is the first one that they have, of lines without any a
     semicolon.
 
-    >>> [find_delimiter([line]) for line in ("400,5;0,3", "0,2 0,3 0,4", "0.2, 0.3, 0.4", '"0,2","0,3"', "r,g")]
+    >>> lines = ("400,5;0,3", "0,2 0,3 0,4", "0.2, 0.3, 0.4", '"0,2","0,3"', "r,g")
+    >>> [find_delimiter([line]) for line in lines]
     [';', ' ', ',', ',', ',']
     """
     lines = list(lines)

@@ -67,8 +67,9 @@ def _count_commits() -> str:
 def is_older(first: str, second: str) -> bool:
     """Return whether a version comes before another; False where that is unknown.
 
-    >>> is_older("0.2.0", "0.3.0.dev0"), is_older("0.3.0.dev7", "0.3.0.dev12"), is_older("0.3.0.dev0", "0.3.0.dev12")
-    (True, True, False)
+    >>> known = ("0.2.0", "0.3.0.dev7", "0.3.0.dev0")
+    >>> [is_older(version, "0.3.0.dev12") for version in known]
+    [True, True, False]
     """
     return _order(first) < _order(second)
 

@@ -5,8 +5,8 @@ Nodes are fitted in rounds, in one of three orders (docs/accuracy.md):
 
 - `uplift.fit.growth_outward`, the default: outward from the seeds, in shells.
 - `uplift.extras.thesis.growth_coarse`: from a coarse lattice to finer ones.
-- `uplift.extras.thesis.growth_neighbours`: outward, each node from a fitted neighbour, as Tódová 2020
-  does.
+- `uplift.extras.thesis.growth_neighbours`: outward, each node from a fitted neighbour,
+  as Tódová 2020 does.
 
 In the first two the answer at a node is the spectrum of its colour that is nearest to
 its prior. The correction between prior and answer is smooth over the lattice, so a node

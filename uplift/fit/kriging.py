@@ -195,7 +195,8 @@ def learn_kriging(
             np.log(error) + DOUBT / len(lab) * (doublings**2 + quadruplings**2)
         )
 
-    # Entries vary as they deviate: weights 1 / v of squares |e|² with v = |e| minimise the sum of |e|, a median.
+    # Entries vary as they deviate: weights 1 / v of squares |e|² with v = |e| minimise
+    # the sum of |e|, a median.
     kernel = min(KERNELS, key=loss)
     kriging, errors = _krige(points, deviations, kernel)
     for _ in range(MEDIAN_STEPS):

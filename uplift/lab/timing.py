@@ -153,8 +153,9 @@ def environment() -> dict[str, str]:
             f"uplift {version()}",
         ]
     )
+    system = f"{platform.system()} {platform.machine()}"
     return {
-        "machine": f"{cpu}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}",
+        "machine": f"{cpu}, {os.cpu_count()} cores, {system}",
         "versions": f"Python {sys.version.split()[0]}, {packages}",
         "commit": commit(),
     }

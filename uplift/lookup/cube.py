@@ -204,7 +204,8 @@ class Cube:
         Examples
         --------
         >>> import uplift
-        >>> uplift.load().reflectance([[1, 1, 1], [0, 0, 0]], [500, 600]).round(3).tolist()
+        >>> spectra = uplift.load().reflectance([[1, 1, 1], [0, 0, 0]], [500, 600])
+        >>> spectra.round(3).tolist()
         [[1.0, 1.0], [0.0, 0.0]]
         """
         if mode not in MODES:

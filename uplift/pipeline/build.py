@@ -309,8 +309,9 @@ def learn(
     families: Sequence[Family],
 ) -> Learnt:
     """Fit the entries and the prior."""
-    # Entries p_i: min ‖g − m‖² + Σ |w ΔL*a*b*|² subject to r(p) = t (docs/mathematics.md, 6).
-    # Prior c(x) = s(x) + d(x): smooth spectra, what families deviate from them, and kriging of the entries (7).
+    # Entries p_i: min ‖g − m‖² + Σ |w ΔL*a*b*|² subject to r(p) = t
+    # (docs/mathematics.md, 6). Prior c(x) = s(x) + d(x): smooth spectra, what families
+    # deviate from them, and kriging of the entries (7).
     constraints = entries.fit_constraints(problem, entry_model, measured)
     base, relevance = learn_base(problem, families, constraints.at_nodes)
     return constraints, fit_prior(problem, constraints.at_nodes, base), relevance
@@ -370,8 +371,9 @@ def build_stages(
         constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers
     )
 
-    # The nodes that a scene needs, or all, grow from the seeds: min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7),
-    # where t is the nearest colour that some reflectance has (9). They are improved and stored as coefficients.
+    # The nodes that a scene needs, or all, grow from the seeds:
+    # min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7), where t is the nearest colour that
+    # some reflectance has (9). They are improved and stored as coefficients.
     kept = (
         None
         if scene is None

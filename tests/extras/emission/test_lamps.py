@@ -65,7 +65,8 @@ def test_power_is_interpolated_and_narrow_lines_keep_their_energy():
 
 @pytest.mark.parametrize(
     ("wavelengths", "power"),
-    [((400,), (1,)), ((400, 700), (1,)), ((700, 400), (1, 1)), ((400, 700), (0, 0)), ((400, 700), (-1, 1)),
+    [((400,), (1,)), ((400, 700), (1,)), ((700, 400), (1, 1)), ((400, 700), (0, 0)),
+    ((400, 700), (-1, 1)),
      ((400, 700), (1, float("nan")))],
 )  # fmt: skip
 def test_bad_lamps(wavelengths, power):

@@ -36,7 +36,7 @@ def test_every_node_is_exact_and_positive():
     np.testing.assert_allclose(chromaticity(power @ RADIOMETRY), uv, atol=1e-9)
 
 
-def test_left_out_lamps_are_predicted_better_than_by_smooth_light_and_by_the_nearest_lamp(
+def test_left_out_lamps_are_predicted_better_than_by_simple_rules(
     fitted,
 ):
     uv = chromaticity(LAMPS.power @ RADIOMETRY)

@@ -40,7 +40,8 @@ LOAD = """static float table[{size}];
     if (!file || fread(table, 1, sizeof table, file) != sizeof table) return 1;"""
 STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-O1")
 KERNEL = """#include "{header}"
-extern "C" __global__ void lookup(const float *table, const float *rgb, const float *wavelengths, float *found)
+extern "C" __global__ void lookup(
+    const float *table, const float *rgb, const float *wavelengths, float *found)
 {{
     int at = blockIdx.x * blockDim.x + threadIdx.x;
     cube_reflectances(table, rgb + 3 * at, wavelengths, found + 4 * at);
@@ -60,22 +61,30 @@ FRAGMENT = """#version 300 es
 uniform sampler2D colours;
 out vec4 found;
 void main() {{
-    found = cube_reflectances(texelFetch(colours, ivec2(gl_FragCoord.xy), 0).rgb, vec4({wavelengths}));
+    vec3 colour = texelFetch(colours, ivec2(gl_FragCoord.xy), 0).rgb;
+    found = cube_reflectances(colour, vec4({wavelengths}));
 }}
 """
 WEBGL = """(() => {
-  const floats = text => new Float32Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
+  const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
+  const floats = text => new Float32Array(bytes(text).buffer);
   const { code, table, rows, columns, colours, side } = DATA;
-  const gl = Object.assign(document.createElement("canvas"), { width: side, height: side }).getContext("webgl2");
+  const canvas = document.createElement("canvas");
+  Object.assign(canvas, { width: side, height: side });
+  const gl = canvas.getContext("webgl2");
   if (!gl || !gl.getExtension("EXT_color_buffer_float")) return null;
   const program = gl.createProgram();
   const vertex = `#version 300 es
-    void main() { gl_Position = vec4(gl_VertexID == 1 ? 3. : -1., gl_VertexID == 2 ? 3. : -1., 0., 1.); }`;
+    void main() {
+      float x = gl_VertexID == 1 ? 3. : -1., y = gl_VertexID == 2 ? 3. : -1.;
+      gl_Position = vec4(x, y, 0., 1.);
+    }`;
   for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, code]]) {
     const shader = gl.createShader(kind);
     gl.shaderSource(shader, text);
     gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS))
+      throw new Error(gl.getShaderInfoLog(shader));
     gl.attachShader(program, shader);
   }
   gl.linkProgram(program);
@@ -83,7 +92,8 @@ WEBGL = """(() => {
   const upload = (unit, name, width, height, values) => {
     gl.activeTexture(gl.TEXTURE0 + unit);
     gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, values);
+    gl.texImage2D(
+      gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, values);
     for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
       gl.texParameteri(gl.TEXTURE_2D, side, gl.NEAREST);
     if (name) gl.uniform1i(gl.getUniformLocation(program, name), unit);
@@ -93,7 +103,8 @@ WEBGL = """(() => {
   upload(1, "", side, side, null);
   const target = gl.getParameter(gl.TEXTURE_BINDING_2D);
   gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
-  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
+  gl.framebufferTexture2D(
+    gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
   gl.viewport(0, 0, side, side);
   gl.drawArrays(gl.TRIANGLES, 0, 3);
   const found = new Float32Array(4 * side * side);

@@ -99,7 +99,8 @@ def test_every_number_is_at_its_documented_offset(table, sensor):
 
 
 GREYS = [
-    0, 0.0129831, 0.0241576, 0.0423114, 0.0561285, 0.0703601, 0.104617, 0.171441, 0.242281,
+    0, 0.0129831, 0.0241576, 0.0423114, 0.0561285, 0.0703601, 0.104617, 0.171441,
+    0.242281,
     0.814846, 0.913098, 0.930111, 0.955973, 0.973445, 0.982251, 0.991102, 1,
 ]  # fmt: skip
 """Those of Mitsuba's test_spectra.py, which requires numbers for them."""
@@ -110,7 +111,8 @@ mi.set_variant("scalar_spectral")
 mi.file_resolver().prepend(sys.argv[1])
 for rgb in json.loads(sys.argv[2]):
     found = mi.srgb_model_fetch(rgb)
-    print(*found, mi.srgb_model_mean(found), *mi.srgb_model_eval(found, mi.Spectrum(360, 510, 670, 830)))
+    values = mi.srgb_model_eval(found, mi.Spectrum(360, 510, 670, 830))
+    print(*found, mi.srgb_model_mean(found), *values)
 """
 
 
@@ -261,11 +263,14 @@ def test_dark_colours_are_dark_at_every_wavelength(small_cube):
 
 PRINT = """
 #include <cstdio>
-namespace {space} {{ extern const float {name}ToSpectrumTable_Data[3][{res}][{res}][{res}][{width}]; }}
+namespace {space} {{
+extern const float {name}ToSpectrumTable_Data[3][{res}][{res}][{res}][{width}];
+}}
 int main() {{
     for (auto& largest : {space}::{name}ToSpectrumTable_Data)
-        for (auto& level : largest) for (auto& second : level) for (auto& first : second)
-            for (float number : first) std::printf("%.9g\\n", number);
+        for (auto& level : largest) for (auto& second : level)
+            for (auto& first : second) for (float number : first)
+                std::printf("%.9g\\n", number);
 }}
 """
 

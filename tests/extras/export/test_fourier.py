@@ -18,18 +18,26 @@ LEVEL = 4
 HARNESS = """
 #include <cmath>
 #include <cstdio>
-struct vec3 {{ float x, y, z; vec3(float a, float b, float c) : x(a), y(b), z(c) {{}} }};
+struct vec3 {{
+    float x, y, z;
+    vec3(float a, float b, float c) : x(a), y(b), z(c) {{}}
+}};
 static vec3 operator*(vec3 a, float s) {{ return vec3(a.x * s, a.y * s, a.z * s); }}
 static vec3 operator/(vec3 a, float s) {{ return vec3(a.x / s, a.y / s, a.z / s); }}
-static vec3 operator-(vec3 a, vec3 b) {{ return vec3(a.x - b.x, a.y - b.y, a.z - b.z); }}
+static vec3 operator-(vec3 a, vec3 b) {{
+    return vec3(a.x - b.x, a.y - b.y, a.z - b.z);
+}}
 static float dot(vec3 a, vec3 b) {{ return a.x * b.x + a.y * b.y + a.z * b.z; }}
-static float clamp(float x, float low, float high) {{ return std::fmin(std::fmax(x, low), high); }}
+static float clamp(float x, float low, float high) {{
+    return std::fmin(std::fmax(x, low), high);
+}}
 using std::sin; using std::cos; using std::tan; using std::tanh; using std::atan;
 #include "{name}.glsl"
 int main() {{
     float r, g, b, w;
     while (std::scanf("%f %f %f %f", &r, &g, &b, &w) == 4)
-        std::printf("%.9g\\n", {name}_reflectance({name}_multipliers(vec3(r, g, b)), w));
+        std::printf(
+            "%.9g\\n", {name}_reflectance({name}_multipliers(vec3(r, g, b)), w));
 }}
 """
 

@@ -215,9 +215,11 @@ int main(void)
     fwrite(found, sizeof found, 1, stdout);
 #if !CUBE_SPECTRA
     float coefficients[21 * CUBE_COUNT], multipliers[21 * CUBE_COUNT];
-    for (int k = 0; k < 21; ++k) cube_coefficients(rgb + 3 * k, coefficients + CUBE_COUNT * k);
+    for (int k = 0; k < 21; ++k)
+        cube_coefficients(rgb + 3 * k, coefficients + CUBE_COUNT * k);
     if (cube_multipliers_n(coefficients, 21, multipliers)) return 1;
-    for (int k = 0; k < 21; ++k) cube_evaluate(multipliers + CUBE_COUNT * k, at, 21, found + 21 * k);
+    for (int k = 0; k < 21; ++k)
+        cube_evaluate(multipliers + CUBE_COUNT * k, at, 21, found + 21 * k);
     fwrite(found, sizeof found, 1, stdout);
     coefficients[0] = coefficients[10 * CUBE_COUNT] = 2;
     if (cube_multipliers_n(coefficients, 21, multipliers) != 2) return 2;

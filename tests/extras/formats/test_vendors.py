@@ -116,8 +116,8 @@ def test_scale_given_by_the_caller(save):
         "name,T400,T500,T600,T700\na,0.2,0.3,0.4,0.5\n",
         'CTI3\nDEVICE_CLASS "DISPLAY"' + SETS,
         (
-            "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS=ABSORBANCE\n##XYPOINTS=(XY..XY)\n400, "
-            "1\n700, 1\n##END=\n"
+            "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS=ABSORBANCE\n"
+            "##XYPOINTS=(XY..XY)\n400, 1\n700, 1\n##END=\n"
         ),
         "<IESTM2714 "
         'xmlns="iestm2714"><SpectralDistribution><SpectralQuantity>flux</SpectralQuantity>'

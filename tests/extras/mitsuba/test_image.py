@@ -206,7 +206,9 @@ image = np.random.default_rng(8).random((3, 4, 3), dtype=np.float32)
 found = []
 for source in sources:
     for each in options:
-        properties = source if "filename" in source else {**source, "bitmap": mi.Bitmap(image)}
+        properties = dict(source)
+        if "filename" not in source:
+            properties["bitmap"] = mi.Bitmap(image)
         texture = mi.load_dict({"type": "uplift", **properties, **each})
         si = drjit.zeros(mi.SurfaceInteraction3f, len(positions))
         si.uv = mi.Point2f(*np.array(positions, dtype=np.float32).T)

@@ -95,7 +95,8 @@ def interactive(**values):
 
 
 HOVER = """(() => {
-  document.getElementById("marker-0-0").dispatchEvent(new PointerEvent("pointerenter", { clientX: 1, clientY: 1 }));
+  const enter = new PointerEvent("pointerenter", { clientX: 1, clientY: 1 });
+  document.getElementById("marker-0-0").dispatchEvent(enter);
   return document.getElementById("tip").textContent;
 })()"""
 

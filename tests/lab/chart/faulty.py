@@ -25,8 +25,12 @@ def lack(task):
 
 METHODS = tuple(
     Method(
-        method=f"faulty-{prepare.__name__}", title="Faulty", family="Faulty", source="a test",
-        prepare=prepare, needs=NEEDS,
+        method=f"faulty-{prepare.__name__}",
+        title="Faulty",
+        family="Faulty",
+        source="a test",
+        prepare=prepare,
+        needs=NEEDS,
     )
     for prepare in (abort, hang, lack)
-)  # fmt: skip
+)

@@ -276,7 +276,8 @@ def test_page_has_markers_of_measured_methods_fits_and_is_accessible(tmp_path):
 
 def test_the_reader_chooses_a_panel_and_the_number_of_colours(tmp_path):
     need(CHROMIUM)
-    visible = """[...document.querySelectorAll(".picture svg")].filter(each => each.checkVisibility()).length"""
+    visible = """[...document.querySelectorAll(".picture svg")]
+        .filter(picture => picture.checkVisibility()).length"""
     with browser() as tab:
         open_page(tab, render_chart(chart_of(row_of("one", 80, 0.4))), tmp_path)
         caption = "document.querySelector('.picture:not([hidden])').textContent"

@@ -1,6 +1,8 @@
 """Registry of the formats of atlas files, in the order in which they are recognised."""
 
+import itertools
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
@@ -49,15 +51,6 @@ class Format:
     written: bool = False
     unmarked: str = ""
 
-    def has(self, document: Document) -> bool:
-        """Return whether a document is of this format."""
-        if self.unmarked and document.path.lower().endswith(self.unmarked):
-            return True
-        content: Any = (
-            document.data if isinstance(self.pattern, bytes) else document.text
-        )
-        return re.search(self.pattern, content) is not None
-
 
 ART = Format(
     name="ART measurement archive",
@@ -76,8 +69,14 @@ TABLE = Format(
 
 
 def known_formats() -> tuple[Format, ...]:
-    """Return the formats of this package; the last one takes all other files."""
-    outside = [form for forms in registered(KIND) for form in forms]
+    """Return the formats of this package.
+
+    Returns
+    -------
+    tuple of Format
+        In the order in which they are recognised. The last one takes all other files.
+    """
+    outside = itertools.chain.from_iterable(registered(KIND))
     return (*outside, ART, TABLE)
 
 
@@ -86,8 +85,21 @@ def read_any(document: Document) -> tuple[Format, Measurements | Atlas]:
     `AtlasError`.
     """
     *marked, table = known_formats()
-    chosen = next((form for form in marked if form.has(document)), None)
-    if chosen is None:
-        installed_forms = [form for forms in installed(KIND) for form in forms]
-        chosen = next((form for form in installed_forms if form.has(document)), table)
-    return chosen, import_module(chosen.module).read(document)
+    form = _recognise(document, marked)
+    if form is None:
+        for forms in installed(KIND):
+            form = form or _recognise(document, forms)
+    form = form or table
+    return form, import_module(form.module).read(document)
+
+
+def _recognise(document: Document, forms: Sequence[Format]) -> Format | None:
+    """Return the first format that a document has."""
+    for form in forms:
+        if form.unmarked and document.path.lower().endswith(form.unmarked):
+            return form
+        is_binary = isinstance(form.pattern, bytes)
+        content: Any = document.data if is_binary else document.text
+        if re.search(form.pattern, content):
+            return form
+    return None

@@ -34,7 +34,8 @@ TITLES = ("Sampling information", "ASCII sample data")
 """
 REFLECTANCE = "reflectance spectrum"
 OTHER_TYPES = (
-    "emission spectrum", "transmission spectrum", "colourimetric matching function", "colour matching function",
+    "emission spectrum", "transmission spectrum", "colourimetric matching function",
+    "colour matching function",
     "colorimetric matching function", "color matching function", "index of refraction",
 )  # fmt: skip
 HEADER = {

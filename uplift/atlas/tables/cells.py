@@ -44,8 +44,10 @@ LABEL = re.compile(
 """
 PREFIXES = frozenset(
     (
-        "", "nm", "r", "%r", "r%", "%", "rnm", "ρ", "refl", "refl%", "rfl", "spec", "spectral", "spectrum",
-        "spectralnm", "spectrumnm", "spectraldata", "wl", "wavelength", "lambda", "λ", "w", "x", "sci", "sce", "specin",
+        "", "nm", "r", "%r", "r%", "%", "rnm", "ρ", "refl", "refl%", "rfl", "spec",
+        "spectral", "spectrum",
+        "spectralnm", "spectrumnm", "spectraldata", "wl", "wavelength", "lambda", "λ",
+        "w", "x", "sci", "sce", "specin",
         "specex", "reflsci", "reflsce", "t", "%t", "t%", "tnm", "τ",
     )
 )  # fmt: skip

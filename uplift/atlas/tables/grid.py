@@ -17,8 +17,10 @@ MAX_PREAMBLE = 1000
 MAX_AXIS = 3
 """Columns among which that of the wavelengths is searched."""
 NAME_LABELS = (
-    "samplename", "name", "colorname", "colourname", "patchname", "patch", "label", "title", "sample", "material",
-    "spectrum", "sampleid", "patchid", "id", "sampleloc", "sampleno", "no", "number", "index",
+    "samplename", "name", "colorname", "colourname", "patchname", "patch", "label",
+    "title", "sample", "material",
+    "spectrum", "sampleid", "patchid", "id", "sampleloc", "sampleno", "no", "number",
+    "index",
 )  # fmt: skip
 """Labels of names, in lower case without blanks and punctuation, the preferred ones
 first.

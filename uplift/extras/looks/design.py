@@ -118,7 +118,8 @@ def _linear_design(
     """Reflectance (N,) of least squares, with L*a*b* linearised at the colours of the
     reflectance ``near``.
     """
-    # |E (W g − rgb)|² + Σ_lights |ΔE00|² + |shape (g − expected)|² in the change of the reflectance g, 0 ≤ g ≤ 1
+    # |E (W g − rgb)|² + Σ_lights |ΔE00|² + |shape (g − expected)|² in the change of the
+    # reflectance g, 0 ≤ g ≤ 1
     rows = [EXACT * sensor.matrix]
     values = [EXACT * (goal.rgb - sensor.matrix @ expected)]
     for light, target, xyz in zip(

@@ -158,7 +158,8 @@ def read_looks(path: StrPath) -> tuple[Look, ...]:
     >>> import pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder, "looks.toml")
-    ...     _ = path.write_text('[[look]]\\nrgb = "#8a2a20"\\nFL11 = "#70392a"\\nname = "brick"\\n')
+    ...     table = '[[look]]\\nrgb = "#8a2a20"\\nFL11 = "#70392a"\\nname = "brick"'
+    ...     _ = path.write_text(table)
     ...     [look] = read_looks(path)
     >>> look.name, look.lights
     ('brick', {'FL11': '#70392a'})

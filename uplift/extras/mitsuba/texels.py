@@ -219,8 +219,8 @@ def read_texels(path: Path) -> Texels | None:
 def read_colours(
     path: Path, converter: Converter
 ) -> tuple[Floats, Counts, tuple[UpliftWarning, ...]]:
-    """Read linear RGB (h, w, 3) of an image as `uplift.extras.texture.convert` does, with
-    counts and warnings of its space.
+    """Read linear RGB (h, w, 3) of an image as `uplift.extras.texture.convert` does,
+    with counts and warnings of its space.
 
     The first part with colours counts, other channels do not. Raises `TextureError`,
     `ColourError` and `OptionError`.

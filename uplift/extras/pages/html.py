@@ -2,10 +2,10 @@
 
 A page loads nothing and runs no script but its own, by its content security policy.
 Templates are named by their path below the package, as
-``extras/report/templates/page.html.j2``, and lie next to the code that renders them. All
-values are escaped unless they are `markupsafe.Markup`; a name that a template does not
-receive is an error. The filters are the functions of `uplift.extras.pages.format` under their
-own names, and ``fixed``.
+``extras/report/templates/page.html.j2``, and lie next to the code that renders them.
+All values are escaped unless they are `markupsafe.Markup`; a name that a template does
+not receive is an error. The filters are the functions of `uplift.extras.pages.format`
+under their own names, and ``fixed``.
 """
 
 import base64

@@ -53,12 +53,12 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
         [each.light.name for each in found], cube.observer, *sensor.range
     )
     lights = [_light(each, screen) for each, screen in zip(found, screens, strict=True)]
+    colour = written
+    if not isinstance(written, str):
+        colour = " ".join(f"{number:.4g}" for number in written)
     return render(
         "extras/report/templates/look_page.html.j2",
-        title=(
-            "Looks of "
-            f"{written if isinstance(written, str) else ' '.join(f'{each:.4g}' for each in written)}"
-        ),
+        title=f"Looks of {colour}",
         lead=(
             f"Many spectra have this RGB under {sensor.illuminant}. Drag its colour "
             "under another light: the spectrum "

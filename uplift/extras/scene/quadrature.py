@@ -81,7 +81,8 @@ def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRu
         raise _undefined(
             f"a node lies at {outside[0]:.1f}, outside {points[0]:g} to {points[-1]:g}"
         )
-    # An eigenvector vanishes at all nodes but its own; the first polynomial of the basis is the constant 1/√Σ|masses|.
+    # An eigenvector vanishes at all nodes but its own; the first polynomial of the
+    # basis is the constant 1/√Σ|masses|.
     products = gram @ vectors
     return QuadratureRule(
         nodes,

@@ -71,8 +71,9 @@ def convert(
     Parameters
     ----------
     converter : Converter
-        Made by `prepare`, `prepare_masked`, `prepare_lights` or `uplift.extras.relight.relighter`, or
-        a coat of paint (`uplift.extras.paint.overpainter`).
+        Made by `prepare`, `prepare_masked`, `prepare_lights` or
+        `uplift.extras.relight.relighter`, or a coat of paint
+        (`uplift.extras.paint.overpainter`).
     source : path-like
         OpenEXR, Radiance HDR, PNG, JPEG or TIFF image.
     target : path-like

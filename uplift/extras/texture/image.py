@@ -47,8 +47,10 @@ PNG_INTERLACE = 28
 one piece.
 """
 TECHNICAL = frozenset(
-    ("compression", "colorInteropID", "DateTime", "ICCProfile", "lineOrder", "name", "type", "view", "planarconfig",
-     "ResolutionUnit", "Orientation", "chunkCount", "version", "PixelAspectRatio", "textureformat",
+    ("compression", "colorInteropID", "DateTime", "ICCProfile", "lineOrder", "name",
+    "type", "view", "planarconfig",
+     "ResolutionUnit", "Orientation", "chunkCount", "version", "PixelAspectRatio",
+     "textureformat",
      "wrapmodes", "CICP", "chromaticities", "multiView", "XResolution", "YResolution")
 )  # fmt: skip
 """Attributes that textures do not keep, as they describe the file that is read."""

@@ -1,5 +1,5 @@
-"""Converters, which `uplift.extras.texture.convert` applies to an image, and the numbers of
-a pixel of a texture.
+"""Converters, which `uplift.extras.texture.convert` applies to an image, and the
+numbers of a pixel of a texture.
 """
 
 import contextlib

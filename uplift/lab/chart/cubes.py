@@ -164,10 +164,13 @@ FLAGS = (
     "-fPIC",
 )
 SOURCE = """#include "cube.h"
-void uplift_colours(const float *rgb, const float *wavelengths, int width, long colours, float *reflectances)
+void uplift_colours(
+    const float *rgb, const float *wavelengths, int width, long colours,
+    float *reflectances)
 {
     long k;
-    for (k = 0; k < colours; ++k) cube_reflectances(rgb + 3 * k, wavelengths, width, reflectances + width * k);
+    for (k = 0; k < colours; ++k)
+        cube_reflectances(rgb + 3 * k, wavelengths, width, reflectances + width * k);
 }
 """
 

@@ -45,8 +45,8 @@ def scene_representations(scene: Scene) -> tuple[Representation, ...]:
 
 
 def _wavelengths(scene: Scene) -> Iterator[Representation]:
-    """Wavelengths, weights, and powers of the lights, as `uplift.extras.scene.wavelengths`
-    fits them together.
+    """Wavelengths, weights, and powers of the lights, as
+    `uplift.extras.scene.wavelengths` fits them together.
     """
     lights = [light for light_set in scene.sets for light in light_set.illuminants]
     setup = make_setup(scene.surfaces, lights, wavelengths=samples.wavelengths())

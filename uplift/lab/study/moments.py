@@ -131,9 +131,9 @@ class MomentsStudy:
     """Errors of every entry for every technique and number of moments.
 
     ``names``, ``atlases``: names and atlases of the E entries. ``measured`` (E, N):
-    reflectances at `uplift.extras.scene.representations.samples.wavelengths`. ``errors`` (4,
-    max_moments + 1, E, len(MEASURES)): errors, by the order of `TECHNIQUES` and by
-    moments from 0.
+    reflectances at `uplift.extras.scene.representations.samples.wavelengths`.
+    ``errors`` (4, max_moments + 1, E, len(MEASURES)): errors, by the order of
+    `TECHNIQUES` and by moments from 0.
     """
 
     names: tuple[str, ...]

@@ -251,7 +251,8 @@ def _expand(file: SpecFile, key: str, names: tuple[Path, ...]) -> tuple[Path, ..
 def cube_name(plan_path: StrPath) -> str:
     """File name of the cube of a plan: that of the plan with the suffix ``.uplift``."""
     name = Path(plan_path).name
-    return f"{name.removesuffix(SUFFIX) if name.endswith(SUFFIX) else Path(name).stem}.uplift"
+    stem = name.removesuffix(SUFFIX) if name.endswith(SUFFIX) else Path(name).stem
+    return f"{stem}.uplift"
 
 
 @dataclass(frozen=True)

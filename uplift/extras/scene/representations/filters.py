@@ -57,7 +57,8 @@ class Filter:
     def name(self) -> str:
         """Kind, extent and parameters, such as ``gaussian(7, α=0.5)``."""
         named = zip(KINDS[self.kind].choices, self.parameters, strict=True)
-        return f"{self.kind}({', '.join([str(self.extent), *(f'{key}={value:g}' for key, value in named)])})"
+        parameters = [f"{key}={value:g}" for key, value in named]
+        return f"{self.kind}({', '.join([str(self.extent), *parameters])})"
 
     def taps(self, upsampling: int) -> Array:
         """Compute an odd number of taps with sum 1, ``upsampling`` per sample of the

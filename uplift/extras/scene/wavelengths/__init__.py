@@ -3,7 +3,8 @@
 Examples
 --------
 >>> import numpy as np
->>> reflectances = np.outer([0.2, 0.8], np.linspace(0.5, 1, 391))  # at 380, 381, …, 770 nm
+>>> ramp = np.linspace(0.5, 1, 391)  # at 380, 381, …, 770 nm
+>>> reflectances = np.outer([0.2, 0.8], ramp)
 >>> setup = make_setup(reflectances, ["D65", "FL11"])
 >>> choice = choose(setup, target=1.0)
 >>> choice.sampling.to_xyz.shape == (len(choice.sampling), 3)
