@@ -9,12 +9,13 @@ import warnings
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tests.atlas.atlas_texts import PLAIN
 from tests.helpers import raises, warns
 from uplift.atlas import Atlas, Entry, Header, read_atlas, write_atlas
+from uplift.atlas.statements import remark_scale
 from uplift.common.errors import AtlasError, OutputError, UpliftWarning
 
 GREY = Atlas((Entry("grey", np.array([400.0, 700.0]), np.array([0.5, 0.25])),))
@@ -185,8 +186,13 @@ def test_text_keeps_every_bit(spectra):
 
 @settings(max_examples=20)
 @given(atlases(one_sampling=True))
+@example(Atlas((Entry("%", [400, 700], [0.0, 1.0]),)))
 def test_csv_keeps_every_bit(spectra):
-    check_round_trip(spectra, "atlas.csv")
+    if any(remark_scale(entry.name) for entry in spectra):
+        with raises(OutputError, "output"), tempfile.TemporaryDirectory() as folder:
+            write_atlas(spectra, f"{folder}/atlas.csv")
+    else:
+        check_round_trip(spectra, "atlas.csv")
 
 
 def test_quoted_hash_is_a_name_and_not_a_comment(tmp_path):

@@ -12,6 +12,7 @@ import numpy as np
 from uplift.atlas.atlas import Atlas
 from uplift.atlas.document import Document, read_document
 from uplift.atlas.measurements import Measurements
+from uplift.atlas.statements import remark_scale
 from uplift.atlas.tables.cells import Cell, Row, is_value, line_texts, trimmed
 from uplift.atlas.tables.grid import LAYOUT, Grid
 from uplift.atlas.tables.read import read_grid
@@ -95,6 +96,11 @@ def text(atlas: Atlas) -> str:
             raise OutputError(
                 problem,
                 hint="write atlas text, which keeps each sampling, or separate tables",
+            )
+        if remark_scale(entry.name) is not None:
+            raise OutputError(
+                f"the name '{entry.name}' states a scale, which a table is read by",
+                hint="rename the entry, or write atlas text",
             )
     rows = ([entry.name, *entry.values.tolist()] for entry in atlas)
     return csv_text(["name", *first.wavelengths.tolist()], rows, quote_text=True)
