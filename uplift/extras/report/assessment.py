@@ -88,29 +88,14 @@ def assess(
     """Assess a cube by its own lattice and, if given, by measured spectra."""
     data = cube.data
     sensors = display_sensors(lights, data.sensor.observer, *data.sensor.range)
-    own = atlas is not None and _built_from(data, atlas)
-    in_gamut: tuple[str, ...] = ()
-    errors = None
-    if atlas is not None and atlas.entries:
-        query = (
-            fidelity.from_own_atlas(data, atlas)
-            if own
-            else fidelity.from_other_atlas(data, atlas)
-        )
-        in_gamut = query.names
-        query = query.answerable_by(cube)
-        errors = fidelity.entry_errors(cube, query, sensors) if query.names else None
-    unseen = None if own else errors
-    calibration = None
-    if unseen is not None:
-        calibration = check_calibration(
-            unseen.actual, unseen.predicted, cube.error_bound(unseen.rgb)
-        )
-    points, (differences, steepest) = data.points, measures.compute_smoothness(data)
-    distances = points.distance[points.present]
-    standard_errors = (
-        None if points.standard_error is None else points.standard_error[points.present]
-    )
+    atlas = Atlas() if atlas is None else atlas
+    is_own = _built_from(data, atlas)
+    in_gamut, errors = _measured_errors(cube, atlas, sensors, is_own=is_own)
+    unseen = None if is_own else errors
+    calibration = _calibration(cube, unseen)
+    calibrated = None if calibration is None else unseen
+    differences, steepest = measures.compute_smoothness(data)
+    distances = data.points.distance[data.points.present]
     return Assessment(
         name=name,
         size=size,
@@ -122,14 +107,12 @@ def assess(
             measures.round_trip_errors(cube),
             lambda values: log_edges(values, MIN_ERROR),
         ),
-        standard_error=None
-        if standard_errors is None
-        else make_histogram(standard_errors, linear_edges(standard_errors)),
+        standard_error=_standard_errors(data),
         smoothness=make_histogram(differences, log_edges(differences, MIN_STEP)),
         steepest=steepest,
         lights=sensors,
-        sources=() if atlas is None else tuple(source.name for source in atlas.sources),
-        own=own,
+        sources=tuple(source.name for source in atlas.sources),
+        own=is_own,
         entries=errors,
         alternatives={}
         if errors is None
@@ -137,40 +120,68 @@ def assess(
         delta_e={}
         if errors is None
         else _comparable(_by_light(errors, sensors), linear_edges),
-        out_of_gamut=() if atlas is None else _missing(atlas.names, in_gamut),
+        out_of_gamut=_missing(atlas.names, in_gamut),
         not_covered=_missing(in_gamut, () if errors is None else errors.names),
         calibration=calibration,
-        light_calibrations=_light_calibrations(cube, unseen, sensors)
-        if unseen and calibration
-        else {},
-        unlike=float(cube.unlike_atlas(unseen.rgb).mean())
-        if unseen and calibration
-        else 0.0,
-        crowding=_crowding(cube, errors if own else None, sensors),
+        light_calibrations=_light_calibrations(cube, calibrated, sensors),
+        unlike=0.0
+        if calibrated is None
+        else float(cube.unlike_atlas(calibrated.rgb).mean()),
+        crowding=_crowding(cube, errors if is_own else None, sensors),
     )
 
 
+def _measured_errors(
+    cube: Cube, atlas: Atlas, lights: tuple[Sensor, ...], *, is_own: bool
+) -> tuple[tuple[str, ...], EntryErrors | None]:
+    """Names of the entries inside the RGB space, and errors of those with an answer."""
+    if not atlas.entries:
+        return (), None
+    read = fidelity.from_own_atlas if is_own else fidelity.from_other_atlas
+    query = read(cube.data, atlas)
+    answerable = query.answerable_by(cube)
+    if not answerable.names:
+        return query.names, None
+    return query.names, fidelity.entry_errors(cube, answerable, lights)
+
+
+def _calibration(cube: Cube, unseen: EntryErrors | None) -> Calibration | None:
+    if unseen is None:
+        return None
+    bound = cube.error_bound(unseen.rgb)
+    return check_calibration(unseen.actual, unseen.predicted, bound)
+
+
+def _standard_errors(data: CubeData) -> Histogram | None:
+    if data.points.standard_error is None:
+        return None
+    errors = data.points.standard_error[data.points.present]
+    return make_histogram(errors, linear_edges(errors))
+
+
 def _missing(names: Sequence[str], present: Sequence[str]) -> tuple[str, ...]:
-    found = set(present)
-    return tuple(name for name in names if name not in found)
+    known = set(present)
+    return tuple(name for name in names if name not in known)
 
 
 def _light_calibrations(
-    cube: Cube, errors: EntryErrors, lights: tuple[Sensor, ...]
+    cube: Cube, errors: EntryErrors | None, lights: tuple[Sensor, ...]
 ) -> dict[str, Calibration]:
     """Calibrations under lights other than that of `Assessment.calibration`, and that
     of the build.
     """
     data = cube.data
-    if data.atlas.left_out is None:
+    if errors is None or data.atlas.left_out is None:
         return {}
-    found = {}
+    calibrations = {}
     for light, actual in _by_light(errors, lights).items():
         if light not in (data.error_illuminant, data.sensor.illuminant):
             predicted = cube.standard_error(errors.rgb, light)
             bound = cube.error_bound(errors.rgb, light)
-            found[light] = check_calibration(actual, predicted, bound)
-    return {light: each for light, each in found.items() if each is not None}
+            calibration = check_calibration(actual, predicted, bound)
+            if calibration is not None:
+                calibrations[light] = calibration
+    return calibrations
 
 
 def _built_from(data: CubeData, atlas: Atlas) -> bool:

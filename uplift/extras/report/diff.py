@@ -19,8 +19,10 @@ from uplift.extras.report.measures import delta_e_under, mean_p95_max
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 
-NODES, ENTRIES = "nodes", "entries"
-"""Names of the sets of colours that come from the cubes."""
+NODES = "nodes"
+"""Name of the set of the colours of nodes."""
+ENTRIES = "entries"
+"""Name of the set of the colours of entries."""
 INVISIBLE = 5e-4
 """Largest ΔE00 that is shown as 0.000."""
 NODE_BYTES = 200
@@ -80,23 +82,23 @@ class EntryPairs:
 
 def pair_entries(first: CubeData, second: CubeData) -> EntryPairs:
     """Match the entries of two cubes by name."""
-    tables = first.atlas.with_outside, second.atlas.with_outside
-    row_of = [{name: row for row, name in enumerate(table.names)} for table in tables]
-    shared = tuple(name for name in row_of[0] if name in row_of[1])
-    rows = [
-        np.array([each[name] for name in shared], dtype=np.int64) for each in row_of
-    ]
+    before = first.atlas.with_outside
+    after = second.atlas.with_outside
+    rows_before = {name: row for row, name in enumerate(before.names)}
+    rows_after = {name: row for row, name in enumerate(after.names)}
+    shared = tuple(name for name in rows_before if name in rows_after)
+    old = np.array([rows_before[name] for name in shared], dtype=np.int64)
+    new = np.array([rows_after[name] for name in shared], dtype=np.int64)
     wavelengths = first.sensor.wavelengths
-    one, other = (
-        table.spectra.reflectance(row, wavelengths)
-        for table, row in zip(tables, rows, strict=True)
-    )
     return EntryPairs(
         names=shared,
-        rgb=tables[0].rgb[rows[0]],
-        spectra=(one, other),
-        removed=tuple(name for name in row_of[0] if name not in row_of[1]),
-        added=tuple(name for name in row_of[1] if name not in row_of[0]),
+        rgb=before.rgb[old],
+        spectra=(
+            before.spectra.reflectance(old, wavelengths),
+            after.spectra.reflectance(new, wavelengths),
+        ),
+        removed=tuple(name for name in rows_before if name not in rows_after),
+        added=tuple(name for name in rows_after if name not in rows_before),
     )
 
 
@@ -119,9 +121,8 @@ class CubeDiff:
     @property
     def sets(self) -> tuple[Changes, ...]:
         """All sets of colours that were compared."""
-        return tuple(
-            each for each in (self.nodes, self.entries, *self.images) if len(each.rgb)
-        )
+        sets = (self.nodes, self.entries, *self.images)
+        return tuple(changes for changes in sets if len(changes.rgb))
 
     @property
     def lacking(self) -> tuple[tuple[str, str, int], ...]:
@@ -129,28 +130,25 @@ class CubeDiff:
         number.
         """
         cubes = ("", *self.names, " and ".join(self.names))
-        counts = [
-            (each.name, np.bincount(each.lacking, minlength=4).tolist())
-            for each in self.sets
-        ]
-        return tuple(
-            (name, cubes[code], count[code])
-            for name, count in counts
-            for code in (1, 2, 3)
-            if count[code]
-        )
+        lacking = []
+        for changes in self.sets:
+            counts = np.bincount(changes.lacking, minlength=4).tolist()
+            for code in (1, 2, 3):
+                if counts[code]:
+                    lacking.append((changes.name, cubes[code], counts[code]))
+        return tuple(lacking)
 
     @property
     def largest(self) -> float:
         """Largest ΔE00 of all colours under all lights."""
-        return float(np.max([each.compared.max(initial=0.0) for each in self.sets]))
+        return float(np.max([row.compared.max(initial=0.0) for row in self.sets]))
 
     def is_within(self, tolerance: float) -> bool:
         """Whether both cubes have the same entries and colours, and none differs by
         more than ΔE00 ``tolerance``.
         """
         has_same_colours = not any(
-            np.isin(each.lacking, (1, 2)).any() for each in self.sets
+            np.isin(changes.lacking, (1, 2)).any() for changes in self.sets
         )
         has_same_entries = not (self.pairs.removed or self.pairs.added)
         return has_same_colours and has_same_entries and self.largest <= tolerance
@@ -196,7 +194,7 @@ def diff_cubes(
     changes = []
     for name, rgb in colours.items():
         delta_e = np.full((len(rgb), len(under)), np.nan)
-        lacking = ~first.covers(rgb) + 2 * ~second.covers(rgb)
+        lacking = np.where(first.covers(rgb), 0, 1) + np.where(second.covers(rgb), 0, 2)
         delta_e[lacking == 0] = blockwise(difference, rgb[lacking == 0], len(under))
         changes.append(Changes(name, rgb, delta_e, lacking))
 
@@ -205,7 +203,7 @@ def diff_cubes(
     return CubeDiff(
         names=(first_name, second_name),
         cubes=(first, second),
-        lights=tuple(each.name for each in under),
+        lights=tuple(sensor.name for sensor in under),
         nodes=changes[0],
         pairs=pairs,
         entries=Changes(
@@ -223,17 +221,13 @@ def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, ob
 
     Rows without a difference come last.
     """
-    differences: list[dict[str, Any]] = [
-        {
-            "set": each.name,
-            "light": name,
-            **mean_p95_max(values),
-            **({} if tolerance is None else {"moved": int((values > tolerance).sum())}),
-        }
-        for each in diff.sets
-        for name, values in zip(diff.lights, each.compared.T, strict=True)
-        if values.size
-    ]
+    differences: list[dict[str, Any]] = []
+    worst_colours: list[dict[str, Any]] = []
+    for changes in diff.sets:
+        differences += _differences(changes, diff.lights, tolerance)
+        names = diff.pairs.names if changes is diff.entries else None
+        for row in changes.worst(worst):
+            worst_colours.append(_colour(changes, row, diff.lights, names))
     return {
         "cubes": list(diff.names),
         "largest": diff.largest,
@@ -243,21 +237,37 @@ def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, ob
             else {"tolerance": tolerance, "passed": diff.is_within(tolerance)}
         ),
         "differences": sorted(differences, key=lambda row: row["max"] < INVISIBLE),
-        "worst": [
-            {
-                "set": each.name,
-                **({"entry": diff.pairs.names[row]} if each is diff.entries else {}),
-                "rgb": each.rgb[row].tolist(),
-                "light": diff.lights[each.delta_e[row].argmax()],
-                "delta_e": float(each.largest[row]),
-            }
-            for each in diff.sets
-            for row in each.worst(worst)
-        ],
+        "worst": worst_colours,
         "entries_removed": list(diff.pairs.removed),
         "entries_added": list(diff.pairs.added),
         "lacking": [
             {"set": name, "cubes": cubes, "colours": count}
             for name, cubes, count in diff.lacking
         ],
+    }
+
+
+def _differences(
+    changes: Changes, lights: tuple[str, ...], tolerance: float | None
+) -> list[dict[str, Any]]:
+    """ΔE00 of a set of colours under each light."""
+    rows = []
+    for name, delta_e in zip(lights, changes.compared.T, strict=True):
+        if delta_e.size:
+            row = {"set": changes.name, "light": name, **mean_p95_max(delta_e)}
+            if tolerance is not None:
+                row["moved"] = int((delta_e > tolerance).sum())
+            rows.append(row)
+    return rows
+
+
+def _colour(
+    changes: Changes, row: int, lights: tuple[str, ...], names: tuple[str, ...] | None
+) -> dict[str, Any]:
+    return {
+        "set": changes.name,
+        **({} if names is None else {"entry": names[row]}),
+        "rgb": changes.rgb[row].tolist(),
+        "light": lights[changes.delta_e[row].argmax()],
+        "delta_e": float(changes.largest[row]),
     }

@@ -17,7 +17,14 @@ from uplift.extras.report.measures import SEED
 
 def to_json(assessment: Assessment) -> dict[str, Any]:
     """Convert an assessment to JSON values; numbers that are not finite are null."""
-    data = assessment.data
+    lights = assessment.lights
+    errors = assessment.entries
+    entries = [] if errors is None else _entries(errors, lights)
+    alternatives = [
+        {"name": name, "delta_e_2000": _by_light(answers, lights)}
+        for name, answers in assessment.alternatives.items()
+    ]
+    smoothness = {**vars(assessment.smoothness), "steepest": assessment.steepest}
     values: dict[str, Any] = to_jsonable_python(
         {
             "cube": assessment.name,
@@ -25,26 +32,10 @@ def to_json(assessment: Assessment) -> dict[str, Any]:
             "build": assessment.facts,
             "failures": {"status": assessment.facts["status"], **assessment.failures},
             "fitting_distance": assessment.distance,
-            "round_trip": {
-                "colours": assessment.round_trips["spectra"].counts.sum(),
-                "seed": SEED,
-                "illuminant": data.sensor.illuminant,
-                "delta_e_2000": assessment.round_trips,
-            },
-            "standard_error": {
-                "light": data.error_illuminant,
-                "delta_e_2000": assessment.standard_error,
-                "calibration": assessment.calibration
-                and assessment.calibration.to_json(),
-                "calibrations": {
-                    light: each.to_json()
-                    for light, each in assessment.light_calibrations.items()
-                },
-                "unlike_atlas": assessment.unlike,
-            },
-            "smoothness": vars(assessment.smoothness)
-            | {"steepest": assessment.steepest},
-            "lights": [sensor.illuminant for sensor in assessment.lights],
+            "round_trip": _round_trip(assessment),
+            "standard_error": _standard_error(assessment),
+            "smoothness": smoothness,
+            "lights": [sensor.illuminant for sensor in lights],
             "atlas": {
                 "files": assessment.sources,
                 "own": assessment.own,
@@ -52,13 +43,8 @@ def to_json(assessment: Assessment) -> dict[str, Any]:
                 "absent": assessment.not_covered,
             },
             "delta_e_2000": assessment.delta_e,
-            "entries": []
-            if assessment.entries is None
-            else _entries(assessment.entries, assessment.lights),
-            "alternatives": [
-                {"name": name, "delta_e_2000": _by_light(other, assessment.lights)}
-                for name, other in assessment.alternatives.items()
-            ],
+            "entries": entries,
+            "alternatives": alternatives,
             "crowding": _crowding(assessment),
         },
         inf_nan_mode="null",
@@ -67,16 +53,36 @@ def to_json(assessment: Assessment) -> dict[str, Any]:
     return values
 
 
+def _round_trip(assessment: Assessment) -> dict[str, Any]:
+    return {
+        "colours": assessment.round_trips["spectra"].counts.sum(),
+        "seed": SEED,
+        "illuminant": assessment.data.sensor.illuminant,
+        "delta_e_2000": assessment.round_trips,
+    }
+
+
+def _standard_error(assessment: Assessment) -> dict[str, Any]:
+    calibration = assessment.calibration
+    calibrations = assessment.light_calibrations.items()
+    return {
+        "light": assessment.data.error_illuminant,
+        "delta_e_2000": assessment.standard_error,
+        "calibration": None if calibration is None else calibration.to_json(),
+        "calibrations": {light: checked.to_json() for light, checked in calibrations},
+        "unlike_atlas": assessment.unlike,
+    }
+
+
 def swatches(errors: EntryErrors, sensor: Sensor) -> list[tuple[str, ...]]:
     """``#rrggbb`` of every entry under a light: target, answer and, for the cube's own
     entries, the lattice.
     """
-    spectra = [
-        errors.target,
-        errors.answers.spectra,
-        *([errors.lattice.spectra] if errors.lattice else []),
-    ]
-    return list(zip(*(hex_codes(sensor.rgb(each)) for each in spectra), strict=True))
+    spectra = [errors.target, errors.answers.spectra]
+    if errors.lattice:
+        spectra.append(errors.lattice.spectra)
+    columns = [hex_codes(sensor.rgb(reflectance)) for reflectance in spectra]
+    return list(zip(*columns, strict=True))
 
 
 def _crowding(assessment: Assessment) -> dict[str, Any] | None:
@@ -104,29 +110,33 @@ def _entries(errors: EntryErrors, lights: tuple[Sensor, ...]) -> list[dict[str, 
     def at(values: Any, row: int) -> Any:
         return None if values is None else values[row]
 
-    return [
-        {
+    def by_light(spectra: Answers | None, row: int) -> dict[str, Any] | None:
+        if spectra is None:
+            return None
+        return dict(zip(names, spectra.delta_e[row], strict=True))
+
+    entries = []
+    for row, name in enumerate(errors.names):
+        srgb = {}
+        for light, swatch in codes.items():
+            colours = zip(("wanted", "answered", "lattice"), swatch[row], strict=False)
+            srgb[light] = dict(colours)
+        entry = {
             "name": name,
             "rgb": errors.rgb[row],
             "cell": errors.cells[row],
-            "delta_e_2000": dict(zip(names, answers.delta_e[row], strict=True)),
-            "delta_e_2000_lattice": lattice
-            and dict(zip(names, lattice.delta_e[row], strict=True)),
+            "delta_e_2000": by_light(answers, row),
+            "delta_e_2000_lattice": by_light(lattice, row),
             "rms": answers.rms[row],
             "rms_lattice": lattice and lattice.rms[row],
             "delta_e_2000_reference": errors.actual[row],
             "standard_error": at(errors.predicted, row),
             "reach": at(errors.half_width, row),
             "reach_codes": at(errors.half_width_codes, row),
-            "srgb": {
-                light: dict(
-                    zip(("wanted", "answered", "lattice"), each[row], strict=False)
-                )
-                for light, each in codes.items()
-            },
+            "srgb": srgb,
         }
-        for row, name in enumerate(errors.names)
-    ]
+        entries.append(entry)
+    return entries
 
 
 def _by_light(other: Answers, lights: tuple[Sensor, ...]) -> dict[str, Any]:
@@ -139,18 +149,18 @@ def _by_light(other: Answers, lights: tuple[Sensor, ...]) -> dict[str, Any]:
         strict=True,
     )
     return {
-        sensor.illuminant: {"mean": mean, "max": most, "entries": each}
-        for sensor, mean, most, each in columns
+        sensor.illuminant: {"mean": mean, "max": most, "entries": delta_e}
+        for sensor, mean, most, delta_e in columns
     }
 
 
 Swatch = tuple[str, float | None]
 """``#rrggbb`` of an answer under a light, or nothing, and its ΔE00."""
 
-VISIBLE, LARGE = (
-    1.0,
-    3.0,
-)  # ΔE00: the difference that is just visible side by side, and one that is obvious
+VISIBLE = 1.0
+"""ΔE00 that is just visible side by side."""
+LARGE = 3.0
+"""ΔE00 that is obvious."""
 
 
 def render_report(assessment: Assessment, worst: int) -> str:
@@ -174,7 +184,8 @@ def render_report(assessment: Assessment, worst: int) -> str:
         ],
         compared=list(_compared(assessment, worst)),
         largest_count=max(
-            (int(each.counts.max()) for each in assessment.delta_e.values()), default=0
+            (int(errors.counts.max()) for errors in assessment.delta_e.values()),
+            default=0,
         ),
         severity=_severity,
         visible=VISIBLE,

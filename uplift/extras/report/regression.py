@@ -11,7 +11,7 @@ import numpy as np
 from uplift.colorimetry.lights import REGRESSION_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.solid import solid
-from uplift.common.arrays import Mask
+from uplift.common.arrays import Array, Mask
 from uplift.common.errors import CubeFileError
 from uplift.cube import CubeData
 from uplift.extras.report.diff import pair_entries
@@ -91,53 +91,50 @@ def compare_rebuilt(
         stored.points.present | rebuilt.points.present
     )
     pairs = pair_entries(stored, rebuilt)
-    first, second = (
-        np.concatenate(
-            [
-                reflectance(
-                    data.model,
-                    data.points.coefficients[compared],
-                    stored.sensor.wavelengths,
-                ),
-                own,
-            ]
-        )
-        for data, own in zip((stored, rebuilt), pairs.spectra, strict=True)
-    )
+    wavelengths = stored.sensor.wavelengths
+
+    def spectra_of(data: CubeData, entries: Array) -> Array:
+        coefficients = data.points.coefficients[compared]
+        nodes = reflectance(data.model, coefficients, wavelengths)
+        return np.concatenate([nodes, entries])
+
+    first = spectra_of(stored, pairs.spectra[0])
+    second = spectra_of(rebuilt, pairs.spectra[1])
     difference = np.abs(first - second)
     lights = [
         light(name, stored.sensor.observer, *stored.sensor.range)
         for name in REGRESSION_LIGHTS
     ]
     delta_e = delta_e_under(lights, first, second)
+    rgb = np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[compared]
+    mean_square = (difference**2).sum() / max(difference.size, 1)
     measures = {
-        "rgb": float(
-            np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[compared].max(
-                initial=0
-            )
-        ),
+        "rgb": float(rgb.max(initial=0)),
         "spectra_max": float(difference.max(initial=0)),
-        "spectra_rms": float(np.sqrt((difference**2).sum() / max(difference.size, 1))),
-    } | dict(
-        zip(
-            (f"delta_e_{name}" for name in REGRESSION_LIGHTS),
-            delta_e.max(axis=0, initial=0).tolist(),
-            strict=True,
-        )
-    )
+        "spectra_rms": float(np.sqrt(mean_square)),
+    }
+    largest = delta_e.max(axis=0, initial=0).tolist()
+    for name, value in zip(REGRESSION_LIGHTS, largest, strict=True):
+        measures[f"delta_e_{name}"] = value
     moved = delta_e[np.count_nonzero(compared) :].max(axis=1)
     # Cubes of earlier versions have the names of entries outside their RGB space only.
-    old, new = (data.provenance.get("left_out", ()) for data in (stored, rebuilt))
-    changes = [
+    old = stored.provenance.get("left_out", ())
+    new = rebuilt.provenance.get("left_out", ())
+    removed = [
         EntryChange(name, "removed") for name in pairs.removed if name not in new
     ]
-    changes += [EntryChange(name, "added") for name in pairs.added if name not in old]
-    changes += [
+    added = [EntryChange(name, "added") for name in pairs.added if name not in old]
+    changes = [
         EntryChange(pairs.names[row], "moved", float(moved[row]))
         for row in np.flatnonzero(moved > MOVED)
     ]
-    before, after = (_counts(data, compared) for data in (stored, rebuilt))
-    return RebuildDifference(path, measures, before, after, tuple(changes))
+    return RebuildDifference(
+        path,
+        measures,
+        _counts(stored, compared),
+        _counts(rebuilt, compared),
+        (*removed, *added, *changes),
+    )
 
 
 def _well_determined(data: CubeData) -> Mask:
