@@ -99,21 +99,14 @@ def load(
 
     Every error that the content causes is a `CubeFileError` about the file.
     """
-    from safetensors import SafetensorError, safe_open
+    from safetensors import SafetensorError
 
-    again = f"build the {kind.noun} again"
     check_regular(
         path, CubeFileError, hint=f"check the name, or build the {kind.noun} first"
     )
+    again = f"build the {kind.noun} again"
     try:
-        with safe_open(path, framework="numpy") as file:
-            metadata = parse_json((file.metadata() or {}).get(KEY, "{}"))
-            if any(
-                file.get_slice(name).get_dtype() not in STORED_TYPES
-                for name in file.keys()  # noqa: SIM118
-            ):
-                raise ValueError("an array of an unknown type")
-            tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
+        tensors, metadata = _read_tensors(path)
     except (SafetensorError, ValueError, TypeError, OSError, MemoryError) as error:
         got = _recognise_file(path)
         if not got or got.endswith(kind.noun):
@@ -151,6 +144,19 @@ def load(
         )
         problem = f"is not a valid {kind.noun}: {reason}"
         raise CubeFileError(problem, path=path, hint=again) from error
+
+
+def _read_tensors(path: Path) -> tuple[Tensors, Any]:
+    """Read the arrays, in the order of their names, and the metadata."""
+    from safetensors import safe_open
+
+    with safe_open(path, framework="numpy") as file:
+        metadata = parse_json((file.metadata() or {}).get(KEY, "{}"))
+        names = sorted(file.keys())
+        types = {file.get_slice(name).get_dtype() for name in names}
+        if not types <= set(STORED_TYPES):
+            raise ValueError("an array of an unknown type")
+        return {name: file.get_tensor(name) for name in names}, metadata
 
 
 def _recognise_file(path: Path) -> str:
@@ -252,45 +258,47 @@ def check_metadata(value: Any, schema: Any, path: str = "metadata") -> None:
     key, with ``?`` after optional keys and ``*`` for all others. None is for any value.
     Every query reads metadata, and pydantic takes long to import.
     """
-    items: list[tuple[Any, Any, str]] = []
     if schema is None:
         return
-    if schema is str:
-        fits = isinstance(value, str) and len(value) <= MAX_TEXT
-        expected = f"text of at most {MAX_TEXT} characters"
-    elif schema is int:
-        fits = type(value) is int and 0 <= value <= MAX_VALUE
-        expected = "a whole number from 0"
-    elif isinstance(schema, tuple):
-        low, high = schema
-        fits = type(value) in (int, float) and low <= value <= high
-        expected = f"a number in [{low:g}, {high:g}]"
-    elif isinstance(schema, list):
-        item, limit = schema
-        fits = isinstance(value, list) and len(value) <= limit
-        expected = f"a list of at most {limit:,} items"
-        items = (
-            [(each, item, f"{path}[{number}]") for number, each in enumerate(value)]
-            if fits
-            else []
-        )
-    else:
-        known = {
-            key.removesuffix("?"): each for key, each in schema.items() if key != "*"
-        }
-        required = {key for key in known if key in schema}
-        fits = (
-            isinstance(value, dict)
-            and required <= value.keys()
-            and ("*" in schema or value.keys() <= known.keys())
-        )
-        expected = f"a table of {', '.join(schema)}"
-        items = (
-            [(value[key], known[key], f"{path}.{key}") for key in known if key in value]
-            if fits
-            else []
-        )
+    fits, expected = _fits(value, schema)
     if not fits:
         raise CubeFileError(f"{path} must be {expected}, got {format_value(value)}")
-    for each, item, place in items:
-        check_metadata(each, item, place)
+    if isinstance(schema, list):
+        for number, item in enumerate(value):
+            check_metadata(item, schema[0], f"{path}[{number}]")
+    elif isinstance(schema, dict):
+        for key, item_schema in _fields(schema).items():
+            if key in value:
+                check_metadata(value[key], item_schema, f"{path}.{key}")
+
+
+def _fits(value: Any, schema: Any) -> tuple[bool, str]:
+    """Whether a value, apart from its items, fits a schema, and the values that do."""
+    if schema is str:
+        fits = isinstance(value, str) and len(value) <= MAX_TEXT
+        return fits, f"text of at most {MAX_TEXT} characters"
+    if schema is int:
+        fits = type(value) is int and 0 <= value <= MAX_VALUE
+        return fits, "a whole number from 0"
+    if isinstance(schema, tuple):
+        low, high = schema
+        fits = type(value) in (int, float) and low <= value <= high
+        return fits, f"a number in [{low:g}, {high:g}]"
+    if isinstance(schema, list):
+        limit = schema[1]
+        fits = isinstance(value, list) and len(value) <= limit
+        return fits, f"a list of at most {limit:,} items"
+    fits = isinstance(value, dict) and _has_fields(value, schema)
+    return fits, f"a table of {', '.join(schema)}"
+
+
+def _has_fields(value: dict[str, Any], schema: dict[str, Any]) -> bool:
+    """Whether a table has all required keys of a schema, and no unknown ones."""
+    fields = _fields(schema)
+    required = fields.keys() & schema.keys()
+    return required <= value.keys() and ("*" in schema or value.keys() <= fields.keys())
+
+
+def _fields(schema: dict[str, Any]) -> dict[str, Any]:
+    """The schemas of required and optional keys."""
+    return {key.removesuffix("?"): item for key, item in schema.items() if key != "*"}

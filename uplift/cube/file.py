@@ -1,6 +1,7 @@
 """Read and write cube files (docs/cube-file.md)."""
 
 import os
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ from uplift.cube.container import (
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
 from uplift.lattice import CORNERS, Lattice, PointTable, Status
 from uplift.models import from_description
+from uplift.models.model import Model
 
 FORMAT = "uplift cube"
 VERSION = 4
@@ -49,8 +51,10 @@ memory.
 """
 MAX_CONDITION = 1e6
 """Limit of the condition number of the matrix from XYZ to RGB."""
-MIN_THRESHOLD, MAX_THRESHOLD = 1e-12, 0.1
+MIN_THRESHOLD = 1e-12
 """Linear RGB. Smaller distances are lost in the rounding of double precision."""
+MAX_THRESHOLD = 0.1
+"""Linear RGB."""
 MAX_LIGHTS = 64
 MAX_FILES = 10_000
 
@@ -190,49 +194,16 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
     """Return the arrays by their names in the file, and the metadata without the
     digest.
     """
-    atlas = data.atlas
-    arrays: dict[str, Any] = {
-        "nodes": data.lattice.nodes,
-        **{f"sensor.{name}": getattr(data.sensor, name) for name in SENSOR},
-        "atlas.left_out": atlas.left_out,
-        **{name: getattr(data.points, name) for name in POINTS},
+    tensors = {
+        name: np.ascontiguousarray(array, _stored_type(name, array.dtype))
+        for name, array in _arrays(data).items()
+        if array is not None
     }
-    for prefix, table in (("atlas", atlas), ("outside", atlas.outside)):
-        if table is not None:
-            spectra = (
-                None
-                if table.spectra.model == data.model
-                else table.spectra.coefficients
-            )
-            columns = (
-                table.rgb,
-                table.coefficients,
-                table.half_width,
-                table.error,
-                spectra,
-                table.measured,
-            )
-            arrays |= {
-                f"{prefix}.{name}": column
-                for name, column in zip((*TABLE, "measured"), columns, strict=True)
-            }
-    tensors = {}
-    for name, array in arrays.items():
-        if (
-            array is not None
-        ):  # in a type that its file may have: its own, or else the most precise one
-            types = ARRAYS[name].types
-            tensors[name] = np.ascontiguousarray(
-                array, array.dtype if array.dtype.name in types else types[-1]
-            )
     present = data.points.present
     if not present.all():
         # A sparse file has the rows of the present nodes, and their numbers.
-        tensors |= {
-            name: np.ascontiguousarray(tensors[name][present])
-            for name in POINTS
-            if name in tensors
-        }
+        for name in tensors.keys() & POINTS.keys():
+            tensors[name] = np.ascontiguousarray(tensors[name][present])
         tensors["points"] = np.flatnonzero(present).astype(np.uint32)
     announced = {ARRAYS[name].feature for name in tensors}
     metadata = {
@@ -240,17 +211,54 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
         "version": VERSION,
         "features": [feature for feature in FEATURES if feature in announced],
         "model": data.model.describe(),
-        "entry_model": atlas.spectra.model.describe(),
+        "entry_model": data.atlas.spectra.model.describe(),
         "dim": data.lattice.dim,
         "space": data.sensor.space,
         "illuminant": data.sensor.illuminant,
         "observer": data.sensor.observer,
         "threshold": data.threshold,
         "reference": data.error_illuminant,
-        "entries": list(atlas.names),
+        "entries": list(data.atlas.names),
         "provenance": dict(data.provenance),
     }
     return tensors, metadata
+
+
+def _stored_type(name: str, dtype: np.dtype[Any]) -> np.dtype[Any] | str:
+    """Return the type of an array if its file may have it, or else the most precise."""
+    types = ARRAYS[name].types
+    return dtype if dtype.name in types else types[-1]
+
+
+def _arrays(data: CubeData) -> dict[str, Any]:
+    """Return the arrays by their names in the file; None for those that are missing."""
+    arrays: dict[str, Any] = {"nodes": data.lattice.nodes}
+    for name in SENSOR:
+        arrays[f"sensor.{name}"] = getattr(data.sensor, name)
+    arrays["atlas.left_out"] = data.atlas.left_out
+    for name in POINTS:
+        arrays[name] = getattr(data.points, name)
+    arrays |= _table_arrays("atlas", data.atlas, data.model)
+    if data.atlas.outside is not None:
+        arrays |= _table_arrays("outside", data.atlas.outside, data.model)
+    return arrays
+
+
+def _table_arrays(prefix: str, table: AtlasTable, model: Model) -> dict[str, Any]:
+    """Return the arrays of entries, whose spectra may be those in the model of
+    nodes.
+    """
+    is_shared = table.spectra.model == model
+    return {
+        f"{prefix}.rgb": table.rgb,
+        f"{prefix}.coefficients": table.coefficients,
+        f"{prefix}.reach": table.half_width,
+        f"{prefix}.error": table.error,
+        f"{prefix}.{ENTRY_COEFFICIENTS}": None
+        if is_shared
+        else table.spectra.coefficients,
+        f"{prefix}.measured": table.measured,
+    }
 
 
 def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
@@ -261,76 +269,17 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
     if metadata["version"] < VERSION:
         metadata["entry_model"] = metadata.get("model")
     check_metadata(metadata, METADATA)
-    model, entry_model = (
-        from_description(metadata[key]) for key in ("model", "entry_model")
-    )
-    alike = metadata["model"] | {"count": None} == metadata["entry_model"] | {
-        "count": None
-    }
-    require(
-        alike and entry_model.count >= model.count,
-        "the model of the entries must extend that of the nodes",
-    )
-    names = tuple(metadata["entries"])
-    looks = len(metadata["provenance"].get("looks", ()))
-    outside = tuple(metadata["provenance"].get("left_out", ()))
-    schema = {
-        name: stored
-        for name, stored in ARRAYS.items()
-        if stored.feature in ("", *metadata["features"])
-    }
-    if entry_model == model:
-        schema = {
-            name: stored
-            for name, stored in schema.items()
-            if not name.endswith(ENTRY_COEFFICIENTS)
-        }
-    sizes = {
-        "C": model.count,
-        "K": entry_model.count,
-        "E": len(names),
-        "M": len(names) - looks,
-        "O": len(outside),
-    }
-    for axis, name in (("D", "nodes"), ("n", "status"), ("N", "sensor.wavelengths")):
-        sizes[axis] = tensors[name].size
-    check_arrays(tensors, schema, sizes)
+    model, entry_model = _models(metadata)
+    schema = _schema(metadata["features"], is_shared=entry_model == model)
+    check_arrays(tensors, schema, _sizes(tensors, metadata, model, entry_model))
     arrays: dict[str, Any] = {name: tensors[name] for name in schema}
-
-    def table(names: tuple[str, ...], prefix: str, **others: Any) -> AtlasTable:
-        rgb, coefficients, half_width, error = (
-            arrays[f"{prefix}.{name}"] for name in list(TABLE)[:-1]
-        )
-        spectra = EntrySpectra(
-            entry_model, arrays.get(f"{prefix}.{ENTRY_COEFFICIENTS}", coefficients)
-        )
-        measured = arrays.get(f"{prefix}.measured")
-        return AtlasTable(
-            names, rgb, coefficients, half_width, error, spectra, measured, **others
-        )
-
     data = CubeData(
         model=model,
-        lattice=Lattice(tensors["nodes"]),
-        sensor=Sensor(
-            metadata["space"],
-            metadata["illuminant"],
-            metadata["observer"],
-            **{
-                name: arrays[f"sensor.{name}"]
-                for name in SENSOR
-                if f"sensor.{name}" in arrays
-            },
-        ),
+        lattice=Lattice(arrays["nodes"]),
+        sensor=_sensor(arrays, metadata),
         threshold=float(metadata["threshold"]),
         error_illuminant=metadata["reference"],
-        atlas=table(
-            names,
-            "atlas",
-            left_out=arrays.get("atlas.left_out"),
-            looks=looks,
-            outside=table(outside, "outside") if "outside.rgb" in arrays else None,
-        ),
+        atlas=_atlas(arrays, metadata, entry_model),
         provenance=metadata["provenance"],
         points=PointTable(**{name: arrays[name] for name in POINTS if name in arrays}),
     )
@@ -340,16 +289,93 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
     )
     _check(data)
     if "points" in arrays:
-        data = replace(
-            data,
-            points=_expand(
-                data.points, arrays["points"].astype(np.int64), data.lattice
-            ),
-        )
+        numbers = arrays["points"].astype(np.int64)
+        data = replace(data, points=_expand(data.points, numbers, data.lattice))
     size = data.lattice.size
     count = data.points.status.size
     require(count == size, f"there must be {pluralise(size, 'node')}, got {count}")
     return data
+
+
+def _models(metadata: dict[str, Any]) -> tuple[Model, Model]:
+    """Return the models of nodes and of entries, which differ in their counts only."""
+    model = from_description(metadata["model"])
+    entry_model = from_description(metadata["entry_model"])
+    uncounted = metadata["model"] | {"count": None}
+    entry_uncounted = metadata["entry_model"] | {"count": None}
+    require(
+        uncounted == entry_uncounted and entry_model.count >= model.count,
+        "the model of the entries must extend that of the nodes",
+    )
+    return model, entry_model
+
+
+def _schema(features: list[str], is_shared: bool) -> dict[str, Stored]:
+    """Return the arrays of a file, where nodes and entries may share one model."""
+    schema = {}
+    for name, stored in ARRAYS.items():
+        is_repeated = is_shared and name.endswith(ENTRY_COEFFICIENTS)
+        if stored.feature in ("", *features) and not is_repeated:
+            schema[name] = stored
+    return schema
+
+
+def _sizes(
+    tensors: Tensors, metadata: dict[str, Any], model: Model, entry_model: Model
+) -> dict[str, int]:
+    """Return the lengths that the letters of shapes stand for."""
+    count = len(metadata["entries"])
+    provenance = metadata["provenance"]
+    return {
+        "C": model.count,
+        "K": entry_model.count,
+        "E": count,
+        "M": count - len(provenance.get("looks", ())),
+        "O": len(provenance.get("left_out", ())),
+        "D": tensors["nodes"].size,
+        "n": tensors["status"].size,
+        "N": tensors["sensor.wavelengths"].size,
+    }
+
+
+def _sensor(arrays: dict[str, Any], metadata: dict[str, Any]) -> Sensor:
+    columns: dict[str, Any] = {name: arrays.get(f"sensor.{name}") for name in SENSOR}
+    return Sensor(
+        metadata["space"], metadata["illuminant"], metadata["observer"], **columns
+    )
+
+
+def _atlas(
+    arrays: dict[str, Any], metadata: dict[str, Any], model: Model
+) -> AtlasTable:
+    provenance = metadata["provenance"]
+    table = _table(arrays, "atlas", metadata["entries"], model)
+    outside = None
+    if "outside.rgb" in arrays:
+        outside = _table(arrays, "outside", provenance.get("left_out", ()), model)
+    return replace(
+        table,
+        left_out=arrays.get("atlas.left_out"),
+        looks=len(provenance.get("looks", ())),
+        outside=outside,
+    )
+
+
+def _table(
+    arrays: dict[str, Any], prefix: str, names: Iterable[str], model: Model
+) -> AtlasTable:
+    coefficients = arrays[f"{prefix}.coefficients"]
+    # Entries with as many coefficients as nodes have them once.
+    entry_coefficients = arrays.get(f"{prefix}.{ENTRY_COEFFICIENTS}", coefficients)
+    return AtlasTable(
+        names=tuple(names),
+        rgb=arrays[f"{prefix}.rgb"],
+        coefficients=coefficients,
+        half_width=arrays[f"{prefix}.reach"],
+        error=arrays[f"{prefix}.error"],
+        spectra=EntrySpectra(model, entry_coefficients),
+        measured=arrays.get(f"{prefix}.measured"),
+    )
 
 
 def _check(data: CubeData) -> None:

@@ -26,10 +26,13 @@ from uplift.fit.solver import (
 )
 from uplift.models.model import Model
 
-LIGHTS_WEIGHT, SMOOTHNESS = 0.03, 1e-3
-"""Weights of a unit of CIE L*a*b* under a light, and of the multipliers but the
-constant one, in the metric M of docs/mathematics.md, 5, relative to the
-root-mean-square difference of the spectra.
+LIGHTS_WEIGHT = 0.03
+"""Weight of a unit of CIE L*a*b* under a light, relative to the root-mean-square
+difference of the spectra.
+"""
+SMOOTHNESS = 1e-3
+"""Weight, likewise, of the multipliers but the constant one, in the metric M of
+docs/mathematics.md, 5.
 
 Without smoothness the minimum of a dark entry jumps: of two spectra that meet its
 colours nearly equally well one has multipliers ten times as large, and noise decides
@@ -110,9 +113,8 @@ class Objective:
         """
         x = multipliers @ self.basis.T
         shape = (*multipliers.shape, multipliers.shape[1])
-        spectra, lights, own = np.split(
-            residuals, [len(self.basis), residuals.shape[1] - shape[1]], axis=1
-        )
+        ends = [len(self.basis), residuals.shape[1] - shape[1]]
+        spectra, lights, smoothness = np.split(residuals, ends, axis=1)
         # g = S(B p), so ∂g/∂p = S′(B p) B, and ∂XYZ/∂p = M ∂g/∂p of each light
         change = self.model.derivative(x)
         xyz_change = (change @ self.light_basis).reshape(
@@ -129,7 +131,7 @@ class Objective:
             self.values * (change * spectra) @ self.basis
             + (colours.mT @ lights[..., None])[..., 0]
         )
-        return gram, slope + self.multipliers * own
+        return gram, slope + self.multipliers * smoothness
 
 
 def objective(
@@ -145,18 +147,15 @@ def objective(
     ``weight`` is that of a unit of CIE L*a*b*, ``smoothness`` that of the multipliers;
     None leaves them free.
     """
-    xyz, whites = (
-        np.stack([getattr(light, name) for light in lights])
-        for name in ("xyz", "white")
-    )
-    own = np.zeros(model.count)
+    xyz = np.stack([light.xyz for light in lights])
+    whites = np.stack([light.white for light in lights])
+    multipliers = np.zeros(model.count)
     if smoothness is not None:
         # M = diag(1 + j²), but the constant multiplier is left to the measurement.
         smooth = np.maximum(smoothness * np.sqrt(model.metric_diagonal()), FLATNESS)
-        own = np.where(model.constant() > 0, FLATNESS, smooth)
-    return Objective(
-        model, basis, float(np.sqrt(1 / len(basis))), xyz, whites, weight, own
-    )
+        multipliers = np.where(model.constant() > 0, FLATNESS, smooth)
+    values = float(np.sqrt(1 / len(basis)))
+    return Objective(model, basis, values, xyz, whites, weight, multipliers)
 
 
 class MarquardtState(NamedTuple):
@@ -212,37 +211,30 @@ class Marquardt(BatchSolver):
         diagonal = gram.diagonal(axis1=-2, axis2=-1).max(axis=-1)
         damping = np.where(state.damping > 0, state.damping, FIRST_DAMPING * diagonal)
         # (JᵀJ + μ I) Δy = −Jᵀ f
-        change = -np.linalg.solve(
-            gram + damping[:, None, None] * np.eye(y.shape[-1]), slope[..., None]
-        )[..., 0]
-        residual, aux = fn(y + change, args)
-        before, after = ((each**2).sum(axis=-1) for each in (state.residual, residual))
+        damped = gram + damping[:, None, None] * np.eye(y.shape[-1])
+        change = -np.linalg.solve(damped, slope[..., None])[..., 0]
+        trial = y + change
+        residual, aux = fn(trial, args)
+        before = (state.residual**2).sum(axis=-1)
+        after = (residual**2).sum(axis=-1)
         # ϱ: the reduction of the squares over that of the linear model
         expected = (change * (damping[:, None] * change - slope)).sum(axis=-1)
         gain = (before - after) / np.maximum(expected, np.finfo(float).tiny)
         better = gain > 0
-        small = np.linalg.norm(change, axis=-1) <= self.rtol * np.linalg.norm(
-            y, axis=-1
-        )
-        ended = small | (
-            better
-            & (before - after <= self.rtol * before)
-            & (expected <= self.rtol * before)
-        )
+        size = np.linalg.norm(y, axis=-1)
+        small = np.linalg.norm(change, axis=-1) <= self.rtol * size
+        least = self.rtol * before
+        flat = better & (before - after <= least) & (expected <= least)
         accept = (better & ~state.done)[:, None]
-        return (
-            np.where(accept, y + change, y),
-            MarquardtState(
-                np.where(accept, residual, state.residual),
-                damping
-                * np.where(
-                    better, np.maximum(1 / 3, 1 - (2 * gain - 1) ** 3), state.growth
-                ),
-                np.where(better, 2.0, 2 * state.growth),
-                state.done | ended,
-            ),
-            aux,
+        # Nielsen's damping: max(1/3, 1 − (2ϱ − 1)³) after an accepted step
+        shrinkage = np.maximum(1 / 3, 1 - (2 * gain - 1) ** 3)
+        state = MarquardtState(
+            residual=np.where(accept, residual, state.residual),
+            damping=damping * np.where(better, shrinkage, state.growth),
+            growth=np.where(better, 2.0, 2 * state.growth),
+            done=state.done | small | flat,
         )
+        return np.where(accept, trial, y), state, aux
 
     def done(self, state: MarquardtState) -> Mask:
         return state.done

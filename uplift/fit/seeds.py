@@ -16,8 +16,10 @@ from uplift.fit.problem import Problem
 from uplift.lattice import AXES, CORNERS, Lattice, axis_nodes, weighted_sum
 from uplift.models import evaluate
 
-NEAR, FAR = 8.0, 16.0
-"""ΔE*ab up to which a corner is near its entry, and from which it is far."""
+NEAR = 8.0
+"""ΔE*ab up to which a corner is near its entry."""
+FAR = 16.0
+"""ΔE*ab from which a corner is far from its entry."""
 MAX_HALF_WIDTH = 1.0
 """Lattice steps: the half width of an entry box without other entries nearby."""
 SAME_COLOUR = 1e-6
@@ -43,10 +45,10 @@ def half_widths(steps: Array) -> Array:
         same = _apart(steps[rows], steps) <= SAME_COLOUR
         unique[rows] = ~np.tril(same, rows.start - 1).any(axis=1)  # no earlier entry
     widths = np.zeros(len(steps))
-    own = steps[unique]
-    nearest = np.empty(len(own))
-    for rows in blocks(len(own), BLOCK):
-        apart = _apart(own[rows], own)
+    distinct = steps[unique]
+    nearest = np.empty(len(distinct))
+    for rows in blocks(len(distinct), BLOCK):
+        apart = _apart(distinct[rows], distinct)
         np.fill_diagonal(apart[:, rows], np.inf)
         nearest[rows] = apart.min(axis=1, initial=np.inf)
     widths[unique] = np.minimum(MAX_HALF_WIDTH, nearest / 2)
@@ -66,13 +68,12 @@ def outside_half_widths(lattice: Lattice, rgb: Array) -> Array:
     )
 
 
-def _apart(some: Array, others: Array) -> Array:
+def _apart(positions: Array, others: Array) -> Array:
     """Largest differences (n, m) of a component between positions (n, 3) and (m, 3)."""
-    apart = np.zeros((len(some), len(others)))
-    for one, other in zip(
-        some.T, others.T, strict=True
-    ):  # faster than a maximum over an axis of three
-        difference = np.subtract.outer(one, other)
+    apart = np.zeros((len(positions), len(others)))
+    # Faster than a maximum over an axis of three
+    for axis in range(3):
+        difference = np.subtract.outer(positions[:, axis], others[:, axis])
         np.maximum(apart, np.abs(difference, out=difference), out=apart)
     return apart
 
@@ -108,11 +109,11 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
     nearest = np.take_along_axis(distance, by_distance, axis=1)[:, 0]
     order = np.lexsort([*rgb.T, nearest])
     owner: dict[int, int] = {}
-    crowded = [
-        int(entry)
-        for entry in order
-        if owner.setdefault(int(queue[entry, 0]), int(entry)) != entry
-    ]
+    crowded = []
+    for entry in order:
+        first = owner.setdefault(int(queue[entry, 0]), int(entry))
+        if first != entry:
+            crowded.append(int(entry))
     # Then the corners of the cells, one for every entry in turn, nearest first.
     primaries = len(owner)
     for _ in CORNERS:
@@ -122,11 +123,13 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
             )
             if free is not None:
                 owner[free] = int(entry)
-    points, entries = (
-        np.array(list(each), dtype=np.int64) for each in (owner, owner.values())
-    )
     return Seeds(
-        lattice, rgb, points, entries, np.arange(len(owner)) < primaries, tuple(crowded)
+        lattice=lattice,
+        rgb=rgb,
+        points=np.array(list(owner), dtype=np.int64),
+        entry=np.array(list(owner.values()), dtype=np.int64),
+        primary=np.arange(len(owner)) < primaries,
+        crowded=tuple(crowded),
     )
 
 
@@ -167,10 +170,10 @@ def initial_guess(
         points, seeds.points, assume_unique=True, return_indices=True
     )
     entry = seeds.entry[row]
-    node_lab, entry_lab = (
-        rgb_to_lab(prior.sensor, colours) for colours in (rgb[seeded], seeds.rgb)
-    )
-    near = np.interp(delta_e_1976(node_lab, entry_lab[entry]), (NEAR, FAR), blend)
+    node_lab = rgb_to_lab(prior.sensor, rgb[seeded])
+    entry_lab = rgb_to_lab(prior.sensor, seeds.rgb)
+    distance = delta_e_1976(node_lab, entry_lab[entry])
+    near = np.interp(distance, (NEAR, FAR), blend)
     weight = np.where(seeds.primary[row], 1.0, near)
     multipliers[seeded] = blended(
         prior.model, entries[entry], multipliers[seeded], weight
@@ -195,16 +198,14 @@ def lattice_error(
     target = lattice.target(points)
     start = initial_guess(points, target, prior, seeds, entries.multipliers, blend)
     fitted = problem.solve(target, start, MAX_PASSES, prior=start).multipliers
-    spectra, own = (
-        evaluate(problem.model, multipliers, problem.sensor.wavelengths)
-        for multipliers in (fitted, entries.multipliers)
-    )
+    wavelengths = problem.sensor.wavelengths
+    spectra = evaluate(problem.model, fitted, wavelengths)
+    goals = evaluate(problem.model, entries.multipliers, wavelengths)
     # What the interpolation of the lattice answers at the colours of the entries
     corners, weights = lattice.corners(entries.rgb)
     answers = weighted_sum(spectra, np.searchsorted(points, corners), weights)
-    return np.max(
-        [delta_e_spectra(light, answers, own) for light in problem.lights], axis=0
-    )
+    errors = [delta_e_spectra(light, answers, goals) for light in problem.lights]
+    return np.max(errors, axis=0)
 
 
 def choose_lattice(
@@ -223,9 +224,8 @@ def choose_lattice(
     trials = []
     for dim in DIMS:
         for axis in AXES:
-            errors = lattice_error(
-                problem, Lattice(axis_nodes(axis, dim)), prior, blend, entries
-            )
+            lattice = Lattice(axis_nodes(axis, dim))
+            errors = lattice_error(problem, lattice, prior, blend, entries)
             trials.append((int((errors > max_error).sum()), dim, axis))
         lost, dim, axis = min(trials, key=lambda trial: trial[:2])
         if not lost:

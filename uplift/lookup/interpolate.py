@@ -1,10 +1,10 @@
 """Interpolation of coefficients and spectra between nodes, in four modes
 (docs/mathematics.md, 8). Needs numpy only.
 
-spectra   weighted spectra of the surrounding nodes; exact colours, as RGB is linear in
-the spectrum moments   weighted coefficients; one reconstruction instead of eight
-refined   ``moments``, then minimum-norm steps to the exact colour (section 5) nearest
-the spectrum of the node of largest weight, of another colour
+spectra   weighted spectra of the nodes; exact colours, as RGB is linear in the spectrum
+moments   weighted coefficients; one reconstruction instead of eight
+refined   ``moments``, then minimum-norm steps to the exact colour (section 5)
+nearest   the spectrum of the node of largest weight, of another colour
 
 Where nodes have not their own colours, answers of all modes but ``nearest`` are then
 moved to theirs (section 9).
@@ -63,19 +63,26 @@ def require_covered(covered: Mask, rgb: Array) -> None:
         )
 
 
-def exact(mix: Mode, data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) of a mixture, moved to exact colours where nodes have not
-    their own.
+def exact(
+    mix: Mode,
+    share_of: Callable[[CubeData, Array], Array | Mask],
+    data: CubeData,
+    rgb: Array,
+    wavelengths: Array,
+) -> Array:
+    """Reflectance (n, N) of a mixture, moved by a share to exact colours where nodes
+    have not their own.
     """
     mixed = mix(data, rgb, wavelengths)
     if data.inexact_cells is None:
         return mixed
-    share = fading_share(data, rgb) if mix is mixed_moments else is_inexact(data, rgb)
+    share = share_of(data, rgb)
     rows = np.flatnonzero(share)
     if rows.size:
+        weight = share[rows, None]
         at_sensor = mix(data, rgb[rows], data.sensor.wavelengths)
         moved = with_colours(data, mixed[rows], at_sensor, rgb[rows], wavelengths)
-        mixed[rows] = (1 - share[rows, None]) * mixed[rows] + share[rows, None] * moved
+        mixed[rows] = (1 - weight) * mixed[rows] + weight * moved
     return mixed
 
 
@@ -138,10 +145,9 @@ def mixed_refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """
     nodes = around(data, rgb)
     lattice = evaluate(data.model, _exact_lattice(data, nodes, rgb), wavelengths)
-    return nodes.hits.mix(
-        lattice,
-        evaluate(data.atlas.spectra.model, _exact_entries(data, nodes), wavelengths),
-    )
+    multipliers = _exact_entries(data, nodes)
+    entries = evaluate(data.atlas.spectra.model, multipliers, wavelengths)
+    return nodes.hits.mix(lattice, entries)
 
 
 def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
@@ -163,9 +169,9 @@ def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     return weighted_sum(values, row.reshape(corners.shape), weights)
 
 
-spectra, moments, refined = (
-    partial(exact, mix) for mix in (mixed_spectra, mixed_moments, mixed_refined)
-)
+spectra = partial(exact, mixed_spectra, is_inexact)
+moments = partial(exact, mixed_moments, fading_share)
+refined = partial(exact, mixed_refined, is_inexact)
 MODES: dict[str, Mode] = {
     "spectra": spectra,
     "moments": moments,
@@ -178,9 +184,8 @@ def coefficients(data: CubeData, rgb: Array) -> Array:
     """Weighted coefficients (n, C) of the nodes around linear RGB (n, 3) in [0, 1], as
     `exact_coefficients`.
     """
-    return exact_coefficients(
-        data, data.model, rgb, weighted_coefficients(data, rgb), refined_multipliers
-    )
+    weighted = weighted_coefficients(data, rgb)
+    return exact_coefficients(data, data.model, rgb, weighted, refined_multipliers)
 
 
 def extended_coefficients(data: CubeData, rgb: Array) -> Array:
@@ -189,7 +194,7 @@ def extended_coefficients(data: CubeData, rgb: Array) -> Array:
     """
     nodes = around(data, rgb)
     points, row = np.unique(nodes.points, return_inverse=True)
-    lattice = extend_coefficients(data, data.points.coefficients[points])
+    lattice = in_entry_model(data, data.points.coefficients[points])
     nodes = replace(nodes, points=row.reshape(nodes.points.shape))
     weighted = nodes.weighted_sum(lattice, data.atlas.spectra.coefficients)
     return exact_coefficients(
@@ -210,10 +215,9 @@ def exact_coefficients(
     share = fading_share(data, rgb)
     rows = np.flatnonzero(share)
     if rows.size:
+        weight = share[rows, None]
         moved = model.to_storage(multipliers(data, rgb[rows]))
-        weighted[rows] = (1 - share[rows, None]) * weighted[rows] + share[
-            rows, None
-        ] * moved
+        weighted[rows] = (1 - weight) * weighted[rows] + weight * moved
     return weighted
 
 
@@ -224,7 +228,7 @@ def weighted_coefficients(data: CubeData, rgb: Array) -> Array:
     )
 
 
-def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
+def in_entry_model(data: CubeData, coefficients: Array) -> Array:
     """Coefficients (m, K) in the model of the entries of the lattice spectra with
     coefficients (m, C).
 
@@ -233,9 +237,8 @@ def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
     """
     # B p is the same with zeros for further multipliers; the moments c_j = (1/π) ∫ g
     # cos jφ dφ of g follow for any j.
-    extended = data.atlas.spectra.model.to_storage(
-        _append_zeros(data, data.model.from_storage(coefficients))
-    )
+    multipliers = _append_zeros(data, data.model.from_storage(coefficients))
+    extended = data.atlas.spectra.model.to_storage(multipliers)
     extended[:, : data.model.count] = coefficients
     return extended
 
@@ -244,9 +247,8 @@ def refined_multipliers(data: CubeData, rgb: Array) -> Array:
     """Multipliers (n, C) that start from the weighted coefficients and have exactly the
     colours (n, 3).
     """
-    return refine_to_rgb(
-        data, data.model, data.model.from_storage(weighted_coefficients(data, rgb)), rgb
-    )
+    start = data.model.from_storage(weighted_coefficients(data, rgb))
+    return refine_to_rgb(data, data.model, start, rgb)
 
 
 def extended_multipliers(data: CubeData, rgb: Array) -> Array:
@@ -258,14 +260,12 @@ def extended_multipliers(data: CubeData, rgb: Array) -> Array:
     nodes = around(data, rgb)
     model = data.atlas.spectra.model
     extended = _append_zeros(data, _exact_lattice(data, nodes, rgb))
-    inside = nodes.hits._replace(rows=np.arange(len(nodes.hits.rows)))
-    mixed = inside.mix(
-        model.to_storage(extended[nodes.hits.rows]),
-        model.to_storage(_exact_entries(data, nodes)),
-    )
-    extended[nodes.hits.rows] = refine_to_rgb(
-        data, model, model.from_storage(mixed), rgb[nodes.hits.rows]
-    )
+    rows = nodes.hits.rows
+    lattice = model.to_storage(extended[rows])
+    entries = model.to_storage(_exact_entries(data, nodes))
+    mixed = nodes.hits._replace(rows=np.arange(len(rows))).mix(lattice, entries)
+    start = model.from_storage(mixed)
+    extended[rows] = refine_to_rgb(data, model, start, rgb[rows])
     return extended
 
 
@@ -288,9 +288,8 @@ def _exact_lattice(data: CubeData, nodes: Nodes, rgb: Array) -> Array:
     """
     # The mean moments nearly have the mean colour: a step or two of Δx = A⁺ (t − r)
     # suffice (5).
-    start = data.model.from_storage(
-        weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
-    )
+    weighted = weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
+    start = data.model.from_storage(weighted)
     return refine_to_rgb(data, data.model, start, nodes.lattice_rgb(rgb))
 
 
@@ -298,22 +297,19 @@ def _exact_entries(data: CubeData, nodes: Nodes) -> Array:
     """Multipliers (k, K) of the entry of each colour in a box, that have exactly the
     colour of the entry.
     """
-    atlas, (entries, row) = data.atlas, np.unique(nodes.hits.entry, return_inverse=True)
-    return refine_to_rgb(
-        data,
-        atlas.spectra.model,
-        atlas.spectra.multipliers[entries],
-        atlas.rgb[entries],
-    )[row]
+    entries, row = np.unique(nodes.hits.entry, return_inverse=True)
+    spectra = data.atlas.spectra
+    start = spectra.multipliers[entries]
+    exact = refine_to_rgb(data, spectra.model, start, data.atlas.rgb[entries])
+    return exact[row]
 
 
 def _append_zeros(data: CubeData, multipliers: Array) -> Array:
     """Multipliers (m, K) in the model of the entries of the spectra with multipliers
     (m, C).
     """
-    return np.pad(
-        multipliers, ((0, 0), (0, data.atlas.spectra.model.count - data.model.count))
-    )
+    added = data.atlas.spectra.model.count - data.model.count
+    return np.pad(multipliers, ((0, 0), (0, added)))
 
 
 def _mix_entries(
@@ -325,6 +321,5 @@ def _mix_entries(
     if not nodes.hits.rows.size:
         return lattice
     entries, row = np.unique(nodes.hits.entry, return_inverse=True)
-    return nodes.hits.mix(
-        lattice, data.atlas.spectra.reflectance(entries, wavelengths)[row]
-    )
+    values = data.atlas.spectra.reflectance(entries, wavelengths)
+    return nodes.hits.mix(lattice, values[row])

@@ -44,11 +44,13 @@ class NodeTable:
         dtype: DTypeLike,
     ) -> "NodeTable":
         """Make a table of a type from values (m, K) of the present nodes."""
-        lattice, atlas = (each.astype(dtype, copy=False) for each in (points, atlas))
+        lattice = points.astype(dtype, copy=False)
         if data.complete_cells is not None:
             lattice = np.full((data.lattice.size, points.shape[1]), np.nan, dtype)
             lattice[data.points.present] = points
-        return cls(data, lattice, atlas, None if data.inexact_cells is None else exact)
+        entries = atlas.astype(dtype, copy=False)
+        moved = None if data.inexact_cells is None else exact
+        return cls(data, lattice, entries, moved)
 
     def spectra(self, rgb: Array) -> Values:
         """Reflectance (n, N) in mode ``spectra``."""
@@ -63,9 +65,8 @@ class NodeTable:
 
     def values(self, rgb: Array) -> Values:
         """Weighted values (n, K) of the nodes."""
-        values = interpolate.around(self.data, rgb).weighted_sum(
-            self.lattice, self.atlas
-        )
+        nodes = interpolate.around(self.data, rgb)
+        values = nodes.weighted_sum(self.lattice, self.atlas)
         if self.exact is not None:
             rows, moved = self.exact(rgb)
             values[rows] = moved
@@ -85,12 +86,10 @@ def prepare_products(
     """
     # (Σ w g) Mᵀ = Σ w (g Mᵀ): interpolation is linear, and is faster of fewer numbers.
     table = tabulate(data, wavelengths, np.float32, threads)
-    lattice, atlas = (
-        (each @ matrix.T).astype(each.dtype) for each in (table.lattice, table.atlas)
-    )
-    products = NodeTable(
-        data, lattice, atlas, table.exact and partial(_product, table.exact, matrix)
-    )
+    lattice = (table.lattice @ matrix.T).astype(np.float32)
+    atlas = (table.atlas @ matrix.T).astype(np.float32)
+    exact = table.exact and partial(_product, table.exact, matrix)
+    products = NodeTable(data, lattice, atlas, exact)
     return partial(_sample, products, threads)
 
 
@@ -135,16 +134,10 @@ def tabulate_coefficients(
     entries = data.atlas.coefficients
     coefficients = interpolate.coefficients
     if count != data.model.count:
-        present = blockwise(
-            partial(interpolate.extend_coefficients, data),
-            present,
-            count,
-            dtype,
-            threads,
-        )
+        extend_rows = partial(interpolate.in_entry_model, data)
+        present = blockwise(extend_rows, present, count, dtype, threads)
         entries = data.atlas.spectra.coefficients
         coefficients = interpolate.extended_coefficients
-    exact = partial(
-        _exact, partial(interpolate.fading_share, data), partial(coefficients, data)
-    )
+    share = partial(interpolate.fading_share, data)
+    exact = partial(_exact, share, partial(coefficients, data))
     return NodeTable.of_present_points(data, present, entries, exact, dtype)

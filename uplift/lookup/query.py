@@ -10,6 +10,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.sensor import Light, as_rgb
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError, unknown_name
+from uplift.cube import CubeData
 from uplift.lattice import Status
 from uplift.lookup.blocks import BLOCK, as_colours, as_wavelengths
 from uplift.lookup.cube import Cube, expected_errors
@@ -142,7 +143,7 @@ def _block(
     lights: Sequence[Light],
 ) -> Iterator[QueryResult]:
     data = cube.data
-    sensor = cube.data.sensor
+    sensor = data.sensor
     count = len(sensor.wavelengths)
     grid = np.concatenate([sensor.wavelengths, at])
     answered = np.where(outside[:, None], requested, rgb)
@@ -155,49 +156,24 @@ def _block(
     at_sensor = spectra[:, :count]
     round_trip = sensor.rgb(at_sensor)
     xyz = at_sensor @ sensor.light.xyz.T
+    light_xyz = {light.name: at_sensor @ light.xyz.T for light in lights}
     delta_e = delta_e_rgb(sensor, answered, round_trip)
-    relit = {light.name: at_sensor @ light.xyz.T for light in lights}
-    # Outside the RGB space a colour is that of an entry where its spectrum alone
-    # answers.
-    entries: dict[int, int] = {}
-    if data.atlas.outside is not None:
-        found = data.outside_boxes.find(answered)
-        alone = found.lattice_weight == 0
-        entries = dict(
-            zip(found.rows[alone].tolist(), found.entry[alone].tolist(), strict=True)
-        )
-    # Standard errors and error bounds (n, 2) under the light of the cube's errors and
-    # under each light, by name.
-    wanted = [(None, None), *((light.name, light) for light in lights)]
-    has_errors = data.points.standard_error is not None
-    errors = {
-        name: _errors(cube, rgb, outside, entries, light)
-        for name, light in wanted
-        if has_errors
-    }
-    unlike = (
-        cube.unlike_atlas(rgb) & ~outside
-        if has_errors
-        else np.zeros(len(rgb), dtype=bool)
-    )
-    # A colour is that of an entry if their 8-bit codes are close.
-    codes = cube.encode(rgb)
-    entry_codes = cube.encode(data.atlas.rgb)
+    outside_entries = _outside_entries(data, answered)
+    names = _entry_names(cube, rgb, outside, outside_entries)
+    unlike = np.zeros(len(rgb), dtype=bool)
+    errors = np.full((len(rgb), 2), np.nan)
+    light_errors = {}
+    if data.points.standard_error is not None:
+        unlike = cube.unlike_atlas(rgb) & ~outside
+        errors = _errors(cube, rgb, outside, outside_entries)
+        light_errors = {
+            light.name: _errors(cube, rgb, outside, outside_entries, light)
+            for light in lights
+        }
     low, fraction = data.lattice.cell(rgb)
     statuses = data.points.status[data.lattice.cell_corners(low, fraction)[0]]
     realisable = data.solid.contains(answered)
     for row, cell in enumerate(low.tolist()):
-        known = {
-            name: each[row].tolist()
-            for name, each in errors.items()
-            if not np.isnan(each[row, 0])
-        }
-        own = known.pop(None, (None, None))
-        difference = np.abs(entry_codes - codes[row]).max(axis=1)
-        is_entry = difference.min(initial=np.inf) <= CODE_TOLERANCE and not outside[row]
-        entry = data.atlas.names[difference.argmin()] if is_entry else None
-        if data.atlas.outside is not None and row in entries:
-            entry = data.atlas.outside.names[entries[row]]
         yield QueryResult(
             rgb=answered[row],
             requested_rgb=requested[row],
@@ -207,20 +183,57 @@ def _block(
             xyz=xyz[row],
             delta_e_2000=float(delta_e[row]),
             cell=tuple(cell),
-            statuses=tuple(map(Status, sorted(set(statuses[row].tolist())))),
-            entry=entry,
-            standard_error=own[0],
-            error_bound=own[1],
-            standard_errors={
-                name: each[0] for name, each in known.items() if name is not None
-            },
-            error_bounds={
-                name: each[1] for name, each in known.items() if name is not None
-            },
-            light_xyz={name: each[row] for name, each in relit.items()},
+            statuses=tuple(map(Status, np.unique(statuses[row]).tolist())),
+            entry=names[row],
+            standard_error=_known(errors[row, 0]),
+            error_bound=_known(errors[row, 1]),
+            standard_errors=_known_at(light_errors, row, 0),
+            error_bounds=_known_at(light_errors, row, 1),
+            light_xyz={name: values[row] for name, values in light_xyz.items()},
             unlike_atlas=bool(unlike[row]),
             realisable=bool(realisable[row]),
         )
+
+
+def _outside_entries(data: CubeData, rgb: Array) -> dict[int, int]:
+    """Return the entry outside the RGB space of each row whose spectrum it alone
+    answers.
+    """
+    if data.atlas.outside is None:
+        return {}
+    hits = data.outside_boxes.find(rgb)
+    alone = hits.lattice_weight == 0
+    return dict(zip(hits.rows[alone].tolist(), hits.entry[alone].tolist(), strict=True))
+
+
+def _entry_names(
+    cube: Cube, rgb: Array, outside: Mask, outside_entries: Mapping[int, int]
+) -> list[str | None]:
+    """Return the name of the entry that each colour is of, by their 8-bit codes."""
+    atlas = cube.data.atlas
+    names: list[str | None] = [None] * len(rgb)
+    entry_codes = cube.encode(atlas.rgb)
+    for row, codes in enumerate(cube.encode(rgb)):
+        difference = np.abs(entry_codes - codes).max(axis=1)
+        if difference.min(initial=np.inf) <= CODE_TOLERANCE and not outside[row]:
+            names[row] = atlas.names[difference.argmin()]
+    if atlas.outside is not None:
+        for row, entry in outside_entries.items():
+            names[row] = atlas.outside.names[entry]
+    return names
+
+
+def _known(error: float) -> float | None:
+    return None if np.isnan(error) else float(error)
+
+
+def _known_at(errors: Mapping[str, Array], row: int, column: int) -> dict[str, float]:
+    """Return the errors of a row by light, without those that are unknown."""
+    return {
+        name: float(values[row, column])
+        for name, values in errors.items()
+        if not np.isnan(values[row, 0])
+    }
 
 
 def _errors(
@@ -238,7 +251,6 @@ def _errors(
     if entries:
         from uplift.lookup.light_errors import outside_errors
 
-        errors[list(entries)] = outside_errors(cube.data, light)[
-            list(entries.values())
-        ][:, None]
+        known = outside_errors(cube.data, light)[list(entries.values())]
+        errors[list(entries)] = known[:, None]
     return errors

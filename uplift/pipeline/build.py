@@ -6,12 +6,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
+from uplift.atlas import Atlas, Source
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.lights import (
@@ -21,13 +23,13 @@ from uplift.colorimetry.lights import (
     Illuminant,
 )
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Mask, StrPath
+from uplift.common.arrays import Array, Indices, Mask, StrPath
 from uplift.common.extensions import extension
 from uplift.common.machine import single_threaded_blas
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.common.version import version
-from uplift.cube import CubeData
+from uplift.cube import AtlasTable, CubeData
 from uplift.fit import growth, seeds
 from uplift.fit.base import learn_base
 from uplift.fit.families import Family
@@ -35,7 +37,7 @@ from uplift.fit.growth_outward import grow_outward
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.store import store
-from uplift.lattice import EntryBoxes, Lattice, axis_nodes
+from uplift.lattice import EntryBoxes, Lattice, PointTable, axis_nodes
 from uplift.lookup import Cube
 from uplift.models.model import Model
 from uplift.models.moments import MAX_COUNT
@@ -230,18 +232,44 @@ def build(
     >>> cube.reflectance([1.0, 1.0, 1.0], [450, 550, 650]).round(3).tolist()
     [1.0, 1.0, 1.0]
     """
-    given = locals()  # the arguments by name
-    recorded = {each.name: given[each.name] for each in fields(Options)}
-    recorded["observer"] = observer.name if isinstance(observer, Camera) else observer
-    recorded["solver"] = solver if isinstance(solver, str) else CUSTOM
-    options = Options(**recorded)
-    if isinstance(scene, str | os.PathLike | Sequence):
-        colours: SceneLike | None = extension("scene", "images")(scene)
-    else:
-        colours = scene
+    options = Options(
+        dim=dim,
+        model=model,
+        coefficients=coefficients,
+        entry_coefficients=entry_coefficients,
+        warp=warp,
+        axis=axis,
+        space=space,
+        illuminant=illuminant,
+        observer=observer.name if isinstance(observer, Camera) else observer,
+        shortest=shortest,
+        longest=longest,
+        step=step,
+        lights=lights,  # type: ignore[arg-type]  # becomes a tuple
+        prior=prior,
+        neutral=neutral,
+        leave_out=leave_out,  # type: ignore[arg-type]
+        threshold=threshold,
+        auto_tolerance=auto_tolerance,
+        seed_corners=seed_corners,
+        growth=growth,
+        solver=solver if isinstance(solver, str) else CUSTOM,
+        debug=debug,
+    )
+    colours = _as_scene(scene)
     check_memory(options)
     options, problem = problem_of(options, observer, solver)
     return build_stages(atlas, options, problem, library, looks, colours, progress)
+
+
+def _as_scene(
+    scene: SceneLike | StrPath | Sequence[StrPath] | None,
+) -> SceneLike | None:
+    """Return the colours of images, or another set of colours as it is."""
+    if isinstance(scene, str | os.PathLike | Sequence):
+        colours: SceneLike = extension("scene", "images")(scene)
+        return colours
+    return scene
 
 
 def problem_of(
@@ -253,14 +281,13 @@ def problem_of(
     # r = W g, on the wavelengths of the build (docs/mathematics.md, 1)
     wavelengths = options.shortest, options.longest, options.step
     sensor = observers.sensor(options.space, options.illuminant, observer, wavelengths)
-    names = (*options.lights, ERROR_ILLUMINANT)
     observers.check_distinct(options.lights)
     *lights, error_light = (
-        observers.light(name, sensor.observer, *sensor.range) for name in names
+        observers.light(name, sensor.observer, *sensor.range)
+        for name in (*options.lights, ERROR_ILLUMINANT)
     )
-    problem = Problem(
-        sensor, options.spectrum_model(), tuple(lights), error_light, options.threshold
-    )
+    model = options.spectrum_model()
+    problem = Problem(sensor, model, tuple(lights), error_light, options.threshold)
     if solver != SOLVERS[0]:
         method = extension("solver", "stock")(solver, problem.tolerance)
         problem = replace(problem, method=method)
@@ -297,9 +324,7 @@ def _choose_lattice(
 
 
 Learnt = tuple[Constraints, Prior, tuple[float, ...]]
-"""Fitted entries, the prior, and the relevance of the families: they do not depend on
-the lattice.
-"""
+"""Fitted entries, prior and relevance of the families, for lattices of any size."""
 
 
 def learn(
@@ -332,9 +357,7 @@ def build_stages(
     share what they ``learn``.
     """
     sensor = problem.sensor
-    model = problem.model
     entry_model = options.spectrum_model(options.entry_coefficients)
-    neighbours = options.growth == "neighbours"
 
     # The spectra: families of the library, entries of the atlas, and looks, which
     # become further entries.
@@ -346,7 +369,6 @@ def build_stages(
     if looks is not None:
         targets_of = extension("looks", "targets")
         targets = targets_of(looks, entry_model, sensor, atlas.names, measured)
-
     constraints, prior, relevance = learn(problem, entry_model, measured, families)
     if options.neutral == "flat":
         prior = prior.with_flat_greys()
@@ -355,7 +377,7 @@ def build_stages(
 
     # The lattice, the boxes of the entries in it (8), and the nodes that start from
     # entries: c = w c_i + (1 − w) c(x).
-    blend = seeds.FULL_ENTRY if options.seed_corners or neighbours else seeds.HALF_ENTRY
+    blend = _blend(options)
     is_chosen = options.dim == AUTO
     if is_chosen:
         options = _choose_lattice(options, problem, constraints, prior, blend)
@@ -363,97 +385,185 @@ def build_stages(
     rgb = constraints.at_nodes.rgb
     boxes = EntryBoxes(lattice, rgb, seeds.half_widths(lattice.to_steps(rgb)))
     seeded = seeds.seed(lattice, rgb)
-    crowded = (
-        () if is_chosen else seeded.crowded
-    )  # the choice of the lattice has counted those that none keeps
+    # The choice of the lattice has counted the entries that none keeps.
+    crowded = () if is_chosen else seeded.crowded
     entries.warn_of_close(constraints.names, boxes.half_width, crowded)
-    own = (
-        constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers
-    )
 
-    # The nodes that a scene needs, or all, grow from the seeds:
-    # min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7), where t is the nearest colour that
-    # some reflectance has (9). They are improved and stored as coefficients.
-    kept = (
-        None
-        if scene is None
-        else np.flatnonzero(scene.required_points(boxes, sensor, progress))
+    kept = None
+    if scene is not None:
+        kept = np.flatnonzero(scene.required_points(boxes, sensor, progress))
+    points, improvements = _fit_nodes(
+        options, problem, constraints, prior, seeded, kept, progress
     )
-    nodes = nodes_of(lattice, sensor, None if neighbours else kept)
+    _warn_of_unfitted(options, points)
+    if kept is not None:
+        points = points.restricted_to(kept)
 
+    outside_width = seeds.outside_half_widths(lattice, outside.rgb)
+    entries.warn_of_close(outside.names, outside_width)
+    table = _atlas_table(problem, constraints, prior, boxes, measured)
+    table = replace(
+        table,
+        outside=_outside_table(problem, prior, entry_model, outside, outside_width),
+    )
+    provenance = {
+        "uplift": version(),
+        "options": options.record(),
+        **_describe_atlas(atlas, outside),
+        "prior": _describe_prior(prior),
+        "improvements": improvements,
+        **({} if scene is None else {"scene": scene.describe()}),
+        **_describe_library(libraries, families, relevance),
+        **({} if targets is None else targets.describe(table, problem.model, sensor)),
+    }
+    data = CubeData(
+        model=problem.model,
+        lattice=lattice,
+        sensor=sensor,
+        threshold=options.threshold,
+        atlas=table,
+        points=points if options.debug else replace(points, round=None),
+        error_illuminant=ERROR_ILLUMINANT,
+        provenance=provenance,
+    )
+    return Cube(data)
+
+
+def _blend(options: Options) -> seeds.Blend:
+    """Return how corners of the cells of entries start, with `seed_corners` as in the
+    thesis.
+    """
+    if options.seed_corners or options.growth == "neighbours":
+        return seeds.FULL_ENTRY
+    return seeds.HALF_ENTRY
+
+
+def _fit_nodes(
+    options: Options,
+    problem: Problem,
+    constraints: Constraints,
+    prior: Prior,
+    seeded: seeds.Seeds,
+    kept: Indices | None,
+    progress: ProgressCallback,
+) -> tuple[PointTable, list[dict[str, Any]]]:
+    """Fit the nodes ``kept``, or all, and describe the steps that improved them."""
+    # They grow from the seeds: min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7), where t
+    # is the nearest colour that some reflectance has (9).
+    nodes = nodes_of(seeded.lattice, problem.sensor, kept)
+    steps: Sequence[str] = growth.STEPS
+    multipliers = constraints.at_nodes.multipliers
+    if options.growth == "neighbours":
+        nodes = nodes_of(seeded.lattice, problem.sensor, None)
+        steps = growth.THESIS_STEPS
+        multipliers = constraints.truncated(problem.model)
     expected = partial(
-        seeds.initial_guess, prior=prior, seeds=seeded, entries=own, blend=blend
+        seeds.initial_guess,
+        prior=prior,
+        seeds=seeded,
+        entries=multipliers,
+        blend=_blend(options),
     )
     grow = grow_outward
     if options.growth != OUTWARD:
         grow = extension("growth", options.growth)
     grown = grow(problem, nodes, expected, seeded.points, progress)
-    improvements = growth.improve(
-        grown, growth.THESIS_STEPS if neighbours else growth.STEPS
-    )
-    points = store(grown, seeded, prior)
-    if options.solver != SOLVERS[0] and (unfitted := points.counts()["unfitted"]):
-        problem_text = (
-            f"{pluralise(unfitted, 'node')} over the threshold with the solver "
-            f"'{options.solver}'"
-        )
-        entries.warn(problem_text, code="nodes-unfitted", hint="use the default solver")
-    points = points if kept is None else points.restricted_to(kept)
-
-    # Entries outside the RGB space constrain no node: their spectra answer XYZ and
-    # textures of other spaces. Errors are learnt from measured reflectances, and from
-    # those expected without each of them.
-    known = [
-        None if prior.left_out is None else each.reflectances.astype(np.float32)
-        for each in (measured, outside)
+    improvements = [
+        {"step": step, "tried": tried, "mended": fixed}
+        for step, tried, fixed in growth.improve(grown, steps)
     ]
-    table = constraints.table(model, boxes.half_width, known[0])
-    if prior.left_out is not None:
-        table = replace(table, left_out=prior.left_out.astype(np.float32))
-    if outside.names:
-        half_width = seeds.outside_half_widths(lattice, outside.rgb)
-        entries.warn_of_close(outside.names, half_width)
-        fitted = entries.fit_constraints(problem, entry_model, outside)
-        table = replace(table, outside=fitted.table(model, half_width, known[1]))
-    # What the kriging learnt, if there is an atlas, and the errors, if it is large
-    # enough
-    learnt = {} if prior.kriging is None else prior.kriging.kernel._asdict()
-    if prior.errors is not None:
-        standard, bound = prior.errors.radii
-        learnt["error_bound"] = bound / standard
-    provenance = {
-        "uplift": version(),
-        "options": options.record(),
+    return store(grown, seeded, prior), improvements
+
+
+def _warn_of_unfitted(options: Options, points: PointTable) -> None:
+    """Warn of nodes that another solver than the default has left over the
+    threshold.
+    """
+    unfitted = points.counts()["unfitted"]
+    if unfitted and options.solver != SOLVERS[0]:
+        entries.warn(
+            f"{pluralise(unfitted, 'node')} over the threshold with the solver "
+            f"'{options.solver}'",
+            code="nodes-unfitted",
+            hint="use the default solver",
+        )
+
+
+def _atlas_table(
+    problem: Problem,
+    constraints: Constraints,
+    prior: Prior,
+    boxes: EntryBoxes,
+    measured: MeasuredEntries,
+) -> AtlasTable:
+    """Return the table of the entries in the RGB space."""
+    values = _stored_spectra(prior, measured)
+    table = constraints.table(problem.model, boxes.half_width, values)
+    if prior.left_out is None:
+        return table
+    return replace(table, left_out=prior.left_out.astype(np.float32))
+
+
+def _outside_table(
+    problem: Problem,
+    prior: Prior,
+    entry_model: Model,
+    outside: MeasuredEntries,
+    half_width: Array,
+) -> AtlasTable | None:
+    """Return the table of the entries outside the RGB space, if there are any.
+
+    They constrain no node: their spectra answer XYZ and textures of other spaces.
+    """
+    if not outside.names:
+        return None
+    fitted = entries.fit_constraints(problem, entry_model, outside)
+    values = _stored_spectra(prior, outside)
+    return fitted.table(problem.model, half_width, values)
+
+
+def _stored_spectra(
+    prior: Prior, measured: MeasuredEntries
+) -> NDArray[np.float32] | None:
+    """Return measured reflectances if errors are learnt from them and the left-out."""
+    if prior.left_out is None:
+        return None
+    return measured.reflectances.astype(np.float32)
+
+
+def _describe_atlas(atlas: Atlas, outside: MeasuredEntries) -> dict[str, Any]:
+    """Return the provenance of the entries, in JSON values."""
+    return {
         "atlases": [
             {"name": source.name, "digest": source.digest, **source.changed_options()}
             for source in atlas.sources
         ],
         "left_out": list(outside.names),
         "skipped": [entry.name for entry in atlas.skipped],
-        "prior": learnt,
-        "improvements": [
-            {"step": step, "tried": tried, "mended": fixed}
-            for step, tried, fixed in improvements
-        ],
-        **({} if scene is None else {"scene": scene.describe()}),
+    }
+
+
+def _describe_prior(prior: Prior) -> dict[str, Any]:
+    """Return what the kriging learnt, and the errors if the atlas is large enough."""
+    learnt = {} if prior.kriging is None else prior.kriging.kernel._asdict()
+    if prior.errors is not None:
+        standard, bound = prior.errors.radii
+        learnt["error_bound"] = bound / standard
+    return learnt
+
+
+def _describe_library(
+    libraries: Sequence[tuple[Source, Atlas]],
+    families: Sequence[Family],
+    relevance: Sequence[float],
+) -> dict[str, Any]:
+    """Return the provenance of the learnt prior, in JSON values."""
+    return {
         "libraries": [
             {"name": source.name, "digest": source.digest} for source, _ in libraries
         ],
         "families": [
-            {"name": each.name, "relevance": part}
-            for each, part in zip(families, relevance, strict=True)
+            {"name": family.name, "relevance": weight}
+            for family, weight in zip(families, relevance, strict=True)
         ],
-        **({} if targets is None else targets.describe(table, model, sensor)),
     }
-    return Cube(
-        CubeData(
-            model=model,
-            lattice=lattice,
-            sensor=sensor,
-            threshold=options.threshold,
-            atlas=table,
-            points=points if options.debug else replace(points, round=None),
-            error_illuminant=ERROR_ILLUMINANT,
-            provenance=provenance,
-        )
-    )

@@ -39,8 +39,8 @@ def grow_coarse_to_fine(
     lattice = nodes.lattice
     waiting = lattice.mask(nodes.points)
     seeded = lattice.mask(seeds)
-    # Corrections p − p₀ at every second node, whose last column is the weight of a
-    # known one, and the rows of nodes.
+    # Corrections p − p₀ at every second node, which are known if smooth, and the rows
+    # of nodes. Weights of known ones are interpolated like corrections.
     half, numbers = lattice.thinned(2)
     corrections = np.zeros((half.size, problem.model.count + 1))
     row = np.full(lattice.size, -1, dtype=np.int32)
@@ -55,10 +55,8 @@ def grow_coarse_to_fine(
         correction = solution.multipliers - prior
         stored = row[points] >= 0
         rows = row[points[stored]]
-        corrections[rows, :-1], corrections[rows, -1] = (
-            correction[stored],
-            growth.is_smooth(correction[stored]),
-        )
+        corrections[rows, :-1] = correction[stored]
+        corrections[rows, -1] = growth.is_smooth(correction[stored])
         unsolved = solution.distance > problem.tolerance
         return points[unsolved], solution.multipliers[unsolved], prior[unsolved]
 
@@ -72,26 +70,19 @@ def grow_coarse_to_fine(
         waiting[points] = False
         level, numbers = lattice.thinned(rounds[max(number - 1, 0)])
         known = np.where((row[numbers] >= 0)[:, None], corrections[row[numbers]], 0)
-        rest = [(points[:0], growth.multipliers[:0], growth.multipliers[:0])]
+        unsolved = [(points[:0], growth.multipliers[:0], growth.multipliers[:0])]
         for block in blocks(len(points), BLOCK_POINTS):
             # From p₀ + R δ, with the correction δ of the nodes around, to the spectrum
             # of the colour nearest to p₀.
-            some = points[block]
-            prior = expected(some, nodes.goal(some))
-            sums = weighted_sum(known, *level.corners(lattice.target(some)))
-            smooth = (sums[:, -1:] > ALL) & ~seeded[some, None]
-            rest.append(
-                fit(
-                    some,
-                    prior + np.where(smooth, sums[:, :-1], 0),
-                    prior,
-                    number,
-                    max_passes=1,
-                )
-            )
+            trial = points[block]
+            prior = expected(trial, nodes.goal(trial))
+            sums = weighted_sum(known, *level.corners(lattice.target(trial)))
+            smooth = (sums[:, -1:] > ALL) & ~seeded[trial, None]
+            start = prior + np.where(smooth, sums[:, :-1], 0)
+            unsolved.append(fit(trial, start, prior, number, max_passes=1))
         # What the first pass leaves is fitted at the end of the round, all at once.
         points, start, prior = (
-            np.concatenate(parts) for parts in zip(*rest, strict=True)
+            np.concatenate(parts) for parts in zip(*unsolved, strict=True)
         )
         fit(points, start, prior, number, MAX_PASSES)
     retry(growth, len(rounds))
