@@ -7,8 +7,16 @@ import inspect
 import pytest
 
 import uplift
+from uplift.atlas import read_atlas
 from uplift.common import errors
-from uplift.common.errors import AtlasError, UnknownNameError, UpliftError, unknown_name
+from uplift.common.errors import (
+    AtlasError,
+    UnknownNameError,
+    UpliftError,
+    UpliftWarning,
+    unknown_name,
+)
+from uplift.extras.looks.look import Look
 
 CLASSES = [
     kind
@@ -60,3 +68,16 @@ def test_unknown_name_suggests_near_names_regardless_of_case():
     assert error.problem == "unknown illuminant 'd56'"
     assert "'D65'" in error.hint
     assert "'A'" not in error.hint
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: uplift.build(dim=2, looks=Look("#ff0000", {"A": "#00ff00"})),
+        lambda: read_atlas("macbeth", measured="percent"),
+    ],
+)
+def test_warnings_name_the_line_of_the_caller(call):
+    with pytest.warns(UpliftWarning) as caught:
+        call()
+    assert {warning.filename for warning in caught} == {__file__}

@@ -26,7 +26,7 @@ from uplift.atlas.document import EXPORT, Document, SourceLocation, truncate
 from uplift.atlas.samples import Samples, Spectrum, in_order
 from uplift.atlas.scales import FLOOR, find_scale
 from uplift.atlas.statements import PERCENT, Quantity, Scale
-from uplift.common.errors import AtlasError, UpliftWarning, needs_package
+from uplift.common.errors import AtlasError, UpliftWarning, needs_package, warn
 from uplift.common.text import listed, pluralise, printable
 
 Measured = Literal["auto", "percent", "fraction"]
@@ -195,7 +195,7 @@ def warn_of_odd(entries: Sequence[Entry]) -> None:
                 line=entry.line,
                 entry=entry.name,
             )
-            warnings.warn(warning, stacklevel=3)
+            warn(warning)
 
 
 def not_used_note(labels: Iterable[str]) -> tuple[str, ...]:

@@ -1,6 +1,5 @@
 """Resampling of entries to one wavelength grid."""
 
-import warnings
 from collections import defaultdict
 from dataclasses import dataclass
 from typing import Any
@@ -10,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas.atlas import SLACK, Atlas, Entry
 from uplift.common.arrays import Array
-from uplift.common.errors import UpliftWarning
+from uplift.common.errors import UpliftWarning, warn
 from uplift.common.text import listed, pluralise
 
 WIDEST = 20.0
@@ -99,10 +98,7 @@ def on_grid(atlas: Atlas, wavelengths: ArrayLike) -> Array:
     resampled = resample(atlas, wavelengths)
     clips = resampled.clips
     if len(clips) == 1:
-        warnings.warn(
-            UpliftWarning(str(clips[0]), code="entry-clipped", entry=clips[0].name),
-            stacklevel=2,
-        )
+        warn(UpliftWarning(str(clips[0]), code="entry-clipped", entry=clips[0].name))
     elif clips:
         names = listed([f"'{clip.name}'" for clip in clips])
         most = max(clips, key=lambda clip: max(-clip.value, clip.value - 1))
@@ -110,7 +106,7 @@ def on_grid(atlas: Atlas, wavelengths: ArrayLike) -> Array:
             f"{pluralise(len(clips), 'entry')} clipped to [0, 1]: {names}; "
             f"'{most.name}' has {most}"
         )
-        warnings.warn(UpliftWarning(problem, code="entry-clipped"), stacklevel=2)
+        warn(UpliftWarning(problem, code="entry-clipped"))
     return resampled.values
 
 

@@ -1,6 +1,5 @@
 """The scale of the values of a file: as given, as the file states, or by the values."""
 
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,7 +8,7 @@ from uplift.atlas.atlas import ASSUMED, HIGHEST
 from uplift.atlas.document import SourceLocation, truncate
 from uplift.atlas.samples import Samples
 from uplift.atlas.statements import PERCENT, Scale
-from uplift.common.errors import UpliftWarning
+from uplift.common.errors import UpliftWarning, warn
 
 GIVEN = {"percent": "percent", "fraction": "0 to 1"}
 WHICH_SCALE = "pass measured='percent' or measured='fraction'"
@@ -48,11 +47,10 @@ def find_scale(
         if stated[0].divisor == PERCENT and top <= DARKEST and samples:
             problem = f"no value exceeds {top:g} percent, as the file states '{text}'"
             hint = "pass measured='fraction' if they are from 0 to 1"
-            warnings.warn(
+            warn(
                 UpliftWarning(
                     problem, code="dark-percent", path=location.path, hint=hint
-                ),
-                stacklevel=4,
+                )
             )
         return stated[
             0
@@ -67,11 +65,10 @@ def find_scale(
         _check_one_scale(location, used, highest)
         problem = f"values up to {top:g} are read as percent and divided by 100"
         entry = used[int(np.argmax(highest))].spectrum.name
-        warnings.warn(
+        warn(
             UpliftWarning(
                 problem, code="values-in-percent", path=location.path, entry=entry
-            ),
-            stacklevel=4,
+            )
         )
         return PERCENT, f"scale: percent, by values up to {top:g}"
     everything = np.concatenate([np.empty(0), *(each.values for each in used)])

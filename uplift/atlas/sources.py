@@ -6,7 +6,6 @@ import difflib
 import functools
 import hashlib
 import os
-import warnings
 from collections.abc import Mapping
 from dataclasses import astuple, dataclass, replace
 from importlib.resources import files
@@ -27,7 +26,7 @@ from uplift.atlas.measurements import (
     warn_of_odd,
 )
 from uplift.common.arrays import StrPath
-from uplift.common.errors import OutputError, UpliftWarning, unknown_name
+from uplift.common.errors import OutputError, UpliftWarning, unknown_name, warn
 from uplift.common.files import write_text
 from uplift.common.text import pluralise
 
@@ -102,9 +101,7 @@ def read_atlas(
     atlas = merge(atlases)
     warn_of_odd(atlas.entries)
     if atlas.skipped:
-        warnings.warn(
-            skipped_warning(atlas.skipped, code="entry-skipped"), stacklevel=2
-        )
+        warn(skipped_warning(atlas.skipped, code="entry-skipped"))
     return atlas
 
 
@@ -309,9 +306,7 @@ def find_atlas_file(path: StrPath, folder: StrPath = "") -> StrPath:
     if stem in paths:
         if stem != name:
             problem = f"the file does not exist; the shipped atlas '{stem}' is used"
-            warnings.warn(
-                UpliftWarning(problem, code="shipped-atlas", path=path), stacklevel=3
-            )
+            warn(UpliftWarning(problem, code="shipped-atlas", path=path))
         return paths[stem]
     near = difflib.get_close_matches(Path(name).stem.lower(), paths, n=1, cutoff=0.7)
     if near and not os.path.lexists(file):

@@ -4,12 +4,16 @@ known, a place and a hint.
 
 import contextlib
 import os
+import sys
+import warnings
 from collections.abc import Iterable, Iterator
 from typing import Any
 
 from uplift.common.text import listed, printable
 
 StrPath = str | os.PathLike[str]
+PACKAGE = os.path.dirname(os.path.dirname(__file__)) + os.sep
+"""Folder of the package, whose lines are not those of a caller."""
 
 
 class Diagnostic(Exception):  # noqa: N818
@@ -169,6 +173,18 @@ class UpliftWarning(Diagnostic, UserWarning):
     """Something was skipped, changed or not reached; the work went on."""
 
     code = "warning"
+
+
+def warn(warning: UpliftWarning) -> None:
+    """Issue a warning at the line that called this package, whatever lies between."""
+    level = depth = 1
+    frame = sys._getframe()
+    while frame is not None:
+        if frame.f_code.co_filename.startswith(PACKAGE):
+            level = depth
+        frame = frame.f_back  # type: ignore[assignment]
+        depth += 1
+    warnings.warn(warning, stacklevel=level + 1)
 
 
 def unknown_name(

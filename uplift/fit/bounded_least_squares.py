@@ -5,12 +5,10 @@ Palettes are solved by it (Bergner, Möller & Drew 2004, section 3.3), and the
 reflectances of looks.
 """
 
-import warnings
-
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.common.errors import UpliftWarning
+from uplift.common.errors import UpliftWarning, warn
 from uplift.common.machine import single_threaded_blas
 
 TOLERANCE, MAX_ITERATIONS = 1e-12, 1000
@@ -40,5 +38,5 @@ def solve_bounded(matrix: Array, values: Array, low: Array, high: Array) -> Arra
             f"the solver stopped after {MAX_ITERATIONS} iterations: colours may be "
             "slightly off"
         )
-        warnings.warn(UpliftWarning(text, code="design-not-converged"), stacklevel=3)
+        warn(UpliftWarning(text, code="design-not-converged"))
     return np.clip(result.x, low, high)  # removes rounding errors

@@ -24,6 +24,7 @@ from uplift.colorimetry.lights import (
 )
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask, StrPath
+from uplift.common.errors import UpliftWarning, warn
 from uplift.common.extensions import extension
 from uplift.common.machine import single_threaded_blas
 from uplift.common.progress import ProgressCallback, ignore_progress
@@ -311,12 +312,13 @@ def _choose_lattice(
         problem, prior, blend, constraints.at_nodes, options.auto_tolerance
     )
     if lost:
-        entries.warn(
-            f"no dim up to {seeds.DIMS[-1]} keeps every entry within ΔE00 "
-            f"{options.auto_tolerance:g}: "
-            f"{lost} of {len(constraints.names)} are too close to others; dim {dim} "
-            "keeps the most",
-            code="no-dim-keeps-all-entries",
+        warn(
+            UpliftWarning(
+                f"no dim up to {seeds.DIMS[-1]} keeps every entry within ΔE00 "
+                f"{options.auto_tolerance:g}: {lost} of {len(constraints.names)} are "
+                f"too close to others; dim {dim} keeps the most",
+                code="no-dim-keeps-all-entries",
+            )
         )
     options = replace(options, axis=axis, dim=dim)
     check_memory(options)
@@ -481,11 +483,13 @@ def _warn_of_unfitted(options: Options, points: PointTable) -> None:
     """
     unfitted = points.counts()["unfitted"]
     if unfitted and options.solver != SOLVERS[0]:
-        entries.warn(
-            f"{pluralise(unfitted, 'node')} over the threshold with the solver "
-            f"'{options.solver}'",
-            code="nodes-unfitted",
-            hint="use the default solver",
+        warn(
+            UpliftWarning(
+                f"{pluralise(unfitted, 'node')} over the threshold with the solver "
+                f"'{options.solver}'",
+                code="nodes-unfitted",
+                hint="use the default solver",
+            )
         )
 
 

@@ -3,7 +3,6 @@ warnings of those not used.
 """
 
 import os
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -15,7 +14,7 @@ from uplift.atlas import Atlas, Source, on_grid, read_atlas, resample
 from uplift.colorimetry.observer import COMMON_SPACES, grid, smallest_space
 from uplift.colorimetry.sensor import Sensor, in_unit_cube
 from uplift.common.arrays import Array, StrPath
-from uplift.common.errors import AtlasError, OptionError, UpliftWarning
+from uplift.common.errors import AtlasError, OptionError, UpliftWarning, warn
 from uplift.common.text import listed
 from uplift.cube import AtlasTable, EntrySpectra
 from uplift.fit.base import NO_FREEDOM
@@ -30,9 +29,6 @@ AtlasLike = Atlas | StrPath | Sequence[StrPath] | None
 
 SPREAD, RELATED = 1.0, 0.5
 """See `uplift.fit.families.Family`; by held-out halves of large sets (docs/prior.md).
-"""
-STACK_LEVEL = 6
-"""Frames between a warning and the caller of `uplift.build`, whose decorator adds two.
 """
 
 
@@ -160,7 +156,11 @@ def warn_of_close(
         problem = (
             "left out: an earlier entry has the same colour, which has only one answer"
         )
-        warn(f"{_listed(names, duplicates)} {problem}", code="entry-duplicate")
+        warn(
+            UpliftWarning(
+                f"{_listed(names, duplicates)} {problem}", code="entry-duplicate"
+            )
+        )
     if near := [row for row in crowded if half_width[row]]:
         problem = (
             "crowded: closer entries own the nearest node. Queries at the entries' "
@@ -171,9 +171,12 @@ def warn_of_close(
             "the cube"
         )
         warn(
-            f"{_listed(names, near)} {problem}, queries near them are less accurate",
-            code="entry-crowded",
-            hint=hint,
+            UpliftWarning(
+                f"{_listed(names, near)} {problem}, "
+                "queries near them are less accurate",
+                code="entry-crowded",
+                hint=hint,
+            )
         )
 
 
@@ -245,20 +248,20 @@ def families_of(
                 f"clipped to [0, 1]: {len(resampled.clips)} spectra, first "
                 f"'{resampled.clips[0].name}'"
             )
-            warn(f"library '{source.name}': {problem}", code="entry-clipped")
+            warn(
+                UpliftWarning(
+                    f"library '{source.name}': {problem}", code="entry-clipped"
+                )
+            )
         if outside:
             problem = (
                 f"{outside} of {len(resampled.values)} spectra not used: their "
                 f"colours lie outside {sensor.space}"
             )
-            warn(f"library '{source.name}': {problem}", code="entry-out-of-gamut")
+            warn(
+                UpliftWarning(
+                    f"library '{source.name}': {problem}", code="entry-out-of-gamut"
+                )
+            )
         own.append(Family(source.name, resampled.values, SPREAD, RELATED))
     return (*shipped, *own)
-
-
-def warn(problem: str, *, code: str, entry: str | None = None, hint: str = "") -> None:
-    """Warn the caller of `uplift.build` from a function that `build` calls."""
-    warnings.warn(
-        UpliftWarning(problem, code=code, entry=entry, hint=hint),
-        stacklevel=STACK_LEVEL,
-    )

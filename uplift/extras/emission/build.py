@@ -1,7 +1,6 @@
 """The order of the build of an emission table: lamps → prior → nodes → table."""
 
 import os
-import warnings
 from collections.abc import Collection, Sequence
 from dataclasses import asdict
 from typing import Any
@@ -14,7 +13,7 @@ from uplift.colorimetry import observer as observers
 from uplift.colorimetry.lights import STANDARD_ILLUMINANTS
 from uplift.colorimetry.spaces import look_up_space, primaries_of
 from uplift.common.arrays import Array, StrPath
-from uplift.common.errors import OptionError, UpliftWarning
+from uplift.common.errors import OptionError, UpliftWarning, warn
 from uplift.common.machine import single_threaded_blas
 from uplift.common.text import format_value, listed, pluralise
 from uplift.common.version import version
@@ -39,10 +38,6 @@ MAX_KNOTS = 1024
 MAX_RINGS = 512
 SURFACES = "macbeth"
 """Atlas of the surfaces by which predictions of lamps are judged."""
-STACK_LEVEL = 4
-"""Frames between a warning and the caller of `build_emission`, whose decorator adds
-two.
-"""
 
 LampFiles = Atlas | StrPath | Sequence[StrPath] | None
 
@@ -143,9 +138,7 @@ def build_emission(
         problem = (
             f"{omitted} left out, with the chromaticity of an earlier one: {pairs}"
         )
-        warnings.warn(
-            UpliftWarning(problem, code="entry-duplicate"), stacklevel=STACK_LEVEL
-        )
+        warn(UpliftWarning(problem, code="entry-duplicate"))
     return EmissionTable(
         EmissionData(
             space=sensor.space,

@@ -1,7 +1,6 @@
 """Lamps: spectral powers of colour-science, and from the formats of atlas files."""
 
 import os
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -23,7 +22,13 @@ from uplift.colorimetry.observer import (
 )
 from uplift.colorimetry.spectra_json import POWER, is_json, read_spectra
 from uplift.common.arrays import Array, StrPath
-from uplift.common.errors import AtlasError, UnknownNameError, UpliftError, unknown_name
+from uplift.common.errors import (
+    AtlasError,
+    UnknownNameError,
+    UpliftError,
+    unknown_name,
+    warn,
+)
 from uplift.common.text import listed, printable
 from uplift.extras.emission.discs import Lamps
 
@@ -70,7 +75,7 @@ def read_lamps(*paths: StrPath) -> Atlas:
     """
     atlas = merge(map(_read, map(read_named, map(find_atlas_file, paths))))
     if atlas.skipped:
-        warnings.warn(skipped_warning(atlas.skipped, code="lamp-skipped"), stacklevel=2)
+        warn(skipped_warning(atlas.skipped, code="lamp-skipped"))
     return atlas
 
 

@@ -6,7 +6,6 @@ which CUDA passes the table.
 """
 
 import re
-import warnings
 import zlib
 from dataclasses import dataclass
 from importlib.resources import files
@@ -17,7 +16,13 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import StrPath
-from uplift.common.errors import OptionError, OutputError, UpliftWarning, unknown_name
+from uplift.common.errors import (
+    OptionError,
+    OutputError,
+    UpliftWarning,
+    unknown_name,
+    warn,
+)
 from uplift.common.files import atomic_write, check_outputs, write_text
 from uplift.common.version import version
 from uplift.cube import CubeData, digest
@@ -101,10 +106,7 @@ def write_program(
     size = path.stat().st_size
     if size > LARGE:
         problem = f"the header has {size / 1e6:.0f} MB and is slow to compile"
-        warnings.warn(
-            UpliftWarning(problem, path=path, hint="use a cube of smaller dim"),
-            stacklevel=2,
-        )
+        warn(UpliftWarning(problem, path=path, hint="use a cube of smaller dim"))
     return written
 
 
@@ -233,9 +235,7 @@ def _check_table(table: Path, image: bytes, program: Path, *, force: bool) -> No
         raise OutputError(problem, path=table, code="file-exists", hint=hint)
     if readers:
         problem = f"replaced; {' and '.join(readers)} can no longer read it"
-        warnings.warn(
-            UpliftWarning(problem, path=table, hint="export them again"), stacklevel=4
-        )
+        warn(UpliftWarning(problem, path=table, hint="export them again"))
 
 
 def identifier(stem: str) -> str:

@@ -2,7 +2,6 @@
 recorded.
 """
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -14,7 +13,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import solid
 from uplift.colorimetry.srgb import hex_codes, parse_colour
 from uplift.common.arrays import Array
-from uplift.common.errors import LookError, UpliftError, UpliftWarning
+from uplift.common.errors import LookError, UpliftError, UpliftWarning, warn
 from uplift.cube import AtlasTable
 from uplift.extras.looks.design import MET, LookGoal, design_reflectance, fit_designs
 from uplift.extras.looks.look import (
@@ -32,7 +31,7 @@ from uplift.fit.problem import Problem
 from uplift.fit.solver import solve_in_numpy
 from uplift.models import evaluate
 from uplift.models.model import Model
-from uplift.pipeline.entries import STACK_LEVEL, Constraints, MeasuredEntries
+from uplift.pipeline.entries import Constraints, MeasuredEntries
 
 SAME_CODE = 0.5
 """Colours whose 8-bit codes differ by at most this are the same: a query of one would
@@ -302,7 +301,4 @@ def _warn_of_worst(
     text = about(look, f"{problem}: {', '.join(shown)}")
     if len(missed) > 1:
         text += f", and {len(missed) - 1} other looks are missed by less"
-    warnings.warn(
-        UpliftWarning(text, code=code, hint=hint, path=look.path),
-        stacklevel=STACK_LEVEL + 1,
-    )
+    warn(UpliftWarning(text, code=code, hint=hint, path=look.path))

@@ -1,6 +1,5 @@
 """Conversion of Mitsuba scene descriptions to spectra and textures."""
 
-import warnings
 from collections.abc import Callable
 from functools import lru_cache, partial
 from pathlib import Path
@@ -18,6 +17,7 @@ from uplift.common.errors import (
     UpliftError,
     UpliftWarning,
     needs_package,
+    warn,
 )
 from uplift.extras.emission.lookup import EmissionTable, load_emission
 from uplift.extras.mitsuba import texels
@@ -123,11 +123,10 @@ def _warn_in_scalar_variants(name: str) -> None:
 
     if mitsuba.variant().startswith("scalar"):
         problem = f"the {name} calls Python for every ray in scalar variants"
-        warnings.warn(
+        warn(
             UpliftWarning(
                 problem, code="texture-in-python", hint="set llvm_ad_spectral"
-            ),
-            stacklevel=3,
+            )
         )
 
 
@@ -177,7 +176,7 @@ def _texels(props: Any, *, is_light: bool) -> texels.Texels:
         spectra, converted = texels.uplift_texels(uplifter, rgb)
         counts += converted
     for warning in (*found, *counts.warnings(method, path)):
-        warnings.warn(warning, stacklevel=2)
+        warn(warning)
     return spectra
 
 

@@ -16,7 +16,6 @@ sum starts at 1, but the term i = 0 was not subtracted.
 """
 
 import json
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -28,7 +27,7 @@ from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.colorimetry.sensor import SLACK
 from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Array, Floats
-from uplift.common.errors import OptionError, UpliftWarning
+from uplift.common.errors import OptionError, UpliftWarning, warn
 from uplift.common.text import pluralise
 from uplift.extras.images import exr
 from uplift.extras.paint import optics, pigments
@@ -172,7 +171,7 @@ def make_coat(
             f"{dark} of {pluralise(len(spectra), 'colour')} partly darker than the "
             "surface alone: black there"
         )
-        warnings.warn(UpliftWarning(problem), stacklevel=2)
+        warn(UpliftWarning(problem))
     if kind == "dye":
         if ingredients.measured_on_black:
             raise OptionError(

@@ -4,7 +4,6 @@ colours, and goals it misses.
 
 import dataclasses
 import math
-import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
@@ -14,7 +13,7 @@ from uplift.atlas import Atlas, Entry, Header, write_atlas
 from uplift.atlas.atlas import HIGHEST, LOWEST
 from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array, StrPath
-from uplift.common.errors import PaletteError, UpliftWarning
+from uplift.common.errors import PaletteError, UpliftWarning, warn
 from uplift.common.text import listed, pluralise
 from uplift.extras.palette.colours import screen_matrix
 from uplift.extras.palette.equations import equations, solve, unknowns
@@ -329,10 +328,7 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
             f"{materials} left out of the atlas: reflectance must be in [{LOWEST:g}, "
             f"{HIGHEST:g}]"
         )
-        warnings.warn(
-            UpliftWarning(f"{text}, but {listed(skipped)}", code="material-skipped"),
-            stacklevel=2,
-        )
+        warn(UpliftWarning(f"{text}, but {listed(skipped)}", code="material-skipped"))
     if not entries:
         raise PaletteError(
             "no designed material has reflectances that an atlas can hold",

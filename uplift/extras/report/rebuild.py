@@ -19,6 +19,7 @@ from uplift.common.errors import (
     OptionError,
     UnknownNameError,
     UpliftWarning,
+    warn,
 )
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
@@ -100,12 +101,10 @@ def rebuild(
             f"was written by version {writer} of uplift, older than this one, "
             f"{version()}"
         )
-        warnings.warn(
-            UpliftWarning(problem, code="older-version", path=path), stacklevel=2
-        )
+        warn(UpliftWarning(problem, code="older-version", path=path))
     for file in (*atlases, *libraries):
         if file.warning:
-            warnings.warn(file.warning, stacklevel=2)
+            warn(file.warning)
     atlas = _read(stored.data, atlases)
     library = tuple(file.path for file in libraries)
     scene = StoredScene(stored.data) if "scene" in stored.data.provenance else None
@@ -145,7 +144,7 @@ def recorded_atlas(
     files = _unchanged_files(data, path, folders)
     for file in files:
         if file.warning:
-            warnings.warn(file.warning, stacklevel=2)
+            warn(file.warning)
     return _read(data, files)
 
 

@@ -3,7 +3,6 @@ them.
 """
 
 import os
-import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +14,7 @@ from uplift.colorimetry.gamut import check_method
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import find_space
 from uplift.common.arrays import Array, Indices, Mask, StrPath
-from uplift.common.errors import OptionError, TextureError
+from uplift.common.errors import OptionError, TextureError, warn
 from uplift.common.files import file_digest
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.extras.texture.channels import coloured_parts
@@ -111,7 +110,7 @@ class Images:
         space = None if self.space is None else find_space(self.space)
         with open_image(path) as image:
             for warning in space_warnings(image, sensor, space):
-                warnings.warn(warning, stacklevel=6)
+                warn(warning)
             for part, channels in coloured_parts(image):
                 decode = make_decoder(
                     sensor, part, self.encoding, self.out_of_gamut, space
@@ -224,7 +223,7 @@ def sample_colours(
             if step == 1 and len(few) <= MAX_LIST:
                 few = np.unique(np.concatenate([few, rgb]), axis=0)
         for warning in changed.warnings(path=path):
-            warnings.warn(warning, stacklevel=4)
+            warn(warning)
     occupied = bins[~np.isnan(bins[:, 0])]
     predicting, confirming = (
         _distinct(np.concatenate(each), occupied) for each in samples

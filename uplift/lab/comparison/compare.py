@@ -8,7 +8,6 @@ alike.
 """
 
 import math
-import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -22,7 +21,13 @@ from uplift.colorimetry import delta_e_2000, observer
 from uplift.colorimetry.lights import KMENT_LIGHTS, Illuminant
 from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array
-from uplift.common.errors import AtlasError, OptionError, UpliftError, UpliftWarning
+from uplift.common.errors import (
+    AtlasError,
+    OptionError,
+    UpliftError,
+    UpliftWarning,
+    warn,
+)
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.scene.plan.candidates import front
@@ -233,7 +238,7 @@ def represent(
                 f"{outside} of {len(names)} spectra leave [0, 1] as "
                 f"{representation.name} and are clipped"
             )
-            warnings.warn(UpliftWarning(problem, code="entry-clipped"), stacklevel=3)
+            warn(UpliftWarning(problem, code="entry-clipped"))
         pairs = zip(names, clipped, strict=True)
         return Atlas(
             tuple(Entry(name, samples.wavelengths(), values) for name, values in pairs)
