@@ -231,7 +231,8 @@ def solve(
     not an error: the distance reports it. The steps of a problem do not depend on the
     others.
     """
-    count, advance = len(start), _advance(method)  # type: ignore[arg-type]
+    count = len(start)
+    advance = _advance(method)  # type: ignore[arg-type]
     unknown = np.full((count, 3), np.inf)
     solution = Solution(
         start.copy(), unknown, unknown[:, 0].copy(), np.zeros(count, dtype=np.int64)

@@ -105,11 +105,9 @@ def with_colours(
     ``at_sensor`` (n, M) the same at those of the sensor. They need not be of the model.
     Those that have their colour stay to the last bit.
     """
-    model, (weights, shapes, scale), moved = (
-        data.model,
-        pull(data.sensor),
-        spectra.copy(),
-    )
+    model = data.model
+    weights, shapes, scale = pull(data.sensor)
+    moved = spectra.copy()
     shapes_at = np.array(
         [np.interp(wavelengths, data.sensor.wavelengths, shape) for shape in shapes]
     )
@@ -141,10 +139,9 @@ def _pull(
     far: to where Φ rises more than half as steeply as it fell, or where it is much
     flatter. It changes no x by more than `REACH` (1 + |x|).
     """
-    products = np.array(
-        [weights[a] * shapes[b] for a in range(3) for b in range(a + 1)]
-    )
-    found = np.zeros_like(goal)
+    rows, columns = np.tril_indices(3)
+    products = weights[rows] * shapes[columns]
+    solution = np.zeros_like(goal)
     length = np.ones(goal.shape[1])
     gram = products @ model.derivative(linear)
     residual = goal - weights @ model.to_reflectance(linear)
@@ -152,22 +149,24 @@ def _pull(
         pending = np.flatnonzero(np.abs(residual).max(axis=0) > PULLED)
         if not pending.size:
             break
-        off, (g00, g10, g11, g20, g21, g22) = residual[:, pending], gram[:, pending]
+        off = residual[:, pending]
+        g00, g10, g11, g20, g21, g22 = gram[:, pending]
         step = np.array(solve_damped([[g00], [g10, g11], [g20, g21, g22]], 0, off))
-        at = linear[:, pending] + shapes.T @ found[:, pending]
+        at = linear[:, pending] + shapes.T @ solution[:, pending]
         reach = (np.abs(shapes.T @ step) / (1 + np.abs(at))).max(axis=0)
-        part = length[pending] / np.maximum(1, length[pending] * reach / REACH)
-        step = part * step
-        trial = linear[:, pending] + shapes.T @ (found[:, pending] + step)
+        share = length[pending] / np.maximum(1, length[pending] * reach / REACH)
+        step = share * step
+        trial = linear[:, pending] + shapes.T @ (solution[:, pending] + step)
         trial_off = goal[:, pending] - weights @ model.to_reflectance(trial)
         trial_gram = products @ model.derivative(trial)
         good = (trial_off * step).sum(axis=0) >= -0.5 * (off * step).sum(axis=0)
         good &= trial_gram[TRACE].sum(axis=0) >= MIN_CURVATURE * (g00 + g11 + g22)
         taken = pending[good]
-        found[:, taken] += step[:, good]
-        gram[:, taken], residual[:, taken] = trial_gram[:, good], trial_off[:, good]
-        length[pending] = np.where(good, np.minimum(4 * part, 1), part / 4)
-    return found
+        solution[:, taken] += step[:, good]
+        gram[:, taken] = trial_gram[:, good]
+        residual[:, taken] = trial_off[:, good]
+        length[pending] = np.where(good, np.minimum(4 * share, 1), share / 4)
+    return solution
 
 
 def within_solid(data: CubeData, rgb: Array) -> Array:

@@ -224,19 +224,8 @@ def families_of(
     if not learnt:
         return ()
     if not np.array_equal(sensor.wavelengths, grid()):
-        shipped = tuple(
-            replace(
-                family,
-                measured=np.array(
-                    [
-                        np.interp(sensor.wavelengths, grid(), row)
-                        for row in family.measured
-                    ]
-                ),
-            )
-            for family in shipped
-        )
-    own = []
+        shipped = tuple(_at(family, sensor.wavelengths) for family in shipped)
+    users = []
     for source, library in libraries:
         resampled = resample(library, sensor.wavelengths)
         outside = int((~in_unit_cube(sensor.rgb(resampled.values))).sum())
@@ -252,8 +241,14 @@ def families_of(
                 f"colours lie outside {sensor.space}"
             )
             warn(f"library '{source.name}': {problem}", code="entry-out-of-gamut")
-        own.append(Family(source.name, resampled.values, SPREAD, RELATED))
-    return (*shipped, *own)
+        users.append(Family(source.name, resampled.values, SPREAD, RELATED))
+    return (*shipped, *users)
+
+
+def _at(family: Family, wavelengths: Array) -> Family:
+    """Return a shipped family at other wavelengths."""
+    rows = [np.interp(wavelengths, grid(), row) for row in family.measured]
+    return replace(family, measured=np.array(rows))
 
 
 def warn(problem: str, *, code: str, entry: str | None = None, hint: str = "") -> None:
