@@ -20,11 +20,12 @@ from uplift.models.duality import integrate, moments_from_multipliers
 from uplift.models.minimum_norm import ForwardMap
 from uplift.models.model import Model
 
-CPU_ROWS, ACCELERATOR_ROWS = (4096, 256), (1 << 15, 1 << 15)
-"""Rows of a batch per device, and of a chunk: that of a CPU fits its cache, an
-accelerator takes a whole batch.
-"""
-EVERYWHERE, ROWS = PartitionSpec(), PartitionSpec("rows")  # type: ignore[no-untyped-call]
+CPU_ROWS = (4096, 256)
+"""Rows of a batch per device, and of a chunk, which fits the cache of a CPU."""
+ACCELERATOR_ROWS = (1 << 15, 1 << 15)
+"""The same for an accelerator, which takes a whole batch."""
+EVERYWHERE = PartitionSpec()  # type: ignore[no-untyped-call]
+ROWS = PartitionSpec("rows")  # type: ignore[no-untyped-call]
 MAX_NODES = 256
 """Larger rules of integration, which few spectra need, are not worth compiling."""
 PART_NODES = 97

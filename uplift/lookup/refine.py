@@ -43,11 +43,17 @@ REACH = 2.0
 """Longest step of a linear part x of the convex problem, relative to 1 + |x|. Where
 spectra are nearly flat at 0 and 1, Newton's step may be longer by powers of ten.
 """
-LEAST, SLOPE, MOST, STEEP = 3e-4, 0.03, 1e-2, 100.0
-"""Mixtures that are moved are clipped to a distance from 0 and 1, so that programs in
-single precision follow: the first, plus the second times the residual, at most the
-third, and at most the residual times the last: those that nearly have their colours
-hardly change.
+LEAST = 3e-4
+"""Distance from 0 and 1 to which mixtures that are moved are clipped, so that programs
+in single precision follow.
+"""
+SLOPE = 0.03
+"""Growth of the distance with the residual."""
+MOST = 1e-2
+"""Largest distance."""
+STEEP = 100.0
+"""Largest distance over the residual: mixtures that nearly have their colours hardly
+change.
 """
 BLOCK_COLUMNS = 1024
 """Spectra processed at a time: their temporary arrays fit into the cache."""

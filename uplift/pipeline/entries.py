@@ -28,9 +28,11 @@ from uplift.pipeline.options import Options
 AtlasLike = Atlas | StrPath | Sequence[StrPath] | None
 """An atlas, or the files of one."""
 
-SPREAD, RELATED = 1.0, 0.5
+SPREAD = 1.0
 """See `uplift.fit.families.Family`; by held-out halves of large sets (docs/prior.md).
 """
+RELATED = 0.5
+"""Likewise."""
 STACK_LEVEL = 6
 """Frames between a warning and the caller of `uplift.build`, whose decorator adds two.
 """
@@ -194,8 +196,8 @@ def read_libraries(
         [library] if isinstance(library, Atlas | str | os.PathLike) else library,
     )
     return tuple(
-        (each.sources[0] if len(each.sources) == 1 else Source("library", ""), each)
-        for each in atlases
+        (atlas.sources[0] if len(atlas.sources) == 1 else Source("library", ""), atlas)
+        for atlas in atlases
     )
 
 
