@@ -70,14 +70,11 @@ def test_unknown_name_suggests_near_names_regardless_of_case():
     assert "'A'" not in error.hint
 
 
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda: uplift.build(dim=2, looks=Look("#ff0000", {"A": "#00ff00"})),
-        lambda: read_atlas("macbeth", measured="percent"),
-    ],
-)
-def test_warnings_name_the_line_of_the_caller(call):
+def test_warnings_name_the_line_of_the_caller(tmp_path):
+    percents = tmp_path / "percents.csv"
+    percents.write_text("name,400,550,700\na,10,20,30\n")
     with pytest.warns(UpliftWarning) as caught:
-        call()
+        uplift.build(dim=2, looks=Look("#ff0000", {"A": "#00ff00"}))
+        read_atlas(percents)
+    assert len(caught) == 2
     assert {warning.filename for warning in caught} == {__file__}

@@ -48,10 +48,10 @@ differ between instruction sets.
 """
 NO_FREEDOM = 3
 """Number of coefficients that the colour alone determines."""
-SAME_COLOUR, SAME_SPECTRUM = 6.0, 0.03
-"""ΔE*ab and rms within which a spectrum of a library is that of an atlas entry, which
-replaces it.
-"""
+SAME_COLOUR = 6.0
+"""ΔE*ab within which a spectrum of a library may be that of an atlas entry."""
+SAME_SPECTRUM = 0.03
+"""Their rms difference within which the entry then replaces it."""
 MAX_ENTRIES = 1000
 """Entries from which relevances are learnt, at most."""
 BOUND = 0.1

@@ -20,11 +20,12 @@ from uplift.models.duality import integrate, moments_from_multipliers
 from uplift.models.minimum_norm import ForwardMap
 from uplift.models.model import Model
 
-CPU_ROWS, ACCELERATOR_ROWS = (4096, 256), (1 << 15, 1 << 15)
-"""Rows of a batch per device, and of a chunk: that of a CPU fits its cache, an
-accelerator takes a whole batch.
-"""
-EVERYWHERE, ROWS = PartitionSpec(), PartitionSpec("rows")  # type: ignore[no-untyped-call]
+CPU_ROWS = (4096, 256)
+"""Rows of a batch per device, and of a chunk, which fits the cache of a CPU."""
+ACCELERATOR_ROWS = (1 << 15, 1 << 15)
+"""The same for an accelerator, which takes a whole batch."""
+EVERYWHERE = PartitionSpec()  # type: ignore[no-untyped-call]
+ROWS = PartitionSpec("rows")  # type: ignore[no-untyped-call]
 MAX_NODES = 256
 """Larger rules of integration, which few spectra need, are not worth compiling."""
 PART_NODES = 97
@@ -131,20 +132,19 @@ def to_storage(model: Model, multipliers: Array) -> Array:
 
 def _integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
     """Compute `uplift.models.duality.integrate`."""
-    count, (nodes, columns) = len(synthesis), analysis.shape
+    count = len(synthesis)
+    nodes, columns = analysis.shape
     if nodes > MAX_NODES + 1 or not len(multipliers):
         return integrate(multipliers, synthesis, analysis)
     moments = np.zeros((len(multipliers), columns))
     for first in range(0, nodes, PART_NODES):
-        # Each part is as large as the first rule, which has two sets of moments: the
-        # rest has no weight.
-        part = slice(first, first + PART_NODES)
+        # Each step is as large as the first rule, which has two sets of moments: the
+        # further nodes have no weight.
+        step = slice(first, first + PART_NODES)
         points = np.zeros((count, PART_NODES))
         weights = np.zeros((PART_NODES, 2 * count))
-        points[:, : nodes - first], weights[: nodes - first, :columns] = (
-            synthesis[:, part],
-            analysis[part],
-        )
+        points[:, : nodes - first] = synthesis[:, step]
+        weights[: nodes - first, :columns] = analysis[step]
         moments += map_batches(_weighted, (points, weights), multipliers)[:, :columns]
     return moments
 

@@ -11,8 +11,9 @@ from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning, warn
 from uplift.common.machine import single_threaded_blas
 
-TOLERANCE, MAX_ITERATIONS = 1e-12, 1000
-"""Relative change at which the solver stops, and its limit of iterations."""
+TOLERANCE = 1e-12
+"""Relative change at which the solver stops."""
+MAX_ITERATIONS = 1000
 
 
 def solve_bounded(matrix: Array, values: Array, low: Array, high: Array) -> Array:

@@ -209,10 +209,8 @@ def learn_relevance(
     assumed = np.ones(len(parts))
     if not len(measured):
         return assumed
-    matrices, whites = (
-        np.stack([getattr(light, name) for light in lights])
-        for name in ("xyz", "white")
-    )
+    matrices = np.stack([light.xyz for light in lights])
+    whites = np.stack([light.white for light in lights])
     expected = np.clip(plain + parts.sum(axis=0), 0, 1)
     to_lab = LIGHTS_WEIGHT * lab_jacobian(
         (expected @ matrices.mT).swapaxes(0, 1), whites

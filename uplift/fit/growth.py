@@ -84,14 +84,10 @@ class Growth:
         self.nodes = nodes
         self.progress = progress
         size = nodes.lattice.size
-        self.multipliers, self.distance = (
-            np.zeros((size, problem.model.count)),
-            np.full(size, np.inf),
-        )
-        self.rgb, self.round = (
-            np.zeros((size, 3), dtype=np.float32),
-            np.full(size, NOT_FITTED, dtype=np.int16),
-        )
+        self.multipliers = np.zeros((size, problem.model.count))
+        self.distance = np.full(size, np.inf)
+        self.rgb = np.zeros((size, 3), dtype=np.float32)
+        self.round = np.full(size, NOT_FITTED, dtype=np.int16)
         self.done = 0
 
     def waiting_blocks(self) -> list[Indices]:
@@ -117,10 +113,8 @@ class Growth:
         solution = self.problem.solve(goal, start, max_passes, prior)
         better = solution.distance < self.distance[points]
         kept = points[better]
-        self.multipliers[kept], self.distance[kept] = (
-            solution.multipliers[better],
-            solution.distance[better],
-        )
+        self.multipliers[kept] = solution.multipliers[better]
+        self.distance[kept] = solution.distance[better]
         self.rgb[kept] = (goal - solution.residual)[better]
         fitted = (self.round[points] == NOT_FITTED) & (
             solution.distance <= self.problem.threshold

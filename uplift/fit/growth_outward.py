@@ -39,7 +39,7 @@ def grow_outward(
     order = nodes.points[np.argsort(distance[nodes.points], kind="stable")]
     ends = np.searchsorted(distance[order], np.arange(1, distance.max() + 2))
 
-    rest = [(order[:0], growth.multipliers[:0], growth.multipliers[:0])]
+    unsolved = [(order[:0], growth.multipliers[:0], growth.multipliers[:0])]
     for number, shell in enumerate(np.split(order, ends[:-1])):
         for block in blocks(len(shell), BLOCK_POINTS):
             points = shell[block]
@@ -48,26 +48,22 @@ def grow_outward(
             # where δ₂ is not known, or else 0.
             near = toward[points]
             far = toward[toward[points]]
-            one = known[near] & (distance[near] < number)
-            two = one & known[far] & (distance[far] < distance[near])
-            change = np.add(one, two, dtype=np.float32)[:, None] * corrections.take(
-                near, axis=0
-            )
-            change -= two[:, None] * corrections.take(far, axis=0)
-            solution = growth.attempt(
-                points, prior + change, number, prior, max_passes=1
-            )
-            found = solution.multipliers - prior
-            corrections[points], known[points] = (
-                found,
-                growth.is_smooth(found) & ~seeded[points],
-            )
-            unsolved = solution.distance > problem.tolerance
-            rest.append(
-                (points[unsolved], solution.multipliers[unsolved], prior[unsolved])
-            )
+            near_known = known[near] & (distance[near] < number)
+            both_known = near_known & known[far] & (distance[far] < distance[near])
+            factor = np.add(near_known, both_known, dtype=np.float32)[:, None]
+            change = factor * corrections.take(near, axis=0)
+            change -= both_known[:, None] * corrections.take(far, axis=0)
+            start = prior + change
+            solution = growth.attempt(points, start, number, prior, max_passes=1)
+            correction = solution.multipliers - prior
+            corrections[points] = correction
+            known[points] = growth.is_smooth(correction) & ~seeded[points]
+            left = solution.distance > problem.tolerance
+            unsolved.append((points[left], solution.multipliers[left], prior[left]))
     # What one step leaves is fitted at the end, all at once.
-    points, start, prior = (np.concatenate(parts) for parts in zip(*rest, strict=True))
+    points, start, prior = (
+        np.concatenate(parts) for parts in zip(*unsolved, strict=True)
+    )
     growth.attempt(points, start, distance[points], prior)
     retry(growth, len(ends))
     return growth
@@ -90,9 +86,8 @@ def shells(
     while not reached.all():
         distance += ~reached
         for axis in range(3):
-            grown, old = (
-                np.moveaxis(each, axis, 0) for each in (reached.copy(), reached)
-            )
+            old = np.moveaxis(reached, axis, 0)
+            grown = np.moveaxis(reached.copy(), axis, 0)
             grown[1:] |= old[:-1]
             grown[:-1] |= old[1:]
             reached = np.moveaxis(grown, 0, axis)

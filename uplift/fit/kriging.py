@@ -21,20 +21,24 @@ METRIC = np.array([0.5, 1.0, 1.0])
 """Weights of differences of L*, a* and b*: materials of one hue are more alike than
 those of one lightness.
 """
-REACH, WHITE = 10.0, 0.1
-"""Distance within which the noise of an entry fades away, and the part of it that is
-white.
-"""
-BLOCK_NUMBERS, BLOCK_ROWS = 1 << 20, 1 << 13
-"""Numbers and rows of the kernel matrix that are held at a time, at most."""
+REACH = 10.0
+"""Distance within which the noise of an entry fades away."""
+WHITE = 0.1
+"""Share of the noise of an entry that is white."""
+BLOCK_NUMBERS = 1 << 20
+"""Numbers of the kernel matrix that are held at a time, at most."""
+BLOCK_ROWS = 1 << 13
+"""Rows of the kernel matrix that are held at a time, at most."""
 DOUBT = 0.5
 """Entries' worth of the preference for `DEFAULT`, per squared doubling of the length or
 quadrupling of the noise.
 """
 MIN_ENTRIES = 8
 """Entries needed to learn a kernel."""
-MEDIAN_STEPS, DOUBTFUL = 3, 0.2
-"""Steps towards the median, and the part of the mean error that is added to each."""
+MEDIAN_STEPS = 3
+"""Steps towards the median."""
+DOUBTFUL = 0.2
+"""Share of the mean error that is added to each error."""
 INVISIBLE = 1e-3
 """ΔE00 below which errors do not matter."""
 MAX_POINTS = 1200
@@ -98,10 +102,8 @@ def average_close(locations: Array, deviations: Array) -> Points:
     point = point.ravel()
     order = np.argsort(point, kind="stable")
     starts = np.cumsum(counts) - counts
-    location, deviation = (
-        np.add.reduceat(each[order], starts) / counts[:, None]
-        for each in (locations, deviations)
-    )
+    location = np.add.reduceat(locations[order], starts) / counts[:, None]
+    deviation = np.add.reduceat(deviations[order], starts) / counts[:, None]
     return Points(location, deviation, counts.astype(float), point)
 
 
@@ -122,9 +124,9 @@ class Kriging:
 
     def __call__(self, lab: Array) -> Array:
         """Deviation (n, C) at L*a*b* (n, 3)."""
-        own = np.sqrt(self.kernel.noise * self.noise)
+        spread = np.sqrt(self.kernel.noise * self.noise)
         return kernel_sums(
-            lab * METRIC, self.locations, self.weights, self.kernel.length, own
+            lab * METRIC, self.locations, self.weights, self.kernel.length, spread
         )[0]
 
 

@@ -101,10 +101,9 @@ class Prior:
         # y + Σ (x_i − y) b_i with Σ b_i = 1, of the grey y of x: flat for greys, linear
         # in x and so flat between nodes
         flat = grey[near, :1] * self.model.constant()
-        own = _bounded(
-            self.model, flat, (rgb - grey)[near] @ self.shares, MAX_MULTIPLIER
-        )
-        multipliers[near] = blended(self.model, own, multipliers[near], weight[near])
+        deviation = (rgb - grey)[near] @ self.shares
+        start = _bounded(self.model, flat, deviation, MAX_MULTIPLIER)
+        multipliers[near] = blended(self.model, start, multipliers[near], weight[near])
         return multipliers
 
     def with_flat_greys(self) -> "Prior":
@@ -181,10 +180,8 @@ def fit_prior(
         return Prior(model, sensor, base)
     order = np.lexsort(entries.rgb.T)
     entries = entries.rows(order)
-    locations, (deviations, expected) = (
-        rgb_to_lab(sensor, entries.rgb),
-        _deviations(model, base, entries),
-    )
+    locations = rgb_to_lab(sensor, entries.rgb)
+    deviations, expected = _deviations(model, base, entries)
     if model.count == NO_FREEDOM:
         kriging, errors = krige(locations, deviations, DETERMINED)
     else:
@@ -227,10 +224,10 @@ def blended(model: Model, own: Array, expected: Array, weight: Array) -> Array:
     """
     multipliers = np.where(weight[:, None] == 1, own, expected)
     mixed = (weight > 0) & (weight < 1)
-    part = weight[mixed, None]
-    coefficients = part * model.to_storage(own[mixed]) + (1 - part) * model.to_storage(
-        expected[mixed]
-    )
+    share = weight[mixed, None]
+    own_coefficients = model.to_storage(own[mixed])
+    expected_coefficients = model.to_storage(expected[mixed])
+    coefficients = share * own_coefficients + (1 - share) * expected_coefficients
     multipliers[mixed] = model.from_storage(coefficients)
     return multipliers
 
@@ -251,11 +248,10 @@ def _bounded(
     # c = s + f d with the largest of the fractions f that will do, all of them at once;
     # s alone where none does
     shrunk = expected[rows, None] + FRACTIONS[:, None] * deviation[rows, None]
-    found, kept = convert(shrunk.reshape(-1, model.count))
+    trials, kept = convert(shrunk.reshape(-1, model.count))
+    trials = trials.reshape(shrunk.shape)
     kept = kept.reshape(shrunk.shape[:2])
-    multipliers[rows] = found.reshape(shrunk.shape)[
-        np.arange(len(rows)), kept.argmax(axis=1)
-    ]
+    multipliers[rows] = trials[np.arange(len(rows)), kept.argmax(axis=1)]
     none = rows[~kept.any(axis=1)]
     multipliers[none] = model.from_storage(expected[none])
     return multipliers

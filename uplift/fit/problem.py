@@ -104,9 +104,9 @@ def nodes_of(lattice: Lattice, sensor: Sensor, points: Indices | None = None) ->
     # The solid is convex: with the corners of RGB it contains everything between them.
     if not limits.contains(CORNERS.astype(float)).all():
         for block in blocks(len(points), BLOCK_NODES):
-            some = points[block]
-            some = some[~limits.contains(lattice.target(some))]
-            target = lattice.target(some)
-            outside.append(some)
+            numbers = points[block]
+            numbers = numbers[~limits.contains(lattice.target(numbers))]
+            target = lattice.target(numbers)
+            outside.append(numbers)
             nearest.append(toward_grey(limits, sensor.grey(target), target, MARGIN))
     return Nodes(lattice, points, np.concatenate(outside), np.concatenate(nearest))

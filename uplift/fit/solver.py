@@ -30,14 +30,15 @@ FIRST_DAMPING = 1e-6
 """Initial μ; divided by four after a successful step, multiplied by four after a
 rejected one.
 """
-SINGLE_STEPS, MORE_STEPS = 2, 8
-"""Passes that take one step, in which most problems converge, and the steps of each
-later pass.
-"""
-MIN_GAIN, PATIENCE = 1e-3, 8
-"""A problem is abandoned after `PATIENCE` consecutive passes that each reduce its
-distance by less than this part. Otherwise unrealisable colours, frequent in wide
-gamuts, would remain until the last pass.
+SINGLE_STEPS = 2
+"""Passes that take one step, in which most problems converge."""
+MORE_STEPS = 8
+"""Steps of each later pass."""
+MIN_GAIN = 1e-3
+"""Least relative reduction of a distance by a pass that counts as progress."""
+PATIENCE = 8
+"""Consecutive passes without progress after which a problem is abandoned. Otherwise
+unrealisable colours, frequent in wide gamuts, would remain until the last pass.
 """
 NUMPY_ROWS = 128
 """Problems of a block that is stepped in numpy."""
@@ -231,7 +232,8 @@ def solve(
     not an error: the distance reports it. The steps of a problem do not depend on the
     others.
     """
-    count, advance = len(start), _advance(method)  # type: ignore[arg-type]
+    count = len(start)
+    advance = _advance(method)  # type: ignore[arg-type]
     unknown = np.full((count, 3), np.inf)
     solution = Solution(
         start.copy(), unknown, unknown[:, 0].copy(), np.zeros(count, dtype=np.int64)
@@ -272,8 +274,8 @@ def residuals(
 ) -> Array:
     """Target minus RGB (n, 3), by the program that is compiled for `solve`."""
     given = (multipliers, target, method.options(multipliers, None))
-    found: Array = map_batches(_advance(method), (forward, 0.0, 0), *given)[1]  # type: ignore[arg-type]
-    return found
+    residual: Array = map_batches(_advance(method), (forward, 0.0, 0), *given)[1]  # type: ignore[arg-type]
+    return residual
 
 
 @cache
@@ -349,20 +351,20 @@ def iterate_rows(
     Nothing is compiled, which pays for a few problems. ``fn`` maps ``y`` and the
     numbers of its rows to residuals.
     """
-    found = start.copy()
-    for block in blocks(len(found), NUMPY_ROWS):
+    y = start.copy()
+    for block in blocks(len(y), NUMPY_ROWS):
         rows = np.arange(block.start, block.stop)
-        state = solver.init(fn, found[rows], rows, options(block), None, None, NO_TAGS)
+        state = solver.init(fn, y[rows], rows, options(block), None, None, NO_TAGS)
         for _ in range(max_steps):
-            found[rows], state, _ = solver.step(
-                fn, found[rows], rows, options(block), state, NO_TAGS
+            y[rows], state, _ = solver.step(
+                fn, y[rows], rows, options(block), state, NO_TAGS
             )
             kept = ~solver.done(state)
             rows = rows[kept]
-            state = jax.tree.map(lambda each, kept=kept: each[kept], state)
+            state = jax.tree.map(lambda values, kept=kept: values[kept], state)
             if not rows.size:
                 break
-    return found
+    return y
 
 
 def solve_in_numpy(

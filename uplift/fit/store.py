@@ -50,7 +50,8 @@ def store(growth: Growth, seeds: Seeds, prior: Prior) -> PointTable:
     )
     status[outside[distance[outside] <= threshold]] = Status.REGULAR
     absent = ~lattice.mask(nodes.points)
-    status[absent], entry[absent] = Status.ABSENT, NO_ENTRY
+    status[absent] = Status.ABSENT
+    entry[absent] = NO_ENTRY
     return PointTable(
         coefficients, growth.rgb, distance, status, entry, growth.round, standard_error
     )
@@ -79,10 +80,8 @@ def _store_coefficients(
             multipliers = problem.model.from_storage(coefficients[points].astype(kind))
             goal = nodes.goal(points)
             residual = residuals(problem.forward, multipliers, goal, problem.method)
-            growth.rgb[points], distance[points] = (
-                goal - residual,
-                largest(np.abs(residual)),
-            )
+            growth.rgb[points] = goal - residual
+            distance[points] = largest(np.abs(residual))
 
     # Block by block; once a block loses too much in single precision, all sensitive
     # nodes so far are evaluated again.

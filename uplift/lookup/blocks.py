@@ -112,7 +112,7 @@ def as_coefficient_count(count: int | None, data: CubeData) -> int:
     if count is None:
         return counts[0]
     if isinstance(count, bool) or count not in counts:
-        numbers = " or ".join(str(each) for each in sorted(set(counts)))
+        numbers = " or ".join(map(str, sorted(set(counts))))
         raise OptionError(f"count must be {numbers} for this cube, got {count!r}")
     return int(count)
 

@@ -458,5 +458,5 @@ def find_file(
     """Return the packaged file that a name, in any case, stands for, or else the path.
     A file takes precedence.
     """
-    found = packaged.get(os.fsdecode(path).casefold())
-    return path if found is None or os.path.lexists(path) else found
+    file = packaged.get(os.fsdecode(path).casefold())
+    return path if file is None or os.path.lexists(path) else file

@@ -141,21 +141,22 @@ def lab_errors(data: CubeData, light: Light) -> LabErrors:
             data.sensor.wavelengths,
         ),
     )
-    missed, kept = (delta_e_spectra(light, each, measured) for each in spectra)
+    missed, kept = (delta_e_spectra(light, answer, measured) for answer in spectra)
     measured_lab = lab(measured @ light.xyz.T, light.white)
     differences = [
-        measured_lab - lab(each @ light.xyz.T, light.white) for each in spectra
+        measured_lab - lab(answer @ light.xyz.T, light.white) for answer in spectra
     ]
     # Products (E, 9) of the components
     left_out_products, kept_products = (
-        (each[:, :, None] * each[:, None, :]).reshape(-1, 9) for each in differences
+        (change[:, :, None] * change[:, None, :]).reshape(-1, 9)
+        for change in differences
     )
     expected = expected_error(
         data.entry_lab, missed, kept, (left_out_products, kept_products)
     )
     # d² = eᵀ Σ⁻¹ e of each entry, by the covariance Σ that the other entries let expect
-    own = expected.scale**2 * expected.left_out.reshape(-1, 3, 3)
-    distances = mahalanobis(own[:, 1:, 1:], differences[0][:, 1:])
+    covariance = expected.scale**2 * expected.left_out.reshape(-1, 3, 3)
+    distances = mahalanobis(covariance[:, 1:, 1:], differences[0][:, 1:])
     (radius,) = learn_radii(distances, [(LIKELY, NORMAL_RADIUS)], components=2)
     return LabErrors(data, expected, radius)
 

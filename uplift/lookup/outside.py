@@ -63,14 +63,15 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
         coefficients(data, map_to_gamut(rgb[has_lattice], data.sensor, MAPPING).rgb)
     )
     multipliers = refine_to_rgb(data, data.model, start, rgb[has_lattice])
-    own = refine_to_rgb(
-        data, entries.model, entries.multipliers[hits.entry], rgb[hits.rows]
-    )
+    nearby = entries.multipliers[hits.entry]
+    entry_multipliers = refine_to_rgb(data, entries.model, nearby, rgb[hits.rows])
 
     def spectra(wavelengths: Array) -> Array:
-        found = np.zeros((len(rgb), len(wavelengths)))
-        found[has_lattice] = evaluate(data.model, multipliers, wavelengths)
-        return hits.mix(found, evaluate(entries.model, own, wavelengths))
+        lattice = np.zeros((len(rgb), len(wavelengths)))
+        lattice[has_lattice] = evaluate(data.model, multipliers, wavelengths)
+        return hits.mix(
+            lattice, evaluate(entries.model, entry_multipliers, wavelengths)
+        )
 
     reached = data.sensor.rgb(spectra(data.sensor.wavelengths))
     distance = np.abs(reached - rgb).max(axis=1)

@@ -43,11 +43,17 @@ REACH = 2.0
 """Longest step of a linear part x of the convex problem, relative to 1 + |x|. Where
 spectra are nearly flat at 0 and 1, Newton's step may be longer by powers of ten.
 """
-LEAST, SLOPE, MOST, STEEP = 3e-4, 0.03, 1e-2, 100.0
-"""Mixtures that are moved are clipped to a distance from 0 and 1, so that programs in
-single precision follow: the first, plus the second times the residual, at most the
-third, and at most the residual times the last: those that nearly have their colours
-hardly change.
+LEAST = 3e-4
+"""Distance from 0 and 1 to which mixtures that are moved are clipped, so that programs
+in single precision follow.
+"""
+SLOPE = 0.03
+"""Growth of the distance with the residual."""
+MOST = 1e-2
+"""Largest distance."""
+STEEP = 100.0
+"""Largest distance over the residual: mixtures that nearly have their colours hardly
+change.
 """
 BLOCK_COLUMNS = 1024
 """Spectra processed at a time: their temporary arrays fit into the cache."""
@@ -105,11 +111,9 @@ def with_colours(
     ``at_sensor`` (n, M) the same at those of the sensor. They need not be of the model.
     Those that have their colour stay to the last bit.
     """
-    model, (weights, shapes, scale), moved = (
-        data.model,
-        pull(data.sensor),
-        spectra.copy(),
-    )
+    model = data.model
+    weights, shapes, scale = pull(data.sensor)
+    moved = spectra.copy()
     shapes_at = np.array(
         [np.interp(wavelengths, data.sensor.wavelengths, shape) for shape in shapes]
     )
@@ -141,10 +145,9 @@ def _pull(
     far: to where Φ rises more than half as steeply as it fell, or where it is much
     flatter. It changes no x by more than `REACH` (1 + |x|).
     """
-    products = np.array(
-        [weights[a] * shapes[b] for a in range(3) for b in range(a + 1)]
-    )
-    found = np.zeros_like(goal)
+    rows, columns = np.tril_indices(3)
+    products = weights[rows] * shapes[columns]
+    solution = np.zeros_like(goal)
     length = np.ones(goal.shape[1])
     gram = products @ model.derivative(linear)
     residual = goal - weights @ model.to_reflectance(linear)
@@ -152,22 +155,24 @@ def _pull(
         pending = np.flatnonzero(np.abs(residual).max(axis=0) > PULLED)
         if not pending.size:
             break
-        off, (g00, g10, g11, g20, g21, g22) = residual[:, pending], gram[:, pending]
+        off = residual[:, pending]
+        g00, g10, g11, g20, g21, g22 = gram[:, pending]
         step = np.array(solve_damped([[g00], [g10, g11], [g20, g21, g22]], 0, off))
-        at = linear[:, pending] + shapes.T @ found[:, pending]
+        at = linear[:, pending] + shapes.T @ solution[:, pending]
         reach = (np.abs(shapes.T @ step) / (1 + np.abs(at))).max(axis=0)
-        part = length[pending] / np.maximum(1, length[pending] * reach / REACH)
-        step = part * step
-        trial = linear[:, pending] + shapes.T @ (found[:, pending] + step)
+        share = length[pending] / np.maximum(1, length[pending] * reach / REACH)
+        step = share * step
+        trial = linear[:, pending] + shapes.T @ (solution[:, pending] + step)
         trial_off = goal[:, pending] - weights @ model.to_reflectance(trial)
         trial_gram = products @ model.derivative(trial)
         good = (trial_off * step).sum(axis=0) >= -0.5 * (off * step).sum(axis=0)
         good &= trial_gram[TRACE].sum(axis=0) >= MIN_CURVATURE * (g00 + g11 + g22)
         taken = pending[good]
-        found[:, taken] += step[:, good]
-        gram[:, taken], residual[:, taken] = trial_gram[:, good], trial_off[:, good]
-        length[pending] = np.where(good, np.minimum(4 * part, 1), part / 4)
-    return found
+        solution[:, taken] += step[:, good]
+        gram[:, taken] = trial_gram[:, good]
+        residual[:, taken] = trial_off[:, good]
+        length[pending] = np.where(good, np.minimum(4 * share, 1), share / 4)
+    return solution
 
 
 def within_solid(data: CubeData, rgb: Array) -> Array:

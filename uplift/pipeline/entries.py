@@ -27,9 +27,11 @@ from uplift.pipeline.options import Options
 AtlasLike = Atlas | StrPath | Sequence[StrPath] | None
 """An atlas, or the files of one."""
 
-SPREAD, RELATED = 1.0, 0.5
+SPREAD = 1.0
 """See `uplift.fit.families.Family`; by held-out halves of large sets (docs/prior.md).
 """
+RELATED = 0.5
+"""Likewise."""
 
 
 class MeasuredEntries(NamedTuple):
@@ -197,8 +199,8 @@ def read_libraries(
         [library] if isinstance(library, Atlas | str | os.PathLike) else library,
     )
     return tuple(
-        (each.sources[0] if len(each.sources) == 1 else Source("library", ""), each)
-        for each in atlases
+        (atlas.sources[0] if len(atlas.sources) == 1 else Source("library", ""), atlas)
+        for atlas in atlases
     )
 
 
@@ -227,19 +229,8 @@ def families_of(
     if not learnt:
         return ()
     if not np.array_equal(sensor.wavelengths, grid()):
-        shipped = tuple(
-            replace(
-                family,
-                measured=np.array(
-                    [
-                        np.interp(sensor.wavelengths, grid(), row)
-                        for row in family.measured
-                    ]
-                ),
-            )
-            for family in shipped
-        )
-    own = []
+        shipped = tuple(_at(family, sensor.wavelengths) for family in shipped)
+    users = []
     for source, library in libraries:
         resampled = resample(library, sensor.wavelengths)
         outside = int((~in_unit_cube(sensor.rgb(resampled.values))).sum())
@@ -263,5 +254,11 @@ def families_of(
                     f"library '{source.name}': {problem}", code="entry-out-of-gamut"
                 )
             )
-        own.append(Family(source.name, resampled.values, SPREAD, RELATED))
-    return (*shipped, *own)
+        users.append(Family(source.name, resampled.values, SPREAD, RELATED))
+    return (*shipped, *users)
+
+
+def _at(family: Family, wavelengths: Array) -> Family:
+    """Return a shipped family at other wavelengths."""
+    rows = [np.interp(wavelengths, grid(), row) for row in family.measured]
+    return replace(family, measured=np.array(rows))

@@ -101,7 +101,7 @@ class Options:
                 field.name,
                 _plain(field.name, field.type, getattr(self, field.name)),
             )
-        for problem, hint in self._faults():
+        for problem, hint in (*self._range_faults(), *self._faults()):
             raise OptionError(problem, hint=hint)
         for option, names in CHOICES.items():
             if getattr(self, option) not in names:
@@ -112,8 +112,8 @@ class Options:
                 )
         self.spectrum_model()  # which checks the coefficients
 
-    def _faults(self) -> Iterator[tuple[str, str]]:
-        """Yield problems of the values, with hints. The first one counts."""
+    def _range_faults(self) -> Iterator[tuple[str, str]]:
+        """Yield problems of the wavelengths, with hints. The first one counts."""
         low, high = MAX_RANGE
         if not low <= self.shortest <= START < END <= self.longest <= high:
             limits = (
@@ -136,6 +136,9 @@ class Options:
                 f"{multiple}, got {self.shortest:g} to {self.longest:g}",
                 "use a step of 1",
             )
+
+    def _faults(self) -> Iterator[tuple[str, str]]:
+        """Yield problems of the other values, with hints."""
         if self.neutral == "flat" and self.growth == "neighbours":
             problem = (
                 "neutral 'flat' does not apply to growth 'neighbours', whose nodes "
@@ -145,25 +148,16 @@ class Options:
         if self.dim != AUTO and self.dim < 2:
             yield f"dim must be at least 2, got {format_value(self.dim)}", "use dim=2"
         entries = self.entry_coefficients if self.model == Moments.name else MAX_COUNT
+        fewest = min(self.coefficients, MAX_COUNT)
         for name, value, least, most in (
             ("number of lights", len(self.lights), 1, MAX_LIGHTS),
-            (
-                "entry_coefficients",
-                entries,
-                min(self.coefficients, MAX_COUNT),
-                MAX_COUNT,
-            ),
+            ("entry_coefficients", entries, fewest, MAX_COUNT),
             ("threshold", self.threshold, MIN_THRESHOLD, MAX_THRESHOLD),
             ("auto_tolerance", self.auto_tolerance, 0, MAX_AUTO_TOLERANCE),
         ):
             if not least <= value <= most:
-                yield (
-                    (
-                        f"{name} must be in [{least:g}, {most:g}], got "
-                        f"{format_value(value)}"
-                    ),
-                    "",
-                )
+                limits = f"[{least:g}, {most:g}]"
+                yield f"{name} must be in {limits}, got {format_value(value)}", ""
 
     def record(self) -> dict[str, Any]:
         """Return the options as JSON can record them; `recorded_options` reads them.
@@ -223,17 +217,7 @@ def _recorded_light(value: Any) -> Any:
 def _plain(name: str, kind: Any, value: Any) -> Any:
     """Return the value of an option, by its annotation, as JSON can record it."""
     if kind in (tuple[str, ...], tuple[Illuminant, ...]):
-        if isinstance(value, Lamp):
-            value = [value]
-        if not isinstance(value, Iterable):
-            raise OptionError(f"{name} must be names, got {format_value(value)}")
-        values = [value] if isinstance(value, str) else value
-        return tuple(
-            each
-            if isinstance(each, Lamp) and name == "lights"
-            else _plain(name, str, each)
-            for each in values
-        )
+        return _plain_names(name, value)
     if isinstance(value, Lamp):
         hint = (
             "build under an illuminant of colour-science, and give the lamp as one of "
@@ -254,6 +238,18 @@ def _plain(name: str, kind: Any, value: Any) -> Any:
         return recorded(value)
     except OverflowError:  # a whole number beyond all floats
         return np.inf
+
+
+def _plain_names(name: str, value: Any) -> tuple[Any, ...]:
+    """Return one or several names, and lamps if they are lights."""
+    if isinstance(value, str | Lamp):
+        value = [value]
+    if not isinstance(value, Iterable):
+        raise OptionError(f"{name} must be names, got {format_value(value)}")
+    return tuple(
+        item if isinstance(item, Lamp) and name == "lights" else _plain(name, str, item)
+        for item in value
+    )
 
 
 def check_memory(options: Options) -> None:

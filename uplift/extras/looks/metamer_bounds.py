@@ -53,8 +53,8 @@ class Bounds:
     @property
     def box(self) -> Array:
         """Least and largest L*, a* and b* of the boundary points, shape (n, 2, 3)."""
-        found = self.volumes.lab
-        return np.stack([found.min(axis=1), found.max(axis=1)], axis=1)
+        lab = self.volumes.lab
+        return np.stack([lab.min(axis=1), lab.max(axis=1)], axis=1)
 
     def outline(self, row: int) -> Array:
         """Compute the outline (M, 2) in a* and b* of all colours that the reflectances

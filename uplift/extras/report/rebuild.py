@@ -197,7 +197,9 @@ def _find_all(
     if kind == "atlases" and kind not in data.provenance:
         raise _missing_provenance(path)
     roots = [*map(Path, folders), Path(path).resolve().parent]
-    searched = [folder for root in roots for folder in (root, root / "atlases")]
+    searched = []
+    for root in roots:
+        searched += [root, root / "atlases"]
     sources = data.provenance.get(kind, ())
     # Files of one name in two folders may both be recorded.
     digests = {source["digest"] for source in sources}
