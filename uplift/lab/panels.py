@@ -26,8 +26,10 @@ from uplift.extras.pages.scatter import LEGEND, Label, draw_labels, style_title
 
 CLEAR_RATIO = 0.99
 """Share of an error below which another one is clearly smaller; the rest is noise."""
-SIZE, LEGEND_HEIGHT = (4.8, 3.4), 0.2
-"""Inches of a panel, and of the height of a row of the legend."""
+SIZE = (4.8, 3.4)
+"""Inches of a panel."""
+LEGEND_HEIGHT = 0.2
+"""Inches of a row of the legend."""
 FRONT_LINE: dict[str, Any] = {"color": INK, "linewidth": 1.1, "marker": ""}
 MARKER_SIZES = {"*": 9.5, "D": 5.5}
 """Points; others are 6.5 wide."""
@@ -157,13 +159,7 @@ def _draw_panel(axes: Any, panel: Panel, number: int) -> None:
     axes.set(xscale="log", yscale="log", xlabel=panel.axis)
     axes.minorticks_off()
     style_axes(axes)
-    for group in dict.fromkeys(point.group for point in panel.points if point.group):
-        members = [point for point in panel.points if point.group == group]
-        line = np.transpose([(point.cost, point.error) for point in members])
-        gid = f"whisker-{number}-{members[0].row}"
-        axes.plot(
-            *line, gid=gid, color=members[0].colour, linewidth=0.8, alpha=0.45, zorder=1
-        )
+    _draw_whiskers(axes, panel, number)
     front = _front(panel)
     for point in panel.points:
         style = {
@@ -182,9 +178,20 @@ def _draw_panel(axes: Any, panel: Panel, number: int) -> None:
             **style,
         )
     axes.margins(0.06)
-    for axis, text in ((axes.xaxis, panel.format), (axes.yaxis, "{:g}".format)):
-        _set_ticks(axis, text)
+    _set_ticks(axes.xaxis, panel.format)
+    _set_ticks(axes.yaxis, "{:g}".format)
     axes.plot(*_staircase(axes, panel).T, zorder=1, scalex=False, **FRONT_LINE)
+
+
+def _draw_whiskers(axes: Any, panel: Panel, number: int) -> None:
+    """Draw a line through the points of each group."""
+    for group in dict.fromkeys(point.group for point in panel.points if point.group):
+        members = [point for point in panel.points if point.group == group]
+        line = np.transpose([(point.cost, point.error) for point in members])
+        gid = f"whisker-{number}-{members[0].row}"
+        axes.plot(
+            *line, gid=gid, color=members[0].colour, linewidth=0.8, alpha=0.45, zorder=1
+        )
 
 
 def _set_ticks(axis: Any, text: Callable[[float], str]) -> None:
@@ -199,10 +206,8 @@ def _set_ticks(axis: Any, text: Callable[[float], str]) -> None:
 
 
 def _front(panel: Panel) -> list[Point]:
-    return [
-        panel.points[row]
-        for row in pareto_front([(point.cost, point.error) for point in panel.points])
-    ]
+    places = [(point.cost, point.error) for point in panel.points]
+    return [panel.points[row] for row in pareto_front(places)]
 
 
 def _staircase(axes: Any, panel: Panel) -> Array:

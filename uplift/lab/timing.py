@@ -40,10 +40,10 @@ CODE = (
 of the package.
 """
 SOURCES = Path(__file__).parents[1]
-MIN_RUNS, MAX_LAPS = 3, 75
-"""Fewest runs, and duration of all runs together in units of the shortest, unless
-`MIN_RUNS` take longer.
-"""
+MIN_RUNS = 3
+"""Fewest runs."""
+MAX_LAPS = 75
+"""Duration of all runs in units of the shortest, unless `MIN_RUNS` take longer."""
 
 
 @dataclass(frozen=True)

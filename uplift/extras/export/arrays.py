@@ -3,6 +3,8 @@ nodes as CSV.
 """
 
 import json
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -65,12 +67,12 @@ def write_csv(data: CubeData, path: StrPath, *, force: bool = False) -> int:
     }
     arrays = {name: column for name, column in columns.items() if column is not None}
     nodes = np.flatnonzero(points.present)
-    rows = (
-        row
-        for block in blocks(len(nodes), BLOCK)
-        for row in zip(
-            *(column[nodes[block]].tolist() for column in arrays.values()), strict=True
-        )
-    )
+
+    def node_rows() -> Iterator[tuple[Any, ...]]:
+        for block in blocks(len(nodes), BLOCK):
+            values = [column[nodes[block]].tolist() for column in arrays.values()]
+            yield from zip(*values, strict=True)
+
+    rows = node_rows()
     write_text(csv_text(list(arrays), rows), path, force=force)
     return len(nodes)

@@ -48,8 +48,10 @@ RES = 64
 """Resolution of Mitsuba's own table."""
 MIN_RES = 2
 MAX_RES = 256
-DARK, DARK_COLOUR = 1e-3, 1e-4
-"""Up to this level, the difference ε of a component of linear RGB that weighs as much
+DARK = 1e-3
+"""Level of linear RGB up to which `DARK_COLOUR` holds."""
+DARK_COLOUR = 1e-4
+"""Up to `DARK`, the difference ε of a component of linear RGB that weighs as much
 as the distance of a spectrum from grey; above, ε falls with the level. Very dark
 colours of high purity would else have reflectances near 1 where the eye hardly
 responds.
@@ -140,12 +142,12 @@ def write_coeff(
 def _binary(sensor: Sensor, scale: Array, table: Floats) -> bytes:
     at = (sensor.wavelengths - START) / (END - START)
     forward = (at, sensor.matrix, sensor.rgb_to_xyz, sensor.xyz(np.ones(3)))
-    sizes = (struct.pack("<I", len(each)) for each in (scale, at))
-    numbers = (
-        b"".join(each.astype("<f4").tobytes() for each in part)
-        for part in ((scale, table), forward)
-    )
-    return MAGIC + b"".join(map(bytes.__add__, sizes, numbers))
+    content = MAGIC
+    for length, arrays in ((len(scale), (scale, table)), (len(at), forward)):
+        content += struct.pack("<I", length)
+        for numbers in arrays:
+            content += numbers.astype("<f4").tobytes()
+    return content
 
 
 def _source(layout: str, name: str, scale: Array, table: Floats) -> str:
@@ -160,8 +162,11 @@ def _source(layout: str, name: str, scale: Array, table: Floats) -> str:
 
 
 def _rows(numbers: Values) -> str:
-    rows = numbers.reshape(-1, numbers.shape[-1]).tolist()
-    return "\n".join(",".join(f"{number:.9g}" for number in row) + "," for row in rows)
+    lines = []
+    for row in numbers.reshape(-1, numbers.shape[-1]).tolist():
+        words = (f"{number:.9g}," for number in row)
+        lines.append("".join(words))
+    return "\n".join(lines)
 
 
 def _scale(res: int) -> Array:
@@ -240,7 +245,8 @@ def _nearest_to_grey(
         reached = (after**2).sum(axis=0) + (((grey - trial) / size) ** 2).sum(axis=1)
         gain = cost[rows] - reached
         better = gain > 0
-        p[rows[better]], cost[rows[better]] = trial[better], reached[better]
+        p[rows[better]] = trial[better]
+        cost[rows[better]] = reached[better]
         damping[rows] *= np.where(better, 1 / 4, 4)
         left = np.where(better, after, left)
         jacobian = np.where(better, there, jacobian)
@@ -297,10 +303,9 @@ def _interpolated(scale: Array, table: Floats, rgb: Array) -> Array:
     places = np.stack(
         [level, *(rgb[rows, (largest + step) % 3] / level for step in (2, 1))], axis=-1
     )
-    found = np.zeros((len(rgb), 3))
+    coefficients = np.zeros((len(rgb), 3))
     for axis in range(3):
-        own = largest == axis
-        found[own] = RegularGridInterpolator((scale, even, even), table[axis])(
-            places[own]
-        )
-    return found
+        colours = largest == axis
+        interpolate = RegularGridInterpolator((scale, even, even), table[axis])
+        coefficients[colours] = interpolate(places[colours])
+    return coefficients

@@ -175,10 +175,9 @@ def _scene(sensor: Sensor, light: Illuminant | None) -> Scene:
 def _chromaticities(size: int) -> Array:
     """Return XYZ (size², 3) with X + Y + Z = 1 of the table's points, row by row."""
     first, second = np.meshgrid(*[np.linspace(0, 1, size)] * 2, indexing="ij")
-    x, y = (
-        1 - np.sqrt(first),
-        second * np.sqrt(first),
-    )  # the inverse of ((1 − x)², y / (1 − x))
+    # the inverse of ((1 − x)², y / (1 − x))
+    x = 1 - np.sqrt(first)
+    y = second * np.sqrt(first)
     return np.stack([x, y, 1 - x - y], axis=-1).reshape(-1, 3)
 
 
@@ -199,10 +198,8 @@ def _spectra(
         out=np.full_like(change, np.inf),
         where=change < 0,
     )
-    inside, (real, outer) = (
-        room.min(axis=1),
-        _outer_lights(scene.xyz, white, unit - white),
-    )
+    inside = room.min(axis=1)
+    real, outer = _outer_lights(scene.xyz, white, unit - white)
     edge = np.minimum(np.minimum(inside, real), 1)
     rgb = start + edge[:, None] * change
     # The brightest reflectance of a direction r is t r, on the surface of the solid;

@@ -145,9 +145,8 @@ def _clf(transform: Any, title: str) -> str:
 def cube_text(table: Values, title: str, size: int) -> str:
     """Return the text of a ``.cube`` file, in which red varies fastest."""
     rows = table.reshape(size, size, size, 3).transpose(2, 1, 0, 3).reshape(-1, 3)
-    lines = "\n".join(
-        " ".join(f"{value:.7g}" for value in row) for row in rows.tolist()
-    )
+    texts = [f"{red:.7g} {green:.7g} {blue:.7g}" for red, green, blue in rows.tolist()]
+    lines = "\n".join(texts)
     return (
         f"# {title}\n# sRGB-encoded components in and out\nLUT_3D_SIZE "
         f"{size}\n{lines}\n"

@@ -44,6 +44,8 @@ LOOP = re.compile(
     re.MULTILINE,
 )
 """A loop to be written out: its statement is on the same line, or in braces."""
+TERM = re.compile(r"(?P<sign>[+-]?) *(?P<word>\w+)(?: */ *(?P<divisor>\d+))?")
+"""A term of the bound of a loop."""
 
 
 @dataclass(frozen=True)
@@ -267,19 +269,24 @@ def _unroll(text: str, constants: dict[str, Any]) -> str:
     """
 
     def copies(loop: re.Match[str]) -> str:
-        bounds = (
-            eval(each.replace("/", "//"), {}, constants)
-            for each in (loop["start"], loop["stop"])
+        values = range(
+            _bound(loop["start"], constants), _bound(loop["stop"], constants)
         )
-        numbered = (
-            re.sub(rf"\b{loop['name']}\b", str(value), loop["body"])
-            for value in range(*bounds)
-        )
-        return _unroll(
-            "".join(f"{loop['indent']}{body}" for body in numbered), constants
-        )
+        counter = re.compile(rf"\b{loop['name']}\b")
+        bodies = (counter.sub(str(value), loop["body"]) for value in values)
+        return _unroll("".join(f"{loop['indent']}{body}" for body in bodies), constants)
 
     return LOOP.sub(copies, text)
+
+
+def _bound(text: str, constants: dict[str, Any]) -> int:
+    """Return the value of a sum of integers, constants and their quotients."""
+    total = 0
+    for sign, word, divisor in TERM.findall(text):
+        value = constants[word] if word in constants else int(word)
+        value //= int(divisor or 1)
+        total += -value if sign == "-" else value
+    return total
 
 
 def literal(value: float) -> str:

@@ -28,16 +28,19 @@ program has textures of this width.
 """
 PROGRAM_MODES = ("spectra", "moments")
 """What programs interpolate."""
-SPECTRA, SAMPLES, SEED = 1 << 13, 1 << 9, 0
-"""Spectra, and random colours of two kinds, by which the change by single precision is
-bounded.
-"""
-SPACING, WAVELENGTH_ERROR = 2.0, 5e-5
-"""Step of their wavelengths, and error of wavelengths in single precision, in nm."""
-OPERATIONS, LEAST_ERROR = 4, 3e-6
-"""Factor from a product of matrices to all operations, and error of the arctangent and
-of sums.
-"""
+SPECTRA = 1 << 13
+"""Spectra by which the change by single precision is bounded."""
+SAMPLES = 1 << 9
+"""Random colours of each of two kinds for the same."""
+SEED = 0
+SPACING = 2.0
+"""Step of their wavelengths in nm."""
+WAVELENGTH_ERROR = 5e-5
+"""Error of wavelengths in single precision, in nm."""
+OPERATIONS = 4
+"""Factor from a product of matrices to all operations."""
+LEAST_ERROR = 3e-6
+"""Error of the arctangent and of sums."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,7 +245,8 @@ def _moving(data: CubeData) -> tuple[dict[str, Values], dict[str, Any]]:
     ``FACETS`` are the normals of the object-colour solid, and half its width along
     each, around a grey of 1/2.
     """
-    (weights, shapes, scale), sensor = pull(data.sensor), data.sensor
+    sensor = data.sensor
+    weights, shapes, scale = pull(sensor)
     half = len(data.solid.normals) // 2  # the others are opposite ones
     width = (data.solid.offsets[:half] + data.solid.offsets[half:]) / 2
     sections = {
@@ -274,14 +278,15 @@ def _boxes(boxes: EntryBoxes) -> Floats:
     faces, (E, 12); 0 for none.
     """
     low, high = boxes.faces
-    below, above = (
-        np.divide(1, room, out=np.zeros_like(room), where=room > 0)
-        for room in (boxes.rgb - low, high - boxes.rgb)
-    )
+    below = _reciprocal(boxes.rgb - low)
+    above = _reciprocal(high - boxes.rgb)
     centre = boxes.rgb.astype(np.float32)
-    return np.concatenate([centre, boxes.rgb - centre, below, above], axis=1).astype(
-        np.float32
-    )
+    columns = (centre, boxes.rgb - centre, below, above)
+    return np.concatenate(columns, axis=1).astype(np.float32)
+
+
+def _reciprocal(room: Array) -> Array:
+    return np.divide(1, room, out=np.zeros_like(room), where=room > 0)
 
 
 def model_constants(model: object) -> dict[str, float]:
@@ -293,14 +298,10 @@ def model_constants(model: object) -> dict[str, float]:
     assert isinstance(model, Moments)
     low, high = warped(model.warp, np.array([model.start, model.end])).tolist()
     terms = [number for term in WARPS[model.warp] for number in term]
-    warp = (
-        {
-            f"WARP_{number}": value
-            for number, value in enumerate((*terms, 0.0, 0.0, 0.0)[:6])
-        }
-        if terms
-        else {}
-    )
+    warp = {}
+    if terms:
+        padded = (*terms, 0.0, 0.0, 0.0)[:6]
+        warp = {f"WARP_{number}": value for number, value in enumerate(padded)}
     constants = {
         "SIGMOIDS": 0,
         "WARPED": int(bool(terms)),

@@ -10,10 +10,13 @@ import numpy as np
 from uplift.colorimetry.srgb import decode, encode
 from uplift.common.arrays import Array
 
-SAMPLES, SEED = 1 << 13, 7
+SAMPLES = 1 << 13
 """Random codes of the mean, from which the search begins."""
-STARTS, TRIALS = 1 << 7, 8
-"""Worst codes that the search follows, and trials near each of them in a round."""
+SEED = 7
+STARTS = 1 << 7
+"""Worst codes that the search follows."""
+TRIALS = 8
+"""Trials near each of these codes in a round."""
 STEPS = np.geomspace(1 / 16, 1 / 1024, 12)
 """Largest changes of codes by round."""
 

@@ -88,26 +88,29 @@ def _make(props: Any) -> Any:
     is_light = props.get("emission", False)
     if _source(props, SOURCES) == "rgb":
         rgb = _parse_rgb(props["rgb"])
-        at = np.arange(START, END + 1)
+        wavelengths = np.arange(START, END + 1, dtype=float)
         if is_light:
-            return _constant(_table(props).spectrum(rgb, at))
-        cube = _cube(props)
-        method = str(props.get("out_of_gamut", "error"))
-        if cube.data.outside_boxes.find(rgb[None]).rows.size:
-            uplifter = texels.prepare_texels(cube, method, of_entries=True)
-            (_, multipliers), _ = uplifter.convert(rgb[None].astype(np.float32))
-            return _constant(
-                evaluate(cube.data.atlas.spectra.model, multipliers.astype(float), at)[
-                    0
-                ]
-            )
-        return _constant(
-            cube.reflectance(map_to_gamut(rgb, cube.data.sensor, method).rgb, at)
-        )
+            return _constant(_table(props).spectrum(rgb, wavelengths))
+        return _constant(_reflectance(props, rgb, wavelengths))
     spectra = _texels(props, is_light=is_light)
     placement = texels.Placement.read(props)
     _warn_in_scalar_variants("texture")
     return make_texture(props, spectra, placement)
+
+
+def _reflectance(props: Any, rgb: Array, wavelengths: Array) -> Array:
+    """Return the reflectance (n,) of linear RGB (3,), that of an entry outside [0, 1]
+    too.
+    """
+    cube = _cube(props)
+    method = str(props.get("out_of_gamut", "error"))
+    if cube.data.outside_boxes.find(rgb[None]).rows.size:
+        uplifter = texels.prepare_texels(cube, method, of_entries=True)
+        (_, multipliers), _ = uplifter.convert(rgb[None].astype(np.float32))
+        model = cube.data.atlas.spectra.model
+        return evaluate(model, multipliers.astype(float), wavelengths)[0]
+    mapped = map_to_gamut(rgb, cube.data.sensor, method)
+    return cube.reflectance(mapped.rgb, wavelengths)
 
 
 def _make_environment(props: Any) -> Any:
@@ -150,7 +153,7 @@ def _texels(props: Any, *, is_light: bool) -> texels.Texels:
     if path is not None and (spectra := texels.read_texels(path)) is not None:
         return spectra
     rgb: Values
-    found: tuple[UpliftWarning, ...] = ()
+    read_warnings: tuple[UpliftWarning, ...] = ()
     counts = Counts()
     method = "clip"
     if is_light:
@@ -158,7 +161,7 @@ def _texels(props: Any, *, is_light: bool) -> texels.Texels:
         if path is None:
             rgb = _linear(decode, props["bitmap"])
         else:
-            rgb, counts, found = texels.read_colours(
+            rgb, counts, read_warnings = texels.read_colours(
                 path, prepare_lights(table, threads=texels.THREADS)
             )
         spectra = texels.light_texels(table, rgb.astype(float))
@@ -167,7 +170,7 @@ def _texels(props: Any, *, is_light: bool) -> texels.Texels:
         method = str(props.get("out_of_gamut", method))
         uplifter = texels.prepare_texels(cube, method)
         if path is not None and path.is_file() and is_exr(path):
-            rgb, counts, found = texels.read_colours(path, uplifter)
+            rgb, counts, read_warnings = texels.read_colours(path, uplifter)
         else:
             bitmap = props["bitmap"] if path is None else mitsuba.Bitmap(str(path))
             rgb, counts = uplifter.mapped(
@@ -175,7 +178,7 @@ def _texels(props: Any, *, is_light: bool) -> texels.Texels:
             )
         spectra, converted = texels.uplift_texels(uplifter, rgb)
         counts += converted
-    for warning in (*found, *counts.warnings(method, path)):
+    for warning in (*read_warnings, *counts.warnings(method, path)):
         warn(warning)
     return spectra
 

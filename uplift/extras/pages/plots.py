@@ -142,16 +142,17 @@ def plot_bounds(
     """Plot the region of each colour under each light, as PNG, SVG or PDF: a row per
     colour, a column per light.
     """
-    panels = [(found, row) for found in blocks for row in range(len(found[0].xyz))][
-        :MAX_COLOURS
-    ]
-    names = [each.light.name for each in panels[0][0]]
+    panels: list[tuple[Sequence[Bounds], int]] = []
+    for block in blocks:
+        panels += [(block, row) for row in range(len(block[0].xyz))]
+    panels = panels[:MAX_COLOURS]
+    names = [bounds.light.name for bounds in panels[0][0]]
     screens = display_sensors(names, cube.observer, *cube.data.sensor.range)
     figure = new_figure(3.1 * len(names), 3.1 * len(panels))
     axes = figure.subplots(len(panels), len(names), squeeze=False)
-    for line, (found, row) in zip(axes, panels, strict=True):
-        for each, screen, bounds in zip(line, screens, found, strict=True):
-            _plot_region(each, screen, bounds, row)
+    for line, (block, row) in zip(axes, panels, strict=True):
+        for cell, screen, bounds in zip(line, screens, block, strict=True):
+            _plot_region(cell, screen, bounds, row)
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(
         handles, labels, loc="outside lower center", ncols=len(labels), frameon=False

@@ -76,13 +76,14 @@ def draw_labels(
         return
     labels = sorted(labels, key=lambda label: not label.bold)
     scale = _POINTS_PER_INCH / axes.figure.dpi
-    line = np.concatenate(
-        [np.empty((0, 2)), *(np.geomspace(*pair, 40) for pair in pairwise(line))]
-    )
-    anchors, markers, line = (
-        scale * axes.transData.transform(points)
-        for points in ([label.point for label in labels], markers, line)
-    )
+
+    def to_points(places: Any) -> Any:
+        return scale * axes.transData.transform(places)
+
+    segments = [np.geomspace(*ends, 40) for ends in pairwise(line)]
+    line = to_points(np.concatenate([np.empty((0, 2)), *segments]))
+    anchors = to_points([label.point for label in labels])
+    markers = to_points(markers)
     texts = [
         axes.annotate(
             figure_text(label.text),
@@ -142,10 +143,8 @@ def place_labels(anchors: Array, sizes: Array, markers: Array, panel: Array) -> 
             [_corners_around(anchor, size, distance) for distance in DISTANCES]
         )
         boxes = np.concatenate([options, options + size], axis=1)
-        over_label, over_marker = (
-            each.any(axis=1)
-            for each in (_overlaps(boxes, placed), _contains(boxes, markers))
-        )
+        over_label = _overlaps(boxes, placed).any(axis=1)
+        over_marker = _contains(boxes, markers).any(axis=1)
         outside = ((boxes[:, :2] < panel[:2]) | (boxes[:, 2:] > panel[2:])).any(axis=1)
         taken = outside | over_label | over_marker
         if not taken.all():

@@ -83,7 +83,7 @@ class Ingredients:
     @property
     def measured_on_black(self) -> list[Array]:
         """The spectra (N,) on black that are given."""
-        return [one for one in self.on_black if one is not None]
+        return [colour for colour in self.on_black if colour is not None]
 
 
 @dataclass(frozen=True)
@@ -154,18 +154,10 @@ def make_coat(
         )
     thickness = 1.0 if medium.thickness is None else medium.thickness
     if kind == "duntley":
-        constants = ingredients.spectra
-        mixed = optics.weighted_sum(
-            constants.reshape(len(constants), -1), optics.as_shares(parts)
-        )
-        fluxes = np.moveaxis(mixed.reshape(*mixed.shape[:-1], 6, -1), -2, 0)
-        return Coat(
-            pigments.duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), thickness),
-            medium.surface,
-        )
+        return _duntley_coat(ingredients, parts, thickness, medium.surface)
     surface = medium.surface
     spectra = [*ingredients.spectra, *ingredients.measured_on_black]
-    dark = sum(bool((surface.remove(one) < -SLACK).any()) for one in spectra)
+    dark = sum(bool((surface.remove(colour) < -SLACK).any()) for colour in spectra)
     if dark:
         problem = (
             f"{dark} of {pluralise(len(spectra), 'colour')} partly darker than the "
@@ -173,32 +165,55 @@ def make_coat(
         )
         warn(UpliftWarning(problem))
     if kind == "dye":
-        if ingredients.measured_on_black:
-            raise OptionError(
-                "dyes must not have a colour on black",
-                hint="pass their colour on white only",
-            )
-        absorption = optics.weighted_sum(
-            dye_absorption(ingredients.spectra, surface), optics.as_shares(parts)
+        return _dye_coat(ingredients, parts, thickness, medium)
+    return _pigment_coat(ingredients, parts, medium)
+
+
+def _duntley_coat(
+    ingredients: Ingredients, parts: ArrayLike, thickness: float, surface: Surface
+) -> Coat:
+    constants = ingredients.spectra
+    mixed = optics.weighted_sum(
+        constants.reshape(len(constants), -1), optics.as_shares(parts)
+    )
+    fluxes = np.moveaxis(mixed.reshape(*mixed.shape[:-1], 6, -1), -2, 0)
+    layer = pigments.duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), thickness)
+    return Coat(layer, surface)
+
+
+def _dye_coat(
+    ingredients: Ingredients, parts: ArrayLike, thickness: float, medium: Medium
+) -> Coat:
+    if ingredients.measured_on_black:
+        raise OptionError(
+            "dyes must not have a colour on black",
+            hint="pass their colour on white only",
         )
-        transmittance = dye_transmittance(absorption, thickness)
-        if medium.plate:
-            return Coat(optics.plate(transmittance, surface.outside))
-        return Coat(Layer(np.zeros_like(transmittance), transmittance), surface)
+    surface = medium.surface
+    absorption = optics.weighted_sum(
+        dye_absorption(ingredients.spectra, surface), optics.as_shares(parts)
+    )
+    transmittance = dye_transmittance(absorption, thickness)
+    if medium.plate:
+        return Coat(optics.plate(transmittance, surface.outside))
+    return Coat(Layer(np.zeros_like(transmittance), transmittance), surface)
+
+
+def _pigment_coat(ingredients: Ingredients, parts: ArrayLike, medium: Medium) -> Coat:
     on_black = ingredients.on_black or (None,) * len(ingredients.spectra)
     paints = [
-        _pigment(*pair, medium)
-        for pair in zip(ingredients.spectra, on_black, strict=True)
+        _pigment(*colours, medium)
+        for colours in zip(ingredients.spectra, on_black, strict=True)
     ]
     stacked = Pigment(
-        np.stack([one.absorption for one in paints]),
-        np.stack([one.scattering for one in paints]),
+        np.stack([paint.absorption for paint in paints]),
+        np.stack([paint.scattering for paint in paints]),
     )
     mixture = stacked.mix(parts)
     if medium.thickness is not None:
-        return Coat(mixture.layer(medium.thickness), surface)
+        return Coat(mixture.layer(medium.thickness), medium.surface)
     reflectance = mixture.opaque_reflectance()
-    return Coat(Layer(reflectance, np.zeros_like(reflectance)), surface)
+    return Coat(Layer(reflectance, np.zeros_like(reflectance)), medium.surface)
 
 
 def mix(

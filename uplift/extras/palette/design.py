@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -198,30 +199,16 @@ def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
         for goal in palette.goals
     }
     missed = [goal for goal in palette.goals if goal.weight and errors[goal] > VISIBLE]
-    relaxed = (
-        [
-            (name, matrix(design(each, found.model)).delta_e)
-            for name, each in _relaxed(palette)
-        ]
-        if missed
-        else []
-    )
+    relaxed = []
+    if missed:
+        for name, changed in _relaxed(palette):
+            relaxed.append((name, matrix(design(changed, found.model)).delta_e))
     unmet = []
     for goal in missed:
         cell = palette.cell(goal.material, goal.light)
-        remaining = [
-            (name, float(delta_e[cell]))
-            for name, delta_e in relaxed
-            if name != _weight_of(goal)
-        ]
-        useful = [each for each in remaining if each[1] < MAX_REMAINING * errors[goal]]
-        unmet.append(
-            UnmetGoal(
-                goal,
-                errors[goal],
-                tuple(sorted(useful, key=lambda each: each[1])[:MAX_RELAXATIONS]),
-            )
-        )
+        remaining = [(name, float(delta_e[cell])) for name, delta_e in relaxed]
+        useful = _useful(goal, remaining, MAX_REMAINING * errors[goal])
+        unmet.append(UnmetGoal(goal, errors[goal], useful))
     for pair in palette.min_differences:
         first, second = (
             fitted[palette.cell(material, pair.light)] for material in pair.materials
@@ -230,6 +217,18 @@ def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
         if delta_e < pair.delta_e:
             unmet.append(UnmetGoal(pair, delta_e))
     return tuple(unmet)
+
+
+def _useful(
+    goal: ColourGoal, remaining: list[tuple[str, float]], limit: float
+) -> tuple[tuple[str, float], ...]:
+    """Relaxed criteria after which the ΔE00 of a goal is below the limit, best first."""
+    useful = []
+    for name, delta_e in remaining:
+        if name != _weight_of(goal) and delta_e < limit:
+            useful.append((name, delta_e))
+    useful.sort(key=lambda relaxation: relaxation[1])
+    return tuple(useful[:MAX_RELAXATIONS])
 
 
 def _weight_of(goal: ColourGoal) -> str:
@@ -251,21 +250,21 @@ def _relaxed(palette: Palette) -> Iterator[tuple[str, Palette]]:
     for spec in (*palette.lights, *palette.materials):
         if spec.designed and (math.isfinite(spec.low) or math.isfinite(spec.high)):
             free = dataclasses.replace(spec, low=-math.inf, high=math.inf)
-            lights, materials = (
-                tuple(free if each is spec else each for each in specs)
-                for specs in (palette.lights, palette.materials)
+            without = dataclasses.replace(
+                palette,
+                lights=_replaced(palette.lights, spec, free),
+                materials=_replaced(palette.materials, spec, free),
             )
-            yield (
-                f"the bounds of {spec.name}",
-                dataclasses.replace(palette, lights=lights, materials=materials),
-            )
+            yield f"the bounds of {spec.name}", without
     for goal in palette.goals:
         if goal.weight:
-            others = (
-                dataclasses.replace(each, weight=0.0) if each is goal else each
-                for each in palette.goals
-            )
-            yield _weight_of(goal), dataclasses.replace(palette, goals=tuple(others))
+            weightless = dataclasses.replace(goal, weight=0.0)
+            goals = _replaced(palette.goals, goal, weightless)
+            yield _weight_of(goal), dataclasses.replace(palette, goals=goals)
+
+
+def _replaced(items: tuple[Any, ...], old: object, new: object) -> tuple[Any, ...]:
+    return tuple(new if item is old else item for item in items)
 
 
 def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int:

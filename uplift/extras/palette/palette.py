@@ -87,7 +87,6 @@ class Palette:
         """Return row and column of a material under a light in the matrix
         of a design.
         """
-        rows, columns = (
-            [spec.name for spec in specs] for specs in (self.materials, self.lights)
-        )
+        rows = [spec.name for spec in self.materials]
+        columns = [spec.name for spec in self.lights]
         return rows.index(material), columns.index(light)

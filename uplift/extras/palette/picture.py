@@ -26,7 +26,8 @@ SIZE = 512  # pixels along each side
 SKIN = 0.93  # radius of the layers below the skin, relative to the skin
 CORE = 1.6  # thickness of the innermost layer in layers
 DEPTH = 0.13  # optical depth of the skin at normal incidence
-BALL, RADIUS = (0.0, 0.2), 0.74  # centre and radius of the ball in a square of ±1
+BALL = (0.0, 0.2)  # centre of the ball in a square of ±1
+RADIUS = 0.74  # of the ball
 # Height of the row of beads, largest radius, width of the row, and largest distance
 # between beads.
 BEADS = -0.79

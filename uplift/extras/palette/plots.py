@@ -20,15 +20,11 @@ from uplift.extras.pages.figure import (
 from uplift.extras.palette.design import Design, Matrix
 from uplift.extras.palette.palette import SpectrumSpec
 
-CELL, NAMES, TOP = (
-    (1.5, 1.0),
-    1.35,
-    0.75,
-)  # sizes in inches of a cell, the column of names, and the row of lights
-PATCH, SMALL = (
-    (0.92, 0.66),
-    8.0,
-)  # size of a patch against that of its cell; font size of the numbers below it
+CELL = (1.5, 1.0)  # size in inches of a cell
+NAMES = 1.35  # width in inches of the column of names
+TOP = 0.75  # height in inches of the row of lights
+PATCH = (0.92, 0.66)  # size of a patch against that of its cell
+SMALL = 8.0  # font size of the numbers below a patch
 MIN_WIDTH = 5.2  # inches that the legend takes
 LEGEND = (
     "left: target; right: obtained, above by spectra,\nbelow by factor model; ΔE00 to "

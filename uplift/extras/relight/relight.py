@@ -183,18 +183,13 @@ def relight(
     weight = np.float32(1) if opacity is None else opacity
     original = to_display_codes(rgb * weight, sensor).astype(np.uint8)
     to_srgb = conversion(sensor, SRGB) @ sensor.xyz_to_rgb
-    renderings = (
-        Rendering(
-            screen,
-            {RGB_PRODUCT: _by_product(sensor, rgb, screen) * weight}
-            | {
-                method: colours[number] * weight
-                for method, colours in by_spectra.items()
-            },
-            tint=to_srgb @ screen.rgb_to_xyz,
-        )
-        for number, screen in enumerate(screens)
-    )
+    renderings = []
+    for number, screen in enumerate(screens):
+        colours = {RGB_PRODUCT: _by_product(sensor, rgb, screen) * weight}
+        for method, of_lights in by_spectra.items():
+            colours[method] = of_lights[number] * weight
+        tint = to_srgb @ screen.rgb_to_xyz
+        renderings.append(Rendering(screen, colours, tint=tint))
     return Relit(name, reduction, original, tuple(renderings))
 
 
@@ -233,7 +228,9 @@ def write_relit_sheet(
     With ``adapt`` the white of each light is shown as white; by default if it
     `looks_white`.
     """
-    rows = [(image, rendering) for image in relit for rendering in image.renderings]
+    rows: list[tuple[Relit, Rendering]] = []
+    for image in relit:
+        rows += [(image, rendering) for rendering in image.renderings]
     first, second = map(figure_text, relit[0].shown_pair)
     titles = [
         *map(figure_text, relit[0].methods),

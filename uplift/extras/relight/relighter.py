@@ -121,6 +121,7 @@ def prepare_relighter(
         "out_of_gamut": out_of_gamut,
     }
     settings |= {} if adapt else {"adapt": False}
+    matrices = [screen.matrix for screen in screens]
     header = {
         **exr.attributes(cube.data),
         "uplift.texture": json.dumps(settings),
@@ -136,7 +137,7 @@ def prepare_relighter(
         sample=prepare_products(
             cube.data,
             cube.wavelengths,
-            np.concatenate([screen.matrix for screen in screens]),
+            np.concatenate(matrices),
             threads,
         ),
         space=None if space is None else find_space(space),

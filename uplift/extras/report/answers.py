@@ -56,14 +56,15 @@ def read_answers(path: StrPath) -> StoredAnswers:
             hint="write it as queries are written in CSV",
         )
     columns = [*"rgb", *(at[nm] for nm in sorted(at))]
-    values = np.array([[_number(row[name]) for name in columns] for row in rows])
+    values = np.empty((len(rows), len(columns)))
+    for number, row in enumerate(rows):
+        values[number] = [_number(row[name]) for name in columns]
     finite = np.isfinite(values).all(axis=1)
     if not finite.all():
-        line = int(finite.argmin()) + 2
         raise ColourError(
             "each column needs a finite number",
             path=path,
-            line=line,
+            line=int(finite.argmin()) + 2,
             hint="correct the row",
         )
     return StoredAnswers(values[:, :3], np.array(sorted(at)), values[:, 3:])

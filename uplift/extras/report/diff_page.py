@@ -3,7 +3,7 @@ the spectra that differ most.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from markupsafe import Markup
@@ -25,10 +25,10 @@ from uplift.extras.pages.html import render
 from uplift.extras.report.charts import spectra_chart
 from uplift.extras.report.diff import Changes, CubeDiff, to_json
 
-MIN_LIMIT, SHARE = 1.0, 0.99
-"""Smallest ΔE00 at the dark end of maps, so that invisible differences stay pale; share
-of the nodes below the end.
-"""
+MIN_LIMIT = 1.0
+"""Smallest ΔE00 at the dark end of maps, so that invisible differences stay pale."""
+SHARE = 0.99
+"""Share of the nodes below the end."""
 
 WIDTH = 10.5
 """Inches of a map; the page scales it to its columns."""
@@ -60,13 +60,18 @@ def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
         lattice=_map(
             mosaic(nodes), limit, "ΔE00 over the lattice, a tile for each blue"
         ),
-        images=[_image(diff, each, images[each.name], limit) for each in diff.images],
-        spectra=[
-            _spectra(diff, each, int(row))
-            for each in diff.sets
-            for row in each.worst(worst)
+        images=[
+            _image(diff, changes, images[changes.name], limit)
+            for changes in diff.images
         ],
+        spectra=list(_worst_spectra(diff, worst)),
     )
+
+
+def _worst_spectra(diff: CubeDiff, count: int) -> Iterator[dict[str, object]]:
+    for changes in diff.sets:
+        for row in changes.worst(count):
+            yield _spectra(diff, changes, int(row))
 
 
 def mosaic(slices: Array) -> Array:

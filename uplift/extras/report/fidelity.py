@@ -201,10 +201,12 @@ def _with_lattice_errors(
         table.rgb,
         np.concatenate([upper, boxes.rgb + reach]),
     )
-    low, centre, high = (
-        np.sign(rgb) * cube.encode(np.abs(rgb))
-        for rgb in (each[rows] for each in faces)
-    )
+
+    def codes(linear: Array) -> Array:
+        rgb = linear[rows]
+        return np.asarray(np.sign(rgb) * cube.encode(np.abs(rgb)))
+
+    low, centre, high = map(codes, faces)
     is_outside = rows >= len(data.atlas.names)
     return replace(
         errors,

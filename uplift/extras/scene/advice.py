@@ -204,6 +204,18 @@ def advise(scene: Uncertainty, count: int) -> tuple[list[Swatch], Uncertainty]:
     return chosen, scene
 
 
+def _mean_errors(
+    cube: Cube, colours: Mapping[str, Array], lights: Sequence[Light]
+) -> dict[str, Array]:
+    """Standard errors (n,) of linear RGB (n, 3) by name, averaged over the lights."""
+    estimates = [light_errors(cube.data, light) for light in lights]
+    means = {}
+    for name, rgb in colours.items():
+        errors = [estimate(rgb)[:, 0] for estimate in estimates]
+        means[name] = np.mean(errors, axis=0)
+    return means
+
+
 def draw_advice(
     cube: Cube,
     pictures: Mapping[str, Values],
@@ -217,13 +229,9 @@ def draw_advice(
     pixels of the nearest colours.
     """
     sensor = cube.data.sensor
-    estimates = [light_errors(cube.data, light) for light in lights]
     flat = {name: rgb.reshape(-1, 3).astype(float) for name, rgb in pictures.items()}
-    maps = {
-        name: np.mean([estimate(rgb)[:, 0] for estimate in estimates], axis=0)
-        for name, rgb in flat.items()
-    }
-    largest = max(float(np.quantile(each, 0.99)) for each in maps.values())
+    maps = _mean_errors(cube, flat, lights)
+    largest = max(float(np.quantile(errors, 0.99)) for errors in maps.values())
     heights = [3.5 * rgb.shape[0] / rgb.shape[1] + 0.3 for rgb in pictures.values()]
     figure = new_figure(7.6, sum(heights) + 1.5)
     *rows, last = figure.subfigures(

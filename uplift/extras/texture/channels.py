@@ -164,9 +164,11 @@ def _layers(part: Part, letters: str) -> list[str]:
         for name in part.channels
         if name == first or name.endswith(f".{first}")
     ]
-    layers = [
-        layer for layer in ends if all(layer + letter in names for letter in others)
-    ]
+
+    def is_complete(layer: str) -> bool:
+        return all(layer + letter in names for letter in others)
+
+    layers = [layer for layer in ends if is_complete(layer)]
     if letters == "XYZ":
         layers = [
             layer for layer in layers if not VECTORS.fullmatch(layer.removesuffix("."))

@@ -66,13 +66,7 @@ def check_size(path: Path) -> None:
             if not 0 <= size <= end - value:
                 raise _damaged()
             if kind == b"chlist":
-                while (
-                    channels <= MAX_CHANNELS
-                    and file.tell() < value + size
-                    and _name(file)
-                ):
-                    file.seek(CHANNEL_BYTES, os.SEEK_CUR)
-                    channels += 1
+                channels += _count_channels(file, value + size, MAX_CHANNELS - channels)
             file.seek(value + size)
             if attributes > MAX_ATTRIBUTES or channels > MAX_CHANNELS:
                 problem = (
@@ -83,6 +77,15 @@ def check_size(path: Path) -> None:
                     problem,
                     hint="write the channels to several files, or remove attributes",
                 )
+
+
+def _count_channels(file: BinaryIO, end: int, most: int) -> int:
+    """Number of channels of a list up to ``end``; ``most`` + 1 if it has more."""
+    channels = 0
+    while channels <= most and file.tell() < end and _name(file):
+        file.seek(CHANNEL_BYTES, os.SEEK_CUR)
+        channels += 1
+    return channels
 
 
 def seal(path: Path) -> None:

@@ -62,8 +62,10 @@ ENVIRONMENTS = ("LatLong Environment", "CubeFace Environment")
 """Values of ``textureformat`` that are kept: they stand for the attribute ``envmap`` of
 OpenEXR.
 """
-MAX_METADATA, MAX_METADATA_LENGTH = 100, 10_000
-"""Numbers of attributes, and of their characters or numbers, that textures keep."""
+MAX_METADATA = 100
+"""Number of attributes that textures keep."""
+MAX_METADATA_LENGTH = 10_000
+"""Number of characters or numbers of an attribute that textures keep."""
 OTHER_COLOURS = {8, 9, 10, 32844, 32845}
 """Photometric interpretations of TIFF that OpenImageIO reads as RGB: CIELAB, ICCLab,
 ITULab, LogL and LogLuv.
@@ -223,56 +225,18 @@ def open_image(path: StrPath) -> Iterator[Image]:
     several values per pixel, too many channels or attributes, names that are not text,
     or blocks of rows that do not fit into memory.
     """
-    import OpenImageIO
-
     path = Path(path)
-    config = OpenImageIO.ImageSpec()
     handle = None
-    header: Mapping[str, Any] = {}
-    config["oiio:UnassociatedAlpha"] = (
-        1  # keep colours as stored, not multiplied by alpha
-    )
-    OpenImageIO.attribute(
-        "limits:imagesize_MB", 0
-    )  # bands are read, which are compared with memory
     try:
         start = _read_start(path)
-        if start.startswith(exr_file.MAGIC):
-            exr_file.check_size(path)
-        elif start.startswith(png_file.SIGNATURE):
-            header = png_file.read_chunks(path)
-        elif start.startswith(hdr_file.MAGIC):
-            header = hdr_file.read_primaries(path)
-        else:
-            header = tiff_file.read_tags(path)
-        handle = OpenImageIO.ImageInput.open(utf8_name(path, TextureError), config)
-        if handle is None:
-            problem = read_error(OpenImageIO) or UNKNOWN_PROBLEM
-            hint = SUBSAMPLED_HINT if SUBSAMPLED in problem else FORMAT_HINT
-            raise TextureError(problem, code="file-unreadable", hint=hint)
+        header = _read_header(path, start)
+        handle = _open(path)
         parts = tuple(_parts(handle, header))
+        is_png = start.startswith(png_file.SIGNATURE)
+        is_interlaced = is_png and start[PNG_INTERLACE:] == b"\1"
         for part in parts:
-            for name in (part.name, *part.channels):
-                if not _is_text(name):
-                    raise TextureError(
-                        f"names of parts and channels must be UTF-8, got {name!a}",
-                        hint="rename it",
-                    )
-            is_interlaced = (
-                start.startswith(png_file.SIGNATURE) and start[PNG_INTERLACE:] == b"\1"
-            )
-            rows = (
-                part.window.height
-                if is_interlaced
-                else min(part.rows_per_block, part.window.height)
-            )
-            need = rows * part.window.width * len(part.channels) * 4
-            check_memory(
-                need,
-                f"a block of {pluralise(rows, 'row')}, decoded together,",
-                TextureError,
-                MEMORY_HINT,
-            )
+            _check_names(part)
+            _check_block(part, is_interlaced=is_interlaced)
         yield Image(path, parts, handle)
     except (TextureError, ColourError) as error:
         error.path = path if error.path is None else error.path
@@ -280,6 +244,55 @@ def open_image(path: StrPath) -> Iterator[Image]:
     finally:
         if handle is not None:
             handle.close()
+
+
+def _read_header(path: Path, start: bytes) -> Mapping[str, Any]:
+    """Read what OpenImageIO does not report of a file that begins with ``start``."""
+    if start.startswith(exr_file.MAGIC):
+        exr_file.check_size(path)
+        return {}
+    if start.startswith(png_file.SIGNATURE):
+        return png_file.read_chunks(path)
+    if start.startswith(hdr_file.MAGIC):
+        return hdr_file.read_primaries(path)
+    return tiff_file.read_tags(path)
+
+
+def _open(path: Path) -> Any:
+    import OpenImageIO
+
+    config = OpenImageIO.ImageSpec()
+    # Keep colours as stored, not multiplied by alpha.
+    config["oiio:UnassociatedAlpha"] = 1
+    # Bands are read, which are compared with memory.
+    OpenImageIO.attribute("limits:imagesize_MB", 0)
+    handle = OpenImageIO.ImageInput.open(utf8_name(path, TextureError), config)
+    if handle is None:
+        problem = read_error(OpenImageIO) or UNKNOWN_PROBLEM
+        hint = SUBSAMPLED_HINT if SUBSAMPLED in problem else FORMAT_HINT
+        raise TextureError(problem, code="file-unreadable", hint=hint)
+    return handle
+
+
+def _check_names(part: Part) -> None:
+    for name in (part.name, *part.channels):
+        if not _is_text(name):
+            raise TextureError(
+                f"names of parts and channels must be UTF-8, got {name!a}",
+                hint="rename it",
+            )
+
+
+def _check_block(part: Part, *, is_interlaced: bool) -> None:
+    """Check that the rows that are decoded together fit into memory."""
+    height = part.window.height
+    rows = height if is_interlaced else min(part.rows_per_block, height)
+    check_memory(
+        rows * part.window.width * len(part.channels) * 4,
+        f"a block of {pluralise(rows, 'row')}, decoded together,",
+        TextureError,
+        MEMORY_HINT,
+    )
 
 
 def _read_start(path: Path) -> bytes:

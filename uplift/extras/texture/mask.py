@@ -66,14 +66,13 @@ def open_mask(
                 ),
                 hint="scale the mask",
             )
-        found = colour_channels(part)
-        if (found is None and len(part.channels) > 1) or (
-            found is not None and found.is_xyz
-        ):
+        colours = colour_channels(part)
+        is_mask = len(part.channels) == 1 if colours is None else not colours.is_xyz
+        if not is_mask:
             raise TextureError(
                 f"no mask among the channels {', '.join(part.channels)}", hint=HINT
             )
-        rgb = (0, 0, 0) if found is None else found.rgb
+        rgb = (0, 0, 0) if colours is None else colours.rgb
         to_weights = _interpret(image, part, rgb, cubes)
         yield lambda first, count: to_weights(image.rows(part, first, count)[..., rgb])
 
@@ -90,38 +89,37 @@ def _interpret(
     has_black = False
     for _, band in image.bands(part):
         colours = band[..., rgb]
-        low, high = (
-            min(low, np.min(colours)),
-            max(high, np.max(colours)),
-        )  # NaN remains NaN
+        low = min(low, np.min(colours))  # NaN remains NaN
+        high = max(high, np.max(colours))
         is_grey &= bool((colours == colours[..., :1]).all())
         has_black |= bool((colours == 0).all(axis=-1).any())
     is_integer = part.max_code > 0
     white = part.max_code or 1
     is_weight = low >= 0 and high <= white
-    if is_integer and is_grey and high < cubes:
-        return lambda numbers: np.asarray(
-            numbers[..., :1] == np.arange(cubes), dtype=np.float32
-        )
-    if (
-        is_weight
-        and is_grey
-        and cubes == 2
-        and (not is_integer or high >= MIN_WHITE * white)
-    ):
-        return lambda numbers: _pair(
-            np.asarray(numbers[..., 0] / np.float32(white), dtype=np.float32)
-        )
-    if is_weight and not is_grey and cubes == 3 and not has_black:
+    if is_grey:
+        if is_integer and high < cubes:
+            return lambda numbers: np.asarray(
+                numbers[..., :1] == np.arange(cubes), dtype=np.float32
+            )
+        has_white = not is_integer or high >= MIN_WHITE * white
+        if is_weight and cubes == 2 and has_white:
+            return lambda numbers: _pair(
+                np.asarray(numbers[..., 0] / np.float32(white), dtype=np.float32)
+            )
+    elif is_weight and cubes == 3 and not has_black:
         return _normalised
+    kind = "grey" if is_grey else "coloured"
+    raise _no_mask(cubes, f"{kind} values from {low:g} to {high:g}")
+
+
+def _no_mask(cubes: int, values: str) -> TextureError:
     meanings = {
         2: "0 and 1, or weights up to white",
         3: "0 to 2, or weights in R, G and B that are not all 0",
     }
-    raise TextureError(
-        f"a mask of {pluralise(cubes, 'cube')} must hold "
-        f"{meanings.get(cubes, f'0 to {cubes - 1}')}, "
-        f"got {'grey' if is_grey else 'coloured'} values from {low:g} to {high:g}",
+    meaning = meanings.get(cubes, f"0 to {cubes - 1}")
+    return TextureError(
+        f"a mask of {pluralise(cubes, 'cube')} must hold {meaning}, got {values}",
         hint=HINT,
     )
 
@@ -172,12 +170,10 @@ class MaskedUplifter(Converter):
 
     @property
     def boxes(self) -> OutsideBoxes:
-        every = [each.boxes for each in self.uplifters]
+        boxes = [uplifter.boxes for uplifter in self.uplifters]
         return OutsideBoxes(
-            *(
-                np.concatenate([getattr(one, name) for one in every])
-                for name in ("rgb", "half_width")
-            )
+            np.concatenate([outside.rgb for outside in boxes]),
+            np.concatenate([outside.half_width for outside in boxes]),
         )
 
     def mix(self, rgb: Floats, weights: Floats) -> Converted:

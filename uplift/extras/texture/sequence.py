@@ -345,11 +345,9 @@ def pending(jobs: Iterable[Job]) -> list[Job]:
         written otherwise (``texture-differs``).
     """
     jobs = list(jobs)
-    inputs = [
-        path
-        for job in jobs
-        for path in (job.source, *job.settings.cubes, job.settings.mask)
-    ]
+    inputs = []
+    for job in jobs:
+        inputs += [job.source, *job.settings.cubes, job.settings.mask]
     _check_targets([job.target for job in jobs], inputs, force=True)
     remaining = [job for job in jobs if not (job.resume and is_complete(job))]
     _check_targets(

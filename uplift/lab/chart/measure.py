@@ -67,11 +67,11 @@ def select_methods(patterns: Sequence[str] = ()) -> list[Method]:
                 "matches any characters"
             )
             raise OptionError(f"no method matches '{pattern}'", hint=hint)
-    return [
-        method
-        for method in METHODS
-        if any(fnmatchcase(method.method, pattern) for pattern in patterns or "*")
-    ]
+
+    def is_selected(method: Method) -> bool:
+        return any(fnmatchcase(method.method, pattern) for pattern in patterns or "*")
+
+    return list(filter(is_selected, METHODS))
 
 
 def perturb_method(

@@ -126,15 +126,10 @@ def make_task(
     if colours < MIN_COLOURS:
         raise OptionError(f"colours must be at least {MIN_COLOURS}, got {colours}")
     sensor = observer.sensor()
-    kept, others = (
-        merge(
-            Atlas(atlas.entries[start::2], (), atlas.sources)
-            for atlas in atlases.values()
-        )
-        for start in (0, 1)
-    )
-    measured = [resample(part, sensor.wavelengths).values for part in (kept, others)]
-    own, unseen = (spectra[in_unit_cube(sensor.rgb(spectra))] for spectra in measured)
+    kept = _every_second(atlases, 0)
+    others = _every_second(atlases, 1)
+    own = _within_srgb(kept, sensor)
+    unseen = _within_srgb(others, sensor)
     if min(len(own), len(unseen)) < MIN_SPECTRA:
         problem = (
             f"at least {MIN_SPECTRA} entries within sRGB must build and test cubes each"
@@ -157,8 +152,28 @@ def make_task(
         f"second) build the cubes with an atlas; of the others, {len(unseen)} within "
         "sRGB test all methods",
     }
-    rgb, own, unseen = (rng.permutation(each) for each in (rgb, own, unseen))
-    return Task(sensor, rgb, kept, own, unseen, effort or Effort(), facts)
+    return Task(
+        sensor,
+        rng.permutation(rgb),
+        kept,
+        rng.permutation(own),
+        rng.permutation(unseen),
+        effort or Effort(),
+        facts,
+    )
+
+
+def _every_second(atlases: Mapping[str, Atlas], start: int) -> Atlas:
+    """Return every second entry of each atlas from ``start``."""
+    return merge(
+        Atlas(atlas.entries[start::2], (), atlas.sources) for atlas in atlases.values()
+    )
+
+
+def _within_srgb(atlas: Atlas, sensor: Sensor) -> Array:
+    """Return the spectra (n, N) of an atlas whose RGB are in [0, 1]."""
+    spectra = resample(atlas, sensor.wavelengths).values
+    return np.asarray(spectra[in_unit_cube(sensor.rgb(spectra))])
 
 
 def edges() -> Array:

@@ -78,6 +78,9 @@ ERRORS = {
 }
 """Columns of the table: headings by names of errors."""
 
+DrawnPoint = tuple[str, tuple[float, float], str]
+"""Name of a method, its time and error, and what the name is followed by."""
+
 
 def drawn_results(criterion: Criterion, chart: Chart) -> list[MethodResult]:
     """Cubes of this package that none of the same kind and mode beats, then all other
@@ -91,11 +94,10 @@ def drawn_results(criterion: Criterion, chart: Chart) -> list[MethodResult]:
             groups.setdefault((result.family, result.mode), {})[result] = point
         elif point is not None:
             others.append(result)
-    ours = [
-        list(group)[row]
-        for group in groups.values()
-        for row in pareto_front(list(group.values()))
-    ]
+    ours = []
+    for group in groups.values():
+        results = list(group)
+        ours += [results[row] for row in pareto_front(list(group.values()))]
     return [*ours, *others]
 
 
@@ -129,18 +131,9 @@ def draw_picture(chart: Chart) -> Any:
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    unseen, own = (criteria(reference_batch(chart))[panel] for panel in (1, 4))
-    results = [result for result in chart.measured if result.method in NAMES] or list(
-        chart.measured
-    )
-    drawn = [
-        (NAMES.get(each.method, each.title), point, "")
-        for each in results
-        if (point := unseen.point(each))
-    ]
-    for result in chart.measured:
-        if result.method == ATLAS and (point := own.point(result)):
-            drawn.append((OURS, point, " with the atlas, its own materials"))
+    compared = criteria(reference_batch(chart))
+    unseen = compared[1]
+    drawn = _drawn_points(chart, unseen, compared[4])
     figure = new_figure(9, 5.2)
     figure.set_dpi(130)
     axes = figure.subplots()
@@ -177,16 +170,8 @@ def draw_picture(chart: Chart) -> Any:
         text = f" {name}{what}  {place[1]:.2f} "  # blanks, as markers are large
         labels.append(Label(text, place, colour, name == OURS, ""))
     axes.margins(x=0.09)
-    best = sorted(
-        (error, name, format_time(time))
-        for name, (time, error), what in drawn
-        if not what
-    )[:2]
-    title = "\nthe next: ".join(
-        f"{name}, {error:.2f} in {time}" for error, name, time in best
-    )
     axes.set_title(
-        f"Smallest error on unseen materials: {title}",
+        f"Smallest error on unseen materials: {_two_best(drawn)}",
         loc="left",
         fontsize=13,
         fontweight="bold",
@@ -205,6 +190,33 @@ def draw_picture(chart: Chart) -> Any:
     return figure
 
 
+def _drawn_points(
+    chart: Chart, unseen: Criterion, of_atlas: Criterion
+) -> list[DrawnPoint]:
+    """Return the methods that the figure shows, that of the atlas at its own materials
+    too.
+    """
+    named = [result for result in chart.measured if result.method in NAMES]
+    drawn: list[DrawnPoint] = []
+    for result in named or chart.measured:
+        if point := unseen.point(result):
+            drawn.append((NAMES.get(result.method, result.title), point, ""))
+    for result in chart.measured:
+        if result.method == ATLAS and (point := of_atlas.point(result)):
+            drawn.append((OURS, point, " with the atlas, its own materials"))
+    return drawn
+
+
+def _two_best(drawn: list[DrawnPoint]) -> str:
+    """Return the two smallest errors of unseen materials, with their times."""
+    errors = []
+    for name, (time, error), what in drawn:
+        if not what:
+            errors.append((error, name, format_time(time)))
+    texts = [f"{name}, {error:.2f} in {time}" for error, name, time in sorted(errors)]
+    return "\nthe next: ".join(texts[:2])
+
+
 def reference_batch(chart: Chart) -> int:
     """Return the number of colours per call that the figure shows, and the page at
     first.
@@ -214,7 +226,10 @@ def reference_batch(chart: Chart) -> int:
 
 def render_chart(chart: Chart) -> str:
     """Render the page of a chart."""
-    compared = [criterion for batch in chart.batches for criterion in criteria(batch)]
+    compared: list[Criterion] = []
+    for batch in chart.batches:
+        compared += criteria(batch)
+    sources = (f"{result.family}: {result.source}" for result in chart.results)
     pictures = [
         (criterion, page_panel(panel(criterion, chart), number))
         for number, criterion in enumerate(compared)
@@ -226,11 +241,7 @@ def render_chart(chart: Chart) -> str:
         pictures=pictures,
         families=family_colours((result.family for result in chart.measured), COLOURS),
         tooltips=[_tooltip(chart, result) for result in chart.results],
-        sources=list(
-            dict.fromkeys(
-                f"{result.family}: {result.source}" for result in chart.results
-            )
-        ),
+        sources=list(dict.fromkeys(sources)),
         chosen=reference_batch(chart),
         errors=ERRORS,
         not_measured=[
@@ -243,15 +254,10 @@ def _tooltip(chart: Chart, result: MethodResult) -> Tooltip:
     numbers = result.numbers
     lines = []
     if result.state == State.MEASURED:
-        times = {
-            size: numbers[f"ns_{size}"]
-            for size in chart.batches
-            if f"ns_{size}" in numbers
-        }
-        lines = [
-            (f"{size:,} per call", f"{format_time(time)} each")
-            for size, time in times.items()
-        ]
+        for size in chart.batches:
+            if (name := f"ns_{size}") in numbers:
+                time = format_time(numbers[name])
+                lines.append((f"{size:,} per call", f"{time} each"))
         lines += [
             ("set-up", format_build_time(numbers["setup_s"])),
             ("memory", format_size(numbers["bytes"])),

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from enum import StrEnum
 from importlib.resources import files
+from itertools import product
 
 from uplift.colorimetry.lights import CHART_LIGHTS, DEFAULT_ILLUMINANT
 from uplift.common.arrays import StrPath
@@ -24,10 +25,10 @@ MAX_BYTES = 16 << 20
 """Largest file that is read."""
 MAX_NUMBER = 1e30
 ERRORS = ("round_trip", "coarse_round_trip", *CHART_LIGHTS, "lights", "rms")
+OWN_ERRORS = tuple(f"own_{name}" for name in ERRORS[2:])
 REQUIRED = {"bytes", "time_ns", "setup_s", "round_trip_colours", "unseen_spectra"} | {
     f"{name}_{kind}"
-    for name in (*ERRORS, *(f"own_{name}" for name in ERRORS[2:]))
-    for kind in ("mean", "p99", "max")
+    for name, kind in product((*ERRORS, *OWN_ERRORS), ("mean", "p99", "max"))
 }
 """Numbers of every method that was measured."""
 BATCH = re.compile(r"ns_([1-9]\d{0,8})")
@@ -89,17 +90,16 @@ class Chart:
     @property
     def batches(self) -> tuple[int, ...]:
         """Return the numbers of colours per call that were timed, ascending."""
-        names = {name for result in self.measured for name in result.numbers}
-        return tuple(
-            sorted(int(match[1]) for name in names if (match := BATCH.fullmatch(name)))
-        )
+        names = set[str]().union(*(result.numbers for result in self.measured))
+        matches = filter(None, map(BATCH.fullmatch, names))
+        return tuple(sorted(int(match[1]) for match in matches))
 
 
 def chart_csv(chart: Chart) -> str:
     """Convert a chart to CSV."""
-    names = list(
-        dict.fromkeys(name for result in chart.results for name in result.numbers)
-    )
+    names: dict[str, None] = {}
+    for result in chart.results:
+        names |= dict.fromkeys(result.numbers)
     facts = [chart.facts.get(name, "") for name in FACTS]
     rows = []
     for result in chart.results:
@@ -149,9 +149,9 @@ def _result(line: dict[str, str]) -> MethodResult:
         if name not in (*TEXTS, *FACTS) and line[name].strip()
     }
     state = State(line["state"])
-    required = REQUIRED | {
-        f"{name}_{part}" for name in filter(BATCH.fullmatch, numbers) for part in SPREAD
-    }
+    required = set(REQUIRED)
+    for name in filter(BATCH.fullmatch, numbers):
+        required |= {f"{name}_{suffix}" for suffix in SPREAD}
     if state == State.MEASURED and (missing := required - numbers.keys()):
         raise ValueError(f"{format_value(line['method'])} has no {min(missing)}")
     return MethodResult(**texts, state=state, numbers=numbers)
@@ -319,12 +319,7 @@ def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
     name = requirement.error
     longest = requirement.time_ns
     largest = requirement.delta_e
-    cubes = [
-        result for result in chart.measured if result.build and name in result.numbers
-    ]
-    cubes = [
-        cube for cube in cubes if not (requirement.plain and "--atlas" in cube.build)
-    ]
+    cubes = _eligible_cubes(chart, requirement)
     if not cubes:
         raise _unmet(f"the chart has no cube with {name}", "measure a chart with cubes")
     times = {
@@ -352,6 +347,17 @@ def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
         sufficient,
         key=lambda cube: (cube.numbers["bytes"] * requirement.smallest, times[cube]),
     )
+
+
+def _eligible_cubes(chart: Chart, requirement: Requirement) -> list[MethodResult]:
+    """Return the cubes with the error of a requirement, without atlases if it is plain."""
+    cubes = []
+    for result in chart.measured:
+        has_error = bool(result.build) and requirement.error in result.numbers
+        is_excluded = requirement.plain and "--atlas" in result.build
+        if has_error and not is_excluded:
+            cubes.append(result)
+    return cubes
 
 
 def _unmet(problem: str, hint: str) -> OptionError:

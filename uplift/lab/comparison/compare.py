@@ -383,11 +383,8 @@ def candidates(kind: str, stride: int = FINE_STRIDE) -> list[Filter]:
     parameter.
     """
     choices = [values[::stride] for values in filters.KINDS[kind].choices.values()]
-    return [
-        Filter(kind, extent, values)
-        for extent in filters.EXTENTS[::stride]
-        for values in product(*choices)
-    ]
+    combinations = product(filters.EXTENTS[::stride], product(*choices))
+    return [Filter(kind, extent, values) for extent, values in combinations]
 
 
 def tune_filters(

@@ -97,9 +97,7 @@ class Technique:
 
 
 TECHNIQUES = tuple(
-    Technique(mirrored, warped)
-    for mirrored in (True, False)
-    for warped in (True, False)
+    Technique(mirrored, warped) for mirrored, warped in product((True, False), repeat=2)
 )
 """All techniques, in the order of the tables of the thesis."""
 
@@ -175,10 +173,8 @@ class MomentsStudy:
         """Numbers stored, mean and largest ΔE76 (max_moments + 1, 3) of all entries
         together, by technique.
         """
-        floats = [
-            [technique.floats(n) for n in range(self.max_moments + 1)]
-            for technique in TECHNIQUES
-        ]
+        counts = range(self.max_moments + 1)
+        floats = [list(map(technique.floats, counts)) for technique in TECHNIQUES]
         errors = self.errors[..., 0]
         curves = np.stack([floats, errors.mean(axis=2), errors.max(axis=2)], axis=-1)
         return dict(zip(TECHNIQUES, curves, strict=True))
@@ -196,14 +192,10 @@ class MomentsStudy:
         result = self.result(technique, moments, group)
         mapping = {"mirrored": technique.mirrored, "warped": technique.warped}
         size = {"moments": moments, "floats": technique.floats(moments)}
-        names = [f"{name}_{kind}" for name in MEASURES for kind in ("mean", "max")]
-        errors = dict(
-            zip(
-                names,
-                np.stack([result.mean, result.max], axis=1).ravel().tolist(),
-                strict=True,
-            )
-        )
+        errors = {}
+        for row, name in enumerate(MEASURES):
+            errors[f"{name}_mean"] = float(result.mean[row])
+            errors[f"{name}_max"] = float(result.max[row])
         worst = self.names[result.worst]
         return {
             "atlas": group,

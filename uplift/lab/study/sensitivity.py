@@ -32,10 +32,10 @@ CODE_STEPS = {"1/255": 1.0, "1/1023": 255 / 1023}
 """Steps of one code of 8 and of 10 bits, in 8-bit codes."""
 ROUNDING, ROUNDING_STEP = "1e-7", 1e-7
 """Rounding of a float32, in linear RGB."""
-NOISE, NOISE_DRAWS = 0.002, 3
-"""Repeatability of a spectrophotometer: standard deviation of a reflectance; and the
-number of atlases with noise.
-"""
+NOISE = 0.002
+"""Repeatability of a spectrophotometer: standard deviation of a reflectance."""
+NOISE_DRAWS = 3
+"""Number of atlases with noise."""
 HALVINGS, HALVED = 16, 16
 """Halvings of a step, after which that of an 8-bit code is rounding, and number of
 colours whose steps are halved.

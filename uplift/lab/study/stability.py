@@ -27,8 +27,10 @@ from uplift.models import Sigmoid
 from uplift.pipeline.build import build
 from uplift.pipeline.options import ModelName
 
-CROWDED_ENTRIES, ENTRIES = 120, 24
-"""Numbers of entries of the crowded atlas and of the others."""
+CROWDED_ENTRIES = 120
+"""Number of entries of the crowded atlas."""
+ENTRIES = 24
+"""Number of entries of the other atlases."""
 ATLAS_NOISE = 0.05
 """Standard deviation of the reflectances of the noisy atlas, as of a poor instrument in
 a dark room.

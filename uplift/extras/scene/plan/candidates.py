@@ -313,10 +313,11 @@ def sufficient(
     limits: Mapping[CostName, float],
 ) -> list[Candidate]:
     """Candidates within the tolerance and the limits of costs, cheapest first."""
-    found = (each for each in measured if each.error.quantile <= tolerance)
-    allowed = (
-        each
-        for each in found
-        if all(getattr(each.cost, key) <= limits[key] for key in limits)
-    )
-    return cheapest_first(allowed, minimise)
+
+    def is_sufficient(candidate: Candidate) -> bool:
+        if not candidate.error.quantile <= tolerance:
+            return False
+        cost = candidate.cost
+        return all(getattr(cost, key) <= limit for key, limit in limits.items())
+
+    return cheapest_first(filter(is_sufficient, measured), minimise)

@@ -201,14 +201,12 @@ def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileErr
     enough = sufficient(measured, scene.tolerance, scene.minimise, {})
     if enough:
         cost = enough[0].cost
-        allowance = enough[0].cost._replace(**scene.limits)
+        allowance = cost._replace(**scene.limits)
         over = [
             key for key, limit in scene.limits.items() if getattr(cost, key) > limit
         ]
-        needs, allowed = (
-            " and ".join(cost_text(each, key) for key in over)
-            for each in (cost, allowance)
-        )
+        needs = " and ".join(cost_text(cost, key) for key in over)
+        allowed = " and ".join(cost_text(allowance, key) for key in over)
         problem = (
             f"the cheapest within {scene.tolerance:g} needs {needs}; limits allow "
             f"{allowed}"
@@ -216,11 +214,10 @@ def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileErr
         hint = f"raise limits.{over[0]} or the tolerance"
     else:
         best = min(measured, key=lambda each: each.error.quantile).error.worst
-        found = (
+        problem = (
             f"the smallest error is ΔE00 {format_error(best.quantile)}, of "
-            f"{best.group} under {best.light}"
+            f"{best.group} under {best.light}; tolerance allows {scene.tolerance:g}"
         )
-        problem = f"{found}; tolerance allows {scene.tolerance:g}"
         hint = f"set tolerance = {np.ceil(best.quantile * 110) / 100:g} or more"
     return PlanFileError(
         f"no candidate: {problem}", code="no-candidate", path=scene.path, hint=hint

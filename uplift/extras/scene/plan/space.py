@@ -55,20 +55,20 @@ from uplift.pipeline.build import Learnt, build_stages, learn, problem_of
 from uplift.pipeline.entries import split_by_gamut
 from uplift.pipeline.options import Options
 
-FLOOR, CEILING = 0.5, 2.0
-"""Shares of the tolerance below which errors count as equal, and above which candidates
-are not measured.
-"""
+FLOOR = 0.5
+"""Share of the tolerance below which errors count as equal."""
+CEILING = 2.0
+"""Share of the tolerance above which candidates are not measured."""
 MARGIN = 0.85
 """Share of a predicted error that is its lower bound."""
 FINE = 64
 """Nodes along each axis of the cubes that measure models."""
 PROBE = 9
 """Coefficients of the cubes that measure lattices."""
-LEAST_BYTES, POINT_NUMBER = 4, 4
-"""Bytes of a coefficient, unless colours need 8, and of the number of a node in a
-sparse file.
-"""
+LEAST_BYTES = 4
+"""Bytes of a coefficient, unless colours need 8."""
+POINT_NUMBER = 4
+"""Bytes of the number of a node in a sparse file."""
 
 
 class CandidateSpace:
@@ -82,12 +82,10 @@ class CandidateSpace:
     def __init__(
         self, scene: SceneFile, grid: SearchGrid, progress: ProgressCallback
     ) -> None:
-        self.scene, self.grid, self.progress, self.sensor = (
-            scene,
-            grid,
-            progress,
-            scene.sensor(),
-        )
+        self.scene = scene
+        self.grid = grid
+        self.progress = progress
+        self.sensor = scene.sensor()
         self.atlas = read_atlas(*scene.atlases) if scene.atlases else None
         # `uplift build --plan` repeats the warnings, also those of trial builds.
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
@@ -96,24 +94,36 @@ class CandidateSpace:
         sizes = (grid.predicting, grid.confirming)
         self.colours = sample_colours(images, self.sensor, sizes, progress)
         self.learnt: dict[tuple[Model, Model], Learnt] = {}
-        self.floor, self.ceiling = (
-            share * scene.tolerance for share in (FLOOR, CEILING)
-        )
+        self.floor = FLOOR * scene.tolerance
+        self.ceiling = CEILING * scene.tolerance
+        self.reference = self._reference_options()
+        self._measure_reference()
+
+    def _reference_options(self) -> Options:
+        """Options of the cube with which others are compared."""
+        scene = self.scene
         # Entries hold under the scene's lights and the illuminant of the RGB space.
-        self.reference = Options(
-            dim=grid.reference,
-            coefficients=grid.models[Options.warp][-1],
+        lights = dict.fromkeys((self.sensor.illuminant, *scene.lights))
+        return Options(
+            dim=self.grid.reference,
+            coefficients=self.grid.models[Options.warp][-1],
             space=scene.space,
             illuminant=scene.illuminant,
             observer=scene.observer,
-            lights=tuple(dict.fromkeys((self.sensor.illuminant, *scene.lights))),
+            lights=tuple(lights),
         )
-        progress(Progress("reference cube", 0, 1))
+
+    def _measure_reference(self) -> None:
+        """Build the reference cube, and measure its renderings, colours and sizes."""
+        self.progress(Progress("reference cube", 0, 1))
         tests = self.evaluation_set(self.colours.predicting)
-        others = self.sensor.observer if grid.others else None
-        self.renderings = renderings(grid.samples, tests, self.floor, progress, others)
+        others = self.sensor.observer if self.grid.others else None
+        self.renderings = renderings(
+            self.grid.samples, tests, self.floor, self.progress, others
+        )
         self.cubes = {self.reference: tests.reference}
-        self.tests, self.matrices = tests, tests.matrices()
+        self.tests = tests
+        self.matrices = tests.matrices()
         self.base = self._xyz(self.reference)
         arrays = contents(tests.reference.data)[0]
         self.row_bytes = sum(
@@ -285,10 +295,11 @@ class CandidateSpace:
         sigmoid, and moments of each warp.
         """
         fine = replace(self.reference, dim=min(FINE, self.grid.reference))
-        series = {
-            warp: [replace(fine, coefficients=count, warp=warp) for count in counts]
-            for warp, counts in self.grid.models.items()
-        }
+        series = {}
+        for warp, counts in self.grid.models.items():
+            series[warp] = [
+                replace(fine, coefficients=count, warp=warp) for count in counts
+            ]
         series[fine.warp].insert(0, replace(fine, model=Sigmoid.name, coefficients=3))
         return self._changes("models of spectra", list(series.values()), fine)
 
@@ -297,10 +308,11 @@ class CandidateSpace:
         more nodes along each axis.
         """
         probe = replace(self.reference, coefficients=PROBE)
-        series = [
-            [replace(probe, dim=dim, axis=axis) for dim in self.grid.dims]
-            for axis in self.grid.axes
-        ]
+        series = []
+        for axis in self.grid.axes:
+            series.append(
+                [replace(probe, dim=dim, axis=axis) for dim in self.grid.dims]
+            )
         return self._changes("lattices", series, probe)
 
     def _changes(
@@ -309,15 +321,15 @@ class CandidateSpace:
         """Changes of XYZ from the ``finest``, of each series up to the first below the
         floor.
         """
-        found = dict[Options, Array]()
+        changes = dict[Options, Array]()
         reference = self._xyz(finest)
         for done, choices in enumerate(series):
             self.progress(Progress(stage, done, len(series)))
             for choice in choices:
-                found[choice] = self._xyz(choice) - reference
-                if self.tests.error(self.base + found[choice]).quantile <= self.floor:
+                changes[choice] = self._xyz(choice) - reference
+                if self.tests.error(self.base + changes[choice]).quantile <= self.floor:
                     break
-        return found
+        return changes
 
     def _xyz(self, choice: Options) -> Array:
         return self.tests.xyz(self._cube(choice).reflectance(self.tests.rgb))

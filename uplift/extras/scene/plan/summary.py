@@ -35,12 +35,14 @@ def front_rows(plan: Plan) -> list[Candidate]:
     """The choice, and candidates whose error is clearly below that of all cheaper ones,
     by what the scene minimises.
     """
-    found: list[Candidate] = []
-    for each in cheapest_first(plan.measured, plan.scene.minimise):
-        smallest = min((other.error.quantile for other in found), default=float("inf"))
-        if each is plan.chosen or each.error.quantile < CLEARLY_SMALLER * smallest:
-            found.append(each)
-    return found
+    front: list[Candidate] = []
+    smallest = float("inf")
+    for candidate in cheapest_first(plan.measured, plan.scene.minimise):
+        error = candidate.error.quantile
+        if candidate is plan.chosen or error < CLEARLY_SMALLER * smallest:
+            front.append(candidate)
+            smallest = min(smallest, error)
+    return front
 
 
 def front_row(measured: Candidate) -> tuple[str, ...]:
@@ -140,49 +142,67 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
     Paths of textures and atlases are relative to the folder of ``path``, the file.
     Raises `OutputError` for others.
     """
-    scene = plan.scene
     chosen = plan.chosen
-    check_path(scene, path)
+    check_path(plan.scene, path)
     return {
         "format": FORMAT,
         "uplift": version(),
-        "scene": {
-            "file": scene.path.name,
-            "lights": list(map(str, scene.lights)),
-            **{key: getattr(scene, key) for key in SCENE_KEYS},
-            "textures": _sources(scene.textures, path),
-            "atlases": _sources(scene.atlases, path),
-        },
+        "scene": _scene_json(plan.scene, path),
         "name": chosen.name,
         "build": chosen.cube and chosen.cube.record(),
         "cells": "sparse" if chosen.sparse else "whole",
         "texture": asdict(chosen.pixel),
         "rendering": _rendering_json(plan),
-        "spectra": plan.spectra
-        and [
-            {"rgb": rgb.tolist(), "reflectance": row.tolist()}
-            for rgb, row in zip(*plan.spectra, strict=True)
-        ],
-        "error": {
-            "predicted": asdict(chosen.error.worst) | asdict(chosen.error),
-            "confirmed": asdict(plan.confirmed.worst) | asdict(plan.confirmed),
-            "within": plan.within_tolerance,
-            "without_spectra": plan.without_spectra.quantile,
-            "expected_of_measurements": plan.expected_error,
-        },
+        "spectra": _spectra_json(plan),
+        "error": _error_json(plan),
         "cost": chosen.cost._asdict(),
         "search": {"considered": plan.considered, "measured": len(plan.measured)},
-        "front": [
-            {"name": each.name, "rendering": each.traced, "pixel": asdict(each.pixel)}
-            | {
-                "cube": each.cube
-                and {key: getattr(each.cube, key) for key in CUBE_KEYS},
-                "sparse": each.sparse,
-            }
-            | {**each.cost._asdict(), "error": asdict(each.error.worst)}
-            for each in plan.front
-        ],
+        "front": list(map(_candidate_json, plan.front)),
         "lines": list(commands(plan, path)),
+    }
+
+
+def _scene_json(scene: SceneFile, path: Path) -> dict[str, Any]:
+    return {
+        "file": scene.path.name,
+        "lights": list(map(str, scene.lights)),
+        **{key: getattr(scene, key) for key in SCENE_KEYS},
+        "textures": _sources(scene.textures, path),
+        "atlases": _sources(scene.atlases, path),
+    }
+
+
+def _spectra_json(plan: Plan) -> list[dict[str, Any]] | None:
+    if plan.spectra is None:
+        return None
+    return [
+        {"rgb": rgb.tolist(), "reflectance": reflectance.tolist()}
+        for rgb, reflectance in zip(*plan.spectra, strict=True)
+    ]
+
+
+def _error_json(plan: Plan) -> dict[str, Any]:
+    predicted = plan.chosen.error
+    confirmed = plan.confirmed
+    return {
+        "predicted": asdict(predicted.worst) | asdict(predicted),
+        "confirmed": asdict(confirmed.worst) | asdict(confirmed),
+        "within": plan.within_tolerance,
+        "without_spectra": plan.without_spectra.quantile,
+        "expected_of_measurements": plan.expected_error,
+    }
+
+
+def _candidate_json(candidate: Candidate) -> dict[str, Any]:
+    cube = candidate.cube
+    return {
+        "name": candidate.name,
+        "rendering": candidate.traced,
+        "pixel": asdict(candidate.pixel),
+        "cube": cube and {key: getattr(cube, key) for key in CUBE_KEYS},
+        "sparse": candidate.sparse,
+        **candidate.cost._asdict(),
+        "error": asdict(candidate.error.worst),
     }
 
 

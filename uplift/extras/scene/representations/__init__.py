@@ -56,11 +56,11 @@ def all_representations(lights: Array, surfaces: Array) -> tuple[Representation,
     """Every registered representation, and the linear models of a scene of lights (L,
     401) and surfaces (E, 401).
     """
-    registered = (make(size) for make, sizes in FACTORIES.values() for size in sizes)
-    return (
-        *registered,
-        *(models.linear_model(count, lights, surfaces) for count in COMPONENTS),
-    )
+    registered: list[Representation] = []
+    for make, sizes in FACTORIES.values():
+        registered += map(make, sizes)
+    linear = [models.linear_model(count, lights, surfaces) for count in COMPONENTS]
+    return (*registered, *linear)
 
 
 def find_representation(text: str) -> Representation:

@@ -114,24 +114,7 @@ def choose(
     UnknownNameError
         The method or the measure does not exist.
     """
-    if method not in METHODS:
-        raise unknown_name(method, METHODS, "method")
-    if measure not in setups.MEASURES:
-        raise unknown_name(measure, setups.MEASURES, "measure")
-    if (count is None) == (target is None):
-        raise OptionError(
-            "exactly one of count and target is required", hint="give one of them"
-        )
-    if count is not None and not 1 <= count <= MAX_COUNT:
-        raise OptionError(
-            f"count must be in [1, {MAX_COUNT}], got {count}",
-            hint="tables at 10 nm have 40",
-        )
-    if target is not None and not target > 0:
-        raise OptionError(
-            f"target must be positive, got {target:g}",
-            hint="give a tolerated ΔE00, such as 1",
-        )
+    _check_choice(count, target, measure, method)
     for number in range(1, MAX_COUNT + 1) if count is None else (count,):
         try:
             choice = _judged(method, setup, METHODS[method](setup, number))
@@ -150,6 +133,30 @@ def choose(
     raise OptionError(
         f"{missed}; {reached}", hint="raise the target or choose another method"
     )
+
+
+def _check_choice(
+    count: int | None, target: float | None, measure: str, method: str
+) -> None:
+    """Check the arguments of `choose`."""
+    if method not in METHODS:
+        raise unknown_name(method, METHODS, "method")
+    if measure not in setups.MEASURES:
+        raise unknown_name(measure, setups.MEASURES, "measure")
+    if (count is None) == (target is None):
+        raise OptionError(
+            "exactly one of count and target is required", hint="give one of them"
+        )
+    if count is not None and not 1 <= count <= MAX_COUNT:
+        raise OptionError(
+            f"count must be in [1, {MAX_COUNT}], got {count}",
+            hint="tables at 10 nm have 40",
+        )
+    if target is not None and not target > 0:
+        raise OptionError(
+            f"target must be positive, got {target:g}",
+            hint="give a tolerated ΔE00, such as 1",
+        )
 
 
 def fit_weights(setup: RenderSetup, wavelengths: ArrayLike) -> Choice:

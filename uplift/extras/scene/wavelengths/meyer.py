@@ -122,10 +122,11 @@ def quadrature_rules(
             return error.problem
 
     functions = channel_functions(space, wavelengths, cmfs)
-    return [
-        {order: rule(masses, order) for order in range(1, MAX_ORDER + 1)}
-        for masses in functions
-    ]
+    orders = range(1, MAX_ORDER + 1)
+    rules = []
+    for masses in functions:
+        rules.append({order: rule(masses, order) for order in orders})
+    return rules
 
 
 def allocations(
@@ -135,15 +136,13 @@ def allocations(
     in total.
     """
     rules = quadrature_rules(space, setup.wavelengths, setup.cmfs)
-    defined = [
-        [rule for rule in channel.values() if isinstance(rule, QuadratureRule)]
-        for channel in rules
-    ]
-    return (
-        each
-        for each in itertools.product(*defined)
-        if count is None or sum(map(len, each)) == count
-    )
+    defined = []
+    for channel in rules:
+        usable = [rule for rule in channel.values() if isinstance(rule, QuadratureRule)]
+        defined.append(usable)
+    for combination in itertools.product(*defined):
+        if count is None or sum(map(len, combination)) == count:
+            yield combination
 
 
 def four_wavelength_rule(functions: Array) -> Rules:

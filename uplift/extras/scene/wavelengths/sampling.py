@@ -129,6 +129,34 @@ def make_setup(
     """
     nm = grid() if wavelengths is None else np.asarray(wavelengths, dtype=float)
     materials = np.asarray(reflectances, dtype=float)
+    _check_grid(nm)
+    _check_materials(materials, len(nm))
+    lights = tuple(dict.fromkeys(lights))
+    if not lights:
+        raise OptionError(
+            "lights must not be empty", hint="name at least one, such as D65"
+        )
+    observer.check_distinct(lights)
+    # The tables have steps of whole nanometres; the grid may have any step.
+    step = nm[1] - nm[0] if (nm % 1 == 0).all() else 1.0
+    shape = np.floor(nm[0]), np.ceil(nm[-1]), step
+    table = np.arange(shape[0], shape[1] + step / 2, step)
+    cmfs = interp_curves(
+        nm, table, observer.matching_functions(observer_name, *shape).T
+    ).T
+    spectra = [observer.illuminant_spd(light, *shape) for light in lights]
+    powers = interp_curves(nm, table, np.stack(spectra))
+    return RenderSetup(
+        nm,
+        materials,
+        tuple(map(str, lights)),
+        powers / (powers @ cmfs[:, 1])[:, None],
+        cmfs,
+        lights,
+    )
+
+
+def _check_grid(nm: Array) -> None:
     steps = np.diff(nm)
     if (
         nm.ndim != 1
@@ -140,9 +168,12 @@ def make_setup(
             f"wavelengths must be at least {MIN_SAMPLES}, ascending and evenly spaced"
         )
         raise OptionError(problem, hint="give a grid such as 380, 381, …, 770 nm")
-    if materials.ndim != 2 or not len(materials) or materials.shape[1] != len(nm):
+
+
+def _check_materials(materials: Array, samples: int) -> None:
+    if materials.ndim != 2 or not len(materials) or materials.shape[1] != samples:
         problem = (
-            f"reflectances must have shape (M, {len(nm)}) with M > 0, got "
+            f"reflectances must have shape (M, {samples}) with M > 0, got "
             f"{materials.shape}"
         )
         raise OptionError(problem, hint="give one row per material")
@@ -150,30 +181,6 @@ def make_setup(
         raise OptionError(
             "reflectances must be finite and at least 0", hint="give values from 0 to 1"
         )
-    lights = tuple(dict.fromkeys(lights))
-    if not lights:
-        raise OptionError(
-            "lights must not be empty", hint="name at least one, such as D65"
-        )
-    observer.check_distinct(lights)
-    # The tables have steps of whole nanometres; the grid may have any step.
-    step = steps[0] if (nm % 1 == 0).all() else 1.0
-    shape = np.floor(nm[0]), np.ceil(nm[-1]), step
-    table = np.arange(shape[0], shape[1] + step / 2, step)
-    cmfs = interp_curves(
-        nm, table, observer.matching_functions(observer_name, *shape).T
-    ).T
-    powers = interp_curves(
-        nm, table, np.stack([observer.illuminant_spd(each, *shape) for each in lights])
-    )
-    return RenderSetup(
-        nm,
-        materials,
-        tuple(map(str, lights)),
-        powers / (powers @ cmfs[:, 1])[:, None],
-        cmfs,
-        lights,
-    )
 
 
 def interp_curves(wavelengths: Array, known: Array, curves: Array) -> Array:
