@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,35 +17,132 @@ from ..output.progress import progress_bar
 from ..outputs import stated_inputs
 
 if TYPE_CHECKING:
-    from uplift.cube import CubeData
     from uplift.extras.export import TableError
     from uplift.lookup import Cube
 
-PROGRAMS = {"c": ".h", "cuda": ".cuh", "glsl": ".glsl", "hlsl": ".hlsl"}
-LUTS = {"cube": ".cube", "clf": ".clf"}
-SIGMOIDS = {
-    "coeff": ".coeff",
-    "luisa": ".cpp",
-    "pbrt": ".cpp",
-}  # of one suffix the last is the default
-SUFFIXES = {
-    **SIGMOIDS,
-    **PROGRAMS,
-    **LUTS,
-    "film": ".npy",
-    "fourier": ".png",
-    "npz": ".npz",
-    "csv": ".csv",
-    "html": ".html",
+
+@dataclass(frozen=True)
+class Export:
+    """A format: its suffix, the options that apply to it, and its writer, which returns
+    a description of the file.
+    """
+
+    suffix: str
+    options: tuple[str, ...]
+    write: Callable[..., str]
+
+
+def _write_lut(cube: Cube, path: Path, style: str, **settings: Any) -> str:
+    from uplift.extras import export
+
+    error = export.write_lut(cube, path=path, **settings)
+    return f"colours under {settings['light']}, {_shown(error)}"
+
+
+def _write_fourier(cube: Cube, path: Path, style: str, **settings: Any) -> str:
+    from uplift.extras import export
+
+    error = export.write_fourier(cube, path, **settings)
+    _, shader = export.output_files(path, style)
+    return f"shader in {shader}, with 8 bits {_shown(error)}"
+
+
+def _write_film(cube: Cube, path: Path, style: str, **settings: Any) -> str:
+    from uplift.extras import export
+
+    film = export.write_film(cube, path, **settings)
+    return (
+        f"{film.inside:.0%} of the chromaticities from the cube, mean error of "
+        f"exposure {film.stops:.2g} stops"
+    )
+
+
+def _write_sigmoids(cube: Cube, path: Path, style: str, **settings: Any) -> str:
+    from uplift.extras import export
+
+    with progress_bar("fitting sigmoids"):
+        error = export.write_coeff(cube.data, path, layout=style, **settings)
+    return f"table of sigmoids, {_shown(error)}"
+
+
+def _write_npz(cube: Cube, path: Path, style: str, **settings: Any) -> str:
+    from uplift.extras import export
+
+    return pluralise(export.write_npz(cube.data, path, **settings), "array")
+
+
+def _write_csv(cube: Cube, path: Path, style: str, **settings: Any) -> str:
+    from uplift.extras import export
+
+    return pluralise(export.write_csv(cube.data, path, **settings), "node")
+
+
+def _write_html(cube: Cube, path: Path, style: str, **settings: Any) -> str:
+    from uplift.common.files import write_text
+    from uplift.extras.report.live_page import page
+
+    write_text(page(cube.data), path, **settings)
+    return f"page, {path.stat().st_size / 1e6:.1f} MB"
+
+
+def _write_program(
+    cube: Cube,
+    path: Path,
+    style: str,
+    *,
+    force: bool,
+    mode: str = "spectra",
+    table: str | None = None,
+) -> str:
+    """Write a program, and return a description of it."""
+    from uplift.extras import export
+
+    data = cube.data
+    written = export.write_program(
+        data, path, style=style, mode=mode, form=table, force=force
+    )
+    size = sum(file.stat().st_size for file in written) / 1e6
+    nodes = pluralise(data.lattice.size, "node")
+    facts = [nodes, pluralise(len(data.atlas.names), "atlas entry"), f"{size:.1f} MB"]
+    facts.append(
+        "single precision changes reflectances by less than "
+        f"{round_up(export.rounding_error(data, mode)):g}"
+    )
+    moved = export.moved_cells(data, mode).sum() / (data.lattice.dim - 1) ** 3
+    if moved:
+        facts.append(f"more in {moved:.0%} of the cells, next to unrealisable colours")
+    facts += [f"table in {file}" for file in written[1:]]
+    return ", ".join(facts)
+
+
+def _shown(error: TableError) -> str:
+    """Describe the errors of a table."""
+    worst = " ".join(f"{value:.2g}" for value in error.worst)
+    return (
+        f"ΔE00 from the cube's: mean {error.mean:.2g}, largest "
+        f"{round_up(error.largest):g} (RGB {worst})"
+    )
+
+
+PROGRAM = ("mode", "table")
+LUT = ("res", "light", "adapt")
+EXPORTS = {
+    "coeff": Export(".coeff", ("res",), _write_sigmoids),
+    "luisa": Export(".cpp", (), _write_sigmoids),
+    "pbrt": Export(".cpp", (), _write_sigmoids),
+    "c": Export(".h", PROGRAM, _write_program),
+    "cuda": Export(".cuh", PROGRAM, _write_program),
+    "glsl": Export(".glsl", PROGRAM, _write_program),
+    "hlsl": Export(".hlsl", PROGRAM, _write_program),
+    "cube": Export(".cube", LUT, _write_lut),
+    "clf": Export(".clf", LUT, _write_lut),
+    "film": Export(".npy", ("res", "light"), _write_film),
+    "fourier": Export(".png", ("res",), _write_fourier),
+    "npz": Export(".npz", (), _write_npz),
+    "csv": Export(".csv", (), _write_csv),
+    "html": Export(".html", (), _write_html),
 }
-APPLIES = {
-    "res": ("coeff", *LUTS, "film", "fourier"),
-    "light": (*LUTS, "film"),
-    "adapt": tuple(LUTS),
-    "mode": tuple(PROGRAMS),
-    "table": tuple(PROGRAMS),
-}
-"""Formats by the options that apply to them alone."""
+"""Formats by name; of one suffix the last is the default."""
 
 
 @click.command(
@@ -91,7 +190,7 @@ APPLIES = {
 @click.option(
     "--format",
     "style",
-    type=click.Choice(tuple(SUFFIXES)),
+    type=click.Choice(tuple(EXPORTS)),
     metavar="FORMAT",
     help="Format to write. [default: by the suffix of --output]",
 )
@@ -130,22 +229,21 @@ def command(
     force: bool,
     **given: Any,
 ) -> None:
-    suffix = "" if output is None else Path(output).suffix.lower()
-    style = style or {SUFFIXES[name]: name for name in SUFFIXES}.get(
-        ".cuh" if suffix == ".cu" else suffix
-    )
+    suffixes = {export.suffix: name for name, export in EXPORTS.items()}
+    if style is None and output is not None:
+        suffix = Path(output).suffix.lower()
+        style = suffixes.get(".cuh" if suffix == ".cu" else suffix)
     if style is None:
         raise click.UsageError(
-            "Give --format, or --output ending in "
-            f"{', '.join(dict.fromkeys(SUFFIXES.values()))}."
+            f"Give --format, or --output ending in {', '.join(suffixes)}."
         )
+    export = EXPORTS[style]
     settings = {name: value for name, value in given.items() if value is not None}
     for name in settings:
-        if style not in APPLIES[name]:
-            raise click.UsageError(
-                f"--{name} applies to {', '.join(APPLIES[name])} only."
-            )
-    if style in LUTS and "light" not in settings:
+        if name not in export.options:
+            formats = [key for key in EXPORTS if name in EXPORTS[key].options]
+            raise click.UsageError(f"--{name} applies to {', '.join(formats)} only.")
+    if export.options == LUT and "light" not in settings:
         raise click.UsageError(
             "A cube or clf table shows the colours under a light: give --light, such "
             "as HP1."
@@ -154,84 +252,14 @@ def command(
     from uplift.extras.export import check_form, output_files
     from uplift.lookup import load
 
-    form = check_form(style, settings.get("table")) if style in PROGRAMS else style
-    files = output_files(output or Path(cube).stem + SUFFIXES[style], form)
+    form = (
+        check_form(style, settings.get("table")) if export.options == PROGRAM else style
+    )
+    files = output_files(output or Path(cube).stem + export.suffix, form)
     inputs = stated_inputs()
     path = check_output(files[0], inputs=inputs, force=force)
     check_outputs(
         files, inputs=inputs, force=True
     )  # second files that exist are judged by their content
     loaded = load(cube).fill_missing() if fill_missing else load(cube)
-    say(f"{path}: {_write(loaded, path, style, force=force, **settings)}")
-
-
-def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
-    """Write a cube, and return a description of the file."""
-    from uplift.common.files import write_text
-    from uplift.extras import export
-    from uplift.extras.report.live_page import page
-
-    data = cube.data
-    if style in LUTS:
-        error = export.write_lut(cube, path=path, **settings)
-        return f"colours under {settings['light']}, {_shown(error)}"
-    if style == "fourier":
-        error = export.write_fourier(cube, path, **settings)
-        _, shader = export.output_files(path, style)
-        return f"shader in {shader}, with 8 bits {_shown(error)}"
-    if style == "film":
-        film = export.write_film(cube, path, **settings)
-        return (
-            f"{film.inside:.0%} of the chromaticities from the cube, mean error of "
-            f"exposure {film.stops:.2g} stops"
-        )
-    if style in SIGMOIDS:
-        with progress_bar("fitting sigmoids"):
-            error = export.write_coeff(data, path, layout=style, **settings)
-        return f"table of sigmoids, {_shown(error)}"
-    if style == "npz":
-        return pluralise(export.write_npz(data, path, **settings), "array")
-    if style == "csv":
-        return pluralise(export.write_csv(data, path, **settings), "node")
-    if style == "html":
-        write_text(page(data), path, **settings)
-        return f"page, {path.stat().st_size / 1e6:.1f} MB"
-    return _write_program(data, path, style, **settings)
-
-
-def _write_program(
-    data: CubeData,
-    path: Path,
-    style: str,
-    *,
-    force: bool,
-    mode: str = "spectra",
-    table: str | None = None,
-) -> str:
-    """Write a program, and return a description of it."""
-    from uplift.extras import export
-
-    written = export.write_program(
-        data, path, style=style, mode=mode, form=table, force=force
-    )
-    size = sum(each.stat().st_size for each in written) / 1e6
-    nodes = pluralise(data.lattice.size, "node")
-    facts = [nodes, pluralise(len(data.atlas.names), "atlas entry"), f"{size:.1f} MB"]
-    facts.append(
-        "single precision changes reflectances by less than "
-        f"{round_up(export.rounding_error(data, mode)):g}"
-    )
-    moved = export.moved_cells(data, mode).sum() / (data.lattice.dim - 1) ** 3
-    if moved:
-        facts.append(f"more in {moved:.0%} of the cells, next to unrealisable colours")
-    facts += [f"table in {each}" for each in written[1:]]
-    return ", ".join(facts)
-
-
-def _shown(error: TableError) -> str:
-    """Describe the errors of a table."""
-    worst = " ".join(f"{value:.2g}" for value in error.worst)
-    return (
-        f"ΔE00 from the cube's: mean {error.mean:.2g}, largest "
-        f"{round_up(error.largest):g} (RGB {worst})"
-    )
+    say(f"{path}: {export.write(loaded, path, style, force=force, **settings)}")

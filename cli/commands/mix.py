@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -31,6 +31,7 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
+    from uplift.extras.paint import Ingredients, Medium, Surface
     from uplift.extras.paint.pigments import Scattering
     from uplift.lookup import Cube
 
@@ -187,9 +188,6 @@ def command(
     kind: str,
     thickness: float | None,
     ground: str | None,
-    refractive_index: float,
-    surface_reflectance: float | None,
-    internal_reflectance: float | None,
     plate: str | None,
     scattering: str,
     theories: bool,
@@ -205,22 +203,54 @@ def command(
     encoding: str,
     input_space: str | None,
     force: bool,
+    **surface: Any,
 ) -> None:
-    import numpy as np
+    from uplift.extras.paint import Medium
 
-    from uplift.atlas import Atlas, read_atlas
-    from uplift.extras.paint import (
-        Ingredients,
-        Medium,
-        Surface,
-        make_coat,
-        mix,
-        overpainter,
+    _check_coat(kind, ground, plate, over, output, plot_path)
+    if theories:
+        _check_theories(kind, (thickness, ground, plate, over, plot_path))
+    _check_image(output)
+    check_outputs(plot_path, output, inputs=[word.partition(":")[2] for word in words])
+    resolver, further = _prepare_resolver(
+        cube_path,
+        files,
+        input_space,
+        wavelengths,
+        method,
+        has_spectrum=not theories and over is None,
     )
-    from uplift.extras.paint.coats import COATS, ramp
-    from uplift.extras.paint.pigments import CONSTANT, SQUARE_ROOT, dispersive
-    from uplift.lookup import load
-    from uplift.lookup.blocks import as_wavelengths
+    recipe = _read_recipe(resolver, words, kind)
+    if theories:
+        _print_theories(recipe, method, style)
+        return
+    law = _scattering_law(scattering, recipe.cube, further)
+    medium = Medium(thickness, _surface(**surface), law, plate is not None)
+    if over is not None and output is not None:
+        looks = {"encoding": encoding, "out_of_gamut": method, "space": resolver.space}
+        _paint(recipe, medium, scattering, over, output, force=force, **looks)
+        return
+    backing = None
+    if plate != "transmitted":
+        backing = resolver.spectrum(ground or "white")
+    mixture = _mix(recipe, medium, backing, steps, method)
+    if plot_path is not None:
+        _plot_ramp(recipe, mixture, plot_path, force=force)
+    if style == "json":
+        _print_json(recipe, mixture, further)
+    else:
+        _print_table(recipe, mixture, further, complete=wavelengths is not None)
+
+
+def _check_coat(
+    kind: str,
+    ground: str | None,
+    plate: str | None,
+    over: str | None,
+    output: str | None,
+    plot_path: str | None,
+) -> None:
+    from uplift.extras.paint.coats import COATS
 
     if (over is None) != (output is None):
         raise click.UsageError("--over IMAGE and --output EXR require each other.")
@@ -237,91 +267,173 @@ def command(
         )
     if over is not None and plot_path is not None:
         raise click.UsageError("--plot shows a mixture and does not apply to --over.")
-    if theories and (
-        kind == "duntley"
-        or any(each is not None for each in (thickness, ground, plate, over, plot_path))
-    ):
+
+
+def _check_theories(kind: str, others: tuple[object, ...]) -> None:
+    if kind == "duntley" or any(value is not None for value in others):
         raise click.UsageError(
             "--theories mixes opaque colours, without --duntley, --thickness, "
             "--ground, --plate, --over and --plot."
         )
+
+
+def _check_image(output: str | None) -> None:
     if output is not None and not output.lower().endswith(".exr"):
         raise OutputError(
             "painted images are OpenEXR files",
             path=output,
             hint="give a file name ending in .exr",
         )
-    check_outputs(plot_path, output, inputs=[word.partition(":")[2] for word in words])
+
+
+def _prepare_resolver(
+    cube_path: str | None,
+    files: tuple[str, ...],
+    input_space: str | None,
+    wavelengths: Array | None,
+    method: str,
+    *,
+    has_spectrum: bool,
+) -> tuple[SpectrumResolver, Array]:
+    """Return the resolver of ingredients, and the wavelengths of the output.
+
+    The resolver's are those of the sensor, for colours, followed by those of the
+    output.
+    """
+    import numpy as np
+
+    from uplift.atlas import Atlas, read_atlas
+    from uplift.lookup import load
+    from uplift.lookup.blocks import as_wavelengths
+
     cube = load(cube_path)
-    sensor = cube.data.sensor
     space = None if input_space is None else find_input_space(input_space)
     if wavelengths is not None:
         check_range(wavelengths, cube.wavelengths)
-    further = (
-        np.array([])
-        if theories or over is not None
-        else as_wavelengths(wavelengths, cube.wavelengths)
-    )
-    grid = np.concatenate(
-        [sensor.wavelengths, further]
-    )  # for colours, followed by those of the output
+    further = np.array([])
+    if has_spectrum:
+        further = as_wavelengths(wavelengths, cube.wavelengths)
+    grid = np.concatenate([cube.data.sensor.wavelengths, further])
     # The default is for mixtures: an ingredient outside [0, 1] is a mistake, unless the
     # option is given.
-    is_given = (
-        click.get_current_context().get_parameter_source("method")
-        is ParameterSource.COMMANDLINE
-    )
+    source = click.get_current_context().get_parameter_source("method")
+    if source is not ParameterSource.COMMANDLINE:
+        method = "error"
     atlas = read_atlas(*files) if files else Atlas()
-    resolver = SpectrumResolver(
-        cube, atlas, grid, space, method if is_given else "error"
-    )
+    return SpectrumResolver(cube, atlas, grid, space, method), further
+
+
+@dataclass(frozen=True, eq=False)
+class _Recipe:
+    """Ingredients with their names and parts."""
+
+    cube: Cube
+    kind: str
+    names: tuple[str, ...]
+    parts: tuple[float, ...]
+    ingredients: Ingredients
+
+    @property
+    def title(self) -> str:
+        pairs = zip(self.parts, self.names, strict=True)
+        return ", ".join(f"{amount:g} of {name}" for amount, name in pairs)
+
+
+def _read_recipe(
+    resolver: SpectrumResolver, words: tuple[str, ...], kind: str
+) -> _Recipe:
+    import numpy as np
+
+    from uplift.extras.paint import Ingredients
+
     names, parts, spectra, on_black = zip(
         *(resolver.ingredient(word, kind) for word in words), strict=True
     )
     ingredients = Ingredients(np.stack(spectra), on_black)
-    if theories:
-        _print_theories(
-            cube, names, np.array(parts), ingredients.spectra, method, style
-        )
-        return
-    assumed: dict[str, Scattering] = {"root": SQUARE_ROOT, "constant": CONSTANT}
-    law = assumed.get(scattering) or dispersive(sensor, further)
+    return _Recipe(resolver.cube, kind, names, parts, ingredients)
+
+
+def _scattering_law(name: str, cube: Cube, further: Array) -> Scattering:
+    from uplift.extras.paint.pigments import CONSTANT, SQUARE_ROOT, dispersive
+
+    laws: dict[str, Scattering] = {"root": SQUARE_ROOT, "constant": CONSTANT}
+    return laws.get(name) or dispersive(cube.data.sensor, further)
+
+
+def _surface(
+    refractive_index: float,
+    surface_reflectance: float | None,
+    internal_reflectance: float | None,
+) -> Surface:
+    from uplift.extras.paint import Surface
+
     of_index = Surface.of_index(refractive_index)
-    surface = Surface(
+    return Surface(
         of_index.outside if surface_reflectance is None else surface_reflectance,
         of_index.inside if internal_reflectance is None else internal_reflectance,
     )
-    medium = Medium(thickness, surface, law, plate is not None)
-    if over is not None and output is not None:
-        enable_jit_cache()
-        from uplift.extras.texture import convert
 
-        recipe = {
-            "kind": kind,
-            "of": [list(pair) for pair in zip(parts, names, strict=True)],
-            "thickness": thickness,
-            "surface": asdict(medium.surface),
-            "scattering": scattering,
-            **({"plate": True} if medium.plate else {}),
-        }
-        coat = make_coat(kind, ingredients, parts, medium)
-        painter = overpainter(
-            cube, coat, recipe, encoding=encoding, out_of_gamut=method, space=space
-        )
-        with progress_bar("rows") as progress:
-            painted = convert(painter, over, output, force=force, progress=progress)
-        warn(painted.warnings)
-        say(f"{output}: {pluralise(painted.counts.pixels, 'pixel')} painted over")
-        return
+
+def _paint(
+    recipe: _Recipe,
+    medium: Medium,
+    scattering: str,
+    over: str,
+    output: str,
+    *,
+    force: bool,
+    **looks: Any,
+) -> None:
+    """Paint the coat over an image."""
+    enable_jit_cache()
+    from uplift.extras.paint import make_coat, overpainter
+    from uplift.extras.texture import convert
+
+    provenance = {
+        "kind": recipe.kind,
+        "of": [list(pair) for pair in zip(recipe.parts, recipe.names, strict=True)],
+        "thickness": medium.thickness,
+        "surface": asdict(medium.surface),
+        "scattering": scattering,
+        **({"plate": True} if medium.plate else {}),
+    }
+    coat = make_coat(recipe.kind, recipe.ingredients, recipe.parts, medium)
+    painter = overpainter(recipe.cube, coat, provenance, **looks)
+    with progress_bar("rows") as progress:
+        painted = convert(painter, over, output, force=force, progress=progress)
+    warn(painted.warnings)
+    say(f"{output}: {pluralise(painted.counts.pixels, 'pixel')} painted over")
+
+
+@dataclass(frozen=True, eq=False)
+class _Mixture:
+    """The mixture, followed by the ramp from its first to its last ingredient."""
+
+    rgb: Array
+    colours: list[dict[str, Any]]
+    values: Array
+    """Spectrum of the mixture at the wavelengths of the output."""
+
+
+def _mix(
+    recipe: _Recipe, medium: Medium, backing: Array | None, steps: int, method: str
+) -> _Mixture:
+    """Mix on a backing; without, return the light that a plate transmits."""
+    import numpy as np
+
     from uplift.colorimetry.gamut import map_to_gamut
+    from uplift.extras.paint import make_coat, mix
+    from uplift.extras.paint.coats import ramp
 
+    cube = recipe.cube
+    sensor = cube.data.sensor
+    parts = recipe.parts
     amounts = np.concatenate([np.array(parts)[None], ramp(parts, steps)])
-    if plate == "transmitted":
-        mixed = make_coat(kind, ingredients, amounts, medium).layer.transmittance
+    if backing is None:
+        coat = make_coat(recipe.kind, recipe.ingredients, amounts, medium)
+        mixed = coat.layer.transmittance
     else:
-        mixed = mix(
-            kind, ingredients, amounts, medium, resolver.spectrum(ground or "white")
-        )
+        mixed = mix(recipe.kind, recipe.ingredients, amounts, medium, backing)
     count = len(sensor.wavelengths)
     rgb = sensor.rgb(mixed[:, :count])
     inside = np.clip(rgb, 0, 1)
@@ -330,86 +442,82 @@ def command(
     if mapped.outside[0]:
         problem = f"the mixture lies outside [0, 1]: mapped into the gamut ({method})"
         warn([UpliftWarning(problem)])
-    title = ", ".join(
-        f"{each:g} of {name}" for each, name in zip(parts, names, strict=True)
-    )
-    if plot_path is not None:
-        from uplift.colorimetry.srgb import to_display_codes
-        from uplift.extras.pages.plots import Strip, plot_strips
-
-        codes = to_display_codes(mapped.rgb, sensor) / 255
-        strips = [
-            Strip(f"{kind}: {title}", codes[:1]),
-            Strip(f"from {names[0]} to {names[-1]}", codes[1:]),
-        ]
-        plot_strips(strips[: len(names)], plot_path, force=force)
-    # The mixture, followed by the ramp from its first to its last ingredient.
     colours = [
-        {"parts": row.tolist(), **_colour(cube, rgb)}
-        for row, rgb in zip(amounts, mapped.rgb, strict=True)
+        {"parts": row.tolist(), **_colour(cube, colour)}
+        for row, colour in zip(amounts, mapped.rgb, strict=True)
     ]
-    if style == "json":
-        spectrum = {
-            "wavelengths": further.tolist(),
-            "spectrum": as_lists(mixed[0, count:]),
-        }
-        print_json(
-            {
-                "kind": kind,
-                "names": names,
-                **colours[0],
-                **spectrum,
-                "ramp": colours[1:],
-            },
-            indent=None,
-        )
-        return
+    return _Mixture(mapped.rgb, colours, mixed[0, count:])
+
+
+def _plot_ramp(recipe: _Recipe, mixture: _Mixture, path: str, *, force: bool) -> None:
+    from uplift.colorimetry.srgb import to_display_codes
+    from uplift.extras.pages.plots import Strip, plot_strips
+
+    names = recipe.names
+    codes = to_display_codes(mixture.rgb, recipe.cube.data.sensor) / 255
+    strips = [
+        Strip(f"{recipe.kind}: {recipe.title}", codes[:1]),
+        Strip(f"from {names[0]} to {names[-1]}", codes[1:]),
+    ]
+    plot_strips(strips[: len(names)], path, force=force)
+
+
+def _print_json(recipe: _Recipe, mixture: _Mixture, wavelengths: Array) -> None:
+    answer = {
+        "kind": recipe.kind,
+        "names": recipe.names,
+        **mixture.colours[0],
+        "wavelengths": wavelengths.tolist(),
+        "spectrum": as_lists(mixture.values),
+        "ramp": mixture.colours[1:],
+    }
+    print_json(answer, indent=None)
+
+
+def _print_table(
+    recipe: _Recipe, mixture: _Mixture, wavelengths: Array, *, complete: bool
+) -> None:
+    cube = recipe.cube
+    colour = mixture.colours[0]
     fields = {
-        kind: title,
-        "linear RGB": f"{format_rgb(mapped.rgb[0])}  {colours[0]['hex']}",
+        recipe.kind: recipe.title,
+        "linear RGB": f"{format_rgb(mixture.rgb[0])}  {colour['hex']}",
     }
-    fields |= describe_coordinates(colours[0])
-    if len(names) > 1:
-        fields["ramp"] = " ".join(each["hex"] for each in colours[1:])
-    values = mixed[0, count:]
+    fields |= describe_coordinates(colour)
+    if len(recipe.names) > 1:
+        fields["ramp"] = " ".join(step["hex"] for step in mixture.colours[1:])
     patches = {
-        "linear RGB": patch(cube, mapped.rgb[0]),
-        "ramp": "".join(patch(cube, rgb, 4) for rgb in mapped.rgb[1:]),
+        "linear RGB": patch(cube, mixture.rgb[0]),
+        "ramp": "".join(patch(cube, rgb, 4) for rgb in mixture.rgb[1:]),
     }
-    highest = max(1, values.max())
     print_spectrum(
         fields,
-        further,
-        values,
-        complete=wavelengths is not None,
+        wavelengths,
+        mixture.values,
+        complete=complete,
         patches=patches,
-        highest=highest,
+        highest=max(1, mixture.values.max()),
     )
 
 
-def _print_theories(
-    cube: Cube,
-    names: tuple[str, ...],
-    parts: Array,
-    spectra: Array,
-    method: str,
-    style: str,
-) -> None:
+def _print_theories(recipe: _Recipe, method: str, style: str) -> None:
     import numpy as np
     from rich.text import Text
 
     from uplift.colorimetry.gamut import map_to_gamut
     from uplift.extras.paint.theories import mixers
 
+    cube = recipe.cube
     sensor = cube.data.sensor
-    rgb = np.clip(sensor.rgb(spectra), 0, 1)
+    rgb = np.clip(sensor.rgb(recipe.ingredients.spectra), 0, 1)
+    parts = np.array(recipe.parts)
     mixed = {
         mixer.title: map_to_gamut(mixer.mix(rgb, parts)[None], sensor, method).rgb[0]
         for mixer in mixers(cube)
     }
     if style == "json":
         rows = [{"theory": title, **_colour(cube, rgb)} for title, rgb in mixed.items()]
-        print_json({"names": names, "theories": rows}, indent=None)
+        print_json({"names": recipe.names, "theories": rows}, indent=None)
         return
     table = make_table()
     table.add_column("theory")

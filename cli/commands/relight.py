@@ -121,78 +121,129 @@ def command(
 ) -> None:
     enable_jit_cache()
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
-    from uplift.common.files import write_text
-    from uplift.extras import texture
-    from uplift.extras.relight.relight import relight, relit_page, write_relit_sheet
-    from uplift.extras.relight.relighter import prepare_relighter
-    from uplift.lookup import load
-    from uplift.samples import sample_path
 
     if cube_path is not None and files:
         raise click.UsageError(
             "--cube and --atlas are alternatives: give one of the two."
         )
-    suffix = Path(output).suffix.lower()
-    paths = expand_patterns(images) or [str(sample_path(SAMPLE))]
-    if suffix == IMAGE and len(paths) > 1:
-        raise click.UsageError(
-            "An .exr file holds one image: relight images one by one."
-        )
+    is_image = Path(output).suffix.lower() == IMAGE
+    paths = _input_paths(images, is_image)
     check_outputs(output, inputs=paths)
     atlases = files
     if not images and cube_path is None:
         atlases = files or (SAMPLE_ATLAS,)
-    lights = lights or RELIGHT_LIGHTS
-    if suffix == IMAGE:
-        with progress_bar("computing spectra") as progress:
-            extra, notes = _cube_of_user(cube_path, atlases)
-            balanced = adapt is not False
-            threads = os.cpu_count() or 1
-            converter = prepare_relighter(
-                extra or load(), lights, adapt=balanced, threads=threads, **pixels
-            )
-            conversion = texture.convert(
-                converter, paths[0], output, force=force, progress=progress
-            )
-        warn(conversion.warnings)
-        shown = json.loads(converter.header["uplift.texture"])["lights"]
-        if style == "json":
-            print_json(
-                {"output": output, "lights": shown, "pixels": conversion.counts.pixels}
-            )
-        else:
-            names = ", ".join(shown)
-            count = pluralise(conversion.counts.pixels, "pixel")
-            paragraph(f"{output}: {Path(paths[0]).name} under {names}, {count}")
-    else:
-        with progress_bar("computing spectra"):
-            packaged = load()
-            pictures = read_pictures(paths, load(cube_path).data.sensor, **pixels)
-            extra, notes = _cube_of_user(cube_path, atlases)
-            cubes = {}
-            if extra is None or _setting(extra) == _setting(packaged):
-                cubes[SPECTRAL] = packaged
-            if extra is not None:
-                stems = [Path(path).stem for path in atlases or [cube_path or ""]]
-                cubes[f"{SPECTRAL} with {', '.join(stems)}"] = extra
-            relit = []
-            for path, picture in zip(paths, pictures, strict=True):
-                image = relight(
-                    Path(path).name,
-                    picture.rgb,
-                    cubes,
-                    lights,
-                    opacity=picture.opacity,
-                    reduction=picture.reduction,
-                )
-                relit.append(image)
-            if suffix == PAGE:
-                write_text(relit_page(relit, adapt=adapt), output, force=force)
-            else:
-                write_relit_sheet(relit, output, adapt=adapt, force=force)
-        _print_differences(relit, output, style)
+    write = _write_image if is_image else _write_pictures
+    extra, notes = write(
+        paths,
+        cube_path,
+        atlases,
+        lights or RELIGHT_LIGHTS,
+        output,
+        style,
+        adapt=adapt,
+        force=force,
+        **pixels,
+    )
     if extra is not None and files:
         print_notes(extra, notes, err=style == "json")
+
+
+def _input_paths(images: tuple[str, ...], is_image: bool) -> list[str]:
+    from uplift.samples import sample_path
+
+    paths = expand_patterns(images) or [str(sample_path(SAMPLE))]
+    if is_image and len(paths) > 1:
+        raise click.UsageError(
+            "An .exr file holds one image: relight images one by one."
+        )
+    return paths
+
+
+def _write_image(
+    paths: Sequence[str],
+    cube_path: str | None,
+    atlases: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
+    output: str,
+    style: str,
+    *,
+    adapt: bool | None,
+    force: bool,
+    **pixels: Any,
+) -> tuple[Cube | None, list[UpliftWarning]]:
+    """Relight an image at full size, and return the user's cube with its warnings."""
+    from uplift.extras import texture
+    from uplift.extras.relight.relighter import prepare_relighter
+    from uplift.lookup import load
+
+    with progress_bar("computing spectra") as progress:
+        extra, notes = _cube_of_user(cube_path, atlases)
+        converter = prepare_relighter(
+            extra or load(),
+            lights,
+            adapt=adapt is not False,
+            threads=os.cpu_count() or 1,
+            **pixels,
+        )
+        conversion = texture.convert(
+            converter, paths[0], output, force=force, progress=progress
+        )
+    warn(conversion.warnings)
+    shown = json.loads(converter.header["uplift.texture"])["lights"]
+    count = conversion.counts.pixels
+    if style == "json":
+        print_json({"output": output, "lights": shown, "pixels": count})
+    else:
+        names = ", ".join(shown)
+        size = pluralise(count, "pixel")
+        paragraph(f"{output}: {Path(paths[0]).name} under {names}, {size}")
+    return extra, notes
+
+
+def _write_pictures(
+    paths: Sequence[str],
+    cube_path: str | None,
+    atlases: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
+    output: str,
+    style: str,
+    *,
+    adapt: bool | None,
+    force: bool,
+    **pixels: Any,
+) -> tuple[Cube | None, list[UpliftWarning]]:
+    """Write a figure or page, and return the user's cube with its warnings."""
+    from uplift.common.files import write_text
+    from uplift.extras.relight.relight import relight, relit_page, write_relit_sheet
+    from uplift.lookup import load
+
+    with progress_bar("computing spectra"):
+        packaged = load()
+        pictures = read_pictures(paths, load(cube_path).data.sensor, **pixels)
+        extra, notes = _cube_of_user(cube_path, atlases)
+        cubes = {}
+        if extra is None or _setting(extra) == _setting(packaged):
+            cubes[SPECTRAL] = packaged
+        if extra is not None:
+            stems = [Path(path).stem for path in atlases or [cube_path or ""]]
+            cubes[f"{SPECTRAL} with {', '.join(stems)}"] = extra
+        relit = []
+        for path, picture in zip(paths, pictures, strict=True):
+            image = relight(
+                Path(path).name,
+                picture.rgb,
+                cubes,
+                lights,
+                opacity=picture.opacity,
+                reduction=picture.reduction,
+            )
+            relit.append(image)
+        if Path(output).suffix.lower() == PAGE:
+            write_text(relit_page(relit, adapt=adapt), output, force=force)
+        else:
+            write_relit_sheet(relit, output, adapt=adapt, force=force)
+    _print_differences(relit, output, style)
+    return extra, notes
 
 
 def _setting(cube: Cube) -> tuple[str, str, str]:

@@ -222,7 +222,7 @@ def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
 def _useful(
     goal: ColourGoal, remaining: list[tuple[str, float]], limit: float
 ) -> tuple[tuple[str, float], ...]:
-    """Relaxed criteria after which the ΔE00 of a goal is below the limit, best first."""
+    """Relaxed criteria that bring the ΔE00 of a goal below the limit, best first."""
     useful = []
     for name, delta_e in remaining:
         if name != _weight_of(goal) and delta_e < limit:

@@ -350,7 +350,7 @@ def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
 
 
 def _eligible_cubes(chart: Chart, requirement: Requirement) -> list[MethodResult]:
-    """Return the cubes with the error of a requirement, without atlases if it is plain."""
+    """Return the cubes with the error of a requirement; none with an atlas if plain."""
     cubes = []
     for result in chart.measured:
         has_error = bool(result.build) and requirement.error in result.numbers
