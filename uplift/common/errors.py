@@ -176,7 +176,7 @@ class UpliftWarning(Diagnostic, UserWarning):
 
 
 def warn(warning: UpliftWarning) -> None:
-    """Issue a warning at the line that called this package, whatever lies between."""
+    """Issue a warning at the line that called this package."""
     level = depth = 1
     frame = sys._getframe()
     while frame is not None:
