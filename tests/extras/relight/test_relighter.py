@@ -49,6 +49,7 @@ def test_colours_stay_in_the_space_of_the_image(small_cube, colours, tmp_path):
     )
     header = OpenEXR.File(str(target), header_only=True).parts[0].header
     np.testing.assert_allclose(header["chromaticities"], AP1, rtol=1e-6)
+    assert header["uplift.lights"] == "D65, HP1"
     grey = write_exr(
         tmp_path / "grey.exr",
         planes(np.full((2, 2, 3), 0.5, np.float32)),

@@ -125,7 +125,7 @@ def prepare_relighter(
     header = {
         **exr.attributes(cube.data),
         "uplift.texture": json.dumps(settings),
-        "uplift.extras.emission": ", ".join(names),
+        "uplift.lights": ", ".join(names),
     }
     return Relighter(
         sensor,
