@@ -14,7 +14,7 @@ FORMATS = (Format("toy", (".toy",), r"\\ATOY ", "toy_format"),)
 
 def read(document):
     title, *rows = document.lines
-    pairs = [row.split() for row in rows]
+    pairs = [row.split() for row in rows if row]
     wavelengths = [float(wavelength) for wavelength, _ in pairs]
     values = [float(value) for _, value in pairs]
     spectrum = Spectrum(title.removeprefix("TOY "), wavelengths, values, line=1)
