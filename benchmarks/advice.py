@@ -2,6 +2,7 @@
 docs/guides/measuring.md.
 """
 
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -96,9 +97,11 @@ def main() -> None:
         rows = np.flatnonzero(in_unit_cube(sensor.rgb(measured)))
         atlas = Atlas(tuple(atlas.entries[row] for row in rows))
         measured = measured[rows]
-        found = [
-            row for seed in range(SCENES) for row in run_scene(atlas, measured, seed)
-        ]
+        found = list(
+            chain.from_iterable(
+                run_scene(atlas, measured, seed) for seed in range(SCENES)
+            )
+        )
         for choice in (ADVICE, PIXELS, COLOURS):
             figures: dict[str, Any] = {"set": name, "choice": choice}
             for count in (0, *COUNTS):

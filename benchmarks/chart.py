@@ -2,6 +2,7 @@
 ``uplift chart --recommend``.
 """
 
+from itertools import chain
 from typing import Any
 
 from benchmarks import ATLASES, DOCS, ROOT, record, show
@@ -63,9 +64,7 @@ def fronts(chart: Chart) -> list[dict[str, Any]]:
     first row. Times in ns.
     """
     rows = []
-    for criterion in (
-        criterion for batch in chart.batches for criterion in criteria(batch)
-    ):
+    for criterion in chain.from_iterable(criteria(batch) for batch in chart.batches):
         for number, row in enumerate(criterion.front(chart)):
             rows.append(
                 {

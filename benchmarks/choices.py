@@ -7,6 +7,7 @@ measured on.
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import chain
 
 from benchmarks.materials import MIXTURE, SHIPPED
 from uplift.lab.study.held_out import HALF, LOCAL_LINEAR, NO_ATLAS
@@ -62,9 +63,9 @@ CHOICES = (
 
 def is_optimistic(sets: Iterable[str], method: str) -> bool:
     """Whether a choice behind a method was made with one of the sets."""
-    names = {
-        each for name in sets for each in (SHIPPED if name == MIXTURE else (name,))
-    }
+    names = set(
+        chain.from_iterable((SHIPPED if name == MIXTURE else (name,)) for name in sets)
+    )
     return any(
         names & {*choice.sets} and method in choice.methods for choice in CHOICES
     )

@@ -5,7 +5,7 @@ docs/prior.md.
 from collections.abc import Iterator
 from dataclasses import asdict
 from functools import cache
-from itertools import product
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -57,7 +57,7 @@ SMALL = tuple(name for name in SETS if name not in LARGE)
 TESTED = ("macbeth", "cie2017", "rawtoaces")
 PARTS = (2, 4, 10)
 """Parts of the mixture, of which cubes know all but one."""
-LIBRARY_SETS = tuple(name for names in FAMILIES.values() for name in names)
+LIBRARY_SETS = tuple(chain.from_iterable(FAMILIES.values()))
 PUBLISHED = ("otsu2018", "mallett2019", "smits1999")
 Pairs = list[tuple[Cube, Materials]]
 """Cubes and the materials that they are queried for."""
@@ -84,7 +84,7 @@ def main() -> None:
         dim=DIM,
         splits=SPLITS,
         munsell=MUNSELL.exists(),
-        entries=[row for name in TESTED for row in at_entries(name)],
+        entries=list(chain.from_iterable(at_entries(name) for name in TESTED)),
         standard_errors=[
             *(coverage(*key, pairs) for key, pairs in known.items()),
             *(coverage(label, 9, pairs) for label, pairs in others.items()),
@@ -129,7 +129,7 @@ def main() -> None:
         ],
         unseen=[unseen(name, count) for name in sets for count in (9, 17)],
         atlases=[with_atlas(name) for name in sets if name not in FAMILIES["checker"]],
-        libraries=[row for name in LARGE for row in with_library(name)],
+        libraries=list(chain.from_iterable(with_library(name) for name in LARGE)),
     )
 
 

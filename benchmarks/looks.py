@@ -8,6 +8,7 @@ region, and a screenshot of the page. Cubes with looks, and a scene of two cubes
 
 import tempfile
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -98,7 +99,7 @@ def main() -> None:
         methods=[method(cube, rgb, each) for each in found],
         many=MANY,
         runs=RUNS,
-        likely=[row for name in LARGE for row in likely(name)],
+        likely=list(chain.from_iterable(likely(name) for name in LARGE)),
         splits=SPLITS,
     )
     look_cubes()

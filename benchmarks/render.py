@@ -11,6 +11,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -200,7 +201,9 @@ def measure_rates(variant: str) -> list[dict[str, Any]]:
             name: mitsuba.load_dict(texture)
             for name, texture in _textures(Path(folder)).items()
         }
-    return [row for depth in DEPTHS for row in _rows(variant, depth, textures)]
+    return list(
+        chain.from_iterable(_rows(variant, depth, textures) for depth in DEPTHS)
+    )
 
 
 def _rows(

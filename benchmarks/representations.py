@@ -4,7 +4,7 @@ pictures.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -55,7 +55,7 @@ def main() -> None:
     record(
         "representations",
         surfaces=len(default.surfaces),
-        advice=[row for one in (ours, others) for row in advice(one)],
+        advice=list(chain.from_iterable(advice(one) for one in (ours, others))),
         ranking=[*ranking(ours, printed_tables()), *ranking(others, {})],
         riemann=riemann_rows(default, printed_tables()),
         filters=filter_rows(compare.tune_filters(default), printed_filters()),

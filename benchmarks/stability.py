@@ -2,6 +2,7 @@
 docs/stability.md and its pictures.
 """
 
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -92,11 +93,11 @@ def published() -> None:
         for move in perturb(uplift.load(), light)
         if move["mode"] == "spectra"
     ]
-    others = [
-        move
-        for method in select_methods(PUBLISHED)
-        for move in perturb_method(method, light)
-    ]
+    others = list(
+        chain.from_iterable(
+            perturb_method(method, light) for method in select_methods(PUBLISHED)
+        )
+    )
     record(
         "stability",
         "stability-published",

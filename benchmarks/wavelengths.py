@@ -3,6 +3,7 @@ pictures.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -420,11 +421,11 @@ def main() -> None:
     trials = {name: run_trials(checker, space) for name, space in spaces.items()}
     materials = on_grid(uplift.read_atlas(*sorted(ATLASES.glob("*.txt"))), grid())
     comparisons = {lights: compare_methods(materials, lights) for lights in LIGHTS}
-    found = [
-        table
-        for lights, comparison in comparisons.items()
-        for table in tables(lights, comparison)
-    ]
+    found = list(
+        chain.from_iterable(
+            tables(lights, comparison) for lights, comparison in comparisons.items()
+        )
+    )
     PICTURES.mkdir(exist_ok=True)
     with styled():
         write_png(figure_6(trials), PICTURES / "figure-6.png", force=True)
@@ -434,6 +435,6 @@ def main() -> None:
         "wavelengths",
         materials=len(materials),
         summary=[summary for summary, _ in found],
-        errors=[row for _, rows in found for row in rows],
+        errors=list(chain.from_iterable(rows for _, rows in found)),
         **compare_meyer(checker, spaces),
     )

@@ -8,6 +8,7 @@ import glob
 import math
 import os
 from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -74,7 +75,7 @@ def expand_patterns(sources: Sequence[str]) -> list[str]:
     Raises `TextureError` for a path that is not a file, and for a pattern that matches
     none.
     """
-    paths = [path for source in sources for path in _expand(source)]
+    paths = list(chain.from_iterable(_expand(source) for source in sources))
     for path in paths:
         check_regular(path, TextureError, hint="name an image")
     return paths

@@ -6,6 +6,7 @@ import contextlib
 import importlib
 import sys
 import warnings
+from itertools import chain
 from typing import Any
 
 import click
@@ -60,7 +61,7 @@ GROUPS = {
     },
 }
 """Summaries of the commands by headings of the help."""
-COMMANDS = tuple(name for names in GROUPS.values() for name in names)
+COMMANDS = tuple(chain.from_iterable(GROUPS.values()))
 QUICK = ("build", "query", "help")
 """Commands that start without what drawing needs."""
 

@@ -12,6 +12,7 @@ import sys
 import threading
 import time
 import warnings
+from itertools import chain
 from pathlib import Path
 
 from uplift.common.errors import UpliftWarning
@@ -210,7 +211,7 @@ def remove_compiled_code() -> bool:
     JAX never replaces an entry, also if it cannot read it, or if it is the code of
     another function.
     """
-    entries = [entry for folder in _CACHES for entry in folder.glob("*-cache")]
+    entries = list(chain.from_iterable(folder.glob("*-cache") for folder in _CACHES))
     for entry in entries:
         entry.unlink(missing_ok=True)
     return bool(entries)

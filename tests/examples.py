@@ -15,6 +15,7 @@ import sys
 import tempfile
 import zipfile
 from collections.abc import Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -45,9 +46,7 @@ ELSEWHERE = {
 
 def examples() -> list[str]:
     """Return every example once."""
-    return list(
-        dict.fromkeys(line for lines in examples_by_page().values() for line in lines)
-    )
+    return list(dict.fromkeys(chain.from_iterable(examples_by_page().values())))
 
 
 def examples_by_page() -> dict[str, list[str]]:

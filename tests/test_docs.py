@@ -8,6 +8,7 @@ import itertools
 import re
 import shlex
 import sys
+from itertools import chain
 from types import ModuleType
 
 import click
@@ -208,11 +209,11 @@ def test_files_and_names_in_docstrings_exist():
         for path in (ROOT / folder).rglob("*.py")
     }
     words = {path.stem for path in texts}
-    words |= {
-        word
-        for text in texts.values()
-        for word in re.findall(r"\w+", re.sub("`[^`]*`", "", text))
-    }
+    words |= set(
+        chain.from_iterable(
+            re.findall(r"\w+", re.sub("`[^`]*`", "", text)) for text in texts.values()
+        )
+    )
     for path, text in texts.items():
         names = re.findall(r"(?<!`)`([A-Za-z_][\w.]*?(?<!\.py)(?<!\.toml))`(?!`)", text)
         assert [
@@ -292,8 +293,10 @@ def test_the_tutorial_runs(tmp_path, monkeypatch):
 def test_pages_that_use_a_sample_file_say_where_it_comes_from():
     samples = {path.name for path in sample_path(".").iterdir()}
     for name, lines in examples_by_page().items():
-        words = {word for line in lines for word in re.split(r"[\s='\":]+", line)}
-        used = {sample for word in words for sample in fnmatch.filter(samples, word)}
+        words = set(
+            chain.from_iterable(re.split(r"[\s='\":]+", line) for line in lines)
+        )
+        used = set(chain.from_iterable(fnmatch.filter(samples, word) for word in words))
         if name.endswith(".md") and used:
             assert "uplift samples" in (ROOT / name).read_text(encoding="utf-8"), (
                 f"{name}: {used}"

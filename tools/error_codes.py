@@ -4,6 +4,7 @@ import ast
 import json
 from collections import defaultdict
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -57,7 +58,9 @@ def collect(root: Path = ROOT) -> list[dict[str, Any]]:
     """
     found: dict[tuple[str, str], set[str]] = {}
     for path in sorted(
-        path for folder in ("cli", "uplift") for path in (root / folder).rglob("*.py")
+        chain.from_iterable(
+            (root / folder).rglob("*.py") for folder in ("cli", "uplift")
+        )
     ):
         package = ".".join(path.relative_to(root).parent.parts)
         for name, code in codes(ast.parse(path.read_text(encoding="utf-8"))):

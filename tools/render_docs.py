@@ -19,6 +19,7 @@ import statistics
 import string
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -122,7 +123,7 @@ def leaves(
 def flat_csv(rows: Iterable[Row], parts: Sequence[str]) -> str:
     """Return nested rows as CSV, with a column for each leaf."""
     flat = [dict(leaves(row, parts)) for row in rows]
-    columns = list(dict.fromkeys(key for row in flat for key in row))
+    columns = list(dict.fromkeys(chain.from_iterable(flat)))
     return csv_text(columns, ([row.get(key) for key in columns] for row in flat))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -113,7 +114,7 @@ def command(
         say(f"{html}: page to choose a look on", err=True)
     if style == "json":
         print_json_answers(
-            (each for block in blocks for each in _objects(answers, *block)),
+            (chain.from_iterable(_objects(answers, *block) for block in blocks)),
             single=answers.single,
         )
     elif style == "csv":

@@ -5,6 +5,7 @@ the cube to build.
 from __future__ import annotations
 
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -174,8 +175,8 @@ def _print_fronts(chart: Chart) -> None:
 
     say("Pareto fronts, from the fastest to the most accurate")
     tables = []
-    for criterion in (
-        criterion for batch in chart.batches for criterion in criteria(batch)[:PRINTED]
+    for criterion in chain.from_iterable(
+        criteria(batch)[:PRINTED] for batch in chart.batches
     ):
         title = f"{criterion.title}: {criterion.colours}"
         table = make_table(("method",), ("time", criterion.unit, "bytes"), title=title)

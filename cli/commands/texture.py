@@ -8,6 +8,7 @@ import os
 import re
 import time
 from collections.abc import Generator, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -239,7 +240,7 @@ def convert(
         pixels = sum(one.counts.pixels for one in converted)
         size = sum(one.target.stat().st_size for one in converted) / 1e6
         spaces = ", ".join(
-            dict.fromkeys(space for one in converted for space in one.spaces)
+            dict.fromkeys(chain.from_iterable(one.spaces for one in converted))
         )
         say(
             f"{target}: {pluralise(len(converted), 'texture')}{skipped}, "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -166,7 +167,7 @@ def _print(
     # wavelength, weights to XYZ and to RGB, and powers of the lights
     parts = (sampling.wavelengths[:, None], sampling.to_xyz, to_rgb, sampling.powers.T)
     rows = [
-        [number for part in parts for number in part[row].tolist()]
+        list(chain.from_iterable(part[row].tolist() for part in parts))
         for row in range(len(sampling))
     ]
     if style == "json":

@@ -175,7 +175,7 @@ def show(*tables: SafeTable) -> None:
 
     from .tables import table_width
 
-    parts = [part for table in tables for part in table.parts(columns())]
+    parts = list(chain.from_iterable(table.parts(columns()) for table in tables))
     for number, part in enumerate(parts):
         if number:
             say()

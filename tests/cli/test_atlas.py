@@ -2,6 +2,7 @@
 
 import csv
 import io
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -20,12 +21,11 @@ def test_table_lists_entries_and_counts_those_out_of_gamut(run, monkeypatch):
         monkeypatch.setenv("COLUMNS", width)
         text = run("atlas", MACBETH).stdout
         assert all(name in text for name in read_atlas(MACBETH).names)
-        words = [
-            word
-            for line in text.split("\n")
-            if line.startswith("cyan")
-            for word in line.split()
-        ]
+        words = list(
+            chain.from_iterable(
+                line.split() for line in text.split("\n") if line.startswith("cyan")
+            )
+        )
         assert [word for word in words if word != "cyan"] == [
             "380:780:5",
             "-0.0334",

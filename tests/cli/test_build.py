@@ -1,5 +1,7 @@
 """``uplift build``."""
 
+from itertools import chain
+
 import pytest
 
 import uplift
@@ -87,7 +89,7 @@ def test_all_options_are_passed_to_the_build(run, home, monkeypatch, plain_cube)
         words += (
             [option]
             if value is True
-            else [word for each in values for word in (option, each)]
+            else list(chain.from_iterable((option, each) for each in values))
         )
     passed = {}
     monkeypatch.setattr(

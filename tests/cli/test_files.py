@@ -7,6 +7,7 @@ import importlib
 import itertools
 import os
 import shutil
+from itertools import chain
 from types import SimpleNamespace
 
 import numpy as np
@@ -132,7 +133,7 @@ def inputs(home, cubes, macbeth, monkeypatch):
 
 def read_by(words, inputs):
     """Names of the inputs of a command line, and of those that they name."""
-    named = [name for word in words for name in (word, *NAMED.get(word, ()))]
+    named = list(chain.from_iterable((word, *NAMED.get(word, ())) for word in words))
     sources = set(named) & set(inputs)
     assert sources
     return sources

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 import warnings
+from itertools import chain
 
 import click
 import pytest
@@ -281,7 +282,7 @@ NUMERIC = [
 
 
 def test_hints_name_options_and_codes_that_exist(repository):
-    known = {name for _, option in OPTIONS for name in option.opts}
+    known = set(chain.from_iterable(option.opts for _, option in OPTIONS))
     sources = "".join(
         path.read_text(encoding="utf-8")
         for path in (repository / "uplift").rglob("*.py")
@@ -296,7 +297,7 @@ def test_hints_name_options_and_codes_that_exist(repository):
 def test_texts_of_the_library_name_parameters_that_are_options_and_no_options(
     repository,
 ):
-    known = {name for _, option in OPTIONS for name in option.opts}
+    known = set(chain.from_iterable(option.opts for _, option in OPTIONS))
     in_hints = {"measured", "outside"}  # of errors with a hint in `HINTS`
     laboratory = repository / "uplift" / "lab"
     pages = repository / "uplift" / "extras" / "pages"

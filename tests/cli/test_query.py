@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from itertools import chain
 
 import colour
 import matplotlib.image
@@ -422,7 +423,7 @@ def test_standard_errors_under_other_lights(ask, run, table, macbeth_cube):
     words = [
         "--cube",
         macbeth_cube,
-        *(word for light in lights for word in ("--light", light)),
+        *chain.from_iterable(("--light", light) for light in lights),
     ]
     expected = {
         light: pytest.approx(float(cube.standard_error(rgb, light))) for light in lights

@@ -5,6 +5,7 @@ or writes anything.
 import itertools
 import shutil
 import sys
+from itertools import chain
 
 import numpy as np
 import pytest
@@ -366,11 +367,12 @@ def test_missing_packages_are_named_before_anything_is_computed_or_written(
 
 
 def test_every_figure_has_a_line():
-    options = {
-        words
-        for line in lines(UNPLOTTED)
-        for words in itertools.product([command_of(line)], line.split())
-    }
+    options = set(
+        chain.from_iterable(
+            itertools.product([command_of(line)], line.split())
+            for line in lines(UNPLOTTED)
+        )
+    )
     for path, command in commands(main).items():
         for param in command.params:
             if param.type in (PLOT, FIGURE_PAGE, SHEET):

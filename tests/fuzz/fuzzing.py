@@ -12,6 +12,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -77,7 +78,9 @@ def choose(random: Random, items: Sequence[Any]) -> Any:
 
 @functools.cache
 def _words(seeds: Seeds) -> Seeds:
-    return tuple(dict.fromkeys(word for seed in seeds for word in WORD.findall(seed)))
+    return tuple(
+        dict.fromkeys(chain.from_iterable(WORD.findall(seed) for seed in seeds))
+    )
 
 
 def mutate(content: bytes, random: Random, seeds: Seeds) -> bytes:

@@ -9,6 +9,7 @@ import io
 import json
 import tempfile
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -106,7 +107,7 @@ def _vendor_files() -> tuple[Files, ...]:
 def _vendor_file(random: Random, path: Path) -> None:
     """Mutate a file of an instrument."""
     files = choose(random, _vendor_files())
-    seeds = tuple(content for each in _vendor_files() for content in each.values())
+    seeds = tuple(chain.from_iterable(each.values() for each in _vendor_files()))
     spectra = [
         data for name, data in files.items() if name.endswith(".sli")
     ]  # the header is the file to read
@@ -171,9 +172,7 @@ def _chart() -> Seeds:
 def use_chart(path: Path) -> None:
     """Compute what pictures of the chart show, and recommend a cube."""
     chart = read_chart(path)
-    for criterion in (
-        criterion for batch in chart.batches for criterion in criteria(batch)
-    ):
+    for criterion in chain.from_iterable(criteria(batch) for batch in chart.batches):
         for result in criterion.front(chart):
             criterion.labels(result)
     recommend_cube(chart, Requirement(time_ns=1e5))

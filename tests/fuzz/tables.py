@@ -11,6 +11,7 @@ import warnings
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -227,9 +228,11 @@ def _table(
             for wave, cell in zip(waves, cells, strict=True):
                 yield [name, wave, cell]
     elif writing.layout == "pairs":
-        yield [text for name in names for text in (label, f"{name}{suffix}")]
+        yield list(chain.from_iterable((label, f"{name}{suffix}") for name in names))
         for row, wave in enumerate(waves):
-            yield [text for name in names for text in (wave, columns[name][row])]
+            yield list(
+                chain.from_iterable((wave, columns[name][row]) for name in names)
+            )
     else:
         if writing.head == "two rows":
             yield ["Sample", *names]

@@ -4,6 +4,7 @@ every writer.
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
+from itertools import chain
 from typing import overload
 
 import numpy as np
@@ -341,9 +342,9 @@ def merge(parts: Iterable[Atlas]) -> Atlas:
     """
     parts = tuple(parts)
     return Atlas(
-        tuple(entry for part in parts for entry in part.entries),
-        tuple(entry for part in parts for entry in part.skipped),
-        tuple(source for part in parts for source in part.sources),
+        tuple(chain.from_iterable(part.entries for part in parts)),
+        tuple(chain.from_iterable(part.skipped for part in parts)),
+        tuple(chain.from_iterable(part.sources for part in parts)),
     )
 
 

@@ -7,6 +7,7 @@ import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field
+from itertools import chain
 from typing import Literal
 
 import numpy as np
@@ -93,7 +94,7 @@ def to_atlas(
         document.location, measurements.scales, kept, measured
     )
     entries = [_entry(each, scale, document) for each in kept]
-    counts = Counter(note for each in kept for note in each.notes)
+    counts = Counter(chain.from_iterable(each.notes for each in kept))
     changes = [
         f"{count} of {pluralise(len(entries), 'entry')}: {note}"
         for note, count in counts.items()

@@ -11,6 +11,7 @@ import csv
 import io
 import re
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from typing import Any
 
 from uplift.common.text import parse_float
@@ -114,7 +115,7 @@ def find_delimiter(lines: Iterable[str]) -> str:
     ] or DELIMITERS[:1]
 
     def score(delimiter: str) -> tuple[int, int]:
-        cells = [cell for line in lines for cell in split_line(line, delimiter)]
+        cells = list(chain.from_iterable(split_line(line, delimiter) for line in lines))
         numbers = sum(map(is_decimal, cells))
         return numbers, -len(cells) if numbers else int(len(cells) > len(lines))
 

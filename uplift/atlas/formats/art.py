@@ -10,6 +10,7 @@ import itertools
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -353,7 +354,7 @@ def text(atlas: Atlas, header: Header) -> str:
         for name, key in HEADER.items()
     )
     return "\n".join(
-        [*lines, "", *(line for entry in atlas for line in _entry_lines(entry))]
+        [*lines, "", *chain.from_iterable(_entry_lines(entry) for entry in atlas)]
     )
 
 

@@ -5,6 +5,7 @@ each, or pairs on a line.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 
@@ -222,7 +223,7 @@ def _pairs(block: Block) -> Series | None:
         is_plain(label) or names_wavelengths(label) for label in labels
     )
     wavelengths = [parse_label(cell.text) for row in block.rows for cell in row[::2]]
-    cells = tuple(cell for row in block.rows for cell in row[1::2])
+    cells = tuple(chain.from_iterable(row[1::2] for row in block.rows))
     numbers = [label.number for label in wavelengths if label is not None]
     if (
         block.width < 4

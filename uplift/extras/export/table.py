@@ -4,6 +4,7 @@ languages.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -297,7 +298,7 @@ def model_constants(model: object) -> dict[str, float]:
         return {"SIGMOIDS": 1, "START": model.start, "END": model.end}
     assert isinstance(model, Moments)
     low, high = warped(model.warp, np.array([model.start, model.end])).tolist()
-    terms = [number for term in WARPS[model.warp] for number in term]
+    terms = list(chain.from_iterable(WARPS[model.warp]))
     warp = {}
     if terms:
         padded = (*terms, 0.0, 0.0, 0.0)[:6]

@@ -3,6 +3,7 @@
 import contextlib
 import io
 import re
+from itertools import chain
 
 import numpy as np
 
@@ -78,7 +79,9 @@ def _with_points(text: str) -> str:
     """Return a text with points in place of decimal commas. Commas between the numbers
     of pairs stay.
     """
-    pairs = [match for data in DATA.findall(text) for match in COMMA.finditer(data)]
+    pairs = list(
+        chain.from_iterable(COMMA.finditer(data) for data in DATA.findall(text))
+    )
     wavelengths = [float(match[1]) for match in pairs]
     are_pairs = wavelengths == sorted(wavelengths) or wavelengths == sorted(
         wavelengths, reverse=True

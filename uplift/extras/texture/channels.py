@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
@@ -182,7 +183,9 @@ def colour_channels_by_part(image: Image) -> list[tuple[Part, ColourChannels | N
     """
     parts = [(part, colour_channels(part)) for part in image.parts]
     if not any(colours for _, colours in parts):
-        names = dict.fromkeys(name for part in image.parts for name in part.channels)
+        names = dict.fromkeys(
+            chain.from_iterable(part.channels for part in image.parts)
+        )
         if set(names) & CHROMA:
             hint = (
                 "convert luminance and chroma to R, G and B, or remove the chroma for "

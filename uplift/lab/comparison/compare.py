@@ -10,7 +10,7 @@ alike.
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import chain, product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -227,7 +227,7 @@ def represent(
     after a filter with negative lobes, are clipped with a warning. Raises
     `UpliftError`.
     """
-    lights = [light for light_set in scene.sets for light in light_set.lights]
+    lights = list(chain.from_iterable(light_set.lights for light_set in scene.sets))
     powers, surfaces = representation.stored(scene.powers, scene.surfaces)
 
     def atlas(names: Sequence[str], spectra: Array) -> Atlas:

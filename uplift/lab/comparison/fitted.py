@@ -48,7 +48,9 @@ def _wavelengths(scene: Scene) -> Iterator[Representation]:
     """Wavelengths, weights, and powers of the lights, as
     `uplift.extras.scene.wavelengths` fits them together.
     """
-    lights = [light for light_set in scene.sets for light in light_set.illuminants]
+    lights = list(
+        chain.from_iterable(light_set.illuminants for light_set in scene.sets)
+    )
     setup = make_setup(scene.surfaces, lights, wavelengths=samples.wavelengths())
     for count in WAVELENGTHS:
         yield fitted_wavelengths(choose(setup, count=count).sampling, scene.powers)
