@@ -2,31 +2,27 @@
 
 The texture ``uplift``:
 
-=======================================
-====================================================================== ``cube``
-file of the cube, found by Mitsuba's file resolver; the default cube of
-                                         the package if omitted
-``rgb``                                  one colour: linear RGB of the cube's space, as
-three numbers or text ``filename``                             or an image: linear, or
-encoded in the cube's space if the file is; or a
-                                         texture in OpenEXR that ``uplift texture``
-                                         wrote, which needs no cube
-``bitmap``                               or an image as `mitsuba.Bitmap`
-``out_of_gamut``                         treatment of colours outside [0, 1], one of
-                                         `uplift.colorimetry.gamut.METHODS`; ``clip``
-                                         with a warning for images, ``error`` for one
-                                         colour
-``filter_type``                          ``bilinear``, ``nearest``, or ``stochastic``:
-one of the four texels around,
-                                         chosen by its weight, which is faster and has
-                                         the same mean
-``wrap_mode``, ``to_uv``                 options of images, as in Mitsuba's ``bitmap``
-``emission``                             whether the colours are of lights, for
-``radiance`` of emitters; ``cube`` is
-                                         then an emission table, and colours may have
-                                         any brightness
-=======================================
-======================================================================
+``cube``
+    file of the cube, found by Mitsuba's file resolver; the default cube of the package
+    if omitted
+``rgb``
+    one colour: linear RGB of the cube's space, as three numbers or text
+``filename``
+    or an image: linear, or encoded in the cube's space if the file is; or a texture in
+    OpenEXR that ``uplift texture`` wrote, which needs no cube
+``bitmap``
+    or an image as `mitsuba.Bitmap`
+``out_of_gamut``
+    treatment of colours outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`;
+    ``clip`` with a warning for images, ``error`` for one colour
+``filter_type``
+    ``bilinear``, ``nearest``, or ``stochastic``: one of the four texels around, chosen
+    by its weight, which is faster and has the same mean
+``wrap_mode``, ``to_uv``
+    options of images, as in Mitsuba's ``bitmap``
+``emission``
+    whether the colours are of lights, for ``radiance`` of emitters; ``cube`` is then an
+    emission table, and colours may have any brightness
 
 The emitter ``uplift_envmap`` takes ``filename`` or ``bitmap``, ``cube``, ``to_world``
 and ``scale``, as Mitsuba's ``envmap``. Images are uplifted when they are loaded, to 4

@@ -21,8 +21,8 @@ and F' forward; K, B and F are those of diffuse light (F has no effect), S' = B'
 and S = B + F. With μ = K' + B' + F' and γ² = K (K + 2B), the beam e^−μx feeds two
 diffuse fluxes,
 
-    t' = F' e^−μx − (K + B) t + B s,    −s' = B' e^−μx − (K + B) s + B t,    t(0) = 0,
-    s(X) = 0.
+    t' = F' e^−μx − (K + B) t + B s,    −s' = B' e^−μx − (K + B) s + B t,
+    t(0) = 0,  s(X) = 0.
 
 −Q' e^−μx and −P' e^−μx are a particular solution. The rest is Kubelka and Munk's layer
 (r, τ) with S = B, so that
