@@ -50,6 +50,7 @@ def test_builds_and_queries_load_only_the_core():
         "rich",
         "logging",
         "subprocess",
+        "numpy.ma",
         *HEAVY_OF_FITS,
     }
     assert loaded_subpackages("import uplift; uplift.build(dim=2)")[0] == CORE | {

@@ -183,7 +183,8 @@ def _block(
             xyz=xyz[row],
             delta_e_2000=float(delta_e[row]),
             cell=tuple(cell),
-            statuses=tuple(map(Status, np.unique(statuses[row]).tolist())),
+            # np.unique without counts imports numpy.ma, which takes time.
+            statuses=tuple(map(Status, sorted(set(statuses[row].tolist())))),
             entry=names[row],
             standard_error=_known(errors[row, 0]),
             error_bound=_known(errors[row, 1]),
