@@ -11,8 +11,9 @@ out.
     cube = uplift.load("macbeth.uplift")
     cube.reflectance([0.8, 0.2, 0.1], wavelengths=range(380, 781, 5))
 
-``import uplift`` loads no room of the package. The first use of a name below imports
-its module, and that of a part which the core does not have imports the part.
+``import uplift`` loads the registry of parts and no other module of the package. The
+first use of a name below imports its module; a part that the core does not have, such
+as an order of growth, is imported when a build uses it.
 """
 
 from __future__ import annotations
@@ -86,25 +87,16 @@ _EXPORTS = {
     "uplift.pipeline.build": ("build",),
     "uplift.extras.looks.look": ("Look", "read_looks"),
 }
-_PARTS = {
-    ("formats", "outside"): "uplift.extras.formats:FORMATS",
-    (
-        "growth",
-        "coarse-to-fine",
-    ): "uplift.extras.thesis.growth_coarse:grow_coarse_to_fine",
-    (
-        "growth",
-        "neighbours",
-    ): "uplift.extras.thesis.growth_neighbours:grow_from_neighbours",
-    ("solver", "stock"): "uplift.extras.thesis.stock_solvers:as_method",
-    ("looks", "targets"): "uplift.extras.looks.targets:targets_of",
-    ("scene", "images"): "uplift.extras.texture.scene_colours:as_images",
-    ("notebook", "atlas"): "uplift.extras.pages.notebook:atlas_html",
-    ("notebook", "cube"): "uplift.extras.pages.notebook:cube_html",
-}
-for (_kind, _name), _location in _PARTS.items():
-    register(_kind, _name, _location)
 _HOMES = {name: module for module, names in _EXPORTS.items() for name in names}
+
+register("formats", "instruments", "uplift.extras.formats:FORMATS")
+register("growth", "coarse-to-fine", "uplift.extras.thesis:grow_coarse_to_fine")
+register("growth", "neighbours", "uplift.extras.thesis:grow_from_neighbours")
+register("solver", "stock", "uplift.extras.thesis:as_method")
+register("looks", "targets", "uplift.extras.looks.targets:targets_of")
+register("scene", "images", "uplift.extras.texture.scene_colours:as_images")
+register("notebook", "atlas", "uplift.extras.pages.notebook:atlas_html")
+register("notebook", "cube", "uplift.extras.pages.notebook:cube_html")
 
 
 def __getattr__(name: str) -> Any:

@@ -123,8 +123,8 @@ class Document:
 
         def start(name: str, attributes: Any) -> None:
             nonlocal depth, count
-            depth = depth + 1
-            count = count + 1
+            depth += 1
+            count += 1
             if depth > MAX_DEPTH or count > MAX_ELEMENTS:
                 problem = (
                     f"an XML file must have at most {MAX_ELEMENTS:,} elements, and "

@@ -7,8 +7,6 @@ it is imported; another distribution has an entry point in the group ``uplift.KI
 from importlib import import_module
 from typing import Any
 
-from uplift.common.errors import OptionError
-
 _LOCATIONS: dict[tuple[str, str], str] = {}
 
 
@@ -24,6 +22,8 @@ def extension(kind: str, name: str) -> Any:
     for a part that is not installed.
     """
     if (kind, name) not in _LOCATIONS:
+        from uplift.common.errors import OptionError  # `import uplift` stays light
+
         raise OptionError(
             f"{kind} '{name}' is not a part of this installation",
             hint="install all of uplift",
@@ -33,7 +33,7 @@ def extension(kind: str, name: str) -> Any:
 
 
 def registered(kind: str) -> list[Any]:
-    """Import all parts of a kind, first those of this package, in order."""
+    """Import all parts of a kind that are registered, in order."""
     return [extension(kind, name) for known, name in _LOCATIONS if known == kind]
 
 

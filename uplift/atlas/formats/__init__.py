@@ -86,9 +86,10 @@ def read_any(document: Document) -> tuple[Format, Measurements | Atlas]:
     """
     *marked, table = known_formats()
     form = _recognise(document, marked)
-    if form is None:
-        for forms in installed(KIND):
-            form = form or _recognise(document, forms)
+    if form is None and not document.path.lower().endswith(table.suffixes):
+        # A search of all installed distributions, which the usual tables do without
+        forms = itertools.chain.from_iterable(installed(KIND))
+        form = _recognise(document, list(forms))
     form = form or table
     return form, import_module(form.module).read(document)
 
