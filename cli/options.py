@@ -466,7 +466,7 @@ def wavelengths(help: str) -> Decorator:
 
 
 cube_argument = click.argument("cube", metavar="CUBE", shell_complete=complete_cube)
-# names of uplift.atlas.measurements.MEASURED, which is not imported here
+# names of uplift.atlas.sources.MEASURED, which is not imported here
 scale = choice(
     "--scale",
     *("auto", "percent", "fraction"),
@@ -475,7 +475,7 @@ scale = choice(
         "values."
     ),
 )
-missing = choice(  # names of uplift.atlas.measurements.MISSING
+missing = choice(  # names of uplift.atlas.sources.MISSING
     "--missing",
     *("refuse", "interpolate", "skip"),
     help="What becomes of an entry that lacks a value within 380-780 nm.",

@@ -89,7 +89,7 @@ _EXPORTS = {
 }
 _HOMES = {name: module for module, names in _EXPORTS.items() for name in names}
 
-register("formats", "instruments", "uplift.extras.formats:FORMATS")
+register("formats", "measurements", "uplift.extras.formats:FORMATS")
 register("growth", "coarse-to-fine", "uplift.extras.thesis:grow_coarse_to_fine")
 register("growth", "neighbours", "uplift.extras.thesis:grow_from_neighbours")
 register("solver", "stock", "uplift.extras.thesis:as_method")

@@ -22,8 +22,8 @@ from uplift.atlas import (
     write_atlas,
 )
 from uplift.atlas.document import SourceLocation
-from uplift.atlas.samples import Spectrum
 from uplift.common.errors import AtlasError, UnknownNameError
+from uplift.extras.formats.samples import Spectrum
 
 RED = Entry("red", [400, 550, 700], [0.0, 0.0, 1.0])
 GREY = Entry("grey", [380, 780], [0.5, 0.5])

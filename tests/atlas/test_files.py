@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from tests.atlas.atlas_texts import PLAIN
 from tests.helpers import raises, warns
 from uplift.atlas import Atlas, Entry, Header, read_atlas, write_atlas
-from uplift.atlas.statements import remark_scale
 from uplift.common.errors import AtlasError, OutputError, UpliftWarning
+from uplift.extras.formats.statements import remark_scale
 
 GREY = Atlas((Entry("grey", np.array([400.0, 700.0]), np.array([0.5, 0.25])),))
 

@@ -1,15 +1,10 @@
-"""Files as text with source locations, and parsing steps that all readers share:
-numbers, scales, units, XML.
-"""
+"""Files as text with source locations, and steps that all readers share."""
 
 import hashlib
 import os
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
-from xml.parsers import expat
 
-from uplift.atlas.statements import find_unit
 from uplift.common.arrays import StrPath
 from uplift.common.errors import AtlasError
 from uplift.common.files import IMAGES, read_bytes, recognise
@@ -17,8 +12,6 @@ from uplift.common.text import parse_float, printable, shorten
 
 MAX_BYTES = 64 << 20
 """Largest file that is read, some 100,000 entries."""
-MAX_DEPTH, MAX_ELEMENTS = 64, 2_000_000
-"""Limits of an XML file."""
 UTF_16_START = 16
 """Bytes by which UTF-16 without a byte-order mark is recognised."""
 EXPORT = "export the file again, or export a CSV table"
@@ -115,45 +108,6 @@ class Document:
         """Lines of the text; line n of an editor is ``lines[n - 1]``."""
         return self.text.split("\n")
 
-    def check_xml(self) -> None:
-        """Raise `AtlasError` for XML with a document type, too many or too deep
-        elements, or errors of syntax.
-        """
-        depth = count = 0
-
-        def start(name: str, attributes: Any) -> None:
-            nonlocal depth, count
-            depth += 1
-            count += 1
-            if depth > MAX_DEPTH or count > MAX_ELEMENTS:
-                problem = (
-                    f"an XML file must have at most {MAX_ELEMENTS:,} elements, and "
-                    f"{MAX_DEPTH} nested ones"
-                )
-                raise self.location.error(problem, EXPORT)
-
-        def end(name: str) -> None:
-            nonlocal depth
-            depth -= 1
-
-        def doctype(*_: Any) -> None:
-            raise self.location.error(
-                "an XML file must not have a document type, which may define entities",
-                EXPORT,
-            )
-
-        parser = expat.ParserCreate()
-        parser.StartElementHandler = start
-        parser.EndElementHandler = end
-        parser.StartDoctypeDeclHandler = doctype
-        try:
-            parser.Parse(self.data, True)
-        except AtlasError:
-            raise
-        except (expat.ExpatError, ValueError, LookupError) as error:
-            location = self.location.at(getattr(error, "lineno", 1))
-            raise location.error(f"not a valid XML file: {error}", EXPORT) from None
-
 
 def read_document(path: StrPath) -> Document:
     """Read a file. Raise `AtlasError` if it is missing, unreadable or too large."""
@@ -193,20 +147,6 @@ def check_scale(scale: float, label: str, location: SourceLocation) -> float:
         problem = f"{label} must be positive and finite, got {scale:g}"
         raise location.error(problem, "write 100 for percent, 1 for values in [0, 1]")
     return scale
-
-
-def stated_unit(text: str, location: SourceLocation) -> float:
-    """Return the unit of wavelengths, see `find_unit`. Raise `AtlasError` for an
-    unknown one.
-    """
-    unit = find_unit(text)
-    if unit is None:
-        problem = (
-            "wavelengths must be in nanometers, micrometers or 1/cm, got "
-            f"'{truncate(text)}'"
-        )
-        raise location.error(problem, "export the file with wavelengths in nm")
-    return unit
 
 
 def one_line(text: object) -> str:

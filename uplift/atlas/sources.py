@@ -8,28 +8,38 @@ import hashlib
 import os
 from collections.abc import Mapping
 from dataclasses import astuple, dataclass, replace
+from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
+from uplift.atlas import art
 from uplift.atlas.atlas import Atlas, Entry, Header, Source, merge, skipped_warning
 from uplift.atlas.document import Document, SourceLocation, read_document
-from uplift.atlas.formats import art, read_any
-from uplift.atlas.measurements import (
-    MEASURED,
-    MISSING,
-    Measured,
-    Missing,
-    to_atlas,
-    warn_of_odd,
-)
+from uplift.atlas.formats import ART, known_formats, read_any
 from uplift.common.arrays import StrPath
 from uplift.common.errors import OutputError, UpliftWarning, unknown_name, warn
 from uplift.common.files import write_text
 from uplift.common.text import pluralise
 
+Measured = Literal["auto", "percent", "fraction"]
+Missing = Literal["refuse", "interpolate", "skip"]
+MEASURED: tuple[Measured, ...] = ("auto", "percent", "fraction")
+"""Scales of measured values; ``auto`` takes the scale that the file states or, failing
+that, decides by the values.
+"""
+MISSING: tuple[Missing, ...] = ("refuse", "interpolate", "skip")
+"""What becomes of an entry with a missing value."""
+COARSE = 20.0
+"""Largest step in nm at which neighbours are alike."""
+ODD = 10.0
+"""Ratio of a value to both of its neighbours that is likely to be a slip."""
+DARK = 1e-3
+"""Reflectance below which a ratio shows no slip."""
+VISIBLY = 0.1
+"""Reflectance above which a slip matters."""
 PACKAGE = "uplift_atlases"
 """Name under which the folder atlases/ of the repository is installed."""
 FORMS = (
@@ -92,17 +102,45 @@ def read_atlas(
         raise unknown_name(str(missing), MISSING, "treatment of missing values")
     atlases = []
     for document in map(read_named, list(map(find_atlas_file, paths))):
-        chosen, found = read_any(document)
-        atlases.append(
-            found
-            if isinstance(found, Atlas)
-            else to_atlas(document, found, chosen.name, measured, missing)
-        )
+        chosen, content = read_any(document)
+        if not isinstance(content, Atlas):
+            content = content.to_atlas(document, chosen.name, measured, missing)
+        atlases.append(content)
     atlas = merge(atlases)
-    warn_of_odd(atlas.entries)
+    for entry in atlas:
+        _warn_of_odd(entry)
     if atlas.skipped:
         warn(skipped_warning(atlas.skipped, code="entry-skipped"))
     return atlas
+
+
+def _warn_of_odd(entry: Entry) -> None:
+    """Warn of the first value that is ten times both neighbours, or a tenth."""
+    values = np.maximum(entry.values, DARK)
+    before = values[:-2]
+    value = values[1:-1]
+    after = values[2:]
+    above = value > ODD * np.maximum(before, after)
+    below = value * ODD < np.minimum(before, after)
+    is_near = entry.wavelengths[2:] - entry.wavelengths[:-2] <= 2 * COARSE
+    is_bright = np.maximum(value, before) > VISIBLY
+    odd = np.flatnonzero((above | below) & is_near & is_bright) + 1
+    if not len(odd):
+        return
+    at = odd[0]
+    problem = (
+        f"{entry.values[at]:g} at {entry.wavelengths[at]:g} nm is far from both of its "
+        "neighbours"
+    )
+    warn(
+        UpliftWarning(
+            problem,
+            code="odd-value",
+            path=entry.path,
+            line=entry.line,
+            entry=entry.name,
+        )
+    )
 
 
 def write_atlas(
@@ -128,8 +166,6 @@ def write_atlas(
         The atlas is empty, the path cannot be written, the file exists and ``force`` is
         false, or the entries of a table differ in sampling.
     """
-    from uplift.atlas.formats import table
-
     if not atlas.entries:
         problem = "an atlas to write must have entries, got none"
         raise OutputError(
@@ -140,10 +176,11 @@ def write_atlas(
         header = Header(
             *("; ".join(filter(None, dict.fromkeys(texts))) for texts in stated)
         )
-    is_table = os.fspath(path).lower().endswith(".csv")
-    write_text(
-        table.text(atlas) if is_table else art.text(atlas, header), path, force=force
-    )
+    suffix = os.path.splitext(path)[1].lower()
+    written = [form for form in known_formats() if form.written]
+    form = next((form for form in written if form.suffixes[0] == suffix), ART)
+    text = import_module(form.module).text(atlas, header)
+    write_text(text, path, force=force)
 
 
 def from_distributions(distributions: Any) -> Atlas:

@@ -6,9 +6,9 @@ import sys
 
 READER = """
 from uplift.atlas import Format
-from uplift.atlas.measurements import Measurements
-from uplift.atlas.samples import Spectrum
-from uplift.atlas.statements import PERCENT, Scale
+from uplift.extras.formats.measurements import Measurements
+from uplift.extras.formats.samples import Spectrum
+from uplift.extras.formats.statements import PERCENT, Scale
 
 FORMATS = (Format("toy", (".toy",), r"\\ATOY ", "toy_format"),)
 

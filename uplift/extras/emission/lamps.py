@@ -8,8 +8,6 @@ import numpy as np
 from uplift.atlas.atlas import Atlas, Entry, merge, skipped_warning
 from uplift.atlas.document import Document, SourceLocation, truncate
 from uplift.atlas.formats import read_any
-from uplift.atlas.measurements import Measurements, to_atlas
-from uplift.atlas.samples import is_missing
 from uplift.atlas.sources import find_atlas_file, read_named
 from uplift.colorimetry import tables
 from uplift.colorimetry.lights import Illuminant, Lamp
@@ -31,6 +29,8 @@ from uplift.common.errors import (
 )
 from uplift.common.text import listed, printable
 from uplift.extras.emission.discs import Lamps
+from uplift.extras.formats.measurements import Measurements
+from uplift.extras.formats.samples import is_missing
 
 VISIBLE = (400.0, 700.0)
 """Range in nm that a lamp must cover."""
@@ -181,10 +181,10 @@ def is_illuminant(name: str) -> bool:
 
 
 def _read(document: Document) -> Atlas:
-    chosen, found = read_any(document)
-    if isinstance(found, Atlas):
+    chosen, content = read_any(document)
+    if not isinstance(content, Measurements):
         raise _not_a_lamp("reflectance spectrum", document)
-    stated = [spectrum.quantity or found.quantity for spectrum in found.spectra]
+    stated = [spectrum.quantity or content.quantity for spectrum in content.spectra]
     of_material = [
         quantity
         for quantity in stated
@@ -192,7 +192,7 @@ def _read(document: Document) -> Atlas:
     ]
     if of_material and len(of_material) == len(stated):
         raise _not_a_lamp(of_material[0].text, document)
-    return to_atlas(document, _scaled(document, found), chosen.name, "fraction")
+    return _scaled(document, content).to_atlas(document, chosen.name, "fraction")
 
 
 def _not_a_lamp(stated: str, document: Document) -> AtlasError:

@@ -1,5 +1,5 @@
-"""Formats of atlas files of instruments, spreadsheets and spectral libraries: one file
-each, and one row of `FORMATS`.
+"""Formats of atlas files: tables, spreadsheets, files of instruments and spectral
+libraries. Each one is a file, and a row of `FORMATS`.
 """
 
 from uplift.atlas.formats import Format
@@ -53,6 +53,13 @@ FORMATS = (
         suffixes=(".txt", ".ti3", ".sp"),
         pattern=r"(?m)^[^\S\n]*\"?BEGIN_DATA_FORMAT[\"\t ,;]*$",
         module="uplift.extras.formats.cgats",
+    ),
+    Format(
+        name="table",
+        suffixes=(".csv", ".txt", ".spd"),
+        pattern="",
+        module="uplift.extras.formats.delimited",
+        written=True,
     ),
 )
 """The formats, in the order in which they are recognised."""

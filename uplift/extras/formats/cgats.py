@@ -13,13 +13,13 @@ import numpy as np
 
 from uplift.atlas.atlas import Header
 from uplift.atlas.document import EXPORT, Document, check_scale, one_line, parse_number
-from uplift.atlas.measurements import Measurements
-from uplift.atlas.statements import Quantity, Scale
-from uplift.atlas.tables.cells import Cell, Row, parse_label
-from uplift.atlas.tables.grid import Grid
-from uplift.atlas.tables.read import read_grid
 from uplift.common.csv import split_line
 from uplift.common.text import parse_float
+from uplift.extras.formats.measurements import Measurements
+from uplift.extras.formats.statements import Quantity, Scale
+from uplift.extras.formats.tables.cells import Cell, Row, parse_label
+from uplift.extras.formats.tables.grid import Grid
+from uplift.extras.formats.tables.read import read_grid
 
 FORMAT = "DATA_FORMAT"
 DATA = "DATA"

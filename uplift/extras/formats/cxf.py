@@ -7,10 +7,11 @@ from typing import Any
 
 from uplift.atlas.atlas import Header, SkippedEntry
 from uplift.atlas.document import Document, one_line
-from uplift.atlas.measurements import Measurements, not_used_note, parsed_by
-from uplift.atlas.samples import Spectrum
-from uplift.atlas.statements import Quantity, Scale
 from uplift.common.text import listed
+from uplift.extras.formats.measurements import Measurements, not_used_note, parsed_by
+from uplift.extras.formats.samples import Spectrum
+from uplift.extras.formats.statements import Quantity, Scale
+from uplift.extras.formats.xml import check_xml
 
 START, STEP = 380.0, 10.0
 """Start and step in nm of spectra whose colour specification states none."""
@@ -30,7 +31,7 @@ def read(document: Document) -> Measurements:
     """Read the reflectance spectra of the objects of a CxF3 file; objects with other
     spectra only are skipped.
     """
-    document.check_xml()
+    check_xml(document)
     with parsed_by("colour-cxf", "CxF files", document):
         from colour_cxf import cxf3
         from xsdata.formats.dataclass.parsers import XmlParser

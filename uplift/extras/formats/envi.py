@@ -14,21 +14,21 @@ from uplift.atlas.document import (
     SourceLocation,
     check_scale,
     one_line,
-    stated_unit,
-)
-from uplift.atlas.measurements import Measurements, parsed_by
-from uplift.atlas.samples import Spectrum
-from uplift.atlas.statements import (
-    Quantity,
-    Scale,
-    remark_quantity,
-    remark_scale,
-    to_nm,
-    unit_by_values,
 )
 from uplift.common.errors import AtlasError
 from uplift.common.files import read_bytes
 from uplift.common.text import pluralise
+from uplift.extras.formats.measurements import Measurements, parsed_by
+from uplift.extras.formats.samples import Spectrum
+from uplift.extras.formats.statements import (
+    Quantity,
+    Scale,
+    remark_quantity,
+    remark_scale,
+    stated_unit,
+    to_nm,
+    unit_by_values,
+)
 
 HEADER = ".hdr"
 LIBRARY = ".sli"

@@ -7,11 +7,18 @@ from itertools import chain
 
 import numpy as np
 
-from uplift.atlas.document import EXPORT, Document, one_line, stated_unit, truncate
-from uplift.atlas.measurements import Measurements, parsed_by
-from uplift.atlas.samples import Spectrum
-from uplift.atlas.statements import Quantity, Scale, label_quantity, label_scale, to_nm
+from uplift.atlas.document import EXPORT, Document, one_line, truncate
 from uplift.common.text import pluralise
+from uplift.extras.formats.measurements import Measurements, parsed_by
+from uplift.extras.formats.samples import Spectrum
+from uplift.extras.formats.statements import (
+    Quantity,
+    Scale,
+    label_quantity,
+    label_scale,
+    stated_unit,
+    to_nm,
+)
 
 POINTS = re.compile(r"^##\s*NPOINTS\s*=\s*(\S+)", re.IGNORECASE | re.MULTILINE)
 DATA = re.compile(

@@ -10,12 +10,12 @@ from dataclasses import replace
 from typing import Any
 
 from uplift.atlas.document import Document, one_line
-from uplift.atlas.measurements import Measurements, parsed_by
-from uplift.atlas.tables.cells import Cell, Row, trimmed
-from uplift.atlas.tables.grid import Grid
-from uplift.atlas.tables.read import NO_TABLE, read_grid
 from uplift.common.csv import plain_cell
 from uplift.common.errors import AtlasError
+from uplift.extras.formats.measurements import Measurements, parsed_by
+from uplift.extras.formats.tables.cells import Cell, Row, trimmed
+from uplift.extras.formats.tables.grid import Grid
+from uplift.extras.formats.tables.read import NO_TABLE, read_grid
 
 OLE = b"\xd0\xcf\x11\xe0"
 """First bytes of ``.xls``; the other ones are ZIP archives."""

@@ -1,10 +1,11 @@
 """Reader of IES TM-27-14 (``.spdx``), by colour-science."""
 
 from uplift.atlas.document import Document, one_line
-from uplift.atlas.measurements import Measurements, parsed_by
-from uplift.atlas.samples import Spectrum
-from uplift.atlas.statements import Quantity
 from uplift.common.colour_science import colour_science
+from uplift.extras.formats.measurements import Measurements, parsed_by
+from uplift.extras.formats.samples import Spectrum
+from uplift.extras.formats.statements import Quantity
+from uplift.extras.formats.xml import check_xml
 
 REFLECTANCES = ("reflectance", "r-factor")
 """Spectral quantities of the standard that a cube can hold."""
@@ -14,7 +15,7 @@ MATERIALS = (*REFLECTANCES, "transmittance", "t-factor", "absorptance")
 
 def read(document: Document) -> Measurements:
     """Read the spectrum of a file."""
-    document.check_xml()
+    check_xml(document)
     colour = colour_science()
     with parsed_by("colour-science", "IES TM-27 files", document):
         found = colour.SpectralDistribution_IESTM2714(document.path).read()

@@ -44,12 +44,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas import Atlas
 from uplift.atlas.document import read_document
 from uplift.atlas.formats import read_any
 from uplift.colorimetry import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError
+from uplift.extras.formats.measurements import Measurements
 from uplift.extras.paint.optics import (
     TINY,
     DirectedLayer,
@@ -292,8 +292,9 @@ def read_constants(path: StrPath, wavelengths: Array) -> Array:
     `AtlasError`.
     """
     document = read_document(path)
-    (_, found), samples = read_any(document), {}
-    for spectrum in () if isinstance(found, Atlas) else found.spectra:
+    _, content = read_any(document)
+    samples = {}
+    for spectrum in content.spectra if isinstance(content, Measurements) else ():
         nm = np.asarray(spectrum.wavelengths, dtype=float)
         values = np.asarray(spectrum.values, dtype=float)
         if not (np.isfinite(values) & (values >= 0)).all():

@@ -8,8 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from uplift.atlas.document import truncate
-from uplift.atlas.measurements import not_used_note
-from uplift.atlas.statements import (
+from uplift.common.arrays import Array
+from uplift.common.text import pluralise
+from uplift.extras.formats.measurements import not_used_note
+from uplift.extras.formats.statements import (
     METRE,
     NANOMETRE,
     find_unit,
@@ -19,7 +21,7 @@ from uplift.atlas.statements import (
     to_nm,
     unit_by_values,
 )
-from uplift.atlas.tables.cells import (
+from uplift.extras.formats.tables.cells import (
     Cell,
     Row,
     Run,
@@ -31,7 +33,7 @@ from uplift.atlas.tables.cells import (
     parse_label,
     runs,
 )
-from uplift.atlas.tables.grid import (
+from uplift.extras.formats.tables.grid import (
     MAX_PREAMBLE,
     NAME_LABELS,
     Grid,
@@ -40,8 +42,6 @@ from uplift.atlas.tables.grid import (
     cell_at,
     plain_label,
 )
-from uplift.common.arrays import Array
-from uplift.common.text import pluralise
 
 
 class Header(NamedTuple):

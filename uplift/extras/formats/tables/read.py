@@ -6,9 +6,11 @@ lines below. It states scale, quantity and unit.
 """
 
 from uplift.atlas.document import SourceLocation, truncate
-from uplift.atlas.measurements import Measurements
-from uplift.atlas.samples import Spectrum, is_missing
-from uplift.atlas.statements import (
+from uplift.common.errors import AtlasError
+from uplift.common.text import pluralise
+from uplift.extras.formats.measurements import Measurements
+from uplift.extras.formats.samples import Spectrum, is_missing
+from uplift.extras.formats.statements import (
     NANOMETRE,
     PERCENT,
     Scale,
@@ -19,7 +21,7 @@ from uplift.atlas.statements import (
     remark_scale,
     to_nm,
 )
-from uplift.atlas.tables.cells import (
+from uplift.extras.formats.tables.cells import (
     SHORTEST,
     Cell,
     Row,
@@ -28,8 +30,8 @@ from uplift.atlas.tables.cells import (
     parse_cell,
     runs,
 )
-from uplift.atlas.tables.columns import blocks, spectra_of
-from uplift.atlas.tables.grid import (
+from uplift.extras.formats.tables.columns import blocks, spectra_of
+from uplift.extras.formats.tables.grid import (
     LAYOUT,
     MAX_AXIS,
     MAX_PREAMBLE,
@@ -38,9 +40,7 @@ from uplift.atlas.tables.grid import (
     Table,
     plain_label,
 )
-from uplift.atlas.tables.rows import find_samples, headers, spectra_below
-from uplift.common.errors import AtlasError
-from uplift.common.text import pluralise
+from uplift.extras.formats.tables.rows import find_samples, headers, spectra_below
 
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
 

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas.atlas import USED, VISIBLE
 from uplift.atlas.document import SourceLocation
-from uplift.atlas.statements import Quantity
 from uplift.common.arrays import Array, Mask
+from uplift.extras.formats.statements import Quantity
 
 MARKERS = (-999.0, -9999.0, -99999.0)
 """Numbers for missing values."""

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from uplift.atlas.atlas import SkippedEntry
 from uplift.atlas.document import SourceLocation
-from uplift.atlas.statements import remark_unit
-from uplift.atlas.tables.cells import Cell, Row, line_texts
+from uplift.extras.formats.statements import remark_unit
+from uplift.extras.formats.tables.cells import Cell, Row, line_texts
 
 LAYOUT = "write a header row of wavelengths in nm and a row per entry, or the transpose"
 MAX_PREAMBLE = 1000

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from uplift.atlas.atlas import SLACK, VISIBLE
-from uplift.atlas.statements import NANOMETRE, find_unit, label_quantity
 from uplift.common.arrays import Array
 from uplift.common.csv import parse_decimal
 from uplift.common.text import parse_float
+from uplift.extras.formats.statements import NANOMETRE, find_unit, label_quantity
 
 SHORTEST = 100.0
 """Wavelength in nm that distinguishes a row of wavelengths from a wavelength and its

@@ -8,7 +8,6 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from itertools import chain
-from typing import Literal
 
 import numpy as np
 
@@ -24,24 +23,11 @@ from uplift.atlas.atlas import (
     Source,
 )
 from uplift.atlas.document import EXPORT, Document, SourceLocation, truncate
-from uplift.atlas.samples import Samples, Spectrum, in_order
-from uplift.atlas.scales import FLOOR, find_scale
-from uplift.atlas.statements import PERCENT, Quantity, Scale
-from uplift.common.errors import AtlasError, UpliftWarning, needs_package, warn
+from uplift.common.errors import AtlasError, needs_package
 from uplift.common.text import listed, pluralise, printable
-
-Measured = Literal["auto", "percent", "fraction"]
-Missing = Literal["refuse", "interpolate", "skip"]
-MISSING: tuple[Missing, ...] = ("refuse", "interpolate", "skip")
-"""What becomes of an entry with a missing value."""
-MEASURED: tuple[Measured, ...] = ("auto", "percent", "fraction")
-"""Scales of measured values; ``auto`` takes the scale that the file states or, failing
-that, decides by the values.
-"""
-COARSE = 20.0
-"""Largest step in nm at which neighbours are alike."""
-ODD = 10.0
-"""Ratio of a value to both of its neighbours that is likely to be a slip."""
+from uplift.extras.formats.samples import Samples, Spectrum, in_order
+from uplift.extras.formats.scales import find_scale
+from uplift.extras.formats.statements import Quantity, Scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,55 +48,51 @@ class Measurements:
     quantity: Quantity | None = None
     """Quantity that the file states of all spectra that state none."""
 
+    def to_atlas(
+        self,
+        document: Document,
+        format_name: str,
+        measured: str = "auto",
+        missing: str = "refuse",
+    ) -> Atlas:
+        """Make entries of the reflectances: in order of wavelength, without missing
+        values, in units of 1.
+        """
+        reflectances, skipped = _reflectances(document, self)
+        location = document.location
+        samples = [in_order(spectrum, location, missing) for spectrum in reflectances]
+        kept = [spectrum for spectrum in samples if not spectrum.skipped]
+        if kept:
+            skipped += [_skipped(left, document) for left in samples if left.skipped]
+        else:  # the error of an entry states what is wrong
+            kept = samples
+        # One scale for all spectra: a dark one alone does not show whether it is in
+        # percent.
+        scale, scale_note = find_scale(location, self.scales, kept, measured)
+        entries = tuple(_entry(spectrum, scale, document) for spectrum in kept)
+        notes = (*self.notes, *_changes(kept), scale_note) if entries else ()
+        source = Source(
+            document.name,
+            document.digest,
+            self.header,
+            format_name,
+            measured,
+            tuple(map(printable, notes)),
+            missing,
+        )
+        return Atlas(entries, (*self.skipped, *skipped), (source,))
 
-def to_atlas(
-    document: Document,
-    measurements: Measurements,
-    format_name: str,
-    measured: str = "auto",
-    missing: str = "refuse",
-) -> Atlas:
-    """Make entries of the reflectances of a file: in order of wavelength, without
-    missing values, in units of 1.
-    """
-    reflectances, skipped = _reflectances(document, measurements)
-    samples = [
-        in_order(spectrum, document.location, missing) for spectrum in reflectances
-    ]
-    kept = [each for each in samples if not each.skipped]
-    if kept:
-        left_out = [each for each in samples if each.skipped]
-        skipped += [
-            SkippedEntry(
-                each.spectrum.name, each.skipped, document.path, each.spectrum.line
-            )
-            for each in left_out
-        ]
-    else:  # the error of an entry states what is wrong
-        kept = samples
-    # One scale for all spectra: a dark one alone does not show whether it is in
-    # percent.
-    scale, scale_note = find_scale(
-        document.location, measurements.scales, kept, measured
-    )
-    entries = [_entry(each, scale, document) for each in kept]
-    counts = Counter(chain.from_iterable(each.notes for each in kept))
-    changes = [
-        f"{count} of {pluralise(len(entries), 'entry')}: {note}"
-        for note, count in counts.items()
-    ]
-    notes = (*measurements.notes, *changes, scale_note) if entries else ()
-    safe = tuple(map(printable, notes))
-    source = Source(
-        document.name,
-        document.digest,
-        measurements.header,
-        format_name,
-        measured,
-        safe,
-        missing=missing,
-    )
-    return Atlas(tuple(entries), (*measurements.skipped, *skipped), (source,))
+
+def _skipped(samples: Samples, document: Document) -> SkippedEntry:
+    spectrum = samples.spectrum
+    return SkippedEntry(spectrum.name, samples.skipped, document.path, spectrum.line)
+
+
+def _changes(samples: Sequence[Samples]) -> list[str]:
+    """Return notes on what was done to samples, with the number of spectra of each."""
+    counts = Counter(chain.from_iterable(spectrum.notes for spectrum in samples))
+    total = pluralise(len(samples), "entry")
+    return [f"{count} of {total}: {note}" for note, count in counts.items()]
 
 
 def _reflectances(
@@ -167,36 +149,6 @@ def _entry(samples: Samples, scale: float, document: Document) -> Entry:
         raise location.error(problem, "correct the value, or the scale")
     stated = {key: getattr(spectrum, key) for key in ("description", "date", "line")}
     return Entry(spectrum.name, nm, scaled, path=document.path, **stated)
-
-
-def warn_of_odd(entries: Sequence[Entry]) -> None:
-    """Warn of values that are ten times both neighbours, or a tenth."""
-    for entry in entries:
-        values = np.maximum(entry.values, FLOOR / PERCENT)
-        before = values[:-2]
-        value = values[1:-1]
-        after = values[2:]
-        above = value > ODD * np.maximum(before, after)
-        below = value * ODD < np.minimum(before, after)
-        is_near = entry.wavelengths[2:] - entry.wavelengths[:-2] <= 2 * COARSE
-        for at in (
-            np.flatnonzero(
-                (above | below) & is_near & (np.maximum(value, before) > FLOOR)
-            )[:1]
-            + 1
-        ):
-            problem = (
-                f"{entry.values[at]:g} at {entry.wavelengths[at]:g} nm is far from "
-                "both of its neighbours"
-            )
-            warning = UpliftWarning(
-                problem,
-                code="odd-value",
-                path=entry.path,
-                line=entry.line,
-                entry=entry.name,
-            )
-            warn(warning)
 
 
 def not_used_note(labels: Iterable[str]) -> tuple[str, ...]:

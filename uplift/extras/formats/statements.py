@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.atlas.document import SourceLocation, truncate
 from uplift.common.arrays import Array
 
 PERCENT = 100.0
@@ -234,6 +235,20 @@ def find_unit(text: str) -> float | None:
     [1000.0, 1.0, -10000000.0, None]
     """
     return next((unit for pattern, unit in _UNITS if pattern.search(text)), None)
+
+
+def stated_unit(text: str, location: SourceLocation) -> float:
+    """Return the unit of wavelengths, see `find_unit`. Raise `AtlasError` for an
+    unknown one.
+    """
+    unit = find_unit(text)
+    if unit is None:
+        problem = (
+            "wavelengths must be in nanometers, micrometers or 1/cm, got "
+            f"'{truncate(text)}'"
+        )
+        raise location.error(problem, "export the file with wavelengths in nm")
+    return unit
 
 
 def remark_unit(texts: Iterable[str]) -> float | None:

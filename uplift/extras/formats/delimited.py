@@ -9,16 +9,16 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.atlas.atlas import Atlas
+from uplift.atlas.atlas import Atlas, Header
 from uplift.atlas.document import Document, read_document
-from uplift.atlas.measurements import Measurements
-from uplift.atlas.statements import remark_scale
-from uplift.atlas.tables.cells import Cell, Row, is_value, line_texts, trimmed
-from uplift.atlas.tables.grid import LAYOUT, Grid
-from uplift.atlas.tables.read import read_grid
 from uplift.common.csv import csv_text, find_delimiter, plain_cell
 from uplift.common.errors import OutputError
 from uplift.common.text import pluralise
+from uplift.extras.formats.measurements import Measurements
+from uplift.extras.formats.statements import remark_scale
+from uplift.extras.formats.tables.cells import Cell, Row, is_value, line_texts, trimmed
+from uplift.extras.formats.tables.grid import LAYOUT, Grid
+from uplift.extras.formats.tables.read import read_grid
 
 BLANKS = " "
 """Delimiter that stands for any number of blanks."""
@@ -82,7 +82,7 @@ def _with_wavelengths(
     return found[0]
 
 
-def text(atlas: Atlas) -> str:
+def text(atlas: Atlas, _: Header) -> str:
     """Format a row per entry; `read` returns the same wavelengths and values, bit for
     bit.
     """

@@ -10,8 +10,9 @@ from itertools import chain
 import numpy as np
 
 from uplift.atlas.atlas import SkippedEntry
-from uplift.atlas.measurements import not_used_note
-from uplift.atlas.statements import (
+from uplift.common.arrays import Array
+from uplift.extras.formats.measurements import not_used_note
+from uplift.extras.formats.statements import (
     NANOMETRE,
     find_unit,
     is_plain,
@@ -19,7 +20,7 @@ from uplift.atlas.statements import (
     to_nm,
     unit_by_values,
 )
-from uplift.atlas.tables.cells import (
+from uplift.extras.formats.tables.cells import (
     SHORTEST,
     Cell,
     Row,
@@ -30,8 +31,7 @@ from uplift.atlas.tables.cells import (
     parse_label,
     runs,
 )
-from uplift.atlas.tables.grid import MAX_AXIS, Grid, Series, Table, cell_at
-from uplift.common.arrays import Array
+from uplift.extras.formats.tables.grid import MAX_AXIS, Grid, Series, Table, cell_at
 
 MAX_HEADS = 4
 """Rows of labels above columns."""

@@ -5,7 +5,7 @@ they do not.
 import numpy as np
 import pytest
 
-from uplift.atlas.statements import (
+from uplift.extras.formats.statements import (
     WAVE_NUMBER,
     find_unit,
     is_plain,

@@ -6,9 +6,9 @@ import numpy as np
 
 from uplift.atlas.atlas import ASSUMED, HIGHEST
 from uplift.atlas.document import SourceLocation, truncate
-from uplift.atlas.samples import Samples
-from uplift.atlas.statements import PERCENT, Scale
 from uplift.common.errors import UpliftWarning, warn
+from uplift.extras.formats.samples import Samples
+from uplift.extras.formats.statements import PERCENT, Scale
 
 GIVEN = {"percent": "percent", "fraction": "0 to 1"}
 WHICH_SCALE = "pass measured='percent' or measured='fraction'"
