@@ -11,9 +11,9 @@ import uplift
 from benchmarks import ATLASES, record
 from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry import observer
-from uplift.colorimetry.lights import RELIGHT_LIGHTS
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array, Indices
+from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
 from uplift.extras.report.measures import delta_e_under
 from uplift.extras.scene.advice import advise, uncertainty
 from uplift.extras.texture.scene_colours import ColourSet, PixelSample

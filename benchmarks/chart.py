@@ -9,8 +9,8 @@ from benchmarks import ATLASES, DOCS, ROOT, record, show
 from benchmarks.choices import ALONE, OURS, mark
 from benchmarks.materials import SHIPPED
 from uplift.atlas import read_atlas
-from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.files import write_text
+from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.lab.chart.measure import measure_methods, select_methods
 from uplift.lab.chart.method import Effort, make_task
 from uplift.lab.chart.picture import render_chart, write_picture

@@ -13,10 +13,10 @@ from benchmarks import MACBETH
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import SRGB
-from uplift.colorimetry.lights import DESCRIPTIONS
 from uplift.colorimetry.sensor import in_unit_cube
-from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
+from uplift.extras.colour.light_sets import DESCRIPTIONS
+from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.pages.figure import new_figure, show_image, write_png
 
 COLUMNS = 6

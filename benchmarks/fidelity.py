@@ -38,9 +38,9 @@ from tools.ship_library import FAMILIES, FILE, OTSU_SPREAD, SPREAD
 from uplift import build
 from uplift.atlas import Atlas
 from uplift.colorimetry import Light, delta_e_spectra, observer
-from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.arrays import Array
 from uplift.cube import contents
+from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
 from uplift.extras.report.measures import check_calibration
 from uplift.fit.families import LENGTH, NUGGET, shipped_library
 from uplift.lab.chart.measure import select_methods

@@ -24,15 +24,15 @@ from uplift.colorimetry import delta_e_rgb, lab
 from uplift.colorimetry.expected_error import mahalanobis
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.observer import display_sensors, light, sensor
-from uplift.colorimetry.srgb import hex_codes, to_display_codes
 from uplift.common.arrays import Array
+from uplift.extras.colour.srgb import hex_codes, to_display_codes
+from uplift.extras.looks.lab_errors import lab_errors
 from uplift.extras.looks.metamer_bounds import Bounds, bounds
 from uplift.extras.pages.figure import figure_text, new_figure, show_image, write_png
 from uplift.extras.pages.plots import plot_bounds
 from uplift.extras.report.look_page import page
 from uplift.lab.timing import time_calls
 from uplift.lookup import Cube, load
-from uplift.lookup.light_errors import lab_errors
 from uplift.samples import sample_path
 
 CUBE = CUBES / "moments-16-macbeth.uplift"

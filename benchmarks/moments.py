@@ -13,8 +13,8 @@ from benchmarks.materials import inside
 from uplift.atlas import Atlas, merge
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, lab
-from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.common.arrays import Array
+from uplift.extras.colour.light_sets import REPORT_LIGHTS
 from uplift.extras.scene.representations import samples
 from uplift.lab.study.moments import (
     ALL_ATLASES,

@@ -22,8 +22,8 @@ from scipy.ndimage import affine_transform, gaussian_filter
 
 from benchmarks import DOCS
 from benchmarks.browser import browser
-from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
+from uplift.extras.colour.srgb import encode
 from uplift.extras.palette import design, read_palette, standard_model
 from uplift.extras.palette.picture import cutaway
 from uplift.extras.palette.relight_page import page, relighting

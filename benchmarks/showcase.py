@@ -17,7 +17,6 @@ from benchmarks import DOCS, record
 from benchmarks.checker import BACKGROUND, Layout, chart, draw
 from tests.examples import build_wheel, run_lines, unpack
 from uplift.colorimetry import delta_e_2000, lab
-from uplift.colorimetry.lights import RELIGHT_LIGHTS
 from uplift.colorimetry.observer import (
     DEFAULT_OBSERVER,
     grid,
@@ -26,7 +25,8 @@ from uplift.colorimetry.observer import (
     matching_functions,
     sensor,
 )
-from uplift.colorimetry.srgb import encode
+from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
+from uplift.extras.colour.srgb import encode
 from uplift.extras.export import write_film
 from uplift.extras.export.film import CAT16, LAYER_WIDTH, LAYERS
 from uplift.extras.pages.figure import new_figure, show_image, write_png

@@ -11,8 +11,8 @@ import uplift
 from benchmarks import CUBES, DOCS, MACBETH, Row, record, show
 from benchmarks.performance import CHECKED, MODES, run_header
 from uplift.colorimetry import observer
-from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.arrays import Array
+from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
 from uplift.extras.report.rebuild import recorded_atlas
 from uplift.lab.chart.measure import perturb_method, select_methods
 from uplift.lab.study.plots import plot_locality, plot_map

@@ -14,17 +14,22 @@ from typing import IO, TYPE_CHECKING
 
 import click
 
-from uplift.common.csv import DELIMITERS, find_delimiter, parse_decimal, split_line
 from uplift.common.errors import ColourError, UpliftWarning
 from uplift.common.text import format_value
+from uplift.extras.files.csv import (
+    DELIMITERS,
+    find_delimiter,
+    parse_decimal,
+    split_line,
+)
 
 from .inputs import find_input_space
 from .output.diagnostics import warn
 
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
-    from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
+    from uplift.extras.colour.spaces import ImageSpace
 
 AMBIGUOUS = re.compile(r"(?:[01](?:,\d+)?,){2}[01](?:,\d+)?", re.ASCII)
 """Whole numbers between commas that may be three numbers from 0 to 1 with decimal

@@ -8,17 +8,17 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from uplift.common.csv import parse_decimal
 from uplift.common.errors import ColourError, OptionError, UpliftWarning
 from uplift.common.text import format_value
+from uplift.extras.files.csv import parse_decimal
 
 from .colours import ColourSource
 from .output.diagnostics import warn
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
-    from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
+    from uplift.extras.colour.spaces import ImageSpace
     from uplift.lookup import Cube
 
 PARTS = re.compile(r"\s*([0-9.+-][0-9.,eE+-]*)\s*:(.*)", re.DOTALL)

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from uplift.atlas import Atlas
     from uplift.colorimetry.lights import Illuminant
     from uplift.colorimetry.sensor import Sensor
-    from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
+    from uplift.extras.colour.spaces import ImageSpace
     from uplift.extras.texture.picture import Picture
 
 LOCAL = "atlases/*.txt"
@@ -133,7 +133,7 @@ def find_input_space(name: str) -> ImageSpace:
     """Return the space of a name or of chromaticities. The tables take a second to
     load.
     """
-    from uplift.colorimetry.spaces import find_space
+    from uplift.extras.colour.spaces import find_space
 
     return find_space(name)
 

@@ -365,7 +365,7 @@ encoding = choice(
 def input_space(
     subject: str, default: str = "as the file states", name: str = "input_space"
 ) -> Decorator:
-    """``--input-space``: text for `uplift.colorimetry.spaces.find_space`."""
+    """``--input-space``: text for `uplift.extras.colour.spaces.find_space`."""
     return click.option(
         "--input-space",
         name,

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Sequence
 
 import click
 
-from uplift.common import files
 from uplift.common.errors import StrPath
+from uplift.extras.files import outputs
 
 from .options import INPUTS, OutputFile
 from .output.console import say
@@ -22,7 +22,7 @@ def check_outputs(*paths: StrPath | None, inputs: Paths = ()) -> None:
     It reads the files that its parameters name, and further ``inputs``, which patterns
     or files name. None are left out.
     """
-    files.check_outputs(paths, inputs=[*stated_inputs(), *inputs], force=_is_forced())
+    outputs.check_outputs(paths, inputs=[*stated_inputs(), *inputs], force=_is_forced())
 
 
 def check_folder(
@@ -37,7 +37,7 @@ def check_folder(
         from uplift.extras.pages.figure import matplotlib
 
         matplotlib()
-    files.check_folder(
+    outputs.check_folder(
         path, names, inputs=[*stated_inputs(), *inputs], force=_is_forced()
     )
 
@@ -46,7 +46,7 @@ def write_files(
     path: StrPath, names: Sequence[str], *writers: Callable[..., None]
 ) -> None:
     """Write the files of a folder, and print their names to standard error."""
-    folder = files.make_folder(path)
+    folder = outputs.make_folder(path)
     for name, write in zip(names, writers, strict=True):
         write(folder / name, force=_is_forced())
     say(f"{folder}: {', '.join(names)}", err=True)

@@ -25,7 +25,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Undefined
 
-from uplift.common.csv import csv_text
+from uplift.extras.files.csv import csv_text
 from uplift.extras.pages import format as viz_format
 from uplift.lab.chart.table import SITUATIONS, recommend_cube, shipped_chart
 

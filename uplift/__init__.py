@@ -89,11 +89,13 @@ _EXPORTS = {
 }
 _HOMES = {name: module for module, names in _EXPORTS.items() for name in names}
 
+register("cameras", "files", "uplift.extras.colour.camera_file:read_camera")
 register("formats", "measurements", "uplift.extras.formats:FORMATS")
 register("growth", "coarse-to-fine", "uplift.extras.thesis:grow_coarse_to_fine")
 register("growth", "neighbours", "uplift.extras.thesis:grow_from_neighbours")
 register("solver", "stock", "uplift.extras.thesis:as_method")
 register("looks", "targets", "uplift.extras.looks.targets:targets_of")
+register("spaces", "of OpenColorIO", "uplift.extras.colour.spaces:look_up_space")
 register("scene", "images", "uplift.extras.texture.scene_colours:as_images")
 register("notebook", "atlas", "uplift.extras.pages.notebook:atlas_html")
 register("notebook", "cube", "uplift.extras.pages.notebook:cube_html")

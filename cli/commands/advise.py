@@ -62,9 +62,9 @@ def command(
     force: bool,
     **pixels: Any,
 ) -> None:
-    from uplift.colorimetry.lights import RELIGHT_LIGHTS
     from uplift.colorimetry.observer import check_distinct, light
-    from uplift.colorimetry.srgb import hex_codes
+    from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
+    from uplift.extras.colour.srgb import hex_codes
     from uplift.extras.scene import advice
     from uplift.extras.texture.scene_colours import Images
     from uplift.lookup import load

@@ -162,7 +162,7 @@ def _list_entries(
     from uplift.colorimetry.observer import sensor as make_sensor
     from uplift.colorimetry.observer import smallest_space
     from uplift.colorimetry.sensor import in_unit_cube
-    from uplift.colorimetry.srgb import to_display_codes
+    from uplift.extras.colour.srgb import to_display_codes
 
     resampled = resample(atlas, sensor.wavelengths)
     display = make_sensor("sRGB", illuminant, sensor.observer)

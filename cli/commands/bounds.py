@@ -25,9 +25,9 @@ from .query import Answers, colour_options, result_object
 
 if TYPE_CHECKING:
     from uplift.colorimetry.lights import Illuminant
+    from uplift.extras.colour.query import QueryResult
     from uplift.extras.looks.metamer_bounds import Bounds
     from uplift.lookup import Cube
-    from uplift.lookup.query import QueryResult
 
 Block = tuple[Sequence["QueryResult"], Sequence["Bounds"]]
 """Answers, and their bounds under each light."""
@@ -81,7 +81,7 @@ def command(
 ) -> None:
     import numpy as np
 
-    from uplift.colorimetry.lights import RELIGHT_LIGHTS
+    from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
     from uplift.extras.looks.metamer_bounds import bounds
 
     check_outputs(plot_path, html)
@@ -127,7 +127,7 @@ def _objects(
     answers: Answers, results: Sequence[QueryResult], found: Sequence[Bounds]
 ) -> Iterable[dict[str, Any]]:
     from uplift.colorimetry.delta_e import lab
-    from uplift.lookup.light_errors import LIKELY
+    from uplift.extras.looks.lab_errors import LIKELY
 
     for row, result in enumerate(results):
         fields = {}
@@ -185,7 +185,7 @@ def _print_csv(blocks: Iterable[Block]) -> None:
 
 
 def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
-    from uplift.lookup.light_errors import LIKELY
+    from uplift.extras.looks.lab_errors import LIKELY
 
     for number, (results, found) in enumerate(blocks):
         if single:

@@ -332,7 +332,7 @@ def _default_name(
 
     space = settings["space"]
     if space not in ("sRGB", CAMERA):
-        from uplift.colorimetry.spaces import look_up_space
+        from uplift.extras.colour.spaces import look_up_space
 
         space = str(look_up_space(space).name)
     space = re.sub("[ /]", "-", space).lower()

@@ -248,8 +248,9 @@ def command(
             "A cube or clf table shows the colours under a light: give --light, such "
             "as HP1."
         )
-    from uplift.common.files import check_output, check_outputs
+    from uplift.common.files import check_output
     from uplift.extras.export import check_form, output_files
+    from uplift.extras.files.outputs import check_outputs
     from uplift.lookup import load
 
     form = (

@@ -109,7 +109,7 @@ def _look(record: dict[str, Any]) -> str:
     """Format a look: wish and distance of the answer by light."""
     import numpy as np
 
-    from uplift.colorimetry.srgb import hex_codes
+    from uplift.extras.colour.srgb import hex_codes
 
     wishes = (
         (

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.common.files import check_output, check_outputs, write_text
+from uplift.common.files import check_output, write_text
 from uplift.common.text import pluralise
+from uplift.extras.files.outputs import check_outputs
 
 from .. import options
 from ..colours import find_colours

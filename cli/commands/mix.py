@@ -450,7 +450,7 @@ def _mix(
 
 
 def _plot_ramp(recipe: _Recipe, mixture: _Mixture, path: str, *, force: bool) -> None:
-    from uplift.colorimetry.srgb import to_display_codes
+    from uplift.extras.colour.srgb import to_display_codes
     from uplift.extras.pages.plots import Strip, plot_strips
 
     names = recipe.names

@@ -161,7 +161,7 @@ def _read_picture(
 def _print_table(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
     from rich.text import Text
 
-    from uplift.colorimetry.srgb import hex_codes
+    from uplift.extras.colour.srgb import hex_codes
 
     coloured = has_colours()
     table = make_table(("material",))

@@ -42,8 +42,8 @@ if TYPE_CHECKING:
     from uplift.colorimetry.lights import Illuminant
     from uplift.colorimetry.sensor import Light
     from uplift.common.arrays import Array
+    from uplift.extras.colour.query import QueryResult
     from uplift.lookup import Cube
-    from uplift.lookup.query import QueryResult
 
 PACKAGED = "packaged"
 """Name of the cube that answers without --cube."""
@@ -138,7 +138,7 @@ class Answers:
         """Answer block by block, and warn at the end of colours that were mapped or
         filled.
         """
-        from uplift.lookup.query import query, query_xyz
+        from uplift.extras.colour.query import query, query_xyz
 
         if self.source.xyz is not None:
             yield list(
@@ -196,7 +196,7 @@ class Answers:
         """Return linear sRGB (3,) and '#rrggbb' of an answer by light; its white is
         that of the screen.
         """
-        from uplift.colorimetry.srgb import hex_codes
+        from uplift.extras.colour.srgb import hex_codes
 
         colours = {
             light: self.to_srgb[light] @ xyz for light, xyz in result.light_xyz.items()

@@ -120,7 +120,7 @@ def command(
     **pixels: Any,
 ) -> None:
     enable_jit_cache()
-    from uplift.colorimetry.lights import RELIGHT_LIGHTS
+    from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
 
     if cube_path is not None and files:
         raise click.UsageError(

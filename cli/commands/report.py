@@ -66,8 +66,8 @@ def command(
     force: bool,
 ) -> None:
     from uplift.atlas import read_atlas
-    from uplift.colorimetry.lights import REPORT_LIGHTS
     from uplift.common.files import write_text
+    from uplift.extras.colour.light_sets import REPORT_LIGHTS
     from uplift.extras.report.assessment import assess
     from uplift.extras.report.page import render_report, to_json
     from uplift.extras.report.rebuild import recorded_atlas, recorded_files

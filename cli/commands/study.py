@@ -351,7 +351,7 @@ def sensitivity(
 ) -> None:
     enable_jit_cache()
     from uplift.colorimetry import observer
-    from uplift.colorimetry.lights import NARROW_BAND_LIGHT
+    from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
     from uplift.extras.report.rebuild import recorded_atlas, recorded_files
     from uplift.lab.chart.measure import perturb_method, select_methods
     from uplift.lab.study.sensitivity import study_sensitivity

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from uplift.common.errors import OptionError, OutputError
-from uplift.common.files import check_outputs
 from uplift.common.progress import Progress
 from uplift.common.text import pluralise
+from uplift.extras.files.outputs import check_outputs
 
 from .. import options
 from ..inputs import UDIM, check_range, expand_patterns

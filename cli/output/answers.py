@@ -56,7 +56,7 @@ def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
     """
     if not has_colours():
         return ""
-    from uplift.colorimetry.srgb import to_display_codes
+    from uplift.extras.colour.srgb import to_display_codes
 
     return click.style(
         " " * width, bg=to_display_codes(rgb, cube.data.sensor).astype(int).tolist()
@@ -103,7 +103,7 @@ def coordinates(cube: Cube, rgb: Array) -> dict[str, Any]:
     HSV, HSL and YIQ are those of the encoded components, as displays and broadcasts use
     them, clipped to [0, 1]. Empty for a camera, whose values no display shows.
     """
-    from uplift.colorimetry.dominant import dominant_wavelength
+    from uplift.extras.colour.dominant import dominant_wavelength
 
     sensor = cube.data.sensor
     if sensor.sensitivities is not None:

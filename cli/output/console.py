@@ -125,7 +125,7 @@ def print_json_answers(objects: Iterable[Any], *, single: bool) -> None:
 
 def print_csv(header: Sequence[object], rows: Iterable[Sequence[object]]) -> None:
     """Print a table as CSV, each row before the next one is computed."""
-    from uplift.common.csv import write_csv
+    from uplift.extras.files.csv import write_csv
 
     write_csv(_Lines(), chain([header], rows))
 

@@ -17,8 +17,8 @@ from uplift_cli.output.diagnostics import hint_for
 
 import uplift
 from uplift.colorimetry.observer import display_sensors
-from uplift.colorimetry.srgb import hex_codes
 from uplift.common.errors import ColourError
+from uplift.extras.colour.srgb import hex_codes
 
 from .conftest import warning_lines
 

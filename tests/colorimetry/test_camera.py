@@ -10,9 +10,10 @@ import pytest
 
 from tests.helpers import raises
 from uplift.colorimetry import observer
-from uplift.colorimetry.camera import CAMERA, Camera, read_camera
-from uplift.colorimetry.spaces import find_space
+from uplift.colorimetry.camera import CAMERA, Camera
 from uplift.common.errors import ColourError, OptionError, UnknownNameError
+from uplift.extras.colour.camera_file import read_camera
+from uplift.extras.colour.spaces import find_space
 
 NIKON = "Nikon 5100 (NPL)"
 SIGMA = "Sigma SDMerill (NPL)"

@@ -10,7 +10,7 @@ import pytest
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab, lab_to_xyz
-from uplift.colorimetry.dominant import GREY, dominant_wavelength
+from uplift.extras.colour.dominant import GREY, dominant_wavelength
 
 PAIRS = np.loadtxt(
     Path(__file__).parents[1] / "reference" / "ciede2000_sharma2005.csv",

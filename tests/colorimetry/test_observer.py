@@ -10,12 +10,17 @@ import pytest
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer, tables
-from uplift.colorimetry.dominant import GREY, dominant_wavelength
 from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.observer import COMMON_SPACES, smallest_space
-from uplift.colorimetry.spaces import BUILT_IN, find_space, look_up_space, primaries_of
-from uplift.colorimetry.srgb import decode, encode, to_display_codes
 from uplift.common.errors import OptionError, UnknownNameError
+from uplift.extras.colour.dominant import GREY, dominant_wavelength
+from uplift.extras.colour.spaces import (
+    BUILT_IN,
+    find_space,
+    look_up_space,
+    primaries_of,
+)
+from uplift.extras.colour.srgb import decode, encode, to_display_codes
 from uplift.extras.emission.lamps import known_lamps
 from uplift.lattice import axis_nodes
 

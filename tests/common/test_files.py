@@ -11,12 +11,12 @@ from uplift.common.errors import OutputError, TextureError
 from uplift.common.files import (
     atomic_write,
     check_output,
-    check_outputs,
     check_regular,
     file_digest,
     read_bytes,
     remove_temporaries,
 )
+from uplift.extras.files.outputs import check_outputs
 
 
 def write(path, text, **options):

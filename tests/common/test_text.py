@@ -11,7 +11,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from uplift.common.csv import csv_text, plain_cell
 from uplift.common.text import (
     format_value,
     json_escapes,
@@ -19,6 +18,7 @@ from uplift.common.text import (
     parse_whole,
     printable,
 )
+from uplift.extras.files.csv import csv_text, plain_cell
 
 ANY_TEXT = st.text(st.characters(exclude_categories=()))
 """Text of any code points, lone surrogates among them."""

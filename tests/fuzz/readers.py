@@ -30,6 +30,7 @@ from uplift.common.errors import UpliftError
 from uplift.common.files import file_digest
 from uplift.cube import CubeData, read, summarise
 from uplift.cube.file import POINTS
+from uplift.extras.colour.query import query
 from uplift.extras.palette import design, matrix, read_palette, standard_model
 from uplift.extras.report.rebuild import recorded_atlas
 from uplift.extras.scene.plan import read_scene_file
@@ -39,7 +40,6 @@ from uplift.extras.texture.uplifter import Converter
 from uplift.lab.chart.table import Requirement, criteria, read_chart, recommend_cube
 from uplift.lattice import Lattice, PointTable
 from uplift.lookup import MODES, Cube, load
-from uplift.lookup.query import query
 from uplift.pipeline.options import Options
 
 # --- atlases ---

@@ -17,9 +17,9 @@ from uplift.colorimetry.delta_e import delta_e_spectra, lab
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import OptionError, UnknownNameError
 from uplift.cube import read, write
+from uplift.extras.looks.lab_errors import LIKELY, lab_errors
 from uplift.extras.report.measures import check_calibration
 from uplift.lookup import Cube
-from uplift.lookup.light_errors import LIKELY, lab_errors
 
 LIGHTS = [observer.light(name) for name in ("FL2", "FL11", "LED-RGB1", "HP1")]
 """Two of them are not among the lights that entries are fitted to."""

@@ -10,9 +10,9 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.camera import CAMERA
 from uplift.common.errors import ColourError, CubeFileError
 from uplift.cube import digest
+from uplift.extras.colour.query import query, query_xyz
 from uplift.extras.export.coeff import write_coeff
 from uplift.extras.report.rebuild import rebuild
-from uplift.lookup.query import query, query_xyz
 
 NIKON = "Nikon 5100 (NPL)"
 GREYS = np.array([[0.2, 0.2, 0.2], [0.5, 0.48, 0.45]])

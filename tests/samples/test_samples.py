@@ -6,8 +6,8 @@ import pytest
 
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry.srgb import encode
 from uplift.common.errors import OutputError
+from uplift.extras.colour.srgb import encode
 from uplift.samples import copy_samples, sample_names, sample_path
 
 

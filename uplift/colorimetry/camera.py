@@ -3,18 +3,13 @@ of an observer.
 """
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.spectra_json import RGB, is_json, read_spectra
-from uplift.common.arrays import Array, StrPath
-from uplift.common.csv import find_delimiter, is_decimal, parse_decimal, split_line
+from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.common.files import read_bytes
-from uplift.common.text import format_value
 
 CAMERA = "camera"
 """Name of the RGB space of raw values, balanced so that the perfect reflector is (1, 1,
@@ -23,7 +18,6 @@ CAMERA = "camera"
 LAYOUT = "give rows of a wavelength in nm and the sensitivities of red, green and blue"
 CAMERA_FILES = (".csv", ".tsv", ".txt", ".json")
 """Suffixes of files of sensitivities, which distinguish them from names."""
-MAX_BYTES = 1_000_000
 CORRELATED = 50.0
 """Distance in nm over which the correlation of the reflectances that a camera's matrix
 is fitted to falls to 1/e.
@@ -127,62 +121,3 @@ def camera_sensor(camera: Camera, standard: Sensor) -> Sensor:
         decoding=np.arange(256) / 255,
         sensitivities=sensitivities,
     )
-
-
-def read_camera(path: StrPath) -> Camera:
-    """Read the sensitivities of a file, whose name without the suffix is that of the
-    camera.
-
-    Rows of a table have a wavelength in nm, red, green and blue, separated by commas,
-    semicolons, tabs or blanks, with decimal points or commas, in ascending or
-    descending order. Rows before them with fewer than two numbers are headers; lines
-    that begin with ``#`` are comments. JSON (``.json``) is that of rawtoaces. Raises
-    `OptionError` for anything else.
-    """
-    if is_json(path):
-        spectra = read_spectra(path, RGB, OptionError)
-        wavelengths = spectra.wavelengths
-        sensitivities = spectra.values
-    else:
-        table = _read_table(path)
-        wavelengths = table[:, 0]
-        sensitivities = table[:, 1:]
-    name = Path(path).stem.encode(errors="backslashreplace").decode()
-    try:
-        return Camera(name, wavelengths, sensitivities)
-    except OptionError as error:
-        raise OptionError(
-            error.problem, code=error.code, path=path, hint=error.hint
-        ) from error
-
-
-def _read_table(path: StrPath) -> Array:
-    """Read rows (N, 4) of a wavelength and three sensitivities, in ascending order if
-    they descend.
-    """
-    data = read_bytes(path, OptionError, limit=MAX_BYTES, hint=LAYOUT)
-    encoding = "utf-16" if data.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig"
-    lines = data.decode(encoding, errors="replace").splitlines()
-    table: list[list[float]] = []
-    try:
-        delimiter = find_delimiter(lines)
-        rows = [split_line(line, delimiter) for line in lines]
-    except ValueError as error:
-        raise OptionError(
-            f"is not a readable table: {error}", path=path, hint=LAYOUT
-        ) from error
-    for line, cells in enumerate(rows, 1):
-        is_header = not table and sum(map(is_decimal, cells)) < 2
-        if not cells or cells[0].startswith("#") or is_header:
-            continue
-        try:
-            wavelength, red, green, blue = map(parse_decimal, cells)
-        except ValueError as error:
-            problem = (
-                f"a row must have four numbers, got {format_value(lines[line - 1])}"
-            )
-            raise OptionError(problem, path=path, line=line, hint=LAYOUT) from error
-        table.append([wavelength, red, green, blue])
-    numbers = np.array(table).reshape(-1, 4)
-    descends = len(numbers) > 1 and (np.diff(numbers[:, 0]) < 0).all()
-    return numbers[::-1] if descends else numbers

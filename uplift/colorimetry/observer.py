@@ -17,13 +17,13 @@ from uplift.colorimetry.camera import (
     CAMERA_FILES,
     Camera,
     camera_sensor,
-    read_camera,
 )
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, Illuminant, Lamp
 from uplift.colorimetry.sensor import Light, Sensor, in_unit_cube
 from uplift.colorimetry.tables import WAVELENGTHS, samples
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.common.extensions import extension
 
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
 COMMON_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
@@ -99,9 +99,7 @@ def sensor(
         )
     rgb_space = tables.rgb_space(space)
     if rgb_space is None:
-        from uplift.colorimetry.spaces import look_up_space  # names of OpenColorIO
-
-        rgb_space = look_up_space(space)
+        rgb_space = extension("spaces", "of OpenColorIO")(space)
     build_light = light(illuminant, observer)
     # XYZ to RGB is M_space · M_Bradford: the white of the illuminant becomes the white
     # of the space.
@@ -187,7 +185,8 @@ def find_camera(camera: str | Camera) -> Camera:
     if isinstance(camera, Camera):
         return camera
     if is_camera_file(camera):
-        return read_camera(camera)
+        camera_of_file: Camera = extension("cameras", "files")(camera)
+        return camera_of_file
     found = tables.look_up("camera", camera)
     return Camera(found.name, found.wavelengths, found.values)
 

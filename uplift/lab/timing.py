@@ -18,8 +18,8 @@ from typing import Any
 
 from pydantic_core import to_jsonable_python
 
-from uplift.common.csv import csv_text
 from uplift.common.version import version
+from uplift.extras.files.csv import csv_text
 
 PACKAGES = ("numpy", "scipy", "jax", "colour-science", "safetensors")
 ONE_THREAD = {

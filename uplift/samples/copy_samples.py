@@ -4,7 +4,8 @@ import shutil
 from pathlib import Path
 
 from uplift.common.arrays import StrPath
-from uplift.common.files import atomic_write, check_folder, make_folder
+from uplift.common.files import atomic_write
+from uplift.extras.files.outputs import check_folder, make_folder
 
 FOLDER = Path(__file__).parent / "files"
 

@@ -22,7 +22,7 @@ from uplift.colorimetry.observer import (
     on_range,
 )
 from uplift.colorimetry.observer import sensor as make_sensor
-from uplift.colorimetry.srgb import decode, encode
+from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.export import coeff, write_coeff
 from uplift.models.sigmoid import evaluate_unscaled
 

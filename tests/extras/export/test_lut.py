@@ -6,7 +6,7 @@ import pytest
 
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import sensor
-from uplift.colorimetry.srgb import decode, encode
+from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.export import write_lut
 
 LIGHT = "HP1"

@@ -6,8 +6,8 @@ from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra, lab
 from uplift.common.errors import ColourError
+from uplift.extras.looks.lab_errors import lab_errors
 from uplift.extras.looks.metamer_bounds import bounds
-from uplift.lookup.light_errors import lab_errors
 
 FL11 = observer.light("FL11")
 

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.image import imread
 
 from tests.cube.hand_made import hand_made
-from uplift.colorimetry.srgb import encode
+from uplift.extras.colour.srgb import encode
 from uplift.extras.pages.sheet import (
     BACKGROUND,
     HIGHLIGHT,

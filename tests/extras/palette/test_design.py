@@ -11,8 +11,8 @@ from matplotlib.image import imread
 
 import uplift
 from tests.helpers import raises, warns
-from uplift.colorimetry.srgb import hex_codes
 from uplift.common.errors import OutputError, PaletteError
+from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.palette import (
     design,
     illuminant,

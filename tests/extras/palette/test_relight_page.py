@@ -13,7 +13,7 @@ import pytest
 from benchmarks.browser import browser
 from tests.browsing import check_page
 from tests.parts import CHROMIUM, need
-from uplift.colorimetry.srgb import encode
+from uplift.extras.colour.srgb import encode
 from uplift.extras.palette import design, illuminant
 from uplift.extras.palette.palette import Palette, SpectrumSpec
 from uplift.extras.palette.picture import cutaway

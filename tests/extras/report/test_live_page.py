@@ -11,8 +11,8 @@ from tests.helpers import raises
 from tests.pages import external_links
 from tests.parts import CHROMIUM, need
 from uplift.colorimetry.observer import light
-from uplift.colorimetry.srgb import encode
 from uplift.common.errors import OptionError
+from uplift.extras.colour.srgb import encode
 from uplift.extras.report import live_page
 
 SET = """(() => {

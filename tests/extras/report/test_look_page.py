@@ -17,8 +17,8 @@ from tests.parts import CHROMIUM, need
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.gamut import SRGB
-from uplift.colorimetry.srgb import hex_codes, to_display_codes
 from uplift.common.errors import OptionError
+from uplift.extras.colour.srgb import hex_codes, to_display_codes
 from uplift.extras.looks.metamer_bounds import bounds
 from uplift.extras.report.look_page import page
 

@@ -92,7 +92,7 @@ def test_a_recorded_name_opens_no_file_outside_the_folder_of_the_cube(
 
 def test_a_recorded_observer_opens_no_file(tiny_cube, home, monkeypatch):
     opened = []
-    monkeypatch.setattr("uplift.colorimetry.observer.read_camera", opened.append)
+    monkeypatch.setattr("uplift.extras.colour.camera_file.read_camera", opened.append)
     options = {
         **tiny_cube.data.provenance["options"],
         "space": "camera",

@@ -13,9 +13,9 @@ from PIL import Image, ImageCms
 from tests.extras.texture.conftest import WAVELENGTHS, planes, read_channels, write_exr
 from tests.helpers import raises
 from uplift.colorimetry.gamut import SRGB, conversion
-from uplift.colorimetry.spaces import look_up_space, primaries_of
 from uplift.common.errors import OptionError
 from uplift.extras import texture
+from uplift.extras.colour.spaces import look_up_space, primaries_of
 from uplift.pipeline.build import build
 
 GAMMA = struct.pack(">4sIIHxx", b"curv", 0, 1, round(2.2 * 256))

@@ -23,9 +23,9 @@ from tests.extras.texture.test_colour_profile import P3, SRGB_TABLE, by_matrix, 
 from tests.fuzz.images import wrong
 from tests.helpers import raises
 from uplift.colorimetry.gamut import SRGB, conversion
-from uplift.colorimetry.spaces import look_up_space, primaries_of
 from uplift.common.errors import OptionError, TextureError
 from uplift.extras import texture
+from uplift.extras.colour.spaces import look_up_space, primaries_of
 from uplift.extras.relight.relighter import prepare_relighter
 from uplift.extras.texture.picture import read_picture
 

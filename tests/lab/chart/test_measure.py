@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.lab.chart.conftest import BATCHES, method_of
-from uplift.colorimetry.lights import CHART_LIGHTS
+from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.lab.chart.measure import MAX_CLAIM_RATIO, SLOW_STEP, measure_method
 from uplift.lab.chart.method import PreparedMethod, ours
 from uplift.lab.chart.table import State

@@ -11,10 +11,11 @@ from tests.helpers import raises
 from uplift.atlas import Atlas, Entry, read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.colorimetry.lights import HELD_OUT_LIGHTS, SCENE_LIGHTS
+from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import AtlasError
 from uplift.common.progress import Progress
+from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
 from uplift.extras.report.fidelity import Answers
 from uplift.lab.study import held_out
 from uplift.lab.study.held_out import (

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from uplift.atlas import Atlas, Source, on_grid, read_atlas
 from uplift.colorimetry import observer as observers
-from uplift.colorimetry.lights import STANDARD_ILLUMINANTS
-from uplift.colorimetry.spaces import look_up_space, primaries_of
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning, warn
 from uplift.common.machine import single_threaded_blas
 from uplift.common.text import format_value, listed, pluralise
 from uplift.common.version import version
+from uplift.extras.colour.light_sets import STANDARD_ILLUMINANTS
+from uplift.extras.colour.spaces import look_up_space, primaries_of
 from uplift.extras.emission.discs import Lamps, lamp_entries
 from uplift.extras.emission.fit import locus_lattice, mix_with_locus, nearest_lights
 from uplift.extras.emission.lamps import SAME_LAMP, known_lamps, read_lamps

@@ -18,7 +18,6 @@ from uplift.colorimetry.observer import (
     STEP,
     matching_functions,
 )
-from uplift.colorimetry.spectra_json import POWER, is_json, read_spectra
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import (
     AtlasError,
@@ -28,6 +27,7 @@ from uplift.common.errors import (
     warn,
 )
 from uplift.common.text import listed, printable
+from uplift.extras.colour.spectra_json import POWER, is_json, read_spectra
 from uplift.extras.emission.discs import Lamps
 from uplift.extras.formats.measurements import Measurements
 from uplift.extras.formats.samples import is_missing

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import StrPath, Values, blocks
-from uplift.common.csv import csv_text
 from uplift.common.files import atomic_write, write_text
 from uplift.cube import CubeData, contents
+from uplift.extras.files.csv import csv_text
 from uplift.lattice import Status
 
 BLOCK = 1 << 12

@@ -30,11 +30,11 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import on_range
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, Floats, StrPath, Values, blocks
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write
 from uplift.cube import CubeData
+from uplift.extras.colour.srgb import decode
 from uplift.extras.export.program import read_source
 from uplift.extras.export.table_error import TableError, find_errors
 from uplift.lookup.interpolate import around

@@ -24,7 +24,6 @@ from string import Template
 
 import numpy as np
 
-from uplift.colorimetry.dominant import crossing
 from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import (
     DEFAULT_OBSERVER,
@@ -37,12 +36,14 @@ from uplift.colorimetry.observer import (
 )
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import solid
-from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError
-from uplift.common.files import atomic_write, check_outputs, write_text
+from uplift.common.files import atomic_write, write_text
+from uplift.extras.colour.dominant import crossing
+from uplift.extras.colour.srgb import decode
 from uplift.extras.export.outputs import output_files
 from uplift.extras.export.program import read_source
+from uplift.extras.files.outputs import check_outputs
 from uplift.lookup import Cube
 
 SIZE = 192

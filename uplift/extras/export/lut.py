@@ -32,15 +32,16 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.srgb import decode, encode
 from uplift.common.arrays import Array, Floats, StrPath, Values
 from uplift.common.errors import OptionError, TextureError
-from uplift.common.files import atomic_write, check_outputs, write_text
+from uplift.common.files import atomic_write, write_text
 from uplift.cube import CubeData
+from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.export.outputs import output_files
 from uplift.extras.export.program import identifier, literal, read_source
 from uplift.extras.export.table import model_constants
 from uplift.extras.export.table_error import TableError, find_errors
+from uplift.extras.files.outputs import check_outputs
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.models import Moments, evaluate

@@ -23,7 +23,7 @@ from uplift.common.errors import (
     unknown_name,
     warn,
 )
-from uplift.common.files import atomic_write, check_outputs, write_text
+from uplift.common.files import atomic_write, write_text
 from uplift.common.version import version
 from uplift.cube import CubeData, digest
 from uplift.extras.export.outputs import output_files
@@ -34,6 +34,7 @@ from uplift.extras.export.table import (
     check_complete,
     make_table,
 )
+from uplift.extras.files.outputs import check_outputs
 
 LARGE = 16_000_000
 """Size in bytes above which compilation of a header is slow."""

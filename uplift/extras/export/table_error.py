@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry.srgb import decode, encode
 from uplift.common.arrays import Array
+from uplift.extras.colour.srgb import decode, encode
 
 SAMPLES = 1 << 13
 """Random codes of the mean, from which the search begins."""

@@ -13,8 +13,8 @@ import numpy as np
 
 from uplift.atlas.atlas import Header
 from uplift.atlas.document import EXPORT, Document, check_scale, one_line, parse_number
-from uplift.common.csv import split_line
 from uplift.common.text import parse_float
+from uplift.extras.files.csv import split_line
 from uplift.extras.formats.measurements import Measurements
 from uplift.extras.formats.statements import Quantity, Scale
 from uplift.extras.formats.tables.cells import Cell, Row, parse_label

@@ -11,9 +11,9 @@ import numpy as np
 
 from uplift.atlas.atlas import Atlas, Header
 from uplift.atlas.document import Document, read_document
-from uplift.common.csv import csv_text, find_delimiter, plain_cell
 from uplift.common.errors import OutputError
 from uplift.common.text import pluralise
+from uplift.extras.files.csv import csv_text, find_delimiter, plain_cell
 from uplift.extras.formats.measurements import Measurements
 from uplift.extras.formats.statements import remark_scale
 from uplift.extras.formats.tables.cells import Cell, Row, is_value, line_texts, trimmed

@@ -10,8 +10,8 @@ from dataclasses import replace
 from typing import Any
 
 from uplift.atlas.document import Document, one_line
-from uplift.common.csv import plain_cell
 from uplift.common.errors import AtlasError
+from uplift.extras.files.csv import plain_cell
 from uplift.extras.formats.measurements import Measurements, parsed_by
 from uplift.extras.formats.tables.cells import Cell, Row, trimmed
 from uplift.extras.formats.tables.grid import Grid

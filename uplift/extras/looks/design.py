@@ -21,7 +21,7 @@ from uplift.colorimetry.delta_e import (
 )
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
-from uplift.fit.bounded_least_squares import solve_bounded
+from uplift.extras.looks.bounded_least_squares import solve_bounded
 from uplift.fit.entries import FittedEntries, fit_entries, join_entries
 from uplift.fit.problem import Problem
 from uplift.fit.solver import LeastChange

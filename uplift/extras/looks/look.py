@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from uplift.colorimetry.srgb import is_number, parse_colour
 from uplift.common.arrays import StrPath
 from uplift.common.errors import LookError, UpliftError
 from uplift.common.text import format_value, shorten
+from uplift.extras.colour.srgb import is_number, parse_colour
 
 MAX_TARGET = 2.0
 """Limit of the linear sRGB of a target: brighter colours are typing errors."""
@@ -164,7 +164,7 @@ def read_looks(path: StrPath) -> tuple[Look, ...]:
     >>> look.name, look.lights
     ('brick', {'FL11': '#70392a'})
     """
-    from uplift.common.spec_file import read_toml  # imports pydantic
+    from uplift.extras.files.spec import read_toml  # imports pydantic
 
     file = read_toml(path, LookError)
     tables = file.values.get(TABLE, [])

@@ -11,8 +11,8 @@ from uplift.colorimetry.sensor import Light, in_unit_cube
 from uplift.colorimetry.solid import solid_volume
 from uplift.common.arrays import Array
 from uplift.extras.looks import mismatch
+from uplift.extras.looks.lab_errors import lab_errors
 from uplift.lookup.cube import Cube
-from uplift.lookup.light_errors import lab_errors
 from uplift.lookup.outside import reflectance_anywhere
 
 

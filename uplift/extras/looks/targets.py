@@ -11,10 +11,10 @@ import numpy as np
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import solid
-from uplift.colorimetry.srgb import hex_codes, parse_colour
 from uplift.common.arrays import Array
 from uplift.common.errors import LookError, UpliftError, UpliftWarning, warn
 from uplift.cube import AtlasTable
+from uplift.extras.colour.srgb import hex_codes, parse_colour
 from uplift.extras.looks.design import MET, LookGoal, design_reflectance, fit_designs
 from uplift.extras.looks.look import (
     Look,

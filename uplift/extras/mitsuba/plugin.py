@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.gamut import METHODS, map_to_gamut
-from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, Values
 from uplift.common.errors import (
     ColourError,
@@ -19,6 +18,7 @@ from uplift.common.errors import (
     needs_package,
     warn,
 )
+from uplift.extras.colour.srgb import decode
 from uplift.extras.emission.lookup import EmissionTable, load_emission
 from uplift.extras.mitsuba import texels
 from uplift.extras.texture.colours import Counts

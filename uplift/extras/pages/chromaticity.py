@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.lights import STANDARD_ILLUMINANTS
-from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
+from uplift.extras.colour.light_sets import STANDARD_ILLUMINANTS
+from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.emission.lattice import chromaticity, unit_xyz
 from uplift.extras.emission.lookup import EmissionTable
 from uplift.extras.pages.figure import GREY, INK, colour_map, styled

@@ -11,9 +11,9 @@ from markupsafe import Markup, escape
 
 from uplift.atlas import Atlas, resample
 from uplift.colorimetry.observer import sensor
-from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.common.text import pluralise, printable
+from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.pages.figure import GREY, new_figure, style_spectrum_axes, to_svg
 from uplift.lookup import Cube
 

@@ -12,8 +12,10 @@ from uplift.colorimetry import Sensor
 from uplift.colorimetry.delta_e import lab_to_xyz
 from uplift.colorimetry.gamut import SRGB, Gamut
 from uplift.colorimetry.observer import display_sensors
-from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array, StrPath
+from uplift.extras.colour.query import QueryResult
+from uplift.extras.colour.srgb import to_display_codes
+from uplift.extras.looks.lab_errors import LIKELY
 from uplift.extras.looks.metamer_bounds import Bounds
 from uplift.extras.pages.figure import (
     ACCENT,
@@ -27,8 +29,6 @@ from uplift.extras.pages.figure import (
     write_figure,
 )
 from uplift.lookup import Cube
-from uplift.lookup.light_errors import LIKELY
-from uplift.lookup.query import QueryResult
 
 MAX_LEGEND = 12  # largest number of lines with a legend
 

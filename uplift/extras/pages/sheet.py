@@ -17,12 +17,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.srgb import decode, encode
 from uplift.common.arrays import Array, Mask, StrPath
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write, check_output
 from uplift.common.text import pluralise
 from uplift.cube import CubeData
+from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.images import exr
 from uplift.extras.images.exr import blue_slices
 from uplift.extras.pages.figure import figure_text, matplotlib

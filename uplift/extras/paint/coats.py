@@ -25,10 +25,10 @@ from numpy.typing import ArrayLike
 
 from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.colorimetry.sensor import SLACK
-from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Array, Floats
 from uplift.common.errors import OptionError, UpliftWarning, warn
 from uplift.common.text import pluralise
+from uplift.extras.colour.spaces import ImageSpace
 from uplift.extras.images import exr
 from uplift.extras.paint import optics, pigments
 from uplift.extras.paint.optics import Layer, Surface

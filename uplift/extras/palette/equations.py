@@ -14,10 +14,10 @@ import numpy as np
 
 from uplift.common.arrays import Array, Indices
 from uplift.common.machine import single_threaded_blas
+from uplift.extras.looks.bounded_least_squares import solve_bounded
 from uplift.extras.palette.colours import screen_matrix
 from uplift.extras.palette.factor import FactorModel
 from uplift.extras.palette.palette import Palette, SpectrumSpec
-from uplift.fit.bounded_least_squares import solve_bounded
 
 SPACING = 10.0  # sample distance in nm that the weights of the paper refer to
 

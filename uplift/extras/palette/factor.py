@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 
 from uplift import lookup
 from uplift.colorimetry import Sensor
-from uplift.colorimetry.lights import PALETTE_LIGHTS
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.extras.colour.light_sets import PALETTE_LIGHTS
 from uplift.extras.palette.colours import illuminant, lab_per_rgb, screen_matrix
 from uplift.extras.palette.sharpen import make_light_paths, sharpen
 

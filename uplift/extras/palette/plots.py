@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array, StrPath
+from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.pages.figure import (
     BAND,
     GREY,

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
+from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.pages.html import render, resource
 from uplift.extras.palette.design import Design, matrix
 

@@ -25,10 +25,12 @@ from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.atlas.sources import find_atlas_file
 from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.sensor import format_rgb, in_unit_cube
-from uplift.colorimetry.srgb import MAX_NUMBER, WrittenColour, is_number, parse_colour
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError, PaletteError, unknown_name
-from uplift.common.spec_file import (
+from uplift.common.text import format_value
+from uplift.extras.colour.srgb import MAX_NUMBER, WrittenColour, is_number, parse_colour
+from uplift.extras.emission.lamps import find_light, is_illuminant, lamp_file
+from uplift.extras.files.spec import (
     InsidePath,
     Key,
     SpecFile,
@@ -38,8 +40,6 @@ from uplift.common.spec_file import (
     read_toml,
     resolves,
 )
-from uplift.common.text import format_value
-from uplift.extras.emission.lamps import find_light, is_illuminant, lamp_file
 from uplift.extras.palette.colours import MAX_KELVIN, MIN_KELVIN, illuminant, planck
 from uplift.extras.palette.factor import COUNTS
 from uplift.extras.palette.palette import (

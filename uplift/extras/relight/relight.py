@@ -21,12 +21,13 @@ from numpy.typing import NDArray
 from uplift.colorimetry import Sensor
 from uplift.colorimetry.delta_e import delta_e_2000, rgb_to_lab
 from uplift.colorimetry.gamut import SRGB, conversion
-from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS, Illuminant
+from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import display_sensors
-from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array, Floats, StrPath
 from uplift.common.errors import OutputError
 from uplift.cube import common_sensor
+from uplift.extras.colour.light_sets import DESCRIPTIONS, RELIGHT_LIGHTS
+from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.pages.figure import (
     GREY,
     INK,

@@ -12,8 +12,8 @@ import numpy as np
 from uplift.colorimetry.gamut import conversion
 from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import display_sensors
-from uplift.colorimetry.spaces import find_space
 from uplift.common.arrays import Floats
+from uplift.extras.colour.spaces import find_space
 from uplift.extras.images import exr
 from uplift.extras.texture.colours import Counts, source_space
 from uplift.extras.texture.image import Image, Part

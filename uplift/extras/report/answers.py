@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.common.arrays import Array, StrPath
-from uplift.common.csv import parse_csv
 from uplift.common.errors import ColourError
 from uplift.common.files import read_bytes
 from uplift.common.text import parse_float
+from uplift.extras.files.csv import parse_csv
 from uplift.lookup import Cube
 
 MAX_BYTES = 1 << 28

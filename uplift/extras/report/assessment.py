@@ -8,10 +8,11 @@ import numpy as np
 
 from uplift.atlas import Atlas
 from uplift.colorimetry import Sensor
-from uplift.colorimetry.lights import REPORT_LIGHTS, Illuminant
+from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array
 from uplift.cube import CubeData, summarise
+from uplift.extras.colour.light_sets import REPORT_LIGHTS
 from uplift.extras.report import fidelity, measures
 from uplift.extras.report.charts import (
     Histogram,

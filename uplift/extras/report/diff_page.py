@@ -9,8 +9,8 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
-from uplift.colorimetry.srgb import hex_codes, to_display_codes
 from uplift.common.arrays import Array
+from uplift.extras.colour.srgb import hex_codes, to_display_codes
 from uplift.extras.images.exr import blue_slices
 from uplift.extras.pages.figure import (
     PALE,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from uplift.colorimetry.srgb import hex_codes
+from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.emission.lattice import chromaticity
 from uplift.extras.emission.lookup import EmissionTable
 from uplift.extras.emission.table import summarise

@@ -5,11 +5,11 @@ import base64
 import numpy as np
 
 from uplift.colorimetry.observer import light
-from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
 from uplift.cube import CubeData
+from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.export.program import cube_program
 from uplift.extras.export.table import COLUMNS, check_complete, make_table
 from uplift.extras.pages.html import Markup, render, resource

@@ -14,15 +14,15 @@ import numpy as np
 
 from uplift.colorimetry import Light, Sensor
 from uplift.colorimetry.gamut import SRGB, conversion
-from uplift.colorimetry.lights import DESCRIPTIONS
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
+from uplift.extras.colour.light_sets import DESCRIPTIONS
+from uplift.extras.looks.lab_errors import LIKELY
 from uplift.extras.looks.metamer_bounds import Bounds
 from uplift.extras.pages.html import render, resource
 from uplift.lookup import Cube
-from uplift.lookup.light_errors import LIKELY
 from uplift.models import Moments
 from uplift.models.moments import MAX_COUNT
 

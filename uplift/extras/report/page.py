@@ -7,8 +7,8 @@ import numpy as np
 from pydantic_core import to_jsonable_python
 
 from uplift.colorimetry import Sensor
-from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
+from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.report.assessment import Assessment
 from uplift.extras.report.charts import histogram_chart, spectra_chart
 from uplift.extras.report.fidelity import Answers, EntryErrors

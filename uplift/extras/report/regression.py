@@ -8,12 +8,12 @@ from typing import Literal
 
 import numpy as np
 
-from uplift.colorimetry.lights import REGRESSION_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import CubeFileError
 from uplift.cube import CubeData
+from uplift.extras.colour.light_sets import REGRESSION_LIGHTS
 from uplift.extras.report.diff import pair_entries
 from uplift.extras.report.measures import delta_e_under
 from uplift.lattice import Status

@@ -15,10 +15,10 @@ import numpy as np
 
 from uplift.colorimetry import Light, Sensor
 from uplift.colorimetry.delta_e import rgb_to_lab
-from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array, Values, blocks, distances
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
+from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.pages.figure import (
     ACCENT,
     colour_map,

@@ -10,9 +10,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from uplift.colorimetry.gamut import SRGB, Primaries
-from uplift.colorimetry.spaces import ImageSpace, OcioSpace
-from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
+from uplift.extras.colour.spaces import ImageSpace, OcioSpace
+from uplift.extras.colour.srgb import decode
 
 Curve = Callable[[Array], Array]
 """From codes in [0, 1] to linear values."""

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.gamut import SRGB, Primaries
-from uplift.colorimetry.spaces import ImageSpace, OcioSpace, find_ocio_space
-from uplift.colorimetry.srgb import decode
 from uplift.common.errors import OptionError
+from uplift.extras.colour.spaces import ImageSpace, OcioSpace, find_ocio_space
+from uplift.extras.colour.srgb import decode
 from uplift.extras.texture import code_points
 
 NOT_STATED = ("", "unknown")

@@ -8,10 +8,10 @@ import numpy as np
 
 from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Array, Floats, StrPath, Values
 from uplift.common.errors import OptionError, TextureError, UpliftWarning, unknown_name
 from uplift.common.text import pluralise
+from uplift.extras.colour.spaces import ImageSpace
 from uplift.extras.texture.channels import (
     HALF_ROUNDING,
     all_inside,

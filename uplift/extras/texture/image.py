@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import StrPath, Values
 from uplift.common.errors import ColourError, TextureError, UpliftError
 from uplift.common.files import check_regular
 from uplift.common.machine import check_memory
 from uplift.common.text import pluralise
+from uplift.extras.colour.spaces import ImageSpace
 from uplift.extras.texture import exr_file, hdr_file, png_file, tiff_file
 from uplift.extras.texture.colour_profile import Profile, read_profile, xyz_space
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.observer import sensor
-from uplift.colorimetry.spaces import find_space
 from uplift.common.arrays import Array, Floats, Values
 from uplift.common.errors import OptionError
+from uplift.extras.colour.spaces import find_space
 from uplift.extras.emission.lookup import MAX_VALUE, EmissionTable
 from uplift.extras.emission.table import emission_digest
 from uplift.extras.images import exr
@@ -108,7 +108,7 @@ def prepare_lights(
         Interpretation of whole numbers; ``auto`` takes them as encoded. Floats are
         linear.
     space : str, optional
-        RGB space of images, as for `uplift.colorimetry.spaces.find_space`, by default
+        RGB space of images, as for `uplift.extras.colour.spaces.find_space`, by default
         the one that each file states.
     threads : int, default 2
         Threads that share a band.

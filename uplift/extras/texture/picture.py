@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Floats, StrPath, Values
 from uplift.common.errors import UpliftWarning
+from uplift.extras.colour.spaces import ImageSpace
 from uplift.extras.texture.channels import coloured_parts
 from uplift.extras.texture.colours import (
     Counts,

@@ -12,11 +12,11 @@ import numpy as np
 
 from uplift.colorimetry.gamut import check_method
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.spaces import find_space
 from uplift.common.arrays import Array, Indices, Mask, StrPath
 from uplift.common.errors import OptionError, TextureError, warn
 from uplift.common.files import file_digest
 from uplift.common.progress import Progress, ProgressCallback
+from uplift.extras.colour.spaces import find_space
 from uplift.extras.texture.channels import coloured_parts
 from uplift.extras.texture.colours import (
     Counts,

@@ -19,10 +19,11 @@ from uplift.common.errors import (
     UpliftError,
     needs_package,
 )
-from uplift.common.files import check_folder, make_folder, remove_stale
+from uplift.common.files import remove_stale
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.emission.lookup import load_emission
+from uplift.extras.files.outputs import check_folder, make_folder
 from uplift.extras.images.processes import tied_processes
 from uplift.extras.texture import exr_file
 from uplift.extras.texture.conversion import SOURCE, Conversion, convert, source_stamp

@@ -18,9 +18,9 @@ from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.colorimetry.lights import Illuminant, Lamp
 from uplift.colorimetry.observer import check_distinct, light
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.spaces import ImageSpace, find_space
 from uplift.common.arrays import Array, Floats, Indices, Values
 from uplift.common.errors import OptionError
+from uplift.extras.colour.spaces import ImageSpace, find_space
 from uplift.extras.images import exr
 from uplift.extras.texture.channels import ColourChannels
 from uplift.extras.texture.colours import Counts, Decoder, check_encoding, make_decoder
@@ -425,7 +425,7 @@ def prepare(
         `uplift.colorimetry.gamut.METHODS`. Pixels of the colour of an atlas entry
         outside the RGB space have its spectrum.
     space : str, optional
-        RGB space of images, as for `uplift.colorimetry.spaces.find_space`, by default
+        RGB space of images, as for `uplift.extras.colour.spaces.find_space`, by default
         the one that each file states.
     errors : sequence of str
         Lights, as for `uplift.colorimetry.observer.light`, each with a channel of

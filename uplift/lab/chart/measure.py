@@ -15,12 +15,12 @@ import numpy as np
 
 from uplift.atlas import read_atlas
 from uplift.colorimetry import Light, delta_e_rgb
-from uplift.colorimetry.lights import CHART_LIGHTS
-from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, Values
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
+from uplift.extras.colour.light_sets import CHART_LIGHTS
+from uplift.extras.colour.srgb import decode
 from uplift.extras.images.processes import ChildError, call_in_child
 from uplift.lab.chart import cubes, mitsuba3, published
 from uplift.lab.chart.method import (

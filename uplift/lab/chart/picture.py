@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.arrays import StrPath
+from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.extras.pages.figure import (
     ACCENT,
     GREY,

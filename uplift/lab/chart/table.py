@@ -9,12 +9,13 @@ from enum import StrEnum
 from importlib.resources import files
 from itertools import product
 
-from uplift.colorimetry.lights import CHART_LIGHTS, DEFAULT_ILLUMINANT
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.common.arrays import StrPath
-from uplift.common.csv import csv_text, parse_csv
 from uplift.common.errors import ChartFileError, OptionError, unknown_name
 from uplift.common.files import read_bytes
 from uplift.common.text import format_value, parse_float, pluralise, shorten
+from uplift.extras.colour.light_sets import CHART_LIGHTS
+from uplift.extras.files.csv import csv_text, parse_csv
 from uplift.extras.pages.format import format_error, format_time
 from uplift.lab.chart.method import Description
 from uplift.lab.panels import CLEAR_RATIO, pareto_front

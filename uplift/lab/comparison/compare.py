@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, Entry, merge, on_grid
 from uplift.colorimetry import delta_e_2000, observer
-from uplift.colorimetry.lights import KMENT_LIGHTS, Illuminant
+from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array
 from uplift.common.errors import (
@@ -30,6 +30,7 @@ from uplift.common.errors import (
 )
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
+from uplift.extras.colour.light_sets import KMENT_LIGHTS
 from uplift.extras.scene.plan.candidates import front
 from uplift.extras.scene.representations import filters, samples
 from uplift.extras.scene.representations.filters import Filter

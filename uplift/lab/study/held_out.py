@@ -14,12 +14,13 @@ from scipy.spatial.distance import cdist
 from uplift.atlas import Atlas, resample
 from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
-from uplift.colorimetry.lights import HELD_OUT_LIGHTS, SCENE_LIGHTS
+from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.cube import CubeData
+from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
 from uplift.extras.report.fidelity import Answers, compare_spectra
 from uplift.extras.report.measures import check_calibration
 from uplift.fit.families import families_with

@@ -16,10 +16,10 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, merge, on_grid
 from uplift.colorimetry import delta_e_1976, delta_e_2000, lab, observer
-from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.common.arrays import Array, Complex, Indices
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.extras.colour.light_sets import REPORT_LIGHTS
 from uplift.extras.scene.representations import samples
 from uplift.models import Moments, duality
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.arrays import Array, StrPath
 from uplift.common.text import pluralise
+from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
 from uplift.extras.pages.figure import (
     ACCENT,
     GREY,

@@ -13,11 +13,11 @@ from uplift.atlas import Atlas, Entry
 from uplift.atlas.atlas import HIGHEST, LOWEST
 from uplift.colorimetry import Light, observer
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
-from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.cube import CubeData
+from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
 from uplift.pipeline.build import build

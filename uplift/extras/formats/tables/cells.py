@@ -9,8 +9,8 @@ import numpy as np
 
 from uplift.atlas.atlas import SLACK, VISIBLE
 from uplift.common.arrays import Array
-from uplift.common.csv import parse_decimal
 from uplift.common.text import parse_float
+from uplift.extras.files.csv import parse_decimal
 from uplift.extras.formats.statements import NANOMETRE, find_unit, label_quantity
 
 SHORTEST = 100.0

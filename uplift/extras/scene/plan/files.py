@@ -22,7 +22,9 @@ from uplift.common.errors import (
 )
 from uplift.common.files import file_digest
 from uplift.common.progress import ProgressCallback, ignore_progress
-from uplift.common.spec_file import (
+from uplift.common.text import format_value
+from uplift.extras.emission.lamps import find_light, is_illuminant, lamp_file
+from uplift.extras.files.spec import (
     SpecFile,
     SpecModel,
     check_inside,
@@ -31,8 +33,6 @@ from uplift.common.spec_file import (
     read_toml,
     resolves,
 )
-from uplift.common.text import format_value
-from uplift.extras.emission.lamps import find_light, is_illuminant, lamp_file
 from uplift.extras.texture.colours import check_encoding
 from uplift.extras.texture.scene_colours import Images
 from uplift.lookup import Cube

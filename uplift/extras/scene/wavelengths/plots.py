@@ -3,9 +3,9 @@
 import numpy as np
 
 from uplift.colorimetry.gamut import SRGB, map_to_gamut
-from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array, StrPath
 from uplift.common.text import pluralise
+from uplift.extras.colour.srgb import encode
 from uplift.extras.pages.figure import (
     GREY,
     INK,

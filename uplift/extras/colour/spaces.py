@@ -14,12 +14,12 @@ import numpy as np
 from uplift.colorimetry import tables
 from uplift.colorimetry.gamut import Gamut, Primaries, conversion
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.srgb import encode
 from uplift.colorimetry.tables import RgbSpace
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UnknownNameError, unknown_name
 from uplift.common.files import check_regular
 from uplift.common.text import format_value, parse_float
+from uplift.extras.colour.srgb import encode
 
 VARIABLE = "OCIO"
 """Environment variable with the path of a configuration."""

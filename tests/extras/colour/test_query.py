@@ -18,10 +18,10 @@ from uplift.colorimetry.sensor import in_unit_cube
 from uplift.colorimetry.solid import solid
 from uplift.common.errors import ColourError, UnknownNameError
 from uplift.cube import write
+from uplift.extras.colour.query import query, query_xyz
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube
 from uplift.lookup.blocks import BLOCK
-from uplift.lookup.query import query, query_xyz
 
 D65_WAVELENGTHS = colour.SpectralShape(380, 780, 5)
 

@@ -6,7 +6,7 @@ import pytest
 
 from tests.helpers import raises
 from uplift.common.errors import PaletteError, PlanFileError
-from uplift.common.spec_file import SpecModel, read_json, read_toml
+from uplift.extras.files.spec import SpecModel, read_json, read_toml
 
 
 @pytest.fixture
