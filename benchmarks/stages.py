@@ -21,11 +21,11 @@ LARGE = "128"
 """Nodes along an axis of the build that runs once."""
 BUILD = {
     "uplift.pipeline.entries:fit_constraints": "entries",
-    "uplift.pipeline.build:learn_base": "learnt base",
-    "uplift.pipeline.build:fit_prior": "kriging of the entries",
+    "uplift.pipeline.stages:learn_base": "learnt base",
+    "uplift.pipeline.stages:fit_prior": "kriging of the entries",
     "uplift.fit.seeds:initial_guess": "prior of the nodes",
     "uplift.fit.growth:Growth.attempt": "steps of the solver",
-    "uplift.pipeline.build:store": "storing",
+    "uplift.pipeline.stages:store": "storing",
     "uplift.fit.prior:Prior.standard_error": "standard errors",
     "uplift.lookup.cube:Cube.save": "file",
 }

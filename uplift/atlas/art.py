@@ -177,16 +177,16 @@ def _fields(lines: Iterable[Line], location: SourceLocation) -> Fields:
     """Collect the lines of a section. Raise `AtlasError` for a line without a colon and
     for a repeated key.
     """
-    found: dict[str, Line] = {}
+    fields: dict[str, Line] = {}
     for line in lines:
         if ":" not in line.text:
             problem = f"unexpected text '{truncate(line.text)}'"
             raise location.at(line.number).error(problem, "write 'key : value'")
-        if line.key in found:
+        if line.key in fields:
             problem = f"the field '{truncate(line.key)}' is repeated"
             raise location.at(line.number).error(problem, "remove one of the two")
-        found[line.key] = line
-    return Fields(found, location)
+        fields[line.key] = line
+    return Fields(fields, location)
 
 
 def _read_entry(document: Document, lines: list[Line]) -> Entry | SkippedEntry:
@@ -259,16 +259,16 @@ def _sample_list(
     last = lines[-1].number
     start = location.at(first)
     text = "\n".join(document.lines[first - 1 : last]).strip()
-    found = LIST.match(text)
-    if found is None:
+    samples = LIST.match(text)
+    if samples is None:
         raise start.error("the sample list is not closed by '}'", COMPLETE_ENTRY)
     # Only rules may follow the list.
-    after = _content(text[found.end() :].split("\n"), first + found[0].count("\n"))
+    after = _content(text[samples.end() :].split("\n"), first + samples[0].count("\n"))
     if after:
         raise start.at(after[0].number).error(
             "unexpected text after the sample list", "end the entry with '}'"
         )
-    return found[1], start
+    return samples[1], start
 
 
 def _sampled(

@@ -23,10 +23,10 @@ colour.
 USED = (380.0, 780.0)
 """Range in nm that a cube samples by default."""
 
-LOWEST, HIGHEST = -0.05, 2.0
-"""Limits of reflectance. Noise is slightly below 0, fluorescent whites are above 1;
-other values have a wrong scale.
-"""
+LOWEST = -0.05
+"""Smallest reflectance, of noise."""
+HIGHEST = 2.0
+"""Largest reflectance, of fluorescent whites. Larger values have a wrong scale."""
 
 LONGEST = 1e6
 """Largest wavelength in nm, a millimetre. Larger values would overflow in
@@ -97,7 +97,9 @@ class Entry:
                 ) from None
             samples.setflags(write=False)
             object.__setattr__(self, key, samples)
-        for problem, hint in _faults(self.name, self.wavelengths, self.values):
+        for problem, hint in chain(
+            _name_faults(self.name), _sample_faults(self.wavelengths, self.values)
+        ):
             raise location.error(problem, hint)
 
     def __repr__(self) -> str:
@@ -323,12 +325,12 @@ class Atlas:
         return tuple(entry.name for entry in self.entries)
 
 
-def merge(parts: Iterable[Atlas]) -> Atlas:
+def merge(atlases: Iterable[Atlas]) -> Atlas:
     """Merge atlases into one, in order.
 
     Parameters
     ----------
-    parts : iterable of Atlas
+    atlases : iterable of Atlas
         The atlases.
 
     Returns
@@ -340,18 +342,18 @@ def merge(parts: Iterable[Atlas]) -> Atlas:
     AtlasError
         Two entries share a name.
     """
-    parts = tuple(parts)
-    return Atlas(
-        tuple(chain.from_iterable(part.entries for part in parts)),
-        tuple(chain.from_iterable(part.skipped for part in parts)),
-        tuple(chain.from_iterable(part.sources for part in parts)),
-    )
+    entries = list[Entry]()
+    skipped = list[SkippedEntry]()
+    sources = list[Source]()
+    for atlas in atlases:
+        entries += atlas.entries
+        skipped += atlas.skipped
+        sources += atlas.sources
+    return Atlas(tuple(entries), tuple(skipped), tuple(sources))
 
 
-def _faults(name: str, wavelengths: Array, values: Array) -> Iterator[tuple[str, str]]:
-    """Yield problems of a name and of samples (N,) in nm and units of 1, with hints.
-    The first one counts.
-    """
+def _name_faults(name: str) -> Iterator[tuple[str, str]]:
+    """Yield problems of a name, with hints. The first one counts."""
     if name != name.strip() or len(name.splitlines()) != 1 or "\0" in name:
         yield (
             "the name must be one line of text without surrounding blanks",
@@ -363,6 +365,12 @@ def _faults(name: str, wavelengths: Array, values: Array) -> Iterator[tuple[str,
             "Unicode"
         )
         yield problem, "give the entry a shorter name"
+
+
+def _sample_faults(wavelengths: Array, values: Array) -> Iterator[tuple[str, str]]:
+    """Yield problems of samples (N,) in nm and units of 1, with hints. The first one
+    counts.
+    """
     if wavelengths.ndim != 1 or wavelengths.shape != values.shape:
         problem = (
             "wavelengths and values must have the same shape (N,), got "
@@ -382,10 +390,8 @@ def _faults(name: str, wavelengths: Array, values: Array) -> Iterator[tuple[str,
     first = wavelengths[0]
     last = wavelengths[-1]
     if first <= 0 or last > LONGEST:
-        problem = (
-            f"wavelengths must be in (0, {LONGEST:g}] nm, got "
-            f"{first if first <= 0 else last:g}"
-        )
+        invalid = first if first <= 0 else last
+        problem = f"wavelengths must be in (0, {LONGEST:g}] nm, got {invalid:g}"
         yield problem, "give wavelengths in nm"
     for i in np.flatnonzero(np.diff(wavelengths) < SLACK):
         problem = (

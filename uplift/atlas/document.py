@@ -64,21 +64,8 @@ class Document:
         Raises `AtlasError` if it is empty, has a NUL character, or is damaged UTF-16.
         """
         data = self.data
-        encoding = None
+        encoding = _utf_16(data)
         hint = "save the atlas as UTF-8 text"
-        # One byte of every ASCII character in UTF-16 is 0: the first one if the order
-        # of bytes is big-endian.
-        even = data[:UTF_16_START:2]
-        odd = data[1:UTF_16_START:2]
-        if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-            encoding = "utf-16"
-        elif (
-            len(data) >= UTF_16_START
-            and len(data) % 2 == 0
-            and any(even) != any(odd)
-            and (all(even) or all(odd))
-        ):
-            encoding = "utf-16-le" if any(even) else "utf-16-be"
         # Every sequence of bytes is valid Latin-1, so this is the last encoding that is
         # tried.
         try:
@@ -107,6 +94,23 @@ class Document:
     def lines(self) -> list[str]:
         """Lines of the text; line n of an editor is ``lines[n - 1]``."""
         return self.text.split("\n")
+
+
+def _utf_16(data: bytes) -> str | None:
+    """Return the encoding of UTF-16 text, with or without a byte-order mark; None for
+    others.
+    """
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16"
+    if len(data) < UTF_16_START or len(data) % 2:
+        return None
+    # One byte of every ASCII character in UTF-16 is 0: the first one if the order of
+    # bytes is big-endian.
+    even = data[:UTF_16_START:2]
+    odd = data[1:UTF_16_START:2]
+    if all(even) and not any(odd):
+        return "utf-16-le"
+    return "utf-16-be" if all(odd) and not any(even) else None
 
 
 def read_document(path: StrPath) -> Document:

@@ -217,14 +217,14 @@ def from_distributions(distributions: Any) -> Atlas:
             getattr(distributions, "name", type(distributions).__name__): distributions
         }
     entries = list[Entry]()
-    for name, each in named.items():
+    for name, distribution in named.items():
         try:
-            nm = each.wavelengths
-            values = each.values
+            nm = distribution.wavelengths
+            values = distribution.values
         except AttributeError:
-            problem = f"'{type(each).__name__}' is not a spectral distribution"
+            problem = f"'{type(distribution).__name__}' is not a spectral distribution"
             raise SourceLocation(entry=str(name)).error(problem, FORMS) from None
-        labels = getattr(each, "labels", None)
+        labels = getattr(distribution, "labels", None)
         if labels is None or named is distributions:
             entries.append(Entry(str(name), nm, values))
         elif np.ndim(values) != 2 or np.shape(values)[1] != len(labels):
@@ -288,11 +288,11 @@ def shipped_atlases() -> tuple[ShippedAtlas, ...]:
     ...         print(atlas.entries, atlas.content)
     24 24 patches of the Macbeth ColorChecker, measured by Ohta (1997)
     """
-    found = []
+    atlases = []
     for name, path in _shipped_paths().items():
         document = read_document(path)
         header = art.read_header(document)
-        found.append(
+        atlases.append(
             ShippedAtlas(
                 name,
                 header.content,
@@ -302,7 +302,7 @@ def shipped_atlases() -> tuple[ShippedAtlas, ...]:
                 document.digest,
             )
         )
-    return tuple(found)
+    return tuple(atlases)
 
 
 @functools.cache

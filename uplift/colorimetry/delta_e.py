@@ -189,14 +189,10 @@ def delta_e_2000_weights(lab: ArrayLike) -> Array:
     weights[..., 0, 0] = 1 / (
         1 + 0.015 * (light - 50) ** 2 / np.sqrt(20 + (light - 50) ** 2)
     )
-    weights[..., 1, 1], weights[..., 1, 2] = (
-        chroma_weight * np.cos(hue),
-        chroma_weight * np.sin(hue),
-    )
-    weights[..., 2, 1], weights[..., 2, 2] = (
-        -hue_weight * np.sin(hue),
-        hue_weight * np.cos(hue),
-    )
+    weights[..., 1, 1] = chroma_weight * np.cos(hue)
+    weights[..., 1, 2] = chroma_weight * np.sin(hue)
+    weights[..., 2, 1] = -hue_weight * np.sin(hue)
+    weights[..., 2, 2] = hue_weight * np.cos(hue)
     return weights
 
 
@@ -217,7 +213,7 @@ def delta_e_spectra(light: Light, first: ArrayLike, second: ArrayLike) -> Array:
     xyz = (
         np.asarray(spectra, dtype=float) @ light.xyz.T for spectra in (first, second)
     )
-    return delta_e_2000(*(lab(each, light.white) for each in xyz))
+    return delta_e_2000(*(lab(colours, light.white) for colours in xyz))
 
 
 def delta_e_rgb(sensor: Sensor, first: ArrayLike, second: ArrayLike) -> Array:

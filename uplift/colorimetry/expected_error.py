@@ -77,11 +77,11 @@ class ExpectedError:
 
     def __call__(self, lab: Array) -> Array:
         """Expected squares (n, K) less `floor` at L*a*b* (n, 3)."""
-        found = np.empty((len(lab), len(self.floor)))
-        for part in blocks(len(lab), max(BLOCK_NUMBERS // len(self.locations), 1)):
-            weights = np.exp(distances(lab[part], self.locations) / -LENGTH)
-            found[part] = self.combine(weights @ self.columns, weights.max(axis=1))
-        return found
+        squares = np.empty((len(lab), len(self.floor)))
+        for block in blocks(len(lab), max(BLOCK_NUMBERS // len(self.locations), 1)):
+            weights = np.exp(distances(lab[block], self.locations) / -LENGTH)
+            squares[block] = self.combine(weights @ self.columns, weights.max(axis=1))
+        return squares
 
 
 def expected_error(
@@ -102,14 +102,14 @@ def expected_error(
     )
     parts = list(blocks(len(locations), max(BLOCK_NUMBERS // len(locations), 1)))
 
-    def others(part: slice) -> Array:
-        apart = distances(locations[part], locations)
-        np.fill_diagonal(apart[:, part], np.inf)
+    def others(block: slice) -> Array:
+        apart = distances(locations[block], locations)
+        np.fill_diagonal(apart[:, block], np.inf)
         return apart
 
     # The variance v = 1 − k² that a left-out entry has, by the weight k = exp(−ΔE /
     # length) of the nearest other one
-    nearest = np.concatenate([others(part).min(axis=1) for part in parts])
+    nearest = np.concatenate([others(block).min(axis=1) for block in parts])
     variance = np.maximum(1 - np.exp(nearest / -LENGTH) ** 2, MIN_VARIANCE)
     floor = (kept**2).mean()
     products_floor = kept_products.mean(axis=0)
@@ -120,7 +120,9 @@ def expected_error(
         [left_out_products * share[:, None], left_out**2 * share, np.ones(len(share))]
     )
     # What the other entries let expect: v (Σ k e² + n₀ mean e²) / (Σ k + n₀) + f
-    sums = np.concatenate([np.exp(others(part) / -LENGTH) @ columns for part in parts])
+    sums = np.concatenate(
+        [np.exp(others(block) / -LENGTH) @ columns for block in parts]
+    )
     expected = sums[:, :-1] + PRIOR_COUNT * columns[:, :-1].mean(axis=0)
     expected *= (variance / (sums[:, -1] + PRIOR_COUNT))[:, None]
     roots = np.sqrt(expected[:, -1] + floor)
@@ -162,8 +164,10 @@ def learn_radii(
         # distribution (Abramowitz & Stegun 1964, "Handbook of mathematical functions",
         # 26.7.5, to first order in 1 / E).
         student = normal * (1 + (normal**2 + components) / (4 * count))
-        found = float(np.quantile(ratio, share, method="weibull"))
-        radii.append(student * (found / student) ** trust if found > 0 else normal)
+        observed = float(np.quantile(ratio, share, method="weibull"))
+        radii.append(
+            student * (observed / student) ** trust if observed > 0 else normal
+        )
     return radii
 
 
@@ -175,7 +179,10 @@ def nearest_distances(lab: Array, locations: Array) -> Array:
         return np.full(len(lab), np.inf)
     parts = blocks(len(lab), max(BLOCK_NUMBERS // len(locations), 1))
     return np.concatenate(
-        [np.zeros(0), *(distances(lab[part], locations).min(axis=1) for part in parts)]
+        [
+            np.zeros(0),
+            *(distances(lab[block], locations).min(axis=1) for block in parts),
+        ]
     )
 
 

@@ -110,8 +110,8 @@ class Lamp:
         """
         nm = np.asarray(wavelengths, dtype=float)
         step = np.diff(nm[:2]).sum()
-        own = float(np.median(np.diff(self.wavelengths)))
-        count = math.ceil(step / own - 1e-6) if step > own else 1
+        measured_step = float(np.median(np.diff(self.wavelengths)))
+        count = math.ceil(step / measured_step - 1e-6) if step > measured_step else 1
         offsets = step / count * np.arange(1 - count, count)
         weights = count - np.abs(np.arange(1 - count, count))
         shifted = np.interp(nm[:, None] + offsets, self.wavelengths, self.power)
@@ -131,10 +131,10 @@ def standard_name(name: str) -> tuple[str, float | None]:
     >>> standard_name("Tungsten"), standard_name("3200 k"), standard_name("FL11")
     (('A', None), ('3200K', 3200.0), ('FL11', None))
     """
-    found = re.fullmatch(r"(\d{1,6}(?:\.\d{1,3})?) ?K", name, re.IGNORECASE)
-    if found is None:
+    match = re.fullmatch(r"(\d{1,6}(?:\.\d{1,3})?) ?K", name, re.IGNORECASE)
+    if match is None:
         return COMMON_NAMES.get(name.casefold(), name), None
-    kelvin = float(found[1])
+    kelvin = float(match[1])
     if not TEMPERATURES[0] <= kelvin <= TEMPERATURES[1]:
         raise OptionError(
             f"a colour temperature must be from 1000K to 25000K, got {name}",

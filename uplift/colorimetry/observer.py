@@ -209,7 +209,7 @@ def display_sensors(
     sensors = (
         sensor(space, name, observer, (start, end, step)) for name in illuminants
     )
-    return tuple({each.illuminant: each for each in sensors}.values())
+    return tuple({display.illuminant: display for display in sensors}.values())
 
 
 def check_distinct(illuminants: Iterable[Illuminant]) -> None:
@@ -217,9 +217,9 @@ def check_distinct(illuminants: Iterable[Illuminant]) -> None:
     name in results.
     """
     known: dict[str, Lamp | None] = {}
-    for each in illuminants:
-        name = tables.stated_name("illuminant", each)
-        lamp = each if isinstance(each, Lamp) else None
+    for illuminant in illuminants:
+        name = tables.stated_name("illuminant", illuminant)
+        lamp = illuminant if isinstance(illuminant, Lamp) else None
         if known.setdefault(name, lamp) != lamp:
             raise OptionError(
                 f"two lights have the name '{name}'", hint="rename one of them"

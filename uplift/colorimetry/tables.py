@@ -173,8 +173,8 @@ def rgb_space(name: str) -> RgbSpace | None:
         name = table[name].name
     row = known.index(name)
     parts = (
-        _file()[f"RGB space: {part}"][row]
-        for part in ("primaries", "whitepoint", "matrix", "decoding")
+        _file()[f"RGB space: {array}"][row]
+        for array in ("primaries", "whitepoint", "matrix", "decoding")
     )
     return RgbSpace(stated_name("RGB space", name), *parts)
 
@@ -231,8 +231,8 @@ def _of_temperature(kelvin: float, name: str) -> Any:
             lights.black_body(kelvin, wavelengths), wavelengths, name=name
         )
     kelvin = min(kelvin * lights.NOMINAL, lights.TEMPERATURES[1])
-    found = colour.sd_CIE_illuminant_D_series(
+    daylight = colour.sd_CIE_illuminant_D_series(
         colour.temperature.CCT_to_xy_CIE_D(kelvin)
     )
-    found.name = name
-    return found
+    daylight.name = name
+    return daylight

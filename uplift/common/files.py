@@ -124,22 +124,14 @@ def check_output(
         status = path.stat()
     except FileNotFoundError:
         status = None
-    except (
-        OSError,
-        ValueError,
-    ) as error:  # no permission, too long, with NUL, or a loop of links
-        raise refused(
-            f"cannot be written: {getattr(error, 'strerror', None) or error}"
-        ) from error
-    # Compared by inode: links and other spellings of an input are the input.
+    # No permission, too long, with NUL, or a loop of links
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise refused(f"cannot be written: {reason}") from error
     if status is not None:
-        existing = (
-            each for each in inputs if each is not None and os.path.exists(each)
-        )
-        if any(os.path.samestat(status, os.stat(each)) for each in existing):
-            raise refused(
-                "is read as input and must not be replaced", code="output-is-input"
-            )
+        if _is_one_of(status, inputs):
+            problem = "is read as input and must not be replaced"
+            raise refused(problem, code="output-is-input")
         if not stat.S_ISREG(status.st_mode):
             raise refused("is not a regular file")
         if not force:
@@ -153,6 +145,14 @@ def check_output(
             f"no permission to write in {folder}", hint="choose another folder"
         )
     return path
+
+
+def _is_one_of(status: os.stat_result, paths: Iterable[StrPath | None]) -> bool:
+    """Whether a file is one of others, by inode: links and other spellings of a path
+    are the same file.
+    """
+    existing = [path for path in paths if path is not None and os.path.exists(path)]
+    return any(os.path.samestat(status, os.stat(path)) for path in existing)
 
 
 def write_text(text: str, path: StrPath, *, force: bool = False) -> None:

@@ -147,9 +147,11 @@ class CubeData:
 
     def __repr__(self) -> str:
         sensor = self.sensor
-        own = self.atlas.spectra.model
+        entry_model = self.atlas.spectra.model
         more = (
-            "" if own == self.model else f" with {pluralise(own.count, 'coefficient')}"
+            ""
+            if entry_model == self.model
+            else f" with {pluralise(entry_model.count, 'coefficient')}"
         )
         outside = (
             ""
@@ -265,7 +267,7 @@ def common_sensor(cubes: Iterable[CubeData]) -> Sensor:
     observer; `OptionError` otherwise.
     """
     sensors = [cube.sensor for cube in cubes]
-    spaces = {(each.space, each.illuminant, each.observer) for each in sensors}
+    spaces = {(sensor.space, sensor.illuminant, sensor.observer) for sensor in sensors}
     if len(spaces) > 1:
         names = " and ".join(", ".join(space) for space in sorted(spaces))
         raise OptionError(

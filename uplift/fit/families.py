@@ -84,7 +84,7 @@ def shipped_library(leave_out: Collection[str] = ()) -> tuple[Family, ...]:
         named = zip(
             table["names"].tolist(), rows, table["spreads"].tolist(), strict=True
         )
-        families = {name: Family(name, *rest) for name, *rest in named}
+        families = {name: Family(name, *columns) for name, *columns in named}
     for name in leave_out:
         if name not in families:
             raise unknown_name(name, list(families), "library family")
@@ -127,8 +127,8 @@ class FamilyKriging:
         rows = [np.flatnonzero(self.family == number) for number in range(self.count)]
         return np.stack(
             [
-                _kernel_sum(lab, self.locations[some], self.weights[some])
-                for some in rows
+                _kernel_sum(lab, self.locations[members], self.weights[members])
+                for members in rows
             ]
         )
 
@@ -158,9 +158,9 @@ def krige_families(
     # Covariance of samples i, j: (1 + spread_f) k_ij within a family, k_ij between
     # families, noise on the diagonal.
     covariance = _matern(locations, locations)
-    for own in range(len(families)):
-        rows = np.flatnonzero(number == own)
-        covariance[np.ix_(rows, rows)] *= 1 + spread[own]
+    for row in range(len(families)):
+        rows = np.flatnonzero(number == row)
+        covariance[np.ix_(rows, rows)] *= 1 + spread[row]
     covariance[np.diag_indices(len(number))] += NUGGET / counts
     weights = np.linalg.solve(covariance, deviations)
     # Their covariance with a new material, whose deviation is d(x) and the related part

@@ -269,10 +269,8 @@ class OutsideBoxes:
         for box in np.flatnonzero(self.half_width > 0):
             from_centre = np.abs(rgb[rows] - self.rgb[box]).max(axis=1)
             inside = from_centre < self.half_width[box]
-            entry[inside], distance[inside] = (
-                box,
-                from_centre[inside] / self.half_width[box],
-            )
+            entry[inside] = box
+            distance[inside] = from_centre[inside] / self.half_width[box]
         hit = entry != NO_ENTRY
         # The weight is 0 in the core of the box, and rises linearly to 1 on its faces.
         return BoxHits(

@@ -75,8 +75,12 @@ class PointTable:
     @property
     def columns(self) -> dict[str, NDArray[Any]]:
         """The arrays by name, without those that are None."""
-        columns = {each.name: getattr(self, each.name) for each in fields(self)}
-        return {name: column for name, column in columns.items() if column is not None}
+        names = [field.name for field in fields(self)]
+        return {
+            name: getattr(self, name)
+            for name in names
+            if getattr(self, name) is not None
+        }
 
     def spread(self, numbers: Indices, size: int) -> "PointTable":
         """Return the table of ``size`` nodes whose rows, at the nodes ``numbers`` (n,),
@@ -106,10 +110,8 @@ class PointTable:
 
         Coefficients become float64 if those of the rows are.
         """
-        columns, present = (
-            self.columns,
-            np.flatnonzero(self.present),
-        )  # the others take no memory
+        columns = self.columns
+        present = np.flatnonzero(self.present)  # the others take no memory
         for name, column in self.columns.items():
             added = rows.get(name, np.full(len(points), ABSENT_VALUES.get(name, 0)))
             kind = (

@@ -40,9 +40,9 @@ def from_description(description: Mapping[str, Any]) -> Model:
     >>> from_description(Sigmoid().describe())
     Sigmoid(start=380.0, end=780.0)
     """
-    rest = {key: value for key, value in description.items() if key != "name"}
+    parameters = {key: value for key, value in description.items() if key != "name"}
     if description["name"] == Sigmoid.name:
-        return Sigmoid(**rest)
+        return Sigmoid(**parameters)
     if description["name"] == Moments.name:
-        return Moments(rest["count"], **rest["phase"])
+        return Moments(parameters["count"], **parameters["phase"])
     raise KeyError(description["name"])

@@ -212,7 +212,8 @@ def _series(moments: Array) -> tuple[Array, Array]:
     count, spectra = moments.shape
     slopes = np.pi * np.arange(count)[:, None] * moments
     parts = np.empty((count, 2, spectra))
-    parts[0, 0], parts[0, 1] = 1, 0
+    parts[0, 0] = 1
+    parts[0, 1] = 0
     for order in range(1, count):
         np.einsum(
             "kn,kpn->pn", slopes[order:0:-1], parts[:order, ::-1], out=parts[order]

@@ -25,7 +25,8 @@ from uplift.models import duality
 from uplift.models.arithmetic import arctan, arctan_difference
 from uplift.models.model import Model
 
-MIN_COUNT, MAX_COUNT = 3, 17
+MIN_COUNT = 3
+MAX_COUNT = 17
 """Numbers of coefficients: the zeroth and 2 to 16 moments."""
 MAX_SAFE_LINEAR = 30.0
 """Bound of the linear part up to which single precision keeps colours

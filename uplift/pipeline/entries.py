@@ -45,6 +45,21 @@ class MeasuredEntries(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
+class Spectra:
+    """What shapes the prior of a build and constrains its answers."""
+
+    libraries: tuple[tuple[Source, Atlas], ...]
+    """Libraries of the user, and their files."""
+    families: tuple[Family, ...]
+    """Families of the shipped library, and of the user's."""
+    atlas: Atlas
+    measured: MeasuredEntries
+    """Entries in the RGB space."""
+    outside: MeasuredEntries
+    """Entries outside the RGB space."""
+
+
+@dataclass(frozen=True, eq=False)
 class Constraints:
     """The E entries of a cube, measured ones and then looks, in the spectrum models of
     the nodes and of entries.
@@ -94,6 +109,17 @@ class Constraints:
             measured,
             looks=self.looks,
         )
+
+
+def read_spectra(
+    atlas: AtlasLike, library: AtlasLike, options: Options, sensor: Sensor
+) -> Spectra:
+    """Read the families of the library, and the entries of the atlas."""
+    libraries = () if library is None else read_libraries(library)
+    families = families_of(options, libraries, sensor)
+    atlas = as_atlas(atlas)
+    measured, outside = split_by_gamut(atlas, sensor)
+    return Spectra(libraries, families, atlas, measured, outside)
 
 
 def as_atlas(atlas: AtlasLike) -> Atlas:

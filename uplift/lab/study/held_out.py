@@ -27,8 +27,9 @@ from uplift.fit.families import families_with
 from uplift.lookup import Cube
 from uplift.lookup.refine import FIRST_DAMPING, MAX_STEPS
 from uplift.models.minimum_norm import forward_map, minimum_norm_step
-from uplift.pipeline.build import build, problem_of
+from uplift.pipeline.build import build
 from uplift.pipeline.options import Options
+from uplift.pipeline.stages import problem_of
 
 MIN_ENTRIES = 8
 """Fewest entries within the RGB space of an atlas that is split."""

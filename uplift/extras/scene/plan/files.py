@@ -36,8 +36,9 @@ from uplift.extras.files.spec import (
 from uplift.extras.texture.colours import check_encoding
 from uplift.extras.texture.scene_colours import Images
 from uplift.lookup import Cube
-from uplift.pipeline.build import build, problem_of
+from uplift.pipeline.build import build
 from uplift.pipeline.options import Options, recorded_options
+from uplift.pipeline.stages import problem_of
 
 FORMAT: Literal["uplift plan 1"] = "uplift plan 1"
 HINT = "plan the scene again"

@@ -51,9 +51,9 @@ from uplift.lattice import Lattice, axis_nodes
 from uplift.lookup import Cube
 from uplift.models import Sigmoid
 from uplift.models.model import Model
-from uplift.pipeline.build import Learnt, build_stages, learn, problem_of
 from uplift.pipeline.entries import split_by_gamut
 from uplift.pipeline.options import Options
+from uplift.pipeline.stages import Learnt, build_stages, learn, problem_of
 
 FLOOR = 0.5
 """Share of the tolerance below which errors count as equal."""

@@ -1,0 +1,377 @@
+"""The order of a build: atlas → fitted entries → prior → lattice and seeds → growth →
+improvement → storage → cube.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.colorimetry import observer as observers
+from uplift.colorimetry.camera import Camera
+from uplift.colorimetry.lights import (
+    ERROR_ILLUMINANT,
+)
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Indices, Mask
+from uplift.common.errors import UpliftWarning, warn
+from uplift.common.extensions import extension
+from uplift.common.machine import single_threaded_blas
+from uplift.common.progress import ProgressCallback, ignore_progress
+from uplift.common.text import pluralise
+from uplift.common.version import version
+from uplift.cube import AtlasTable, CubeData
+from uplift.fit import growth, seeds
+from uplift.fit.base import learn_base
+from uplift.fit.families import Family
+from uplift.fit.growth_outward import grow_outward
+from uplift.fit.prior import Prior, fit_prior
+from uplift.fit.problem import Problem, nodes_of
+from uplift.fit.store import store
+from uplift.lattice import EntryBoxes, Lattice, PointTable, axis_nodes
+from uplift.lookup import Cube
+from uplift.models.model import Model
+from uplift.pipeline import entries
+from uplift.pipeline.entries import AtlasLike, Constraints, MeasuredEntries, Spectra
+from uplift.pipeline.options import (
+    AUTO,
+    OUTWARD,
+    SOLVERS,
+    Options,
+    check_memory,
+)
+
+
+class SceneLike(Protocol):
+    """Colours that restrict a build to the nodes that they require."""
+
+    def required_points(
+        self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback
+    ) -> Mask:
+        """Return the mask (dim³,) of the required nodes, and report events of stage
+        ``"images"``.
+        """
+        ...
+
+    def describe(self) -> list[dict[str, Any]]:
+        """Describe the sources of the colours for the provenance of the cube, in
+        JSON values.
+        """
+        ...
+
+
+def problem_of(
+    options: Options, observer: str | Camera, solver: Any
+) -> tuple[Options, Problem]:
+    """Return the problem of a build, and options with the names of the space and of a
+    camera, not aliases or files.
+    """
+    # r = W g, on the wavelengths of the build (docs/mathematics.md, 1)
+    wavelengths = options.shortest, options.longest, options.step
+    sensor = observers.sensor(options.space, options.illuminant, observer, wavelengths)
+    observers.check_distinct(options.lights)
+    *lights, error_light = (
+        observers.light(name, sensor.observer, *sensor.range)
+        for name in (*options.lights, ERROR_ILLUMINANT)
+    )
+    model = options.spectrum_model()
+    problem = Problem(sensor, model, tuple(lights), error_light, options.threshold)
+    if solver != SOLVERS[0]:
+        method = extension("solver", "stock")(solver, problem.tolerance)
+        problem = replace(problem, method=method)
+    named: dict[str, Any] = {
+        "space" if sensor.sensitivities is None else "observer": sensor.space
+    }
+    return replace(options, **named), problem
+
+
+def _choose_lattice(
+    options: Options,
+    problem: Problem,
+    constraints: Constraints,
+    prior: Prior,
+) -> Options:
+    """Replace ``dim="auto"`` by the smallest lattice that keeps every entry, if it fits
+    into memory.
+    """
+    axis, dim, lost = seeds.choose_lattice(
+        problem,
+        prior,
+        _blend(options),
+        constraints.at_nodes,
+        options.auto_tolerance,
+    )
+    if lost:
+        warn(
+            UpliftWarning(
+                f"no dim up to {seeds.DIMS[-1]} keeps every entry within ΔE00 "
+                f"{options.auto_tolerance:g}: {lost} of {len(constraints.names)} are "
+                f"too close to others; dim {dim} keeps the most",
+                code="no-dim-keeps-all-entries",
+            )
+        )
+    options = replace(options, axis=axis, dim=dim)
+    check_memory(options)
+    return options
+
+
+@dataclass(frozen=True, eq=False)
+class Learnt:
+    """What spectra teach, for lattices of any size."""
+
+    constraints: Constraints
+    """The fitted entries."""
+    prior: Prior
+    relevance: tuple[float, ...]
+    """Relevance of each family."""
+
+
+def learn(
+    problem: Problem,
+    entry_model: Model,
+    measured: MeasuredEntries,
+    families: Sequence[Family],
+) -> Learnt:
+    """Fit the entries and the prior."""
+    # Entries p_i: min ‖g − m‖² + Σ |w ΔL*a*b*|² subject to r(p) = t
+    # (docs/mathematics.md, 6). Prior c(x) = s(x) + d(x): smooth spectra, what families
+    # deviate from them, and kriging of the entries (7).
+    constraints = entries.fit_constraints(problem, entry_model, measured)
+    base, relevance = learn_base(problem, families, constraints.at_nodes)
+    prior = fit_prior(problem, constraints.at_nodes, base)
+    return Learnt(constraints, prior, relevance)
+
+
+@single_threaded_blas()
+def build_stages(
+    atlas: AtlasLike,
+    options: Options,
+    problem: Problem,
+    library: AtlasLike = None,
+    looks: Any = None,
+    scene: SceneLike | None = None,
+    progress: ProgressCallback = ignore_progress,
+    learn: Callable[..., Learnt] = learn,
+) -> Cube:
+    """Build a cube from checked options and the problem that they describe; builds may
+    share what they ``learn``.
+    """
+    sensor = problem.sensor
+    entry_model = options.spectrum_model(options.entry_coefficients)
+    spectra = entries.read_spectra(atlas, library, options, sensor)
+    targets = None
+    if looks is not None:  # they become further entries
+        targets_of = extension("looks", "targets")
+        names = spectra.atlas.names
+        targets = targets_of(looks, entry_model, sensor, names, spectra.measured)
+    learnt = learn(problem, entry_model, spectra.measured, spectra.families)
+    constraints = learnt.constraints
+    prior = learnt.prior
+    if options.neutral == "flat":
+        prior = prior.with_flat_greys()
+    if targets is not None:
+        targets, constraints, prior = targets.fit(problem, constraints, prior)
+
+    options, seeded, boxes = _place_entries(options, problem, constraints, prior)
+    kept = None
+    if scene is not None:
+        kept = np.flatnonzero(scene.required_points(boxes, sensor, progress))
+    points, improvements = _fit_nodes(
+        options, problem, constraints, prior, seeded, kept, progress
+    )
+    table = _atlas_table(problem, constraints, prior, boxes, spectra.measured)
+    outside = _outside_table(
+        problem, prior, entry_model, spectra.outside, seeded.lattice
+    )
+    provenance = {
+        "uplift": version(),
+        "options": options.record(),
+        **_describe_atlas(spectra),
+        "prior": _describe_prior(prior),
+        "improvements": improvements,
+        **({} if scene is None else {"scene": scene.describe()}),
+        **_describe_library(spectra, learnt.relevance),
+        **({} if targets is None else targets.describe(table, problem.model, sensor)),
+    }
+    data = CubeData(
+        model=problem.model,
+        lattice=seeded.lattice,
+        sensor=sensor,
+        threshold=options.threshold,
+        atlas=replace(table, outside=outside),
+        points=points,
+        error_illuminant=ERROR_ILLUMINANT,
+        provenance=provenance,
+    )
+    return Cube(data)
+
+
+def _place_entries(
+    options: Options, problem: Problem, constraints: Constraints, prior: Prior
+) -> tuple[Options, seeds.Seeds, EntryBoxes]:
+    """Choose the lattice, the boxes of the entries in it (docs/mathematics.md, 8), and
+    the nodes that start from entries: c = w c_i + (1 − w) c(x).
+    """
+    is_chosen = options.dim == AUTO
+    if is_chosen:
+        options = _choose_lattice(options, problem, constraints, prior)
+    lattice = Lattice(axis_nodes(options.axis, int(options.dim)))
+    rgb = constraints.at_nodes.rgb
+    boxes = EntryBoxes(lattice, rgb, seeds.half_widths(lattice.to_steps(rgb)))
+    seeded = seeds.seed(lattice, rgb)
+    # The choice of the lattice has counted the entries that none keeps.
+    crowded = () if is_chosen else seeded.crowded
+    entries.warn_of_close(constraints.names, boxes.half_width, crowded)
+    return options, seeded, boxes
+
+
+def _blend(options: Options) -> seeds.Blend:
+    """Return how corners of the cells of entries start, with `seed_corners` as in the
+    thesis.
+    """
+    if options.seed_corners or options.growth == "neighbours":
+        return seeds.FULL_ENTRY
+    return seeds.HALF_ENTRY
+
+
+def _fit_nodes(
+    options: Options,
+    problem: Problem,
+    constraints: Constraints,
+    prior: Prior,
+    seeded: seeds.Seeds,
+    kept: Indices | None,
+    progress: ProgressCallback,
+) -> tuple[PointTable, list[dict[str, Any]]]:
+    """Fit the nodes ``kept``, or all, and describe the steps that improved them."""
+    # They grow from the seeds: min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7), where t
+    # is the nearest colour that some reflectance has (9).
+    nodes = nodes_of(seeded.lattice, problem.sensor, kept)
+    steps: Sequence[str] = growth.STEPS
+    multipliers = constraints.at_nodes.multipliers
+    if options.growth == "neighbours":
+        nodes = nodes_of(seeded.lattice, problem.sensor, None)
+        steps = growth.THESIS_STEPS
+        multipliers = constraints.truncated(problem.model)
+    expected = partial(
+        seeds.initial_guess,
+        prior=prior,
+        seeds=seeded,
+        entries=multipliers,
+        blend=_blend(options),
+    )
+    grow = grow_outward
+    if options.growth != OUTWARD:
+        grow = extension("growth", options.growth)
+    grown = grow(problem, nodes, expected, seeded.points, progress)
+    improvements = [
+        {"step": step, "tried": tried, "mended": fixed}
+        for step, tried, fixed in growth.improve(grown, steps)
+    ]
+    points = store(grown, seeded, prior)
+    _warn_of_unfitted(options, points)
+    if kept is not None:
+        points = points.restricted_to(kept)
+    return points if options.debug else replace(points, round=None), improvements
+
+
+def _warn_of_unfitted(options: Options, points: PointTable) -> None:
+    """Warn of nodes that another solver than the default has left over the
+    threshold.
+    """
+    unfitted = points.counts()["unfitted"]
+    if unfitted and options.solver != SOLVERS[0]:
+        warn(
+            UpliftWarning(
+                f"{pluralise(unfitted, 'node')} over the threshold with the solver "
+                f"'{options.solver}'",
+                code="nodes-unfitted",
+                hint="use the default solver",
+            )
+        )
+
+
+def _atlas_table(
+    problem: Problem,
+    constraints: Constraints,
+    prior: Prior,
+    boxes: EntryBoxes,
+    measured: MeasuredEntries,
+) -> AtlasTable:
+    """Return the table of the entries in the RGB space."""
+    values = _stored_spectra(prior, measured)
+    table = constraints.table(problem.model, boxes.half_width, values)
+    if prior.left_out is None:
+        return table
+    return replace(table, left_out=prior.left_out.astype(np.float32))
+
+
+def _outside_table(
+    problem: Problem,
+    prior: Prior,
+    entry_model: Model,
+    outside: MeasuredEntries,
+    lattice: Lattice,
+) -> AtlasTable | None:
+    """Return the table of the entries outside the RGB space, if there are any.
+
+    They constrain no node: their spectra answer XYZ and textures of other spaces.
+    """
+    if not outside.names:
+        return None
+    half_width = seeds.outside_half_widths(lattice, outside.rgb)
+    entries.warn_of_close(outside.names, half_width)
+    fitted = entries.fit_constraints(problem, entry_model, outside)
+    values = _stored_spectra(prior, outside)
+    return fitted.table(problem.model, half_width, values)
+
+
+def _stored_spectra(
+    prior: Prior, measured: MeasuredEntries
+) -> NDArray[np.float32] | None:
+    """Return measured reflectances if errors are learnt from them and the left-out."""
+    if prior.left_out is None:
+        return None
+    return measured.reflectances.astype(np.float32)
+
+
+def _describe_atlas(spectra: Spectra) -> dict[str, Any]:
+    """Return the provenance of the entries, in JSON values."""
+    return {
+        "atlases": [
+            {"name": source.name, "digest": source.digest, **source.changed_options()}
+            for source in spectra.atlas.sources
+        ],
+        "left_out": list(spectra.outside.names),
+        "skipped": [entry.name for entry in spectra.atlas.skipped],
+    }
+
+
+def _describe_prior(prior: Prior) -> dict[str, Any]:
+    """Return what the kriging learnt, and the errors if the atlas is large enough."""
+    learnt = {} if prior.kriging is None else prior.kriging.kernel._asdict()
+    if prior.errors is not None:
+        standard, bound = prior.errors.radii
+        learnt["error_bound"] = bound / standard
+    return learnt
+
+
+def _describe_library(
+    spectra: Spectra, relevance: Sequence[float]
+) -> dict[str, list[dict[str, Any]]]:
+    """Return the provenance of the learnt prior, in JSON values."""
+    return {
+        "libraries": [
+            {"name": source.name, "digest": source.digest}
+            for source, _ in spectra.libraries
+        ],
+        "families": [
+            {"name": family.name, "relevance": weight}
+            for family, weight in zip(spectra.families, relevance, strict=True)
+        ],
+    }
