@@ -5,7 +5,9 @@ README.md.j2 is the README, above docs. Long tables of a page are CSV files that
 links to, in docs/tables.
 
 Nothing is measured here. The programs in benchmarks/ write the data. A template without
-data uses that of other pages, by ``load``.
+data uses that of other pages, by ``load``. Numbers of the prose come from where they
+are decided: ``code`` is a constant of the code, ``datum`` a measurement, and ``stated``
+a number that a named source has.
 
 Examples
 --------
@@ -15,10 +17,12 @@ Examples
 
 import json
 import os
+import re
 import statistics
 import string
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from importlib import import_module
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -32,12 +36,15 @@ from uplift.lab.chart.table import SITUATIONS, recommend_cube, shipped_chart
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 TEMPLATES = DOCS / "templates"
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+WRITTEN = re.compile(r"\d*\.?\d+(?:e-?\d+)?")
+"""Numbers of a program."""
 Row = Mapping[str, Any]
 
 
 def number(value: Any, spec: str = "") -> str:
     """Format a value of the data by a format specification of Python, or "time",
-    "size", "error" or "build_time".
+    "size", "error", "build_time", "sci" (2e−7) or "power" (10⁻⁷).
 
     "time" takes nanoseconds, "size" bytes: the functions of
     `uplift.extras.pages.format`. None is an empty string, a bool a filled or an empty
@@ -63,6 +70,12 @@ def number(value: Any, spec: str = "") -> str:
             if "std" in parts
             else "{median} ({min}–{max})".format_map(parts)
         )
+    if spec in ("sci", "power"):
+        digits, exponent = f"{value:e}".split("e")
+        power = int(exponent)
+        if spec == "power":
+            return "10" + str(power).translate(SUPERSCRIPTS)
+        return f"{float(digits):g}e{power}".replace("-", "−")
     named = getattr(viz_format, f"format_{spec}", None)
     return named(value) if named else format(value, spec)
 
@@ -144,6 +157,41 @@ def pick(rows: Iterable[Row], **conditions: Any) -> Row:
     return found
 
 
+def code(place: str) -> Any:
+    """Return a constant of the code, such as ``package.module:NAME.0``."""
+    module, _, path = place.partition(":")
+    value: Any = import_module(module)
+    for key in path.split("."):
+        value = value[int(key)] if key.isdigit() else getattr(value, key)
+    return value
+
+
+def datum(name: str, path: str) -> Any:
+    """Return a datum of docs/data/NAME.json at a path such as ``rows[key=value].0``."""
+    value: Any = read_data(name)
+    for key in re.findall(r"[^.\[\]]+(?:\[[^\]]*\])?", path):
+        field, _, conditions = key.rstrip("]").partition("[")
+        value = value[int(field)] if field.isdigit() else value[field]
+        wanted = [pair.split("=") for pair in conditions.split(",") if pair]
+        for column, cell in wanted:
+            value = [row for row in value if str(row[column]) == cell]
+        if wanted:
+            (value,) = value
+    return value
+
+
+def stated(text: str, source: str) -> str:
+    """Return a number as written in a source: a document, or a file of the project,
+    which must have it.
+    """
+    path = ROOT / source
+    if path.suffix == ".py":
+        numbers = WRITTEN.findall(path.read_text(encoding="utf-8"))
+        if float(text.replace("−", "-")) not in map(float, numbers):
+            raise ValueError(f"{source} does not have the number {text}")
+    return text
+
+
 def recommended() -> list[Row]:
     """Return the cubes that ``uplift chart --recommend`` names, by situation."""
     chart = shipped_chart()
@@ -192,7 +240,10 @@ def render(name: str, data: Mapping[str, Any] | None = None) -> dict[Path, str]:
     )
     environment.filters |= {"num": number, "mean": statistics.fmean}
     functions = {
+        "code": code,
+        "datum": datum,
         "load": read_data,
+        "stated": stated,
         "text": read_text,
         "table": table,
         "where": where,
