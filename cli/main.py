@@ -12,6 +12,7 @@ from typing import Any
 import click
 
 from uplift.common.errors import UpliftWarning
+from uplift.common.extensions import installed
 from uplift.common.version import version
 
 from .options import OUTPUT_FORMAT, Group
@@ -62,6 +63,8 @@ GROUPS = {
 }
 """Summaries of the commands by headings of the help."""
 COMMANDS = tuple(chain.from_iterable(GROUPS.values()))
+KIND = "commands"
+"""Kind of the extensions that are commands of click."""
 QUICK = ("build", "query", "help")
 """Commands that start without what drawing needs."""
 
@@ -70,22 +73,25 @@ class LazyGroup(Group):
     """Commands in groups, each imported when it is needed."""
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
-        """Import a command; None for an unknown name."""
+        """Import a command, of this package or another; None for an unknown name."""
+        command: click.Command | None = None
         if name not in self.commands:
-            return None
+            load = installed(KIND).get(name)
+            return command if load is None else load()
         if name not in QUICK:
             hide_drawing_notes()
-        command: click.Command = importlib.import_module(
-            f"uplift_cli.commands.{name}"
-        ).command
-        return command
+        return importlib.import_module(f"uplift_cli.commands.{name}").command
 
     def format_commands(
         self, ctx: click.Context, formatter: click.HelpFormatter
     ) -> None:
         """Write a section of the help for each group."""
-        width = max(map(len, COMMANDS))
-        for title, names in GROUPS.items():
+        outside = {
+            name: load().get_short_help_str() for name, load in installed(KIND).items()
+        }
+        groups = GROUPS | ({"Other packages": outside} if outside else {})
+        width = max(map(len, chain(COMMANDS, outside)))
+        for title, names in groups.items():
             with formatter.section(title):
                 formatter.write_dl(
                     [(f"{name:<{width}}", summary) for name, summary in names.items()]

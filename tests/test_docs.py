@@ -29,6 +29,7 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 REFERENCE = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
 COVERAGE = (ROOT / "docs" / "coverage.md").read_text(encoding="utf-8")
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+SKELETONS = re.findall(r"```python\n(.*?)```", CONTRIBUTING, re.DOTALL)
 TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
 PYTHON = (ROOT / "docs" / "reference" / "python.md").read_text(encoding="utf-8")
 CODE = ("uplift", "cli", "benchmarks", "tools")
@@ -97,10 +98,23 @@ def test_the_python_page_runs(tmp_path, monkeypatch):
         exec(compile(code, "python.md", "exec"), {})
 
 
+def test_a_look_into_a_build_prints_what_made_a_node(capsys):
+    exec(compile(SKELETONS[0], "look", "exec"), {})
+    assert "length" in capsys.readouterr().out
+
+
+def test_the_skeleton_of_an_export_writes_a_file(tmp_path, tiny_cube):
+    functions: dict = {}
+    exec(compile(SKELETONS[1], "export", "exec"), functions)
+    path = tmp_path / "names.txt"
+    names = tiny_cube.atlas_names
+    written = functions["export"](tiny_cube, path, "names", force=False)
+    assert written == f"{len(names)} names"
+    assert path.read_text().splitlines() == list(names)
+
+
 def test_the_skeleton_of_a_reader_and_its_test_run(tmp_path, monkeypatch):
-    reader, registration, test = re.findall(
-        r"```python\n(.*?)```", CONTRIBUTING, re.DOTALL
-    )
+    *_, reader, registration, test = SKELETONS
     module = ModuleType("uplift.extras.formats.spectrograph")
     exec(compile(reader, "reader", "exec"), module.__dict__)
     monkeypatch.setitem(sys.modules, module.__name__, module)

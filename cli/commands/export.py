@@ -1,169 +1,45 @@
 """``uplift export``: write a cube in formats of other tools."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
-from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from uplift.common.text import pluralise, round_up
+from uplift.common.extensions import import_part
+from uplift.extras.export.registry import known_exports
 
 from .. import options
 from ..output.console import say
 from ..output.progress import progress_bar
 from ..outputs import stated_inputs
 
-if TYPE_CHECKING:
-    from uplift.extras.export import TableError
-    from uplift.lookup import Cube
+EXPORTS = known_exports()
+WIDTH = 6
+"""Characters of names of formats before what they are."""
 
 
-@dataclass(frozen=True)
-class Export:
-    """A format: its suffix, the options that apply to it, and its writer, which returns
-    a description of the file.
-    """
-
-    suffix: str
-    options: tuple[str, ...]
-    write: Callable[..., str]
-
-
-def _write_lut(cube: Cube, path: Path, style: str, **settings: Any) -> str:
-    from uplift.extras import export
-
-    error = export.write_lut(cube, path=path, **settings)
-    return f"colours under {settings['light']}, {_shown(error)}"
-
-
-def _write_fourier(cube: Cube, path: Path, style: str, **settings: Any) -> str:
-    from uplift.extras import export
-
-    error = export.write_fourier(cube, path, **settings)
-    _, shader = export.output_files(path, style)
-    return f"shader in {shader}, with 8 bits {_shown(error)}"
+def _summary() -> str:
+    """Describe the formats for the help; those of one kind on one line."""
+    lines = []
+    for about, names in groupby(EXPORTS, key=lambda name: EXPORTS[name].about):
+        joined = ", ".join(names)
+        first, *others = about.split("; ")
+        indent = " " * (WIDTH + 1)
+        if len(joined) > WIDTH:
+            lines += [joined, indent + first]
+        else:
+            lines.append(f"{joined:<{WIDTH}} {first}")
+        if others:
+            lines[-1] += ";"
+            lines += [indent + text for text in others]
+    return "\n".join(f"    {line}" for line in lines)
 
 
-def _write_film(cube: Cube, path: Path, style: str, **settings: Any) -> str:
-    from uplift.extras import export
-
-    film = export.write_film(cube, path, **settings)
-    return (
-        f"{film.inside:.0%} of the chromaticities from the cube, mean error of "
-        f"exposure {film.stops:.2g} stops"
-    )
-
-
-def _write_sigmoids(cube: Cube, path: Path, style: str, **settings: Any) -> str:
-    from uplift.extras import export
-
-    with progress_bar("fitting sigmoids"):
-        error = export.write_coeff(cube.data, path, layout=style, **settings)
-    return f"table of sigmoids, {_shown(error)}"
-
-
-def _write_npz(cube: Cube, path: Path, style: str, **settings: Any) -> str:
-    from uplift.extras import export
-
-    return pluralise(export.write_npz(cube.data, path, **settings), "array")
-
-
-def _write_csv(cube: Cube, path: Path, style: str, **settings: Any) -> str:
-    from uplift.extras import export
-
-    return pluralise(export.write_csv(cube.data, path, **settings), "node")
-
-
-def _write_html(cube: Cube, path: Path, style: str, **settings: Any) -> str:
-    from uplift.common.files import write_text
-    from uplift.extras.report.live_page import page
-
-    write_text(page(cube.data), path, **settings)
-    return f"page, {path.stat().st_size / 1e6:.1f} MB"
-
-
-def _write_program(
-    cube: Cube,
-    path: Path,
-    style: str,
-    *,
-    force: bool,
-    mode: str = "spectra",
-    table: str | None = None,
-) -> str:
-    """Write a program, and return a description of it."""
-    from uplift.extras import export
-
-    data = cube.data
-    written = export.write_program(
-        data, path, style=style, mode=mode, form=table, force=force
-    )
-    size = sum(file.stat().st_size for file in written) / 1e6
-    nodes = pluralise(data.lattice.size, "node")
-    facts = [nodes, pluralise(len(data.atlas.names), "atlas entry"), f"{size:.1f} MB"]
-    facts.append(
-        "single precision changes reflectances by less than "
-        f"{round_up(export.rounding_error(data, mode)):g}"
-    )
-    moved = export.moved_cells(data, mode).sum() / (data.lattice.dim - 1) ** 3
-    if moved:
-        facts.append(f"more in {moved:.0%} of the cells, next to unrealisable colours")
-    facts += [f"table in {file}" for file in written[1:]]
-    return ", ".join(facts)
-
-
-def _shown(error: TableError) -> str:
-    """Describe the errors of a table."""
-    worst = " ".join(f"{value:.2g}" for value in error.worst)
-    return (
-        f"ΔE00 from the cube's: mean {error.mean:.2g}, largest "
-        f"{round_up(error.largest):g} (RGB {worst})"
-    )
-
-
-PROGRAM = ("mode", "table")
-LUT = ("res", "light", "adapt")
-EXPORTS = {
-    "coeff": Export(".coeff", ("res",), _write_sigmoids),
-    "luisa": Export(".cpp", (), _write_sigmoids),
-    "pbrt": Export(".cpp", (), _write_sigmoids),
-    "c": Export(".h", PROGRAM, _write_program),
-    "cuda": Export(".cuh", PROGRAM, _write_program),
-    "glsl": Export(".glsl", PROGRAM, _write_program),
-    "hlsl": Export(".hlsl", PROGRAM, _write_program),
-    "cube": Export(".cube", LUT, _write_lut),
-    "clf": Export(".clf", LUT, _write_lut),
-    "film": Export(".npy", ("res", "light"), _write_film),
-    "fourier": Export(".png", ("res",), _write_fourier),
-    "npz": Export(".npz", (), _write_npz),
-    "csv": Export(".csv", (), _write_csv),
-    "html": Export(".html", (), _write_html),
-}
-"""Formats by name; of one suffix the last is the default."""
-
-
-@click.command(
-    "export",
-    help="""Write a cube in a format that other tools read.
+HELP = """Write a cube in a format that other tools read.
 
     \b
-    c, cuda, glsl, hlsl
-           program that looks up colours
-    coeff  table of rgb2spec, for Mitsuba and colour-science
-    pbrt, luisa
-           the same as source in C++, for pbrt-v4 and LuisaRender
-    cube, clf
-           table of the colours under --light, for grading and compositing
-    fourier
-           table from sRGB to three numbers for textures of 8 bits, and shader
-    film   table of a spectrum per chromaticity, for film simulation;
-           with --light, as light that reaches the film
-    html   page that relights images in a browser
-    npz    all arrays of the cube, for numpy
-    csv    one line per node
+{formats}
 
     Names in a program start with the file's. A C header, also valid C++, contains the
     table, or loads it from a file of numbers. Programs in other languages come with a
@@ -183,7 +59,12 @@ EXPORTS = {
       uplift export three.uplift -o fourier.png
       uplift export macbeth-32.uplift -o film.npy
       uplift export macbeth-32.uplift --format csv
-    """,
+    """
+
+
+@click.command(
+    "export",
+    help=HELP.replace("{formats}", _summary()),
 )
 @options.cube_argument
 @options.output(help="File to write. [default: CUBE's name in the current folder]")
@@ -229,7 +110,9 @@ def command(
     force: bool,
     **given: Any,
 ) -> None:
-    suffixes = {export.suffix: name for name, export in EXPORTS.items()}
+    suffixes = dict[str, str]()
+    for name, known in EXPORTS.items():
+        suffixes.setdefault(known.suffix, name)
     if style is None and output is not None:
         suffix = Path(output).suffix.lower()
         style = suffixes.get(".cuh" if suffix == ".cu" else suffix)
@@ -243,7 +126,7 @@ def command(
         if name not in export.options:
             formats = [key for key in EXPORTS if name in EXPORTS[key].options]
             raise click.UsageError(f"--{name} applies to {', '.join(formats)} only.")
-    if export.options == LUT and "light" not in settings:
+    if "adapt" in export.options and "light" not in settings:
         raise click.UsageError(
             "A cube or clf table shows the colours under a light: give --light, such "
             "as HP1."
@@ -253,14 +136,16 @@ def command(
     from uplift.extras.files.outputs import check_outputs
     from uplift.lookup import load
 
-    form = (
-        check_form(style, settings.get("table")) if export.options == PROGRAM else style
-    )
+    form = style
+    if "table" in export.options:
+        form = check_form(style, settings.get("table"))
     files = output_files(output or Path(cube).stem + export.suffix, form)
     inputs = stated_inputs()
     path = check_output(files[0], inputs=inputs, force=force)
-    check_outputs(
-        files, inputs=inputs, force=True
-    )  # second files that exist are judged by their content
+    # Second files that exist are judged by their content.
+    check_outputs(files, inputs=inputs, force=True)
     loaded = load(cube).fill_missing() if fill_missing else load(cube)
-    say(f"{path}: {export.write(loaded, path, style, force=force, **settings)}")
+    write = import_part(export.writer)
+    with progress_bar(f"writing {path}"):
+        written = write(loaded, path, style, force=force, **settings)
+    say(f"{path}: {written}")

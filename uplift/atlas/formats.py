@@ -102,7 +102,9 @@ def recognise(document: Document) -> Format:
     unmarked = [form for form in formats if form.pattern == ""]
     if not any(document.path.lower().endswith(form.suffixes) for form in unmarked):
         # A search of all installed distributions, which the usual tables do without
-        outside = itertools.chain.from_iterable(installed(KIND))
+        outside = itertools.chain.from_iterable(
+            load() for load in installed(KIND).values()
+        )
         unmarked = [*filter(is_marked, outside), *unmarked]
     if not unmarked:
         problem = "no format of an atlas is recognised"

@@ -4,6 +4,7 @@ The core knows their kinds and names, not their modules. `uplift` registers its 
 it is imported; another distribution has an entry point in the group ``uplift.KIND``.
 """
 
+from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
@@ -28,7 +29,12 @@ def extension(kind: str, name: str) -> Any:
             f"{kind} '{name}' is not a part of this installation",
             hint="install all of uplift",
         )
-    module, _, attribute = _LOCATIONS[kind, name].partition(":")
+    return import_part(_LOCATIONS[kind, name])
+
+
+def import_part(location: str) -> Any:
+    """Import ``"module:name"``."""
+    module, _, attribute = location.partition(":")
     return getattr(import_module(module), attribute)
 
 
@@ -37,8 +43,10 @@ def registered(kind: str) -> list[Any]:
     return [extension(kind, name) for known, name in _LOCATIONS if known == kind]
 
 
-def installed(kind: str) -> list[Any]:
-    """Import the parts of a kind that other distributions have as entry points."""
+def installed(kind: str) -> dict[str, Callable[[], Any]]:
+    """Return functions that import the parts of a kind that other distributions have as
+    entry points, by name.
+    """
     from importlib.metadata import entry_points
 
-    return [point.load() for point in entry_points(group=f"uplift.{kind}")]
+    return {point.name: point.load for point in entry_points(group=f"uplift.{kind}")}

@@ -4,18 +4,31 @@ nodes as CSV.
 
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from uplift.common.arrays import StrPath, Values, blocks
 from uplift.common.files import atomic_write, write_text
+from uplift.common.text import pluralise
 from uplift.cube import CubeData, contents
 from uplift.extras.files.csv import csv_text
 from uplift.lattice import Status
+from uplift.lookup import Cube
 
 BLOCK = 1 << 12
 """Nodes converted to text at a time."""
+
+
+def export_npz(cube: Cube, path: Path, style: str, *, force: bool) -> str:
+    """Write all arrays."""
+    return pluralise(write_npz(cube.data, path, force=force), "array")
+
+
+def export_csv(cube: Cube, path: Path, style: str, *, force: bool) -> str:
+    """Write the nodes."""
+    return pluralise(write_csv(cube.data, path, force=force), "node")
 
 
 def write_npz(data: CubeData, path: StrPath, *, force: bool = False) -> int:

@@ -23,6 +23,7 @@ Upsampling", CGF 38(2), 2019, and its reference implementation ``rgb2spec``.
 """
 
 import struct
+from pathlib import Path
 from string import Template
 
 import numpy as np
@@ -37,6 +38,7 @@ from uplift.cube import CubeData
 from uplift.extras.colour.srgb import decode
 from uplift.extras.export.program import read_source
 from uplift.extras.export.table_error import TableError, find_errors
+from uplift.lookup import Cube
 from uplift.lookup.interpolate import around
 from uplift.models import Sigmoid
 from uplift.models.arithmetic import blocked_matmul_columns
@@ -82,6 +84,15 @@ LAYOUTS = {
     "luisa": {"sRGB"},
 }
 """Tables that a layout can hold; that of rgb2spec has those without a name as well."""
+
+
+def export(
+    cube: Cube, path: Path, style: str, *, force: bool, res: int | None = None
+) -> str:
+    """Write sigmoids in the layout of the format."""
+    given = {} if res is None else {"res": res}
+    error = write_coeff(cube.data, path, layout=style, force=force, **given)
+    return f"table of sigmoids, {error}"
 
 
 def write_coeff(

@@ -21,6 +21,7 @@ and CAM16-UCS": the adaptation of RGB to the light, as in spektrafilm.
 from dataclasses import dataclass
 from pathlib import Path
 from string import Template
+from typing import Any
 
 import numpy as np
 
@@ -91,6 +92,15 @@ class FilmTable:
     """Mean error of exposure of random colours, from the table instead of the cube, in
     powers of 2.
     """
+
+
+def export(cube: Cube, path: Path, style: str, **settings: Any) -> str:
+    """Write spectra of chromaticities."""
+    film = write_film(cube, path, **settings)
+    return (
+        f"{film.inside:.0%} of the chromaticities from the cube, mean error of "
+        f"exposure {film.stops:.2g} stops"
+    )
 
 
 def write_film(

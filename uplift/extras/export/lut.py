@@ -57,6 +57,24 @@ FOURIER_COUNT = 3
 LEVEL = 16
 
 
+def export_lut(cube: Cube, path: Path, style: str, **settings: Any) -> str:
+    """Write colours under a light."""
+    if "light" not in settings:
+        raise OptionError(
+            "a table of colours under a light needs the light",
+            hint="give an illuminant, such as HP1",
+        )
+    error = write_lut(cube, path=path, **settings)
+    return f"colours under {settings['light']}, {error}"
+
+
+def export_fourier(cube: Cube, path: Path, style: str, **settings: Any) -> str:
+    """Write the table and the shader of textures of 8 bits."""
+    error = write_fourier(cube, path, **settings)
+    _, shader = output_files(path, style)
+    return f"shader in {shader}, with 8 bits {error}"
+
+
 def write_lut(
     cube: Cube,
     light: Illuminant,

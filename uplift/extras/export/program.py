@@ -24,6 +24,7 @@ from uplift.common.errors import (
     warn,
 )
 from uplift.common.files import atomic_write, write_text
+from uplift.common.text import pluralise, round_up
 from uplift.common.version import version
 from uplift.cube import CubeData, digest
 from uplift.extras.export.outputs import output_files
@@ -33,8 +34,11 @@ from uplift.extras.export.table import (
     Table,
     check_complete,
     make_table,
+    moved_cells,
+    rounding_error,
 )
 from uplift.extras.files.outputs import check_outputs
+from uplift.lookup import Cube
 
 LARGE = 16_000_000
 """Size in bytes above which compilation of a header is slow."""
@@ -73,6 +77,33 @@ LANGUAGES = {
     "hlsl": Language(".hlsl", ("hlsl.hlsl", "shader.glsl"), ".glsl", vector="float"),
 }
 """Languages of `write_program`."""
+
+
+def export(
+    cube: Cube,
+    path: Path,
+    style: str,
+    *,
+    force: bool,
+    mode: str = "spectra",
+    table: str | None = None,
+) -> str:
+    """Write a program and its table."""
+    data = cube.data
+    written = write_program(data, path, style=style, mode=mode, form=table, force=force)
+    size = sum(file.stat().st_size for file in written) / 1e6
+    facts = [
+        pluralise(data.lattice.size, "node"),
+        pluralise(len(data.atlas.names), "atlas entry"),
+        f"{size:.1f} MB",
+        "single precision changes reflectances by less than "
+        f"{round_up(rounding_error(data, mode)):g}",
+    ]
+    moved = moved_cells(data, mode).sum() / (data.lattice.dim - 1) ** 3
+    if moved:
+        facts.append(f"more in {moved:.0%} of the cells, next to unrealisable colours")
+    facts += [f"table in {file}" for file in written[1:]]
+    return ", ".join(facts)
 
 
 def write_program(

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.common.arrays import Array
+from uplift.common.text import round_up
 from uplift.extras.colour.srgb import decode, encode
 
 SAMPLES = 1 << 13
@@ -34,6 +35,13 @@ class TableError:
     """Largest that a search finds."""
     worst: Array
     """Linear RGB (3,) of the colour with the largest error."""
+
+    def __str__(self) -> str:
+        worst = " ".join(f"{value:.2g}" for value in self.worst)
+        return (
+            f"ΔE00 from the cube's: mean {self.mean:.2g}, largest "
+            f"{round_up(self.largest):g} (RGB {worst})"
+        )
 
 
 def find_errors(error: ErrorFunction, atlas: Array) -> TableError:

@@ -1,18 +1,21 @@
 """Live page: one HTML file with a cube, the exported GLSL program and a few lights."""
 
 import base64
+from pathlib import Path
 
 import numpy as np
 
 from uplift.colorimetry.observer import light
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.common.files import write_text
 from uplift.common.text import pluralise
 from uplift.cube import CubeData
 from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.export.program import cube_program
 from uplift.extras.export.table import COLUMNS, check_complete, make_table
 from uplift.extras.pages.html import Markup, render, resource
+from uplift.lookup import Cube
 
 LIGHTS = (
     "D65",
@@ -25,6 +28,12 @@ LIGHTS = (
 )  # illuminants to choose from
 GROUP = 4  # wavelengths of one call of the program
 SPACE = "sRGB"
+
+
+def export(cube: Cube, path: Path, style: str, *, force: bool) -> str:
+    """Write the live page of a cube."""
+    write_text(page(cube.data), path, force=force)
+    return f"page, {path.stat().st_size / 1e6:.1f} MB"
 
 
 def page(data: CubeData) -> str:
