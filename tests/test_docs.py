@@ -103,12 +103,12 @@ def test_a_look_into_a_build_prints_what_made_a_node(capsys):
     assert "length" in capsys.readouterr().out
 
 
-def test_the_skeleton_of_an_export_writes_a_file(tmp_path, tiny_cube):
+def test_the_skeleton_of_an_export_writes_a_file(tmp_path, small_cube):
     functions: dict = {}
     exec(compile(SKELETONS[1], "export", "exec"), functions)
     path = tmp_path / "names.txt"
-    names = tiny_cube.atlas_names
-    written = functions["export"](tiny_cube, path, "names", force=False)
+    names = small_cube.atlas_names
+    written = functions["export"](small_cube, path, "names", force=False)
     assert written == f"{len(names)} names"
     assert path.read_text().splitlines() == list(names)
 

@@ -1,4 +1,4 @@
-"""A package of another author adds a format of exports and a command by entry points."""
+"""A package of another author adds an export and a command by entry points."""
 
 import os
 import subprocess
