@@ -24,7 +24,7 @@ def write(cube, path, style, *, force):
 @click.command()
 @click.argument("name")
 def greet(name):
-    """Greet somebody."""
+    """Greet a person."""
     click.echo(f"hello {name}")
 '''
 ENTRY_POINTS = """
