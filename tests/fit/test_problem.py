@@ -13,7 +13,7 @@ import pytest
 
 import uplift
 from uplift.colorimetry import observer
-from uplift.colorimetry.solid import solid
+from uplift.colorimetry.object_colours import solid
 from uplift.fit.problem import MARGIN, nodes_of
 from uplift.lattice import Lattice, Status, axis_nodes
 from uplift.models import reflectance

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry.delta_e import rgb_to_lab
+from uplift.colorimetry.object_colours import Solid, solid
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.solid import Solid, solid
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
@@ -175,7 +175,7 @@ class CubeData:
         """ΔE*ab from the nearest entry up to which a colour is like those
         of the atlas.
         """
-        from uplift.colorimetry.expected_error import familiar_distance
+        from uplift.colorimetry.likely_errors import familiar_distance
 
         return familiar_distance(self.entry_lab)
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
-from uplift.colorimetry.expected_error import LENGTH, ExpectedError, expected_error
+from uplift.colorimetry.likely_errors import LENGTH, ExpectedError, expected_error
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask, largest
 from uplift.fit.base import NO_FREEDOM, Base, learn_base, moment_matrix

@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
+from uplift.colorimetry.object_colours import solid, toward_grey
 from uplift.colorimetry.sensor import Light, Sensor
-from uplift.colorimetry.solid import solid, toward_grey
 from uplift.common.arrays import Array, Indices, blocks
 from uplift.fit.solver import LeastChange, Method, Solution, solve
 from uplift.lattice import CORNERS, Lattice

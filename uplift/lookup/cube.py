@@ -356,7 +356,7 @@ class Cube:
             True for colours farther from every entry, in CIE L*a*b*, than 95 % of the
             entries are from another one.
         """
-        from uplift.colorimetry.expected_error import nearest_distances
+        from uplift.colorimetry.likely_errors import nearest_distances
 
         colours = rgb_to_lab(self.data.sensor, blocks.as_colours(rgb, self.data.sensor))
         distances = nearest_distances(colours.reshape(-1, 3), self.data.entry_lab)
@@ -446,7 +446,7 @@ def expected_errors(
         lit = observer.light(light, cube.observer, *data.sensor.range)
     function: blocks.Function = partial(node_errors, data)
     if lit is not None and lit.name != data.error_illuminant:
-        from uplift.lookup.light_errors import light_errors
+        from uplift.lookup.errors_under_lights import light_errors
 
         function = light_errors(data, lit)
     return blocks.blockwise(function, blocks.as_colours(rgb, data.sensor), 2)

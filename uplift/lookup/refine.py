@@ -8,8 +8,8 @@ steps add its changes, which need no arc tangents of large numbers.
 
 import numpy as np
 
+from uplift.colorimetry.object_colours import toward_grey
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.solid import toward_grey
 from uplift.common.arrays import Array, Indices, Values
 from uplift.cube import CubeData
 from uplift.models.arithmetic import blocked_matmul_columns

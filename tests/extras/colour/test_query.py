@@ -13,9 +13,9 @@ from tests.conftest import MACBETH
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.object_colours import solid
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.sensor import in_unit_cube
-from uplift.colorimetry.solid import solid
 from uplift.common.errors import ColourError, UnknownNameError
 from uplift.cube import write
 from uplift.extras.colour.query import query, query_xyz

@@ -250,7 +250,7 @@ def _errors(
     errors = np.full((len(rgb), 2), np.nan)
     errors[~outside] = expected_errors(cube, rgb[~outside], light)
     if entries:
-        from uplift.lookup.light_errors import outside_errors
+        from uplift.lookup.errors_under_lights import outside_errors
 
         known = outside_errors(cube.data, light)[list(entries.values())]
         errors[list(entries)] = known[:, None]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_spectra, lab, rgb_to_lab
-from uplift.colorimetry.expected_error import (
+from uplift.colorimetry.likely_errors import (
     ExpectedError,
     expected_error,
     learn_radii,
@@ -14,7 +14,7 @@ from uplift.colorimetry.expected_error import (
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
-from uplift.lookup.light_errors import evidence
+from uplift.lookup.errors_under_lights import evidence
 from uplift.models import reflectance
 
 LIKELY = 0.95

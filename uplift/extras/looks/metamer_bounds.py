@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.colorimetry.delta_e import lab
+from uplift.colorimetry.object_colours import solid_volume
 from uplift.colorimetry.sensor import Light, in_unit_cube
-from uplift.colorimetry.solid import solid_volume
 from uplift.common.arrays import Array
 from uplift.extras.looks import mismatch
 from uplift.extras.looks.lab_errors import lab_errors

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from uplift.colorimetry.object_colours import solid
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array
 from uplift.common.errors import LookError, UpliftError, UpliftWarning, warn
 from uplift.cube import AtlasTable

@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
+from uplift.colorimetry.object_colours import solid
 from uplift.colorimetry.observer import light
-from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import CubeFileError
 from uplift.cube import CubeData

@@ -28,12 +28,12 @@ from uplift.extras.texture.image import Image, Part
 from uplift.lattice.entry_boxes import BoxHits, OutsideBoxes
 from uplift.lookup import Cube
 from uplift.lookup.blocks import as_wavelengths, blockwise
+from uplift.lookup.errors_under_lights import LightErrors, light_errors
 from uplift.lookup.interpolate import (
     extended_multipliers,
     is_inexact,
     refined_multipliers,
 )
-from uplift.lookup.light_errors import LightErrors, light_errors
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models.model import Model
 

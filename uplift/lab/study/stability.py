@@ -18,7 +18,7 @@ import numpy as np
 from uplift.atlas import Atlas, Entry
 from uplift.atlas.atlas import LOWEST
 from uplift.colorimetry import observer
-from uplift.colorimetry.solid import solid
+from uplift.colorimetry.object_colours import solid
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning, unknown_name
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress

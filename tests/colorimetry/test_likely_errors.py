@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
 
-from uplift.colorimetry import expected_error as module
-from uplift.colorimetry.expected_error import (
+from uplift.colorimetry import likely_errors as module
+from uplift.colorimetry.likely_errors import (
     COVERAGE,
     LENGTH,
     PRIOR_COUNT,

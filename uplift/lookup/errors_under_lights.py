@@ -13,10 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
-from uplift.colorimetry.expected_error import (
-    ExpectedError,
-    expected_error,
-)
+from uplift.colorimetry.likely_errors import ExpectedError, expected_error
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
