@@ -10,14 +10,13 @@ import numpy as np
 import uplift
 from benchmarks import ATLASES, record
 from uplift.atlas import Atlas, read_atlas, resample
-from uplift.colorimetry import observer
-from uplift.colorimetry.sensor import in_unit_cube
+from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
 from uplift.extras.report.measures import delta_e_under
 from uplift.extras.scene.advice import advise, uncertainty
 from uplift.extras.texture.scene_colours import ColourSet, PixelSample
-from uplift.fit.families import families_with
+from uplift.fit import families_with
 
 SETS = ("rawtoaces", "cie2017")
 SCENES, KNOWN, MATERIALS = 6, 10, 60

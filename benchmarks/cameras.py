@@ -11,11 +11,17 @@ from scipy.optimize import least_squares
 from benchmarks import record
 from benchmarks.choices import ALONE, OURS, mark
 from uplift.atlas import Atlas, on_grid, read_atlas
-from uplift.colorimetry import Sensor, delta_e_2000, lab, observer, tables
-from uplift.colorimetry.camera import CAMERA
-from uplift.colorimetry.object_colours import solid
+from uplift.colorimetry import (
+    CAMERA,
+    Sensor,
+    delta_e_2000,
+    lab,
+    observer,
+    solid,
+    tables,
+)
 from uplift.common.arrays import Array, Indices
-from uplift.fit.families import families_with, shipped_library
+from uplift.fit import families_with, shipped_library
 from uplift.lab.study.held_out import random_halves
 from uplift.lattice import Lattice, axis_nodes
 from uplift.lookup import Cube

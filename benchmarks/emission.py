@@ -22,8 +22,7 @@ from uplift.extras.emission.lookup import EmissionTable
 from uplift.extras.emission.prior import fit_lamp_prior, relit_delta_e
 from uplift.fit.solver import solve
 from uplift.lab.timing import time_calls
-from uplift.models import Sigmoid
-from uplift.models.minimum_norm import forward_map
+from uplift.models import Sigmoid, forward_map
 
 FAMILIES = {
     "daylight": r"[BC]|I?D\d\d",

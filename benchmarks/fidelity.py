@@ -42,7 +42,8 @@ from uplift.common.arrays import Array
 from uplift.cube import contents
 from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
 from uplift.extras.report.measures import check_calibration
-from uplift.fit.families import LENGTH, NUGGET, shipped_library
+from uplift.fit import shipped_library
+from uplift.fit.families import LENGTH, NUGGET
 from uplift.lab.chart.measure import select_methods
 from uplift.lab.chart.method import make_task
 from uplift.lab.study import held_out

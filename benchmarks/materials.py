@@ -9,11 +9,10 @@ import numpy as np
 import uplift
 from benchmarks import ATLASES, ROOT
 from uplift.atlas import Atlas, Entry, read_atlas, resample
-from uplift.colorimetry import observer
-from uplift.colorimetry.sensor import in_unit_cube
+from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
-from uplift.fit.families import families_with
+from uplift.fit import families_with
 from uplift.lab.study.held_out import halves_both_ways, spectrum_errors
 from uplift.lookup import Cube
 

@@ -12,8 +12,7 @@ import numpy as np
 
 import uplift
 from benchmarks import CUBES, DOCS, Row, read_reference, record
-from uplift.colorimetry import Sensor
-from uplift.colorimetry.delta_e import delta_e_rgb, rgb_to_lab
+from uplift.colorimetry import Sensor, delta_e_rgb, rgb_to_lab
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.pages.plots import Strip, plot_strips

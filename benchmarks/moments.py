@@ -11,8 +11,7 @@ import uplift
 from benchmarks import ATLASES, DOCS, MACBETH, read_reference, record
 from benchmarks.materials import inside
 from uplift.atlas import Atlas, merge
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, lab
+from uplift.colorimetry import delta_e_1976, delta_e_spectra, lab, observer
 from uplift.common.arrays import Array
 from uplift.extras.colour.light_sets import REPORT_LIGHTS
 from uplift.extras.scene.representations import samples

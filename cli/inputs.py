@@ -21,8 +21,7 @@ from .startup import hide_drawing_notes
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
-    from uplift.colorimetry.lights import Illuminant
-    from uplift.colorimetry.sensor import Sensor
+    from uplift.colorimetry import Illuminant, Sensor
     from uplift.common.arrays import Array
     from uplift.extras.colour.spaces import ImageSpace
     from uplift.extras.texture.picture import Picture

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry import Illuminant
 from uplift.common.text import pluralise
 
 from .. import options

@@ -29,8 +29,7 @@ from ..outputs import check_outputs
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
-    from uplift.colorimetry.lights import Illuminant
-    from uplift.colorimetry.sensor import Sensor
+    from uplift.colorimetry import Illuminant, Sensor
     from uplift.common.arrays import Array
 
 SHIPPED = ("name", "entries", "content", "source", "licence")
@@ -158,10 +157,9 @@ def _list_entries(
     3) and `smallest_space`.
     """
     from uplift.atlas import resample
-    from uplift.colorimetry.gamut import SRGB
+    from uplift.colorimetry import SRGB, in_unit_cube
     from uplift.colorimetry.observer import sensor as make_sensor
     from uplift.colorimetry.observer import smallest_space
-    from uplift.colorimetry.sensor import in_unit_cube
     from uplift.extras.colour.srgb import to_display_codes
 
     resampled = resample(atlas, sensor.wavelengths)

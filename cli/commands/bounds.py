@@ -24,7 +24,7 @@ from ..outputs import check_outputs
 from .query import Answers, colour_options, result_object
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.lights import Illuminant
+    from uplift.colorimetry import Illuminant
     from uplift.extras.colour.query import QueryResult
     from uplift.extras.looks.metamer_bounds import Bounds
     from uplift.lookup import Cube
@@ -126,7 +126,7 @@ def command(
 def _objects(
     answers: Answers, results: Sequence[QueryResult], found: Sequence[Bounds]
 ) -> Iterable[dict[str, Any]]:
-    from uplift.colorimetry.delta_e import lab
+    from uplift.colorimetry import lab
     from uplift.extras.looks.lab_errors import LIKELY
 
     for row, result in enumerate(results):

@@ -303,8 +303,7 @@ def _prepare_resolver(
     import numpy as np
 
     from uplift.atlas import Atlas, read_atlas
-    from uplift.lookup import load
-    from uplift.lookup.blocks import as_wavelengths
+    from uplift.lookup import as_wavelengths, load
 
     cube = load(cube_path)
     space = None if input_space is None else find_input_space(input_space)
@@ -421,7 +420,7 @@ def _mix(
     """Mix on a backing; without, return the light that a plate transmits."""
     import numpy as np
 
-    from uplift.colorimetry.gamut import map_to_gamut
+    from uplift.colorimetry import map_to_gamut
     from uplift.extras.paint import make_coat, mix
     from uplift.extras.paint.coats import ramp
 
@@ -504,7 +503,7 @@ def _print_theories(recipe: _Recipe, method: str, style: str) -> None:
     import numpy as np
     from rich.text import Text
 
-    from uplift.colorimetry.gamut import map_to_gamut
+    from uplift.colorimetry import map_to_gamut
     from uplift.extras.paint.theories import mixers
 
     cube = recipe.cube

@@ -39,8 +39,7 @@ from ..output.diagnostics import warn
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.lights import Illuminant
-    from uplift.colorimetry.sensor import Light
+    from uplift.colorimetry import Illuminant, Light
     from uplift.common.arrays import Array
     from uplift.extras.colour.query import QueryResult
     from uplift.lookup import Cube
@@ -157,7 +156,7 @@ class Answers:
         for requested in self.source.blocks(self.cube.data.sensor, bounded=bounded):
             rgb = requested  # which the query refuses outside [0, 1]
             if self.method != "error":
-                from uplift.colorimetry.gamut import map_to_gamut
+                from uplift.colorimetry import map_to_gamut
 
                 inside = map_to_gamut(requested, self.cube.data.sensor, self.method)
                 rgb = inside.rgb
@@ -385,7 +384,7 @@ def result_object(answers: Answers, result: QueryResult) -> dict[str, Any]:
 
 
 def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
-    from uplift.colorimetry.delta_e import delta_e_rgb
+    from uplift.colorimetry import delta_e_rgb
     from uplift.colorimetry.sensor import SLACK
 
     cube = answers.cube

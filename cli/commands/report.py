@@ -14,7 +14,7 @@ from ..output.progress import progress_bar
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.lights import Illuminant
+    from uplift.colorimetry import Illuminant
     from uplift.extras.report.assessment import Assessment
 
 
@@ -71,8 +71,7 @@ def command(
     from uplift.extras.report.assessment import assess
     from uplift.extras.report.page import render_report, to_json
     from uplift.extras.report.rebuild import recorded_atlas, recorded_files
-    from uplift.lookup import load
-    from uplift.lookup.cube import find_file
+    from uplift.lookup import find_file, load
 
     path = output
     if style == "html":

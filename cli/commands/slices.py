@@ -63,7 +63,7 @@ def command(cube: str, output: str | None, sheet: str | None, force: bool) -> No
     from uplift.cube import read
     from uplift.extras.images.exr import write_slices
     from uplift.extras.pages.sheet import write_sheet
-    from uplift.lookup.cube import find_file
+    from uplift.lookup import find_file
 
     check_outputs(output, sheet)
     data = read(find_file(cube))

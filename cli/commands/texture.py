@@ -157,7 +157,7 @@ def command(
     **settings: Any,
 ) -> None:
     from uplift.extras import texture
-    from uplift.lookup.cube import find_file, load
+    from uplift.lookup import find_file, load
 
     encode = texture.PIXEL_ENCODINGS[kind]
     if encode is not texture.Spectrum and wavelengths is not None:

@@ -16,8 +16,7 @@ from ..output.progress import progress_bar
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.lights import Illuminant
-    from uplift.colorimetry.sensor import Sensor
+    from uplift.colorimetry import Illuminant, Sensor
     from uplift.common.arrays import Array
     from uplift.extras.scene.wavelengths import Choice
 

@@ -72,7 +72,7 @@ def hex_code(cube: Cube, rgb: Array) -> str:
 
 def as_lists(values: Array) -> list[Any]:
     """Return colours or reflectances as lists. Rounding errors of 0 are 0."""
-    from uplift.colorimetry.sensor import ROUNDING
+    from uplift.colorimetry import ROUNDING
 
     return list((values * (abs(values) > ROUNDING) + 0.0).tolist())  # -0.0 + 0.0 is 0.0
 

@@ -15,13 +15,13 @@ from uplift.atlas import (
     Entry,
     SkippedEntry,
     Source,
+    SourceLocation,
     from_distributions,
     on_grid,
     read_atlas,
     resample,
     write_atlas,
 )
-from uplift.atlas.document import SourceLocation
 from uplift.common.errors import AtlasError, UnknownNameError
 from uplift.extras.formats.samples import Spectrum
 

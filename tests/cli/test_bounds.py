@@ -7,7 +7,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 
-from uplift.colorimetry.delta_e import lab
+from uplift.colorimetry import lab
 from uplift.colorimetry.observer import light
 
 COLOURS = "0.2,0.3,0.4\n0.9,0.1,0.1"

@@ -31,7 +31,7 @@ from uplift.colorimetry.gamut import METHODS
 from uplift.common.errors import UpliftError, UpliftWarning
 from uplift.common.progress import Progress
 from uplift.common.text import printable
-from uplift.lookup.interpolate import MODES
+from uplift.lookup import MODES
 from uplift.samples import sample_path
 
 from .conftest import commands, warning_lines

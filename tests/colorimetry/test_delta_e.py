@@ -8,8 +8,7 @@ import colour
 import numpy as np
 import pytest
 
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_2000, lab, lab_to_xyz
+from uplift.colorimetry import delta_e_2000, lab, lab_to_xyz, observer
 from uplift.extras.colour.dominant import GREY, dominant_wavelength
 
 PAIRS = np.loadtxt(

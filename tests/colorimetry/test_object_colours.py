@@ -5,8 +5,7 @@ import pytest
 from scipy.optimize import lsq_linear
 from scipy.spatial import ConvexHull
 
-from uplift.colorimetry import observer
-from uplift.colorimetry.object_colours import solid, solid_volume, toward_grey
+from uplift.colorimetry import observer, solid, solid_volume, toward_grey
 from uplift.lattice import Lattice, axis_nodes
 
 

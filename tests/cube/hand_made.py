@@ -10,8 +10,7 @@ from uplift.common.arrays import Array
 from uplift.cube import AtlasTable, CubeData, EntrySpectra
 from uplift.cube.file import POINTS
 from uplift.lattice import Lattice, PointTable, Status, axis_nodes
-from uplift.models import Moments
-from uplift.models.model import Model
+from uplift.models import Model, Moments
 
 
 def table(

@@ -14,7 +14,8 @@ import pytest
 import uplift
 from tests.conftest import ROOT
 from tests.cube.cube_files import forge
-from uplift.lookup.cube import PACKAGED, Cube
+from uplift.lookup import Cube
+from uplift.lookup.cube import PACKAGED
 
 READER = ROOT / "docs" / "reader.py"
 SPEC = importlib.util.spec_from_file_location("reader", READER)

@@ -11,15 +11,8 @@ from tests.conftest import ATLASES
 from tools import ship_library
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
-from uplift.fit.families import (
-    FILE,
-    LENGTH,
-    NUGGET,
-    Family,
-    families_with,
-    krige_families,
-    learn_relevance,
-)
+from uplift.fit import Family, families_with
+from uplift.fit.families import FILE, LENGTH, NUGGET, krige_families, learn_relevance
 from uplift.fit.kriging import Points
 
 RNG = np.random.default_rng(5)

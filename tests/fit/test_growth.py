@@ -15,11 +15,9 @@ from uplift import build
 from uplift.colorimetry import observer
 from uplift.common.progress import ignore_progress
 from uplift.extras.thesis.growth_coarse import grow_coarse_to_fine, strides
+from uplift.fit import Nodes, Prior, Problem, grow_outward, nodes_of, shells
 from uplift.fit.base import smooth
 from uplift.fit.growth import Growth, improve
-from uplift.fit.growth_outward import grow_outward, shells
-from uplift.fit.prior import Prior
-from uplift.fit.problem import Nodes, Problem, nodes_of
 from uplift.fit.seeds import FULL_ENTRY, initial_guess, seed
 from uplift.fit.store import MAX_LOSS, store
 from uplift.lattice import NOT_FITTED, Lattice, Status, axis_nodes

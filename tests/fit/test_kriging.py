@@ -11,10 +11,8 @@ from hypothesis import strategies as st
 
 from tests.conftest import MACBETH
 from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.colorimetry.sensor import in_unit_cube
-from uplift.fit import kriging
+from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
+from uplift.fit import Problem, kriging
 from uplift.fit.base import smooth
 from uplift.fit.kriging import (
     CELLS,
@@ -30,7 +28,6 @@ from uplift.fit.kriging import (
     learn_kriging,
     visible_change,
 )
-from uplift.fit.problem import Problem
 from uplift.fit.solver import solve
 from uplift.models import Moments
 

@@ -7,13 +7,10 @@ import pytest
 
 from tests.conftest import ATLASES
 from uplift.atlas import read_atlas, resample
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.colorimetry.sensor import in_unit_cube
-from uplift.fit.entries import fit_entries
+from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
+from uplift.fit import Problem, fit_entries, fit_prior
 from uplift.fit.kriging import MIN_ENTRIES
-from uplift.fit.prior import STEEP, _bounded, fit_prior
-from uplift.fit.problem import Problem
+from uplift.fit.prior import STEEP, _bounded
 from uplift.models import Moments, evaluate, reflectance
 
 LIGHT = observer.light("A")

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import uplift
-from uplift.colorimetry import observer
-from uplift.colorimetry.object_colours import solid
-from uplift.fit.problem import MARGIN, nodes_of
+from uplift.colorimetry import observer, solid
+from uplift.fit import nodes_of
+from uplift.fit.problem import MARGIN
 from uplift.lattice import Lattice, Status, axis_nodes
 from uplift.models import reflectance
 

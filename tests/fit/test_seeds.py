@@ -15,15 +15,22 @@ import uplift
 from tests.conftest import MACBETH
 from tests.helpers import quiet_build
 from uplift.atlas import on_grid
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
-from uplift.colorimetry.lights import SCENE_LIGHTS
-from uplift.colorimetry.sensor import in_unit_cube
-from uplift.fit.base import learn_base
-from uplift.fit.entries import fit_entries
-from uplift.fit.families import shipped_library
-from uplift.fit.prior import Prior, fit_prior
-from uplift.fit.problem import Problem
+from uplift.colorimetry import (
+    SCENE_LIGHTS,
+    delta_e_1976,
+    delta_e_spectra,
+    in_unit_cube,
+    observer,
+    rgb_to_lab,
+)
+from uplift.fit import (
+    Prior,
+    Problem,
+    fit_entries,
+    fit_prior,
+    learn_base,
+    shipped_library,
+)
 from uplift.fit.seeds import (
     DIMS,
     FAR,

@@ -15,8 +15,7 @@ from scipy.optimize import least_squares, minimize
 from uplift import build, load
 from uplift.fit.batch import CPU_ROWS, map_batches
 from uplift.fit.solver import LeastChange, solve
-from uplift.models import Moments, Sigmoid, evaluate
-from uplift.models.minimum_norm import forward_map
+from uplift.models import Moments, Sigmoid, evaluate, forward_map
 from uplift.pipeline.options import CUSTOM
 
 RNG = np.random.default_rng(2)

@@ -27,9 +27,8 @@ import uplift
 from tests.fuzz.commands import KEPT
 from tests.fuzz.fuzzing import Random, choose
 from tests.fuzz.programs import c_reflectances
-from uplift.atlas.sources import write_atlas
-from uplift.colorimetry import tables
-from uplift.colorimetry.sensor import Sensor
+from uplift.atlas import write_atlas
+from uplift.colorimetry import Sensor, tables
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import UpliftWarning
 from uplift.common.files import write_text

@@ -16,7 +16,7 @@ from tests.conftest import MACBETH
 from tests.helpers import raises, warns
 from tests.pages import Page
 from uplift.atlas import Atlas, on_grid, read_atlas, write_atlas
-from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry import delta_e_2000, lab
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError, UpliftError
 from uplift.extras.emission.lamps import read_lamps
 from uplift.extras.scene.representations import find_representation

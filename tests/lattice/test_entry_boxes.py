@@ -11,9 +11,8 @@ from hypothesis.extra.numpy import arrays
 
 from tests.cube.hand_made import table
 from uplift.fit.seeds import MAX_HALF_WIDTH, half_widths, outside_half_widths
-from uplift.lattice import Lattice
-from uplift.lattice.entry_boxes import MARGIN, EntryBoxes, OutsideBoxes
-from uplift.lookup.interpolate import around
+from uplift.lattice import MARGIN, EntryBoxes, Lattice, OutsideBoxes
+from uplift.lookup import around
 
 LATTICE = Lattice(np.linspace(0, 1, 7) ** 2)
 unit = st.floats(0, 1)

@@ -10,9 +10,8 @@ import pytest
 
 from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError, UnknownNameError
-from uplift.lookup import MODES
-from uplift.lookup.blocks import BLOCK
-from uplift.lookup.cube import DEFAULT, PACKAGED, TABULATED, find_file
+from uplift.lookup import BLOCK, MODES, find_file
+from uplift.lookup.cube import DEFAULT, PACKAGED, TABULATED
 
 RED = (0.6, 0.03, 0.01)
 AT = [450.0, 550.0, 650.0]

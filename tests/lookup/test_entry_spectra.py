@@ -5,8 +5,7 @@ colour up.
 import numpy as np
 import pytest
 
-from uplift.lookup import MODES
-from uplift.lookup.interpolate import extended_multipliers
+from uplift.lookup import MODES, extended_multipliers
 from uplift.models import evaluate, reflectance
 
 CONTINUOUS = ("spectra", "moments", "refined")

@@ -12,9 +12,7 @@ import uplift
 from tests.conftest import ATLASES
 from tests.helpers import raises
 from uplift.atlas import Atlas, read_atlas, resample
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra, lab
-from uplift.colorimetry.sensor import in_unit_cube
+from uplift.colorimetry import delta_e_spectra, in_unit_cube, lab, observer
 from uplift.common.errors import OptionError, UnknownNameError
 from uplift.cube import read, write
 from uplift.extras.looks.lab_errors import LIKELY, lab_errors

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import uplift
-from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.object_colours import solid
+from uplift.colorimetry import delta_e_rgb, solid
 from uplift.lookup.refine import with_colours, within_solid
 from uplift.models import evaluate
 

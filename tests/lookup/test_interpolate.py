@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from uplift.lookup.interpolate import around, refined_multipliers
+from uplift.lookup import around, refined_multipliers
 from uplift.lookup.refine import TOLERANCE
 from uplift.models import reflectance
 

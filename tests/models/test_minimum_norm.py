@@ -4,8 +4,8 @@ import jax
 import numpy as np
 
 import uplift.fit.batch  # noqa: F401  (makes the forward map a pytree)
-from uplift.models import Moments
-from uplift.models.minimum_norm import (
+from uplift.models import (
+    Moments,
     anchored_step,
     forward_map,
     minimum_norm_step,

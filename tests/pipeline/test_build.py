@@ -14,8 +14,7 @@ import uplift
 from tests.conftest import MACBETH
 from tests.helpers import quiet_build, raises, warns
 from uplift.atlas import Atlas, Entry, on_grid, read_atlas
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_rgb, delta_e_spectra
+from uplift.colorimetry import delta_e_rgb, delta_e_spectra, observer
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError
 from uplift.cube import digest
 from uplift.lattice import Status

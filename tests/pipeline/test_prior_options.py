@@ -11,7 +11,7 @@ import uplift
 from tests.conftest import ATLASES
 from tests.helpers import raises, warns
 from uplift.atlas import Atlas, Entry, read_atlas
-from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
+from uplift.colorimetry import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.observer import light
 from uplift.common.errors import CubeFileError, OptionError, UnknownNameError
 from uplift.extras.report.rebuild import rebuild

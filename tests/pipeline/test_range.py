@@ -10,7 +10,7 @@ import pytest
 import uplift
 from tests.helpers import quiet_build
 from uplift.atlas import Atlas, Entry, read_atlas
-from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry import delta_e_rgb
 from uplift.colorimetry.observer import on_range
 from uplift.extras.relight.relight import relight
 from uplift.extras.report.assessment import assess

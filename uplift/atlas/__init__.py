@@ -2,20 +2,56 @@
 resampling.
 """
 
-from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source, merge
-from uplift.atlas.formats import Format, known_formats
-from uplift.atlas.resample import Clip, Resampled, on_grid, resample
+from uplift.atlas.atlas import (
+    ASSUMED,
+    HIGHEST,
+    LOWEST,
+    SLACK,
+    USED,
+    VISIBLE,
+    Atlas,
+    Entry,
+    Header,
+    SkippedEntry,
+    Source,
+    merge,
+    skipped_warning,
+)
+from uplift.atlas.document import (
+    EXPORT,
+    MAX_BYTES,
+    Document,
+    SourceLocation,
+    check_scale,
+    one_line,
+    parse_number,
+    read_document,
+    truncate,
+)
+from uplift.atlas.formats import Format, known_formats, read_any
+from uplift.atlas.resampling import Clip, Resampled, on_grid, resample
 from uplift.atlas.sources import (
     ShippedAtlas,
+    find_atlas_file,
     from_distributions,
     read_atlas,
+    read_named,
     shipped_atlases,
     write_atlas,
 )
 
 __all__ = [
+    "ASSUMED",
+    "EXPORT",
+    "HIGHEST",
+    "LOWEST",
+    "MAX_BYTES",
+    "SLACK",
+    "USED",
+    "VISIBLE",
     "Atlas",
     "Clip",
+    "Document",
     "Entry",
     "Format",
     "Header",
@@ -23,12 +59,22 @@ __all__ = [
     "ShippedAtlas",
     "SkippedEntry",
     "Source",
+    "SourceLocation",
+    "check_scale",
+    "find_atlas_file",
     "from_distributions",
     "known_formats",
     "merge",
     "on_grid",
+    "one_line",
+    "parse_number",
+    "read_any",
     "read_atlas",
+    "read_document",
+    "read_named",
     "resample",
     "shipped_atlases",
+    "skipped_warning",
+    "truncate",
     "write_atlas",
 ]

@@ -10,16 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.delta_e import rgb_to_lab
-from uplift.colorimetry.object_colours import Solid, solid
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry import Sensor, Solid, rgb_to_lab, solid
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
-from uplift.lattice import Lattice, PointTable
-from uplift.lattice.entry_boxes import EntryBoxes, OutsideBoxes
-from uplift.models import evaluate
-from uplift.models.model import Model
+from uplift.lattice import EntryBoxes, Lattice, OutsideBoxes, PointTable
+from uplift.models import Model, evaluate
 
 MAX_SIZE = 500.0
 """Largest Σ |p| of the multipliers of nodes that have not their own colours, in
@@ -175,7 +171,7 @@ class CubeData:
         """ΔE*ab from the nearest entry up to which a colour is like those
         of the atlas.
         """
-        from uplift.colorimetry.likely_errors import familiar_distance
+        from uplift.colorimetry import familiar_distance
 
         return familiar_distance(self.entry_lab)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry import Sensor
 from uplift.common.arrays import Array, Indices
 from uplift.common.text import pluralise
 from uplift.cube.container import (
@@ -24,8 +24,7 @@ from uplift.cube.container import (
 )
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
 from uplift.lattice import CORNERS, Lattice, PointTable, Status
-from uplift.models import from_description
-from uplift.models.model import Model
+from uplift.models import Model, from_description
 
 FORMAT = "uplift cube"
 VERSION = 4

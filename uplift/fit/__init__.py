@@ -1,3 +1,31 @@
 """The fit: atlas entries, prior, seeds, then growth, improvement and storage of the
 nodes.
 """
+
+from uplift.fit.base import NO_FREEDOM, learn_base
+from uplift.fit.entries import FittedEntries, Marquardt, fit_entries, join_entries
+from uplift.fit.families import Family, families_with, shipped_library
+from uplift.fit.growth_outward import grow_outward, shells
+from uplift.fit.kriging import posterior
+from uplift.fit.prior import Prior, fit_prior
+from uplift.fit.problem import Nodes, Problem, nodes_of
+
+__all__ = [
+    "NO_FREEDOM",
+    "Family",
+    "FittedEntries",
+    "Marquardt",
+    "Nodes",
+    "Prior",
+    "Problem",
+    "families_with",
+    "fit_entries",
+    "fit_prior",
+    "grow_outward",
+    "join_entries",
+    "learn_base",
+    "nodes_of",
+    "posterior",
+    "shells",
+    "shipped_library",
+]

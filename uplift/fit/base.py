@@ -17,8 +17,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import rgb_to_lab
-from uplift.colorimetry.sensor import Light, in_unit_cube
+from uplift.colorimetry import Light, in_unit_cube, rgb_to_lab
 from uplift.common.arrays import Array, blocks, distances, largest
 from uplift.fit.batch import to_storage
 from uplift.fit.entries import FittedEntries, objective
@@ -27,11 +26,9 @@ from uplift.fit.kriging import Points, average_close
 from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.solver import solve
 from uplift.lattice import Lattice, weighted_sum
-from uplift.models import Moments, reflectance
+from uplift.models import ForwardMap, Model, Moments, reflectance
 from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import cosine_basis
-from uplift.models.minimum_norm import ForwardMap
-from uplift.models.model import Model
 
 BRIGHTENING = 0.5
 """Power of max(x) that a colour is divided by: 0 leaves it unchanged, 1 makes it as

@@ -13,7 +13,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
+from uplift.colorimetry import delta_e_2000_weights, lab, lab_jacobian
 from uplift.common.arrays import Array, Indices, blocks, distances
 from uplift.fit.problem import Problem
 

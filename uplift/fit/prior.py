@@ -10,9 +10,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
-from uplift.colorimetry.likely_errors import LENGTH, ExpectedError, expected_error
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry import (
+    ExpectedError,
+    Sensor,
+    delta_e_spectra,
+    expected_error,
+    rgb_to_lab,
+)
+from uplift.colorimetry.likely_errors import LENGTH
 from uplift.common.arrays import Array, Mask, largest
 from uplift.fit.base import NO_FREEDOM, Base, learn_base, moment_matrix
 from uplift.fit.entries import FittedEntries
@@ -28,9 +33,8 @@ from uplift.fit.kriging import (
 )
 from uplift.fit.problem import Problem
 from uplift.lattice import Lattice
-from uplift.models import Moments, evaluate, reflectance
+from uplift.models import Model, Moments, evaluate, reflectance
 from uplift.models.duality import MAX_MULTIPLIER
-from uplift.models.model import Model
 
 MAX_PASSES = 32
 DETERMINED = Kernel(length=6.0, noise=1e-3)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
+from uplift.colorimetry import delta_e_1976, delta_e_spectra, rgb_to_lab
 from uplift.common.arrays import Array, Indices, Mask, blocks
 from uplift.fit.entries import FittedEntries
 from uplift.fit.prior import Prior, blended

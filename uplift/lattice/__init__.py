@@ -2,7 +2,14 @@
 the table of the nodes.
 """
 
-from uplift.lattice.entry_boxes import BoxHits, EntryBoxes, Nodes, OutsideBoxes
+from uplift.lattice.entry_boxes import (
+    MARGIN,
+    NO_ROWS,
+    BoxHits,
+    EntryBoxes,
+    Nodes,
+    OutsideBoxes,
+)
 from uplift.lattice.lattice import AXES, CORNERS, Lattice, axis_nodes, weighted_sum
 from uplift.lattice.point_table import (
     ABSENT_VALUES,
@@ -16,8 +23,10 @@ __all__ = [
     "ABSENT_VALUES",
     "AXES",
     "CORNERS",
+    "MARGIN",
     "NOT_FITTED",
     "NO_ENTRY",
+    "NO_ROWS",
     "BoxHits",
     "EntryBoxes",
     "Lattice",

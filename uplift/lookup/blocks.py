@@ -10,13 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from uplift.colorimetry.sensor import (
-    SLACK,
-    Sensor,
-    as_rgb,
-    in_unit_cube,
-    raise_out_of_gamut,
-)
+from uplift.colorimetry import Sensor, as_rgb, in_unit_cube, raise_out_of_gamut
+from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, OptionError
 from uplift.cube import CubeData

@@ -15,7 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from uplift.colorimetry.sensor import Sensor, as_rgb
+from uplift.colorimetry import Sensor, as_rgb
 from uplift.common.arrays import Array, Floats, Indices
 from uplift.common.machine import require_memory_of_xla
 from uplift.common.text import pluralise

@@ -12,9 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
-from uplift.colorimetry.likely_errors import ExpectedError, expected_error
-from uplift.colorimetry.sensor import Light
+from uplift.colorimetry import (
+    ExpectedError,
+    Light,
+    delta_e_spectra,
+    expected_error,
+    rgb_to_lab,
+)
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.cube import CubeData

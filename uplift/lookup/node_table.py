@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
-from uplift.colorimetry.sensor import as_rgb
+from uplift.colorimetry import as_rgb
 from uplift.common.arrays import Array, Indices, Values
 from uplift.cube import CubeData
 from uplift.lookup import interpolate

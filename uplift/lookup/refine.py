@@ -8,19 +8,18 @@ steps add its changes, which need no arc tangents of large numbers.
 
 import numpy as np
 
-from uplift.colorimetry.object_colours import toward_grey
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry import Sensor, toward_grey
 from uplift.common.arrays import Array, Indices, Values
 from uplift.cube import CubeData
-from uplift.models.arithmetic import blocked_matmul_columns
-from uplift.models.duality import MAX_MULTIPLIER
-from uplift.models.minimum_norm import (
+from uplift.models import (
     ForwardMap,
+    Model,
     forward_map,
     minimum_norm_step,
     solve_damped,
 )
-from uplift.models.model import Model
+from uplift.models.arithmetic import blocked_matmul_columns
+from uplift.models.duality import MAX_MULTIPLIER
 
 TOLERANCE = 1e-8
 """Residual, max |linear RGB|, at which a colour is exact."""

@@ -5,11 +5,30 @@ interface `Model`.
 from collections.abc import Mapping
 from typing import Any
 
+from uplift.models.minimum_norm import (
+    ForwardMap,
+    anchored_step,
+    forward_map,
+    minimum_norm_step,
+    solve_damped,
+)
 from uplift.models.model import Model, evaluate, reflectance
 from uplift.models.moments import Moments
 from uplift.models.sigmoid import Sigmoid
 
-__all__ = ["Moments", "Sigmoid", "evaluate", "from_description", "reflectance"]
+__all__ = [
+    "ForwardMap",
+    "Model",
+    "Moments",
+    "Sigmoid",
+    "anchored_step",
+    "evaluate",
+    "forward_map",
+    "from_description",
+    "minimum_norm_step",
+    "reflectance",
+    "solve_damped",
+]
 
 
 def from_description(description: Mapping[str, Any]) -> Model:

@@ -11,17 +11,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.atlas import Atlas, Source, on_grid, read_atlas, resample
+from uplift.colorimetry import Sensor, in_unit_cube
 from uplift.colorimetry.observer import COMMON_SPACES, grid, smallest_space
-from uplift.colorimetry.sensor import Sensor, in_unit_cube
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import AtlasError, OptionError, UpliftWarning, warn
 from uplift.common.text import listed
 from uplift.cube import AtlasTable, EntrySpectra
-from uplift.fit.base import NO_FREEDOM
-from uplift.fit.entries import FittedEntries, fit_entries
-from uplift.fit.families import Family, shipped_library
-from uplift.fit.problem import Problem
-from uplift.models.model import Model
+from uplift.fit import (
+    NO_FREEDOM,
+    Family,
+    FittedEntries,
+    Problem,
+    fit_entries,
+    shipped_library,
+)
+from uplift.models import Model
 from uplift.pipeline.options import Options
 
 AtlasLike = Atlas | StrPath | Sequence[StrPath] | None

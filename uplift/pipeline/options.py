@@ -7,16 +7,20 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from uplift.colorimetry.camera import CAMERA
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS, Illuminant, Lamp
+from uplift.colorimetry import (
+    CAMERA,
+    DEFAULT_ILLUMINANT,
+    SCENE_LIGHTS,
+    Illuminant,
+    Lamp,
+)
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP
 from uplift.common import machine
 from uplift.common.errors import OptionError, unknown_name
 from uplift.common.text import format_value
 from uplift.cube.file import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
 from uplift.lattice import AXES
-from uplift.models import Moments, Sigmoid
-from uplift.models.model import Model
+from uplift.models import Model, Moments, Sigmoid
 from uplift.models.moments import MAX_COUNT
 
 AUTO: Literal["auto"] = "auto"

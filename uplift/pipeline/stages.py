@@ -12,12 +12,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.colorimetry import ERROR_ILLUMINANT, Camera, Sensor
 from uplift.colorimetry import observer as observers
-from uplift.colorimetry.camera import Camera
-from uplift.colorimetry.lights import (
-    ERROR_ILLUMINANT,
-)
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Indices, Mask
 from uplift.common.errors import UpliftWarning, warn
 from uplift.common.extensions import extension
@@ -26,16 +22,21 @@ from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.common.version import version
 from uplift.cube import AtlasTable, CubeData
-from uplift.fit import growth, seeds
-from uplift.fit.base import learn_base
-from uplift.fit.families import Family
-from uplift.fit.growth_outward import grow_outward
-from uplift.fit.prior import Prior, fit_prior
-from uplift.fit.problem import Problem, nodes_of
+from uplift.fit import (
+    Family,
+    Prior,
+    Problem,
+    fit_prior,
+    grow_outward,
+    growth,
+    learn_base,
+    nodes_of,
+    seeds,
+)
 from uplift.fit.store import store
 from uplift.lattice import EntryBoxes, Lattice, PointTable, axis_nodes
 from uplift.lookup import Cube
-from uplift.models.model import Model
+from uplift.models import Model
 from uplift.pipeline import entries
 from uplift.pipeline.entries import AtlasLike, Constraints, MeasuredEntries, Spectra
 from uplift.pipeline.options import (

@@ -12,16 +12,13 @@ import uplift
 from tests.conftest import MACBETH
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.colorimetry.object_colours import solid
+from uplift.colorimetry import delta_e_spectra, in_unit_cube, solid
 from uplift.colorimetry.observer import light
-from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import ColourError, UnknownNameError
 from uplift.cube import write
 from uplift.extras.colour.query import query, query_xyz
 from uplift.lattice import Status
-from uplift.lookup import MODES, Cube
-from uplift.lookup.blocks import BLOCK
+from uplift.lookup import BLOCK, MODES, Cube
 
 D65_WAVELENGTHS = colour.SpectralShape(380, 780, 5)
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from tests.parts import CXX, MITSUBA, need
-from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry import delta_e_rgb
 from uplift.colorimetry.observer import (
     DEFAULT_OBSERVER,
     illuminant_spd,

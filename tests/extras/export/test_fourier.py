@@ -8,7 +8,7 @@ import pytest
 
 import uplift
 from tests.parts import CXX, GLSLANG, need
-from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry import delta_e_rgb
 from uplift.extras.colour.srgb import decode
 from uplift.extras.export import lut, write_fourier
 from uplift.models import reflectance

@@ -4,7 +4,7 @@ import numpy as np
 import PyOpenColorIO
 import pytest
 
-from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry import delta_e_rgb
 from uplift.colorimetry.observer import sensor
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.export import write_lut

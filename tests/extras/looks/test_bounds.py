@@ -3,8 +3,7 @@
 import numpy as np
 
 from tests.helpers import raises
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra, lab
+from uplift.colorimetry import delta_e_spectra, lab, observer
 from uplift.common.errors import ColourError
 from uplift.extras.looks.lab_errors import lab_errors
 from uplift.extras.looks.metamer_bounds import bounds

@@ -10,8 +10,7 @@ from scipy.spatial import ConvexHull
 
 from tests.helpers import raises
 from uplift.atlas import read_atlas, resample, shipped_atlases
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry import delta_e_2000, lab, observer
 from uplift.common.errors import ColourError
 from uplift.extras.looks import extreme_spectra as extremes
 from uplift.extras.looks.extreme_spectra import extreme_spectra

@@ -9,7 +9,7 @@ import pytest
 
 import uplift
 from benchmarks.mixing import CRITERIA, acrylics, evaluate, published
-from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry import delta_e_rgb
 from uplift.extras.paint.theories import (
     hsl_to_rgb,
     mix_phosphors,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.conftest import ROOT
-from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry import delta_e_rgb
 from uplift.extras.palette import design, matrix, read_palette, unmet_goals
 from uplift.samples import sample_path
 

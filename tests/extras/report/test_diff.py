@@ -8,7 +8,7 @@ import pytest
 
 import uplift
 from tests.helpers import raises, with_points
-from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry import delta_e_spectra
 from uplift.colorimetry.observer import light
 from uplift.common import machine
 from uplift.common.errors import OptionError

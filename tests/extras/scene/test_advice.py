@@ -13,7 +13,8 @@ from uplift.colorimetry.observer import light
 from uplift.common.errors import OptionError
 from uplift.extras.scene.advice import advise, colour_areas, uncertainty
 from uplift.extras.texture.scene_colours import Images, PixelSample
-from uplift.fit.kriging import Kernel, posterior
+from uplift.fit import posterior
+from uplift.fit.kriging import Kernel
 
 LIGHTS = ("A", "FL11")
 

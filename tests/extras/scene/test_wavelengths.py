@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.helpers import raises
-from uplift.colorimetry.delta_e import delta_e_2000
+from uplift.colorimetry import delta_e_2000
 from uplift.common.errors import OptionError, UnknownNameError, UpliftError
 from uplift.extras.scene.wavelengths import (
     METHODS,

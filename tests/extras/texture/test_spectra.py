@@ -22,7 +22,7 @@ from tests.extras.texture.conftest import (
 )
 from tests.helpers import raises
 from uplift import models
-from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry import delta_e_rgb
 from uplift.common.errors import UpliftError
 from uplift.cube import digest
 from uplift.extras import texture

@@ -9,10 +9,10 @@ from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999
 from tests.helpers import raises
 from tests.parts import LLVM, need
 from uplift.atlas import Atlas, Entry, merge, on_grid, read_atlas
-from uplift.colorimetry.sensor import in_unit_cube
+from uplift.colorimetry import in_unit_cube
 from uplift.common.errors import AtlasError, OptionError
 from uplift.extras.images.processes import call_in_child
-from uplift.fit.families import families_with
+from uplift.fit import families_with
 from uplift.lab.chart import mitsuba3
 from uplift.lab.chart.cubes import CubeOptions, built_cube
 from uplift.lab.chart.measure import METHODS, select_methods

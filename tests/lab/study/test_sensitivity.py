@@ -5,8 +5,7 @@ import pytest
 
 import uplift
 from uplift.atlas import read_atlas
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry import delta_e_spectra, observer
 from uplift.lab.chart.measure import perturb_method, select_methods
 from uplift.lab.study.sensitivity import (
     CONTINUOUS_MODES,

@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 from tests.helpers import raises
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import rgb_to_lab
-from uplift.colorimetry.object_colours import solid
+from uplift.colorimetry import observer, rgb_to_lab, solid
 from uplift.common.errors import UnknownNameError
 from uplift.common.progress import Progress
 from uplift.lab.study import stability

@@ -6,15 +6,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.sensor import Light, as_rgb
+from uplift.colorimetry import Light, as_rgb, delta_e_rgb
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError, unknown_name
 from uplift.cube import CubeData
 from uplift.lattice import Status
-from uplift.lookup.blocks import BLOCK, as_colours, as_wavelengths
-from uplift.lookup.cube import Cube, expected_errors
-from uplift.lookup.interpolate import MODES
+from uplift.lookup import (
+    BLOCK,
+    MODES,
+    Cube,
+    as_colours,
+    as_wavelengths,
+    expected_errors,
+)
 
 CODE_TOLERANCE = 0.5
 """A colour is that of an entry if their 8-bit codes differ by at most this."""
@@ -117,8 +121,8 @@ def query_xyz(
     (``colour-unrealisable``) if no reflectance has a colour, or the model does not
     reach it.
     """
-    from uplift.colorimetry.gamut import map_to_gamut
-    from uplift.lookup.outside import MAPPING
+    from uplift.colorimetry import map_to_gamut
+    from uplift.lookup import MAPPING
 
     sensor = cube.data.sensor
     sensor.require_xyz()
@@ -148,7 +152,7 @@ def _block(
     grid = np.concatenate([sensor.wavelengths, at])
     answered = np.where(outside[:, None], requested, rgb)
     if outside.any():
-        from uplift.lookup.outside import reflectance_anywhere
+        from uplift.lookup import reflectance_anywhere
 
         spectra = reflectance_anywhere(data, answered, grid, mode, outside)
     else:
@@ -250,7 +254,7 @@ def _errors(
     errors = np.full((len(rgb), 2), np.nan)
     errors[~outside] = expected_errors(cube, rgb[~outside], light)
     if entries:
-        from uplift.lookup.errors_under_lights import outside_errors
+        from uplift.lookup import outside_errors
 
         known = outside_errors(cube.data, light)[list(entries.values())]
         errors[list(entries)] = known[:, None]

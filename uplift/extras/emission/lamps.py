@@ -5,12 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from uplift.atlas.atlas import Atlas, Entry, merge, skipped_warning
-from uplift.atlas.document import Document, SourceLocation, truncate
-from uplift.atlas.formats import read_any
-from uplift.atlas.sources import find_atlas_file, read_named
-from uplift.colorimetry import tables
-from uplift.colorimetry.lights import Illuminant, Lamp
+from uplift.atlas import (
+    Atlas,
+    Document,
+    Entry,
+    SourceLocation,
+    find_atlas_file,
+    merge,
+    read_any,
+    read_named,
+    skipped_warning,
+    truncate,
+)
+from uplift.colorimetry import Illuminant, Lamp, tables
 from uplift.colorimetry.observer import (
     DEFAULT_OBSERVER,
     END,

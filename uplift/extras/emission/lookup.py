@@ -10,20 +10,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from uplift.colorimetry.sensor import as_rgb
+from uplift.colorimetry import as_rgb
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError, OptionError
 from uplift.extras.emission.lattice import DENOMINATOR, LOCUS_TOLERANCE, Cells
 from uplift.extras.emission.table import EmissionData, read_emission, write_emission
 from uplift.lattice import weighted_sum
-from uplift.lookup.blocks import (
+from uplift.lookup import (
     Function,
     as_float_type,
     as_thread_count,
     as_wavelengths,
     blockwise,
+    find_file,
 )
-from uplift.lookup.cube import find_file
 from uplift.models.arithmetic import blocked_matmul
 
 EMISSION = Path(__file__).with_name("emission.uplift")

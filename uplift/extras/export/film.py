@@ -25,8 +25,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.lights import Illuminant
-from uplift.colorimetry.object_colours import solid
+from uplift.colorimetry import Illuminant, Sensor, solid
 from uplift.colorimetry.observer import (
     DEFAULT_OBSERVER,
     END,
@@ -36,7 +35,6 @@ from uplift.colorimetry.observer import (
     illuminant_spd,
     matching_functions,
 )
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write, write_text

@@ -28,10 +28,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry import Illuminant, Sensor, delta_e_rgb
 from uplift.colorimetry.observer import display_sensors
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Floats, StrPath, Values
 from uplift.common.errors import OptionError, TextureError
 from uplift.common.files import atomic_write, write_text
@@ -42,8 +40,7 @@ from uplift.extras.export.program import identifier, literal, read_source
 from uplift.extras.export.table import model_constants
 from uplift.extras.export.table_error import TableError, find_errors
 from uplift.extras.files.outputs import check_outputs
-from uplift.lookup import Cube
-from uplift.lookup.blocks import blockwise
+from uplift.lookup import Cube, blockwise
 from uplift.models import Moments, evaluate
 from uplift.models.moments import WARPS, multipliers_of_rounded
 

@@ -13,10 +13,10 @@ from uplift.common.arrays import Array, Floats, Mask, Values
 from uplift.common.errors import OptionError
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes
-from uplift.lookup.interpolate import around, fading_share
+from uplift.lookup import around
+from uplift.lookup.interpolate import fading_share
 from uplift.lookup.refine import LEAST, MOST, REACH, SLOPE, STEEP, pull
-from uplift.models import Moments, Sigmoid, reflectance
-from uplift.models.model import Model
+from uplift.models import Model, Moments, Sigmoid, reflectance
 from uplift.models.moments import WARPS, warped
 
 BIN_COUNT = 1024

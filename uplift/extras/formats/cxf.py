@@ -5,8 +5,7 @@ package colour-cxf.
 import re
 from typing import Any
 
-from uplift.atlas.atlas import Header, SkippedEntry
-from uplift.atlas.document import Document, one_line
+from uplift.atlas import Document, Header, SkippedEntry, one_line
 from uplift.common.text import listed
 from uplift.extras.formats.measurements import Measurements, not_used_note, parsed_by
 from uplift.extras.formats.samples import Spectrum

@@ -8,13 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.atlas.document import (
-    MAX_BYTES,
-    Document,
-    SourceLocation,
-    check_scale,
-    one_line,
-)
+from uplift.atlas import MAX_BYTES, Document, SourceLocation, check_scale, one_line
 from uplift.common.errors import AtlasError
 from uplift.common.files import read_bytes
 from uplift.common.text import pluralise

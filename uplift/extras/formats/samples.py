@@ -8,8 +8,7 @@ from dataclasses import KW_ONLY, dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas.atlas import USED, VISIBLE
-from uplift.atlas.document import SourceLocation
+from uplift.atlas import USED, VISIBLE, SourceLocation
 from uplift.common.arrays import Array, Mask
 from uplift.extras.formats.statements import Quantity
 

@@ -6,14 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import lab
-from uplift.colorimetry.object_colours import solid_volume
-from uplift.colorimetry.sensor import Light, in_unit_cube
+from uplift.colorimetry import Light, in_unit_cube, lab, solid_volume
 from uplift.common.arrays import Array
 from uplift.extras.looks import mismatch
 from uplift.extras.looks.lab_errors import lab_errors
-from uplift.lookup.cube import Cube
-from uplift.lookup.outside import reflectance_anywhere
+from uplift.lookup import Cube, reflectance_anywhere
 
 
 @dataclass(frozen=True, eq=False, repr=False)

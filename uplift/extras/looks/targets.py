@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.object_colours import solid
+from uplift.colorimetry import Sensor, solid
 from uplift.colorimetry.observer import display_sensors
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import LookError, UpliftError, UpliftWarning, warn
 from uplift.cube import AtlasTable
@@ -24,13 +23,10 @@ from uplift.extras.looks.look import (
     format_rgb,
     look_error,
 )
-from uplift.fit.base import NO_FREEDOM
-from uplift.fit.entries import MAX_STEPS, join_entries
-from uplift.fit.prior import Prior
-from uplift.fit.problem import Problem
+from uplift.fit import NO_FREEDOM, Prior, Problem, join_entries
+from uplift.fit.entries import MAX_STEPS
 from uplift.fit.solver import solve_in_numpy
-from uplift.models import evaluate
-from uplift.models.model import Model
+from uplift.models import Model, evaluate
 from uplift.pipeline.entries import Constraints, MeasuredEntries
 
 SAME_CODE = 0.5

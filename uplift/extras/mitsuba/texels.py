@@ -20,10 +20,8 @@ from uplift.extras.texture.channels import coloured_parts
 from uplift.extras.texture.colours import Counts, space_warnings
 from uplift.extras.texture.image import Image, open_image
 from uplift.extras.texture.uplifter import Converter, Multipliers, Uplifter, prepare
-from uplift.lookup import Cube
-from uplift.lookup.blocks import blockwise
-from uplift.models import Moments, evaluate, from_description
-from uplift.models.model import Model
+from uplift.lookup import Cube, blockwise
+from uplift.models import Model, Moments, evaluate, from_description
 from uplift.models.moments import multipliers_of_rounded
 
 MEAN_WAVELENGTHS = np.arange(380.0, 781.0, 25.0)

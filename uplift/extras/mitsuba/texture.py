@@ -11,8 +11,7 @@ import mitsuba as mi
 import numpy as np
 
 from uplift.extras.mitsuba.texels import PADDING, Placement, Samples, Texels
-from uplift.models import Moments, Sigmoid
-from uplift.models.model import Model
+from uplift.models import Model, Moments, Sigmoid
 from uplift.models.moments import warped
 
 HASH_ROUNDS = 3

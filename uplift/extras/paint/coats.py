@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry.gamut import check_method, map_to_gamut
+from uplift.colorimetry import check_method, map_to_gamut
 from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array, Floats
 from uplift.common.errors import OptionError, UpliftWarning, warn
@@ -35,8 +35,7 @@ from uplift.extras.paint.optics import Layer, Surface
 from uplift.extras.paint.pigments import Flux, Pigment, Scattering
 from uplift.extras.texture.colours import Counts, check_encoding
 from uplift.extras.texture.uplifter import Converter
-from uplift.lookup import Cube
-from uplift.lookup.blocks import blockwise
+from uplift.lookup import Cube, blockwise
 
 COATS = ("pigment", "dye", "duntley")
 KINDS = (*COATS, "filter", "light")

@@ -44,8 +44,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas.document import read_document
-from uplift.atlas.formats import read_any
+from uplift.atlas import read_any, read_document
 from uplift.colorimetry import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError

@@ -5,9 +5,7 @@ derivatives, and powers of lights.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry import Sensor, observer
-from uplift.colorimetry.delta_e import lab_jacobian
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry import Illuminant, Sensor, lab_jacobian, observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 

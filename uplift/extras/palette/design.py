@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Atlas, Entry, Header, write_atlas
-from uplift.atlas.atlas import HIGHEST, LOWEST
+from uplift.atlas import HIGHEST, LOWEST, Atlas, Entry, Header, write_atlas
 from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import PaletteError, UpliftWarning, warn

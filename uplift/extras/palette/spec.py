@@ -21,10 +21,8 @@ from pydantic import (
 )
 
 from uplift import lookup
-from uplift.atlas import Atlas, on_grid, read_atlas
-from uplift.atlas.sources import find_atlas_file
-from uplift.colorimetry import Sensor, observer
-from uplift.colorimetry.sensor import format_rgb, in_unit_cube
+from uplift.atlas import Atlas, find_atlas_file, on_grid, read_atlas
+from uplift.colorimetry import Sensor, format_rgb, in_unit_cube, observer
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError, PaletteError, unknown_name
 from uplift.common.text import format_value

@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from uplift.colorimetry.gamut import conversion
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry import Illuminant, conversion
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Floats
 from uplift.extras.colour.spaces import find_space
@@ -24,8 +23,7 @@ from uplift.extras.texture.uplifter import (
     Sampler,
     channel_name,
 )
-from uplift.lookup import Cube
-from uplift.lookup.node_table import prepare_products
+from uplift.lookup import Cube, prepare_products
 
 
 @dataclass(frozen=True, eq=False)

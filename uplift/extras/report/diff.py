@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry import Illuminant
 from uplift.colorimetry.observer import check_distinct, light
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError
@@ -16,8 +16,7 @@ from uplift.common.machine import check_memory
 from uplift.common.text import pluralise
 from uplift.cube import CubeData, common_sensor
 from uplift.extras.report.measures import delta_e_under, mean_p95_max
-from uplift.lookup import Cube
-from uplift.lookup.blocks import blockwise
+from uplift.lookup import Cube, blockwise
 
 NODES = "nodes"
 """Name of the set of the colours of nodes."""

@@ -7,11 +7,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from uplift.atlas import Atlas, merge, read_atlas, shipped_atlases
-from uplift.atlas.document import read_document
-from uplift.colorimetry.camera import Camera
+from uplift.atlas import Atlas, merge, read_atlas, read_document, shipped_atlases
+from uplift.colorimetry import Camera, Sensor
 from uplift.colorimetry.observer import is_camera_file
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import (
     CubeFileError,

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from uplift.colorimetry.object_colours import solid
+from uplift.colorimetry import solid
 from uplift.colorimetry.observer import light
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import CubeFileError

@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Light, Sensor
-from uplift.colorimetry.delta_e import rgb_to_lab
+from uplift.colorimetry import Light, Sensor, rgb_to_lab
 from uplift.common.arrays import Array, Values, blocks, distances
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
@@ -27,9 +26,9 @@ from uplift.extras.pages.figure import (
     show_image,
 )
 from uplift.extras.texture.scene_colours import BINS, Images, PixelSample, bin_index
-from uplift.fit.kriging import DEFAULT, Kernel, posterior
-from uplift.lookup import Cube
-from uplift.lookup.errors_under_lights import light_errors
+from uplift.fit import posterior
+from uplift.fit.kriging import DEFAULT, Kernel
+from uplift.lookup import Cube, light_errors
 
 STEPS = (1, 2, 4, 8)
 """Bins along each channel that are joined; the first that leave few colours are taken.

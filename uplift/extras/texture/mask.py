@@ -26,8 +26,8 @@ from uplift.extras.texture.channels import colour_channels, coloured_parts
 from uplift.extras.texture.colours import Counts
 from uplift.extras.texture.image import Image, Part, open_image
 from uplift.extras.texture.uplifter import Converted, Converter, ConvertRows, Uplifter
-from uplift.lattice.entry_boxes import OutsideBoxes
-from uplift.lookup.refine import refine_to_rgb
+from uplift.lattice import OutsideBoxes
+from uplift.lookup import refine_to_rgb
 
 MIN_WHITE = 0.5
 """Share of white that the largest weight of an integer mask has; smaller ones may be

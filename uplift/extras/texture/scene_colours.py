@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.gamut import check_method
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry import Sensor, check_method
 from uplift.common.arrays import Array, Indices, Mask, StrPath
 from uplift.common.errors import OptionError, TextureError, warn
 from uplift.common.files import file_digest
@@ -25,8 +24,7 @@ from uplift.extras.texture.colours import (
     space_warnings,
 )
 from uplift.extras.texture.image import open_image
-from uplift.lattice import CORNERS, EntryBoxes, Lattice
-from uplift.lattice.entry_boxes import MARGIN
+from uplift.lattice import CORNERS, MARGIN, EntryBoxes, Lattice
 
 BLOCK_PIXELS = 1 << 16
 """Pixels decoded at a time."""

@@ -14,10 +14,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from uplift import models
-from uplift.colorimetry.gamut import check_method, map_to_gamut
-from uplift.colorimetry.lights import Illuminant, Lamp
+from uplift.colorimetry import Illuminant, Lamp, Sensor, check_method, map_to_gamut
 from uplift.colorimetry.observer import check_distinct, light
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Floats, Indices, Values
 from uplift.common.errors import OptionError
 from uplift.extras.colour.spaces import ImageSpace, find_space
@@ -25,17 +23,19 @@ from uplift.extras.images import exr
 from uplift.extras.texture.channels import ColourChannels
 from uplift.extras.texture.colours import Counts, Decoder, check_encoding, make_decoder
 from uplift.extras.texture.image import Image, Part
-from uplift.lattice.entry_boxes import BoxHits, OutsideBoxes
-from uplift.lookup import Cube
-from uplift.lookup.blocks import as_wavelengths, blockwise
-from uplift.lookup.errors_under_lights import LightErrors, light_errors
-from uplift.lookup.interpolate import (
+from uplift.lattice import BoxHits, OutsideBoxes
+from uplift.lookup import (
+    Cube,
+    LightErrors,
+    as_wavelengths,
+    blockwise,
     extended_multipliers,
-    is_inexact,
+    light_errors,
+    refine_to_rgb,
     refined_multipliers,
 )
-from uplift.lookup.refine import refine_to_rgb
-from uplift.models.model import Model
+from uplift.lookup.interpolate import is_inexact
+from uplift.models import Model
 
 Sampler = Callable[[Floats], Floats]
 """From linear RGB (…, 3) in [0, 1] to numbers (…, N)."""

@@ -76,7 +76,7 @@ def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
     """Build, store and load a cube once for all methods; return it and the CPU seconds
     to build and to load it.
     """
-    from uplift.fit.families import families_with
+    from uplift.fit import families_with
     from uplift.pipeline.build import build
 
     atlas = task.kept if options.atlas else None

@@ -15,9 +15,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from uplift.atlas import Atlas, merge, resample
-from uplift.colorimetry import Sensor, observer
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
-from uplift.colorimetry.sensor import in_unit_cube
+from uplift.colorimetry import DEFAULT_ILLUMINANT, Sensor, in_unit_cube, observer
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import AtlasError, OptionError

@@ -18,8 +18,7 @@ from uplift.extras.scene.representations import (
 )
 from uplift.extras.scene.representations.models import tabulated
 from uplift.extras.scene.wavelengths import Sampling, choose, make_setup
-from uplift.fit.entries import fit_entries
-from uplift.fit.problem import Problem
+from uplift.fit import Problem, fit_entries
 from uplift.lab.comparison.compare import Scene
 from uplift.models import Moments
 

@@ -12,10 +12,14 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from uplift.atlas import Atlas, resample
-from uplift.colorimetry import Sensor, observer
-from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
-from uplift.colorimetry.lights import SCENE_LIGHTS
-from uplift.colorimetry.sensor import in_unit_cube
+from uplift.colorimetry import (
+    SCENE_LIGHTS,
+    Sensor,
+    delta_e_spectra,
+    in_unit_cube,
+    observer,
+    rgb_to_lab,
+)
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
@@ -23,10 +27,10 @@ from uplift.cube import CubeData
 from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
 from uplift.extras.report.fidelity import Answers, compare_spectra
 from uplift.extras.report.measures import check_calibration
-from uplift.fit.families import families_with
+from uplift.fit import families_with
 from uplift.lookup import Cube
 from uplift.lookup.refine import FIRST_DAMPING, MAX_STEPS
-from uplift.models.minimum_norm import forward_map, minimum_norm_step
+from uplift.models import forward_map, minimum_norm_step
 from uplift.pipeline.build import build
 from uplift.pipeline.options import Options
 from uplift.pipeline.stages import problem_of

@@ -9,10 +9,8 @@ from typing import Any
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from uplift.atlas import Atlas, Entry
-from uplift.atlas.atlas import HIGHEST, LOWEST
-from uplift.colorimetry import Light, observer
-from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
+from uplift.atlas import HIGHEST, LOWEST, Atlas, Entry
+from uplift.colorimetry import Light, delta_e_spectra, observer, rgb_to_lab
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress

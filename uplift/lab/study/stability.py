@@ -15,10 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Atlas, Entry
-from uplift.atlas.atlas import LOWEST
-from uplift.colorimetry import observer
-from uplift.colorimetry.object_colours import solid
+from uplift.atlas import LOWEST, Atlas, Entry
+from uplift.colorimetry import observer, solid
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning, unknown_name
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress

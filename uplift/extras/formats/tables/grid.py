@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from uplift.atlas.atlas import SkippedEntry
-from uplift.atlas.document import SourceLocation
+from uplift.atlas import SkippedEntry, SourceLocation
 from uplift.extras.formats.statements import remark_unit
 from uplift.extras.formats.tables.cells import Cell, Row, line_texts
 

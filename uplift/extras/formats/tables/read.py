@@ -5,7 +5,7 @@ spectrum; or in a column before each spectrum. All else is text: preamble, comme
 lines below. It states scale, quantity and unit.
 """
 
-from uplift.atlas.document import SourceLocation, truncate
+from uplift.atlas import SourceLocation, truncate
 from uplift.common.errors import AtlasError
 from uplift.common.text import pluralise
 from uplift.extras.formats.measurements import Measurements

@@ -21,8 +21,7 @@ from uplift.extras.scene.plan.evaluation import (
 )
 from uplift.extras.scene.plan.files import CostName, Minimised
 from uplift.lattice import AXES
-from uplift.lookup import Cube
-from uplift.lookup.interpolate import refined_multipliers
+from uplift.lookup import Cube, refined_multipliers
 from uplift.models import Sigmoid, evaluate, reflectance
 from uplift.pipeline.options import Options
 

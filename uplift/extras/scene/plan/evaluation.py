@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_weights, lab_jacobian
+from uplift.colorimetry import delta_e_2000, delta_e_2000_weights, lab_jacobian
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, illuminant_spd
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError

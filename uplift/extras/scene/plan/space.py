@@ -19,7 +19,8 @@ from uplift.atlas import Atlas, read_atlas
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback
-from uplift.cube.file import POINTS, contents
+from uplift.cube import contents
+from uplift.cube.file import POINTS
 from uplift.extras import texture
 from uplift.extras.scene.plan.candidates import (
     INDEX,
@@ -46,11 +47,10 @@ from uplift.extras.texture.scene_colours import (
     cells_touched,
     sample_colours,
 )
-from uplift.fit.problem import Problem
+from uplift.fit import Problem
 from uplift.lattice import Lattice, axis_nodes
 from uplift.lookup import Cube
-from uplift.models import Sigmoid
-from uplift.models.model import Model
+from uplift.models import Model, Sigmoid
 from uplift.pipeline.entries import split_by_gamut
 from uplift.pipeline.options import Options
 from uplift.pipeline.stages import Learnt, build_stages, learn, problem_of

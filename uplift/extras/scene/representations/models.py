@@ -6,19 +6,17 @@ from collections.abc import Callable
 
 import numpy as np
 
-from uplift.colorimetry import observer
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
+from uplift.colorimetry import DEFAULT_ILLUMINANT, observer
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError
 from uplift.extras.scene.representations import samples
 from uplift.extras.scene.representations.composite import spike_xyz
 from uplift.extras.scene.representations.samples import Representation
-from uplift.fit.entries import Marquardt
+from uplift.fit import Marquardt
 from uplift.fit.solver import iterate_rows
-from uplift.models import Moments, Sigmoid
+from uplift.models import Model, Moments, Sigmoid, evaluate, reflectance
 from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import cosine_basis
-from uplift.models.model import Model, evaluate, reflectance
 
 SHAPE_WEIGHT = 1e-4
 """Weight of the residual of a sigmoid at one wavelength relative to that of the colour.
