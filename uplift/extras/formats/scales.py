@@ -9,7 +9,7 @@ from uplift.common.errors import UpliftWarning, warn
 from uplift.extras.formats.samples import Samples
 from uplift.extras.formats.statements import PERCENT, Scale
 
-GIVEN = {"percent": "percent", "fraction": "0 to 1"}
+GIVEN = {"percent": ("percent", PERCENT), "fraction": ("0 to 1", 1.0)}
 WHICH_SCALE = "pass measured='percent' or measured='fraction'"
 DARKEST = 1.0
 """A row of a table in percent whose values are all below this number is darker than any
@@ -17,10 +17,10 @@ common material.
 """
 DIM = 5.0
 """Largest value in percent of dark samples that may be another quantity."""
-JUMP, FLOOR = 30.0, 0.1
-"""Ratio of neighbouring samples that no reflectance has, and the smallest divisor in
-units of the table.
-"""
+JUMP = 30.0
+"""Ratio of neighbouring samples that no reflectance has."""
+FLOOR = 0.1
+"""Smallest divisor of a ratio, in units of the table."""
 
 
 def find_scale(
@@ -33,27 +33,21 @@ def find_scale(
     what the values suggest.
     """
     if measured != "auto":
-        return (
-            PERCENT if measured == "percent" else 1.0,
-            f"scale: {GIVEN[measured]}, as given",
-        )
-    used = [each.used() for each in samples]
-    highest = [float(each.values.max(initial=0)) for each in used]
+        name, divisor = GIVEN[measured]
+        return divisor, f"scale: {name}, as given"
+    used = [spectrum.used() for spectrum in samples]
+    highest = [float(spectrum.values.max(initial=0)) for spectrum in used]
     top = max(highest, default=0.0)
     if stated:
         _check_statements(location, stated, top)
+        divisor = stated[0].divisor
         text = truncate(stated[0].text)
-        if stated[0].divisor == PERCENT and top <= DARKEST and samples:
+        if divisor == PERCENT and top <= DARKEST and samples:
             problem = f"no value exceeds {top:g} percent, as the file states '{text}'"
             hint = "pass measured='fraction' if they are from 0 to 1"
-            warn(
-                UpliftWarning(
-                    problem, code="dark-percent", path=location.path, hint=hint
-                )
-            )
-        return stated[
-            0
-        ].divisor, f"scale: 0 to {stated[0].divisor:g}, as stated: '{text}'"
+            code = "dark-percent"
+            warn(UpliftWarning(problem, code=code, path=location.path, hint=hint))
+        return divisor, f"scale: 0 to {divisor:g}, as stated: '{text}'"
     if HIGHEST < top <= DIM:
         problem = (
             f"values up to {top:g} may be dark samples in percent, or another "
@@ -70,7 +64,7 @@ def find_scale(
             )
         )
         return PERCENT, f"scale: percent, by values up to {top:g}"
-    everything = np.concatenate([np.empty(0), *(each.values for each in used)])
+    everything = np.concatenate([np.empty(0), *(spectrum.values for spectrum in used)])
     if (everything > 1).sum() * 2 > len(everything):
         problem = f"most values exceed 1, up to {top:g}, and no scale is stated"
         raise location.error(problem, WHICH_SCALE, code="scale-not-stated")
@@ -118,21 +112,20 @@ def _check_one_scale(
             f"values up to {highest[row]:g}, where '{name}' has up to "
             f"{highest[usual]:g}"
         )
-    for each in samples:
+    for spectrum in samples:
         # Neighbours that differ by more than JUMP, one of them within [0, 1], and the
         # other one in percent.
-        low = np.minimum(each.values[:-1], each.values[1:])
-        high = np.maximum(each.values[:-1], each.values[1:])
+        values = spectrum.values
+        low = np.minimum(values[:-1], values[1:])
+        high = np.maximum(values[:-1], values[1:])
         jumps = np.flatnonzero(
             (low <= DARKEST) & (high > HIGHEST) & (high / JUMP > np.maximum(low, FLOOR))
         )
         if len(jumps):
             at = jumps[0]
-            odd = each.spectrum
-            problem = (
-                f"{each.values[at]:g}, then {each.values[at + 1]:g}, at "
-                f"{each.nm[at + 1]:g} nm"
-            )
+            odd = spectrum.spectrum
+            nm = spectrum.nm[at + 1]
+            problem = f"{values[at]:g}, then {values[at + 1]:g}, at {nm:g} nm"
             break
     if problem:
         raise location.at(odd.line, odd.name).error(

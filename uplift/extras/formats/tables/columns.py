@@ -107,6 +107,17 @@ class Block:
         """Return a column; the ends of short rows are empty."""
         return tuple(cell_at(row, column) for row in self.rows)
 
+    def label(self, column: int) -> str:
+        """Return the text of the labels above a column, after what the labels of all
+        wavelengths begin with.
+        """
+        prefix = self.rows[0][self.column].text if self.run.prefix else ""
+        return " ".join([prefix, *(cell.text for cell in self.labels(column))]).strip()
+
+    def has_values(self, column: int) -> bool:
+        """Whether a column has a number, or a mark of a missing one."""
+        return any(is_value(cell.text) for cell in self.cells(column))
+
     def _is_head(self, row: Row) -> bool:
         """Whether a row has labels: those of columns of text, or of numbers next to a
         label of wavelengths.
@@ -144,30 +155,15 @@ def spectra_of(block: Block, others: Sequence[Block]) -> Table:
     unused = list[str]()
     axes = _axes(block)
     axis = block.column
-    prefix = block.rows[0][axis].text if block.run.prefix else ""
     for column in range(block.width):
         if column in axes:
             # Of neighbouring columns of wavelengths the first one counts: others repeat
             # it in other units.
             axis = axis if column - 1 in axes else column
-            continue
-        cells = block.cells(column)
-        labels = block.labels(column)
-        label = " ".join([prefix, *(cell.text for cell in labels)]).strip()
-        if column < block.column or not any(is_value(cell.text) for cell in cells):
-            unused.append(label)
-            continue
-        if axis != block.column:  # the name may stand above the wavelengths
-            labels = [
-                cell for cell in block.labels(axis) if not names_wavelengths(cell.text)
-            ] + labels
-        if block.heads and not labels:
-            problem = f"column {column + 1} has values and no label"
-            hint = "label it, and use another separator than the decimal comma"
-            raise block.grid.location.at(cells[0].line).error(problem, hint)
-        known = np.flatnonzero(np.isfinite(axes[axis])).tolist()
-        values = tuple(cells[row] for row in known)
-        series.append(Series(label, axes[axis][known].tolist(), values, _name(labels)))
+        elif column > block.column and block.has_values(column):
+            series.append(_series(block, column, axis, axes[axis]))
+        else:
+            unused.append(block.label(column))
     layout = (
         "layout: wavelength and value"
         if block.width == 2
@@ -179,6 +175,24 @@ def spectra_of(block: Block, others: Sequence[Block]) -> Table:
         (layout, *not_used_note(unused)),
         tuple(map(_skipped, others)),
     )
+
+
+def _series(block: Block, column: int, axis: int, nm: Array) -> Series:
+    """Return the spectrum of a column, at the wavelengths in nm of the column ``axis``,
+    NaN where a cell is empty.
+    """
+    cells = block.cells(column)
+    labels = block.labels(column)
+    if axis != block.column:  # the name may stand above the wavelengths
+        above = block.labels(axis)
+        labels = [cell for cell in above if not names_wavelengths(cell.text)] + labels
+    if block.heads and not labels:
+        problem = f"column {column + 1} has values and no label"
+        hint = "label it, and use another separator than the decimal comma"
+        raise block.grid.location.at(cells[0].line).error(problem, hint)
+    known = np.flatnonzero(np.isfinite(nm)).tolist()
+    values = tuple(cells[row] for row in known)
+    return Series(block.label(column), nm[known].tolist(), values, _name(labels))
 
 
 def _name(labels: Sequence[Cell]) -> Cell | None:
@@ -218,18 +232,14 @@ def _pairs(block: Block) -> Series | None:
     """Return the spectrum whose wavelengths go on from pair to pair in equal steps, and
     then to the next line.
     """
-    labels = [cell.text for head in block.heads for cell in head]
-    is_labelled = not all(
-        is_plain(label) or names_wavelengths(label) for label in labels
-    )
-    wavelengths = [parse_label(cell.text) for row in block.rows for cell in row[::2]]
+    for cell in chain.from_iterable(block.heads):
+        if not (is_plain(cell.text) or names_wavelengths(cell.text)):
+            return None
+    odd = chain.from_iterable(row[::2] for row in block.rows)
+    wavelengths = [parse_label(cell.text) for cell in odd]
     cells = tuple(chain.from_iterable(row[1::2] for row in block.rows))
     numbers = [label.number for label in wavelengths if label is not None]
-    if (
-        block.width < 4
-        or is_labelled
-        or not len(numbers) == len(wavelengths) == len(cells)
-    ):
+    if block.width < 4 or not len(numbers) == len(wavelengths) == len(cells):
         return None
     nm = to_nm(numbers, block.unit)
     return None if np.ptp(np.diff(nm)) > EQUAL else Series("", nm.tolist(), cells, None)

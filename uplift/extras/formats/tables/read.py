@@ -6,6 +6,7 @@ lines below. It states scale, quantity and unit.
 """
 
 from uplift.atlas import SourceLocation, truncate
+from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
 from uplift.common.text import pluralise
 from uplift.extras.formats.measurements import Measurements
@@ -51,29 +52,27 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
     if not table.series:
         raise _no_table(grid)
     scales = [remark_scale(text) for text in table.remarks]
-    nameless = [series for series in table.series if series.name is None]
+    nameless = sum(series.name is None for series in table.series)
     spectra = list[Spectrum]()
     for series in table.series:
-        first = series.cells[0]
-        name = series.name or Cell(
-            stem if len(nameless) == 1 else series.label, first.line
-        )
+        name = series.name
+        if name is None:
+            first = series.cells[0]
+            name = Cell(stem if nameless == 1 else series.label, first.line)
+            if not name.text:
+                location = grid.location.at(first.line)
+                raise location.error("the header row is missing", LAYOUT)
         quantity = label_quantity(series.label) or name_quantity(name.text)
-        if not name.text and series.name is None:
-            raise grid.location.at(first.line).error(
-                "the header row is missing", LAYOUT
-            )
         values, percent = _values(series.cells, grid.location.at(entry=name.text))
         if quantity is None or quantity.is_reflectance:
             scales += [label_scale(series.label), remark_scale(name.text), percent]
         spectra.append(
             Spectrum(name.text, series.nm, values, line=name.line, quantity=quantity)
         )
-    stated = [scale for scale in scales if scale is not None]
     return Measurements(
         tuple(spectra),
         skipped=table.skipped,
-        scales=tuple(stated),
+        scales=tuple(filter(None, scales)),
         notes=table.notes,
         quantity=remark_quantity(table.remarks),
     )
@@ -142,23 +141,26 @@ def _no_table(grid: Grid) -> AtlasError:
         for run in runs(cells):
             nm = to_nm(run.numbers, run.unit or grid.unit or NANOMETRE)
             if len(nm) > 2 and (run.prefix or nm.min() >= SHORTEST):
-                problem = (
-                    "wavelengths must cover 400–700 nm, got "
-                    f"{nm.min():g}–{nm.max():g} nm"
-                )
-                hint = (
-                    "add the missing wavelengths, or state their unit in a label, "
-                    "such as 'Wavelength (µm)'"
-                )
-                return grid.location.at(cells[run.first].line).error(problem, hint)
+                return _wrong_range(grid.location.at(cells[run.first].line), nm)
     # A line with numbers was meant to be understood.
-    first = next(
-        (row for row in grid.rows if any(is_value(cell.text) for cell in row)),
-        grid.rows[0],
-    )
+    first = next(filter(_has_number, grid.rows), grid.rows[0])
     text = truncate(line_texts([first])[0])
     problem = (
         f"{NO_TABLE}; read as a table, this line has {pluralise(len(first), 'cell')}: "
         f"'{text}'"
     )
     return grid.location.at(first[0].line).error(problem, LAYOUT, code="not-an-atlas")
+
+
+def _wrong_range(location: SourceLocation, nm: Array) -> AtlasError:
+    """Create the error for wavelengths in nm that do not cover the visible range."""
+    problem = f"wavelengths must cover 400–700 nm, got {nm.min():g}–{nm.max():g} nm"
+    hint = (
+        "add the missing wavelengths, or state their unit in a label, such as "
+        "'Wavelength (µm)'"
+    )
+    return location.error(problem, hint)
+
+
+def _has_number(row: Row) -> bool:
+    return any(is_value(cell.text) for cell in row)

@@ -2,6 +2,7 @@
 sample.
 """
 
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
@@ -60,32 +61,32 @@ def headers(grid: Grid) -> Iterator[Header]:
     """
     for index, row in enumerate(grid.rows[:MAX_PREAMBLE]):
         for run in runs(row):
-            nm = to_nm(
-                run.numbers,
-                run.unit
-                or grid.unit
-                or (METRE if max(run.numbers) < 1e-5 else NANOMETRE),
-            )
-            below = (
-                grid.rows[index + 1][run.first : run.last]
-                if index + 1 < len(grid.rows)
-                else ()
-            )
-            numbers = [
-                value for cell in below if (value := parse_cell(cell.text)) is not None
-            ]
-            has_values = bool(numbers) and not (
-                len(numbers) > 1 and is_visible(np.array(numbers))
-            )
-            is_named = (
-                run.first == 1
-                and plain_label(row[0].text) in NAME_LABELS
-                and covers_visible(nm)
-            )
-            if has_values and (
-                is_visible(nm) or is_named or (run.prefix and len(nm) > 2)
-            ):
-                yield Header(index, run, nm)
+            by_values = METRE if max(run.numbers) < 1e-5 else NANOMETRE
+            nm = to_nm(run.numbers, run.unit or grid.unit or by_values)
+            header = Header(index, run, nm)
+            if _is_meant(grid, header) and _has_values_below(grid, header):
+                yield header
+
+
+def _is_meant(grid: Grid, header: Header) -> bool:
+    """Whether numbers are meant as wavelengths: by their range, by the label of the
+    names to their left, or by the prefix of their labels.
+    """
+    run = header.run
+    corner = grid.rows[header.at][0].text
+    if run.first == 1 and plain_label(corner) in NAME_LABELS:
+        return covers_visible(header.nm) or (bool(run.prefix) and len(header.nm) > 2)
+    return is_visible(header.nm) or (bool(run.prefix) and len(header.nm) > 2)
+
+
+def _has_values_below(grid: Grid, header: Header) -> bool:
+    """Whether the row below wavelengths has numbers that are not wavelengths."""
+    if header.at + 1 == len(grid.rows):
+        return False
+    below = grid.rows[header.at + 1][header.run.first : header.run.last]
+    numbers = [parse_cell(cell.text) for cell in below]
+    values = np.array([number for number in numbers if number is not None])
+    return len(values) > 0 and not (len(values) > 1 and is_visible(values))
 
 
 def spectra_below(grid: Grid, wavelengths: Header) -> Table:
@@ -177,12 +178,14 @@ def _sample_table(
     """
     header = grid.rows[index]
     remarks = grid.remarks(index)
-    found: dict[str, list[tuple[float, Cell]]] = {}
+    wavelengths = defaultdict[str, list[float]](list)
+    values = defaultdict[str, list[Cell]](list)
     for row in grid.rows[index + 1 :]:
         name, wavelength, value = [cell_at(row, column) for column in columns]
         label = parse_label(wavelength.text)
         if label is not None:
-            found.setdefault(name.text, []).append((label.number, value))
+            wavelengths[name.text].append(label.number)
+            values[name.text].append(value)
         elif is_value(value.text):
             problem = f"wavelength '{truncate(wavelength.text)}' is not a number"
             raise grid.location.at(row[0].line, name.text).error(
@@ -190,21 +193,21 @@ def _sample_table(
             )
         else:
             remarks += line_texts([row])
-    are_measured = any(is_value(name) and not name.isdigit() for name in found)
-    if not found or are_measured or min(map(len, found.values())) < 2:  # another layout
+    are_measured = any(is_value(name) and not name.isdigit() for name in values)
+    fewest = min(map(len, values.values()), default=0)
+    if are_measured or fewest < 2:  # another layout
         return None
-    numbers = [number for samples in found.values() for number, _ in samples]
     _, wavelength_column, value_column = columns
-    unit = (
-        find_unit(header[wavelength_column].text)
-        or grid.unit
-        or unit_by_values(np.unique(numbers))
-    )
-    series = list[Series]()
-    for text, samples in found.items():
-        nm = to_nm([number for number, _ in samples], unit).tolist()
-        cells = tuple(cell for _, cell in samples)
-        series.append(
-            Series(header[value_column].text, nm, cells, Cell(text, cells[0].line))
+    stated = find_unit(header[wavelength_column].text) or grid.unit
+    unit = stated or unit_by_values(np.unique(np.concatenate([*wavelengths.values()])))
+    label_text = header[value_column].text
+    series = [
+        Series(
+            label_text,
+            to_nm(wavelengths[name], unit).tolist(),
+            tuple(cells),
+            Cell(name, cells[0].line),
         )
+        for name, cells in values.items()
+    ]
     return Table(series, remarks, ("layout: a row per sample",))
