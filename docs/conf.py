@@ -26,7 +26,6 @@ myst_heading_anchors = 4
 # repeat them.
 autodoc_typehints = "none"
 autodoc_member_order = "bysource"
-autodoc_default_options = {"members": True}
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 
