@@ -87,7 +87,9 @@ _EXPORTS = {
     "uplift.pipeline.build": ("build",),
     "uplift.extras.looks.look": ("Look", "read_looks"),
 }
-_HOMES = {name: module for module, names in _EXPORTS.items() for name in names}
+_HOMES = dict[str, str]()
+for _module, _names in _EXPORTS.items():
+    _HOMES |= dict.fromkeys(_names, _module)
 
 register("cameras", "files", "uplift.extras.colour.camera_file:read_camera")
 register("formats", "measurements", "uplift.extras.formats:FORMATS")

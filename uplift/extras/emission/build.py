@@ -132,37 +132,37 @@ def build_emission(
     left_out_errors = relit_delta_e(lamps, left_out, surfaces, radiometry).mean(axis=1)
 
     entries, duplicates = lamp_entries(exact, others, lattice, radiometry)
-    if duplicates:
-        pairs = listed([f"'{name}' that of '{other}'" for name, other in duplicates])
-        omitted = pluralise(len(duplicates), "lamp")
-        problem = (
-            f"{omitted} left out, with the chromaticity of an earlier one: {pairs}"
-        )
-        warn(UpliftWarning(problem, code="entry-duplicate"))
-    return EmissionTable(
-        EmissionData(
-            space=sensor.space,
-            observer=sensor.observer,
-            rgb_to_xyz=matrix,
-            wavelengths=sensor.wavelengths,
-            cmfs=sensor.cmfs,
-            lattice=lattice,
-            spectra=nodes.astype(np.float32),
-            error=_expected_error(left_out_errors, prior, lattice),
-            entries=entries,
-            provenance={
-                "uplift": version(),
-                "options": {
-                    "knots": int(knots),
-                    "rings": int(rings),
-                    "without": sorted(without),
-                },
-                "atlases": [_record(source) for source in sources],
-                "left_out": [name for name, _ in duplicates],
-                "prior": asdict(prior.kernel),
-            },
-        )
+    _warn_of_duplicates(duplicates)
+    options = {"knots": int(knots), "rings": int(rings), "without": sorted(without)}
+    data = EmissionData(
+        space=sensor.space,
+        observer=sensor.observer,
+        rgb_to_xyz=matrix,
+        wavelengths=sensor.wavelengths,
+        cmfs=sensor.cmfs,
+        lattice=lattice,
+        spectra=nodes.astype(np.float32),
+        error=_expected_error(left_out_errors, prior, lattice),
+        entries=entries,
+        provenance={
+            "uplift": version(),
+            "options": options,
+            "atlases": [_record(source) for source in sources],
+            "left_out": [name for name, _ in duplicates],
+            "prior": asdict(prior.kernel),
+        },
     )
+    return EmissionTable(data)
+
+
+def _warn_of_duplicates(duplicates: Sequence[tuple[str, str]]) -> None:
+    """Warn of lamps that have the chromaticity of another, the second of each pair."""
+    if not duplicates:
+        return
+    pairs = listed([f"'{name}' that of '{other}'" for name, other in duplicates])
+    omitted = pluralise(len(duplicates), "lamp")
+    problem = f"{omitted} left out, with the chromaticity of an earlier one: {pairs}"
+    warn(UpliftWarning(problem, code="entry-duplicate"))
 
 
 def _choose_lamps(

@@ -38,7 +38,8 @@ def write_csv(
         lineterminator="\n",
         quoting=csv.QUOTE_NONNUMERIC if quote_text else csv.QUOTE_MINIMAL,
     )
-    writer.writerows([_safe_cell(cell) for cell in row] for row in rows)
+    for row in rows:
+        writer.writerow([_safe_cell(cell) for cell in row])
 
 
 def csv_text(
@@ -110,9 +111,8 @@ def find_delimiter(lines: Iterable[str]) -> str:
     [';', ' ', ',', ',', ',']
     """
     lines = list(lines)
-    present = [
-        each for each in DELIMITERS if any(each in line for line in lines)
-    ] or DELIMITERS[:1]
+    text = "\n".join(lines)
+    present = [mark for mark in DELIMITERS if mark in text] or DELIMITERS[:1]
 
     def score(delimiter: str) -> tuple[int, int]:
         cells = list(chain.from_iterable(split_line(line, delimiter) for line in lines))

@@ -22,6 +22,13 @@ from uplift.extras.formats.tables.read import read_grid
 
 FORMAT = "DATA_FORMAT"
 DATA = "DATA"
+SECTIONS = {
+    f"BEGIN_{FORMAT}": FORMAT,
+    f"END_{FORMAT}": "",
+    f"BEGIN_{DATA}": DATA,
+    f"END_{DATA}": "",
+}
+"""What begins with a line that is one of these words."""
 TOKEN = re.compile(r'"((?:[^"]|"")*)"|(\S+)')
 KEYWORD = re.compile(r'(\w+)\s+(?:"((?:[^"]|"")*)"|(.+))')
 LIGHT_SOURCES = re.compile(r'^\s*DEVICE_CLASS\s+"?DISPLAY', re.MULTILINE)
@@ -73,27 +80,28 @@ def _parse(document: Document) -> tuple[list[str], list[Row]]:
     section = ""
     for line, text in enumerate(_lines(document), 1):
         word = text.strip()
-        if word in (f"BEGIN_{FORMAT}", f"BEGIN_{DATA}"):
-            if word == f"BEGIN_{FORMAT}" and fields:
-                break  # another table follows
-            section = word.removeprefix("BEGIN_")
-        elif word in (f"END_{FORMAT}", f"END_{DATA}"):
-            section = ""
-        elif not word or word.startswith("#"):
-            continue
+        if word == f"BEGIN_{FORMAT}" and fields:
+            break  # another table follows
+        if word in SECTIONS:
+            section = SECTIONS[word]
         elif section == FORMAT:
-            fields += [Cell(token, line) for token in _tokens(text, None)]
+            fields += _cells(text, line, None)
         elif section == DATA:
-            sets.append(
-                tuple(Cell(token, line) for token in _tokens(text, len(fields)))
-            )
-        elif not sets:
+            sets += filter(None, [_cells(text, line, len(fields))])
+        elif word and not word.startswith("#") and not sets:
             preamble.append(text)
     if not fields or not sets:
         raise document.location.at(len(document.lines)).error(
             "a CGATS file must have fields and sets of data", EXPORT
         )
     return preamble, [tuple(fields), *sets]
+
+
+def _cells(text: str, line: int, count: int | None) -> Row:
+    """Return the cells of a line, see `_tokens`; none of a comment."""
+    if not text.strip() or text.strip().startswith("#"):
+        return ()
+    return tuple(Cell(token, line) for token in _tokens(text, count))
 
 
 def _lines(document: Document) -> list[str]:

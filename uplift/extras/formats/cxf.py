@@ -3,7 +3,11 @@ package colour-cxf.
 """
 
 import re
+from collections import defaultdict
+from collections.abc import Sequence, Set
 from typing import Any
+
+import numpy as np
 
 from uplift.atlas import Document, Header, SkippedEntry, one_line
 from uplift.common.text import listed
@@ -12,7 +16,8 @@ from uplift.extras.formats.samples import Spectrum
 from uplift.extras.formats.statements import Quantity, Scale
 from uplift.extras.formats.xml import check_xml
 
-START, STEP = 380.0, 10.0
+START = 380.0
+STEP = 10.0
 """Start and step in nm of spectra whose colour specification states none."""
 CONDITION = re.compile(r"(?<![A-Za-z])M[0-3](?![0-9A-Za-z])")
 """Measurement conditions of ISO 13655: with incandescent light, daylight, without UV,
@@ -51,73 +56,85 @@ def read(document: Document) -> Measurements:
 
 
 def _content(cxf: Any, path: str) -> Measurements:
-    resources = cxf.resources
-    information = cxf.file_information
-    objects = (
-        resources.object_collection.object_value
-        if resources and resources.object_collection
-        else []
-    )
-    specifications = _measurements(resources)
+    specifications = _measurements(cxf.resources)
     spectra = list[Spectrum]()
     skipped = list[SkippedEntry]()
     colours = set[str]()
     conditions = set[str]()
-    for each in objects:
-        name = (each.name or each.id or "").strip()
-        choices = each.color_values.choice if each.color_values else []
-        types = [type(choice).__name__ for choice in choices]
-        reflectances = [
-            choice
-            for choice, kind in zip(choices, types, strict=True)
-            if kind == REFLECTANCE
-        ]
-        stated = [_condition(choice, specifications) for choice in reflectances]
-        conditions.update(filter(None, stated))
-        kinds = [
-            condition or choice.color_specification
-            for condition, choice in zip(stated, reflectances, strict=True)
-        ]
-        if len(set(kinds)) < len(kinds):
-            kinds = [
-                choice.name or str(number)
-                for number, choice in enumerate(reflectances, 1)
-            ]
-        for kind, choice in zip(kinds, reflectances, strict=True):
-            label = name if len(reflectances) == 1 else f"{name} {kind}"
+    for sample in _objects(cxf.resources):
+        name = (sample.name or sample.id or "").strip()
+        by_type = _by_type(sample)
+        reflectances = by_type[REFLECTANCE]
+        labels = _labels(name, reflectances, specifications)
+        for label, choice in zip(labels, reflectances, strict=True):
             spectra.append(_spectrum(label, choice, specifications))
-        others = [OTHER_SPECTRA[kind] for kind in types if kind in OTHER_SPECTRA]
+            conditions.add(_condition(choice, specifications))
+        others = [kind for kind in by_type if kind in OTHER_SPECTRA]
         if others and not reflectances:
-            skipped.append(
-                SkippedEntry(name, f"it is {others[0]}, not reflectance", path)
-            )
-        colours.update(kind for kind in types if kind.startswith("Color"))
-    header = Header(one_line(information.description) if information else "")
-    # the schema has values in (−0.1, 3); some programs write percent
-    is_of_schema = all(
-        -0.1 < value < 3 for spectrum in spectra for value in spectrum.values
-    )
-    scales = (Scale(1.0, "the schema of CxF3"),) if is_of_schema else ()
-    measured_as = tuple[str, ...]()
-    if conditions:
-        alike = (
-            "; the entries of an object are nearly the same"
-            if len(conditions) > 1
-            else ""
-        )
-        measured_as = (f"measurement conditions: {listed(sorted(conditions))}{alike}",)
-    notes = (
-        "layout: an object per spectrum",
-        *measured_as,
-        *not_used_note(sorted(colours)),
-    )
+            reason = f"it is {OTHER_SPECTRA[others[0]]}, not reflectance"
+            skipped.append(SkippedEntry(name, reason, path))
+        colours.update(kind for kind in by_type if kind.startswith("Color"))
+    description = cxf.file_information and cxf.file_information.description
     return Measurements(
         tuple(spectra),
         skipped=tuple(skipped),
-        scales=scales,
-        header=header,
-        notes=notes,
+        scales=_scales(spectra),
+        header=Header(one_line(description)),
+        notes=(
+            "layout: an object per spectrum",
+            *_condition_note(conditions - {""}),
+            *not_used_note(sorted(colours)),
+        ),
     )
+
+
+def _by_type(sample: Any) -> dict[str, list[Any]]:
+    """Return the values of an object by the names of their types."""
+    by_type = defaultdict[str, list[Any]](list)
+    for choice in sample.color_values.choice if sample.color_values else ():
+        by_type[type(choice).__name__].append(choice)
+    return by_type
+
+
+def _labels(
+    name: str, reflectances: Sequence[Any], specifications: dict[str, Any]
+) -> list[str]:
+    """Return the names of the spectra of an object: with their condition or
+    specification if there are several, or else their own names or numbers.
+    """
+    if len(reflectances) == 1:
+        return [name]
+    kinds = [
+        _condition(choice, specifications) or choice.color_specification
+        for choice in reflectances
+    ]
+    if len(set(kinds)) < len(kinds):
+        numbered = enumerate(reflectances, 1)
+        kinds = [choice.name or str(number) for number, choice in numbered]
+    return [f"{name} {kind}" for kind in kinds]
+
+
+def _scales(spectra: Sequence[Spectrum]) -> tuple[Scale, ...]:
+    """Return the scale of the schema, whose values are in (−0.1, 3); none if they are
+    not: some programs write percent.
+    """
+    values = np.concatenate([np.zeros(0), *(spectrum.values for spectrum in spectra)])
+    is_of_schema = ((values > -0.1) & (values < 3)).all()
+    return (Scale(1.0, "the schema of CxF3"),) if is_of_schema else ()
+
+
+def _condition_note(conditions: Set[str]) -> tuple[str, ...]:
+    if not conditions:
+        return ()
+    note = f"measurement conditions: {listed(sorted(conditions))}"
+    if len(conditions) > 1:
+        note += "; the entries of an object are nearly the same"
+    return (note,)
+
+
+def _objects(resources: Any) -> Sequence[Any]:
+    collection = resources.object_collection if resources else None
+    return collection.object_value if collection else ()
 
 
 def _measurements(resources: Any) -> dict[str, Any]:
@@ -127,9 +144,9 @@ def _measurements(resources: Any) -> dict[str, Any]:
     collection = resources.color_specification_collection if resources else None
     specifications = collection.color_specification if collection else []
     return {
-        each.id: each.measurement_spec
-        for each in specifications
-        if each.measurement_spec
+        specification.id: specification.measurement_spec
+        for specification in specifications
+        if specification.measurement_spec
     }
 
 

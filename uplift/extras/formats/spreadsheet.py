@@ -58,11 +58,12 @@ def _rows(book: Any, name: str, document: Document) -> list[Row]:
         _check_cells(sheet.height, sheet.width, document)
         start = sheet.start[0] if sheet.start else 0
         lines = sheet.to_python(skip_empty_area=True)
-    rows = [
-        trimmed(Cell(_text(value), line) for value in values)
-        for line, values in enumerate(lines, start + 1)
-    ]
-    return [row for row in rows if row and not row[0].text.startswith("#")]
+    rows = list[Row]()
+    for line, values in enumerate(lines, start + 1):
+        row = trimmed(Cell(_text(value), line) for value in values)
+        if row and not row[0].text.startswith("#"):
+            rows.append(row)
+    return rows
 
 
 def _text(value: Any) -> str:

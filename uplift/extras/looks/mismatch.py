@@ -328,11 +328,11 @@ def _most_different(count: int, *parts: _Metamers) -> _Metamers:
     delta_e, *others = zip(*parts, strict=True)
     differences = np.concatenate([each.reshape(count, -1) for each in delta_e], axis=1)
     best = np.arange(count), differences.argmax(axis=1)
-    joined = (
-        np.concatenate([each.reshape(count, -1, 3) for each in other], axis=1)
-        for other in others
-    )
-    return _Metamers(differences[best], *(each[best] for each in joined))
+    chosen = []
+    for other in others:
+        joined = np.concatenate([each.reshape(count, -1, 3) for each in other], axis=1)
+        chosen.append(joined[best])
+    return _Metamers(differences[best], *chosen)
 
 
 @dataclass(frozen=True, eq=False)

@@ -110,70 +110,24 @@ def _texture_class(variant: str) -> type:
                 self.numbers = mi.Texture2f(mi.TensorXf(numbers), filter_mode=filtered)
 
         def eval(self, si: Any, active: Any = True) -> Any:
-            place = self._texel(self.to_uv @ si.uv)
+            model = self.texels.model
+            wavelengths = si.wavelengths
+            is_bilinear = self.placement.filter == "bilinear"
+            folded = _fold(self.to_uv @ si.uv, self.placement.wrap)
+            # Place in the padded image, in texels, whose centres are at ½
+            width, height = self.resolution()
+            place = dr.fma(folded, mi.Vector2f(width, height), PADDING)
             if self.placement.filter == "stochastic":
-                place += self._offset(si)
-            if isinstance(self.texels.model, Samples):
-                return self._interpolated(place, si.wavelengths, active)
+                place += _offset(si)
+            if isinstance(model, Samples):
+                place = place if is_bilinear else dr.floor(place) + 0.5
+                return _interpolate(self.numbers, model, place, wavelengths)
             height, width, _ = self.numbers.shape
             uv = place * mi.Vector2f(1 / width, 1 / height)
-            if self.placement.filter != "bilinear":
-                return blend(
-                    self.texels.model,
-                    [self.numbers.eval(uv)],
-                    [mi.Float(1)],
-                    si.wavelengths,
-                )
-            texels = self.numbers.eval_fetch(uv)
-            return blend(
-                self.texels.model, texels, _bilinear_weights(place), si.wavelengths
-            )
-
-        def _texel(self, uv: Any) -> Any:
-            """Return the place of coordinates in the padded image, in texels; centres
-            of texels are at ½.
-            """
-            if self.placement.wrap == "clamp":
-                folded = dr.clip(uv, 0, 1)
-            elif self.placement.wrap == "repeat":
-                folded = uv - dr.floor(uv)
-            else:
-                folded = dr.abs(uv - 2 * dr.round(uv / 2))
-            width, height = self.resolution()
-            return dr.fma(folded, mi.Vector2f(width, height), PADDING)
-
-        def _offset(self, si: Any) -> Any:
-            """Return up to half a texel, by which the nearest texel is one of four with
-            the probability of its weight.
-
-            Textures have no sampler: pseudo-random numbers are hashed from coordinates
-            and wavelengths.
-            """
-            u, v, wavelength = (
-                _bits(each) for each in (si.uv.x, si.uv.y, si.wavelengths[0])
-            )
-            first, second = mi.sample_tea_32(u ^ wavelength, v, HASH_ROUNDS)
-            return mi.Vector2f(mi.Float(first), mi.Float(second)) * 2.0**-32 - 0.5
-
-        def _interpolated(self, place: Any, wavelengths: Any, active: Any) -> Any:
-            """Return reflectances between samples, which lie along the first axis of
-            the texture.
-            """
-            model, (height, width, depth, _) = self.texels.model, self.numbers.shape
-            assert isinstance(model, Samples)
-            if self.placement.filter != "bilinear":
-                place = dr.floor(place) + 0.5
-            uv = place * mi.Vector2f(1 / width, 1 / height)
-            steps = (model.count - 1) / (model.end - model.start)
-            samples = (
-                dr.clip(wavelengths, model.start, model.end) - model.start
-            ) * steps + 0.5
-            return type(wavelengths)(
-                *(
-                    self.numbers.eval(mi.Point3f(each / depth, uv.x, uv.y))[0]
-                    for each in samples
-                )
-            )
+            if is_bilinear:
+                texels = self.numbers.eval_fetch(uv)
+                return blend(model, texels, _bilinear_weights(place), wavelengths)
+            return blend(model, [self.numbers.eval(uv)], [mi.Float(1)], wavelengths)
 
         def mean(self) -> Any:
             return mi.Float(self.texels.mean)
@@ -191,6 +145,43 @@ def _texture_class(variant: str) -> type:
     return UpliftTexture
 
 
+def _fold(uv: Any, wrap: str) -> Any:
+    """Return coordinates in [0, 1], outside of which an image is continued."""
+    if wrap == "clamp":
+        return dr.clip(uv, 0, 1)
+    if wrap == "repeat":
+        return uv - dr.floor(uv)
+    return dr.abs(uv - 2 * dr.round(uv / 2))
+
+
+def _offset(si: Any) -> Any:
+    """Return up to half a texel, by which the nearest texel is one of four with the
+    probability of its weight.
+
+    Textures have no sampler: pseudo-random numbers are hashed from coordinates and
+    wavelengths.
+    """
+    v = _bits(si.uv.y)
+    seed = _bits(si.uv.x) ^ _bits(si.wavelengths[0])
+    first, second = mi.sample_tea_32(seed, v, HASH_ROUNDS)
+    return mi.Vector2f(mi.Float(first), mi.Float(second)) * 2.0**-32 - 0.5
+
+
+def _interpolate(numbers: Any, model: Samples, place: Any, wavelengths: Any) -> Any:
+    """Return reflectances between samples, which lie along the first axis of a
+    texture.
+    """
+    height, width, depth, _ = numbers.shape
+    uv = place * mi.Vector2f(1 / width, 1 / height)
+    steps = (model.count - 1) / (model.end - model.start)
+    from_start = dr.clip(wavelengths, model.start, model.end) - model.start
+    samples = [
+        numbers.eval(mi.Point3f(layer / depth, uv.x, uv.y))[0]
+        for layer in from_start * steps + 0.5
+    ]
+    return type(wavelengths)(*samples)
+
+
 def make_texture(props: Any, texels: Texels, placement: Placement) -> Any:
     """Return a texture of the current variant."""
     return _texture_class(mi.variant())(props, texels, placement)
@@ -199,24 +190,17 @@ def make_texture(props: Any, texels: Texels, placement: Placement) -> Any:
 @cache
 def _environment_class(variant: str) -> type:
     class UpliftEnvironment(mi.Emitter):  # type: ignore[misc]
-        """Mitsuba's ``envmap`` in grey samples directions, and the spectra give the
-        radiance.
-        """
+        """Directions are sampled by a grey ``envmap``, radiance is that of spectra."""
 
         def __init__(self, props: Any, texels: Texels) -> None:
             super().__init__(props)
             self.scale = float(props.get("scale", 1.0))
             transform = props.get("to_world", mi.ScalarTransform4f())
-            self.to_local = mi.Transform4f(
-                np.array(transform.inverse().matrix, dtype=np.float32)
-            )
+            inverse = np.array(transform.inverse().matrix, dtype=np.float32)
+            self.to_local = mi.Transform4f(inverse)
             placement = Placement("bilinear", "repeat", np.eye(3))
             self.texture = make_texture(mi.Properties("uplift"), texels, placement)
-            grey = np.repeat(texels.numbers.mean(axis=2, keepdims=True), 3, axis=2)
-            bitmap = mi.Bitmap(np.ascontiguousarray(grey))
-            self.sampler = mi.load_dict(
-                {"type": "envmap", "bitmap": bitmap, "to_world": transform}
-            )
+            self.sampler = _grey_environment(texels, transform)
             self.m_flags = self.sampler.flags()
 
         def set_scene(self, scene: Any) -> None:
@@ -230,9 +214,7 @@ def _environment_class(variant: str) -> type:
             return self._radiance(ds.d, it.wavelengths, active)
 
         def sample_direction(self, it: Any, sample: Any, active: Any = True) -> Any:
-            """Sample a direction in proportion to the mean power, and return it with
-            radiance over density.
-            """
+            """Sample a direction by the mean power; return radiance over density."""
             ds, _ = self.sampler.sample_direction(it, sample, active)
             radiance = self._radiance(ds.d, it.wavelengths, active)
             ds.emitter = self if variant.startswith("scalar") else mi.EmitterPtr(self)
@@ -249,7 +231,7 @@ def _environment_class(variant: str) -> type:
             sample3: Any,
             active: Any = True,
         ) -> Any:
-            """Sample a ray into the scene, and return it with power over density."""
+            """Sample a ray into the scene; return power over density."""
             ray, weight = self.sampler.sample_ray(
                 time, sample1, sample2, sample3, active
             )
@@ -261,9 +243,7 @@ def _environment_class(variant: str) -> type:
             return ray, dr.select(grey > 0, weight * radiance / grey, 0)
 
         def sample_wavelengths(self, si: Any, sample: Any, active: Any = True) -> Any:
-            """Sample wavelengths as Mitsuba does for sensors, and return them with
-            radiance over density.
-            """
+            """Sample wavelengths as sensors do; return radiance over density."""
             wavelengths, weight = mi.sample_rgb_spectrum(mi.sample_shifted(sample))
             return wavelengths, weight * self._radiance(-si.wi, wavelengths, active)
 
@@ -272,25 +252,34 @@ def _environment_class(variant: str) -> type:
             return self.sampler.bbox()
 
         def to_string(self) -> str:
-            return self.texture.to_string().replace(
-                "UpliftTexture", "UpliftEnvironment"
-            )
+            name = self.texture.to_string()
+            return name.replace("UpliftTexture", "UpliftEnvironment")
 
         def _radiance(self, direction: Any, wavelengths: Any, active: Any) -> Any:
-            """Return the radiance from a direction, with the layout of Mitsuba's
-            ``envmap``.
-            """
-            local = self.to_local @ direction
-            u = dr.atan2(local.x, -local.z) / (2 * dr.pi)
-            v = dr.safe_acos(local.y) / dr.pi
-            height = self.texture.texels.numbers.shape[0]
+            """Return the radiance from a direction, laid out as in ``envmap``."""
             si = dr.zeros(mi.SurfaceInteraction3f)
-            # The first and the last row lie at the poles.
-            si.uv = mi.Point2f(u - dr.floor(u), (v * (height - 1) + 0.5) / height)
+            height = self.texture.texels.numbers.shape[0]
+            si.uv = _uv_of(self.to_local @ direction, height)
             si.wavelengths = wavelengths
             return self.scale * self.texture.eval(si, active)
 
     return UpliftEnvironment
+
+
+def _grey_environment(texels: Texels, transform: Any) -> Any:
+    """Return Mitsuba's ``envmap`` of the mean of the numbers of texels."""
+    grey = np.repeat(texels.numbers.mean(axis=2, keepdims=True), 3, axis=2)
+    bitmap = mi.Bitmap(np.ascontiguousarray(grey))
+    return mi.load_dict({"type": "envmap", "bitmap": bitmap, "to_world": transform})
+
+
+def _uv_of(local: Any, height: int) -> Any:
+    """Return the coordinates of a direction in an image, whose first and last row lie
+    at the poles.
+    """
+    u = dr.atan2(local.x, -local.z) / (2 * dr.pi)
+    v = dr.safe_acos(local.y) / dr.pi
+    return mi.Point2f(u - dr.floor(u), (v * (height - 1) + 0.5) / height)
 
 
 def make_environment(props: Any, texels: Texels) -> Any:

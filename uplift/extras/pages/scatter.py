@@ -4,7 +4,7 @@ in.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
@@ -123,10 +123,10 @@ def draw_labels(
 
 DISTANCES = (6.0, 9.0, 14.0, 20.0, 28.0, 38.0)  # points between a marker and its label
 CLEARANCE = (4.5, 2.5)  # points that labels keep from markers, sideways and upwards
-_SIDES = [(x, y) for x in (1.0, -1.0) for y in (0.0, 0.5, -0.5, 1.0, -1.0)]
-DIRECTIONS = np.array(
-    [*_SIDES, *((x, y) for y in (1.0, -1.0) for x in (0.0, 0.5, -0.5))]
-)
+_BESIDE = product((1.0, -1.0), (0.0, 0.5, -0.5, 1.0, -1.0))
+_ABOVE = [(0.0, 1.0), (0.5, 1.0), (-0.5, 1.0)]
+_BELOW = [(0.0, -1.0), (0.5, -1.0), (-0.5, -1.0)]
+DIRECTIONS = np.array([*_BESIDE, *_ABOVE, *_BELOW])
 
 
 def place_labels(anchors: Array, sizes: Array, markers: Array, panel: Array) -> Array:

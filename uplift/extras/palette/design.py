@@ -199,23 +199,30 @@ def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
     }
     missed = [goal for goal in palette.goals if goal.weight and errors[goal] > VISIBLE]
     relaxed = []
-    if missed:
-        for name, changed in _relaxed(palette):
-            relaxed.append((name, matrix(design(changed, found.model)).delta_e))
+    for name, changed in _relaxed(palette) if missed else ():
+        relaxed.append((name, matrix(design(changed, found.model)).delta_e))
     unmet = []
     for goal in missed:
         cell = palette.cell(goal.material, goal.light)
         remaining = [(name, float(delta_e[cell])) for name, delta_e in relaxed]
         useful = _useful(goal, remaining, MAX_REMAINING * errors[goal])
         unmet.append(UnmetGoal(goal, errors[goal], useful))
+    return (*unmet, *_too_alike(palette, fitted))
+
+
+def _too_alike(palette: Palette, colours: Array) -> Iterator[UnmetGoal]:
+    """Yield the pairs of materials whose colours differ too little."""
     for pair in palette.min_differences:
-        first, second = (
-            fitted[palette.cell(material, pair.light)] for material in pair.materials
+        first, second = pair.materials
+        delta_e = float(
+            delta_e_rgb(
+                palette.sensor,
+                colours[palette.cell(first, pair.light)],
+                colours[palette.cell(second, pair.light)],
+            )
         )
-        delta_e = float(delta_e_rgb(palette.sensor, first, second))
         if delta_e < pair.delta_e:
-            unmet.append(UnmetGoal(pair, delta_e))
-    return tuple(unmet)
+            yield UnmetGoal(pair, delta_e)
 
 
 def _useful(

@@ -6,6 +6,7 @@ import contextlib
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -130,7 +131,7 @@ def prepare_relighter(
         "half",
         encoding,
         out_of_gamut,
-        tuple(f"{layer}.{letter}" for layer in layers for letter in "RGB"),
+        tuple(map(".".join, product(layers, "RGB"))),
         header,
         sample=prepare_products(
             cube.data,

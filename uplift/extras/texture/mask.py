@@ -14,6 +14,7 @@ import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,6 +30,8 @@ from uplift.extras.texture.uplifter import Converted, Converter, ConvertRows, Up
 from uplift.lattice import OutsideBoxes
 from uplift.lookup import refine_to_rgb
 
+ToWeights = Callable[[Values], Floats]
+"""From numbers (…, 3) of a mask to weights (…, n)."""
 MIN_WHITE = 0.5
 """Share of white that the largest weight of an integer mask has; smaller ones may be
 numbers of too many cubes.
@@ -79,10 +82,41 @@ def open_mask(
 
 def _interpret(
     image: Image, part: Part, rgb: tuple[int, int, int], cubes: int
-) -> Callable[[Values], Floats]:
+) -> ToWeights:
     """Return the function from the numbers (…, 3) of a mask to weights (…, n). Raises
     `TextureError` for others.
     """
+    values = _survey(image, part, rgb)
+    interpret = _grey_weights if values.is_grey else _colour_weights
+    to_weights = interpret(values, cubes)
+    if to_weights is None:
+        kind = "grey" if values.is_grey else "coloured"
+        raise _no_mask(cubes, f"{kind} values from {values.low:g} to {values.high:g}")
+    return to_weights
+
+
+class Survey(NamedTuple):
+    """What the numbers of a mask have in common."""
+
+    low: float
+    high: float
+    is_grey: bool
+    has_black: bool
+    max_code: int
+    """Code of white; 0 for floats."""
+
+    @property
+    def white(self) -> int:
+        """Value of white."""
+        return self.max_code or 1
+
+    @property
+    def is_weight(self) -> bool:
+        """Whether all numbers are from 0 to white."""
+        return self.low >= 0 and self.high <= self.white
+
+
+def _survey(image: Image, part: Part, rgb: tuple[int, int, int]) -> Survey:
     low = np.inf
     high = -np.inf
     is_grey = True
@@ -93,23 +127,30 @@ def _interpret(
         high = max(high, np.max(colours))
         is_grey &= bool((colours == colours[..., :1]).all())
         has_black |= bool((colours == 0).all(axis=-1).any())
-    is_integer = part.max_code > 0
-    white = part.max_code or 1
-    is_weight = low >= 0 and high <= white
-    if is_grey:
-        if is_integer and high < cubes:
-            return lambda numbers: np.asarray(
-                numbers[..., :1] == np.arange(cubes), dtype=np.float32
-            )
-        has_white = not is_integer or high >= MIN_WHITE * white
-        if is_weight and cubes == 2 and has_white:
-            return lambda numbers: _pair(
-                np.asarray(numbers[..., 0] / np.float32(white), dtype=np.float32)
-            )
-    elif is_weight and cubes == 3 and not has_black:
-        return _normalised
-    kind = "grey" if is_grey else "coloured"
-    raise _no_mask(cubes, f"{kind} values from {low:g} to {high:g}")
+    return Survey(low, high, is_grey, has_black, part.max_code)
+
+
+def _grey_weights(values: Survey, cubes: int) -> ToWeights | None:
+    """Return the function for numbers of cubes, or for weights of the second of two;
+    None if the values are neither.
+    """
+    if values.max_code and values.high < cubes:
+        return lambda numbers: np.asarray(
+            numbers[..., :1] == np.arange(cubes), dtype=np.float32
+        )
+    has_white = not values.max_code or values.high >= MIN_WHITE * values.white
+    if cubes == 2 and values.is_weight and has_white:
+        white = np.float32(values.white)
+        return lambda numbers: _pair(
+            np.asarray(numbers[..., 0] / white, dtype=np.float32)
+        )
+    return None
+
+
+def _colour_weights(values: Survey, cubes: int) -> ToWeights | None:
+    """Return the function for weights of three cubes, None if the values are others."""
+    is_mask = cubes == 3 and values.is_weight and not values.has_black
+    return _normalised if is_mask else None
 
 
 def _no_mask(cubes: int, values: str) -> TextureError:

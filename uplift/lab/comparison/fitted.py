@@ -93,11 +93,8 @@ def _moments(scene: Scene) -> Iterator[Representation]:
     and RGB.
     """
     sensor = observer.sensor()
-    lights = tuple(
-        observer.light(light)
-        for light_set in scene.sets
-        for light in light_set.illuminants
-    )
+    names = chain.from_iterable(light_set.illuminants for light_set in scene.sets)
+    lights = tuple(map(observer.light, names))
     measured = scene.surfaces[:, :: samples.TABLE_STRIDE]
     for count in MOMENTS:
         model = Moments(count)

@@ -254,5 +254,7 @@ def study_moments(
                     len(TECHNIQUES) * counts,
                 )
             )
-    origins = tuple(name for name, each in atlases.items() for _ in each.entries)
-    return MomentsStudy(atlas.names, origins, measured, errors)
+    origins = list[str]()
+    for name, single in atlases.items():
+        origins += [name] * len(single)
+    return MomentsStudy(atlas.names, tuple(origins), measured, errors)

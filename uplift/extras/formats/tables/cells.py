@@ -1,6 +1,7 @@
 """Cells of tables: numbers, missing values, and labels of wavelengths."""
 
 import itertools
+import operator
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
@@ -76,7 +77,7 @@ def trimmed(cells: Iterable[Cell]) -> Row:
 
 def line_texts(rows: Iterable[Row]) -> list[str]:
     """Return the text of each row."""
-    return [" ".join(cell.text for cell in row) for row in rows]
+    return [" ".join(map(operator.attrgetter("text"), row)) for row in rows]
 
 
 def parse_cell(text: str) -> float | None:

@@ -99,9 +99,8 @@ class Block:
 
     def labels(self, column: int) -> list[Cell]:
         """Return the labels above a column, from top to bottom."""
-        return [
-            cell for row in self.heads for cell in row[column : column + 1] if cell.text
-        ]
+        cells = [cell_at(row, column) for row in self.heads]
+        return [cell for cell in cells if cell.text]
 
     def cells(self, column: int) -> Row:
         """Return a column; the ends of short rows are empty."""

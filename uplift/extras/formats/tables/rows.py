@@ -134,13 +134,10 @@ def _name_column(header: Row, body: Sequence[Row], others: Sequence[int]) -> int
     the first one.
     """
     # Labels that state a name come before those of numbers, unless they repeat a name.
+    ranks = {label: rank for rank, label in enumerate(NAME_LABELS)}
     labels = {index: plain_label(header[index].text) for index in others}
-    known = [
-        index
-        for wanted in NAME_LABELS
-        for index, label in labels.items()
-        if label == wanted
-    ]
+    named = [index for index in others if labels[index] in ranks]
+    known = sorted(named, key=lambda index: ranks[labels[index]])
     for index in known:
         names = [row[index].text for row in body]
         if all(names) and len(set(names)) == len(names):

@@ -3,7 +3,7 @@ per ray), and the search.
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import prod
 from typing import Any, NamedTuple
@@ -173,14 +173,15 @@ class Pixel:
             return np.full((len(rgb), len(nm)), np.nan)
 
 
-PIXELS = (
-    *(
-        Pixel(name, depth)
-        for name, form in texture.PIXEL_ENCODINGS.items()
-        for depth in form().depths
-    ),
-    *(Pixel(RGB, mode=mode) for mode in ("spectra", "moments")),
-)
+def _pixels() -> Iterator[Pixel]:
+    for name, form in texture.PIXEL_ENCODINGS.items():
+        for depth in form().depths:
+            yield Pixel(name, depth)
+    for mode in ("spectra", "moments"):
+        yield Pixel(RGB, mode=mode)
+
+
+PIXELS = tuple(_pixels())
 """Pixels that need a cube."""
 
 
