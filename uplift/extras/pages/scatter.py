@@ -123,10 +123,10 @@ def draw_labels(
 
 DISTANCES = (6.0, 9.0, 14.0, 20.0, 28.0, 38.0)  # points between a marker and its label
 CLEARANCE = (4.5, 2.5)  # points that labels keep from markers, sideways and upwards
-_BESIDE = product((1.0, -1.0), (0.0, 0.5, -0.5, 1.0, -1.0))
+_SIDEWAYS = product((1.0, -1.0), (0.0, 0.5, -0.5, 1.0, -1.0))
 _ABOVE = [(0.0, 1.0), (0.5, 1.0), (-0.5, 1.0)]
 _BELOW = [(0.0, -1.0), (0.5, -1.0), (-0.5, -1.0)]
-DIRECTIONS = np.array([*_BESIDE, *_ABOVE, *_BELOW])
+DIRECTIONS = np.array([*_SIDEWAYS, *_ABOVE, *_BELOW])
 
 
 def place_labels(anchors: Array, sizes: Array, markers: Array, panel: Array) -> Array:
