@@ -113,18 +113,15 @@ class ColourSource:
         decimal commas. A first line without numbers is a header. Further columns are
         ignored.
         """
-        empty, width = True, 0  # cells of the header
+        empty = True
+        width = 0  # cells of the header
         for rows in _row_blocks(file, name):
             colours = list[Colour]()
             for line, text, row in rows:
                 if empty and not colours and not width and _is_header(row):
                     width = len(row)
                     continue
-                colour = _parse(row[:1] if row[0].startswith("#") else row)
-                if colour is None:
-                    raise _not_a_colour(text, name, line)
-                if not self.encoded and width != len(row) and _is_ambiguous(text):
-                    raise _ambiguous(text, name, line)
+                colour = self._parse_row(row, width, text, name, line)
                 self._check_range(colour, text, name, line, bounded)
                 colours.append(colour)
             if colours:
@@ -136,6 +133,17 @@ class ColourSource:
                 path=name,
                 hint="give lines of r,g,b or of hex colours",
             )
+
+    def _parse_row(
+        self, row: Sequence[str], width: int, text: str, name: str, line: int
+    ) -> Colour:
+        """Parse the cells of a line; a header had ``width`` cells."""
+        colour = _parse(row[:1] if row[0].startswith("#") else row)
+        if colour is None:
+            raise _not_a_colour(text, name, line)
+        if not self.encoded and width != len(row) and _is_ambiguous(text):
+            raise _ambiguous(text, name, line)
+        return colour
 
     def _check_range(
         self, colour: Colour, text: str, name: str, line: int, bounded: bool
@@ -302,47 +310,48 @@ def _parse_words(words: Sequence[str]) -> list[Colour]:
     Three numbers of which one has a decimal comma, such as '0,2 0,3 1' or '0,2;0,3;1',
     are a colour too.
     """
-    given = words
-    words = [word for text in given for word in re.split(r"[;\s]+", text) if word]
-    parts = list[str]()
-    while words:
-        has_commas = (
-            len(words) > 2
-            and all(map(DECIMAL.fullmatch, words[:3]))
-            and "," in "".join(words[:3])
-        )
-        parts += words[:3] if has_commas else filter(None, words[0].split(","))
-        words = words[3 if has_commas else 1 :]
+    parts = _split_words(words)
     colours: list[Colour] = []
     while parts:
         numbers = [_number(part) for part in parts[:3]]
         length = 3 if len(numbers) == 3 and None not in numbers else 1
         colour = _parse(parts[:length])
         if colour is None:
-            unread = parts[:4] if colours else given
+            unread = parts[:4] if colours else words
             raise _not_a_colour(" ".join(unread))
         colours.append(colour)
         parts = parts[length:]
     return colours
 
 
+def _split_words(given: Sequence[str]) -> list[str]:
+    """Split words into numbers, at commas unless three have decimal commas, and hex
+    colours.
+    """
+    words = list(filter(None, re.split(r"[;\s]+", " ".join(given))))
+    parts = list[str]()
+    while words:
+        three = words[:3]
+        are_numbers = len(three) == 3 and all(map(DECIMAL.fullmatch, three))
+        if are_numbers and "," in "".join(three):
+            parts += three
+            words = words[3:]
+        else:
+            parts += filter(None, words[0].split(","))
+            words = words[1:]
+    return parts
+
+
 def _warn_of_fractions(colours: Sequence[Colour]) -> None:
     """Warn of codes that look like numbers from 0 to 1."""
-    values = [number for numbers, is_hex in colours for number in numbers if not is_hex]
+    values = list[float]()
+    for numbers, is_hex in colours:
+        values += [] if is_hex else numbers
     if values and max(values) <= 1 and any(value % 1 for value in values):
         codes = " ".join(f"{255 * value:.0f}" for value in values[:3])
         problem = f"8-bit codes run from 0 to 255, got numbers up to {max(values):g}"
-        warn(
-            [
-                UpliftWarning(
-                    problem,
-                    hint=(
-                        "for encoded numbers from 0 to 1 give 255 times as much: "
-                        f"{codes}"
-                    ),
-                )
-            ]
-        )
+        hint = f"for encoded numbers from 0 to 1 give 255 times as much: {codes}"
+        warn([UpliftWarning(problem, hint=hint)])
 
 
 def _number(word: str) -> float | None:

@@ -18,38 +18,33 @@ def codes(tree: ast.AST) -> Iterator[tuple[str, str]]:
     """Yield function or class and code: of classes, of arguments, and of names that
     have a text in the same file.
     """
-    named = defaultdict(list)
+    named = _assigned(tree)
     for node in ast.walk(tree):
-        if isinstance(node, ast.Assign):
-            sides = (
-                getattr(side, "elts", [side]) for side in (node.targets[0], node.value)
-            )
-            for target, value in zip(*sides, strict=False):
-                named[ast.unparse(target)].append(value)
-    for node in ast.walk(tree):
-        found: list[tuple[str, ast.expr]] = []
+        values: list[ast.expr] = []
         if isinstance(node, ast.ClassDef):
-            own = (each for each in node.body if isinstance(each, ast.Assign))
-            found = [
-                (node.name, each.value)
-                for each in own
-                if ast.unparse(each.targets[0]) == "code"
-            ]
+            name = node.name
+            values = _assigned(ast.Module(node.body, []))["code"]
         elif isinstance(node, ast.Call):
             name = ast.unparse(node.func).rpartition(".")[2]
-            values = [
-                keyword.value for keyword in node.keywords if keyword.arg in KEYWORDS
-            ]
-            found = [
-                (name, each)
-                for value in values
-                for each in named.get(ast.unparse(value), [value])
-            ]
-        yield from (
-            (name, str(each.value))
-            for name, each in found
-            if isinstance(each, ast.Constant) and each.value
-        )
+            for keyword in node.keywords:
+                if keyword.arg in KEYWORDS:
+                    text = ast.unparse(keyword.value)
+                    values += named.get(text, [keyword.value])
+        for value in values:
+            if isinstance(value, ast.Constant) and value.value:
+                yield name, str(value.value)
+
+
+def _assigned(tree: ast.AST) -> dict[str, list[ast.expr]]:
+    """Return the values that are assigned to each name of a file or class."""
+    named = defaultdict[str, list[ast.expr]](list)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign):
+            targets = getattr(node.targets[0], "elts", [node.targets[0]])
+            values = getattr(node.value, "elts", [node.value])
+            for target, value in zip(targets, values, strict=False):
+                named[ast.unparse(target)].append(value)
+    return named
 
 
 def collect(root: Path = ROOT) -> list[dict[str, Any]]:

@@ -89,14 +89,14 @@ def check_words() -> list[str]:
         re.compile(rf"\b(?:{expression})\b", re.IGNORECASE): advice
         for expression, advice in banned.items()
     }
-    return [
-        f"{path.relative_to(ROOT)}:{number}: '{match.group()}': {advice}"
-        for path in tracked()
-        if path != Path(__file__)
-        for number, line in prose(path)
-        for pattern, advice in patterns.items()
-        for match in pattern.finditer(line)
-    ]
+    lines = []
+    for path in tracked():
+        for number, line in prose(path) if path != Path(__file__) else ():
+            place = f"{path.relative_to(ROOT)}:{number}"
+            for pattern, advice in patterns.items():
+                words = [match.group() for match in pattern.finditer(line)]
+                lines += [f"{place}: '{word}': {advice}" for word in words]
+    return lines
 
 
 def documented(package: str, members: str) -> Iterator[tuple[str, frozenset[str]]]:
@@ -107,24 +107,25 @@ def documented(package: str, members: str) -> Iterator[tuple[str, frozenset[str]
     """
     module = importlib.import_module(package)
     names = members.split(", ") if members else getattr(module, "__all__", ())
-    for found in (getattr(module, name) for name in names):
-        name = f"{found.__module__}.{found.__qualname__}" if callable(found) else ""
-        if inspect.isfunction(found):
-            yield name, REQUIRED
-        elif inspect.isclass(found):
-            own_constructor = "__init__" in vars(found) and not getattr(
-                found, "_is_protocol", False
-            )
-            yield name, REQUIRED if own_constructor else REQUIRED - {"PR01"}
-            for key, value in vars(found).items():
-                is_method = inspect.isfunction(value) or isinstance(
-                    value, property | classmethod
-                )
-                inherited = value.__doc__ is None and inspect.getdoc(
-                    getattr(found, key, None)
-                )
-                if is_method and not key.startswith("_") and not inherited:
-                    yield f"{name}.{key}", REQUIRED
+    for item in (getattr(module, name) for name in names):
+        if inspect.isfunction(item):
+            yield f"{item.__module__}.{item.__qualname__}", REQUIRED
+        elif inspect.isclass(item):
+            yield from _documented_class(item)
+
+
+def _documented_class(item: type) -> Iterator[tuple[str, frozenset[str]]]:
+    name = f"{item.__module__}.{item.__qualname__}"
+    is_made = "__init__" in vars(item) and not getattr(item, "_is_protocol", False)
+    yield name, REQUIRED if is_made else REQUIRED - {"PR01"}
+    for key, value in vars(item).items():
+        is_method = inspect.isfunction(value) or isinstance(
+            value, property | classmethod
+        )
+        if not is_method or key.startswith("_"):
+            continue
+        if value.__doc__ is not None or not inspect.getdoc(getattr(item, key, None)):
+            yield f"{name}.{key}", REQUIRED
 
 
 def check_docstrings() -> list[str]:
@@ -137,13 +138,12 @@ def check_docstrings() -> list[str]:
     packages = re.findall(
         r"^\.\. automodule:: (\S+)(?:\n   :members: (.+))?$", page, re.MULTILINE
     )
-    return [
-        f"{name}: {code} {text}"
-        for package, members in packages
-        for name, checks in dict.fromkeys(documented(package, members))
-        for code, text in validate(name)["errors"]
-        if code in checks
-    ]
+    lines = []
+    for package, members in packages:
+        for name, checks in dict.fromkeys(documented(package, members)):
+            errors = [error for error in validate(name)["errors"] if error[0] in checks]
+            lines += [f"{name}: {code} {text}" for code, text in errors]
+    return lines
 
 
 if __name__ == "__main__":

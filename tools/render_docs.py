@@ -65,19 +65,20 @@ def number(value: Any, spec: str = "") -> str:
         )
     if isinstance(value, Mapping):
         parts = {key: number(item, spec) for key, item in value.items()}
-        return (
-            "{mean} ± {std}".format_map(parts)
-            if "std" in parts
-            else "{median} ({min}–{max})".format_map(parts)
-        )
+        pattern = "{mean} ± {std}" if "std" in parts else "{median} ({min}–{max})"
+        return pattern.format_map(parts)
     if spec in ("sci", "power"):
-        digits, exponent = f"{value:e}".split("e")
-        power = int(exponent)
-        if spec == "power":
-            return "10" + str(power).translate(SUPERSCRIPTS)
-        return f"{float(digits):g}e{power}".replace("-", "−")
+        return _scientific(value, spec)
     named = getattr(viz_format, f"format_{spec}", None)
     return named(value) if named else format(value, spec)
+
+
+def _scientific(value: float, spec: str) -> str:
+    digits, exponent = f"{value:e}".split("e")
+    power = int(exponent)
+    if spec == "power":
+        return "10" + str(power).translate(SUPERSCRIPTS)
+    return f"{float(digits):g}e{power}".replace("-", "−")
 
 
 class RowFormatter(string.Formatter):
@@ -125,10 +126,8 @@ def leaves(
         for key, item in value.items():
             yield from leaves(item, parts, f"{name}.{key}" if name else str(key))
     elif isinstance(value, list):
-        yield (
-            name,
-            "; ".join(str(item) for each in value for _, item in leaves(each, ())),
-        )
+        items = chain.from_iterable(leaves(item, ()) for item in value)
+        yield name, "; ".join(str(leaf) for _, leaf in items)
     else:
         yield name, f"{value:.6g}" if isinstance(value, float) else value
 
@@ -137,16 +136,12 @@ def flat_csv(rows: Iterable[Row], parts: Sequence[str]) -> str:
     """Return nested rows as CSV, with a column for each leaf."""
     flat = [dict(leaves(row, parts)) for row in rows]
     columns = list(dict.fromkeys(chain.from_iterable(flat)))
-    return csv_text(columns, ([row.get(key) for key in columns] for row in flat))
+    return csv_text(columns, (map(row.get, columns) for row in flat))
 
 
 def where(rows: Iterable[Row], **conditions: Any) -> list[Row]:
     """Return the rows with these values."""
-    return [
-        row
-        for row in rows
-        if all(row[key] == value for key, value in conditions.items())
-    ]
+    return [row for row in rows if row.items() >= conditions.items()]
 
 
 def pick(rows: Iterable[Row], **conditions: Any) -> Row:

@@ -1,5 +1,6 @@
 """``uplift advise``: the expected errors of a scene, and what to measure next."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -62,7 +63,7 @@ def command(
     force: bool,
     **pixels: Any,
 ) -> None:
-    from uplift.colorimetry.observer import check_distinct, light
+    from uplift.colorimetry import observer
     from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
     from uplift.extras.colour.srgb import hex_codes
     from uplift.extras.scene import advice
@@ -73,64 +74,55 @@ def command(
     check_outputs(plot_path, inputs=paths)
     cube = load(cube_path)
     sensor = cube.data.sensor
-    check_distinct(lights)
-    lit = [
-        light(name, cube.observer, *sensor.range) for name in lights or RELIGHT_LIGHTS
-    ]
+    observer.check_distinct(lights)
+    names = lights or RELIGHT_LIGHTS
+    lit = [observer.light(name, cube.observer, *sensor.range) for name in names]
     with progress_bar("choosing swatches"):
         colours = advice.colour_areas(Images(tuple(map(Path, paths)), **pixels), sensor)
         before = advice.uncertainty(cube, colours, lit)
         chosen, after = advice.advise(before, count)
-    rgb = colours.rgb[[each.colour for each in chosen]]
+    rgb = colours.rgb[[swatch.colour for swatch in chosen]]
     codes = hex_codes(rgb, sensor)
+    coded = list(zip(codes, chosen, strict=True))
     if plot_path is not None:
         from uplift.extras.pages.figure import write_figure
 
         shown = paths[:SHOWN]
-        pictures = {
-            path: each.rgb
-            for path, each in zip(
-                shown, read_pictures(shown, sensor, **pixels), strict=True
-            )
-        }
+        read = read_pictures(shown, sensor, **pixels)
+        pictures = {path: image.rgb for path, image in zip(shown, read, strict=True)}
         texts = [
-            f"{code}\nlowers the mean\nby ΔE00 {each.gain:.2f}"
-            for code, each in zip(codes, chosen, strict=True)
+            f"{code}\nlowers the mean\nby ΔE00 {swatch.gain:.2f}"
+            for code, swatch in coded
         ]
         chips = list(zip(texts, rgb, strict=True))
-        write_figure(
-            advice.draw_advice(cube, pictures, lit, chips), plot_path, force=force
-        )
+        figure = advice.draw_advice(cube, pictures, lit, chips)
+        write_figure(figure, plot_path, force=force)
     stages = zip(lit, before.by_light(), after.by_light(), strict=True)
-    errors = {each.name: {"before": now, "after": then} for each, now, then in stages}
-    swatches = [
-        {"hex": code, **asdict(each)} for code, each in zip(codes, chosen, strict=True)
-    ]
+    errors = {light.name: {"before": now, "after": then} for light, now, then in stages}
+    swatches = [{"hex": code, **asdict(swatch)} for code, swatch in coded]
     if style == "json":
         print_json(
             {"images": paths, "cube": cube_path, "lights": errors, "swatches": swatches}
         )
         return
-    summary = make_table(
-        ("light",),
-        (
-            "expected ΔE00",
-            "95 % of the area",
-            f"after {pluralise(len(chosen), 'swatch')}",
-            "95 %",
-        ),
-    )
-    for name, each in errors.items():
-        summary.add_row(
-            name,
-            *(f"{number:.2f}" for stage in each.values() for number in stage.values()),
-        )
-    table = make_table(
-        ("swatch",), ("area", "expected ΔE00", "gain in ΔE00", "mean ΔE00 after")
-    )
-    for row in swatches:
-        numbers = (f"{row[name]:.2f}" for name in ("error", "gain", "mean_after"))
-        table.add_row(row["hex"], f"{row['area']:.1%}", *numbers)
-    show(summary, table)
+    _print(errors, swatches)
     if plot_path is not None:
         say(plot_path, err=True)
+
+
+def _print(
+    errors: Mapping[str, Mapping[str, Mapping[str, float]]],
+    swatches: Sequence[Mapping[str, Any]],
+) -> None:
+    after = f"after {pluralise(len(swatches), 'swatch')}"
+    columns = ("expected ΔE00", "95 % of the area", after, "95 %")
+    summary = make_table(("light",), columns)
+    for name, stages in errors.items():
+        numbers = [*stages["before"].values(), *stages["after"].values()]
+        summary.add_row(name, *[f"{number:.2f}" for number in numbers])
+    columns = ("area", "expected ΔE00", "gain in ΔE00", "mean ΔE00 after")
+    table = make_table(("swatch",), columns)
+    for row in swatches:
+        cells = [f"{row[name]:.2f}" for name in ("error", "gain", "mean_after")]
+        table.add_row(row["hex"], f"{row['area']:.1%}", *cells)
+    show(summary, table)

@@ -4,7 +4,8 @@ between formats.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import operator
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -100,11 +101,8 @@ def command(
     rows, codes, smallest = _list_entries(atlas, target, camera["illuminant"])
     if style == "json":
         fields = {
-            **{name: getattr(target, name) for name in camera},
-            "sources": [
-                {name: getattr(source, name) for name in SOURCE}
-                for source in atlas.sources
-            ],
+            **_fields(target, camera),
+            "sources": [_fields(source, SOURCE) for source in atlas.sources],
             "smallest_space": smallest,
             "entries": rows,
             "skipped": [asdict(skipped) for skipped in atlas.skipped],
@@ -132,15 +130,13 @@ def _print_shipped(style: str) -> None:
 
     atlases = shipped_atlases()
     if style == "json":
-        rows = ({name: getattr(atlas, name) for name in SHIPPED} for atlas in atlases)
-        files = ({"path": str(atlas.path), "digest": atlas.digest} for atlas in atlases)
-        print_json(
-            {"atlases": [row | file for row, file in zip(rows, files, strict=True)]}
-        )
+        rows = []
+        for atlas in atlases:
+            file = {"path": str(atlas.path), "digest": atlas.digest}
+            rows.append(_fields(atlas, SHIPPED) | file)
+        print_json({"atlases": rows})
     elif style == "csv":
-        print_csv(
-            SHIPPED, ([getattr(atlas, name) for name in SHIPPED] for atlas in atlases)
-        )
+        print_csv(SHIPPED, map(operator.attrgetter(*SHIPPED), atlases))
     else:
         for atlas in atlases:
             print_fields(
@@ -148,6 +144,10 @@ def _print_shipped(style: str) -> None:
             )
         say()
         paragraph("Use a name as --atlas NAME, or in place of FILE.")
+
+
+def _fields(item: object, names: Iterable[str]) -> dict[str, Any]:
+    return {name: getattr(item, name) for name in names}
 
 
 def _list_entries(
@@ -194,21 +194,13 @@ def _print_table(
         texts, "RGB", title=f"linear {sensor.space} under {sensor.illuminant}"
     )
     for row, code in zip(rows, codes.tolist(), strict=True):
-        wavelengths = ":".join(
-            f"{row[name]:g}"
-            for name in ("start", "end", "step")
-            if row[name] is not None
-        )
+        numbers = [row["start"], row["end"], row["step"]]
+        known = [f"{number:g}" for number in numbers if number is not None]
+        wavelengths = ":".join(known)
         rgb = (f"{channel:.4f}" for channel in row["rgb"])
         table.add_row(*[swatch(code)] * coloured, row["name"], wavelengths, *rgb)
     show(table)
-    for row in rows:
-        for warning in row["warnings"]:
-            paragraph(f"{row['name']}: {warning}")
-    for entry in atlas.skipped:
-        paragraph(f"{entry.name}: skipped: {entry.reason}")
-    for source in atlas.sources:
-        paragraph("; ".join((f"{source.name}: {source.format}", *source.notes)))
+    _print_notes(atlas, rows)
     outside = [row["name"] for row in rows if not row["in_gamut"]]
     skipped = [skipped.name for skipped in atlas.skipped]
     entries = pluralise(len(rows), "entry")
@@ -216,13 +208,21 @@ def _print_table(
         f"{entries}, {_count(outside, f'out of the {sensor.space} gamut')}, "
         f"{_count(skipped, 'skipped')}"
     )
-    if outside:
-        text += (
-            f"; {smallest} holds all {len(rows)}"
-            if smallest
-            else "; no common RGB space holds all"
-        )
+    if outside and smallest:
+        text += f"; {smallest} holds all {len(rows)}"
+    elif outside:
+        text += "; no common RGB space holds all"
     paragraph(text)
+
+
+def _print_notes(atlas: Atlas, rows: Sequence[dict[str, Any]]) -> None:
+    for row in rows:
+        for warning in row["warnings"]:
+            paragraph(f"{row['name']}: {warning}")
+    for entry in atlas.skipped:
+        paragraph(f"{entry.name}: skipped: {entry.reason}")
+    for source in atlas.sources:
+        paragraph("; ".join((f"{source.name}: {source.format}", *source.notes)))
 
 
 def _count(names: Sequence[str], label: str) -> str:

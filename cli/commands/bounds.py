@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from itertools import chain
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain, product
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -79,48 +79,53 @@ def command(
     force: bool,
     **colours: Any,
 ) -> None:
-    import numpy as np
-
     from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
-    from uplift.extras.looks.metamer_bounds import bounds
 
     check_outputs(plot_path, html)
     answers = Answers(lights=lights or RELIGHT_LIGHTS, **colours)
     if html is not None and not answers.single:
         raise click.UsageError("--html shows one colour: give it on the command line.")
 
-    def compute(block: Sequence[QueryResult]) -> Block:
-        rgb = np.stack([result.rgb for result in block])
-        divisions = SINGLE_DIVISIONS if answers.single else DIVISIONS
-        return block, [
-            bounds(answers.cube, rgb, light, answers.mode, divisions)
-            for light in answers.lights
-        ]
-
-    blocks: Iterable[Block] = map(compute, answers)
+    blocks = _blocks(answers)
     if plot_path is not None or html is not None:
         blocks = list(blocks)
     if plot_path is not None:
         from uplift.extras.pages.plots import plot_bounds
 
-        plot_bounds(
-            answers.cube, [found for _, found in blocks], plot_path, force=force
-        )
+        shown = [bounds for _, bounds in blocks]
+        plot_bounds(answers.cube, shown, plot_path, force=force)
         say(f"{plot_path}: bounds", err=True)
     if html is not None:
         from uplift.extras.report.look_page import page
 
-        write_text(page(answers.cube, next(iter(blocks))[1]), html, force=force)
+        _, bounds = next(iter(blocks))
+        write_text(page(answers.cube, bounds), html, force=force)
         say(f"{html}: page to choose a look on", err=True)
     if style == "json":
-        print_json_answers(
-            (chain.from_iterable(_objects(answers, *block) for block in blocks)),
-            single=answers.single,
-        )
+        objects = chain.from_iterable(_objects(answers, *block) for block in blocks)
+        print_json_answers(objects, single=answers.single)
     elif style == "csv":
         _print_csv(blocks)
     else:
         _print_table(answers.cube, blocks, single=answers.single)
+
+
+def _blocks(answers: Answers) -> Iterable[Block]:
+    """Yield blocks of the results of a query, and their bounds under each light."""
+    import numpy as np
+
+    from uplift.extras.looks.metamer_bounds import bounds
+
+    divisions = SINGLE_DIVISIONS if answers.single else DIVISIONS
+    for block in answers:
+        rgb = np.stack([result.rgb for result in block])
+        yield (
+            block,
+            [
+                bounds(answers.cube, rgb, light, answers.mode, divisions)
+                for light in answers.lights
+            ],
+        )
 
 
 def _objects(
@@ -151,37 +156,25 @@ def _objects(
 
 
 def _print_csv(blocks: Iterable[Block]) -> None:
-    lab_range = [
-        f"{name}_{end}" for end in ("min", "max") for name in ("L*", "a*", "b*")
-    ]
-    columns = [
-        "r",
-        "g",
-        "b",
-        "light",
-        "L*",
-        "a*",
-        "b*",
-        "standard_error",
-        "error_bound",
-    ]
-    rows = (
-        [
-            *as_lists(result.rgb),
-            each.light.name,
-            *each.lab[row].tolist(),
-            result.standard_errors.get(each.light.name),
-            result.error_bounds.get(each.light.name),
-            float(each.largest.delta_e_2000[row]),
-            float(each.largest.outer[row]),
-            *each.box[row].ravel().tolist(),
-            float(each.share[row]),
-        ]
-        for results, found in blocks
-        for row, result in enumerate(results)
-        for each in found
-    )
-    print_csv([*columns, "largest", "outer", *lab_range, "share"], rows)
+    limits = ["L*_min", "a*_min", "b*_min", "L*_max", "a*_max", "b*_max"]
+    columns = [*"rgb", "light", "L*", "a*", "b*", "standard_error", "error_bound"]
+    print_csv([*columns, "largest", "outer", *limits, "share"], _csv_rows(blocks))
+
+
+def _csv_rows(blocks: Iterable[Block]) -> Iterator[list[Any]]:
+    for results, bounds in blocks:
+        for (row, result), shown in product(enumerate(results), bounds):
+            yield [
+                *as_lists(result.rgb),
+                shown.light.name,
+                *shown.lab[row].tolist(),
+                result.standard_errors.get(shown.light.name),
+                result.error_bounds.get(shown.light.name),
+                float(shown.largest.delta_e_2000[row]),
+                float(shown.largest.outer[row]),
+                *shown.box[row].ravel().tolist(),
+                float(shown.share[row]),
+            ]
 
 
 def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:

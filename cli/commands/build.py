@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -244,64 +245,18 @@ def command(
     **settings: Any,
 ) -> None:
     enable_jit_cache()
-    context = click.get_current_context()
-    given = {
-        str(each.name): each.opts[-1]
-        for each in context.command.params
-        if context.get_parameter_source(str(each.name)) is ParameterSource.COMMANDLINE
-    }
-    inputs: tuple[str | Path, ...] = ()
-    notes: list[UpliftWarning] = []
-    atlas = None
+    debug = settings["debug"]
     if plan_path is not None:
-        if others := [
-            option for name, option in given.items() if name not in ALLOWED_WITH_PLAN
-        ]:
-            raise click.UsageError(
-                f"The plan already sets these options: leave out {', '.join(others)}."
-            )
-        from uplift.extras.scene.plan.files import cube_name, read_plan
-
-        plan = read_plan(plan_path)
-        make: Callable[..., Cube] = partial(plan.build, debug=settings["debug"])
-        name = cube_name(plan_path) if output is None else output
-        inputs = (*plan.images.paths, *plan.atlases)
+        planned = _of_plan(plan_path, output, debug)
     else:
-        if not images and (
-            useless := [given[name] for name in OF_IMAGES if name in given]
-        ):
-            raise click.UsageError(
-                f"{', '.join(useless)}: no --scene image is given to which this "
-                "applies."
-            )
-        name = _default_name(files, images, settings) if output is None else output
-        settings["shortest"], settings["longest"] = settings.pop("limits")
-        pixels = [settings.pop(name) for name in OF_IMAGES]
-        if images:
-            from uplift.extras.texture.scene_colours import Images
-
-            settings["scene"] = Images(
-                tuple(map(Path, expand_patterns(images))), *pixels
-            )
-            inputs = settings["scene"].paths
-        from uplift.atlas import read_atlas
-        from uplift.pipeline.build import build
-
-        stated = {
-            name: value for name, value in settings.items() if value not in (None, ())
-        }
-        if files:
-            atlas, notes = collect_notes(
-                partial(read_atlas, *files, measured=scale, missing=missing)
-            )
-        make = partial(build, atlas, **stated)
-    path = Path(name)
-    slices = path.with_suffix(".exr") if settings["debug"] else None
-    check_outputs(path, slices, inputs=inputs)
+        planned = _of_options(files, output, scale, missing, images, settings)
+    path = planned.path
+    slices = path.with_suffix(".exr") if debug else None
+    check_outputs(path, slices, inputs=planned.inputs)
     begin = time.perf_counter()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
-        cube, notes_of_build = collect_notes(partial(make, progress=progress))
-    notes += notes_of_build
+        cube, notes_of_build = collect_notes(partial(planned.make, progress=progress))
+    notes = [*planned.notes, *notes_of_build]
     cube.save(path, force=force)
     if slices is not None:
         from uplift.extras.images.exr import write_slices
@@ -314,7 +269,80 @@ def command(
     if slices is not None:
         say(f"{slices}: {pluralise(cube.data.lattice.dim, 'blue slice')}")
     print_notes(cube, notes)
-    _print_assumptions(atlas)
+    _print_assumptions(planned.atlas)
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A build to run."""
+
+    make: Callable[..., Cube]
+    path: Path
+    inputs: tuple[str | Path, ...] = ()
+    """Files that it reads, next to those that parameters name."""
+    atlas: Atlas | None = None
+    notes: Sequence[UpliftWarning] = ()
+    """Notes of reading the atlas."""
+
+
+def _given() -> dict[str, str]:
+    """Return the options on the command line, by the names of their parameters."""
+    context = click.get_current_context()
+    return {
+        str(param.name): param.opts[-1]
+        for param in context.command.params
+        if context.get_parameter_source(str(param.name)) is ParameterSource.COMMANDLINE
+    }
+
+
+def _of_plan(path: str, output: str | None, debug: bool) -> Planned:
+    others = [text for name, text in _given().items() if name not in ALLOWED_WITH_PLAN]
+    if others:
+        raise click.UsageError(
+            f"The plan already sets these options: leave out {', '.join(others)}."
+        )
+    from uplift.extras.scene.plan.files import cube_name, read_plan
+
+    plan = read_plan(path)
+    inputs = (*plan.images.paths, *plan.atlases)
+    name = output or cube_name(path)
+    return Planned(partial(plan.build, debug=debug), Path(name), inputs)
+
+
+def _of_options(
+    files: tuple[str, ...],
+    output: str | None,
+    scale: Any,
+    missing: Any,
+    images: tuple[str, ...],
+    settings: dict[str, Any],
+) -> Planned:
+    given = _given()
+    useless = [given[name] for name in OF_IMAGES if name in given]
+    if useless and not images:
+        raise click.UsageError(
+            f"{', '.join(useless)}: no --scene image is given to which this applies."
+        )
+    name = output or _default_name(files, images, settings)
+    settings["shortest"], settings["longest"] = settings.pop("limits")
+    pixels = [settings.pop(option) for option in OF_IMAGES]
+    inputs = tuple(map(Path, expand_patterns(images)))
+    if images:
+        from uplift.extras.texture.scene_colours import Images
+
+        settings["scene"] = Images(inputs, *pixels)
+    from uplift.atlas import read_atlas
+    from uplift.pipeline.build import build
+
+    stated = {
+        option: value for option, value in settings.items() if value not in (None, ())
+    }
+    atlas = None
+    notes: list[UpliftWarning] = []
+    if files:
+        read = partial(read_atlas, *files, measured=scale, missing=missing)
+        atlas, notes = collect_notes(read)
+    return Planned(partial(build, atlas, **stated), Path(name), inputs, atlas, notes)
 
 
 def _print_assumptions(atlas: Atlas | None) -> None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +22,7 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.common.progress import ProgressCallback
+    from uplift.extras.report.regression import RebuildDifference
     from uplift.lookup import Cube
 
 
@@ -77,73 +78,91 @@ def command(
         results = [
             _check(Path(file), folders, progress) for file in dict.fromkeys(files)
         ]
-    records = [record for record, _, _ in results]
+    records = [result.record() for result in results]
     if style == "json":
         print_json(records)
     elif not quiet:
         _print_table(records)
-    is_failed = False
-    for record, rebuilt, error in results:
-        if record["failures"] and update and rebuilt:
-            rebuilt.save(record["cube"], force=True)
-            say(f"{record['cube']}: replaced", err=True)
-        elif record["failures"]:
-            is_failed = True
-            if error and style != "json":
-                CommandFailure(error).show()
-    if any(error for _, _, error in results):
+    kept = 0
+    for result in results:
+        if result.failures and update and result.rebuilt:
+            result.rebuilt.save(result.path, force=True)
+            say(f"{result.path}: replaced", err=True)
+        elif result.failures:
+            kept += 1
+            if result.error and style != "json":
+                CommandFailure(result.error).show()
+    if any(result.error for result in results):
         raise SystemExit(BAD_INPUT)
-    if is_failed:
+    if kept:
         raise SystemExit(FAILED_CHECK)
 
 
-def _check(
-    path: Path, folders: Sequence[str], progress: ProgressCallback
-) -> tuple[dict[str, Any], Cube | None, UpliftError | None]:
-    """Return the record of a check, the rebuilt cube if there is one, and the error
-    that prevented the comparison.
-    """
+@dataclass
+class Result:
+    """A check of a cube: what could be done of it before an error."""
+
+    path: Path
+    rebuilt: Cube | None = None
+    comparison: RebuildDifference | None = None
+    error: UpliftError | None = None
+    noted: Sequence[UpliftWarning] = ()
+
+    @property
+    def changed(self) -> list[str]:
+        """Notes of atlases that have changed."""
+        return [note.problem for note in self.noted if note.code == "atlas-changed"]
+
+    @property
+    def failures(self) -> list[str]:
+        """Names of the measures and codes of the errors that failed."""
+        failures = list(self.comparison.failures) if self.comparison else []
+        if self.error:
+            return [*failures, self.error.code]
+        return [*failures, "atlas-changed"] if self.changed else failures
+
+    def record(self) -> dict[str, Any]:
+        """Describe the check in JSON values."""
+        notes = [note.problem for note in self.noted if note.code != "atlas-changed"]
+        record = {
+            "cube": str(self.path),
+            "passed": not self.failures,
+            "failures": self.failures,
+            "measures": {},
+            "status": {},
+            "atlas_changed": self.changed,
+            "notes": notes,
+            "entries": [],
+            "error": error_object(self.error) if self.error else None,
+        }
+        if self.comparison:
+            record["measures"] = self.comparison.measures
+            record["status"] = {
+                "stored": self.comparison.stored_counts,
+                "rebuilt": self.comparison.rebuilt_counts,
+            }
+            record["entries"] = [asdict(entry) for entry in self.comparison.entries]
+        return record
+
+
+def _check(path: Path, folders: Sequence[str], progress: ProgressCallback) -> Result:
+    """Rebuild a cube and compare."""
     from uplift.extras.report.rebuild import rebuild
     from uplift.extras.report.regression import compare_rebuilt
     from uplift.lookup import load
 
-    rebuilt = comparison = error = None
-    noted: list[UpliftWarning] = []
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", UpliftWarning)
-        try:
-            stored = load(path)
-            rebuilt = rebuild(stored, path, folders, progress=progress)
-            noted = [
-                each.message
-                for each in caught
-                if isinstance(each.message, UpliftWarning)
-            ]
-            comparison = compare_rebuilt(path, stored.data, rebuilt.data)
-        except UpliftError as cause:
-            error = cause
-    changed = [note.problem for note in noted if note.code == "atlas-changed"]
-    codes = [error.code] if error else ["atlas-changed"] if changed else []
-    failures = [*(comparison.failures if comparison else ()), *codes]
-    record = {
-        "cube": str(path),
-        "passed": not failures,
-        "failures": failures,
-        "measures": comparison.measures if comparison else {},
-        "status": {
-            "stored": comparison.stored_counts,
-            "rebuilt": comparison.rebuilt_counts,
-        }
-        if comparison
-        else {},
-        "atlas_changed": changed,
-        "notes": [note.problem for note in noted if note.problem not in changed],
-        "entries": [asdict(entry) for entry in comparison.entries]
-        if comparison
-        else [],
-        "error": error_object(error) if error else None,
-    }
-    return record, rebuilt, error
+    result = Result(path)
+    try:
+        stored = load(path)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", UpliftWarning)
+            result.rebuilt = rebuild(stored, path, folders, progress=progress)
+        messages = [warning.message for warning in caught]
+        result.noted = [note for note in messages if isinstance(note, UpliftWarning)]
+        result.comparison = compare_rebuilt(path, stored.data, result.rebuilt.data)
+    except UpliftError as error:
+        result.error = error
+    return result
 
 
 def _short(value: float) -> str:
@@ -164,29 +183,29 @@ def _print_table(records: Sequence[dict[str, Any]]) -> None:
     }
     measures = [headings.get(name, name.removeprefix("delta_e_")) for name in LIMITS]
     table = make_table(("cube", "result", "atlas", "nodes"), measures)
+    passed = Text("passed", style="green")
+    failed = Text("FAILED", style="bold red")
     for record in records:
         failures = record["failures"]
         cells = dict.fromkeys(("atlas-changed", "status", *LIMITS), "–")
         if record["measures"]:
-            cells["atlas-changed"] = (
-                "changed" if "atlas-changed" in failures else "same"
-            )
-            cells["status"] = "differs" if "status" in failures else "same"
+            cells |= {"atlas-changed": "same", "status": "same"}
             cells |= {name: _short(record["measures"][name]) for name in LIMITS}
-        styled = (
+            differing = {"atlas-changed": "changed", "status": "differs"}
+            cells |= {name: differing[name] for name in differing if name in failures}
+        styled = [
             Text(text, style="bold red" if name in failures else "")
             for name, text in cells.items()
-        )
-        verdict = (
-            Text("passed", style="green")
-            if record["passed"]
-            else Text("FAILED", style="bold red")
-        )
+        ]
+        verdict = passed if record["passed"] else failed
         table.add_row(record["cube"], verdict, *styled)
-    table.add_row(
-        "limit", "", "same", "same", *map(_short, LIMITS.values()), style="dim"
-    )
+    limits = map(_short, LIMITS.values())
+    table.add_row("limit", "", "same", "same", *limits, style="dim")
     show(table)
+    _print_changes(records)
+
+
+def _print_changes(records: Sequence[dict[str, Any]]) -> None:
     for record in records:
         for problem in (*record["atlas_changed"], *record["notes"]):
             paragraph(f"{record['cube']}: {problem}")

@@ -104,9 +104,8 @@ def _print(figures: dict[str, Any]) -> None:
     table = make_table(("colours", "light"), ("mean ΔE00", "95 %", "largest", *moved))
     for row in figures["differences"]:
         numbers = [f"{row[name]:.3f}" for name in ("mean", "p95", "max")]
-        table.add_row(
-            row["set"], row["light"], *numbers, *(f"{row[name]:,}" for name in moved)
-        )
+        counts = [f"{row[name]:,}" for name in moved]
+        table.add_row(row["set"], row["light"], *numbers, *counts)
     worst = make_table(("worst colours", "linear RGB", "light"), ("ΔE00",))
     for row in figures["worst"]:
         rgb = " ".join(f"{value:.4f}" for value in row["rgb"])
@@ -118,13 +117,8 @@ def _print(figures: dict[str, Any]) -> None:
         if figures[f"entries_{change}"]:
             paragraph(f"entries {change}: {', '.join(figures[f'entries_{change}'])}")
     for row in figures["lacking"]:
-        say(
-            f"{row['set']}: {row['cubes']} cannot answer "
-            f"{pluralise(row['colours'], 'colour')}"
-        )
+        colours = pluralise(row["colours"], "colour")
+        say(f"{row['set']}: {row['cubes']} cannot answer {colours}")
     if "tolerance" in figures:
-        say(
-            "passed"
-            if figures["passed"]
-            else f"FAILED: the tolerance is ΔE00 {figures['tolerance']:g}"
-        )
+        failed = f"FAILED: the tolerance is ΔE00 {figures['tolerance']:g}"
+        say("passed" if figures["passed"] else failed)

@@ -110,16 +110,7 @@ def command(
     force: bool,
     **given: Any,
 ) -> None:
-    suffixes = dict[str, str]()
-    for name, known in EXPORTS.items():
-        suffixes.setdefault(known.suffix, name)
-    if style is None and output is not None:
-        suffix = Path(output).suffix.lower()
-        style = suffixes.get(".cuh" if suffix == ".cu" else suffix)
-    if style is None:
-        raise click.UsageError(
-            f"Give --format, or --output ending in {', '.join(suffixes)}."
-        )
+    style = style or _style_of(output)
     export = EXPORTS[style]
     settings = {name: value for name, value in given.items() if value is not None}
     for name in settings:
@@ -149,3 +140,17 @@ def command(
     with progress_bar(f"writing {path}"):
         written = write(loaded, path, style, force=force, **settings)
     say(f"{path}: {written}")
+
+
+def _style_of(output: str | None) -> str:
+    """Return the format of a file by its suffix. Raise `click.UsageError`."""
+    suffixes = dict[str, str]()
+    for name, export in EXPORTS.items():
+        suffixes.setdefault(export.suffix, name)
+    suffix = Path(output or "").suffix.lower()
+    style = suffixes.get(".cuh" if suffix == ".cu" else suffix)
+    if style is None:
+        raise click.UsageError(
+            f"Give --format, or --output ending in {', '.join(suffixes)}."
+        )
+    return style

@@ -287,46 +287,44 @@ def query(
         from uplift.extras.pages.plots import plot_lights
 
         results = list(results)
-        plot_lights(
-            [(np.array(each["rgb"]), at, each["power"]) for each in results],
-            table,
-            plot_path,
-            force=force,
-        )
+        spectra = [(np.array(light["rgb"]), at, light["power"]) for light in results]
+        plot_lights(spectra, table, plot_path, force=force)
         say(f"{plot_path}: {pluralise(len(results), 'light')}", err=True)
     if style == "json":
         values = (result | {"power": result["power"].tolist()} for result in results)
         print_json_answers(values, single=source.single)
     elif style == "csv":
-        header = ["r", "g", "b", "expected_error", *(f"{each:g}" for each in at)]
-        print_csv(
-            header,
-            (
-                [*each["rgb"], each["expected_error"], *each["power"].tolist()]
-                for each in results
-            ),
+        header = ["r", "g", "b", "expected_error", *(f"{nm:g}" for nm in at)]
+        rows = (
+            [*light["rgb"], light["expected_error"], *light["power"].tolist()]
+            for light in results
         )
+        print_csv(header, rows)
     elif source.single:
         (result,) = results
-        power = result["power"]
-        fields = {
-            "linear RGB": f"{format_rgb(result['rgb'])} ({table.space})",
-            "round trip": format_rgb(result["round_trip"]["rgb"]),
-            "expected error": (
-                f"ΔE00 {result['expected_error']:.2g} of surfaces, to a measured "
-                "lamp of this RGB"
-            ),
-            "peak": f"{power.max():.5g} at {at[power.argmax()]:g} nm",
-        }
-        print_spectrum(
-            fields, at, power, complete=wavelengths is not None, highest=_peak(power)
-        )
+        _print_light(result, table.space, at, complete=wavelengths is not None)
     else:
         say(f"{'linear RGB':<34}{'ΔE00':>6}  spectrum")
         for result in results:
             text = " ".join(f"{value:.4g}" for value in result["rgb"])
             shape = sparkline(result["power"] / _peak(result["power"]), 32)
             say(f"{text:<34}{result['expected_error']:>6.2f}  {shape}")
+
+
+def _print_light(
+    result: dict[str, Any], space: str, at: Array, *, complete: bool
+) -> None:
+    power = result["power"]
+    fields = {
+        "linear RGB": f"{format_rgb(result['rgb'])} ({space})",
+        "round trip": format_rgb(result["round_trip"]["rgb"]),
+        "expected error": (
+            f"ΔE00 {result['expected_error']:.2g} of surfaces, to a measured lamp of "
+            "this RGB"
+        ),
+        "peak": f"{power.max():.5g} at {at[power.argmax()]:g} nm",
+    }
+    print_spectrum(fields, at, power, complete=complete, highest=_peak(power))
 
 
 def _answers(

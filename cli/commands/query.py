@@ -128,10 +128,8 @@ class Answers:
                 each.illuminant: each.xyz_to_rgb
                 for each in display_sensors(lights, *setting)
             }
-            named = {
-                each.name: each for each in (light(given, *setting) for given in lights)
-            }
-            self.lights = list(named.values())
+            lit = [light(given, *setting) for given in lights]
+            self.lights = list({each.name: each for each in lit}.values())
 
     def __iter__(self) -> Iterator[list[QueryResult]]:
         """Answer block by block, and warn at the end of colours that were mapped or
@@ -269,9 +267,8 @@ def command(
     **colours: Any,
 ) -> None:
     if stored is not None:
-        if colours["colour"] or any(
-            colours[name] is not None for name in ("input_path", "xyz", "xy")
-        ):
+        others = [colours[name] for name in ("input_path", "xyz", "xy")]
+        if colours["colour"] or others != [None] * 3:
             raise click.UsageError(
                 "--check takes the colours from its FILE: give no others."
             )
@@ -303,15 +300,16 @@ def command(
         )
     else:
         _print_lines(answers, results)
-    cubes = (
-        list(Path().glob("*.uplift"))
-        if style == "table" and colours["cube_path"] is None
-        else []
-    )
+    if style == "table" and colours["cube_path"] is None:
+        _advise_cube()
+
+
+def _advise_cube() -> None:
+    """Name the only cube of the current folder, which is not the packaged one."""
+    cubes = list(Path().glob("*.uplift"))
     if len(cubes) == 1:
-        paragraph(
-            f"hint: to use the cube of this folder, add --cube {cubes[0]}", err=True
-        )
+        hint = f"hint: to use the cube of this folder, add --cube {cubes[0]}"
+        paragraph(hint, err=True)
 
 
 def _check(
@@ -445,34 +443,24 @@ def _print_csv(answers: Answers, results: Iterable[QueryResult]) -> None:
     lights = [light.name for light in answers.lights]
     known = lights if cube.data.points.standard_error is not None else []
     columns = [*"rgb", "delta_e_2000", "standard_error", "error_bound"]
-    columns += [
-        f"{name}_{light}"
-        for light in known
-        for name in ("standard_error", "error_bound")
-    ]
+    for light in known:
+        columns += [f"standard_error_{light}", f"error_bound_{light}"]
     columns += [*(f"hex_{light}" for light in lights), "entry"]
     wavelengths = (
         cube.wavelengths if answers.wavelengths is None else answers.wavelengths
     )
-    rows = (
-        [
-            *(
-                *as_lists(result.rgb),
-                result.delta_e_2000,
-                result.standard_error,
-                result.error_bound,
-            ),
-            *(
-                each.get(light)
-                for light in known
-                for each in (result.standard_errors, result.error_bounds)
-            ),
-            *(code for _, code in answers.light_colours(result).values()),
-            *(result.entry, *as_lists(result.reflectance)),
-        ]
-        for result in results
-    )
+    rows = (_csv_row(answers, result, known) for result in results)
     print_csv([*columns, *(f"{wavelength:g}" for wavelength in wavelengths)], rows)
+
+
+def _csv_row(answers: Answers, result: QueryResult, known: Sequence[str]) -> list[Any]:
+    """Return the cells of a result, with the errors under the ``known`` lights."""
+    row = [*as_lists(result.rgb), result.delta_e_2000]
+    row += [result.standard_error, result.error_bound]
+    for light in known:
+        row += [result.standard_errors.get(light), result.error_bounds.get(light)]
+    row += [code for _, code in answers.light_colours(result).values()]
+    return [*row, result.entry, *as_lists(result.reflectance)]
 
 
 def _print_lines(answers: Answers, results: Iterable[QueryResult]) -> None:

@@ -1,6 +1,6 @@
 """``uplift study``: measurements of models, solver and errors."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -82,16 +82,29 @@ def _print(
 def _print_table(rows: Sequence[Row], title: str | None = None) -> None:
     texts = [key for key, value in rows[0].items() if isinstance(value, str)]
     numbers = [key for key in rows[0] if key not in texts]
+    headings = {key: HEADINGS.get(key, key) for key in rows[0]}
     table = make_table(
-        *([HEADINGS.get(key, key) for key in keys] for keys in (texts, numbers)),
+        [headings[key] for key in texts],
+        [headings[key] for key in numbers],
         title=title,
     )
     for row in rows:
-        cells = ("" if row[key] is None else row[key] for key in (*texts, *numbers))
-        table.add_row(
-            *(f"{cell:.3g}" if isinstance(cell, float) else str(cell) for cell in cells)
-        )
+        table.add_row(*[_cell(row[key]) for key in (*texts, *numbers)])
     show(table)
+
+
+def _without(rows: Iterable[Row], keys: Collection[str]) -> Sequence[Row]:
+    kept = [dict(row) for row in rows]
+    for row in kept:
+        for key in keys:
+            row.pop(key, None)
+    return kept
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    return f"{value:.3g}" if isinstance(value, float) else str(value)
 
 
 @command.command(
@@ -149,18 +162,13 @@ def moments(
             partial(plot_patches, study),
         )
         write_files(output, MOMENTS_PLOTS, *plots, partial(plot_worst, study))
-    results = [
-        [study.result(technique, count) for technique in TECHNIQUES]
-        for count in range(max_moments + 1)
-    ]
-    table = [
-        {"moments": str(count)}
-        | {
-            each.label: f"{one.mean[0]:.2f} / {one.max[0]:6.2f}"
-            for each, one in zip(TECHNIQUES, row, strict=True)
-        }
-        for count, row in enumerate(results)
-    ]
+    table = []
+    for count in range(max_moments + 1):
+        row = {"moments": str(count)}
+        for technique in TECHNIQUES:
+            result = study.result(technique, count)
+            row[technique.label] = f"{result.mean[0]:.2f} / {result.max[0]:6.2f}"
+        table.append(row)
     records = study.records()
     _print(style, records, records, table, "mean / largest ΔE76 under D65")
 
@@ -208,10 +216,7 @@ def held_out(
         with progress_bar(name) as progress:
             found = holdout(atlas, splits, progress, dim=dim, coefficients=coefficients)
         records += [{"atlas": name, **record} for record in split_records(found)]
-    rows = [
-        {key: value for key, value in record.items() if key != "standard_error"}
-        for record in records
-    ]
+    rows = _without(records, {"standard_error"})
     _print(style, records, rows, rows)
     for record in records if style == "table" else ():
         if errors := record.get("standard_error"):
@@ -281,12 +286,7 @@ def stability(
 
         write_files(output, STABILITY_PLOTS, partial(plot_map, records))
     hidden = ("success", "points", "stand_ins")
-    _print(
-        style,
-        records,
-        records,
-        [{key: row[key] for key in row if key not in hidden} for row in records],
-    )
+    _print(style, records, records, _without(records, hidden))
     if style == "table":
         failed = [row["unfitted"] for row in records if row["unfitted"]]
         nodes = sum(row["realisable"] for row in records)

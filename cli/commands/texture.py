@@ -28,6 +28,7 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
+    from uplift.extras.texture.conversion import Conversion
     from uplift.extras.texture.sequence import Outcome
     from uplift.extras.texture.uplifter import PixelEncoding
 
@@ -202,12 +203,9 @@ def convert(
     from uplift.extras.texture.sequence import converter_for, run
 
     pairs = _texture_paths(sources, target)
+    inputs = click.get_current_context().meta.get(options.INPUTS, ())
     existing = [path for _, path in pairs if path.exists()]
-    check_outputs(
-        existing,
-        inputs=click.get_current_context().meta.get(options.INPUTS, ()),
-        force=True,
-    )
+    check_outputs(existing, inputs=inputs, force=True)
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
     settings = texture.TextureSettings(
@@ -226,41 +224,40 @@ def convert(
     else:
         outcomes = texture.convert_all(pending, processes=count, scheduler=scheduler)
         results = _collect(outcomes, len(pending), quiet=quiet)
-    converted = [one for one in results if isinstance(one, texture.Conversion)]
+    seconds = time.perf_counter() - begin
+    converted = [result for result in results if isinstance(result, texture.Conversion)]
     for conversion in converted:
         warn(conversion.warnings)
-    failures = [one for one in results if isinstance(one, texture.Failure)]
+    failures = [result for result in results if isinstance(result, texture.Failure)]
     if not quiet and len(failures) < len(jobs):
-        count = (
-            len(jobs)
-            - len(pending)
-            + sum(isinstance(one, texture.Skipped) for one in results)
-        )
-        skipped = f", {count} skipped" if count else ""
-        pixels = sum(one.counts.pixels for one in converted)
-        size = sum(one.target.stat().st_size for one in converted) / 1e6
-        spaces = ", ".join(
-            dict.fromkeys(chain.from_iterable(one.spaces for one in converted))
-        )
-        say(
-            f"{target}: {pluralise(len(converted), 'texture')}{skipped}, "
-            f"{pluralise(pixels, 'pixel')}, "
-            f"{size:.1f} MB, {time.perf_counter() - begin:.1f} "
-            f"s{f', read as {spaces}' * bool(spaces)}"
-        )
-        if size > LARGE and isinstance(settings.pixel_encoding, texture.Spectrum):
-            say(
-                (
-                    "hint: --representation moments --depth half takes a fraction of "
-                    "the "
-                    "size"
-                ),
-                err=True,
-            )
+        skipped = len(jobs) - len(converted) - len(failures)
+        is_spectrum = isinstance(pixel_encoding, texture.Spectrum)
+        _print_summary(target, converted, skipped, seconds, is_spectrum)
     for failure in failures[1:]:
         CommandFailure(failure.error).show()
     if failures:
         raise failures[0].error
+
+
+def _print_summary(
+    target: str,
+    converted: Sequence[Conversion],
+    skipped: int,
+    seconds: float,
+    is_spectrum: bool,
+) -> None:
+    pixels = sum(conversion.counts.pixels for conversion in converted)
+    size = sum(conversion.target.stat().st_size for conversion in converted) / 1e6
+    spaces = chain.from_iterable(conversion.spaces for conversion in converted)
+    read_as = ", ".join(dict.fromkeys(spaces))
+    say(
+        f"{target}: {pluralise(len(converted), 'texture')}"
+        f"{f', {skipped} skipped' if skipped else ''}, {pluralise(pixels, 'pixel')}, "
+        f"{size:.1f} MB, {seconds:.1f} s{f', read as {read_as}' if read_as else ''}"
+    )
+    if size > LARGE and is_spectrum:
+        smaller = "--representation moments --depth half"
+        say(f"hint: {smaller} takes a fraction of the size", err=True)
 
 
 def _texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path]]:

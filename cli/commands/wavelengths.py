@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from itertools import chain
+from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -99,20 +100,17 @@ def command(
     force: bool,
     **camera: Any,
 ) -> None:
-    if (
-        sum(option is not None for option in (count, tolerance, wavelengths, orders))
-        != 1
-    ):
+    ways = (count, tolerance, wavelengths, orders)
+    if sum(way is not None for way in ways) != 1:
         raise click.UsageError(
             "Give one of --count, --tolerance, --wavelengths and --orders."
         )
-    if (measure is not None and tolerance is None) or (
-        method is not None and count is None and tolerance is None
-    ):
+    is_searched = count is not None or tolerance is not None
+    if (measure and tolerance is None) or (method and not is_searched):
         raise click.UsageError(
             "--measure requires --tolerance, --method requires --count or --tolerance."
         )
-    if channels is not None and orders is None:
+    if channels and orders is None:
         raise click.UsageError("--channels requires --orders.")
     from uplift.atlas import merge, on_grid
     from uplift.colorimetry import observer
@@ -127,20 +125,22 @@ def command(
         lights or ("D65",),
         observer_name=camera["observer"],
     )
+    if wavelengths is not None:
+        check_range(wavelengths, library.grid())
+        fit = partial(library.fit_weights, setting, wavelengths)
+    elif orders is not None:
+        fit = partial(library.choose_orders, setting, orders, channels or "opponent")
+    else:
+        fit = partial(
+            library.choose,
+            setting,
+            count=count,
+            target=tolerance,
+            measure=measure or "max",
+            method=method or "optimised",
+        )
     with progress_bar("fitting wavelengths"):
-        if orders is not None:
-            choice = library.choose_orders(setting, orders, channels or "opponent")
-        elif wavelengths is not None:
-            check_range(wavelengths, library.grid())
-            choice = library.fit_weights(setting, wavelengths)
-        else:
-            choice = library.choose(
-                setting,
-                count=count,
-                target=tolerance,
-                measure=measure or "max",
-                method=method or "optimised",
-            )
+        choice = fit()
     if plot_path is not None:
         from uplift.extras.scene.wavelengths.plots import plot_choice
 
@@ -152,23 +152,23 @@ def command(
 def _print(
     choice: Choice, camera: Sensor, materials: tuple[str, ...], style: str
 ) -> None:
+    import numpy as np
+
     from uplift.extras.scene.wavelengths.sampling import statistics
 
     sampling = choice.sampling
     to_rgb = sampling.to_rgb(camera)
-    errors = dict(zip(sampling.lights, choice.errors, strict=True))
-    if len(errors) > 1:
-        errors["all lights"] = choice.errors
-    worst = {
-        name: materials[each.argmax() % len(materials)] for name, each in errors.items()
-    }
-    summary = {name: statistics(each) for name, each in errors.items()}
+    by_light = dict(zip(sampling.lights, choice.errors, strict=True))
+    if len(by_light) > 1:
+        by_light["all lights"] = choice.errors
+    errors = {}
+    for name, values in by_light.items():
+        worst = materials[values.argmax() % len(materials)]
+        errors[name] = {**statistics(values), "worst": worst}
     # wavelength, weights to XYZ and to RGB, and powers of the lights
-    parts = (sampling.wavelengths[:, None], sampling.to_xyz, to_rgb, sampling.powers.T)
-    rows = [
-        list(chain.from_iterable(part[row].tolist() for part in parts))
-        for row in range(len(sampling))
-    ]
+    rows = np.column_stack(
+        [sampling.wavelengths, sampling.to_xyz, to_rgb, sampling.powers.T]
+    ).tolist()
     if style == "json":
         fields = {
             "method": choice.method,
@@ -181,40 +181,37 @@ def _print(
             "to_xyz": sampling.to_xyz.tolist(),
             "to_rgb": to_rgb.tolist(),
             "powers": dict(zip(sampling.lights, sampling.powers.tolist(), strict=True)),
-            "errors": {
-                name: {**each, "worst": worst[name]} for name, each in summary.items()
-            },
+            "errors": errors,
         }
         print_json(fields)
     elif style == "csv":
-        print_csv(
-            [
-                "wavelength",
-                *"XYZ",
-                *"rgb",
-                *(f"power {light}" for light in sampling.lights),
-            ],
-            rows,
-        )
+        powers = [f"power {light}" for light in sampling.lights]
+        print_csv(["wavelength", *"XYZ", *"rgb", *powers], rows)
     else:
-        weights = make_table(
-            (),
-            ("nm", *"XYZRGB"),
-            title=f"{pluralise(len(sampling), 'wavelength')}, {choice.method}: weights",
-        )
-        powers = make_table((), ("nm", *sampling.lights), title="power of the lights")
-        for nm, *others in rows:
-            cells = [f"{other:.4f}" for other in others]
-            weights.add_row(f"{nm:.1f}", *cells[:6])
-            powers.add_row(f"{nm:.1f}", *cells[6:])
-        table = make_table(
-            ("light",),
-            ("mean", "95 %", "max"),
-            title=f"ΔE00 of {pluralise(len(materials), 'material')}",
-        )
-        table.add_column("worst material")
-        for name, each in summary.items():
-            table.add_row(
-                name, *(f"{number:.3f}" for number in each.values()), worst[name]
-            )
-        show(weights, powers, table)
+        title = f"{pluralise(len(sampling), 'wavelength')}, {choice.method}: weights"
+        _print_tables(sampling.lights, rows, errors, title, len(materials))
+
+
+def _print_tables(
+    lights: Sequence[str],
+    rows: Sequence[Sequence[float]],
+    errors: Mapping[str, Mapping[str, Any]],
+    title: str,
+    materials: int,
+) -> None:
+    weights = make_table((), ("nm", *"XYZRGB"), title=title)
+    powers = make_table((), ("nm", *lights), title="power of the lights")
+    for nm, *others in rows:
+        cells = [f"{other:.4f}" for other in others]
+        weights.add_row(f"{nm:.1f}", *cells[:6])
+        powers.add_row(f"{nm:.1f}", *cells[6:])
+    table = make_table(
+        ("light",),
+        ("mean", "95 %", "max"),
+        title=f"ΔE00 of {pluralise(materials, 'material')}",
+    )
+    table.add_column("worst material")
+    for name, row in errors.items():
+        *numbers, worst = row.values()
+        table.add_row(name, *[f"{number:.3f}" for number in numbers], worst)
+    show(weights, powers, table)

@@ -99,9 +99,7 @@ def narrowest(column: Column) -> int:
     natural = max(map(cell_len, texts))
     if column.no_wrap:
         return natural
-    longest_word = max(
-        cell_len(word) for text in texts for word in text.split() or [""]
-    )
+    longest_word = max(map(cell_len, " ".join(texts).split()), default=0)
     return max(longest_word, min(natural, WRAPPED))
 
 
