@@ -77,12 +77,13 @@ class Page(HTMLParser):
 
     def table(self, *headings):
         """The body rows of the only table that begins with these headings."""
-        (found,) = [
-            rows
-            for rows in self.tables
-            if [cell.text for cell in rows[0]][: len(headings)] == list(headings)
-        ]
-        return found[1:]
+        found = []
+        for head, *rows in self.tables:
+            texts = [cell.text for cell in head]
+            if texts[: len(headings)] == list(headings):
+                found.append(rows)
+        (body,) = found
+        return body
 
 
 def external_links(html):

@@ -217,11 +217,8 @@ def test_files_that_the_pages_name_exist():
 
 def test_files_and_names_in_docstrings_exist():
     """A name in backticks also stands somewhere outside of them."""
-    texts = {
-        path: path.read_text("utf-8")
-        for folder in CODE
-        for path in (ROOT / folder).rglob("*.py")
-    }
+    paths = chain.from_iterable((ROOT / folder).rglob("*.py") for folder in CODE)
+    texts = {path: path.read_text("utf-8") for path in paths}
     words = {path.stem for path in texts}
     words |= set(
         chain.from_iterable(

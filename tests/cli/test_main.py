@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 import warnings
-from itertools import chain
+from itertools import chain, product
 
 import click
 import pytest
@@ -47,10 +47,8 @@ def test_help_lists_every_command_under_a_heading(run):
 def test_help_shows_the_options_of_every_day_and_help_all_shows_all(run):
     short = run("build", "--help").stdout
     full = run("build", "--help-all").stdout
-    every, shown = (
-        {word for word in text.split() if word.startswith("--")}
-        for text in (full, short)
-    )
+    every = {word for word in full.split() if word.startswith("--")}
+    shown = {word for word in short.split() if word.startswith("--")}
     assert {"--atlas", "--dim", "--help", "--help-all"} <= shown < every
     command = main.get_command(click.Context(main), "build")
     assert all(each.opts[-1] in full for each in command.params)
@@ -267,11 +265,9 @@ def test_help_fits_80_columns(monkeypatch):
             )
 
 
-OPTIONS = [
-    (command, param)
-    for command in COMMANDS_BY_PATH.values()
-    for param in command.params
-]
+OPTIONS = []
+for command in COMMANDS_BY_PATH.values():
+    OPTIONS += product([command], command.params)
 NUMERIC = [
     pytest.param(command, option, id=f"{command.name}{option.opts[-1]}")
     for command, option in OPTIONS

@@ -409,9 +409,8 @@ def test_csv_has_a_row_per_colour(run, table):
         "550.5",
     ]
     expected = uplift.load().reflectance([[0.8, 0.2, 0.1], [0.1] * 3], [450, 550.5])
-    np.testing.assert_allclose(
-        [[float(cell) for cell in row[7:]] for row in rows], expected, atol=1e-12
-    )
+    answers = [np.array(row[7:], dtype=float) for row in rows]
+    np.testing.assert_allclose(answers, expected, atol=1e-12)
     assert [float(cell) for cell in rows[0][:3]] == [0.8, 0.2, 0.1]
     assert rows[0][4:7] == ["", "", ""]
 

@@ -49,7 +49,7 @@ def check_plots(folder, names, stderr):
 
 
 def as_text(objects):
-    return [{key: str(value) for key, value in one.items()} for one in objects]
+    return [dict(zip(row, map(str, row.values()), strict=True)) for row in objects]
 
 
 def test_moments(run, rows, home, macbeth, tcs, monkeypatch):

@@ -5,7 +5,7 @@ or writes anything.
 import itertools
 import shutil
 import sys
-from itertools import chain
+from itertools import chain, product
 
 import numpy as np
 import pytest
@@ -353,10 +353,12 @@ def test_every_command_has_a_line():
     assert {*tested, *WITHOUT_ROWS, *GROUPS} == set(commands(main))
 
 
-@pytest.mark.parametrize(
-    ("package", "line"),
-    [(name, line) for name, text in PACKAGES.items() for line in lines(text)],
-)
+LINES = []
+for package, text in PACKAGES.items():
+    LINES += product([package], lines(text))
+
+
+@pytest.mark.parametrize(("package", "line"), LINES)
 def test_missing_packages_are_named_before_anything_is_computed_or_written(
     refuse_at_once, monkeypatch, package, line
 ):

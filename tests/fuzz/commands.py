@@ -121,11 +121,13 @@ def _check(result: Result) -> None:
         raise UpliftError("rejected")
 
 
+def _words(random: Random) -> str:
+    return "".join(choose(random, TOKENS) for _ in range(int(random.integers(1, 5))))
+
+
 def _generate(random: Random, path: Path) -> None:
-    name, other = (
-        "".join(choose(random, TOKENS) for _ in range(int(random.integers(1, 5))))
-        for _ in range(2)
-    )
+    name = _words(random)
+    other = _words(random)
     cells = ['"' + text.replace('"', '""') + '"' for text in (name, other)]
     files = {
         CUBE: json.dumps([name, other, int(random.integers(4))]),

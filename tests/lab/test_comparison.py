@@ -5,6 +5,7 @@ is found, pictures have all.
 import json
 import re
 from dataclasses import replace
+from itertools import product
 
 import matplotlib.image
 import numpy as np
@@ -66,11 +67,8 @@ def checker():
 
 @pytest.fixture(scope="module")
 def found(checker):
-    made = [
-        make(count)
-        for make in (point_samples, riemann_sums, enhanced_riemann)
-        for count in (16, 32)
-    ]
+    makers = (point_samples, riemann_sums, enhanced_riemann)
+    made = [make(count) for make, count in product(makers, (16, 32))]
     return compare(
         checker, [*made, sun_composite(15), trigonometric_moments(9)], quick=True
     )
@@ -130,10 +128,8 @@ def test_storage_includes_spikes(found):
 
 
 def test_findings_of_the_thesis_hold_for_the_colorchecker(found):
-    smooth, spiky = (
-        {row.name: row.statistics.mean for row in found.of(name)}
-        for name in ("smooth", "spiky")
-    )
+    smooth = {row.name: row.statistics.mean for row in found.of("smooth")}
+    spiky = {row.name: row.statistics.mean for row in found.of("spiky")}
     assert all(smooth[f"{family}32"] < 1 for family in ("PS", "RS", "RE"))
     assert spiky["PS16"] > 10 * smooth["PS16"]
     assert (

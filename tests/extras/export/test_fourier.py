@@ -107,10 +107,8 @@ def test_the_shader_evaluates_the_spectra(three, folder):
     )
 
     def shader(colours):
-        rows = [
-            (*colour, nm) for colour in colours.tolist() for nm in WAVELENGTHS.tolist()
-        ]
-        text = "\n".join(" ".join(map(repr, row)) for row in rows)
+        rows = product(colours.tolist(), WAVELENGTHS.tolist())
+        text = "\n".join(" ".join(map(repr, [*rgb, nm])) for rgb, nm in rows)
         done = subprocess.run(
             [folder / "main"], input=text, capture_output=True, text=True, check=True
         )

@@ -2,6 +2,7 @@
 
 import subprocess
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -76,10 +77,15 @@ def check(tmp_path):
     return check
 
 
+FORMS = []
+for style, language in LANGUAGES.items():
+    FORMS += product([style], language.forms)
+
+
 @pytest.mark.parametrize("mode", ["spectra", "moments"])
 @pytest.mark.parametrize(
     ("style", "form"),
-    [(style, form) for style in LANGUAGES for form in LANGUAGES[style].forms],
+    FORMS,
 )
 def test_ten_thousand_colours_equal_those_of_python(
     small_cube, check, style, form, mode

@@ -5,6 +5,7 @@ written from.
 import re
 import sys
 import zipfile
+from itertools import product
 
 import numpy as np
 import pytest
@@ -52,11 +53,8 @@ def test_labels_of_wavelengths(save, label):
 
 
 def test_rows_of_single_samples(save):
-    rows = [
-        f"{name},{nm},{value}"
-        for nm, value in ((700, 0.3), (400, 0.1), (550, 0.2))
-        for name in ("a", "b")
-    ]
+    samples = ("700,0.3", "400,0.1", "550,0.2")
+    rows = [f"{name},{sample}" for sample, name in product(samples, "ab")]
     first, second = read_atlas(
         save("\n".join(["Sample,Wavelength (nm),Reflectance", *rows]))
     )

@@ -5,6 +5,7 @@ spectra of models.
 import json
 import subprocess
 import sys
+from itertools import product
 
 import numpy as np
 import pytest
@@ -189,10 +190,11 @@ def test_the_stochastic_filter_chooses_texels_by_their_weights(texture, spectrum
     assert (values < 0.4).mean() == pytest.approx(0.8, abs=0.05)
 
 
+FILTERS = ("bilinear", "nearest", "stochastic")
+WRAPS = ("repeat", "mirror", "clamp")
 OPTIONS = [
     {"filter_type": filter_type, "wrap_mode": wrap_mode}
-    for filter_type in ("bilinear", "nearest", "stochastic")
-    for wrap_mode in ("repeat", "mirror", "clamp")
+    for filter_type, wrap_mode in product(FILTERS, WRAPS)
 ]
 
 JIT = """

@@ -89,8 +89,7 @@ def at_random(sensor, draw):
             light.name,
             **({"free": "x"} if draw.random() < 0.3 else {"rgb": draw.random(3)}),
         )
-        for material in materials
-        for light in lights
+        for material, light in product(materials, lights)
     ]
     weights = {
         "smoothness": float(draw.choice([0, 1e-3])),

@@ -114,14 +114,9 @@ def test_predicted_and_actual_errors_are_shown(small_cube, repository):
     assert values["standard_error"]["calibrations"]["FL11"]["real"] == under.actual
     assert values["standard_error"]["unlike_atlas"] == found.unlike
     rows = read.table("entry", "worst", "D65", "FL11", "rms", "predicted", "actual")
-    assert [[cell.value for cell in row[-2:]] for row in rows] == pytest.approx(
-        np.array(
-            [
-                (entry["standard_error"], entry["delta_e_2000_reference"])
-                for entry in values["entries"]
-            ]
-        )
-    )
+    for row, entry in zip(rows, values["entries"], strict=True):
+        assert row[-2].value == pytest.approx(entry["standard_error"])
+        assert row[-1].value == pytest.approx(entry["delta_e_2000_reference"])
 
 
 def test_histogram_counts_every_value():

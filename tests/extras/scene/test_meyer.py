@@ -26,7 +26,7 @@ def _matrix(space):
     own = [
         row for row in read_reference("meyer1988_matrices.csv") if row["space"] == space
     ]
-    return np.array([[float(row[key]) for key in "XYZ"] for row in own])
+    return np.array([[row["X"], row["Y"], row["Z"]] for row in own], dtype=float)
 
 
 @pytest.fixture(scope="module")

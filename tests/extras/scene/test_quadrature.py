@@ -52,14 +52,12 @@ def _exact_nodes(points, masses, order):
     """Roots of the orthogonal polynomial from its moments, by elimination
     in fractions.
     """
-    moments = [
-        sum(m * Fraction(p) ** k for p, m in zip(points, masses, strict=True))
-        for k in range(2 * order)
-    ]
-    rows = [
-        [moments[i + j] for j in range(order)] + [-moments[i + order]]
-        for i in range(order)
-    ]
+    powers = np.array([Fraction(1)] * len(points))
+    moments = []
+    for _ in range(2 * order):
+        moments.append(powers @ masses)
+        powers = powers * [Fraction(point) for point in points]
+    rows = [[*moments[i : i + order], -moments[i + order]] for i in range(order)]
     for i in range(order):
         pivot = next(k for k in range(i, order) if rows[k][i])
         rows[i], rows[pivot] = rows[pivot], rows[i]

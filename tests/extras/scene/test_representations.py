@@ -2,6 +2,8 @@
 paper.
 """
 
+from itertools import product
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -70,11 +72,7 @@ def light_powers(checker):
 
 
 NAMES = [
-    *(
-        f"{family}{count}"
-        for family in ("PS", "PF", "RS", "RE", "GQ")
-        for count in (4, 32)
-    ),
+    *map("".join, product(("PS", "PF", "RS", "RE", "GQ"), ("4", "32"))),
     *("CS5", "CS15", "TM5", "TM17", "SG3", "LM4", "LM16", "HW4", "HW256"),
 ]
 EXACT = [name for name in NAMES if not name.startswith(("LM", "HW", "PF"))]

@@ -4,6 +4,7 @@ reduced pictures.
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 import OpenEXR
@@ -210,11 +211,7 @@ RGB = dict.fromkeys("RGB", ZERO)
         ("depth.exr", {"Z": ZERO}, "texture"),
         (
             "layers.exr",
-            {
-                f"{layer}.{letter}": ZERO
-                for layer in ("diffuse", "coat")
-                for letter in "RGB"
-            },
+            dict.fromkeys(map(".".join, product(("diffuse", "coat"), "RGB")), ZERO),
             "texture",
         ),
         ("integers.exr", dict.fromkeys("RGB", ZERO.astype(np.uint32)), "texture"),

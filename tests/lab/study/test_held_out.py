@@ -2,6 +2,8 @@
 predictors.
 """
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -147,9 +149,7 @@ def test_local_linear_has_the_least_leave_one_out_error_and_the_queried_colours(
             ]
         )
 
-    best = min(
-        [(width, ridge) for width in (10.0, 40.0) for ridge in (1e-6, 1e-2)], key=slow
-    )
+    best = min(product((10.0, 40.0), (1e-6, 1e-2)), key=slow)
     rgb = data.sensor.rgb(some.mean(axis=0)[None]) * [[0.9, 1.0, 1.1]]
     found = local_linear(data, some, rgb)
     np.testing.assert_allclose(found, predict(some, rgb, best), atol=1e-12)

@@ -75,14 +75,11 @@ def test_sample_covers_every_value_of_every_axis():
 
 
 def test_atlases_are_crowded_spiky_and_noisy(sensor):
-    crowded, spiky, noisy = (
-        np.array([entry.values for entry in make()])
-        for make in SYNTHETIC_ATLASES.values()
-    )
-    for values, make in zip(
-        (crowded, spiky, noisy), SYNTHETIC_ATLASES.values(), strict=True
-    ):
-        np.testing.assert_array_equal(values, [entry.values for entry in make()])
+    made = []
+    for make in SYNTHETIC_ATLASES.values():
+        made.append(np.array([entry.values for entry in make()]))
+        np.testing.assert_array_equal(made[-1], [entry.values for entry in make()])
+    crowded, spiky, noisy = made
     lab = rgb_to_lab(sensor, sensor.rgb(crowded))
     distance = np.linalg.norm(lab[:, None] - lab, axis=-1) + 1e3 * np.eye(len(lab))
     assert np.median(distance.min(axis=1)) < 1
