@@ -77,18 +77,12 @@ def prose(path: Path) -> Iterator[tuple[int, str]]:
 
 def check_words() -> list[str]:
     """Return a line for every banned expression."""
-    lines = [
-        line.partition("  ") for line in WORDS.read_text(encoding="utf-8").splitlines()
-    ]
-    banned = {
-        line[0]: line[2].strip()
-        for line in lines
-        if line[0] and not line[0].startswith("#")
-    }
-    patterns = {
-        re.compile(rf"\b(?:{expression})\b", re.IGNORECASE): advice
-        for expression, advice in banned.items()
-    }
+    patterns = {}
+    for line in WORDS.read_text(encoding="utf-8").splitlines():
+        expression, _, advice = line.partition("  ")
+        if expression and not expression.startswith("#"):
+            pattern = re.compile(rf"\b(?:{expression})\b", re.IGNORECASE)
+            patterns[pattern] = advice.strip()
     lines = []
     for path in tracked():
         for number, line in prose(path) if path != Path(__file__) else ():

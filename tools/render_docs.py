@@ -136,7 +136,7 @@ def flat_csv(rows: Iterable[Row], parts: Sequence[str]) -> str:
     """Return nested rows as CSV, with a column for each leaf."""
     flat = [dict(leaves(row, parts)) for row in rows]
     columns = list(dict.fromkeys(chain.from_iterable(flat)))
-    return csv_text(columns, (map(row.get, columns) for row in flat))
+    return csv_text(columns, (list(map(row.get, columns)) for row in flat))
 
 
 def where(rows: Iterable[Row], **conditions: Any) -> list[Row]:
@@ -229,9 +229,12 @@ def render(name: str, data: Mapping[str, Any] | None = None) -> dict[Path, str]:
         tables[path] = flat_csv(rows, parts)
         return f"[{path.name}]({Path(os.path.relpath(path, page.parent)).as_posix()})"
 
-    style = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
     environment = Environment(
-        loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, **style
+        loader=FileSystemLoader(TEMPLATES),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
     )
     environment.filters |= {"num": number, "mean": statistics.fmean}
     functions = {

@@ -10,6 +10,7 @@ tests/fit/test_families.py compares the shipped file with the output.
 import sys
 import warnings
 from pathlib import Path
+from typing import Any
 
 import colour
 import numpy as np
@@ -53,6 +54,9 @@ def main(path: Path = FILE) -> None:
     sensors = [observer.sensor(space) for space in SPACES]
     tables = [smooth_nodes(Problem(sensor, Moments())) for sensor in sensors]
     steps = np.rint(np.concatenate(list(families.values())) * STEPS).astype(np.int16)
+    smooth: dict[str, Any] = {
+        f"smooth{number}": table for number, table in enumerate(tables)
+    }
     np.savez_compressed(
         path,
         names=np.array(list(families)),
@@ -60,7 +64,7 @@ def main(path: Path = FILE) -> None:
         spreads=np.array([SPREAD] * len(FAMILIES) + [OTSU_SPREAD]),
         steps=np.diff(steps, axis=1, prepend=np.int16(0)),
         matrices=np.stack([sensor.matrix for sensor in sensors]),
-        **{f"smooth{number}": table for number, table in enumerate(tables)},
+        **smooth,
     )
 
 

@@ -47,4 +47,5 @@ def tables() -> dict[str, np.ndarray]:
 
 
 if __name__ == "__main__":
-    np.savez_compressed(PATH, **tables())
+    arrays: dict[str, Any] = tables()
+    np.savez_compressed(PATH, **arrays)

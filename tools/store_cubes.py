@@ -9,6 +9,7 @@ from pathlib import Path
 
 import uplift
 from uplift.extras.emission.lookup import EMISSION
+from uplift.pipeline.options import ModelName
 
 ROOT = Path(__file__).parents[1]
 LOOKUP = ROOT / "uplift" / "lookup"
@@ -17,15 +18,11 @@ LOOKUP = ROOT / "uplift" / "lookup"
 def main() -> None:
     """Build all cubes and the emission table."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
-    for model, dim, atlas in product(
-        ("moments", "sigmoid"), (8, 16), (None, "macbeth")
-    ):
+    models: tuple[ModelName, ...] = ("moments", "sigmoid")
+    for model, dim, atlas in product(models, (8, 16), (None, "macbeth")):
         source = ROOT / "atlases" / f"{atlas}.txt" if atlas else None
-        path = (
-            ROOT
-            / "cubes"
-            / ("-".join(filter(None, (model, str(dim), atlas))) + ".uplift")
-        )
+        name = "-".join(filter(None, (model, str(dim), atlas)))
+        path = ROOT / "cubes" / f"{name}.uplift"
         uplift.build(source, dim=dim, model=model, debug=True).save(path, force=True)
     # The cube that is installed with the package: sRGB, D65, without an atlas
     shutil.copyfile(ROOT / "cubes" / "moments-16.uplift", LOOKUP / "default.uplift")
