@@ -11,15 +11,8 @@ from scipy.optimize import least_squares
 from benchmarks import record
 from benchmarks.choices import ALONE, OURS, mark
 from uplift.atlas import Atlas, on_grid, read_atlas
-from uplift.colorimetry import (
-    CAMERA,
-    Sensor,
-    delta_e_2000,
-    lab,
-    observer,
-    solid,
-    tables,
-)
+from uplift.colorimetry import Sensor, delta_e_2000, lab, observer, solid, tables
+from uplift.colorimetry.camera import CAMERA
 from uplift.common.arrays import Array, Indices
 from uplift.fit import families_with, shipped_library
 from uplift.lab.study.held_out import random_halves

@@ -11,7 +11,8 @@ import numpy as np
 
 from benchmarks import MACBETH
 from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import SRGB, in_unit_cube, observer
+from uplift.colorimetry import in_unit_cube, observer
+from uplift.colorimetry.gamut import SRGB
 from uplift.common.arrays import Array
 from uplift.extras.colour.light_sets import DESCRIPTIONS
 from uplift.extras.colour.srgb import to_display_codes

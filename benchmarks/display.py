@@ -12,15 +12,8 @@ import colour
 import numpy as np
 
 from benchmarks import DOCS, record
-from uplift.colorimetry import (
-    SRGB,
-    Primaries,
-    conversion,
-    delta_e_2000,
-    lab,
-    map_to_gamut,
-)
-from uplift.colorimetry.gamut import METHODS
+from uplift.colorimetry import delta_e_2000, lab
+from uplift.colorimetry.gamut import METHODS, SRGB, Primaries, conversion, map_to_gamut
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import encode
 from uplift.extras.pages.figure import new_figure, write_png

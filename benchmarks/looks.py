@@ -20,7 +20,9 @@ from benchmarks.browser import SETTLE, SHIFT, browser
 from benchmarks.checker import constant_light, start_mitsuba, xyz_film
 from benchmarks.materials import LARGE, SPLITS, other_halves
 from uplift.atlas import read_atlas, resample
-from uplift.colorimetry import SRGB, delta_e_rgb, lab, mahalanobis
+from uplift.colorimetry import delta_e_rgb, lab
+from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.likely_errors import mahalanobis
 from uplift.colorimetry.observer import display_sensors, light, sensor
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import hex_codes, to_display_codes

@@ -17,7 +17,8 @@ import uplift
 from benchmarks import ATLASES, DOCS, MACBETH, record
 from benchmarks.performance import UPLIFT
 from benchmarks.pictures import Picture, pictures
-from uplift.colorimetry import SCENE_LIGHTS, delta_e_spectra
+from uplift.colorimetry import delta_e_spectra
+from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.extras.pages.figure import ACCENT, INK
 from uplift.extras.pages.format import format_size

@@ -80,7 +80,7 @@ class SpectrumResolver:
         import numpy as np
 
         from uplift.atlas import Atlas, on_grid
-        from uplift.colorimetry import map_to_gamut
+        from uplift.colorimetry.gamut import map_to_gamut
 
         entries = self.cube.data.atlas
         if text in entries.names:

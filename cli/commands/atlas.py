@@ -30,7 +30,8 @@ from ..outputs import check_outputs
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
-    from uplift.colorimetry import Illuminant, Sensor
+    from uplift.colorimetry import Sensor
+    from uplift.colorimetry.lights import Illuminant
     from uplift.common.arrays import Array
 
 SHIPPED = ("name", "entries", "content", "source", "licence")
@@ -157,7 +158,8 @@ def _list_entries(
     3) and `smallest_space`.
     """
     from uplift.atlas import resample
-    from uplift.colorimetry import SRGB, in_unit_cube
+    from uplift.colorimetry import in_unit_cube
+    from uplift.colorimetry.gamut import SRGB
     from uplift.colorimetry.observer import sensor as make_sensor
     from uplift.colorimetry.observer import smallest_space
     from uplift.extras.colour.srgb import to_display_codes

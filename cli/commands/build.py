@@ -356,7 +356,7 @@ def _default_name(
     atlases: tuple[str, ...], images: tuple[str, ...], settings: dict[str, Any]
 ) -> str:
     """Return the name of a cube file: atlases, dim, and the space if it is not sRGB."""
-    from uplift.colorimetry import CAMERA
+    from uplift.colorimetry.camera import CAMERA
 
     space = settings["space"]
     if space not in ("sRGB", CAMERA):

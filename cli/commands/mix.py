@@ -420,7 +420,7 @@ def _mix(
     """Mix on a backing; without, return the light that a plate transmits."""
     import numpy as np
 
-    from uplift.colorimetry import map_to_gamut
+    from uplift.colorimetry.gamut import map_to_gamut
     from uplift.extras.paint import make_coat, mix
     from uplift.extras.paint.coats import ramp
 
@@ -503,7 +503,7 @@ def _print_theories(recipe: _Recipe, method: str, style: str) -> None:
     import numpy as np
     from rich.text import Text
 
-    from uplift.colorimetry import map_to_gamut
+    from uplift.colorimetry.gamut import map_to_gamut
     from uplift.extras.paint.theories import mixers
 
     cube = recipe.cube

@@ -39,7 +39,8 @@ from ..output.diagnostics import warn
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
-    from uplift.colorimetry import Illuminant, Light
+    from uplift.colorimetry import Light
+    from uplift.colorimetry.lights import Illuminant
     from uplift.common.arrays import Array
     from uplift.extras.colour.query import QueryResult
     from uplift.lookup import Cube
@@ -154,7 +155,7 @@ class Answers:
         for requested in self.source.blocks(self.cube.data.sensor, bounded=bounded):
             rgb = requested  # which the query refuses outside [0, 1]
             if self.method != "error":
-                from uplift.colorimetry import map_to_gamut
+                from uplift.colorimetry.gamut import map_to_gamut
 
                 inside = map_to_gamut(requested, self.cube.data.sensor, self.method)
                 rgb = inside.rgb

@@ -17,7 +17,8 @@ from ..output.progress import progress_bar
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
-    from uplift.colorimetry import Illuminant, Sensor
+    from uplift.colorimetry import Sensor
+    from uplift.colorimetry.lights import Illuminant
     from uplift.common.arrays import Array
     from uplift.extras.scene.wavelengths import Choice
 

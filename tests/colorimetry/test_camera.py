@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from tests.helpers import raises
-from uplift.colorimetry import CAMERA, Camera, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.camera import CAMERA, Camera
 from uplift.common.errors import ColourError, OptionError, UnknownNameError
 from uplift.extras.colour.camera_file import read_camera
 from uplift.extras.colour.spaces import find_space

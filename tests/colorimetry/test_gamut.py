@@ -8,9 +8,19 @@ import pytest
 from scipy.optimize import brentq
 
 from tests.helpers import raises
-from uplift.colorimetry import SRGB, Primaries, conversion, map_to_gamut, observer
 from uplift.colorimetry import gamut as mapping
-from uplift.colorimetry.gamut import BLOCK, METHODS, cone_responses, cube_roots, oklab
+from uplift.colorimetry import observer
+from uplift.colorimetry.gamut import (
+    BLOCK,
+    METHODS,
+    SRGB,
+    Primaries,
+    cone_responses,
+    conversion,
+    cube_roots,
+    map_to_gamut,
+    oklab,
+)
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, OptionError, UnknownNameError
 

@@ -4,16 +4,17 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
 
-from uplift.colorimetry import (
+from uplift.colorimetry import likely_errors as module
+from uplift.colorimetry.likely_errors import (
     COVERAGE,
+    LENGTH,
+    PRIOR_COUNT,
     expected_error,
     familiar_distance,
     learn_radii,
     mahalanobis,
     nearest_distances,
 )
-from uplift.colorimetry import likely_errors as module
-from uplift.colorimetry.likely_errors import LENGTH, PRIOR_COUNT
 
 PLACES = np.random.default_rng(5).uniform(-20, 60, (12, 3))
 

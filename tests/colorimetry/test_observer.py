@@ -9,7 +9,8 @@ import pytest
 
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import SRGB, conversion, observer, tables
+from uplift.colorimetry import observer, tables
+from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.observer import COMMON_SPACES, smallest_space
 from uplift.common.errors import OptionError, UnknownNameError
 from uplift.extras.colour.dominant import GREY, dominant_wavelength

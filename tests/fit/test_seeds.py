@@ -16,13 +16,13 @@ from tests.conftest import MACBETH
 from tests.helpers import quiet_build
 from uplift.atlas import on_grid
 from uplift.colorimetry import (
-    SCENE_LIGHTS,
     delta_e_1976,
     delta_e_spectra,
     in_unit_cube,
     observer,
     rgb_to_lab,
 )
+from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.fit import (
     Prior,
     Problem,

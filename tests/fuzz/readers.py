@@ -23,8 +23,8 @@ from tests.extras.texture.exr_bytes import attribute, exr_bytes
 from tests.extras.texture.image_bytes import BT2020, hdr_bytes, tiff_bytes
 from tests.fuzz.fuzzing import ROOT, Random, Seeds, Target, choose, mutate, mutated
 from uplift.atlas import read_atlas, resample, write_atlas
-from uplift.colorimetry import map_to_gamut, observer
-from uplift.colorimetry.gamut import METHODS
+from uplift.colorimetry import observer
+from uplift.colorimetry.gamut import METHODS, map_to_gamut
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import UpliftError
 from uplift.common.files import file_digest

@@ -6,7 +6,8 @@ import pytest
 import uplift
 from tests.cube.cube_files import forge
 from tests.helpers import raises
-from uplift.colorimetry import CAMERA, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.camera import CAMERA
 from uplift.common.errors import ColourError, CubeFileError
 from uplift.cube import digest
 from uplift.extras.colour.query import query, query_xyz

@@ -2,7 +2,6 @@
 ΔE and expected errors.
 """
 
-from uplift.colorimetry.camera import CAMERA, Camera
 from uplift.colorimetry.delta_e import (
     delta_e_1976,
     delta_e_2000,
@@ -13,31 +12,6 @@ from uplift.colorimetry.delta_e import (
     lab_jacobian,
     lab_to_xyz,
     rgb_to_lab,
-)
-from uplift.colorimetry.gamut import (
-    SRGB,
-    Gamut,
-    Primaries,
-    check_method,
-    conversion,
-    map_to_gamut,
-)
-from uplift.colorimetry.lights import (
-    COMMON_NAMES,
-    DEFAULT_ILLUMINANT,
-    ERROR_ILLUMINANT,
-    SCENE_LIGHTS,
-    Illuminant,
-    Lamp,
-)
-from uplift.colorimetry.likely_errors import (
-    COVERAGE,
-    ExpectedError,
-    expected_error,
-    familiar_distance,
-    learn_radii,
-    mahalanobis,
-    nearest_distances,
 )
 from uplift.colorimetry.object_colours import Solid, solid, solid_volume, toward_grey
 from uplift.colorimetry.sensor import (
@@ -51,42 +25,21 @@ from uplift.colorimetry.sensor import (
 )
 
 __all__ = [
-    "CAMERA",
-    "COMMON_NAMES",
-    "COVERAGE",
-    "DEFAULT_ILLUMINANT",
-    "ERROR_ILLUMINANT",
     "ROUNDING",
-    "SCENE_LIGHTS",
-    "SRGB",
-    "Camera",
-    "ExpectedError",
-    "Gamut",
-    "Illuminant",
-    "Lamp",
     "Light",
-    "Primaries",
     "Sensor",
     "Solid",
     "as_rgb",
-    "check_method",
-    "conversion",
     "delta_e_1976",
     "delta_e_2000",
     "delta_e_2000_weights",
     "delta_e_rgb",
     "delta_e_spectra",
-    "expected_error",
-    "familiar_distance",
     "format_rgb",
     "in_unit_cube",
     "lab",
     "lab_jacobian",
     "lab_to_xyz",
-    "learn_radii",
-    "mahalanobis",
-    "map_to_gamut",
-    "nearest_distances",
     "raise_out_of_gamut",
     "rgb_to_lab",
     "solid",

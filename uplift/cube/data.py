@@ -171,7 +171,7 @@ class CubeData:
         """ΔE*ab from the nearest entry up to which a colour is like those
         of the atlas.
         """
-        from uplift.colorimetry import familiar_distance
+        from uplift.colorimetry.likely_errors import familiar_distance
 
         return familiar_distance(self.entry_lab)
 

@@ -10,14 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from uplift.colorimetry import (
-    ExpectedError,
-    Sensor,
-    delta_e_spectra,
-    expected_error,
-    rgb_to_lab,
-)
-from uplift.colorimetry.likely_errors import LENGTH
+from uplift.colorimetry import Sensor, delta_e_spectra, rgb_to_lab
+from uplift.colorimetry.likely_errors import LENGTH, ExpectedError, expected_error
 from uplift.common.arrays import Array, Mask, largest
 from uplift.fit.base import NO_FREEDOM, Base, learn_base, moment_matrix
 from uplift.fit.entries import FittedEntries

@@ -13,29 +13,19 @@ from uplift.lookup.blocks import (
     decode_codes,
 )
 from uplift.lookup.cube import Cube, expected_errors, find_file, load
-from uplift.lookup.errors_under_lights import (
-    LightErrors,
-    evidence,
-    light_errors,
-    outside_errors,
-)
 from uplift.lookup.interpolate import (
     MODES,
     around,
     extended_multipliers,
     refined_multipliers,
 )
-from uplift.lookup.node_table import prepare_products
-from uplift.lookup.outside import MAPPING, reflectance_anywhere
 from uplift.lookup.refine import refine_to_rgb
 
 __all__ = [
     "BLOCK",
-    "MAPPING",
     "MODES",
     "Cube",
     "Function",
-    "LightErrors",
     "around",
     "as_colours",
     "as_float_type",
@@ -43,15 +33,10 @@ __all__ = [
     "as_wavelengths",
     "blockwise",
     "decode_codes",
-    "evidence",
     "expected_errors",
     "extended_multipliers",
     "find_file",
-    "light_errors",
     "load",
-    "outside_errors",
-    "prepare_products",
     "refine_to_rgb",
     "refined_multipliers",
-    "reflectance_anywhere",
 ]

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from uplift.colorimetry import Illuminant, rgb_to_lab
+from uplift.colorimetry import rgb_to_lab
+from uplift.colorimetry.lights import Illuminant
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import unknown_name
 from uplift.common.extensions import extension
@@ -355,7 +356,7 @@ class Cube:
             True for colours farther from every entry, in CIE L*a*b*, than 95 % of the
             entries are from another one.
         """
-        from uplift.colorimetry import nearest_distances
+        from uplift.colorimetry.likely_errors import nearest_distances
 
         colours = rgb_to_lab(self.data.sensor, blocks.as_colours(rgb, self.data.sensor))
         distances = nearest_distances(colours.reshape(-1, 3), self.data.entry_lab)

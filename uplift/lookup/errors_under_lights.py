@@ -12,13 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry import (
-    ExpectedError,
-    Light,
-    delta_e_spectra,
-    expected_error,
-    rgb_to_lab,
-)
+from uplift.colorimetry import Light, delta_e_spectra, rgb_to_lab
+from uplift.colorimetry.likely_errors import ExpectedError, expected_error
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.cube import CubeData

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry import format_rgb, map_to_gamut
+from uplift.colorimetry import format_rgb
+from uplift.colorimetry.gamut import map_to_gamut
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import ColourError
 from uplift.cube import CubeData, common_sensor, digest

@@ -6,8 +6,9 @@ import os
 from collections.abc import Sequence
 from typing import Any, Literal
 
-from uplift.colorimetry import DEFAULT_ILLUMINANT, SCENE_LIGHTS, Camera, Illuminant
 from uplift.colorimetry import observer as observers
+from uplift.colorimetry.camera import Camera
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS, Illuminant
 from uplift.common.arrays import StrPath
 from uplift.common.extensions import extension
 from uplift.common.progress import ProgressCallback, ignore_progress

@@ -12,8 +12,10 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry import ERROR_ILLUMINANT, Camera, Sensor
+from uplift.colorimetry import Sensor
 from uplift.colorimetry import observer as observers
+from uplift.colorimetry.camera import Camera
+from uplift.colorimetry.lights import ERROR_ILLUMINANT
 from uplift.common.arrays import Indices, Mask
 from uplift.common.errors import UpliftWarning, warn
 from uplift.common.extensions import extension

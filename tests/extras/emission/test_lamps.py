@@ -10,7 +10,8 @@ import pytest
 
 import uplift
 from tests.helpers import quiet_build, raises
-from uplift.colorimetry import Lamp, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.lights import Lamp
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError
 from uplift.extras.emission.lamps import find_light, read_lamp
 from uplift.extras.report.rebuild import rebuild

@@ -13,7 +13,7 @@ from uplift.colorimetry import delta_e_rgb
 from uplift.colorimetry.observer import display_sensors, light
 from uplift.extras.colour.query import query
 from uplift.extras.report.rebuild import rebuild
-from uplift.lookup import light_errors
+from uplift.lookup.errors_under_lights import light_errors
 
 RED = Look("#8a2a20", {"FL11": "#70392a"}, name="brick")
 LOOKS = (

@@ -13,7 +13,7 @@ import pytest
 from tests.extras.texture.conftest import planes, write_exr
 from tests.helpers import raises, warns
 from tests.parts import LLVM, need
-from uplift.colorimetry import map_to_gamut
+from uplift.colorimetry.gamut import map_to_gamut
 from uplift.common.errors import TextureError
 from uplift.extras import texture as textures
 from uplift.extras.mitsuba.texels import read_texels

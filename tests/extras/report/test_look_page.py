@@ -14,7 +14,8 @@ from tests.browsing import check_page
 from tests.helpers import raises
 from tests.pages import Page, external_links
 from tests.parts import CHROMIUM, need
-from uplift.colorimetry import SRGB, lab, observer
+from uplift.colorimetry import lab, observer
+from uplift.colorimetry.gamut import SRGB
 from uplift.common.errors import OptionError
 from uplift.extras.colour.srgb import hex_codes, to_display_codes
 from uplift.extras.looks.metamer_bounds import bounds

@@ -12,7 +12,7 @@ from PIL import Image, ImageCms
 
 from tests.extras.texture.conftest import WAVELENGTHS, planes, read_channels, write_exr
 from tests.helpers import raises
-from uplift.colorimetry import SRGB, conversion
+from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.common.errors import OptionError
 from uplift.extras import texture
 from uplift.extras.colour.spaces import look_up_space, primaries_of

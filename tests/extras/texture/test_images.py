@@ -22,7 +22,7 @@ from tests.extras.texture.conftest import (
     write_image,
 )
 from tests.helpers import raises
-from uplift.colorimetry import map_to_gamut
+from uplift.colorimetry.gamut import map_to_gamut
 from uplift.common.errors import ColourError, TextureError
 from uplift.cube import EntrySpectra
 from uplift.extras import texture

@@ -22,7 +22,7 @@ from tests.extras.texture.conftest import (
 from tests.extras.texture.test_colour_profile import P3, SRGB_TABLE, by_matrix, convert
 from tests.fuzz.images import wrong
 from tests.helpers import raises
-from uplift.colorimetry import SRGB, conversion
+from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.common.errors import OptionError, TextureError
 from uplift.extras import texture
 from uplift.extras.colour.spaces import look_up_space, primaries_of

@@ -11,7 +11,8 @@ import uplift
 from tests.conftest import ATLASES
 from tests.helpers import raises
 from uplift.atlas import Atlas, Entry, read_atlas, resample
-from uplift.colorimetry import SCENE_LIGHTS, delta_e_spectra, in_unit_cube, observer
+from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
+from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.common.errors import AtlasError
 from uplift.common.progress import Progress
 from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.colorimetry import Camera
-from uplift.colorimetry.camera import LAYOUT
+from uplift.colorimetry.camera import LAYOUT, Camera
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError
 from uplift.common.files import read_bytes

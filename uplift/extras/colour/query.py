@@ -121,8 +121,8 @@ def query_xyz(
     (``colour-unrealisable``) if no reflectance has a colour, or the model does not
     reach it.
     """
-    from uplift.colorimetry import map_to_gamut
-    from uplift.lookup import MAPPING
+    from uplift.colorimetry.gamut import map_to_gamut
+    from uplift.lookup.outside import MAPPING
 
     sensor = cube.data.sensor
     sensor.require_xyz()
@@ -152,7 +152,7 @@ def _block(
     grid = np.concatenate([sensor.wavelengths, at])
     answered = np.where(outside[:, None], requested, rgb)
     if outside.any():
-        from uplift.lookup import reflectance_anywhere
+        from uplift.lookup.outside import reflectance_anywhere
 
         spectra = reflectance_anywhere(data, answered, grid, mode, outside)
     else:
@@ -254,7 +254,7 @@ def _errors(
     errors = np.full((len(rgb), 2), np.nan)
     errors[~outside] = expected_errors(cube, rgb[~outside], light)
     if entries:
-        from uplift.lookup import outside_errors
+        from uplift.lookup.errors_under_lights import outside_errors
 
         known = outside_errors(cube.data, light)[list(entries.values())]
         errors[list(entries)] = known[:, None]

@@ -17,7 +17,8 @@ from uplift.atlas import (
     skipped_warning,
     truncate,
 )
-from uplift.colorimetry import Illuminant, Lamp, tables
+from uplift.colorimetry import tables
+from uplift.colorimetry.lights import Illuminant, Lamp
 from uplift.colorimetry.observer import (
     DEFAULT_OBSERVER,
     END,

@@ -25,7 +25,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Illuminant, Sensor, solid
+from uplift.colorimetry import Sensor, solid
+from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import (
     DEFAULT_OBSERVER,
     END,

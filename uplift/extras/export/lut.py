@@ -28,7 +28,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Illuminant, Sensor, delta_e_rgb
+from uplift.colorimetry import Sensor, delta_e_rgb
+from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array, Floats, StrPath, Values
 from uplift.common.errors import OptionError, TextureError

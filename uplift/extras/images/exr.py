@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Gamut, delta_e_rgb
+from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.gamut import Gamut
 from uplift.common.arrays import Floats, StrPath, Values
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write

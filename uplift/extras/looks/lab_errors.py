@@ -4,19 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry import (
+from uplift.colorimetry import Light, delta_e_spectra, lab, rgb_to_lab
+from uplift.colorimetry.likely_errors import (
     ExpectedError,
-    Light,
-    delta_e_spectra,
     expected_error,
-    lab,
     learn_radii,
     mahalanobis,
-    rgb_to_lab,
 )
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
-from uplift.lookup import evidence
+from uplift.lookup.errors_under_lights import evidence
 from uplift.models import reflectance
 
 LIKELY = 0.95

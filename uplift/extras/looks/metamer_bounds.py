@@ -10,7 +10,8 @@ from uplift.colorimetry import Light, in_unit_cube, lab, solid_volume
 from uplift.common.arrays import Array
 from uplift.extras.looks import mismatch
 from uplift.extras.looks.lab_errors import lab_errors
-from uplift.lookup import Cube, reflectance_anywhere
+from uplift.lookup import Cube
+from uplift.lookup.outside import reflectance_anywhere
 
 
 @dataclass(frozen=True, eq=False, repr=False)

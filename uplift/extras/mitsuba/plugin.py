@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import map_to_gamut
-from uplift.colorimetry.gamut import METHODS
+from uplift.colorimetry.gamut import METHODS, map_to_gamut
 from uplift.common.arrays import Array, Values
 from uplift.common.errors import (
     ColourError,

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import SRGB, Gamut, Sensor, lab_to_xyz
+from uplift.colorimetry import Sensor, lab_to_xyz
+from uplift.colorimetry.gamut import SRGB, Gamut
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array, StrPath
 from uplift.extras.colour.query import QueryResult

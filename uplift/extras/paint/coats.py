@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry import check_method, map_to_gamut
+from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array, Floats
 from uplift.common.errors import OptionError, UpliftWarning, warn

@@ -23,7 +23,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry import DEFAULT_ILLUMINANT, Sensor, observer
+from uplift.colorimetry import Sensor, observer
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.colorimetry.tables import samples
 from uplift.common.arrays import Array
 from uplift.extras.paint import pigments

@@ -5,7 +5,8 @@ derivatives, and powers of lights.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry import Illuminant, Sensor, lab_jacobian, observer
+from uplift.colorimetry import Sensor, lab_jacobian, observer
+from uplift.colorimetry.lights import Illuminant
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 

@@ -18,14 +18,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry import (
-    SRGB,
-    Illuminant,
-    Sensor,
-    conversion,
-    delta_e_2000,
-    rgb_to_lab,
-)
+from uplift.colorimetry import Sensor, delta_e_2000, rgb_to_lab
+from uplift.colorimetry.gamut import SRGB, conversion
+from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array, Floats, StrPath
 from uplift.common.errors import OutputError
@@ -46,7 +41,8 @@ from uplift.extras.pages.figure import (
 from uplift.extras.pages.html import render, resource
 from uplift.extras.report.measures import mean_p95_max
 from uplift.extras.texture.image import read_error, utf8_name
-from uplift.lookup import Cube, prepare_products
+from uplift.lookup import Cube
+from uplift.lookup.node_table import prepare_products
 
 # name of the method that multiplies the RGB of the image by those of the light
 RGB_PRODUCT = "RGB × light"

@@ -10,7 +10,8 @@ from itertools import product
 
 import numpy as np
 
-from uplift.colorimetry import Illuminant, conversion
+from uplift.colorimetry.gamut import conversion
+from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Floats
 from uplift.extras.colour.spaces import find_space
@@ -24,7 +25,8 @@ from uplift.extras.texture.uplifter import (
     Sampler,
     channel_name,
 )
-from uplift.lookup import Cube, prepare_products
+from uplift.lookup import Cube
+from uplift.lookup.node_table import prepare_products
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas import Atlas
-from uplift.colorimetry import Illuminant, Sensor
+from uplift.colorimetry import Sensor
+from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array
 from uplift.cube import CubeData, summarise

@@ -10,19 +10,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, resample
-from uplift.colorimetry import (
-    Light,
-    Sensor,
-    delta_e_spectra,
-    in_unit_cube,
-    map_to_gamut,
-)
+from uplift.colorimetry import Light, Sensor, delta_e_spectra, in_unit_cube
+from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.observer import light, on_range
 from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
 from uplift.extras.report.measures import delta_e_under
-from uplift.lookup import MAPPING, Cube, load, refine_to_rgb, reflectance_anywhere
+from uplift.lookup import Cube, load, refine_to_rgb
 from uplift.lookup.interpolate import lattice_spectra
+from uplift.lookup.outside import MAPPING, reflectance_anywhere
 from uplift.models import Sigmoid, evaluate
 
 

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import SRGB, Light, Sensor, conversion
+from uplift.colorimetry import Light, Sensor
+from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError

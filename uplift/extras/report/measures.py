@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry import COVERAGE, Light, delta_e_rgb, delta_e_spectra
+from uplift.colorimetry import Light, delta_e_rgb, delta_e_spectra
+from uplift.colorimetry.likely_errors import COVERAGE
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lattice import Status

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from uplift.atlas import Atlas, merge, read_atlas, read_document, shipped_atlases
-from uplift.colorimetry import Camera, Sensor
+from uplift.colorimetry import Sensor
+from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.observer import is_camera_file
 from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import (

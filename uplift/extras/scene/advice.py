@@ -28,7 +28,8 @@ from uplift.extras.pages.figure import (
 from uplift.extras.texture.scene_colours import BINS, Images, PixelSample, bin_index
 from uplift.fit import posterior
 from uplift.fit.kriging import DEFAULT, Kernel
-from uplift.lookup import Cube, light_errors
+from uplift.lookup import Cube
+from uplift.lookup.errors_under_lights import light_errors
 
 STEPS = (1, 2, 4, 8)
 """Bins along each channel that are joined; the first that leave few colours are taken.

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from uplift.colorimetry import SRGB, Primaries
+from uplift.colorimetry.gamut import SRGB, Primaries
 from uplift.common.arrays import Array
 from uplift.extras.colour.spaces import ImageSpace, OcioSpace
 from uplift.extras.colour.srgb import decode

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import SRGB, Primaries
+from uplift.colorimetry.gamut import SRGB, Primaries
 from uplift.common.errors import OptionError
 from uplift.extras.colour.spaces import ImageSpace, OcioSpace, find_ocio_space
 from uplift.extras.colour.srgb import decode

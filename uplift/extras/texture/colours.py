@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, map_to_gamut
+from uplift.colorimetry import Sensor
+from uplift.colorimetry.gamut import map_to_gamut
 from uplift.common.arrays import Array, Floats, StrPath, Values
 from uplift.common.errors import OptionError, TextureError, UpliftWarning, unknown_name
 from uplift.common.text import pluralise

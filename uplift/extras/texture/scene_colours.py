@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, check_method
+from uplift.colorimetry import Sensor
+from uplift.colorimetry.gamut import check_method
 from uplift.common.arrays import Array, Indices, Mask, StrPath
 from uplift.common.errors import OptionError, TextureError, warn
 from uplift.common.files import file_digest

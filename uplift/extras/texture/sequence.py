@@ -10,7 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from uplift.colorimetry import Illuminant
+from uplift.colorimetry.lights import Illuminant
 from uplift.common.errors import (
     OptionError,
     OutputError,

@@ -14,7 +14,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from uplift import models
-from uplift.colorimetry import Illuminant, Lamp, Sensor, check_method, map_to_gamut
+from uplift.colorimetry import Sensor
+from uplift.colorimetry.gamut import check_method, map_to_gamut
+from uplift.colorimetry.lights import Illuminant, Lamp
 from uplift.colorimetry.observer import check_distinct, light
 from uplift.common.arrays import Array, Floats, Indices, Values
 from uplift.common.errors import OptionError
@@ -26,14 +28,13 @@ from uplift.extras.texture.image import Image, Part
 from uplift.lattice import BoxHits, OutsideBoxes
 from uplift.lookup import (
     Cube,
-    LightErrors,
     as_wavelengths,
     blockwise,
     extended_multipliers,
-    light_errors,
     refine_to_rgb,
     refined_multipliers,
 )
+from uplift.lookup.errors_under_lights import LightErrors, light_errors
 from uplift.lookup.interpolate import is_inexact
 from uplift.models import Model
 

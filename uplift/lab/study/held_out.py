@@ -13,13 +13,13 @@ from scipy.spatial.distance import cdist
 
 from uplift.atlas import Atlas, resample
 from uplift.colorimetry import (
-    SCENE_LIGHTS,
     Sensor,
     delta_e_spectra,
     in_unit_cube,
     observer,
     rgb_to_lab,
 )
+from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress

@@ -10,14 +10,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field
 
-from uplift.colorimetry import (
-    DEFAULT_ILLUMINANT,
-    SCENE_LIGHTS,
-    Illuminant,
-    Lamp,
-    Sensor,
-    observer,
-)
+from uplift.colorimetry import Sensor, observer
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS, Illuminant, Lamp
 from uplift.common.arrays import StrPath
 from uplift.common.errors import (
     OptionError,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uplift.colorimetry import SRGB, map_to_gamut
+from uplift.colorimetry.gamut import SRGB, map_to_gamut
 from uplift.common.arrays import Array, StrPath
 from uplift.common.text import pluralise
 from uplift.extras.colour.srgb import encode
