@@ -185,7 +185,9 @@ def check_range(wavelengths: Array, own: Array) -> None:
     continues spectra.
     """
     first, last = own[[0, -1]]
-    outside = [each for each in wavelengths if not first <= each <= last]
+    outside = [
+        wavelength for wavelength in wavelengths if not first <= wavelength <= last
+    ]
     if outside:
         micrometres = f"give nm: {outside[0]:g} µm are {1000 * outside[0]:g} nm"
         hint = (

@@ -96,7 +96,7 @@ class Command(click.Command):
     ) -> None:
         """Write the options of every day, the last two of help, or all options."""
         *own, help_all, help_option = (
-            each for each in self.get_params(ctx) if isinstance(each, click.Option)
+            param for param in self.get_params(ctx) if isinstance(param, click.Option)
         )
         shown = [
             each for each in own if HELP_ALL in ctx.meta or each.name in self.everyday

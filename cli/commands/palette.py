@@ -154,7 +154,7 @@ def _read_picture(
             )
         colours[name] = colour
     return read_weights(
-        image, [part.name for part in palette.materials], colours or None
+        image, [material.name for material in palette.materials], colours or None
     )
 
 
@@ -233,10 +233,10 @@ def _parts(
 ) -> list[dict[str, object]]:
     return [
         {
-            "name": part.name,
-            "designed": part.designed,
+            "name": spec.name,
+            "designed": spec.designed,
             "samples": samples.tolist(),
             "coefficients": coefficients(samples).tolist(),
         }
-        for part, samples in zip(specs, spectra, strict=True)
+        for spec, samples in zip(specs, spectra, strict=True)
     ]

@@ -84,10 +84,8 @@ def command(
         table = make_table(("",), summary.HEADINGS[:4])
         for heading in summary.HEADINGS[4:]:
             table.add_column(heading)
-        for each in summary.front_rows(result):
-            table.add_row(
-                "→" if each is result.chosen else "", *summary.front_row(each)
-            )
+        for row in summary.front_rows(result):
+            table.add_row("→" if row is result.chosen else "", *summary.front_row(row))
         show(table)
         say()
         paragraph(summary.describe_error(result))

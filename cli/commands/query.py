@@ -126,8 +126,8 @@ class Answers:
 
             setting = self.cube.observer, *data.sensor.range
             self.to_srgb = {
-                each.illuminant: each.xyz_to_rgb
-                for each in display_sensors(lights, *setting)
+                sensor.illuminant: sensor.xyz_to_rgb
+                for sensor in display_sensors(lights, *setting)
             }
             lit = [light(given, *setting) for given in lights]
             self.lights = list({each.name: each for each in lit}.values())

@@ -293,6 +293,8 @@ def smallest_space(
     """
     candidates = (sensor(space, illuminant, observer) for space in COMMON_SPACES)
     holding = (
-        each.space for each in candidates if in_unit_cube(each.rgb(reflectances)).all()
+        candidate.space
+        for candidate in candidates
+        if in_unit_cube(candidate.rgb(reflectances)).all()
     )
     return next(holding, None)

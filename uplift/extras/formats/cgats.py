@@ -163,5 +163,8 @@ def _with_exact_wavelengths(
     if len(labels) != bands or np.abs(exact - labels).max() > 1:
         return found
     return replace(
-        found, spectra=tuple(replace(each, wavelengths=exact) for each in found.spectra)
+        found,
+        spectra=tuple(
+            replace(spectrum, wavelengths=exact) for spectrum in found.spectra
+        ),
     )

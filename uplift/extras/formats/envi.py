@@ -121,7 +121,12 @@ def _pair(document: Document) -> tuple[Path, Path]:
             Path(f"{path}{HEADER}"),
         ]
     other = next(
-        (each for each in candidates if each.is_file() and each != path), candidates[0]
+        (
+            candidate
+            for candidate in candidates
+            if candidate.is_file() and candidate != path
+        ),
+        candidates[0],
     )
     hint = f"put {other.name} next to it: an ENVI library has two files"
     content = read_bytes(other, AtlasError, limit=MAX_BYTES, hint=hint)

@@ -170,10 +170,10 @@ def plot_map(
     of unrealisable nodes. ``runs`` are records of `uplift.lab.study.stability.run`.
     """
     names = [
-        each["model"]
-        if each["model"] == Sigmoid.name
-        else f"moments {each['coefficients']:2}"
-        for each in runs
+        run["model"]
+        if run["model"] == Sigmoid.name
+        else f"moments {run['coefficients']:2}"
+        for run in runs
     ]
     runs = [{**each, "model": name} for each, name in zip(runs, names, strict=True)]
     ratios = np.clip([each["worst"] / each["threshold"] for each in runs], *RATIOS)

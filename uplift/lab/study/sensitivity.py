@@ -201,8 +201,8 @@ def changed_atlases(
     for seed in range(NOISE_DRAWS):
         rng = np.random.default_rng(seed)
         noisy = [
-            (each, each.values + rng.normal(0, NOISE, len(each.values)))
-            for each in entries
+            (entry, entry.values + rng.normal(0, NOISE, len(entry.values)))
+            for entry in entries
         ]
         changed = [
             replace(each, values=np.clip(values, LOWEST, HIGHEST))
