@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from uplift.common.errors import OptionError, UpliftWarning
+from uplift.common.errors import OptionError, OutputError, UpliftWarning
 from uplift.common.text import format_value, parse_float, pluralise
 
 from .. import options
@@ -31,6 +31,11 @@ if TYPE_CHECKING:
 
 ALLOWED_WITH_PLAN = {"plan_path", "output", "debug", "force", "quiet", "verbose"}
 """Parameters that may accompany --plan."""
+OTHER_FILES = {
+    ".csv", ".cube", ".exr", ".h", ".html", ".json", ".npz", ".pdf", ".png", ".svg",
+    ".toml", ".txt",
+}  # fmt: skip
+"""Suffixes of what is not a cube."""
 OF_IMAGES = ("encoding", "method", "input_space")
 """Parameters of --scene images, in the order of
 `uplift.extras.texture.scene_colours.Images`.
@@ -251,6 +256,9 @@ def command(
     else:
         planned = _of_options(files, output, scale, missing, images, settings)
     path = planned.path
+    if path.suffix.lower() in OTHER_FILES:
+        hint = "give a name ending in .uplift; uplift export writes other formats"
+        raise OutputError("cubes are .uplift files", path=path, hint=hint)
     slices = path.with_suffix(".exr") if debug else None
     check_outputs(path, slices, inputs=planned.inputs)
     begin = time.perf_counter()

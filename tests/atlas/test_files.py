@@ -293,3 +293,10 @@ def test_errors_of_a_row_show_what_is_in_the_file(save, row, words):
     with raises(AtlasError) as caught:
         read_atlas(save(f"name,400,550,700\nred,10,20,60\n{row}\ngrey,50,50,50\n"))
     assert words in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["grey.xlsx", "grey.png", "grey.spd"])
+def test_an_atlas_is_written_as_text_or_a_table(tmp_path, name):
+    with raises(OutputError, "output"):
+        write_atlas(GREY, tmp_path / name)
+    assert not (tmp_path / name).exists()

@@ -8,6 +8,7 @@ import colour
 import numpy as np
 import pytest
 
+import uplift
 from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError, UnknownNameError
 from uplift.lookup import BLOCK, MODES, find_file
@@ -173,3 +174,8 @@ def test_names_stand_for_packaged_files_unless_a_file_has_the_name(
     (tmp_path / "srgb").write_bytes(b"")
     assert find_file("srgb") == "srgb"
     assert find_file("sRGB") == DEFAULT
+
+
+def test_components_in_three_arguments_are_no_colour():
+    with raises(ColourError):
+        uplift.load().reflectance(0.5, 0.2, 0.1)

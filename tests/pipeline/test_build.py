@@ -260,3 +260,10 @@ def test_the_dim_that_an_error_names_fits_into_free_memory(monkeypatch):
     check_memory(Options(dim=largest))
     with raises(OptionError, "out-of-memory"):
         check_memory(Options(dim=largest + 1))
+
+
+@pytest.mark.parametrize("atlas", [np.ones((3, 81)), {"a": 1}, 3, ["macbeth", 3]])
+def test_what_is_not_an_atlas_has_an_error_that_helps(atlas):
+    with raises(AtlasError, "atlas") as caught:
+        uplift.build(atlas, dim=4)
+    assert "Entry" in caught.value.hint

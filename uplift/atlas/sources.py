@@ -179,6 +179,10 @@ def write_atlas(
     suffix = os.path.splitext(path)[1].lower()
     written = [form for form in known_formats() if form.written]
     form = next((form for form in written if form.suffixes[0] == suffix), ART)
+    if suffix not in ("", form.suffixes[0], *ART.suffixes):
+        known = " or ".join(form.suffixes[0] for form in written)
+        problem = f"an atlas is written to files ending in {known}"
+        raise OutputError(problem, path=path, hint="give another name")
     text = import_module(form.module).text(atlas, header)
     write_text(text, path, force=force)
 

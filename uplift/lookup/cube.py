@@ -208,12 +208,12 @@ class Cube:
         >>> spectra.round(3).tolist()
         [[1.0, 1.0], [0.0, 0.0]]
         """
+        colours = blocks.as_colours(rgb, self.data.sensor)
         if mode not in MODES:
             raise unknown_name(str(mode), MODES, "mode")
         at = blocks.as_wavelengths(wavelengths, self.data.sensor.wavelengths)
         kind = blocks.as_float_type(dtype)
         count = blocks.as_thread_count(threads)
-        colours = blocks.as_colours(rgb, self.data.sensor)
         function: blocks.Function = partial(MODES[mode], self.data, wavelengths=at)
         if mode in TABULATED and self._is_table_worthwhile(
             colours, len(at) * kind.itemsize

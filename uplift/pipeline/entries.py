@@ -15,7 +15,7 @@ from uplift.colorimetry import Sensor, in_unit_cube
 from uplift.colorimetry.observer import COMMON_SPACES, grid, smallest_space
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import AtlasError, OptionError, UpliftWarning, warn
-from uplift.common.text import listed
+from uplift.common.text import format_value, listed
 from uplift.cube import AtlasTable, EntrySpectra
 from uplift.fit import (
     NO_FREEDOM,
@@ -130,7 +130,15 @@ def as_atlas(atlas: AtlasLike) -> Atlas:
     """Return an atlas as given, or read from one file or several."""
     if atlas is None or isinstance(atlas, Atlas):
         return Atlas() if atlas is None else atlas
-    return read_atlas(*([atlas] if isinstance(atlas, str | os.PathLike) else atlas))
+    files = [atlas] if isinstance(atlas, str | os.PathLike) else atlas
+    are_files = isinstance(files, Sequence) and all(
+        isinstance(file, str | os.PathLike) for file in files
+    )
+    if not are_files:
+        hint = "give uplift.Atlas((uplift.Entry(name, wavelengths, values), ...))"
+        problem = f"an atlas is an Atlas, a file or files, got {format_value(atlas)}"
+        raise AtlasError(problem, hint=hint)
+    return read_atlas(*files)
 
 
 def split_by_gamut(
