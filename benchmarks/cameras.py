@@ -3,12 +3,11 @@ docs/guides/cameras.md.
 """
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
 
-from benchmarks import record
+from benchmarks import Row, record
 from benchmarks.choices import ALONE, OURS, mark
 from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.colorimetry import Sensor, delta_e_2000, lab, observer, tables
@@ -112,7 +111,7 @@ def realisable_share(sensor: Sensor, dim: int = DIM) -> float:
     return float(solid(sensor.matrix).contains(nodes).mean())
 
 
-def compare(camera: str, illuminant: str) -> dict[str, Any]:
+def compare(camera: str, illuminant: str) -> Row:
     """Compare the methods on the held-out halves of all splits."""
     atlas = read_atlas(ATLAS)
     sensor = observer.sensor(CAMERA, illuminant, camera)

@@ -3,9 +3,8 @@
 """
 
 from itertools import chain
-from typing import Any
 
-from benchmarks import ATLASES, DOCS, ROOT, record, show
+from benchmarks import ATLASES, DOCS, ROOT, Row, record, show
 from benchmarks.choices import ALONE, OURS, mark
 from benchmarks.materials import SHIPPED
 from uplift.atlas import read_atlas
@@ -59,7 +58,7 @@ def publish(chart: Chart) -> None:
     )
 
 
-def fronts(chart: Chart) -> list[dict[str, Any]]:
+def fronts(chart: Chart) -> list[Row]:
     """Return the Pareto front of every panel, fastest first; the panel is named in its
     first row. Times in ns.
     """
@@ -79,7 +78,7 @@ def fronts(chart: Chart) -> list[dict[str, Any]]:
     return rows
 
 
-def method_record(row: MethodResult, batches: tuple[int, ...]) -> dict[str, Any]:
+def method_record(row: MethodResult, batches: tuple[int, ...]) -> Row:
     """Return the figures of a method; ``mark_N`` marks calls with fewer than N colours,
     ``total_N`` has the set-up.
     """

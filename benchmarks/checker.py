@@ -5,11 +5,10 @@ scene.
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from benchmarks import MACBETH
+from benchmarks import MACBETH, Row
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import SRGB
@@ -35,7 +34,7 @@ CIE_Y_INTEGRAL = 106.856895
 DPI = 160
 Place = tuple[slice, slice]
 """Rows and columns of a part of a picture."""
-Reflectances = list[dict[str, Any]]
+Reflectances = list[Row]
 """Textures of Mitsuba for the patches."""
 
 
@@ -189,7 +188,7 @@ def measured_spectra(painted: Chart) -> Reflectances:
     ]
 
 
-def constant_light(illuminant: str) -> dict[str, Any]:
+def constant_light(illuminant: str) -> Row:
     """Return uniform illumination, as bright as makes white's Y = 1."""
     sensor = observer.sensor(illuminant=illuminant)
     step = sensor.wavelengths[1] - sensor.wavelengths[0]
@@ -202,7 +201,7 @@ def constant_light(illuminant: str) -> dict[str, Any]:
     }
 
 
-def regular_spectrum(wavelengths: Array, values: Array) -> dict[str, Any]:
+def regular_spectrum(wavelengths: Array, values: Array) -> Row:
     """Describe samples with straight lines between them."""
     return {
         "type": "regular",
@@ -213,7 +212,7 @@ def regular_spectrum(wavelengths: Array, values: Array) -> dict[str, Any]:
 
 
 def render(
-    emitter: dict[str, Any],
+    emitter: Row,
     reflectances: Reflectances,
     layout: Layout,
     spp: int,
@@ -226,9 +225,7 @@ def render(
 
     transform, (width, height) = mi.ScalarTransform4f, layout.size
 
-    def square(
-        reflectance: dict[str, Any], middle: list[float], scale: list[float]
-    ) -> dict[str, Any]:
+    def square(reflectance: Row, middle: list[float], scale: list[float]) -> Row:
         placed = transform().translate(middle).scale(scale)
         return {
             "type": "rectangle",
@@ -266,7 +263,7 @@ def render(
     return np.array(mi.render(mi.load_dict(scene), spp=spp, seed=seed), dtype=float)
 
 
-def xyz_film(width: int, height: int) -> dict[str, Any]:
+def xyz_film(width: int, height: int) -> Row:
     """Describe a film of XYZ."""
     size = {"width": width, "height": height}
     return {

@@ -6,12 +6,11 @@ import warnings
 from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import colour
 import numpy as np
 
-from benchmarks import DOCS, record
+from benchmarks import DOCS, Row, record
 from uplift.colorimetry import delta_e_2000, lab
 from uplift.colorimetry.gamut import METHODS, SRGB, Primaries, conversion, map_to_gamut
 from uplift.colorimetry.srgb import encode
@@ -164,7 +163,7 @@ def main() -> None:
     )
 
 
-def errors(found: Chips, mapped: Array) -> dict[str, Any]:
+def errors(found: Chips, mapped: Array) -> Row:
     """Return statistics of the hue shift, |ΔL*| and ΔE00 of mapped colours."""
     original = _lab(found.rgb)
     changed = _lab(mapped)

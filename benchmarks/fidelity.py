@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from functools import cache
 from itertools import chain, product
-from typing import Any
 
 import numpy as np
 
@@ -269,7 +268,7 @@ def learning_curve(parts: int) -> Row:
 
 
 @cache
-def methods() -> dict[str, Any]:
+def methods() -> Row:
     """Return the methods of other authors, which use no atlas."""
     task = make_task({"macbeth": spectra("macbeth")})
     return {

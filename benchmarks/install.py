@@ -7,9 +7,8 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
 
-from benchmarks import ROOT, record
+from benchmarks import ROOT, Row, record
 
 WAYS = {"pip install .": ".", "pip install '.[plots]'": ".[plots]"}
 OF_PIP = {"pip", "setuptools"}
@@ -42,7 +41,7 @@ def main() -> None:
     ways.
     """
     found = {way: sizes(requirement) for way, requirement in WAYS.items()}
-    ways: list[dict[str, Any]] = [
+    ways: list[Row] = [
         {"way": way, "distributions": len(each), "megabytes": sum(each.values()) / 1e6}
         for way, each in found.items()
     ]

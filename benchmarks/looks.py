@@ -105,7 +105,7 @@ def main() -> None:
     look_cubes()
 
 
-def method(cube: Cube, rgb: Array, found: Bounds) -> dict[str, Any]:
+def method(cube: Cube, rgb: Array, found: Bounds) -> Row:
     """Return the cost and the errors of the search under a light."""
     fine = bounds(cube, rgb, found.light, divisions=FINE_DIVISIONS)
     more = fine.largest.delta_e_2000 - found.largest.delta_e_2000
@@ -119,7 +119,7 @@ def method(cube: Cube, rgb: Array, found: Bounds) -> dict[str, Any]:
     }
 
 
-def likely(name: str) -> Iterator[dict[str, Any]]:
+def likely(name: str) -> Iterator[Row]:
     """Yield the share of held-out materials in the likely region, by light."""
     pairs = other_halves(name, dim=32, coefficients=COEFFICIENTS)
     for each in map(light, LIKELY_LIGHTS):

@@ -3,12 +3,11 @@ docs/reproductions.md and its pictures.
 """
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, DOCS, MACBETH, read_reference, record
+from benchmarks import ATLASES, DOCS, MACBETH, Row, read_reference, record
 from benchmarks.materials import inside
 from uplift.atlas import Atlas, merge
 from uplift.colorimetry import observer
@@ -127,7 +126,7 @@ def with_moments(errors: Errors, count: int) -> dict[str, Pair]:
     return {one.short: errors[one, count] for one in TECHNIQUES}
 
 
-def best(errors: Errors, floats: int) -> dict[str, Any]:
+def best(errors: Errors, floats: int) -> Row:
     """Return the best techniques by mean and by largest error."""
     found = {one: errors[one, max_moments(one, floats)] for one in TECHNIQUES}
     rows = []
@@ -138,9 +137,7 @@ def best(errors: Errors, floats: int) -> dict[str, Any]:
     return {"mean": rows[0], "max": rows[1]}
 
 
-def under_lights(
-    study: MomentsStudy, floats: int, technique: Technique
-) -> dict[str, Any]:
+def under_lights(study: MomentsStudy, floats: int, technique: Technique) -> Row:
     """Return ΔE00 under each light and the rms difference of the spectra."""
     _, *delta_e, rms = pairs(study, technique, max_moments(technique, floats))
     errors = dict(zip(REPORT_LIGHTS, delta_e, strict=True))
@@ -152,7 +149,7 @@ def under_lights(
     }
 
 
-def warp_errors(measured: Array, warp: str, floats: int) -> dict[str, Any]:
+def warp_errors(measured: Array, warp: str, floats: int) -> Row:
     """Return ΔE76 under D65 and the rms difference of reflectances (E, 401) from those
     of their mirrored moments.
     """
@@ -175,7 +172,7 @@ def warp_errors(measured: Array, warp: str, floats: int) -> dict[str, Any]:
     }
 
 
-def cube_errors(atlases: Mapping[str, Atlas], warp: str, count: int) -> dict[str, Any]:
+def cube_errors(atlases: Mapping[str, Atlas], warp: str, count: int) -> Row:
     """Return mean ΔE00 under each light of a ColorChecker cube, at the entries of all
     other atlases in sRGB.
     """

@@ -4,11 +4,10 @@ docs/palette.md.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from benchmarks import ATLASES, DOCS, record
+from benchmarks import ATLASES, DOCS, Row, record
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import Sensor, delta_e_rgb, observer
 from uplift.common.arrays import Array
@@ -134,7 +133,7 @@ def main() -> None:
     )
 
 
-def by_bounces(paths: LightPaths, products: dict[str, Product]) -> list[dict[str, Any]]:
+def by_bounces(paths: LightPaths, products: dict[str, Product]) -> list[Row]:
     """Return mean ΔE00 and 95th percentile by number of reflections, and the gain over
     RGB.
     """
@@ -158,7 +157,7 @@ def by_bounces(paths: LightPaths, products: dict[str, Product]) -> list[dict[str
     return [row | {"gain": rows[0]["all"] / row["all"]} for row in rows]
 
 
-def by_light(paths: LightPaths, light: str, model: FactorModel) -> dict[str, Any]:
+def by_light(paths: LightPaths, light: str, model: FactorModel) -> Row:
     """Return mean ΔE00 under a light over all numbers of reflections."""
     products = {"rgb": by_rgb(paths.sensor), "factor": by_factors(model)}
     means = {

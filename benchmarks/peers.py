@@ -14,11 +14,10 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from benchmarks import ROOT, record
+from benchmarks import ROOT, Row, record
 from uplift.colorimetry import Sensor, observer
 from uplift.common.arrays import Array
 from uplift.extras.images.processes import call_in_child
@@ -194,9 +193,7 @@ def _ceres_row(
     )
 
 
-def _run_ceres(
-    program: Path, unknowns: str, count: int
-) -> tuple[Array, dict[str, Any]]:
+def _run_ceres(program: Path, unknowns: str, count: int) -> tuple[Array, Row]:
     """Return the solutions (n, count), and the statistics printed by the program."""
     numbers = np.concatenate([SENSOR.wavelengths, SENSOR.matrix.ravel(), LATTICE.nodes])
     text = (

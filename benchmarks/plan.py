@@ -9,12 +9,11 @@ import subprocess
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, DOCS, MACBETH, record
+from benchmarks import ATLASES, DOCS, MACBETH, Row, record
 from benchmarks.performance import UPLIFT
 from benchmarks.pictures import Picture, pictures
 from uplift.colorimetry import delta_e_spectra
@@ -120,7 +119,7 @@ def main() -> None:
     )
 
 
-def run(folder: Path, case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
+def run(folder: Path, case: Case) -> tuple[Row, Row]:
     """Plan a scene; return the figures of the page, and the plan."""
     (folder / "scene.toml").write_text(case.scene(), encoding="utf-8")
     seconds = children_cpu(
@@ -156,7 +155,7 @@ def call(folder: Path, line: str) -> None:
     )
 
 
-def draw(plan: dict[str, Any]) -> None:
+def draw(plan: Row) -> None:
     """Draw error over memory and over samples for the front of a plan."""
     axes = {
         "memory": ("cube file and pixels", format_size),
@@ -164,7 +163,7 @@ def draw(plan: dict[str, Any]) -> None:
     }
     styles = {True: (ACCENT, "D"), False: (INK, "o")}
 
-    def point(row: int, each: dict[str, Any], key: str) -> Point:
+    def point(row: int, each: Row, key: str) -> Point:
         style = styles[each["name"] == plan["name"]]
         return Point(
             row, each["name"], each[key], each["error"]["quantile"], *style, named=False
@@ -195,7 +194,7 @@ def sparse_cubes() -> None:
     record("plan", "scenes", runs=RUNS, sections=sections)
 
 
-def measure(images: list[Picture], space: str, dim: int) -> dict[str, Any]:
+def measure(images: list[Picture], space: str, dim: int) -> Row:
     """Compare the complete cube with a sparse cube for each image, and for
     all images.
     """
@@ -229,7 +228,7 @@ def build(space: str, dim: int, scene: list[Picture]) -> Measured:
         return made[-1], cpu, path.stat().st_size
 
 
-def compare(name: str, sparse: Measured, complete: Measured) -> dict[str, Any]:
+def compare(name: str, sparse: Measured, complete: Measured) -> Row:
     """Compare nodes, size and time; differences of answers are unknown."""
     (cube, seconds, size), (all_nodes, all_seconds, all_size) = sparse, complete
     nodes = int(cube.data.points.present.sum())

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import CUBES, DOCS, MACBETH, checker, record
+from benchmarks import CUBES, DOCS, MACBETH, Row, checker, record
 from benchmarks.checker import Chart, Layout, Reflectances
 from benchmarks.checker import render as render_chart
 from uplift.colorimetry import delta_e_2000, lab
@@ -136,7 +136,7 @@ def render(methods: dict[str, Reflectances], layout: Layout, spp: int) -> Render
     return Renders(images, delta_e)
 
 
-def figures(painted: Chart, renders: Renders) -> dict[str, Any]:
+def figures(painted: Chart, renders: Renders) -> Row:
     """Return the errors by method and by patch; means are over all patches, and over
     those inside sRGB.
     """
@@ -178,7 +178,7 @@ def figures(painted: Chart, renders: Renders) -> dict[str, Any]:
 
 def rates() -> None:
     """Measure the rates of all variants and store."""
-    rows: list[dict[str, Any]] = []
+    rows: list[Row] = []
     for variant in VARIANTS:
         try:
             rows += call_in_child(measure_rates, variant, seconds=LIMIT)
@@ -191,7 +191,7 @@ def rates() -> None:
     record("render", "render-rates", mitsuba=mitsuba.__version__, **figures, rows=rows)
 
 
-def measure_rates(variant: str) -> list[dict[str, Any]]:
+def measure_rates(variant: str) -> list[Row]:
     """Measure a variant in this process."""
     import mitsuba
 
@@ -206,9 +206,7 @@ def measure_rates(variant: str) -> list[dict[str, Any]]:
     )
 
 
-def _rows(
-    variant: str, depth: int, textures: dict[str, Any]
-) -> Iterator[dict[str, Any]]:
+def _rows(variant: str, depth: int, textures: Row) -> Iterator[Row]:
     runs = {name: _rendering(texture, depth) for name, texture in textures.items()}
     seconds: dict[str, list[float]] = {name: [] for name in textures}
     for seed in range(ROUNDS + 1):
@@ -231,7 +229,7 @@ def _rows(
         }
 
 
-def _textures(folder: Path) -> dict[str, dict[str, Any]]:
+def _textures(folder: Path) -> dict[str, Row]:
     import mitsuba
 
     from uplift.extras import texture
@@ -240,7 +238,7 @@ def _textures(folder: Path) -> dict[str, dict[str, Any]]:
     image = _image(SIZE)
     mitsuba.Bitmap(image).write(str(folder / "image.exr"))
 
-    def convert(encoding: PixelEncoding) -> dict[str, Any]:
+    def convert(encoding: PixelEncoding) -> Row:
         target = folder / f"{encoding.name}.exr"
         texture.convert(
             texture.prepare(uplift.load(PLAIN_CUBE), encoding),
@@ -289,7 +287,7 @@ def _rendering(texture: Any, depth: int) -> Callable[[int], None]:
     return run
 
 
-def _scene(texture: Any, size: int, depth: int) -> dict[str, Any]:
+def _scene(texture: Any, size: int, depth: int) -> Row:
     """Describe a plane and a sphere of the texture under uniform light."""
     import mitsuba as mi
 

@@ -6,14 +6,13 @@ instead of rendered; docs/scene.md has renderings of the same chart, which agree
 
 import tempfile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from PIL import Image
 from scipy.ndimage import map_coordinates
 
 import uplift
-from benchmarks import DOCS, record
+from benchmarks import DOCS, Row, record
 from benchmarks.checker import BACKGROUND, Layout, chart, draw
 from tests.examples import build_wheel, run_lines, unpack
 from uplift.colorimetry import delta_e_2000, lab
@@ -101,7 +100,7 @@ def session() -> list[dict[str, str]]:
     ]
 
 
-def draw_charts(cubes: Cubes) -> list[dict[str, Any]]:
+def draw_charts(cubes: Cubes) -> list[Row]:
     """Draw the chart by all methods, and by two; return the errors by method and light.
 
     Patches have a measured square by all methods, and a measured left half by two.
@@ -116,7 +115,7 @@ def draw_charts(cubes: Cubes) -> list[dict[str, Any]]:
     images = {}
     errors = {}
     to_screen = {}
-    rows: dict[str, dict[str, Any]] = {name: {"method": name} for name in METHODS}
+    rows: dict[str, Row] = {name: {"method": name} for name in METHODS}
     for lamp in map(light, RELIGHT_LIGHTS):
         to_screen[lamp.name] = sensor(illuminant=lamp.name).xyz_to_rgb
         xyz = {name: values @ lamp.xyz.T for name, values in spectra.items()}

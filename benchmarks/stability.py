@@ -3,7 +3,6 @@ docs/stability.md and its pictures.
 """
 
 from itertools import chain
-from typing import Any
 
 import numpy as np
 
@@ -107,7 +106,7 @@ def published() -> None:
     )
 
 
-def failure_map() -> list[dict[str, Any]]:
+def failure_map() -> list[Row]:
     """Run the builds of the design, and plot them."""
     atlases = {"macbeth": uplift.read_atlas("macbeth")} | {
         name: make() for name, make in SYNTHETIC_ATLASES.items()
@@ -119,7 +118,7 @@ def failure_map() -> list[dict[str, Any]]:
     return [row | {"technique": config.model_label} for config, row in results.items()]
 
 
-def cube_sensitivity(name: str) -> dict[str, Any]:
+def cube_sensitivity(name: str) -> Row:
     """Measure the sensitivity of a stored cube, and plot the effect of entries that are
     left out.
     """
@@ -132,7 +131,7 @@ def cube_sensitivity(name: str) -> dict[str, Any]:
     return {"moves": moves, "changes": [change.record() for change in changes]}
 
 
-def summary(title: str, part: str, changes: list[dict[str, Any]]) -> dict[str, Any]:
+def summary(title: str, part: str, changes: list[Row]) -> Row:
     """Summarise the changed atlases whose descriptions have a part."""
     kind = [one for one in changes if part in one["change"]]
     worst = max(kind, key=lambda one: one["moved"])

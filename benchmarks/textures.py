@@ -4,13 +4,12 @@ import tempfile
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import OpenEXR
 
 import uplift
-from benchmarks import CUBES, MACBETH, record
+from benchmarks import CUBES, MACBETH, Row, record
 from benchmarks.performance import UPLIFT
 from benchmarks.pictures import Picture, colour, pictures
 from uplift.colorimetry import delta_e_rgb
@@ -42,9 +41,7 @@ GRIDS = (
 """First, last, step in nm."""
 
 
-def round_trips(
-    cube: Cube, images: list[Picture], target: Path
-) -> Iterator[dict[str, Any]]:
+def round_trips(cube: Cube, images: list[Picture], target: Path) -> Iterator[Row]:
     """Yield ΔE00 between each image and its textures, read by OpenEXR and, where
     spectral, by colour-science.
     """
@@ -113,7 +110,7 @@ def _rgb_by_colour_science(path: Path) -> Array:
 
 def fewer_wavelengths(
     cube: Cube, images: list[Picture], target: Path, first: int, last: int, step: int
-) -> dict[str, Any]:
+) -> Row:
     """Return ΔE00 of half-float spectra at first:last:step nm, converted back by
     colour-science.
     """
@@ -178,9 +175,7 @@ def _write(path: Path, size: int) -> None:
     image.close()
 
 
-def time_textures(
-    cube: Path, size: int, options: tuple[str, ...], runs: int
-) -> dict[str, Any]:
+def time_textures(cube: Path, size: int, options: tuple[str, ...], runs: int) -> Row:
     """Time a process that uplifts size² pixels."""
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "in.png"
