@@ -25,12 +25,12 @@ def sizes(requirement: str) -> dict[str, int]:
             [python, "-m", "pip", "install", "-q", requirement], cwd=ROOT, check=True
         )
         packages = next(Path(folder).glob("lib/python*/site-packages"))
-        found = {}
+        bytes_of = {}
         for distribution in importlib.metadata.distributions(path=[str(packages)]):
             paths = map(Path, map(distribution.locate_file, distribution.files or []))
             size = sum(path.stat().st_size for path in paths)
-            found[distribution.metadata["Name"]] = size
-        return {name: size for name, size in found.items() if name not in OF_PIP}
+            bytes_of[distribution.metadata["Name"]] = size
+        return {name: size for name, size in bytes_of.items() if name not in OF_PIP}
 
 
 def main() -> None:
@@ -45,9 +45,9 @@ def main() -> None:
     ways = [
         {
             "way": way,
-            "distributions": len(found),
-            "megabytes": sum(found.values()) / 1e6,
+            "distributions": len(listed),
+            "megabytes": sum(listed.values()) / 1e6,
         }
-        for way, found in (("pip install .", plain), ("pip install '.[plots]'", plots))
+        for way, listed in (("pip install .", plain), ("pip install '.[plots]'", plots))
     ]
     record("install", ways=ways, distributions=rows)

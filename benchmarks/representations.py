@@ -140,7 +140,8 @@ def filter_rows(
     }
     rows = []
     for best in tuned:
-        lights, count, kind = key = best.lights, best.count, best.kind
+        key = best.lights, best.count, best.kind
+        lights, count, kind = key
         bare = lights, count, compare.NONE
         is_filtered = kind != compare.NONE
         printed = thesis[key]
