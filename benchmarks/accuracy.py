@@ -148,7 +148,7 @@ def largest(error: Callable[[Array], Array], rgb: Array) -> float:
         vectorized=True,
         updating="deferred",
     )
-    return float(-search.fun)
+    return -search.fun
 
 
 def at_range(shortest: int, longest: int, step: int) -> Row:
@@ -217,14 +217,15 @@ def share_outward(cube: Cube) -> float:
     is_seed = np.isin(points.status, (Status.ATLAS_PRIMARY, Status.ATLAS_CORNER))
     distance, _ = shells(cube.data.lattice, np.flatnonzero(is_seed))
     fitted = points.round >= 0
-    return float((points.round == distance)[fitted].mean())
+    return (points.round == distance)[fitted].mean()
 
 
 def solver(name: str) -> Row:
     """Build a small cube with a solver, and compare it with the default."""
-    build = partial(uplift.build, MACBETH, dim=SOLVER_DIM, solver=name)
+    build = partial(uplift.build, MACBETH, dim=SOLVER_DIM)
+    default = build()
+    build = partial(build, solver=name)
     _, first = time_calls(build, 1)
-    default = uplift.build(MACBETH, dim=SOLVER_DIM)
     cube = build()
     _, seconds = time_calls(build, RUNS)
     improvements = cube.data.provenance["improvements"]
@@ -254,7 +255,7 @@ def steps_per_node(build: Callable[[], Cube]) -> float:
 
     with mock.patch.object(Problem, "solve", counted):
         size = build().data.lattice.size
-    return float(sum(steps) / size)
+    return sum(steps) / size
 
 
 def node_spectra(cube: Cube) -> Array:

@@ -49,7 +49,7 @@ def run_scene(entries: Atlas, measured: Array, seed: int) -> list[Row]:
 
     def error(cube: uplift.Cube) -> float:
         errors = delta_e_under(lights, cube.reflectance(rgb), measured[hidden])
-        return float(areas @ errors.mean(axis=1))
+        return areas @ errors.mean(axis=1)
 
     first = build(np.zeros(0, dtype=int))
     expected = uncertainty(first, PixelSample(rgb, areas), lights)
@@ -93,7 +93,7 @@ def summaries(name: str) -> Iterator[Row]:
     for seed in range(SCENES):
         rows += run_scene(entries, measured[inside], seed)
     for choice in CHOICES:
-        figures: Row = {"set": name, "choice": choice}
+        figures = {"set": name, "choice": choice}
         for count in (0, *COUNTS):
             key = (choice, count)
             same = [row for row in rows if (row["choice"], row["swatches"]) == key]

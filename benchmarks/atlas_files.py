@@ -25,7 +25,7 @@ def largest_difference(vendor: Vendor, atlas: Atlas) -> float:
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
             entries = read_atlas(path)
     return max(
-        float(np.abs(entry.values - expected.values).max())
+        np.abs(entry.values - expected.values).max()
         for entry, expected in zip(entries, atlas, strict=False)
     )
 

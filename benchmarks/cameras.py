@@ -2,6 +2,7 @@
 docs/guides/cameras.md.
 """
 
+from collections import defaultdict
 from collections.abc import Callable
 from itertools import product, starmap
 
@@ -33,7 +34,7 @@ ToXyz = Callable[[Array], Array]
 
 def xyz_matrix(raw: Array, xyz: Array) -> Array:
     """Fit the matrix (3, 3) from raw values to XYZ by least squares of XYZ."""
-    return np.asarray(np.linalg.lstsq(raw, xyz, rcond=None)[0].T)
+    return np.linalg.lstsq(raw, xyz, rcond=None)[0].T
 
 
 def lab_matrix(raw: Array, xyz: Array, white: Array) -> Array:
@@ -49,7 +50,7 @@ def lab_matrix(raw: Array, xyz: Array, white: Array) -> Array:
         return np.column_stack([first, white - first.sum(axis=1)])
 
     def residuals(free: Array) -> Array:
-        return np.asarray((lab(raw @ matrix(free).T, white) - expected).ravel())
+        return (lab(raw @ matrix(free).T, white) - expected).ravel()
 
     start = xyz_matrix(raw, xyz)
     return matrix(least_squares(residuals, start[:, :2].ravel()).x)
@@ -109,7 +110,7 @@ def _build(entries: Atlas | None, sensor: Sensor, measured: Array) -> Cube:
 def realisable_share(sensor: Sensor, dim: int = DIM) -> float:
     """Return the share of the nodes of a lattice of raw values that are realisable."""
     nodes = Lattice(axis_nodes("srgb", dim)).points
-    return float(solid(sensor.matrix).contains(nodes).mean())
+    return solid(sensor.matrix).contains(nodes).mean()
 
 
 def compare(camera: str, illuminant: str) -> Row:
@@ -121,13 +122,13 @@ def compare(camera: str, illuminant: str) -> Row:
     raw = sensor.rgb(measured)
     expected = lab(measured @ sensor.light.xyz.T, white)
     plain = _build(None, sensor, measured)
-    errors: dict[str, list[Array]] = {}
+    errors = defaultdict(list)
     for seed in range(SPLITS):
         training, held_out = random_halves(len(measured), seed)
         for name, to_xyz in methods(atlas, training, sensor, plain).items():
             answers = lab(to_xyz(raw[held_out]), white)
             delta_e = delta_e_2000(answers, expected[held_out])
-            errors.setdefault(name, []).append(delta_e)
+            errors[name].append(delta_e)
     figures = {}
     for name, splits in errors.items():
         pooled = np.concatenate(splits)

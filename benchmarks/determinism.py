@@ -18,11 +18,11 @@ import numpy as np
 
 import uplift
 from benchmarks import ROOT, Row, record
-from uplift.atlas import Atlas, Entry
+from uplift.atlas import Atlas
 from uplift.extras.report.regression import LIMITS, compare_rebuilt
 
 Variables = dict[str, str]
-CASES: dict[str, tuple[tuple[str, ...], Row]] = {
+CASES = {
     "moments, Macbeth, 16³": (("macbeth",), {"dim": 16}),
     "sigmoid, Macbeth, 16³": (("macbeth",), {"dim": 16, "model": "sigmoid"}),
     "17 coefficients, four atlases, 12³": (
@@ -43,7 +43,7 @@ BLAS_SSE4 = {"OPENBLAS_CORETYPE": "Nehalem"}
 BLAS_AVX2 = {"OPENBLAS_CORETYPE": "Haswell"}
 WITHOUT_AVX512 = NUMPY_AVX2 | XLA_AVX2 | BLAS_AVX2
 """Environment of a process that computes as on a CPU with AVX2 and without AVX-512."""
-SAME: dict[str, Variables] = {
+SAME = {
     "again": {},
     "one core": {},
     "1 thread of BLAS": {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
@@ -57,7 +57,7 @@ SAME: dict[str, Variables] = {
     "3 devices": {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"},
 }
 """Environment variables of settings that must not change a byte."""
-APART: dict[str, Variables] = {
+APART = {
     "numpy without AVX-512": NUMPY_AVX2,
     "numpy without AVX2": NUMPY_SSE4,
     "XLA with AVX2": XLA_AVX2,
@@ -107,7 +107,7 @@ def build_cubes(folder: str) -> None:
     """Build the cubes of all cases; names of entries get their atlas as prefix."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     for number, (names, options) in enumerate(CASES.values()):
-        entries: list[Entry] = []
+        entries = []
         for name in names:
             entries += [
                 replace(entry, name=f"{name} {entry.name}")

@@ -81,7 +81,7 @@ def chips() -> Chips:
 
 
 def _is_outside(rgb: Array) -> Mask:
-    return np.asarray(((rgb < 0) | (rgb > 1)).any(axis=1))
+    return ((rgb < 0) | (rgb > 1)).any(axis=1)
 
 
 def _lines(names: Iterable[tuple[str, float, float]], xyz: Array) -> Lines:

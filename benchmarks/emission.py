@@ -92,7 +92,7 @@ def main() -> None:
             for third in np.array_split(np.argsort(expected, kind="stable"), THIRDS)
         ],
         exactness=exactness(table, spokes(table, DIRECTIONS, STEPS)),
-        lookups=lookups(COLOURS, RUNS),
+        lookups=lookups(),
     )
 
 
@@ -256,9 +256,9 @@ def exactness(table: EmissionTable, uv: Array) -> Iterator[Row]:
         }
 
 
-def lookups(count: int, runs: int) -> Iterator[Row]:
+def lookups() -> Iterator[Row]:
     """Yield ns per colour of lights and of reflectances, and their ratio, by type."""
-    rgb = np.random.default_rng(1).random((count, 3))
+    rgb = np.random.default_rng(1).random((COLOURS, 3))
     table = uplift.load_emission()
     cube = uplift.load()
     grids = (np.linspace(400, 700, 16), table.wavelengths)
@@ -267,12 +267,12 @@ def lookups(count: int, runs: int) -> Iterator[Row]:
         for query in (table.spectrum, cube.reflectance):
             call = partial(query, rgb, at, dtype=dtype)
             call()
-            times.append(time_calls(call, runs)[0].scaled(1e9 / count))
+            times.append(time_calls(call, RUNS)[0].scaled(1e9 / COLOURS))
         light, reflectance = times
         yield {
             "type": dtype,
             "wavelengths": len(at),
-            "colours": count,
+            "colours": COLOURS,
             "light": light,
             "reflectance": reflectance,
             "ratio": light.median / reflectance.median,

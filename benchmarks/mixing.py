@@ -278,7 +278,7 @@ def compare_scattering(smooth: Cube, atlas: Cube) -> Row:
     }
     rows = []
     for title, rule in rules.items():
-        row: Row = {"rule": title}
+        row = {"rule": title}
         for name, mixtures in sets.items():
             mixed = mix(smooth, mixtures, rule)
             delta_e = delta_e_rgb(smooth.data.sensor, mixtures.expected, mixed)

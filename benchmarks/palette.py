@@ -132,7 +132,7 @@ def by_bounces(paths: LightPaths, products: dict[str, Product]) -> list[Row]:
     """Return mean ΔE00 and 95th percentile by number of reflections, and the gain over
     RGB.
     """
-    rows: list[Row] = []
+    rows = []
     for name, product in products.items():
         pairs = {}
         for count in BOUNCES:

@@ -189,7 +189,7 @@ def build(space: str, dim: int, scene: list[Picture]) -> Measured:
     """Build a cube for images, or a complete one."""
     images = Images(tuple(picture.path for picture in scene)) if scene else None
     timed = partial(uplift.build, MACBETH, dim=dim, space=space, scene=images)
-    cubes: list[Cube] = []
+    cubes = []
     _, cpu = time_calls(lambda: cubes.append(timed()), RUNS)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.uplift"
@@ -226,4 +226,4 @@ def largest_difference(sparse: Cube, complete: Cube, picture: Picture) -> float:
     sample = np.random.default_rng(0).permutation(colours)[:SAMPLE]
     spectra = [cube.reflectance(sample) for cube in (sparse, complete)]
     lights = [light(name, sensor.observer, *sensor.range) for name in SCENE_LIGHTS]
-    return float(np.max([delta_e_spectra(lamp, *spectra) for lamp in lights]))
+    return np.max([delta_e_spectra(lamp, *spectra) for lamp in lights])

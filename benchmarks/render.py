@@ -135,14 +135,14 @@ def figures(painted: Chart, renders: Renders) -> Row:
         return np.array([delta_e.mean(), delta_e[~painted.outside].mean()])
 
     ratios = []
-    patches: list[Row] = [{"patch": patch} for patch in painted.names]
+    patches = [{"patch": patch} for patch in painted.names]
     for name in LIGHTS:
         every, in_gamut = means(name, MITSUBA) / means(name, ATLAS)
         ratios.append({"light": name, "all": every, "in_gamut": in_gamut})
         pairs = zip(errors[name, MITSUBA], errors[name, ATLAS], strict=True)
         for patch, (mitsuba, cube) in zip(patches, pairs, strict=True):
             patch[name] = {"mitsuba": mitsuba, "cube": cube}
-    rows: list[Row] = []
+    rows = []
     for method in (MITSUBA, PLAIN, ATLAS, ATLAS_17, OTHER_SEED):
         by_light = {name: means(name, method) for name in LIGHTS}
         rows.append({"method": method, **by_light})
@@ -151,7 +151,7 @@ def figures(painted: Chart, renders: Renders) -> Row:
 
 def rates() -> None:
     """Measure the rates of all variants and store."""
-    rows: list[Row] = []
+    rows = []
     for variant in VARIANTS:
         try:
             rows += call_in_child(measure_rates, variant, seconds=LIMIT)
@@ -189,7 +189,7 @@ def measure_rates(variant: str) -> list[Row]:
 
 def _rows(variant: str, depth: int, textures: Row) -> Iterator[Row]:
     runs = {name: _rendering(texture, depth) for name, texture in textures.items()}
-    seconds: dict[str, list[float]] = defaultdict(list)
+    seconds = defaultdict(list)
     for seed in range(ROUNDS + 1):
         for name, run in runs.items():
             begin = time.process_time()

@@ -23,7 +23,7 @@ from uplift.lookup import Cube
 from uplift.models import evaluate
 from uplift.models.moments import multipliers_of_rounded
 
-FORMS: tuple[tuple[str, PixelEncoding, str], ...] = (
+FORMS = (
     ("spectrum_half", texture.Spectrum(), "half"),
     ("spectrum_float", texture.Spectrum(), "float"),
     ("moments_half", texture.Moments(), "half"),
@@ -131,7 +131,7 @@ def fewer_wavelengths(
 
 
 FEW = ("--wavelengths", "400:700:10")
-JOBS: tuple[tuple[int, tuple[str, ...], int], ...] = (
+JOBS = (
     (2048, (), 3),
     (2048, ("--representation", "moments"), 3),
     (2048, ("--representation", "multipliers"), 1),

@@ -52,7 +52,7 @@ PICTURES = DOCS / "wavelengths"
 Nodes = tuple[Array, Array]
 """Wavelengths (n,) and weights (n,)."""
 
-NO_FIGURES: Row = {"printed": None, "ours": None}
+NO_FIGURES = {"printed": None, "ours": None}
 DIVISIONS = 10
 """Small triangles of figure 7 along a side."""
 
@@ -86,7 +86,7 @@ def mean_error(
         channels.append(np.concatenate([responses, white], axis=1))
     xyz = np.stack(channels, axis=-1) @ np.linalg.inv(space).T  # (K, M + 1, 3)
     colours = [lab(materials, white) for *materials, white in xyz]
-    return float(delta_e_1976(setup.lab, colours).mean())
+    return delta_e_1976(setup.lab, colours).mean()
 
 
 def run_trials(setup: RenderSetup, space: Array) -> tuple[Array, Array]:
@@ -122,7 +122,7 @@ def compare_meyer(setup: RenderSetup, spaces: Mapping[str, Array]) -> Row:
     expected = printed_rules("meyer1988_table1.csv", "order")
     rules = paper.quadrature_rules(space, setup.wavelengths, setup.cmfs)
     nodes = []
-    defined: list[Row] = []
+    defined = []
     ours = []
     printed = []
     for channel, orders in zip(CHANNELS, rules, strict=True):
@@ -155,7 +155,7 @@ def matrices(setup: RenderSetup, spaces: Mapping[str, Array]) -> list[Row]:
         name = row["space"]
         channels = CHANNELS if name == "AC1C2" else name
         index = channels.index(row["channel"])
-        eigenvalue: Row = NO_FIGURES
+        eigenvalue = NO_FIGURES
         if row["eigenvalue"]:
             printed = float(row["eigenvalue"])
             eigenvalue = {"printed": printed, "ours": eigenvalues[index]}
@@ -256,7 +256,7 @@ def tables(
                 for method in METHODS
             }
             rows.append({**head, "count": count, "errors": values, "gain": gain})
-        needed: dict[str, int | None] = {}
+        needed = {}
         for method, values in means.items():
             reached = np.flatnonzero(values <= 1)
             needed[method] = COUNTS[reached[0]] if len(reached) else None
