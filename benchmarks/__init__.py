@@ -17,6 +17,7 @@ ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 DATA = ROOT / "docs" / "data"
 ATLASES = ROOT / "atlases"
+ATLAS_FILES = sorted(ATLASES.glob("*.txt"))
 CUBES = ROOT / "cubes"
 REFERENCE = ROOT / "tests" / "reference"
 MACBETH = ATLASES / "macbeth.txt"
@@ -30,9 +31,7 @@ def measure(page: str) -> None:
 
 
 def record(page: str, data: str = "", **figures: Any) -> None:
-    """Write the figures of a page to docs/data/PAGE.json, or to DATA.json if the page
-    has several.
-    """
+    """Write figures to docs/data/PAGE.json, or to DATA.json if the page has several."""
     write_record(DATA / f"{data or page}.json", f"make measure PAGE={page}", **figures)
 
 
@@ -42,8 +41,6 @@ def show(progress: Progress) -> None:
 
 
 def read_reference(name: str) -> list[dict[str, str]]:
-    """Return the rows of a published table in tests/reference, whose comments begin
-    with '#'.
-    """
+    """Return the rows of a published table in tests/reference; '#' begins comments."""
     with (REFERENCE / name).open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(line for line in file if not line.startswith("#")))

@@ -17,20 +17,15 @@ from uplift.lab.timing import ONE_THREAD, commit
 
 
 def pages() -> dict[str, str]:
-    """Return the first line about each page, by its name: modules with a function
-    ``main``.
-    """
-    found = {}
+    """Return the first line about each module with a function ``main``, by its page."""
+    lines = {}
     for path in sorted(Path(__file__).parent.glob("[!_]*.py")):
         module = ast.parse(path.read_text(encoding="utf-8"))
-        if any(
-            isinstance(node, ast.FunctionDef) and node.name == "main"
-            for node in module.body
-        ):
-            found[path.stem.replace("_", "-")] = (
-                ast.get_docstring(module) or ""
-            ).partition("\n")[0]
-    return found
+        functions = [node for node in module.body if isinstance(node, ast.FunctionDef)]
+        if "main" in [function.name for function in functions]:
+            about = ast.get_docstring(module) or ""
+            lines[path.stem.replace("_", "-")] = about.partition("\n")[0]
+    return lines
 
 
 def is_current(page: str) -> bool:
@@ -46,23 +41,18 @@ def main(names: list[str]) -> int:
     if not names:
         print(*(f"{name:16}{line}" for name, line in known.items()), sep="\n")
         return 0
-    names = (
-        [name for name in known if not is_current(name)] if names == ["all"] else names
-    )
+    if names == ["all"]:
+        names = [name for name in known if not is_current(name)]
     if unknown := [name for name in names if name not in known]:
         print(f"no page '{unknown[0]}'; pages are {', '.join(known)}", file=sys.stderr)
         return 2
     failed = []
     for name in names:
         print(name, file=sys.stderr)
-        command = [
-            sys.executable,
-            "-c",
-            f"from benchmarks import measure; measure('{name}')",
-        ]
-        if subprocess.run(
-            command, cwd=ROOT, env=os.environ | ONE_THREAD, check=False
-        ).returncode:
+        program = f"from benchmarks import measure; measure('{name}')"
+        command = [sys.executable, "-c", program]
+        variables = os.environ | ONE_THREAD
+        if subprocess.run(command, cwd=ROOT, env=variables, check=False).returncode:
             failed.append(name)
     if failed:
         print(f"failed: {', '.join(failed)}", file=sys.stderr)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from itertools import product
+from itertools import product, starmap
 from typing import Any
 from unittest import mock
 
@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import differential_evolution
 
 import uplift
-from benchmarks import MACBETH, ROOT, Row, record
+from benchmarks import DOCS, MACBETH, Row, record
 from benchmarks.materials import errors, materials
 from uplift.atlas import on_grid
 from uplift.colorimetry import Sensor, delta_e_rgb
@@ -46,6 +46,7 @@ ORDER_DIM = 32
 SOLVER_DIM = 16
 RUNS = 3
 SPACES = ("sRGB", "ITU-R BT.2020", "ProPhoto RGB")
+ORDERS = ("outward", "coarse-to-fine", "neighbours")
 OTHERS = ("rawtoaces", "cie2017")
 """Materials that a cube of the ColorChecker answers for."""
 SOLVERS = ("least-change", "gauss-newton", "dogleg", "levenberg-marquardt")
@@ -64,24 +65,22 @@ def measure_round_trips() -> None:
     round_trips = []
     for name, cube in cubes():
         fitted.append({"cube": name, **fit_quality(cube)})
-        fine = at_1_nm(cube.data.sensor)
+        sensor = cube.data.sensor
+        fine = at_1_nm(sensor)
         round_trips.append(
             {
                 "cube": name,
-                "errors": {
-                    mode: round_trip(cube, cube.data.sensor, mode) for mode in MODES
-                },
+                "errors": {mode: round_trip(cube, sensor, mode) for mode in MODES},
                 "fine": {mode: round_trip(cube, fine, mode) for mode in MODES},
                 "published": round_trip(cube, published_srgb()),
             }
         )
-    ranges = [at_range(*each) for each in RANGES]
     record(
         "accuracy",
         queries=len(QUERIES),
         fitted=fitted,
         round_trips=round_trips,
-        ranges=ranges,
+        ranges=starmap(at_range, RANGES),
     )
 
 
@@ -91,12 +90,8 @@ def measure_growth() -> None:
         "accuracy",
         "growth",
         runs=RUNS,
-        orders=[
-            growth(name, space)
-            for space in SPACES
-            for name in ("outward", "coarse-to-fine", "neighbours")
-        ],
-        solvers=[solver(name) for name in SOLVERS],
+        orders=starmap(growth, product(SPACES, ORDERS)),
+        solvers=map(solver, SOLVERS),
         order_dim=ORDER_DIM,
         solver_dim=SOLVER_DIM,
         materials=[
@@ -109,50 +104,42 @@ def cubes() -> Iterator[tuple[str, Cube]]:
     """Build the cubes, with their names."""
     build = partial(uplift.build, debug=True)
     for dim, model, atlas in product(DIMS, ("moments", "sigmoid"), (MACBETH, None)):
-        yield (
-            f"{model}, {'Macbeth' if atlas else 'no atlas'}, {dim}³",
-            build(atlas, dim=dim, model=model),
-        )
+        name = f"{model}, {'Macbeth' if atlas else 'no atlas'}, {dim}³"
+        yield name, build(atlas, dim=dim, model=model)
     for count in (3, 17):
-        yield (
-            f"{count} coefficients, Macbeth, 32³",
-            build(MACBETH, dim=32, coefficients=count),
-        )
+        name = f"{count} coefficients, Macbeth, 32³"
+        yield name, build(MACBETH, dim=32, coefficients=count)
 
 
 def fit_quality(cube: Cube) -> Row:
     """Return the rounds of growth, counts of nodes and the largest residual."""
-    data = cube.data.points
-    rounds = int(data.round.max()) + 1 if data.round is not None else 0
+    points = cube.data.points
+    counts = points.counts()
     return {
-        "rounds": rounds,
-        **{key: data.counts()[key] for key in ("improved", "unfitted")},
-        "worst": data.distance.max(),
+        "rounds": points.round.max() + 1,
+        "improved": counts["improved"],
+        "unfitted": counts["unfitted"],
+        "worst": points.distance.max(),
     }
 
 
 def round_trip(cube: Cube, sensor: Sensor, mode: str = "spectra") -> list[float]:
-    """Return the mean and the largest ΔE00 between requested colours and those of the
-    spectra, by a sensor.
-    """
+    """Return the mean and largest ΔE00 between colours and those of their spectra."""
 
     def error(rgb: Array) -> Array:
         spectra = cube.reflectance(rgb, sensor.wavelengths, mode)
         return delta_e_rgb(sensor, rgb, sensor.rgb(spectra))
 
-    return [
-        float(error(QUERIES).mean()),
-        largest(error, np.concatenate([QUERIES, ON_FACES])),
-    ]
+    worst = largest(error, np.concatenate([QUERIES, ON_FACES]))
+    return [error(QUERIES).mean(), worst]
 
 
 def largest(error: Callable[[Array], Array], rgb: Array) -> float:
     """Search the largest error, from the worst of colours (n, 3) on."""
-    limits = [(0, 1)] * 3
     worst = rgb[np.argsort(error(rgb))[-STARTS:]]
-    found = differential_evolution(
+    search = differential_evolution(
         lambda rgb: -error(rgb.T),
-        limits,
+        [(0, 1)] * 3,
         strategy="rand1bin",
         init=worst,
         rng=1,
@@ -160,22 +147,22 @@ def largest(error: Callable[[Array], Array], rgb: Array) -> float:
         vectorized=True,
         updating="deferred",
     )
-    return float(-found.fun)
+    return -search.fun
 
 
 def at_range(shortest: int, longest: int, step: int) -> Row:
-    """Build the ColorChecker at a range; return errors at 1 nm, and those of the
-    spectra of its entries.
-    """
+    """Build the ColorChecker at a range; return errors at 1 nm, and of its entries."""
     cube = uplift.build(MACBETH, shortest=shortest, longest=longest, step=step)
     atlas = uplift.read_atlas(MACBETH)
-    measured = dict(zip(atlas.names, on_grid(atlas, VISIBLE), strict=True))
-    off = cube.reflectance(cube.data.atlas.rgb, VISIBLE) - [
-        measured[name] for name in cube.data.atlas.names
-    ]
-    fine = round_trip(cube, at_1_nm(cube.data.sensor))
-    rms = float(np.sqrt((off**2).mean()))
-    return {"range": f"{shortest}–{longest} nm", "step": step, "fine": fine, "rms": rms}
+    rows = [atlas.names.index(name) for name in cube.data.atlas.names]
+    measured = on_grid(atlas, VISIBLE)[rows]
+    difference = cube.reflectance(cube.data.atlas.rgb, VISIBLE) - measured
+    return {
+        "range": f"{shortest}–{longest} nm",
+        "step": step,
+        "fine": round_trip(cube, at_1_nm(cube.data.sensor)),
+        "rms": np.sqrt((difference**2).mean()),
+    }
 
 
 def draw_rounds() -> None:
@@ -187,18 +174,16 @@ def draw_rounds() -> None:
     drawn = show_image(axes, rounds, cmap=colour_map(), interpolation="nearest")
     bar = figure.colorbar(drawn, ax=axes, fraction=0.04, pad=0.02, label="round")
     bar.outline.set_visible(False)
-    write_figure(figure, ROOT / "docs" / "accuracy" / "rounds.png", force=True)
+    write_figure(figure, DOCS / "accuracy" / "rounds.png", force=True)
 
 
-def growth(name: str, space: str) -> Row:
-    """Build in an order of growth, and compare answers for materials that neither atlas
-    nor library contains.
-    """
+def growth(space: str, order: str) -> Row:
+    """Build in an order of growth, and compare answers for unknown materials."""
     build = partial(
         uplift.build,
         MACBETH,
         dim=ORDER_DIM,
-        growth=name,
+        growth=order,
         space=space,
         leave_out=OTHERS,
         debug=True,
@@ -207,19 +192,18 @@ def growth(name: str, space: str) -> Row:
     _, seconds = time_calls(build, RUNS)
     answers = {}
     if space == SPACES[0]:
-        answers = {
-            each: errors(cube.reflectance(materials(each).rgb), materials(each))
-            for each in OTHERS
-        }
+        for name in OTHERS:
+            queried = materials(name)
+            answers[name] = errors(cube.reflectance(queried.rgb), queried)
     status = cube.data.points.status
     return {
-        "growth": name,
+        "growth": order,
         "space": space,
         "seconds": seconds,
         "rounds": fit_quality(cube)["rounds"],
         "outward": share_outward(cube),
-        "unfitted": int((status == Status.UNFITTED).sum()),
-        "unrealisable": int((status == Status.UNREALISABLE).sum()),
+        "unfitted": (status == Status.UNFITTED).sum(),
+        "unrealisable": (status == Status.UNREALISABLE).sum(),
         "answers": answers,
     }
 
@@ -229,20 +213,18 @@ def share_outward(cube: Cube) -> float:
     steps to 26 neighbours.
     """
     points = cube.data.points
-    lattice = cube.data.lattice
-    seeds = np.flatnonzero(
-        np.isin(points.status, (Status.ATLAS_PRIMARY, Status.ATLAS_CORNER))
-    )
-    distance, _ = shells(lattice, seeds)
+    is_seed = np.isin(points.status, (Status.ATLAS_PRIMARY, Status.ATLAS_CORNER))
+    distance, _ = shells(cube.data.lattice, np.flatnonzero(is_seed))
     fitted = points.round >= 0
-    return float((points.round == distance)[fitted].mean())
+    return (points.round == distance)[fitted].mean()
 
 
 def solver(name: str) -> Row:
     """Build a small cube with a solver, and compare it with the default."""
-    build = partial(uplift.build, MACBETH, dim=SOLVER_DIM, solver=name)
+    build = partial(uplift.build, MACBETH, dim=SOLVER_DIM)
+    default = build()
+    build = partial(build, solver=name)
     _, first = time_calls(build, 1)
-    default = uplift.build(MACBETH, dim=SOLVER_DIM)
     cube = build()
     _, seconds = time_calls(build, RUNS)
     improvements = cube.data.provenance["improvements"]
@@ -266,12 +248,13 @@ def steps_per_node(build: Callable[[], Cube]) -> float:
     steps = []
 
     def counted(*args: Any) -> Any:
-        steps.append((solution := solve(*args)).steps.sum())
+        solution = solve(*args)
+        steps.append(solution.steps.sum())
         return solution
 
     with mock.patch.object(Problem, "solve", counted):
         size = build().data.lattice.size
-    return float(sum(steps) / size)
+    return sum(steps) / size
 
 
 def node_spectra(cube: Cube) -> Array:

@@ -2,13 +2,14 @@
 docs/guides/measuring.md.
 """
 
+from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import chain
-from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, record
+from benchmarks import ATLASES, Row, record
 from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.arrays import Array, Indices
@@ -19,104 +20,92 @@ from uplift.extras.texture.scene_colours import ColourSet, PixelSample
 from uplift.fit import families_with
 
 SETS = ("rawtoaces", "cie2017")
-SCENES, KNOWN, MATERIALS = 6, 10, 60
-"""Scenes of each set, entries that are known at first, and hidden ones that the scene
-has at most.
-"""
+SCENES = 6
+"""Scenes of each set."""
+KNOWN = 10
+"""Entries that are known at first."""
+MATERIALS = 60
+"""Largest number of hidden entries in a scene."""
 COUNTS = (3, 6, 12, 24)
 DRAWS = 2
 """Random choices of each kind."""
-ADVICE = "advice"
-PIXELS = "random pixels"
-COLOURS = "random colours"
+CHOICES = ADVICE, PIXELS, COLOURS = ("advice", "random pixels", "random colours")
 
 
-def run_scene(entries: Atlas, measured: Array, seed: int) -> list[dict[str, Any]]:
-    """Return mean ΔE00 of a scene whose areas are exponentially distributed, by choice
-    and number of swatches.
-    """
+def run_scene(entries: Atlas, measured: Array, seed: int) -> list[Row]:
+    """Return mean ΔE00 by choice and number of swatches; areas are exponential."""
     rng = np.random.default_rng(seed)
-    sensor = observer.sensor()
-    known, hidden = np.split(
-        rng.permutation(len(measured))[: KNOWN + MATERIALS], [KNOWN]
-    )
-    rgb = np.clip(sensor.rgb(measured[hidden]), 0, 1)
+    drawn = rng.permutation(len(measured))[: KNOWN + MATERIALS]
+    known, hidden = np.split(drawn, [KNOWN])
+    rgb = np.clip(observer.sensor().rgb(measured[hidden]), 0, 1)
     areas = rng.exponential(size=len(hidden))
     areas /= areas.sum()
     lights = [observer.light(name) for name in RELIGHT_LIGHTS]
     options = {"dim": 16, "leave_out": families_with(measured), "scene": ColourSet(rgb)}
 
     def build(swatches: Indices) -> uplift.Cube:
-        rows = [*known, *hidden[swatches]]
-        return uplift.build(
-            Atlas(tuple(entries.entries[row] for row in rows)), **options
-        )
+        return uplift.build(select(entries, [*known, *hidden[swatches]]), **options)
 
     def error(cube: uplift.Cube) -> float:
-        return float(
-            areas
-            @ delta_e_under(lights, cube.reflectance(rgb), measured[hidden]).mean(
-                axis=1
-            )
-        )
+        errors = delta_e_under(lights, cube.reflectance(rgb), measured[hidden])
+        return areas @ errors.mean(axis=1)
 
     first = build(np.zeros(0, dtype=int))
     expected = uncertainty(first, PixelSample(rgb, areas), lights)
     chosen, _ = advise(expected, COUNTS[-1])
-    choices = [(ADVICE, np.array([each.colour for each in chosen]))]
+    choices = [(ADVICE, np.array([swatch.colour for swatch in chosen]))]
+    draw = partial(rng.choice, len(hidden), COUNTS[-1], replace=False)
     for _ in range(DRAWS):
-        choices.append(
-            (PIXELS, rng.choice(len(hidden), COUNTS[-1], replace=False, p=areas))
-        )
-        choices.append((COLOURS, rng.choice(len(hidden), COUNTS[-1], replace=False)))
-    start = {"delta_e": error(first), "expected": expected.mean}
-    rows = [
-        {"choice": name, "swatches": 0, **start} for name in (ADVICE, PIXELS, COLOURS)
-    ]
+        choices.append((PIXELS, draw(p=areas)))
+        choices.append((COLOURS, draw()))
+    start = {"swatches": 0, "delta_e": error(first), "expected": expected.mean}
+    rows = [{"choice": name, **start} for name in CHOICES]
     for name, order in choices:
         remaining = expected
         for step, swatch in enumerate(order, 1):
             remaining = remaining.measured(int(swatch))
             if step in COUNTS:
-                found = {
-                    "delta_e": error(build(order[:step])),
-                    "expected": remaining.mean,
-                }
-                rows.append({"choice": name, "swatches": step, **found})
+                rows.append(
+                    {
+                        "choice": name,
+                        "swatches": step,
+                        "delta_e": error(build(order[:step])),
+                        "expected": remaining.mean,
+                    }
+                )
     return rows
+
+
+def select(atlas: Atlas, rows: Sequence[int]) -> Atlas:
+    """Return the entries of an atlas in rows."""
+    return Atlas(tuple(atlas.entries[row] for row in rows))
+
+
+def summaries(name: str) -> Iterator[Row]:
+    """Yield mean errors over the scenes of a set by choice."""
+    atlas = read_atlas(ATLASES / f"{name}.txt")
+    sensor = observer.sensor()
+    measured = resample(atlas, sensor.wavelengths).values
+    inside = np.flatnonzero(in_unit_cube(sensor.rgb(measured)))
+    entries = select(atlas, inside)
+    rows = []
+    for seed in range(SCENES):
+        rows += run_scene(entries, measured[inside], seed)
+    for choice in CHOICES:
+        figures = {"set": name, "choice": choice}
+        for count in (0, *COUNTS):
+            key = (choice, count)
+            same = [row for row in rows if (row["choice"], row["swatches"]) == key]
+            for figure in ("delta_e", "expected"):
+                figures[f"{figure}_{count}"] = np.mean([row[figure] for row in same])
+        yield figures
 
 
 def main() -> None:
     """Record mean errors by set, choice and number of swatches."""
-    results = []
-    for name in SETS:
-        atlas = read_atlas(ATLASES / f"{name}.txt")
-        sensor = observer.sensor()
-        measured = resample(atlas, sensor.wavelengths).values
-        rows = np.flatnonzero(in_unit_cube(sensor.rgb(measured)))
-        atlas = Atlas(tuple(atlas.entries[row] for row in rows))
-        measured = measured[rows]
-        found = list(
-            chain.from_iterable(
-                run_scene(atlas, measured, seed) for seed in range(SCENES)
-            )
-        )
-        for choice in (ADVICE, PIXELS, COLOURS):
-            figures: dict[str, Any] = {"set": name, "choice": choice}
-            for count in (0, *COUNTS):
-                some = [
-                    row
-                    for row in found
-                    if (row["choice"], row["swatches"]) == (choice, count)
-                ]
-                figures |= {
-                    f"{key}_{count}": float(np.mean([row[key] for row in some]))
-                    for key in ("delta_e", "expected")
-                }
-            results.append(figures)
     record(
         "advice",
-        results=results,
+        results=chain.from_iterable(map(summaries, SETS)),
         scenes=SCENES,
         known=KNOWN,
         materials=MATERIALS,

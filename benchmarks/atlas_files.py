@@ -18,39 +18,39 @@ UPLIFT = "uplift"
 
 
 def largest_difference(vendor: Vendor, atlas: Atlas) -> float:
-    """Return the largest difference between the values that were written and those that
-    are read.
-    """
+    """Return the largest difference between written values and those that are read."""
     with tempfile.TemporaryDirectory() as folder:
         path = vendor.save(atlas[: vendor.count], Path(folder))
-        with warnings.catch_warnings():
-            warnings.simplefilter(
-                "ignore", UpliftWarning
-            )  # columns of other quantities
-            found = read_atlas(path)
-    pairs = zip(found, atlas, strict=False)
+        # Columns of other quantities cause warnings.
+        with warnings.catch_warnings(action="ignore", category=UpliftWarning):
+            entries = read_atlas(path)
     return max(
-        float(np.abs(entry.values - expected.values).max()) for entry, expected in pairs
+        np.abs(entry.values - expected.values).max()
+        for entry, expected in zip(entries, atlas, strict=False)
     )
 
 
 def main() -> None:
     """Measure all layouts."""
     atlas = sample(read_atlas("macbeth"))
-    found = {vendor.name: largest_difference(vendor, atlas) for vendor in VENDORS}
+    differences = {vendor: largest_difference(vendor, atlas) for vendor in VENDORS}
     rows = []
-    for each in known_formats():
-        names = [vendor.name for vendor in VENDORS if vendor.format == each.name]
-        largest = max((found[name] for name in names), default=None)
-        row = {
-            "name": each.name,
-            "suffixes": ", ".join(each.suffixes),
-            "written": each.written,
-        }
-        row |= {"library": each.library or UPLIFT, "extra": each.extra}
+    for file_format in known_formats():
+        read = [
+            difference
+            for vendor, difference in differences.items()
+            if vendor.format == file_format.name
+        ]
         rows.append(
-            row
-            | {"layouts": len(names) or "the shipped atlases", "difference": largest}
+            {
+                "name": file_format.name,
+                "suffixes": ", ".join(file_format.suffixes),
+                "written": file_format.written,
+                "library": file_format.library or UPLIFT,
+                "extra": file_format.extra,
+                "layouts": len(read) or "the shipped atlases",
+                "difference": max(read, default=None),
+            }
         )
     programs = [
         {"program": vendor.program, "format": vendor.format, "sample": vendor.template}
@@ -58,8 +58,8 @@ def main() -> None:
     ]
     record(
         "atlas-files",
-        layouts=len(found),
-        largest=max(found.values()),
+        layouts=len(differences),
+        largest=max(differences.values()),
         formats=rows,
         programs=programs,
     )

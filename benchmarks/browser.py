@@ -72,7 +72,8 @@ class Browser:
         self._write = write
         self._read = read
         self._rest = b""
-        self._numbers, self._session = itertools.count(1), {}
+        self._numbers = itertools.count(1)
+        self._session = {}
         self.errors: list[str] = []
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
         attached = self.call("Target.attachToTarget", targetId=target, flatten=True)
@@ -129,17 +130,15 @@ class Browser:
 
     def window(self, width: int, height: int, scheme: str = "light") -> None:
         """The page's size in pixels, and light or dark."""
-        size = {
-            "width": width,
-            "height": height,
-            "deviceScaleFactor": 1,
-            "mobile": False,
-        }
-        self.call("Emulation.setDeviceMetricsOverride", **size)
         self.call(
-            "Emulation.setEmulatedMedia",
-            features=[{"name": "prefers-color-scheme", "value": scheme}],
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=False,
         )
+        feature = {"name": "prefers-color-scheme", "value": scheme}
+        self.call("Emulation.setEmulatedMedia", features=[feature])
 
     def mouse(self, kind: str, x: float, y: float) -> None:
         """``kind`` is mousePressed, mouseMoved or mouseReleased; the left button."""
@@ -155,13 +154,13 @@ class Browser:
 
     def key(self, name: str, modifiers: int = 0) -> None:
         for kind in ("keyDown", "keyUp"):
-            text = {"text": name} if kind == "keyDown" and len(name) == 1 else {}
+            text = name if kind == "keyDown" and len(name) == 1 else ""
             self.call(
                 "Input.dispatchKeyEvent",
                 type=kind,
                 key=name,
                 modifiers=modifiers,
-                **text,
+                text=text,
             )
 
     def screenshot(self, selector: str = "body", scale: float = 1.0) -> bytes:
@@ -169,11 +168,11 @@ class Browser:
         box = self.evaluate(
             f"document.querySelector('{selector}').getBoundingClientRect().toJSON()"
         )
-        clip = {name: box[name] for name in ("x", "y", "width", "height")} | {
-            "scale": scale
-        }
         answer = self.call(
-            "Page.captureScreenshot", format="jpeg", quality=88, clip=clip
+            "Page.captureScreenshot",
+            format="jpeg",
+            quality=88,
+            clip=box | {"scale": scale},
         )
         return base64.b64decode(answer["data"])
 
@@ -189,21 +188,16 @@ class Browser:
         return dict(json.loads(message))
 
     def _note(self, message: Answer) -> None:
-        method = message.get("method")
-        params = message.get("params", {})
-        if method == "Runtime.exceptionThrown":
-            self.errors.append(json.dumps(params["exceptionDetails"]))
-        elif method == "Runtime.consoleAPICalled" and params["type"] in (
-            "error",
-            "warning",
-            "assert",
-        ):
-            self.errors.append(json.dumps(params["args"]))
-        elif method == "Log.entryAdded" and params["entry"]["level"] in (
-            "error",
-            "warning",
-        ):
-            self.errors.append(params["entry"]["text"])
+        complaints = ("error", "warning", "assert")
+        match message:
+            case {"method": "Runtime.exceptionThrown", "params": params}:
+                self.errors.append(json.dumps(params["exceptionDetails"]))
+            case {"method": "Runtime.consoleAPICalled", "params": params}:
+                if params["type"] in complaints:
+                    self.errors.append(json.dumps(params["args"]))
+            case {"method": "Log.entryAdded", "params": {"entry": entry}}:
+                if entry["level"] in complaints:
+                    self.errors.append(entry["text"])
 
 
 @contextlib.contextmanager
@@ -217,17 +211,9 @@ def browser() -> Iterator[Browser]:
     reads, write = os.pipe()
     read, writes = os.pipe()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        command = [
-            sys.executable,
-            "-c",
-            HANDS_OVER,
-            str(reads),
-            str(writes),
-            path,
-            *OPTIONS,
-        ]
+        command = [sys.executable, "-c", HANDS_OVER, str(reads), str(writes), path]
         child = subprocess.Popen(
-            [*command, f"--user-data-dir={profile}"],
+            [*command, *OPTIONS, f"--user-data-dir={profile}"],
             pass_fds=(reads, writes),
             stderr=subprocess.DEVNULL,
         )

@@ -2,13 +2,14 @@
 docs/guides/cameras.md.
 """
 
+from collections import defaultdict
 from collections.abc import Callable
-from typing import Any
+from itertools import product, starmap
 
 import numpy as np
 from scipy.optimize import least_squares
 
-from benchmarks import record
+from benchmarks import Row, record
 from benchmarks.choices import ALONE, OURS, mark
 from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.colorimetry import Sensor, delta_e_2000, lab, observer, solid, tables
@@ -32,7 +33,7 @@ ToXyz = Callable[[Array], Array]
 
 def xyz_matrix(raw: Array, xyz: Array) -> Array:
     """Fit the matrix (3, 3) from raw values to XYZ by least squares of XYZ."""
-    return np.asarray(np.linalg.lstsq(raw, xyz, rcond=None)[0].T)
+    return np.linalg.lstsq(raw, xyz, rcond=None)[0].T
 
 
 def lab_matrix(raw: Array, xyz: Array, white: Array) -> Array:
@@ -48,7 +49,7 @@ def lab_matrix(raw: Array, xyz: Array, white: Array) -> Array:
         return np.column_stack([first, white - first.sum(axis=1)])
 
     def residuals(free: Array) -> Array:
-        return np.asarray((lab(raw @ matrix(free).T, white) - expected).ravel())
+        return (lab(raw @ matrix(free).T, white) - expected).ravel()
 
     start = xyz_matrix(raw, xyz)
     return matrix(least_squares(residuals, start[:, :2].ravel()).x)
@@ -57,18 +58,16 @@ def lab_matrix(raw: Array, xyz: Array, white: Array) -> Array:
 def methods(
     atlas: Atlas, training: Indices, sensor: Sensor, plain: Cube
 ) -> dict[str, ToXyz]:
-    """Return the methods, each trained on the entries of an atlas in rows ``training``,
-    ``plain`` on none.
+    """Return the methods, each trained on the rows ``training`` of an atlas, ``plain``
+    on none.
     """
     measured = on_grid(atlas, sensor.wavelengths)
     library = np.concatenate(
         [family.measured for family in shipped_library(families_with(measured))]
     )
     half = measured[training]
-    more = np.concatenate([measured[training], library])
-    cube = _build(
-        Atlas(tuple(atlas.entries[row] for row in training)), sensor, measured
-    )
+    entries = Atlas(tuple(atlas.entries[row] for row in training))
+    cube = _build(entries, sensor, measured)
     white = sensor.light.white
 
     def by_matrix(spectra: Array, *white: Array) -> ToXyz:
@@ -84,7 +83,9 @@ def methods(
     return {
         "matrix, XYZ": by_matrix(half),
         "matrix, L*a*b*": by_matrix(half, white),
-        "matrix, L*a*b*, with the library": by_matrix(more, white),
+        "matrix, L*a*b*, with the library": by_matrix(
+            np.concatenate([half, library]), white
+        ),
         "cube without an atlas": by_cube(plain),
         "cube": by_cube(cube),
         "cube, refined": by_cube(cube, "refined"),
@@ -95,23 +96,23 @@ def _build(entries: Atlas | None, sensor: Sensor, measured: Array) -> Cube:
     """Build a cube whose prior does not know the families of measured reflectances (E,
     N).
     """
-    options = {
-        "observer": sensor.space,
-        "illuminant": sensor.illuminant,
-        "leave_out": families_with(measured),
-    }
-    return build(entries, dim=DIM, space=CAMERA, **options)
+    return build(
+        entries,
+        dim=DIM,
+        space=CAMERA,
+        observer=sensor.space,
+        illuminant=sensor.illuminant,
+        leave_out=families_with(measured),
+    )
 
 
 def realisable_share(sensor: Sensor, dim: int = DIM) -> float:
-    """Return the share of raw values in [0, 1]³ that a reflectance has, from the nodes
-    of a lattice.
-    """
+    """Return the share of the nodes of a lattice of raw values that are realisable."""
     nodes = Lattice(axis_nodes("srgb", dim)).points
-    return float(solid(sensor.matrix).contains(nodes).mean())
+    return solid(sensor.matrix).contains(nodes).mean()
 
 
-def compare(camera: str, illuminant: str) -> dict[str, Any]:
+def compare(camera: str, illuminant: str) -> Row:
     """Compare the methods on the held-out halves of all splits."""
     atlas = read_atlas(ATLAS)
     sensor = observer.sensor(CAMERA, illuminant, camera)
@@ -120,29 +121,28 @@ def compare(camera: str, illuminant: str) -> dict[str, Any]:
     raw = sensor.rgb(measured)
     expected = lab(measured @ sensor.light.xyz.T, white)
     plain = _build(None, sensor, measured)
-    errors: dict[str, list[Array]] = {}
+    errors = defaultdict(list)
     for seed in range(SPLITS):
         training, held_out = random_halves(len(measured), seed)
         for name, to_xyz in methods(atlas, training, sensor, plain).items():
-            found = lab(to_xyz(raw[held_out]), white)
-            errors.setdefault(name, []).append(delta_e_2000(found, expected[held_out]))
-    pooled = {name: np.concatenate(each) for name, each in errors.items()}
+            answers = lab(to_xyz(raw[held_out]), white)
+            delta_e = delta_e_2000(answers, expected[held_out])
+            errors[name].append(delta_e)
+    figures = {}
+    for name, splits in errors.items():
+        pooled = np.concatenate(splits)
+        figures[name] = {"mean": pooled.mean(), "high": np.percentile(pooled, 95)}
     return {
         "camera": camera,
         "light": illuminant,
         "realisable": 100 * realisable_share(sensor),
-        "errors": {
-            name: {"mean": each.mean(), "high": np.percentile(each, 95)}
-            for name, each in pooled.items()
-        },
+        "errors": figures,
     }
 
 
 def main() -> None:
     """Measure, and write the data of the page."""
-    rows = [
-        compare(camera, light) for camera in tables.names("camera") for light in LIGHTS
-    ]
+    rows = list(starmap(compare, product(tables.names("camera"), LIGHTS)))
     record(
         "cameras",
         atlas=ATLAS,

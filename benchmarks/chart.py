@@ -3,12 +3,10 @@
 """
 
 from itertools import chain
-from typing import Any
 
-from benchmarks import ATLASES, DOCS, ROOT, record, show
+from benchmarks import DOCS, ROOT, Row, record, show
 from benchmarks.choices import ALONE, OURS, mark
-from benchmarks.materials import SHIPPED
-from uplift.atlas import read_atlas
+from benchmarks.materials import SHIPPED, read_atlases
 from uplift.common.files import write_text
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.lab.chart.measure import measure_methods, select_methods
@@ -29,8 +27,8 @@ UNSEEN = ("lights", "rms")
 
 def main(effort: Effort | None = None) -> None:
     """Measure, draw and store."""
-    atlases = {path.stem: read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))}
-    publish(measure_methods(select_methods(), make_task(atlases, effort=effort), show))
+    task = make_task(read_atlases(), effort=effort)
+    publish(measure_methods(select_methods(), task, show))
 
 
 def publish(chart: Chart) -> None:
@@ -39,9 +37,8 @@ def publish(chart: Chart) -> None:
     ``publish(shipped_chart())`` does so without measuring again.
     """
     folder = DOCS / "chart"
-    write_text(
-        chart_csv(chart), ROOT / "uplift" / "lab" / "chart" / MEASURED, force=True
-    )
+    table = ROOT / "uplift" / "lab" / "chart" / MEASURED
+    write_text(chart_csv(chart), table, force=True)
     write_picture(chart, folder / "chart.png", force=True)
     write_text(render_chart(chart), folder / "chart.html", force=True)
     record(
@@ -59,12 +56,13 @@ def publish(chart: Chart) -> None:
     )
 
 
-def fronts(chart: Chart) -> list[dict[str, Any]]:
-    """Return the Pareto front of every panel, fastest first; the panel is named in its
-    first row. Times in ns.
+def fronts(chart: Chart) -> list[Row]:
+    """Return the Pareto front of every panel, fastest first; its first row names it.
+
+    Times are in ns.
     """
     rows = []
-    for criterion in chain.from_iterable(criteria(batch) for batch in chart.batches):
+    for criterion in chain.from_iterable(map(criteria, chart.batches)):
         for number, row in enumerate(criterion.front(chart)):
             rows.append(
                 {
@@ -79,30 +77,27 @@ def fronts(chart: Chart) -> list[dict[str, Any]]:
     return rows
 
 
-def method_record(row: MethodResult, batches: tuple[int, ...]) -> dict[str, Any]:
+def method_record(row: MethodResult, batches: tuple[int, ...]) -> Row:
     """Return the figures of a method; ``mark_N`` marks calls with fewer than N colours,
     ``total_N`` has the set-up.
     """
     numbers = row.numbers
-    record = {
+    figures = {
         "name": row.method,
         "method": row.title,
         "mark": optimistic_mark(row),
         "dtype": row.dtype,
         "note": row.note,
+        "build_s": None,
+        **numbers,
     }
-    record |= {"build_s": None, **numbers}
+    spreads = []
     for batch in batches:
-        record[f"mark_{batch}"] = "≈ " if numbers[f"ns_{batch}_colours"] < batch else ""
-        record[f"total_{batch}"] = (
-            1e9 * numbers["setup_s"] + batch * numbers[f"ns_{batch}"]
-        )
-    return record | {
-        "spread": max(
-            numbers[f"ns_{batch}_most"] / numbers[f"ns_{batch}_least"] - 1
-            for batch in batches
-        )
-    }
+        name = f"ns_{batch}"
+        figures[f"mark_{batch}"] = "≈ " if numbers[f"{name}_colours"] < batch else ""
+        figures[f"total_{batch}"] = 1e9 * numbers["setup_s"] + batch * numbers[name]
+        spreads.append(numbers[f"{name}_most"] / numbers[f"{name}_least"] - 1)
+    return {**figures, "spread": max(spreads)}
 
 
 def optimistic_mark(row: MethodResult) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks import MACBETH
+from benchmarks import MACBETH, Row
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import in_unit_cube, observer
 from uplift.colorimetry.gamut import SRGB
@@ -34,7 +34,7 @@ CIE_Y_INTEGRAL = 106.856895
 DPI = 160
 Place = tuple[slice, slice]
 """Rows and columns of a part of a picture."""
-Reflectances = list[dict[str, Any]]
+Reflectances = list[Row]
 """Textures of Mitsuba for the patches."""
 
 
@@ -56,49 +56,43 @@ class Chart:
 def chart() -> Chart:
     """Read the shipped ColorChecker."""
     sensor = observer.sensor()
-    spectra = read_atlas(MACBETH)
-    measured = on_grid(spectra, sensor.wavelengths)
+    atlas = read_atlas(MACBETH)
+    measured = on_grid(atlas, sensor.wavelengths)
     rgb = sensor.rgb(measured)
-    return Chart(
-        spectra.names,
-        sensor.wavelengths,
-        measured,
-        np.clip(rgb, 0, 1),
-        ~in_unit_cube(rgb),
-    )
+    painted = np.clip(rgb, 0, 1)
+    outside = ~in_unit_cube(rgb)
+    return Chart(atlas.names, sensor.wavelengths, measured, painted, outside)
 
 
 @dataclass(frozen=True)
 class Layout:
-    """Patches of ``patch`` pixels with ``gap`` between and around them, in reading
-    order.
-    """
+    """Patches of ``patch`` pixels in reading order, ``gap`` between and around them."""
 
     patch: int
     gap: int
 
     @property
+    def pitch(self) -> int:
+        """Distance from a patch to the next."""
+        return self.patch + self.gap
+
+    @property
     def size(self) -> tuple[int, int]:
         """Width and height of the picture."""
-        pitch = self.patch + self.gap
-        return COLUMNS * pitch + self.gap, ROWS * pitch + self.gap
+        return COLUMNS * self.pitch + self.gap, ROWS * self.pitch + self.gap
 
     def corners(self) -> Iterator[tuple[int, int]]:
         """Yield the top left pixel (x, y) of each patch."""
-        pitch = self.patch + self.gap
-        for row in range(ROWS):
-            for column in range(COLUMNS):
-                yield self.gap + column * pitch, self.gap + row * pitch
+        for row, column in np.ndindex(ROWS, COLUMNS):
+            yield self.gap + column * self.pitch, self.gap + row * self.pitch
 
     def patches(self, inset: int = 0) -> Iterator[Place]:
-        """Yield the rows and columns of each patch, without ``inset`` pixels along its
-        edges.
-        """
-        for x, y in self.corners():
-            yield (
-                slice(y + inset, y + self.patch - inset),
-                slice(x + inset, x + self.patch - inset),
+        """Yield the rows and columns of each patch, ``inset`` pixels from its edges."""
+        for corner in self.corners():
+            columns, rows = (
+                slice(start + inset, start + self.patch - inset) for start in corner
             )
+            yield rows, columns
 
     def middles(self) -> list[Place]:
         """Return the rows and columns of a square in the middle of each patch."""
@@ -113,9 +107,7 @@ class Layout:
         ]
 
     def paint(self, colours: Array, background: Array) -> Array:
-        """Return an image (height, width, 3) of patches (24, 3) before a background
-        (3,).
-        """
+        """Return an image (height, width, 3) of patches (24, 3) on a background."""
         width, height = self.size
         image = np.tile(background, (height, width, 1))
         for place, colour in zip(self.patches(), colours, strict=True):
@@ -136,7 +128,7 @@ def draw(
     path: Path,
     size: tuple[float, float],
 ) -> None:
-    """Draw XYZ ``images`` by light and method; the first method is shown in the places
+    """Draw XYZ ``images`` by light and method, with the first method in the places
     ``reference`` of all.
 
     ``delta_e`` has the errors of the patches, ``to_screen`` the matrices (3, 3) from
@@ -154,11 +146,7 @@ def draw(
             height, width, _ = image.shape
             # Means of 2 × 2 pixels halve the noise.
             binned = image.reshape(height // 2, 2, width // 2, 2, 3).mean(axis=(1, 3))
-            show_image(
-                axes,
-                to_display_codes(binned @ matrix.T, SRGB).astype(np.uint8),
-                interpolation="nearest",
-            )
+            show_srgb(axes, binned @ matrix.T)
             if column:
                 errors = delta_e[name, method]
                 text = f"mean ΔE00 {errors.mean():.1f}, largest {errors.max():.1f}"
@@ -168,6 +156,12 @@ def draw(
             if column == 0:
                 axes.set_ylabel(f"{name}\n{DESCRIPTIONS[name]}", fontsize=9, labelpad=8)
     write_png(figure, path, force=True)
+
+
+def show_srgb(axes: Any, rgb: Array) -> None:
+    """Show linear sRGB (height, width, 3), a pixel a sample."""
+    codes = to_display_codes(rgb, SRGB).astype(np.uint8)
+    show_image(axes, codes, interpolation="nearest")
 
 
 def start_mitsuba(variant: str = VARIANT) -> str:
@@ -183,25 +177,20 @@ def start_mitsuba(variant: str = VARIANT) -> str:
 
 def measured_spectra(painted: Chart) -> Reflectances:
     """Return the measured spectra of the patches: the reference."""
-    return [
-        regular_spectrum(painted.wavelengths, spectrum) for spectrum in painted.measured
-    ]
+    return [regular_spectrum(painted.wavelengths, row) for row in painted.measured]
 
 
-def constant_light(illuminant: str) -> dict[str, Any]:
+def constant_light(illuminant: str) -> Row:
     """Return uniform illumination, as bright as makes white's Y = 1."""
     sensor = observer.sensor(illuminant=illuminant)
     step = sensor.wavelengths[1] - sensor.wavelengths[0]
     luminous = (sensor.power * sensor.cmfs[:, 1]).sum() * step
-    return {
-        "type": "constant",
-        "radiance": regular_spectrum(
-            sensor.wavelengths, sensor.power * CIE_Y_INTEGRAL / luminous
-        ),
-    }
+    radiance = sensor.power * CIE_Y_INTEGRAL / luminous
+    spectrum = regular_spectrum(sensor.wavelengths, radiance)
+    return {"type": "constant", "radiance": spectrum}
 
 
-def regular_spectrum(wavelengths: Array, values: Array) -> dict[str, Any]:
+def regular_spectrum(wavelengths: Array, values: Array) -> Row:
     """Describe samples with straight lines between them."""
     return {
         "type": "regular",
@@ -212,7 +201,7 @@ def regular_spectrum(wavelengths: Array, values: Array) -> dict[str, Any]:
 
 
 def render(
-    emitter: dict[str, Any],
+    emitter: Row,
     reflectances: Reflectances,
     layout: Layout,
     spp: int,
@@ -223,29 +212,22 @@ def render(
     """
     import mitsuba as mi
 
-    transform, (width, height) = mi.ScalarTransform4f, layout.size
+    transform = mi.ScalarTransform4f
+    width, height = layout.size
 
-    def square(
-        reflectance: dict[str, Any], middle: list[float], scale: list[float]
-    ) -> dict[str, Any]:
-        placed = transform().translate(middle).scale(scale)
+    def square(reflectance: Row, middle: list[float], scale: list[float]) -> Row:
         return {
             "type": "rectangle",
-            "to_world": placed,
+            "to_world": transform().translate(middle).scale(scale),
             "bsdf": {"type": "diffuse", "reflectance": reflectance},
         }
 
     half = layout.patch / 2
-    patches = {
-        f"patch_{number}": square(
-            reflectance,
-            [x + half - width / 2, height / 2 - y - half, 0],
-            [half, half, 1],
-        )
-        for number, (reflectance, (x, y)) in enumerate(
-            zip(reflectances, layout.corners(), strict=True)
-        )
-    }
+    patches = {}
+    for reflectance, (x, y) in zip(reflectances, layout.corners(), strict=True):
+        middle = [x + half - width / 2, height / 2 - y - half, 0]
+        name = f"patch_{len(patches)}"
+        patches[name] = square(reflectance, middle, [half, half, 1])
     view = transform().look_at(origin=[0, 0, 100], target=[0, 0, 0], up=[0, 1, 0])
     camera = {
         "type": "orthographic",
@@ -265,12 +247,12 @@ def render(
     return np.array(mi.render(mi.load_dict(scene), spp=spp, seed=seed), dtype=float)
 
 
-def xyz_film(width: int, height: int) -> dict[str, Any]:
+def xyz_film(width: int, height: int) -> Row:
     """Describe a film of XYZ."""
-    size = {"width": width, "height": height}
     return {
         "type": "hdrfilm",
-        **size,
+        "width": width,
+        "height": height,
         "pixel_format": "xyz",
         "component_format": "float32",
     }

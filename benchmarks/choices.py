@@ -1,5 +1,4 @@
-"""Choices of the design, and the sets of measured materials whose errors they were made
-with.
+"""Choices of the design, and the sets of materials whose errors they were made with.
 
 A figure is *optimistic* if a choice behind its method was made with the set that it is
 measured on.
@@ -7,15 +6,17 @@ measured on.
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from itertools import chain
 
 from benchmarks.materials import MIXTURE, SHIPPED
 from uplift.lab.study.held_out import HALF, LOCAL_LINEAR, NO_ATLAS
 
 CHOSEN_ON = ("rawtoaces", "babelcolor", "pmc", "tcs", "vs")
+MEASURED = (*SHIPPED, "munsell")
 OURS = HALF
 OURS_SMOOTH = f"{HALF}, smooth prior"
-ALONE, ALONE_SMOOTH = NO_ATLAS, f"{NO_ATLAS}, smooth prior"
+WITH_ATLAS = (OURS, OURS_SMOOTH)
+ALONE = NO_ATLAS
+ALONE_SMOOTH = f"{NO_ATLAS}, smooth prior"
 """Methods: cubes of moments with and without an atlas."""
 MARK = " ○"
 """Follows an optimistic figure on a page."""
@@ -23,9 +24,7 @@ MARK = " ○"
 
 @dataclass(frozen=True)
 class Choice:
-    """A choice of the design, the sets whose errors it was made with, and the methods
-    that depend on it.
-    """
+    """A choice, the sets it was made with, and the methods that depend on it."""
 
     choice: str
     sets: tuple[str, ...]
@@ -38,19 +37,13 @@ CHOICES = (
         ("rawtoaces",),
         (OURS, OURS_SMOOTH, ALONE, ALONE_SMOOTH),
     ),
-    Choice(
-        "weights of entries: lights, ends, curvature", CHOSEN_ON, (OURS, OURS_SMOOTH)
-    ),
-    Choice("weight of smooth multipliers of entries", SHIPPED, (OURS, OURS_SMOOTH)),
-    Choice(
-        "kriging: metric, noise, median, default, corners",
-        (*SHIPPED, "munsell"),
-        (OURS, OURS_SMOOTH),
-    ),
-    Choice("standard errors: few entries", (*SHIPPED, "munsell"), (OURS, OURS_SMOOTH)),
+    Choice("weights of entries: lights, ends, curvature", CHOSEN_ON, WITH_ATLAS),
+    Choice("weight of smooth multipliers of entries", SHIPPED, WITH_ATLAS),
+    Choice("kriging: metric, noise, median, default, corners", MEASURED, WITH_ATLAS),
+    Choice("standard errors: few entries", MEASURED, WITH_ATLAS),
     Choice(
         "learnt prior: length, spreads, noise, bounds, relevance",
-        (*SHIPPED, "munsell"),
+        MEASURED,
         (OURS, ALONE),
     ),
     Choice(
@@ -63,16 +56,15 @@ CHOICES = (
 
 def is_optimistic(sets: Iterable[str], method: str) -> bool:
     """Whether a choice behind a method was made with one of the sets."""
-    names = set(
-        chain.from_iterable((SHIPPED if name == MIXTURE else (name,)) for name in sets)
-    )
+    names = {*sets}
+    if MIXTURE in names:
+        names.update(SHIPPED)
     return any(
-        names & {*choice.sets} and method in choice.methods for choice in CHOICES
+        method in choice.methods and not names.isdisjoint(choice.sets)
+        for choice in CHOICES
     )
 
 
 def mark(sets: Iterable[str], method: str) -> str:
-    """Return the mark of a figure of a method on the sets, empty if it is not
-    optimistic.
-    """
+    """Return the mark of a figure of a method on the sets, or an empty text."""
     return MARK if is_optimistic(sets, method) else ""

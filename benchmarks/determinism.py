@@ -11,6 +11,7 @@ import sys
 import tempfile
 import warnings
 from dataclasses import replace
+from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,8 @@ from benchmarks import ROOT, Row, record
 from uplift.atlas import Atlas
 from uplift.extras.report.regression import LIMITS, compare_rebuilt
 
-CASES: dict[str, tuple[tuple[str, ...], Row]] = {
+Variables = dict[str, str]
+CASES = {
     "moments, Macbeth, 16³": (("macbeth",), {"dim": 16}),
     "sigmoid, Macbeth, 16³": (("macbeth",), {"dim": 16, "model": "sigmoid"}),
     "17 coefficients, four atlases, 12³": (
@@ -35,13 +37,13 @@ NUMPY_SSE4 = {"NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR"}
 must be named too.
 """
 NUMPY_AVX2 = {"NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR"}
-XLA_SSE4, XLA_AVX2 = (
-    {"XLA_FLAGS": f"--xla_cpu_max_isa={name}"} for name in ("SSE4_2", "AVX2")
-)
-BLAS_SSE4, BLAS_AVX2 = ({"OPENBLAS_CORETYPE": name} for name in ("Nehalem", "Haswell"))
+XLA_SSE4 = {"XLA_FLAGS": "--xla_cpu_max_isa=SSE4_2"}
+XLA_AVX2 = {"XLA_FLAGS": "--xla_cpu_max_isa=AVX2"}
+BLAS_SSE4 = {"OPENBLAS_CORETYPE": "Nehalem"}
+BLAS_AVX2 = {"OPENBLAS_CORETYPE": "Haswell"}
 WITHOUT_AVX512 = NUMPY_AVX2 | XLA_AVX2 | BLAS_AVX2
 """Environment of a process that computes as on a CPU with AVX2 and without AVX-512."""
-SAME: dict[str, dict[str, str]] = {
+SAME = {
     "again": {},
     "one core": {},
     "1 thread of BLAS": {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
@@ -55,7 +57,7 @@ SAME: dict[str, dict[str, str]] = {
     "3 devices": {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"},
 }
 """Environment variables of settings that must not change a byte."""
-APART: dict[str, dict[str, str]] = {
+APART = {
     "numpy without AVX-512": NUMPY_AVX2,
     "numpy without AVX2": NUMPY_SSE4,
     "XLA with AVX2": XLA_AVX2,
@@ -83,9 +85,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         run("default", {}, folder)
-        same, apart = (
-            [measure(key, each[key], folder) for key in each] for each in (SAME, APART)
-        )
+        same = [measure(*setting, folder) for setting in SAME.items()]
+        apart = [measure(*setting, folder) for setting in APART.items()]
     record(
         "determinism",
         "stability-determinism",
@@ -106,54 +107,44 @@ def build_cubes(folder: str) -> None:
     """Build the cubes of all cases; names of entries get their atlas as prefix."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     for number, (names, options) in enumerate(CASES.values()):
-        atlases = [(name, uplift.read_atlas(name)) for name in names]
-        entries = [
-            replace(each, name=f"{name} {each.name}")
-            for name, atlas in atlases
-            for each in atlas.entries
-        ]
+        entries = []
+        for name in names:
+            entries += [
+                replace(entry, name=f"{name} {entry.name}")
+                for entry in uplift.read_atlas(name)
+            ]
         uplift.build(Atlas(tuple(entries)), **options).save(f"{folder}/{number}.uplift")
 
 
-def run(name: str, variables: dict[str, str], folder: Path) -> Path:
+def run(name: str, variables: Variables, folder: Path) -> Path:
     """Build the cubes in a process with a setting, into a folder of its name."""
     into = folder / name
     into.mkdir()
     command = [*PREFIXES.get(name, ()), sys.executable, "-c", BUILD, str(into)]
-    compiled = {
-        "JAX_ENABLE_COMPILATION_CACHE": "false"
-    }  # no code compiled under another setting
-    subprocess.run(command, env=os.environ | compiled | variables, cwd=ROOT, check=True)
+    # Code that was compiled under another setting must not be used.
+    uncached = {"JAX_ENABLE_COMPILATION_CACHE": "false"}
+    subprocess.run(command, env=os.environ | uncached | variables, cwd=ROOT, check=True)
     return into
 
 
-def measure(name: str, variables: dict[str, str], folder: Path) -> Row:
-    """Build the cubes under a setting, and compare them with those of the
-    default one.
-    """
+def measure(name: str, variables: Variables, folder: Path) -> Row:
+    """Build the cubes under a setting, and compare them with the default ones."""
     into = run(name, variables, folder)
-    files = [
-        (folder / "default" / f"{number}.uplift", into / f"{number}.uplift")
-        for number in range(len(CASES))
-    ]
-    cubes = [
-        (uplift.load(first).data, uplift.load(second).data) for first, second in files
-    ]
-    found = [
-        compare_rebuilt(file, *pair)
-        for (_, file), pair in zip(files, cubes, strict=True)
-    ]
+    different = 0
+    different_nodes = 0
+    measures = []
+    for number in range(len(CASES)):
+        file = f"{number}.uplift"
+        first = folder / "default" / file
+        second = into / file
+        different += first.read_bytes() != second.read_bytes()
+        cubes = [uplift.load(path).data for path in (first, second)]
+        different_nodes += not np.array_equal(*(cube.lattice.nodes for cube in cubes))
+        measures.append(compare_rebuilt(second, *cubes).measures)
     return {
         "setting": name,
-        "cubes": len(files),
-        "different": sum(
-            first.read_bytes() != second.read_bytes() for first, second in files
-        ),
-        "different_nodes": sum(
-            not np.array_equal(one.lattice.nodes, other.lattice.nodes)
-            for one, other in cubes
-        ),
-        "measures": {
-            limit: max(each.measures[limit] for each in found) for limit in LIMITS
-        },
+        "cubes": len(CASES),
+        "different": different,
+        "different_nodes": different_nodes,
+        "measures": {limit: max(map(itemgetter(limit), measures)) for limit in LIMITS},
     }

@@ -4,37 +4,41 @@ picture.
 
 import warnings
 from collections import defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import colour
 import numpy as np
 
-from benchmarks import DOCS, record
+from benchmarks import DOCS, Row, record
 from uplift.colorimetry import delta_e_2000, lab
 from uplift.colorimetry.gamut import METHODS, SRGB, Primaries, conversion, map_to_gamut
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Mask
 from uplift.extras.colour.srgb import encode
 from uplift.extras.pages.figure import new_figure, write_png
 from uplift.lab.timing import TimingStats, time_laps
 
-BRIGHTEST, DARKEST = 9, 2
+DARKEST = 2
+BRIGHTEST = 9
 """Munsell values between which hues are well known."""
 STEP = 0.25
 """Step of chroma along a line of constant hue and value."""
 WHITE = SRGB.rgb_to_xyz.sum(axis=1)
+Lines = dict[tuple[str, float], Array]
 
 
 @dataclass(frozen=True, eq=False)
 class Chips:
-    """Linear sRGB (n, 3) and hues (n,) of the chips outside; x, y (k, 2) by hue and
-    value, from grey outwards.
+    """Linear sRGB (n, 3) and hues (n,) of the chips outside.
+
+    ``lines``: x, y (k, 2) by hue and value, from grey outwards.
     """
 
     rgb: Array
     hues: tuple[str, ...]
-    lines: dict[tuple[str, float], Array]
+    lines: Lines
 
     def hue_shift(self, mapped: Array) -> Array:
         """Return ΔE00 (n,) between mapped linear sRGB (n, 3) and the nearest colour of
@@ -42,22 +46,16 @@ class Chips:
         """
         light = (mapped @ SRGB.rgb_to_xyz.T)[:, 1]
         values = np.clip(colour.notation.munsell_value_ASTMD1535(100 * light), 1, 9)
-        nearest = [
-            delta_e_2000(_lab_of(self._line(hue, value), y), colour_lab).min()
-            for hue, value, y, colour_lab in zip(
-                self.hues, values, light, _lab(mapped), strict=True
-            )
-        ]
-        return np.array(nearest)
+        lines = map(self._line, self.hues, values)
+        differences = map(delta_e_2000, map(_lab_of, lines, light), _lab(mapped))
+        return np.array([difference.min() for difference in differences])
 
     def _line(self, hue: str, value: float) -> Array:
-        """Interpolate between the lines of the values below and above, at
-        equal chroma.
-        """
+        """Interpolate between the lines of the values below and above."""
         low = min(int(value), 8)
         below = self.lines[hue, low]
         above = self.lines[hue, low + 1]
-        count = min(len(below), len(above))
+        count = min(len(below), len(above))  # at equal chroma
         return below[:count] + (value - low) * (above[:count] - below[:count])
 
 
@@ -66,44 +64,35 @@ def chips() -> Chips:
     (Bradford).
     """
     c = tuple(colour.CCS_ILLUMINANTS["CIE 1931 2 Degree Standard Observer"]["C"])
-    to_srgb = conversion(Primaries(SRGB.red, SRGB.green, SRGB.blue, c), SRGB)
-    from_xyz = to_srgb @ np.linalg.inv(
-        Primaries(SRGB.red, SRGB.green, SRGB.blue, c).rgb_to_xyz
-    )
+    under_c = Primaries(SRGB.red, SRGB.green, SRGB.blue, c)
+    from_xyz = conversion(under_c, SRGB) @ np.linalg.inv(under_c.rgb_to_xyz)
     real = {name for name, _ in colour.MUNSELL_COLOURS["Munsell Colours Real"]}
-    book = colour.MUNSELL_COLOURS[
-        "Munsell Colours All"
-    ]  # lines extend beyond the real chips
-    names = [name for name, _ in book]
-    xyz = colour.xyY_to_XYZ(np.array([xyY for _, xyY in book]) / [1, 1, 100])
-    rgb = xyz @ from_xyz.T
+    # Lines extend beyond the real chips.
+    names, xyy = zip(*colour.MUNSELL_COLOURS["Munsell Colours All"], strict=True)
+    rgb = colour.xyY_to_XYZ(np.array(xyy) / [1, 1, 100]) @ from_xyz.T
+    is_outside = _is_outside(rgb)
     outside = [
         row
         for row, name in enumerate(names)
-        if name in real
-        and DARKEST <= name[1] <= BRIGHTEST
-        and ((rgb[row] < 0) | (rgb[row] > 1)).any()
+        if name in real and DARKEST <= name[1] <= BRIGHTEST and is_outside[row]
     ]
-    return Chips(
-        rgb[outside],
-        tuple(names[row][0] for row in outside),
-        _lines(names, rgb @ SRGB.rgb_to_xyz.T),
-    )
+    hues = tuple(names[row][0] for row in outside)
+    return Chips(rgb[outside], hues, _lines(names, rgb @ SRGB.rgb_to_xyz.T))
 
 
-def _lines(
-    names: list[tuple[str, float, float]], xyz: Array
-) -> dict[tuple[str, float], Array]:
-    found = defaultdict(list)
+def _is_outside(rgb: Array) -> Mask:
+    return ((rgb < 0) | (rgb > 1)).any(axis=1)
+
+
+def _lines(names: Iterable[tuple[str, float, float]], xyz: Array) -> Lines:
+    points = defaultdict(list)
     for (hue, value, chroma), row in zip(names, xyz, strict=True):
-        found[hue, value].append((chroma, *(row[:2] / row.sum())))
+        points[hue, value].append((chroma, *(row[:2] / row.sum())))
     lines = {}
-    for key, points in found.items():
-        chroma, x, y = np.array([(0.0, *SRGB.white), *sorted(points)]).T
+    for key, line in points.items():
+        chroma, *xy = np.array([(0.0, *SRGB.white), *sorted(line)]).T
         at = np.arange(0, chroma[-1] + STEP / 2, STEP)
-        lines[key] = np.stack(
-            [np.interp(at, chroma, x), np.interp(at, chroma, y)], axis=1
-        )
+        lines[key] = np.stack([np.interp(at, chroma, axis) for axis in xy], axis=1)
     return lines
 
 
@@ -121,25 +110,22 @@ MAPPINGS = tuple(method for method in METHODS if method != "error")
 
 
 def draw(path: Path) -> None:
-    """Write the picture: the hues of Rec. 2020 as each method maps them, dark below, up
-    to three times white above.
+    """Write the hues of Rec. 2020 as each method maps them, from dark to three times
+    white.
     """
     figure = new_figure(15, 2.25)
     hue = np.linspace(0, 6, 360)
     pure = np.clip(np.abs((hue[:, None] + [3, 1, 5]) % 6 - 3) - 1, 0, 1)
-    image = (np.geomspace(3, 0.02, 180)[:, None, None] * pure) @ conversion(
-        REC_2020, SRGB
-    ).T
+    brightness = np.geomspace(3, 0.02, 180)[:, None, None]
+    image = (brightness * pure) @ conversion(REC_2020, SRGB).T
     for axes, method in zip(figure.subplots(1, len(MAPPINGS)), MAPPINGS, strict=True):
-        axes.imshow(
-            encode(map_to_gamut(image, SRGB, method).rgb), interpolation="antialiased"
-        )
+        mapped = map_to_gamut(image, SRGB, method).rgb
+        axes.imshow(encode(mapped), interpolation="antialiased")
         axes.set_title(method, fontsize=17, pad=8)
         axes.set_axis_off()
     write_png(figure, path, force=True)
 
 
-PICTURE = DOCS / "display" / "ways.png"
 TIMED = 1 << 16
 """Colours, all of them outside."""
 LAP = 0.02
@@ -148,45 +134,43 @@ RUNS = 7
 
 def main() -> None:
     """Draw, measure and store."""
-    warnings.simplefilter(
-        "ignore"
-    )  # colour-science warns about undefined values in some spaces
-    draw(PICTURE)
-    found = chips()
-    mapped = {name: map_to_gamut(found.rgb, SRGB, name).rgb for name in MAPPINGS}
+    # colour-science warns about undefined values in some spaces.
+    warnings.simplefilter("ignore")
+    draw(DOCS / "display" / "ways.png")
+    outside = chips()
     record(
         "display",
-        chips=len(found.hues),
+        chips=len(outside.hues),
         methods=[
-            {"name": name, **errors(found, rgb), "ns": cost(name)}
-            for name, rgb in mapped.items()
+            {"name": name, **errors(outside, name), "ns": cost(name)}
+            for name in MAPPINGS
         ],
     )
 
 
-def errors(found: Chips, mapped: Array) -> dict[str, Any]:
+def errors(outside: Chips, method: str) -> Row:
     """Return statistics of the hue shift, |ΔL*| and ΔE00 of mapped colours."""
-    original = _lab(found.rgb)
+    mapped = map_to_gamut(outside.rgb, SRGB, method).rgb
+    original = _lab(outside.rgb)
     changed = _lab(mapped)
     values = {
-        "hue": found.hue_shift(mapped),
+        "hue": outside.hue_shift(mapped),
         "lightness": np.abs(original[:, 0] - changed[:, 0]),
         "delta_e": delta_e_2000(original, changed),
     }
     return {
         name: {
-            "mean": each.mean(),
-            "p95": np.percentile(each, 95),
-            "largest": each.max(),
+            "mean": shifts.mean(),
+            "p95": np.percentile(shifts, 95),
+            "largest": shifts.max(),
         }
-        for name, each in values.items()
+        for name, shifts in values.items()
     }
 
 
 def cost(method: str) -> TimingStats:
     """Return the CPU time per mapped colour in nanoseconds."""
     rgb = np.random.default_rng(0).normal(0.5, 1, (3 * TIMED, 3))
-    rgb = rgb[((rgb < 0) | (rgb > 1)).any(axis=1)][:TIMED]
-    return time_laps(lambda: map_to_gamut(rgb, SRGB, method), LAP, RUNS).scaled(
-        1e9 / TIMED
-    )
+    rgb = rgb[_is_outside(rgb)][:TIMED]
+    call = partial(map_to_gamut, rgb, SRGB, method)
+    return time_laps(call, LAP, RUNS).scaled(1e9 / TIMED)

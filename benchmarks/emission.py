@@ -64,42 +64,43 @@ def main() -> None:
     checker = surfaces["ColorChecker"]
     uv = chromaticity(lamps.power @ radiometry)
     unknown = unknown_lamps(lamps, checker, radiometry)
-    found = predict(lamps, unknown)
+    predictions = predict(lamps, unknown)
     lights = {
         rule: {TABLE: power, **by_nearest(lamps, unknown[rule], radiometry)}
-        for rule, (power, _) in found.items()
+        for rule, (power, _) in predictions.items()
     }
+    d65 = lamps.power[lamps.names.index("D65")]
     lights["lamp"] |= {
         "the prior alone": fit_lamp_prior(lamps.power, checker, radiometry)[1],
-        "sigmoid × D65": sigmoid_times_d65(
-            lamps.power, table, lamps.power[lamps.names.index("D65")]
-        ),
+        "sigmoid × D65": sigmoid_times_d65(lamps.power, table, d65),
         "Planck, moved": planck(uv, radiometry, table.wavelengths),
     }
-    power, expected = found["lamp"]
+    power, expected = predictions["lamp"]
     errors = relit_delta_e(lamps.power, power, checker, radiometry).mean(axis=1)
     record(
         "emission",
         lamps=len(lamps),
         exact=len(table.lamp_names),
-        rows=list(summaries(lamps, lights, surfaces, radiometry)),
+        rows=summaries(lamps, lights, surfaces, radiometry),
         worst=[
             {"lamp": lamps.names[row], "error": errors[row]}
             for row in np.argsort(errors)[::-1][:WORST]
         ],
         calibration=[
-            {"expected": expected[part].mean(), "measured": errors[part].mean()}
-            for part in np.array_split(np.argsort(expected, kind="stable"), THIRDS)
+            {"expected": expected[third].mean(), "measured": errors[third].mean()}
+            for third in np.array_split(np.argsort(expected, kind="stable"), THIRDS)
         ],
-        exactness=list(exactness(table, spokes(table, DIRECTIONS, STEPS))),
-        lookups=list(lookups(COLOURS, RUNS)),
+        exactness=exactness(table, spokes(table, DIRECTIONS, STEPS)),
+        lookups=lookups(),
     )
 
 
 def lamp_family(name: str) -> str:
     """Return the family of a lamp. Raises `ValueError` unless it is in one."""
-    (found,) = [key for key, pattern in FAMILIES.items() if re.fullmatch(pattern, name)]
-    return found
+    (family,) = [
+        family for family, pattern in FAMILIES.items() if re.fullmatch(pattern, name)
+    ]
+    return family
 
 
 def unknown_lamps(
@@ -110,13 +111,12 @@ def unknown_lamps(
     Shapes: ``reflectances`` (P, N), ``radiometry`` (N, 3).
     """
     families = np.array([lamp_family(name) for name in lamps.names])
-    same = [np.broadcast_to(row, lamps.power.shape) for row in lamps.power]
-    apart = np.array(
-        [
-            relit_delta_e(lamps.power, row, reflectances, radiometry).mean(axis=1)
-            for row in same
-        ]
-    )
+    differences = []
+    for row in lamps.power:
+        same = np.broadcast_to(row, lamps.power.shape)
+        delta_e = relit_delta_e(lamps.power, same, reflectances, radiometry)
+        differences.append(delta_e.mean(axis=1))
+    apart = np.array(differences)
     return {
         "lamp": np.eye(len(lamps), dtype=bool),
         "near-duplicates": (apart <= SAME_COLOURS) | (apart.T <= SAME_COLOURS),
@@ -127,52 +127,42 @@ def unknown_lamps(
 def predict(
     lamps: Lamps, unknown: Mapping[str, Mask], **size: int
 ) -> dict[str, tuple[Array, Array]]:
-    """Predict lamps by tables that are built without those that each prediction must
-    not know (L, L).
+    """Predict lamps by tables built without those that a prediction must not know (L,
+    L).
 
     Returns power (L, N) and expected errors (L,) by rule.
     """
     shape = (len(unknown), len(lamps))
     power = np.empty((*shape, lamps.power.shape[1]))
     expected = np.empty(shape)
-    sets, member = np.unique(
-        np.stack(list(unknown.values())).reshape(-1, len(lamps)),
-        axis=0,
-        return_inverse=True,
-    )
+    masks = np.concatenate([*unknown.values()])
+    sets, member = np.unique(masks, axis=0, return_inverse=True)
     for number, left_out in enumerate(sets):
-        table = uplift.build_emission(
-            without=[lamps.names[row] for row in np.flatnonzero(left_out)], **size
-        )
+        names = [lamps.names[row] for row in np.flatnonzero(left_out)]
+        table = uplift.build_emission(without=names, **size)
         rule, rows = np.nonzero(member.reshape(shape) == number)
         rgb = table.rgb(lamps.power[rows])
-        power[rule, rows], expected[rule, rows] = (
-            table.spectrum(rgb),
-            table.expected_error(rgb),
-        )
+        power[rule, rows] = table.spectrum(rgb)
+        expected[rule, rows] = table.expected_error(rgb)
     return dict(zip(unknown, zip(power, expected, strict=True), strict=True))
 
 
 def by_nearest(lamps: Lamps, unknown: Mask, radiometry: Array) -> dict[str, Array]:
-    """Return the power (L, N) of the nearest known lamp and the mean of the nearest
-    ones, moved to the colours.
+    """Return the power (L, N) of the nearest known lamp and of the mean of the nearest,
+    moved to the colours.
     """
     uv = chromaticity(lamps.power @ radiometry)
     apart = np.where(unknown, np.inf, np.linalg.norm(uv[:, None] - uv, axis=-1))
     known = lamps.power[np.argsort(apart, axis=1, kind="stable")[:, :NEAREST]]
-    found = {
-        "nearest lamp, moved": known[:, 0],
-        f"mean of the {NEAREST} nearest, moved": known.mean(axis=1),
-    }
+    mean = known.mean(axis=1)
     return {
-        label: nearest_lights(power, uv, radiometry) for label, power in found.items()
+        "nearest lamp, moved": nearest_lights(known[:, 0], uv, radiometry),
+        f"mean of the {NEAREST} nearest, moved": nearest_lights(mean, uv, radiometry),
     }
 
 
 PBRT_SCALE = 2.0
-"""Largest component of RGB relative to that of the colour which the sigmoid of pbrt-v4
-has.
-"""
+"""Largest component of RGB over that of the colour of the sigmoid of pbrt-v4."""
 
 
 def sigmoid_times_d65(power: Array, table: EmissionTable, d65: Array) -> Array:
@@ -189,22 +179,19 @@ def sigmoid_times_d65(power: Array, table: EmissionTable, d65: Array) -> Array:
     rgb = table.rgb(power)
     model = Sigmoid(0.0, 1.0)
     wavelengths = np.linspace(0.0, 1.0, len(radiometry))
-    found = solve(
+    solution = solve(
         forward_map(model, wavelengths, sensor),
         np.zeros((len(rgb), model.count)),
         rgb / (PBRT_SCALE * rgb.max(axis=1, keepdims=True)),
         tolerance=1e-7,
         max_passes=200,
     )
-    return np.asarray(
-        model.to_reflectance(found.multipliers @ model.basis(wavelengths).T) * d65
-    )
+    linear = solution.multipliers @ model.basis(wavelengths).T
+    return model.to_reflectance(linear) * d65
 
 
 MIREDS = np.linspace(20, 1000, 981)
-"""Reciprocal temperatures in 1/MK among which the nearest Planckian radiator is looked
-up.
-"""
+"""Reciprocal temperatures in 1/MK of the Planckian radiators that are compared."""
 SECOND_RADIATION_CONSTANT = 1.438776877e-2
 """c₂ in m K."""
 
@@ -221,9 +208,8 @@ def planck(uv: Array, radiometry: Array, wavelengths: Array) -> Array:
         SECOND_RADIATION_CONSTANT / metres * MIREDS[:, None] * 1e-6
     )
     apart = (uv[:, None] - chromaticity(radiators @ radiometry)) * (1.0, 2 / 3)
-    return nearest_lights(
-        radiators[np.linalg.norm(apart, axis=-1).argmin(axis=1)], uv, radiometry
-    )
+    nearest = radiators[np.linalg.norm(apart, axis=-1).argmin(axis=1)]
+    return nearest_lights(nearest, uv, radiometry)
 
 
 def summaries(
@@ -237,38 +223,30 @@ def summaries(
     """
     for rule, methods in lights.items():
         for method, power in methods.items():
-            row: Row = {"rule": rule, "method": method}
+            row = {"rule": rule, "method": method}
             for label, reflectances in surfaces.items():
-                errors = relit_delta_e(
-                    lamps.power, power, reflectances, radiometry
-                ).mean(axis=1)
+                delta_e = relit_delta_e(lamps.power, power, reflectances, radiometry)
+                errors = delta_e.mean(axis=1)
                 median, high = np.percentile(errors, (50, 95))
                 row[label] = {"mean": errors.mean(), "median": median, "p95": high}
             yield row
 
 
 def spokes(table: EmissionTable, directions: int, steps: int) -> Array:
-    """Return u′v′ (directions · steps, 2) from white to the spectral locus, both
-    included.
-    """
+    """Return u′v′ (directions · steps, 2) from white up to the spectral locus."""
     angle = np.arange(directions) * 2 * np.pi / directions
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     locus = direction / table.data.lattice.polar(direction)[2][:, None]
     share = np.linspace(0, 1, steps)[:, None]
-    return np.asarray(
-        (table.data.lattice.white + locus[:, None] * share).reshape(-1, 2)
-    )
+    return (table.data.lattice.white + locus[:, None] * share).reshape(-1, 2)
 
 
 def exactness(table: EmissionTable, uv: Array) -> Iterator[Row]:
-    """Yield the largest difference in u′v′ and the smallest power at chromaticities (n,
-    2), by type.
-    """
+    """Yield the largest difference from u′v′ (n, 2) and the smallest power, by type."""
     for dtype in ("float64", "float32"):
         power = table.spectrum_of_xyz(unit_xyz(uv), dtype=dtype)
-        apart = np.linalg.norm(
-            chromaticity(power.astype(float) @ table.data.radiometry) - uv, axis=1
-        )
+        xyz = power.astype(float) @ table.data.radiometry
+        apart = np.linalg.norm(chromaticity(xyz) - uv, axis=1)
         yield {
             "type": dtype,
             "colours": len(uv),
@@ -277,27 +255,24 @@ def exactness(table: EmissionTable, uv: Array) -> Iterator[Row]:
         }
 
 
-def lookups(count: int, runs: int) -> Iterator[Row]:
-    """Yield nanoseconds per colour of lights and of reflectances, and the ratio of
-    their medians, by type.
-    """
-    rgb = np.random.default_rng(1).random((count, 3))
+def lookups() -> Iterator[Row]:
+    """Yield ns per colour of lights and of reflectances, and their ratio, by type."""
+    rgb = np.random.default_rng(1).random((COLOURS, 3))
     table = uplift.load_emission()
     cube = uplift.load()
-    for at, dtype in product(
-        (np.linspace(400, 700, 16), table.wavelengths), ("float64", "float32")
-    ):
+    grids = (np.linspace(400, 700, 16), table.wavelengths)
+    for at, dtype in product(grids, ("float64", "float32")):
         times = []
         for query in (table.spectrum, cube.reflectance):
             call = partial(query, rgb, at, dtype=dtype)
             call()
-            times.append(time_calls(call, runs)[0].scaled(1e9 / count))
+            times.append(time_calls(call, RUNS)[0].scaled(1e9 / COLOURS))
         light, reflectance = times
-        row = {
+        yield {
             "type": dtype,
             "wavelengths": len(at),
-            "colours": count,
+            "colours": COLOURS,
             "light": light,
             "reflectance": reflectance,
+            "ratio": light.median / reflectance.median,
         }
-        yield row | {"ratio": light.median / reflectance.median}

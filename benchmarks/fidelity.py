@@ -4,8 +4,8 @@ docs/prior.md.
 
 from collections.abc import Iterator
 from dataclasses import asdict
-from functools import cache
-from itertools import chain, product
+from functools import cache, partial
+from itertools import chain, product, starmap
 from typing import Any
 
 import numpy as np
@@ -20,13 +20,14 @@ from benchmarks.choices import (
     is_optimistic,
 )
 from benchmarks.materials import (
+    FETCHED,
     LARGE,
     MIXTURE,
-    MUNSELL,
     SENSOR,
     SPLITS,
     Materials,
     as_record,
+    by_light,
     errors,
     inside,
     materials,
@@ -45,7 +46,7 @@ from uplift.extras.report.measures import check_calibration
 from uplift.fit import shipped_library
 from uplift.fit.families import LENGTH, NUGGET
 from uplift.lab.chart.measure import select_methods
-from uplift.lab.chart.method import make_task
+from uplift.lab.chart.method import Uplift, make_task
 from uplift.lab.study import held_out
 from uplift.lookup import Cube
 
@@ -66,52 +67,54 @@ Pairs = list[tuple[Cube, Materials]]
 
 def main() -> None:
     """Measure and store."""
-    cubes = [*product(LARGE, COUNTS), *((name, 9) for name in (*SMALL, MIXTURE))]
-    known = {
-        (name, count): other_halves(name, dim=DIM, coefficients=count)
-        for name, count in cubes
-    }
-    others = {
-        f"macbeth, queried for {name}": [
-            (
-                build("macbeth", dim=DIM, leave_out=shipped_families(name)),
-                materials(name),
-            )
-        ]
-        for name in LARGE
-    }
-    record(
-        "fidelity",
-        dim=DIM,
-        splits=SPLITS,
-        munsell=MUNSELL.exists(),
-        entries=list(chain.from_iterable(at_entries(name) for name in TESTED)),
-        standard_errors=[
-            *(coverage(*key, pairs) for key, pairs in known.items()),
-            *(coverage(label, 9, pairs) for label, pairs in others.items()),
-        ],
-        light_errors=[
-            {"atlas": name, "coefficients": count, "covered": covered(pairs)}
-            for (name, count), pairs in known.items()
-        ],
-    )
+    measure_coverage()
     record(
         "fidelity",
         "held-out",
         lights=list(HELD_OUT_LIGHTS),
         splits=SPLITS,
-        choices=[asdict(choice) for choice in CHOICES],
-        sets=[compare_methods(name) for name in (*SETS, MIXTURE)],
+        choices=map(asdict, CHOICES),
+        sets=map(compare_methods, (*SETS, MIXTURE)),
     )
     record(
         "fidelity",
         "mixture",
         dim=DIM,
         splits=SPLITS,
-        rows=[learning_curve(parts) for parts in PARTS],
+        rows=map(learning_curve, PARTS),
     )
-    sets = (*LIBRARY_SETS, *(["munsell"] if MUNSELL.exists() else []))
-    size = FILE.stat().st_size
+    measure_prior()
+
+
+def measure_coverage() -> None:
+    """Measure the errors at entries, and how many errors the stated ones cover."""
+    cubes = [*product(LARGE, COUNTS), *((name, 9) for name in (*SMALL, MIXTURE))]
+    standard_errors = []
+    light_errors = []
+    for name, count in cubes:
+        pairs = other_halves(name, dim=DIM, coefficients=count)
+        standard_errors.append(coverage(name, count, pairs))
+        light_errors.append(
+            {"atlas": name, "coefficients": count, "covered": covered(pairs)}
+        )
+    for name in LARGE:
+        cube = build("macbeth", dim=DIM, leave_out=shipped_families(name))
+        label = f"macbeth, queried for {name}"
+        standard_errors.append(coverage(label, 9, [(cube, materials(name))]))
+    record(
+        "fidelity",
+        dim=DIM,
+        splits=SPLITS,
+        munsell=bool(FETCHED),
+        entries=chain.from_iterable(map(at_entries, TESTED)),
+        standard_errors=standard_errors,
+        light_errors=light_errors,
+    )
+
+
+def measure_prior() -> None:
+    """Measure what the learnt prior gives for sets that it does not know."""
+    sets = (*LIBRARY_SETS, *FETCHED)
     record(
         "fidelity",
         "prior",
@@ -122,33 +125,30 @@ def main() -> None:
             "nugget": NUGGET,
             "spread": SPREAD,
             "otsu_spread": OTSU_SPREAD,
-            "bytes": size,
+            "bytes": FILE.stat().st_size,
         },
         library=[
-            {"name": each.name, "spectra": len(each.measured)}
-            for each in shipped_library()
+            {"name": known.name, "spectra": len(known.measured)}
+            for known in shipped_library()
         ],
-        unseen=[unseen(name, count) for name in sets for count in (9, 17)],
+        unseen=starmap(unseen, product(sets, (9, 17))),
         atlases=[with_atlas(name) for name in sets if name not in FAMILIES["checker"]],
-        libraries=list(chain.from_iterable(with_library(name) for name in LARGE)),
+        libraries=chain.from_iterable(map(with_library, LARGE)),
     )
 
 
 def at_entries(name: str) -> Iterator[Row]:
-    """Yield the errors of cubes at the colours of their entries, and the size of the
-    cubes' arrays.
-    """
-    some = materials(name)
+    """Yield the errors of cubes at the colours of entries, and the cubes' sizes."""
+    entries = materials(name)
+    of_atlas = partial(build, name, dim=DIM)
     cubes = {
-        f"9 coefficients, entries {count}": build(
-            name, dim=DIM, entry_coefficients=count
-        )
+        f"9 coefficients, entries {count}": of_atlas(entry_coefficients=count)
         for count in COUNTS
     }
     cubes |= {
-        "17 coefficients": build(name, dim=DIM, coefficients=17),
+        "17 coefficients": of_atlas(coefficients=17),
         "9, without the atlas": build(dim=DIM),
-        "sigmoid": build(name, dim=DIM, model="sigmoid"),
+        "sigmoid": of_atlas(model="sigmoid"),
     }
     for label, cube in cubes.items():
         size = sum(array.nbytes for array in contents(cube.data)[0].values())
@@ -156,40 +156,36 @@ def at_entries(name: str) -> Iterator[Row]:
             "atlas": name,
             "cube": label,
             "megabytes": size / 1e6,
-            **errors(cube.reflectance(some.rgb), some),
+            **errors(cube.reflectance(entries.rgb), entries),
         }
 
 
 def pooled(splits: tuple[held_out.HoldoutSplit, ...], method: str) -> Array:
-    """Mean rms, then mean ΔE00 under each light, over the splits; splits of one set
-    differ by one entry at most.
+    """Return mean rms, then mean ΔE00 under each light, over the splits.
+
+    Splits of one set differ by one entry at most.
     """
     return np.mean([split.errors[method].means() for split in splits], axis=0)
 
 
 def stated(pairs: Pairs, light: Light) -> tuple[Array, Array]:
-    """Return errors (3, n), actual, standard and bounds, and the shares (n, 2) that the
-    latter two cover.
+    """Return errors (3, n), actual, standard and bounds, and whether the latter two
+    cover the first (n, 2).
     """
-    parts = [
-        np.array(
-            [
-                delta_e_spectra(light, cube.reflectance(some.rgb), some.measured),
-                cube.standard_error(some.rgb, light),
-                cube.error_bound(some.rgb, light),
-            ]
-        )
-        for cube, some in pairs
-    ]
-    found = np.concatenate(parts, axis=1)
-    return found, (found[0] <= found[1:]).T
+    parts = []
+    for cube, queried in pairs:
+        rgb = queried.rgb
+        actual = delta_e_spectra(light, cube.reflectance(rgb), queried.measured)
+        standard_error = cube.standard_error(rgb, light)
+        parts.append([actual, standard_error, cube.error_bound(rgb, light)])
+    pooled_errors = np.concatenate(parts, axis=1)
+    return pooled_errors, (pooled_errors[0] <= pooled_errors[1:]).T
 
 
 def coverage(label: str, count: int, pairs: Pairs) -> Row:
     """Return the coverage under the light of the nodes."""
-    found, _ = stated(pairs, observer.light(pairs[0][0].data.error_illuminant))
-    overall = check_calibration(*found)
-    assert overall is not None
+    light = observer.light(pairs[0][0].data.error_illuminant)
+    overall = check_calibration(*stated(pairs, light)[0])
     return {
         "atlas": label,
         "coefficients": count,
@@ -200,9 +196,7 @@ def coverage(label: str, count: int, pairs: Pairs) -> Row:
 
 
 def covered(pairs: Pairs) -> dict[str, Array]:
-    """Return, by light, the shares of errors within the standard error and within the
-    error bound.
-    """
+    """Return the shares of errors within the standard error and the bound, by light."""
     return {
         name: stated(pairs, observer.light(name))[1].mean(axis=0)
         for name in HELD_OUT_LIGHTS
@@ -210,12 +204,10 @@ def covered(pairs: Pairs) -> dict[str, Array]:
 
 
 def compare_methods(name: str) -> Row:
-    """Return the errors of all methods on the held-out halves of a set, and how they
-    compare.
-    """
+    """Return the errors of all methods on the held-out halves of a set."""
     learnt = held_out.holdout(spectra(name), SPLITS)
     smooth = held_out.holdout(spectra(name), SPLITS, prior="smooth", leave_out=())
-    found = {
+    results = {
         OURS: pooled(learnt, held_out.HALF),
         OURS_SMOOTH: pooled(smooth, held_out.HALF),
         held_out.LOCAL_LINEAR: pooled(learnt, held_out.LOCAL_LINEAR),
@@ -223,55 +215,44 @@ def compare_methods(name: str) -> Row:
         ALONE_SMOOTH: pooled(smooth, held_out.NO_ATLAS),
         held_out.SIGMOID: pooled(learnt, held_out.SIGMOID),
     }
-    some = materials(name)
-    for method, answers in published(some).items():
-        found[method] = held_out.spectrum_errors(answers, some.measured).means()
-    means = {method: float(np.mean(values[1:])) for method, values in found.items()}
+    queried = materials(name)
+    for method, answers in published(queried).items():
+        results[method] = means(answers, queried)
+    least = min(values[1:].mean() for values in results.values())
     rows = [
         {
             "method": method,
             **as_record(values),
-            "mean": means[method],
-            "best": means[method] == min(means.values()),
+            "mean": values[1:].mean(),
+            "best": values[1:].mean() == least,
             "optimistic": is_optimistic([name], method),
         }
-        for method, values in found.items()
+        for method, values in results.items()
     ]
-    return {"set": name, "spectra": len(some.rgb), "rows": rows}
+    return {"set": name, "spectra": len(queried.rgb), "rows": rows}
 
 
 def learning_curve(parts: int) -> Row:
-    """Return the errors at each part of the mixture of cubes that know the other ones:
-    what more measurements give.
-    """
-    some = materials(MIXTURE)
+    """Return the errors at each part of the mixture of cubes that know the others."""
+    mixture = materials(MIXTURE)
     left_out = shipped_families(MIXTURE)
-    found = []
-    rows = np.arange(len(some.rgb))
+    delta_e = []
+    rows = np.arange(len(mixture.rgb))
     for seed in range(SPLITS):
-        for queried in np.array_split(
-            np.random.default_rng(seed).permutation(rows), parts
-        ):
-            cube = some.take(np.setdiff1d(rows, queried)).cube(
-                dim=DIM, leave_out=left_out
-            )
-            held = some.take(queried)
-            found.append(
-                held_out.spectrum_errors(
-                    cube.reflectance(held.rgb), held.measured
-                ).delta_e
-            )
-    by_light = np.concatenate(found).mean(axis=0)
-    return {
-        "known": 1 - 1 / parts,
-        "mean": by_light.mean(),
-        "errors": dict(zip(HELD_OUT_LIGHTS, by_light.tolist(), strict=True)),
-    }
+        shuffled = np.random.default_rng(seed).permutation(rows)
+        for held in np.array_split(shuffled, parts):
+            known = mixture.take(np.setdiff1d(rows, held))
+            cube = known.cube(dim=DIM, leave_out=left_out)
+            queried = mixture.take(held)
+            answers = cube.reflectance(queried.rgb)
+            delta_e.append(held_out.spectrum_errors(answers, queried.measured).delta_e)
+    mean = np.concatenate(delta_e).mean(axis=0)
+    return {"known": 1 - 1 / parts, "mean": mean.mean(), "errors": by_light(mean)}
 
 
 @cache
-def methods() -> dict[str, Any]:
-    """Return the methods of other authors, which use no atlas."""
+def methods() -> dict[str, Uplift]:
+    """Return the methods of other authors, which use no atlas, by title."""
     task = make_task({"macbeth": spectra("macbeth")})
     return {
         method.title: method.prepare(task).uplift
@@ -279,11 +260,11 @@ def methods() -> dict[str, Any]:
     }
 
 
-def published(some: Materials) -> dict[str, Array]:
+def published(queried: Materials) -> dict[str, Array]:
     """Return the answers (n, N) of other authors' methods."""
     return {
-        method: uplift_rgb(some.rgb, SENSOR.wavelengths)
-        for method, uplift_rgb in methods().items()
+        title: uplift_rgb(queried.rgb, SENSOR.wavelengths)
+        for title, uplift_rgb in methods().items()
     }
 
 
@@ -298,76 +279,80 @@ def smooth_cube(count: int) -> Cube:
     return build(dim=COARSE, coefficients=count, prior="smooth")
 
 
-def means(answers: Cube | Array, some: Materials) -> Array:
-    """Mean ΔE00 (L,) under each light."""
-    spectra = answers.reflectance(some.rgb) if isinstance(answers, Cube) else answers
-    return held_out.spectrum_errors(spectra, some.measured).means()[1:]
+def means(answers: Cube | Array, queried: Materials) -> Array:
+    """Return mean rms, then mean ΔE00 under each light."""
+    if isinstance(answers, Cube):
+        answers = answers.reflectance(queried.rgb)
+    return held_out.spectrum_errors(answers, queried.measured).means()
+
+
+def mean_delta_e(queried: Materials, *atlas: str, **options: Any) -> Array:
+    """Return mean ΔE00 (L,) under each light of a coarse cube."""
+    return means(build(*atlas, dim=COARSE, **options), queried)[1:]
 
 
 def unseen(name: str, count: int) -> Row:
-    """Return the errors without an atlas where the prior does not know the family,
-    relative to other methods.
+    """Return the errors without an atlas for an unknown family, and their ratios to
+    those of other methods.
     """
-    some = materials(name)
-    learnt = means(build(dim=COARSE, coefficients=count, leave_out=family(name)), some)
+    queried = materials(name)
+    learnt = mean_delta_e(queried, coefficients=count, leave_out=family(name))
     others = {
         "smooth": smooth_cube(count),
-        **published(some),
+        **published(queried),
         "sigmoid": build(dim=COARSE, model="sigmoid"),
     }
     ratios = {
-        method: learnt / means(answers, some) for method, answers in others.items()
+        method: learnt / means(answers, queried)[1:]
+        for method, answers in others.items()
     }
     return {
         "set": name,
-        "spectra": len(some.rgb),
+        "spectra": len(queried.rgb),
         "coefficients": count,
-        "learnt": dict(zip(HELD_OUT_LIGHTS, learnt, strict=True)),
-        "against_smooth": dict(zip(HELD_OUT_LIGHTS, ratios["smooth"], strict=True)),
+        "learnt": by_light(learnt),
+        "against_smooth": by_light(ratios["smooth"]),
         "worst": {method: ratio.max() for method, ratio in ratios.items()},
     }
 
 
 def with_atlas(name: str) -> Row:
-    """Return the mean error over the lights of ColorChecker cubes, queried for a set
-    that the prior does not know.
+    """Return the mean error of ColorChecker cubes for a set that the prior does not
+    know.
     """
-    some = materials(name)
+    queried = materials(name)
     left_out = [*family(name), "checker"]
-    found = {
-        "smooth": means(build("macbeth", dim=COARSE, prior="smooth"), some),
-        "learnt": means(build("macbeth", dim=COARSE, leave_out=left_out), some),
-        "no_atlas": means(build(dim=COARSE, leave_out=left_out), some),
+    smooth = mean_delta_e(queried, "macbeth", prior="smooth")
+    learnt = mean_delta_e(queried, "macbeth", leave_out=left_out)
+    ratios = learnt / smooth
+    return {
+        "set": name,
+        "smooth": smooth.mean(),
+        "learnt": learnt.mean(),
+        "no_atlas": mean_delta_e(queried, leave_out=left_out).mean(),
+        "ratio": ratios.mean(),
+        "worst": ratios.max(),
     }
-    ratios = found["learnt"] / found["smooth"]
-    mean_errors = {key: each.mean() for key, each in found.items()}
-    return {"set": name, **mean_errors, "ratio": ratios.mean(), "worst": ratios.max()}
 
 
 def with_library(name: str) -> Iterator[Row]:
-    """Yield the errors at one half of a set, relative to smooth spectra, with the other
-    half as a library.
+    """Yield the errors at one half of a set, relative to smooth spectra, where cubes
+    know the other half.
     """
     entries = spectra(name).entries
-    atlas = Atlas(
-        tuple(
-            entries[row] for row in sorted(held_out.random_halves(len(entries), 0)[0])
-        )
-    )
+    half, _ = held_out.random_halves(len(entries), 0)
+    atlas = Atlas(tuple(entries[row] for row in sorted(half)))
     known = {entry.values.tobytes() for entry in atlas}
-    others = Atlas(
-        tuple(entry for entry in entries if entry.values.tobytes() not in known)
-    )
-    queried = inside(others)
-    smooth = means(smooth_cube(9), queried)
-    for label, options in {
-        "learnt": {"leave_out": family(name)},
-        "learnt, the other half as library": {
-            "library": atlas,
-            "leave_out": family(name),
-        },
+    others = [entry for entry in entries if entry.values.tobytes() not in known]
+    queried = inside(Atlas(tuple(others)))
+    smooth = means(smooth_cube(9), queried)[1:]
+    learnt = {"leave_out": family(name)}
+    cubes = {
+        "learnt": learnt,
+        "learnt, the other half as library": {"library": atlas, **learnt},
         "smooth, the other half as atlas": {"atlas": atlas, "prior": "smooth"},
-        "learnt, the other half as atlas": {"atlas": atlas, "leave_out": family(name)},
-    }.items():
-        ratio = means(build(dim=COARSE, **options), queried) / smooth
+        "learnt, the other half as atlas": {"atlas": atlas, **learnt},
+    }
+    for label, options in cubes.items():
+        ratio = mean_delta_e(queried, **options) / smooth
         yield {"set": name, "cube": label, "mean": ratio.mean(), "worst": ratio.max()}

@@ -7,18 +7,16 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
 
 from benchmarks import ROOT, record
 
-WAYS = {"pip install .": ".", "pip install '.[plots]'": ".[plots]"}
 OF_PIP = {"pip", "setuptools"}
 """Distributions of every environment, not counted."""
 
 
 def sizes(requirement: str) -> dict[str, int]:
-    """Install into an empty environment and return bytes by distribution, compiled
-    modules included.
+    """Install into an empty environment; return bytes by distribution, with compiled
+    modules.
     """
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([sys.executable, "-m", "venv", folder], check=True)
@@ -27,33 +25,29 @@ def sizes(requirement: str) -> dict[str, int]:
             [python, "-m", "pip", "install", "-q", requirement], cwd=ROOT, check=True
         )
         packages = next(Path(folder).glob("lib/python*/site-packages"))
-        return {
-            each.metadata["Name"]: sum(
-                path.stat().st_size
-                for path in map(Path, map(each.locate_file, each.files or []))
-            )
-            for each in importlib.metadata.distributions(path=[str(packages)])
-            if each.metadata["Name"] not in OF_PIP
-        }
+        bytes_of = {}
+        for distribution in importlib.metadata.distributions(path=[str(packages)]):
+            paths = map(Path, map(distribution.locate_file, distribution.files or []))
+            size = sum(path.stat().st_size for path in paths)
+            bytes_of[distribution.metadata["Name"]] = size
+        return {name: size for name, size in bytes_of.items() if name not in OF_PIP}
 
 
 def main() -> None:
-    """Measure and store. Distributions that an extra adds are the difference of two
-    ways.
-    """
-    found = {way: sizes(requirement) for way, requirement in WAYS.items()}
-    ways: list[dict[str, Any]] = [
-        {"way": way, "distributions": len(each), "megabytes": sum(each.values()) / 1e6}
-        for way, each in found.items()
-    ]
-    everything = found["pip install '.[plots]'"]
+    """Measure and store."""
+    plain = sizes(".")
+    plots = sizes(".[plots]")
     rows = [
-        {
-            "name": name,
-            "megabytes": size / 1e6,
-            "plots_only": name not in found["pip install ."],
-        }
-        for name, size in sorted(everything.items(), key=lambda item: -item[1])
+        {"name": name, "megabytes": size / 1e6, "plots_only": name not in plain}
+        for name, size in sorted(plots.items(), key=lambda item: -item[1])
         if size > 1e6
+    ]
+    ways = [
+        {
+            "way": way,
+            "distributions": len(listed),
+            "megabytes": sum(listed.values()) / 1e6,
+        }
+        for way, listed in (("pip install .", plain), ("pip install '.[plots]'", plots))
     ]
     record("install", ways=ways, distributions=rows)

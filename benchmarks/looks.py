@@ -8,7 +8,7 @@ region, and a screenshot of the page. Cubes with looks, and a scene of two cubes
 
 import tempfile
 from collections.abc import Iterator, Sequence
-from itertools import chain
+from itertools import chain, starmap
 from pathlib import Path
 from typing import Any
 
@@ -17,18 +17,17 @@ import numpy as np
 import uplift
 from benchmarks import CUBES, DOCS, MACBETH, Row, record
 from benchmarks.browser import SETTLE, SHIFT, browser
-from benchmarks.checker import constant_light, start_mitsuba, xyz_film
+from benchmarks.checker import constant_light, show_srgb, start_mitsuba, xyz_film
 from benchmarks.materials import LARGE, SPLITS, other_halves
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import delta_e_rgb, lab
-from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.likely_errors import mahalanobis
 from uplift.colorimetry.observer import display_sensors, light, sensor
 from uplift.common.arrays import Array
-from uplift.extras.colour.srgb import hex_codes, to_display_codes
+from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.looks.lab_errors import lab_errors
 from uplift.extras.looks.metamer_bounds import Bounds, bounds
-from uplift.extras.pages.figure import figure_text, new_figure, show_image, write_png
+from uplift.extras.pages.figure import figure_text, new_figure, write_png
 from uplift.extras.pages.plots import plot_bounds
 from uplift.extras.report.look_page import page
 from uplift.lab.timing import time_calls
@@ -38,16 +37,16 @@ from uplift.samples import sample_path
 CUBE = CUBES / "moments-16-macbeth.uplift"
 LIGHTS = ("A", "FL11", "HP1", "LED-RGB1")
 PICTURE = DOCS / "looks" / "regions.png"
-DRAWN, DRAWN_LIGHTS = ((0x8A, 0x2A, 0x20), (0x5F, 0x7F, 0x9F)), 3
-"""Encoded colours of the picture, between entries, and the number of lights."""
+DRAWN = ((0x8A, 0x2A, 0x20), (0x5F, 0x7F, 0x9F))
+"""Encoded colours of the picture, between entries."""
+DRAWN_LIGHTS = 3
 PAGE_DIVISIONS = 3
 FINE_DIVISIONS = 4
-MANY, RUNS = 1000, 3
+MANY = 1000
 """Colours that are timed."""
-LIKELY_LIGHTS, COEFFICIENTS = ("FL11", "A", "HP1"), 9
-"""Lights of the share of held-out materials, and coefficients of the cubes that do not
-know them.
-"""
+RUNS = 3
+LIKELY_LIGHTS = ("FL11", "A", "HP1")
+"""Lights of the share of held-out materials."""
 SCREENSHOT = DOCS / "looks" / "page.jpg"
 WINDOW = (1440, 1400)
 SCALE = 0.85
@@ -62,95 +61,91 @@ IMPOSSIBLE = (
     ("#8a2a20", "A", "#8a4020"),
     ("#40a060", "A", "#50a050"),
 )
-PIXELS, SPP = 220, 256
-"""Pixels along each side of the picture of a ball, and samples of each."""
+PIXELS = 220
+"""Pixels along each side of the picture of a ball."""
+SPP = 256
 
 
 def main() -> None:
     """Measure and store."""
     cube = load(CUBE)
     atlas = read_atlas(MACBETH)
-    own = cube.data.sensor
-    rgb = own.rgb(resample(atlas, own.wavelengths).values)
-    drawn = own.decode(DRAWN)
-    lights = [light(name, own.observer, *own.range) for name in LIGHTS]
+    srgb = cube.data.sensor
+    rgb = srgb.rgb(resample(atlas, srgb.wavelengths).values)
+    drawn = srgb.decode(DRAWN)
+    lights = [light(name, srgb.observer, *srgb.range) for name in LIGHTS]
 
     def search(colours: Array) -> list[Bounds]:
         return [
-            bounds(cube, colours, each, divisions=PAGE_DIVISIONS) for each in lights
+            bounds(cube, colours, lamp, divisions=PAGE_DIVISIONS) for lamp in lights
         ]
 
-    found = search(rgb)
+    by_light = dict(zip(LIGHTS, search(rgb), strict=True))
     plot_bounds(cube, [search(drawn)[:DRAWN_LIGHTS]], PICTURE, force=True)
     screenshot(cube, search(drawn[:1]))
+    colours = []
+    for row, name in enumerate(atlas.names):
+        largest = {key: b.largest.delta_e_2000[row] for key, b in by_light.items()}
+        share = {key: b.share[row] for key, b in by_light.items()}
+        colours.append({"name": name, "largest": largest, "share": share})
     record(
         "looks",
         lights=LIGHTS,
-        colours=[
-            {
-                "name": name,
-                "largest": {
-                    each.light.name: each.largest.delta_e_2000[row] for each in found
-                },
-                "share": {each.light.name: each.share[row] for each in found},
-            }
-            for row, name in enumerate(atlas.names)
-        ],
-        methods=[method(cube, rgb, each) for each in found],
+        colours=colours,
+        methods=[method(cube, rgb, coarse) for coarse in by_light.values()],
         many=MANY,
         runs=RUNS,
-        likely=list(chain.from_iterable(likely(name) for name in LARGE)),
+        likely=chain.from_iterable(map(likely, LARGE)),
         splits=SPLITS,
     )
     look_cubes()
 
 
-def method(cube: Cube, rgb: Array, found: Bounds) -> dict[str, Any]:
+def method(cube: Cube, rgb: Array, coarse: Bounds) -> Row:
     """Return the cost and the errors of the search under a light."""
-    fine = bounds(cube, rgb, found.light, divisions=FINE_DIVISIONS)
-    more = fine.largest.delta_e_2000 - found.largest.delta_e_2000
+    fine = bounds(cube, rgb, coarse.light, divisions=FINE_DIVISIONS)
+    more = fine.largest.delta_e_2000 - coarse.largest.delta_e_2000
     many = np.random.default_rng(1).uniform(size=(MANY, 3))
-    _, times = time_calls(lambda: bounds(cube, many, found.light), RUNS)
+    _, times = time_calls(lambda: bounds(cube, many, coarse.light), RUNS)
     return {
-        "light": found.light.name,
+        "light": coarse.light.name,
         "seconds": times,
         "missed": {"mean": np.maximum(more, 0).mean(), "largest": more.max()},
-        "volume": (found.volumes.volume / fine.volumes.volume).mean(),
+        "volume": (coarse.volumes.volume / fine.volumes.volume).mean(),
     }
 
 
-def likely(name: str) -> Iterator[dict[str, Any]]:
+def likely(name: str) -> Iterator[Row]:
     """Yield the share of held-out materials in the likely region, by light."""
-    pairs = other_halves(name, dim=32, coefficients=COEFFICIENTS)
-    for each in map(light, LIKELY_LIGHTS):
+    pairs = other_halves(name, dim=32, coefficients=9)
+    for lamp in map(light, LIKELY_LIGHTS):
         distances = []
         radii = []
-        for cube, some in pairs:
-            errors = lab_errors(cube.data, each)
+        for cube, queried in pairs:
+            errors = lab_errors(cube.data, lamp)
             measured, answered = (
-                lab(spectra @ each.xyz.T, each.white)[:, 1:]
-                for spectra in (some.measured, cube.reflectance(some.rgb))
+                lab(spectra @ lamp.xyz.T, lamp.white)[:, 1:]
+                for spectra in (queried.measured, cube.reflectance(queried.rgb))
             )
-            distances.append(
-                mahalanobis(errors.covariance(some.rgb)[:, 1:, 1:], measured - answered)
-            )
+            covariance = errors.covariance(queried.rgb)[:, 1:, 1:]
+            distances.append(mahalanobis(covariance, measured - answered))
             radii.append(np.full(len(measured), errors.likely_radius))
         distance = np.concatenate(distances)
         radius = np.concatenate(radii)
         yield {
             "atlas": name,
-            "light": each.name,
+            "light": lamp.name,
             "materials": len(distance) // SPLITS,
             "inside": (distance <= radius).mean(),
             "radius": [radius.min(), radius.max()],
         }
 
 
-def screenshot(cube: Cube, found: list[Bounds]) -> None:
+def screenshot(cube: Cube, drawn: list[Bounds]) -> None:
     """Choose a colour on the page and take a screenshot."""
     with tempfile.TemporaryDirectory() as folder, browser() as tab:
         path = Path(folder) / "page.html"
-        path.write_text(page(cube, found), encoding="utf-8")
+        path.write_text(page(cube, drawn), encoding="utf-8")
         tab.window(*WINDOW)
         tab.open(path)
         for region, key, times in CHOICE:
@@ -170,9 +165,9 @@ def look_cubes() -> None:
         "look-cubes",
         atlas=LOOKS_ATLAS,
         dim=DIM,
-        looks=list(looks(plain, looked)),
+        looks=looks(plain, looked),
         entries=len(plain.data.atlas.rgb),
-        impossible=[impossible(*each) for each in IMPOSSIBLE],
+        impossible=starmap(impossible, IMPOSSIBLE),
         scene=render(plain, looked),
     )
 
@@ -180,42 +175,38 @@ def look_cubes() -> None:
 def looks(plain: Cube, looked: Cube) -> Iterator[Row]:
     """Yield wish, answer and distances of each look under each of its lights."""
     for look in looked.data.provenance["looks"]:
-        for each in look["lights"]:
-            (screen,) = display_sensors([each["light"]], plain.observer)
-            wish = np.array(each["wish"])
+        for goal in look["lights"]:
+            (screen,) = display_sensors([goal["light"]], plain.observer)
+            wish = np.array(goal["wish"])
             before, after = (
                 screen.rgb(cube.reflectance(look["rgb"])) for cube in (plain, looked)
             )
-            codes = dict(
-                zip(
-                    ("colour", "wish", "before"),
-                    hex_codes(np.array([look["rgb"], wish, before])),
-                    strict=True,
-                )
-            )
-            distances = {
+            codes = hex_codes(np.array([look["rgb"], wish, before]))
+            yield {
+                "look": look["name"],
+                "light": goal["light"],
+                "colour": codes[0],
+                "wish": codes[1],
+                "before": codes[2],
                 "without": delta_e_rgb(screen, before, wish),
                 "with_look": delta_e_rgb(screen, after, wish),
             }
-            yield {"look": look["name"], "light": each["light"], **codes, **distances}
 
 
 def impossible(rgb: str, light: str, wish: str) -> Row:
     """Return an impossible wish with the nearest colour."""
     cube = uplift.build(dim=2, looks=uplift.Look(rgb, {light: wish}))
-    (found,) = cube.data.provenance["looks"][0]["lights"]
-    answer = hex_codes(np.array([found["answer"]]))[0]
-    return {**found, "colour": rgb, "wish": wish, "answer": answer}
+    (nearest,) = cube.data.provenance["looks"][0]["lights"]
+    answer = hex_codes(np.array([nearest["answer"]]))[0]
+    return {**nearest, "colour": rgb, "wish": wish, "answer": answer}
 
 
 def render(plain: Cube, looked: Cube) -> Row:
-    """Render two balls of one RGB, of two cubes, under daylight and under the light of
-    a look, and draw them.
-    """
+    """Render balls of one RGB and two cubes under daylight and the light of a look."""
     version = start_mitsuba()
     look = looked.data.provenance["looks"][0]
     lamps = ("D65", look["lights"][0]["light"])
-    found = {}
+    lights = {}
     figure = new_figure(4.5, 4.3)
     with tempfile.TemporaryDirectory() as folder:
         paths = [str(Path(folder, f"{stem}.uplift")) for stem in ("plain", "looks")]
@@ -229,21 +220,15 @@ def render(plain: Cube, looked: Cube) -> Row:
                 half[middle, middle].mean(axis=(0, 1))
                 for half in np.split(image, 2, axis=1)
             ]
-            found[lamp] = {"delta_e": delta_e_rgb(here, *patches)}
-            show_image(
-                axes,
-                to_display_codes(image, SRGB).astype(np.uint8),
-                interpolation="nearest",
-            )
+            lights[lamp] = {"delta_e": delta_e_rgb(here, *patches)}
+            show_srgb(axes, image)
             axes.set_ylabel(figure_text(lamp), fontsize=11)
     write_png(figure, DOCS / "look-cubes" / "two-cubes.png", force=True)
-    return {"mitsuba": version, "look": look["name"], "lights": found}
+    return {"mitsuba": version, "look": look["name"], "lights": lights}
 
 
 def balls(cubes: Sequence[str], rgb: Sequence[float], lamp: str) -> Array:
-    """Return XYZ (height, width, 3) of two balls on the ground, left and right, each of
-    its cube.
-    """
+    """Return XYZ (height, width, 3) of two balls on the ground, left and right."""
     import mitsuba as mi
 
     transform = mi.ScalarTransform4f
@@ -257,7 +242,6 @@ def balls(cubes: Sequence[str], rgb: Sequence[float], lamp: str) -> Array:
 
     ground = transform().rotate([1, 0, 0], -90).scale([30, 30, 1])
     view = transform().look_at(origin=[0, 1.2, 12], target=[0, 0.55, 0], up=[0, 1, 0])
-    film = xyz_film(2 * PIXELS, PIXELS)
     scene = {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": 4},
@@ -274,7 +258,7 @@ def balls(cubes: Sequence[str], rgb: Sequence[float], lamp: str) -> Array:
             "fov": 28,
             "fov_axis": "x",
             "to_world": view,
-            "film": film,
+            "film": xyz_film(2 * PIXELS, PIXELS),
         },
     }
     return np.array(mi.render(mi.load_dict(scene), spp=SPP, seed=0), dtype=float)

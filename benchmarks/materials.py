@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, ROOT
+from benchmarks import ATLAS_FILES, ATLASES, ROOT, Row
 from uplift.atlas import Atlas, Entry, read_atlas, resample
 from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.arrays import Array, Indices
@@ -20,7 +20,8 @@ MUNSELL = ROOT / "out" / "munsell.csv"
 """The 1,269 chips of the Munsell book, if `make munsell` has fetched them: they cannot
 be redistributed.
 """
-LARGE = ("rawtoaces", "cie2017", *(["munsell"] if MUNSELL.exists() else []))
+FETCHED = ("munsell",) if MUNSELL.exists() else ()
+LARGE = ("rawtoaces", "cie2017", *FETCHED)
 """Atlases that are large enough to split."""
 SHIPPED = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017", "tcs", "vs")
 MIXTURE = "all sets"
@@ -59,26 +60,29 @@ def inside(atlas: Atlas) -> Materials:
     return Materials(measured[rows], np.clip(rgb[rows], 0, 1))
 
 
+def read_atlases() -> dict[str, Atlas]:
+    """Read all atlases of the repository, by name."""
+    return {path.stem: read_atlas(path) for path in ATLAS_FILES}
+
+
 @cache
 def spectra(name: str) -> Atlas:
     """Read a set of measured spectra, or all shipped sets."""
     if name == MIXTURE:
-        return read_atlas(*(ATLASES / f"{each}.txt" for each in SHIPPED))
+        return read_atlas(*(ATLASES / f"{member}.txt" for member in SHIPPED))
     return read_atlas(MUNSELL if name == "munsell" else ATLASES / f"{name}.txt")
 
 
 @cache
 def materials(name: str) -> Materials:
     """Return the materials of a set, without duplicate colours."""
-    found = inside(spectra(name))
-    _, first = np.unique(np.round(found.rgb, 6), axis=0, return_index=True)
-    return found.take(np.sort(first))
+    entries = inside(spectra(name))
+    _, first = np.unique(np.round(entries.rgb, 6), axis=0, return_index=True)
+    return entries.take(np.sort(first))
 
 
 def shipped_families(name: str) -> tuple[str, ...]:
-    """Return the shipped families that must not shape a prior that is
-    tested on a set.
-    """
+    """Return the shipped families that a prior tested on a set must not know."""
     return tuple(families_with(materials(name).measured))
 
 
@@ -86,20 +90,24 @@ def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:
     """Return cubes of random halves of a set, and the other halves: every material is
     queried equally often.
     """
-    some = materials(name)
+    whole = materials(name)
     left_out = shipped_families(name)
     return [
-        (some.take(kept).cube(leave_out=left_out, **options), some.take(queried))
-        for kept, queried in halves_both_ways(np.arange(len(some.rgb)), SPLITS)
+        (whole.take(kept).cube(leave_out=left_out, **options), whole.take(queried))
+        for kept, queried in halves_both_ways(np.arange(len(whole.rgb)), SPLITS)
     ]
 
 
-def errors(answers: Array, some: Materials) -> dict[str, Any]:
+def errors(answers: Array, queried: Materials) -> Row:
     """Return the mean rms and the mean ΔE00 under each light."""
-    return as_record(spectrum_errors(answers, some.measured).means())
+    return as_record(spectrum_errors(answers, queried.measured).means())
 
 
-def as_record(means: Array) -> dict[str, Any]:
+def as_record(means: Array) -> Row:
     """Convert mean rms and mean ΔE00, as of `spectrum_errors`, to names."""
-    rms, *delta_e = np.asarray(means).tolist()
-    return {"rms": rms, "errors": dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True))}
+    return {"rms": means[0], "errors": by_light(means[1:])}
+
+
+def by_light(values: Array) -> Row:
+    """Name values for each of `HELD_OUT_LIGHTS`."""
+    return dict(zip(HELD_OUT_LIGHTS, values, strict=True))

@@ -3,12 +3,14 @@ docs/mixing.md.
 """
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 import uplift
 from benchmarks import CUBES, DOCS, Row, read_reference, record
@@ -27,7 +29,7 @@ from uplift.extras.paint.pigments import (
     from_opaque,
 )
 from uplift.extras.paint.theories import Mixer, mixers, spectral_models
-from uplift.lab.timing import time_laps
+from uplift.lab.timing import TimingStats, time_laps
 from uplift.lookup import Cube
 
 SHARES = np.array([(0.75, 0.25), (0.5, 0.5), (0.25, 0.75)])
@@ -38,8 +40,9 @@ ARTISTS = ("#002185", "#fcd200")
 GREEN_MARGIN = 0.01
 """Excess of G over R and B, in linear RGB, that counts as green."""
 MIXTURES = 20_000
-LAP, RUNS = 0.02, 5
-"""Shortest duration of a run in seconds, and runs."""
+LAP = 0.02
+"""Shortest duration of a run in seconds."""
+RUNS = 5
 CHECKED = 20
 PAIRS = {
     "blue-yellow": ("#005fa0", "#ffd200"),
@@ -91,57 +94,48 @@ def evaluate(mixer: Mixer, sensor: Sensor, colours: Array) -> tuple[float, ...]:
 
     def chromaticities(rgb: Array) -> Array:
         """CIE 1976 u', v' (…, 2). Black, which has none, gets those of white."""
-        xyz = np.where(
-            (rgb > 0).any(axis=-1, keepdims=True), sensor.xyz(rgb), sensor.light.white
-        )
-        return (
-            np.stack([4 * xyz[..., 0], 9 * xyz[..., 1]], axis=-1)
-            / (xyz @ [1, 15, 3])[..., None]
-        )
+        is_lit = (rgb > 0).any(axis=-1, keepdims=True)
+        xyz = np.where(is_lit, sensor.xyz(rgb), sensor.light.white)
+        return xyz[..., :2] * [4, 9] / (xyz @ [1, 15, 3])[..., None]
 
     def hues(rgb: Array) -> Array:
         u, v = np.moveaxis(chromaticities(rgb) - chromaticities(WHITE), -1, 0)
         return np.degrees(np.arctan2(v, u))
 
-    itself = np.array([mixer.mix(np.stack([one, one]), np.ones(2)) for one in colours])
-    shades, tints = (
-        np.array([mixer.mix(np.stack([one, other]), 2 * SHARES) for one in colours])
-        for other in (BLACK, WHITE)
-    )
-    neutral = [
-        mixer.mix(np.array(pair, dtype=float), np.ones(2)) for pair in COMPLEMENTS
-    ]
+    def mix_all(pairs: Iterable[Sequence[ArrayLike]], parts: Array) -> Array:
+        return np.array([mixer.mix(np.array(pair, float), parts) for pair in pairs])
+
+    equal = np.ones(2)
+    itself = mix_all(zip(colours, colours, strict=True), equal)
+    shades = mix_all(((colour, BLACK) for colour in colours), 2 * SHARES)
+    tints = mix_all(((colour, WHITE) for colour in colours), 2 * SHARES)
+    greys = mix_all(COMPLEMENTS, equal)
     greens = mixer.mix(BLUE_YELLOW, 2 * SHARES)
     lightness = rgb_to_lab(sensor, colours)[:, None, 0]
+    moves = chromaticities(shades) - chromaticities(colours)[:, None]
     turns = (hues(tints) - hues(colours)[:, None] + 180) % 360 - 180
+    chroma = [np.linalg.norm(rgb_to_lab(sensor, grey)[1:]) for grey in greys]
     return (
-        float(delta_e_rgb(sensor, colours, itself).max()),
-        float(
-            np.linalg.norm(
-                chromaticities(shades) - chromaticities(colours)[:, None], axis=-1
-            ).max()
-        ),
-        float((rgb_to_lab(sensor, shades)[..., 0] - lightness).max()),
-        float(np.abs(turns).max()),
-        float((lightness - rgb_to_lab(sensor, tints)[..., 0]).max()),
-        max(float(np.linalg.norm(rgb_to_lab(sensor, one)[..., 1:])) for one in neutral),
-        float((np.maximum(greens[:, 0], greens[:, 2]) - greens[:, 1]).min()),
+        delta_e_rgb(sensor, colours, itself).max(),
+        np.linalg.norm(moves, axis=-1).max(),
+        (rgb_to_lab(sensor, shades)[..., 0] - lightness).max(),
+        np.abs(turns).max(),
+        (lightness - rgb_to_lab(sensor, tints)[..., 0]).max(),
+        max(chroma),
+        (np.maximum(greens[:, 0], greens[:, 2]) - greens[:, 1]).min(),
     )
 
 
 def criteria(cube: Cube) -> Row:
-    """Evaluate every mixer by every criterion on the coloured patches of the cube's
-    atlas.
-    """
+    """Evaluate every mixer by every criterion on the coloured patches of an atlas."""
     atlas = cube.data.atlas.rgb
     coloured = atlas[np.ptp(atlas, axis=1) > 0.1 * atlas.max(axis=1)]
     rows = []
     for mixer in mixers(cube):
-        values = zip(
-            CRITERIA.values(), evaluate(mixer, cube.data.sensor, coloured), strict=True
-        )
+        values = evaluate(mixer, cube.data.sensor, coloured)
         verdicts = [
-            {"obeys": value <= limit, "value": value + 0.0} for limit, value in values
+            {"obeys": value <= limit, "value": value + 0.0}
+            for limit, value in zip(CRITERIA.values(), values, strict=True)
         ]
         rows.append({"mixer": mixer.title, "verdicts": verdicts})
     return {"criteria_titles": list(CRITERIA), "criteria": rows}
@@ -166,34 +160,29 @@ class Mixtures:
     expected: Array
 
 
-def acrylics(first: tuple[str, ...] = (), second: str = "") -> Mixtures:
+def acrylics(first: tuple[str, ...] = ("",), second: str = "") -> Mixtures:
     """Return the mixtures of paint_mixtures.csv.
 
     Only those of a paint whose name starts with one of ``first`` with a paint whose
     name ends in ``second``; by default all.
     """
-
-    def wanted(one: str, other: str) -> bool:
-        return (not first or one.startswith(first)) and other.endswith(second)
-
-    table = [
-        (row["first"], row["second"], row)
-        for row in read_reference("paint_mixtures.csv")
-    ]
-    masstones = {one: _numbers(row, "rgb") for one, other, row in table if one == other}
-    names = list(masstones)
-    kept = [
-        each
-        for each in table
-        if each[0] != each[1] and (wanted(*each[:2]) or wanted(each[1], each[0]))
-    ]
-    pairs = np.array([[names.index(one), names.index(other)] for one, other, _ in kept])
-    expected = np.array([_numbers(row, "rgb") for *_, row in kept])
+    paints = []
+    kept = []
+    mixed = []
+    for row in read_reference("paint_mixtures.csv"):
+        pair = row["first"], row["second"]
+        if pair[0] == pair[1]:
+            paints.append(row)
+        elif any(
+            name.startswith(first) and other.endswith(second)
+            for name, other in (pair, pair[::-1])
+        ):
+            kept.append(row)
+            mixed.append(pair)
+    names = [paint["first"] for paint in paints]
+    pairs = [list(map(names.index, pair)) for pair in mixed]
     return Mixtures(
-        np.array(list(masstones.values())),
-        pairs,
-        _shares([row for *_, row in kept]),
-        expected,
+        _numbers(paints, "rgb"), np.array(pairs), _shares(kept), _numbers(kept, "rgb")
     )
 
 
@@ -202,10 +191,8 @@ def three_bands(name: str) -> Mixtures:
     are taken as linear RGB.
     """
     rows = [row for row in read_reference("paints_rgb.csv") if row["set"] == name]
-    K, S = (
-        np.array([_numbers(row, columns) for row in rows])
-        for columns in (("Kr", "Kg", "Kb"), ("Sr", "Sg", "Sb"))
-    )
+    K = _numbers(rows, ("Kr", "Kg", "Kb"))
+    S = _numbers(rows, ("Sr", "Sg", "Sb"))
     pairs = np.array(list(itertools.combinations(range(len(K)), 2)))
     mixtures = [
         Pigment(K[pairs], S[pairs]).mix(share).opaque_reflectance() for share in SHARES
@@ -223,31 +210,27 @@ def published(tool: str, cube: Cube) -> Mixtures:
     kept = [
         row for row in read_reference("published_mixtures.csv") if row["tool"] == tool
     ]
-    linear = np.array(
-        [
-            [colour(cube, row[column]) for column in ("first", "second", "mixture")]
-            for row in kept
-        ]
-    )
-    pairs = np.arange(2 * len(kept)).reshape(-1, 2)
-    return Mixtures(linear[:, :2].reshape(-1, 3), pairs, _shares(kept), linear[:, 2])
+    paints = []
+    for row in kept:
+        paints += [colour(cube, row["first"]), colour(cube, row["second"])]
+    expected = [colour(cube, row["mixture"]) for row in kept]
+    pairs = np.arange(len(paints)).reshape(-1, 2)
+    return Mixtures(np.array(paints), pairs, _shares(kept), np.array(expected))
 
 
 def colour(cube: Cube, word: str) -> Array:
     """Return the linear RGB (3,) of an entry or of '#rrggbb'."""
     if word.startswith("#"):
         return cube.decode(list(bytes.fromhex(word[1:])))
-    return np.asarray(
-        cube.data.atlas.rgb[cube.data.atlas.names.index(word)], dtype=float
-    )
+    return cube.data.atlas.rgb[cube.data.atlas.names.index(word)]
 
 
-def _numbers(row: dict[str, str], columns: Iterable[str]) -> Array:
-    return np.array([float(row[column]) for column in columns])
+def _numbers(rows: list[dict[str, str]], columns: Sequence[str]) -> Array:
+    return np.array(list(map(itemgetter(*columns), rows)), float)
 
 
 def _shares(rows: list[dict[str, str]]) -> Array:
-    share = np.array([float(row["share"]) for row in rows])
+    share = _numbers(rows, ["share"])
     return np.stack([1 - share, share], axis=1)
 
 
@@ -256,16 +239,13 @@ def mix(cube: Cube, mixtures: Mixtures, rule: Scattering | None) -> Array:
     in [0, 1]; None averages RGB.
     """
     if rule is None:
-        return np.asarray(
-            (mixtures.shares[:, None] @ mixtures.paints[mixtures.pairs])[:, 0]
-        )
+        return (mixtures.shares[:, None] @ mixtures.paints[mixtures.pairs])[:, 0]
     paints = from_opaque(cube.reflectance(mixtures.paints), rule)
     pairs = Pigment(
         paints.absorption[mixtures.pairs], paints.scattering[mixtures.pairs]
     )
-    return np.clip(
-        cube.data.sensor.rgb(pairs.mix(mixtures.shares).opaque_reflectance()), 0, 1
-    )
+    mixed = pairs.mix(mixtures.shares).opaque_reflectance()
+    return np.clip(cube.data.sensor.rgb(mixed), 0, 1)
 
 
 def compare_scattering(smooth: Cube, atlas: Cube) -> Row:
@@ -275,7 +255,7 @@ def compare_scattering(smooth: Cube, atlas: Cube) -> Row:
     ``atlas`` is the cube that uplifts the ColorChecker's blue and yellow.
     """
     best = dispersive(smooth.data.sensor)
-    rules: dict[str, Scattering | None] = {
+    rules = {
         "mean of linear RGB": None,
         "1": CONSTANT,
         "R^½": SQUARE_ROOT,
@@ -295,69 +275,58 @@ def compare_scattering(smooth: Cube, atlas: Cube) -> Row:
         "photographed": three_bands("lindemeier2020"),
         "mixbox": published("mixbox", smooth),
     }
-    greens = {"artists": (smooth, ARTISTS), "patches": (atlas, ("blue", "yellow"))}
     rows = []
     for title, rule in rules.items():
-        row: Row = {"rule": title}
-        for name, one in sets.items():
-            found = mix(smooth, one, rule)
-            difference = delta_e_rgb(smooth.data.sensor, one.expected, found)
-            rms = np.sqrt(np.mean((found - one.expected) ** 2))
-            row[name] = {"delta_e": float(difference.mean()), "rms": float(rms)}
-        for name, (cube, words) in greens.items():
-            pair = np.array([colour(cube, word) for word in words])
-            row[name] = list(_greens(cube, pair, rule))
+        row = {"rule": title}
+        for name, mixtures in sets.items():
+            mixed = mix(smooth, mixtures, rule)
+            delta_e = delta_e_rgb(smooth.data.sensor, mixtures.expected, mixed)
+            rms = np.sqrt(np.mean((mixed - mixtures.expected) ** 2))
+            row[name] = {"delta_e": delta_e.mean(), "rms": rms}
+        row["artists"] = _greens(smooth, ARTISTS, rule)
+        row["patches"] = _greens(atlas, ("blue", "yellow"), rule)
         rows.append(row)
     return {
         "scatterings": rows,
-        "set_sizes": {name: len(one.pairs) for name, one in sets.items()},
+        "set_sizes": {name: len(mixtures.pairs) for name, mixtures in sets.items()},
     }
 
 
-def _greens(cube: Cube, pair: Array, rule: Scattering | None) -> Iterator[Row]:
+def _greens(cube: Cube, words: Sequence[str], rule: Scattering | None) -> Iterator[Row]:
     """Mix a blue and a yellow at 1:3, 1:1 and 3:1."""
-    for rgb in mix(
-        cube,
-        Mixtures(pair, np.array([[0, 1]] * 3), SHARES[::-1], np.zeros((3, 3))),
-        rule,
-    ):
-        code = "#" + "".join(f"{round(code):02x}" for code in cube.encode(rgb).tolist())
-        yield {"green": bool(rgb[1] > max(rgb[0], rgb[2]) + GREEN_MARGIN), "code": code}
+    paints = np.array([colour(cube, word) for word in words])
+    mixtures = Mixtures(paints, np.array([[0, 1]] * 3), SHARES[::-1], np.empty(0))
+    for rgb in mix(cube, mixtures, rule):
+        code = "#" + bytes(np.rint(cube.encode(rgb)).astype(np.uint8)).hex()
+        yield {"green": rgb[1] > max(rgb[0], rgb[2]) + GREEN_MARGIN, "code": code}
 
 
 # --- pictures ---
 
 
 def draw(cube: Cube, smooth: Cube, folder: Path) -> None:
-    """Write a picture for each pair of colours, and one that compares other tools, by
-    ``smooth``.
-    """
+    """Write a picture for each pair of colours, and one of other tools."""
     folder.mkdir(exist_ok=True)
     by_name = {mixer.name: mixer for mixer in mixers(cube)}
     parts = ramp(np.ones(2), STEPS)
     for name, pair in PAIRS.items():
         rgb = np.array([colour(cube, word) for word in pair])
-        strips = {by_name[each].title: by_name[each].mix(rgb, parts) for each in DRAWN}
+        drawn = [by_name[mixer] for mixer in DRAWN]
+        strips = {mixer.title: mixer.mix(rgb, parts) for mixer in drawn}
         _plot(cube, strips, folder / f"{name}.png")
     _plot(smooth, _tools(smooth), folder / "tools.png")
 
 
 def _plot(cube: Cube, strips: dict[str, Array], path: Path) -> None:
-    sensor = cube.data.sensor
-    plot_strips(
-        [
-            Strip(title, to_display_codes(rgb, sensor) / 255)
-            for title, rgb in strips.items()
-        ],
-        path,
-        force=True,
-    )
+    drawn = [
+        Strip(title, to_display_codes(rgb, cube.data.sensor) / 255)
+        for title, rgb in strips.items()
+    ]
+    plot_strips(drawn, path, force=True)
 
 
 def _tools(cube: Cube) -> dict[str, Array]:
-    """Return the ramp of two artists' paints by RGB, by us, and as other tools publish
-    it.
-    """
+    """Return the ramp of two artists' paints by RGB, by us, and by other tools."""
     steps = published("coloraide", cube)
     mixbox = published("mixbox", cube).expected[:1]
     ends = steps.paints[:2]
@@ -385,24 +354,22 @@ def mixture_times(cube: Cube) -> Iterator[Row]:
     spectra = cube.reflectance(rgb)
     spectral_mixers = spectral_models(cube.data.sensor)
     for mixer in mixers(cube):
-        pairs = zip(rgb[:CHECKED], parts[:CHECKED], strict=True)
+        checked = rgb[:CHECKED], parts[:CHECKED]
         if not np.allclose(
-            mixer.mix(rgb[:CHECKED], parts[:CHECKED]),
-            [mixer.mix(*pair) for pair in pairs],
-            0,
-            1e-9,
+            mixer.mix(*checked), list(map(mixer.mix, *checked)), 0, 1e-9
         ):
             raise RuntimeError(f"{mixer.title}: wrong result, nothing to time")
+        times = _nanoseconds(mixer.mix, rgb, parts)
         between = spectral_mixers.get(mixer.name)
-        calls = {
-            "rgb": partial(mixer.mix, rgb, parts),
-            "spectra": between and partial(between[1], spectra, parts),
-        }
-        times = {
-            name: call and time_laps(call, LAP, RUNS).scaled(1e9 / MIXTURES)
-            for name, call in calls.items()
-        }
-        yield {"mixer": mixer.title, **times}
+        of_spectra = between and _nanoseconds(between[1], spectra, parts)
+        yield {"mixer": mixer.title, "rgb": times, "spectra": of_spectra}
+
+
+def _nanoseconds(
+    mix: Callable[[Array, Array], Array], colours: Array, parts: Array
+) -> TimingStats:
+    call = partial(mix, colours, parts)
+    return time_laps(call, LAP, RUNS).scaled(1e9 / MIXTURES)
 
 
 def main() -> None:
@@ -416,5 +383,5 @@ def main() -> None:
         **compare_scattering(smooth, cube),
         runs=RUNS,
         mixtures=MIXTURES,
-        mixture_times=list(mixture_times(cube)),
+        mixture_times=mixture_times(cube),
     )

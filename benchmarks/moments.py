@@ -3,20 +3,20 @@ docs/reproductions.md and its pictures.
 """
 
 from collections.abc import Mapping
-from typing import Any
+from functools import partial
+from itertools import product, starmap
 
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, DOCS, MACBETH, read_reference, record
-from benchmarks.materials import inside
+from benchmarks import DOCS, MACBETH, Row, read_reference, record
+from benchmarks.materials import inside, read_atlases
 from uplift.atlas import Atlas, merge
 from uplift.colorimetry import delta_e_1976, delta_e_spectra, lab, observer
 from uplift.common.arrays import Array
 from uplift.extras.colour.light_sets import REPORT_LIGHTS
 from uplift.extras.scene.representations import samples
 from uplift.lab.study.moments import (
-    ALL_ATLASES,
     TECHNIQUES,
     MomentsStudy,
     Technique,
@@ -29,7 +29,7 @@ PICTURES = DOCS / "moments"
 FLOATS = (3, 5, 9, 13, 16)
 CUBE_DIM = 16
 COEFFICIENTS = (3, 5, 9)
-Pair = list[float]
+Pair = tuple[float, float]
 """Mean and largest error."""
 Errors = Mapping[tuple[Technique, int], Pair]
 """Mean and largest ΔE76 by technique and number of moments."""
@@ -37,27 +37,12 @@ Errors = Mapping[tuple[Technique, int], Pair]
 
 def main() -> None:
     """Measure, draw and store."""
-    atlases = {
-        path.stem: uplift.read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))
-    }
+    atlases = read_atlases()
     study = study_moments(atlases)
     thesis = read_thesis()
     counts = range(study.max_moments + 1)
-    ours = {
-        (one, count): pairs(study, one, count)[0]
-        for one in TECHNIQUES
-        for count in counts
-    }
-    printed = {
-        one: np.array(
-            [[one.floats(count), *thesis[one, count]] for count in counts], dtype=float
-        )
-        for one in TECHNIQUES
-    }
-    both = {f"our {len(study.names)} entries": study.curves(), "Tódová 2020": printed}
-    plot_errors(both, PICTURES / "errors.png", force=True)
-    plot_patches(study, PICTURES / "patches.png", force=True)
-    plot_worst(study, PICTURES / "worst.png", force=True)
+    ours = {key: pairs(study, *key)[0] for key in product(TECHNIQUES, counts)}
+    plot(study, thesis)
     record(
         "moments",
         winners=[
@@ -76,20 +61,23 @@ def main() -> None:
             }
             for count in counts
         ],
-        lights=[
-            under_lights(study, floats, one) for floats in FLOATS for one in TECHNIQUES
-        ],
-        warps=[
-            warp_errors(study.measured, name, floats)
-            for name in WARPS
-            for floats in FLOATS
-        ],
-        cubes=[
-            cube_errors(atlases, name, count)
-            for count in COEFFICIENTS
-            for name in WARPS
-        ],
+        lights=starmap(partial(under_lights, study), product(FLOATS, TECHNIQUES)),
+        warps=starmap(partial(warp_errors, study.measured), product(WARPS, FLOATS)),
+        cubes=starmap(partial(cube_errors, atlases), product(COEFFICIENTS, WARPS)),
     )
+
+
+def plot(study: MomentsStudy, thesis: Errors) -> None:
+    """Plot the errors with those of the thesis, and spectra."""
+    counts = range(study.max_moments + 1)
+    curves = {}
+    for technique in TECHNIQUES:
+        points = [[technique.floats(n), *thesis[technique, n]] for n in counts]
+        curves[technique] = np.array(points)
+    both = {f"our {len(study.names)} entries": study.curves(), "Tódová 2020": curves}
+    plot_errors(both, PICTURES / "errors.png", force=True)
+    plot_patches(study, PICTURES / "patches.png", force=True)
+    plot_worst(study, PICTURES / "worst.png", force=True)
 
 
 def read_thesis() -> dict[tuple[Technique, int], Pair]:
@@ -97,10 +85,10 @@ def read_thesis() -> dict[tuple[Technique, int], Pair]:
     by_short = {technique.short: technique for technique in TECHNIQUES}
     rows = read_reference("moments_todova2020.csv")
     return {
-        (by_short[row["method"]], int(row["moments"])): [
+        (by_short[row["method"]], int(row["moments"])): (
             float(row["mean"]),
             float(row["max"]),
-        ]
+        )
         for row in rows
     }
 
@@ -110,60 +98,52 @@ def max_moments(technique: Technique, floats: int) -> int:
     return floats - 1 if technique.mirrored else (floats - 1) // 2
 
 
-def pairs(
-    study: MomentsStudy, technique: Technique, count: int, group: str = ALL_ATLASES
-) -> list[Pair]:
+def pairs(study: MomentsStudy, technique: Technique, count: int) -> list[Pair]:
     """Return mean and largest error of every measure."""
-    result = study.result(technique, count, group)
-    return [
-        [float(mean), float(largest)]
-        for mean, largest in zip(result.mean, result.max, strict=True)
-    ]
+    result = study.result(technique, count)
+    return list(zip(result.mean, result.max, strict=True))
 
 
 def with_moments(errors: Errors, count: int) -> dict[str, Pair]:
     """Return the errors of every technique with ``count`` moments."""
-    return {one.short: errors[one, count] for one in TECHNIQUES}
+    return {technique.short: errors[technique, count] for technique in TECHNIQUES}
 
 
-def best(errors: Errors, floats: int) -> dict[str, Any]:
+def best(errors: Errors, floats: int) -> Row:
     """Return the best techniques by mean and by largest error."""
-    found = {one: errors[one, max_moments(one, floats)] for one in TECHNIQUES}
-    rows = []
-    for side in (0, 1):
-        values = {one.short: pair[side] for one, pair in found.items()}
+    winners = {}
+    for side, statistic in enumerate(("mean", "max")):
+        values = {}
+        for technique in TECHNIQUES:
+            pair = errors[technique, max_moments(technique, floats)]
+            values[technique.short] = pair[side]
         winner = min(values, key=values.__getitem__)
-        rows.append({"technique": winner, "value": values[winner]})
-    return {"mean": rows[0], "max": rows[1]}
+        winners[statistic] = {"technique": winner, "value": values[winner]}
+    return winners
 
 
-def under_lights(
-    study: MomentsStudy, floats: int, technique: Technique
-) -> dict[str, Any]:
+def under_lights(study: MomentsStudy, floats: int, technique: Technique) -> Row:
     """Return ΔE00 under each light and the rms difference of the spectra."""
     _, *delta_e, rms = pairs(study, technique, max_moments(technique, floats))
-    errors = dict(zip(REPORT_LIGHTS, delta_e, strict=True))
     return {
         "floats": floats,
         "technique": technique.short,
-        "errors": errors,
+        "errors": dict(zip(REPORT_LIGHTS, delta_e, strict=True)),
         "rms": rms,
     }
 
 
-def warp_errors(measured: Array, warp: str, floats: int) -> dict[str, Any]:
-    """Return ΔE76 under D65 and the rms difference of reflectances (E, 401) from those
-    of their mirrored moments.
+def warp_errors(measured: Array, warp: str, floats: int) -> Row:
+    """Return ΔE76 under D65 and rms between reflectances (E, 401) and those of their
+    mirrored moments.
     """
     technique = Technique(mirrored=True, warped=warp != "none", warp=warp)
     light = observer.light("D65")
     original = measured[:, :: samples.TABLE_STRIDE]
-    spectra = technique.reconstruct(
-        technique.moments(measured, samples.wavelengths(), floats - 1), observer.grid()
-    )
-    delta_e = delta_e_1976(
-        *(lab(each @ light.xyz.T, light.white) for each in (spectra, original))
-    )
+    moments = technique.moments(measured, samples.wavelengths(), floats - 1)
+    spectra = technique.reconstruct(moments, observer.grid())
+    colours = [lab(values @ light.xyz.T, light.white) for values in (spectra, original)]
+    delta_e = delta_e_1976(*colours)
     rms = np.sqrt(((spectra - original) ** 2).mean(axis=1))
     return {
         "warp": warp,
@@ -174,14 +154,14 @@ def warp_errors(measured: Array, warp: str, floats: int) -> dict[str, Any]:
     }
 
 
-def cube_errors(atlases: Mapping[str, Atlas], warp: str, count: int) -> dict[str, Any]:
-    """Return mean ΔE00 under each light of a ColorChecker cube, at the entries of all
-    other atlases in sRGB.
+def cube_errors(atlases: Mapping[str, Atlas], count: int, warp: str) -> Row:
+    """Return mean ΔE00 under each light of a ColorChecker cube at the entries of all
+    other atlases.
     """
     cube = uplift.build(
         MACBETH, dim=CUBE_DIM, coefficients=count, entry_coefficients=count, warp=warp
     )
-    others = inside(merge(each for name, each in atlases.items() if name != "macbeth"))
+    others = inside(merge(atlases[name] for name in atlases if name != "macbeth"))
     answers = cube.reflectance(others.rgb)
     errors = {
         name: delta_e_spectra(observer.light(name), answers, others.measured).mean()

@@ -4,11 +4,10 @@ docs/palette.md.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from benchmarks import ATLASES, DOCS, record
+from benchmarks import ATLAS_FILES, DOCS, Row, record
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import Sensor, delta_e_rgb, observer
 from uplift.common.arrays import Array
@@ -35,8 +34,8 @@ Product = Callable[[Array, Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class LightPaths:
-    """``powers`` (N,) by light, and the ``reflectances`` (n, k, N) along paths by
-    number of reflections k.
+    """``powers`` (N,) by light, and ``reflectances`` (n, k, N) along paths of k
+    reflections.
     """
 
     sensor: Sensor
@@ -44,9 +43,7 @@ class LightPaths:
     reflectances: dict[int, Array]
 
     def errors(self, product: Product, light: str, bounces: int) -> Array:
-        """Return ΔE00 (n,) between a product's colours and those of complete spectra,
-        both exposed to mid-grey.
-        """
+        """Return ΔE00 (n,) from complete spectra, both exposed to mid-grey."""
         power = self.powers[light]
         met = self.reflectances[bounces]
         full = (power * met.prod(axis=1)) @ screen_matrix(self.sensor).T
@@ -55,17 +52,18 @@ class LightPaths:
 
 
 def light_paths(sensor: Sensor) -> LightPaths:
-    atlases = read_atlas(*sorted((ATLASES).glob("*.txt")))
-    materials = on_grid(atlases, sensor.wavelengths)
-    draw = np.random.default_rng(2004)
-    rows = {k: draw.integers(0, len(materials), (SAMPLES, k)) for k in BOUNCES[1:]}
-    met = {1: materials[:, None]} | {k: materials[row] for k, row in rows.items()}
+    materials = on_grid(read_atlas(*ATLAS_FILES), sensor.wavelengths)
+    rng = np.random.default_rng(2004)
+    met = {1: materials[:, None]}
+    for count in BOUNCES[1:]:
+        met[count] = materials[rng.integers(0, len(materials), (SAMPLES, count))]
     return LightPaths(sensor, {name: illuminant(sensor, name) for name in LIGHTS}, met)
 
 
 def by_rgb(sensor: Sensor) -> Product:
-    """Return RGB products with the surfaces' RGB under a flat white (Bergner et al.
-    2004, eq. 9–12).
+    """Return RGB products with the surfaces' RGB under a flat white.
+
+    Bergner et al. 2004, eq. 9–12.
     """
     screen = screen_matrix(sensor)
     white = screen.sum(axis=1)
@@ -83,23 +81,21 @@ def unsharpened(model: FactorModel) -> Product:
     back = np.linalg.inv(model.transform).T
 
     def product(power: Array, met: Array) -> Array:
-        coefficients = (model.reflectance(met) @ back).prod(axis=1) * (
-            model.reflectance(power) @ back
-        )
-        return model.rgb(coefficients @ model.transform.T)
+        surfaces = (model.reflectance(met) @ back).prod(axis=1)
+        light = model.reflectance(power) @ back
+        return model.rgb((surfaces * light) @ model.transform.T)
 
     return product
 
 
 def by_matrices(model: FactorModel) -> Product:
-    """Return products of the Λ model; the light is the first factor, within
-    the span.
-    """
-    return lambda power, met: model.rgb(
-        linear_product(
-            model, model.reflectance(power), *np.moveaxis(model.reflectance(met), 1, 0)
-        )
-    )
+    """Return products of the Λ model, whose first factor is the light in the span."""
+
+    def product(power: Array, met: Array) -> Array:
+        surfaces = np.moveaxis(model.reflectance(met), 1, 0)
+        return model.rgb(linear_product(model, model.reflectance(power), *surfaces))
+
+    return product
 
 
 FOLDER = DOCS / "palette"
@@ -112,13 +108,11 @@ def main() -> None:
     """Draw the examples, measure and store."""
     sensor = observer.sensor()
     models = {count: standard_model(sensor, count) for count in COUNTS}
-    palettes = {
-        name: design(read_palette(sample_path(f"{name}.toml")), models[DEFAULT])
-        for name in EXAMPLES
-    }
-    for name, palette in palettes.items():
+    for name in EXAMPLES:
+        palette = design(read_palette(sample_path(f"{name}.toml")), models[DEFAULT])
         plot_matrix(palette, matrix(palette), FOLDER / f"{name}-matrix.png", force=True)
-    plot_spectra(palettes["metamers"], FOLDER / "metamers-spectra.png", force=True)
+        if name == "metamers":
+            plot_spectra(palette, FOLDER / "metamers-spectra.png", force=True)
     paths = light_paths(sensor)
     products = {"RGB": by_rgb(sensor)}
     for count, model in models.items():
@@ -134,35 +128,28 @@ def main() -> None:
     )
 
 
-def by_bounces(paths: LightPaths, products: dict[str, Product]) -> list[dict[str, Any]]:
+def by_bounces(paths: LightPaths, products: dict[str, Product]) -> list[Row]:
     """Return mean ΔE00 and 95th percentile by number of reflections, and the gain over
     RGB.
     """
     rows = []
     for name, product in products.items():
-        errors = {
-            k: np.concatenate([paths.errors(product, light, k) for light in LIGHTS])
-            for k in BOUNCES
-        }
-        pairs = {
-            str(k): [float(one.mean()), float(np.percentile(one, 95))]
-            for k, one in errors.items()
-        }
-        rows.append(
-            {
-                "product": name,
-                "errors": pairs,
-                "all": float(np.mean([one[0] for one in pairs.values()])),
-            }
-        )
+        pairs = {}
+        for count in BOUNCES:
+            errors = np.concatenate(
+                [paths.errors(product, light, count) for light in LIGHTS]
+            )
+            pairs[count] = [errors.mean(), np.percentile(errors, 95)]
+        mean, _ = np.mean(list(pairs.values()), axis=0)
+        rows.append({"product": name, "errors": pairs, "all": mean})
     return [row | {"gain": rows[0]["all"] / row["all"]} for row in rows]
 
 
-def by_light(paths: LightPaths, light: str, model: FactorModel) -> dict[str, Any]:
+def by_light(paths: LightPaths, light: str, model: FactorModel) -> Row:
     """Return mean ΔE00 under a light over all numbers of reflections."""
     products = {"rgb": by_rgb(paths.sensor), "factor": by_factors(model)}
-    means = {
-        name: float(np.mean([paths.errors(product, light, k).mean() for k in BOUNCES]))
-        for name, product in products.items()
-    }
+    means = {}
+    for name, product in products.items():
+        errors = [paths.errors(product, light, count).mean() for count in BOUNCES]
+        means[name] = np.mean(errors)
     return {"light": light, **means, "gain": means["rgb"] / means["factor"]}

@@ -14,11 +14,10 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from benchmarks import ROOT, record
+from benchmarks import ROOT, Row, record
 from uplift.colorimetry import Sensor, observer
 from uplift.common.arrays import Array
 from uplift.extras.images.processes import call_in_child
@@ -33,8 +32,9 @@ THRESHOLD = 1e-4
 cubes.
 """
 DIM = 16
-SENSOR, LATTICE = observer.sensor(), Lattice(axis_nodes("srgb", DIM))
-"""CIE 1931 observer, D65, linear sRGB; nodes of Ceres, spaced as sRGB."""
+SENSOR = observer.sensor()
+LATTICE = Lattice(axis_nodes("srgb", DIM))
+"""Nodes of Ceres, spaced as sRGB."""
 OUR_MODELS = (
     ("sigmoid", 3),
     ("moments", 3),
@@ -48,16 +48,17 @@ OUR_BUILDS = (
     (64, ("moments", 9)),
 )
 """Dim, model and coefficients."""
-RUNS, LIMIT = 3, 3600
-"""Runs, and seconds after which a tool counts as hung."""
+RUNS = 3
+LIMIT = 3600
+"""Seconds after which a tool counts as hung."""
 
 
 @dataclass(frozen=True)
 class Peer:
-    """CPU time in µs per node (all threads) of a tool, share of nodes within
-    `THRESHOLD`, and largest residual.
+    """CPU time of a tool in µs per node, of all threads, and its accuracy.
 
-    ``model`` is 'sigmoid' or 'moments', ``count`` its number of coefficients.
+    ``model`` is 'sigmoid' or 'moments', ``count`` its number of coefficients. ``share``
+    of the nodes are within `THRESHOLD`, and ``worst`` is the largest residual.
     """
 
     tool: str
@@ -71,9 +72,7 @@ class Peer:
 
 
 def main() -> None:
-    """Time each tool in a process without the compiled code or settings of the others,
-    and store.
-    """
+    """Time each tool in its own process and store."""
     tools = (ceres, rgb2spec, ours)  # what may be missing comes first
     solvers, tables, builds = (
         call_in_child(tool, RUNS, seconds=LIMIT) for tool in tools
@@ -82,28 +81,25 @@ def main() -> None:
 
 
 def check_answers(rgb: Array, target: Array, *, least: float) -> dict[str, float]:
-    """Compare linear RGB (n, 3) with ``target`` (n, 3): the share within `THRESHOLD`,
+    """Return the share of linear RGB (n, 3) within `THRESHOLD` of ``target`` (n, 3),
     and the largest residual.
 
     Raises `RuntimeError` if fewer than the share ``least`` come within `THRESHOLD`:
     some tools leave a few nodes unfitted, with more a time means nothing.
     """
-    residual = np.nan_to_num(
-        np.abs(rgb - target).max(axis=1), nan=np.inf, posinf=np.inf
-    )
-    share = float((residual <= THRESHOLD).mean())
+    residual = np.abs(rgb - target).max(axis=1)
+    residual[np.isnan(residual)] = np.inf
+    share = (residual <= THRESHOLD).mean()
     if share < least:
         raise RuntimeError(
             f"wrong answer, not timed: {share:.1%} of the nodes are within "
             f"{THRESHOLD:g}"
         )
-    return {"share": share, "worst": float(residual.max())}
+    return {"share": share, "worst": residual.max()}
 
 
 def _install(needs: str, *commands: list[str | Path]) -> None:
-    """Run the commands that compile a tool. Raises `RuntimeError` with what it needs if
-    one of them fails.
-    """
+    """Run commands that compile a tool. Raises `RuntimeError` with what it needs."""
     try:
         for command in commands:
             subprocess.run(command, capture_output=True, check=True)
@@ -120,23 +116,12 @@ def ours(runs: int) -> list[Peer]:
         build = partial(
             uplift.build, dim=dim, model=name, coefficients=count, prior="smooth"
         )
-        cube = build()  # compiles
+        data = build().data  # compiles
         cpu = time_calls(build, runs)[1].scaled(1e6 / dim**3)
-        spectra = reflectance(
-            cube.data.model, cube.data.points.coefficients, SENSOR.wavelengths
-        )
-        answer = check_answers(SENSOR.rgb(spectra), cube.data.lattice.points, least=1.0)
-        rows.append(
-            Peer(
-                "uplift",
-                name,
-                count,
-                dim**3,
-                cpu,
-                **answer,
-                notes=f"{dim}³, compiled before",
-            )
-        )
+        spectra = reflectance(data.model, data.points.coefficients, SENSOR.wavelengths)
+        answer = check_answers(SENSOR.rgb(spectra), data.lattice.points, least=1.0)
+        notes = f"{dim}³, compiled before"
+        rows.append(Peer("uplift", name, count, dim**3, cpu, **answer, notes=notes))
     return rows
 
 
@@ -144,9 +129,7 @@ CERES_SOURCE = ROOT / "benchmarks" / "ceres"
 CERES_BUILT = ROOT / "out" / "ceres"
 CERES_NEEDS = "install Ceres, cmake and a C++ compiler: libceres-dev, cmake, g++"
 CERES_STEPS = 12
-"""Iterations from each start. The default of Ceres, 50, doubles the time for moments
-and fits no more of them.
-"""
+"""Iterations from each start. More, as by default, fit no more moments."""
 CERES_JOBS = (
     ("sigmoid", 3, "sigmoid", 0.99),
     ("moments", 9, "moments", 0.5),
@@ -175,52 +158,37 @@ def _ceres_row(
 ) -> Peer:
     model = Sigmoid() if name == "sigmoid" else Moments(count)
     points = LATTICE.points
-    done = [_run_ceres(program, unknowns, count) for _ in range(runs)]
-    solution, facts = done[-1]
+    seconds = []
+    for _ in range(runs):
+        solution, facts = _run_ceres(program, unknowns, count)
+        seconds.append(facts["cpu"])
     multipliers = model.from_storage(solution) if unknowns == "moments" else solution
-    answer = check_answers(
-        SENSOR.rgb(evaluate(model, multipliers, SENSOR.wavelengths)),
-        points,
-        least=least,
-    )
-    cpu = timing_stats([each["cpu"] for _, each in done]).scaled(1e6 / len(points))
+    spectra = evaluate(model, multipliers, SENSOR.wavelengths)
+    answer = check_answers(SENSOR.rgb(spectra), points, least=least)
+    cpu = timing_stats(seconds).scaled(1e6 / len(points))
     starts = facts["solves"] / len(points)
     notes = (
         f"{DIM}³, {UNKNOWNS[unknowns]}numeric differences, C++; grown from the "
         f"middle, {starts:.1f} starts a point"
     )
-    return Peer(
-        f"Ceres {facts['ceres']}", name, count, len(points), cpu, **answer, notes=notes
-    )
+    tool = f"Ceres {facts['ceres']}"
+    return Peer(tool, name, count, len(points), cpu, **answer, notes=notes)
 
 
-def _run_ceres(
-    program: Path, unknowns: str, count: int
-) -> tuple[Array, dict[str, Any]]:
+def _run_ceres(program: Path, unknowns: str, count: int) -> tuple[Array, Row]:
     """Return the solutions (n, count), and the statistics printed by the program."""
     numbers = np.concatenate([SENSOR.wavelengths, SENSOR.matrix.ravel(), LATTICE.nodes])
-    text = (
-        f"{len(SENSOR.wavelengths)} {DIM}\n"
-        + "\n".join(map(repr, numbers.tolist()))
-        + "\n"
-    )
+    lines = [f"{len(SENSOR.wavelengths)} {DIM}", *map(repr, numbers.tolist()), ""]
     with tempfile.TemporaryDirectory() as folder:
         scene = Path(folder, "scene.txt")
         solution = Path(folder, "found")
-        scene.write_text(text)
-        command = [
-            str(program),
-            str(scene),
-            str(solution),
-            unknowns,
-            str(count),
-            str(CERES_STEPS),
-        ]
+        scene.write_text("\n".join(lines))
+        options = [unknowns, str(count), str(CERES_STEPS)]
         # Ceres logs every step outside the moments of reflectances, which would be
         # timed too.
         quiet = os.environ | {"GLOG_minloglevel": "3"}
         done = subprocess.run(
-            command,
+            [program, scene, solution, *options],
             env=quiet,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -244,9 +212,7 @@ RGB2SPEC_VERSIONS = (
 )
 """Commit, method, and the minimum share of nodes that must be fitted."""
 RGB2SPEC_FLAGS = ("-O3 -DNDEBUG", "-O3 -DNDEBUG -march=native -ffast-math")
-"""Those of its CMakeLists.txt for a release, and the fastest: -Ofast, -funroll-loops
-and -flto gain nothing more.
-"""
+"""Those of its CMakeLists.txt for a release, and the fastest."""
 RGB2SPEC_COMPILES = ("-std=c++11", "-include", "algorithm", "-pthread")
 """Its standard, a header that the older version relies on others to include, and the
 threads of the newer one.
@@ -254,9 +220,7 @@ threads of the newer one.
 
 
 def rgb2spec(runs: int) -> list[Peer]:
-    """Time the program that fits the tables of Jakob & Hanika 2019, with its own flags
-    and with the fastest.
-    """
+    """Time the program that fits the tables of Jakob & Hanika 2019."""
     rows = []
     for (commit, method, least), flags in product(RGB2SPEC_VERSIONS, RGB2SPEC_FLAGS):
         program = RGB2SPEC / "rgb2spec_opt"
@@ -271,21 +235,12 @@ def rgb2spec(runs: int) -> list[Peer]:
                 subprocess.run, command, stdout=subprocess.DEVNULL, check=True
             )
             seconds = [children_cpu(fit) for _ in range(runs)]
-            found, target = table_colours(Path(table.name))
-        answer = check_answers(found, target, least=least)
+            rgb, target = table_colours(Path(table.name))
+        answer = check_answers(rgb, target, least=least)
         cpu = timing_stats(seconds).scaled(1e6 / len(target))
+        tool = f"rgb2spec {commit[:7]}"
         notes = f"3 tables of {RGB2SPEC_DIM}³, {method}, C++, {flags}"
-        rows.append(
-            Peer(
-                f"rgb2spec {commit[:7]}",
-                "sigmoid",
-                3,
-                len(target),
-                cpu,
-                **answer,
-                notes=notes,
-            )
-        )
+        rows.append(Peer(tool, "sigmoid", 3, len(target), cpu, **answer, notes=notes))
     return rows
 
 
@@ -296,41 +251,36 @@ def table_sensor() -> Sensor:
     wide = observer.sensor(wavelengths=(360, 830, 5))
     wavelengths = np.linspace(360, 830, 3 * (len(wide.wavelengths) - 1) + 1)
     weights = np.full(len(wavelengths), 3.0)
-    weights[::3], weights[[0, -1]] = 2, 1
-    tables = [
-        np.interp(wavelengths, wide.wavelengths, each)
-        for each in (*wide.cmfs.T, wide.power)
-    ]
-    cmfs = np.stack(tables[:3], axis=-1)
-    power = tables[3] * weights
+    weights[::3] = 2
+    weights[[0, -1]] = 1
+    between = partial(np.interp, wavelengths, wide.wavelengths)
     return replace(
-        wide, wavelengths=wavelengths, cmfs=cmfs, power=power, xyz_to_rgb=XYZ_TO_RGB
+        wide,
+        wavelengths=wavelengths,
+        cmfs=np.stack(list(map(between, wide.cmfs.T)), axis=-1),
+        power=between(wide.power) * weights,
+        xyz_to_rgb=XYZ_TO_RGB,
     )
 
 
 def table_colours(path: Path) -> tuple[Array, Array]:
-    """Return the linear RGB (n, 3) of the spectra in a table of rgb2spec, and those of
-    its nodes.
+    """Return the linear RGB (n, 3) of the spectra of a table of rgb2spec, and of its
+    nodes.
     """
-    data = (
-        path.read_bytes()
-    )  # "SPEC", u32 dim, f32 scale[dim], f32 data[3][dim][dim][dim][3]
+    # "SPEC", u32 dim, f32 scale[dim], f32 data[3][dim][dim][dim][3]
+    data = path.read_bytes()
     dim = int.from_bytes(data[4:8], "little")
-    level = np.frombuffer(data, "<f4", dim, 8).astype(float)
+    numbers = np.frombuffer(data, "<f4", dim + 9 * dim**3, 8).astype(float)
+    level = numbers[:dim]
     even = np.linspace(0, 1, dim)
-    planes = (
-        np.frombuffer(data, "<f4", 9 * dim**3, 8 + 4 * dim)
-        .astype(float)
-        .reshape(-1, dim * dim, 3)
-    )
     sensor = table_sensor()
-    found = [
-        sensor.rgb(evaluate_unscaled(plane, sensor.wavelengths)) for plane in planes
+    rgb = [
+        sensor.rgb(evaluate_unscaled(plane, sensor.wavelengths))
+        for plane in numbers[dim:].reshape(-1, dim * dim, 3)
     ]
     # In table l component l is the level; components l + 2 and l + 1 (modulo 3) are
     # even fractions of it.
     largest, last, middle = np.meshgrid(level, even, even, indexing="ij")
     target = np.stack([largest, middle * largest, last * largest], axis=-1)
-    return np.concatenate(found), np.concatenate(
-        [np.roll(target, each, axis=-1).reshape(-1, 3) for each in range(3)]
-    )
+    targets = [np.roll(target, table, axis=-1) for table in range(3)]
+    return np.concatenate(rgb), np.concatenate(targets).reshape(-1, 3)

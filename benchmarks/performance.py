@@ -4,35 +4,44 @@ docs/speed.md.
 Results are checked before they are timed.
 """
 
+import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
 from functools import partial
+from itertools import product, starmap
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from benchmarks import MACBETH, ROOT, Row, record
-from uplift.lab.timing import time_calls, time_process, timing_stats
+from uplift.lab.timing import TimingStats, time_calls, time_process, timing_stats
 
-UPLIFT = str(Path(sys.executable).parent / "uplift")
-RUNS, FEW_RUNS = 5, 3
-"""Runs, and those of large lattices, which take long and vary little."""
+BIN = Path(sys.executable).parent
+UPLIFT = str(BIN / "uplift")
+UPLIFT_COMMANDS = ("uplift query '#cc3319' --format json", "uplift --help")
+RUNS = 5
+FEW_RUNS = 3
+"""Runs of large lattices, which take long and vary little."""
 MODELS = (("sigmoid", 3), *(("moments", count) for count in (3, 5, 9, 13, 17)))
 DIMS = (16, 32, 64, 128)
 MODEL_DIM = 64
 MIXTURE_DIM = 32
 MIXTURES = (24, 396, 10_000)
 WAVELENGTHS = np.linspace(400, 700, 16)
-BULK, MAX_ERROR = 1_000_000, 1e-6
-"""Colours of `uplift.bulk`, and its largest permitted difference of reflectance."""
+BULK = 1_000_000
+"""Colours of `uplift.bulk`."""
+MAX_ERROR = 1e-6
+"""Its largest permitted difference of reflectance."""
 CHECKED = 10_000
 FLAGS = ("-O3", "-march=x86-64-v3", "-fno-math-errno", "-fno-trapping-math")
 MODES = ("spectra", "moments")
-PROGRAM_COLOURS, MAX_DIFFERENCE = 400_000, 1e-3
-"""Colours of the C header, and the largest permitted difference of reflectance."""
+PROGRAM_COLOURS = 400_000
+"""Colours of the C header."""
+MAX_DIFFERENCE = 1e-3
+"""Its largest permitted difference of reflectance."""
 
 
 def main() -> None:
@@ -48,34 +57,24 @@ def main() -> None:
             time_build("moments", 9, dim, RUNS if dim <= MODEL_DIM else FEW_RUNS)
             for dim in DIMS
         ],
-        models=[
-            time_build(model, count, MODEL_DIM, FEW_RUNS) for model, count in MODELS
-        ],
+        models=[time_build(*model, MODEL_DIM, FEW_RUNS) for model in MODELS],
         processes=processes,
         bulk=time_bulk(cube),
     )
-    record(
-        "performance",
-        "atlases",
-        dim=MIXTURE_DIM,
-        rows=[time_atlas(count) for count in MIXTURES],
-    )
+    record("performance", "atlases", dim=MIXTURE_DIM, rows=map(time_atlas, MIXTURES))
     if compiler := shutil.which("cc"):
-        version = subprocess.run(
-            [compiler, "--version"], capture_output=True, text=True, check=True
-        ).stdout
-        colours = (
-            np.random.default_rng(1).random((PROGRAM_COLOURS, 3)).astype(np.float32)
-        )
+        version = subprocess.check_output([compiler, "--version"], text=True)
+        rgb = np.random.default_rng(1).random((PROGRAM_COLOURS, 3))
+        timed = partial(time_header, rgb.astype(np.float32))
         cubes = (cube, _build(dim=32, model="sigmoid"))
         record(
             "performance",
             "programs",
             runs=RUNS,
-            colours=len(colours),
+            colours=len(rgb),
             compiler=version.splitlines()[0],
             flags=" ".join(FLAGS),
-            rows=[time_header(each, mode, colours) for mode in MODES for each in cubes],
+            rows=starmap(timed, product(MODES, cubes)),
         )
 
 
@@ -88,10 +87,8 @@ def _build(**options: Any) -> Any:
 def time_build(model: str, count: int, dim: int, runs: int) -> Row:
     """Time builds in this process, which has compiled."""
     build = partial(_build, dim=dim, model=model, coefficients=count)
-    data = build().data
-    unfitted = data.points.counts()["unfitted"]
-    worst = float(data.points.distance.max())
-    if unfitted:
+    points = build().data.points
+    if unfitted := points.counts()["unfitted"]:
         raise RuntimeError(f"{unfitted} nodes are unfitted: nothing to time")
     wall, cpu = time_calls(build, runs)
     return {
@@ -101,94 +98,66 @@ def time_build(model: str, count: int, dim: int, runs: int) -> Row:
         "nodes": dim**3,
         "wall_s": wall,
         "whole_us": cpu.scaled(1e6 / dim**3),
-        "worst": worst,
+        "worst": points.distance.max(),
     }
 
 
 def time_atlas(count: int) -> Row:
-    """Time a build from mixtures of shipped spectra: arithmetic or geometric means of
-    two or three.
-    """
+    """Time a build from arithmetic or geometric means of shipped spectra."""
     import uplift
     from benchmarks.materials import SENSOR, materials
     from uplift.atlas import Atlas, Entry, shipped_atlases
 
     known = np.concatenate(
-        [materials(each.path.stem).measured for each in shipped_atlases()]
+        [materials(atlas.path.stem).measured for atlas in shipped_atlases()]
     )
     random = np.random.default_rng(1)
     entries = []
     for number in range(count):
-        rows = random.integers(0, len(known), random.integers(2, 4))
-        logarithmic = random.random() < 0.5
-        weights = random.dirichlet(np.full(len(rows), 0.6))
-        mixed = (
-            np.exp(weights @ np.log(known[rows] + 1e-3))
-            if logarithmic
-            else weights @ known[rows]
-        )
+        spectra = known[random.integers(0, len(known), random.integers(2, 4))]
+        is_geometric = random.random() < 0.5
+        weights = random.dirichlet(np.full(len(spectra), 0.6))
+        if is_geometric:
+            mixed = np.exp(weights @ np.log(spectra + 1e-3))
+        else:
+            mixed = weights @ spectra
         entries.append(Entry(str(number), SENSOR.wavelengths, np.clip(mixed, 0, 1)))
-    _, cpu = time_calls(
-        partial(uplift.build, Atlas(tuple(entries)), dim=MIXTURE_DIM), 1
-    )
+    build = partial(uplift.build, Atlas(tuple(entries)), dim=MIXTURE_DIM)
+    _, cpu = time_calls(build, 1)
     return {"entries": count, "cpu_s": cpu.median}
 
 
 def time_processes() -> list[Row]:
     """Time commands as a user starts them: wall seconds and peak memory in MB."""
     rows = []
+
+    def add(what: str, wall: TimingStats, megabytes: float) -> None:
+        rows.append({"what": what, "wall": wall, "megabytes": megabytes})
+
     with tempfile.TemporaryDirectory() as folder:
+        build = [UPLIFT, "build", "--force", "-q", "--atlas", str(MACBETH)]
+        build += ["-o", f"{folder}/cube.uplift", "--dim"]
+        uncached = {"JAX_ENABLE_COMPILATION_CACHE": "false"}
+        times = time_process([*build, "32"], RUNS, uncached)
+        add("uplift build --dim 32, compilation cache disabled", *times)
         for dim in DIMS:
-            command = [
-                UPLIFT,
-                "build",
-                "--atlas",
-                str(MACBETH),
-                "--dim",
-                str(dim),
-                "-o",
-                f"{folder}/{dim}.uplift",
-            ]
-            command += ["--force", "-q"]
-            if dim == 32:
-                uncached = {"JAX_ENABLE_COMPILATION_CACHE": "false"}
-                what = f"uplift build --dim {dim}, compilation cache disabled"
-                rows.insert(0, (what, *time_process(command, RUNS, uncached)))
-            runs = RUNS if dim < max(DIMS) else 1
-            caches = [
-                {"JAX_COMPILATION_CACHE_DIR": f"{folder}/cache-{dim}-{run}"}
-                for run in range(runs)
-            ]
-            walls, peaks = zip(
-                *(time_process(command, 1, cache) for cache in caches), strict=True
-            )
-            rows.append(
-                (
-                    f"uplift build --dim {dim}, first run",
-                    timing_stats([wall.median for wall in walls]),
-                    max(peaks),
-                )
-            )
-            what = f"uplift build --dim {dim}, compiled before"
-            rows.append((what, *time_process(command, runs, caches[0])))
-    starts = {
-        "python -c 'import numpy'": [sys.executable, "-c", "import numpy"],
-        "uplift query '#cc3319' --format json": [
-            UPLIFT,
-            "query",
-            "#cc3319",
-            "--format",
-            "json",
-        ],
-        "uplift --help": [UPLIFT, "--help"],
-    }
-    rows += [
-        (what, *time_process(command, 2 * RUNS)) for what, command in starts.items()
-    ]
-    return [
-        {"what": what, "wall": wall, "megabytes": megabytes}
-        for what, wall, megabytes in rows
-    ]
+            command = [*build, str(dim)]
+            walls = []
+            peaks = []
+            for run in range(RUNS if dim < max(DIMS) else 1):
+                cache = {"JAX_COMPILATION_CACHE_DIR": f"{folder}/cache-{dim}-{run}"}
+                wall, peak = time_process(command, 1, cache)
+                walls.append(wall.median)
+                peaks.append(peak)
+            what = f"uplift build --dim {dim}"
+            add(f"{what}, first run", timing_stats(walls), max(peaks))
+            times = time_process(command, len(walls), cache)
+            add(f"{what}, compiled before", *times)
+    for line in ("python -c 'import numpy'", *UPLIFT_COMMANDS):
+        program, *arguments = shlex.split(line)
+        command = [f"{BIN}/{program}", *arguments]
+        add(line, *time_process(command, 2 * RUNS))
+    return rows
 
 
 def time_bulk(cube: Any) -> list[Row]:
@@ -200,58 +169,54 @@ def time_bulk(cube: Any) -> list[Row]:
     rows = []
     for threads in (1, 2):
         sample = bulk.spectra(cube, WAVELENGTHS, threads=threads)
-        error = float(np.abs(sample(rgb) - expected).max())
+        error = np.abs(sample(rgb) - expected).max()
         if not error <= MAX_ERROR:
             raise RuntimeError(f"error {error} exceeds {MAX_ERROR}: nothing to time")
         wall, cpu = time_calls(partial(sample, rgb), RUNS)
-        rates = {
-            "million_per_s": BULK / wall.median / 1e6,
-            "cpu_us": 1e6 * cpu.median / BULK,
-        }
         rows.append(
             {
                 "threads": threads,
                 "colours": BULK,
                 "wall_s": wall,
-                **rates,
+                "million_per_s": BULK / wall.median / 1e6,
+                "cpu_us": 1e6 * cpu.median / BULK,
                 "error": error,
             }
         )
     return rows
 
 
-def time_header(cube: Any, mode: str, colours: Any) -> Row:
+def time_header(colours: Any, mode: str, cube: Any) -> Row:
     """Compile the C header, check its reflectances, and return its rates on one core,
     in million colours per second.
     """
     from uplift.colorimetry import delta_e_rgb
 
     data = cube.data
-    found, rates = run_header(cube, mode, colours, RUNS)
+    spectra, times = run_header(cube, mode, colours, RUNS)
     checked = colours[:CHECKED].astype(float)
-    worst = float(
-        np.abs(found - cube.reflectance(checked, cube.wavelengths, mode=mode)).max()
-    )
+    expected = cube.reflectance(checked, cube.wavelengths, mode=mode)
+    worst = np.abs(spectra - expected).max()
     if not worst <= MAX_DIFFERENCE:
         raise RuntimeError(f"{mode}: reflectances differ by {worst}: nothing to time")
-    errors = delta_e_rgb(data.sensor, data.sensor.rgb(found), checked)
-    rates = [len(colours) / seconds / 1e6 for seconds in rates]
+    errors = delta_e_rgb(data.sensor, data.sensor.rgb(spectra), checked)
+    rates = [len(colours) / seconds / 1e6 for seconds in times]
     return {
         "model": data.model.name,
         "coefficients": data.model.count,
         "mode": mode,
         **dict(zip(("lookup", "many", "evaluation", "shared"), rates, strict=True)),
         "worst": worst,
-        "mean_delta_e": float(errors.mean()),
-        "max_delta_e": float(errors.max()),
+        "mean_delta_e": errors.mean(),
+        "max_delta_e": errors.max(),
     }
 
 
 def run_header(
     cube: Any, mode: str, colours: Any, runs: int
 ) -> tuple[Any, list[float]]:
-    """Return reflectances (CHECKED, N) of the first colours by the C header, and the
-    CPU seconds of its functions.
+    """Return reflectances (CHECKED, N) of the first colours by the C header, and CPU
+    seconds.
     """
     from uplift.extras.export import write_program
 
@@ -261,16 +226,9 @@ def run_header(
         write_program(cube.data, folder / "cube.h", mode=mode)
         colours.tofile(folder / "rgb")
         cube.wavelengths.astype(np.float32).tofile(folder / "at")
-        subprocess.run(
-            ["cc", *FLAGS, "-I.", str(source), "-o", "rates", "-lm"],
-            cwd=folder,
-            check=True,
-        )
-        command = ["./rates", "rgb", "at", str(runs), "found"]
-        done = subprocess.run(
-            command, cwd=folder, check=True, capture_output=True, text=True
-        )
-        found = (
-            np.fromfile(folder / "found", np.float32).reshape(CHECKED, -1).astype(float)
-        )
-    return found, [float(word) for word in done.stdout.split()[:-1]]
+        compiler = ["cc", *FLAGS, "-I.", str(source), "-o", "rates", "-lm"]
+        subprocess.run(compiler, cwd=folder, check=True)
+        command = ["./rates", "rgb", "at", str(runs), "spectra"]
+        printed = subprocess.check_output(command, cwd=folder, text=True)
+        spectra = np.fromfile(folder / "spectra", np.float32).astype(float)
+    return spectra.reshape(CHECKED, -1), list(map(float, printed.split()[:-1]))

@@ -4,7 +4,6 @@ import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import matplotlib
 import numpy as np
@@ -27,39 +26,27 @@ class Picture:
     package: str
 
     def linear(self) -> Array:
-        """Return linear sRGB (h, w, 3), by OpenEXR, or by Pillow and the sRGB curve of
-        colour-science.
-        """
+        """Return linear sRGB (h, w, 3), by OpenEXR, or by Pillow and colour-science."""
         if self.path.suffix == ".exr":
             import OpenEXR
 
-            found = OpenEXR.File(str(self.path)).channels()
-            return np.asarray(found["RGB"].pixels, dtype=float)
+            channels = OpenEXR.File(str(self.path)).channels()
+            return channels["RGB"].pixels.astype(float)
         from PIL import Image
 
-        codes: Any = np.asarray(Image.open(self.path).convert("RGB"), dtype=float)
-        return np.asarray(colour.models.eotf_sRGB(codes / 255), dtype=float)
+        codes = np.asarray(Image.open(self.path).convert("RGB"))
+        return colour.models.eotf_sRGB(codes / 255)
 
 
 def pictures() -> Iterator[Picture]:
-    """Yield the images; raise `FileNotFoundError` unless `make pictures` installed
-    them.
-    """
+    """Yield the images. Raises `FileNotFoundError` before `make pictures`."""
     if not INSTALLED.is_dir():
         raise FileNotFoundError(f"{INSTALLED}: run 'make pictures'")
     for name in ("astronaut.png", "coffee.png", "chelsea.png", "ihc.png", "rocket.jpg"):
         yield Picture(INSTALLED / "skimage" / "data" / name, "scikit-image")
     for name in ("china.jpg", "flower.jpg"):
-        yield Picture(
-            INSTALLED / "sklearn" / "datasets" / "images" / name, "scikit-learn"
-        )
-    test_pattern = (
-        Path(colour.__file__).parent
-        / "io"
-        / "tests"
-        / "resources"
-        / "CMS_Test_Pattern.exr"
-    )
-    yield Picture(test_pattern, "colour-science")
+        yield Picture(INSTALLED / "sklearn/datasets/images" / name, "scikit-learn")
+    resources = Path(colour.__file__).parent / "io" / "tests" / "resources"
+    yield Picture(resources / "CMS_Test_Pattern.exr", "colour-science")
     portrait = Path(matplotlib.get_data_path()) / "sample_data" / "grace_hopper.jpg"
     yield Picture(portrait, "matplotlib")

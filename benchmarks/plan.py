@@ -8,13 +8,14 @@ import shutil
 import subprocess
 import tempfile
 from dataclasses import dataclass
+from functools import partial
+from itertools import starmap
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, DOCS, MACBETH, record
+from benchmarks import ATLASES, DOCS, MACBETH, Row, record
 from benchmarks.performance import UPLIFT
 from benchmarks.pictures import Picture, pictures
 from uplift.colorimetry import delta_e_spectra
@@ -37,6 +38,7 @@ SAMPLE = 20_000
 Measured = tuple[Cube, TimingStats, int]
 """A cube, the CPU seconds of its build, and the bytes of its file."""
 PICTURE = DOCS / "plan" / "front.png"
+KITCHEN = ("still-life.png", "wood.png")
 TWO = ("D65", "FL11")
 FIVE = ("D65", "A", "FL2", "FL11", "LED-B3")
 
@@ -53,30 +55,16 @@ class Case:
 
     def scene(self) -> str:
         """Return the text of the scene file."""
-        atlas = f'atlases = "{self.atlas}"\n' if self.atlas else ""
-        textures = json.dumps(self.pictures)
-        lights = json.dumps(self.lights)
+        atlases = f'atlases = "{self.atlas}"\n' if self.atlas else ""
         return (
-            f"textures = {textures}\n{atlas}lights = {lights}\ntolerance = "
-            f"{self.tolerance}\n"
+            f"textures = {json.dumps(self.pictures)}\n{atlases}"
+            f"lights = {json.dumps(self.lights)}\ntolerance = {self.tolerance}\n"
         )
 
 
 CASES = (
-    Case(
-        ("still-life.png", "wood.png"),
-        "paints.csv",
-        ("D65", "A", "FL11"),
-        1.0,
-        quick=False,
-    ),
-    Case(
-        ("still-life.png", "wood.png"),
-        "paints.csv",
-        ("FL11", "HP1", "LED-RGB1"),
-        0.15,
-        quick=False,
-    ),
+    Case(KITCHEN, "paints.csv", ("D65", "A", "FL11"), 1.0, quick=False),
+    Case(KITCHEN, "paints.csv", ("FL11", "HP1", "LED-RGB1"), 0.15, quick=False),
     Case(("astronaut.png",), "macbeth.txt", TWO, 1.0),
     Case(("astronaut.png",), "macbeth.txt", TWO, 0.5, quick=False),
     Case(("coffee.png",), "macbeth.txt", FIVE, 1.0),
@@ -86,13 +74,6 @@ CASES = (
     Case(("chelsea.png",), "", ("D65", "D55"), 1.0),
 )
 """The front of the first case is shown."""
-LIMITS = {
-    "margin": MARGIN,
-    "floor": FLOOR,
-    "ceiling": CEILING,
-    "colours": MAX_LIST,
-    "pixels": MAX_PIXELS,
-}
 
 
 def main() -> None:
@@ -101,10 +82,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         copy_samples(folder)
-        for source in [picture.path for picture in pictures()] + [
-            ATLASES / "macbeth.txt",
-            ATLASES / "babelcolor.txt",
-        ]:
+        sources = [picture.path for picture in pictures()]
+        for source in (*sources, MACBETH, ATLASES / "babelcolor.txt"):
             shutil.copy(source, folder)
         scenes, plans = zip(*(run(folder, case) for case in CASES), strict=True)
     draw(plans[0])
@@ -115,19 +94,20 @@ def main() -> None:
         confirming=grid.confirming,
         reference_dim=grid.reference,
         reference_coefficients=grid.models["none"][-1],
-        **LIMITS,
+        margin=MARGIN,
+        floor=FLOOR,
+        ceiling=CEILING,
+        colours=MAX_LIST,
+        pixels=MAX_PIXELS,
         scenes=scenes,
     )
 
 
-def run(folder: Path, case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
+def run(folder: Path, case: Case) -> tuple[Row, Row]:
     """Plan a scene; return the figures of the page, and the plan."""
     (folder / "scene.toml").write_text(case.scene(), encoding="utf-8")
-    seconds = children_cpu(
-        lambda: call(
-            folder, f"plan scene.toml --force {'--quick' if case.quick else ''}"
-        )
-    )
+    line = f"plan scene.toml --force {'--quick' if case.quick else ''}"
+    seconds = children_cpu(partial(call, folder, line))
     plan = json.loads((folder / "scene.plan.json").read_text(encoding="utf-8"))
     size = None
     if plan["build"]:
@@ -156,29 +136,21 @@ def call(folder: Path, line: str) -> None:
     )
 
 
-def draw(plan: dict[str, Any]) -> None:
+def draw(plan: Row) -> None:
     """Draw error over memory and over samples for the front of a plan."""
     axes = {
         "memory": ("cube file and pixels", format_size),
         "samples": ("samples per ray", "{:g}".format),
     }
-    styles = {True: (ACCENT, "D"), False: (INK, "o")}
-
-    def point(row: int, each: dict[str, Any], key: str) -> Point:
-        style = styles[each["name"] == plan["name"]]
-        return Point(
-            row, each["name"], each[key], each["error"]["quantile"], *style, named=False
-        )
-
-    panels = [
-        Panel(
-            f"ΔE00 over {key}",
-            title,
-            text,
-            [point(*each, key) for each in enumerate(plan["front"])],
-        )
-        for key, (title, text) in axes.items()
-    ]
+    panels = []
+    for key, (title, text) in axes.items():
+        points = []
+        for row, candidate in enumerate(plan["front"]):
+            name = candidate["name"]
+            style = (ACCENT, "D") if name == plan["name"] else (INK, "o")
+            error = candidate["error"]["quantile"]
+            points.append(Point(row, name, candidate[key], error, *style, named=False))
+        panels.append(Panel(f"ΔE00 over {key}", title, text, points))
     PICTURE.parent.mkdir(exist_ok=True)
     legend = {
         "on the front": {"color": INK},
@@ -191,14 +163,12 @@ def sparse_cubes() -> None:
     """Measure sparse cubes and store."""
     images = list(pictures())
     uplift.build(MACBETH, dim=32)  # compile before timing
-    sections = [measure(images, space, dim) for space, dim in LATTICES]
+    sections = starmap(partial(measure, images), LATTICES)
     record("plan", "scenes", runs=RUNS, sections=sections)
 
 
-def measure(images: list[Picture], space: str, dim: int) -> dict[str, Any]:
-    """Compare the complete cube with a sparse cube for each image, and for
-    all images.
-    """
+def measure(images: list[Picture], space: str, dim: int) -> Row:
+    """Compare the complete cube with sparse cubes for each image and for all images."""
     complete = build(space, dim, [])
     rows = [compare("complete cube", complete, complete)]
     for picture in images:
@@ -218,21 +188,20 @@ def measure(images: list[Picture], space: str, dim: int) -> dict[str, Any]:
 def build(space: str, dim: int, scene: list[Picture]) -> Measured:
     """Build a cube for images, or a complete one."""
     images = Images(tuple(picture.path for picture in scene)) if scene else None
-    made: list[Cube] = []
-    _, cpu = time_calls(
-        lambda: made.append(uplift.build(MACBETH, dim=dim, space=space, scene=images)),
-        RUNS,
-    )
+    timed = partial(uplift.build, MACBETH, dim=dim, space=space, scene=images)
+    cubes = []
+    _, cpu = time_calls(lambda: cubes.append(timed()), RUNS)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.uplift"
-        made[-1].save(path)
-        return made[-1], cpu, path.stat().st_size
+        cubes[-1].save(path)
+        return cubes[-1], cpu, path.stat().st_size
 
 
-def compare(name: str, sparse: Measured, complete: Measured) -> dict[str, Any]:
+def compare(name: str, sparse: Measured, complete: Measured) -> Row:
     """Compare nodes, size and time; differences of answers are unknown."""
-    (cube, seconds, size), (all_nodes, all_seconds, all_size) = sparse, complete
-    nodes = int(cube.data.points.present.sum())
+    cube, seconds, size = sparse
+    all_nodes, all_seconds, all_size = complete
+    nodes = cube.data.points.present.sum()
     return {
         "scene": name,
         "nodes": nodes,
@@ -252,11 +221,9 @@ def largest_difference(sparse: Cube, complete: Cube, picture: Picture) -> float:
     code value.
     """
     sensor = sparse.data.sensor
-    colours = np.concatenate(
-        list(Images((picture.path,)).colours(picture.path, sensor))
-    )
+    images = Images((picture.path,))
+    colours = np.concatenate(list(images.colours(picture.path, sensor)))
     sample = np.random.default_rng(0).permutation(colours)[:SAMPLE]
-    ours = sparse.reflectance(sample)
-    theirs = complete.reflectance(sample)
+    spectra = [cube.reflectance(sample) for cube in (sparse, complete)]
     lights = [light(name, sensor.observer, *sensor.range) for name in SCENE_LIGHTS]
-    return float(max(delta_e_spectra(light, ours, theirs).max() for light in lights))
+    return np.max([delta_e_spectra(lamp, *spectra) for lamp in lights])

@@ -9,16 +9,16 @@ round.
 import sys
 import tempfile
 import time
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks import CUBES, DOCS, MACBETH, checker, record
+from benchmarks import CUBES, DOCS, MACBETH, Row, checker, record
 from benchmarks.checker import Chart, Layout, Reflectances
 from benchmarks.checker import render as render_chart
 from uplift.colorimetry import delta_e_2000, lab
@@ -45,16 +45,13 @@ ROUNDS = 5
 LIMIT = 3600
 """Seconds after which a variant counts as hung."""
 DEPTHS = (2, 5)
-PLAIN_CUBE, ATLAS_CUBE = (
-    str(CUBES / f"moments-16{suffix}.uplift") for suffix in ("", "-macbeth")
-)
+PLAIN_CUBE = str(CUBES / "moments-16.uplift")
+ATLAS_CUBE = str(CUBES / "moments-16-macbeth.uplift")
 
 
 @dataclass(frozen=True, eq=False)
 class Renders:
-    """XYZ images by light and method, and ΔE00 (24,) of their patches from the
-    reference.
-    """
+    """XYZ images by light and method, and ΔE00 (24,) of their patches."""
 
     images: dict[tuple[str, str], Array]
     delta_e: dict[tuple[str, str], Array]
@@ -90,9 +87,7 @@ def main() -> None:
 
 
 def methods(painted: Chart, folder: Path, dim: int) -> dict[str, Reflectances]:
-    """Return the reflectances of the patches by method; cubes are built in
-    ``folder``.
-    """
+    """Return the reflectances of the patches by method; cubes are in ``folder``."""
     colours = painted.painted.tolist()
 
     def cube(name: str, *atlas: Path, **options: Any) -> Reflectances:
@@ -110,75 +105,53 @@ def methods(painted: Chart, folder: Path, dim: int) -> dict[str, Reflectances]:
 
 
 def render(methods: dict[str, Reflectances], layout: Layout, spp: int) -> Renders:
-    """Render all methods under all lights with one seed, and the reference with another
-    seed too.
+    """Render all methods under all lights with one seed, the reference with another
+    too.
     """
+    seeded = {**methods, OTHER_SEED: methods[REFERENCE]}
     images = {}
     delta_e = {}
     for name in LIGHTS:
         emitter = checker.constant_light(name)
         white = light(name).white
-        for method, reflectances in methods.items():
-            images[name, method] = render_chart(
-                emitter, reflectances, layout, spp, seed=0
-            )
-        images[name, OTHER_SEED] = render_chart(
-            emitter, methods[REFERENCE], layout, spp, seed=1
-        )
-        labs = {
-            method: lab(layout.means(images[name, method]), white)
-            for method in (*methods, OTHER_SEED)
-        }
-        delta_e |= {
-            (name, method): delta_e_2000(labs[REFERENCE], values)
-            for method, values in labs.items()
-        }
+        labs = {}
+        for method, reflectances in seeded.items():
+            seed = int(method == OTHER_SEED)
+            image = render_chart(emitter, reflectances, layout, spp, seed)
+            images[name, method] = image
+            labs[method] = lab(layout.means(image), white)
+            delta_e[name, method] = delta_e_2000(labs[REFERENCE], labs[method])
     return Renders(images, delta_e)
 
 
-def figures(painted: Chart, renders: Renders) -> dict[str, Any]:
+def figures(painted: Chart, renders: Renders) -> Row:
     """Return the errors by method and by patch; means are over all patches, and over
     those inside sRGB.
     """
     errors = renders.delta_e
 
-    def means(name: str, method: str) -> list[float]:
-        return [
-            float(errors[name, method].mean()),
-            float(errors[name, method][~painted.outside].mean()),
-        ]
+    def means(name: str, method: str) -> Array:
+        delta_e = errors[name, method]
+        return np.array([delta_e.mean(), delta_e[~painted.outside].mean()])
 
-    def of_patch(row: int) -> dict[str, dict[str, float]]:
-        return {
-            name: {
-                "mitsuba": errors[name, MITSUBA][row],
-                "cube": errors[name, ATLAS][row],
-            }
-            for name in LIGHTS
-        }
-
-    ratios = {
-        name: np.divide(means(name, MITSUBA), means(name, ATLAS)).tolist()
-        for name in LIGHTS[1:]
-    }
-    return {
-        "ratios": [
-            {"light": name, "all": both[0], "in_gamut": both[1]}
-            for name, both in ratios.items()
-        ],
-        "means": [
-            {"method": method, **{name: means(name, method) for name in LIGHTS}}
-            for method in (MITSUBA, PLAIN, ATLAS, ATLAS_17, OTHER_SEED)
-        ],
-        "patches": [
-            {"patch": patch, **of_patch(row)} for row, patch in enumerate(painted.names)
-        ],
-    }
+    ratios = []
+    patches = [{"patch": patch} for patch in painted.names]
+    for name in LIGHTS:
+        every, in_gamut = means(name, MITSUBA) / means(name, ATLAS)
+        ratios.append({"light": name, "all": every, "in_gamut": in_gamut})
+        pairs = zip(errors[name, MITSUBA], errors[name, ATLAS], strict=True)
+        for patch, (mitsuba, cube) in zip(patches, pairs, strict=True):
+            patch[name] = {"mitsuba": mitsuba, "cube": cube}
+    rows = []
+    for method in (MITSUBA, PLAIN, ATLAS, ATLAS_17, OTHER_SEED):
+        by_light = {name: means(name, method) for name in LIGHTS}
+        rows.append({"method": method, **by_light})
+    return {"ratios": ratios[1:], "means": rows, "patches": patches}
 
 
 def rates() -> None:
     """Measure the rates of all variants and store."""
-    rows: list[dict[str, Any]] = []
+    rows = []
     for variant in VARIANTS:
         try:
             rows += call_in_child(measure_rates, variant, seconds=LIMIT)
@@ -187,11 +160,18 @@ def rates() -> None:
             rows.append({"variant": variant, "work": None})
     import mitsuba
 
-    figures = {"size": SIZE, "rounds": ROUNDS, "reference": BITMAP}
-    record("render", "render-rates", mitsuba=mitsuba.__version__, **figures, rows=rows)
+    record(
+        "render",
+        "render-rates",
+        mitsuba=mitsuba.__version__,
+        size=SIZE,
+        rounds=ROUNDS,
+        reference=BITMAP,
+        rows=rows,
+    )
 
 
-def measure_rates(variant: str) -> list[dict[str, Any]]:
+def measure_rates(variant: str) -> list[Row]:
     """Measure a variant in this process."""
     import mitsuba
 
@@ -201,16 +181,15 @@ def measure_rates(variant: str) -> list[dict[str, Any]]:
             name: mitsuba.load_dict(texture)
             for name, texture in _textures(Path(folder)).items()
         }
-    return list(
-        chain.from_iterable(_rows(variant, depth, textures) for depth in DEPTHS)
-    )
+    rows = []
+    for depth in DEPTHS:
+        rows += _rows(variant, depth, textures)
+    return rows
 
 
-def _rows(
-    variant: str, depth: int, textures: dict[str, Any]
-) -> Iterator[dict[str, Any]]:
+def _rows(variant: str, depth: int, textures: Row) -> Iterator[Row]:
     runs = {name: _rendering(texture, depth) for name, texture in textures.items()}
-    seconds: dict[str, list[float]] = {name: [] for name in textures}
+    seconds = defaultdict(list)
     for seed in range(ROUNDS + 1):
         for name, run in runs.items():
             begin = time.process_time()
@@ -218,60 +197,52 @@ def _rows(
             if seed:  # the first compiles
                 seconds[name].append(time.process_time() - begin)
     reference = np.array(seconds[BITMAP])
-    for name, each in seconds.items():
-        ratios = reference / each
+    for name, times in seconds.items():
+        ratios = reference / times
         yield {
             "variant": variant,
             "work": f"rendering, path depth {depth}",
             "texture": name,
-            "ns": 1e9 * float(np.median(each)) / (SIZE * SIZE * RATE_SPP),
-            "rate": float(np.median(ratios)),
-            "lowest": float(ratios.min()),
-            "highest": float(ratios.max()),
+            "ns": 1e9 * np.median(times) / (SIZE * SIZE * RATE_SPP),
+            "rate": np.median(ratios),
+            "lowest": ratios.min(),
+            "highest": ratios.max(),
         }
 
 
-def _textures(folder: Path) -> dict[str, dict[str, Any]]:
+def _textures(folder: Path) -> dict[str, Row]:
     import mitsuba
 
     from uplift.extras import texture
     from uplift.extras.texture.uplifter import PixelEncoding
 
-    image = _image(SIZE)
-    mitsuba.Bitmap(image).write(str(folder / "image.exr"))
+    bitmap = mitsuba.Bitmap(_image(SIZE))
+    source = folder / "image.exr"
+    bitmap.write(str(source))
 
-    def convert(encoding: PixelEncoding) -> dict[str, Any]:
+    def convert(encoding: PixelEncoding) -> Row:
         target = folder / f"{encoding.name}.exr"
-        texture.convert(
-            texture.prepare(uplift.load(PLAIN_CUBE), encoding),
-            folder / "image.exr",
-            target,
-        )
+        uplifter = texture.prepare(uplift.load(PLAIN_CUBE), encoding)
+        texture.convert(uplifter, source, target)
         return {"type": "uplift", "filename": str(target)}
 
-    spectra = convert(texture.Spectrum())
     multipliers = convert(texture.Multipliers())
-    entries = {
-        "type": "uplift",
-        "cube": ATLAS_CUBE,
-        "filename": str(folder / "image.exr"),
-    }
+    entries = {"type": "uplift", "cube": ATLAS_CUBE, "filename": str(source)}
     return {
-        BITMAP: {"type": "bitmap", "bitmap": mitsuba.Bitmap(image)},
+        BITMAP: {"type": "bitmap", "bitmap": bitmap},
         "9 coefficients": multipliers,
         "9 coefficients, stochastic": {**multipliers, "filter_type": "stochastic"},
         "17 coefficients": entries,
         "17 coefficients, stochastic": {**entries, "filter_type": "stochastic"},
-        "81 wavelengths": spectra,
+        "81 wavelengths": convert(texture.Spectrum()),
     }
 
 
 def _image(size: int) -> Any:
     """Return tiles of random colours with noise, float32 (size, size, 3)."""
     rng = np.random.default_rng(8)
-    tiles = np.kron(
-        0.05 + 0.9 * rng.random((16, 16, 3)), np.ones((size // 16, size // 16, 1))
-    )
+    colours = 0.05 + 0.9 * rng.random((16, 16, 3))
+    tiles = np.kron(colours, np.ones((size // 16, size // 16, 1)))
     return (tiles * (1 - 0.1 * rng.random((size, size, 1)))).astype(np.float32)
 
 
@@ -280,7 +251,7 @@ def _rendering(texture: Any, depth: int) -> Callable[[int], None]:
     import drjit as dr
     import mitsuba as mi
 
-    scene = mi.load_dict(_scene(texture, SIZE, depth))
+    scene = mi.load_dict(_scene(texture, depth))
 
     def run(seed: int) -> None:
         dr.eval(mi.render(scene, spp=RATE_SPP, seed=seed))
@@ -289,7 +260,7 @@ def _rendering(texture: Any, depth: int) -> Callable[[int], None]:
     return run
 
 
-def _scene(texture: Any, size: int, depth: int) -> dict[str, Any]:
+def _scene(texture: Any, depth: int) -> Row:
     """Describe a plane and a sphere of the texture under uniform light."""
     import mitsuba as mi
 
@@ -297,8 +268,8 @@ def _scene(texture: Any, size: int, depth: int) -> dict[str, Any]:
     view = mi.ScalarTransform4f().look_at([0, -1.2, 1.6], [0, 0, 0], [0, 0, 1])
     film = {
         "type": "hdrfilm",
-        "width": size,
-        "height": size,
+        "width": SIZE,
+        "height": SIZE,
         "rfilter": {"type": "box"},
     }
     return {

@@ -4,13 +4,13 @@ pictures.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain, product
-from typing import Any
+from itertools import product
+from operator import itemgetter
 
 import numpy as np
 
-import uplift
-from benchmarks import ATLASES, DOCS, Row, read_reference, record
+from benchmarks import DOCS, Row, read_reference, record
+from benchmarks.materials import read_atlases
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.extras.scene.representations import all_representations, samples
@@ -42,22 +42,19 @@ class Printed:
 
 def main() -> None:
     """Measure, draw and store."""
-    atlases = {
-        path.stem: uplift.read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))
-    }
+    atlases = read_atlases()
     default = compare.make_scene(atlases)
-    ours, others = (
-        _compare(scene)
-        for scene in (default, compare.make_scene(atlases, OTHER_LIGHTS))
-    )
+    ours = _compare(default)
+    others = _compare(compare.make_scene(atlases, OTHER_LIGHTS))
+    printed = printed_tables()
     write_boxes(ours, DOCS / "representations" / "boxes.png", force=True)
     write_costs(ours, DOCS / "representations" / "cost.png", force=True)
     record(
         "representations",
         surfaces=len(default.surfaces),
-        advice=list(chain.from_iterable(advice(one) for one in (ours, others))),
-        ranking=[*ranking(ours, printed_tables()), *ranking(others, {})],
-        riemann=riemann_rows(default, printed_tables()),
+        advice=[*advice(ours), *advice(others)],
+        ranking=[*ranking(ours, printed), *ranking(others, {})],
+        riemann=riemann_rows(default, printed),
         filters=filter_rows(compare.tune_filters(default), printed_filters()),
     )
 
@@ -78,9 +75,7 @@ def printed_tables() -> dict[tuple[str, str], Printed]:
 
 
 def printed_filters() -> dict[tuple[str, int, str], Printed]:
-    """Return tables A.1 and A.2 of the thesis, by lights, samples and kind
-    of filter.
-    """
+    """Return tables A.1 and A.2 of the thesis, by lights, samples and filter."""
     return {
         (row["lights"], int(row["samples"]), row["filter"]): Printed(
             float(row["mean"]), parameters=row["parameters"].replace(";", ",")
@@ -94,31 +89,30 @@ def advice(comparison: Comparison) -> Iterator[Row]:
     without tables of lights.
     """
     without = tuple(row for row in comparison.results if row.light_floats < TABLE)
-    kinds = {
-        "cheapest": comparison,
-        "without_light_table": replace(comparison, results=without),
-    }
+    no_tables = replace(comparison, results=without)
+
+    def cheapest(among: Comparison, name: str, target: float) -> Row | None:
+        row = compare.cheapest(among, name, target)
+        return row and {
+            "name": row.name,
+            "floats": row.floats,
+            "light_floats": row.light_floats,
+        }
+
     for (name, title), target in product(comparison.sets.items(), TARGETS):
-        best = {
-            key: compare.cheapest(each, name, target) for key, each in kinds.items()
+        yield {
+            "lights": title,
+            "target": target,
+            "cheapest": cheapest(comparison, name, target),
+            "without_light_table": cheapest(no_tables, name, target),
         }
-        named = {
-            key: row
-            and {
-                "name": row.name,
-                "floats": row.floats,
-                "light_floats": row.light_floats,
-            }
-            for key, row in best.items()
-        }
-        yield {"lights": title, "target": target, **named}
 
 
 def ranking(
     comparison: Comparison, thesis: Mapping[tuple[str, str], Printed]
 ) -> Iterator[Row]:
-    """Yield the errors and costs of every representation under each set of lights,
-    smallest mean first.
+    """Yield the errors and costs of all representations by lights, smallest mean
+    first.
     """
     names = ("mean", "std", "median", "p2_5", "p25", "p75", "p97_5")
     for row in comparison.results:
@@ -141,38 +135,35 @@ def filter_rows(
     """Return the best filter of each kind; ``change`` is relative to no filter, None
     for that row.
     """
-    unfiltered = {
-        (one.lights, one.count): one.statistics.mean
-        for one in tuned
-        if one.kind == compare.NONE
+    means = {
+        (best.lights, best.count, best.kind): best.statistics.mean for best in tuned
     }
     rows = []
-    for one in tuned:
-        printed = thesis[one.lights, one.count, one.kind]
-        bare = thesis[one.lights, one.count, compare.NONE]
-        mean = one.statistics.mean
-        changes = (
-            mean / unfiltered[one.lights, one.count] - 1,
-            printed.mean / bare.mean - 1,
-        )
-        ours, theirs = (None, None) if one.kind == compare.NONE else changes
+    for best in tuned:
+        key = best.lights, best.count, best.kind
+        lights, count, kind = key
+        bare = lights, count, compare.NONE
+        is_filtered = kind != compare.NONE
+        printed = thesis[key]
         rows.append(
             {
-                "lights": one.lights,
-                "samples": one.count,
-                "filter": one.kind,
-                "mean": mean,
-                "std": one.statistics.deviation,
-                "change": ours,
-                "parameters": one.parameters,
+                "lights": lights,
+                "samples": count,
+                "filter": kind,
+                "mean": means[key],
+                "std": best.statistics.deviation,
+                "change": means[key] / means[bare] - 1 if is_filtered else None,
+                "parameters": best.parameters,
                 "thesis": {
                     "mean": printed.mean,
-                    "change": theirs,
+                    "change": printed.mean / thesis[bare].mean - 1
+                    if is_filtered
+                    else None,
                     "parameters": printed.parameters,
                 },
             }
         )
-    return sorted(rows, key=lambda row: (row["lights"], row["samples"], row["mean"]))
+    return sorted(rows, key=itemgetter("lights", "samples", "mean"))
 
 
 def riemann_rows(scene: Scene, thesis: Mapping[tuple[str, str], Printed]) -> list[Row]:
@@ -181,45 +172,40 @@ def riemann_rows(scene: Scene, thesis: Mapping[tuple[str, str], Printed]) -> lis
 
     Closed cells are the literal reading of eq. 5.3: samples on a border count twice.
     """
-    pairs: list[tuple[Any, Any]] = [
-        (samples.riemann_sums(count), closed(count)) for count in RIEMANN_COUNTS
-    ]
-    pairs += [(enhanced_riemann(count), enhanced(count)) for count in RIEMANN_COUNTS]
-    return [
-        {
-            "lights": lights.name,
-            "name": one.name,
-            "disjoint": compare.error_statistics(one, lights).mean,
-            "closed": compare.error_statistics(other, lights).mean,
-            "thesis": thesis[lights.name, one.name].mean,
-        }
-        for lights in scene.sets
-        for one, other in pairs
-    ]
+    kinds = ((samples.riemann_sums, closed), (enhanced_riemann, enhanced))
+    rows = []
+    for lights, (disjoint, overlapping), count in product(
+        scene.sets, kinds, RIEMANN_COUNTS
+    ):
+        sums = disjoint(count)
+        rows.append(
+            {
+                "lights": lights.name,
+                "name": sums.name,
+                "disjoint": compare.error_statistics(sums, lights).mean,
+                "closed": compare.error_statistics(overlapping(count), lights).mean,
+                "thesis": thesis[lights.name, sums.name].mean,
+            }
+        )
+    return rows
 
 
 def closed(count: int) -> Representation:
-    """Return means over closed cells; XYZ by the colour-matching functions at 5 nm,
-    shared between cells.
-    """
+    """Return means over closed cells; XYZ by functions at 5 nm shared between cells."""
     inside = _cells(count)
     encoder = np.zeros((len(samples.wavelengths()), count))
     encoder[:: samples.TABLE_STRIDE] = (inside / inside.sum(axis=1, keepdims=True)).T
-    weights = (inside / inside.sum(axis=0)) @ (
-        samples.xyz_weights()[:: samples.TABLE_STRIDE] * samples.TABLE_STRIDE
-    )
+    at_5_nm = samples.xyz_weights()[:: samples.TABLE_STRIDE] * samples.TABLE_STRIDE
+    weights = (inside / inside.sum(axis=0)) @ at_5_nm
     return linear(f"RS{count}", "Riemann sums, closed cells", encoder, weights)
 
 
 def enhanced(count: int) -> Representation:
-    """Return enhanced sums over the same cells; a spike on a border is multiplied by
-    the mean of both.
-    """
+    """Return enhanced sums over the same cells; a spike on a border counts in both."""
     inside = _cells(count)
-    family = "enhanced Riemann sums, closed cells"
     return composite(
         f"RE{count}",
-        family,
+        "enhanced Riemann sums, closed cells",
         closed(count),
         inside / inside.sum(axis=0),
         ENHANCED_THRESHOLD,

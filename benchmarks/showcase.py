@@ -5,6 +5,7 @@ instead of rendered; docs/scene.md has renderings of the same chart, which agree
 """
 
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +14,10 @@ from PIL import Image
 from scipy.ndimage import map_coordinates
 
 import uplift
-from benchmarks import DOCS, record
+from benchmarks import DOCS, Row, record
 from benchmarks.checker import BACKGROUND, Layout, chart, draw
 from tests.examples import build_wheel, run_lines, unpack
-from uplift.colorimetry import delta_e_2000, lab
+from uplift.colorimetry import Sensor, delta_e_2000, lab
 from uplift.colorimetry.observer import (
     DEFAULT_OBSERVER,
     grid,
@@ -25,6 +26,7 @@ from uplift.colorimetry.observer import (
     matching_functions,
     sensor,
 )
+from uplift.common.arrays import Array
 from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
 from uplift.extras.colour.srgb import encode
 from uplift.extras.export import write_film
@@ -67,9 +69,7 @@ SESSION = (
 
 
 def main() -> None:
-    """Draw the charts, the still life and the film, and store the errors of
-    the charts.
-    """
+    """Draw the charts, the still life and the film, and store the charts' errors."""
     FOLDER.mkdir(exist_ok=True)
     cubes = {PLAIN: uplift.load(), ATLAS: uplift.build("macbeth", dim=DIM)}
     means = draw_charts(cubes)
@@ -79,29 +79,21 @@ def main() -> None:
 
 
 def session() -> list[dict[str, str]]:
-    """Run the commands of the README in an empty folder, each in its process, and
-    return all that they print.
-    """
+    """Run the commands of the README in an empty folder; return all that they print."""
+    rows = []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         package = unpack(build_wheel(folder / "wheel"), folder / "package")
-        outputs = []
         for line in SESSION:
-            outputs.append(
-                "".join(
-                    each["stderr"] + each["stdout"]
-                    for each in run_lines([line], package, folder)
-                )
-            )
+            outcomes = run_lines([line], package, folder)  # none of cd
+            output = "".join(done["stderr"] + done["stdout"] for done in outcomes)
+            rows.append({"command": line, "output": output.strip("\n")})
             if line.startswith("cd "):
                 folder /= line.removeprefix("cd ")
-    return [
-        {"command": line, "output": output.strip("\n")}
-        for line, output in zip(SESSION, outputs, strict=True)
-    ]
+    return rows
 
 
-def draw_charts(cubes: Cubes) -> list[dict[str, Any]]:
+def draw_charts(cubes: Cubes) -> list[Row]:
     """Draw the chart by all methods, and by two; return the errors by method and light.
 
     Patches have a measured square by all methods, and a measured left half by two.
@@ -116,7 +108,7 @@ def draw_charts(cubes: Cubes) -> list[dict[str, Any]]:
     images = {}
     errors = {}
     to_screen = {}
-    rows: dict[str, dict[str, Any]] = {name: {"method": name} for name in METHODS}
+    rows = {name: {"method": name} for name in METHODS}
     for lamp in map(light, RELIGHT_LIGHTS):
         to_screen[lamp.name] = sensor(illuminant=lamp.name).xyz_to_rgb
         xyz = {name: values @ lamp.xyz.T for name, values in spectra.items()}
@@ -132,26 +124,12 @@ def draw_charts(cubes: Cubes) -> list[dict[str, Any]]:
             }
             errors[lamp.name, name] = delta_e
             images[lamp.name, name] = LAYOUT.paint(xyz[name], BACKGROUND * lamp.white)
-    draw(
-        images,
-        errors,
-        to_screen,
-        METHODS,
-        LAYOUT.middles(),
-        FOLDER / "charts.png",
-        SIZE,
-    )
+    picture = FOLDER / "charts.png"
+    draw(images, errors, to_screen, METHODS, LAYOUT.middles(), picture, SIZE)
     shown = {name: to_screen[name] for name in TRUTH_LIGHTS}
+    methods = (MEASURED, PRODUCT, ATLAS)
     picture = FOLDER / "truth.png"
-    draw(
-        images,
-        errors,
-        shown,
-        (MEASURED, PRODUCT, ATLAS),
-        LAYOUT.halves(),
-        picture,
-        TRUTH_SIZE,
-    )
+    draw(images, errors, shown, methods, LAYOUT.halves(), picture, TRUTH_SIZE)
     return [rows[name] for name in METHODS[1:]]
 
 
@@ -177,59 +155,65 @@ def expose_film(cubes: Cubes) -> None:
     store the errors in stops.
     """
     painted = chart()
-    daylight = light(FILM_LIGHT)
     luminous = matching_functions(DEFAULT_OBSERVER)[:, 1]
-    power = illuminant_spd(FILM_LIGHT) / (
-        illuminant_spd(FILM_LIGHT) @ luminous / luminous.sum()
-    )
+    spd = illuminant_spd(FILM_LIGHT)
+    power = spd / (spd @ luminous / luminous.sum())
     layers = np.exp(-0.5 * ((grid()[:, None] - LAYERS[::-1]) / LAYER_WIDTH) ** 2)
-    exposures = {MEASURED: painted.measured * power @ layers}
-    figures = {}
-    for name, cube in cubes.items():
-        with tempfile.TemporaryDirectory() as folder:
-            stated = write_film(cube, Path(folder) / "film.npy", light=FILM_LIGHT).stops
-            table = np.load(Path(folder) / "film.npy").astype(float) @ layers
-        # As readers do: adapt to the light of the film, look up the chromaticity, scale
-        # by X + Y + Z.
-        gain = (CAT16 @ daylight.white) / (CAT16 @ cube.data.sensor.light.white)
-        xyz = np.linalg.solve(
-            CAT16, gain[:, None] * (CAT16 @ cube.data.sensor.xyz(painted.painted).T)
-        )
-        (x, y, _), total = xyz / xyz.sum(axis=0), xyz.sum(axis=0)
-        places = np.array([(1 - x) ** 2, y / (1 - x)]) * (len(table) - 1)
-        found = np.stack(
-            [map_coordinates(table[..., each], places, order=1) for each in range(3)],
-            axis=1,
-        )
-        exposures[name] = found * total[:, None]
-        stops = np.abs(np.log2(exposures[name] / exposures[MEASURED])).mean(axis=1)
-        figures[name] = {
-            "stated": stated,
-            "mean": stops.mean(),
-            "largest": stops.max(),
-            "patches": stops.tolist(),
-        }
+    measured = painted.measured * power @ layers
     figure = new_figure(*FILM_SIZE)
-    for axes, (name, exposure) in zip(
-        figure.subplots(1, len(exposures)), exposures.items(), strict=True
-    ):
-        image = LAYOUT.paint(exposure / (power @ layers), np.full(3, BACKGROUND))
-        for number, place in enumerate(LAYOUT.patches()):
-            if name in figures:
-                corner = (place[1].start + 2, place[0].stop - 3)
-                dark = image[place].mean() < 0.25
-                axes.text(
-                    *corner,
-                    f"{figures[name]['patches'][number]:.2f}",
-                    fontsize=8,
-                    color="w" if dark else "k",
-                )
-        show_image(axes, encode(np.clip(image, 0, 1)), interpolation="nearest")
-        axes.set_title(name)
+    panels = figure.subplots(1, 1 + len(cubes))
+    draw_layers(panels[0], MEASURED, measured / (power @ layers))
+    rows = []
+    for axes, (name, cube) in zip(panels[1:], cubes.items(), strict=True):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "film.npy"
+            stated = write_film(cube, path, light=FILM_LIGHT).stops
+            table = np.load(path).astype(float) @ layers
+        exposure = exposures(table, cube.data.sensor, painted.painted)
+        stops = np.abs(np.log2(exposure / measured)).mean(axis=1)
+        draw_layers(axes, name, exposure / (power @ layers), stops)
+        rows.append(
+            {
+                "cube": name,
+                "stated": stated,
+                "mean": stops.mean(),
+                "largest": stops.max(),
+                "patches": stops,
+            }
+        )
     write_png(figure, FOLDER / "film.png", force=True)
-    record(
-        "showcase",
-        "film",
-        light=FILM_LIGHT,
-        cubes=[{"cube": name, **each} for name, each in figures.items()],
-    )
+    record("showcase", "film", light=FILM_LIGHT, cubes=rows)
+
+
+def exposures(table: Array, srgb: Sensor, rgb: Array) -> Array:
+    """Look up linear sRGB (n, 3) in a table (k, k, 3) of a film, as readers do.
+
+    They adapt to the light of the film, look up the chromaticity, and scale by X + Y +
+    Z.
+    """
+    gain = (CAT16 @ light(FILM_LIGHT).white) / (CAT16 @ srgb.light.white)
+    xyz = np.linalg.solve(CAT16, gain[:, None] * (CAT16 @ srgb.xyz(rgb).T))
+    total = xyz.sum(axis=0)
+    x, y, _ = xyz / total
+    places = np.array([(1 - x) ** 2, y / (1 - x)]) * (len(table) - 1)
+    layers = [
+        map_coordinates(layer, places, order=1) for layer in np.moveaxis(table, -1, 0)
+    ]
+    return np.stack(layers, axis=1) * total[:, None]
+
+
+def draw_layers(
+    axes: Any, name: str, exposure: Array, stops: Sequence[float] = ()
+) -> None:
+    """Show exposures (24, 3) as linear RGB, with errors in stops on the patches."""
+    image = LAYOUT.paint(exposure, np.full(3, BACKGROUND))
+    for (rows, columns), error in zip(LAYOUT.patches(), stops, strict=False):
+        axes.text(
+            columns.start + 2,
+            rows.stop - 3,
+            f"{error:.2f}",
+            fontsize=8,
+            color="w" if image[rows, columns].mean() < 0.25 else "k",
+        )
+    show_image(axes, encode(np.clip(image, 0, 1)), interpolation="nearest")
+    axes.set_title(name)

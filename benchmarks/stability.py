@@ -2,8 +2,8 @@
 docs/stability.md and its pictures.
 """
 
-from itertools import chain
-from typing import Any
+from itertools import product
+from operator import itemgetter
 
 import numpy as np
 
@@ -42,9 +42,7 @@ STORED = (
     "moments-8",
     "sigmoid-8",
 )
-"""Stored cubes; the page lists the first two, and the atlas of the second one is
-changed.
-"""
+"""Stored cubes. The page lists the first two; the atlas of the second is changed."""
 ENTRIES = 24
 PUBLISHED = ("otsu2018", "mallett2019", "smits1999")
 KINDS = {
@@ -77,51 +75,47 @@ def main() -> None:
         map=failure_map(),
         cubes=cubes,
         atlas_changes=[
-            summary(title, part, cubes[CONSTRAINED]["changes"])
-            for title, part in KINDS.items()
+            summary(title, ending, cubes[CONSTRAINED]["changes"])
+            for title, ending in KINDS.items()
         ],
     )
 
 
 def published() -> None:
-    """Measure how the packaged cube and published methods answer moved queries, and
-    store it.
+    """Measure and store how the packaged cube and published methods answer moved
+    queries.
     """
     light = observer.light(NARROW_BAND_LIGHT)
-    ours = [
+    moves = [
         move | {"mode": "packaged cube"}
         for move in perturb(uplift.load(), light)
         if move["mode"] == "spectra"
     ]
-    others = list(
-        chain.from_iterable(
-            perturb_method(method, light) for method in select_methods(PUBLISHED)
-        )
-    )
+    for method in select_methods(PUBLISHED):
+        moves += perturb_method(method, light)
     record(
         "stability",
         "stability-published",
         light=NARROW_BAND_LIGHT,
         queries=COLOURS,
-        moves=ours + others,
+        moves=moves,
     )
 
 
-def failure_map() -> list[dict[str, Any]]:
+def failure_map() -> list[Row]:
     """Run the builds of the design, and plot them."""
-    atlases = {"macbeth": uplift.read_atlas("macbeth")} | {
-        name: make() for name, make in SYNTHETIC_ATLASES.items()
-    }
-    results = study_stability(
-        DesignSpace(atlases=(NO_ATLAS, *atlases)).configs(), atlases, show
-    )
+    atlases = {"macbeth": uplift.read_atlas("macbeth")}
+    for name, make in SYNTHETIC_ATLASES.items():
+        atlases[name] = make()
+    design = DesignSpace(atlases=(NO_ATLAS, *atlases))
+    results = study_stability(design.configs(), atlases, show)
     plot_map(list(results.values()), FOLDER / "map.png", force=True)
     return [row | {"technique": config.model_label} for config, row in results.items()]
 
 
-def cube_sensitivity(name: str) -> dict[str, Any]:
-    """Measure the sensitivity of a stored cube, and plot the effect of entries that are
-    left out.
+def cube_sensitivity(name: str) -> Row:
+    """Measure the sensitivity of a stored cube, and plot the effect of left out
+    entries.
     """
     path = CUBES / f"{name}.uplift"
     cube = uplift.load(path)
@@ -132,46 +126,47 @@ def cube_sensitivity(name: str) -> dict[str, Any]:
     return {"moves": moves, "changes": [change.record() for change in changes]}
 
 
-def summary(title: str, part: str, changes: list[dict[str, Any]]) -> dict[str, Any]:
-    """Summarise the changed atlases whose descriptions have a part."""
-    kind = [one for one in changes if part in one["change"]]
-    worst = max(kind, key=lambda one: one["moved"])
+def summary(title: str, phrase: str, changes: list[Row]) -> Row:
+    """Summarise the changed atlases whose descriptions have a phrase."""
+    kind = [change for change in changes if phrase in change["change"]]
+    worst = max(kind, key=itemgetter("moved"))
+
+    def largest(name: str) -> float:
+        return max(change[name] for change in kind)
+
     return {
         "change": title,
         "builds": len(kind),
-        "moved": sum(one["moved"] for one in kind) / len(kind),
+        "moved": sum(change["moved"] for change in kind) / len(kind),
         "most_moved": {"share": worst["moved"], "change": worst["change"]},
-        "lab_radius": None
-        if worst["lab_radius"] is None
-        else max(one["lab_radius"] for one in kind),
-        "delta_e": max(one["delta_e_most"] for one in kind),
-        "rms": max(one["rms_mean"] for one in kind),
+        "lab_radius": None if worst["lab_radius"] is None else largest("lab_radius"),
+        "delta_e": largest("delta_e_most"),
+        "rms": largest("rms_mean"),
     }
 
 
 def exports() -> None:
     """Compare exported programs with Python in wide gamuts, and store it."""
-    rows: list[Row] = []
-    for space in SPACES:
-        for count, entry_count, atlas in EXPORTED:
-            cube = uplift.build(
-                atlas,
-                space=space,
-                dim=EXPORT_DIM,
-                coefficients=count,
-                entry_coefficients=entry_count,
-            )
-            rgb = realisable(cube)
-            rows += [
-                {
-                    "space": space,
-                    "coefficients": count,
-                    "entries": entry_count if atlas else None,
-                    "mode": mode,
-                }
-                | difference(cube, mode, rgb)
-                for mode in MODES
-            ]
+    rows = []
+    for space, (count, entry_count, atlas) in product(SPACES, EXPORTED):
+        cube = uplift.build(
+            atlas,
+            space=space,
+            dim=EXPORT_DIM,
+            coefficients=count,
+            entry_coefficients=entry_count,
+        )
+        rgb = realisable(cube)
+        rows += [
+            {
+                "space": space,
+                "coefficients": count,
+                "entries": entry_count if atlas else None,
+                "mode": mode,
+                **difference(cube, mode, rgb),
+            }
+            for mode in MODES
+        ]
     record(
         "stability",
         "exports",
@@ -183,21 +178,18 @@ def exports() -> None:
 
 
 def realisable(cube: Cube) -> Array:
-    """Return random colours (CHECKED, 3), float32, farther inside the solid than the
-    threshold.
-    """
+    """Return random colours (CHECKED, 3), float32, inside the solid."""
     rgb = np.random.default_rng(0).uniform(0, 1, (4 * CHECKED, 3)).astype(np.float32)
-    return rgb[
-        cube.data.solid.signed_distance(rgb.astype(float)) < -cube.data.threshold
-    ][:CHECKED]
+    outside = cube.data.solid.signed_distance(rgb.astype(float))
+    return rgb[outside < -cube.data.threshold][:CHECKED]
 
 
 def difference(cube: Cube, mode: str, rgb: Array) -> Row:
-    """Return the largest and mean difference of reflectances of each colour, and the
+    """Return the largest and mean difference of the colours' reflectances, and the
     share of visible ones.
     """
-    found, _ = run_header(cube, mode, rgb, 0)
-    error = np.abs(found - cube.reflectance(rgb.astype(float), mode=mode)).max(axis=1)
+    spectra, _ = run_header(cube, mode, rgb, 0)
+    error = np.abs(spectra - cube.reflectance(rgb.astype(float), mode=mode)).max(axis=1)
     return {
         "largest": error.max(),
         "mean": error.mean(),

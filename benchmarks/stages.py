@@ -15,8 +15,10 @@ from uplift.extras.images.processes import call_in_child
 from uplift.lab.timing import timing_stats
 from uplift.samples import sample_path
 
-RUNS, LIMIT, SAMPLE = 3, 600, "wood.png"
-"""Runs, seconds after which a command counts as hung, and the image."""
+RUNS = 3
+LIMIT = 600
+"""Seconds after which a command counts as hung."""
+SAMPLE = "wood.png"
 LARGE = "128"
 """Nodes along an axis of the build that runs once."""
 BUILD = {
@@ -45,61 +47,39 @@ TEXTURE = {
 }
 """Functions by the stage that they are; what one of them calls is counted there alone.
 """
-PROGRAMS = ("uplift.fit.batch:_program", "uplift.fit.kriging:_kernel_block")
-"""Functions that JAX traces; the first returns one."""
+Function = Callable[..., Any]
 
 
 def main() -> None:
     """Run the commands, after a build that compiles, and store."""
     with tempfile.TemporaryDirectory() as folder:
-        texture = ["texture", str(sample_path(SAMPLE)), "-o"]
-        build = ["build", "--atlas", str(MACBETH), "--force", "-q", "--dim"]
-        commands: dict[str, tuple[list[str], dict[str, str]]] = {
-            **{
-                f"build --dim {dim}": (
-                    [*build, str(dim), "-o", f"{folder}/x.uplift"],
-                    BUILD,
-                )
-                for dim in (32, 64, 128)
-            },
-            "relight -o page.html": (
-                ["relight", "-o", f"{folder}/page.html", "--force"],
-                RELIGHT,
-            ),
-            "relight -o lit.exr": (
-                ["relight", "-o", f"{folder}/lit.exr", "--force"],
-                RELIGHT,
-            ),
-            f"texture {SAMPLE}": (
-                [*texture, f"{folder}/texture.exr", "--force"],
-                TEXTURE,
-            ),
-        }
-        rows = []
-        call_in_child(
-            run, [*build, "8", "-o", f"{folder}/x.uplift"], BUILD, seconds=LIMIT
+        build = ["build", "--atlas", str(MACBETH), "-q", "--dim"]
+        texture = ["texture", str(sample_path(SAMPLE))]
+        commands = (
+            ("build --dim 32", [*build, "32"], "x.uplift", BUILD),
+            ("build --dim 64", [*build, "64"], "x.uplift", BUILD),
+            ("build --dim 128", [*build, LARGE], "x.uplift", BUILD),
+            ("relight -o page.html", ["relight"], "page.html", RELIGHT),
+            ("relight -o lit.exr", ["relight"], "lit.exr", RELIGHT),
+            (f"texture {SAMPLE}", texture, "texture.exr", TEXTURE),
         )
-        for command, (arguments, stages) in commands.items():
-            count = RUNS if LARGE not in arguments else 1
+        rows = []
+        compiling = [*build, "8", "-o", f"{folder}/x.uplift"]
+        call_in_child(run, compiling, BUILD, seconds=LIMIT)
+        for command, words, file, stages in commands:
+            arguments = [*words, "-o", f"{folder}/{file}", "--force"]
             runs = [
                 call_in_child(run, arguments, stages, seconds=LIMIT)
-                for _ in range(count)
+                for _ in range(RUNS if LARGE not in arguments else 1)
             ]
             for stage in runs[0]:
-                rows.append(
-                    {
-                        "command": command,
-                        "stage": stage,
-                        "cpu_s": timing_stats([each.get(stage, 0) for each in runs]),
-                    }
-                )
+                times = timing_stats([seconds.get(stage, 0) for seconds in runs])
+                rows.append({"command": command, "stage": stage, "cpu_s": times})
     record("stages", runs=RUNS, rows=rows)
 
 
 def run(arguments: list[str], stages: dict[str, str]) -> dict[str, float]:
-    """Run a command in this process with a clock around its stages, and return their
-    CPU seconds.
-    """
+    """Run a command in this process; return the CPU seconds of its stages."""
     from uplift_cli.startup import enable_jit_cache, prepare_process
 
     prepare_process()
@@ -107,9 +87,9 @@ def run(arguments: list[str], stages: dict[str, str]) -> dict[str, float]:
     from uplift_cli.main import main as command_line
 
     times: Counter[str] = Counter()
-    inner: list[float] = [0.0]
+    inner = [0.0]
 
-    def clocked(function: Callable[..., Any], stage: str) -> Callable[..., Any]:
+    def clocked(function: Function, stage: str) -> Function:
         @functools.wraps(function)
         def call(*given: Any, **options: Any) -> Any:
             begin = time.process_time()
@@ -127,27 +107,28 @@ def run(arguments: list[str], stages: dict[str, str]) -> dict[str, float]:
     for place, stage in stages.items():
         _replace(place, lambda function, stage=stage: clocked(function, stage))
     if arguments[0] == "build":
-        program, kernel = PROGRAMS
+        # JAX traces what the first function returns, and the second.
         _replace(
-            program,
+            "uplift.fit.batch:_program",
             lambda make: functools.cache(lambda *given: _first(make(*given), clocked)),
         )
-        _replace(kernel, lambda function: _first(function, clocked))
+        _replace(
+            "uplift.fit.kriging:_kernel_block",
+            lambda function: _first(function, clocked),
+        )
     times["imports"] = begin = time.process_time()
     command_line(arguments, prog_name="uplift", standalone_mode=False)
     times["rest"] = time.process_time() - begin - inner[0]
     return dict(times)
 
 
-def _first(
-    function: Callable[..., Any], clocked: Callable[..., Any]
-) -> Callable[..., Any]:
+def _first(function: Function, clocked: Function) -> Function:
     """Count the first call of a function that JAX traces as a stage."""
     calls = iter([clocked(function, "tracing")])
     return lambda *given: next(calls, function)(*given)
 
 
-def _replace(place: str, change: Callable[[Any], Any]) -> None:
+def _replace(place: str, change: Function) -> None:
     """Replace a function, given as 'module:name' or 'module:Class.name'."""
     module, _, name = place.partition(":")
     *owner, name = name.split(".")

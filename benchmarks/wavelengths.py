@@ -2,14 +2,16 @@
 pictures.
 """
 
+import operator
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import chain
+from itertools import product
 from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, DOCS, MACBETH, Row, read_reference, record
+from benchmarks import ATLAS_FILES, DOCS, MACBETH, Row, read_reference, record
 from uplift.atlas import on_grid
 from uplift.colorimetry import delta_e_1976, lab
 from uplift.common.arrays import Array
@@ -50,22 +52,20 @@ PICTURES = DOCS / "wavelengths"
 Nodes = tuple[Array, Array]
 """Wavelengths (n,) and weights (n,)."""
 
+NO_FIGURES = {"printed": None, "ours": None}
+DIVISIONS = 10
+"""Small triangles of figure 7 along a side."""
+
 # --- the paper ---
 
 
 def printed_rules(table: str, key: str) -> dict[tuple[str, str], Nodes]:
-    """Return the rules of a table of the paper, by channel and value of the column
-    ``key``.
-    """
-    lines = read_reference(table)
-    found = {}
-    for name in dict.fromkeys((row["channel"], row[key]) for row in lines):
-        own = [row for row in lines if (row["channel"], row[key]) == name]
-        found[name] = tuple(
-            np.array([float(row[part]) for row in own])
-            for part in ("wavelength", "weight")
-        )
-    return found
+    """Return the rules of a table of the paper, by channel and a column ``key``."""
+    points = defaultdict(list)
+    for row in read_reference(table):
+        point = float(row["wavelength"]), float(row["weight"])
+        points[row["channel"], row[key]].append(point)
+    return {name: tuple(np.array(rule).T) for name, rule in points.items()}
 
 
 def mean_error(
@@ -79,35 +79,26 @@ def mean_error(
     """
     channels = []
     for rule in allocation:
-        powers = (
-            interp_curves(rule.nodes, setup.wavelengths, setup.powers) * rule.weights
-        )
-        channels.append(
-            np.concatenate(
-                [
-                    powers @ setup.curves(rule.nodes).T,
-                    powers.sum(axis=1, keepdims=True),
-                ],
-                axis=1,
-            )
-        )
+        spd = interp_curves(rule.nodes, setup.wavelengths, setup.powers)
+        powers = spd * rule.weights
+        responses = powers @ setup.curves(rule.nodes).T
+        white = powers.sum(axis=1, keepdims=True)
+        channels.append(np.concatenate([responses, white], axis=1))
     xyz = np.stack(channels, axis=-1) @ np.linalg.inv(space).T  # (K, M + 1, 3)
-    return float(
-        delta_e_1976(
-            setup.lab, np.stack([lab(each[:-1], each[-1]) for each in xyz])
-        ).mean()
-    )
+    colours = [lab(materials, white) for *materials, white in xyz]
+    return delta_e_1976(setup.lab, colours).mean()
 
 
 def run_trials(setup: RenderSetup, space: Array) -> tuple[Array, Array]:
-    """Evaluate every allocation of defined orders up to 10: numbers of wavelengths (T,
+    """Evaluate all allocations of defined orders up to 10: numbers of wavelengths (T,
     3) and mean ΔE76 (T,).
     """
-    candidates = list(paper.allocations(setup, space))
-    counts = [[len(rule) for rule in allocation] for allocation in candidates]
-    return np.array(counts), np.array(
-        [mean_error(setup, space, allocation) for allocation in candidates]
-    )
+    counts = []
+    errors = []
+    for allocation in paper.allocations(setup, space):
+        counts.append(list(map(len, allocation)))
+        errors.append(mean_error(setup, space, allocation))
+    return np.array(counts), np.array(errors)
 
 
 def errors_by_total(counts: Array, errors: Array) -> dict[int, Array]:
@@ -121,7 +112,7 @@ def compared(expected: Array, ours: Array) -> Row:
     return {
         "printed": expected,
         "ours": ours,
-        "difference": float(np.abs(expected - ours).max()),
+        "difference": np.abs(expected - ours).max(),
     }
 
 
@@ -130,39 +121,29 @@ def compare_meyer(setup: RenderSetup, spaces: Mapping[str, Array]) -> Row:
     space = spaces["AC1C2"]
     expected = printed_rules("meyer1988_table1.csv", "order")
     rules = paper.quadrature_rules(space, setup.wavelengths, setup.cmfs)
-    orders = [
-        (key, order, rule)
-        for key, each in zip(CHANNELS, rules, strict=True)
-        for order, rule in each.items()
-    ]
-    defined = [
-        (key, order, rule)
-        for key, order, rule in orders
-        if isinstance(rule, QuadratureRule)
-    ]
+    nodes = []
+    defined = []
+    ours = []
+    printed = []
+    for channel, orders in zip(CHANNELS, rules, strict=True):
+        for order, rule in orders.items():
+            row = {"channel": channel, "order": order}
+            printed_rule = expected.get((channel, str(order)))
+            nodes.append(row | compared_nodes(rule, printed_rule))
+            if isinstance(rule, QuadratureRule):
+                defined.append(row)
+                ours.append(rule.weights)
+                printed.append(printed_rule[1])
     # One factor takes the recomputed weights to the printed ones, by least squares.
-    ours = np.concatenate([rule.weights for *_, rule in defined])
-    printed = np.concatenate(
-        [expected[key, str(order)][1] for key, order, _ in defined]
-    )
-    factor = float(ours @ printed / (ours @ ours))
-    weights = [
-        {
-            "channel": key,
-            "order": order,
-            **compared(expected[key, str(order)][1], factor * rule.weights),
-        }
-        for key, order, rule in defined
-    ]
+    all_ours = np.concatenate(ours)
+    factor = all_ours @ np.concatenate(printed) / (all_ours @ all_ours)
+    differences = map(compared, printed, [factor * weights for weights in ours])
     return {
         "opponent": matrices(setup, spaces),
         "weight_factor": factor,
-        "nodes": [
-            node_row(key, order, rule, expected.get((key, str(order))))
-            for key, order, rule in orders
-        ],
-        "weights": weights,
-        "four": list(four_wavelengths(setup, space, rules, factor)),
+        "nodes": nodes,
+        "weights": map(operator.or_, defined, differences),
+        "four": four_wavelengths(setup, space, rules, factor),
     }
 
 
@@ -171,34 +152,26 @@ def matrices(setup: RenderSetup, spaces: Mapping[str, Array]) -> list[Row]:
     _, eigenvalues = paper.opponent_space(setup.wavelengths, setup.cmfs)
     rows = []
     for row in read_reference("meyer1988_matrices.csv"):
-        index = (
-            CHANNELS.index(row["channel"])
-            if row["space"] == "AC1C2"
-            else row["space"].index(row["channel"])
-        )
-        values = (
-            (float(row["eigenvalue"]), float(eigenvalues[index]))
-            if row["eigenvalue"]
-            else (None, None)
-        )
-        eigenvalue = dict(zip(("printed", "ours"), values, strict=True))
-        matrix = compared(
-            np.array([float(row[axis]) for axis in "XYZ"]), spaces[row["space"]][index]
-        )
+        name = row["space"]
+        channels = CHANNELS if name == "AC1C2" else name
+        index = channels.index(row["channel"])
+        eigenvalue = NO_FIGURES
+        if row["eigenvalue"]:
+            printed = float(row["eigenvalue"])
+            eigenvalue = {"printed": printed, "ours": eigenvalues[index]}
+        printed = np.array([float(row[axis]) for axis in "XYZ"])
+        matrix = compared(printed, spaces[name][index])
         rows.append({"channel": row["channel"], **matrix, "eigenvalue": eigenvalue})
     return rows
 
 
-def node_row(
-    channel: str, order: int, rule: QuadratureRule | str, expected: Nodes | None
-) -> Row:
+def compared_nodes(rule: QuadratureRule | str, expected: Nodes | None) -> Row:
     """Return the wavelengths of an order in tables 1a and 1b; ``undefined`` is why it
     has none.
     """
-    row: Row = {"channel": channel, "order": order}
     if isinstance(rule, QuadratureRule):
-        return row | compared(expected[0], rule.nodes) | {"undefined": None}
-    return row | {
+        return {**compared(expected[0], rule.nodes), "undefined": None}
+    return {
         "printed": expected and expected[0],
         "ours": None,
         "difference": None,
@@ -213,24 +186,16 @@ def four_wavelengths(
     factor: float,
 ) -> Iterator[Row]:
     """Yield the rows of table 2; the first of each allocation has its error."""
-    separate = tuple(
-        orders[order] for orders, order in zip(rules, (3, 2, 1), strict=True)
-    )
-    shared = paper.four_wavelength_rule(
-        paper.channel_functions(space, setup.wavelengths, setup.cmfs)
-    )
-    expected = printed_rules("meyer1988_table2.csv", "row")
-    stated = {
-        row["row"]: float(row["error"])
-        for row in read_reference("meyer1988_table2.csv")
-        if row["error"]
-    }
+    table = "meyer1988_table2.csv"
+    separate = tuple(map(operator.getitem, rules, (3, 2, 1)))
+    functions = paper.channel_functions(space, setup.wavelengths, setup.cmfs)
+    shared = paper.four_wavelength_rule(functions)
+    expected = printed_rules(table, "row")
+    stated = {row["row"]: row["error"] for row in read_reference(table) if row["error"]}
     for number, allocation in (("1", separate), ("2", shared)):
         row = number
-        errors = {
-            "printed": stated[number],
-            "ours": mean_error(setup, space, allocation),
-        }
+        error = mean_error(setup, space, allocation)
+        errors = {"printed": float(stated[number]), "ours": error}
         for channel, rule in zip(CHANNELS, allocation, strict=True):
             wavelengths, weights = expected[channel, number]
             yield {
@@ -241,7 +206,7 @@ def four_wavelengths(
                 "delta_e": errors,
             }
             row = ""
-            errors = {"printed": None, "ours": None}
+            errors = NO_FIGURES
 
 
 # --- methods ---
@@ -251,8 +216,8 @@ Errors = Mapping[tuple[str, int], Array]
 
 
 def compare_methods(materials: Array, lights: tuple[str, ...]) -> dict[str, Errors]:
-    """Evaluate all methods with every number of wavelengths under several lights at
-    once, by materials of the test.
+    """Evaluate all methods with all numbers of wavelengths under several lights at
+    once.
 
     ``unseen``: fitted to the even ones, tested on the odd ones; methods that are not
     fitted get the latter, which favours Meyer's allocation. ``all``: fitted to and
@@ -262,15 +227,13 @@ def compare_methods(materials: Array, lights: tuple[str, ...]) -> dict[str, Erro
     odd = np.arange(len(materials)) % 2 == 1
     fitted = setup.only(~odd)
     tested = setup.only(odd)
-    keys = [(method, count) for count in COUNTS for method in METHODS]
-
-    def unseen(method: str, count: int) -> Array:
-        return evaluate(
-            tested, METHODS[method](tested if method in OTHERS else fitted, count)
-        )
-
-    every = {key: choose(setup, method=key[0], count=key[1]).errors for key in keys}
-    return {"unseen": {key: unseen(*key) for key in keys}, "all": every}
+    unseen = {}
+    every = {}
+    for count, method in product(COUNTS, METHODS):
+        sampling = METHODS[method](tested if method in OTHERS else fitted, count)
+        unseen[method, count] = evaluate(tested, sampling)
+        every[method, count] = choose(setup, method=method, count=count).errors
+    return {"unseen": unseen, "all": every}
 
 
 def tables(
@@ -283,40 +246,43 @@ def tables(
     ``needed`` are the fewest wavelengths for a mean of 1; None if 16 do not reach it.
     """
     for materials, errors in comparison.items():
-        means = {
-            method: np.array([errors[method, count].mean() for count in COUNTS])
-            for method in METHODS
-        }
+        means = mean_errors(errors)
         gains = np.min([means[other] for other in OTHERS], axis=0) / means[OPTIMISED]
         head = {"lights": ", ".join(lights), "materials": materials}
         rows = []
-        for count, gain in zip(COUNTS, gains.tolist(), strict=True):
-            cells = {method: errors[method, count] for method in METHODS}
+        for count, gain in zip(COUNTS, gains, strict=True):
             values = {
-                name: list(statistics(one).values()) for name, one in cells.items()
+                method: [*statistics(errors[method, count]).values()]
+                for method in METHODS
             }
             rows.append({**head, "count": count, "errors": values, "gain": gain})
-        fewest = {
-            method: next((n for n in COUNTS if errors[method, n].mean() <= 1), None)
-            for method in METHODS
+        needed = {}
+        for method, values in means.items():
+            reached = np.flatnonzero(values <= 1)
+            needed[method] = COUNTS[reached[0]] if len(reached) else None
+        summary = {
+            **head,
+            "other_gain": spread(gains),
+            "fitted_gain": spread(means[FITTED] / means[OPTIMISED]),
+            "needed": needed,
         }
-        ratios = {"other_gain": gains, "fitted_gain": means[FITTED] / means[OPTIMISED]}
-        yield (
-            {
-                **head,
-                **{name: spread(values) for name, values in ratios.items()},
-                "needed": fewest,
-            },
-            rows,
-        )
+        yield summary, rows
+
+
+def mean_errors(errors: Errors) -> dict[str, Array]:
+    """Return the mean errors over `COUNTS` by method."""
+    means = {}
+    for method in METHODS:
+        means[method] = np.array([errors[method, count].mean() for count in COUNTS])
+    return means
 
 
 def spread(ratios: Array) -> Row:
     """Return the median, smallest and largest of ratios over `COUNTS`."""
     return {
-        "median": float(np.median(ratios)),
-        "min": float(ratios.min()),
-        "max": float(ratios.max()),
+        "median": np.median(ratios),
+        "min": ratios.min(),
+        "max": ratios.max(),
     }
 
 
@@ -324,47 +290,45 @@ def spread(ratios: Array) -> Row:
 
 
 def figure_6(trials: Mapping[str, tuple[Array, Array]]) -> Any:
-    """Plot the mean over all allocations, and the best of them, over the number of
-    wavelengths.
-    """
+    """Plot the mean and the best of all allocations over the number of wavelengths."""
     figure = new_figure(7.2, 3.6)
     axes = figure.subplots()
     for (name, (counts, errors)), colour in zip(trials.items(), COLOURS, strict=False):
         by_total = errors_by_total(counts, errors)
-        means, best = (
-            [reduce(each) for each in by_total.values()] for reduce in (np.mean, np.min)
-        )
-        axes.plot(list(by_total), means, "o-", color=colour, markersize=3, label=name)
-        axes.plot(list(by_total), best, ":", color=colour)
+        totals = list(by_total)
+        means = list(map(np.mean, by_total.values()))
+        best = list(map(np.min, by_total.values()))
+        axes.plot(totals, means, "o-", color=colour, markersize=3, label=name)
+        axes.plot(totals, best, ":", color=colour)
     axes.plot([], [], "o-", color=GREY, markersize=3, label="mean of all allocations")
     axes.plot([], [], ":", color=GREY, label="best allocation")
-    axes.set(xlabel="wavelengths", ylabel="mean ΔE76", yscale="log")
-    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.set_ylabel("mean ΔE76")
     axes.legend(frameon=False, ncols=2)
-    style_axes(axes)
+    style_counts(axes)
     return figure
 
 
-def figure_7(counts: Array, errors: Array, divisions: int = 10) -> Any:
-    """Plot the mean error over the shares of the channels as small triangles, darker
-    for larger errors.
-    """
+def style_counts(axes: Any) -> None:
+    """Style axes of errors over the number of wavelengths."""
+    axes.set(xlabel="wavelengths", yscale="log")
+    axes.yaxis.set_major_formatter("{x:g}")
+    style_axes(axes)
+
+
+def figure_7(counts: Array, errors: Array) -> Any:
+    """Plot the mean error over the channels' shares as triangles, darker if larger."""
     from matplotlib.collections import PolyCollection
 
     # A trial on a line between small triangles belongs to one side of it, regardless of
     # rounding.
-    floors = np.floor(
-        divisions * counts / counts.sum(axis=1, keepdims=True) + 1e-9
-    ).astype(int)
-    floors -= (floors.sum(axis=1) == divisions)[:, None] * np.eye(3, dtype=int)[
-        floors.argmax(axis=1)
-    ]
+    floors = np.floor(DIVISIONS * counts / counts.sum(axis=1, keepdims=True) + 1e-9)
+    on_corner = np.flatnonzero(floors.sum(axis=1) == DIVISIONS)
+    floors[on_corner, floors[on_corner].argmax(axis=1)] -= 1
     cells, cell_of = np.unique(floors, axis=0, return_inverse=True)
     means = np.bincount(cell_of.ravel(), errors) / np.bincount(cell_of.ravel())
-    upright = (cells.sum(axis=1) == divisions - 1)[:, None, None]
-    shares = (
-        cells[:, None, :] + np.where(upright, np.eye(3), 1 - np.eye(3))
-    ) / divisions
+    is_upright = (cells.sum(axis=1) == DIVISIONS - 1)[:, None, None]
+    offsets = np.where(is_upright, np.eye(3), 1 - np.eye(3))
+    shares = (cells[:, None, :] + offsets) / DIVISIONS
     figure = new_figure(6.0, 4.6)
     axes = figure.subplots()
     style = {"cmap": colour_map(), "edgecolors": "white", "linewidths": 0.6}
@@ -375,13 +339,16 @@ def figure_7(counts: Array, errors: Array, divisions: int = 10) -> Any:
     for name, corner, side, offset in zip(
         CHANNELS, CORNERS, ("bottom", "top", "top"), (5, -5, -5), strict=True
     ):
-        place = {
-            "xytext": (0, offset),
-            "textcoords": "offset points",
-            "ha": "center",
-            "va": side,
-        }
-        axes.annotate(f"all for {name}", corner, color=INK, fontsize=9, **place)
+        axes.annotate(
+            f"all for {name}",
+            corner,
+            xytext=(0, offset),
+            textcoords="offset points",
+            ha="center",
+            va=side,
+            color=INK,
+            fontsize=9,
+        )
     axes.set_aspect("equal")
     axes.set(xlim=(-0.12, 1.12), ylim=(-0.1, 0.97))
     axes.set_axis_off()
@@ -394,13 +361,11 @@ def plot_methods(comparisons: Mapping[tuple[str, ...], Mapping[str, Errors]]) ->
     figure = new_figure(7.2, 3.4)
     panels = figure.subplots(1, len(comparisons), sharey=True)
     for axes, (lights, comparison) in zip(panels, comparisons.items(), strict=True):
-        for method, colour in zip(METHODS, COLOURS, strict=True):
-            means = [comparison["unseen"][method, count].mean() for count in COUNTS]
-            axes.plot(COUNTS, means, "o-", color=colour, markersize=3, label=method)
-        axes.set(xlabel="wavelengths", yscale="log")
-        axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        means = mean_errors(comparison["unseen"])
+        for (method, values), colour in zip(means.items(), COLOURS, strict=True):
+            axes.plot(COUNTS, values, "o-", color=colour, markersize=3, label=method)
         axes.set_title(", ".join(lights), loc="left", fontsize=9, color=INK)
-        style_axes(axes)
+        style_counts(axes)
     panels[0].set_ylabel("mean ΔE00, unseen materials")
     figure.legend(
         *panels[0].get_legend_handles_labels(),
@@ -419,13 +384,14 @@ def main() -> None:
         for name, key in SPACES.items()
     }
     trials = {name: run_trials(checker, space) for name, space in spaces.items()}
-    materials = on_grid(uplift.read_atlas(*sorted(ATLASES.glob("*.txt"))), grid())
+    materials = on_grid(uplift.read_atlas(*ATLAS_FILES), grid())
     comparisons = {lights: compare_methods(materials, lights) for lights in LIGHTS}
-    found = list(
-        chain.from_iterable(
-            tables(lights, comparison) for lights, comparison in comparisons.items()
-        )
-    )
+    summaries = []
+    errors = []
+    for lights, comparison in comparisons.items():
+        for summary, rows in tables(lights, comparison):
+            summaries.append(summary)
+            errors += rows
     PICTURES.mkdir(exist_ok=True)
     with styled():
         write_png(figure_6(trials), PICTURES / "figure-6.png", force=True)
@@ -434,7 +400,7 @@ def main() -> None:
     record(
         "wavelengths",
         materials=len(materials),
-        summary=[summary for summary, _ in found],
-        errors=list(chain.from_iterable(rows for _, rows in found)),
+        summary=summaries,
+        errors=errors,
         **compare_meyer(checker, spaces),
     )

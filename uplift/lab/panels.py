@@ -122,7 +122,6 @@ def panel_figure(
     first: int = 0,
 ) -> Any:
     """Return the matplotlib figure of panels in rows."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.lines import Line2D
 
     rows = math.ceil(len(panels) / columns)
@@ -146,13 +145,19 @@ def panel_figure(
             ncols=2 * columns,
             **LEGEND,
         )
-    # Labels are placed where there is room, once the axes have their positions.
-    FigureCanvasAgg(figure)
-    figure.draw_without_rendering()
-    figure.set_layout_engine("none")
+    fix_layout(figure)
     for number, (axes, panel) in enumerate(zip(cells, panels, strict=True), first):
         _label_panel(axes, panel, number)
     return figure
+
+
+def fix_layout(figure: Any) -> None:
+    """Fix the positions of the axes; then labels are placed where there is room."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    FigureCanvasAgg(figure)
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
 
 
 def _draw_panel(axes: Any, panel: Panel, number: int) -> None:
@@ -162,20 +167,20 @@ def _draw_panel(axes: Any, panel: Panel, number: int) -> None:
     _draw_whiskers(axes, panel, number)
     front = _front(panel)
     for point in panel.points:
-        style = {
-            "marker": point.marker,
-            "markersize": MARKER_SIZES.get(point.marker, 6.5),
-            "color": point.colour,
-            "markerfacecolor": "white" if point.hollow else point.colour,
-            "markeredgecolor": point.colour if point.hollow else "white",
-            "markeredgewidth": 1.2 if point.hollow else 0.5,
-        }
+        face, edge = (
+            ("white", point.colour) if point.hollow else (point.colour, "white")
+        )
         axes.plot(
             point.cost,
             point.error,
             gid=f"marker-{number}-{point.row}",
             zorder=3 if point in front else 2,
-            **style,
+            marker=point.marker,
+            markersize=MARKER_SIZES.get(point.marker, 6.5),
+            color=point.colour,
+            markerfacecolor=face,
+            markeredgecolor=edge,
+            markeredgewidth=1.2 if point.hollow else 0.5,
         )
     axes.margins(0.06)
     _set_ticks(axes.xaxis, panel.format)
@@ -187,10 +192,14 @@ def _draw_whiskers(axes: Any, panel: Panel, number: int) -> None:
     """Draw a line through the points of each group."""
     for group in dict.fromkeys(point.group for point in panel.points if point.group):
         members = [point for point in panel.points if point.group == group]
-        line = np.transpose([(point.cost, point.error) for point in members])
-        gid = f"whisker-{number}-{members[0].row}"
+        first = members[0]
         axes.plot(
-            *line, gid=gid, color=members[0].colour, linewidth=0.8, alpha=0.45, zorder=1
+            *_places(members).T,
+            gid=f"whisker-{number}-{first.row}",
+            color=first.colour,
+            linewidth=0.8,
+            alpha=0.45,
+            zorder=1,
         )
 
 
@@ -205,16 +214,20 @@ def _set_ticks(axis: Any, text: Callable[[float], str]) -> None:
     axis.set_major_formatter(lambda value, _: text(value))
 
 
+def _places(points: Sequence[Point]) -> Array:
+    """Return the costs and errors (n, 2) of points."""
+    places = [(point.cost, point.error) for point in points]
+    return np.array(places).reshape(-1, 2)
+
+
 def _front(panel: Panel) -> list[Point]:
-    places = [(point.cost, point.error) for point in panel.points]
-    return [panel.points[row] for row in pareto_front(places)]
+    rows = pareto_front(_places(panel.points).tolist())
+    return [panel.points[row] for row in rows]
 
 
 def _staircase(axes: Any, panel: Panel) -> Array:
     """Corners (2 k, 2) of the Pareto front, up to the right end of the axes."""
-    front = np.array([(point.cost, point.error) for point in _front(panel)]).reshape(
-        -1, 2
-    )
+    front = _places(_front(panel))
     x = np.append(front[:, 0].repeat(2)[1:], axes.get_xlim()[1])[: 2 * len(front)]
     return np.stack([x, front[:, 1].repeat(2)], axis=1)
 
@@ -232,7 +245,4 @@ def _label_panel(axes: Any, panel: Panel, number: int) -> None:
         for point in panel.points
         if point.named or point in front
     ]
-    markers = np.array([(point.cost, point.error) for point in panel.points]).reshape(
-        -1, 2
-    )
-    draw_labels(axes, labels, markers, _staircase(axes, panel))
+    draw_labels(axes, labels, _places(panel.points), _staircase(axes, panel))

@@ -73,21 +73,20 @@ class CubeOptions:
 
 @cache
 def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
-    """Build, store and load a cube once for all methods; return it and the CPU seconds
-    to build and to load it.
-    """
+    """Build, store and load a cube once for all methods; return the CPU seconds too."""
     from uplift.fit import families_with
     from uplift.pipeline.build import build
 
-    atlas = task.kept if options.atlas else None
-    unknown = families_with(task.unseen)
-    model: dict[str, Any] = {
-        "dim": options.dim,
-        "model": options.model,
-        "coefficients": options.count,
-    }
+    timed = partial(
+        build,
+        task.kept if options.atlas else None,
+        leave_out=families_with(task.unseen),
+        dim=options.dim,
+        model=options.model,
+        coefficients=options.count,
+    )
     for _ in range(task.effort.builds):
-        cube, seconds = stopwatch(lambda: build(atlas, leave_out=unknown, **model))
+        cube, seconds = stopwatch(timed)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.uplift"
         cube.save(path)
@@ -95,9 +94,7 @@ def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
 
 
 def within(cube: Cube, wavelengths: Array) -> Array:
-    """Return the nearest wavelengths (N,) in the range of a cube, outside of which its
-    spectra count as constant.
-    """
+    """Return the nearest wavelengths (N,) in the range of a cube."""
     return np.clip(wavelengths, *cube.wavelengths[[0, -1]])
 
 
@@ -108,9 +105,7 @@ def prepare_lookup(
     cube, seconds, loading = built_cube(task, options)
 
     def uplift(rgb: Values, wavelengths: Array) -> Values:
-        return np.asarray(
-            cube.reflectance(rgb, within(cube, wavelengths), mode, dtype=dtype)
-        )
+        return cube.reflectance(rgb, within(cube, wavelengths), mode, dtype=dtype)
 
     data = cube.data
     size = nbytes(
@@ -123,9 +118,7 @@ def prepare_lookup(
 
 
 def prepare_bulk(task: Task, options: CubeOptions) -> PreparedMethod:
-    """Prepare a bulk sampler of the sensor's wavelengths, without the compiled code of
-    earlier ones.
-    """
+    """Prepare a bulk sampler of the sensor's wavelengths, which compiles again."""
     import jax
 
     from uplift.lookup import bulk
@@ -137,18 +130,12 @@ def prepare_bulk(task: Task, options: CubeOptions) -> PreparedMethod:
     _, compiling = stopwatch(lambda: sampler(task.rgb[:1]))
 
     def uplift(rgb: Values, wavelengths: Array) -> Values:
-        usual = np.array_equal(wavelengths, at)
-        return np.asarray(
-            (
-                sampler
-                if usual
-                else bulk.spectra(cube, within(cube, wavelengths), threads=1)
-            )(rgb)
-        )
+        if np.array_equal(wavelengths, at):
+            return sampler(rgb)
+        return bulk.spectra(cube, within(cube, wavelengths), threads=1)(rgb)
 
-    return PreparedMethod(
-        uplift, sampler.nbytes, seconds, loading + preparing + compiling
-    )
+    loading += preparing + compiling
+    return PreparedMethod(uplift, sampler.nbytes, seconds, loading)
 
 
 COMPILER = "a C compiler, cc: apt install gcc"
@@ -185,9 +172,8 @@ def prepare_c(task: Task, options: CubeOptions, mode: str) -> PreparedMethod:
         uplift, loading = stopwatch(lambda: load_library(library))
         # The file may go: the loaded library stays in memory, except on Windows, which
         # has no cc.
-        return PreparedMethod(
-            uplift, library.stat().st_size, seconds + compiling, loading
-        )
+        size = library.stat().st_size
+        return PreparedMethod(uplift, size, seconds + compiling, loading)
 
 
 def compile_cube(data: CubeData, mode: str, folder: Path) -> Path:
@@ -215,15 +201,11 @@ def load_library(path: Path) -> Uplift:
     function.restype = None
 
     def uplift(rgb: Values, wavelengths: Array) -> Values:
-        reflectances = np.empty((len(rgb), len(wavelengths)), np.float32)
+        size = (len(rgb), len(wavelengths))
+        reflectances = np.empty(size, np.float32)
         colours = np.ascontiguousarray(rgb, np.float32)
-        function(
-            colours,
-            wavelengths.astype(np.float32),
-            len(wavelengths),
-            len(rgb),
-            reflectances,
-        )
+        at = wavelengths.astype(np.float32)
+        function(colours, at, *size[::-1], reflectances)
         return reflectances
 
     return uplift
@@ -263,13 +245,13 @@ def _method(options: CubeOptions, lookup: str) -> Method:
     exact = mode in ("spectra", "bulk") or (
         mode == "refined" and options.model == Moments.name
     )
-    fields: dict[str, Any] = {
-        "dtype": "float64" if lookup == mode and mode != "bulk" else "float32"
-    }
+    dtype = "float64" if lookup == mode and mode != "bulk" else "float32"
     name = f"{options.name}-{lookup}"
     title = f"{options.title}, {lookup.replace('-', ', ')}"
     label = f"{options.count} · {options.dim}³ {mode}"
     family = f"uplift, {options.model}{' with atlas' if options.atlas else ''}"
+    note = ""
+    needs = ""
     prepare: Callable[..., PreparedMethod]
     if lookup.startswith("c-"):
         name = f"c-{options.name}-{mode}"
@@ -281,10 +263,8 @@ def _method(options: CubeOptions, lookup: str) -> Method:
             f"uplift export CUBE -o cube.h --mode {mode}; cube_reflectances(rgb, "
             "wavelengths, count, out)"
         )
-        fields |= {
-            "note": f"cc {' '.join(FLAGS[:5])}, called by ctypes",
-            "needs": COMPILER,
-        }
+        note = f"cc {' '.join(FLAGS[:5])}, called by ctypes"
+        needs = COMPILER
     elif mode == "bulk":
         label = f"{label} f32"
         prepare = prepare_bulk
@@ -292,28 +272,26 @@ def _method(options: CubeOptions, lookup: str) -> Method:
     else:
         of_dtype = ', dtype="float32"' if lookup.endswith(FLOAT32) else ""
         label += " f32" if of_dtype else ""
-        prepare = partial(prepare_lookup, mode=mode, dtype=fields["dtype"])
+        prepare = partial(prepare_lookup, mode=mode, dtype=dtype)
         call = f'cube.reflectance(rgb, mode="{mode}"{of_dtype})'
-    fields |= {
-        "method": name,
-        "title": title,
-        "label": label,
-        "family": family,
-        "mode": mode,
-        "call": call,
-    }
-    fields |= {
-        "build": options.command,
-        "reference_sensor": ours,
-        "claimed_error": 0.01 if exact else None,
-    }
     return Method(
-        source="this package", prepare=partial(prepare, options=options), **fields
+        method=name,
+        title=title,
+        label=label,
+        family=family,
+        source="this package",
+        mode=mode,
+        dtype=dtype,
+        build=options.command,
+        call=call,
+        note=note,
+        prepare=partial(prepare, options=options),
+        reference_sensor=ours,
+        claimed_error=0.01 if exact else None,
+        needs=needs,
     )
 
 
-METHODS = tuple(
-    _method(options, lookup)
-    for options, lookups in JOBS.items()
-    for lookup in lookups.split()
-)
+METHODS: list[Method] = []
+for _options, _lookups in JOBS.items():
+    METHODS += [_method(_options, lookup) for lookup in _lookups.split()]

@@ -40,38 +40,35 @@ from uplift.lab.timing import TimingStats, environment, time_laps
 
 METHODS = (*published.METHODS, *mitsuba3.METHODS, *cubes.METHODS)
 QUICK_METHODS = (
-    *(
-        "jakob2019-*",
-        "mallett2019",
-        "otsu2018",
-        "smits1999",
-        "mitsuba3-llvm",
-        "c-sigmoid-32-moments",
-    ),
-    *(
-        "moments9-16*-spectra",
-        "moments9-16*-moments",
-        "moments9-64-spectra",
-        "moments9-64-moments",
-    ),
+    "jakob2019-*",
+    "mallett2019",
+    "otsu2018",
+    "smits1999",
+    "mitsuba3-llvm",
+    "c-sigmoid-32-moments",
+    "moments9-16*-spectra",
+    "moments9-16*-moments",
+    "moments9-64-spectra",
+    "moments9-64-moments",
 )
 """Patterns of the methods of a quick run."""
 
 
 def select_methods(patterns: Sequence[str] = ()) -> list[Method]:
     """Select methods by name, by default all. Raises `OptionError`."""
-    for pattern in patterns:
-        if not any(fnmatchcase(method.method, pattern) for method in METHODS):
+    selected = set()
+    for pattern in patterns or "*":
+        matches = {
+            method.method for method in METHODS if fnmatchcase(method.method, pattern)
+        }
+        if not matches:
             hint = (
                 "names are 'mallett2019', 'moments9-32-spectra' and others; '*' "
                 "matches any characters"
             )
             raise OptionError(f"no method matches '{pattern}'", hint=hint)
-
-    def is_selected(method: Method) -> bool:
-        return any(fnmatchcase(method.method, pattern) for pattern in patterns or "*")
-
-    return list(filter(is_selected, METHODS))
+        selected |= matches
+    return [method for method in METHODS if method.method in selected]
 
 
 def perturb_method(
@@ -81,11 +78,9 @@ def perturb_method(
     `uplift.lab.study.sensitivity`. Raises `OptionError`.
     """
     task = make_task({"macbeth": read_atlas("macbeth")})
-    grid = task.sensor.wavelengths
     lights = (light, task.sensor.light)
-    with warnings.catch_warnings(
-        action="ignore"
-    ):  # colour-science reports how it aligns wavelengths
+    # colour-science warns how it aligns wavelengths.
+    with warnings.catch_warnings(action="ignore"):
         try:
             uplift = method.prepare(task).uplift
         except NotInstalledError as error:
@@ -94,7 +89,7 @@ def perturb_method(
             ) from error
         return perturb_answers(
             method.title,
-            lambda rgb: uplift(rgb, grid),
+            lambda rgb: uplift(rgb, task.sensor.wavelengths),
             lambda codes: decode(codes / 255),
             lights,
             count,
@@ -104,8 +99,10 @@ def perturb_method(
 GROWTH = 10
 """Factor between the numbers of colours from which the duration of a call is estimated.
 """
-INPUTS, INPUT_COLOURS = 64, 1 << 16
-"""Different inputs of repeated calls: at most so many, with so many colours in all."""
+INPUTS = 64
+"""Largest number of different inputs of repeated calls."""
+INPUT_COLOURS = 1 << 16
+"""Largest number of colours of all inputs."""
 UpliftRgb = Callable[[Array], Values]
 
 
@@ -130,10 +127,8 @@ def call_times(uplift: UpliftRgb, dtype: str, effort: Effort) -> dict[str, float
             "_colours": count,
         }
         numbers |= {f"ns_{size}{suffix}": value for suffix, value in values.items()}
-    reference = max(
-        (size for size in effort.batches if size <= REFERENCE),
-        default=effort.batches[0],
-    )
+    known = [size for size in effort.batches if size <= REFERENCE]
+    reference = max(known, default=effort.batches[0])
     return numbers | {"time_ns": numbers[f"ns_{reference}"]}
 
 
@@ -141,9 +136,8 @@ def _time_batch(
     uplift: UpliftRgb, dtype: str, count: int, effort: Effort
 ) -> TimingStats:
     inputs = cycle(_colours(max(1, min(INPUTS, INPUT_COLOURS // count)), count, dtype))
-    return time_laps(lambda: uplift(next(inputs)), effort.lap, effort.runs).scaled(
-        1e9 / count
-    )
+    times = time_laps(lambda: uplift(next(inputs)), effort.lap, effort.runs)
+    return times.scaled(1e9 / count)
 
 
 def affordable(uplift: UpliftRgb, dtype: str, size: int, longest: float) -> int:
@@ -171,10 +165,10 @@ more than this factor.
 """
 SLOW_STEP = 3
 """Colours of slow methods between two looks at the time."""
-SAMPLE, SAMPLE_TOLERANCE = 50, 2e-5
-"""Colours of a large batch that are computed again in a small one, and the reflectance
-that rounding may change.
-"""
+SAMPLE = 50
+"""Colours of a large batch that are computed again in a small one."""
+SAMPLE_TOLERANCE = 2e-5
+"""Reflectance that rounding may change."""
 
 
 class BrokenError(Exception):
@@ -209,13 +203,11 @@ def measure_method(method: Method, task: Task) -> MethodResult:
     why = ""
     numbers = {}
     try:
-        # Other packages warn, and so do cubes about the entries that all of them leave
-        # out.
+        # Other packages warn, and cubes do about entries that all of them leave out.
         with warnings.catch_warnings(action="ignore"):
             if method.needs:
-                numbers = call_in_child(
-                    _numbers, method, task, seconds=task.effort.limit
-                )
+                limit = task.effort.limit
+                numbers = call_in_child(_numbers, method, task, seconds=limit)
             else:
                 numbers = _numbers(method, task)
     except NotInstalledError as error:
@@ -245,15 +237,16 @@ def _numbers(method: Method, task: Task) -> dict[str, float]:
     first, second = (stopwatch(lambda: uplift(task.rgb[:1]))[1] for _ in range(2))
     load = prepared.load_s + max(first - second, 0.0)
     build = {} if prepared.build_s is None else {"build_s": prepared.build_s}
-    set_up = {**build, "load_s": load, "setup_s": sum(build.values()) + load}
-    errors = _round_trips(method, prepared, uplift, task) | _errors(
-        method, uplift, task
-    )
+    round_trips = _round_trips(method, prepared, uplift, task)
+    errors = _errors(method, uplift, task)
     if method.batch:
         _check_batch(uplift, method.dtype, task.effort)
     return {
         "bytes": prepared.bytes,
-        **set_up,
+        **build,
+        "load_s": load,
+        "setup_s": sum(build.values()) + load,
+        **round_trips,
         **errors,
         **call_times(uplift, method.dtype, task.effort),
     }
@@ -290,9 +283,8 @@ def _round_trips(
     are fitted to.
     """
     sensor = method.reference_sensor()
-    rgb, spectra = _spectra(
-        method, _guarded(method, prepared, sensor.wavelengths), task, task.rgb
-    )
+    fine = _guarded(method, prepared, sensor.wavelengths)
+    rgb, spectra = _spectra(method, fine, task, task.rgb)
     errors = delta_e_rgb(sensor, rgb, sensor.rgb(spectra))
     claimed = method.claimed_error
     if claimed is not None and errors.mean() > MAX_CLAIM_RATIO * claimed:
@@ -300,11 +292,11 @@ def _round_trips(
             f"mean round-trip ΔE00 is {errors.mean():.3g}, {claimed:g} is claimed"
         )
     fitted = delta_e_rgb(task.sensor, rgb, task.sensor.rgb(uplift(rgb).astype(float)))
-    return (
-        _summary("round_trip", errors)
-        | _summary("coarse_round_trip", fitted)
-        | {"round_trip_colours": len(rgb)}
-    )
+    return {
+        **_summary("round_trip", errors),
+        **_summary("coarse_round_trip", fitted),
+        "round_trip_colours": len(rgb),
+    }
 
 
 def _errors(method: Method, uplift: UpliftRgb, task: Task) -> dict[str, float]:
@@ -313,9 +305,8 @@ def _errors(method: Method, uplift: UpliftRgb, task: Task) -> dict[str, float]:
         ("", "unseen", task.unseen),
         ("own_", "own", task.own),
     ):
-        rgb, spectra = _spectra(
-            method, uplift, task, np.clip(task.sensor.rgb(measured), 0, 1)
-        )
+        colours = np.clip(task.sensor.rgb(measured), 0, 1)
+        rgb, spectra = _spectra(method, uplift, task, colours)
         errors = spectrum_errors(spectra, measured[: len(rgb)], CHART_LIGHTS)
         values = dict(zip(CHART_LIGHTS, errors.delta_e.T, strict=True))
         values |= {"lights": errors.delta_e.mean(axis=1), "rms": errors.rms}
@@ -340,22 +331,22 @@ def _spectra(
         if time.process_time() - begin > task.effort.seconds_per_error:
             break
     spectra = np.concatenate(parts)
-    finite, (low, high) = np.isfinite(spectra).all(axis=1), method.claimed_range
+    finite = np.isfinite(spectra).all(axis=1)
+    low, high = method.claimed_range
     if not finite.all():
         raise BrokenError(f"{(~finite).sum()} of {len(spectra)} spectra are not finite")
     if spectra.min() < low or spectra.max() > high:
-        found = f"reflectances from {spectra.min():.4g} to {spectra.max():.4g}"
-        raise BrokenError(f"{found}, {low:g} to {high:g} are claimed")
+        raise BrokenError(
+            f"reflectances from {spectra.min():.4g} to {spectra.max():.4g}, {low:g} to "
+            f"{high:g} are claimed"
+        )
     return rgb[: len(spectra)], spectra.astype(float)
 
 
 def _check_batch(uplift: UpliftRgb, dtype: str, effort: Effort) -> None:
-    """Large batches are timed; check that they give the same spectra as small ones,
-    whose errors are measured.
-    """
-    count = affordable(
-        uplift, dtype, min(effort.batches[-1], REFERENCE), effort.longest
-    )
+    """Check that large batches, which are timed, give the spectra of small ones."""
+    size = min(effort.batches[-1], REFERENCE)
+    count = affordable(uplift, dtype, size, effort.longest)
     rgb = np.random.default_rng(4).random((count, 3))
     rows = np.linspace(0, count - 1, SAMPLE, dtype=int)
     difference = np.abs(uplift(rgb)[rows] - uplift(rgb[rows])).max()
@@ -367,9 +358,8 @@ def _check_batch(uplift: UpliftRgb, dtype: str, effort: Effort) -> None:
 
 
 def _summary(name: str, values: Array) -> dict[str, float]:
-    statistics = {
-        "mean": values.mean(),
-        "p99": np.quantile(values, 0.99),
-        "max": values.max(),
+    return {
+        f"{name}_mean": float(values.mean()),
+        f"{name}_p99": float(np.quantile(values, 0.99)),
+        f"{name}_max": float(values.max()),
     }
-    return {f"{name}_{key}": float(value) for key, value in statistics.items()}

@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import product
 from typing import Any, TypeVar
 
 import numpy as np
@@ -27,19 +28,14 @@ RANGE = (360.0, 830.0, 1.0)
 
 
 def at_1_nm(sensor: Sensor) -> Sensor:
-    """Return a sensor on `RANGE`, where the perfect reflector is white again: the
-    statement of a cube.
-    """
+    """Return a sensor on `RANGE`, the statement of a cube: its white stays white."""
     return observer.on_range(sensor, *RANGE)
 
 
 def stated_sensor(xyz_to_rgb: Array, illuminant: str = DEFAULT_ILLUMINANT) -> Sensor:
-    """Return the sensor on `RANGE` of a stated matrix. Shapes:
-    ``xyz_to_rgb`` (3, 3).
-    """
-    return replace(
-        at_1_nm(observer.sensor(illuminant=illuminant)), xyz_to_rgb=xyz_to_rgb
-    )
+    """Return the sensor on `RANGE` of a stated matrix (3, 3)."""
+    sensor = observer.sensor(illuminant=illuminant)
+    return replace(at_1_nm(sensor), xyz_to_rgb=xyz_to_rgb)
 
 
 @cache
@@ -54,8 +50,9 @@ def published_srgb() -> Sensor:
     return stated_sensor(colour_science().RGB_COLOURSPACES["sRGB"].matrix_XYZ_to_RGB)
 
 
-COLOURS, MIN_COLOURS, SEED = 2000, 16, 1
-"""Default and smallest number of random colours, and the seed of their generator."""
+COLOURS = 2000
+"""Default number of random colours."""
+MIN_COLOURS = 16
 EDGE_STEPS = 9
 """Colours along each edge of the RGB cube and along its grey diagonal, corners
 included.
@@ -131,15 +128,12 @@ def make_task(
     unseen = _within_srgb(others, sensor)
     if min(len(own), len(unseen)) < MIN_SPECTRA:
         problem = (
-            f"at least {MIN_SPECTRA} entries within sRGB must build and test cubes each"
+            f"at least {MIN_SPECTRA} entries within sRGB must build and test cubes "
+            f"each, got {len(own)} and {len(unseen)}"
         )
         hint = "give an atlas of 8 or more entries"
-        raise AtlasError(
-            f"{problem}, got {len(own)} and {len(unseen)}",
-            code="too-few-entries",
-            hint=hint,
-        )
-    rng = np.random.default_rng(SEED)
+        raise AtlasError(problem, code="too-few-entries", hint=hint)
+    rng = np.random.default_rng(1)
     rgb = np.concatenate([rng.random((colours, 3)), edges()])
     facts = {
         "colours": (
@@ -172,7 +166,7 @@ def _every_second(atlases: Mapping[str, Atlas], start: int) -> Atlas:
 def _within_srgb(atlas: Atlas, sensor: Sensor) -> Array:
     """Return the spectra (n, N) of an atlas whose RGB are in [0, 1]."""
     spectra = resample(atlas, sensor.wavelengths).values
-    return np.asarray(spectra[in_unit_cube(sensor.rgb(spectra))])
+    return spectra[in_unit_cube(sensor.rgb(spectra))]
 
 
 def edges() -> Array:
@@ -180,9 +174,7 @@ def edges() -> Array:
     each once.
     """
     along = np.linspace(0, 1, EDGE_STEPS)
-    grid = np.stack(np.meshgrid(along, along, along, indexing="ij"), axis=-1).reshape(
-        -1, 3
-    )
+    grid = np.array(list(product(along, repeat=3)))
     at_ends = ((grid == 0) | (grid == 1)).sum(axis=1)
     return grid[(at_ends >= 2) | (np.ptp(grid, axis=1) == 0)]
 

@@ -35,7 +35,14 @@ from uplift.lab.chart.table import (
     State,
     criteria,
 )
-from uplift.lab.panels import Panel, Point, family_colours, page_panel, pareto_front
+from uplift.lab.panels import (
+    Panel,
+    Point,
+    family_colours,
+    fix_layout,
+    page_panel,
+    pareto_front,
+)
 
 COLOURS = {
     "uplift, moments with atlas": "#0b3c8c",
@@ -129,18 +136,14 @@ def draw_picture(chart: Chart) -> Any:
     """Return the matplotlib figure of `write_picture`: every method has its name, this
     package the only colour.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
     compared = criteria(reference_batch(chart))
     unseen = compared[1]
     drawn = _drawn_points(chart, unseen, compared[4])
     figure = new_figure(9, 5.2)
     figure.set_dpi(130)
     axes = figure.subplots()
-    axes.set(
-        xscale="log",
-        ylim=(-0.02, 1.12 * max([1.0, *(error for _, (_, error), _ in drawn)])),
-    )
+    largest = max(1.0, *(error for _, (_, error), _ in drawn))
+    axes.set(xscale="log", ylim=(-0.02, 1.12 * largest))
     axes.set_xlabel(f"{unseen.axis}, {unseen.colours}", fontsize=11)
     axes.set_ylabel(f"mean {unseen.unit} of unseen materials", fontsize=11)
     axes.tick_params(labelsize=11)
@@ -148,12 +151,15 @@ def draw_picture(chart: Chart) -> Any:
     axes.spines[["top", "right"]].set_visible(False)
     axes.xaxis.set_major_formatter(lambda value, _: format_time(value))
     axes.axhspan(0, 1, color=PALE, alpha=0.45, linewidth=0)
-    pinned: dict[str, Any] = {
-        "xycoords": ("axes fraction", "data"),
-        "ha": "right",
-        "va": "top",
-    }
-    axes.annotate("just visible: 1", (0.99, 1), color=GREY, size=11, **pinned)
+    axes.annotate(
+        "just visible: 1",
+        (0.99, 1),
+        xycoords=("axes fraction", "data"),
+        ha="right",
+        va="top",
+        color=GREY,
+        size=11,
+    )
     labels = []
     for name, place, what in drawn:
         colour = ACCENT if name == OURS else GREY
@@ -177,25 +183,16 @@ def draw_picture(chart: Chart) -> Any:
         fontweight="bold",
         pad=12,
     )
-    FigureCanvasAgg(figure)
-    figure.draw_without_rendering()
-    figure.set_layout_engine("none")
-    draw_labels(
-        axes,
-        labels,
-        np.array([label.point for label in labels]).reshape(-1, 2),
-        np.empty((0, 2)),
-        fontsize=12,
-    )
+    fix_layout(figure)
+    markers = np.array([label.point for label in labels]).reshape(-1, 2)
+    draw_labels(axes, labels, markers, np.empty((0, 2)), fontsize=12)
     return figure
 
 
 def _drawn_points(
     chart: Chart, unseen: Criterion, of_atlas: Criterion
 ) -> list[DrawnPoint]:
-    """Return the methods that the figure shows, that of the atlas at its own materials
-    too.
-    """
+    """Return the methods that the figure shows, the atlas at its own materials too."""
     named = [result for result in chart.measured if result.method in NAMES]
     drawn: list[DrawnPoint] = []
     for result in named or chart.measured:
@@ -218,9 +215,7 @@ def _two_best(drawn: list[DrawnPoint]) -> str:
 
 
 def reference_batch(chart: Chart) -> int:
-    """Return the number of colours per call that the figure shows, and the page at
-    first.
-    """
+    """Return the colours per call of the figure, which the page shows at first."""
     return max((batch for batch in chart.batches if batch <= REFERENCE), default=0)
 
 
@@ -261,8 +256,8 @@ def _tooltip(chart: Chart, result: MethodResult) -> Tooltip:
         lines += [
             ("set-up", format_build_time(numbers["setup_s"])),
             ("memory", format_size(numbers["bytes"])),
+            ("errors", "mean / 99 % / largest"),
         ]
-        lines.append(("errors", "mean / 99 % / largest"))
         for error, name in ERRORS.items():
             values = (numbers[f"{error}_{kind}"] for kind in ("mean", "p99", "max"))
             lines.append((name, " / ".join(map(format_error, values))))

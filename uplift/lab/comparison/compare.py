@@ -42,7 +42,8 @@ NAMED_SET = "given"
 """Name of the set of lights that a user lists."""
 QUICK_SURFACES = 40
 """Surfaces of a quick comparison."""
-TIMING, QUICK_TIMING = (1024, 0.05, 7), (256, 0.005, 3)
+TIMING = (1024, 0.05, 7)
+QUICK_TIMING = (256, 0.005, 3)
 """Products per call, shortest duration of a run in seconds, and runs."""
 
 
@@ -76,14 +77,10 @@ class Scene:
 
     def thinned(self, count: int = QUICK_SURFACES) -> "Scene":
         """Select at most ``count`` surfaces, evenly spaced."""
-        kept = np.unique(
-            np.linspace(0, len(self.surfaces) - 1, count).round().astype(np.intp)
-        )
+        rows = np.linspace(0, len(self.surfaces) - 1, count).round().astype(np.intp)
+        kept = self.surfaces[np.unique(rows)]
         return Scene(
-            tuple(
-                replace(each, reflectances=each.reflectances[kept])
-                for each in self.sets
-            )
+            tuple(replace(light_set, reflectances=kept) for light_set in self.sets)
         )
 
 
@@ -99,27 +96,22 @@ def make_scene(
             "the atlases have no entries", hint="give an atlas of reflectances"
         )
     observer.check_distinct(lights)
-    given: dict[str, tuple[Illuminant, ...]] = {NAMED_SET: tuple(dict.fromkeys(lights))}
-    named = given if lights else KMENT_LIGHTS
+    named: Mapping[str, tuple[Illuminant, ...]] = KMENT_LIGHTS
+    if lights:
+        named = {NAMED_SET: tuple(dict.fromkeys(lights))}
     nm = samples.wavelengths()
     weights = samples.xyz_weights()
     surfaces = on_grid(merged, nm)
-
-    def light_set(name: str, members: tuple[Illuminant, ...]) -> LightSet:
-        powers = np.stack(
-            [observer.illuminant_spd(member, step=samples.STEP) for member in members]
-        )
-        return LightSet(
-            nm,
-            surfaces,
-            tuple(map(str, members)),
-            powers / (powers @ weights[:, 1:2]),
-            weights,
-            members,
-            name,
-        )
-
-    return Scene(tuple(light_set(*each) for each in named.items()))
+    sets = []
+    for name, members in named.items():
+        spectra = [
+            observer.illuminant_spd(member, step=samples.STEP) for member in members
+        ]
+        powers = np.stack(spectra)
+        powers /= powers @ weights[:, 1:2]
+        labels = tuple(map(str, members))
+        sets.append(LightSet(nm, surfaces, labels, powers, weights, members, name))
+    return Scene(tuple(sets))
 
 
 HEADINGS = ("mean", "σ", "median", "2.5 %", "25 %", "75 %", "97.5 %")
@@ -127,9 +119,7 @@ HEADINGS = ("mean", "σ", "median", "2.5 %", "25 %", "75 %", "97.5 %")
 
 
 class Statistics(NamedTuple):
-    """Mean, standard deviation, median and quantiles of ΔE00, of 2.5, 25, 75 and 97.5
-    %.
-    """
+    """Mean, standard deviation, median and four quantiles in percent of ΔE00."""
 
     mean: float
     deviation: float
@@ -171,8 +161,9 @@ class RepresentationResult:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Results by mean error within each set of lights, titles of the ``sets`` by name,
-    and ``facts`` of the machine.
+    """Results by mean error in each set of lights, and ``facts`` of the machine.
+
+    ``sets``: titles of the sets by name.
     """
 
     facts: Mapping[str, str]
@@ -191,8 +182,9 @@ def compare(
     quick: bool = False,
     progress: ProgressCallback = ignore_progress,
 ) -> Comparison:
-    """Measure representations under all lights of a scene, with few repetitions if
-    ``quick``. Raises `UpliftError`.
+    """Measure representations under all lights of a scene; ``quick`` repeats less.
+
+    Raises `UpliftError`.
     """
     sets = {light_set.name: light_set.title for light_set in scene.sets}
     results = []
@@ -208,8 +200,9 @@ def compare(
                 RepresentationResult(*names, errors, floats, light_floats, ns)
             )
         progress(Progress("representations", done, len(representations)))
+    order = list(sets)
     results.sort(
-        key=lambda result: (list(sets).index(result.lights), result.statistics.mean)
+        key=lambda result: (order.index(result.lights), result.statistics.mean)
     )
     facts = {
         **environment(),
@@ -233,7 +226,7 @@ def represent(
 
     def atlas(names: Sequence[str], spectra: Array) -> Atlas:
         clipped = np.clip(spectra, 0, 1)
-        outside = int((np.abs(spectra - clipped) > SLACK).any(axis=1).sum())
+        outside = (np.abs(spectra - clipped) > SLACK).any(axis=1).sum()
         if outside:
             problem = (
                 f"{outside} of {len(names)} spectra leave [0, 1] as "
@@ -303,30 +296,22 @@ def cheapest(
     machine. Raises `OptionError`.
     """
     check_target(target)
-    return min(
-        (
-            result
-            for result in comparison.of(lights)
-            if result.statistics.q97_5 <= target
-        ),
-        key=lambda result: (
-            result.floats,
-            result.light_floats,
-            result.statistics.q97_5,
-        ),
-        default=None,
-    )
+    accurate = [
+        result for result in comparison.of(lights) if result.statistics.q97_5 <= target
+    ]
+    return min(accurate, key=_costs, default=None)
+
+
+def _costs(result: RepresentationResult) -> tuple[float, float, float]:
+    """Return the floats of a surface and of a light, and the error of 97.5 %."""
+    return result.floats, result.light_floats, result.statistics.q97_5
 
 
 def pareto(comparison: Comparison, lights: str) -> list[RepresentationResult]:
-    """Return the results that no other dominates in floats of a surface, floats of a
-    light, and error of 97.5 %.
-    """
+    """Return the results that no other dominates in both floats and error of 97.5 %."""
     results = comparison.of(lights)
-    rows = np.array(
-        [(row.floats, row.light_floats, row.statistics.q97_5) for row in results]
-    )
-    return [results[row] for row in sorted(front(rows))]
+    costs = np.array(list(map(_costs, results)))
+    return [results[row] for row in sorted(front(costs))]
 
 
 def records(comparison: Comparison) -> list[dict[str, Any]]:
@@ -336,10 +321,13 @@ def records(comparison: Comparison) -> list[dict[str, Any]]:
             "lights": result.lights,
             "representation": result.name,
             "family": result.family,
+            **result.statistics._asdict(),
+            "floats": result.floats,
+            "light_floats": result.light_floats,
+            "ns": result.ns.median,
+            "ns_least": result.ns.min,
+            "ns_most": result.ns.max,
         }
-        | result.statistics._asdict()
-        | {"floats": result.floats, "light_floats": result.light_floats}
-        | {"ns": result.ns.median, "ns_least": result.ns.min, "ns_most": result.ns.max}
         for result in comparison.results
     ]
 
@@ -368,15 +356,11 @@ class TunedFilter:
         """Return the filter's parameters as text."""
         if self.low_pass is None:
             return ""
-        named = zip(
-            filters.KINDS[self.kind].choices, self.low_pass.parameters, strict=True
-        )
-        return ", ".join(
-            [
-                f"extent {self.low_pass.extent}",
-                *(f"{key} {value:g}" for key, value in named),
-            ]
-        )
+        text = f"extent {self.low_pass.extent}"
+        names = filters.KINDS[self.kind].choices
+        for name, value in zip(names, self.low_pass.parameters, strict=True):
+            text += f", {name} {value:g}"
+        return text
 
 
 def candidates(kind: str, stride: int = FINE_STRIDE) -> list[Filter]:
@@ -407,10 +391,9 @@ def tune_filters(
         tried = candidates(kind, stride)
         encoders = [filters.resampling_matrix(low_pass, count).T for low_pass in tried]
         for light_set in scene.sets:
-            best = tried[int(_mean_errors(light_set, count, encoders).argmin())]
-            errors = error_statistics(
-                filters.filtered_point_samples(count, best), light_set
-            )
+            best = tried[_mean_errors(light_set, count, encoders).argmin()]
+            filtered = filters.filtered_point_samples(count, best)
+            errors = error_statistics(filtered, light_set)
             results.append(TunedFilter(kind, count, light_set.name, best, errors))
         progress(Progress("filters", done, len(tasks)))
     return tuple(results)
@@ -420,31 +403,26 @@ def _mean_errors(light_set: LightSet, count: int, encoders: Iterable[Array]) -> 
     """Mean ΔE00 of encoders (81, count) of the 5 nm table, faster than
     `error_statistics`.
     """
-    surfaces, lights = (
-        each[:, :: samples.TABLE_STRIDE]
-        for each in (light_set.reflectances, light_set.powers)
-    )
+    surfaces = light_set.reflectances[:, :: samples.TABLE_STRIDE]
+    lights = light_set.powers[:, :: samples.TABLE_STRIDE]
     to_xyz = samples.point_samples(count).xyz
-    products = (
-        (lights @ encoder)[:, None] * (surfaces @ encoder) for encoder in encoders
-    )
-    return np.array(
-        [
-            delta_e_2000(light_set.to_lab(to_xyz(each)), light_set.lab).mean()
-            for each in products
-        ]
-    )
+    errors = []
+    for encoder in encoders:
+        products = (lights @ encoder)[:, None] * (surfaces @ encoder)
+        lab = light_set.to_lab(to_xyz(products))
+        errors.append(delta_e_2000(lab, light_set.lab).mean())
+    return np.array(errors)
 
 
 def filter_records(tuned: Iterable[TunedFilter]) -> list[dict[str, Any]]:
     """Convert tuned filters to records."""
     return [
         {
-            "lights": each.lights,
-            "samples": each.count,
-            "filter": each.kind,
-            "parameters": each.parameters,
+            "lights": best.lights,
+            "samples": best.count,
+            "filter": best.kind,
+            "parameters": best.parameters,
+            **best.statistics._asdict(),
         }
-        | each.statistics._asdict()
-        for each in tuned
+        for best in tuned
     ]

@@ -9,6 +9,7 @@ from itertools import chain
 import numpy as np
 
 from uplift.colorimetry import observer
+from uplift.colorimetry.lights import Illuminant
 from uplift.common.arrays import Array
 from uplift.extras.palette.factor import factor_model
 from uplift.extras.scene.representations import (
@@ -43,14 +44,17 @@ def scene_representations(scene: Scene) -> tuple[Representation, ...]:
     return (*registered, *chain(_wavelengths(scene), _factors(scene), _moments(scene)))
 
 
+def _illuminants(scene: Scene) -> list[Illuminant]:
+    return list(chain.from_iterable(light_set.illuminants for light_set in scene.sets))
+
+
 def _wavelengths(scene: Scene) -> Iterator[Representation]:
     """Wavelengths, weights, and powers of the lights, as
     `uplift.extras.scene.wavelengths` fits them together.
     """
-    lights = list(
-        chain.from_iterable(light_set.illuminants for light_set in scene.sets)
+    setup = make_setup(
+        scene.surfaces, _illuminants(scene), wavelengths=samples.wavelengths()
     )
-    setup = make_setup(scene.surfaces, lights, wavelengths=samples.wavelengths())
     for count in WAVELENGTHS:
         yield fitted_wavelengths(choose(setup, count=count).sampling, scene.powers)
 
@@ -93,15 +97,12 @@ def _moments(scene: Scene) -> Iterator[Representation]:
     and RGB.
     """
     sensor = observer.sensor()
-    names = chain.from_iterable(light_set.illuminants for light_set in scene.sets)
-    lights = tuple(map(observer.light, names))
+    lights = tuple(map(observer.light, _illuminants(scene)))
     measured = scene.surfaces[:, :: samples.TABLE_STRIDE]
     for count in MOMENTS:
         model = Moments(count)
-        fitted = fit_entries(
-            Problem(sensor, model, lights), measured, sensor.rgb(measured)
-        )
-        encode = partial(
-            _known_rows, scene.surfaces, model.to_storage(fitted.multipliers)
-        )
+        problem = Problem(sensor, model, lights)
+        fitted = fit_entries(problem, measured, sensor.rgb(measured))
+        codes = model.to_storage(fitted.multipliers)
+        encode = partial(_known_rows, scene.surfaces, codes)
         yield tabulated(f"CM{count}", "moments of cubes", model, encode)

@@ -79,16 +79,10 @@ def cost_panels(comparison: Comparison) -> list[Panel]:
     rows = names(comparison)
 
     def point(result: RepresentationResult, cost: float) -> Point:
+        name = result.name
         error = max(result.statistics.q97_5, MIN_ERROR)
         colour = COLOURS.get(result.family, OTHER)
-        return Point(
-            rows.index(result.name),
-            result.name,
-            cost,
-            error,
-            colour,
-            group=result.family,
-        )
+        return Point(rows.index(name), name, cost, error, colour, group=result.family)
 
     panels = []
     for (name, title), (axis, (cost, text)) in product(
@@ -100,10 +94,13 @@ def cost_panels(comparison: Comparison) -> list[Panel]:
     return panels
 
 
+def _families(comparison: Comparison) -> dict[str, str]:
+    return family_colours((result.family for result in comparison.results), COLOURS)
+
+
 def write_costs(comparison: Comparison, path: StrPath, *, force: bool = False) -> None:
     """Write the panels of error over cost as PNG. Raises `OutputError`."""
-    families = family_colours((result.family for result in comparison.results), COLOURS)
-    legend = {name: {"color": colour} for name, colour in families.items()}
+    legend = {name: {"color": colour} for name, colour in _families(comparison).items()}
     write_panels(cost_panels(comparison), len(COSTS), path, legend, force=force)
 
 
@@ -115,17 +112,13 @@ def write_boxes(comparison: Comparison, path: StrPath, *, force: bool = False) -
 
 def page_boxes(comparison: Comparison) -> list[tuple[str, Markup]]:
     """Draw the box plots of each set of lights for a page."""
+    pictures = []
     with styled():
-        return [
-            (
-                capitalise(title),
-                to_page_svg(
-                    draw_boxes(comparison, [name], titles=False),
-                    f"Box plots under {title}",
-                ),
-            )
-            for name, title in comparison.sets.items()
-        ]
+        for name, title in comparison.sets.items():
+            figure = draw_boxes(comparison, [name], titles=False)
+            picture = to_page_svg(figure, f"Box plots under {title}")
+            pictures.append((capitalise(title), picture))
+    return pictures
 
 
 def draw_boxes(
@@ -136,31 +129,21 @@ def draw_boxes(
     """
     width, height = BOX_SIZE
     figure = new_figure(width * len(sets), height * len(names(comparison)) + 0.9)
-    for axes, name in zip(
-        figure.subplots(1, len(sets), squeeze=False)[0], sets, strict=True
-    ):
-        for row, result in enumerate(comparison.of(name)):
+    cells = figure.subplots(1, len(sets), squeeze=False)[0]
+    for axes, name in zip(cells, sets, strict=True):
+        results = comparison.of(name)
+        for row, result in enumerate(results):
             values = result.statistics
             colour = COLOURS.get(result.family, OTHER)
-            axes.hlines(
-                row,
-                max(values.q2_5, MIN_ERROR),
-                values.q97_5,
-                color=colour,
-                linewidth=1,
-            )
-            axes.barh(
-                row, values.q75 - values.q25, left=values.q25, height=0.62, color=colour
-            )
-            axes.vlines(
-                values.median, row - 0.31, row + 0.31, color="white", linewidth=1.4
-            )
+            low = max(values.q2_5, MIN_ERROR)
+            axes.hlines(row, low, values.q97_5, color=colour, linewidth=1)
+            width = values.q75 - values.q25
+            axes.barh(row, width, left=values.q25, height=0.62, color=colour)
+            ends = row - 0.31, row + 0.31
+            axes.vlines(values.median, *ends, color="white", linewidth=1.4)
         axes.axvline(VISIBLE, color=INK, linewidth=0.8, linestyle=(0, (3, 2)), zorder=0)
         axes.set(xscale="log", xlabel="ΔE00")
-        axes.set_yticks(
-            range(len(comparison.of(name))),
-            [result.name for result in comparison.of(name)],
-        )
+        axes.set_yticks(range(len(results)), [result.name for result in results])
         axes.margins(y=0.01)
         axes.invert_yaxis()
         axes.xaxis.set_major_formatter("{x:g}")
@@ -184,9 +167,7 @@ def render_comparison(comparison: Comparison, tuned: Sequence[TunedFilter] = ())
             for number, panel in panels
         ],
         boxes=page_boxes(comparison),
-        families=family_colours(
-            (result.family for result in comparison.results), COLOURS
-        ),
+        families=_families(comparison),
         tooltips=[_tooltip(name, comparison) for name in names(comparison)],
         sources=SOURCES,
         statistics=HEADINGS,

@@ -72,10 +72,8 @@ def holdout(
     By default the prior does not know the families that contain spectra of the atlas.
     """
     total = 2 + 2 * splits
-    options = {
-        "leave_out": families_with(resample(atlas, observer.grid()).values),
-        **options,
-    }
+    unknown = families_with(resample(atlas, observer.grid()).values)
+    options = {"leave_out": unknown, **options}
     settings = Options(**options)
     sensor = problem_of(settings, settings.observer, settings.solver)[1].sensor
     measured = resample(atlas, sensor.wavelengths).values
@@ -95,17 +93,14 @@ def holdout(
         results: list[HoldoutSplit] = []
         for kept, other in halves_both_ways(inside, splits):
             cube = build(Atlas(tuple(atlas.entries[row] for row in kept)), **options)
-            results.append(
-                _evaluate({HALF: cube, **others}, measured[kept], measured[other])
-            )
+            cubes = {HALF: cube, **others}
+            results.append(_evaluate(cubes, measured[kept], measured[other]))
             progress(Progress("builds", 2 + len(results), total))
     return tuple(results)
 
 
 def halves_both_ways(rows: Indices, splits: int) -> Iterator[tuple[Indices, Indices]]:
-    """Yield random halves of rows, known and queried, in both directions: every row is
-    queried equally often.
-    """
+    """Yield random halves of rows, known and queried, in both directions."""
     for seed in range(splits):
         first, second = (rows[half] for half in random_halves(len(rows), seed))
         yield first, second
@@ -113,28 +108,22 @@ def halves_both_ways(rows: Indices, splits: int) -> Iterator[tuple[Indices, Indi
 
 
 def random_halves(count: int, seed: int) -> tuple[Indices, Indices]:
-    """Divide the numbers up to ``count`` at random; the first half is the
-    larger one.
-    """
+    """Divide the numbers up to ``count`` at random; the first half is the larger."""
     first, second = np.array_split(np.random.default_rng(seed).permutation(count), 2)
     return first, second
 
 
 def _evaluate(cubes: dict[str, Cube], known: Array, measured: Array) -> HoldoutSplit:
-    """Predict reflectances (n, N) by cubes, and by a baseline that knows
-    others (E, N).
-    """
+    """Predict reflectances (n, N) by cubes, and by a baseline that knows (E, N)."""
     cube = cubes[HALF]
     sensor = cube.data.sensor
     rgb = np.clip(sensor.rgb(measured), 0, 1)
     predicted = {name: other.reflectance(rgb) for name, other in cubes.items()}
+    predicted[LOCAL_LINEAR] = local_linear(cube.data, known, rgb)
     errors = {
         name: spectrum_errors(spectra, measured) for name, spectra in predicted.items()
     }
     light = observer.light(cube.data.error_illuminant, sensor.observer)
-    errors[LOCAL_LINEAR] = spectrum_errors(
-        local_linear(cube.data, known, rgb), measured
-    )
     actual = delta_e_spectra(light, predicted[HALF], measured)
     return HoldoutSplit(errors, actual, cube.standard_error(rgb), cube.error_bound(rgb))
 
@@ -147,28 +136,25 @@ def spectrum_errors(
 
 
 def split_records(splits: Sequence[HoldoutSplit]) -> list[dict[str, Any]]:
-    """Return mean errors over the splits by method; that of the cube with half the
-    atlas has its calibration too.
-    """
+    """Return mean errors over the splits by method, and the first's calibration."""
     records: list[dict[str, Any]] = []
     for method in splits[0].errors:
-        means = np.mean(
-            [split.errors[method].means() for split in splits], axis=0
-        ).tolist()
-        named = dict(zip(("rms", *HELD_OUT_LIGHTS), means, strict=True))
-        records.append({"cube": method, "colours": len(splits[0].actual)} | named)
+        means = np.mean([split.errors[method].means() for split in splits], axis=0)
+        named = zip(("rms", *HELD_OUT_LIGHTS), means.tolist(), strict=True)
+        records.append(
+            {"cube": method, "colours": len(splits[0].actual), **dict(named)}
+        )
     # Over all splits together; small atlases have no standard errors.
-    parts = [
+    triples = [
         (split.actual, split.predicted, split.bound)
         for split in splits
         if split.predicted is not None
     ]
-    found = (
-        check_calibration(*(np.concatenate(part) for part in zip(*parts, strict=True)))
-        if parts
-        else None
-    )
-    records[0]["standard_error"] = found and found.to_json()
+    calibration = None
+    if triples:
+        pooled = map(np.concatenate, zip(*triples, strict=True))
+        calibration = check_calibration(*pooled)
+    records[0]["standard_error"] = calibration and calibration.to_json()
     return records
 
 
@@ -203,18 +189,14 @@ def local_linear(data: CubeData, known: Array, rgb: Array) -> Array:
     def predict(
         queries: Array, width: float, ridge: float, leave_out: bool = False
     ) -> Array:
-        spectra = np.clip(
-            regress(data.sensor, known, queries, width, ridge, leave_out),
-            LOWEST,
-            1 - LOWEST,
-        )
-        return with_least_change(data, spectra, queries)
+        spectra = regress(data.sensor, known, queries, width, ridge, leave_out)
+        clipped = np.clip(spectra, LOWEST, 1 - LOWEST)
+        return with_least_change(data, clipped, queries)
 
     def error(smoothing: tuple[float, float]) -> float:
         spectra = predict(colours, *smoothing, leave_out=True)
-        return float(
-            np.mean([delta_e_spectra(light, spectra, known) for light in lights])
-        )
+        errors = [delta_e_spectra(light, spectra, known) for light in lights]
+        return float(np.mean(errors))
 
     return predict(rgb, *min(product(BANDWIDTHS, RIDGES), key=error))
 
@@ -230,12 +212,10 @@ def with_least_change(data: CubeData, spectra: Array, rgb: Array) -> Array:
     damping = np.zeros(len(rgb))
     missed = rgb.T - sensor.matrix @ spectra.T
     for _ in range(MAX_STEPS):
-        with np.errstate(
-            over="ignore", invalid="ignore"
-        ):  # overflowing steps are rejected
-            trial = linear + forward.basis @ minimum_norm_step(
-                forward, linear, missed, damping
-            )
+        # Overflowing steps are rejected.
+        with np.errstate(over="ignore", invalid="ignore"):
+            step = minimum_norm_step(forward, linear, missed, damping)
+            trial = linear + forward.basis @ step
             left = rgb.T - sensor.matrix @ model.to_reflectance(trial)
         # As by Levenberg and Marquardt: the damping falls after a step that helped, and
         # rises after one that did not.
@@ -245,7 +225,7 @@ def with_least_change(data: CubeData, spectra: Array, rgb: Array) -> Array:
         damping = np.where(
             better, damping / 10, np.maximum(10 * damping, FIRST_DAMPING)
         )
-    return np.asarray(model.to_reflectance(linear).T)
+    return model.to_reflectance(linear).T
 
 
 def regress(
@@ -256,16 +236,15 @@ def regress(
     ridge: float,
     leave_out: bool = False,
 ) -> Array:
-    """Local-linear predictions (n, N) at linear RGB (n, 3); ``leave_out`` gives no
-    weight to a query's own row.
+    """Local-linear predictions (n, N) at linear RGB (n, 3); ``leave_out`` ignores a
+    query's own row.
     """
     colours = np.clip(sensor.rgb(known), 0, 1)
     squares = cdist(rgb_to_lab(sensor, rgb), rgb_to_lab(sensor, colours), "sqeuclidean")
     if leave_out:
         np.fill_diagonal(squares, np.inf)
-    squares -= squares.min(
-        axis=1, keepdims=True
-    )  # far queries keep the weight of the nearest colour
+    # Far queries keep the weight of the nearest colour.
+    squares -= squares.min(axis=1, keepdims=True)
     weights = np.exp(-squares / (2 * width**2))
     weights /= weights.sum(axis=1, keepdims=True)
     offsets = colours[None] - rgb[:, None]
@@ -273,4 +252,4 @@ def regress(
     weighted = weights[:, :, None] * terms
     matrix = weighted.mT @ terms + ridge * np.diag([0.0, 1, 1, 1])
     first = np.linalg.solve(matrix, np.broadcast_to(np.eye(4)[:, :1], (len(rgb), 4, 1)))
-    return np.asarray((weighted @ first)[:, :, 0] @ known)
+    return (weighted @ first)[:, :, 0] @ known

@@ -8,7 +8,7 @@ measurement, as in Tódová 2020, *Constrained Spectral Uplifting*, table 4.1, s
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import product
+from itertools import product, starmap
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -47,10 +47,8 @@ class Technique:
     @property
     def label(self) -> str:
         """Full name, such as ``mirrored, warped``."""
-        return (
-            f"{'mirrored' if self.mirrored else 'unmirrored'}, "
-            f"{'warped' if self.warped else 'unwarped'}"
-        )
+        mirrored = "mirrored" if self.mirrored else "unmirrored"
+        return f"{mirrored}, {'warped' if self.warped else 'unwarped'}"
 
     def floats(self, moments: int) -> int:
         """Real numbers stored per spectrum."""
@@ -93,19 +91,17 @@ class Technique:
         )
         multipliers = duality.multipliers_from_moments(moments, solve)
         waves = duality.fourier_basis(self.phase(wavelengths), moments.shape[1])
-        return np.asarray(0.5 + np.arctan((multipliers @ waves.T).real) / np.pi)
+        return 0.5 + np.arctan((multipliers @ waves.T).real) / np.pi
 
 
-TECHNIQUES = tuple(
-    Technique(mirrored, warped) for mirrored, warped in product((True, False), repeat=2)
-)
+TECHNIQUES = tuple(starmap(Technique, product((True, False), repeat=2)))
 """All techniques, in the order of the tables of the thesis."""
 
 
-DEFAULT_MAX_MOMENTS, MAX_MOMENTS = 15, 32
-"""Largest number of moments above the zeroth: in the thesis, and of cosines that a 5 nm
-grid still resolves.
-"""
+DEFAULT_MAX_MOMENTS = 15
+"""Largest number of moments above the zeroth in the thesis."""
+MAX_MOMENTS = 32
+"""Largest number of cosines that a 5 nm grid still resolves."""
 MEASURES = ("delta_e_76_D65", *(f"delta_e_00_{name}" for name in REPORT_LIGHTS), "rms")
 """Error measures: ΔE76 under D65 as in the thesis, ΔE00 under every light, rms
 difference of the spectra.
@@ -151,13 +147,8 @@ class MomentsStudy:
 
     def rows(self, group: str = ALL_ATLASES) -> Indices:
         """Entries of a group."""
-        return np.array(
-            [
-                row
-                for row, atlas in enumerate(self.atlases)
-                if group in (ALL_ATLASES, atlas)
-            ]
-        )
+        atlases = np.array(self.atlases)
+        return np.flatnonzero((group == ALL_ATLASES) | (atlases == group))
 
     def result(
         self, technique: Technique, moments: int, group: str = ALL_ATLASES
@@ -165,9 +156,8 @@ class MomentsStudy:
         """Summarise the errors of a group for one technique and number of moments."""
         rows = self.rows(group)
         errors = self.errors[TECHNIQUES.index(technique), moments, rows]
-        return MomentsResult(
-            errors.mean(axis=0), errors.max(axis=0), int(rows[errors[:, 0].argmax()])
-        )
+        worst = int(rows[errors[:, 0].argmax()])
+        return MomentsResult(errors.mean(axis=0), errors.max(axis=0), worst)
 
     def curves(self) -> dict[Technique, Array]:
         """Numbers stored, mean and largest ΔE76 (max_moments + 1, 3) of all entries
@@ -183,27 +173,24 @@ class MomentsStudy:
         """Return a flat record for every group, technique and count, with mean and
         maximum of every measure.
         """
-        return [
-            self._record(*each)
-            for each in product(self.groups, TECHNIQUES, range(self.max_moments + 1))
-        ]
+        counts = range(self.max_moments + 1)
+        return list(starmap(self._record, product(self.groups, TECHNIQUES, counts)))
 
     def _record(self, group: str, technique: Technique, moments: int) -> dict[str, Any]:
         result = self.result(technique, moments, group)
-        mapping = {"mirrored": technique.mirrored, "warped": technique.warped}
-        size = {"moments": moments, "floats": technique.floats(moments)}
         errors = {}
         for row, name in enumerate(MEASURES):
             errors[f"{name}_mean"] = float(result.mean[row])
             errors[f"{name}_max"] = float(result.max[row])
-        worst = self.names[result.worst]
         return {
             "atlas": group,
             "entries": len(self.rows(group)),
-            **mapping,
-            **size,
+            "mirrored": technique.mirrored,
+            "warped": technique.warped,
+            "moments": moments,
+            "floats": technique.floats(moments),
             **errors,
-            "worst": worst,
+            "worst": self.names[result.worst],
         }
 
 
@@ -247,14 +234,9 @@ def study_moments(
                 *map(delta_e_2000, actual, expected),
             ]
             errors[row, count] = np.stack([*delta_e, rms], axis=1)
-            progress(
-                Progress(
-                    "reconstructions",
-                    row * counts + count + 1,
-                    len(TECHNIQUES) * counts,
-                )
-            )
-    origins = list[str]()
-    for name, single in atlases.items():
-        origins += [name] * len(single)
+            done = row * counts + count + 1
+            progress(Progress("reconstructions", done, len(TECHNIQUES) * counts))
+    origins: list[str] = []
+    for name, entries in atlases.items():
+        origins += [name] * len(entries)
     return MomentsStudy(atlas.names, tuple(origins), measured, errors)

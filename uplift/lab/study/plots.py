@@ -3,7 +3,7 @@ an entry affects a cube.
 """
 
 import itertools
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -34,7 +34,6 @@ PATCHES = ("neutral 5 (.70 D)", "blue flower")
 """Patches of the ColorChecker in the thesis."""
 WARPED, UNWARPED = TECHNIQUES[:2]
 COLOURS = {WARPED: "#d1495b", UNWARPED: "#1f6fb4"}
-LINE: dict[str, Any] = {"linewidth": 1.6, "markersize": 3.5}
 WARPED_STYLE: dict[str, Any] = {"linestyle": "-", "marker": "o"}
 UNWARPED_STYLE: dict[str, Any] = {
     "linestyle": (0, (3, 1.5)),
@@ -57,15 +56,14 @@ def plot_errors(
     for pair, (name, curves) in zip(panels, rows.items(), strict=True):
         for axes, column, title in zip(pair, (1, 2), ("mean", "largest"), strict=True):
             for technique, curve in curves.items():
-                style = WARPED_STYLE if technique.warped else UNWARPED_STYLE
-                colour = "#1f6fb4" if technique.mirrored else "#d98200"
                 axes.plot(
                     curve[:, 0],
                     curve[:, column],
-                    color=colour,
+                    color="#1f6fb4" if technique.mirrored else "#d98200",
                     label=technique.label,
-                    **LINE,
-                    **style,
+                    linewidth=1.6,
+                    markersize=3.5,
+                    **(WARPED_STYLE if technique.warped else UNWARPED_STYLE),
                 )
             axes.set_yscale("log")
             axes.yaxis.set_major_formatter("{x:g}")
@@ -85,21 +83,17 @@ def plot_errors(
 
 
 def plot_patches(study: MomentsStudy, path: StrPath, *, force: bool = False) -> None:
-    """Write the patches of the thesis, or the first entries of other
-    atlases, as PNG.
-    """
+    """Write the patches of the thesis, or other first entries, as PNG."""
     patches = [study.names.index(name) for name in PATCHES if name in study.names]
-    _plot_spectra(
-        study, [patches or range(min(2, len(study.names)))], path, force=force
-    )
+    drawn = patches or range(min(2, len(study.names)))
+    _plot_spectra(study, [drawn], path, force=force)
 
 
 def plot_worst(study: MomentsStudy, path: StrPath, *, force: bool = False) -> None:
     """Write the worst two entries of mirroring, warped (top) and unwarped, as PNG."""
     errors = study.errors[: len(COLOURS), _drawn_moments(study), :, 0]
-    _plot_spectra(
-        study, [np.argsort(row)[::-1][:2] for row in errors], path, force=force
-    )
+    worst = errors.argsort(axis=1)[:, ::-1][:, :2]
+    _plot_spectra(study, worst.tolist(), path, force=force)
 
 
 def _drawn_moments(study: MomentsStudy) -> int:
@@ -107,35 +101,23 @@ def _drawn_moments(study: MomentsStudy) -> int:
 
 
 def _plot_spectra(
-    study: MomentsStudy, rows: Sequence[Iterable[int]], path: StrPath, *, force: bool
+    study: MomentsStudy, rows: Sequence[Sequence[int]], path: StrPath, *, force: bool
 ) -> None:
-    """Draw a panel for every entry, measured and reconstructed; all rows have equal
-    lengths.
-    """
-    entries = [list(row) for row in rows]
+    """Draw every entry, measured and reconstructed; all rows have equal lengths."""
     moments = _drawn_moments(study)
-    figure = new_figure(9.0, 3.6 * len(entries))
-    panels = figure.subplots(len(entries), len(entries[0]), squeeze=False)
-    for axes, entry in zip(panels.flat, itertools.chain(*entries), strict=True):
+    nm = samples.wavelengths()
+    figure = new_figure(9.0, 3.6 * len(rows))
+    panels = figure.subplots(len(rows), len(rows[0]), squeeze=False)
+    for axes, entry in zip(panels.flat, itertools.chain(*rows), strict=True):
         measured = study.measured[entry : entry + 1]
-        axes.plot(
-            samples.wavelengths(),
-            measured[0],
-            color="0.15",
-            linewidth=3.0,
-            alpha=0.35,
-            label="measured",
-        )
+        style: dict[str, Any] = {"color": "0.15", "linewidth": 3.0, "alpha": 0.35}
+        axes.plot(nm, measured[0], label="measured", **style)
         for technique, colour in COLOURS.items():
-            found = technique.reconstruct(
-                technique.moments(measured, samples.wavelengths(), moments),
-                samples.wavelengths(),
-            )[0]
+            stored = technique.moments(measured, nm, moments)
+            spectrum = technique.reconstruct(stored, nm)[0]
             error = study.errors[TECHNIQUES.index(technique), moments, entry, 0]
             label = f"{'warped' if technique.warped else 'unwarped'}, ΔE76 {error:.2f}"
-            axes.plot(
-                samples.wavelengths(), found, color=colour, linewidth=1.5, label=label
-            )
+            axes.plot(nm, spectrum, color=colour, linewidth=1.5, label=label)
         style_spectrum_axes(axes)
         # Dark entries fill their panel, with room for the legend above.
         axes.set_ylim(0, min(1.02, 1.5 * measured.max() + 0.02))
@@ -169,23 +151,16 @@ def plot_map(
     Dots to the right of the line are failures, hollow ones builds with failed stand-ins
     of unrealisable nodes. ``runs`` are records of `uplift.lab.study.stability.run`.
     """
-    names = [
-        run["model"]
-        if run["model"] == Sigmoid.name
-        else f"moments {run['coefficients']:2}"
-        for run in runs
-    ]
-    runs = [{**each, "model": name} for each, name in zip(runs, names, strict=True)]
-    ratios = np.clip([each["worst"] / each["threshold"] for each in runs], *RATIOS)
-    faces = ["white" if each["stand_ins"] else ACCENT for each in runs]
+    ratios = np.clip([run["worst"] / run["threshold"] for run in runs], *RATIOS)
+    faces = ["white" if run["stand_ins"] else ACCENT for run in runs]
     figure = new_figure(11.0, 2.9)
-    for axes, option in zip(
-        figure.subplots(1, len(PANELS), sharex=True), PANELS, strict=True
-    ):
-        values = sorted(
-            {each[option] for each in runs}, key=lambda value: (str(type(value)), value)
-        )
-        rows = [values.index(each[option]) for each in runs]
+    panels = figure.subplots(1, len(PANELS), sharex=True)
+    for axes, option in zip(panels, PANELS, strict=True):
+        of_run = [run[option] for run in runs]
+        if option == "model":
+            of_run = list(map(_model_label, runs))
+        values = sorted(set(of_run))
+        rows = list(map(values.index, of_run))
         axes.axvline(1, color=HIGHLIGHT, linewidth=1)
         axes.scatter(
             ratios,
@@ -197,12 +172,9 @@ def plot_map(
             alpha=0.6,
             clip_on=False,
         )
-        ticks = [
-            f"{value:.0e}"
-            if option == "threshold"
-            else str(value).removeprefix("ITU-R ")
-            for value in values
-        ]
+        ticks = [str(value).removeprefix("ITU-R ") for value in values]
+        if option == "threshold":
+            ticks = [f"{value:.0e}" for value in values]
         axes.set_yticks(range(len(ticks)), map(figure_text, ticks), fontsize=9)
         axes.set(xscale="log", xlim=RATIOS, ylim=(len(ticks) - 0.5, -0.5))
         axes.xaxis.set_major_formatter("{x:g}")
@@ -212,6 +184,12 @@ def plot_map(
         "largest residual / threshold; 1 would be a failure", fontsize=9, color=GREY
     )
     write_png(figure, path, force=force)
+
+
+def _model_label(run: Mapping[str, Any]) -> str:
+    if run["model"] == Sigmoid.name:
+        return Sigmoid.name
+    return f"moments {run['coefficients']:2}"
 
 
 HIGHLIGHT = "#ff5a00"
@@ -230,15 +208,13 @@ def plot_locality(
     changes = [change for change in changes if change.description.endswith("left out")]
     figure = new_figure(10.0, 4.0)
     panels = figure.subplots(1, 2, sharey=True)
-    delta_e = np.maximum(
-        np.concatenate([change.delta_e for change in changes]), MIN_DELTA_E
-    )
+    delta_e = np.concatenate([change.delta_e for change in changes])
+    delta_e = np.maximum(delta_e, MIN_DELTA_E)
     distances = np.concatenate(
         [change.distance for change in changes if change.distance is not None], axis=1
     )
-    for axes, distance, unit in zip(
-        panels, distances, ("linear RGB", "ΔE*ab"), strict=True
-    ):
+    units = ("linear RGB", "ΔE*ab")
+    for axes, distance, unit in zip(panels, distances, units, strict=True):
         _scatter(axes, distance, delta_e)
         axes.set(xlabel=f"distance from the entry, {unit}")
     panels[0].set(ylabel=f"ΔE00 change of a node, {NARROW_BAND_LIGHT}")
@@ -254,22 +230,19 @@ def plot_locality(
 def _scatter(axes: Any, distance: Array, delta_e: Array) -> None:
     """Draw the density of points, and their maximum and median over the distance."""
     visible = delta_e > MIN_DELTA_E
-    farthest = float(distance[visible].max(initial=0.1))
-    highest = max(float(delta_e.max()), 2 * MOVED_DELTA_E)
+    farthest = distance[visible].max(initial=0.1)
+    highest = max(delta_e.max(), 2 * MOVED_DELTA_E)
     extent = (0, farthest, np.log10(MIN_DELTA_E), np.log10(highest))
-    style: dict[str, Any] = {
-        "gridsize": (60, 34),
-        "cmap": colour_map(),
-        "linewidths": 0,
-        "mincnt": 1,
-    }
     axes.hexbin(
         distance[visible],
         delta_e[visible],
         yscale="log",
         bins="log",
         extent=extent,
-        **style,
+        gridsize=(60, 34),
+        cmap=colour_map(),
+        linewidths=0,
+        mincnt=1,
     )
     edges = np.linspace(0, farthest, BINS + 1)
     bin_of = np.digitize(distance, edges[1:-1])
@@ -282,13 +255,14 @@ def _scatter(axes: Any, distance: Array, delta_e: Array) -> None:
         values = [statistic(delta_e[bin_of == bin]) for bin in used]
         axes.plot(centres, values, color=colour, linewidth=1.6, label=label)
     axes.axhline(MOVED_DELTA_E, color="0.4", linewidth=0.8, linestyle=(0, (4, 3)))
-    place: dict[str, Any] = {
-        "xycoords": ("axes fraction", "data"),
-        "ha": "right",
-        "va": "bottom",
-        "fontsize": 8,
-    }
-    axes.annotate(f"ΔE00 {MOVED_DELTA_E:g}", (1, MOVED_DELTA_E), **place)
+    axes.annotate(
+        f"ΔE00 {MOVED_DELTA_E:g}",
+        (1, MOVED_DELTA_E),
+        xycoords=("axes fraction", "data"),
+        ha="right",
+        va="bottom",
+        fontsize=8,
+    )
     axes.yaxis.set_major_formatter("{x:g}")
     axes.set_xlim(0, 1.05 * farthest)
     style_axes(axes)

@@ -28,16 +28,16 @@ abruptly.
 """
 CODE_STEPS = {"1/255": 1.0, "1/1023": 255 / 1023}
 """Steps of one code of 8 and of 10 bits, in 8-bit codes."""
-ROUNDING, ROUNDING_STEP = "1e-7", 1e-7
+ROUNDING_STEP = 1e-7
 """Rounding of a float32, in linear RGB."""
 NOISE = 0.002
 """Repeatability of a spectrophotometer: standard deviation of a reflectance."""
 NOISE_DRAWS = 3
 """Number of atlases with noise."""
-HALVINGS, HALVED = 16, 16
-"""Halvings of a step, after which that of an 8-bit code is rounding, and number of
-colours whose steps are halved.
-"""
+HALVINGS = 16
+"""Halvings of a step, after which that of an 8-bit code is rounding."""
+HALVED = 16
+"""Number of colours whose steps are halved."""
 MOVED_DELTA_E = 0.5
 """ΔE00 above which a node counts as moved: half of a just noticeable difference."""
 Record = dict[str, Any]
@@ -63,24 +63,23 @@ class Change:
     @property
     def moved(self) -> Mask:
         """Nodes (n,) that change by more than `MOVED_DELTA_E`."""
-        return np.asarray(self.delta_e > MOVED_DELTA_E)
+        return self.delta_e > MOVED_DELTA_E
 
     def record(self) -> Record:
         """Convert to JSON values; the radii are the largest distances of moved nodes, 0
         if no node moved.
         """
-        radii = (
-            [None, None]
-            if self.distance is None
-            else self.distance[:, self.moved].max(axis=1, initial=0).tolist()
-        )
-        record: Record = {"change": self.description, "moved": float(self.moved.mean())}
-        record |= dict(zip(("rgb_radius", "lab_radius"), radii, strict=True))
-        return (
-            record
-            | _mean_and_most("delta_e", self.delta_e)
-            | _mean_and_most("rms", self.rms)
-        )
+        radii = [None, None]
+        if self.distance is not None:
+            radii = self.distance[:, self.moved].max(axis=1, initial=0).tolist()
+        return {
+            "change": self.description,
+            "moved": float(self.moved.mean()),
+            "rgb_radius": radii[0],
+            "lab_radius": radii[1],
+            **_mean_and_most("delta_e", self.delta_e),
+            **_mean_and_most("rms", self.rms),
+        }
 
 
 def study_sensitivity(
@@ -106,9 +105,8 @@ def study_sensitivity(
         kept = [entry for entry in atlas.entries if entry.name in before.atlas.names]
         jobs = list(changed_atlases(kept, before.atlas.names[:entries]))
         for number, (description, name, changed) in enumerate(jobs, 1):
-            changes.append(
-                compare(before, rebuild(changed, options), light, description, name)
-            )
+            after = rebuild(changed, options)
+            changes.append(compare(before, after, light, description, name))
             progress(Progress("builds", number, len(jobs)))
     return perturb(cube, light), changes
 
@@ -127,9 +125,8 @@ def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Record]:
     lights = light, cube.data.sensor.light
     moves: list[Record] = []
     for mode in CONTINUOUS_MODES:
-        moves += perturb_answers(
-            mode, partial(cube.reflectance, mode=mode), cube.decode, lights, count
-        )
+        answer = partial(cube.reflectance, mode=mode)
+        moves += perturb_answers(mode, answer, cube.decode, lights, count)
     return moves
 
 
@@ -148,25 +145,28 @@ def perturb_answers(
     signs = rng.choice([-1.0, 1.0], (count, 3))
     rgb = decode(codes)
     moved = {name: decode(codes + step * signs) for name, step in CODE_STEPS.items()}
-    moved[ROUNDING] = np.clip(rgb + ROUNDING_STEP * signs, 0, 1)
+    moved["1e-7"] = np.clip(rgb + ROUNDING_STEP * signs, 0, 1)
     before = answer(rgb)
-    found = []
+    moves: list[Record] = []
     for step, colours in moved.items():
         after = answer(colours)
-        delta_e = delta_e_spectra(lights[0], before, after)
+        delta_e, of_illuminant = (
+            delta_e_spectra(light, before, after) for light in lights
+        )
         largest = np.argsort(delta_e)[-HALVED:]
-        move: Record = {"mode": mode, "step": step} | _mean_and_most(
-            "rms", _rms(after - before)
+        ends = rgb[largest], colours[largest]
+        moves.append(
+            {
+                "mode": mode,
+                "step": step,
+                **_mean_and_most("rms", _rms(after - before)),
+                "largest": float(np.abs(after - before).max()),
+                **_mean_and_most("light", delta_e),
+                **_mean_and_most("own", of_illuminant),
+                "jump": _largest_jump(answer, lights[0], *ends),
+            }
         )
-        move |= {"largest": float(np.abs(after - before).max())} | _mean_and_most(
-            "light", delta_e
-        )
-        move |= _mean_and_most("own", delta_e_spectra(lights[1], before, after))
-        found.append(
-            move
-            | {"jump": _largest_jump(answer, lights[0], rgb[largest], colours[largest])}
-        )
-    return found
+    return moves
 
 
 def _largest_jump(answer: Answer, light: Light, first: Array, second: Array) -> float:
@@ -178,10 +178,9 @@ def _largest_jump(answer: Answer, light: Light, first: Array, second: Array) -> 
     for _ in range(HALVINGS):
         middle = (first + second) / 2
         between = answer(middle)
-        is_first = (
-            delta_e_spectra(light, before, between)
-            > delta_e_spectra(light, between, after)
-        )[:, None]
+        to_middle = delta_e_spectra(light, before, between)
+        from_middle = delta_e_spectra(light, between, after)
+        is_first = (to_middle > from_middle)[:, None]
         first = np.where(is_first, first, middle)
         second = np.where(is_first, middle, second)
         before = np.where(is_first, before, between)
@@ -192,31 +191,28 @@ def _largest_jump(answer: Answer, light: Light, first: Array, second: Array) -> 
 def changed_atlases(
     entries: Sequence[Entry], names: Sequence[str]
 ) -> Iterator[tuple[str, str, list[Entry]]]:
-    """Yield descriptions of changes, the changed entry, empty if all changed, and the
-    changed entries.
+    """Yield descriptions of changes, the changed entry, empty if all changed, and all
+    entries.
 
     Changes are `NOISE` on all entries, an entry with its wavelengths in reverse order,
     as an example of a wrong measurement, and an entry left out.
     """
     for seed in range(NOISE_DRAWS):
         rng = np.random.default_rng(seed)
-        noisy = [
-            (entry, entry.values + rng.normal(0, NOISE, len(entry.values)))
-            for entry in entries
-        ]
-        changed = [
-            replace(each, values=np.clip(values, LOWEST, HIGHEST))
-            for each, values in noisy
-        ]
-        yield f"noise, draw {seed}", "", changed
+        noisy = []
+        for entry in entries:
+            values = entry.values + rng.normal(0, NOISE, len(entry.values))
+            noisy.append(replace(entry, values=np.clip(values, LOWEST, HIGHEST)))
+        yield f"noise, draw {seed}", "", noisy
     for name in names:
         reverse = [
-            replace(each, values=each.values[::-1]) if each.name == name else each
-            for each in entries
+            replace(entry, values=entry.values[::-1]) if entry.name == name else entry
+            for entry in entries
         ]
         yield f"{name} wrong", name, reverse
     for name in names:
-        yield f"{name} left out", name, [each for each in entries if each.name != name]
+        others = [entry for entry in entries if entry.name != name]
+        yield f"{name} left out", name, others
 
 
 def compare(
@@ -229,40 +225,28 @@ def compare(
         reflectance(data.model, data.points.coefficients, data.sensor.wavelengths)
         for data in (before, after)
     ]
-    atlases = (before.atlas, after.atlas)
-    points = before.lattice.points
     distance = None
     if name:
-        rgb = np.array(
-            [
-                atlas.rgb[atlas.names.index(name)]
-                for atlas in atlases
-                if name in atlas.names
-            ]
-        )
-        spaces = (
-            (points, rgb),
-            [rgb_to_lab(before.sensor, colours) for colours in (points, rgb)],
-        )
-        distance = np.array([cdist(*pair).min(axis=1) for pair in spaces])
-    return Change(
-        description,
-        _rms(spectra[1] - spectra[0]),
-        delta_e_spectra(light, *spectra),
-        distance,
-    )
+        rgb = [
+            atlas.rgb[atlas.names.index(name)]
+            for atlas in (before.atlas, after.atlas)
+            if name in atlas.names
+        ]
+        colours = (before.lattice.points, np.array(rgb))
+        labs = [rgb_to_lab(before.sensor, colour) for colour in colours]
+        distance = np.array([cdist(*pair).min(axis=1) for pair in (colours, labs)])
+    rms = _rms(spectra[1] - spectra[0])
+    return Change(description, rms, delta_e_spectra(light, *spectra), distance)
 
 
 def rebuild(entries: Sequence[Entry], options: Record) -> CubeData:
-    """Build a cube from entries without warnings, as those of changed entries are
-    expected.
-    """
+    """Build a cube from entries without the warnings that changed entries cause."""
     with warnings.catch_warnings(action="ignore", category=UpliftWarning):
         return build(Atlas(tuple(entries)), **options).data
 
 
 def _rms(difference: Array) -> Array:
-    return np.asarray(np.sqrt((difference**2).mean(axis=1)))
+    return np.sqrt((difference**2).mean(axis=1))
 
 
 def _mean_and_most(name: str, values: Array) -> Record:

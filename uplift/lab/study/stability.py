@@ -42,20 +42,13 @@ HIGHEST = 1.05
 def crowded() -> Atlas:
     """Make 120 smooth spectra of one paint, whose colours differ by about 1 ΔE."""
     rng = np.random.default_rng(1)
-    slope = np.tanh((observer.grid() - 580) / 60)
-    return _atlas(
-        "crowded",
-        [
-            0.3 + 0.15 * slope + _smooth_deviation(rng, 0.01)
-            for _ in range(CROWDED_ENTRIES)
-        ],
-    )
+    paint = 0.3 + 0.15 * np.tanh((observer.grid() - 580) / 60)
+    spectra = [paint + _smooth_deviation(rng, 0.01) for _ in range(CROWDED_ENTRIES)]
+    return _atlas("crowded", spectra)
 
 
 def spiky() -> Atlas:
-    """Make spectra of two narrow peaks on black, or two narrow dips on white, which few
-    moments cannot represent.
-    """
+    """Make spectra of two narrow peaks or dips, which few moments cannot represent."""
     rng = np.random.default_rng(2)
     spectra = []
     for number in range(ENTRIES):
@@ -71,9 +64,8 @@ def noisy() -> Atlas:
     spectra = []
     for level in np.linspace(0.05, 0.95, ENTRIES):
         noise = rng.normal(0, ATLAS_NOISE, len(observer.grid()))
-        spectra.append(
-            np.clip(level + _smooth_deviation(rng, 0.1) + noise, LOWEST, HIGHEST)
-        )
+        reflectance = level + _smooth_deviation(rng, 0.1) + noise
+        spectra.append(np.clip(reflectance, LOWEST, HIGHEST))
     return _atlas("noisy", spectra)
 
 
@@ -87,18 +79,15 @@ SYNTHETIC_ATLASES: dict[str, Callable[[], Atlas]] = {
 def _smooth_deviation(rng: np.random.Generator, amplitude: float) -> Array:
     """Random sum (N,) of the first four cosines over the range."""
     phase = np.linspace(0, np.pi, len(observer.grid()))
-    return np.asarray(
-        np.cos(phase[:, None] * np.arange(1, 5)) @ rng.normal(0, amplitude, 4)
-    )
+    return np.cos(phase[:, None] * np.arange(1, 5)) @ rng.normal(0, amplitude, 4)
 
 
 def _atlas(name: str, spectra: list[Array]) -> Atlas:
-    return Atlas(
-        tuple(
-            Entry(f"{name} {number}", observer.grid(), row)
-            for number, row in enumerate(spectra, 1)
-        )
-    )
+    entries = [
+        Entry(f"{name} {number}", observer.grid(), row)
+        for number, row in enumerate(spectra, 1)
+    ]
+    return Atlas(tuple(entries))
 
 
 NO_ATLAS = "none"
@@ -119,11 +108,9 @@ class RunConfig:
     @property
     def model_label(self) -> str:
         """Model with its number of coefficients, such as ``moments 9``."""
-        return (
-            self.model
-            if self.model == Sigmoid.name
-            else f"{self.model} {self.coefficients}"
-        )
+        if self.model == Sigmoid.name:
+            return self.model
+        return f"{self.model} {self.coefficients}"
 
 
 def study_stability(
@@ -222,10 +209,8 @@ class DesignSpace:
 
     def grids(self) -> Iterator[RunConfig]:
         """Yield every variant at the values of one axis, the others fixed."""
-        usual, small = (
-            min(self.dims, key=lambda dim: abs(dim - size))
-            for size in (RunConfig.dim, SMALL_DIM)
-        )
+        usual = min(self.dims, key=lambda dim: abs(dim - RunConfig.dim))
+        small = min(self.dims, key=lambda dim: abs(dim - SMALL_DIM))
         grids: tuple[tuple[str, tuple[Any, ...], dict[str, Any]], ...] = (
             ("space", self.spaces, {"dim": usual}),
             ("threshold", self.thresholds, {"dim": usual}),
@@ -248,12 +233,15 @@ class DesignSpace:
         hypercube = qmc.LatinHypercube(len(axes), rng=np.random.default_rng(SEED))
         rows = hypercube.random(self.samples) * [len(axis) for axis in axes]
         drawn = []
-        for row in rows.astype(int):
-            variant, dim, space, threshold, atlas = (
-                axis[i] for axis, i in zip(axes, row, strict=True)
-            )
+        for variant, dim, space, threshold, atlas in rows.astype(int):
             drawn.append(
-                replace(variant, dim=dim, space=space, threshold=threshold, atlas=atlas)
+                replace(
+                    self.variants[variant],
+                    dim=dims[dim],
+                    space=self.spaces[space],
+                    threshold=self.thresholds[threshold],
+                    atlas=self.atlases[atlas],
+                )
             )
         return tuple(drawn)
 
