@@ -55,8 +55,7 @@ def examples_by_page() -> dict[str, list[str]]:
     """
     paths = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md"))]
     texts = {
-        path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
-        for path in paths
+        path.relative_to(ROOT).as_posix(): path.read_text("utf-8") for path in paths
     }
     del texts[TUTORIAL]
     listed = {

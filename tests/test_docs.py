@@ -26,11 +26,11 @@ from uplift.extras import formats
 from uplift.samples import sample_path
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-REFERENCE = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
-COVERAGE = (ROOT / "docs" / "coverage.md").read_text(encoding="utf-8")
-CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
-PYTHON = (ROOT / "docs" / "reference" / "python.md").read_text(encoding="utf-8")
+REFERENCE = (ROOT / "docs" / "commands.md").read_text("utf-8")
+COVERAGE = (ROOT / "docs" / "coverage.md").read_text("utf-8")
+CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text("utf-8")
+PYTHON = (ROOT / "docs" / "reference" / "python.md").read_text("utf-8")
 CODE = ("uplift", "cli", "benchmarks", "tools")
 LINES = [
     each.split(" > ")[0].split(" | ")[0]
@@ -116,9 +116,7 @@ def test_the_skeleton_of_a_reader_and_its_test_run(tmp_path, monkeypatch):
 
 def test_links_resolve():
     for page in PAGES:
-        for target in re.findall(
-            r"\]\((?!http)([^)#]+)\)", page.read_text(encoding="utf-8")
-        ):
+        for target in re.findall(r"\]\((?!http)([^)#]+)\)", page.read_text("utf-8")):
             assert (page.parent / target).exists(), f"{page.name}: {target}"
 
 
@@ -145,19 +143,18 @@ def test_no_two_pages_have_one_title():
         ROOT / "atlases" / "README.md",
     ]
     headings = [
-        re.search("^# .+", page.read_text(encoding="utf-8"), re.MULTILINE)
-        for page in pages
+        re.search("^# .+", page.read_text("utf-8"), re.MULTILINE) for page in pages
     ]
     titles = [heading[0] for heading in headings if heading]
     for module in (ROOT / "uplift").rglob("*.py"):
-        source = module.read_text(encoding="utf-8")
+        source = module.read_text("utf-8")
         for template, title in re.findall(
             r'render\(\s+"(.+\.j2)",\s+title=(.+),\n', source
         ):
             constant = re.search(rf"^{re.escape(title)} = .+", source, re.MULTILINE)
             suffix = re.search(
                 "block title %}.+",
-                (ROOT / "uplift" / template).read_text(encoding="utf-8"),
+                (ROOT / "uplift" / template).read_text("utf-8"),
             )
             titles.append(
                 (constant[0] if constant else title) + (suffix[0] if suffix else "")
@@ -166,10 +163,10 @@ def test_no_two_pages_have_one_title():
 
 
 def test_make_targets_exist():
-    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    makefile = (ROOT / "Makefile").read_text("utf-8")
     for page in PAGES:
         for target in re.findall(
-            r"`make ([\w-]+)`", " ".join(page.read_text(encoding="utf-8").split())
+            r"`make ([\w-]+)`", " ".join(page.read_text("utf-8").split())
         ):
             assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
 
@@ -253,7 +250,7 @@ def is_real(code):
     path, _, name = code.partition("::")
     if path.startswith("tests/"):
         return (ROOT / path).is_file() and (
-            not name or f"def {name}(" in (ROOT / path).read_text(encoding="utf-8")
+            not name or f"def {name}(" in (ROOT / path).read_text("utf-8")
         )
     if code.startswith("make measure PAGE="):
         return code.removeprefix("make measure PAGE=") in pages()
@@ -298,6 +295,6 @@ def test_pages_that_use_a_sample_file_say_where_it_comes_from():
         )
         used = set(chain.from_iterable(fnmatch.filter(samples, word) for word in words))
         if name.endswith(".md") and used:
-            assert "uplift samples" in (ROOT / name).read_text(encoding="utf-8"), (
+            assert "uplift samples" in (ROOT / name).read_text("utf-8"), (
                 f"{name}: {used}"
             )

@@ -36,7 +36,7 @@ def test_entries_header_and_readme(shipped):
         header.copyright,
         header.licence,
     )
-    readme = (ATLASES / "README.md").read_text(encoding="utf-8")
+    readme = (ATLASES / "README.md").read_text("utf-8")
     assert (
         f"| `{shipped.path.name}` | {len(spectra)} | {start:.0f}–{end:.0f}, " in readme
     )

@@ -34,7 +34,7 @@ def test_every_program_can_be_imported(name):
 def test_every_stored_figure_names_a_page_that_can_be_measured():
     known = pages()
     for path in (DOCS / "data").glob("*.json"):
-        command = json.loads(path.read_text(encoding="utf-8")).get("command", "")
+        command = json.loads(path.read_text("utf-8")).get("command", "")
         if command != "make nightly":
             assert not command or command.removeprefix("make measure PAGE=") in known, (
                 path
@@ -48,7 +48,7 @@ def test_committed_pages_and_tables_are_the_rendering_of_the_committed_data():
         for path, text in render(name).items()
     }
     assert [
-        path for path, text in files.items() if path.read_text(encoding="utf-8") != text
+        path for path, text in files.items() if path.read_text("utf-8") != text
     ] == []
     assert set((DOCS / "tables").iterdir()) <= files.keys()
 

@@ -5,7 +5,7 @@ import io
 from itertools import chain
 from pathlib import Path
 
-import numpy as np
+from numpy.testing import assert_allclose, assert_array_equal
 
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
@@ -43,7 +43,7 @@ def test_json_has_the_colours_under_the_sensor(ask):
     answer = ask("atlas", MACBETH, "--illuminant", "A", "--space", "Display P3")
     sensor = observer.sensor("Display P3", "A")
     expected = sensor.rgb(on_grid(read_atlas(MACBETH), sensor.wavelengths))
-    np.testing.assert_allclose(
+    assert_allclose(
         [entry["rgb"] for entry in answer["entries"]], expected, rtol=0, atol=1e-15
     )
     assert [answer[key] for key in ("space", "illuminant", "observer")] == [
@@ -64,7 +64,7 @@ def test_json_has_the_colours_under_the_sensor(ask):
 
 
 def test_skipped_entries_are_listed(run, home):
-    text = Path(MACBETH).read_text(encoding="utf-8")
+    text = Path(MACBETH).read_text("utf-8")
     (home / "lamps.txt").write_text(
         text.replace("reflectance spectrum", "emission spectrum"), encoding="utf-8"
     )
@@ -84,7 +84,7 @@ def test_conversion_round_trip(run, refuse, home):
         read_atlas("out.txt").entries, read_atlas(MACBETH).entries, strict=True
     ):
         assert one.name == other.name
-        np.testing.assert_array_equal(one.values, other.values)
+        assert_array_equal(one.values, other.values)
     assert refuse("atlas", MACBETH, "-o", "out.csv").code == "file-exists"
     run("atlas", MACBETH, "-o", "out.csv", "--force")
 

@@ -6,6 +6,7 @@ import io
 import matplotlib.image
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.observer import light
@@ -21,7 +22,7 @@ def test_bounds_of_a_colour_in_json(ask):
         (least, most), answer = np.array(each["lab_range"]), np.array(each["lab"])
         assert ((least < answer) & (answer < most)).all()
         lit = light(name)
-        np.testing.assert_allclose(
+        assert_allclose(
             answer, lab(lit.xyz @ found["reflectance"], lit.white), atol=1e-9
         )
         assert 0 < each["largest_delta_e_2000"] <= each["outer_delta_e_2000"]
@@ -66,7 +67,7 @@ def test_table_plot_and_page(run, home):
     assert (row[0], float(row[5])) == ("D65", 0)  # metamers match under the build light
     assert max(map(len, text.splitlines())) <= 80
     assert matplotlib.image.imread(home / "bounds.png").shape[2] == 4
-    assert "Looks of " in (home / "page.html").read_text(encoding="utf-8")
+    assert "Looks of " in (home / "page.html").read_text("utf-8")
 
 
 def test_bad_input_is_refused(refuse, misuse, home):

@@ -59,9 +59,7 @@ def test_all_files_are_written_and_fronts_printed(quick, numbers):
     folder, result = quick
     assert sorted(path.name for path in folder.iterdir()) == FILES
     assert matplotlib.image.imread(folder / "chart.png").std() > 0.05
-    assert re.search(
-        r"marker-0-\d", (folder / "chart.html").read_text(encoding="utf-8")
-    )
+    assert re.search(r"marker-0-\d", (folder / "chart.html").read_text("utf-8"))
     assert sum(name in result.stdout for name in numbers) >= 2
     assert result.stderr == "out: chart.csv, chart.png, chart.html\n"
     assert all(
@@ -129,7 +127,7 @@ def test_chart_can_be_redrawn_from_its_table(quick, run, refuse):
 
 
 def test_page_and_command_recommend_the_same_cubes(run, repository):
-    page = (repository / "docs" / "choosing.md").read_text(encoding="utf-8")
+    page = (repository / "docs" / "choosing.md").read_text("utf-8")
     printed = [
         line.strip()
         for line in run("chart", "--recommend").stdout.splitlines()

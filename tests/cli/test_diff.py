@@ -36,9 +36,7 @@ def test_json_and_page(run, cubes, home):
     assert figures["cubes"] == list(cubes)
     assert {row["light"] for row in figures["differences"]} == {"A"}
     assert len(figures["entries_removed"]) == 24
-    assert (
-        (home / "page.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
-    )
+    assert (home / "page.html").read_text("utf-8").startswith("<!DOCTYPE html>")
 
 
 @pytest.mark.parametrize(

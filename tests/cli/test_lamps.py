@@ -6,6 +6,7 @@ import shutil
 import numpy as np
 import OpenEXR
 import pytest
+from numpy.testing import assert_allclose
 
 from .conftest import warning_lines
 
@@ -77,7 +78,7 @@ def test_a_lamp_of_several_and_answers_under_it(ask, files):
         "A",
     )["lights"]
     assert list(lights) == ["warm", "lamp", "A"]
-    np.testing.assert_allclose(lights["lamp"]["srgb"], lights["A"]["srgb"], atol=0.02)
+    assert_allclose(lights["lamp"]["srgb"], lights["A"]["srgb"], atol=0.02)
     assert lights["lamp"]["xyz"] != lights["A"]["xyz"]
 
 

@@ -109,7 +109,7 @@ def test_facts_picture_and_page(run, home):
     )
     words = ("--plot", "lights.png", "--html", "lights.html")
     assert "LED-B3" in run("lights", "info", "lights.uplift", *words).stdout
-    assert "Chromaticity diagrams" in (home / "lights.html").read_text(encoding="utf-8")
+    assert "Chromaticity diagrams" in (home / "lights.html").read_text("utf-8")
     assert (home / "lights.png").read_bytes().startswith(b"\x89PNG")
     assert "lights.png" in run("lights", "info", *words, code=2).stderr
 

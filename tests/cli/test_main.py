@@ -284,8 +284,7 @@ NUMERIC = [
 def test_hints_name_options_and_codes_that_exist(repository):
     known = set(chain.from_iterable(option.opts for _, option in OPTIONS))
     sources = "".join(
-        path.read_text(encoding="utf-8")
-        for path in (repository / "uplift").rglob("*.py")
+        path.read_text("utf-8") for path in (repository / "uplift").rglob("*.py")
     )
     for code, hint in HINTS.items():
         assert f'"{code}"' in sources, code
@@ -319,7 +318,7 @@ def test_texts_of_the_library_name_parameters_that_are_options_and_no_options(
 
 def prose(path):
     """Texts with blanks of a module, without its docstrings."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    tree = ast.parse(path.read_text("utf-8"))
     docs = {node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     constants = (
         node

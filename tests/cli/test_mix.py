@@ -3,6 +3,7 @@
 import matplotlib.image
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.extras.texture.conftest import planes, read_channels, write_exr
 from uplift.samples import sample_path
@@ -31,7 +32,7 @@ def test_entries_by_name_have_their_measured_spectra(ask, cubes, macbeth):
     from_cube = ask("mix", "2:blue sky", "yellow", *cube)
     measured = ask("mix", "2:blue sky", "yellow", "--atlas", macbeth)
     assert from_cube["names"] == measured["names"] == ["blue sky", "yellow"]
-    np.testing.assert_allclose(
+    assert_allclose(
         from_cube["spectrum"][4:], measured["spectrum"][4:], atol=0.03
     )  # from 400 nm
     plain = ask("mix", "2:0.113,0.199,0.336", "yellow", "--atlas", macbeth)
@@ -49,7 +50,7 @@ def test_duntley_s_constants_from_files(ask):
         ask("mix", "--duntley", *words, "--ground", "black")
         for words in ((paint,), (f"2:{paint}", paint))
     )
-    np.testing.assert_allclose(once["spectrum"], twice["spectrum"])
+    assert_allclose(once["spectrum"], twice["spectrum"])
     assert once["rgb"][0] > 3 * once["rgb"][2]
 
 
@@ -78,7 +79,7 @@ def test_paint_over_an_image(run, refuse, home, cubes):
     assert result.stdout.startswith("hidden.exr: 20 pixels ")
     assert read_channels(home / "hidden.exr", "RGB").std(axis=(0, 1)).max() < 1e-4
     run("mix", "--dye", "#c8342a", "--thickness", 0, *options, "-o", "bare.exr")
-    np.testing.assert_allclose(read_channels(home / "bare.exr", "RGB"), rgb, atol=1e-5)
+    assert_allclose(read_channels(home / "bare.exr", "RGB"), rgb, atol=1e-5)
     assert refuse("mix", BLUE, *options, "-o", "o.png").code == "output"
     assert refuse("mix", "--additive", BLUE, *options, "-o", "o.exr").code == "option"
 

@@ -3,6 +3,7 @@
 import matplotlib.image
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 
@@ -65,14 +66,12 @@ def test_json_reproduces_the_matrix(ask, spec):
     material = found["materials"][1]
     product = np.array(light["coefficients"]) * material["coefficients"]
     (cell,) = (cell for cell in found["colours"] if cell["material"] == "new")
-    np.testing.assert_allclose(
-        np.array(found["to_rgb"]) @ product, cell["factor"], atol=1e-12
-    )
+    assert_allclose(np.array(found["to_rgb"]) @ product, cell["factor"], atol=1e-12)
     assert found["colours"][0]["wanted"] is None
     assert found["missed"] == []
     for parts, name in ((found["materials"], "dual"), (found["lights"], "light_dual")):
         for part in parts:
-            np.testing.assert_allclose(
+            assert_allclose(
                 np.array(found[name]) @ part["samples"], part["coefficients"], atol=1e-9
             )
 
@@ -88,12 +87,12 @@ def test_files_are_written(run, refuse, spec, home):
 
 def test_pages(run, pair, home):
     assert run("palette", pair, "--html", "two.html").stderr.startswith("two.html: ")
-    text = (home / "two.html").read_text(encoding="utf-8")
+    text = (home / "two.html").read_text("utf-8")
     assert 'width="512" height="512"' in text
     assert ">old brick</button>" in text
     labels = ("--label", "leaf=#ff0000", "--label", "old brick=#0000ff")
     run("palette", pair, "--html", "three.html", "--image", "labels.png", *labels)
-    assert 'width="3" height="1"' in (home / "three.html").read_text(encoding="utf-8")
+    assert 'width="3" height="1"' in (home / "three.html").read_text("utf-8")
 
 
 @pytest.mark.parametrize(

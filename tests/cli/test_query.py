@@ -12,6 +12,7 @@ import colour
 import matplotlib.image
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 from uplift_cli import colours
 from uplift_cli.output.diagnostics import hint_for
 
@@ -63,7 +64,7 @@ def macbeth_cube(cubes):
     ],
 )
 def test_syntax_of_colours(ask, words, rgb):
-    np.testing.assert_allclose(ask("query", *words)["rgb"], rgb, rtol=0, atol=1e-15)
+    assert_allclose(ask("query", *words)["rgb"], rgb, rtol=0, atol=1e-15)
 
 
 def test_several_colours_have_a_row_each(ask, run, refuse, home):
@@ -149,10 +150,10 @@ def test_out_of_gamut_colours_are_mapped_with_a_warning(run, method, rgb):
     (warning,) = warning_lines(result)
     assert "1 of 2" in warning
     answer, inside = json.loads(result.stdout)
-    np.testing.assert_allclose(answer["rgb"], rgb, rtol=0, atol=1e-3)
+    assert_allclose(answer["rgb"], rgb, rtol=0, atol=1e-3)
     assert answer["requested_rgb"] == [1.4, 0.3, -0.1]
     assert answer["round_trip"]["delta_e_2000"] < 0.01
-    np.testing.assert_allclose(inside["rgb"], RED)
+    assert_allclose(inside["rgb"], RED)
     text = run("query", "1.4", "0.3", "-0.1", *words[2:]).stdout
     assert "1.400000 0.300000 -0.100000" in text.splitlines()[0]
 
@@ -163,9 +164,9 @@ def test_colours_of_another_display(ask, name):
     requested = ask("query", "0.5", "0.6", "0.3", "--input-space", name)[
         "requested_rgb"
     ]
-    np.testing.assert_allclose(requested, theirs @ [0.5, 0.6, 0.3], rtol=0, atol=3e-4)
+    assert_allclose(requested, theirs @ [0.5, 0.6, 0.3], rtol=0, atol=3e-4)
     green = ask("query", "0", "1", "0", "--input-space", name, "--out-of-gamut", "clip")
-    np.testing.assert_allclose(green["requested_rgb"], theirs[:, 1], rtol=0, atol=3e-4)
+    assert_allclose(green["requested_rgb"], theirs[:, 1], rtol=0, atol=3e-4)
     assert green["rgb"] == [0, 1, 0]
 
 
@@ -189,7 +190,7 @@ def test_colours_of_another_display(ask, name):
 def test_syntax_of_files(ask, table, text):
     for source in (["--input", table(text)], ["-"], ["--input", "-"]):
         answers = ask("query", *source, input=text.encode())
-        np.testing.assert_array_equal(
+        assert_array_equal(
             [answer["rgb"] for answer in answers], [[0.8, 0.2, 0.1], [0.1] * 3]
         )
 
@@ -201,7 +202,7 @@ def test_files_of_codes_and_hex(ask, table):
         table("#cc3319\ncc3319\n204,51,25\n#cc3319,brick\n"),
         "--encoded",
     )
-    np.testing.assert_allclose(
+    assert_allclose(
         [answer["rgb"] for answer in answers], [RED] * 4, rtol=0, atol=1e-15
     )
 
@@ -250,7 +251,7 @@ def test_lines_and_their_numbers_do_not_depend_on_the_blocks(
     monkeypatch.setattr(colours, "CHUNK", chunk)
     path = table("\ufeffr,g,b,\u00e9\r\n0.1,0.2,0.3\r\u0020\n\n0.5,0.5,0.5")
     answers = ask("query", "--input", path)
-    np.testing.assert_array_equal(
+    assert_array_equal(
         [answer["rgb"] for answer in answers], [[0.1, 0.2, 0.3], [0.5] * 3]
     )
     path.write_bytes(path.read_bytes() + b"\r\n0.5,0.5")
@@ -294,13 +295,11 @@ def test_colours_by_xyz_and_by_chromaticity(ask):
     xyz = ask("query", "--xyz", "0.05", "0.2", "0.1", "--light", "D65")
     assert min(xyz["rgb"]) < 0
     assert xyz["round_trip"]["delta_e_2000"] < 1e-3
-    np.testing.assert_allclose(xyz["lights"]["D65"]["xyz"], [0.05, 0.2, 0.1], atol=1e-5)
+    assert_allclose(xyz["lights"]["D65"]["xyz"], [0.05, 0.2, 0.1], atol=1e-5)
     by_xy = ask(
         "query", "--xy", str(0.05 / 0.35), str(0.2 / 0.35), "--luminance", "0.2"
     )
-    np.testing.assert_allclose(
-        by_xy["reflectance"], xyz["reflectance"], rtol=0, atol=1e-6
-    )
+    assert_allclose(by_xy["reflectance"], xyz["reflectance"], rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -366,12 +365,10 @@ def test_json_has_every_field(ask, macbeth_cube):
     assert answer["standard_error"] == pytest.approx(cube.data.atlas.error[row])
     assert answer["error_bound"] == pytest.approx(answer["standard_error"])
     assert answer["rgb"] == cube.data.atlas.rgb[row].tolist()
-    np.testing.assert_allclose(
+    assert_allclose(
         answer["reflectance"], cube.reflectance(answer["rgb"]), rtol=0, atol=1e-12
     )
-    np.testing.assert_allclose(
-        answer["round_trip"]["rgb"], answer["rgb"], rtol=0, atol=1e-6
-    )
+    assert_allclose(answer["round_trip"]["rgb"], answer["rgb"], rtol=0, atol=1e-6)
     assert (answer["status"], answer["entry"]) == (
         ["atlas primary", "atlas corner"],
         "red",
@@ -384,7 +381,7 @@ def test_classical_coordinates(ask):
     """
     red = ask("query", "#ff0000")
     assert (red["hsv"], red["hsl"]) == ([0, 1, 1], [0, 1, 0.5])
-    np.testing.assert_allclose(red["yiq"], [0.30, 0.60, 0.21], atol=0.005)
+    assert_allclose(red["yiq"], [0.30, 0.60, 0.21], atol=0.005)
     assert red["dominant_wavelength"] == pytest.approx(611.4, abs=0.5)
     grey = ask("query", "#808080")
     assert (grey["dominant_wavelength"], grey["purity"]) == (None, 0)
@@ -409,7 +406,7 @@ def test_csv_has_a_row_per_colour(run, table):
         "550.5",
     ]
     expected = uplift.load().reflectance([[0.8, 0.2, 0.1], [0.1] * 3], [450, 550.5])
-    np.testing.assert_allclose(
+    assert_allclose(
         [[float(cell) for cell in row[7:]] for row in rows], expected, atol=1e-12
     )
     assert [float(cell) for cell in rows[0][:3]] == [0.8, 0.2, 0.1]
@@ -454,8 +451,8 @@ def test_colours_under_lights_are_those_of_relit_images(run, ask, macbeth_cube):
     expected = screen.rgb(cube.reflectance([0.2, 0.1, 0.05]))
     words = ("query", "--cube", macbeth_cube, "0.2", "0.1", "0.05", "--light", "FL11")
     found = ask(*words)["lights"]["FL11"]
-    np.testing.assert_allclose(found["srgb"], expected, atol=1e-12)
-    np.testing.assert_allclose(found["xyz"], screen.xyz(expected), atol=1e-12)
+    assert_allclose(found["srgb"], expected, atol=1e-12)
+    assert_allclose(found["xyz"], screen.xyz(expected), atol=1e-12)
     assert found["hex"] == hex_codes(expected[None])[0]
     assert found["hex"] in run(*words).stdout
     (row,) = csv.DictReader(io.StringIO(run(*words, "--format", "csv").stdout))
@@ -473,7 +470,7 @@ def test_colours_under_lights_are_those_of_relit_images(run, ask, macbeth_cube):
 )
 def test_wavelengths(ask, text, expected):
     answer = ask("query", "#cc3319", "--wavelengths", text)
-    np.testing.assert_allclose(answer["wavelengths"], expected, rtol=1e-14)
+    assert_allclose(answer["wavelengths"], expected, rtol=1e-14)
     assert len(answer["reflectance"]) == len(expected)
 
 

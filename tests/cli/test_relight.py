@@ -29,7 +29,7 @@ def test_a_page_of_own_images_with_a_cube(ask, home, cubes, wood):
         f"spectral with {cube.stem}",
     ]
     assert all(0 < row["mean"] <= row["max"] + 1e-9 for row in found["differences"])
-    assert (home / "relit.html").read_text(encoding="utf-8").count("<section") == 2
+    assert (home / "relit.html").read_text("utf-8").count("<section") == 2
 
 
 def test_the_sample_is_relit_with_its_atlas(run, home):

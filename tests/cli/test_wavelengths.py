@@ -1,8 +1,8 @@
 """``uplift wavelengths``."""
 
 import matplotlib.image
-import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 
 @pytest.fixture
@@ -62,7 +62,7 @@ def test_options_that_exclude_or_need_others(misuse, options, name):
 def test_orders_of_the_channels(answer):
     found = answer("--orders", 3, 2, 1, "--light", "C")
     assert (found["count"], found["method"]) == (6, "meyer")
-    np.testing.assert_allclose(
+    assert_allclose(
         answer("--count", 4, "--method", "meyer", "--light", "C")["wavelengths"],
         [456.4, 490.9, 557.7, 631.4],
         atol=0.1,

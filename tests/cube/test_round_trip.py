@@ -8,6 +8,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_array_equal
 
 from tests.cube.hand_made import hand_made, with_outside
 from uplift.cube import contents, digest, read, write
@@ -36,7 +37,7 @@ def assert_same(one, other):
     assert arrays.keys() == others.keys()
     for name, array in arrays.items():
         assert array.dtype == others[name].dtype
-        np.testing.assert_array_equal(array, others[name], err_msg=name)
+        assert_array_equal(array, others[name], err_msg=name)
 
 
 @st.composite

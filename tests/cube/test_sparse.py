@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from tests.cube.cube_files import forge
 from tests.cube.hand_made import hand_made
@@ -30,7 +31,7 @@ def test_sparse_cubes_are_read_back_and_take_no_space_for_absent_points(data, tm
     write(hand_made(6), tmp_path / "whole.uplift")
     back = read(tmp_path / "part.uplift")
     for name in POINTS:
-        np.testing.assert_array_equal(
+        assert_array_equal(
             getattr(back.points, name), getattr(data.points, name), err_msg=name
         )
     assert digest(back) == digest(data)
@@ -45,7 +46,7 @@ def test_corner_points_and_complete_cells_are_inverse():
     cells[lattice.index(np.array([[0, 1, 2], [2, 2, 2]]))] = True
     points = lattice.corner_points(cells)
     assert points.sum() == 16
-    np.testing.assert_array_equal(lattice.complete_cells(points), cells)
+    assert_array_equal(lattice.complete_cells(points), cells)
     assert lattice.complete_cells(np.ones(64, dtype=bool)).sum() == 27
 
 

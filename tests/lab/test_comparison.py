@@ -9,6 +9,7 @@ from dataclasses import replace
 import matplotlib.image
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 from benchmarks import read_reference
 from tests.browsing import check_page
@@ -102,7 +103,7 @@ def test_errors_match_explicit_loops(checker):
         np.std(apart),
         *np.quantile(apart, (0.5, 0.025, 0.25, 0.75, 0.975)),
     ]
-    np.testing.assert_allclose(error_statistics(samples, part), expected, rtol=1e-9)
+    assert_allclose(error_statistics(samples, part), expected, rtol=1e-9)
 
 
 def test_result_that_is_not_finite_is_an_error(checker):
@@ -112,7 +113,7 @@ def test_result_that_is_not_finite_is_an_error(checker):
 
 
 def test_results_are_ranked_within_their_sets(checker, found):
-    np.testing.assert_allclose(checker.powers @ xyz_weights()[:, 1], 1)
+    assert_allclose(checker.powers @ xyz_weights()[:, 1], 1)
     assert list(found.sets) == ["smooth", "spiky"]
     for name in found.sets:
         means = [row.statistics.mean for row in found.of(name)]
@@ -166,14 +167,12 @@ def test_written_spectra_have_the_colours_of_the_representation(
     # one.
     flat = made.encode_light(np.ones_like(scene.surfaces))
     expected = made.xyz(made.multiply(flat, code) if name[:2] in ("TM", "SG") else code)
-    np.testing.assert_allclose(
+    assert_allclose(
         on_grid(surfaces, wavelengths()) @ xyz_weights(), expected, atol=1e-12
     )
     powers = on_grid(lamps, wavelengths()) @ xyz_weights()
     light_xyz = made.xyz(made.encode_light(scene.powers))
-    np.testing.assert_allclose(
-        powers / powers[:, 1:2], light_xyz / light_xyz[:, 1:2], atol=1e-12
-    )
+    assert_allclose(powers / powers[:, 1:2], light_xyz / light_xyz[:, 1:2], atol=1e-12)
 
 
 def test_negative_lobes_of_a_filter_are_clipped_with_a_warning(checker):
@@ -354,9 +353,7 @@ def test_representations_fitted_to_a_scene_follow_its_products(fitted):
     assert errors["CM17"] < errors["CM9"] < 0.5
     assert errors["BF5"] < 6
     encode = named["FW5"].encode_light
-    np.testing.assert_array_equal(
-        encode(lights.powers[::-1]), encode(lights.powers)[::-1]
-    )
+    assert_array_equal(encode(lights.powers[::-1]), encode(lights.powers)[::-1])
 
 
 def test_the_front_has_all_that_nothing_dominates(found):

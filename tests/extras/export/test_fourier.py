@@ -5,6 +5,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.parts import CXX, GLSLANG, need
@@ -81,7 +82,7 @@ def test_codes_have_the_colours_of_srgb(three, folder):
     assert errors.mean() < 0.3
     assert np.abs(codes - 255 * requested).mean() < 15
     greys = codes[:: 3 * (LEVEL**4 + LEVEL**2 + 1)]  # at nodes of the cube
-    np.testing.assert_allclose(greys, 255 * nodes[::3, None].repeat(3, axis=1), atol=1)
+    assert_allclose(greys, 255 * nodes[::3, None].repeat(3, axis=1), atol=1)
 
 
 def test_the_table_has_the_codes_of_the_image(folder):
@@ -93,7 +94,7 @@ def test_the_table_has_the_codes_of_the_image(folder):
     codes = hald(folder / "hald.png")
     for corner in product((0, 1), repeat=3):
         red, green, blue = (-axis for axis in corner)
-        np.testing.assert_allclose(
+        assert_allclose(
             255 * table[blue, green, red], codes[red, green, blue], atol=0.51
         )
 
@@ -121,7 +122,7 @@ def test_the_shader_evaluates_the_spectra(three, folder):
     filtered = pairs.mean(axis=1)
     moments = filtered @ lut._to_moments(three.data).T
     expected = reflectance(three.data.model, moments, WAVELENGTHS)
-    np.testing.assert_allclose(shader(filtered), expected, atol=2e-4)
+    assert_allclose(shader(filtered), expected, atol=2e-4)
     corners = shader(np.array(list(product((0.0, 1.0), repeat=3))))
     assert ((corners >= 0) & (corners <= 1)).all()
 

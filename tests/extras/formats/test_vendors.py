@@ -8,6 +8,7 @@ import zipfile
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.atlas.vendor_files import VENDORS, sample
 from tests.helpers import raises, warns
@@ -31,10 +32,8 @@ def test_spectra_are_those_that_were_written(tmp_path, vendor):
     if vendor.name != "argyll_sp":
         assert atlas.names == MACBETH[: vendor.count].names
     for entry, expected in zip(atlas, MACBETH, strict=False):
-        np.testing.assert_allclose(
-            entry.wavelengths, expected.wavelengths, rtol=0, atol=1e-6
-        )
-        np.testing.assert_allclose(entry.values, expected.values, rtol=0, atol=1e-6)
+        assert_allclose(entry.wavelengths, expected.wavelengths, rtol=0, atol=1e-6)
+        assert_allclose(entry.values, expected.values, rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize(

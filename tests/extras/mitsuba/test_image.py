@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.extras.texture.conftest import planes, write_exr
 from tests.helpers import raises, warns
@@ -67,9 +68,7 @@ def test_filtering_agrees_with_mitsuba_s_bitmap(mi, texture, spectrum, sensor, o
     for uv in POSITIONS:
         si.uv = mi.Point2f(*uv)
         found = sensor.rgb(spectrum(ours, uv, sensor.wavelengths))
-        np.testing.assert_allclose(
-            found, np.array(reference.eval_3(si)), rtol=0, atol=WITHIN
-        )
+        assert_allclose(found, np.array(reference.eval_3(si)), rtol=0, atol=WITHIN)
 
 
 def test_a_texel_of_an_entry_s_colour_has_the_entry_s_spectrum(
@@ -84,13 +83,9 @@ def test_a_texel_of_an_entry_s_colour_has_the_entry_s_spectrum(
     entry = small_cube.data.atlas.spectra.reflectance(
         np.array([3]), np.array([450.0, 650.0])
     )[0]
-    np.testing.assert_allclose(
-        spectrum(found, (0.25, 0.5), [450, 650]), entry, atol=1e-5
-    )
+    assert_allclose(spectrum(found, (0.25, 0.5), [450, 650]), entry, atol=1e-5)
     other = small_cube.reflectance(image[0, 1], [450, 650], mode="refined")
-    np.testing.assert_allclose(
-        spectrum(found, (0.75, 0.5), [450, 650]), other, atol=1e-5
-    )
+    assert_allclose(spectrum(found, (0.75, 0.5), [450, 650]), other, atol=1e-5)
 
 
 def test_texels_of_an_entry_outside_the_space_have_its_spectrum(
@@ -109,11 +104,11 @@ def test_texels_of_an_entry_outside_the_space_have_its_spectrum(
         {"bitmap": mi.Bitmap(pixels)},
         {"filename": str(tmp_path / "image.exr")},
     ):
-        np.testing.assert_allclose(
+        assert_allclose(
             spectrum(mi.load_dict(nearest | source), (0.25, 0.5), at), entry, atol=1e-5
         )
     colour = ", ".join(map(repr, rgb.tolist()))
-    np.testing.assert_allclose(
+    assert_allclose(
         spectrum(mi.load_dict(every | {"rgb": colour}), (0.5, 0.5), at),
         entry,
         atol=1e-5,
@@ -124,7 +119,7 @@ def test_texels_of_an_entry_outside_the_space_have_its_spectrum(
             every | {"bitmap": mi.Bitmap(pixels), "filter_type": "nearest"}
         )
     mapped = cyan_cube.reflectance(pixels[0, 0].clip(0, 1), at, mode="refined")
-    np.testing.assert_allclose(spectrum(found, (0.25, 0.5), at), mapped, atol=1e-5)
+    assert_allclose(spectrum(found, (0.25, 0.5), at), mapped, atol=1e-5)
 
 
 def test_only_encoded_files_are_decoded_and_layers_are_read(
@@ -140,9 +135,7 @@ def test_only_encoded_files_are_decoded_and_layers_are_read(
         found = mi.load_dict(
             {"type": "uplift", "cube": cube_path, "filename": str(tmp_path / name)}
         )
-        np.testing.assert_allclose(
-            spectrum(found, (0.5, 0.5), [450, 650]), expected, atol=1e-5
-        )
+        assert_allclose(spectrum(found, (0.5, 0.5), [450, 650]), expected, atol=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -176,7 +169,7 @@ def test_colours_outside_are_mapped_with_a_warning(
     first = (
         map_to_gamut(image[0, 0], sensor, "scale").rgb if expected is None else expected
     )
-    np.testing.assert_allclose(rgb, [first, [0.1, 0.2, 0]], rtol=0, atol=1e-4)
+    assert_allclose(rgb, [first, [0.1, 0.2, 0]], rtol=0, atol=1e-4)
 
 
 def test_the_stochastic_filter_chooses_texels_by_their_weights(texture, spectrum):
@@ -239,7 +232,7 @@ def test_a_wavefront_agrees_with_single_rays(mi, small_cube, cube_path, tmp_path
                 si.uv, si.wavelengths = mi.Point2f(*uv), mi.Spectrum(400, 500, 600, 700)
                 values.append(np.array(texture.eval(si)))
             expected.append(values)
-    np.testing.assert_allclose(json.loads(done.stdout), expected, rtol=0, atol=1e-5)
+    assert_allclose(json.loads(done.stdout), expected, rtol=0, atol=1e-5)
 
 
 def _textures(cube, folder):
@@ -287,7 +280,7 @@ def test_a_texture_has_the_spectra_of_the_cube(
         }
     )
     expected = small_cube.reflectance(IMAGE[2, 1], WAVELENGTHS, mode=mode)
-    np.testing.assert_allclose(
+    assert_allclose(
         spectrum(found, (0.4, 0.9), WAVELENGTHS), expected, rtol=0, atol=within
     )
 
@@ -336,4 +329,4 @@ def test_blend_is_the_weighted_sum(mi, model):
     weights = [0.5, 0.2, 0.3]
     found = blend(model, multipliers.tolist(), weights, mi.Spectrum(*SAMPLED))
     expected = weights @ evaluate(model, multipliers, SAMPLED)
-    np.testing.assert_allclose(np.array(found), expected, rtol=0, atol=1e-5)
+    assert_allclose(np.array(found), expected, rtol=0, atol=1e-5)

@@ -8,6 +8,7 @@ from itertools import product
 import numpy as np
 import pytest
 from matplotlib.image import imread
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.helpers import raises, warns
@@ -144,7 +145,7 @@ def test_colours_of_the_factor_model_can_be_fitted(metamers, model):
     weights = {"model_error": 0.0, "smoothness": 0.0}
     found = design(dataclasses.replace(metamers, fit="factor-model", **weights), model)
     target = np.array([found.free["coat"], found.free["coat"]])
-    np.testing.assert_allclose(matrix(found).factor[:, 0], target, atol=1e-6)
+    assert_allclose(matrix(found).factor[:, 0], target, atol=1e-6)
     assert matrix(found).delta_e.max() < 0.01
     assert np.abs(matrix(found).obtained[:, 0] - target).max() > 1e-4
 

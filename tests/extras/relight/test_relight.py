@@ -5,6 +5,7 @@ entries.
 import colour
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
@@ -36,14 +37,14 @@ def relit(picture, small_cube, plain_cube):
 
 @pytest.mark.parametrize("method", [RGB_PRODUCT, "without atlas", "atlas"])
 def test_colours_stay_under_the_light_that_they_refer_to(relit, picture, method):
-    np.testing.assert_allclose(relit.renderings[0].colours[method], picture, atol=2e-4)
+    assert_allclose(relit.renderings[0].colours[method], picture, atol=2e-4)
 
 
 def test_spectra_agree_with_plain_integration(relit, picture, small_cube):
     for rendering in relit.renderings:
         screen = sensor("sRGB", rendering.light)
         expected = screen.rgb(small_cube.reflectance(picture))
-        np.testing.assert_allclose(rendering.colours["atlas"], expected, atol=1e-5)
+        assert_allclose(rendering.colours["atlas"], expected, atol=1e-5)
 
 
 def test_products_multiply_by_the_rgb_of_the_light(relit, picture, sensor):
@@ -51,9 +52,7 @@ def test_products_multiply_by_the_rgb_of_the_light(relit, picture, sensor):
     product = picture * (sensor.xyz_to_rgb @ lamp)
     xyz = sensor.xyz(product)
     expected = xyz @ relit.renderings[1].sensor.xyz_to_rgb.T
-    np.testing.assert_allclose(
-        relit.renderings[1].colours[RGB_PRODUCT], expected, atol=1e-5
-    )
+    assert_allclose(relit.renderings[1].colours[RGB_PRODUCT], expected, atol=1e-5)
 
 
 def test_atlas_entries_are_relit_as_measured_where_products_fail(macbeth_cube):
@@ -87,7 +86,7 @@ def test_the_white_of_a_light_is_white_or_has_its_tint(relit):
         for method in relit.methods:
             for balanced, expected in ((True, 255), (False, codes)):
                 white = rendering.screen_codes(method, balanced=balanced)[-1, 0]
-                np.testing.assert_allclose(white, expected, atol=1.5)
+                assert_allclose(white, expected, atol=1.5)
 
 
 def test_lamps_look_white_but_sodium_and_candles_do_not(small_cube):

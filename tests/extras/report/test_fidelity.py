@@ -6,6 +6,7 @@ import itertools
 import colour
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.helpers import with_points
@@ -86,7 +87,7 @@ def test_lattice_errors_are_those_of_the_lattice_without_the_entries(
     )
     inside = [row for row, name in enumerate(found.names) if name != OUTSIDE]
     spectra = lattice_spectra(data, found.rgb[inside], data.sensor.wavelengths)
-    np.testing.assert_allclose(found.lattice.spectra[inside], spectra, atol=1e-12)
+    assert_allclose(found.lattice.spectra[inside], spectra, atol=1e-12)
     for row, spectrum in zip(inside, spectra, strict=True):
         missed = [
             delta_e(spectrum, measured[found.names[row]], sensor.illuminant)
@@ -260,7 +261,7 @@ def test_all_have_the_colours_of_the_entries(judged):
     for other in judged.alternatives.values():
         inside = np.array(judged.entries.names) != OUTSIDE
         spectra = other.spectra[inside]
-        np.testing.assert_allclose(
+        assert_allclose(
             sensor.rgb(spectra), judged.entries.rgb[inside], rtol=0, atol=2e-3
         )
         assert spectra.min() >= 0

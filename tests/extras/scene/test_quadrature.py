@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import legendre
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
@@ -34,8 +35,8 @@ def test_legendre_rule_as_masses_gives_the_smaller_legendre_rule(order):
     points, masses = legendre.leggauss(100)
     nodes, weights = legendre.leggauss(order)
     rule = gauss_rule(points, masses, order)
-    np.testing.assert_allclose(rule.nodes, nodes, atol=1e-12)
-    np.testing.assert_allclose(rule.weights, weights, atol=1e-11)
+    assert_allclose(rule.nodes, nodes, atol=1e-12)
+    assert_allclose(rule.weights, weights, atol=1e-11)
 
 
 @pytest.mark.parametrize("order", [1, 3, 8, 20])
@@ -87,7 +88,7 @@ def test_nodes_agree_with_elimination_in_fractions(masses, order):
     expected = np.sort_complex(_exact_nodes(points, masses, order))
     gap = np.diff(result.nodes).min() if order > 1 else 1.0
     if gap > 1e-2:  # np.roots is inaccurate for nearly double roots
-        np.testing.assert_allclose(result.nodes, expected, atol=1e-5)
+        assert_allclose(result.nodes, expected, atol=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -110,5 +111,5 @@ def test_undefined_order_states_its_reason(masses, order, reason):
 )
 def test_interpolatory_rule_is_exact_below_its_number_of_nodes(nodes):
     rule = interpolatory_rule(nodes, POINTS, BELL)
-    np.testing.assert_array_equal(rule.nodes, np.sort(nodes))
+    assert_array_equal(rule.nodes, np.sort(nodes))
     assert _moment_error(rule, POINTS, BELL, len(nodes) - 1) < 1e-12

@@ -9,6 +9,7 @@ import numpy as np
 import OpenEXR
 import OpenImageIO
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 
 from tests.extras.texture.conftest import (
@@ -66,7 +67,7 @@ def test_integers_are_decoded_with_the_curve_of_the_standard(
     linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
     assert np.abs(found - linear).max() < 8e-6  # half a code of 16 bits
     if count in (2, 4):
-        np.testing.assert_array_equal(
+        assert_array_equal(
             np.rint(channels(result.target)["A"] * float(top)), codes[..., -1]
         )
 
@@ -76,12 +77,12 @@ def test_floats_are_linear_unless_the_encoding_is_given(
 ):
     Image.fromarray(colours[..., 0]).save(tmp_path / "float.tif")
     _, found = convert_image(tmp_path / "float.tif")
-    np.testing.assert_array_equal(found[..., 0], colours[..., 0])
+    assert_array_equal(found[..., 0], colours[..., 0])
     encoded = texture.prepare(
         small_cube, texture.Moments(), encoding="encoded", threads=1
     )
     _, found = convert_image(tmp_path / "float.tif", encoded)
-    np.testing.assert_allclose(
+    assert_allclose(
         found[..., 0], small_cube.decode(255.0 * colours[..., 0]), rtol=0, atol=1e-6
     )
     codes = (colours * 255).astype(np.uint8)
@@ -90,7 +91,7 @@ def test_floats_are_linear_unless_the_encoding_is_given(
         small_cube, texture.Moments(), encoding="linear", threads=1
     )
     _, found = convert_image(tmp_path / "linear.png", linear)
-    np.testing.assert_allclose(found, codes / 255, rtol=0, atol=1e-7)
+    assert_allclose(found, codes / 255, rtol=0, atol=1e-7)
 
 
 @pytest.mark.parametrize("method", ["clip", "scale", "desaturate", "desaturate-oklab"])
@@ -108,7 +109,7 @@ def test_only_invalid_pixels_are_mapped_and_counted(
     )
     bad[4, 4], bad[4, 5] = (1, 1, 0), 0
     mapped = map_to_gamut(bad, spectral.cube.data.sensor, method)
-    np.testing.assert_array_equal(found, mapped.rgb)
+    assert_array_equal(found, mapped.rgb)
     assert result.counts == texture.Counts(
         600, outside=5, not_finite=2, max_change=mapped.max_change
     )
@@ -118,7 +119,7 @@ def test_only_invalid_pixels_are_mapped_and_counted(
     ]
     assert [warning.path for warning in result.warnings] == [tmp_path / "bad.exr"] * 2
     spectra = read_channels(result.target, spectral.channels)
-    np.testing.assert_allclose(
+    assert_allclose(
         spectra, spectral.cube.reflectance(mapped.rgb, WAVELENGTHS), atol=1e-6
     )
 
@@ -187,11 +188,11 @@ def test_several_parts_tiles_windows_and_other_channels(
         assert part.header["pixelAspectRatio"] == 2
     for name, plane in others.items():
         assert written[0].channels[name].pixels.dtype == plane.dtype
-        np.testing.assert_array_equal(written[0].channels[name].pixels, plane)
+        assert_array_equal(written[0].channels[name].pixels, plane)
     assert set(written[1].channels) == {"deep.Z"}
     for number, colours in ((0, rgb), (2, rgb[::-1])):
         found = read_channels(tmp_path / "out.exr", spectral.channels, number)
-        np.testing.assert_allclose(
+        assert_allclose(
             found, spectral.cube.reflectance(colours, WAVELENGTHS), rtol=0, atol=1e-6
         )
 
@@ -271,7 +272,7 @@ def test_statements_of_the_image_are_kept(convert_image, tmp_path):
         "keyCode",
         *(name for name in STATEMENTS if name in after),
     ):
-        np.testing.assert_array_equal(after[name], before[name], err_msg=name)
+        assert_array_equal(after[name], before[name], err_msg=name)
 
 
 @pytest.fixture
@@ -305,10 +306,10 @@ def test_spectra_are_those_of_the_divided_colours_times_alpha(
     expected = (
         spectral.cube.reflectance(colours.astype(float), WAVELENGTHS) * alpha[..., None]
     )
-    np.testing.assert_allclose(found, expected, rtol=0, atol=2e-6)
+    assert_allclose(found, expected, rtol=0, atol=2e-6)
     rgb = read_channels(tmp_path / "out.exr", "RGB")
-    np.testing.assert_allclose(rgb, colours * alpha[..., None], rtol=0, atol=1e-6)
-    np.testing.assert_array_equal(channels(tmp_path / "out.exr")[f"{layer}A"], alpha)
+    assert_allclose(rgb, colours * alpha[..., None], rtol=0, atol=1e-6)
+    assert_array_equal(channels(tmp_path / "out.exr")[f"{layer}A"], alpha)
     assert (found[:, 0] == 0).all()
     assert result.warnings == ()
 
@@ -328,9 +329,7 @@ def test_moments_are_multiplied_and_multipliers_are_not(
             numbers.append(read_channels(tmp_path / "out.exr", uplifter.channels))
         visible = alpha > 1e-3
         expected = numbers[0] * weight[..., None]
-        np.testing.assert_allclose(
-            numbers[1][visible], expected[visible], rtol=1e-3, atol=2e-3
-        )
+        assert_allclose(numbers[1][visible], expected[visible], rtol=1e-3, atol=2e-3)
 
 
 @pytest.mark.parametrize("is_multiplied", [True, False])
@@ -351,8 +350,8 @@ def test_tiffs_state_whether_they_are_multiplied(
     if is_multiplied:
         expected = small_cube.decode(np.rint(straight[:2] * 255 / 200)) * 200 / 255
         expected = np.concatenate([expected, small_cube.decode(straight[2:])])
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-6)
-    np.testing.assert_array_equal(
+    assert_allclose(found, expected, rtol=0, atol=1e-6)
+    assert_array_equal(
         np.rint(channels(tmp_path / "out.exr")["A"][0] * 255.0), codes[0, :, 3]
     )
 
@@ -383,9 +382,9 @@ def test_odd_alpha_gives_finite_colours_and_warnings(spectral, tmp_path):
     found = read_channels(tmp_path / "out.exr", (*"RGB", *spectral.channels))
     assert np.isfinite(found).all()
     assert (found[0, [1, 4]] == 0).all()
-    np.testing.assert_allclose(found[0, 0, :3], 0.75)  # light without opacity
-    np.testing.assert_allclose(found[0, 3, :3], 0.375)
-    np.testing.assert_array_equal(channels(tmp_path / "out.exr")["A"], alpha)
+    assert_allclose(found[0, 0, :3], 0.75)  # light without opacity
+    assert_allclose(found[0, 3, :3], 0.375)
+    assert_array_equal(channels(tmp_path / "out.exr")["A"], alpha)
 
 
 def test_scenes_and_mitsuba_read_the_divided_colours(
@@ -393,10 +392,8 @@ def test_scenes_and_mitsuba_read_the_divided_colours(
 ):
     expected = np.where(alpha[..., None] > 0, colours, 0)
     found = np.concatenate(list(Images((multiplied,)).colours(multiplied, sensor)))
-    np.testing.assert_allclose(
-        found.reshape(expected.shape), expected, rtol=0, atol=1e-6
-    )
-    np.testing.assert_allclose(
+    assert_allclose(found.reshape(expected.shape), expected, rtol=0, atol=1e-6)
+    assert_allclose(
         read_colours(multiplied, texture.prepare(small_cube))[0],
         expected,
         rtol=0,
@@ -422,10 +419,8 @@ def test_pictures_are_means_weighted_by_alpha(
             mean = (colours[block] * weights).sum(axis=(0, 1)) / max(
                 weights.sum(), 1e-9
             )
-            np.testing.assert_allclose(found.rgb[row, column], mean, rtol=0, atol=2e-6)
-            np.testing.assert_allclose(
-                found.opacity[row, column], weights.mean(), rtol=1e-5
-            )
+            assert_allclose(found.rgb[row, column], mean, rtol=0, atol=2e-6)
+            assert_allclose(found.opacity[row, column], weights.mean(), rtol=1e-5)
 
 
 def test_pictures_without_alpha(tmp_path, sensor):
@@ -433,10 +428,10 @@ def test_pictures_without_alpha(tmp_path, sensor):
     found = read_picture(
         write_image(tmp_path / "checks.png", codes), sensor, max_side=1
     )
-    np.testing.assert_allclose(found.rgb, 0.5)  # averaged as linear values
+    assert_allclose(found.rgb, 0.5)  # averaged as linear values
     path = write_exr(tmp_path / "fire.exr", planes(np.full((2, 2, 3), 2, np.float32)))
     found = read_picture(path, sensor, max_side=10)
-    np.testing.assert_array_equal(found.rgb, 1)
+    assert_array_equal(found.rgb, 1)
     assert [warning.code for warning in found.warnings] == ["pixels-out-of-gamut"]
     with raises(ColourError, "rgb-out-of-gamut"):
         read_picture(path, sensor, max_side=10, out_of_gamut="error")
@@ -475,25 +470,21 @@ def test_pixels_of_an_entry_outside_the_space_have_its_spectrum(
             model, numbers.reshape(-1, model.count), data.sensor.wavelengths
         )
         numbers = numbers.reshape(*pixels.shape[:2], -1)
-    np.testing.assert_allclose(colours[0], pixels[0], rtol=0, atol=1e-6)
+    assert_allclose(colours[0], pixels[0], rtol=0, atol=1e-6)
     tolerance = 1e-3 if encoding is texture.Moments else 1e-4
-    np.testing.assert_allclose(
-        data.sensor.rgb(numbers), colours, rtol=0, atol=tolerance
-    )
+    assert_allclose(data.sensor.rgb(numbers), colours, rtol=0, atol=tolerance)
     spectra = data.atlas.outside.spectra
     if encoding is not texture.Spectrum:
         spectra = EntrySpectra(model, data.atlas.outside.coefficients)
     stored = spectra.reflectance(np.array([0]), data.sensor.wavelengths)[0]
-    np.testing.assert_allclose(
-        numbers[0, 0], stored, rtol=0, atol=1e-3
-    )  # rounding of moments
+    assert_allclose(numbers[0, 0], stored, rtol=0, atol=1e-3)  # rounding of moments
     if method == "error":
         assert result.warnings == ()
         return
     assert [warning.code for warning in result.warnings] == ["pixels-out-of-gamut"]
     assert result.counts.outside == 2
     mapped = map_to_gamut(pixels[1], data.sensor, method).rgb
-    np.testing.assert_allclose(
+    assert_allclose(
         colours[1], [(boxes.rgb[0] + mapped[0]) / 2, mapped[1]], rtol=0, atol=1e-5
     )
 

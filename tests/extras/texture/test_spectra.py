@@ -9,6 +9,7 @@ import numpy as np
 import OpenEXR
 import OpenImageIO
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.extras.texture.conftest import (
@@ -63,12 +64,10 @@ def test_colour_science_reads_the_photograph_from_a_spectral_image(
     )
     assert not specification.is_emissive
     ((at, found),) = components.values()
-    np.testing.assert_array_equal(at, small_cube.data.sensor.wavelengths)
+    assert_array_equal(at, small_cube.data.sensor.wavelengths)
     rgb, _ = components_to_sRGB_Fichet2021({"T": (at, found.astype(float))})
     assert delta_e_rgb(small_cube.data.sensor, linear, rgb).mean() < max_error
-    np.testing.assert_allclose(
-        found, small_cube.reflectance(linear), rtol=0, atol=within
-    )
+    assert_allclose(found, small_cube.reflectance(linear), rtol=0, atol=within)
 
 
 @pytest.mark.parametrize("cube", ["small_cube", "small_sigmoid_cube"])
@@ -98,7 +97,7 @@ def test_multipliers_of_a_colour_do_not_depend_on_how_often_it_occurs(small_cube
     few = rng.uniform(0, 1, (50, 3)).astype(np.float32)
     rows = rng.integers(0, 50, (30, 40))
     sample = texture.prepare(small_cube, texture.Multipliers(), threads=1).sample
-    np.testing.assert_array_equal(sample(few[rows]), sample(few)[rows])
+    assert_array_equal(sample(few[rows]), sample(few)[rows])
 
 
 def test_the_header_identifies_the_cube_and_the_settings(
@@ -121,7 +120,7 @@ def test_the_header_identifies_the_cube_and_the_settings(
         "wavelengths": list(WAVELENGTHS),
     }
     srgb = [0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]
-    np.testing.assert_allclose(header["chromaticities"], srgb, atol=2e-4)
+    assert_allclose(header["chromaticities"], srgb, atol=2e-4)
 
 
 @pytest.mark.parametrize(
@@ -211,7 +210,7 @@ def test_colour_science_reads_spectra_of_the_colours_of_the_image(
     )
     assert specification.is_emissive
     ((at, power),) = components.values()
-    np.testing.assert_array_equal(at, table.wavelengths)
+    assert_array_equal(at, table.wavelengths)
     assert power.min() >= 0
     assert (
         largest_difference(sensor, sky * scale, table.rgb(power.astype(float))) < limit
@@ -243,7 +242,7 @@ def test_a_radiance_picture_is_read(table, sky, tmp_path):
     )
     found = table.rgb(spectral_channels(tmp_path / "out.exr").astype(float))
     largest = np.maximum(positive.max(axis=-1, keepdims=True), 1e-9)
-    np.testing.assert_allclose(found / largest, positive / largest, rtol=0, atol=0.01)
+    assert_allclose(found / largest, positive / largest, rtol=0, atol=0.01)
 
 
 def test_what_no_light_has_is_moved_and_counted(table, lights, tmp_path):
@@ -263,12 +262,10 @@ def test_what_no_light_has_is_moved_and_counted(table, lights, tmp_path):
     assert np.isfinite(power).all()
     luminance = table.xyz(rgb[0, 1].astype(float))[1]
     xyz = table.xyz(table.rgb(power[0, 1].astype(float)))
-    np.testing.assert_allclose(xyz[1], max(luminance, 0), rtol=1e-5, atol=1e-6)
+    assert_allclose(xyz[1], max(luminance, 0), rtol=1e-5, atol=1e-6)
     stored = read_channels(tmp_path / "out.exr", "RGB")
     assert table.contains(stored[0, 1].astype(float) * (1 - 1e-6)).all()
-    np.testing.assert_allclose(
-        stored, table.rgb(power.astype(float)), rtol=1e-4, atol=1e-3
-    )
+    assert_allclose(stored, table.rgb(power.astype(float)), rtol=1e-4, atol=1e-3)
 
 
 def test_half_floats_end_at_their_largest(table, tmp_path):
@@ -289,10 +286,8 @@ def test_alpha_passes_through_and_divides_nothing(table, lights, tmp_path):
     path = write_exr(tmp_path / "glow.exr", {**planes(rgb), "A": alpha})
     conversion = texture.convert(lights, path, tmp_path / "out.exr")
     assert conversion.warnings == ()
-    np.testing.assert_array_equal(channels(tmp_path / "out.exr")["A"], alpha)
-    np.testing.assert_allclose(
-        table.rgb(spectral_channels(tmp_path / "out.exr")), rgb, rtol=1e-5
-    )
+    assert_array_equal(channels(tmp_path / "out.exr")["A"], alpha)
+    assert_allclose(table.rgb(spectral_channels(tmp_path / "out.exr")), rgb, rtol=1e-5)
 
 
 def test_floats_of_lights_are_linear(table, sky, tmp_path):

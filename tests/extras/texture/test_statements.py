@@ -8,6 +8,7 @@ import colour
 import numpy as np
 import OpenImageIO
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 
 from tests.extras.texture import image_bytes as files
@@ -70,9 +71,7 @@ def test_chunks_of_png_are_used_in_the_order_of_the_standard(
     path = tmp_path / "a.png"
     path.write_bytes(files.png_bytes(CODES, *chunks))
     result = texture.convert(spectral, path, tmp_path / "out.exr")
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB")[0], expected, rtol=0, atol=2e-4
-    )
+    assert_allclose(read_channels(result.target, "RGB")[0], expected, rtol=0, atol=2e-4)
     assert result.warnings == ()
 
 
@@ -86,9 +85,7 @@ def test_chunks_after_the_pixels_are_ignored(spectral, tmp_path):
     path = tmp_path / "a.png"
     path.write_bytes(files.png_bytes(CODES, after=files.gama(1)))
     rgb, _, codes = convert(spectral, path)
-    np.testing.assert_allclose(
-        rgb, colour.models.eotf_sRGB(SHARE)[0], rtol=0, atol=1e-5
-    )
+    assert_allclose(rgb, colour.models.eotf_sRGB(SHARE)[0], rtol=0, atol=1e-5)
     assert codes == ()
 
 
@@ -105,11 +102,11 @@ def test_all_depths_and_kinds_of_png_are_linear_by_gamma(
     path.write_bytes(files.png_bytes(codes, files.gama(1)))
     result = texture.convert(spectral, path, tmp_path / "out.exr")
     expected = codes[..., :3] if count > 2 else np.repeat(codes[..., :1], 3, axis=-1)
-    np.testing.assert_allclose(
+    assert_allclose(
         read_channels(result.target, "RGB"), expected / top, rtol=0, atol=1e-6
     )
     if count in (2, 4):
-        np.testing.assert_allclose(
+        assert_allclose(
             channels(result.target)["A"], codes[..., -1] / top, rtol=0, atol=1e-3
         )
 
@@ -123,9 +120,7 @@ def test_palettes_and_bits_of_png_are_linear_by_gamma(mode, spectral, tmp_path):
     path.write_bytes(data[:33] + files.gama(1) + data[33:])
     result = texture.convert(spectral, path, tmp_path / "out.exr")
     expected = np.asarray(image.convert("RGB")) / 255
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB"), expected, rtol=0, atol=1e-6
-    )
+    assert_allclose(read_channels(result.target, "RGB"), expected, rtol=0, atol=1e-6)
 
 
 def test_a_transparent_colour_of_png_does_not_change_the_gamma(spectral, tmp_path):
@@ -133,10 +128,8 @@ def test_a_transparent_colour_of_png_does_not_change_the_gamma(spectral, tmp_pat
     transparent = files.png_chunk(b"tRNS", CODES[0, 0].astype(">u2").tobytes())
     path.write_bytes(files.png_bytes(CODES, files.gama(1), transparent))
     result = texture.convert(spectral, path, tmp_path / "out.exr")
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB")[0], SHARE, rtol=0, atol=1e-6
-    )
-    np.testing.assert_array_equal(channels(result.target)["A"][0], [0, 1])
+    assert_allclose(read_channels(result.target, "RGB")[0], SHARE, rtol=0, atol=1e-6)
+    assert_array_equal(channels(result.target)["A"][0], [0, 1])
 
 
 UNUSABLE = {
@@ -165,7 +158,7 @@ def test_the_next_statement_is_used_with_a_warning(
     path = tmp_path / "a.png"
     path.write_bytes(files.png_bytes(CODES, *chunks))
     rgb, _, codes = convert(spectral, path)
-    np.testing.assert_allclose(rgb, expected[0], rtol=0, atol=2e-4)
+    assert_allclose(rgb, expected[0], rtol=0, atol=2e-4)
     assert codes == ("colour-space-assumed",)
 
 
@@ -179,7 +172,7 @@ def test_codes_of_narrow_range_are_widened(bits, spectral, tmp_path):
     )
     result = texture.convert(spectral, path, tmp_path / "out.exr")
     found = read_channels(result.target, "RGB")[0]
-    np.testing.assert_allclose(found, [[0, 1, 0.5], [0, 0, 1]], rtol=0, atol=3e-3)
+    assert_allclose(found, [[0, 1, 0.5], [0, 0, 1]], rtol=0, atol=3e-3)
 
 
 def test_bright_colours_of_pq_are_mapped_with_a_warning(spectral, tmp_path):
@@ -188,9 +181,7 @@ def test_bright_colours_of_pq_are_mapped_with_a_warning(spectral, tmp_path):
     path.write_bytes(files.png_bytes(codes, files.cicp(9, 16, 0, 1)))
     result = texture.convert(spectral, path, tmp_path / "out.exr")
     expected = np.minimum(colour.models.eotf_ST2084(codes[0] / 255) / 100, 1)
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB")[0], expected, rtol=0, atol=1e-3
-    )
+    assert_allclose(read_channels(result.target, "RGB")[0], expected, rtol=0, atol=1e-3)
     assert [warning.code for warning in result.warnings] == ["pixels-out-of-gamut"]
     assert result.counts.outside == 1
 
@@ -212,9 +203,7 @@ def test_colours_are_those_of_openimageio(chunks, name, spectral, tmp_path):
         image, name, "lin_rec709_scene"
     ).get_pixels("float")
     assert not OpenImageIO.geterror()
-    np.testing.assert_allclose(
-        convert(spectral, path)[0], expected[0, 0], rtol=0, atol=1e-3
-    )
+    assert_allclose(convert(spectral, path)[0], expected[0, 0], rtol=0, atol=1e-3)
 
 
 TABLE = np.rint(65535 * np.linspace(0, 1, 256) ** 1.8).astype(int).tolist()
@@ -251,7 +240,7 @@ def test_tags_of_tiff(order, tags, exif, index, expected, spectral, tmp_path):
     path = tmp_path / "a.tif"
     path.write_bytes(files.tiff_bytes(CODES, tags, order, exif, index))
     rgb, _, codes = convert(spectral, path)
-    np.testing.assert_allclose(rgb, expected[0], rtol=0, atol=3e-4)
+    assert_allclose(rgb, expected[0], rtol=0, atol=3e-4)
     assert codes == ()
 
 
@@ -268,9 +257,7 @@ def test_tags_that_cannot_be_used_trigger_a_warning(tags, exif, spectral, tmp_pa
     path = tmp_path / "a.tif"
     path.write_bytes(files.tiff_bytes(CODES, tags, exif=exif))
     rgb, _, codes = convert(spectral, path)
-    np.testing.assert_allclose(
-        rgb, colour.models.eotf_sRGB(SHARE)[0], rtol=0, atol=1e-5
-    )
+    assert_allclose(rgb, colour.models.eotf_sRGB(SHARE)[0], rtol=0, atol=1e-5)
     assert codes == ("colour-space-assumed",)
 
 
@@ -283,7 +270,7 @@ def test_exif_of_jpeg(spectral, tmp_path):
         path, quality=100, exif=exif
     )
     rgb, spaces, codes = convert(spectral, path)
-    np.testing.assert_allclose(rgb, (128 / 255) ** (563 / 256), rtol=0, atol=1e-4)
+    assert_allclose(rgb, (128 / 255) ** (563 / 256), rtol=0, atol=1e-4)
     assert (spaces, codes) == (("Adobe RGB (1998)",), ())
 
 
@@ -292,7 +279,7 @@ def test_primaries_of_radiance_hdr(spectral, tmp_path):
     numbers = " ".join(map(str, files.BT2020))
     path.write_bytes(files.hdr_bytes(CODES, 128, f"PRIMARIES= {numbers}\n"))
     rgb, spaces, codes = convert(spectral, path)
-    np.testing.assert_allclose(rgb, CODES[0, 0] / 256 @ TO_SRGB.T, rtol=0, atol=2e-4)
+    assert_allclose(rgb, CODES[0, 0] / 256 @ TO_SRGB.T, rtol=0, atol=2e-4)
     assert (spaces, codes) == (("PRIMARIES",), ())
     path.write_bytes(files.hdr_bytes(CODES, 128, "PRIMARIES= 1 2 3\n"))
     assert convert(spectral, path)[2] == ("colour-space-assumed",)
@@ -331,7 +318,7 @@ def test_channels_of_xyz_are_converted(layer, dtype, spectral, tmp_path):
     )
     expected = RGB * alpha[..., None]
     tolerance = 1e-4 if dtype is np.float32 else 3e-3
-    np.testing.assert_allclose(
+    assert_allclose(
         read_channels(result.target, "RGB"), expected, rtol=0, atol=tolerance
     )
     assert result.warnings == ()
@@ -350,9 +337,7 @@ def test_xyz_are_relative_to_the_white_of_the_file(spectral, tmp_path):
     )
     result = texture.convert(spectral, source, tmp_path / "out.exr")
     expected = np.clip(RGB @ conversion(primaries, SRGB).T, 0, 1)
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB"), expected, rtol=0, atol=3e-4
-    )
+    assert_allclose(read_channels(result.target, "RGB"), expected, rtol=0, atol=3e-4)
     assert "100" in result.spaces[0]
 
 
@@ -366,7 +351,7 @@ def test_relit_images_of_xyz_are_rgb(small_cube, tmp_path):
         source = write_exr(tmp_path / f"{name}.exr", held)
         result = texture.convert(relighter, source, tmp_path / f"{name}-A.exr")
         found.append(read_channels(result.target, "RGB").astype(float))
-    np.testing.assert_allclose(found[1], found[0], rtol=0, atol=2e-3)
+    assert_allclose(found[1], found[0], rtol=0, atol=2e-3)
 
 
 @pytest.mark.parametrize(
@@ -402,9 +387,7 @@ def test_xyz_are_neither_encoded_nor_rgb_of_a_space(small_cube, tmp_path):
         small_cube, depth="float", space="CIE XYZ-D65 - Scene-referred", threads=1
     )
     result = texture.convert(named, source, tmp_path / "out.exr")
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB"), RGB, rtol=0, atol=1e-3
-    )
+    assert_allclose(read_channels(result.target, "RGB"), RGB, rtol=0, atol=1e-3)
 
 
 def test_rgb_channels_of_a_space_of_xyz_keep_its_white(spectral, tmp_path):
@@ -414,9 +397,7 @@ def test_rgb_channels_of_a_space_of_xyz_keep_its_white(spectral, tmp_path):
         colorInteropID="lin_ciexyzd65_scene",
     )
     result = texture.convert(spectral, source, tmp_path / "out.exr")
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB"), RGB, rtol=0, atol=1e-3
-    )
+    assert_allclose(read_channels(result.target, "RGB"), RGB, rtol=0, atol=1e-3)
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float16])
@@ -438,17 +419,13 @@ def test_light_without_opacity_stays(dtype, spectral, tmp_path):
     )
     result = texture.convert(spectral, source, tmp_path / "out.exr")
     assert result.warnings == ()
-    np.testing.assert_array_equal(channels(result.target)["A"], alpha.astype(dtype))
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB"), light, rtol=0, atol=1e-4
-    )
+    assert_array_equal(channels(result.target)["A"], alpha.astype(dtype))
+    assert_allclose(read_channels(result.target, "RGB"), light, rtol=0, atol=1e-4)
     spectra = read_channels(result.target, spectral.channels)
     expected = spectral.cube.reflectance(
         light[0, :1].astype(dtype).astype(float), WAVELENGTHS
     )
-    np.testing.assert_allclose(
-        spectra[0, :2], np.repeat(expected, 2, axis=0), rtol=0, atol=1e-5
-    )
+    assert_allclose(spectra[0, :2], np.repeat(expected, 2, axis=0), rtol=0, atol=1e-5)
     assert (spectra[0, 3] == 0).all()
 
 
@@ -464,7 +441,7 @@ def test_pictures_show_light_without_opacity(sensor, tmp_path):
     source = write_exr(
         tmp_path / "a.exr", {**planes(light), "A": np.array([[0, 0.5]], np.float32)}
     )
-    np.testing.assert_allclose(
+    assert_allclose(
         read_picture(source, sensor, max_side=2).rgb[0], [[0.25] * 3, [0.5] * 3]
     )
 

@@ -5,6 +5,7 @@ from importlib import import_module
 import numpy as np
 import pytest
 from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999
+from numpy.testing import assert_allclose
 
 from tests.helpers import raises
 from tests.parts import LLVM, need
@@ -101,7 +102,7 @@ def test_smits_and_mallett_match_colour_science(small_task, colours):
         expected = [
             np.interp(at, sd.wavelengths, sd.values) for sd in map(theirs, colours)
         ]
-        np.testing.assert_allclose(
+        assert_allclose(
             prepared(name, small_task).uplift(colours, at), expected, atol=1e-12
         )
 
@@ -111,7 +112,7 @@ def test_jakob_fit_has_the_colour(small_task):
     found = prepared("jakob2019-direct", small_task).uplift(
         rgb, small_task.sensor.wavelengths
     )
-    np.testing.assert_allclose(small_task.sensor.rgb(found), rgb, atol=2e-3)
+    assert_allclose(small_task.sensor.rgb(found), rgb, atol=2e-3)
 
 
 def test_missing_mitsuba_is_not_installed(small_task, monkeypatch):
@@ -130,7 +131,7 @@ def test_both_types_give_the_same_spectra(small_task, colours, name):
     single = prepared(f"{name}-float32", small_task)
     found = single.uplift(colours.astype(np.float32), at)
     assert found.dtype == np.float32
-    np.testing.assert_allclose(found, double.uplift(colours, at), atol=2e-6)
+    assert_allclose(found, double.uplift(colours, at), atol=2e-6)
 
 
 def vectorised_and_table(task, colours):
@@ -155,7 +156,7 @@ def test_vectorised_mitsuba_gives_the_reflectances_of_its_table(small_task, colo
         vectorised_and_table, small_task, colours, seconds=120
     )
     for compiled, table in zip(found, expected, strict=True):
-        np.testing.assert_allclose(compiled, table, atol=1e-4)
+        assert_allclose(compiled, table, atol=1e-4)
 
 
 def test_prior_of_cubes_does_not_know_the_unseen_materials(small_task):

@@ -4,6 +4,7 @@ predictors.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.conftest import ATLASES
@@ -117,7 +118,7 @@ def test_local_linear_reproduces_spectra_that_are_linear_in_rgb(data):
     )
     known = spectra[:40]
     queried = spectra[40:]
-    np.testing.assert_allclose(
+    assert_allclose(
         local_linear(data, known, data.sensor.rgb(queried)), queried, atol=1e-3
     )
 
@@ -154,5 +155,5 @@ def test_local_linear_has_the_least_leave_one_out_error_and_the_queried_colours(
     )
     rgb = data.sensor.rgb(some.mean(axis=0)[None]) * [[0.9, 1.0, 1.1]]
     found = local_linear(data, some, rgb)
-    np.testing.assert_allclose(found, predict(some, rgb, best), atol=1e-12)
-    np.testing.assert_allclose(data.sensor.rgb(found), rgb, atol=1e-6)
+    assert_allclose(found, predict(some, rgb, best), atol=1e-12)
+    assert_allclose(data.sensor.rgb(found), rgb, atol=1e-6)

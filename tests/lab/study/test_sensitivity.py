@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 import uplift
 from uplift.atlas import read_atlas
@@ -100,7 +101,7 @@ def test_changed_atlases_and_their_effect(repository):
         [one.values - other.values for one, other in zip(noisy, entries, strict=True)]
     )
     assert noise.std() == pytest.approx(0.002, rel=0.1)
-    np.testing.assert_array_equal(wrong[0].values, entries[0].values[::-1])
+    assert_array_equal(wrong[0].values, entries[0].values[::-1])
     assert wrong[1:] == left_out == list(entries[1:])
 
     removed = compare(before, rebuild(left_out, {"dim": 8}), LIGHT, "", name)

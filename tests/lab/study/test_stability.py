@@ -4,6 +4,7 @@ difficult as their names.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from tests.helpers import raises
 from uplift.colorimetry import observer
@@ -84,7 +85,7 @@ def test_atlases_are_crowded_spiky_and_noisy(sensor):
     for values, make in zip(
         (crowded, spiky, noisy), SYNTHETIC_ATLASES.values(), strict=True
     ):
-        np.testing.assert_array_equal(values, [entry.values for entry in make()])
+        assert_array_equal(values, [entry.values for entry in make()])
     lab = rgb_to_lab(sensor, sensor.rgb(crowded))
     distance = np.linalg.norm(lab[:, None] - lab, axis=-1) + 1e3 * np.eye(len(lab))
     assert np.median(distance.min(axis=1)) < 1
