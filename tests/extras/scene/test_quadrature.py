@@ -53,24 +53,17 @@ def _exact_nodes(points, masses, order):
     """Roots of the orthogonal polynomial from its moments, by elimination
     in fractions.
     """
-    moments = [
-        sum(m * Fraction(p) ** k for p, m in zip(points, masses, strict=True))
-        for k in range(2 * order)
-    ]
-    rows = [
-        [moments[i + j] for j in range(order)] + [-moments[i + order]]
-        for i in range(order)
-    ]
+    powers = np.arange(2 * order)[:, None]
+    moments = (np.array(points, dtype=object) ** powers) @ np.array(masses)
+    rows = np.array([moments[i : i + order + 1] for i in range(order)]) * Fraction(1)
+    rows[:, -1] *= -1
     for i in range(order):
-        pivot = next(k for k in range(i, order) if rows[k][i])
-        rows[i], rows[pivot] = rows[pivot], rows[i]
-        rows[i] = [value / rows[i][i] for value in rows[i]]
-        for k in range(order):
-            if k != i:
-                rows[k] = [
-                    a - rows[k][i] * b for a, b in zip(rows[k], rows[i], strict=True)
-                ]
-    return np.roots([1.0, *(float(row[-1]) for row in reversed(rows))])
+        pivot = i + np.flatnonzero(rows[i:, i])[0]
+        rows[[i, pivot]] = rows[[pivot, i]]
+        rows[i] /= rows[i, i]
+        for k in set(range(order)) - {i}:
+            rows[k] -= rows[k, i] * rows[i]
+    return np.roots([1.0, *rows[::-1, -1].astype(float)])
 
 
 @given(
