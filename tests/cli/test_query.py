@@ -394,22 +394,12 @@ def test_csv_has_a_row_per_colour(run, table):
         "query", "--input", path, "--format", "csv", "--wavelengths", "450,550.5"
     ).stdout
     header, *rows = csv.reader(io.StringIO(text))
-    assert header == [
-        "r",
-        "g",
-        "b",
-        "delta_e_2000",
-        "standard_error",
-        "error_bound",
-        "entry",
-        "450",
-        "550.5",
-    ]
+    names = "r,g,b,delta_e_2000,standard_error,error_bound,entry,450,550.5"
+    assert header == names.split(",")
     expected = uplift.load().reflectance([[0.8, 0.2, 0.1], [0.1] * 3], [450, 550.5])
-    assert_allclose(
-        [[float(cell) for cell in row[7:]] for row in rows], expected, atol=1e-12
-    )
-    assert [float(cell) for cell in rows[0][:3]] == [0.8, 0.2, 0.1]
+    spectra = [list(map(float, row[7:])) for row in rows]
+    assert_allclose(spectra, expected, atol=1e-12)
+    assert list(map(float, rows[0][:3])) == [0.8, 0.2, 0.1]
     assert rows[0][4:7] == ["", "", ""]
 
 

@@ -2,6 +2,7 @@
 is found, pictures have all.
 """
 
+import itertools
 import json
 import re
 from dataclasses import replace
@@ -67,14 +68,10 @@ def checker():
 
 @pytest.fixture(scope="module")
 def found(checker):
-    made = [
-        make(count)
-        for make in (point_samples, riemann_sums, enhanced_riemann)
-        for count in (16, 32)
-    ]
-    return compare(
-        checker, [*made, sun_composite(15), trigonometric_moments(9)], quick=True
-    )
+    representations = [sun_composite(15), trigonometric_moments(9)]
+    for make in (point_samples, riemann_sums, enhanced_riemann):
+        representations += [make(16), make(32)]
+    return compare(checker, representations, quick=True)
 
 
 def test_dense_data_have_no_error(checker):
@@ -131,18 +128,12 @@ def test_storage_includes_spikes(found):
 
 
 def test_findings_of_the_thesis_hold_for_the_colorchecker(found):
-    smooth, spiky = (
-        {row.name: row.statistics.mean for row in found.of(name)}
-        for name in ("smooth", "spiky")
-    )
+    smooth = {row.name: row.statistics.mean for row in found.of("smooth")}
+    spiky = {row.name: row.statistics.mean for row in found.of("spiky")}
     assert all(smooth[f"{family}32"] < 1 for family in ("PS", "RS", "RE"))
     assert spiky["PS16"] > 10 * smooth["PS16"]
-    assert (
-        max(spiky["CS15"], spiky["RE16"])
-        < spiky["RS16"]
-        < spiky["PS32"]
-        < spiky["PS16"]
-    )
+    assert spiky["RS16"] < spiky["PS32"] < spiky["PS16"]
+    assert max(spiky["CS15"], spiky["RE16"]) < spiky["RS16"]
 
 
 @pytest.mark.parametrize(
@@ -317,20 +308,22 @@ def test_files_are_images(found, tmp_path):
         assert pixels.std() > 0.05
 
 
+def first_column(rows):
+    return [row[0].parts[0] for row in rows]
+
+
 def test_page_has_every_representation_fits_and_is_accessible(found, tmp_path):
     html = render_comparison(found)
     assert render_comparison(found) == html
     known = names(found)
-    for panel in range(len(cost_panels(found))):
-        assert all(
-            html.count(f'id="marker-{panel}-{number}"') == 1
-            for number in range(len(known))
-        )
+    panels = range(len(cost_panels(found)))
+    for panel, number in itertools.product(panels, range(len(known))):
+        assert html.count(f'id="marker-{panel}-{number}"') == 1
     (data,) = re.findall(
         r'<script type="application/json" id="rows">(.*?)</script>', html, re.DOTALL
     )
-    assert [one["title"] for one in json.loads(data)] == known
-    tables = [[row[0].parts[0] for row in table[1:]] for table in Page(html).tables]
+    assert [row["title"] for row in json.loads(data)] == known
+    tables = [first_column(table[1:]) for table in Page(html).tables]
     for name in found.sets:
         assert [result.name for result in found.of(name)] in tables
     check_page(html, tmp_path)
@@ -356,18 +349,14 @@ def test_representations_fitted_to_a_scene_follow_its_products(fitted):
     assert_array_equal(encode(lights.powers[::-1]), encode(lights.powers)[::-1])
 
 
+def costs_of(row):
+    return np.array([row.floats, row.light_floats, row.statistics.q97_5])
+
+
 def test_the_front_has_all_that_nothing_dominates(found):
     for name in found.sets:
         front = pareto(found, name)
         for row in found.of(name):
-            costs = (row.floats, row.light_floats, row.statistics.q97_5)
-            is_beaten = any(
-                all(
-                    np.less_equal(
-                        (each.floats, each.light_floats, each.statistics.q97_5), costs
-                    )
-                )
-                for each in front
-                if each is not row
-            )
+            others = [costs_of(other) for other in front if other is not row]
+            is_beaten = np.all(others <= costs_of(row), axis=1).any()
             assert is_beaten != (row in front)

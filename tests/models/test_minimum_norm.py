@@ -88,7 +88,8 @@ def test_jax_and_numpy_agree(sensor):
 
 
 def lower_half(matrices):
-    return [[matrices[:, a, b] for b in range(a + 1)] for a in range(3)]
+    columns = np.moveaxis(matrices, 0, -1)
+    return [list(columns[row, : row + 1]) for row in range(3)]
 
 
 def test_damped_solution_agrees_with_a_dense_solver():

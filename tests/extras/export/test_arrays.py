@@ -2,6 +2,7 @@
 
 import csv
 import json
+import operator
 
 import numpy as np
 import pytest
@@ -76,7 +77,8 @@ def read(path):
 
 
 def column(rows, *names):
-    return np.array([[float(row[name]) for name in names] for row in rows]).squeeze()
+    cells = [operator.itemgetter(*names)(row) for row in rows]
+    return np.array(cells, dtype=float)
 
 
 def test_csv_has_a_line_per_node_in_full_precision(tmp_path, monkeypatch):

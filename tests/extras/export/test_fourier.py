@@ -1,5 +1,6 @@
 """Fourier sRGB: tables from sRGB, and the shader of its spectra."""
 
+import itertools
 import subprocess
 from itertools import product
 
@@ -108,10 +109,8 @@ def test_the_shader_evaluates_the_spectra(three, folder):
     )
 
     def shader(colours):
-        rows = [
-            (*colour, nm) for colour in colours.tolist() for nm in WAVELENGTHS.tolist()
-        ]
-        text = "\n".join(" ".join(map(repr, row)) for row in rows)
+        pairs = itertools.product(colours.tolist(), WAVELENGTHS.tolist())
+        text = "\n".join(" ".join(map(repr, (*colour, nm))) for colour, nm in pairs)
         done = subprocess.run(
             [folder / "main"], input=text, capture_output=True, text=True, check=True
         )

@@ -77,11 +77,13 @@ def check(tmp_path):
     return check
 
 
+FORMS = []
+for style, language in LANGUAGES.items():
+    FORMS += [(style, form) for form in language.forms]
+
+
 @pytest.mark.parametrize("mode", ["spectra", "moments"])
-@pytest.mark.parametrize(
-    ("style", "form"),
-    [(style, form) for style in LANGUAGES for form in LANGUAGES[style].forms],
-)
+@pytest.mark.parametrize(("style", "form"), FORMS)
 def test_ten_thousand_colours_equal_those_of_python(
     small_cube, check, style, form, mode
 ):

@@ -51,14 +51,10 @@ def test_labels_of_wavelengths(save, label):
 
 
 def test_rows_of_single_samples(save):
-    rows = [
-        f"{name},{nm},{value}"
-        for nm, value in ((700, 0.3), (400, 0.1), (550, 0.2))
-        for name in ("a", "b")
-    ]
-    first, second = read_atlas(
-        save("\n".join(["Sample,Wavelength (nm),Reflectance", *rows]))
-    )
+    rows = ["Sample,Wavelength (nm),Reflectance"]
+    for nm, value in ((700, 0.3), (400, 0.1), (550, 0.2)):
+        rows += [f"a,{nm},{value}", f"b,{nm},{value}"]
+    first, second = read_atlas(save("\n".join(rows)))
     assert (first.name, first.wavelengths.tolist(), first.values.tolist()) == (
         "a",
         [400, 550, 700],

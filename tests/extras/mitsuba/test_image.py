@@ -2,6 +2,7 @@
 spectra of models.
 """
 
+import itertools
 import json
 import subprocess
 import sys
@@ -184,8 +185,9 @@ def test_the_stochastic_filter_chooses_texels_by_their_weights(texture, spectrum
 
 OPTIONS = [
     {"filter_type": filter_type, "wrap_mode": wrap_mode}
-    for filter_type in ("bilinear", "nearest", "stochastic")
-    for wrap_mode in ("repeat", "mirror", "clamp")
+    for filter_type, wrap_mode in itertools.product(
+        ("bilinear", "nearest", "stochastic"), ("repeat", "mirror", "clamp")
+    )
 ]
 
 JIT = """

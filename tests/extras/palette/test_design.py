@@ -3,6 +3,7 @@ criteria, atlases and plots.
 """
 
 import dataclasses
+import itertools
 from itertools import product
 
 import numpy as np
@@ -84,15 +85,10 @@ def at_random(sensor, draw):
     materials = tuple(
         SpectrumSpec(f"m{row}", None) for row in range(draw.integers(1, 4))
     )
-    goals = [
-        ColourGoal(
-            material.name,
-            light.name,
-            **({"free": "x"} if draw.random() < 0.3 else {"rgb": draw.random(3)}),
-        )
-        for material in materials
-        for light in lights
-    ]
+    goals = []
+    for material, light in itertools.product(materials, lights):
+        aim = {"free": "x"} if draw.random() < 0.3 else {"rgb": draw.random(3)}
+        goals.append(ColourGoal(material.name, light.name, **aim))
     weights = {
         "smoothness": float(draw.choice([0, 1e-3])),
         "model_error": float(draw.choice([0, 0.1, 1])),

@@ -24,10 +24,9 @@ from uplift.extras.scene.wavelengths.sampling import balanced, evaluate
 
 
 def _matrix(space):
-    own = [
-        row for row in read_reference("meyer1988_matrices.csv") if row["space"] == space
-    ]
-    return np.array([[float(row[key]) for key in "XYZ"] for row in own])
+    rows = read_reference("meyer1988_matrices.csv")
+    cells = [(row["X"], row["Y"], row["Z"]) for row in rows if row["space"] == space]
+    return np.array(cells, dtype=float)
 
 
 @pytest.fixture(scope="module")
@@ -66,22 +65,22 @@ def test_rules_equal_tables_1a_and_1b(cmfs, opponent):
     undefined = []
     for channel, orders in zip(CHANNELS, rules, strict=True):
         for order, rule in orders.items():
-            own = [
+            table = [
                 row
                 for row in printed
                 if (row["channel"], row["order"]) == (channel, str(order))
             ]
             if isinstance(rule, str):
                 undefined.append((channel, order))
-                assert not own
+                assert not table
                 continue
-            nodes = [float(row["wavelength"]) for row in own]
+            nodes = [float(row["wavelength"]) for row in table]
             assert_allclose(
                 rule.nodes, nodes, atol=0.101, err_msg=f"{channel}, order {order}"
             )
             pairs += [
                 (w, float(row["weight"]))
-                for w, row in zip(rule.weights, own, strict=True)
+                for w, row in zip(rule.weights, table, strict=True)
             ]
     assert undefined == [("C1", n) for n in (1, 3, 5, 7, 9)] + [
         ("C2", n) for n in (4, 5, 6, 8)

@@ -71,11 +71,7 @@ def light_powers(checker):
 
 
 NAMES = [
-    *(
-        f"{family}{count}"
-        for family in ("PS", "PF", "RS", "RE", "GQ")
-        for count in (4, 32)
-    ),
+    *("PS4", "PS32", "PF4", "PF32", "RS4", "RS32", "RE4", "RE32", "GQ4", "GQ32"),
     *("CS5", "CS15", "TM5", "TM17", "SG3", "LM4", "LM16", "HW4", "HW256"),
 ]
 EXACT = [name for name in NAMES if not name.startswith(("LM", "HW", "PF"))]

@@ -41,11 +41,10 @@ def d50(space):
 
 def by_matrix(space, curve):
     """Build a display profile of three colorants and a tone curve."""
+    columns = np.rint(65536 * d50(space).T).astype(int)
     tags = {
-        name: struct.pack(
-            ">4sI3i", b"XYZ ", 0, *(round(65536 * value) for value in column)
-        )
-        for name, column in zip((b"rXYZ", b"gXYZ", b"bXYZ"), d50(space).T, strict=True)
+        name: struct.pack(">4sI3i", b"XYZ ", 0, *column)
+        for name, column in zip((b"rXYZ", b"gXYZ", b"bXYZ"), columns, strict=True)
     }
     return icc(space, tags | dict.fromkeys((b"rTRC", b"gTRC", b"bTRC"), curve))
 

@@ -211,11 +211,7 @@ RGB = dict.fromkeys("RGB", ZERO)
         ("depth.exr", {"Z": ZERO}, "texture"),
         (
             "layers.exr",
-            {
-                f"{layer}.{letter}": ZERO
-                for layer in ("diffuse", "coat")
-                for letter in "RGB"
-            },
+            dict.fromkeys(("a.R", "a.G", "a.B", "b.R", "b.G", "b.B"), ZERO),
             "texture",
         ),
         ("integers.exr", dict.fromkeys("RGB", ZERO.astype(np.uint32)), "texture"),

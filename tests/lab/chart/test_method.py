@@ -28,35 +28,24 @@ def test_every_second_entry_builds_and_the_others_test(repository):
     # The first atlas has an odd number of entries; counting starts again with each
     # atlas.
     atlases = shipped(repository, "vs", "macbeth")
-    found = make_task(atlases, 16)
-    names = [
-        entry.name for spectra in atlases.values() for entry in spectra.entries[::2]
-    ]
-    assert list(found.kept.names) == names
-    rows = {tuple(row) for row in found.own.round(12)}
-    assert not rows & {tuple(row) for row in found.unseen.round(12)}
-    every = on_grid(merge(atlases.values()), found.sensor.wavelengths)
-    assert (
-        len(found.own) + len(found.unseen)
-        == in_unit_cube(found.sensor.rgb(every)).sum()
-    )
+    task = make_task(atlases, 16)
+    vs, macbeth = atlases.values()
+    assert task.kept.names == vs.names[::2] + macbeth.names[::2]
+    rows = set(map(tuple, task.own.round(12)))
+    assert not rows & set(map(tuple, task.unseen.round(12)))
+    spectra = on_grid(merge(atlases.values()), task.sensor.wavelengths)
+    inside = in_unit_cube(task.sensor.rgb(spectra))
+    assert len(task.own) + len(task.unseen) == inside.sum()
 
 
 def test_edges_contain_every_corner_and_grey_once():
-    found = edges()
-    assert len(np.unique(found, axis=0)) == len(found)
-    assert (
-        (
-            (found == 0)
-            | (found == 1)
-            | (found == found[:, :1]).all(axis=1, keepdims=True)
-        )
-        .any(axis=1)
-        .all()
-    )
-    corners = found[((found == 0) | (found == 1)).all(axis=1)]
-    assert len(corners) == 8
-    assert (np.ptp(found, axis=1) == 0).sum() == 9
+    rgb = edges()
+    assert len(np.unique(rgb, axis=0)) == len(rgb)
+    is_extreme = np.isin(rgb, (0, 1))
+    is_grey = np.ptp(rgb, axis=1) == 0
+    assert (is_extreme.any(axis=1) | is_grey).all()
+    assert is_extreme.all(axis=1).sum() == 8
+    assert is_grey.sum() == 9
 
 
 def test_too_few_colours_or_entries_are_an_error(repository):

@@ -78,14 +78,12 @@ def test_sample_covers_every_value_of_every_axis():
 
 
 def test_atlases_are_crowded_spiky_and_noisy(sensor):
-    crowded, spiky, noisy = (
-        np.array([entry.values for entry in make()])
-        for make in SYNTHETIC_ATLASES.values()
-    )
-    for values, make in zip(
-        (crowded, spiky, noisy), SYNTHETIC_ATLASES.values(), strict=True
-    ):
-        assert_array_equal(values, [entry.values for entry in make()])
+    atlases = []
+    for make in SYNTHETIC_ATLASES.values():
+        values = np.array([entry.values for entry in make()])
+        assert_array_equal([entry.values for entry in make()], values)
+        atlases.append(values)
+    crowded, spiky, noisy = atlases
     lab = rgb_to_lab(sensor, sensor.rgb(crowded))
     distance = np.linalg.norm(lab[:, None] - lab, axis=-1) + 1e3 * np.eye(len(lab))
     assert np.median(distance.min(axis=1)) < 1
