@@ -37,9 +37,7 @@ def test_every_node_is_exact_and_positive():
     assert_allclose(chromaticity(power @ RADIOMETRY), uv, atol=1e-9)
 
 
-def test_left_out_lamps_are_predicted_better_than_by_simple_rules(
-    fitted,
-):
+def test_left_out_lamps_are_predicted_better_than_by_simple_rules(fitted):
     uv = chromaticity(LAMPS.power @ RADIOMETRY)
     apart = np.linalg.norm(uv[:, None] - uv, axis=-1) + 9 * np.eye(len(uv))
 

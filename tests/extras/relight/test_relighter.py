@@ -55,10 +55,7 @@ def test_colours_stay_in_the_space_of_the_image(small_cube, colours, tmp_path):
         chromaticities=AP1,
     )
     texture.convert(
-        prepare_relighter(small_cube, ("HP1",), threads=1),
-        grey,
-        target,
-        force=True,
+        prepare_relighter(small_cube, ("HP1",), threads=1), grey, target, force=True
     )
     assert_allclose(read_channels(target, "RGB"), 0.5, atol=0.02)
 

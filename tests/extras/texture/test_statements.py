@@ -61,10 +61,7 @@ def test_random_images_have_the_colours_that_they_state(seed):
 PNG = {
     "gAMA": ((files.gama(1),), SHARE),
     "gAMA of 2.2 is a power": ((files.gama(0.45455),), SHARE ** (1 / 0.45455)),
-    "cHRM has the curve of sRGB": (
-        (files.chrm(files.BT2020),),
-        FROM_SRGB @ TO_SRGB.T,
-    ),
+    "cHRM has the curve of sRGB": ((files.chrm(files.BT2020),), FROM_SRGB @ TO_SRGB.T),
     "gAMA and cHRM": ((files.gama(1), files.chrm(files.BT2020)), SHARE @ TO_SRGB.T),
     "sRGB before gAMA": (
         (files.gama(1), files.chrm(files.BT2020), files.SRGB),
@@ -212,12 +209,7 @@ TAGS = {
         {1: (2, b"R03\0")},
         SHARE ** (563 / 256) @ ADOBE_MATRIX.T,
     ),
-    "sRGB": (
-        {},
-        {0xA001: (3, [1])},
-        {1: (2, b"R98\0")},
-        FROM_SRGB,
-    ),
+    "sRGB": ({}, {0xA001: (3, [1])}, {1: (2, b"R98\0")}, FROM_SRGB),
 }
 
 
