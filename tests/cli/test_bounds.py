@@ -16,7 +16,7 @@ LIGHTS = ("--light", "A", "--light", "FL11")
 
 
 def test_bounds_of_a_colour_in_json(ask):
-    found = ask("bounds", "#8a2a20", *LIGHTS)
+    found = ask("bounds #8a2a20", *LIGHTS)
     assert list(found["bounds"]) == ["A", "FL11"]
     for name, each in found["bounds"].items():
         (least, most), answer = np.array(each["lab_range"]), np.array(each["lab"])
@@ -62,7 +62,7 @@ def test_table_plot_and_page(run, home):
         "--html",
         "page.html",
     ]  # a light counts once
-    text = run("bounds", "0.2,0.3,0.4", *words).stdout
+    text = run("bounds 0.2,0.3,0.4", *words).stdout
     row = text.splitlines()[-1].split()
     assert (row[0], float(row[5])) == ("D65", 0)  # metamers match under the build light
     assert max(map(len, text.splitlines())) <= 80
@@ -71,7 +71,7 @@ def test_table_plot_and_page(run, home):
 
 
 def test_bad_input_is_refused(refuse, misuse, home):
-    assert refuse("bounds", "--xyz", "1", "0.1", "0.02").code == "colour-unrealisable"
-    assert "one colour" in misuse("bounds", "-", "--html", "p.html", input=COLOURS)
+    assert refuse("bounds --xyz 1 0.1 0.02").code == "colour-unrealisable"
+    assert "one colour" in misuse("bounds - --html p.html", input=COLOURS)
     (home / "look.html").write_text("mine")
-    assert refuse("bounds", "#8a2a20", "--html", "look.html").code == "file-exists"
+    assert refuse("bounds #8a2a20 --html look.html").code == "file-exists"

@@ -41,13 +41,10 @@ def test_programs_come_with_a_table(run, home, cube, name):
 
 
 def test_the_table_of_a_program_is_a_choice(run, refuse, home, cube):
-    run("export", cube, "-o", "a.h", "--table", "file")
+    run("export -o a.h --table file", cube)
     assert {path.name for path in home.iterdir()} == {cube, "a.h", "a.bin"}
-    assert refuse("export", cube, "-o", "c.cuh", "--table", "header").code == "option"
-    assert (
-        refuse("export", cube, "-o", "a.glsl", "--mode", "moments").code
-        == "file-exists"
-    )
+    assert refuse("export -o c.cuh --table header", cube).code == "option"
+    assert refuse("export -o a.glsl --mode moments", cube).code == "file-exists"
     assert not (home / "a.glsl").exists()
 
 
@@ -74,17 +71,15 @@ def test_no_output_replaces_the_cube_or_another(refuse, home, cube, name, output
 
 
 def test_format_follows_the_suffix_of_out(run, home, cube, monkeypatch):
-    assert run("export", cube, "-o", "table.coeff", "--res", 3).stdout.startswith(
-        "table.coeff: "
-    )
+    assert run("export -o table.coeff --res 3", cube).stdout.startswith("table.coeff: ")
     monkeypatch.setattr(
         write_coeff, "__kwdefaults__", {**write_coeff.__kwdefaults__, "res": 2}
     )
-    run("export", cube, "-o", "table.cpp")
+    run("export -o table.cpp", cube)
     assert (home / "table.cpp").read_text().startswith("namespace pbrt {")
     assert (home / "table.coeff").read_bytes()[:8] == b"SPEC" + bytes([3, 0, 0, 0])
-    run("export", cube, "-o", "ANY.NPZ")
-    run("export", cube, "-o", "points.txt", "--format", "csv")
+    run("export -o ANY.NPZ", cube)
+    run("export -o points.txt --format csv", cube)
     assert (home / "points.txt").read_text().startswith("r,g,b")
     assert np.load(home / "ANY.NPZ")["nodes"].shape == (8,)
 

@@ -68,14 +68,7 @@ def test_every_light_may_be_a_file(run, refuse, home, files, line):
 
 def test_a_lamp_of_several_and_answers_under_it(ask, files):
     lights = ask(
-        "query",
-        "#888",
-        "--light",
-        "two.csv:warm",
-        "--light",
-        "lamp.spd",
-        "--light",
-        "A",
+        "query #888 --light two.csv:warm --light lamp.spd --light A",
     )["lights"]
     assert list(lights) == ["warm", "lamp", "A"]
     assert_allclose(lights["lamp"]["srgb"], lights["A"]["srgb"], atol=0.02)
@@ -84,14 +77,7 @@ def test_a_lamp_of_several_and_answers_under_it(ask, files):
 
 def test_channels_have_the_name_of_the_lamp(run, home, files):
     run(
-        "texture",
-        "wood.png",
-        "-o",
-        "x.exr",
-        "--cube",
-        "cube.uplift",
-        "--errors",
-        "lamp.spd",
+        "texture wood.png -o x.exr --cube cube.uplift --errors lamp.spd",
     )
     with OpenEXR.File(str(home / "x.exr"), separate_channels=True) as file:
         assert "error.lamp" in file.channels()
@@ -118,7 +104,7 @@ def test_a_changed_lamp_is_another_texture(run, refuse, home, files):
 
 
 def test_a_cube_is_not_built_under_a_lamp(refuse, files):
-    assert refuse("build", "--dim", "3", "--illuminant", "lamp.spd").code == "option"
+    assert refuse("build --dim 3 --illuminant lamp.spd").code == "option"
 
 
 def test_two_lights_of_one_name(refuse, home, files):
@@ -138,19 +124,16 @@ def test_scenes_name_lamps(run, refuse, home, files):
     (home / "two.csv").write_text(
         "name,400,550,700\ncold,0.3,0.2,0.1\nwarm,0.1,0.2,0.3\n"
     )
-    plan = json.loads(run("plan", "scene.toml", "--quick", "--format", "json").stdout)
+    plan = json.loads(run("plan scene.toml --quick --format json").stdout)
     assert plan["scene"]["lights"] == ["lamp", "A"]
-    assert (
-        refuse("plan", "scene.toml", "-o", "lamp.spd", "--force").code
-        == "output-is-input"
-    )
+    assert refuse("plan scene.toml -o lamp.spd --force").code == "output-is-input"
     if plan["build"]:
-        assert not warning_lines(run("build", "--plan", "scene.plan.json"))
+        assert not warning_lines(run("build --plan scene.plan.json"))
     for lights in ('"card.csv"', '"none.spd"', '"../lamp.spd"', '"folder"', "3"):
         scene.write_text(f'textures = ["wood.png"]\nlights = [{lights}]\n')
-        assert refuse("plan", "scene.toml", "-o", "x.json").where == "scene.toml"
+        assert refuse("plan scene.toml -o x.json").where == "scene.toml"
     scene.write_text('textures = ["wood.png"]\nlamp_files = []\n')
-    assert refuse("plan", "scene.toml").code == "invalid-file"
+    assert refuse("plan scene.toml").code == "invalid-file"
 
 
 def test_palettes_name_lamps(run, refuse, home, files):
@@ -161,14 +144,12 @@ def test_palettes_name_lamps(run, refuse, home, files):
     palette = home / "palette.toml"
     for name in ("lamp.spd", "two.csv:warm"):
         palette.write_text(text.format(name))
-        assert json.loads(run("palette", "palette.toml", "--format", "json").stdout)
+        assert json.loads(run("palette palette.toml --format json").stdout)
         assert (
-            refuse(
-                "palette", "palette.toml", "-o", name.partition(":")[0], "--force"
-            ).code
+            refuse("palette palette.toml --force -o", name.partition(":")[0]).code
             == "output-is-input"
         )
     for name in ("card.csv", "none.spd", "../lamp.spd", "two.csv", "D66"):
         palette.write_text(text.format(name))
-        code = refuse("palette", "palette.toml", "-o", "x.csv").code
+        code = refuse("palette palette.toml -o x.csv").code
         assert code in ("not-a-lamp", "atlas", "unknown-name", "invalid-file")

@@ -14,9 +14,7 @@ from uplift.extras.emission.table import emission_digest
 
 
 def test_a_light_has_its_colour_and_power_of_any_size(run):
-    found = json.loads(
-        run("lights", "query", "30", "22", "9", "--format", "json").stdout
-    )
+    found = json.loads(run("lights query 30 22 9 --format json").stdout)
     assert found["round_trip"]["rgb"] == pytest.approx([30, 22, 9], rel=1e-5)
     assert min(found["power"]) >= 0
     assert max(found["power"]) > 10
@@ -34,7 +32,7 @@ def test_xyz_wavelengths_and_plot(run, home):
         "--plot",
         "white.png",
     )
-    found = run("lights", "query", *words, "--format", "csv").stdout.splitlines()
+    found = run("lights query", *words, "--format", "csv").stdout.splitlines()
     assert found[0].split(",")[-4:] == ["400", "500", "600", "700"]
     assert (home / "white.png").exists()
     for words in (("query", "1", "1", "1"), ("texture", "in.exr", "-o", "out.exr")):
@@ -45,13 +43,8 @@ def test_xyz_wavelengths_and_plot(run, home):
 
 
 def test_colours_that_no_light_has(run):
-    assert (
-        "--out-of-gamut clip" in run("lights", "query", "-1", "1", "-1", code=2).stderr
-    )
-    assert (
-        "round trip"
-        in run("lights", "query", "-1", "1", "-1", "--out-of-gamut", "clip").stdout
-    )
+    assert "--out-of-gamut clip" in run("lights query -1 1 -1", code=2).stderr
+    assert "round trip" in run("lights query -1 1 -1 --out-of-gamut clip").stdout
 
 
 def test_a_table_of_measured_lamps_is_built_and_queried(run, home, monkeypatch):
@@ -65,10 +58,7 @@ def test_a_table_of_measured_lamps_is_built_and_queried(run, home, monkeypatch):
     (home / "lamps.csv").write_text(
         f"# spectral irradiance\nname,{','.join(map(str, at))}\nbulb,{values}\n"
     )
-    assert (
-        "lamps"
-        in run("lights", "build", "--atlas", "lamps.csv", "-o", "x.uplift").stdout
-    )
+    assert "lamps" in run("lights build --atlas lamps.csv -o x.uplift").stdout
     table = uplift.load_emission("x.uplift")
     assert table.lamp_names[0] == "bulb"
     assert table.data.provenance["atlases"][0]["name"] == "lamps.csv"
@@ -83,15 +73,13 @@ def test_a_table_of_measured_lamps_is_built_and_queried(run, home, monkeypatch):
         "--",
     )
     found = json.loads(
-        run("lights", "query", *words, *map(str, 5 * rgb / rgb.max())).stdout
+        run("lights query", *words, *map(str, 5 * rgb / rgb.max())).stdout
     )
     assert np.array(found["power"]) / max(found["power"]) == pytest.approx(
         power / power.max(), abs=1e-4
     )
     assert (
-        json.loads(run("lights", "info", "x.uplift", "--format", "json").stdout)[
-            "lamps"
-        ][0]
+        json.loads(run("lights info x.uplift --format json").stdout)["lamps"][0]
         == "bulb"
     )
 
@@ -99,19 +87,17 @@ def test_a_table_of_measured_lamps_is_built_and_queried(run, home, monkeypatch):
 def test_facts_picture_and_page(run, home):
     table = uplift.load_emission()
     table.save(home / "lights.uplift")
-    facts = json.loads(
-        run("lights", "info", "lights.uplift", "--format", "json").stdout
-    )
-    assert facts == json.loads(run("lights", "info", "--format", "json").stdout)
+    facts = json.loads(run("lights info lights.uplift --format json").stdout)
+    assert facts == json.loads(run("lights info --format json").stdout)
     assert (facts["lamps"], facts["digest"]) == (
         list(table.lamp_names),
         emission_digest(table.data),
     )
     words = ("--plot", "lights.png", "--html", "lights.html")
-    assert "LED-B3" in run("lights", "info", "lights.uplift", *words).stdout
+    assert "LED-B3" in run("lights info lights.uplift", *words).stdout
     assert "Chromaticity diagrams" in (home / "lights.html").read_text("utf-8")
     assert (home / "lights.png").read_bytes().startswith(b"\x89PNG")
-    assert "lights.png" in run("lights", "info", *words, code=2).stderr
+    assert "lights.png" in run("lights info", *words, code=2).stderr
 
 
 def test_textures(run, home):
@@ -138,9 +124,9 @@ def test_textures(run, home):
 
 
 def test_programs(run, misuse, home):
-    assert run("lights", "export", "-o", "lights.h").output.startswith("lights.h: ")
+    assert run("lights export -o lights.h").output.startswith("lights.h: ")
     assert "lights_power" in (home / "lights.h").read_text()
-    assert ".glsl" in misuse("lights", "export", "-o", "lights.wgsl")
+    assert ".glsl" in misuse("lights export -o lights.wgsl")
 
 
 @pytest.mark.parametrize(
@@ -149,8 +135,7 @@ def test_programs(run, misuse, home):
 def test_no_output_replaces_the_table(refuse, home, words):
     uplift.load_emission().save(home / "lights.bin")
     assert (
-        refuse("lights", "export", "lights.bin", *words, "--force").code
-        == "output-is-input"
+        refuse("lights export lights.bin", *words, "--force").code == "output-is-input"
     )
     assert [path.name for path in home.iterdir()] == ["lights.bin"]
 

@@ -45,8 +45,8 @@ def test_help_lists_every_command_under_a_heading(run):
 
 
 def test_help_shows_the_options_of_every_day_and_help_all_shows_all(run):
-    short = run("build", "--help").stdout
-    full = run("build", "--help-all").stdout
+    short = run("build --help").stdout
+    full = run("build --help-all").stdout
     shown = set(re.findall(r"(?<!\S)--\S+", short))
     assert {"--atlas", "--dim", "--help", "--help-all"} <= shown
     assert shown < set(re.findall(r"(?<!\S)--\S+", full))
@@ -109,7 +109,7 @@ def test_errors_are_one_line_with_the_hint_of_the_command_line(failing, run):
             "is bad", code="no-such-code", path="x", line=3, hint="make it good"
         )
     )
-    result = run("info", "x", code=2)
+    result = run("info x", code=2)
     assert (result.stdout, result.stderr) == ("", "error: x:3: is bad; make it good\n")
     failing(
         UpliftError(
@@ -117,8 +117,8 @@ def test_errors_are_one_line_with_the_hint_of_the_command_line(failing, run):
         )
     )
     hint = "pass --force"
-    assert run("info", "x", code=2).stderr == f"error: x: exists already; {hint}\n"
-    result = run("info", "x", "--format", "json", code=2)
+    assert run("info x", code=2).stderr == f"error: x: exists already; {hint}\n"
+    result = run("info x --format json", code=2)
     assert (result.stdout, result.stderr.count("\n")) == ("", 1)
     fields = {
         "code": "file-exists",
@@ -140,14 +140,14 @@ def test_errors_are_one_line_with_the_hint_of_the_command_line(failing, run):
 def test_internal_errors_are_one_line_with_exit_code_70(failing, run, monkeypatch, bug):
     monkeypatch.delenv("UPLIFT_TRACEBACK")
     failing(bug)
-    result = run("info", "x", code=70)
+    result = run("info x", code=70)
     assert result.stdout == ""
     assert result.stderr.startswith(
         f"error: internal error, please report it: {type(bug).__name__} in "
         "test_main.py:"
     )
     assert result.stderr == printable(result.stderr[:-1]) + "\n"
-    result = run("info", "x", "--format", "json", code=70)
+    result = run("info x --format json", code=70)
     assert json.loads(result.stderr)["error"]["code"] == "internal-error"
     assert CliRunner().invoke(main, ["--traceback", "info", "x"]).exception is bug
 
@@ -166,7 +166,7 @@ def test_internal_errors_are_one_line_with_exit_code_70(failing, run, monkeypatc
 )
 def test_failures_of_the_system_are_errors(failing, refuse, error, code):
     failing(error)
-    assert refuse("info", "x").code == code
+    assert refuse("info x").code == code
 
 
 def test_warnings_of_the_library_are_one_line_each_and_others_are_ignored(

@@ -81,12 +81,12 @@ def test_files_are_written(run, refuse, spec, home):
     assert "new.txt: 1 designed material\n" in run("palette", spec(), *files).stderr
     assert uplift.read_atlas("new.txt").names == ("new",)
     assert all((home / name).read_bytes()[1:4] == b"PNG" for name in ("m.png", "s.png"))
-    assert refuse("palette", spec(), "--plot", "m.png").code == "file-exists"
-    run("palette", spec(), "--plot", "m.png", "--force")
+    assert refuse("palette --plot m.png", spec()).code == "file-exists"
+    run("palette --plot m.png --force", spec())
 
 
 def test_pages(run, pair, home):
-    assert run("palette", pair, "--html", "two.html").stderr.startswith("two.html: ")
+    assert run("palette --html two.html", pair).stderr.startswith("two.html: ")
     text = (home / "two.html").read_text("utf-8")
     assert 'width="512" height="512"' in text
     assert ">old brick</button>" in text
@@ -124,7 +124,7 @@ def test_invalid_input_is_reported_before_any_work(
     )
     assert refuse("palette", pair, *arguments).code == code
     assert not (home / "a.html").exists()
-    assert refuse("palette", "none.toml").code == "file-not-found"
+    assert refuse("palette none.toml").code == "file-not-found"
 
 
 @pytest.mark.parametrize(

@@ -94,19 +94,21 @@ def test_several_colours_have_a_row_each(ask, run, refuse, home):
 )
 def test_lines_that_may_be_misread(refuse, table, line, code):
     codes = {"colour-outside": "rgb-out-of-gamut"}
-    error = refuse("query", "--input", table(f"{line}\n"))
+    error = refuse("query --input", table(f"{line}\n"))
     assert error.code == codes.get(code, code)
     assert line in error.problem
 
 
 def test_whole_numbers_between_commas(ask, refuse, table):
     text = "r,g,b,i,j,k\n0,1,0,3,0,4\n"
-    assert ask("query", "--input", table(text))[0]["rgb"] == [0, 1, 0]
-    assert ask("query", "--input", table("1,0,0,1\n"))[0]["rgb"] == [1, 0, 0]
-    assert ask("query", "--encoded", "--input", table("0,255,0,25,0,25\n"))[0][
-        "rgb"
-    ] == [0, 1, 0]
-    assert [one["rgb"] for one in ask("query", "1,0,0", "0,1,0")] == [
+    assert ask("query --input", table(text))[0]["rgb"] == [0, 1, 0]
+    assert ask("query --input", table("1,0,0,1\n"))[0]["rgb"] == [1, 0, 0]
+    assert ask("query --encoded --input", table("0,255,0,25,0,25\n"))[0]["rgb"] == [
+        0,
+        1,
+        0,
+    ]
+    assert [one["rgb"] for one in ask("query 1,0,0 0,1,0")] == [
         [1, 0, 0],
         [0, 1, 0],
     ]
@@ -154,18 +156,16 @@ def test_out_of_gamut_colours_are_mapped_with_a_warning(run, method, rgb):
     assert answer["requested_rgb"] == [1.4, 0.3, -0.1]
     assert answer["round_trip"]["delta_e_2000"] < 0.01
     assert_allclose(inside["rgb"], RED)
-    text = run("query", "1.4", "0.3", "-0.1", *words[2:]).stdout
+    text = run("query 1.4 0.3 -0.1", *words[2:]).stdout
     assert "1.400000 0.300000 -0.100000" in text.splitlines()[0]
 
 
 @pytest.mark.parametrize("name", ["P3-D65", P3])
 def test_colours_of_another_display(ask, name):
     theirs = colour.matrix_RGB_to_RGB("P3-D65", "sRGB")
-    requested = ask("query", "0.5", "0.6", "0.3", "--input-space", name)[
-        "requested_rgb"
-    ]
+    requested = ask("query 0.5 0.6 0.3 --input-space", name)["requested_rgb"]
     assert_allclose(requested, theirs @ [0.5, 0.6, 0.3], rtol=0, atol=3e-4)
-    green = ask("query", "0", "1", "0", "--input-space", name, "--out-of-gamut", "clip")
+    green = ask("query 0 1 0 --out-of-gamut clip --input-space", name)
     assert_allclose(green["requested_rgb"], theirs[:, 1], rtol=0, atol=3e-4)
     assert green["rgb"] == [0, 1, 0]
 
@@ -197,10 +197,8 @@ def test_syntax_of_files(ask, table, text):
 
 def test_files_of_codes_and_hex(ask, table):
     answers = ask(
-        "query",
-        "--input",
+        "query --encoded --input",
         table("#cc3319\ncc3319\n204,51,25\n#cc3319,brick\n"),
-        "--encoded",
     )
     assert_allclose(
         [answer["rgb"] for answer in answers], [RED] * 4, rtol=0, atol=1e-15
@@ -224,11 +222,11 @@ def test_files_of_codes_and_hex(ask, table):
 )
 def test_errors_in_files_have_the_line(refuse, table, text, line):
     path = table(text)
-    error = refuse("query", "--input", path)
+    error = refuse("query --input", path)
     assert isinstance(error, ColourError)
     assert error.where == (str(path) if line is None else f"{path}:{line}")
     assert len(str(error)) < len(str(path)) + 250
-    piped = refuse("query", "-", input=path.read_bytes())
+    piped = refuse("query -", input=path.read_bytes())
     assert (piped.path, piped.line, piped.problem) == (
         "standard input",
         line,
@@ -238,9 +236,9 @@ def test_errors_in_files_have_the_line(refuse, table, text, line):
 
 def test_files_that_cannot_be_read_are_errors(refuse, home, table):
     for path in ("none.csv", str(home)):
-        error = refuse("query", "--input", path)
+        error = refuse("query --input", path)
         assert (type(error), error.where) == (ColourError, path)
-    error = refuse("query", "--input", table("0,0,0\n\n0,256,0\n"), "--encoded")
+    error = refuse("query --encoded --input", table("0,0,0\n\n0,256,0\n"))
     assert (error.line, error.code) == (3, "invalid-codes")
 
 
@@ -250,20 +248,20 @@ def test_lines_and_their_numbers_do_not_depend_on_the_blocks(
 ):
     monkeypatch.setattr(colours, "CHUNK", chunk)
     path = table("\ufeffr,g,b,\u00e9\r\n0.1,0.2,0.3\r\u0020\n\n0.5,0.5,0.5")
-    answers = ask("query", "--input", path)
+    answers = ask("query --input", path)
     assert_array_equal(
         [answer["rgb"] for answer in answers], [[0.1, 0.2, 0.3], [0.5] * 3]
     )
     path.write_bytes(path.read_bytes() + b"\r\n0.5,0.5")
     assert (
         f"{path}:6: '0.5,0.5' is not a colour"
-        in run("query", "--input", path, code=2).stderr
+        in run("query --input", path, code=2).stderr
     )
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="needs /dev/zero")
 def test_an_endless_line_is_an_error(refuse):
-    assert isinstance(refuse("query", "--input", "/dev/zero"), ColourError)
+    assert isinstance(refuse("query --input /dev/zero"), ColourError)
 
 
 @pytest.mark.parametrize("style", ["json", "table"])
@@ -292,13 +290,11 @@ def test_lines_of_a_stream_are_answered_as_they_come(style):
 
 
 def test_colours_by_xyz_and_by_chromaticity(ask):
-    xyz = ask("query", "--xyz", "0.05", "0.2", "0.1", "--light", "D65")
+    xyz = ask("query --xyz 0.05 0.2 0.1 --light D65")
     assert min(xyz["rgb"]) < 0
     assert xyz["round_trip"]["delta_e_2000"] < 1e-3
     assert_allclose(xyz["lights"]["D65"]["xyz"], [0.05, 0.2, 0.1], atol=1e-5)
-    by_xy = ask(
-        "query", "--xy", str(0.05 / 0.35), str(0.2 / 0.35), "--luminance", "0.2"
-    )
+    by_xy = ask("query --xy", str(0.05 / 0.35), str(0.2 / 0.35), "--luminance", "0.2")
     assert_allclose(by_xy["reflectance"], xyz["reflectance"], rtol=0, atol=1e-6)
 
 
@@ -319,7 +315,7 @@ def test_exactly_one_source_of_colours(misuse, words):
 def test_json_has_every_field(ask, macbeth_cube):
     cube = uplift.load(macbeth_cube)
     row = cube.data.atlas.names.index("red")
-    answer = ask("query", "--cube", macbeth_cube, *cube.data.atlas.rgb[row].tolist())
+    answer = ask("query --cube", macbeth_cube, *cube.data.atlas.rgb[row].tolist())
     assert answer.keys() == {
         *(
             "cube",
@@ -379,20 +375,18 @@ def test_classical_coordinates(ask):
     """Of encoded RGB; #ff0000 has the I and Q that the FCC's matrix of 1953 gives to
     red.
     """
-    red = ask("query", "#ff0000")
+    red = ask("query #ff0000")
     assert (red["hsv"], red["hsl"]) == ([0, 1, 1], [0, 1, 0.5])
     assert_allclose(red["yiq"], [0.30, 0.60, 0.21], atol=0.005)
     assert red["dominant_wavelength"] == pytest.approx(611.4, abs=0.5)
-    grey = ask("query", "#808080")
+    grey = ask("query #808080")
     assert (grey["dominant_wavelength"], grey["purity"]) == (None, 0)
-    assert ask("query", "#ff00ff")["complementary"]
+    assert ask("query #ff00ff")["complementary"]
 
 
 def test_csv_has_a_row_per_colour(run, table):
     path = table("0.8,0.2,0.1\n0.1,0.1,0.1\n")
-    text = run(
-        "query", "--input", path, "--format", "csv", "--wavelengths", "450,550.5"
-    ).stdout
+    text = run("query --format csv --wavelengths 450,550.5 --input", path).stdout
     header, *rows = csv.reader(io.StringIO(text))
     names = "r,g,b,delta_e_2000,standard_error,error_bound,entry,450,550.5"
     assert header == names.split(",")
@@ -422,14 +416,14 @@ def test_standard_errors_under_other_lights(ask, run, table, macbeth_cube):
     assert (answer["standard_errors"], answer["error_bounds"]) == (expected, bounds)
     file = table("0.8,0.2,0.1\n0,1,0\n")
     rows = csv.DictReader(
-        io.StringIO(run("query", "--input", file, "--format", "csv", *words).stdout)
+        io.StringIO(run("query --input", file, "--format", "csv", *words).stdout)
     )
     row = next(rows)
     assert {
         light: float(row[f"standard_error_{light}"]) for light in lights
     } == expected
     assert {light: float(row[f"error_bound_{light}"]) for light in lights} == bounds
-    text = run("query", "--input", file, *words).stdout
+    text = run("query --input", file, *words).stdout
     assert "unlike the atlas" in text
     assert max(map(len, text.splitlines())) <= 80
 
@@ -459,7 +453,7 @@ def test_colours_under_lights_are_those_of_relit_images(run, ask, macbeth_cube):
     ],
 )
 def test_wavelengths(ask, text, expected):
-    answer = ask("query", "#cc3319", "--wavelengths", text)
+    answer = ask("query #cc3319 --wavelengths", text)
     assert_allclose(answer["wavelengths"], expected, rtol=1e-14)
     assert len(answer["reflectance"]) == len(expected)
 
@@ -471,52 +465,41 @@ def test_stored_answers_are_checked(
     plain_cube.save(home / "b.uplift")
     colours = table("0.2,0.3,0.4\n0.5,0.1,0.7\n")
     (home / "answers.csv").write_text(
-        run("query", "--cube", "a.uplift", "--input", colours, "--format", "csv").stdout
+        run("query --cube a.uplift --format csv --input", colours).stdout
     )
-    assert (
-        "passed, 0 of 2"
-        in run("query", "--cube", "a.uplift", "--check", "answers.csv").stdout
-    )
+    assert "passed, 0 of 2" in run("query --cube a.uplift --check answers.csv").stdout
     failed = json.loads(
         run(
-            "query",
-            "--cube",
-            "b.uplift",
-            "--check",
-            "answers.csv",
-            "--format",
-            "json",
+            "query --cube b.uplift --check answers.csv --format json",
             code=1,
         ).stdout
     )
     assert (failed["passed"], failed["colours"]) == (False, 2)
     assert failed["largest"] > failed["tolerance"]
-    run("query", "--cube", "b.uplift", "--check", "answers.csv", "--tolerance", "1")
+    run("query --cube b.uplift --check answers.csv --tolerance 1")
     (home / "bad.csv").write_text("r,g,b,500\n0.1,0.2,0.3,x\n")
-    assert refuse("query", "--check", "bad.csv").where == "bad.csv:2"
-    assert "--check" in misuse("query", "#fff", "--check", "answers.csv")
+    assert refuse("query --check bad.csv").where == "bad.csv:2"
+    assert "--check" in misuse("query #fff --check answers.csv")
 
 
 def test_a_hint_names_the_only_cube_of_the_folder(run, home, plain_cube):
-    assert "--cube" not in run("query", "#cc3319").stderr
+    assert "--cube" not in run("query #cc3319").stderr
     plain_cube.save(home / "mine.uplift")
-    assert "--cube mine.uplift" in run("query", "#cc3319").stderr
-    assert "--cube" not in run("query", "#cc3319", "--format", "json").stderr
+    assert "--cube mine.uplift" in run("query #cc3319").stderr
+    assert "--cube" not in run("query #cc3319 --format json").stderr
 
 
 def test_plot(run, refuse, home, table):
-    run("query", "#cc3319", "--plot", "red.png")
+    run("query #cc3319 --plot red.png")
     picture = matplotlib.image.imread(home / "red.png")
     distance = np.abs(picture[..., :3] - np.array([204, 51, 25]) / 255).max(axis=-1)
     assert (distance < 0.01).sum() > 100  # the curve has the colour
-    assert refuse("query", "#ffffff", "--plot", "red.png").code == "file-exists"
-    run("query", "--input", table("#cc3319\n#ffffff\n"), "--plot", "red.png", "--force")
+    assert refuse("query #ffffff --plot red.png").code == "file-exists"
+    run("query --plot red.png --force --input", table("#cc3319\n#ffffff\n"))
     assert (matplotlib.image.imread(home / "red.png").shape) == picture.shape
 
 
 def test_a_light_is_named_once_in_a_line(run, macbeth_cube):
-    lines = run(
-        "query", "--cube", macbeth_cube, "0.2", "0.3", "0.4", "--light", "A"
-    ).stdout.splitlines()
+    lines = run("query 0.2 0.3 0.4 --light A --cube", macbeth_cube).stdout.splitlines()
     named = [line.split().count("A") + line.count("(A)") for line in lines]
     assert sorted(set(named)) == [0, 1]

@@ -15,7 +15,7 @@ def cube(home):
 
 
 def test_slices_and_sheet(run, cube, home):
-    result = run("slices", cube, "-o", "out.exr", "--plot", "sheet.png")
+    result = run("slices -o out.exr --plot sheet.png", cube)
     assert result.stdout.splitlines() == [
         "out.exr: 4 blue slices",
         "sheet.png: contact sheet",
@@ -39,12 +39,9 @@ def test_builds_for_debugging_write_their_slices(run, refuse, home):
 
 
 def test_bad_input_is_refused(run, refuse, cube, home):
-    assert refuse("slices", "missing.uplift", "-o", "out.exr").code == "file-not-found"
+    assert refuse("slices missing.uplift -o out.exr").code == "file-not-found"
     for exists, other in (("out.exr", "sheet.png"), ("sheet.png", "out.exr")):
         (home / exists).write_text("old")
-        assert (
-            refuse("slices", cube, "-o", "out.exr", "--plot", "sheet.png").where
-            == exists
-        )
+        assert refuse("slices -o out.exr --plot sheet.png", cube).where == exists
         assert not (home / other).exists()
         (home / exists).unlink()

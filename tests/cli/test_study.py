@@ -142,6 +142,6 @@ def test_sensitivity_of_a_stored_cube(run, home, cubes):
 
 
 def test_sensitivity_of_cubes_without_an_atlas(run, misuse):
-    assert "left out" not in run("study", "sensitivity").stdout
-    assert "Smits 1999" in run("study", "sensitivity", "--method", "smits1999").stdout
-    assert "needs a CUBE with an atlas" in misuse("study", "sensitivity", "-o", "out")
+    assert "left out" not in run("study sensitivity").stdout
+    assert "Smits 1999" in run("study sensitivity --method smits1999").stdout
+    assert "needs a CUBE with an atlas" in misuse("study sensitivity -o out")

@@ -9,14 +9,14 @@ from numpy.testing import assert_allclose
 def choose(run, macbeth):
     """Standard output for the ColorChecker."""
     return lambda *args, **options: (
-        run("wavelengths", "--atlas", macbeth, *args, **options).stdout
+        run("wavelengths --atlas", macbeth, *args, **options).stdout
     )
 
 
 @pytest.fixture
 def answer(ask, macbeth):
     """Answer in JSON for the ColorChecker."""
-    return lambda *args: ask("wavelengths", "--atlas", macbeth, *args)
+    return lambda *args: ask("wavelengths --atlas", macbeth, *args)
 
 
 def test_plot(choose, home):
