@@ -31,23 +31,14 @@ def test_bounds_of_a_colour_in_json(ask):
 
 
 def test_the_likely_difference_is_the_error_bound_in_all_formats(run, ask, cubes):
-    colour = (
-        "bounds",
-        "--cube",
-        cubes / "moments-16-macbeth.uplift",
-        "0.2",
-        "0.3",
-        "0.1",
-        "--light",
-        "FL11",
-    )
-    found = ask(*colour)
+    colour = f"bounds --cube {cubes}/moments-16-macbeth.uplift 0.2 0.3 0.1 --light FL11"
+    found = ask(colour)
     bound = found["error_bounds"]["FL11"]
     assert bound > found["standard_errors"]["FL11"]
-    assert float(run(*colour).stdout.splitlines()[-1].split()[4]) == pytest.approx(
+    assert float(run(colour).stdout.splitlines()[-1].split()[4]) == pytest.approx(
         bound, abs=0.005
     )
-    (row,) = csv.DictReader(io.StringIO(run(*colour, "--format", "csv").stdout))
+    (row,) = csv.DictReader(io.StringIO(run(f"{colour} --format csv").stdout))
     assert float(row["error_bound"]) == pytest.approx(bound)
 
 

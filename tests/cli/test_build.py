@@ -20,9 +20,9 @@ def test_unrealisable_colours_are_counted(run, home):
     count = uplift.load(home / "wide.uplift").data.points.counts()["unrealisable"]
     assert count > 0
     assert f"{count} nodes whose colour no reflectance has" in result.stdout
-    query = ("query", "--cube", "wide.uplift")
-    assert "\nrealisable " in run(*query, "0", "1", "0").stdout
-    assert "\nrealisable" not in run(*query, "0.5", "0.5", "0.5").stdout
+    query = "query --cube wide.uplift"
+    assert "\nrealisable " in run(f"{query} 0 1 0").stdout
+    assert "\nrealisable" not in run(f"{query} 0.5 0.5 0.5").stdout
 
 
 @pytest.mark.parametrize(

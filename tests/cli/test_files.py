@@ -180,14 +180,14 @@ def test_nothing_is_written_if_one_output_exists(refuse, home, inputs, words):
     folder.mkdir()
     (folder / "mask.exr").write_text("old")
     before = {path.name for path in home.iterdir()}
-    assert refuse(*words.split()).code == "file-exists"
+    assert refuse(words).code == "file-exists"
     assert {path.name for path in home.iterdir()} == before
     assert {path.name for path in folder.iterdir()} == {"mask.exr"}
 
 
 def test_outputs_differ(refuse, inputs):
     words = "palette palette.toml --plot a.png --plot-spectra ./a.png --force"
-    assert refuse(*words.split()).code == "output"
+    assert refuse(words).code == "output"
 
 
 @contextlib.contextmanager
@@ -221,6 +221,6 @@ def full_disk():
 )
 def test_a_full_disk_is_an_error_of_the_output(refuse, home, inputs, words):
     with full_disk():
-        error = refuse(*words.split())
+        error = refuse(words)
     assert error.code == "output"
     assert {path.name for path in home.iterdir()} == {*inputs}

@@ -58,7 +58,7 @@ def test_every_light_may_be_a_file(run, refuse, home, files, line):
         ("two.csv:none", "unknown-name"),
         ("none.spd", "unknown-name"),
     ):
-        assert refuse(*line.replace("{}", name).split()).code == code
+        assert refuse(line.replace("{}", name)).code == code
     assert {path.name for path in home.iterdir()} == files
     words = line.replace("{}", "lamp.spd").split()
     is_json = words[0] not in WITHOUT_JSON
@@ -86,21 +86,11 @@ def test_channels_have_the_name_of_the_lamp(run, home, files):
 
 
 def test_a_changed_lamp_is_another_texture(run, refuse, home, files):
-    words = (
-        "texture",
-        "wood.png",
-        "-o",
-        "x.exr",
-        "--cube",
-        "cube.uplift",
-        "--errors",
-        "lamp.spd",
-        "--resume",
-    )
-    run(*words)
-    run(*words)
+    words = "texture wood.png -o x.exr --cube cube.uplift --errors lamp.spd --resume"
+    run(words)
+    run(words)
     (home / "lamp.spd").write_text(LAMP.replace("780\t5", "780\t4"))
-    assert refuse(*words).code == "texture-differs"
+    assert refuse(words).code == "texture-differs"
 
 
 def test_a_cube_is_not_built_under_a_lamp(refuse, files):

@@ -106,19 +106,11 @@ def test_textures(run, home):
         {"compression": OpenEXR.ZIP_COMPRESSION}, dict.fromkeys("RGB", pixels)
     ) as file:
         file.write(str(home / "sky.exr"))
-    words = (
-        "lights",
-        "texture",
-        "sky.exr",
-        "-o",
-        "out.exr",
-        "--wavelengths",
-        "450,550,650",
-    )
-    assert run(*words).output.startswith("out.exr: 1 texture, 6 pixels, 0.0 MB, ")
+    words = "lights texture sky.exr -o out.exr --wavelengths 450,550,650"
+    assert run(words).output.startswith("out.exr: 1 texture, 6 pixels, 0.0 MB, ")
     found = OpenEXR.File("out.exr", separate_channels=True).channels()
     assert found["S0.550,000000nm"].pixels.min() > 1e4
-    assert run(*words, "--resume", "--lights", "emission").output.startswith(
+    assert run(f"{words} --resume --lights emission").output.startswith(
         "out.exr: 0 textures"
     )
 

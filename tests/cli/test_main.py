@@ -67,7 +67,7 @@ def test_help_shows_the_options_of_every_day_and_help_all_shows_all(run):
     ],
 )
 def test_wrong_usage_is_one_line_with_exit_code_2(misuse, args, words):
-    assert words in misuse(*args.split())
+    assert words in misuse(args)
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
@@ -207,8 +207,8 @@ COMMANDS_BY_PATH = commands(main)
     ],
 )
 def test_a_group_alone_prints_its_help(run, path):
-    alone = run(*path.split())
-    requested = run(*path.split(), "--help")
+    alone = run(path)
+    requested = run(f"{path} --help")
     assert alone.stdout == requested.stdout
     assert (alone.exit_code, alone.stderr) == (0, "")
     assert alone.stdout.startswith("Usage: ")
@@ -216,9 +216,7 @@ def test_a_group_alone_prints_its_help(run, path):
 
 def test_help_of_a_command_is_that_of_its_option(run):
     for path in COMMANDS_BY_PATH:
-        assert (
-            run("help", *path.split()).stdout == run(*path.split(), "--help").stdout
-        ), path
+        assert run(f"help {path}").stdout == run(f"{path} --help").stdout, path
 
 
 def test_topics_have_text_and_names_that_no_command_has(run):
@@ -445,9 +443,7 @@ def test_errors_name_what_was_given_and_what_to_do(
     run, monkeypatch, cubes, command, words
 ):
     monkeypatch.chdir(sample_path("."))
-    assert (
-        words in run(*command.format(cubes / "moments-8.uplift").split(), code=2).stderr
-    )
+    assert words in run(command.format(cubes / "moments-8.uplift"), code=2).stderr
 
 
 def test_texts_without_unicode_are_spelt_in_ascii():

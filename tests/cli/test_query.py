@@ -121,13 +121,13 @@ def test_whole_numbers_between_commas(ask, refuse, table):
 
 
 def test_rounding_is_not_out_of_gamut(run, ask):
-    words = "query", "1.000000001", "-6e-17", "0.5"
-    result = run(*words, "--format", "json")
+    words = "query 1.000000001 -6e-17 0.5"
+    result = run(f"{words} --format json")
     assert not result.stderr
     answer = json.loads(result.stdout)
     assert answer["rgb"] == [1, 0, 0.5]
     assert answer["requested_rgb"][1] == 0
-    assert "requested" not in run(*words).stdout
+    assert "requested" not in run(words).stdout
     assert all(abs(value) > 1e-12 or value == 0 for value in answer["reflectance"])
 
 
@@ -309,7 +309,7 @@ def test_colours_by_xyz_and_by_chromaticity(ask):
     ],
 )
 def test_exactly_one_source_of_colours(misuse, words):
-    misuse("query", *words.split())
+    misuse(f"query {words}")
 
 
 def test_json_has_every_field(ask, macbeth_cube):
@@ -433,13 +433,13 @@ def test_colours_under_lights_are_those_of_relit_images(run, ask, macbeth_cube):
     cube = uplift.load(macbeth_cube)
     (screen,) = display_sensors(["FL11"], cube.observer)
     expected = screen.rgb(cube.reflectance([0.2, 0.1, 0.05]))
-    words = ("query", "--cube", macbeth_cube, "0.2", "0.1", "0.05", "--light", "FL11")
-    found = ask(*words)["lights"]["FL11"]
+    words = f"query --cube {macbeth_cube} 0.2 0.1 0.05 --light FL11"
+    found = ask(words)["lights"]["FL11"]
     assert_allclose(found["srgb"], expected, atol=1e-12)
     assert_allclose(found["xyz"], screen.xyz(expected), atol=1e-12)
     assert found["hex"] == hex_codes(expected[None])[0]
-    assert found["hex"] in run(*words).stdout
-    (row,) = csv.DictReader(io.StringIO(run(*words, "--format", "csv").stdout))
+    assert found["hex"] in run(words).stdout
+    (row,) = csv.DictReader(io.StringIO(run(f"{words} --format csv").stdout))
     assert row["hex_FL11"] == found["hex"]
 
 

@@ -60,8 +60,8 @@ def test_invalid_scenes_are_errors(misuse, refuse, home):
 def test_queries_of_other_colours_are_errors_unless_filled(run, refuse, scene):
     error = refuse("query 0 1 0 --cube", scene)
     assert error.code == "colour-not-in-scene"
-    words = ("query", "-", "--cube", scene, "--fill-missing", "--format", "json")
-    result = run(*words, input="0,1,0\n0.001,0.002,0.001\n")
+    words = f"query - --cube {scene} --fill-missing --format json"
+    result = run(words, input="0,1,0\n0.001,0.002,0.001\n")
     (warning,) = warning_lines(result)
     assert "1 of 2" in warning
     assert all(

@@ -30,12 +30,12 @@ def test_slices_have_the_name_of_the_cube(run, cube, home):
 
 
 def test_builds_for_debugging_write_their_slices(run, refuse, home):
-    words = ("build", "--dim", "2", "--prior", "smooth", "--debug")
-    summary, slices = run(*words, "-o", "two.uplift").stdout.splitlines()
+    words = "build --dim 2 --prior smooth --debug"
+    summary, slices = run(f"{words} -o two.uplift").stdout.splitlines()
     assert summary.startswith("two.uplift: 2³ nodes, ")
     assert slices == "two.exr: 2 blue slices"
     assert len(OpenEXR.File(str(home / "two.exr")).parts) == 2
-    assert refuse(*words, "-o", "two.cube").where == "two.exr"
+    assert refuse(f"{words} -o two.cube").where == "two.exr"
 
 
 def test_bad_input_is_refused(run, refuse, cube, home):

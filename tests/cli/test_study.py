@@ -133,8 +133,8 @@ def test_stability(run, rows, home, monkeypatch, tcs):
 
 
 def test_sensitivity_of_a_stored_cube(run, home, cubes):
-    args = ("study", "sensitivity", cubes / "moments-8-macbeth.uplift", "--entries", 1)
-    result = run(*args, "-o", "out", "--format", "json")
+    args = f"study sensitivity {cubes}/moments-8-macbeth.uplift --entries 1"
+    result = run(f"{args} -o out --format json")
     check_plots(home / "out", ["sensitivity-locality.png"], result.stderr)
     changes = [one["change"] for one in json.loads(result.stdout)["changes"]]
     assert len(changes) == 5

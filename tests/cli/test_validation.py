@@ -334,7 +334,7 @@ def refuse_at_once(refuse, home, files, monkeypatch):
     def refuse_at_once(line):
         if begins := COMPUTES.get(command_of(line)):
             monkeypatch.setattr(begins, begin)
-        error = refuse(*line.replace("{}", CUBE).split())
+        error = refuse(line.replace("{}", CUBE))
         assert {path.name for path in home.iterdir()} == files
         return error
 

@@ -56,7 +56,7 @@ def test_given_wavelengths(answer):
     ],
 )
 def test_options_that_exclude_or_need_others(misuse, options, name):
-    assert name in misuse("wavelengths", *options.split())
+    assert name in misuse(f"wavelengths {options}")
 
 
 def test_orders_of_the_channels(answer):
