@@ -43,17 +43,9 @@ def test_the_likely_difference_is_the_error_bound_in_all_formats(run, ask, cubes
 
 
 def test_table_plot_and_page(run, home):
-    words = [
-        "--light",
-        "D65",
-        "--light",
-        "d65",
-        "--plot",
-        "bounds.png",
-        "--html",
-        "page.html",
-    ]  # a light counts once
-    text = run("bounds 0.2,0.3,0.4", *words).stdout
+    # A light counts once.
+    words = "--light D65 --light d65 --plot bounds.png --html page.html"
+    text = run(f"bounds 0.2,0.3,0.4 {words}").stdout
     row = text.splitlines()[-1].split()
     assert (row[0], float(row[5])) == ("D65", 0)  # metamers match under the build light
     assert max(map(len, text.splitlines())) <= 80

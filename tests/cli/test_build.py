@@ -28,16 +28,16 @@ def test_unrealisable_colours_are_counted(run, home):
 @pytest.mark.parametrize(
     ("args", "name"),
     [
-        ((), "srgb-2.uplift"),
-        (("--space", "Pal/Secam"), "pal-secam-2.uplift"),
-        (("--atlas", "a.csv", "--atlas", "far/b.csv"), "a+b-2.uplift"),
+        ("", "srgb-2.uplift"),
+        ("--space Pal/Secam", "pal-secam-2.uplift"),
+        ("--atlas a.csv --atlas far/b.csv", "a+b-2.uplift"),
     ],
 )
 def test_default_name_has_atlas_or_space_and_dim(run, home, args, name):
     (home / "far").mkdir()
     (home / "a.csv").write_text("name,380,780\ngrey,0.5,0.5\n")
     (home / "far" / "b.csv").write_text("name,380,780\nblack,0.01,0.01\n")
-    run("build --dim 2 --coefficients 4", *args)
+    run(f"build --dim 2 --coefficients 4 {args}")
     assert {path.name for path in home.iterdir()} - {"a.csv", "far"} == {name}
 
 

@@ -105,7 +105,7 @@ def test_two_lights_of_one_name(refuse, home, files):
             assert refuse(*words, "--light", "folder/lamp.spd").code == "option", line
 
 
-def test_scenes_name_lamps(run, refuse, home, files):
+def test_scenes_name_lamps(ask, run, refuse, home, files):
     scene = home / "scene.toml"
     scene.write_text(
         'textures = ["wood.png"]\natlases = ["two.csv"]\nlights = ["lamp.spd", '
@@ -114,7 +114,7 @@ def test_scenes_name_lamps(run, refuse, home, files):
     (home / "two.csv").write_text(
         "name,400,550,700\ncold,0.3,0.2,0.1\nwarm,0.1,0.2,0.3\n"
     )
-    plan = json.loads(run("plan scene.toml --quick --format json").stdout)
+    plan = ask("plan scene.toml --quick")
     assert plan["scene"]["lights"] == ["lamp", "A"]
     assert refuse("plan scene.toml -o lamp.spd --force").code == "output-is-input"
     if plan["build"]:
@@ -126,7 +126,7 @@ def test_scenes_name_lamps(run, refuse, home, files):
     assert refuse("plan scene.toml").code == "invalid-file"
 
 
-def test_palettes_name_lamps(run, refuse, home, files):
+def test_palettes_name_lamps(ask, refuse, home, files):
     text = (
         "[materials]\ncard = {{rgb = [0.5, 0.5, 0.5]}}\n[lights]\nday = {{illuminant "
         '= "{}"}}\n'
@@ -134,7 +134,7 @@ def test_palettes_name_lamps(run, refuse, home, files):
     palette = home / "palette.toml"
     for name in ("lamp.spd", "two.csv:warm"):
         palette.write_text(text.format(name))
-        assert json.loads(run("palette palette.toml --format json").stdout)
+        assert ask("palette palette.toml")
         assert (
             refuse("palette palette.toml --force -o", name.partition(":")[0]).code
             == "output-is-input"

@@ -77,8 +77,8 @@ def test_json_reproduces_the_matrix(ask, spec):
 
 
 def test_files_are_written(run, refuse, spec, home):
-    files = ("-o", "new.txt", "--plot", "m.png", "--plot-spectra", "s.png")
-    assert "new.txt: 1 designed material\n" in run("palette", spec(), *files).stderr
+    files = "-o new.txt --plot m.png --plot-spectra s.png"
+    assert "new.txt: 1 designed material\n" in run(f"palette {spec()} {files}").stderr
     assert uplift.read_atlas("new.txt").names == ("new",)
     assert all((home / name).read_bytes()[1:4] == b"PNG" for name in ("m.png", "s.png"))
     assert refuse("palette --plot m.png", spec()).code == "file-exists"
@@ -90,30 +90,21 @@ def test_pages(run, pair, home):
     text = (home / "two.html").read_text("utf-8")
     assert 'width="512" height="512"' in text
     assert ">old brick</button>" in text
-    labels = ("--label", "leaf=#ff0000", "--label", "old brick=#0000ff")
-    run("palette", pair, "--html", "three.html", "--image", "labels.png", *labels)
+    labels = "--label leaf=#ff0000 --label 'old brick=#0000ff'"
+    run(f"palette {pair} --html three.html --image labels.png {labels}")
     assert 'width="3" height="1"' in (home / "three.html").read_text("utf-8")
 
 
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
-        (("--html", "a.html", "--image", "labels.png", "--label", "leaf"), "option"),
-        (("--html", "a.html", "--image", "labels.png"), "texture"),
+        ("--html a.html --image labels.png --label leaf", "option"),
+        ("--html a.html --image labels.png", "texture"),
         (
-            (
-                "--html",
-                "a.html",
-                "--image",
-                "labels.png",
-                "--label",
-                "leaf=#1",
-                "--label",
-                "leaf=#2",
-            ),
+            "--html a.html --image labels.png --label leaf=#1 --label leaf=#2",
             "option",
         ),
-        (("--html", "two.toml"), "output"),
+        ("--html two.toml", "output"),
     ],
 )
 def test_invalid_input_is_reported_before_any_work(
@@ -122,14 +113,14 @@ def test_invalid_input_is_reported_before_any_work(
     monkeypatch.setattr(
         "uplift.extras.palette.design", lambda *_: pytest.fail("designed")
     )
-    assert refuse("palette", pair, *arguments).code == code
+    assert refuse(f"palette {pair} {arguments}").code == code
     assert not (home / "a.html").exists()
     assert refuse("palette none.toml").code == "file-not-found"
 
 
 @pytest.mark.parametrize(
     "arguments",
-    [("--image", "labels.png"), ("--html", "a.html", "--label", "leaf=#ff0000")],
+    ["--image labels.png", "--html a.html --label leaf=#ff0000"],
 )
 def test_options_that_need_others(misuse, pair, arguments):
-    misuse("palette", pair, *arguments)
+    misuse(f"palette {pair} {arguments}")

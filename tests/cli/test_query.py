@@ -48,23 +48,23 @@ def macbeth_cube(cubes):
 @pytest.mark.parametrize(
     ("words", "rgb"),
     [
-        (["#cc3319"], RED),
-        (["cc3319"], RED),
-        (["204", "51", "25", "--encoded"], RED),
-        (["#cc3319", "--encoded"], RED),
-        (["#c31"], [RED[0], RED[1], 0.005605391624202723]),
-        (["0.8", "0.2", "0.1"], [0.8, 0.2, 0.1]),
-        (["0.8, 0.2, 0.1"], [0.8, 0.2, 0.1]),
-        (["0.8 0.2 0.1"], [0.8, 0.2, 0.1]),
-        (["0,8", "0,2", "0,1"], [0.8, 0.2, 0.1]),
-        (["0,8 0,2 1"], [0.8, 0.2, 1]),
-        (["0,8;0,2;0,1"], [0.8, 0.2, 0.1]),
-        (["-0.0", "0.2", "1e-1"], [0, 0.2, 0.1]),
-        (["123456"], [0.006048833022857055, 0.03433980680868217, 0.09305896284668747]),
+        ("#cc3319", RED),
+        ("cc3319", RED),
+        ("204 51 25 --encoded", RED),
+        ("#cc3319 --encoded", RED),
+        ("#c31", [RED[0], RED[1], 0.005605391624202723]),
+        ("0.8 0.2 0.1", [0.8, 0.2, 0.1]),
+        ("'0.8, 0.2, 0.1'", [0.8, 0.2, 0.1]),
+        ("'0.8 0.2 0.1'", [0.8, 0.2, 0.1]),
+        ("0,8 0,2 0,1", [0.8, 0.2, 0.1]),
+        ("'0,8 0,2 1'", [0.8, 0.2, 1]),
+        ("0,8;0,2;0,1", [0.8, 0.2, 0.1]),
+        ("-0.0 0.2 1e-1", [0, 0.2, 0.1]),
+        ("123456", [0.006048833022857055, 0.03433980680868217, 0.09305896284668747]),
     ],
 )
 def test_syntax_of_colours(ask, words, rgb):
-    assert_allclose(ask("query", *words)["rgb"], rgb, rtol=0, atol=1e-15)
+    assert_allclose(ask(f"query {words}")["rgb"], rgb, rtol=0, atol=1e-15)
 
 
 def test_several_colours_have_a_row_each(ask, run, refuse, home):
@@ -113,11 +113,11 @@ def test_whole_numbers_between_commas(ask, refuse, table):
         [0, 1, 0],
     ]
     for words in (
-        ("0,2,0,3,0,4",),
-        ("1,0,0,0,1,0",),
-        ("0,2,0,3,0,4", "--out-of-gamut", "clip"),
+        "0,2,0,3,0,4",
+        "1,0,0,0,1,0",
+        "0,2,0,3,0,4 --out-of-gamut clip",
     ):
-        assert refuse("query", *words).code == "ambiguous-numbers"
+        assert refuse(f"query {words}").code == "ambiguous-numbers"
 
 
 def test_rounding_is_not_out_of_gamut(run, ask):

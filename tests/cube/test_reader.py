@@ -3,7 +3,6 @@ without it.
 """
 
 import importlib.util
-import subprocess
 import sys
 from dataclasses import replace
 from itertools import product
@@ -15,6 +14,7 @@ from numpy.testing import assert_allclose
 import uplift
 from tests.conftest import ROOT
 from tests.cube.cube_files import forge
+from tests.helpers import output_of
 from uplift.lookup.cube import PACKAGED, Cube
 
 READER = ROOT / "docs" / "reader.py"
@@ -84,8 +84,7 @@ def test_it_runs_without_uplift_and_refuses_damaged_files_and_unknown_features(
         "500",
         "600",
     ]
-    printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    found = np.array([line.split() for line in printed.splitlines()], dtype=float)
+    found = np.loadtxt(output_of(*command).splitlines())
     assert_allclose(
         found[:, 1], uplift.load().reflectance([0.8, 0.2, 0.1], [500, 600]), atol=1e-11
     )

@@ -1,7 +1,5 @@
 """Files of sparse cubes: present nodes only, and errors for nodes without a place."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +8,7 @@ from numpy.testing import assert_array_equal
 
 from tests.cube.cube_files import forge
 from tests.cube.hand_made import hand_made
-from tests.helpers import near_black, raises, with_absent_points
+from tests.helpers import near_black, raises, run_python, with_absent_points
 from uplift.common import machine
 from uplift.common.errors import CubeFileError, OutputError
 from uplift.cube import digest, read, write
@@ -128,14 +126,8 @@ def test_small_files_of_large_lattices_take_little_memory(plain_cube, tmp_path):
         "print(next(line.split()[1] for line in open('/proc/self/status') if "
         "line.startswith('VmHWM:')))"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code, path],
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=120,
-    )
-    assert int(done.stdout) < 300 * 1024  # kB; the arrays of all nodes take 310 MB
+    kilobytes = int(run_python(code, path, timeout=120))
+    assert kilobytes < 300 * 1024  # kB; the arrays of all nodes take 310 MB
 
 
 def test_images_of_more_nodes_than_memory_are_refused(data, tmp_path, monkeypatch):

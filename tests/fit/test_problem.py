@@ -4,15 +4,14 @@ realisable colour.
 
 import os
 import platform
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
+from tests.conftest import ROOT
+from tests.helpers import run_python
 from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid
 from uplift.fit.problem import MARGIN, nodes_of
@@ -98,10 +97,5 @@ def test_spectra_do_not_depend_on_the_instruction_set(tmp_path):
         "from tests.fit.test_problem import store_spectra; "
         f"store_spectra({str(there)!r})"
     )
-    subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=Path(__file__).parents[2],
-        env=os.environ | ONLY_AVX,
-        check=True,
-    )
+    run_python(code, cwd=ROOT, env=os.environ | ONLY_AVX)
     assert_allclose(np.load(there), np.load(here), rtol=0, atol=1e-5)

@@ -3,8 +3,6 @@ optimistix in its place.
 """
 
 import os
-import subprocess
-import sys
 
 import jax
 import numpy as np
@@ -13,6 +11,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import least_squares, minimize
 
+from tests.helpers import run_python
 from uplift import build, load
 from uplift.fit.batch import CPU_ROWS, map_batches
 from uplift.fit.solver import LeastChange, solve
@@ -212,11 +211,7 @@ def test_several_devices_build_the_same_cube(repository, tmp_path):
     macbeth = repository / "atlases" / "macbeth.txt"
     path = tmp_path / "several.uplift"
     flags = {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"}
-    subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", SEVERAL, macbeth, path],
-        env=os.environ | flags,
-        check=True,
-    )
+    run_python(SEVERAL, macbeth, path, env=os.environ | flags)
     one = build(macbeth, dim=5).data
     several = load(path).data
     assert_allclose(

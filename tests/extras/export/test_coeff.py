@@ -4,8 +4,6 @@ them.
 
 import json
 import struct
-import subprocess
-import sys
 from dataclasses import replace
 from itertools import product
 
@@ -14,6 +12,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+from tests.helpers import output_of, run_python
 from tests.parts import CXX, MITSUBA, need
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import (
@@ -50,6 +49,12 @@ def table(tmp_path_factory, small_cube):
     path.parent.mkdir()
     write_coeff(small_cube.data, path, res=RES)
     return path
+
+
+def stored(path, res):
+    """Read the coefficients (9 res³ / 3, 3) of a table."""
+    content = path.read_bytes()
+    return np.frombuffer(content, "<f4", 9 * res**3, 8 + 4 * res).reshape(-1, 3)
 
 
 def test_the_stated_error_is_the_largest_of_interpolated_colours(
@@ -131,11 +136,8 @@ def test_colour_science_and_mitsuba_read_it(table, sensor):
     )
 
     def fetch(folder):
-        args = [sys.executable, "-c", FETCH, str(folder), json.dumps(rgb.tolist())]
-        done = subprocess.run(args, capture_output=True, text=True, check=True)
-        return np.array(
-            [line.split() for line in done.stdout.splitlines()], dtype=float
-        )
+        printed = run_python(FETCH, folder, json.dumps(rgb.tolist()))
+        return np.loadtxt(printed.splitlines())
 
     ours = fetch(table.parents[1])
     default = fetch(table.parent)
@@ -155,11 +157,7 @@ def test_the_largest_reflectance_is_at_an_end_or_where_the_polynomial_turns(tabl
     """MaxValue of pbrt: a closed form, of which samples at every 0.01 nm come short by
     little.
     """
-    content = (
-        np.frombuffer(table.read_bytes(), "<f4", 9 * RES**3, 8 + 4 * RES)
-        .reshape(-1, 3)
-        .astype(float)
-    )
+    content = stored(table, RES).astype(float)
     square, linear, _ = content.T
     turn = np.divide(
         -linear, 2 * square, out=np.full_like(linear, 360), where=square < 0
@@ -290,23 +288,9 @@ def test_sources_compile_to_the_numbers_of_the_table(
     (tmp_path / "main.cpp").write_text(
         PRINT.format(space=namespace, name=name, width=width, res=res)
     )
-    command = [
-        "c++",
-        "-std=c++17",
-        "-Wall",
-        "-Werror",
-        "table.cpp",
-        "main.cpp",
-        "-o",
-        "main",
-    ]
-    subprocess.run(command, cwd=tmp_path, check=True)
-    done = subprocess.run(
-        [tmp_path / "main"], capture_output=True, text=True, check=True
-    )
-    found = np.array(done.stdout.split(), dtype=np.float32).reshape(-1, width)
-    expected = np.frombuffer(
-        (tmp_path / "table.coeff").read_bytes(), "<f4", 9 * res**3, 8 + 4 * res
-    ).reshape(-1, 3)
-    assert_array_equal(found[:, :3], expected)
-    assert not found[:, 3:].any()
+    command = "c++ -std=c++17 -Wall -Werror table.cpp main.cpp -o main"
+    output_of(*command.split(), cwd=tmp_path)
+    printed = output_of(tmp_path / "main").split()
+    values = np.array(printed, dtype=np.float32).reshape(-1, width)
+    assert_array_equal(values[:, :3], stored(tmp_path / "table.coeff", res))
+    assert not values[:, 3:].any()

@@ -1,7 +1,6 @@
 """Fourier sRGB: tables from sRGB, and the shader of its spectra."""
 
 import itertools
-import subprocess
 from itertools import product
 
 import numpy as np
@@ -9,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import uplift
+from tests.helpers import output_of
 from tests.parts import CXX, GLSLANG, need
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.srgb import decode
@@ -104,17 +104,13 @@ def test_the_shader_evaluates_the_spectra(three, folder):
     """As C++, with filtered colours; components that no spectrum has keep to [0, 1]."""
     need(CXX)
     (folder / "main.cpp").write_text(HARNESS.format(name="hald"))
-    subprocess.run(
-        ["c++", "-std=c++17", "main.cpp", "-o", "main"], cwd=folder, check=True
-    )
+    output_of("c++", "-std=c++17", "main.cpp", "-o", "main", cwd=folder)
 
     def shader(colours):
         pairs = itertools.product(colours.tolist(), WAVELENGTHS.tolist())
         text = "\n".join(" ".join(map(repr, (*colour, nm))) for colour, nm in pairs)
-        done = subprocess.run(
-            [folder / "main"], input=text, capture_output=True, text=True, check=True
-        )
-        return np.array(done.stdout.split(), dtype=float).reshape(len(colours), -1)
+        values = output_of(folder / "main", input=text).split()
+        return np.array(values, dtype=float).reshape(len(colours), -1)
 
     codes = hald(folder / "hald.png")
     pairs = decode(codes[1:-1, 1:-1, 1:-1].reshape(-1, 2, 3)[::40] / 255)
@@ -133,6 +129,4 @@ def test_the_shader_compiles(folder):
     (folder / "a.frag").write_text(
         f"#version 430\n{text}out vec4 o; void main() {{ o = vec4({call}); }}\n"
     )
-    subprocess.run(
-        ["glslangValidator", "a.frag"], cwd=folder, check=True, capture_output=True
-    )
+    output_of("glslangValidator", "a.frag", cwd=folder)

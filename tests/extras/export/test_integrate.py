@@ -2,13 +2,13 @@
 
 import re
 import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from tests.helpers import output_of
 from tests.parts import CC, CXX, MITSUBA, SANITIZED, SANITIZERS, need
 from uplift.extras.export import write_program
 
@@ -50,14 +50,9 @@ def test_c_and_cpp(folder, small_cube, compiler, language, part):
     need(part, SANITIZERS)
     write_program(small_cube.data, folder / "paints.h")
     (folder / "main.c").write_text(code("C and C\\+\\+", "c"))
-    subprocess.run(
-        [compiler, "-x", language, "-O1", *SANITIZED, "main.c", "-o", "main", "-lm"],
-        check=True,
-    )
-    done = subprocess.run(["./main"], capture_output=True, text=True, check=True)
-    wavelengths, *found = np.array(
-        [line.split() for line in done.stdout.splitlines()], dtype=float
-    ).T
+    options = ("-x", language, "-O1", *SANITIZED)
+    output_of(compiler, *options, "main.c", "-o", "main", "-lm")
+    wavelengths, *found = np.loadtxt(output_of("./main").splitlines()).T
     assert len(wavelengths) == 7
     expected = small_cube.reflectance(
         [COLOURS[0], *COLOURS], wavelengths, mode="spectra"

@@ -4,15 +4,13 @@ spectra of models.
 
 import itertools
 import json
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from tests.extras.texture.conftest import planes, write_exr
-from tests.helpers import raises, warns
+from tests.helpers import raises, run_python, warns
 from tests.parts import LLVM, need
 from uplift.colorimetry.gamut import map_to_gamut
 from uplift.common.errors import TextureError
@@ -219,10 +217,7 @@ def test_a_wavefront_agrees_with_single_rays(mi, small_cube, cube_path, tmp_path
 
     sources = [{"cube": cube_path}, *_textures(small_cube, tmp_path)]
     arguments = [json.dumps(each) for each in (sources, OPTIONS, POSITIONS)]
-    done = subprocess.run(
-        [sys.executable, "-c", JIT, *arguments], capture_output=True, text=True
-    )
-    assert not done.returncode, done.stderr
+    found = json.loads(run_python(JIT, *arguments))
     expected = []
     for source in sources:
         for options in OPTIONS:
@@ -234,7 +229,7 @@ def test_a_wavefront_agrees_with_single_rays(mi, small_cube, cube_path, tmp_path
                 si.uv, si.wavelengths = mi.Point2f(*uv), mi.Spectrum(400, 500, 600, 700)
                 values.append(np.array(texture.eval(si)))
             expected.append(values)
-    assert_allclose(json.loads(done.stdout), expected, rtol=0, atol=1e-5)
+    assert_allclose(found, expected, rtol=0, atol=1e-5)
 
 
 def _textures(cube, folder):
