@@ -19,7 +19,8 @@ def test_bounds_of_a_colour_in_json(ask):
     found = ask("bounds #8a2a20", *LIGHTS)
     assert list(found["bounds"]) == ["A", "FL11"]
     for name, each in found["bounds"].items():
-        (least, most), answer = np.array(each["lab_range"]), np.array(each["lab"])
+        least, most = np.array(each["lab_range"])
+        answer = np.array(each["lab"])
         assert ((least < answer) & (answer < most)).all()
         lit = light(name)
         assert_allclose(

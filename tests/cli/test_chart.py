@@ -57,7 +57,7 @@ def numbers(quick):
 
 def test_all_files_are_written_and_fronts_printed(quick, numbers):
     folder, result = quick
-    assert sorted(path.name for path in folder.iterdir()) == FILES
+    assert sorted(os.listdir(folder)) == FILES
     assert matplotlib.image.imread(folder / "chart.png").std() > 0.05
     assert re.search(r"marker-0-\d", (folder / "chart.html").read_text("utf-8"))
     assert sum(name in result.stdout for name in numbers) >= 2

@@ -1,6 +1,7 @@
 """Files of lamps in place of the names of lights, in every command that takes them."""
 
 import json
+import os
 import shutil
 
 import numpy as np
@@ -45,7 +46,7 @@ def files(home, repository, cubes):
     (home / "empty.spd").write_text("")
     (home / "folder").mkdir()
     (home / "two.csv").write_text("name,400,550,700\ncold,3,2,1\nwarm,1,2,3\n")
-    return {path.name for path in home.iterdir()}
+    return set(os.listdir(home))
 
 
 @pytest.mark.parametrize("line", COMMANDS.strip().splitlines())
@@ -59,7 +60,7 @@ def test_every_light_may_be_a_file(run, refuse, home, files, line):
         ("none.spd", "unknown-name"),
     ):
         assert refuse(line.replace("{}", name)).code == code
-    assert {path.name for path in home.iterdir()} == files
+    assert set(os.listdir(home)) == files
     words = line.replace("{}", "lamp.spd").split()
     is_json = words[0] not in WITHOUT_JSON
     result = run(*words, *["--format", "json"] * is_json)

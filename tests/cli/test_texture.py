@@ -1,5 +1,6 @@
 """``uplift texture``."""
 
+import os
 import re
 
 import numpy as np
@@ -47,7 +48,7 @@ def test_sequences_continue_after_an_invalid_image(run, shown, frames, cubes):
     assert re.search(r"shot\.1\.exr: \d+ of 30 pixels .* by up to 0\.9", warning)
     error = shown.pop().error
     assert (error.code, error.path.name) == ("texture", "shot.2.exr")
-    assert sorted(path.name for path in (frames / "out").iterdir()) == [
+    assert sorted(os.listdir(frames / "out")) == [
         "shot.0.exr",
         "shot.1.exr",
     ]

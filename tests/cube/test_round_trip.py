@@ -32,7 +32,8 @@ NUMBERS = st.floats(-1e30, 1e30)
 
 def assert_same(one, other):
     """Both cubes have equal contents, of equal types."""
-    (arrays, metadata), (others, other_metadata) = contents(one), contents(other)
+    arrays, metadata = contents(one)
+    others, other_metadata = contents(other)
     assert metadata == other_metadata
     assert arrays.keys() == others.keys()
     for name, array in arrays.items():

@@ -100,7 +100,8 @@ def of_dim(dim):
         rows = np.searchsorted(
             tensors["points"], Lattice(tensors["nodes"]).index(CORNERS)
         )
-        metadata["dim"], tensors["nodes"] = dim, np.linspace(0, 1, dim)
+        metadata["dim"] = dim
+        tensors["nodes"] = np.linspace(0, 1, dim)
         tensors["points"] = (
             Lattice(tensors["nodes"]).index(CORNERS).astype(tensors["points"].dtype)
         )

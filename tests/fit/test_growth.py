@@ -259,7 +259,8 @@ def grown(problem, multipliers):
     growth = Growth(problem, nodes_of(STORED, problem.sensor), ignore_progress)
     growth.multipliers[:] = multipliers
     off = problem.forward.residual(multipliers, STORED.points)
-    growth.distance[:], growth.rgb[:] = np.abs(off).max(axis=1), STORED.points - off
+    growth.distance[:] = np.abs(off).max(axis=1)
+    growth.rgb[:] = STORED.points - off
     return growth
 
 

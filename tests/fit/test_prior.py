@@ -70,7 +70,7 @@ def test_start_far_from_all_entries_is_smooth(problem, sensor, materials):
 def test_a_deviation_that_leaves_the_moment_space_is_shrunk(problem):
     grey = problem.model.to_storage(np.zeros((2, 9)))
     away = np.zeros((2, 9))
-    away[0, 3], away[1, 3] = 0.05, 5
+    away[:2, 3] = 0.05, 5
     found = _bounded(problem.model, grey, away)
     assert_allclose(problem.model.to_storage(found)[0], (grey + away)[0], atol=1e-7)
     shrunk = problem.model.to_storage(found)[1] - grey[1]

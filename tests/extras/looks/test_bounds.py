@@ -53,10 +53,9 @@ def test_colours_outside_the_space_are_answered(plain_cube):
 
 
 def test_the_likely_region_shrinks_towards_an_entry_outside_the_space(cyan_cube):
-    (entry,), reach = (
-        cyan_cube.data.outside_boxes.rgb,
-        cyan_cube.data.outside_boxes.half_width[0],
-    )
+    boxes = cyan_cube.data.outside_boxes
+    entry = boxes.rgb[0]
+    reach = boxes.half_width[0]
     rgb = np.array([entry, entry - [0.5 * reach, 0, 0], entry - [1.5 * reach, 0, 0]])
     areas = np.sqrt(
         np.linalg.det(lab_errors(cyan_cube.data, FL11).covariance(rgb)[:, 1:, 1:])

@@ -226,7 +226,8 @@ def test_a_wavefront_agrees_with_single_rays(mi, small_cube, cube_path, tmp_path
             values = []
             for uv in POSITIONS:
                 si = drjit.zeros(mi.SurfaceInteraction3f)
-                si.uv, si.wavelengths = mi.Point2f(*uv), mi.Spectrum(400, 500, 600, 700)
+                si.uv = mi.Point2f(*uv)
+                si.wavelengths = mi.Spectrum(400, 500, 600, 700)
                 values.append(np.array(texture.eval(si)))
             expected.append(values)
     assert_allclose(found, expected, rtol=0, atol=1e-5)

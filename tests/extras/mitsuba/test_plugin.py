@@ -189,7 +189,8 @@ def test_samples_are_radiance_over_density(mi, sky, radiance, monkeypatch):
     )
     (emitter,) = scene.emitters()
     it = drjit.zeros(mi.SurfaceInteraction3f)
-    it.wavelengths, it.wi = mi.Spectrum(550.0), mi.Vector3f(0, 0, 1)
+    it.wavelengths = mi.Spectrum(550.0)
+    it.wi = mi.Vector3f(0, 0, 1)
     for sample in ((0.05, 0.2), (0.4, 0.5), (0.85, 0.3)):
         ds, weight = emitter.sample_direction(it, mi.Point2f(*sample))
         expected = radiance(emitter, ds.d, [550.0])[0]

@@ -171,16 +171,15 @@ BEAMS += [
 def test_duntley_s_differential_equations_are_satisfied(beam):
     found = duntley_layer(beam, DIFFUSE, 1.3)
     for place in range(2):
-        K, B, mu = (
-            each[place]
-            for each in (DIFFUSE.absorption, DIFFUSE.backward, beam.absorption)
-        )
+        K = DIFFUSE.absorption[place]
+        B = DIFFUSE.backward[place]
         B1 = beam.backward[place]
         F1 = beam.forward[place]
-        mu = mu + B1 + F1
+        mu = beam.absorption[place] + B1 + F1
 
         def slopes(x, flux, K=K, B=B, B1=B1, F1=F1, mu=mu):
-            (t, s), left = flux, np.exp(-mu * x)
+            t, s = flux
+            left = np.exp(-mu * x)
             return np.stack(
                 [F1 * left - (K + B) * t + B * s, (K + B) * s - B * t - B1 * left]
             )

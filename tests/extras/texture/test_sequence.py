@@ -167,6 +167,6 @@ def test_closing_the_iterator_ends_the_conversions(jobs, count, tmp_path):
     results = texture.convert_all(many, processes=count)
     next(results)
     results.close()
-    names = [path.name for path in (tmp_path / "out").iterdir()]
+    names = os.listdir(tmp_path / "out")
     assert 1 <= len(names) < 50
     assert all(name.endswith(".exr") for name in names)  # no unfinished file

@@ -71,10 +71,9 @@ def test_colour_science_reads_the_photograph_from_a_spectral_image(
 @pytest.mark.parametrize("cube", ["small_cube", "small_sigmoid_cube"])
 def test_multipliers_evaluate_to_the_exact_colour(cube, photo, to_texture, request):
     """By nothing but the file."""
-    sensor, uplifter = (
-        (cube := request.getfixturevalue(cube)).data.sensor,
-        texture.prepare(cube, texture.Multipliers()),
-    )
+    cube = request.getfixturevalue(cube)
+    sensor = cube.data.sensor
+    uplifter = texture.prepare(cube, texture.Multipliers())
     result = to_texture(photo[0], uplifter)
     header = OpenEXR.File(str(result.target), header_only=True).parts[0].header
     model = models.from_description(json.loads(header["uplift.model"]))
@@ -168,7 +167,8 @@ def sky():
         [0.2 + rows / 40, 0.4 + rows / 60, 1.3 - rows / 20 + columns / 300], axis=-1
     )
     rgb[3:5, 4:6] = (1e5, 9e4, 6e4)
-    rgb[10, 10], rgb[12, 12] = (-0.05, 0.6, 0.5), 0.0
+    rgb[10, 10] = (-0.05, 0.6, 0.5)
+    rgb[12, 12] = 0
     return rgb.astype(np.float32)
 
 

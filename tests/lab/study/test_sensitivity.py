@@ -105,7 +105,8 @@ def test_changed_atlases_and_their_effect(repository):
     assert wrong[1:] == left_out == list(entries[1:])
 
     removed = compare(before, rebuild(left_out, {"dim": 8}), LIGHT, "", name)
-    nearest, (_, lab_distance) = removed.distance.argmin(axis=1), removed.distance
+    nearest = removed.distance.argmin(axis=1)
+    _, lab_distance = removed.distance
     assert (removed.delta_e[nearest] > 0).all()
     far = lab_distance > 60
     assert far.sum() > 100
