@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from benchmarks.browser import SETTLE, browser
-from tests.browsing import check_page
+from benchmarks.browser import SETTLE
+from tests.browsing import check_page, shared_tab
 from tests.helpers import raises
 from tests.pages import Page, external_links
-from tests.parts import CHROMIUM, need
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.gamut import SRGB
@@ -42,12 +41,11 @@ def html(small_cube, found):
     return page(small_cube, found)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def tab():
-    need(CHROMIUM)
-    with browser() as opened:
-        opened.window(1440, 900)
-        yield opened
+    tab = shared_tab()
+    tab.window(1440, 900)
+    return tab
 
 
 @pytest.fixture
