@@ -56,7 +56,7 @@ def overflow(tab):
 
 def findings(tab):
     """Violations of the rules of accessibility."""
-    tab.evaluate(AXE.read_text(encoding="utf-8") + ";0")
+    tab.evaluate(AXE.read_text("utf-8") + ";0")
     return tab.evaluate(RUN.replace("STYLE", json.dumps(PLAIN_BOXES)))
 
 

@@ -55,13 +55,11 @@ def examples_by_page() -> dict[str, list[str]]:
     """
     paths = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md"))]
     texts = {
-        path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
-        for path in paths
+        path.relative_to(ROOT).as_posix(): path.read_text("utf-8") for path in paths
     }
     del texts[TUTORIAL]
-    listed = {
-        name: page_examples(text) for name, text in texts.items()
-    } | help_examples()
+    listed = {name: page_examples(text) for name, text in texts.items()}
+    listed |= help_examples()
     return {name: lines for name, lines in listed.items() if lines}
 
 
@@ -71,9 +69,9 @@ def page_examples(text: str) -> list[str]:
     """
     lines = []
     for language, block in BLOCKS.findall(text):
-        for line in (
-            block.replace("\\\n", " ").splitlines() if language in SHELLS else ()
-        ):
+        if language not in SHELLS:
+            continue
+        for line in block.replace("\\\n", " ").splitlines():
             if match := re.match(r"(?:\$ )?((?:uplift|mkdir -p|cd) .*)", line):
                 lines.append(" ".join(match[1].partition("    #")[0].split()))
     return lines
@@ -88,14 +86,10 @@ def help_examples() -> dict[str, list[str]]:
         for name in COMMANDS:
             command = main.get_command(context, name)
             assert command is not None
-            helps = [
-                each.help or ""
-                for each in (command, *getattr(command, "commands", {}).values())
-            ]
-            lines = (line.strip() for line in "\n".join(helps).splitlines())
-            listed[f"{name} --help"] = list(
-                dict.fromkeys(line for line in lines if line.startswith("uplift "))
-            )
+            commands = [command, *getattr(command, "commands", {}).values()]
+            text = "\n".join(command.help or "" for command in commands)
+            lines = re.findall(r"^ *(uplift .*?) *$", text, re.MULTILINE)
+            listed[f"{name} --help"] = list(dict.fromkeys(lines))
     return listed
 
 
@@ -116,15 +110,7 @@ def build_wheel(folder: Path) -> Path:
     for name in source_files(ROOT):
         (copy / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, copy / name)
-    args = [
-        "-m",
-        "build",
-        "--wheel",
-        "--no-isolation",
-        "--outdir",
-        folder / "dist",
-        copy,
-    ]
+    args = ["-m", "build", "--wheel", "--no-isolation", "--outdir", "dist", copy]
     done = subprocess.run(
         [sys.executable, *args], cwd=folder, capture_output=True, text=True
     )
@@ -149,47 +135,46 @@ def run_lines(
     package = package.resolve()
     environment = os.environ | {"PYTHONPATH": str(package), "UPLIFT_FROM": str(package)}
     command = [sys.executable, Path(__file__).parent / "run_lines.py"]
-    options = {
-        "cwd": folder,
-        "env": environment,
-        "text": True,
-        "stdout": subprocess.PIPE,
-        "check": True,
-    }
-    return list(
-        json.loads(subprocess.run(command, input=json.dumps(lines), **options).stdout)
+    done = subprocess.run(
+        command,
+        input=json.dumps(lines),
+        cwd=folder,
+        env=environment,
+        text=True,
+        stdout=subprocess.PIPE,
+        check=True,
     )
+    return list(json.loads(done.stdout))
 
 
 def run_all(names: Sequence[str]) -> int:
     """Run the examples of pages, all by default, each page in its folder, and print
     those that fail.
     """
-    listed = {
-        name: lines
-        for name, lines in examples_by_page().items()
-        if name in names or not names
-    }
+    listed = examples_by_page()
+    if names:
+        listed = {name: listed[name] for name in names}
     with tempfile.TemporaryDirectory() as temporary:
         root = Path(temporary)
         package = unpack(build_wheel(root), root / "package")
         run_lines(["uplift samples"], package, root)
         samples = root / "uplift-samples"
         run_lines([CUBE], package, root)
-        outcomes = []
+        count = 0
+        failures = 0
         for number, (name, lines) in enumerate(listed.items()):
             print(f"{name}:", file=sys.stderr, flush=True)
             folder = shutil.copytree(samples, root / str(number))
             if name.endswith("--help") and CUBE not in lines:
                 shutil.copy(root / "macbeth-32.uplift", folder)
             runnable = [line for line in lines if line not in ELSEWHERE]
-            outcomes += [
-                (name, outcome) for outcome in run_lines(runnable, package, folder)
-            ]
-    failures = [(name, outcome) for name, outcome in outcomes if outcome["code"]]
-    for name, outcome in failures:
-        print(f"{name}: {outcome['line']}\n{outcome['stderr']}")
-    print(f"{len(outcomes) - len(failures)} of {len(outcomes)} examples run")
+            outcomes = run_lines(runnable, package, folder)
+            failed = [outcome for outcome in outcomes if outcome["code"]]
+            for outcome in failed:
+                print(f"{name}: {outcome['line']}\n{outcome['stderr']}")
+            count += len(outcomes)
+            failures += len(failed)
+    print(f"{count - failures} of {count} examples run")
     return bool(failures)
 
 

@@ -3,6 +3,8 @@ changed or absent nodes.
 """
 
 import contextlib
+import subprocess
+import sys
 import warnings
 from collections.abc import Iterator
 from dataclasses import replace
@@ -42,6 +44,20 @@ def warns(*codes: str) -> Iterator[list[UpliftWarning]]:
         each.message for each in caught if isinstance(each.message, UpliftWarning)
     ]
     assert sorted(each.code for each in found) == sorted(codes)
+
+
+def output_of(*words: object, **options: Any) -> str:
+    """Run a process and return what it prints."""
+    done = subprocess.run(
+        list(map(str, words)), capture_output=True, text=True, **options
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def run_python(code: str, *words: object, **options: Any) -> str:
+    """Run code in a new process and return what it prints."""
+    return output_of(sys.executable, "-c", code, *words, **options).strip()
 
 
 def quiet_build(*args: Any, **options: Any) -> Cube:

@@ -27,6 +27,10 @@ class Cell:
         return float(self.attributes["data-value"])
 
 
+def texts(row):
+    return [cell.text for cell in row]
+
+
 class Page(HTMLParser):
     """A page that must be well formed: every element ends where it should.
 
@@ -77,12 +81,11 @@ class Page(HTMLParser):
 
     def table(self, *headings):
         """The body rows of the only table that begins with these headings."""
-        found = []
-        for head, *rows in self.tables:
-            texts = [cell.text for cell in head]
-            if texts[: len(headings)] == list(headings):
-                found.append(rows)
-        (body,) = found
+        (body,) = [
+            body
+            for head, *body in self.tables
+            if texts(head)[: len(headings)] == list(headings)
+        ]
         return body
 
 

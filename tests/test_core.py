@@ -1,8 +1,8 @@
 """The core alone: nine rooms, copied, build a cube, load it and query it."""
 
 import shutil
-import subprocess
-import sys
+
+from tests.helpers import run_python
 
 CORE = (
     "common",
@@ -32,17 +32,6 @@ print(*sorted(name for name in sys.modules if name.startswith("uplift.")))
 OUTER = ("OpenImageIO", "OpenEXR", "PyOpenColorIO", "jinja2", "pydantic", "click")
 
 
-def run(folder, program):
-    done = subprocess.run(
-        [sys.executable, "-c", program],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return done.stdout.splitlines()
-
-
 def test_the_core_alone_builds_loads_and_queries(repository, tmp_path, cyan_cube):
     package = tmp_path / "uplift"
     package.mkdir()
@@ -50,10 +39,10 @@ def test_the_core_alone_builds_loads_and_queries(repository, tmp_path, cyan_cube
     for room in CORE:
         shutil.copytree(repository / "uplift" / room, package / room)
     shutil.copy(repository / "atlases" / "macbeth.txt", tmp_path)
-    program = f"{PROGRAM}\nprint(*set(sys.modules) & {set(OUTER)})"
-    answer, code, modules, outer = run(tmp_path, program)
+    program = f"{PROGRAM}\nprint('outer:', *set(sys.modules) & {set(OUTER)})"
+    answer, code, modules, outer = run_python(program, cwd=tmp_path).splitlines()
 
     assert answer == str(cyan_cube.reflectance([0.8, 0.2, 0.1], [450, 650]).tolist())
     assert code == "option"
     assert {name.split(".")[1] for name in modules.split()} == set(CORE)
-    assert outer == ""
+    assert outer == "outer:"

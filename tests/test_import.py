@@ -3,21 +3,11 @@ interface.
 """
 
 import re
-import subprocess
-import sys
 
 import pytest
 
 import uplift
-
-
-def run_python(code):
-    """Run code in a new process and return its output."""
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    return done.stdout.strip()
-
+from tests.helpers import run_python
 
 CORE = {"common", "colorimetry", "models", "lattice", "cube", "lookup"}
 HEAVY_OF_FITS = {"colour", "scipy", "jax", "equinox", "optimistix"}

@@ -64,31 +64,27 @@ def test_every_module_is_in_it(wheel, repository):
         assert {f"{there}/{module}" for module in modules} <= set(wheel.namelist())
 
 
+def is_data(path):
+    return path.suffix != ".py" and path.parts[0] != INFO
+
+
 def test_data_and_licence_are_in_it_and_nothing_else(wheel, repository):
-    assert (
-        wheel.read(f"{INFO}/licenses/LICENSE") == (repository / "LICENSE").read_bytes()
-    )
-    assert {name.split("/")[0] for name in wheel.namelist()} == {
-        "uplift",
-        "uplift_atlases",
-        "uplift_cli",
-        INFO,
+    licence = wheel.read(f"{INFO}/licenses/LICENSE")
+    assert licence == (repository / "LICENSE").read_bytes()
+    names = set(map(Path, wheel.namelist()))
+    assert {name.parts[0] for name in names} == {*FOLDERS.values(), INFO}
+    tracked = source_files(repository)
+    library = {Path(name) for name in tracked if name.startswith("uplift/")}
+    atlases = {
+        Path(f"uplift_{name}") for name in tracked if name.startswith("atlases/")
     }
-    data = {
-        name
-        for name in wheel.namelist()
-        if ".dist-info/" not in name and not name.endswith(".py")
-    }
-    tracked = {name for name in source_files(repository) if not name.endswith(".py")}
-    library = {name for name in tracked if name.startswith("uplift/")}
-    atlases = {f"uplift_{name}" for name in tracked if name.startswith("atlases/")}
-    assert data == library | atlases
+    assert set(filter(is_data, names)) == set(filter(is_data, library | atlases))
     suffixes = (
         ".c .cpp .css .csv .cxf .cuh .exr .glsl .h .hlsl .j2 .js .npz .png .spd .ti3 "
         ".toml .typed .uplift .xlsx"
     )
-    assert {Path(name).suffix for name in library} == set(suffixes.split())
-    assert {Path(name).suffix for name in atlases} == {".md", ".txt"}
+    assert {name.suffix for name in library} == {".py", *suffixes.split()}
+    assert {name.suffix for name in atlases} == {".md", ".py", ".txt"}
 
 
 def test_examples_run_as_written_in_an_empty_folder(path, tmp_path):

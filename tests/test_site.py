@@ -29,9 +29,7 @@ def test_notebooks_have_run():
     assert len(NOTEBOOKS) == 4
     for notebook in NOTEBOOKS:
         page = (
-            (SITE / notebook.relative_to(DOCS))
-            .with_suffix(".html")
-            .read_text(encoding="utf-8")
+            (SITE / notebook.relative_to(DOCS)).with_suffix(".html").read_text("utf-8")
         )
         assert "cell_output" in page
         assert "data:image" in page or "<img" in page
@@ -40,6 +38,6 @@ def test_notebooks_have_run():
 @pytest.mark.site
 def test_no_page_loads_from_the_network():
     for page in SITE.rglob("*.html"):
-        text = page.read_text(encoding="utf-8")
+        text = page.read_text("utf-8")
         loaded = re.findall(r'(?:src|<link[^>]*href)="(https?:[^"]+)"', text)
         assert loaded == [], page.name

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from tests.atlas.atlas_texts import ORANGE, PLAIN, THESIS
 from tests.helpers import raises, warns
@@ -27,7 +28,7 @@ def test_printed_entry_with_complete_samples(save):
     (entry,) = read_atlas(save(ORANGE, "macbeth.txt")).entries
     assert (entry.name, entry.line) == ("orange", 1)
     assert entry.description == '"orange" patch of the Macbeth colour checker'
-    np.testing.assert_array_equal(entry.wavelengths, np.arange(380.0, 785.0, 5.0))
+    assert_array_equal(entry.wavelengths, np.arange(380.0, 785.0, 5.0))
     assert entry.values[:3].tolist() == [6.143748 / 100, 5.192119 / 100, 4.867970 / 100]
 
 

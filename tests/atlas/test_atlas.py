@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import colour
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from tests.helpers import raises, warns
 from uplift.atlas import (
@@ -72,7 +73,7 @@ def test_distributions_of_colour_science(tmp_path):
     checker = colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"]
     spectra = from_distributions(checker)
     assert spectra.names == tuple(checker)
-    np.testing.assert_array_equal(spectra["orange"].values, checker["orange"].values)
+    assert_array_equal(spectra["orange"].values, checker["orange"].values)
     write_atlas(spectra, tmp_path / "out.txt")
     assert (
         read_atlas(tmp_path / "out.txt").sources[0].digest == spectra.sources[0].digest

@@ -4,6 +4,7 @@ values.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.interpolate import PchipInterpolator
 
 from uplift.atlas import Atlas, Entry, on_grid, resample
@@ -22,19 +23,15 @@ def test_fine_data_are_averaged_over_bands(step):
     found = on_grid(one(nm, values), GRID)[0]
     curve = PchipInterpolator(nm, values)
     dense = np.linspace(-2.5, 2.5, 4001)[:-1] + 2.5 / 4000
-    np.testing.assert_allclose(
-        found, curve(GRID[:, None] + dense).mean(axis=1), atol=1e-6
-    )
+    assert_allclose(found, curve(GRID[:, None] + dense).mean(axis=1), atol=1e-6)
 
 
 def test_bands_beyond_the_data_keep_the_last_value():
     nm = np.arange(400.0, 700.1)
     found = on_grid(one(nm, np.linspace(0.2, 0.8, len(nm))), GRID)[0]
-    np.testing.assert_allclose(found[[0, 3]], 0.2, atol=1e-12)
-    np.testing.assert_allclose(found[[-1, -15]], 0.8, atol=1e-12)
-    np.testing.assert_allclose(
-        on_grid(one(nm, np.full(len(nm), 0.5)), GRID), 0.5, atol=1e-12
-    )
+    assert_allclose(found[[0, 3]], 0.2, atol=1e-12)
+    assert_allclose(found[[-1, -15]], 0.8, atol=1e-12)
+    assert_allclose(on_grid(one(nm, np.full(len(nm), 0.5)), GRID), 0.5, atol=1e-12)
 
 
 def test_averages_have_less_noise():
@@ -50,14 +47,14 @@ def test_averages_have_less_noise():
 def test_wavelengths_that_are_no_sampling_are_points(grid):
     nm = np.arange(380.0, 781.0)
     values = np.random.default_rng(2).uniform(0, 1, len(nm))
-    np.testing.assert_array_equal(
+    assert_array_equal(
         on_grid(one(nm, values), grid)[0], values[np.array(grid, int) - 380]
     )
 
 
 def test_coarse_data_pass_through_their_samples():
     values = np.random.default_rng(3).uniform(0, 1, 41)
-    np.testing.assert_array_equal(on_grid(one(GRID[::2], values), GRID)[0, ::2], values)
+    assert_array_equal(on_grid(one(GRID[::2], values), GRID)[0, ::2], values)
 
 
 def test_clips_are_those_of_the_file():

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from benchmarks.emission import (
@@ -65,7 +66,7 @@ def test_a_table_without_a_lamp_has_its_colour_and_not_its_spectrum():
         rings=4,
     )
     for power, expected in found.values():
-        np.testing.assert_allclose(
+        assert_allclose(
             chromaticity(power @ RADIOMETRY),
             chromaticity(few.power @ RADIOMETRY),
             atol=1e-7,
@@ -78,7 +79,7 @@ def test_a_table_without_a_lamp_has_its_colour_and_not_its_spectrum():
 def test_tungsten_is_planckian():
     lamp = LAMPS.power[row("A")]
     found = planck(UV[[row("A")]], RADIOMETRY, observer.grid())[0]
-    np.testing.assert_allclose(found / found.sum(), lamp / lamp.sum(), rtol=5e-3)
+    assert_allclose(found / found.sum(), lamp / lamp.sum(), rtol=5e-3)
 
 
 def test_exactness_is_measured_from_white_to_the_locus():

@@ -4,6 +4,7 @@ cells, the scan.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from benchmarks import palette_dial as scan
 from benchmarks.accuracy import largest
@@ -32,12 +33,10 @@ def known():
 def test_known_camera_matrices_are_found_and_keep_white(known):
     rng = np.random.default_rng(4)
     raw = rng.random((12, 3))
-    np.testing.assert_allclose(xyz_matrix(raw, raw @ known.T), known, rtol=1e-10)
-    np.testing.assert_allclose(lab_matrix(raw, raw @ known.T, WHITE), known, rtol=1e-6)
+    assert_allclose(xyz_matrix(raw, raw @ known.T), known, rtol=1e-10)
+    assert_allclose(lab_matrix(raw, raw @ known.T, WHITE), known, rtol=1e-6)
     noisy = raw @ known.T + 0.01 * rng.standard_normal((12, 3))
-    np.testing.assert_allclose(
-        lab_matrix(raw, noisy, WHITE).sum(axis=1), WHITE, rtol=1e-12
-    )
+    assert_allclose(lab_matrix(raw, noisy, WHITE).sum(axis=1), WHITE, rtol=1e-12)
 
 
 def test_the_largest_error_is_searched_for():
@@ -57,7 +56,7 @@ def test_overlapping_channels_leave_few_raw_values():
 def test_closed_cells_keep_the_white(count):
     light = np.ones((1, 401))
     for one in (closed(count), enhanced(count)):
-        np.testing.assert_allclose(
+        assert_allclose(
             one.xyz(one.encode_light(light)), light @ xyz_weights(), rtol=2e-3
         )
 
@@ -86,7 +85,7 @@ def test_the_viewer_reads_the_scan_in_which_every_material_is_visible(tmp_path):
     scan.write_weights(weights, tmp_path / "engine.exr")
     order = ["block", "haze", "piston", "valve"]
     found = read_weights(tmp_path / "engine.exr", order, {})
-    np.testing.assert_allclose(
+    assert_allclose(
         found,
         weights[..., [list(scan.DENSITIES).index(name) for name in order]],
         atol=1e-6,

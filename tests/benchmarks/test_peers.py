@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from scipy.optimize import root
 
 from benchmarks import peers
@@ -74,9 +75,7 @@ def test_a_point_without_a_number_is_not_within_the_threshold():
 
 def test_the_sensor_of_a_table_keeps_white():
     sensor = peers.table_sensor()
-    np.testing.assert_allclose(
-        sensor.rgb(np.ones(len(sensor.wavelengths))), 1, atol=2e-4
-    )
+    assert_allclose(sensor.rgb(np.ones(len(sensor.wavelengths))), 1, atol=2e-4)
 
 
 def test_without_its_source_the_tool_says_what_it_needs(monkeypatch, tmp_path):

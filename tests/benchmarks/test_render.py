@@ -1,8 +1,8 @@
 """The rendered ColorChecker, small and noisy: layout, reference, errors."""
 
 # ruff: noqa: E402  (what follows imports Mitsuba)
-import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.parts import MITSUBA, need
 
@@ -44,8 +44,8 @@ def test_reference_equals_the_integral_of_the_measured_spectra(painted, renders)
     for name in demo.LIGHTS:
         expected = painted.measured @ light(name).xyz.T
         found = LAYOUT.means(renders.images[name, demo.REFERENCE])
-        np.testing.assert_allclose(found.mean(axis=0), expected.mean(axis=0), rtol=0.03)
-        np.testing.assert_allclose(found[:, 1], expected[:, 1], rtol=0.1)
+        assert_allclose(found.mean(axis=0), expected.mean(axis=0), rtol=0.03)
+        assert_allclose(found[:, 1], expected[:, 1], rtol=0.1)
 
 
 def test_cube_with_atlas_has_less_than_half_the_error_of_mitsuba(painted, renders):

@@ -1,6 +1,7 @@
 """Running the command line inside this process."""
 
 import json
+import shlex
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -57,12 +58,13 @@ def _recorded(
 
 @pytest.fixture
 def run(home: Path) -> Run:
-    """Run ``uplift`` with arguments; any exception but an exit code is a failure."""
+    """Run ``uplift`` with a line, which is split into words, and further arguments; any
+    exception but an exit code is a failure.
+    """
 
-    def run(*args: object, code: int = 0, **options: object) -> Result:
-        result = CliRunner().invoke(
-            main, [str(arg) for arg in args], catch_exceptions=False, **options
-        )  # type: ignore[arg-type]
+    def run(line: str = "", *args: object, code: int = 0, **options: object) -> Result:
+        words = [*shlex.split(line), *map(str, args)]
+        result = CliRunner().invoke(main, words, catch_exceptions=False, **options)  # type: ignore[arg-type]
         assert result.exit_code == code, result.output
         return result
 

@@ -6,6 +6,7 @@ import matplotlib.image
 import numpy as np
 import OpenEXR
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from uplift.samples import sample_path
@@ -51,7 +52,7 @@ def test_textures_have_the_standard_errors_of_their_pixels(run, refuse, cubes, h
     channels = {name: each.pixels for name, each in texture.channels().items()}
     rgb = np.stack([channels[name] for name in "RGB"], axis=-1)
     expected = uplift.load(file).standard_error(rgb, "FL11")
-    np.testing.assert_allclose(channels["error.FL11"], expected, atol=1e-3)
+    assert_allclose(channels["error.FL11"], expected, atol=1e-3)
     assert json.loads(texture.header()["uplift.texture"])["errors"] == ["FL11"]
     masked = ("--mask", sample_path("mask.png"), "--cube", file, "--cube", file)
     assert (

@@ -1,5 +1,6 @@
 """``uplift build``."""
 
+import os
 from itertools import chain
 
 import pytest
@@ -16,29 +17,29 @@ LOOK = (
 
 
 def test_unrealisable_colours_are_counted(run, home):
-    result = run("build", "--dim", "3", "--space", "ITU-R BT.2020", "-o", "wide.uplift")
+    result = run("build --dim 3 --space 'ITU-R BT.2020' -o wide.uplift")
     count = uplift.load(home / "wide.uplift").data.points.counts()["unrealisable"]
     assert count > 0
     assert f"{count} nodes whose colour no reflectance has" in result.stdout
-    query = ("query", "--cube", "wide.uplift")
-    assert "\nrealisable " in run(*query, "0", "1", "0").stdout
-    assert "\nrealisable" not in run(*query, "0.5", "0.5", "0.5").stdout
+    query = "query --cube wide.uplift"
+    assert "\nrealisable " in run(f"{query} 0 1 0").stdout
+    assert "\nrealisable" not in run(f"{query} 0.5 0.5 0.5").stdout
 
 
 @pytest.mark.parametrize(
     ("args", "name"),
     [
-        ((), "srgb-2.uplift"),
-        (("--space", "Pal/Secam"), "pal-secam-2.uplift"),
-        (("--atlas", "a.csv", "--atlas", "far/b.csv"), "a+b-2.uplift"),
+        ("", "srgb-2.uplift"),
+        ("--space Pal/Secam", "pal-secam-2.uplift"),
+        ("--atlas a.csv --atlas far/b.csv", "a+b-2.uplift"),
     ],
 )
 def test_default_name_has_atlas_or_space_and_dim(run, home, args, name):
     (home / "far").mkdir()
     (home / "a.csv").write_text("name,380,780\ngrey,0.5,0.5\n")
     (home / "far" / "b.csv").write_text("name,380,780\nblack,0.01,0.01\n")
-    run("build", "--dim", "2", "--coefficients", "4", *args)
-    assert {path.name for path in home.iterdir()} - {"a.csv", "far"} == {name}
+    run(f"build --dim 2 --coefficients 4 {args}")
+    assert set(os.listdir(home)) - {"a.csv", "far"} == {name}
 
 
 def test_all_options_are_passed_to_the_build(run, home, monkeypatch, plain_cube):
@@ -114,7 +115,7 @@ def test_the_same_input_gives_the_same_bytes(run, home, macbeth):
 
 
 def test_a_shipped_atlas_by_the_name_of_its_file_is_a_note(run):
-    result = run("build", "--atlas", "macbeth.txt", *SMALL, "-o", "cube.uplift")
+    result = run("build --atlas macbeth.txt", *SMALL, "-o", "cube.uplift")
     assert "the shipped atlas 'macbeth' is used" in " ".join(result.stdout.split())
     assert "warning" not in result.stderr
 
@@ -137,14 +138,14 @@ def test_looks_are_built_summarised_and_shown(run, home):
     assert "#5060a0" in impossible
     line = next(
         line
-        for line in run("info", "looks.uplift").stdout.splitlines()
+        for line in run("info looks.uplift").stdout.splitlines()
         if line.startswith("look brick")
     )
     assert line.split()[2:] == ["HP1", "#70392a", "(ΔE00", "0.00)"]
-    run("check", "looks.uplift")
+    run("check looks.uplift")
 
 
 @pytest.mark.parametrize("name", ["cube.png", "relit.cube", "cube.json"])
 def test_a_cube_has_no_suffix_of_other_files(refuse, home, name):
-    assert refuse("build", "--dim", "3", "-o", name).code == "output"
+    assert refuse(f"build --dim 3 -o {name}").code == "output"
     assert not (home / name).exists()

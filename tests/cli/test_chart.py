@@ -57,11 +57,9 @@ def numbers(quick):
 
 def test_all_files_are_written_and_fronts_printed(quick, numbers):
     folder, result = quick
-    assert sorted(path.name for path in folder.iterdir()) == FILES
+    assert sorted(os.listdir(folder)) == FILES
     assert matplotlib.image.imread(folder / "chart.png").std() > 0.05
-    assert re.search(
-        r"marker-0-\d", (folder / "chart.html").read_text(encoding="utf-8")
-    )
+    assert re.search(r"marker-0-\d", (folder / "chart.html").read_text("utf-8"))
     assert sum(name in result.stdout for name in numbers) >= 2
     assert result.stderr == "out: chart.csv, chart.png, chart.html\n"
     assert all(
@@ -101,9 +99,7 @@ def test_methods_that_crash_hang_or_are_missing_have_rows(
     monkeypatch.setattr(measure, "METHODS", (*measure.METHODS, *faulty.METHODS))
     names = [f"--method=faulty-{name}" for name in reasons]
     result = run(
-        "chart",
-        "--quick",
-        "--atlas",
+        "chart --quick --atlas",
         macbeth,
         "--method",
         "mallett2019",
@@ -122,17 +118,17 @@ def test_methods_that_crash_hang_or_are_missing_have_rows(
 
 def test_chart_can_be_redrawn_from_its_table(quick, run, refuse):
     table = quick[0] / "chart.csv"
-    result = run("chart", "--from", table, "-o", "again")
+    result = run("chart -o again --from", table)
     assert result.stdout == quick[1].stdout
-    error = refuse("chart", "--from", table, "-o", "again")
+    error = refuse("chart -o again --from", table)
     assert (error.code, error.path.name) == ("file-exists", "chart.csv")
 
 
 def test_page_and_command_recommend_the_same_cubes(run, repository):
-    page = (repository / "docs" / "choosing.md").read_text(encoding="utf-8")
+    page = (repository / "docs" / "choosing.md").read_text("utf-8")
     printed = [
         line.strip()
-        for line in run("chart", "--recommend").stdout.splitlines()
+        for line in run("chart --recommend").stdout.splitlines()
         if line.startswith("  ")
     ]
     pairs = [
@@ -145,19 +141,15 @@ def test_page_and_command_recommend_the_same_cubes(run, repository):
 
 def test_recommendations(quick, run, refuse):
     table = quick[0] / "chart.csv"
-    result = run(
-        "chart", "--recommend", "--from", table, "--tolerance", 0.05, "--light", "D65"
-    )
+    result = run("chart --recommend --tolerance 0.05 --light D65 --from", table)
     assert re.search(r"\n  uplift build (--atlas FILE )?--dim \d+ ", result.stdout)
     assert (
-        refuse("chart", "--recommend", "--from", table, "--time-ns", 0.5).code
+        refuse("chart --recommend --time-ns 0.5 --from", table).code
         == "requirements-not-met"
     )
-    result = run(
-        "chart", "--recommend", "--tolerance", 1, "--light", "FL11", "--atlas-materials"
-    )
+    result = run("chart --recommend --tolerance 1 --light FL11 --atlas-materials")
     assert "--atlas FILE" in result.stdout
 
 
 def test_requirements_need_recommend(misuse):
-    assert "--recommend" in misuse("chart", "--time-ns", 100)
+    assert "--recommend" in misuse("chart --time-ns 100")

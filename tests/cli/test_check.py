@@ -87,7 +87,7 @@ def test_failed_cubes_do_not_stop_the_others(
     )  # one line for each cube, however long its path is
     (home / "text.uplift").write_text("no cube")
     result = run(
-        "check", "none.uplift", "text.uplift", other_lattice, modified, stored, code=2
+        "check none.uplift text.uplift", other_lattice, modified, stored, code=2
     )
     verdicts = {
         line.split()[0]: line.split()[1]
@@ -106,7 +106,7 @@ def test_failed_cubes_do_not_stop_the_others(
 
 
 def test_json_has_the_errors_of_failed_cubes(run, other_lattice):
-    result = run("check", other_lattice, "--format", "json", code=2)
+    result = run("check --format json", other_lattice, code=2)
     (failed,) = json.loads(result.stdout)
     assert (failed["passed"], failed["failures"], failed["measures"]) == (
         False,
@@ -125,10 +125,7 @@ def test_update_replaces_failed_cubes_that_can_be_rebuilt(
 ):
     before = stored.read_bytes()
     result = run(
-        "check",
-        "-q",
-        "--update",
-        "none.uplift",
+        "check -q --update none.uplift",
         stored,
         modified,
         other_lattice,
@@ -154,12 +151,12 @@ def test_atlases_are_searched_for_in_given_folders(
     monkeypatch.setattr("uplift.extras.report.rebuild.shipped_atlases", tuple)
     with pytest.warns(uplift.UpliftWarning):
         uplift.build(macbeth, dim=3, coefficients=4).save(home / "cube.uplift")
-    result = run("check", "cube.uplift", code=2)
+    result = run("check cube.uplift", code=2)
     assert reported(result, shown) == [("atlas-not-found", "cube.uplift")]
     assert "macbeth.txt" in shown.pop().error.problem
     (home / "there").mkdir()
     shutil.copy(macbeth, home / "there")
-    assert "passed" in run("check", "cube.uplift", "--atlas-dir", "there").stdout
+    assert "passed" in run("check cube.uplift --atlas-dir there").stdout
 
 
 def test_a_changed_atlas_is_explained_and_the_cube_updated(run, ask, home):
@@ -180,19 +177,19 @@ def test_a_changed_atlas_is_explained_and_the_cube_updated(run, ask, home):
     dark = np.full(41, 0.3)
     write(red=red, grey=grey, dark=dark)
     uplift.build(home / "mine.csv", dim=9, coefficients=4).save(home / "cube.uplift")
-    assert ask("check", "cube.uplift")[0]["passed"]
+    assert ask("check cube.uplift")[0]["passed"]
     write(red=red, grey=grey + 0.02, new=dark)
-    (answer,) = ask("check", "cube.uplift", code=1)
+    (answer,) = ask("check cube.uplift", code=1)
     assert {"atlas-changed", "entries", "delta_e_A"} <= set(answer["failures"])
     changes = {entry["name"]: entry["change"] for entry in answer["entries"]}
     assert changes == {"grey": "moved", "dark": "removed", "new": "added"}
     assert answer["entries"][-1]["delta_e"] > 0.5
-    table = run("check", "cube.uplift", code=1).stdout.split("limit")[0]
+    table = run("check cube.uplift", code=1).stdout.split("limit")[0]
     assert table.splitlines()[-1].split()[:3] == ["cube.uplift", "FAILED", "changed"]
-    shown = run("check", "cube.uplift", "--update").stdout
+    shown = run("check cube.uplift --update").stdout
     assert "mine.csv" in shown
     assert "grey: moved" in shown
-    run("check", "cube.uplift")
+    run("check cube.uplift")
 
 
 @pytest.mark.parametrize("cube", CUBES, ids=lambda path: path.stem)
@@ -200,6 +197,6 @@ def test_stored_cubes_pass(run, cube):
     """Stored cubes equal their rebuilds within the limits, the default cube of the
     package included.
     """
-    result = run("check", "-v", cube)
+    result = run("check -v", cube)
     assert "passed" in result.stdout
     assert "storing: " in result.stderr

@@ -15,7 +15,7 @@ def cubes(home, small_cube, plain_cube):
 def test_exit_code_by_tolerance(run, cubes):
     run("diff", *cubes)
     run("diff", *cubes, "--tolerance", "100", code=1)  # entries were removed
-    run("diff", "a.uplift", "a.uplift", "--tolerance", "0")
+    run("diff a.uplift a.uplift --tolerance 0")
 
 
 def test_json_and_page(run, cubes, home):
@@ -36,9 +36,7 @@ def test_json_and_page(run, cubes, home):
     assert figures["cubes"] == list(cubes)
     assert {row["light"] for row in figures["differences"]} == {"A"}
     assert len(figures["entries_removed"]) == 24
-    assert (
-        (home / "page.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
-    )
+    assert (home / "page.html").read_text("utf-8").startswith("<!DOCTYPE html>")
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """``uplift export``."""
 
+import os
 import shutil
 
 import numpy as np
@@ -36,18 +37,15 @@ def test_formats_and_default_names(run, home, cube, style, suffix, first):
 @pytest.mark.parametrize("name", ["a.cuh", "a.cu", "a.glsl", "a.hlsl"])
 def test_programs_come_with_a_table(run, home, cube, name):
     assert "a.bin" in run("export", cube, "-o", name, "--mode", "moments").stdout
-    assert {path.name for path in home.iterdir()} == {cube, name, "a.bin"}
+    assert set(os.listdir(home)) == {cube, name, "a.bin"}
     assert "moments" in (home / name).read_text()
 
 
 def test_the_table_of_a_program_is_a_choice(run, refuse, home, cube):
-    run("export", cube, "-o", "a.h", "--table", "file")
-    assert {path.name for path in home.iterdir()} == {cube, "a.h", "a.bin"}
-    assert refuse("export", cube, "-o", "c.cuh", "--table", "header").code == "option"
-    assert (
-        refuse("export", cube, "-o", "a.glsl", "--mode", "moments").code
-        == "file-exists"
-    )
+    run("export -o a.h --table file", cube)
+    assert set(os.listdir(home)) == {cube, "a.h", "a.bin"}
+    assert refuse("export -o c.cuh --table header", cube).code == "option"
+    assert refuse("export -o a.glsl --mode moments", cube).code == "file-exists"
     assert not (home / "a.glsl").exists()
 
 
@@ -69,22 +67,20 @@ def test_no_output_replaces_the_cube_or_another(refuse, home, cube, name, output
     before = (home / cube).read_bytes()
     (home / cube).rename(home / name)
     assert refuse("export", name, "--force", "-o", *output.split()).code == code
-    assert [path.name for path in home.iterdir()] == [name]
+    assert os.listdir(home) == [name]
     assert (home / name).read_bytes() == before
 
 
 def test_format_follows_the_suffix_of_out(run, home, cube, monkeypatch):
-    assert run("export", cube, "-o", "table.coeff", "--res", 3).stdout.startswith(
-        "table.coeff: "
-    )
+    assert run("export -o table.coeff --res 3", cube).stdout.startswith("table.coeff: ")
     monkeypatch.setattr(
         write_coeff, "__kwdefaults__", {**write_coeff.__kwdefaults__, "res": 2}
     )
-    run("export", cube, "-o", "table.cpp")
+    run("export -o table.cpp", cube)
     assert (home / "table.cpp").read_text().startswith("namespace pbrt {")
     assert (home / "table.coeff").read_bytes()[:8] == b"SPEC" + bytes([3, 0, 0, 0])
-    run("export", cube, "-o", "ANY.NPZ")
-    run("export", cube, "-o", "points.txt", "--format", "csv")
+    run("export -o ANY.NPZ", cube)
+    run("export -o points.txt --format csv", cube)
     assert (home / "points.txt").read_text().startswith("r,g,b")
     assert np.load(home / "ANY.NPZ")["nodes"].shape == (8,)
 
@@ -92,11 +88,11 @@ def test_format_follows_the_suffix_of_out(run, home, cube, monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "option"),
     [
-        ((), "--format"),
-        (("-o", "cube.h", "--res", "8"), "--res"),
-        (("-o", "cube.npz", "--mode", "moments"), "--mode"),
+        ("", "--format"),
+        ("-o cube.h --res 8", "--res"),
+        ("-o cube.npz --mode moments", "--mode"),
     ],
 )
 def test_wrong_usage(misuse, home, cube, arguments, option):
-    assert option in misuse("export", cube, *arguments)
-    assert [path.name for path in home.iterdir()] == [cube]
+    assert option in misuse(f"export {cube} {arguments}")
+    assert os.listdir(home) == [cube]

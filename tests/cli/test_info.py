@@ -49,11 +49,11 @@ def test_default_is_the_packaged_cube(run, ask):
 
 
 def test_invalid_files_are_errors(refuse, home, repository):
-    error = refuse("info", "none.uplift")
+    error = refuse("info none.uplift")
     assert (error.code, error.where) == ("file-not-found", "none.uplift")
     assert refuse("info", home).code == "file-unreadable"
     assert refuse("info", repository / "README.md").code == "not-a-cube"
     (home / "cut.uplift").write_bytes(
         (repository / "cubes" / "sigmoid-8.uplift").read_bytes()[:-1]
     )
-    assert refuse("info", "cut.uplift").code == "not-a-cube"
+    assert refuse("info cut.uplift").code == "not-a-cube"

@@ -1,6 +1,7 @@
 """``uplift lights``, and commands that need a cube."""
 
 import json
+import os
 from functools import partial
 
 import numpy as np
@@ -13,10 +14,8 @@ from uplift.extras.emission.build import build_emission
 from uplift.extras.emission.table import emission_digest
 
 
-def test_a_light_has_its_colour_and_power_of_any_size(run):
-    found = json.loads(
-        run("lights", "query", "30", "22", "9", "--format", "json").stdout
-    )
+def test_a_light_has_its_colour_and_power_of_any_size(ask):
+    found = ask("lights query 30 22 9")
     assert found["round_trip"]["rgb"] == pytest.approx([30, 22, 9], rel=1e-5)
     assert min(found["power"]) >= 0
     assert max(found["power"]) > 10
@@ -24,37 +23,23 @@ def test_a_light_has_its_colour_and_power_of_any_size(run):
 
 
 def test_xyz_wavelengths_and_plot(run, home):
-    words = (
-        "--xyz",
-        "0.9505",
-        "1",
-        "1.089",
-        "--wavelengths",
-        "400:700:100",
-        "--plot",
-        "white.png",
-    )
-    found = run("lights", "query", *words, "--format", "csv").stdout.splitlines()
+    words = "--xyz 0.9505 1 1.089 --wavelengths 400:700:100 --plot white.png"
+    found = run(f"lights query {words} --format csv").stdout.splitlines()
     assert found[0].split(",")[-4:] == ["400", "500", "600", "700"]
     assert (home / "white.png").exists()
-    for words in (("query", "1", "1", "1"), ("texture", "in.exr", "-o", "out.exr")):
+    for words in ("query 1 1 1", "texture in.exr -o out.exr"):
         assert (
             "0.4 µm are 400 nm"
-            in run("lights", *words, "--wavelengths", "0.4", code=2).stderr
+            in run(f"lights {words} --wavelengths 0.4", code=2).stderr
         )
 
 
 def test_colours_that_no_light_has(run):
-    assert (
-        "--out-of-gamut clip" in run("lights", "query", "-1", "1", "-1", code=2).stderr
-    )
-    assert (
-        "round trip"
-        in run("lights", "query", "-1", "1", "-1", "--out-of-gamut", "clip").stdout
-    )
+    assert "--out-of-gamut clip" in run("lights query -1 1 -1", code=2).stderr
+    assert "round trip" in run("lights query -1 1 -1 --out-of-gamut clip").stdout
 
 
-def test_a_table_of_measured_lamps_is_built_and_queried(run, home, monkeypatch):
+def test_a_table_of_measured_lamps_is_built_and_queried(ask, run, home, monkeypatch):
     monkeypatch.setattr(
         "uplift.extras.emission.build.build_emission",
         partial(build_emission, knots=32, rings=4),
@@ -65,53 +50,35 @@ def test_a_table_of_measured_lamps_is_built_and_queried(run, home, monkeypatch):
     (home / "lamps.csv").write_text(
         f"# spectral irradiance\nname,{','.join(map(str, at))}\nbulb,{values}\n"
     )
-    assert (
-        "lamps"
-        in run("lights", "build", "--atlas", "lamps.csv", "-o", "x.uplift").stdout
-    )
+    assert "lamps" in run("lights build --atlas lamps.csv -o x.uplift").stdout
     table = uplift.load_emission("x.uplift")
     assert table.lamp_names[0] == "bulb"
     assert table.data.provenance["atlases"][0]["name"] == "lamps.csv"
     rgb = table.rgb(table.data.entries.spectra[0])
-    words = (
-        "--lights",
-        "x.uplift",
-        "--format",
-        "json",
-        "--wavelengths",
-        "400:700:10",
-        "--",
-    )
+    words = "--lights x.uplift --format json --wavelengths 400:700:10 --"
     found = json.loads(
-        run("lights", "query", *words, *map(str, 5 * rgb / rgb.max())).stdout
+        run(f"lights query {words}", *map(str, 5 * rgb / rgb.max())).stdout
     )
     assert np.array(found["power"]) / max(found["power"]) == pytest.approx(
         power / power.max(), abs=1e-4
     )
-    assert (
-        json.loads(run("lights", "info", "x.uplift", "--format", "json").stdout)[
-            "lamps"
-        ][0]
-        == "bulb"
-    )
+    assert ask("lights info x.uplift")["lamps"][0] == "bulb"
 
 
-def test_facts_picture_and_page(run, home):
+def test_facts_picture_and_page(ask, run, home):
     table = uplift.load_emission()
     table.save(home / "lights.uplift")
-    facts = json.loads(
-        run("lights", "info", "lights.uplift", "--format", "json").stdout
-    )
-    assert facts == json.loads(run("lights", "info", "--format", "json").stdout)
+    facts = ask("lights info lights.uplift")
+    assert facts == ask("lights info")
     assert (facts["lamps"], facts["digest"]) == (
         list(table.lamp_names),
         emission_digest(table.data),
     )
-    words = ("--plot", "lights.png", "--html", "lights.html")
-    assert "LED-B3" in run("lights", "info", "lights.uplift", *words).stdout
-    assert "Chromaticity diagrams" in (home / "lights.html").read_text(encoding="utf-8")
+    words = "--plot lights.png --html lights.html"
+    assert "LED-B3" in run(f"lights info lights.uplift {words}").stdout
+    assert "Chromaticity diagrams" in (home / "lights.html").read_text("utf-8")
     assert (home / "lights.png").read_bytes().startswith(b"\x89PNG")
-    assert "lights.png" in run("lights", "info", *words, code=2).stderr
+    assert "lights.png" in run(f"lights info {words}", code=2).stderr
 
 
 def test_textures(run, home):
@@ -120,66 +87,50 @@ def test_textures(run, home):
         {"compression": OpenEXR.ZIP_COMPRESSION}, dict.fromkeys("RGB", pixels)
     ) as file:
         file.write(str(home / "sky.exr"))
-    words = (
-        "lights",
-        "texture",
-        "sky.exr",
-        "-o",
-        "out.exr",
-        "--wavelengths",
-        "450,550,650",
-    )
-    assert run(*words).output.startswith("out.exr: 1 texture, 6 pixels, 0.0 MB, ")
+    words = "lights texture sky.exr -o out.exr --wavelengths 450,550,650"
+    assert run(words).output.startswith("out.exr: 1 texture, 6 pixels, 0.0 MB, ")
     found = OpenEXR.File("out.exr", separate_channels=True).channels()
     assert found["S0.550,000000nm"].pixels.min() > 1e4
-    assert run(*words, "--resume", "--lights", "emission").output.startswith(
+    assert run(f"{words} --resume --lights emission").output.startswith(
         "out.exr: 0 textures"
     )
 
 
 def test_programs(run, misuse, home):
-    assert run("lights", "export", "-o", "lights.h").output.startswith("lights.h: ")
+    assert run("lights export -o lights.h").output.startswith("lights.h: ")
     assert "lights_power" in (home / "lights.h").read_text()
-    assert ".glsl" in misuse("lights", "export", "-o", "lights.wgsl")
+    assert ".glsl" in misuse("lights export -o lights.wgsl")
 
 
-@pytest.mark.parametrize(
-    "words", [("-o", "lights.glsl"), ("-o", "lights.h", "--table", "file")]
-)
+@pytest.mark.parametrize("words", ["-o lights.glsl", "-o lights.h --table file"])
 def test_no_output_replaces_the_table(refuse, home, words):
     uplift.load_emission().save(home / "lights.bin")
-    assert (
-        refuse("lights", "export", "lights.bin", *words, "--force").code
-        == "output-is-input"
-    )
-    assert [path.name for path in home.iterdir()] == ["lights.bin"]
+    assert refuse(f"lights export lights.bin {words} --force").code == "output-is-input"
+    assert os.listdir(home) == ["lights.bin"]
 
 
 @pytest.mark.parametrize(
     "words",
     [
-        ("query", "1", "1", "1", "--cube", "lights.uplift"),
-        ("texture", "in.png", "-o", "out.exr", "--cube", "lights.uplift"),
-        ("study", "sensitivity", "lights.uplift"),
+        "query 1 1 1 --cube lights.uplift",
+        "texture in.png -o out.exr --cube lights.uplift",
+        "study sensitivity lights.uplift",
     ],
 )
 def test_commands_that_need_a_cube_name_the_commands_of_lights(refuse, home, words):
     uplift.load_emission().save(home / "lights.uplift")
     plain_image(home / "in.png")
-    error = refuse(*words)
+    error = refuse(words)
     assert error.code == "not-a-cube"
     assert "uplift lights" in hint_for(error)
 
 
-@pytest.mark.parametrize(
-    "words", [("query", "1", "1", "1"), ("texture", "in.png", "-o", "out.exr")]
-)
+@pytest.mark.parametrize("words", ["query 1 1 1", "texture in.png -o out.exr"])
 def test_cubes_are_not_lights(refuse, home, words):
     plain_image(home / "in.png")
     uplift.load().save(home / "cube.uplift")
     assert (
-        refuse("lights", *words, "--lights", "cube.uplift").code
-        == "not-an-emission-table"
+        refuse(f"lights {words} --lights cube.uplift").code == "not-an-emission-table"
     )
 
 

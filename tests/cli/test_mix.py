@@ -3,6 +3,7 @@
 import matplotlib.image
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.extras.texture.conftest import planes, read_channels, write_exr
 from uplift.samples import sample_path
@@ -14,7 +15,7 @@ YELLOW = "#ffd200"
 
 
 def test_blue_and_yellow_are_green(ask):
-    found = ask("mix", "--pigment", f"1:{BLUE}", f"1:{YELLOW}")
+    found = ask("mix --pigment", f"1:{BLUE}", f"1:{YELLOW}")
     red, green, blue = found["rgb"]
     assert green > 1.2 * max(red, blue)
     assert found["kind"] == "pigment"
@@ -28,13 +29,13 @@ def test_blue_and_yellow_are_green(ask):
 
 def test_entries_by_name_have_their_measured_spectra(ask, cubes, macbeth):
     cube = ("--cube", cubes / "moments-8-macbeth.uplift")
-    from_cube = ask("mix", "2:blue sky", "yellow", *cube)
-    measured = ask("mix", "2:blue sky", "yellow", "--atlas", macbeth)
+    from_cube = ask("mix '2:blue sky' yellow", *cube)
+    measured = ask("mix '2:blue sky' yellow --atlas", macbeth)
     assert from_cube["names"] == measured["names"] == ["blue sky", "yellow"]
-    np.testing.assert_allclose(
+    assert_allclose(
         from_cube["spectrum"][4:], measured["spectrum"][4:], atol=0.03
     )  # from 400 nm
-    plain = ask("mix", "2:0.113,0.199,0.336", "yellow", "--atlas", macbeth)
+    plain = ask("mix 2:0.113,0.199,0.336 yellow --atlas", macbeth)
     assert np.abs(np.subtract(plain["spectrum"], measured["spectrum"])).max() > 0.03
 
 
@@ -42,22 +43,21 @@ def test_duntley_s_constants_from_files(ask):
     """Without thickness the ground shows; a paint mixed with itself is the same."""
     paint = str(sample_path("duntley.csv"))
     assert (
-        ask("mix", "--duntley", paint, "--thickness", 0, "--ground", "#f0e8d8")["hex"]
-        == "#f0e8d8"
+        ask("mix --thickness 0 --ground #f0e8d8 --duntley", paint)["hex"] == "#f0e8d8"
     )
     once, twice = (
-        ask("mix", "--duntley", *words, "--ground", "black")
+        ask("mix --duntley", *words, "--ground", "black")
         for words in ((paint,), (f"2:{paint}", paint))
     )
-    np.testing.assert_allclose(once["spectrum"], twice["spectrum"])
+    assert_allclose(once["spectrum"], twice["spectrum"])
     assert once["rgb"][0] > 3 * once["rgb"][2]
 
 
 def test_lights_and_filters(run, ask):
-    assert ask("mix", "--additive", "#ff0000", "#00ff00")["hex"] == "#ffff00"
-    (warning,) = warning_lines(run("mix", "--additive", "3:#804020", "3:#804020"))
+    assert ask("mix --additive #ff0000 #00ff00")["hex"] == "#ffff00"
+    (warning,) = warning_lines(run("mix --additive 3:#804020 3:#804020"))
     assert "(scale)" in warning
-    once, twice = (ask("mix", "--filter", f"{x}:#ff8040")["rgb"] for x in (1, 2))
+    once, twice = (ask("mix --filter", f"{x}:#ff8040")["rgb"] for x in (1, 2))
     assert all(np.less_equal(twice, once))
 
 
@@ -67,20 +67,20 @@ def test_swatches_are_plotted(run, refuse, home):
     assert picture.shape[1] == 720
     last = (255 * picture[-40, -30, :3]).round().astype(int).tolist()
     assert last == [0xFF, 0xD2, 0x00]
-    assert refuse("mix", BLUE, "--plot", "green.png").code == "file-exists"
+    assert refuse("mix --plot green.png", BLUE).code == "file-exists"
 
 
 def test_paint_over_an_image(run, refuse, home, cubes):
     rgb = np.random.default_rng(0).random((4, 5, 3)).astype(np.float32)
     write_exr(home / "in.exr", planes(rgb))
     options = ("--cube", cubes / "moments-8-macbeth.uplift", "--over", "in.exr")
-    result = run("mix", "#c8342a", *options, "-o", "hidden.exr")
+    result = run("mix #c8342a", *options, "-o", "hidden.exr")
     assert result.stdout.startswith("hidden.exr: 20 pixels ")
     assert read_channels(home / "hidden.exr", "RGB").std(axis=(0, 1)).max() < 1e-4
-    run("mix", "--dye", "#c8342a", "--thickness", 0, *options, "-o", "bare.exr")
-    np.testing.assert_allclose(read_channels(home / "bare.exr", "RGB"), rgb, atol=1e-5)
+    run("mix --dye #c8342a --thickness 0", *options, "-o", "bare.exr")
+    assert_allclose(read_channels(home / "bare.exr", "RGB"), rgb, atol=1e-5)
     assert refuse("mix", BLUE, *options, "-o", "o.png").code == "output"
-    assert refuse("mix", "--additive", BLUE, *options, "-o", "o.exr").code == "option"
+    assert refuse("mix --additive", BLUE, *options, "-o", "o.exr").code == "option"
 
 
 @pytest.mark.parametrize(

@@ -16,9 +16,11 @@ from PIL import Image
 from uplift_cli.startup import enable_jit_cache
 
 from tests.conftest import ROOT
-from tests.helpers import warns
+from tests.helpers import output_of, warns
 
 UPLIFT = f"{sys.executable} -m uplift_cli"
+TEXTURE = "texture a.png b.png -o out --processes 2"
+PLOT = "query 0.1 0.2 0.3 --plot plot.png"
 SECONDS = 60
 """Limit of waiting for what takes a second or two."""
 COMMANDS = ("--help", "query 0 0 0 --format csv", "info")
@@ -37,21 +39,14 @@ def shell(command, **environment):
         ["bash", "-o", "pipefail", "-c", command],
         capture_output=True,
         stdin=subprocess.DEVNULL,
-        env={
-            name: value
-            for name, value in os.environ.items()
-            if name != "PYTHONUNBUFFERED"
-        }
-        | environment,
+        env=os.environ | environment,
         timeout=SECONDS,
     )
 
 
 def test_the_package_runs_as_the_command_does():
-    alone, named = (
-        shell(f"{sys.executable} -m {name} help exit-codes")
-        for name in ("uplift", "uplift_cli")
-    )
+    alone = shell(f"{sys.executable} -m uplift help exit-codes")
+    named = shell(f"{UPLIFT} help exit-codes")
     assert (alone.returncode, alone.stdout, alone.stderr) == (0, named.stdout, b"")
 
 
@@ -105,11 +100,11 @@ def test_json_is_the_same_on_any_terminal(tmp_path):
         "name,400,500,600,700\n青 ΔE00,0.1,0.2,0.3,0.4\n", encoding="utf-8"
     )
     command = f"{UPLIFT} atlas {tmp_path}/a.csv --format json"
-    answers = [
-        shell(command, PYTHONIOENCODING=code).stdout for code in ("ascii", "utf-8")
-    ]
-    assert [answer.isascii() for answer in answers] == [True, False]
-    assert json.loads(answers[0]) == json.loads(answers[1])
+    ascii_answer = shell(command, PYTHONIOENCODING="ascii").stdout
+    answer = shell(command, PYTHONIOENCODING="utf-8").stdout
+    assert ascii_answer.isascii()
+    assert not answer.isascii()
+    assert json.loads(ascii_answer) == json.loads(answer)
 
 
 @pytest.fixture
@@ -121,18 +116,7 @@ def texture(tmp_path):
         Image.fromarray(np.full((4096, 4096, 3), 100, np.uint8)).save(
             tmp_path / name, compress_level=1
         )
-    command = [
-        sys.executable,
-        "-m",
-        "uplift_cli",
-        "texture",
-        "a.png",
-        "b.png",
-        "-o",
-        "out",
-        "--processes",
-        "2",
-    ]
+    command = f"{UPLIFT} {TEXTURE}".split()
     # A shell without job control starts what runs in its background with SIGINT
     # ignored.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -243,49 +227,19 @@ def test_no_module_of_the_working_folder_is_loaded_by_a_command_and_its_workers(
     script.write_text(
         "from uplift_cli.__main__ import run\nif __name__ == '__main__':\n    run()\n"
     )
-    command = [
-        sys.executable,
-        str(script),
-        "texture",
-        "a.png",
-        "b.png",
-        "-o",
-        "out",
-        "--processes",
-        "2",
-    ]
-    subprocess.run(
-        command, cwd=strange_folder, check=True, capture_output=True, timeout=SECONDS
-    )
+    words = TEXTURE.split()
+    output_of(sys.executable, script, *words, cwd=strange_folder, timeout=SECONDS)
     assert len(list(strange_folder.glob("out/*"))) == 2
 
 
 def test_no_module_of_the_working_folder_is_loaded_by_a_command_of_a_module(
     strange_folder,
 ):
-    for name in (
-        "runpy",
-        "importlib",
-        "contextlib",
-        "types",
-        "warnings",
-        "functools",
-    ):  # by Python itself, for -m
+    # Python itself loads these for -m.
+    for name in ("runpy", "importlib", "contextlib", "types", "warnings", "functools"):
         (strange_folder / f"{name}.py").unlink(missing_ok=True)
-    command = [
-        sys.executable,
-        "-m",
-        "uplift_cli",
-        "query",
-        "0.1",
-        "0.2",
-        "0.3",
-        "--plot",
-        "plot.png",
-    ]
-    subprocess.run(
-        command, cwd=strange_folder, check=True, capture_output=True, timeout=SECONDS
-    )
+    words = f"{UPLIFT} {PLOT}".split()
+    output_of(*words, cwd=strange_folder, timeout=SECONDS)
 
 
 @pytest.mark.parametrize(
@@ -297,34 +251,15 @@ def test_no_module_of_the_working_folder_is_loaded_by_a_command_of_a_module(
     ],
 )
 def test_settings_of_matplotlib_are_neither_obeyed_nor_remarked_on(tmp_path, settings):
-    command = [
-        sys.executable,
-        "-m",
-        "uplift_cli",
-        "query",
-        "0.1",
-        "0.2",
-        "0.3",
-        "--plot",
-    ]
     for name, text in (("plain", b""), ("strange", settings)):
         folder = tmp_path / name
         folder.mkdir()
         (folder / "matplotlibrc").write_bytes(text)
-        places = {
-            "MPLCONFIGDIR": str(folder)
-        }  # the folder of the user, and the working folder
-        done = subprocess.run(
-            [*command, "a.png"],
-            cwd=folder,
-            env=os.environ | places,
-            check=True,
-            capture_output=True,
-        )
-        assert done.stderr == b"a.png: 1 colour\n"
-    assert (tmp_path / "strange" / "a.png").read_bytes() == (
-        tmp_path / "plain" / "a.png"
-    ).read_bytes()
+        # The folder of the user, and the working folder.
+        done = shell(f"cd {folder}; {UPLIFT} {PLOT}", MPLCONFIGDIR=str(folder))
+        assert (done.returncode, done.stderr) == (0, b"plot.png: 1 colour\n")
+    plain, strange = (tmp_path / name / "plot.png" for name in ("plain", "strange"))
+    assert strange.read_bytes() == plain.read_bytes()
 
 
 @pytest.fixture
@@ -393,12 +328,8 @@ BUILD = (
 
 def test_compiled_code_that_cannot_be_read_is_removed(tmp_path):
     for damage in (True, False, False):
-        assert (
-            shell(
-                f"{BUILD} {tmp_path}/cube.uplift", XDG_CACHE_HOME=str(tmp_path)
-            ).returncode
-            == 0
-        )
+        done = shell(f"{BUILD} {tmp_path}/cube.uplift", XDG_CACHE_HOME=str(tmp_path))
+        assert done.returncode == 0
         entries = list(tmp_path.glob("uplift/*-cache"))
         assert entries
         for entry in entries if damage else ():
@@ -420,18 +351,15 @@ def test_exchanged_compiled_code_is_removed_with_the_error_that_it_causes(tmp_pa
 
 @needs_modes
 def test_compiled_code_of_users_whose_files_their_group_can_write_is_kept(tmp_path):
-    found = []
+    build = f"umask 0002; {BUILD} {tmp_path}/cube.uplift"
+    inodes = []
     for _ in range(2):
-        done = shell(
-            f"umask 0002; {BUILD} {tmp_path}/cube.uplift",
-            XDG_CACHE_HOME=f"{tmp_path}/cache",
-        )
+        done = shell(build, XDG_CACHE_HOME=f"{tmp_path}/cache")
         assert (done.returncode, done.stderr) == (0, b"")
-        found.append(
-            {entry.stat().st_ino for entry in tmp_path.glob("cache/uplift/*-cache")}
-        )
-    assert found[0]
-    assert found[0] == found[1]
+        entries = tmp_path.glob("cache/uplift/*-cache")
+        inodes.append({entry.stat().st_ino for entry in entries})
+    assert inodes[0]
+    assert inodes[0] == inodes[1]
 
 
 def test_a_missing_device_of_jax_is_no_internal_error(tmp_path):
@@ -453,11 +381,9 @@ def test_a_missing_device_of_jax_is_no_internal_error(tmp_path):
 )
 def test_too_little_memory_is_an_error_not_an_abort(tmp_path, limit, command):
     done = shell(f"cd {tmp_path}; ulimit -v {limit}; {UPLIFT} {command}")
-    assert (
-        done.returncode in (1, 2),
-        done.stderr.count(b"\n"),
-        b"memory" in done.stderr,
-    ) == (True, 1, True)
+    assert done.returncode in (1, 2)
+    assert done.stderr.count(b"\n") == 1
+    assert b"memory" in done.stderr
     assert b"version" not in done.stderr  # of a cube's options
 
 

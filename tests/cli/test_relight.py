@@ -1,5 +1,6 @@
 """``uplift relight`` and ``uplift samples``."""
 
+import os
 import shlex
 
 import numpy as np
@@ -29,11 +30,11 @@ def test_a_page_of_own_images_with_a_cube(ask, home, cubes, wood):
         f"spectral with {cube.stem}",
     ]
     assert all(0 < row["mean"] <= row["max"] + 1e-9 for row in found["differences"])
-    assert (home / "relit.html").read_text(encoding="utf-8").count("<section") == 2
+    assert (home / "relit.html").read_text("utf-8").count("<section") == 2
 
 
 def test_the_sample_is_relit_with_its_atlas(run, home):
-    result = run("relight", "--light", "HP1")
+    result = run("relight --light HP1")
     assert "spectral with macbeth" in result.stdout
     assert result.stdout.rstrip().endswith("relit.png: still-life.png under HP1")
     with Image.open(home / "relit.png") as image:
@@ -43,9 +44,7 @@ def test_the_sample_is_relit_with_its_atlas(run, home):
 def test_an_image_of_full_size_has_a_layer_for_each_further_light(
     ask, misuse, home, wood
 ):
-    found = ask(
-        "relight", wood, "--light", "tungsten", "--light", "3200K", "-o", "relit.exr"
-    )
+    found = ask("relight --light tungsten --light 3200K -o relit.exr", wood)
     assert found == {"output": "relit.exr", "lights": ["A", "3200K"], "pixels": 240}
     (part,) = OpenEXR.File(str(home / "relit.exr"), separate_channels=True).parts
     assert set(part.channels) == {*"RGB", *(f"3200K.{letter}" for letter in "RGB")}
@@ -65,20 +64,18 @@ def test_lights_are_shown_white_or_tinted(ask, home, wood, option, balanced):
 
 
 def test_bad_input_is_refused(refuse, misuse, home, wood):
-    assert "--atlas" in misuse("relight", "--cube", "a.uplift", "--atlas", "macbeth")
+    assert "--atlas" in misuse("relight --cube a.uplift --atlas macbeth")
     (home / "relit.png").write_text("mine")
     assert refuse("relight", wood).code == "file-exists"
 
 
 def test_samples_have_a_folder_and_may_be_copied_again(run, refuse, home):
     assert run("samples").stdout == run("samples").stdout
-    assert {path.name for path in home.iterdir()} == {"uplift-samples"}
-    assert {path.name for path in (home / "uplift-samples").iterdir()} == set(
-        sample_names()
-    )
+    assert set(os.listdir(home)) == {"uplift-samples"}
+    assert set(os.listdir(home / "uplift-samples")) == set(sample_names())
     (home / "uplift-samples" / "wood.png").write_text("mine")
     assert refuse("samples").code == "file-exists"
-    run("samples", "--force")
+    run("samples --force")
 
 
 @pytest.mark.parametrize("folder", ["uplift-samples", ".", "my samples"])

@@ -23,7 +23,7 @@ def test_page_is_written_to_the_working_folder(run, home, cube):
         "macbeth-8.html: 0 nodes over the threshold, 24 entries, "
     )
     assert result.stderr == ""
-    text = (home / "macbeth-8.html").read_text(encoding="utf-8")
+    text = (home / "macbeth-8.html").read_text("utf-8")
     assert text.startswith("<!DOCTYPE html>")
     assert "macbeth-8.uplift" in text
     assert str(home) not in text
@@ -36,7 +36,7 @@ def test_json_goes_to_standard_output_or_to_a_file(run, ask, home, cube):
     assert found["bytes"] == (home / cube).stat().st_size
     assert len(found["entries"]) == 24
     run("report", cube, *SMALL, "--format", "json", "-o", "numbers.json")
-    assert json.loads((home / "numbers.json").read_text(encoding="utf-8")) == found
+    assert json.loads((home / "numbers.json").read_text("utf-8")) == found
     assert not (home / "macbeth-8.html").exists()
 
 

@@ -26,16 +26,8 @@ def test_summary_counts_nodes_and_default_name_has_scene(run, ask, home, macbeth
     for name, value in (("a.exr", 0.1), ("b.1.exr", 0.2), ("b.2.exr", 0.9)):
         write_exr(home / name, planes(np.full((4, 4, 3), value, np.float32)))
     result = run(
-        "build",
-        "--atlas",
+        "build --dim 8 --scene a.exr --scene b.*.exr -v --atlas",
         macbeth,
-        "--dim",
-        8,
-        "--scene",
-        "a.exr",
-        "--scene",
-        "b.*.exr",
-        "-v",
     )
     data = read(home / "macbeth-8-scene.uplift")
     count = int(data.points.present.sum())
@@ -47,42 +39,39 @@ def test_summary_counts_nodes_and_default_name_has_scene(run, ask, home, macbeth
     assert "reading images: 0 of 3" in result.stderr
     names = [image["name"] for image in data.provenance["scene"]]
     assert names == ["a.exr", "b.1.exr", "b.2.exr"]
-    facts = ask("info", "macbeth-8-scene.uplift")
+    facts = ask("info macbeth-8-scene.uplift")
     assert (facts["nodes"], facts["lattice_nodes"], facts["status"]["absent"]) == (
         count,
         512,
         512 - count,
     )
-    run("check", "macbeth-8-scene.uplift", "--atlas-dir", macbeth.parent)
+    run("check macbeth-8-scene.uplift --atlas-dir", macbeth.parent)
 
 
 def test_invalid_scenes_are_errors(misuse, refuse, home):
-    assert refuse("build", "--scene", "b.*.exr").code == "texture"
-    error = refuse("build", "--dim", 4, "--scene", "c.png")
+    assert refuse("build --scene b.*.exr").code == "texture"
+    error = refuse("build --dim 4 --scene c.png")
     assert (error.code, error.where) == ("file-not-found", "c.png")
-    assert "--encoding" in misuse("build", "--encoding", "linear")
-    assert "--out-of-gamut" in misuse("build", "--out-of-gamut", "scale")
+    assert "--encoding" in misuse("build --encoding linear")
+    assert "--out-of-gamut" in misuse("build --out-of-gamut scale")
     assert not list(home.glob("*.uplift"))
 
 
 def test_queries_of_other_colours_are_errors_unless_filled(run, refuse, scene):
-    error = refuse("query", "--cube", scene, 0, 1, 0)
+    error = refuse("query 0 1 0 --cube", scene)
     assert error.code == "colour-not-in-scene"
-    words = ("query", "-", "--cube", scene, "--fill-missing", "--format", "json")
-    result = run(*words, input="0,1,0\n0.001,0.002,0.001\n")
+    words = f"query - --cube {scene} --fill-missing --format json"
+    result = run(words, input="0,1,0\n0.001,0.002,0.001\n")
     (warning,) = warning_lines(result)
     assert "1 of 2" in warning
     assert all(
         answer["round_trip"]["delta_e_2000"] < 1e-3
         for answer in json.loads(result.stdout)
     )
-    assert (
-        run("query", "--cube", scene, "--fill-missing", 0.001, 0.002, 0.001).stderr
-        == ""
-    )
+    assert run("query --fill-missing 0.001 0.002 0.001 --cube", scene).stderr == ""
 
 
 def test_exports_of_all_colours_are_errors_unless_filled(run, refuse, scene, home):
-    error = refuse("export", scene, "--format", "c")
+    error = refuse("export --format c", scene)
     assert error.code == "sparse-cube"
-    assert "512 nodes" in run("export", scene, "--format", "c", "--fill-missing").stdout
+    assert "512 nodes" in run("export --format c --fill-missing", scene).stdout

@@ -15,7 +15,7 @@ def cube(home):
 
 
 def test_slices_and_sheet(run, cube, home):
-    result = run("slices", cube, "-o", "out.exr", "--plot", "sheet.png")
+    result = run("slices -o out.exr --plot sheet.png", cube)
     assert result.stdout.splitlines() == [
         "out.exr: 4 blue slices",
         "sheet.png: contact sheet",
@@ -30,21 +30,18 @@ def test_slices_have_the_name_of_the_cube(run, cube, home):
 
 
 def test_builds_for_debugging_write_their_slices(run, refuse, home):
-    words = ("build", "--dim", "2", "--prior", "smooth", "--debug")
-    summary, slices = run(*words, "-o", "two.uplift").stdout.splitlines()
+    words = "build --dim 2 --prior smooth --debug"
+    summary, slices = run(f"{words} -o two.uplift").stdout.splitlines()
     assert summary.startswith("two.uplift: 2³ nodes, ")
     assert slices == "two.exr: 2 blue slices"
     assert len(OpenEXR.File(str(home / "two.exr")).parts) == 2
-    assert refuse(*words, "-o", "two.cube").where == "two.exr"
+    assert refuse(f"{words} -o two.cube").where == "two.exr"
 
 
 def test_bad_input_is_refused(run, refuse, cube, home):
-    assert refuse("slices", "missing.uplift", "-o", "out.exr").code == "file-not-found"
+    assert refuse("slices missing.uplift -o out.exr").code == "file-not-found"
     for exists, other in (("out.exr", "sheet.png"), ("sheet.png", "out.exr")):
         (home / exists).write_text("old")
-        assert (
-            refuse("slices", cube, "-o", "out.exr", "--plot", "sheet.png").where
-            == exists
-        )
+        assert refuse("slices -o out.exr --plot sheet.png", cube).where == exists
         assert not (home / other).exists()
         (home / exists).unlink()

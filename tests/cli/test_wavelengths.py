@@ -1,22 +1,22 @@
 """``uplift wavelengths``."""
 
 import matplotlib.image
-import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 
 @pytest.fixture
 def choose(run, macbeth):
     """Standard output for the ColorChecker."""
     return lambda *args, **options: (
-        run("wavelengths", "--atlas", macbeth, *args, **options).stdout
+        run("wavelengths --atlas", macbeth, *args, **options).stdout
     )
 
 
 @pytest.fixture
 def answer(ask, macbeth):
     """Answer in JSON for the ColorChecker."""
-    return lambda *args: ask("wavelengths", "--atlas", macbeth, *args)
+    return lambda *args: ask("wavelengths --atlas", macbeth, *args)
 
 
 def test_plot(choose, home):
@@ -56,13 +56,13 @@ def test_given_wavelengths(answer):
     ],
 )
 def test_options_that_exclude_or_need_others(misuse, options, name):
-    assert name in misuse("wavelengths", *options.split())
+    assert name in misuse(f"wavelengths {options}")
 
 
 def test_orders_of_the_channels(answer):
     found = answer("--orders", 3, 2, 1, "--light", "C")
     assert (found["count"], found["method"]) == (6, "meyer")
-    np.testing.assert_allclose(
+    assert_allclose(
         answer("--count", 4, "--method", "meyer", "--light", "C")["wavelengths"],
         [456.4, 490.9, 557.7, 631.4],
         atol=0.1,

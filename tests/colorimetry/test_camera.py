@@ -7,6 +7,7 @@ import json
 import colour
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.helpers import raises
 from uplift.colorimetry import observer
@@ -53,10 +54,10 @@ def test_raw_values_are_sums_of_sensitivities_balanced_to_white(camera, illumina
         )
         raw = raw + light * value * row
         white = white + light * row
-    np.testing.assert_allclose(sensor.rgb(reflectance), raw / white, rtol=1e-12)
+    assert_allclose(sensor.rgb(reflectance), raw / white, rtol=1e-12)
     assert (sensor.space, sensor.observer) == (camera, observer.DEFAULT_OBSERVER)
     wide = observer.on_range(sensor, 360.0, 830.0, 1.0)
-    np.testing.assert_allclose(wide.rgb(np.ones(471)), 1, rtol=1e-12)
+    assert_allclose(wide.rgb(np.ones(471)), 1, rtol=1e-12)
     assert (wide.sensitivities[wide.wavelengths < 380] == 0).all()
 
 
@@ -68,9 +69,9 @@ def test_the_matrix_of_a_camera_that_sees_as_the_observer_is_known():
         Camera("luther", observer.grid(), observer.matching_functions() @ mixed.T),
     )
     expected = mixed / (mixed @ sensor.light.white)[:, None]
-    np.testing.assert_allclose(sensor.xyz_to_rgb, expected, rtol=1e-9, atol=1e-12)
+    assert_allclose(sensor.xyz_to_rgb, expected, rtol=1e-9, atol=1e-12)
     reflectance = np.random.default_rng(2).random((5, 81))
-    np.testing.assert_allclose(
+    assert_allclose(
         sensor.xyz(sensor.rgb(reflectance)), reflectance @ sensor.light.xyz.T, rtol=1e-9
     )
 

@@ -5,6 +5,7 @@ the oracle.
 import colour
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import brentq
 
 from tests.helpers import raises
@@ -64,10 +65,8 @@ def test_result_reports_the_moved_colours():
     )
     assert found.outside.tolist() == [[False], [True], [True]]
     assert (found.count, found.max_change) == (2, 0.5)
-    np.testing.assert_array_equal(
-        found.rgb[:, 0], [[0.2, 0.3, 0.4], [0, 0.5, 1], [1, 0, 0]]
-    )
-    np.testing.assert_array_equal(found.requested[1], [[-0.25, 0.5, 1.5]])
+    assert_array_equal(found.rgb[:, 0], [[0.2, 0.3, 0.4], [0, 0.5, 1], [1, 0, 0]])
+    assert_array_equal(found.requested[1], [[-0.25, 0.5, 1.5]])
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -84,8 +83,8 @@ def test_answers_do_not_depend_on_precision_or_blocks(method):
         map_to_gamut(each, SRGB, method).rgb for each in (rgb, rgb.astype(float))
     )
     assert found.dtype == np.float32
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-7)
-    np.testing.assert_array_equal(
+    assert_allclose(found, expected, rtol=0, atol=1e-7)
+    assert_array_equal(
         expected[-20:], map_to_gamut(rgb[-20:].astype(float), SRGB, method).rgb
     )
 
@@ -129,25 +128,21 @@ def test_example_of_the_thesis():
     """Equations 4.2 and 4.3, whose last printed digit is unreliable: .26553 stands for
     .26533.
     """
-    np.testing.assert_allclose(
-        CIE_RGB.lengths, [0.66694, 1.1324, 1.2006], rtol=0, atol=2e-4
-    )
+    assert_allclose(CIE_RGB.lengths, [0.66694, 1.1324, 1.2006], rtol=0, atol=2e-4)
     printed = [
         [0.48989, 0.31001, 0.20000],
         [0.176696, 0.81240, 0.01064],
         [0, 0.01000, 0.98999],
     ]
-    np.testing.assert_allclose(CIE_RGB.rgb_to_xyz, printed, rtol=0, atol=3e-4)
+    assert_allclose(CIE_RGB.rgb_to_xyz, printed, rtol=0, atol=3e-4)
 
 
 def test_matrices_agree_with_all_spaces_of_colour_science():
     for space in colour.RGB_COLOURSPACES.data.values():
         ours = Primaries.of([*space.primaries.ravel(), *space.whitepoint])
         theirs = colour.normalised_primary_matrix(space.primaries, space.whitepoint)
-        np.testing.assert_allclose(ours.rgb_to_xyz, theirs, rtol=0, atol=1e-12)
-        np.testing.assert_allclose(
-            ours.rgb_to_xyz.sum(axis=1)[1], 1, rtol=0, atol=1e-12
-        )
+        assert_allclose(ours.rgb_to_xyz, theirs, rtol=0, atol=1e-12)
+        assert_allclose(ours.rgb_to_xyz.sum(axis=1)[1], 1, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize(("source", "name"), [(P3, "P3-D65"), (ACESCG, "ACEScg")])
@@ -155,7 +150,7 @@ def test_conversions_agree_with_colour_science(source, name):
     theirs = colour.matrix_RGB_to_RGB(
         name, "sRGB", chromatic_adaptation_transform="Bradford"
     )
-    np.testing.assert_allclose(
+    assert_allclose(
         conversion(source, SRGB), theirs, rtol=0, atol=2e-4
     )  # of rounded matrices
 
@@ -163,10 +158,10 @@ def test_conversions_agree_with_colour_science(source, name):
 def test_conversions_keep_white_and_are_invertible():
     there = conversion(ACESCG, P3)
     back = conversion(P3, ACESCG)
-    np.testing.assert_allclose(there @ [1, 1, 1], 1, rtol=0, atol=1e-15)
-    np.testing.assert_allclose(back @ there, np.eye(3), rtol=0, atol=1e-12)
+    assert_allclose(there @ [1, 1, 1], 1, rtol=0, atol=1e-15)
+    assert_allclose(back @ there, np.eye(3), rtol=0, atol=1e-12)
     # The sensor of a cube is a gamut under any light.
-    np.testing.assert_allclose(
+    assert_allclose(
         conversion(observer.sensor("sRGB", "A"), SRGB), np.eye(3), rtol=0, atol=3e-4
     )
 
@@ -190,7 +185,7 @@ def test_invalid_primaries_raise(numbers):
 def test_oklab_agrees_with_colour_science(outside):
     """Up to the white: colour-science rounds that of D65 to four digits."""
     theirs = colour.XYZ_to_Oklab(outside @ SRGB.rgb_to_xyz.T)
-    np.testing.assert_allclose(oklab(outside, SRGB), theirs, rtol=0, atol=5e-4)
+    assert_allclose(oklab(outside, SRGB), theirs, rtol=0, atol=5e-4)
 
 
 def luminance(rgb, gamut):
@@ -205,15 +200,13 @@ def test_mapped_colours_are_inside_and_colours_inside_are_unchanged(
     assert ((found >= 0) & (found <= 1)).all()
     corners = np.stack(np.meshgrid([0.0, 1], [0.0, 1], [0.0, 1]), axis=-1).reshape(8, 3)
     for inside in (found, corners, np.random.default_rng(1).random((500, 3))):
-        np.testing.assert_array_equal(map_to_gamut(inside, gamut, method).rgb, inside)
+        assert_array_equal(map_to_gamut(inside, gamut, method).rgb, inside)
 
 
 def test_oklab_keeps_hue_and_lightness(gamut, outside):
     before = oklab(outside, gamut)
     after = oklab(map_to_gamut(outside, gamut, "desaturate-oklab").rgb, gamut)
-    np.testing.assert_allclose(
-        after[:, 0], np.clip(before[:, 0], 0, 1), rtol=0, atol=3e-3
-    )
+    assert_allclose(after[:, 0], np.clip(before[:, 0], 0, 1), rtol=0, atol=3e-3)
     chromatic = (
         (np.hypot(*after[:, 1:].T) > 0.02) & (before[:, 0] > 0) & (before[:, 0] < 1)
     )
@@ -230,7 +223,7 @@ def test_mappings_are_continuous(method, name, outside):
     here, there = (
         map_to_gamut(rgb, GAMUTS[name], method).rgb for rgb in (outside, near)
     )
-    np.testing.assert_allclose(there, here, rtol=0, atol=1e-3)
+    assert_allclose(there, here, rtol=0, atol=1e-3)
 
 
 def test_procedure_of_the_thesis_gives_the_same_chromaticity(gamut):
@@ -244,9 +237,7 @@ def test_procedure_of_the_thesis_gives_the_same_chromaticity(gamut):
         slope = (y - 1 / 3) / (x - 1 / 3)
         intercept = 1 / 3 - slope / 3
         met = (1 - intercept) / (1 + slope)
-        np.testing.assert_allclose(
-            after / after.sum(), [met, 1 - met, 0], rtol=0, atol=1e-12
-        )
+        assert_allclose(after / after.sum(), [met, 1 - met, 0], rtol=0, atol=1e-12)
 
 
 def scalar_mapping(rgb, gamut, method):
@@ -295,7 +286,7 @@ def _largest(margin):
 @pytest.mark.parametrize("method", ["scale", "desaturate", "desaturate-oklab"])
 def test_vectorised_code_agrees_with_scalar_code(method, gamut, outside):
     some = outside[:: len(outside) // 80]
-    np.testing.assert_allclose(
+    assert_allclose(
         map_to_gamut(some, gamut, method).rgb,
         [scalar_mapping(rgb, gamut, method) for rgb in some],
         rtol=0,

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from scipy.spatial.distance import cdist
 
 from uplift.colorimetry import likely_errors as module
@@ -50,18 +51,18 @@ def test_errors_are_weighted_sums(monkeypatch):
 
     monkeypatch.setattr(module, "BLOCK_NUMBERS", 50)
     distances = cdist(queried, PLACES)
-    np.testing.assert_allclose(
+    assert_allclose(
         learnt(queried)[:, 0],
         np.multiply(*plain(np.exp(-distances / LENGTH))),
         rtol=1e-12,
     )
-    np.testing.assert_allclose(
+    assert_allclose(
         nearest_distances(queried, PLACES), distances.min(axis=1), rtol=1e-12
     )
     others = np.exp(-cdist(PLACES, PLACES) / LENGTH)
     np.fill_diagonal(others, 0)
     variance, spread = plain(others)
-    np.testing.assert_allclose(
+    assert_allclose(
         learnt.left_out[:, 0], np.maximum(variance, 0.02) * spread, rtol=1e-12
     )
 
@@ -108,7 +109,7 @@ def test_distances_are_those_of_the_inverse_covariance():
         np.sqrt(each @ np.linalg.inv(matrix) @ each)
         for each, matrix in zip(difference, covariance, strict=True)
     ]
-    np.testing.assert_allclose(mahalanobis(covariance, difference), plain, rtol=1e-9)
+    assert_allclose(mahalanobis(covariance, difference), plain, rtol=1e-9)
     singular = np.diag([4.0, 0.0])[
         None
     ]  # huge but finite along directions without variance

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 from scipy.optimize import lsq_linear
 from scipy.spatial import ConvexHull
 
@@ -28,9 +29,7 @@ def test_solid_contains_the_colours_that_a_solver_reaches(space):
     large = Lattice(axis_nodes("srgb", 17)).points
     nearest = large[np.argsort(np.abs(limits.signed_distance(large)))[:20]]
     colours = np.concatenate([Lattice(np.linspace(0, 1, 5)).points, nearest])
-    np.testing.assert_array_equal(
-        limits.contains(colours), best_residual(sensor, colours) <= 1e-8
-    )
+    assert_array_equal(limits.contains(colours), best_residual(sensor, colours) <= 1e-8)
 
 
 def test_spectra_of_two_steps_lie_on_the_boundary(sensor):
@@ -70,7 +69,7 @@ def test_colours_move_toward_grey_until_they_are_a_margin_inside():
     moved = toward_grey(limits, grey, target, margin)
     deep = limits.signed_distance(target) < -2 * margin
     assert 20 < deep.sum() < 180
-    np.testing.assert_array_equal(moved[deep], target[deep])
+    assert_array_equal(moved[deep], target[deep])
     assert limits.contains(moved).all()
     for row in np.flatnonzero(~limits.contains(target)):
         low = 0.0

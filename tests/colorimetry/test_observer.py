@@ -6,6 +6,7 @@ import colour
 import numpy as np
 import PyOpenColorIO
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
@@ -45,7 +46,7 @@ ENCODED["adobergb"] = lambda codes: codes ** (563 / 256)
 @pytest.mark.parametrize("illuminant", ["D65", "A", "FL11"])
 def test_perfect_reflector_is_white(space, illuminant):
     sensor = observer.sensor(space, illuminant)
-    np.testing.assert_allclose(sensor.rgb(np.ones(81)), 1, atol=1e-14)
+    assert_allclose(sensor.rgb(np.ones(81)), 1, atol=1e-14)
     assert sensor.light.white[1] == pytest.approx(1, abs=1e-15)
 
 
@@ -57,14 +58,12 @@ def test_colours_agree_with_colour_science(sensor):
     for patch in colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"].values():
         samples = patch.copy().align(shape)
         xyz = colour.sd_to_XYZ(samples, cmfs, d65, method="Integration") / 100
-        np.testing.assert_allclose(
+        assert_allclose(
             sensor.rgb(samples.values), colour.XYZ_to_RGB(xyz, "sRGB"), atol=5e-4
         )
-        np.testing.assert_allclose(
-            sensor.xyz(sensor.rgb(samples.values)), xyz, rtol=1e-9
-        )
+        assert_allclose(sensor.xyz(sensor.rgb(samples.values)), xyz, rtol=1e-9)
     decoding = colour.RGB_COLOURSPACES["sRGB"].cctf_decoding(np.arange(256) / 255)
-    np.testing.assert_allclose(
+    assert_allclose(
         sensor.decoding, decoding, rtol=1e-14
     )  # powers differ between instruction sets
 
@@ -108,7 +107,7 @@ def test_a_response_is_0_outside_its_table_and_a_light_keeps_its_last_value(
 @pytest.mark.parametrize("dim", [2, 3, 8, 16, 33, 128])
 def test_srgb_nodes_agree_with_colour_science(dim):
     expected = colour.models.eotf_sRGB(np.linspace(0, 1, dim))
-    np.testing.assert_allclose(axis_nodes("srgb", dim), expected, rtol=0, atol=1e-15)
+    assert_allclose(axis_nodes("srgb", dim), expected, rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -147,16 +146,14 @@ def test_a_data_space_of_opencolorio_is_not_suggested(name):
 def test_cie_xyz_by_name_keeps_its_white():
     space = find_space("CIE XYZ-D65 - Scene-referred")
     white = space.matrix(SRGB) @ SRGB.rgb_to_xyz.sum(axis=1)
-    np.testing.assert_allclose(white, 1, rtol=0, atol=1e-3)
+    assert_allclose(white, 1, rtol=0, atol=1e-3)
 
 
 @pytest.mark.parametrize("limits", [(360, 830, 1), (360, 1000, 5), (380, 780, 10)])
 def test_other_ranges_agree_with_colour_science(limits, sensor):
     found = observer.on_range(sensor, *limits)
     assert found.range == limits
-    np.testing.assert_allclose(
-        found.rgb(np.ones(len(found.wavelengths))), 1, rtol=0, atol=1e-14
-    )
+    assert_allclose(found.rgb(np.ones(len(found.wavelengths))), 1, rtol=0, atol=1e-14)
     steep = colour.SpectralDistribution(
         np.linspace(0.1, 0.9, len(found.wavelengths)), found.wavelengths
     )
@@ -166,10 +163,10 @@ def test_other_ranges_agree_with_colour_science(limits, sensor):
         for kind, name in named
     )
     expected = colour.sd_to_XYZ(steep, *aligned, method="Integration") / 100
-    np.testing.assert_allclose(found.xyz(found.rgb(steep.values)), expected, rtol=1e-9)
+    assert_allclose(found.xyz(found.rgb(steep.values)), expected, rtol=1e-9)
     displays = observer.display_sensors(["D65", "A", "D65"], sensor.observer, *limits)
     assert [each.range for each in displays] == [limits] * 2
-    np.testing.assert_array_equal(
+    assert_array_equal(
         observer.light("D65", sensor.observer, *limits).xyz, found.light.xyz
     )
 
@@ -186,7 +183,7 @@ def test_spaces_convert_as_colour_science_does(name):
         else (codes, codes)
     )
     expected = decoded @ conversion(primaries_of(look_up_space(NAMES[name])), SRGB).T
-    np.testing.assert_allclose(
+    assert_allclose(
         linear @ conversion(found.gamut, SRGB).T, expected, rtol=0, atol=1e-3
     )
     assert found.floats_are_codes == (name in ENCODED)
@@ -231,12 +228,12 @@ def test_smallest_space():
 
 def test_transfer_curve_agrees_with_the_standard_and_is_invertible():
     linear = np.linspace(0, 1, 300)
-    np.testing.assert_allclose(
+    assert_allclose(
         encode(linear), colour.models.eotf_inverse_sRGB(linear), rtol=0, atol=1e-6
     )
-    np.testing.assert_allclose(decode(encode(linear)), linear, rtol=0, atol=1e-6)
+    assert_allclose(decode(encode(linear)), linear, rtol=0, atol=1e-6)
     codes = np.random.default_rng(0).integers(0, 256, (500, 3))
-    np.testing.assert_array_equal(to_display_codes(decode(codes / 255), SRGB), codes)
+    assert_array_equal(to_display_codes(decode(codes / 255), SRGB), codes)
 
 
 @pytest.mark.parametrize(
@@ -250,7 +247,7 @@ def test_other_spaces_keep_their_appearance(space, illuminant):
     rgb = 0.3 + 0.3 * np.random.default_rng(1).random((200, 3))  # pale enough for sRGB
     expected = 255 * encode(own.xyz(rgb) @ screen.xyz_to_rgb.T)
     assert np.abs(to_display_codes(rgb, own) - expected).max() < 0.6
-    np.testing.assert_array_equal(to_display_codes([1, 1, 1], own), [255, 255, 255])
+    assert_array_equal(to_display_codes([1, 1, 1], own), [255, 255, 255])
 
 
 @pytest.mark.parametrize(
@@ -258,39 +255,33 @@ def test_other_spaces_keep_their_appearance(space, illuminant):
 )
 def test_lights_have_everyday_names(name, standard):
     assert observer.light(name).name == standard
-    np.testing.assert_array_equal(
-        observer.illuminant_spd(name), observer.illuminant_spd(standard)
-    )
+    assert_array_equal(observer.illuminant_spd(name), observer.illuminant_spd(standard))
 
 
 @pytest.mark.parametrize("kelvin", [1000, 3200, 3999])
 def test_black_bodies_are_those_of_colour_science(kelvin):
     theirs = colour.sd_blackbody(kelvin, colour.SpectralShape(380, 780, 5)).values
     ours = observer.illuminant_spd(f"{kelvin} k")
-    np.testing.assert_allclose(
+    assert_allclose(
         ours / ours[36], theirs / theirs[36], rtol=5e-4
     )  # theirs has a rounded constant
     objects = tables.look_up("illuminant", f"{kelvin}K").align(
         colour.SpectralShape(380, 780, 5)
     )
-    np.testing.assert_allclose(
-        objects.values / objects.values[36], ours / ours[36], rtol=1e-9
-    )
+    assert_allclose(objects.values / objects.values[36], ours / ours[36], rtol=1e-9)
 
 
 def test_illuminant_a_is_a_black_body():
     """Of 2848 K by the radiation constant 1.435e7 nm K (CIE 15:2004, 3.1)."""
     ours = observer.illuminant_spd(f"{2848 * 1.4387768775 / 1.435:.3f}K")
     standard = observer.illuminant_spd("A")
-    np.testing.assert_allclose(ours / ours[36], standard / standard[36], rtol=1e-5)
+    assert_allclose(ours / ours[36], standard / standard[36], rtol=1e-5)
 
 
 @pytest.mark.parametrize("nominal", [50, 55, 65, 75])
 def test_temperatures_from_4000_k_are_cie_daylight(nominal):
     found = observer.illuminant_spd(f"{nominal}00K")
-    np.testing.assert_allclose(
-        found, observer.illuminant_spd(f"D{nominal}"), rtol=0, atol=1e-3
-    )
+    assert_allclose(found, observer.illuminant_spd(f"D{nominal}"), rtol=0, atol=1e-3)
     assert observer.sensor("sRGB", f"{nominal}00.0 K").illuminant == f"{nominal}00K"
 
 

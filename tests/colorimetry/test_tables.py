@@ -6,6 +6,7 @@ import sys
 import colour
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
 from tools.ship_tables import tables as expected
@@ -19,9 +20,9 @@ def test_the_file_has_the_numbers_of_colour_science():
         assert set(stored) == set(arrays)
         for name, values in arrays.items():
             if values.dtype.kind == "U":
-                np.testing.assert_array_equal(stored[name], values, err_msg=name)
+                assert_array_equal(stored[name], values, err_msg=name)
             else:  # instruction sets round interpolated values and powers differently
-                np.testing.assert_allclose(
+                assert_allclose(
                     stored[name], values, rtol=1e-12, atol=1e-14, err_msg=name
                 )
 
@@ -32,13 +33,13 @@ def test_bradford_is_that_of_colour_science(white):
     theirs = colour.adaptation.matrix_chromatic_adaptation_VonKries(
         source, target, transform="Bradford"
     )
-    np.testing.assert_allclose(tables.bradford(source, target), theirs, rtol=1e-14)
+    assert_allclose(tables.bradford(source, target), theirs, rtol=1e-14)
 
 
 def test_what_the_file_lacks_comes_from_colour_science():
     """Other ranges, other kinds, and names in other capitals."""
     wide = tables.samples("illuminant", "D65", 360.0, 830.0, 1.0)
-    np.testing.assert_array_equal(wide[20:421:5], tables.samples("illuminant", "D65"))
+    assert_array_equal(wide[20:421:5], tables.samples("illuminant", "D65"))
     assert tables.samples("display", "Typical CRT Brainard 1997").shape == (81, 3)
     assert tables.rgb_space("SRGB").name == "sRGB"
     assert (

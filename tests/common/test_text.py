@@ -146,9 +146,7 @@ def test_one_entry_is_not_one_entries(repository):
     by_hand = []
     for path in (*(repository / "uplift").rglob("*"), *(repository / "cli").rglob("*")):
         if path.suffix in (".py", ".j2", ".js"):
-            values = map(
-                str.strip, COUNT_BY_HAND.findall(path.read_text(encoding="utf-8"))
-            )
+            values = map(str.strip, COUNT_BY_HAND.findall(path.read_text("utf-8")))
             by_hand += [
                 f"{path}: {value}" for value in values if not NEVER_ONE.fullmatch(value)
             ]

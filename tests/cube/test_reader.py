@@ -3,19 +3,19 @@ without it.
 """
 
 import importlib.util
-import subprocess
 import sys
 from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.conftest import ROOT
 from tests.cube.cube_files import forge
-from uplift.lookup import Cube
-from uplift.lookup.cube import PACKAGED
+from tests.helpers import output_of
+from uplift.lookup.cube import PACKAGED, Cube
 
 READER = ROOT / "docs" / "reader.py"
 SPEC = importlib.util.spec_from_file_location("reader", READER)
@@ -33,7 +33,7 @@ AT = [380.0, 455.5, 550.0, 602.0, 780.0]
 def compare(cube, path, rgb, within):
     found = reader.Cube(path)
     answers = [found.reflectance(colour, AT) for colour in rgb]
-    np.testing.assert_allclose(answers, cube.reflectance(rgb, AT), rtol=0, atol=within)
+    assert_allclose(answers, cube.reflectance(rgb, AT), rtol=0, atol=within)
 
 
 def test_all_colours_of_acescg_those_that_are_moved_too():
@@ -84,9 +84,8 @@ def test_it_runs_without_uplift_and_refuses_damaged_files_and_unknown_features(
         "500",
         "600",
     ]
-    printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    found = np.array([line.split() for line in printed.splitlines()], dtype=float)
-    np.testing.assert_allclose(
+    found = np.loadtxt(output_of(*command).splitlines())
+    assert_allclose(
         found[:, 1], uplift.load().reflectance([0.8, 0.2, 0.1], [500, 600]), atol=1e-11
     )
     data = bytearray(PACKAGED["srgb"].read_bytes())

@@ -8,6 +8,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_array_equal
 
 from tests.cube.hand_made import hand_made, with_outside
 from uplift.cube import contents, digest, read, write
@@ -31,12 +32,13 @@ NUMBERS = st.floats(-1e30, 1e30)
 
 def assert_same(one, other):
     """Both cubes have equal contents, of equal types."""
-    (arrays, metadata), (others, other_metadata) = contents(one), contents(other)
+    arrays, metadata = contents(one)
+    others, other_metadata = contents(other)
     assert metadata == other_metadata
     assert arrays.keys() == others.keys()
     for name, array in arrays.items():
         assert array.dtype == others[name].dtype
-        np.testing.assert_array_equal(array, others[name], err_msg=name)
+        assert_array_equal(array, others[name], err_msg=name)
 
 
 @st.composite

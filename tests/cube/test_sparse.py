@@ -1,15 +1,14 @@
 """Files of sparse cubes: present nodes only, and errors for nodes without a place."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from tests.cube.cube_files import forge
 from tests.cube.hand_made import hand_made
-from tests.helpers import near_black, raises, with_absent_points
+from tests.helpers import near_black, raises, run_python, with_absent_points
 from uplift.common import machine
 from uplift.common.errors import CubeFileError, OutputError
 from uplift.cube import digest, read, write
@@ -30,7 +29,7 @@ def test_sparse_cubes_are_read_back_and_take_no_space_for_absent_points(data, tm
     write(hand_made(6), tmp_path / "whole.uplift")
     back = read(tmp_path / "part.uplift")
     for name in POINTS:
-        np.testing.assert_array_equal(
+        assert_array_equal(
             getattr(back.points, name), getattr(data.points, name), err_msg=name
         )
     assert digest(back) == digest(data)
@@ -45,7 +44,7 @@ def test_corner_points_and_complete_cells_are_inverse():
     cells[lattice.index(np.array([[0, 1, 2], [2, 2, 2]]))] = True
     points = lattice.corner_points(cells)
     assert points.sum() == 16
-    np.testing.assert_array_equal(lattice.complete_cells(points), cells)
+    assert_array_equal(lattice.complete_cells(points), cells)
     assert lattice.complete_cells(np.ones(64, dtype=bool)).sum() == 27
 
 
@@ -101,7 +100,8 @@ def of_dim(dim):
         rows = np.searchsorted(
             tensors["points"], Lattice(tensors["nodes"]).index(CORNERS)
         )
-        metadata["dim"], tensors["nodes"] = dim, np.linspace(0, 1, dim)
+        metadata["dim"] = dim
+        tensors["nodes"] = np.linspace(0, 1, dim)
         tensors["points"] = (
             Lattice(tensors["nodes"]).index(CORNERS).astype(tensors["points"].dtype)
         )
@@ -127,14 +127,8 @@ def test_small_files_of_large_lattices_take_little_memory(plain_cube, tmp_path):
         "print(next(line.split()[1] for line in open('/proc/self/status') if "
         "line.startswith('VmHWM:')))"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code, path],
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=120,
-    )
-    assert int(done.stdout) < 300 * 1024  # kB; the arrays of all nodes take 310 MB
+    kilobytes = int(run_python(code, path, timeout=120))
+    assert kilobytes < 300 * 1024  # kB; the arrays of all nodes take 310 MB
 
 
 def test_images_of_more_nodes_than_memory_are_refused(data, tmp_path, monkeypatch):

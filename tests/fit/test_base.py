@@ -4,6 +4,7 @@ better for unknown materials.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
 from uplift.fit import Family, FittedEntries, Problem, learn_base, shipped_library
@@ -140,7 +141,7 @@ def test_spectra_of_the_atlas_are_no_evidence_for_themselves(problem, sensor):
     found, smooth = (
         answers(problem, sensor, base, rgb) for base in (learnt, learn_base(problem)[0])
     )
-    np.testing.assert_allclose(found, smooth, atol=0.06)
+    assert_allclose(found, smooth, atol=0.06)
 
 
 MODELS = [Moments(9), Moments(17), Moments(9, 380.0, 780.0, "vision")]
@@ -153,7 +154,7 @@ def test_moments_of_sampled_spectra_are_those_of_the_model(model):
         / (1 + np.arange(model.count)) ** 2
     )
     spectra = evaluate(model, multipliers, GRID)
-    np.testing.assert_allclose(
+    assert_allclose(
         spectra @ moment_matrix(model, GRID), model.to_storage(multipliers), atol=3e-4
     )
 

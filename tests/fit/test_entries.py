@@ -4,6 +4,7 @@ other lights.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from scipy.optimize import leastsq
 
 from tests.conftest import MACBETH
@@ -122,12 +123,10 @@ def test_normal_equations_are_those_of_central_differences(sensor, measured, mod
             numeric.append((after - before) / 2e-5)
         plain = jacobian(goal, at)
         residuals = goal.residuals(at, measured[0], colours)
-        np.testing.assert_allclose(plain, np.transpose(numeric), rtol=1e-5, atol=1e-8)
+        assert_allclose(plain, np.transpose(numeric), rtol=1e-5, atol=1e-8)
         gram, slope = goal.normal_equations(at[None], residuals[None])
-        np.testing.assert_allclose(gram[0], plain.T @ plain, rtol=1e-10, atol=1e-14)
-        np.testing.assert_allclose(
-            slope[0], plain.T @ residuals, rtol=1e-10, atol=1e-14
-        )
+        assert_allclose(gram[0], plain.T @ plain, rtol=1e-10, atol=1e-14)
+        assert_allclose(slope[0], plain.T @ residuals, rtol=1e-10, atol=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -155,7 +154,7 @@ def test_minima_are_those_of_minpack(sensor, measured, model):
 def test_a_fit_does_not_depend_on_the_others(sensor, measured):
     goal = goal_of(problem_of(sensor))
     alone = np.concatenate([minimise(goal, each[None]) for each in measured[:4]])
-    np.testing.assert_allclose(minimise(goal, measured)[:4], alone, rtol=1e-9)
+    assert_allclose(minimise(goal, measured)[:4], alone, rtol=1e-9)
 
 
 def test_error_is_the_difference_between_fit_and_measurement(sensor, measured):

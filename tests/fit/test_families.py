@@ -6,6 +6,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.conftest import ATLASES
 from tools import ship_library
@@ -39,11 +40,11 @@ def test_the_shipped_file_is_the_output_of_the_tool(tmp_path):
             if name.startswith(
                 ("matrices", "smooth")
             ):  # instruction sets round them differently
-                np.testing.assert_allclose(
+                assert_allclose(
                     new[name], shipped[name], rtol=0, atol=1e-7, err_msg=name
                 )
             else:
-                np.testing.assert_array_equal(new[name], shipped[name], err_msg=name)
+                assert_array_equal(new[name], shipped[name], err_msg=name)
     assert written.stat().st_size < 1_200_000
 
 
@@ -100,14 +101,14 @@ def test_it_is_the_conditional_mean(sizes):
     ]
     lab = RNG.uniform([0, -60, -60], [100, 60, 60], (50, 3))
     kriging = krige_families(families, points)
-    np.testing.assert_allclose(
+    assert_allclose(
         kriging(lab, np.ones(len(sizes))),
         conditional_mean(families, points, lab),
         atol=1e-9,
     )
     relevance = RNG.uniform(0, 2, len(sizes))
     expected = np.einsum("f,fnk->nk", relevance, kriging.contributions(lab))
-    np.testing.assert_allclose(kriging(lab, relevance), expected, atol=1e-12)
+    assert_allclose(kriging(lab, relevance), expected, atol=1e-12)
 
 
 def learn(measured, rows=slice(None)):
@@ -119,7 +120,7 @@ def learn(measured, rows=slice(None)):
 @pytest.mark.parametrize("truth", [(2.0, 0.5), (0.0, 1.0), (1.3, 1.6)])
 def test_relevances_of_an_explained_atlas_are_found(truth):
     measured = PLAIN + np.tensordot(truth, PARTS, 1)
-    np.testing.assert_allclose(learn(measured + 1e-4 * OTHERS[0]), truth, atol=0.1)
+    assert_allclose(learn(measured + 1e-4 * OTHERS[0]), truth, atol=0.1)
 
 
 def distances(amplitude, rows=slice(None)):

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_allclose, assert_array_equal
 
 from uplift import build
 from uplift.colorimetry import observer
@@ -118,9 +119,7 @@ def test_growth_proceeds_from_a_coarse_lattice_to_finer_ones(sensor):
     points, improvements = fitted(MODEL, sensor, lattice, grow=grow_coarse_to_fine)
     position = lattice.position(np.arange(lattice.size))
     for number, stride in enumerate(strides(lattice.dim)):
-        np.testing.assert_array_equal(
-            points.round <= number, (position % stride == 0).all(axis=1)
-        )
+        assert_array_equal(points.round <= number, (position % stride == 0).all(axis=1))
     assert improvements == []
 
 
@@ -133,11 +132,9 @@ def test_growth_proceeds_outward_in_shells(sensor):
     distance, toward = shells(lattice, seeds)
     position = lattice.position(np.arange(lattice.size))
     steps = np.abs(position[:, None] - lattice.position(seeds)).max(axis=2).min(axis=1)
-    np.testing.assert_array_equal(distance, steps)
+    assert_array_equal(distance, steps)
     assert np.abs(position[toward] - position).max() == 1
-    np.testing.assert_array_equal(
-        np.flatnonzero(toward == np.arange(lattice.size)), seeds
-    )
+    assert_array_equal(np.flatnonzero(toward == np.arange(lattice.size)), seeds)
     assert (distance[toward] < distance).mean() > 0.8
     points, _ = fitted(MODEL, sensor, lattice)
     from_middle = np.abs(position - 4).max(axis=1)
@@ -203,8 +200,8 @@ def test_improvement_fixes_points_with_a_vanishing_gradient(sensor):
     steps = improve(growth)
     off = forward.residual(growth.multipliers, LATTICE.points)
     assert (growth.distance <= 1e-4).all()
-    np.testing.assert_allclose(np.abs(off).max(axis=1), growth.distance, atol=1e-12)
-    np.testing.assert_allclose(growth.rgb, LATTICE.points - off, atol=1e-7)
+    assert_allclose(np.abs(off).max(axis=1), growth.distance, atol=1e-12)
+    assert_allclose(growth.rgb, LATTICE.points - off, atol=1e-7)
     fixed = {step: fixed for step, _, fixed in steps}
     assert fixed["more iterations"] == 1  # black itself
     assert fixed["from grey"] > 300
@@ -260,7 +257,8 @@ def grown(problem, multipliers):
     growth = Growth(problem, nodes_of(STORED, problem.sensor), ignore_progress)
     growth.multipliers[:] = multipliers
     off = problem.forward.residual(multipliers, STORED.points)
-    growth.distance[:], growth.rgb[:] = np.abs(off).max(axis=1), STORED.points - off
+    growth.distance[:] = np.abs(off).max(axis=1)
+    growth.rgb[:] = STORED.points - off
     return growth
 
 
@@ -271,9 +269,7 @@ def test_single_precision_is_used_where_it_is_accurate(problem):
         grown(problem, multipliers), seed(STORED, NO_COLOURS), prior_of(problem)
     )
     assert stored.coefficients.dtype == np.float32
-    np.testing.assert_allclose(
-        stored.distance, distance(problem, stored.coefficients), atol=1e-6
-    )
+    assert_allclose(stored.distance, distance(problem, stored.coefficients), atol=1e-6)
     assert (stored.distance <= here + MAX_LOSS * problem.threshold).all()
 
 
@@ -293,5 +289,5 @@ def test_double_precision_is_used_where_single_is_inaccurate(problem, monkeypatc
         grown(strict, multipliers), seed(STORED, NO_COLOURS), prior_of(problem)
     )
     assert stored.coefficients.dtype == np.float64
-    np.testing.assert_allclose(stored.coefficients, coefficients, atol=1e-12)
-    np.testing.assert_allclose(stored.distance, here, atol=1e-7)
+    assert_allclose(stored.coefficients, coefficients, atol=1e-12)
+    assert_allclose(stored.distance, here, atol=1e-7)

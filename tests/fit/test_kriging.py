@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.conftest import MACBETH
 from uplift.atlas import on_grid, read_atlas
@@ -57,7 +58,7 @@ def predicted(places, deviations, at, variances, at_variance=1.0, kernel=KERNEL)
 def test_it_is_the_conditional_mean():
     found, _ = krige(PLACES, DEVIATIONS, KERNEL, VARIANCES)
     for at in RNG.uniform(-20, 60, (5, 3)):
-        np.testing.assert_allclose(
+        assert_allclose(
             found(at[None])[0], predicted(PLACES, DEVIATIONS, at, VARIANCES), atol=1e-9
         )
 
@@ -83,7 +84,7 @@ def test_leave_one_out_equals_kriging_of_the_other_entries(monkeypatch, points):
             variances[others],
             variances[row],
         )
-        np.testing.assert_allclose(DEVIATIONS[row] - errors[row], again, atol=1e-9)
+        assert_allclose(DEVIATIONS[row] - errors[row], again, atol=1e-9)
 
 
 @given(st.floats(3, 60), st.floats(0, 4), st.integers(0, 1000))
@@ -100,15 +101,13 @@ def test_kernels_are_positive_definite(length, noise, seed):
 def test_close_spectra_are_averaged_where_there_are_many():
     few = average_close(PLACES, DEVIATIONS)
     assert few.locations is PLACES
-    np.testing.assert_array_equal(few.counts, 1)
+    assert_array_equal(few.counts, 1)
     places = RNG.uniform(0, 60, (20 * MAX_POINTS, 3))
     deviations = RNG.normal(size=(20 * MAX_POINTS, 4))
     many = average_close(places, deviations)
     assert len(many.locations) <= MAX_POINTS
-    np.testing.assert_array_equal(many.counts, np.bincount(many.point))
-    np.testing.assert_allclose(
-        many.counts @ many.deviations, deviations.sum(axis=0), atol=1e-9
-    )
+    assert_array_equal(many.counts, np.bincount(many.point))
+    assert_allclose(many.counts @ many.deviations, deviations.sum(axis=0), atol=1e-9)
     assert np.abs(many.locations[many.point] - places).max() <= CELLS[-1]
 
 

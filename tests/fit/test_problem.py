@@ -4,17 +4,17 @@ realisable colour.
 
 import os
 import platform
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from uplift.colorimetry.solid import solid
 
 import uplift
-from uplift.colorimetry import observer, solid
-from uplift.fit import nodes_of
-from uplift.fit.problem import MARGIN
+from tests.conftest import ROOT
+from tests.helpers import run_python
+from uplift.colorimetry import observer
+from uplift.fit.problem import MARGIN, nodes_of
 from uplift.lattice import Lattice, Status, axis_nodes
 from uplift.models import reflectance
 
@@ -50,7 +50,7 @@ def test_every_realisable_colour_is_fitted(space, model, count):
     assert (~possible).sum() > 50
     assert distance[possible].max() <= data.threshold
     named = data.points.status == Status.UNREALISABLE
-    np.testing.assert_array_equal(named, ~possible & (distance > data.threshold))
+    assert_array_equal(named, ~possible & (distance > data.threshold))
 
 
 def test_the_nearest_colour_has_the_same_hue_and_luminance(sensor):
@@ -60,9 +60,9 @@ def test_the_nearest_colour_has_the_same_hue_and_luminance(sensor):
     target = lattice.target(beyond.unrealisable)
     nearest = beyond.nearest
     luminance = wide.xyz(target)[:, 1:2]
-    np.testing.assert_allclose(wide.xyz(nearest)[:, 1:2], luminance, atol=1e-12)
+    assert_allclose(wide.xyz(nearest)[:, 1:2], luminance, atol=1e-12)
     share = (nearest - luminance) / (target - luminance)
-    np.testing.assert_allclose(share, share[:, :1].repeat(3, axis=1), rtol=1e-6)
+    assert_allclose(share, share[:, :1].repeat(3, axis=1), rtol=1e-6)
     outside = solid(wide.matrix).signed_distance(nearest)
     assert outside.max() < 0
     assert outside.min() > -2 * MARGIN
@@ -97,10 +97,5 @@ def test_spectra_do_not_depend_on_the_instruction_set(tmp_path):
         "from tests.fit.test_problem import store_spectra; "
         f"store_spectra({str(there)!r})"
     )
-    subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=Path(__file__).parents[2],
-        env=os.environ | ONLY_AVX,
-        check=True,
-    )
-    np.testing.assert_allclose(np.load(there), np.load(here), rtol=0, atol=1e-5)
+    run_python(code, cwd=ROOT, env=os.environ | ONLY_AVX)
+    assert_allclose(np.load(there), np.load(here), rtol=0, atol=1e-5)

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.conftest import MACBETH
@@ -57,9 +58,7 @@ atlases = arrays(
 @given(atlases)
 def test_all_corners_of_the_cells_of_entries_are_seeds_once(rgb):
     corners, _ = LATTICE.corners(rgb)
-    np.testing.assert_array_equal(
-        np.sort(seed(LATTICE, rgb).points), np.unique(corners)
-    )
+    assert_array_equal(np.sort(seed(LATTICE, rgb).points), np.unique(corners))
 
 
 @given(atlases, st.randoms(use_true_random=False))
@@ -110,7 +109,7 @@ def test_the_share_of_the_entry_falls_from_near_to_far_corners(prior):
         mixed = share[:, None] * MODEL.to_storage(own) + (
             1 - share[:, None]
         ) * MODEL.to_storage(prior(nodes))
-        np.testing.assert_allclose(MODEL.to_storage(start), mixed, atol=1e-6)
+        assert_allclose(MODEL.to_storage(start), mixed, atol=1e-6)
         shares.extend(share)
     assert (np.array(shares) == 0).sum() >= 5
     assert ((np.array(shares) > 0) & (np.array(shares) < 1)).sum() >= 4
@@ -122,7 +121,7 @@ def test_all_other_points_start_from_the_prior(prior):
     start = initial_guess(
         points, LATTICE.points[points], prior, seeds, ENTRIES, FULL_ENTRY
     )
-    np.testing.assert_array_equal(start, prior(LATTICE.points[points]))
+    assert_array_equal(start, prior(LATTICE.points[points]))
 
 
 @pytest.fixture(scope="module")
@@ -159,7 +158,7 @@ def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor, seed_corner
     plain = np.max(
         [delta_e_spectra(lit, answered, own) for lit in problem.lights], axis=0
     )
-    np.testing.assert_allclose(trial, plain, atol=1e-3)
+    assert_allclose(trial, plain, atol=1e-3)
 
 
 def test_the_smallest_lattice_that_keeps_all_entries_is_chosen(stage):

@@ -3,15 +3,15 @@ optimistix in its place.
 """
 
 import os
-import subprocess
-import sys
 
 import jax
 import numpy as np
 import optimistix
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import least_squares, minimize
 
+from tests.helpers import run_python
 from uplift import build, load
 from uplift.fit.batch import CPU_ROWS, map_batches
 from uplift.fit.solver import LeastChange, solve
@@ -43,7 +43,7 @@ def test_distances_are_at_most_those_of_scipy(model, sensor):
         )
         assert distance <= 1e-9 or distance <= np.abs(oracle.fun).max() * 1.01
         if model.count == 3 and np.abs(oracle.fun).max() <= 1e-9:
-            np.testing.assert_allclose(multipliers, oracle.x, rtol=1e-4, atol=1e-5)
+            assert_allclose(multipliers, oracle.x, rtol=1e-4, atol=1e-5)
 
 
 def test_no_distance_increases(sensor):
@@ -83,9 +83,7 @@ def test_solutions_do_not_depend_on_the_batch(sensor, max_passes):
             max_passes=max_passes,
         )
         for found in (row, row + len(many) - len(few)):
-            np.testing.assert_allclose(
-                crowd.multipliers[found], alone.multipliers[0], rtol=1e-9
-            )
+            assert_allclose(crowd.multipliers[found], alone.multipliers[0], rtol=1e-9)
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +102,7 @@ def test_optimistix_runs_it(forward):
     off = forward.residual(np.asarray(found.value), INNER)
     assert np.abs(off).max() <= 1e-9
     ours = solve(forward, PRIORS, INNER, tolerance=1e-9, max_passes=20, prior=PRIORS)
-    np.testing.assert_allclose(found.value, ours.multipliers, atol=1e-9)
+    assert_allclose(found.value, ours.multipliers, atol=1e-9)
 
 
 def test_the_answer_is_the_nearest_to_the_prior(forward):
@@ -127,7 +125,7 @@ def test_the_answer_is_the_nearest_to_the_prior(forward):
                 ],
             },
         )
-        np.testing.assert_allclose(multipliers, oracle.x, atol=2e-4)
+        assert_allclose(multipliers, oracle.x, atol=2e-4)
 
 
 def test_the_answer_does_not_depend_on_the_start(forward):
@@ -136,7 +134,7 @@ def test_the_answer_does_not_depend_on_the_start(forward):
         solve(forward, start, INNER, tolerance=1e-12, max_passes=40, prior=PRIORS)
         for start in (PRIORS, starts)
     )
-    np.testing.assert_allclose(one.multipliers, other.multipliers, atol=1e-5)
+    assert_allclose(one.multipliers, other.multipliers, atol=1e-5)
     without = solve(forward, starts, INNER, tolerance=1e-12, max_passes=40)
     assert np.abs(without.multipliers - one.multipliers).max() > 1e-3
 
@@ -195,8 +193,8 @@ def squares(constants, rows):
 def test_every_row_is_in_one_batch(count):
     x = RNG.random((count, 2))
     found, first = map_batches(squares, np.array(3.0), {"x": x})
-    np.testing.assert_allclose(found, 3 * x**2, rtol=1e-15)
-    np.testing.assert_array_equal(first, x[:, 0])
+    assert_allclose(found, 3 * x**2, rtol=1e-15)
+    assert_array_equal(first, x[:, 0])
 
 
 SEVERAL = """
@@ -212,17 +210,11 @@ def test_several_devices_build_the_same_cube(repository, tmp_path):
     macbeth = repository / "atlases" / "macbeth.txt"
     path = tmp_path / "several.uplift"
     flags = {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"}
-    subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", SEVERAL, macbeth, path],
-        env=os.environ | flags,
-        check=True,
-    )
+    run_python(SEVERAL, macbeth, path, env=os.environ | flags)
     one = build(macbeth, dim=5).data
     several = load(path).data
-    np.testing.assert_allclose(
+    assert_allclose(
         several.points.coefficients, one.points.coefficients, rtol=0, atol=1e-9
     )
-    np.testing.assert_allclose(
-        several.points.standard_error, one.points.standard_error, rtol=1e-6
-    )
-    np.testing.assert_array_equal(several.points.status, one.points.status)
+    assert_allclose(several.points.standard_error, one.points.standard_error, rtol=1e-6)
+    assert_array_equal(several.points.status, one.points.status)

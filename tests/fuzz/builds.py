@@ -47,7 +47,10 @@ OBSERVERS = (
 )
 CAMERAS = ("Nikon 5100 (NPL)", "Sigma SDMerill (NPL)")
 SHAPES = ("smooth", "equal", "dark", "black", "white", "spiky")
-EXACT, SAME, DEEP, SUM = 1e-4, 1e-3, 1e-4, 2e-6
+EXACT = 1e-4
+SAME = 1e-3
+DEEP = 1e-4
+SUM = 2e-6
 """Largest error of a realisable colour, and largest difference of reflectances between
 languages, of colours that far inside the solid, with the error of RGB as a sum of some
 hundred products in single precision. Near the boundary of the solid spectra are steps,
@@ -104,30 +107,30 @@ def odd_options(random: Random, kind: Kind) -> dict[str, Any]:
     """Return options of a build, without atlas, library and looks."""
     space = choose(random, SPACES)
     model = choose(random, ("moments", "moments", "moments", "sigmoid"))
+    dim = choose(random, kind.dims)
+    illuminant = choose(random, ("D65", "D65", "A", "E", "D50", "FL2", "FL11"))
+    observer = choose(random, CAMERAS if space == "camera" else OBSERVERS)
+    # Cameras are tabulated at steps of 5 nm.
+    measured = [limits for limits in kind.ranges if space != "camera" or limits[2] == 5]
+    shortest, longest, step = choose(random, measured)
     options: dict[str, Any] = {
         "space": space,
-        "dim": choose(random, kind.dims),
+        "dim": dim,
         "model": model,
+        "illuminant": illuminant,
+        "observer": observer,
+        "shortest": shortest,
+        "longest": longest,
+        "step": step,
+        "axis": choose(random, ("srgb", "linear")),
+        "warp": choose(random, ("none", "vision")),
+        # Learning is slow.
+        "prior": choose(random, ("learnt", "smooth", "smooth", "smooth")),
     }
-    options["illuminant"] = choose(
-        random, ("D65", "D65", "A", "E", "D50", "FL2", "FL11")
-    )
-    options["observer"] = choose(random, CAMERAS if space == "camera" else OBSERVERS)
-    measured = [
-        each for each in kind.ranges if space != "camera" or each[2] == 5
-    ]  # cameras are tabulated so
-    options["shortest"], options["longest"], options["step"] = choose(random, measured)
-    options["axis"], options["warp"] = (
-        choose(random, ("srgb", "linear")),
-        choose(random, ("none", "vision")),
-    )
-    options["prior"] = choose(
-        random, ("learnt", "smooth", "smooth", "smooth")
-    )  # learning is slow
     if model == "moments":
-        options["coefficients"], options["entry_coefficients"] = choose(
-            random, kind.counts
-        )
+        coefficients, entry_coefficients = choose(random, kind.counts)
+        options["coefficients"] = coefficients
+        options["entry_coefficients"] = entry_coefficients
     return options
 
 
@@ -168,17 +171,14 @@ def distance_to_solid(
     of which neither is known to 1e-6.
     """
     near = np.abs(sensor.rgb(np.clip(spectra, 0, 1)) - rgb).max(axis=1)
-    best = normals[
-        (rgb @ normals.T - np.maximum(normals @ sensor.matrix, 0).sum(axis=1)).argmax(
-            axis=1
-        )
-    ]
-    beyond = (best * rgb).sum(axis=1) - np.maximum(best @ sensor.matrix, 0).sum(axis=1)
-    least = beyond / np.abs(best).sum(axis=1)
-    found = np.where(least > 1e-6, least, near)
+    supports = np.maximum(normals @ sensor.matrix, 0).sum(axis=1)
+    beyond = rgb @ normals.T - supports
+    best = beyond.argmax(axis=1)
+    least = beyond.max(axis=1) / np.abs(normals[best]).sum(axis=1)
+    distance = np.where(least > 1e-6, least, near)
     for row in np.flatnonzero((near > 1e-9) & (least < 1e-6)):
-        found[row] = miss(sensor.matrix, rgb[row])
-    return found
+        distance[row] = miss(sensor.matrix, rgb[row])
+    return distance
 
 
 def miss(matrix: Array, rgb: Array) -> float:
@@ -190,15 +190,8 @@ def miss(matrix: Array, rgb: Array) -> float:
     rows = np.block([[matrix, -off], [-matrix, -off]])
     cost = np.append(np.zeros(count), 1)
     limits = [(0, 1)] * count + [(0, None)]
-    return float(
-        linprog(
-            cost,
-            A_ub=rows,
-            b_ub=np.concatenate([rgb, -rgb]),
-            bounds=limits,
-            method="highs",
-        ).fun
-    )
+    right = np.concatenate([rgb, -rgb])
+    return float(linprog(cost, A_ub=rows, b_ub=right, bounds=limits).fun)
 
 
 def colours(random: Random, cube: uplift.Cube) -> np.ndarray:
@@ -209,10 +202,9 @@ def colours(random: Random, cube: uplift.Cube) -> np.ndarray:
     rgb[8:12] **= 4
     rgb[12:16, int(random.integers(3))] = random.uniform(0, 0.02)
     rgb[16:20] = rgb[16:20].round()
-    own = cube.data.atlas.rgb[:4]
-    rgb = np.concatenate(
-        [rgb, own, np.clip(own + random.normal(0, 0.02, own.shape), 0, 1)]
-    )
+    entries = cube.data.atlas.rgb[:4]
+    near = np.clip(entries + random.normal(0, 0.02, entries.shape), 0, 1)
+    rgb = np.concatenate([rgb, entries, near])
     return rgb.astype(np.float32).astype(float)
 
 
@@ -259,9 +251,8 @@ def _file_laws(cube: uplift.Cube, folder: Path, check: bool) -> Iterator[str]:
     if digest(loaded.data) != digest(cube.data):
         yield "the file has another digest"
     if check:
-        result = CliRunner().invoke(
-            command_line, ["check", str(folder / "cube.uplift"), "--format", "json"]
-        )
+        args = ["check", str(folder / "cube.uplift"), "--format", "json"]
+        result = CliRunner().invoke(command_line, args)
         if result.exit_code:
             yield (
                 f"check: exit code {result.exit_code}: {result.exception!r} "
@@ -271,59 +262,59 @@ def _file_laws(cube: uplift.Cube, folder: Path, check: bool) -> Iterator[str]:
 
 def _colour_laws(cube: uplift.Cube, rgb: Array, folder: Path) -> Iterator[str]:
     sensor = cube.data.sensor
-    at = np.array(AT)
     for mode in MODES:
-        spectra = cube.reflectance(rgb, mode=mode)
-        if not (
-            np.isfinite(spectra).all() and spectra.min() >= 0 and spectra.max() <= 1
-        ):
+        if not are_reflectances(cube.reflectance(rgb, mode=mode)):
             yield f"{mode}: reflectances outside [0, 1]"
     spectra = cube.reflectance(rgb)
     off = distance_to_solid(sensor, rgb, spectra, cube.data.solid.normals)
     error = np.abs(sensor.rgb(spectra) - rgb).max(axis=1)
     for worst in np.flatnonzero((off < 1e-9) & (error > EXACT)):
         yield f"realisable colour {rgb[worst].tolist()} missed by {error[worst]:.1e}"
-    (folder / "colours.csv").write_text(
-        "\n".join(",".join(map(repr, row)) for row in rgb.tolist())
-    )
-    args = [
-        "query",
-        "--cube",
-        str(folder / "cube.uplift"),
-        "--input",
-        str(folder / "colours.csv"),
-        "--format",
-        "json",
-    ]
-    answers = json.loads(
-        CliRunner()
-        .invoke(command_line, [*args, "--wavelengths", ",".join(map(str, AT))])
-        .stdout
-    )
-    expected = cube.reflectance(rgb, at)
-    for answer, missed, row in zip(answers, off, expected, strict=True):
-        if (
-            answer.get("realisable", True) != (missed < 1e-6)
-            and not 1e-9 < missed < 1e-6
-        ):
-            yield (
-                f"realisable is {answer.get('realisable')}, {missed:.1e} from the "
-                f"nearest: {answer['rgb']}"
-            )
-        if np.abs(np.array(answer["reflectance"]) - row).max() > 1e-6:
-            yield "the command line has other reflectances"
+    expected = cube.reflectance(rgb, AT)
+    yield from _command_laws(rgb, off, expected, folder)
     for mode in ("spectra", "moments") if shutil.which("cc") else ():
         yield from _program_laws(cube, mode, rgb)
     stored = texture.prepare(cube, texture.Spectrum(AT)).sample(rgb.astype(np.float32))
-    if np.abs(stored - expected).max() > 1e-5:
-        yield f"textures of spectra differ by {np.abs(stored - expected).max():.1e}"
+    difference = np.abs(stored - expected).max()
+    if difference > 1e-5:
+        yield f"textures of spectra differ by {difference:.1e}"
+
+
+def are_reflectances(values: Array) -> bool:
+    return bool(np.isfinite(values).all() and values.min() >= 0 and values.max() <= 1)
+
+
+def _command_laws(
+    rgb: Array, off: Array, expected: Array, folder: Path
+) -> Iterator[str]:
+    """Compare the answers of ``uplift query`` with reflectances (n, N), and with the
+    distances (n,) from the solid.
+    """
+    rows = [",".join(map(repr, row)) for row in rgb.tolist()]
+    (folder / "colours.csv").write_text("\n".join(rows))
+    wavelengths = ",".join(map(str, AT))
+    line = (
+        f"query --cube {folder}/cube.uplift --input {folder}/colours.csv --format json "
+        f"--wavelengths {wavelengths}"
+    )
+    answers = json.loads(CliRunner().invoke(command_line, line.split()).stdout)
+    for answer, missed, row in zip(answers, off, expected, strict=True):
+        realisable = answer.get("realisable", True)
+        is_certain = not 1e-9 < missed < 1e-6
+        if is_certain and realisable != (missed < 1e-6):
+            yield (
+                f"realisable is {realisable}, {missed:.1e} from the nearest: "
+                f"{answer['rgb']}"
+            )
+        if np.abs(np.array(answer["reflectance"]) - row).max() > 1e-6:
+            yield "the command line has other reflectances"
 
 
 def _program_laws(cube: uplift.Cube, mode: str, rgb: Array) -> Iterator[str]:
-    found = c_reflectances(cube.data, mode, rgb, np.array(AT))
-    if not (np.isfinite(found).all() and found.min() >= 0 and found.max() <= 1):
-        yield f"C, {mode}: reflectances outside [0, 1]: {found.min()} {found.max()}"
-    difference = np.abs(found - cube.reflectance(rgb, AT, mode)).max(axis=1)
+    spectra = c_reflectances(cube.data, mode, rgb, np.array(AT))
+    if not are_reflectances(spectra):
+        yield f"C, {mode}: reflectances outside [0, 1]: {spectra.min()} {spectra.max()}"
+    difference = np.abs(spectra - cube.reflectance(rgb, AT, mode)).max(axis=1)
     stated = rounding_error(cube.data, mode)
     stays = stay(cube.data, mode, rgb)
     for row in np.flatnonzero(stays & (difference > stated)):
@@ -366,9 +357,8 @@ def broken(seed: int, kind: Kind = SMALL) -> list[str]:
                 f"build {seed}: {law}" for law in broken_laws(seed, Path(folder), kind)
             ]
         except Exception as problem:  # one build must not end a night
-            refused = (
-                getattr(problem, "code", "") == "atlas-out-of-gamut"
-            )  # spikes may all be outside the space
+            # Spikes may all be outside the space.
+            refused = getattr(problem, "code", "") == "atlas-out-of-gamut"
             return [] if refused else [f"build {seed}: {problem!r}"]
 
 
@@ -389,9 +379,9 @@ def main(first: int, count: int) -> int:
         "boundary": DEEP,
     }
     for seed in range(first, first + count):
-        found = broken(seed, LARGE if seed % 50 == 0 else SMALL)
-        laws.update(law.split(":")[1].strip() for law in found)
-        print(*found, sep="\n", end="\n" * bool(found), flush=True)
+        findings = broken(seed, LARGE if seed % 50 == 0 else SMALL)
+        laws.update(law.split(":")[1].strip() for law in findings)
+        print(*findings, sep="\n", end="\n" * bool(findings), flush=True)
         figures |= {"builds": seed - first + 1, "broken": laws}
         write_text(
             json.dumps(figures, indent=1) + "\n", KEPT / "builds.json", force=True

@@ -103,10 +103,8 @@ def _check(result: Result) -> None:
     """Check what a run printed. Raises `UpliftError` for rejected input, ValueError for
     what it must not print.
     """
-    if any(
-        printable(line) != line
-        for line in (result.stdout + "\n" + result.stderr).split("\n")
-    ):
+    lines = (result.stdout + "\n" + result.stderr).split("\n")
+    if any(printable(line) != line for line in lines):
         raise ValueError("a control character")
     errors = [
         line for line in result.stderr.splitlines() if not line.startswith("warning: ")
@@ -121,13 +119,13 @@ def _check(result: Result) -> None:
         raise UpliftError("rejected")
 
 
-def _words(random: Random) -> str:
-    return "".join(choose(random, TOKENS) for _ in range(int(random.integers(1, 5))))
+def _hostile_text(random: Random) -> str:
+    return "".join(choose(random, TOKENS) for _ in range(random.integers(1, 5)))
 
 
 def _generate(random: Random, path: Path) -> None:
-    name = _words(random)
-    other = _words(random)
+    name = _hostile_text(random)
+    other = _hostile_text(random)
     cells = ['"' + text.replace('"', '""') + '"' for text in (name, other)]
     files = {
         CUBE: json.dumps([name, other, int(random.integers(4))]),
@@ -143,9 +141,8 @@ def _generate(random: Random, path: Path) -> None:
             ("0.2,0.3,0.4\n", f"{name}\n", f"0.1,0.2,0.3,{name}\n#fff {other}\n"),
         ),
     }
-    argument = name.replace("\0", "").replace(
-        "\ud800", "\udcff"
-    )  # as the system passes arguments
+    # As the system passes arguments.
+    argument = name.replace("\0", "").replace("\ud800", "\udcff")
     args = [word.replace("{}", argument) for word in choose(random, LINES).split()]
     case = {
         "args": args,
@@ -183,12 +180,8 @@ def _use(path: Path) -> None:
             if name == CUBE:
                 _forge_cube(text)
             else:
-                Path(name).write_bytes(
-                    text.encode(
-                        "utf-8",
-                        "surrogatepass" if "\ud800" in text else "surrogateescape",
-                    )
-                )
+                errors = "surrogatepass" if "\ud800" in text else "surrogateescape"
+                Path(name).write_text(text, "utf-8", errors, newline="")
         with (
             mock.patch.dict(os.environ, {"UPLIFT_TRACEBACK": "1"}),
             warnings.catch_warnings(action="ignore"),

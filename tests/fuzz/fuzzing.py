@@ -108,18 +108,15 @@ def mutate(content: bytes, random: Random, seeds: Seeds) -> bytes:
                 content = content[:first] + random.bytes(count) + content[first:]
             case 5:
                 content = content.replace(choose(random, words), token, count)
-            case 6 if found := NUMBER.search(content, first):
-                content = (
-                    content[: found.start()]
-                    + choose(random, NUMBERS)
-                    + content[found.end() :]
-                )
+            case 6 if number := NUMBER.search(content, first):
+                start, end = number.span()
+                content = content[:start] + choose(random, NUMBERS) + content[end:]
             case 7 if random.random() < 0.2:
                 content = content[:first]
             case _:
                 lines = content.split(b"\n")
-                one, other = random.integers(len(lines), size=2)
-                lines[one], lines[other] = lines[other], lines[one]
+                i, j = random.integers(len(lines), size=2)
+                lines[i], lines[j] = lines[j], lines[i]
                 content = b"\n".join(lines)
     return content
 
@@ -131,9 +128,9 @@ def mutated(
 
     def generate(random: Random, path: Path) -> None:
         content = choose(random, make_seeds())
-        path.write_bytes(
-            content if random.random() < 0.05 else mutate(content, random, make_seeds())
-        )
+        if random.random() >= 0.05:
+            content = mutate(content, random, make_seeds())
+        path.write_bytes(content)
 
     return Target(name, generate, use)
 
@@ -162,9 +159,8 @@ def fuzz(
             outcome = _outcome(target, path)
             tally[outcome] += 1
             if outcome not in ("accepted", "rejected") and tally[outcome] == 1:
-                shutil.copy(
-                    path, kept / f"{target.name.replace(' ', '-')}-{seed}-{number}"
-                )
+                name = target.name.replace(" ", "-")
+                shutil.copy(path, kept / f"{name}-{seed}-{number}")
     finally:
         signal.signal(signal.SIGPROF, previous)
     return tally

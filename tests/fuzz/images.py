@@ -9,7 +9,7 @@ them cannot be used.
 import sys
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -162,77 +162,115 @@ def power(exponent: float) -> Curve:
     return lambda codes: codes**exponent
 
 
-def first_usable(statements: list[Space | None]) -> tuple[Space, bool]:
-    """Return the first usable statement, else sRGB, and whether one before it cannot be
-    used.
+@dataclass
+class Statements:
+    """Spaces that a file states, in the order in which they count, None if one cannot
+    be used, and their description.
     """
-    for index, space in enumerate(statements):
-        if space is not None:
-            return space, index > 0
-    return Space(), bool(statements)
+
+    spaces: list[Space | None] = field(default_factory=list)
+    text: str = ""
+
+    def add(self, text: str, space: Space | None, first: bool = False) -> None:
+        self.text += f" {text}"
+        self.spaces.insert(0 if first else len(self.spaces), space)
+
+    def first_usable(self) -> tuple[Space, bool]:
+        """Return the first usable space, else sRGB, and whether one before it cannot be
+        used.
+        """
+        for index, space in enumerate(self.spaces):
+            if space is not None:
+                return space, index > 0
+        return Space(), bool(self.spaces)
 
 
 def draw_codes(random: Random, channels: int, dtype: str) -> Array:
     codes = random.integers(
         0, np.iinfo(dtype).max, (1, WIDTH, channels), dtype=dtype, endpoint=True
     )
-    codes[0, 0], codes[0, 1] = 0, np.iinfo(dtype).max
+    codes[0, 0] = 0
+    codes[0, 1] = np.iinfo(dtype).max
     return codes
+
+
+def first_three(codes: Array) -> Array:
+    """Return codes (n, 3) of the colours of codes (1, n, channels)."""
+    if codes.shape[2] > 2:
+        return codes[0, :, :3]
+    return np.repeat(codes[0, :, :1], 3, axis=1)
 
 
 def draw_png(random: Random, folder: Path) -> Drawn:
     """Draw a PNG file with any of the chunks of colours."""
     dtype = choose(random, ("uint8", "uint16"))
-    bits = 8 * np.dtype(dtype).itemsize
     channels = int(random.integers(1, 5))
     codes = draw_codes(random, channels, dtype)
-    chunks = []
-    stated = []
-    text = [dtype, f"{channels} channels"]
-    if random.random() < 0.4:
-        points = choose(random, list(POINTS))
-        space = POINTS[points]
-        if space is not None and not points[3]:
-            space = Space(
-                space.gamut, lambda codes, curve=space.curve: curve(narrow(bits)(codes))
-            )
-        chunks.append(files.cicp(*points))
-        stated.append(space)
-        text.append(f"cICP {points}")
-    if (
-        random.random() < 0.3 and channels > 2
-    ):  # libpng drops profiles of RGB from grey images
-        name = choose(random, list(PROFILES))
-        chunks.append(files.iccp(PROFILES[name][0]))
-        stated.append(PROFILES[name][1])
-        text.append(f"iCCP {name}")
-    elif random.random() < 0.3:
-        chunks.append(files.SRGB)
-        stated.append(Space())
-        text.append("sRGB")
-    gamut = "sRGB"
-    curve = colour.models.eotf_sRGB
-    has_gamma = random.random() < 0.5
-    has_chrm = random.random() < 0.4
-    if has_gamma:
-        gamma = choose(random, GAMMAS)
-        chunks.append(files.gama(gamma))
-        curve = power(1 / gamma)
-        text.append(f"gAMA {gamma}")
-    if has_chrm:
-        gamut = choose(random, GAMUTS)
-        chunks.append(files.chrm(numbers(gamut)))
-        text.append(f"cHRM {gamut}")
-    if has_gamma or has_chrm:
-        stated.append(Space(gamut, curve))
+    stated = Statements()
+    chunks = [
+        *draw_points(random, stated, bits=8 * codes.itemsize),
+        *draw_profile(random, stated, channels),
+        *draw_gamma_and_gamut(random, stated),
+    ]
     order = random.permutation(len(chunks))
     path = folder / "a.png"
     after = files.gama(0.3) if random.random() < 0.2 else b""  # misplaced: ignored
     path.write_bytes(files.png_bytes(codes, *(chunks[k] for k in order), after=after))
-    space, assumed = first_usable(stated)
-    rgb = codes[0, :, :3] if channels > 2 else np.repeat(codes[0, :, :1], 3, axis=1)
-    light = space.to_srgb(rgb / np.iinfo(dtype).max)
-    return Drawn(path, ", ".join(text), light, light, assumed)
+    space, assumed = stated.first_usable()
+    light = space.to_srgb(first_three(codes) / np.iinfo(dtype).max)
+    text = f"{dtype} {channels} channels{stated.text}"
+    return Drawn(path, text, light, light, assumed)
+
+
+def draw_points(random: Random, stated: Statements, bits: int) -> list[bytes]:
+    """Draw the chunk cICP or none."""
+    if random.random() >= 0.4:
+        return []
+    points = choose(random, list(POINTS))
+    space = POINTS[points]
+    if space is not None and not points[3]:
+        curve = space.curve
+        space = replace(space, curve=lambda codes: curve(narrow(bits)(codes)))
+    stated.add(f"cICP {points}", space)
+    return [files.cicp(*points)]
+
+
+def draw_profile(random: Random, stated: Statements, channels: int) -> list[bytes]:
+    """Draw the chunk iCCP, sRGB or none."""
+    # libpng drops profiles of RGB from grey images.
+    if random.random() < 0.3 and channels > 2:
+        name = choose(random, list(PROFILES))
+        profile, space = PROFILES[name]
+        stated.add(f"iCCP {name}", space)
+        return [files.iccp(profile)]
+    if random.random() < 0.3:
+        stated.add("sRGB", Space())
+        return [files.SRGB]
+    return []
+
+
+def draw_gamma_and_gamut(random: Random, stated: Statements) -> list[bytes]:
+    """Draw the chunks gAMA and cHRM, one of them or none: together they state a
+    space.
+    """
+    chunks = []
+    text = []
+    space = Space()
+    has_gamma = random.random() < 0.5
+    has_gamut = random.random() < 0.4
+    if has_gamma:
+        gamma = choose(random, GAMMAS)
+        chunks.append(files.gama(gamma))
+        space = replace(space, curve=power(1 / gamma))
+        text.append(f"gAMA {gamma}")
+    if has_gamut:
+        gamut = choose(random, GAMUTS)
+        chunks.append(files.chrm(numbers(gamut)))
+        space = replace(space, gamut=gamut)
+        text.append(f"cHRM {gamut}")
+    if chunks:
+        stated.add(" ".join(text), space)
+    return chunks
 
 
 def draw_exr(random: Random, folder: Path) -> Drawn:
@@ -240,87 +278,108 @@ def draw_exr(random: Random, folder: Path) -> Drawn:
     kind = choose(random, ("RGB", "XYZ", "XYZ", "Y"))
     layer = choose(random, ("", "", "diffuse.")) if kind != "Y" else ""
     dtype = choose(random, (np.float32, np.float16))
-    gamut = choose(random, GAMUTS)
-    header: dict[str, Any] = {}
-    if random.random() < 0.6:
-        header["chromaticities"] = numbers(gamut)
-    else:
-        gamut = "sRGB"
-    stated: list[Space | None] = [Space(gamut)] if header else []
-    if kind != "XYZ" and random.random() < 0.3:
-        name = header["colorInteropID"] = choose(random, list(INTEROP))
-        stated.insert(0, INTEROP[name])
-    luminance = 1.0
-    if random.random() < 0.3:
-        luminance = header["whiteLuminance"] = choose(random, (100.0, 80.0))
-    rgb = random.random((WIDTH, 3)) * choose(random, (1, 1, 1, 20))
-    rgb[:2] = [[0, 0, 0], [1, 1, 1]]
+    stated = Statements()
+    header, gamut = draw_header(random, stated, kind)
+    luminance = header.get("whiteLuminance", 1.0)
     space = rgb_space(gamut)
-    to_xyz = colour.normalised_primary_matrix(space.primaries, space.whitepoint)
-    stored = rgb @ to_xyz.T * luminance if kind == "XYZ" else rgb
+    stored = random.random((WIDTH, 3)) * choose(random, (1, 1, 1, 20))
+    stored[:2] = [[0, 0, 0], [1, 1, 1]]
+    if kind == "XYZ":
+        to_xyz = colour.normalised_primary_matrix(space.primaries, space.whitepoint)
+        stored = stored @ to_xyz.T * luminance
     if kind == "Y":
         stored = np.repeat(stored[:, :1], 3, axis=1)
-    alpha = np.ones(WIDTH)
     has_alpha = random.random() < 0.6
+    alpha = np.ones(WIDTH)
     if has_alpha:
-        alpha = random.random(WIDTH)
-        alpha[2:5] = [0, 1e-6, 0.01]
-        factors = alpha.copy()
-        if random.random() < 0.5:
-            factors[2:4] = 1  # light without opacity
+        alpha, factors = draw_alpha(random)
         stored = stored * factors[:, None]
-    names = [layer + letter for letter in (kind if kind != "Y" else "Y")]
-    planes = {name: stored[None, :, k].astype(dtype) for k, name in enumerate(names)}
+    stored = stored.astype(dtype)
+    alpha = alpha.astype(dtype)
+    planes = {
+        layer + letter: stored[None, :, k].copy() for k, letter in enumerate(kind)
+    }
     if has_alpha:
-        planes[layer + "A"] = alpha[None].astype(dtype)
+        planes[layer + "A"] = alpha[None]
     path = folder / "a.exr"
-    OpenEXR.File({"type": OpenEXR.scanlineimage, **header}, dict(planes)).write(
-        str(path)
-    )
-    held = np.stack(
-        [planes[names[k % len(names)]][0].astype(float) for k in range(3)], axis=-1
-    )
-    given = alpha.astype(dtype).astype(float)[:, None]
-    is_light = np.abs(held).max(axis=1, keepdims=True) > HALF_MAX * given
-    divided = np.where(is_light, held, held / np.where(given == 0, 1, given))
-    usable, assumed = first_usable(stated)
-    convert = usable.linear_to_srgb
-    if kind == "XYZ":
-        white = np.array(space.whitepoint)
-        convert = lambda values: xyz_to_srgb(values / luminance, white)  # noqa: E731
+    attributes = {"type": OpenEXR.scanlineimage, **header}
+    OpenEXR.File(attributes, planes).write(str(path))
+    held = stored.astype(float)
+    divided = divide_by_alpha(held, alpha[:, None].astype(float))
+    usable, assumed = stated.first_usable()
+
+    def to_srgb(values: Array) -> Array:
+        if kind == "XYZ":
+            return xyz_to_srgb(values / luminance, np.array(space.whitepoint))
+        return usable.linear_to_srgb(values)
+
     text = f"{layer}{kind} {dtype.__name__} {header} alpha {has_alpha}"
     tolerance = 3e-3 if dtype is np.float16 else 1e-3
-    return Drawn(path, text, convert(held), convert(divided), assumed, tolerance)
+    return Drawn(path, text, to_srgb(held), to_srgb(divided), assumed, tolerance)
 
 
-def draw_tags(
-    random: Random, depth: int
-) -> tuple[dict[int, Any], list[Space | None], str]:
-    """Draw the tags of TIFF about colours, and what they state."""
+def draw_header(
+    random: Random, stated: Statements, kind: str
+) -> tuple[dict[str, Any], str | tuple[float, ...]]:
+    """Draw the attributes of OpenEXR about colours; also return the primaries."""
+    header: dict[str, Any] = {}
+    gamut = choose(random, GAMUTS)
+    if random.random() < 0.6:
+        header["chromaticities"] = numbers(gamut)
+        stated.add("chromaticities", Space(gamut))
+    else:
+        gamut = "sRGB"
+    if kind != "XYZ" and random.random() < 0.3:
+        name = header["colorInteropID"] = choose(random, list(INTEROP))
+        stated.add(name, INTEROP[name], first=True)
+    if random.random() < 0.3:
+        header["whiteLuminance"] = choose(random, (100.0, 80.0))
+    return header, gamut
+
+
+def draw_alpha(random: Random) -> tuple[Array, Array]:
+    """Draw alpha (n,) and factors (n,) of the colours: some are light without
+    opacity.
+    """
+    alpha = random.random(WIDTH)
+    alpha[2:5] = [0, 1e-6, 0.01]
+    factors = alpha.copy()
+    if random.random() < 0.5:
+        factors[2:4] = 1
+    return alpha, factors
+
+
+def divide_by_alpha(colours: Array, alpha: Array) -> Array:
+    """Divide colours (n, 3) by alpha (n, 1), except light without opacity."""
+    is_light = np.abs(colours).max(axis=1, keepdims=True) > HALF_MAX * alpha
+    return np.where(is_light, colours, colours / np.where(alpha == 0, 1, alpha))
+
+
+def draw_tags(random: Random, stated: Statements, depth: int) -> dict[int, Any]:
+    """Draw the tags of TIFF about colours."""
     tags: dict[int, Any] = {}
-    stated: list[Space | None] = []
-    text = ""
-    gamut = "sRGB"
-    curve = colour.models.eotf_sRGB
-    kinds = random.random(3) < 0.4
-    if kinds[0]:
+    text = []
+    space = Space()
+    has_primaries, has_transfer, has_white = random.random(3) < 0.4
+    if has_primaries:
         gamut = choose(random, GAMUTS)
         *primaries, x, y = numbers(gamut)
-        tags[319], tags[318] = (5, primaries), (5, [x, y])
-        text += f" primaries {gamut}"
-    if kinds[1]:
+        tags[319] = (5, primaries)
+        tags[318] = (5, [x, y])
+        space = replace(space, gamut=gamut)
+        text.append(f"primaries {gamut}")
+    if has_transfer:
         count = 1 << depth
         table = np.rint(65535 * np.linspace(0, 1, count) ** 1.8).astype(int).tolist()
         tags[301] = (3, table * choose(random, (1, 3)))
-        curve = power(1.8)
-        text += " transfer 1.8"
-    if kinds[2] and not kinds[0]:
-        tags[318] = (5, [0.3457, 0.3585])  # a white without primaries
-        stated.append(None)
-        text += " white alone"
-    elif kinds[0] or kinds[1]:
-        stated.append(Space(gamut, curve))
-    return tags, stated, text
+        space = replace(space, curve=power(1.8))
+        text.append("transfer 1.8")
+    if has_white and not has_primaries:
+        tags[318] = (5, [0.3457, 0.3585])
+        stated.add(" ".join([*text, "white alone"]), None)
+    elif text:
+        stated.add(" ".join(text), space)
+    return tags
 
 
 EXIF_TAGS = {
@@ -331,18 +390,24 @@ EXIF_TAGS = {
 }
 
 
-def draw_exif(
-    random: Random, chance: float, stated: list[Space | None]
-) -> tuple[Any, Any, str]:
-    """Draw the EXIF tags ColorSpace and interoperability index, by a chance, and add
-    the space that they state.
-    """
+def draw_exif(random: Random, stated: Statements, chance: float) -> tuple[Any, Any]:
+    """Draw the EXIF tags ColorSpace and interoperability index, by a chance."""
     if random.random() >= chance:
-        return None, None, ""
+        return None, None
     name = choose(random, list(EXIF_TAGS))
     exif, index, space = EXIF_TAGS[name]
-    stated.insert(0 if name in ("R03", "2") else len(stated), space)
-    return exif, index, f" EXIF {name}"
+    stated.add(f"EXIF {name}", space, first=name in ("R03", "2"))
+    return exif, index
+
+
+def draw_icc(random: Random, stated: Statements, chance: float) -> bytes | None:
+    """Draw an ICC profile, by a chance."""
+    if random.random() >= chance:
+        return None
+    name = choose(random, ("P3", "Adobe"))
+    profile, space = PROFILES[name]
+    stated.add(f"ICC {name}", space, first=True)
+    return profile
 
 
 def draw_tiff(random: Random, folder: Path) -> Drawn:
@@ -350,56 +415,48 @@ def draw_tiff(random: Random, folder: Path) -> Drawn:
     dtype = choose(random, ("uint8", "uint16", "float32"))
     channels = choose(random, (1, 3, 3, 4))
     is_float = dtype == "float32"
-    codes = (
-        random.random((1, WIDTH, channels)).astype(dtype)
-        if is_float
-        else draw_codes(random, channels, dtype)
-    )
-    bits = 16 if dtype == "uint16" else 8
-    tags, stated, text = draw_tags(random, bits)
+    if is_float:
+        codes = random.random((1, WIDTH, channels)).astype(dtype)
+    else:
+        codes = draw_codes(random, channels, dtype)
+    stated = Statements()
+    tags = draw_tags(random, stated, depth=16 if dtype == "uint16" else 8)
     if channels == 4:
         tags[338] = (3, [2])  # straight alpha
-    exif, index, words = draw_exif(random, 0.4, stated)
-    text += words
-    if random.random() < 0.2:
-        name = choose(random, ("P3", "Adobe"))
-        tags[34675] = (7, PROFILES[name][0])
-        stated.insert(0, PROFILES[name][1])
-        text += f" ICC {name}"
+    exif, index = draw_exif(random, stated, 0.4)
+    if profile := draw_icc(random, stated, 0.2):
+        tags[34675] = (7, profile)
     order = choose(random, "<>")
     path = folder / "a.tif"
     path.write_bytes(files.tiff_bytes(codes, tags, order, exif, index))
-    space, assumed = first_usable(stated)
-    rgb = codes[0, :, :3] if channels > 2 else np.repeat(codes[0, :, :1], 3, axis=1)
-    light = (
-        space.linear_to_srgb(rgb.astype(float))
-        if is_float
-        else space.to_srgb(rgb / np.iinfo(dtype).max)
-    )
-    return Drawn(path, f"{dtype} {channels} {order}{text}", light, light, assumed)
+    space, assumed = stated.first_usable()
+    rgb = first_three(codes)
+    if is_float:
+        light = space.linear_to_srgb(rgb.astype(float))
+    else:
+        light = space.to_srgb(rgb / np.iinfo(dtype).max)
+    text = f"{dtype} {channels} {order}{stated.text}"
+    return Drawn(path, text, light, light, assumed)
 
 
 def draw_jpeg(random: Random, folder: Path) -> Drawn:
     """Draw a JPEG file of one colour."""
     path = folder / "a.jpg"
-    image = Image.fromarray(
-        np.tile(random.integers(0, 256, 3, dtype=np.uint8), (8, 8, 1))
-    )
-    tags, stated, text = draw_tags(random, 8)
-    settings: dict[str, Any] = {"quality": 100, "subsampling": 0}
-    exif, index, words = draw_exif(random, 0.6, stated)
-    text += words
+    pixel = random.integers(0, 256, 3, dtype=np.uint8)
+    stated = Statements()
+    tags = draw_tags(random, stated, depth=8)
+    exif, index = draw_exif(random, stated, 0.6)
     order = choose(random, "<>")
-    settings["exif"] = b"Exif\0\0" + files.tiff_bytes(None, tags, order, exif, index)
-    if random.random() < 0.3:
-        name = choose(random, ("P3", "Adobe"))
-        settings["icc_profile"] = PROFILES[name][0]
-        stated.insert(0, PROFILES[name][1])
-        text += f" ICC {name}"
-    image.save(path, **settings)
-    space, assumed = first_usable(stated)
+    Image.fromarray(np.tile(pixel, (8, 8, 1))).save(
+        path,
+        quality=100,
+        subsampling=0,
+        exif=b"Exif\0\0" + files.tiff_bytes(None, tags, order, exif, index),
+        icc_profile=draw_icc(random, stated, 0.3),
+    )
+    space, assumed = stated.first_usable()
     light = space.to_srgb(np.asarray(Image.open(path)).reshape(-1, 3) / 255)
-    return Drawn(path, text, light, light, assumed)
+    return Drawn(path, stated.text, light, light, assumed)
 
 
 def draw_hdr(random: Random, folder: Path) -> Drawn:
@@ -431,12 +488,12 @@ DRAW = (
 )
 
 
-def largest_error(found: Array, expected: Array, colours: Array) -> float:
+def largest_error(obtained: Array, expected: Array, colours: Array) -> float:
     """Return the largest difference, relative to the largest component of the
     ``colours`` if they are above 1.
     """
     scale = np.maximum(1, np.abs(colours).max(axis=1, keepdims=True))
-    return float((np.abs(found - expected) / scale).max())
+    return float((np.abs(obtained - expected) / scale).max())
 
 
 def wrong(seed: int) -> list[str]:
@@ -445,36 +502,34 @@ def wrong(seed: int) -> list[str]:
     with tempfile.TemporaryDirectory() as folder:
         drawn = choose(random, DRAW)(random, Path(folder))
         with open_image(drawn.path) as image:
-            part, channels = coloured_parts(image)[0]
-            values = image.rows(part, 0, part.window.height).reshape(
-                -1, len(part.channels)
-            )
-            light, _ = LIGHTS.decoder(part)(
-                LIGHTS.colour_channels(channels).straight(values)
-            )
-            decode = make_decoder(SENSOR, part, "auto", "clip")
+            pixels, channels = coloured_parts(image)[0]
+            rows = image.rows(pixels, 0, pixels.window.height)
+            values = rows.reshape(-1, len(pixels.channels))
+            unlimited = LIGHTS.colour_channels(channels).straight(values)
+            light, _ = LIGHTS.decoder(pixels)(unlimited)
+            decode = make_decoder(SENSOR, pixels, "auto", "clip")
             straight, _ = decode(channels.straight(values))
             codes = {warning.code for warning in space_warnings(image, SENSOR)}
-    found = []
     error = largest_error(light, drawn.light, drawn.light)
     clipped = largest_error(straight, np.clip(drawn.straight, 0, 1), drawn.straight)
-    where = f"seed {seed}: {drawn.path.name} {drawn.text}"
+    findings = []
     if not error <= drawn.tolerance:
-        found.append(f"{where}: light differs by {error:.3g}")
+        findings.append(f"light differs by {error:.3g}")
     if not clipped <= drawn.tolerance:
-        found.append(f"{where}: colours differ by {clipped:.3g}")
+        findings.append(f"colours differ by {clipped:.3g}")
     if (codes == {"colour-space-assumed"}) != drawn.assumed:
-        found.append(f"{where}: warnings {codes}, expected {drawn.assumed}")
-    return found
+        findings.append(f"warnings {codes}, expected {drawn.assumed}")
+    where = f"seed {seed}: {drawn.path.name} {drawn.text}"
+    return [f"{where}: {finding}" for finding in findings]
 
 
 def main(first: int, count: int) -> int:
     """Try seeds, print what is wrong, and return the number of wrong images."""
     failures = 0
     for seed in range(first, first + count):
-        found = wrong(seed)
-        failures += bool(found)
-        print(*found, sep="\n", end="\n" * bool(found), flush=True)
+        findings = wrong(seed)
+        failures += bool(findings)
+        print(*findings, sep="\n", end="\n" * bool(findings), flush=True)
     print(f"{failures} of {count} images are wrong")
     return failures
 

@@ -8,7 +8,7 @@ import functools
 import io
 import json
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -108,21 +108,18 @@ def _vendor_file(random: Random, path: Path) -> None:
     """Mutate a file of an instrument."""
     files = choose(random, _vendor_files())
     seeds = tuple(chain.from_iterable(each.values() for each in _vendor_files()))
-    spectra = [
-        data for name, data in files.items() if name.endswith(".sli")
-    ]  # the header is the file to read
-    content, *others = [
-        data for name, data in files.items() if not name.endswith(".sli")
-    ]
+    # The header is the file to read.
+    spectra = [data for name, data in files.items() if name.endswith(".sli")]
+    content, *others = [data for data in files.values() if data not in spectra]
     if random.random() < 0.95:
         content = mutate(content, random, seeds)
     path.write_bytes(content)
     for data in others:
         path.with_name("Wavelengths.txt").write_bytes(data)
     for data in spectra:
-        path.with_suffix(".sli").write_bytes(
-            mutate(data, random, seeds) if random.random() < 0.3 else data
-        )
+        if random.random() < 0.3:
+            data = mutate(data, random, seeds)
+        path.with_suffix(".sli").write_bytes(data)
 
 
 # --- colours, charts, palettes, scenes, plans ---
@@ -241,6 +238,7 @@ def _plan() -> Seeds:
 RGB = np.array(
     [[0.2, 0.3, 0.4], [0, 0, 0], [1, 1, 1], [0.5, 0.5, 0.5], [0.9, 0.0, 0.1]]
 )
+LIGHT = observer.light("FL11")
 WAVELENGTHS = np.array([300.0, 380.0, 555.5, 780.0, 1000.0])
 LENGTHS = (0, 1, 7, 8, 1 << 20, 1 << 31, 1 << 40, (1 << 63) - 1, (1 << 64) - 1)
 FLOATS = (
@@ -291,12 +289,10 @@ def _coarse(data: CubeData) -> CubeData:
     lattice = Lattice(data.lattice.nodes[::7])
     kept = data.lattice.index(7 * lattice.position(np.arange(lattice.size)))
     arrays = {name: getattr(data.points, name) for name in POINTS}
-    points = PointTable(
-        **{
-            name: None if array is None else array[kept]
-            for name, array in arrays.items()
-        }
-    )
+    kept_arrays = {
+        name: array[kept] for name, array in arrays.items() if array is not None
+    }
+    points = PointTable(**kept_arrays)
     return dataclasses.replace(data, lattice=lattice, points=points)
 
 
@@ -312,10 +308,9 @@ def use_cube(path: Path) -> None:
         reflectance = cube.reflectance(RGB, WAVELENGTHS, mode)
         if not ((reflectance >= 0) & (reflectance <= 1)).all():
             raise ValueError(f"{mode}: reflectances outside [0, 1]")
-    lights = (
-        [None] if cube.data.atlas.left_out is None else [None, observer.light("FL11")]
-    )
-    for errors in [cube.standard_error(RGB, each) for each in lights]:
+    lights = [None] if cube.data.atlas.left_out is None else [None, LIGHT]
+    for light in lights:
+        errors = cube.standard_error(RGB, light)
         if errors is not None and not np.isfinite(errors).all():
             raise ValueError("standard errors that are not finite")
     if not all(np.isfinite(result.round_trip).all() for result in query(cube, RGB)):
@@ -340,9 +335,8 @@ def _corrupted(random: Random, path: Path) -> None:
             content = mutate(content, random, (header,))
         case 1:
             near = size + int(random.integers(-9, 10))
-            content = with_header_length(
-                content, near if random.random() < 0.5 else choose(random, LENGTHS)
-            )
+            length = near if random.random() < 0.5 else choose(random, LENGTHS)
+            content = with_header_length(content, length)
         case _:
             content = with_header(content, mutate(header, random, (header,)))
     path.write_bytes(content)
@@ -359,9 +353,8 @@ def _change_array(
             places = random.integers(array.size, size=int(2 ** random.uniform(0, 10)))
             array.flat[places] = np.asarray(choose(random, FLOATS)).astype(array.dtype)
         case 1:
-            array = (
-                random.normal(size=array.shape) * 10.0 ** random.integers(-12, 13)
-            ).astype(array.dtype)
+            scale = 10.0 ** random.integers(-12, 13)
+            array = (random.normal(size=array.shape) * scale).astype(array.dtype)
         case 2:
             array = array.astype(choose(random, DTYPES))
         case 3:
@@ -384,13 +377,12 @@ def _change_array(
 
 def _places(value: Any) -> Iterator[tuple[Any, Any]]:
     """Yield every container in ``value`` with each of its keys."""
-    for key in (
-        value
-        if isinstance(value, dict)
-        else range(len(value))
-        if isinstance(value, list)
-        else ()
-    ):
+    keys: Iterable[Any] = ()
+    if isinstance(value, dict):
+        keys = value
+    elif isinstance(value, list):
+        keys = range(len(value))
+    for key in keys:
         yield value, key
         yield from _places(value[key])
 
@@ -404,9 +396,8 @@ def _change_metadata(
     place, key = choose(random, list(_places(metadata)))
     value = choose(random, VALUES)
     draw = random.random()
-    for _ in range(
-        choose(random, (1, 2, 3, 20, 33, 300)) if random.random() < 0.2 else 0
-    ):
+    depth = choose(random, (1, 2, 3, 20, 33, 300)) if random.random() < 0.2 else 0
+    for _ in range(depth):
         value = {"a": value} if random.random() < 0.5 else [value]
     if draw < 0.1:
         del place[key]
@@ -420,9 +411,8 @@ def _forged(random: Random, path: Path) -> None:
     def change(tensors: dict[str, Any], metadata: dict[str, Any]) -> None:
         with np.errstate(all="ignore"):
             for _ in range(int(random.integers(1, 3))):
-                choose(random, (_change_array, _change_metadata))(
-                    tensors, metadata, random
-                )
+                act = choose(random, (_change_array, _change_metadata))
+                act(tensors, metadata, random)
 
     forge(choose(random, CUBES), path, change)
 

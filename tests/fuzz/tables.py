@@ -4,13 +4,12 @@ scales, orders, separators, marks.
 A reader gives the same spectra, or refuses the table; it never gives other values.
 """
 
-import itertools
 import sys
 import tempfile
 import warnings
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
 
@@ -74,25 +73,28 @@ CHOICES = {
 }  # fmt: skip
 
 
+IMPOSSIBLE = (
+    {"decimal": [","], "separator": [","]},
+    {"separator": [" "], "mark": [""]},  # a gap
+    {"scale": ["percent"], "values": ["dark"]},  # the file does not state it
+    {"layout": ["rows", "pairs", "samples"], "head": ["none", "two rows"]},
+    {"head": ["none"], "scale": ["percent in label"]},
+    {"layout": ["rows"], "unit": ["plain um", "wave number"]},  # not in such labels
+    {"head": ["none"], "unit": ["um", "angstrom", "metre", "wave number"]},
+    {"layout": ["samples"], "preamble": ["keys", "program", "numbers"]},
+    {"ending": ["trailing separators"], "separator": [" "]},
+)
+"""Choices that no program combines, or that the reader cannot know."""
+
+
+def combines(writing: Writing, choices: dict[str, list[str]]) -> bool:
+    """Whether a table is written with all of these choices."""
+    return all(getattr(writing, name) in options for name, options in choices.items())
+
+
 def is_possible(writing: Writing) -> bool:
     """Whether programs write such tables, and the reader can know it."""
-    if writing.decimal == writing.separator:
-        return False
-    if writing.separator == " " and writing.mark == "":
-        return False  # a gap
-    if writing.scale == "percent" and writing.values == "dark":
-        return False  # the file does not state it
-    if writing.layout != "columns" and writing.head != "names":
-        return False
-    if writing.head == "none" and writing.scale == "percent in label":
-        return False
-    if writing.layout == "rows" and writing.unit in ("plain um", "wave number"):
-        return False  # labels of a row state no such unit
-    if writing.head == "none" and writing.unit not in ("nm", "plain", "plain um"):
-        return False
-    if writing.layout == "samples" and writing.preamble != "none":
-        return False
-    return not (writing.ending == "trailing separators" and writing.separator == " ")
+    return not any(combines(writing, choices) for choices in IMPOSSIBLE)
 
 
 def draw(generator: np.random.Generator) -> Writing:
@@ -112,15 +114,14 @@ def spectra(writing: Writing, generator: np.random.Generator) -> dict[str, np.nd
     """Return smooth reflectances by name, with four decimals in percent."""
     low, high = VALUES[writing.values]
     count = 1 if writing.head == "none" else 3
-    found = {}
+    reflectances = {}
     for name in ("ochre", "umber 2", "grey 50%")[:count]:
         centre = generator.uniform(450, 650)
         width = generator.uniform(30, 90)
         shape = 1 / (1 + np.exp((centre - NM) / width))
-        found[name.replace(" ", "_") if writing.separator == " " else name] = np.round(
-            low + (high - low) * shape, 6
-        )
-    return found
+        label = name.replace(" ", "_") if writing.separator == " " else name
+        reflectances[label] = np.round(low + (high - low) * shape, 6)
+    return reflectances
 
 
 def write(
@@ -129,37 +130,38 @@ def write(
     generator: np.random.Generator,
 ) -> bytes:
     """Return the bytes of a table."""
-    lines = list(_preamble(writing))
-    order = {"ascending": slice(None), "descending": slice(None, None, -1)}.get(
-        writing.order
-    )
-    order = generator.permutation(len(NM)) if order is None else order
-    factor, label = UNITS[writing.unit]
+    order = np.arange(len(NM))
+    if writing.order == "descending":
+        order = order[::-1]
+    elif writing.order == "shuffled":
+        order = generator.permutation(order)
     nm = NM[order]
-    waves = [
-        _number(1e7 / each if factor is None else each * factor, 6, writing)
-        for each in nm
-    ]
-    if factor == 1e-9:
-        waves = [f"{each * 1e-9:.4e}".replace(".", writing.decimal) for each in nm]
     columns = {
         name: _cells(values[order], nm, writing)
         for name, values in reflectances.items()
     }
+    label = UNITS[writing.unit][1]
     suffix = " (%R)" if writing.scale == "percent in label" else ""
-    suffix = suffix.strip() if writing.separator == " " else suffix
-    label = label.replace(" ", "") if writing.separator == " " else label
-    table = list(_table(writing, label, waves, columns, suffix))
+    if writing.separator == " ":
+        label = label.replace(" ", "")
+        suffix = suffix.strip()
+    table = _table(writing, label, _waves(nm, writing), columns, suffix)
     end = writing.separator * 3 if writing.ending == "trailing separators" else ""
-    lines += [writing.separator.join(row) + end for row in table]
+    lines = [*_preamble(writing), *(writing.separator.join(row) + end for row in table)]
     if writing.ending == "footer":
         lines += ["", "End of data", "Checked by: A. Person"]
-    if writing.ending == "blank lines":
-        lines = list(itertools.chain.from_iterable((line, "") for line in lines))
-    text = "\n".join(lines) + "\n"
-    if writing.ending == "crlf":
-        return text.replace("\n", "\r\n").encode("utf-8-sig")
-    return text.encode("utf-16" if writing.ending == "utf-16" else "utf-8")
+    newline = {"blank lines": "\n\n", "crlf": "\r\n"}.get(writing.ending, "\n")
+    encoding = {"crlf": "utf-8-sig", "utf-16": "utf-16"}.get(writing.ending, "utf-8")
+    return "".join(line + newline for line in lines).encode(encoding)
+
+
+def _waves(nm: np.ndarray, writing: Writing) -> list[str]:
+    """Return wavelengths or wave numbers as texts."""
+    factor = UNITS[writing.unit][0]
+    if writing.unit == "metre":
+        return [f"{wave * 1e-9:.4e}".replace(".", writing.decimal) for wave in nm]
+    values = 1e7 / nm if factor is None else nm * factor
+    return [_number(value, writing) for value in values]
 
 
 def _preamble(writing: Writing) -> Iterator[str]:
@@ -187,25 +189,21 @@ def _preamble(writing: Writing) -> Iterator[str]:
         yield ">>>>>Begin Spectral Data<<<<<"
 
 
-def _number(value: float, digits: int, writing: Writing) -> str:
-    text = f"{value:.{digits}f}".rstrip("0").rstrip(".")
+def _number(value: float, writing: Writing) -> str:
+    text = f"{value:.6f}".rstrip("0").rstrip(".")
     return text.replace(".", writing.decimal)
 
 
 def _cells(values: np.ndarray, nm: np.ndarray, writing: Writing) -> list[str]:
-    in_percent = writing.scale not in ("fraction", "stated fraction")
-    texts = [
-        _number(value * (100 if in_percent else 1), 6, writing) for value in values
-    ]
+    factor = 1 if writing.scale in ("fraction", "stated fraction") else 100
+    unit = ""
     if writing.scale == "percent in cells":
-        texts = [
-            f"{text}%" if writing.separator == " " else f"{text} %" for text in texts
-        ]
+        unit = "%" if writing.separator == " " else " %"
+    texts = [_number(value * factor, writing) + unit for value in values]
     if writing.mark != "none":
-        texts = [
-            writing.mark if each < 370 or each > 840 else text
-            for each, text in zip(nm, texts, strict=True)
-        ]
+        is_marked = (nm < 370) | (nm > 840)
+        for row in np.flatnonzero(is_marked):
+            texts[row] = writing.mark
     return texts
 
 
@@ -216,42 +214,39 @@ def _table(
     columns: dict[str, list[str]],
     suffix: str,
 ) -> Iterator[list[str]]:
-    names = list(columns)
     if writing.layout == "rows":
         unit = {"um": "um", "angstrom": "Å"}.get(writing.unit, "")
         yield [f"name{suffix}", *(f"{wave}{unit}" for wave in waves)]
         for name, cells in columns.items():
             yield [name, *cells]
-    elif writing.layout == "samples":
+        return
+    if writing.layout == "samples":
         yield ["Sample", label, f"Reflectance{suffix}"]
         for name, cells in columns.items():
-            for wave, cell in zip(waves, cells, strict=True):
-                yield [name, wave, cell]
-    elif writing.layout == "pairs":
-        yield list(chain.from_iterable((label, f"{name}{suffix}") for name in names))
-        for row, wave in enumerate(waves):
-            yield list(
-                chain.from_iterable((wave, columns[name][row]) for name in names)
-            )
-    else:
-        if writing.head == "two rows":
-            yield ["Sample", *names]
-            yield [label, *(f"R{suffix}" for _ in names)]
-        elif writing.head == "names":
-            yield [label, *(f"{name}{suffix}" for name in names)]
-        for row, wave in enumerate(waves):
-            yield [wave, *(columns[name][row] for name in names)]
+            yield from ([name, *pair] for pair in zip(waves, cells, strict=True))
+        return
+    yield from _table_of_columns(writing, label, waves, columns, suffix)
 
 
-def describe(writing: Writing) -> str:
-    """Return what differs from the usual writing."""
-    usual = Writing()
-    changed = [
-        each.name
-        for each in fields(Writing)
-        if getattr(writing, each.name) != getattr(usual, each.name)
-    ]
-    return ", ".join(f"{name}={getattr(writing, name)!r}" for name in changed)
+def _table_of_columns(
+    writing: Writing,
+    label: str,
+    waves: list[str],
+    columns: dict[str, list[str]],
+    suffix: str,
+) -> Iterator[list[str]]:
+    heads = [f"{name}{suffix}" for name in columns]
+    rows = list(zip(waves, *columns.values(), strict=True))
+    if writing.layout == "pairs":
+        for first, *others in [(label, *heads), *rows]:
+            yield list(chain.from_iterable((first, other) for other in others))
+        return
+    if writing.head == "two rows":
+        yield ["Sample", *columns]
+        heads = [f"R{suffix}"] * len(columns)
+    if writing.head != "none":
+        yield [label, *heads]
+    yield from map(list, rows)
 
 
 def check(seed: int, folder: Path) -> str:
@@ -269,9 +264,7 @@ def check(seed: int, folder: Path) -> str:
             atlas = read_atlas(path)
         except AtlasError as error:
             return error.code
-    assert is_same(atlas, writing, reflectances), (
-        f"{seed}: {describe(writing)}: {atlas.entries}"
-    )
+    assert is_same(atlas, writing, reflectances), f"{seed}: {writing}: {atlas.entries}"
     return "read"
 
 
@@ -285,9 +278,8 @@ def is_same(
         expected = np.interp(entry.wavelengths, NM, values)
         covers = entry.wavelengths[0] <= 380 and entry.wavelengths[-1] >= 780
         is_named = writing.head == "none" or entry.name.startswith(name)
-        if not (
-            covers and is_named and np.abs(entry.values - expected).max() < ROUNDING
-        ):
+        error = np.abs(entry.values - expected).max()
+        if not (covers and is_named and error < ROUNDING):
             return False
     return True
 

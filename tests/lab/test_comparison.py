@@ -2,14 +2,15 @@
 is found, pictures have all.
 """
 
+import itertools
 import json
 import re
 from dataclasses import replace
-from itertools import product
 
 import matplotlib.image
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 from benchmarks import read_reference
 from tests.browsing import check_page
@@ -17,7 +18,7 @@ from tests.conftest import MACBETH
 from tests.helpers import raises, warns
 from tests.pages import Page
 from uplift.atlas import Atlas, on_grid, read_atlas, write_atlas
-from uplift.colorimetry import delta_e_2000, lab
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError, UpliftError
 from uplift.extras.emission.lamps import read_lamps
 from uplift.extras.scene.representations import find_representation
@@ -67,11 +68,10 @@ def checker():
 
 @pytest.fixture(scope="module")
 def found(checker):
-    makers = (point_samples, riemann_sums, enhanced_riemann)
-    made = [make(count) for make, count in product(makers, (16, 32))]
-    return compare(
-        checker, [*made, sun_composite(15), trigonometric_moments(9)], quick=True
-    )
+    representations = [sun_composite(15), trigonometric_moments(9)]
+    for make in (point_samples, riemann_sums, enhanced_riemann):
+        representations += [make(16), make(32)]
+    return compare(checker, representations, quick=True)
 
 
 def test_dense_data_have_no_error(checker):
@@ -100,7 +100,7 @@ def test_errors_match_explicit_loops(checker):
         np.std(apart),
         *np.quantile(apart, (0.5, 0.025, 0.25, 0.75, 0.975)),
     ]
-    np.testing.assert_allclose(error_statistics(samples, part), expected, rtol=1e-9)
+    assert_allclose(error_statistics(samples, part), expected, rtol=1e-9)
 
 
 def test_result_that_is_not_finite_is_an_error(checker):
@@ -110,7 +110,7 @@ def test_result_that_is_not_finite_is_an_error(checker):
 
 
 def test_results_are_ranked_within_their_sets(checker, found):
-    np.testing.assert_allclose(checker.powers @ xyz_weights()[:, 1], 1)
+    assert_allclose(checker.powers @ xyz_weights()[:, 1], 1)
     assert list(found.sets) == ["smooth", "spiky"]
     for name in found.sets:
         means = [row.statistics.mean for row in found.of(name)]
@@ -132,12 +132,8 @@ def test_findings_of_the_thesis_hold_for_the_colorchecker(found):
     spiky = {row.name: row.statistics.mean for row in found.of("spiky")}
     assert all(smooth[f"{family}32"] < 1 for family in ("PS", "RS", "RE"))
     assert spiky["PS16"] > 10 * smooth["PS16"]
-    assert (
-        max(spiky["CS15"], spiky["RE16"])
-        < spiky["RS16"]
-        < spiky["PS32"]
-        < spiky["PS16"]
-    )
+    assert spiky["RS16"] < spiky["PS32"] < spiky["PS16"]
+    assert max(spiky["CS15"], spiky["RE16"]) < spiky["RS16"]
 
 
 @pytest.mark.parametrize(
@@ -162,14 +158,12 @@ def test_written_spectra_have_the_colours_of_the_representation(
     # one.
     flat = made.encode_light(np.ones_like(scene.surfaces))
     expected = made.xyz(made.multiply(flat, code) if name[:2] in ("TM", "SG") else code)
-    np.testing.assert_allclose(
+    assert_allclose(
         on_grid(surfaces, wavelengths()) @ xyz_weights(), expected, atol=1e-12
     )
     powers = on_grid(lamps, wavelengths()) @ xyz_weights()
     light_xyz = made.xyz(made.encode_light(scene.powers))
-    np.testing.assert_allclose(
-        powers / powers[:, 1:2], light_xyz / light_xyz[:, 1:2], atol=1e-12
-    )
+    assert_allclose(powers / powers[:, 1:2], light_xyz / light_xyz[:, 1:2], atol=1e-12)
 
 
 def test_negative_lobes_of_a_filter_are_clipped_with_a_warning(checker):
@@ -314,20 +308,22 @@ def test_files_are_images(found, tmp_path):
         assert pixels.std() > 0.05
 
 
+def first_column(rows):
+    return [row[0].parts[0] for row in rows]
+
+
 def test_page_has_every_representation_fits_and_is_accessible(found, tmp_path):
     html = render_comparison(found)
     assert render_comparison(found) == html
     known = names(found)
-    for panel in range(len(cost_panels(found))):
-        assert all(
-            html.count(f'id="marker-{panel}-{number}"') == 1
-            for number in range(len(known))
-        )
+    panels = range(len(cost_panels(found)))
+    for panel, number in itertools.product(panels, range(len(known))):
+        assert html.count(f'id="marker-{panel}-{number}"') == 1
     (data,) = re.findall(
         r'<script type="application/json" id="rows">(.*?)</script>', html, re.DOTALL
     )
-    assert [one["title"] for one in json.loads(data)] == known
-    tables = [[row[0].parts[0] for row in table[1:]] for table in Page(html).tables]
+    assert [row["title"] for row in json.loads(data)] == known
+    tables = [first_column(table[1:]) for table in Page(html).tables]
     for name in found.sets:
         assert [result.name for result in found.of(name)] in tables
     check_page(html, tmp_path)
@@ -350,23 +346,17 @@ def test_representations_fitted_to_a_scene_follow_its_products(fitted):
     assert errors["CM17"] < errors["CM9"] < 0.5
     assert errors["BF5"] < 6
     encode = named["FW5"].encode_light
-    np.testing.assert_array_equal(
-        encode(lights.powers[::-1]), encode(lights.powers)[::-1]
-    )
+    assert_array_equal(encode(lights.powers[::-1]), encode(lights.powers)[::-1])
+
+
+def costs_of(row):
+    return np.array([row.floats, row.light_floats, row.statistics.q97_5])
 
 
 def test_the_front_has_all_that_nothing_dominates(found):
     for name in found.sets:
         front = pareto(found, name)
         for row in found.of(name):
-            costs = (row.floats, row.light_floats, row.statistics.q97_5)
-            is_beaten = any(
-                all(
-                    np.less_equal(
-                        (each.floats, each.light_floats, each.statistics.q97_5), costs
-                    )
-                )
-                for each in front
-                if each is not row
-            )
+            others = [costs_of(other) for other in front if other is not row]
+            is_beaten = np.all(others <= costs_of(row), axis=1).any()
             assert is_beaten != (row in front)

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.cube.hand_made import table
 from uplift.fit.seeds import MAX_HALF_WIDTH, half_widths, outside_half_widths
@@ -35,7 +36,7 @@ def test_the_mixture_has_the_colour(entries, rgb):
         lattice_weight[:, None] * exit_rgb
         + (1 - lattice_weight[:, None]) * entries[entry]
     )
-    np.testing.assert_allclose(
+    assert_allclose(
         mixed, rgb[rows], rtol=0, atol=MARGIN
     )  # exact but for entries at the edge
 
@@ -75,16 +76,14 @@ def test_the_lattice_has_no_weight_at_an_entry():
         rows, entry, lattice_weight, _ = boxes(entries).find(colours)
         assert rows.tolist() == [0, 1, 2]
         assert entry.tolist() == [0, 1, 2]
-        np.testing.assert_allclose(lattice_weight, 0, rtol=0, atol=1e-7)
+        assert_allclose(lattice_weight, 0, rtol=0, atol=1e-7)
 
 
 def test_touched_cells_are_those_of_boxes():
     found = boxes(np.array([[0.2, 0.3, 0.4]]))
     rgb = np.random.default_rng(0).random((500, 3))
     cells = LATTICE.index(LATTICE.cell(rgb)[0])
-    np.testing.assert_array_equal(
-        found.touched_cells[cells], np.isin(cells, found.cells[0])
-    )
+    assert_array_equal(found.touched_cells[cells], np.isin(cells, found.cells[0]))
     assert found.touched_cells.sum() == len(found.cells[0]) == 27
 
 
@@ -140,9 +139,7 @@ def test_the_weight_of_an_entry_outside_is_1_in_its_core_and_0_on_the_faces():
     shares = np.array([0, 0.05, 0.1, 0.55, 1 - 1e-9, 1.01])
     hits = found.find(found.rgb + 0.1 * shares[:, None] * [0, -1, 0])
     assert hits.rows.tolist() == [0, 1, 2, 3, 4]
-    np.testing.assert_allclose(
-        hits.lattice_weight, [0, 0, 0, 0.5, 1], rtol=0, atol=1e-8
-    )
+    assert_allclose(hits.lattice_weight, [0, 0, 0, 0.5, 1], rtol=0, atol=1e-8)
 
 
 def colours_in(data, cell, count=400):

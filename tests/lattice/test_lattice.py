@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
@@ -15,23 +16,23 @@ colours = arrays(float, (7, 3), elements=st.floats(0, 1))
 
 
 def test_points_are_numbered_blue_fastest():
-    np.testing.assert_array_equal(UNEVEN.points[1], [0, 0, 0.01])
-    np.testing.assert_array_equal(UNEVEN.points[5], [0, 0.01, 0])
-    np.testing.assert_array_equal(UNEVEN.points[25], [0.01, 0, 0])
+    assert_array_equal(UNEVEN.points[1], [0, 0, 0.01])
+    assert_array_equal(UNEVEN.points[5], [0, 0.01, 0])
+    assert_array_equal(UNEVEN.points[25], [0.01, 0, 0])
     assert len(UNEVEN.points) == UNEVEN.size == 125
 
 
 def test_index_and_position_are_inverse():
     every = np.arange(UNEVEN.size)
-    np.testing.assert_array_equal(UNEVEN.index(UNEVEN.position(every)), every)
+    assert_array_equal(UNEVEN.index(UNEVEN.position(every)), every)
 
 
 @given(colours)
 def test_weights_are_a_partition_of_unity_and_reproduce_the_colour(rgb):
     points, weights = UNEVEN.corners(rgb)
     assert (weights >= 0).all()
-    np.testing.assert_allclose(weights.sum(axis=1), 1, atol=1e-14)
-    np.testing.assert_allclose(
+    assert_allclose(weights.sum(axis=1), 1, atol=1e-14)
+    assert_allclose(
         (weights[:, :, None] * UNEVEN.points[points]).sum(axis=1), rgb, atol=1e-14
     )
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.cube.hand_made import hand_made
 from tests.helpers import raises
@@ -51,7 +52,7 @@ def test_spectra_are_those_of_numpy(cube):
     assert found.dtype == np.float32
     assert found.min() >= 0
     assert found.max() <= 1
-    np.testing.assert_allclose(found, cube.reflectance(rgb, AT), rtol=0, atol=1e-6)
+    assert_allclose(found, cube.reflectance(rgb, AT), rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize("count", [None, "entries"])
@@ -61,9 +62,7 @@ def test_coefficients_are_those_of_numpy(cube, count):
     expected = cube.coefficients(rgb, count)
     # A sigmoid's coefficients run into hundreds, and are steep in the colour.
     found = bulk.coefficients(cube, count)(rgb)
-    np.testing.assert_allclose(
-        found, expected, rtol=0, atol=2e-6 * np.abs(expected).max()
-    )
+    assert_allclose(found, expected, rtol=0, atol=2e-6 * np.abs(expected).max())
 
 
 def test_nodes_closer_than_bins_are_distinguished():
@@ -76,7 +75,7 @@ def test_nodes_closer_than_bins_are_distinguished():
         [rng.random((500, 3)), 3e-5 * rng.random((500, 3)), data.lattice.points]
     )
     found = bulk.coefficients(Cube(data))(rgb)
-    np.testing.assert_allclose(found, Cube(data).coefficients(rgb), rtol=0, atol=1e-5)
+    assert_allclose(found, Cube(data).coefficients(rgb), rtol=0, atol=1e-5)
 
 
 def test_results_do_not_depend_on_chunks_and_threads(small_cube, monkeypatch):
@@ -85,7 +84,7 @@ def test_results_do_not_depend_on_chunks_and_threads(small_cube, monkeypatch):
     monkeypatch.setattr("uplift.lookup.bulk.CHUNKS", (256, 64))
     for threads in (1, 2, 5):
         again = bulk.spectra(small_cube, AT, threads=threads)(rgb)
-        np.testing.assert_allclose(again, whole, rtol=0, atol=1e-6)
+        assert_allclose(again, whole, rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import os
 import colour
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.helpers import raises
@@ -40,8 +41,8 @@ def test_rounding_moves_no_colour_out_of_gamut_and_no_input(small_cube, mode):
         rgb = np.array([(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), (1.0, 0.5, 0.0)]) + bit
         before = rgb.copy()
         near = small_cube.reflectance(rgb, mode=mode)
-        np.testing.assert_array_equal(rgb, before)
-        np.testing.assert_allclose(
+        assert_array_equal(rgb, before)
+        assert_allclose(
             near, small_cube.reflectance(rgb - bit, mode=mode), rtol=0, atol=1e-8
         )
     with pytest.raises(ColourError):
@@ -51,9 +52,7 @@ def test_rounding_moves_no_colour_out_of_gamut_and_no_input(small_cube, mode):
 def test_reflectances_do_not_depend_on_threads(small_cube, mode):
     rgb = random_colours(2 * BLOCK + 5)
     alone = small_cube.reflectance(rgb, AT, mode)
-    np.testing.assert_array_equal(
-        small_cube.reflectance(rgb, AT, mode, threads=3), alone
-    )
+    assert_array_equal(small_cube.reflectance(rgb, AT, mode, threads=3), alone)
 
 
 @pytest.mark.parametrize("count", [3, 1000])
@@ -63,9 +62,7 @@ def test_float32_agrees_with_float64(small_cube, mode, count):
     assert found.dtype == np.float32
     assert found.min() >= 0
     assert found.max() <= 1
-    np.testing.assert_allclose(
-        found, small_cube.reflectance(rgb, AT, mode), rtol=0, atol=1e-6
-    )
+    assert_allclose(found, small_cube.reflectance(rgb, AT, mode), rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize("mode", TABULATED)
@@ -75,7 +72,7 @@ def test_a_table_of_all_points_gives_equal_spectra(small_cube, monkeypatch, mode
     assert len(rgb) >= small_cube.data.lattice.size
     from_table = small_cube.reflectance(rgb, AT, mode)
     monkeypatch.setattr("uplift.lookup.cube.MAX_TABLE_BYTES", 0)
-    np.testing.assert_allclose(
+    assert_allclose(
         small_cube.reflectance(rgb, AT, mode), from_table, rtol=0, atol=1e-14
     )
 
@@ -144,14 +141,14 @@ def test_invalid_arguments_are_refused(small_cube, name, value, code):
 
 def test_codes_decode_as_srgb_and_encoding_is_inverse(small_cube):
     codes = np.arange(256)
-    np.testing.assert_allclose(
+    assert_allclose(
         small_cube.decode(codes),
         colour.cctf_decoding(codes / 255, "sRGB"),
         rtol=0,
         atol=1e-15,
     )
     codes = np.linspace(0, 255, 1021).reshape(1021, 1)
-    np.testing.assert_allclose(
+    assert_allclose(
         small_cube.encode(small_cube.decode(codes)), codes, rtol=0, atol=1e-10
     )
 

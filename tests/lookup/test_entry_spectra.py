@@ -4,6 +4,7 @@ colour up.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from uplift.lookup import MODES, extended_multipliers
 from uplift.models import evaluate, reflectance
@@ -56,10 +57,8 @@ def test_an_entry_is_answered_with_all_its_coefficients(small_cube, data, mode):
     few = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
     assert np.abs(own - few).max() > 0.1
     found = small_cube.reflectance(data.atlas.rgb, mode=mode)
-    np.testing.assert_allclose(
-        found, own, rtol=0, atol=1e-4 if mode == "refined" else 1e-12
-    )
-    np.testing.assert_allclose(extended(data, data.atlas.rgb), own, rtol=0, atol=1e-4)
+    assert_allclose(found, own, rtol=0, atol=1e-4 if mode == "refined" else 1e-12)
+    assert_allclose(extended(data, data.atlas.rgb), own, rtol=0, atol=1e-4)
 
 
 def test_spectra_in_boxes_mix_entry_and_lattice(small_cube, data):
@@ -75,9 +74,7 @@ def test_spectra_in_boxes_mix_entry_and_lattice(small_cube, data):
         entry = reflectance(own.model, own.coefficients[hit.entry], at)
         share = hit.lattice_weight[:, None]
         expected = share * lattice + (1 - share) * entry
-        np.testing.assert_allclose(
-            small_cube.reflectance(colour), expected[0], rtol=0, atol=1e-9
-        )
+        assert_allclose(small_cube.reflectance(colour), expected[0], rtol=0, atol=1e-9)
 
 
 def test_colours_in_boxes_are_exact(small_cube, data):
@@ -110,7 +107,7 @@ def test_answers_are_continuous_across_the_faces_of_boxes(small_cube, data):
         assert len(data.entry_boxes.find(inside).rows) == len(on)
         assert len(data.entry_boxes.find(outside).rows) < len(on)
         for name, lookup in lookups(small_cube).items():
-            np.testing.assert_allclose(
+            assert_allclose(
                 lookup(inside), lookup(outside), rtol=0, atol=1e-5, err_msg=name
             )
 
@@ -124,6 +121,6 @@ def test_more_coefficients_are_the_moments_of_the_exact_spectra(small_cube, data
         np.trapezoid(spectra * np.cos(order * phase), phase) / np.pi
         for order in range(17)
     ]
-    np.testing.assert_allclose(
+    assert_allclose(
         small_cube.coefficients(rgb, 17), np.transpose(moments), rtol=0, atol=1e-6
     )

@@ -7,6 +7,7 @@ import warnings
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.conftest import ATLASES
@@ -98,15 +99,13 @@ def test_the_likely_region_holds_95_percent_of_the_other_halves(halves, sensor):
 def test_an_entry_has_its_own_error(small_cube, sensor):
     data = small_cube.data
     light = observer.light("FL11")
-    np.testing.assert_allclose(
+    assert_allclose(
         small_cube.standard_error(data.atlas.rgb), data.atlas.error, atol=1e-12
     )
     own = delta_e_spectra(
         light, small_cube.reflectance(data.atlas.rgb), data.atlas.measured
     )
-    np.testing.assert_allclose(
-        small_cube.standard_error(data.atlas.rgb, light), own, atol=1e-6
-    )
+    assert_allclose(small_cube.standard_error(data.atlas.rgb, light), own, atol=1e-6)
 
 
 def test_colours_far_from_all_entries_are_unlike_the_atlas(small_cube, plain_cube):

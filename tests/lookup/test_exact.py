@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from uplift.colorimetry import delta_e_rgb, solid
@@ -41,7 +42,7 @@ def test_realisable_colours_are_exact(wide, colours, mode):
         )
         realisable = realisable[cube.data.solid.contains(realisable)]
         found = cube.data.sensor.rgb(cube.reflectance(realisable, mode=mode))
-        np.testing.assert_allclose(found, realisable, rtol=0, atol=1e-4)
+        assert_allclose(found, realisable, rtol=0, atol=1e-4)
 
 
 def test_spectra_that_nearly_have_their_colours_hardly_move(wide):
@@ -60,9 +61,7 @@ def test_coefficients_of_realisable_colours_have_them(wide, colours):
     realisable = colours[inside(wide, colours, 0.01)]
     found = wide.data.model.from_storage(uplift.bulk.coefficients(wide)(realisable))
     found = evaluate(wide.data.model, found, wide.wavelengths)
-    np.testing.assert_allclose(
-        wide.data.sensor.rgb(found), realisable, rtol=0, atol=1e-4
-    )
+    assert_allclose(wide.data.sensor.rgb(found), realisable, rtol=0, atol=1e-4)
 
 
 @pytest.mark.parametrize("mode", EXACT_MODES)
@@ -77,9 +76,7 @@ def test_unrealisable_colours_become_the_nearest_realisable_of_their_hue(
     assert ((answers >= 0) & (answers <= 1)).all()
     assert np.abs(sensor.rgb(answers) - goal).max() <= 0.02
     assert np.median(np.abs(sensor.rgb(answers) - goal)) <= 1e-4
-    np.testing.assert_allclose(
-        sensor.xyz(goal)[:, 1], sensor.xyz(outside)[:, 1], atol=1e-9
-    )
+    assert_allclose(sensor.xyz(goal)[:, 1], sensor.xyz(outside)[:, 1], atol=1e-9)
 
 
 @pytest.mark.parametrize("mode", EXACT_MODES)
@@ -116,14 +113,12 @@ def test_tables_and_the_bulk_query_have_the_same_answers(wide, colours):
     few = np.concatenate(
         [wide.reflectance(part) for part in np.array_split(colours, 60)]
     )
-    np.testing.assert_allclose(
+    assert_allclose(
         wide.reflectance(colours), few, atol=1e-6
     )  # unrealisable ones are nearly boxes
     sampler = uplift.bulk.spectra(wide)
-    np.testing.assert_allclose(sampler(colours), few, atol=2e-6)
-    np.testing.assert_array_equal(
-        pickle.loads(pickle.dumps(sampler))(colours), sampler(colours)
-    )
+    assert_allclose(sampler(colours), few, atol=2e-6)
+    assert_array_equal(pickle.loads(pickle.dumps(sampler))(colours), sampler(colours))
 
 
 def test_an_entry_in_an_inexact_cell_keeps_its_spectrum():
@@ -132,7 +127,7 @@ def test_an_entry_in_an_inexact_cell_keeps_its_spectrum():
     rgb = cube.data.atlas.rgb
     near = np.clip(rgb + np.random.default_rng(0).uniform(-0.05, 0.05, (40, 3)), 0, 1)
     assert delta_e(cube, near, cube.reflectance(near)).max() <= 0.001
-    np.testing.assert_allclose(
+    assert_allclose(
         cube.reflectance(rgb),
         cube.data.atlas.spectra.reflectance([0], cube.wavelengths),
         atol=1e-5,

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_allclose
 
 from uplift.lookup import around, refined_multipliers
 from uplift.lookup.refine import TOLERANCE
@@ -31,15 +32,13 @@ def cube(request):
 def test_a_point_has_its_stored_spectrum(cube, mode):
     at = [380.0, 500.0, 612.3, 780.0]
     found = cube.reflectance(cube.data.lattice.points, at, mode)
-    np.testing.assert_allclose(
-        found, stored_spectra(cube.data, np.array(at)), rtol=0, atol=1e-12
-    )
+    assert_allclose(found, stored_spectra(cube.data, np.array(at)), rtol=0, atol=1e-12)
 
 
 def test_coefficients_are_those_stored_at_a_point_and_trilinear_in_a_cell(cube):
     nodes = cube.data.lattice.nodes
     stored = cube.data.points.coefficients
-    np.testing.assert_allclose(
+    assert_allclose(
         cube.coefficients(cube.data.lattice.points), stored, rtol=1e-15, atol=1e-15
     )
     low = nodes[[3, 5, 2]]
@@ -52,20 +51,18 @@ def test_coefficients_are_those_stored_at_a_point_and_trilinear_in_a_cell(cube):
                 share = np.prod(np.where([r, g, b], fraction, 1 - fraction))
                 expected += share * stored[((3 + r) * 8 + 5 + g) * 8 + 2 + b]
     found = cube.coefficients(low + fraction * (high - low))
-    np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6)
+    assert_allclose(found, expected, rtol=1e-6, atol=1e-6)
 
 
 def test_refined_spectra_and_multipliers_have_the_colour(small_cube):
     rgb = random_colours(200)
     data = small_cube.data
     found = data.sensor.rgb(small_cube.reflectance(rgb, mode="refined"))
-    np.testing.assert_allclose(found, rgb, rtol=0, atol=2 * TOLERANCE)
+    assert_allclose(found, rgb, rtol=0, atol=2 * TOLERANCE)
     spectra = data.model.to_reflectance(
         refined_multipliers(data, rgb) @ data.model.basis(data.sensor.wavelengths).T
     )
-    np.testing.assert_allclose(
-        data.sensor.rgb(spectra), rgb, rtol=0, atol=2 * TOLERANCE
-    )
+    assert_allclose(data.sensor.rgb(spectra), rgb, rtol=0, atol=2 * TOLERANCE)
 
 
 @pytest.mark.parametrize("mode", ["spectra", "moments", "refined"])
@@ -76,7 +73,7 @@ def test_answers_are_continuous_across_the_faces_of_cells(small_cube, mode):
         small_cube.reflectance(np.where(on == nodes[[3, 5, 1]], on + by, on), mode=mode)
         for by in (-1e-9, 1e-9)
     )
-    np.testing.assert_allclose(before, after, rtol=0, atol=1e-4)
+    assert_allclose(before, after, rtol=0, atol=1e-4)
 
 
 def test_the_nearest_lattice_point_answers_where_no_entry_is_near(plain_cube):
@@ -87,7 +84,7 @@ def test_the_nearest_lattice_point_answers_where_no_entry_is_near(plain_cube):
     wanted = nodes[low + (fraction > 0.5)]
     rows = [int(np.flatnonzero((points == point).all(axis=1))[0]) for point in wanted]
     expected = stored_spectra(plain_cube.data, plain_cube.data.sensor.wavelengths)[rows]
-    np.testing.assert_allclose(
+    assert_allclose(
         plain_cube.reflectance(rgb, mode="nearest"), expected, rtol=0, atol=1e-12
     )
 
@@ -103,7 +100,7 @@ def test_nearest_is_the_entry_or_the_point_of_larger_weight(small_cube):
     near, far = (
         data.atlas.rgb + share * (high - data.atlas.rgb) for share in (0.1, 0.95)
     )
-    np.testing.assert_allclose(
+    assert_allclose(
         small_cube.reflectance(near, mode="nearest"), own, rtol=0, atol=1e-12
     )
     apart = np.abs(small_cube.reflectance(far, mode="nearest") - own).max(axis=1)
@@ -121,7 +118,7 @@ def test_weights_are_a_partition_of_unity_and_reproduce_the_colour_including_ent
     ones = nodes.weighted_sum(
         np.ones((data.lattice.size, 1)), np.ones((len(data.atlas.names), 1))
     )
-    np.testing.assert_allclose(ones, 1, atol=1e-14)
-    np.testing.assert_allclose(
+    assert_allclose(ones, 1, atol=1e-14)
+    assert_allclose(
         nodes.weighted_sum(data.lattice.points, data.atlas.rgb), rgb, atol=1e-12
     )

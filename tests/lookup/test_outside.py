@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.helpers import near_black, raises, with_absent_points
@@ -29,15 +30,11 @@ def test_filling_keeps_present_points_and_has_exact_colours(whole, sparse):
     there = sparse.data.points.present
     assert data.points.present.all()
     assert data.points.distance.max() <= data.threshold
-    np.testing.assert_allclose(
-        full.data.sensor.rgb(full.reflectance(RGB)), RGB, rtol=0, atol=1e-4
-    )
-    np.testing.assert_array_equal(
+    assert_allclose(full.data.sensor.rgb(full.reflectance(RGB)), RGB, rtol=0, atol=1e-4)
+    assert_array_equal(
         data.points.coefficients[there], whole.data.points.coefficients[there]
     )
-    np.testing.assert_array_equal(
-        data.points.status[there], whole.data.points.status[there]
-    )
+    assert_array_equal(data.points.status[there], whole.data.points.status[there])
 
 
 def test_filled_spectra_are_those_of_the_default_cube(plain_cube):
@@ -47,7 +44,7 @@ def test_filled_spectra_are_those_of_the_default_cube(plain_cube):
         with_absent_points(plain_cube.data, near_black(plain_cube.data))
     ).fill_missing()
     points = full.data.lattice.points[~near_black(plain_cube.data)]
-    np.testing.assert_allclose(
+    assert_allclose(
         full.reflectance(points), own.reflectance(points, mode="refined"), atol=1e-5
     )
 
@@ -58,7 +55,7 @@ def test_only_the_points_that_the_colours_need_are_filled(sparse):
     assert some.covers(queried).all()
     assert 0 < some.data.points.present.sum() - sparse.data.points.present.sum() <= 8
     for mode in MODES:
-        np.testing.assert_allclose(
+        assert_allclose(
             some.reflectance(queried, mode=mode),
             sparse.fill_missing().reflectance(queried, mode=mode),
             atol=1e-6,

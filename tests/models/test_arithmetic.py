@@ -6,6 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from uplift.models.arithmetic import (
     SINGLE_THREAD_SIZE,
@@ -25,7 +26,7 @@ def test_polynomial_is_accurate_to_the_last_digits(dtype, within):
     with jax.enable_x64(dtype is np.float64):
         found = np.asarray(arctan(jnp.asarray(x, dtype=dtype)), dtype=float)
     normal = np.abs(x) > np.finfo(dtype).tiny
-    np.testing.assert_allclose(found[normal], expected[normal], rtol=within, atol=0)
+    assert_allclose(found[normal], expected[normal], rtol=within, atol=0)
     assert np.abs(found[~normal]).max() <= np.finfo(dtype).tiny
 
 
@@ -35,16 +36,14 @@ def test_difference_of_arc_tangents(change):
     for sign in (1, -1):
         moved = x * (1 + sign * change) + sign * change
         found = arctan_difference(x[None], (moved - x)[None])[0]
-        np.testing.assert_allclose(
-            found, np.arctan(moved) - np.arctan(x), rtol=1e-9, atol=4e-16
-        )
+        assert_allclose(found, np.arctan(moved) - np.arctan(x), rtol=1e-9, atol=4e-16)
 
 
 def test_columns_are_independent():
     x = np.zeros((2, 3))
     change = np.array([[1e-3, 1e-3, 9.0], [1e-3, np.nan, 1e-3]])
     found = arctan_difference(x, change)
-    np.testing.assert_allclose(found, np.arctan(change), rtol=1e-9)
+    assert_allclose(found, np.arctan(change), rtol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -62,10 +61,10 @@ def test_slices_do_not_change_the_product(count, shape):
     rows = rng.normal(size=(count, shape[0]))
     matrix = rng.normal(size=shape)
     for one, other in ((rows, matrix), (rows.copy("F"), matrix.copy("F"))):
-        np.testing.assert_allclose(
+        assert_allclose(
             blocked_matmul(one, other), rows @ matrix, rtol=1e-12, atol=1e-12
         )
-        np.testing.assert_allclose(
+        assert_allclose(
             blocked_matmul_columns(other.T, one.T),
             (rows @ matrix).T,
             rtol=1e-12,

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 from tests.helpers import raises
@@ -20,7 +21,7 @@ small = st.floats(-3, 3)
 def test_reconstruction_has_the_given_moments(multipliers):
     moments = duality.moments_from_multipliers(multipliers)
     again = duality.moments_from_multipliers(duality.multipliers_from_moments(moments))
-    np.testing.assert_allclose(again, moments, atol=1e-12)
+    assert_allclose(again, moments, atol=1e-12)
 
 
 def test_moments_are_their_defining_integrals():
@@ -47,7 +48,7 @@ def test_black_and_white_are_moved_off_the_boundary():
         + np.arctan(multipliers @ duality.cosine_basis(np.linspace(-np.pi, 0, 9), 9).T)
         / np.pi
     )
-    np.testing.assert_allclose(reflectance, np.repeat([[0], [1]], 9, axis=1), atol=1e-4)
+    assert_allclose(reflectance, np.repeat([[0], [1]], 9, axis=1), atol=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -66,9 +67,7 @@ def test_real_and_complex_arithmetic_agree(count, values):
     expected, valid_on_circle = duality.try_complex_multipliers(moments.astype(complex))
     assert valid.all()
     assert valid_on_circle.all()
-    np.testing.assert_allclose(
-        found, expected, rtol=0, atol=1e-11 * (1 + np.abs(expected).max())
-    )
+    assert_allclose(found, expected, rtol=0, atol=1e-11 * (1 + np.abs(expected).max()))
 
 
 @pytest.mark.parametrize(
@@ -92,7 +91,7 @@ def test_moments_outside_the_moment_space_are_invalid(solve, kind):
 def test_roots_agree_with_the_trapezoid_rule(count):
     multipliers = np.random.default_rng(count).normal(size=(200, count)) * 5
     found = duality.moments_by_roots(multipliers)
-    np.testing.assert_allclose(
+    assert_allclose(
         found, duality.moments_from_multipliers(multipliers), rtol=0, atol=1e-9
     )
 

@@ -8,6 +8,7 @@ from colour.recovery import sd_Jakob2019
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError, UnknownNameError
@@ -41,22 +42,16 @@ def test_reflectance_is_increasing_bounded_and_odd_about_one_half(model, x):
     y = model.to_reflectance(np.sort(x))
     assert (np.diff(y) >= -1e-16).all()
     assert ((y >= 0) & (y <= 1)).all()
-    np.testing.assert_allclose(
-        model.to_reflectance(x) + model.to_reflectance(-x), 1, atol=1e-15
-    )
-    np.testing.assert_allclose(
-        model.to_reflectance(np.array([-1e9, 1e9])), [0, 1], atol=1e-9
-    )
+    assert_allclose(model.to_reflectance(x) + model.to_reflectance(-x), 1, atol=1e-15)
+    assert_allclose(model.to_reflectance(np.array([-1e9, 1e9])), [0, 1], atol=1e-9)
 
 
 @each
 @given(y=arrays(float, 5, elements=st.floats(1e-6, 1 - 1e-6)))
 def test_from_reflectance_is_the_inverse(model, y):
-    np.testing.assert_allclose(
-        model.to_reflectance(model.from_reflectance(y)), y, rtol=1e-9
-    )
+    assert_allclose(model.to_reflectance(model.from_reflectance(y)), y, rtol=1e-9)
     limits = np.array([0.0, 1.0])
-    np.testing.assert_allclose(
+    assert_allclose(
         model.to_reflectance(model.from_reflectance(limits)), limits, atol=1e-12
     )
 
@@ -75,7 +70,7 @@ def test_all_multipliers_give_reflectances(model, data):
 def test_derivative_agrees_with_differences_and_is_positive(model):
     x = np.linspace(-30, 30, 401)
     numeric = (model.to_reflectance(x + 1e-5) - model.to_reflectance(x - 1e-5)) / 2e-5
-    np.testing.assert_allclose(model.derivative(x), numeric, atol=1e-9)
+    assert_allclose(model.derivative(x), numeric, atol=1e-9)
     assert (model.derivative(x) > 0).all()
 
 
@@ -84,7 +79,7 @@ def test_numpy_and_jax_agree(model):
     x = np.linspace(-5, 5, 11)
     with jax.enable_x64(True):
         for function in (model.to_reflectance, model.derivative):
-            np.testing.assert_allclose(
+            assert_allclose(
                 np.asarray(function(jnp.asarray(x))), function(x), rtol=1e-14
             )
 
@@ -93,7 +88,7 @@ def test_numpy_and_jax_agree(model):
 def test_storage_round_trip_keeps_spectra(model):
     multipliers = random_multipliers(model, 200)
     back = model.from_storage(model.to_storage(multipliers))
-    np.testing.assert_allclose(
+    assert_allclose(
         evaluate(model, back, GRID), evaluate(model, multipliers, GRID), atol=1e-11
     )
 
@@ -125,7 +120,7 @@ def test_sigmoid_agrees_with_colour_science():
     theirs = sd_Jakob2019(np.array(per_nm)).align(
         __import__("colour").SpectralShape(380, 780, 5)
     )
-    np.testing.assert_allclose(
+    assert_allclose(
         model.to_reflectance(model.basis(GRID) @ [c0, c1, c2]),
         theirs.values,
         atol=1e-12,
@@ -152,8 +147,8 @@ def test_invalid_phases_raise():
 def test_spectra_are_constant_outside_their_range(model):
     multipliers = random_multipliers(model, 5)
     ends = model.to_reflectance(multipliers @ model.basis([300, 380, 780, 900]).T)
-    np.testing.assert_array_equal(ends[:, 0], ends[:, 1])
-    np.testing.assert_array_equal(ends[:, 2], ends[:, 3])
+    assert_array_equal(ends[:, 0], ends[:, 1])
+    assert_array_equal(ends[:, 2], ends[:, 3])
 
 
 def change_by_rounding(model, multipliers, sensor):
@@ -192,6 +187,4 @@ def test_moments_that_rounding_moved_outside_return():
     assert not model.try_from_storage(rounded)[1].all()
     multipliers, valid = multipliers_of_rounded(model, rounded)
     assert valid.all()
-    np.testing.assert_allclose(
-        model.to_storage(multipliers), moments, rtol=0, atol=0.01
-    )
+    assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=0.01)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import uplift
@@ -126,7 +127,7 @@ def test_crowded_entries_are_warned_about_and_exact():
         cube = uplift.build(greys(one=0.2, other=0.24), dim=4)
     assert cube.data.atlas.names == ("one", "other")
     for level in (0.2, 0.24):
-        np.testing.assert_allclose(cube.reflectance([level] * 3), level, atol=1e-4)
+        assert_allclose(cube.reflectance([level] * 3), level, atol=1e-4)
 
 
 def test_duplicate_entries_are_warned_about_and_the_first_is_used():
@@ -137,7 +138,7 @@ def test_duplicate_entries_are_warned_about_and_the_first_is_used():
         cube = uplift.build(twins, dim=4)
     assert "'second'" in caught[0].problem
     own = cube.data.atlas.spectra.reflectance(np.array([0]), GRID)
-    np.testing.assert_allclose(cube.reflectance(colour), own[0], atol=1e-5)
+    assert_allclose(cube.reflectance(colour), own[0], atol=1e-5)
 
 
 def test_entries_have_more_coefficients_than_nodes():
@@ -147,11 +148,11 @@ def test_entries_have_more_coefficients_than_nodes():
     )
     assert (more.atlas.spectra.model.count, more.model.count) == (17, 9)
     assert same.atlas.spectra.model == same.model
-    np.testing.assert_array_equal(more.points.coefficients, same.points.coefficients)
-    np.testing.assert_array_equal(more.atlas.coefficients, same.atlas.coefficients)
+    assert_array_equal(more.points.coefficients, same.points.coefficients)
+    assert_array_equal(more.atlas.coefficients, same.atlas.coefficients)
     assert more.atlas.error.mean() < same.atlas.error.mean() / 3
     spectra = more.atlas.spectra.reflectance(np.arange(23), GRID)
-    np.testing.assert_allclose(more.sensor.rgb(spectra), more.atlas.rgb, atol=1e-6)
+    assert_allclose(more.sensor.rgb(spectra), more.atlas.rgb, atol=1e-6)
 
 
 @pytest.fixture(scope="session")
@@ -177,15 +178,13 @@ def test_the_order_of_the_atlas_changes_only_the_order_of_its_table(in_order, or
     assert shuffled.provenance["prior"] == in_order.provenance["prior"]
     row = [shuffled.atlas.names.index(name) for name in in_order.atlas.names]
     for name in ("rgb", "coefficients", "half_width", "error"):
-        np.testing.assert_allclose(
+        assert_allclose(
             getattr(shuffled.atlas, name)[row],
             getattr(in_order.atlas, name),
             rtol=1e-12,
             atol=1e-13,
         )
-    np.testing.assert_array_equal(
-        np.append(row, -1)[in_order.points.entry], shuffled.points.entry
-    )
+    assert_array_equal(np.append(row, -1)[in_order.points.entry], shuffled.points.entry)
 
 
 def test_builds_do_not_depend_on_batches(monkeypatch):

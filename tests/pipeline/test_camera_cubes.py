@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.cube.cube_files import forge
@@ -76,10 +77,8 @@ def test_forged_channels_that_depend_on_each_other_are_refused(
 def test_answers_have_the_raw_values_and_xyz_of_the_spectrum(cube):
     sensor = cube.data.sensor
     for result, raw in zip(query(cube, GREYS, mode="refined"), GREYS, strict=True):
-        np.testing.assert_allclose(sensor.rgb(result.reflectance), raw, atol=1e-4)
-        np.testing.assert_allclose(
-            result.xyz, sensor.light.xyz @ result.reflectance, rtol=1e-12
-        )
+        assert_allclose(sensor.rgb(result.reflectance), raw, atol=1e-4)
+        assert_allclose(result.xyz, sensor.light.xyz @ result.reflectance, rtol=1e-12)
 
 
 def test_xyz_are_not_taken_for_raw_values(cube, tmp_path):

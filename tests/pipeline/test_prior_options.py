@@ -6,6 +6,7 @@ import shutil
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.conftest import ATLASES
@@ -53,9 +54,7 @@ def test_a_build_with_a_library_is_repeated(cubes, tmp_path):
     cubes["library"].save(path)
     stored = load(path)
     again = rebuild(stored, path)
-    np.testing.assert_array_equal(
-        again.data.points.coefficients, stored.data.points.coefficients
-    )
+    assert_array_equal(again.data.points.coefficients, stored.data.points.coefficients)
     assert again.data.provenance == stored.data.provenance
 
 
@@ -75,7 +74,7 @@ def test_neutral_flat_flattens_greys_but_neither_colours_nor_entries(tmp_path):
         uplift.build(TCS, dim=16, neutral=name) for name in ("expected", "flat")
     )
     flat.save(path)
-    np.testing.assert_array_equal(
+    assert_array_equal(
         rebuild(load(path), path).reflectance([0.99] * 3), flat.reflectance([0.99] * 3)
     )
 
@@ -88,8 +87,8 @@ def test_neutral_flat_flattens_greys_but_neither_colours_nor_entries(tmp_path):
         plain.data.sensor, colours := np.random.default_rng(1).random((200, 3))
     )
     far = colours[np.hypot(lab[:, 1], lab[:, 2]) > 40]
-    np.testing.assert_allclose(flat.reflectance(far), plain.reflectance(far), atol=1e-4)
-    np.testing.assert_array_equal(
+    assert_allclose(flat.reflectance(far), plain.reflectance(far), atol=1e-4)
+    assert_array_equal(
         *(cube.reflectance(cube.data.atlas.rgb) for cube in (flat, plain))
     )
 
@@ -104,7 +103,7 @@ def test_neutral_flat_in_a_wide_gamut_and_of_a_model_without_a_choice():
         uplift.build(dim=5, model="sigmoid", neutral=name).reflectance(grey)
         for name in ("flat", "expected")
     )
-    np.testing.assert_array_equal(*spectra)
+    assert_array_equal(*spectra)
 
 
 def test_options_that_contradict_or_do_not_exist_are_errors():

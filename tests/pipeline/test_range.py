@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.helpers import quiet_build
@@ -89,7 +90,7 @@ def test_the_range_survives_the_file_and_spectra_are_constant_outside(
     options = found.data.provenance["options"]
     assert [options[name] for name in ("shortest", "longest", "step")] == [380, 1000, 5]
     answer = found.reflectance([0.2, 0.3, 0.1], [300, 379, 380, 1000, 1100])
-    np.testing.assert_allclose(answer, answer[[2, 2, 2, 3, 3]], rtol=1e-14)
+    assert_allclose(answer, answer[[2, 2, 2, 3, 3]], rtol=1e-14)
 
 
 def test_everything_that_compares_under_lights_takes_the_range():
@@ -100,7 +101,7 @@ def test_everything_that_compares_under_lights_takes_the_range():
     assert {each.illuminant for each in assessed.lights} >= {"D65", "A"}
     assert all(each.range == (360, 830, 10) for each in assessed.lights)
     relit = relight("a", np.full((2, 2, 3), 0.5, np.float32), {"cube": cube}, ("A",))
-    np.testing.assert_allclose(relit.renderings[0].colours["cube"], 0.5, atol=0.1)
+    assert_allclose(relit.renderings[0].colours["cube"], 0.5, atol=0.1)
     assert set(compare_rebuilt(Path("a"), cube.data, cube.data).measures.values()) == {
         0
     }

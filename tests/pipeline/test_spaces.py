@@ -4,6 +4,7 @@ and exported.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.fuzz.builds import little_work
@@ -34,10 +35,8 @@ def test_a_cube_of_the_space_works(space, tmp_path):
     sensor = cube.data.sensor
     rgb = COLOURS[cube.data.solid.signed_distance(COLOURS) < -DEEP]
     assert len(rgb)
-    np.testing.assert_allclose(
-        sensor.rgb(cube.reflectance(rgb)), rgb, rtol=0, atol=1e-5
-    )
-    np.testing.assert_allclose(cube.decode(cube.encode(rgb)), rgb, rtol=0, atol=1e-12)
+    assert_allclose(sensor.rgb(cube.reflectance(rgb)), rgb, rtol=0, atol=1e-5)
+    assert_allclose(cube.decode(cube.encode(rgb)), rgb, rtol=0, atol=1e-12)
     need(CC)
     exported = c_reflectances(cube.data, "spectra", rgb, AT)
-    np.testing.assert_allclose(exported, cube.reflectance(rgb, AT), rtol=0, atol=1e-4)
+    assert_allclose(exported, cube.reflectance(rgb, AT), rtol=0, atol=1e-4)

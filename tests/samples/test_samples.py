@@ -3,6 +3,7 @@
 import numpy as np
 import OpenImageIO
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
@@ -41,7 +42,7 @@ def test_the_still_life_holds_the_colorchecker(sensor):
         np.clip(sensor.rgb(on_grid(atlas, sensor.wavelengths)), 0, 1)
     ):
         row, column = divmod(number, 6)
-        np.testing.assert_allclose(
+        assert_allclose(
             picture[188 + 22 * row, 352 + 22 * column], encode(colour), atol=0.51 / 255
         )
 
@@ -56,6 +57,4 @@ def test_measurements_in_several_formats_are_the_same():
     for name, count in (("paints.cxf", 12), ("paints.xlsx", 12), ("chart.ti3", 6)):
         atlas = read_atlas(sample_path(name))
         grid = atlas[0].wavelengths
-        np.testing.assert_allclose(
-            on_grid(atlas, grid), on_grid(paints[:count], grid), atol=1e-6
-        )
+        assert_allclose(on_grid(atlas, grid), on_grid(paints[:count], grid), atol=1e-6)

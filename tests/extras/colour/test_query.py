@@ -7,6 +7,7 @@ from dataclasses import replace
 import colour
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.conftest import MACBETH
@@ -84,7 +85,7 @@ def test_round_trip_and_difference_agree_with_colour_science(small_cube, mode):
         small_cube, np.random.default_rng(8).random((10, 3)), mode=mode
     ):
         back = xyz(small_cube, answer.reflectance)
-        np.testing.assert_allclose(answer.round_trip, to_rgb @ back, rtol=0, atol=1e-12)
+        assert_allclose(answer.round_trip, to_rgb @ back, rtol=0, atol=1e-12)
         queried = colour.XYZ_to_Lab(np.linalg.solve(to_rgb, answer.rgb), xy)
         differences.append(
             colour.delta_E(queried, colour.XYZ_to_Lab(back, xy), method="CIE 2000")
@@ -96,9 +97,9 @@ def test_round_trip_and_difference_agree_with_colour_science(small_cube, mode):
 def test_results_are_in_order_across_blocks(small_cube):
     rgb = np.random.default_rng(9).random((BLOCK + 3, 3))
     found = list(query(small_cube, rgb, [500.0]))
-    np.testing.assert_array_equal([answer.rgb for answer in found], rgb)
+    assert_array_equal([answer.rgb for answer in found], rgb)
     expected = small_cube.reflectance(rgb[-3:], [500.0])
-    np.testing.assert_allclose(
+    assert_allclose(
         [answer.reflectance for answer in found[-3:]], expected, rtol=0, atol=1e-12
     )
 
@@ -135,9 +136,7 @@ def test_realisable_colours_outside_have_their_colour():
     assert len(xyz) > 20
     results = list(query_xyz(cube, xyz))
     spectra = np.array([result.reflectance for result in results])
-    np.testing.assert_allclose(
-        spectra @ cube.data.sensor.light.xyz.T, xyz, rtol=0, atol=1e-6
-    )
+    assert_allclose(spectra @ cube.data.sensor.light.xyz.T, xyz, rtol=0, atol=1e-6)
     assert ((spectra >= 0) & (spectra <= 1)).all()
     assert all(
         result.delta_e_2000 < 1e-3 and result.standard_error is None
@@ -161,9 +160,7 @@ def test_an_entry_outside_the_space_has_its_spectrum_and_its_colour(cyan_cube, d
         *table.error,
         *table.error,
     )
-    np.testing.assert_allclose(
-        xyz(cyan_cube, answer.reflectance), colour, rtol=0, atol=1e-7
-    )
+    assert_allclose(xyz(cyan_cube, answer.reflectance), colour, rtol=0, atol=1e-7)
     for name in (cyan_cube.data.error_illuminant, "FL11"):
         stored = cyan_cube.data.atlas.outside.spectra.reflectance(
             np.array([0]), cyan_cube.wavelengths
@@ -246,4 +243,4 @@ def test_colours_are_realisable_if_the_solid_contains_them():
     expected = cube.data.solid.contains(rgb)
     assert 0 < expected.sum() < 60
     found = [answer.realisable for answer in query(cube, rgb)]
-    np.testing.assert_array_equal(found, expected)
+    assert_array_equal(found, expected)

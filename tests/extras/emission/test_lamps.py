@@ -7,6 +7,7 @@ import json
 import colour
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.helpers import quiet_build, raises
@@ -41,16 +42,16 @@ def test_a_lamp_with_the_power_of_an_illuminant_is_that_illuminant():
     lamp = Lamp("bulb", tuple(power.wavelengths), tuple(power.values / 40))
     named, own = (observer.sensor("ACEScg", each) for each in ("A", lamp))
     assert own.illuminant == "bulb"
-    np.testing.assert_allclose(own.matrix, named.matrix, rtol=1e-9, atol=1e-12)
+    assert_allclose(own.matrix, named.matrix, rtol=1e-9, atol=1e-12)
     wide = observer.sensor("ACEScg", lamp, wavelengths=(360.0, 830.0, 1.0))
-    np.testing.assert_allclose(wide.rgb(np.full(471, 0.5)), 0.5, rtol=1e-12)
+    assert_allclose(wide.rgb(np.full(471, 0.5)), 0.5, rtol=1e-12)
     (shown,) = observer.display_sensors([lamp, lamp], observer.DEFAULT_OBSERVER)
-    np.testing.assert_allclose(shown.light.white, observer.light("A").white, rtol=1e-9)
+    assert_allclose(shown.light.white, observer.light("A").white, rtol=1e-9)
 
 
 def test_power_is_interpolated_and_narrow_lines_keep_their_energy():
     coarse = Lamp("coarse", (400, 500, 600, 700), (1, 2, 4, 2))
-    np.testing.assert_allclose(
+    assert_allclose(
         coarse.at(NM), np.interp(NM, coarse.wavelengths, coarse.power), rtol=1e-12
     )
     fine = np.arange(380.0, 781.0, 1.0)
@@ -59,7 +60,7 @@ def test_power_is_interpolated_and_narrow_lines_keep_their_energy():
         assert lamp.at(NM).sum() * 5 == pytest.approx(1)
         assert lamp.at(NM) @ NM == pytest.approx(line * lamp.at(NM).sum())
     smooth = Lamp("smooth", tuple(fine), tuple(np.interp(fine, NM, WARM)))
-    np.testing.assert_allclose(smooth.at(NM)[1:-1], WARM[1:-1], rtol=2e-3)
+    assert_allclose(smooth.at(NM)[1:-1], WARM[1:-1], rtol=2e-3)
     assert lamp.at(fine).tolist() == list(lamp.power)
 
 
@@ -110,7 +111,7 @@ def test_formats_of_files(write, warm):
     for path in files:
         lamp = read_lamp(path)
         assert (lamp.name, find_light(str(path))) == (path.stem, lamp)
-        np.testing.assert_allclose(lamp.at(NM), WARM / WARM.max(), rtol=1e-4, atol=1e-6)
+        assert_allclose(lamp.at(NM), WARM / WARM.max(), rtol=1e-4, atol=1e-6)
 
 
 def test_lamps_of_one_file_have_names(write):
@@ -208,9 +209,7 @@ def test_a_build_records_its_lamps(warm, tmp_path):
     cube.save(path)
     warm.unlink()
     again = rebuild(uplift.load(path), path)
-    np.testing.assert_array_equal(
-        again.data.points.coefficients, cube.data.points.coefficients
-    )
+    assert_array_equal(again.data.points.coefficients, cube.data.points.coefficients)
     recorded = again.data.provenance["options"]["lights"]
     assert (recorded[0], recorded[1]["name"]) == ("D65", "warm")
     assert str(tmp_path) not in json.dumps(cube.data.provenance)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose
 
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
@@ -42,9 +43,7 @@ def test_weights_give_back_the_chromaticity(sector, along, share):
     weights = cells.weights
     assert weights.min() >= 0
     assert weights.sum() == pytest.approx(1)
-    np.testing.assert_allclose(
-        (weights[..., None] * corners(cells)).sum(axis=1), uv, atol=1e-12
-    )
+    assert_allclose((weights[..., None] * corners(cells)).sum(axis=1), uv, atol=1e-12)
     assert LATTICE.contains(uv).all()
 
 
@@ -53,14 +52,14 @@ def test_chromaticities_outside_are_not_contained_and_move_to_the_rim():
     assert not LATTICE.contains(outside).any()
     assert not LATTICE.contains(np.full((1, 2), np.nan)).any()
     cells = LATTICE.locate(outside)
-    np.testing.assert_allclose(
+    assert_allclose(
         (cells.weights[..., None] * corners(cells)).sum(axis=1), KNOTS, atol=1e-12
     )
 
 
 def test_chromaticity_of_equal_energy():
     """CIE 015:2018: x = y = 1/3 is u′ = 4/19, v′ = 9/19."""
-    np.testing.assert_allclose(chromaticity(np.ones(3)), [4 / 19, 9 / 19])
+    assert_allclose(chromaticity(np.ones(3)), [4 / 19, 9 / 19])
 
 
 @pytest.mark.parametrize(
@@ -85,9 +84,7 @@ def locus():
 def test_spectra_of_the_rim_have_the_chromaticities_of_the_knots(locus):
     lattice, rim = locus
     assert lattice.shape == (96, 4)
-    np.testing.assert_allclose(
-        chromaticity(rim @ RADIOMETRY), lattice.knots, atol=1e-12
-    )
+    assert_allclose(chromaticity(rim @ RADIOMETRY), lattice.knots, atol=1e-12)
 
 
 def test_all_mixtures_of_wavelengths_lie_within_the_bend(locus):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.helpers import raises
@@ -70,9 +71,7 @@ def test_lookups_agree_with_a_plain_one():
     )
     found = TABLE.spectrum_of_xyz(xyz)
     for row, power in zip(xyz, found, strict=True):
-        np.testing.assert_allclose(
-            power, plain_spectrum(row), rtol=1e-9, atol=1e-9 * power.max()
-        )
+        assert_allclose(power, plain_spectrum(row), rtol=1e-9, atol=1e-9 * power.max())
 
 
 def test_colours_are_exact_and_powers_are_not_negative():
@@ -88,7 +87,7 @@ def test_colours_are_exact_and_powers_are_not_negative():
 def test_light_scales():
     rgb = np.array([0.9, 0.5, 0.2])
     for scale in (0, 1e-20, 1e5, 1e20):
-        np.testing.assert_allclose(
+        assert_allclose(
             TABLE.spectrum(scale * rgb), scale * TABLE.spectrum(rgb), rtol=1e-12
         )
 
@@ -96,7 +95,7 @@ def test_light_scales():
 def test_lamps_are_exact_at_their_colours():
     entries = TABLE.data.entries
     found = TABLE.spectrum_of_xyz(entries.spectra @ RADIOMETRY)
-    np.testing.assert_allclose(found, entries.spectra, rtol=1e-6, atol=1e-9)
+    assert_allclose(found, entries.spectra, rtol=1e-6, atol=1e-9)
 
 
 def test_single_wavelengths_are_themselves():
@@ -104,7 +103,7 @@ def test_single_wavelengths_are_themselves():
     nearly the same colour.
     """
     rows = np.searchsorted(TABLE.wavelengths, [470, 530, 590, 600])
-    np.testing.assert_allclose(
+    assert_allclose(
         TABLE.spectrum_of_xyz(RADIOMETRY[rows]), np.eye(81)[rows], atol=1e-5
     )
 
@@ -141,11 +140,11 @@ def test_clipped_colours_are_lights_of_the_same_luminance(rgb):
     luminance = TABLE.xyz(rgb)[1]
     assert power @ RADIOMETRY[:, 1] == pytest.approx(max(luminance, 0), abs=1e-6)
     if TABLE.contains(rgb):
-        np.testing.assert_array_equal(power, TABLE.spectrum(rgb))
+        assert_array_equal(power, TABLE.spectrum(rgb))
     elif luminance > 0:  # on the way to white
         moved, requested = np.array([TABLE.rgb(power), rgb]) - luminance
         moved, requested = np.array([moved, requested]) / np.abs(requested).max()
-        np.testing.assert_allclose(np.cross(moved, requested), 0, atol=1e-5)
+        assert_allclose(np.cross(moved, requested), 0, atol=1e-5)
         assert 0 < moved @ requested < requested @ requested
 
 
@@ -169,7 +168,7 @@ def test_contains_agrees_with_mixtures_of_wavelengths():
     found = TABLE.contains(rgb)
     reach = np.array([nnls(RADIOMETRY.T, xyz)[1] for xyz in TABLE.xyz(rgb)])
     assert 10 < found.sum() < 50
-    np.testing.assert_array_equal(found, reach < 1e-9)
+    assert_array_equal(found, reach < 1e-9)
 
 
 def test_wavelengths_are_interpolated_linearly():
@@ -177,14 +176,14 @@ def test_wavelengths_are_interpolated_linearly():
     stored = TABLE.spectrum(rgb)
     found = TABLE.spectrum(rgb, [380, 382.5, 500, 780])
     expected = [stored[0], stored[:2].mean(), stored[24], stored[-1]]
-    np.testing.assert_allclose(found, expected, rtol=1e-12)
+    assert_allclose(found, expected, rtol=1e-12)
 
 
 def test_single_precision_is_close():
     rgb = np.random.default_rng(0).random((50, 3)) * 1e4
     found = TABLE.spectrum(rgb.astype(np.float32), dtype=np.float32)
     assert found.dtype == np.float32
-    np.testing.assert_allclose(found, TABLE.spectrum(rgb.astype(np.float32)), rtol=1e-6)
+    assert_allclose(found, TABLE.spectrum(rgb.astype(np.float32)), rtol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -226,13 +225,13 @@ def test_discs_are_those_of_a_comparison_with_all():
     distance = np.linalg.norm(queried[:, None] - uv, axis=-1)
     rows, entry = np.nonzero(distance < lamps.radius)
     assert 500 < len(rows) < 2500
-    np.testing.assert_array_equal(hits.rows, rows)
-    np.testing.assert_array_equal(hits.entry, entry)
-    np.testing.assert_allclose(
+    assert_array_equal(hits.rows, rows)
+    assert_array_equal(hits.entry, entry)
+    assert_allclose(
         hits.share, 1 - distance[rows, entry] / lamps.radius[entry], atol=1e-9
     )
-    np.testing.assert_array_equal(hits.share[:11], 1)
-    np.testing.assert_allclose(
+    assert_array_equal(hits.share[:11], 1)
+    assert_allclose(
         np.linalg.norm(hits.exit_uv - uv[entry], axis=1), lamps.radius[entry]
     )
     nobody = LampEntries((), np.empty((0, 2)), np.empty((0, 3)), np.empty(0))

@@ -4,6 +4,7 @@ entries in discs.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
@@ -33,12 +34,10 @@ def test_every_node_is_exact_and_positive():
         smoothest_lights(uv, RADIOMETRY), uv, LATTICE, RIM, RADIOMETRY
     )
     assert power.min() >= 0
-    np.testing.assert_allclose(chromaticity(power @ RADIOMETRY), uv, atol=1e-9)
+    assert_allclose(chromaticity(power @ RADIOMETRY), uv, atol=1e-9)
 
 
-def test_left_out_lamps_are_predicted_better_than_by_simple_rules(
-    fitted,
-):
+def test_left_out_lamps_are_predicted_better_than_by_simple_rules(fitted):
     uv = chromaticity(LAMPS.power @ RADIOMETRY)
     apart = np.linalg.norm(uv[:, None] - uv, axis=-1) + 9 * np.eye(len(uv))
 
@@ -70,7 +69,7 @@ def test_left_out_predictions_do_not_know_the_lamp(fitted):
     expected = smooth[row] + weights @ (power - smooth)[others]
     expected = np.maximum(expected, 1e-3 * smooth[row])
     found = nearest_lights(expected[None], prior.uv[row : row + 1], RADIOMETRY)
-    np.testing.assert_allclose(found[0], left_out[row], atol=1e-6)
+    assert_allclose(found[0], left_out[row], atol=1e-6)
 
 
 def test_deviations_grow_with_the_distance_from_lamps(fitted):

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 import uplift
 from tests.helpers import raises
@@ -35,7 +36,7 @@ def test_round_trip_is_exact(tmp_path, data):
     write_emission(data, tmp_path / "a.uplift")
     found = read_emission(tmp_path / "a.uplift")
     assert emission_digest(found) == emission_digest(data)
-    np.testing.assert_array_equal(found.spectra, data.spectra)
+    assert_array_equal(found.spectra, data.spectra)
     assert found.entries.names == data.entries.names
     write_emission(found, tmp_path / "b.uplift")
     assert (tmp_path / "a.uplift").read_bytes() == (tmp_path / "b.uplift").read_bytes()

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from benchmarks.browser import browser
+from tests.helpers import output_of
 from tests.parts import CC, CHROMIUM, CXX, GLSLANG, NVCC, VULKAN, need, vulkan_device
 from uplift.extras.images.processes import call_in_child
 
@@ -224,19 +225,8 @@ def hlsl(path, rgb, wavelengths, form="file"):
     (folder / "main.hlsl").write_text(
         PIXEL.format(code=path.read_text(), wavelengths=listed(wavelengths))
     )
-    command = [
-        "glslangValidator",
-        "-D",
-        "-V",
-        "-S",
-        "comp",
-        "-e",
-        "main",
-        "main.hlsl",
-        "-o",
-        "main.spv",
-    ]
-    subprocess.run(command, cwd=folder, check=True, capture_output=True)
+    command = "glslangValidator -D -V -S comp -e main main.hlsl -o main.spv"
+    output_of(*command.split(), cwd=folder)
     return call_in_child(_by_vulkan, path, rgb, count, seconds=60)
 
 

@@ -6,6 +6,7 @@ import operator
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.cube.hand_made import hand_made
 from tests.helpers import near_black, raises, with_absent_points
@@ -36,19 +37,19 @@ def test_npz_has_all_arrays_and_multipliers_of_the_spectra(small_cube, tmp_path)
     with np.load(tmp_path / "cube.npz", allow_pickle=False) as arrays:
         assert len(arrays.files) == count
         for name, array in contents(data)[0].items():
-            np.testing.assert_array_equal(arrays[name], array)
+            assert_array_equal(arrays[name], array)
         assert tuple(arrays["atlas.names"]) == data.atlas.names
         assert json.loads(str(arrays["metadata"]))["model"] == data.model.describe()
         lattice = evaluate(data.model, arrays["multipliers"], [450, 650])
         atlas = evaluate(
             data.atlas.spectra.model, arrays["atlas.multipliers"], [450, 650]
         )
-    np.testing.assert_allclose(
+    assert_allclose(
         lattice,
         reflectance(data.model, data.points.coefficients, [450, 650]),
         atol=1e-9,
     )
-    np.testing.assert_allclose(
+    assert_allclose(
         atlas, small_cube.reflectance(data.atlas.rgb, [450, 650]), atol=1e-9
     )
 
@@ -57,15 +58,13 @@ def test_npz_has_the_entries_outside_the_space(cyan_cube, tmp_path):
     write_npz(cyan_cube.data, tmp_path / "cube.npz")
     with np.load(tmp_path / "cube.npz", allow_pickle=False) as arrays:
         assert arrays["outside.names"].tolist() == ["cyan"]
-        np.testing.assert_array_equal(
-            arrays["outside.rgb"], cyan_cube.data.atlas.outside.rgb
-        )
+        assert_array_equal(arrays["outside.rgb"], cyan_cube.data.atlas.outside.rgb)
         found = evaluate(
             cyan_cube.data.atlas.spectra.model,
             arrays["outside.multipliers"],
             [450, 650],
         )
-    np.testing.assert_allclose(
+    assert_allclose(
         found,
         cyan_cube.data.atlas.outside.spectra.reflectance(np.array([0]), [450, 650]),
         atol=1e-9,
@@ -95,7 +94,7 @@ def test_csv_has_a_line_per_node_in_full_precision(tmp_path, monkeypatch):
         ("standard_error",): data.points.standard_error,
         ("c0", "c1", "c2"): data.points.coefficients,
     }.items():
-        np.testing.assert_array_equal(column(rows, *names), expected)
+        assert_array_equal(column(rows, *names), expected)
     assert [row["status"] for row in rows] == [
         Status(status).label for status in data.points.status
     ]
@@ -113,12 +112,12 @@ def test_present_nodes_of_a_sparse_cube(sparse, tmp_path):
     expected = np.column_stack(
         [sparse.lattice.points, sparse.points.coefficients[:, 0]]
     )[present]
-    np.testing.assert_allclose(
+    assert_allclose(
         column(read(tmp_path / "cube.csv"), "r", "g", "b", "c0"), expected, rtol=1e-6
     )
     write_npz(sparse, tmp_path / "cube.npz")
     arrays = np.load(tmp_path / "cube.npz")
-    np.testing.assert_array_equal(arrays["points"], present)
+    assert_array_equal(arrays["points"], present)
     assert len(arrays["multipliers"]) == len(arrays["coefficients"]) == len(present)
 
 

@@ -4,15 +4,15 @@ them.
 
 import json
 import struct
-import subprocess
-import sys
 from dataclasses import replace
 from itertools import product
 
 import colour
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
+from tests.helpers import output_of, run_python
 from tests.parts import CXX, MITSUBA, need
 from uplift.colorimetry import delta_e_rgb
 from uplift.colorimetry.observer import (
@@ -51,6 +51,12 @@ def table(tmp_path_factory, small_cube):
     return path
 
 
+def stored(path, res):
+    """Read the coefficients (9 res³ / 3, 3) of a table."""
+    content = path.read_bytes()
+    return np.frombuffer(content, "<f4", 9 * res**3, 8 + 4 * res).reshape(-1, 3)
+
+
 def test_the_stated_error_is_the_largest_of_interpolated_colours(
     small_cube, sensor, tmp_path
 ):
@@ -66,8 +72,8 @@ def test_the_stated_error_is_the_largest_of_interpolated_colours(
     )
     errors = delta_e_rgb(sensor, found, rgb)
     assert errors[:-1].max() < stated.largest
-    np.testing.assert_allclose(errors[-1], stated.largest, rtol=0.02)
-    np.testing.assert_allclose(errors[:-1].mean(), stated.mean, rtol=0.1)
+    assert_allclose(errors[-1], stated.largest, rtol=0.02)
+    assert_allclose(errors[:-1].mean(), stated.mean, rtol=0.1)
 
 
 def test_every_number_is_at_its_documented_offset(table, sensor):
@@ -87,15 +93,15 @@ def test_every_number_is_at_its_documented_offset(table, sensor):
         coefficients = np.array([struct.unpack_from("<3f", content, at)])
         at += 12
         found = sensor.rgb(evaluate_unscaled(coefficients, sensor.wavelengths))[0]
-        np.testing.assert_allclose(found, rgb, rtol=0, atol=2e-5)
+        assert_allclose(found, rgb, rtol=0, atol=2e-5)
     count = len(sensor.wavelengths)
     assert struct.unpack_from("<I", content, at) == (count,)
     wavelengths, *rows = np.frombuffer(content, "<f4", 4 * count, at + 4).reshape(4, -1)
-    np.testing.assert_allclose(360 + 470 * wavelengths, sensor.wavelengths, rtol=1e-6)
-    np.testing.assert_allclose(rows, sensor.matrix, atol=1e-7)
+    assert_allclose(360 + 470 * wavelengths, sensor.wavelengths, rtol=1e-6)
+    assert_allclose(rows, sensor.matrix, atol=1e-7)
     rest = np.frombuffer(content, "<f4", offset=at + 4 + 16 * count)
-    np.testing.assert_allclose(rest[:9].reshape(3, 3) @ np.ones(3), rest[9:], rtol=1e-6)
-    np.testing.assert_allclose(rest[9:], sensor.light.white, rtol=1e-3)
+    assert_allclose(rest[:9].reshape(3, 3) @ np.ones(3), rest[9:], rtol=1e-6)
+    assert_allclose(rest[9:], sensor.light.white, rtol=1e-3)
 
 
 GREYS = [
@@ -130,11 +136,8 @@ def test_colour_science_and_mitsuba_read_it(table, sensor):
     )
 
     def fetch(folder):
-        args = [sys.executable, "-c", FETCH, str(folder), json.dumps(rgb.tolist())]
-        done = subprocess.run(args, capture_output=True, text=True, check=True)
-        return np.array(
-            [line.split() for line in done.stdout.splitlines()], dtype=float
-        )
+        printed = run_python(FETCH, folder, json.dumps(rgb.tolist()))
+        return np.loadtxt(printed.splitlines())
 
     ours = fetch(table.parents[1])
     default = fetch(table.parent)
@@ -142,27 +145,19 @@ def test_colour_science_and_mitsuba_read_it(table, sensor):
     greys = ours[2:]
     assert not np.isnan(greys).any()
     assert (np.diff(greys[:, 3]) > 0).all()
-    np.testing.assert_allclose(
-        greys[:, 4:], np.repeat(greys[:, 3:4], 4, axis=1), atol=1e-3
-    )
+    assert_allclose(greys[:, 4:], np.repeat(greys[:, 3:4], 4, axis=1), atol=1e-3)
     reader = colour.recovery.LUT3D_Jakob2019()
     reader.read(table)
-    np.testing.assert_allclose(
-        ours[:2, :3], reader.RGB_to_coefficients(rgb[:2]), rtol=1e-4
-    )
+    assert_allclose(ours[:2, :3], reader.RGB_to_coefficients(rgb[:2]), rtol=1e-4)
     found = sensor.rgb(evaluate_unscaled(ours[:2, :3], sensor.wavelengths))
-    np.testing.assert_allclose(found, rgb[:2], rtol=0, atol=1e-4)
+    assert_allclose(found, rgb[:2], rtol=0, atol=1e-4)
 
 
 def test_the_largest_reflectance_is_at_an_end_or_where_the_polynomial_turns(table):
     """MaxValue of pbrt: a closed form, of which samples at every 0.01 nm come short by
     little.
     """
-    content = (
-        np.frombuffer(table.read_bytes(), "<f4", 9 * RES**3, 8 + 4 * RES)
-        .reshape(-1, 3)
-        .astype(float)
-    )
+    content = stored(table, RES).astype(float)
     square, linear, _ = content.T
     turn = np.divide(
         -linear, 2 * square, out=np.full_like(linear, 360), where=square < 0
@@ -178,7 +173,7 @@ def test_the_largest_reflectance_is_at_an_end_or_where_the_polynomial_turns(tabl
     samples = evaluate_unscaled(content, np.linspace(360, 830, 4701)).max(axis=1)
     assert ((turn > 360) & (turn < 830)).sum() > RES**2
     assert samples.max() <= 1
-    np.testing.assert_allclose(samples, largest, rtol=0, atol=5e-3)
+    assert_allclose(samples, largest, rtol=0, atol=5e-3)
 
 
 WAVELENGTHS = np.arange(360.0, 831.0)
@@ -248,7 +243,7 @@ def test_round_trips_of_pbrt(small_cube, space, light, low, high, also):
 
 def test_greys_have_constant_spectra(small_cube):
     levels = np.repeat([GREYS[1:]], 3, axis=0).T
-    np.testing.assert_allclose(
+    assert_allclose(
         spectra_of(small_cube.data, levels),
         np.repeat(levels[:, :1], 471, axis=1),
         atol=1e-3,
@@ -258,7 +253,7 @@ def test_greys_have_constant_spectra(small_cube):
 def test_dark_colours_are_dark_at_every_wavelength(small_cube):
     spectra = spectra_of(small_cube.data, np.array([DARK_RED]))
     assert spectra.max() < 0.05
-    np.testing.assert_allclose(pbrt_rgb("sRGB", "D65", spectra), [DARK_RED], atol=1e-4)
+    assert_allclose(pbrt_rgb("sRGB", "D65", spectra), [DARK_RED], atol=1e-4)
 
 
 PRINT = """
@@ -293,23 +288,9 @@ def test_sources_compile_to_the_numbers_of_the_table(
     (tmp_path / "main.cpp").write_text(
         PRINT.format(space=namespace, name=name, width=width, res=res)
     )
-    command = [
-        "c++",
-        "-std=c++17",
-        "-Wall",
-        "-Werror",
-        "table.cpp",
-        "main.cpp",
-        "-o",
-        "main",
-    ]
-    subprocess.run(command, cwd=tmp_path, check=True)
-    done = subprocess.run(
-        [tmp_path / "main"], capture_output=True, text=True, check=True
-    )
-    found = np.array(done.stdout.split(), dtype=np.float32).reshape(-1, width)
-    expected = np.frombuffer(
-        (tmp_path / "table.coeff").read_bytes(), "<f4", 9 * res**3, 8 + 4 * res
-    ).reshape(-1, 3)
-    np.testing.assert_array_equal(found[:, :3], expected)
-    assert not found[:, 3:].any()
+    command = "c++ -std=c++17 -Wall -Werror table.cpp main.cpp -o main"
+    output_of(*command.split(), cwd=tmp_path)
+    printed = output_of(tmp_path / "main").split()
+    values = np.array(printed, dtype=np.float32).reshape(-1, width)
+    assert_array_equal(values[:, :3], stored(tmp_path / "table.coeff", res))
+    assert not values[:, 3:].any()

@@ -3,6 +3,7 @@
 import tomllib
 
 import numpy as np
+from numpy.testing import assert_allclose
 from scipy.ndimage import map_coordinates
 
 from uplift.colorimetry.observer import (
@@ -65,10 +66,10 @@ def test_a_table_of_reflectances_has_the_spectra_of_the_cube(small_cube, tmp_pat
     rgb = np.random.default_rng(3).uniform(0.1, 0.3, (200, 3))
     xyz = rgb @ small_cube.data.sensor.rgb_to_xyz.T
     reflectance = read(path, xyz)
-    np.testing.assert_allclose(reflectance * power("D65") @ WEIGHTS, xyz, atol=2e-3)
+    assert_allclose(reflectance * power("D65") @ WEIGHTS, xyz, atol=2e-3)
     greys = np.array([[SHARE] * 3])
     found = read(path, greys @ small_cube.data.sensor.rgb_to_xyz.T)
-    np.testing.assert_allclose(
+    assert_allclose(
         found, small_cube.reflectance(greys, grid()), atol=0.02
     )  # of a neighbouring luminance
 
@@ -78,7 +79,7 @@ def test_a_table_of_lights_has_unit_sums_and_no_gaps(small_cube, tmp_path):
     assert 0.2 < table.inside < 0.6
     assert 0 < table.stops < 0.2
     lights = np.load(tmp_path / "lit.npy").astype(float)
-    np.testing.assert_allclose((lights @ WEIGHTS).sum(axis=-1), 1, atol=2e-3)
+    assert_allclose((lights @ WEIGHTS).sum(axis=-1), 1, atol=2e-3)
     assert lights.min() >= 0
     assert 'kind = "irradiance"' in (tmp_path / "lit.toml").read_text()
     # Neighbours resemble each other, also across the edge of the gamut: the XYZ of

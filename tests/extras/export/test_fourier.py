@@ -1,14 +1,16 @@
 """Fourier sRGB: tables from sRGB, and the shader of its spectra."""
 
-import subprocess
+import itertools
 from itertools import product
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
+from tests.helpers import output_of
 from tests.parts import CXX, GLSLANG, need
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.extras.colour.srgb import decode
 from uplift.extras.export import lut, write_fourier
 from uplift.models import reflectance
@@ -81,7 +83,7 @@ def test_codes_have_the_colours_of_srgb(three, folder):
     assert errors.mean() < 0.3
     assert np.abs(codes - 255 * requested).mean() < 15
     greys = codes[:: 3 * (LEVEL**4 + LEVEL**2 + 1)]  # at nodes of the cube
-    np.testing.assert_allclose(greys, 255 * nodes[::3, None].repeat(3, axis=1), atol=1)
+    assert_allclose(greys, 255 * nodes[::3, None].repeat(3, axis=1), atol=1)
 
 
 def test_the_table_has_the_codes_of_the_image(folder):
@@ -93,7 +95,7 @@ def test_the_table_has_the_codes_of_the_image(folder):
     codes = hald(folder / "hald.png")
     for corner in product((0, 1), repeat=3):
         red, green, blue = (-axis for axis in corner)
-        np.testing.assert_allclose(
+        assert_allclose(
             255 * table[blue, green, red], codes[red, green, blue], atol=0.51
         )
 
@@ -102,24 +104,20 @@ def test_the_shader_evaluates_the_spectra(three, folder):
     """As C++, with filtered colours; components that no spectrum has keep to [0, 1]."""
     need(CXX)
     (folder / "main.cpp").write_text(HARNESS.format(name="hald"))
-    subprocess.run(
-        ["c++", "-std=c++17", "main.cpp", "-o", "main"], cwd=folder, check=True
-    )
+    output_of("c++", "-std=c++17", "main.cpp", "-o", "main", cwd=folder)
 
     def shader(colours):
-        rows = product(colours.tolist(), WAVELENGTHS.tolist())
-        text = "\n".join(" ".join(map(repr, [*rgb, nm])) for rgb, nm in rows)
-        done = subprocess.run(
-            [folder / "main"], input=text, capture_output=True, text=True, check=True
-        )
-        return np.array(done.stdout.split(), dtype=float).reshape(len(colours), -1)
+        pairs = itertools.product(colours.tolist(), WAVELENGTHS.tolist())
+        text = "\n".join(" ".join(map(repr, (*colour, nm))) for colour, nm in pairs)
+        values = output_of(folder / "main", input=text).split()
+        return np.array(values, dtype=float).reshape(len(colours), -1)
 
     codes = hald(folder / "hald.png")
     pairs = decode(codes[1:-1, 1:-1, 1:-1].reshape(-1, 2, 3)[::40] / 255)
     filtered = pairs.mean(axis=1)
     moments = filtered @ lut._to_moments(three.data).T
     expected = reflectance(three.data.model, moments, WAVELENGTHS)
-    np.testing.assert_allclose(shader(filtered), expected, atol=2e-4)
+    assert_allclose(shader(filtered), expected, atol=2e-4)
     corners = shader(np.array(list(product((0.0, 1.0), repeat=3))))
     assert ((corners >= 0) & (corners <= 1)).all()
 
@@ -131,6 +129,4 @@ def test_the_shader_compiles(folder):
     (folder / "a.frag").write_text(
         f"#version 430\n{text}out vec4 o; void main() {{ o = vec4({call}); }}\n"
     )
-    subprocess.run(
-        ["glslangValidator", "a.frag"], cwd=folder, check=True, capture_output=True
-    )
+    output_of("glslangValidator", "a.frag", cwd=folder)

@@ -2,16 +2,17 @@
 
 import re
 import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
+from tests.helpers import output_of
 from tests.parts import CC, CXX, MITSUBA, SANITIZED, SANITIZERS, need
 from uplift.extras.export import write_program
 
-PAGE = (Path(__file__).parents[3] / "docs" / "integrate.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "integrate.md").read_text("utf-8")
 STORED = "moments-8-macbeth.uplift"
 COLOURS = [[0.8, 0.2, 0.1], [0.1, 0.2, 0.8]]
 
@@ -39,7 +40,7 @@ def test_python(folder, small_cube):
     expected = small_cube.reflectance(
         names["texels"][2, 3:4], names["hero"], mode="moments"
     )
-    np.testing.assert_allclose(names["reflectance"], expected, atol=1e-12)
+    assert_allclose(names["reflectance"], expected, atol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -49,19 +50,14 @@ def test_c_and_cpp(folder, small_cube, compiler, language, part):
     need(part, SANITIZERS)
     write_program(small_cube.data, folder / "paints.h")
     (folder / "main.c").write_text(code("C and C\\+\\+", "c"))
-    subprocess.run(
-        [compiler, "-x", language, "-O1", *SANITIZED, "main.c", "-o", "main", "-lm"],
-        check=True,
-    )
-    done = subprocess.run(["./main"], capture_output=True, text=True, check=True)
-    wavelengths, *found = np.array(
-        [line.split() for line in done.stdout.splitlines()], dtype=float
-    ).T
+    options = ("-x", language, "-O1", *SANITIZED)
+    output_of(compiler, *options, "main.c", "-o", "main", "-lm")
+    wavelengths, *found = np.loadtxt(output_of("./main").splitlines()).T
     assert len(wavelengths) == 7
     expected = small_cube.reflectance(
         [COLOURS[0], *COLOURS], wavelengths, mode="spectra"
     )
-    np.testing.assert_allclose(found, expected, atol=2e-5)
+    assert_allclose(found, expected, atol=2e-5)
 
 
 def test_mitsuba(folder, small_cube):
@@ -73,7 +69,5 @@ def test_mitsuba(folder, small_cube):
     image = np.array(names["image"])
     assert image.shape == (64, 64, 3)
     assert mi.variant() == "scalar_spectral"
-    np.testing.assert_allclose(
-        image[30:34, 30:34].mean(axis=(0, 1)), COLOURS[0], atol=0.05
-    )
-    np.testing.assert_allclose(image[:4, :4].mean(axis=(0, 1)), 1, atol=0.05)
+    assert_allclose(image[30:34, 30:34].mean(axis=(0, 1)), COLOURS[0], atol=0.05)
+    assert_allclose(image[:4, :4].mean(axis=(0, 1)), 1, atol=0.05)

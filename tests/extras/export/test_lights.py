@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.extras.export import run_program
 from uplift.extras.emission.discs import MIN_RADIUS
@@ -69,4 +70,4 @@ def test_nan_and_infinity_are_0(table, tmp_path):
     odd = np.array([[np.nan, 1.0, 0.5], [1.0, np.inf, -np.inf]])
     found = run_program.c(path, odd, WAVELENGTHS)
     expected = table.spectrum([[0, 1, 0.5], [1, 0, 0]], np.clip(WAVELENGTHS, 380, 780))
-    np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-6)
+    assert_allclose(found, expected, rtol=1e-4, atol=1e-6)

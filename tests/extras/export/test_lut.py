@@ -3,6 +3,7 @@
 import numpy as np
 import PyOpenColorIO
 import pytest
+from numpy.testing import assert_allclose
 
 from uplift.colorimetry import delta_e_rgb
 from uplift.colorimetry.observer import sensor
@@ -37,7 +38,7 @@ def test_a_table_of_codes_holds_the_relit_colours(small_cube, tmp_path):
     right = expected(small_cube, decode(NODES))
     inside = (right >= 0) & (right <= 1)
     assert inside.mean() > 0.9
-    np.testing.assert_allclose(
+    assert_allclose(
         apply(tmp_path / "relight.cube", NODES)[inside],
         encode(right)[inside],
         atol=1e-6,
@@ -61,18 +62,18 @@ def test_a_clf_file_takes_linear_colours_and_states_its_largest_error(
     found = apply(tmp_path / "relight.clf", linear)
     right = expected(cube, linear, light)
     measured = delta_e_rgb(sensor("sRGB", light), found, right)
-    np.testing.assert_allclose(measured[: len(OTHERS)].mean(), error.mean, rtol=0.1)
+    assert_allclose(measured[: len(OTHERS)].mean(), error.mean, rtol=0.1)
     assert measured[:-1].max() < error.largest
-    np.testing.assert_allclose(measured[-1], error.largest, rtol=0.02)
+    assert_allclose(measured[-1], error.largest, rtol=0.02)
 
 
 def test_greys_stay_grey_only_if_the_light_is_adapted(small_cube, tmp_path):
     white = np.ones((1, 3))
     write_lut(small_cube, LIGHT, tmp_path / "adapted.clf", res=3)
-    np.testing.assert_allclose(apply(tmp_path / "adapted.clf", white), 1, atol=1e-4)
+    assert_allclose(apply(tmp_path / "adapted.clf", white), 1, atol=1e-4)
     write_lut(small_cube, LIGHT, tmp_path / "tinted.clf", res=3, adapt=False)
     own = small_cube.data.sensor
     tint = own.xyz_to_rgb @ sensor("sRGB", LIGHT).light.white
-    np.testing.assert_allclose(
+    assert_allclose(
         apply(tmp_path / "tinted.clf", white)[0], tint, rtol=1e-4, atol=1e-6
     )

@@ -2,10 +2,10 @@
 
 import subprocess
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.extras.export import run_program
@@ -72,21 +72,18 @@ def check(tmp_path):
         found = getattr(run_program, style)(path, rgb, WAVELENGTHS, form)
         clipped = np.clip(np.nan_to_num(rgb, posinf=1), 0, 1)
         expected = cube.reflectance(clipped, np.clip(WAVELENGTHS, 380, 780), mode=mode)
-        np.testing.assert_allclose(found, expected, rtol=0, atol=within)
+        assert_allclose(found, expected, rtol=0, atol=within)
 
     return check
 
 
 FORMS = []
 for style, language in LANGUAGES.items():
-    FORMS += product([style], language.forms)
+    FORMS += [(style, form) for form in language.forms]
 
 
 @pytest.mark.parametrize("mode", ["spectra", "moments"])
-@pytest.mark.parametrize(
-    ("style", "form"),
-    FORMS,
-)
+@pytest.mark.parametrize(("style", "form"), FORMS)
 def test_ten_thousand_colours_equal_those_of_python(
     small_cube, check, style, form, mode
 ):
@@ -260,7 +257,7 @@ def test_many_colours_at_any_number_of_wavelengths_and_stored_multipliers(
         count, 21, 21
     )
     expected = small_cube.reflectance(ROW, 400 + 15.0 * np.arange(21), mode=mode)
-    np.testing.assert_allclose(found, [expected] * count, rtol=0, atol=WITHIN)
+    assert_allclose(found, [expected] * count, rtol=0, atol=WITHIN)
 
 
 @pytest.mark.parametrize("level", ["-O0", "-O1", "-Og", "-O2", "-Os", "-Oz", "-O3"])

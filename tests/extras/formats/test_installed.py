@@ -1,8 +1,8 @@
 """A package of another author adds a format of atlas files by an entry point."""
 
 import os
-import subprocess
-import sys
+
+from tests.helpers import run_python
 
 READER = """
 from uplift.atlas import Format
@@ -35,12 +35,6 @@ def test_a_format_of_another_package_is_read(tmp_path):
     entry_point = "[uplift.formats]\ntoy = toy_format:FORMATS\n"
     (metadata / "entry_points.txt").write_text(entry_point)
     (tmp_path / "card.toy").write_text("TOY grey card\n380 20\n780 25\n")
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(tmp_path)},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert done.stdout.split() == ["toy", "grey", "card", "[0.2,", "0.25]"]
+    environment = os.environ | {"PYTHONPATH": str(tmp_path)}
+    printed = run_python(PROGRAM, cwd=tmp_path, env=environment)
+    assert printed.split() == ["toy", "grey", "card", "[0.2,", "0.25]"]

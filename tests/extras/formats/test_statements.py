@@ -4,6 +4,7 @@ they do not.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from uplift.extras.formats.statements import (
     WAVE_NUMBER,
@@ -185,7 +186,7 @@ def test_units_of_remarks_are_about_wavelengths():
 def test_conversions(unit):
     nm = np.array([380.0, 550.0, 780.0])
     numbers = 1e7 / nm if unit == WAVE_NUMBER else nm / unit
-    np.testing.assert_allclose(to_nm(numbers, unit), nm)
+    assert_allclose(to_nm(numbers, unit), nm)
 
 
 def test_units_by_values_need_an_order():

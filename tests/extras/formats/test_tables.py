@@ -4,6 +4,7 @@ or refused.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.fuzz.tables import check
 from tests.helpers import raises, warns
@@ -36,8 +37,8 @@ HEADER = ",".join(["name", *map(str, NM)]) + "\n"
 
 def check_values(atlas, expected=VALUES):
     for entry in atlas:
-        np.testing.assert_allclose(entry.wavelengths, NM, atol=1e-6)
-        np.testing.assert_allclose(entry.values, expected, atol=1e-6)
+        assert_allclose(entry.wavelengths, NM, atol=1e-6)
+        assert_allclose(entry.values, expected, atol=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -226,7 +227,7 @@ def test_samples_in_any_order_are_sorted_with_a_note(save):
 def test_faults_outside_the_used_range_are_cut_off(save, outside):
     atlas = read_atlas(save(lines("{:g} {:g}") + "\n".join(outside) + "\n"))
     inside = (atlas[0].wavelengths >= 380) & (atlas[0].wavelengths <= 780)
-    np.testing.assert_allclose(atlas[0].values[inside], VALUES)
+    assert_allclose(atlas[0].values[inside], VALUES)
 
 
 @pytest.mark.parametrize("mark", ["", "NaN", "n/a", "--", "-9999", "-1.23e34", "#N/A"])

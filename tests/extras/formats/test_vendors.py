@@ -5,10 +5,10 @@ written from.
 import re
 import sys
 import zipfile
-from itertools import product
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.atlas.vendor_files import VENDORS, sample
 from tests.helpers import raises, warns
@@ -32,10 +32,8 @@ def test_spectra_are_those_that_were_written(tmp_path, vendor):
     if vendor.name != "argyll_sp":
         assert atlas.names == MACBETH[: vendor.count].names
     for entry, expected in zip(atlas, MACBETH, strict=False):
-        np.testing.assert_allclose(
-            entry.wavelengths, expected.wavelengths, rtol=0, atol=1e-6
-        )
-        np.testing.assert_allclose(entry.values, expected.values, rtol=0, atol=1e-6)
+        assert_allclose(entry.wavelengths, expected.wavelengths, rtol=0, atol=1e-6)
+        assert_allclose(entry.values, expected.values, rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -53,11 +51,10 @@ def test_labels_of_wavelengths(save, label):
 
 
 def test_rows_of_single_samples(save):
-    samples = ("700,0.3", "400,0.1", "550,0.2")
-    rows = [f"{name},{sample}" for sample, name in product(samples, "ab")]
-    first, second = read_atlas(
-        save("\n".join(["Sample,Wavelength (nm),Reflectance", *rows]))
-    )
+    rows = ["Sample,Wavelength (nm),Reflectance"]
+    for nm, value in ((700, 0.3), (400, 0.1), (550, 0.2)):
+        rows += [f"a,{nm},{value}", f"b,{nm},{value}"]
+    first, second = read_atlas(save("\n".join(rows)))
     assert (first.name, first.wavelengths.tolist(), first.values.tolist()) == (
         "a",
         [400, 550, 700],

@@ -1,6 +1,7 @@
 """Bounds of answers under other lights."""
 
 import numpy as np
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
 from uplift.colorimetry import delta_e_spectra, lab, observer
@@ -14,7 +15,7 @@ FL11 = observer.light("FL11")
 def test_the_answer_lies_inside(small_cube):
     rgb = np.random.default_rng(1).uniform(size=(40, 3))
     found = bounds(small_cube, rgb, FL11)
-    np.testing.assert_array_equal(found.reflectance, small_cube.reflectance(rgb))
+    assert_array_equal(found.reflectance, small_cube.reflectance(rgb))
     assert (
         found.volumes.excess(found.xyz).max() <= 1e-6
     )  # answers have their RGB to rounding
@@ -40,27 +41,20 @@ def test_the_likely_region_is_the_ellipse_of_the_covariance(small_cube):
     squares = np.einsum(
         "mi,ij,mj->m", offset, np.linalg.inv(found.covariance[0, 1:, 1:]), offset
     )
-    np.testing.assert_allclose(
-        squares, lab_errors(small_cube.data, FL11).likely_radius ** 2
-    )
+    assert_allclose(squares, lab_errors(small_cube.data, FL11).likely_radius ** 2)
 
 
 def test_colours_outside_the_space_are_answered(plain_cube):
     rgb = np.array([[0.5, 0.5, 0.5], [-0.05, 0.4, 0.3]])
     found = bounds(plain_cube, rgb, FL11, divisions=1)
-    np.testing.assert_allclose(
-        plain_cube.data.sensor.rgb(found.reflectance), rgb, atol=1e-4
-    )
-    np.testing.assert_allclose(
-        found.lab, lab(found.reflectance @ FL11.xyz.T, FL11.white)
-    )
+    assert_allclose(plain_cube.data.sensor.rgb(found.reflectance), rgb, atol=1e-4)
+    assert_allclose(found.lab, lab(found.reflectance @ FL11.xyz.T, FL11.white))
 
 
 def test_the_likely_region_shrinks_towards_an_entry_outside_the_space(cyan_cube):
-    (entry,), reach = (
-        cyan_cube.data.outside_boxes.rgb,
-        cyan_cube.data.outside_boxes.half_width[0],
-    )
+    boxes = cyan_cube.data.outside_boxes
+    entry = boxes.rgb[0]
+    reach = boxes.half_width[0]
     rgb = np.array([entry, entry - [0.5 * reach, 0, 0], entry - [1.5 * reach, 0, 0]])
     areas = np.sqrt(
         np.linalg.det(lab_errors(cyan_cube.data, FL11).covariance(rgb)[:, 1:, 1:])

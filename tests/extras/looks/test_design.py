@@ -6,6 +6,7 @@ import warnings
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from scipy.optimize import linprog
 
 import uplift
@@ -86,8 +87,10 @@ def test_nearest_colour_is_that_of_a_linear_program(sensor, materials):
     goal, expected = impossible(sensor, materials)
     found = design_reflectance(sensor, goal, expected)
     assert goal.delta_e(found)[0] > 1
-    np.testing.assert_allclose(sensor.rgb(found), goal.rgb, atol=1e-4)
-    (light,), (wish,), xyz = goal.lights, goal.xyz, goal.colours(found)[0]
+    assert_allclose(sensor.rgb(found), goal.rgb, atol=1e-4)
+    (light,) = goal.lights
+    (wish,) = goal.xyz
+    xyz = goal.colours(found)[0]
     wished = lab(wish, light.white)
     answered = lab(xyz, light.white)
     weights = delta_e_2000_weights(wished)

@@ -4,6 +4,7 @@ contradict or cannot be met.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.conftest import MACBETH
@@ -70,16 +71,14 @@ def test_looks_are_met_and_other_entries_unchanged(cubes):
         "look 0.5 0.3 0.2",
     )
     for mode in ("spectra", "refined", "moments"):
-        np.testing.assert_allclose(
+        assert_allclose(
             looked.reflectance(atlas.rgb, mode=mode),
             plain.reflectance(atlas.rgb, mode=mode),
             rtol=0,
             atol=1e-9,
         )
     rgb = looked.data.atlas.rgb
-    np.testing.assert_allclose(
-        looked.data.sensor.rgb(looked.reflectance(rgb)), rgb, atol=1e-5
-    )
+    assert_allclose(looked.data.sensor.rgb(looked.reflectance(rgb)), rgb, atol=1e-5)
 
 
 def test_looks_work_without_an_atlas(bare):
@@ -91,8 +90,8 @@ def test_looks_work_without_an_atlas(bare):
 def test_looks_are_no_evidence_for_errors(cubes):
     plain, looked = cubes
     one, other = (each.data.atlas for each in cubes)
-    np.testing.assert_array_equal(one.measured, other.measured)
-    np.testing.assert_allclose(one.left_out, other.left_out, atol=1e-6)
+    assert_array_equal(one.measured, other.measured)
+    assert_allclose(one.left_out, other.left_out, atol=1e-6)
     rgb = looked.data.atlas.rgb
     count = plain.data.atlas.measured_count
     for kind in (None, light("FL11")):
@@ -103,7 +102,7 @@ def test_looks_are_no_evidence_for_errors(cubes):
         )
         assert errors[:count].max() < 0.5 < errors[count:].min()
     assert len(light_errors(looked.data, light("HP1")).entries) == count + 3
-    np.testing.assert_array_equal(looked.unlike_atlas(rgb), plain.unlike_atlas(rgb))
+    assert_array_equal(looked.unlike_atlas(rgb), plain.unlike_atlas(rgb))
     assert [each.entry for each in query(looked, rgb[count:])] == list(
         looked.data.atlas.names[count:]
     )
@@ -115,9 +114,7 @@ def test_impossible_look_is_reported_and_recorded():
     (record,) = cube.data.provenance["looks"]
     (at_a,) = record["lights"]
     assert 0.5 < at_a["possible"] <= at_a["delta_e"] < at_a["possible"] + 0.2
-    np.testing.assert_allclose(
-        at_a["delta_e"], distances(cube, [IMPOSSIBLE])[0], atol=1e-5
-    )
+    assert_allclose(at_a["delta_e"], distances(cube, [IMPOSSIBLE])[0], atol=1e-5)
     assert "dusk" in str(found[0])
     assert cube.reflectance(cube.data.atlas.rgb).max() <= 1
 

@@ -5,6 +5,7 @@ metamers and linear programs.
 import numpy as np
 import pytest
 from matplotlib.path import Path
+from numpy.testing import assert_allclose
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 
@@ -51,15 +52,13 @@ def test_extremes_are_those_of_a_linear_program(sensor, name):
     rgb, response = problems(sensor, name, 12)
     found = extreme_spectra(sensor.matrix, rgb, response)
     assert found.solved.all()
-    np.testing.assert_allclose(sensor.rgb(found.reflectance), rgb, atol=1e-9)
+    assert_allclose(sensor.rgb(found.reflectance), rgb, atol=1e-9)
     assert ((found.reflectance >= 0) & (found.reflectance <= 1)).all()
     assert (((found.reflectance > 0) & (found.reflectance < 1)).sum(axis=1) <= 3).all()
     best = [
         -linear_program(sensor, *each).fun for each in zip(rgb, response, strict=True)
     ]
-    np.testing.assert_allclose(
-        (response * found.reflectance).sum(axis=1), best, rtol=0, atol=1e-9
-    )
+    assert_allclose((response * found.reflectance).sum(axis=1), best, rtol=0, atol=1e-9)
 
 
 def test_extremes_do_not_depend_on_the_start_or_the_neighbours(sensor, monkeypatch):
@@ -70,9 +69,7 @@ def test_extremes_do_not_depend_on_the_start_or_the_neighbours(sensor, monkeypat
         sensor.matrix, rgb, response, np.roll(found.basis, 1, axis=0)
     )
     expected = (found.reflectance * response).sum(axis=1)
-    np.testing.assert_allclose(
-        (warm.reflectance * response).sum(axis=1), expected, atol=1e-9
-    )
+    assert_allclose((warm.reflectance * response).sum(axis=1), expected, atol=1e-9)
 
 
 def test_colours_without_reflectance_are_not_solved(sensor):
@@ -92,7 +89,7 @@ def test_colours_without_reflectance_are_not_solved(sensor):
 def test_directions_are_unit_vectors_of_a_closed_mesh(divisions):
     found = sphere(divisions)
     assert found.directions.shape == (COUNTS[divisions], 3)
-    np.testing.assert_allclose(np.linalg.norm(found.directions, axis=1), 1)
+    assert_allclose(np.linalg.norm(found.directions, axis=1), 1)
     edges = np.sort(found.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
     volume = mesh_volume(found.directions[None], found.faces)[0]
@@ -134,7 +131,7 @@ def test_volumes_that_are_points(sensor):
     """Those under the build light, and those of black and white."""
     rgb = np.random.default_rng(2).uniform(size=(20, 3))
     volumes = mismatch_volumes(sensor, sensor.light, rgb, divisions=1)
-    np.testing.assert_allclose(
+    assert_allclose(
         volumes.xyz, np.repeat(sensor.xyz(rgb)[:, None], 42, axis=1), atol=1e-9
     )
     assert np.abs(volumes.volume).max() < 1e-20
@@ -142,8 +139,8 @@ def test_volumes_that_are_points(sensor):
     volumes = mismatch_volumes(
         sensor, light, np.array([[0.0, 0, 0], [1, 1, 1]]), divisions=1
     )
-    np.testing.assert_allclose(volumes.xyz[0], 0, atol=1e-7)
-    np.testing.assert_allclose(volumes.xyz[1], np.tile(light.white, (42, 1)), atol=1e-7)
+    assert_allclose(volumes.xyz[0], 0, atol=1e-7)
+    assert_allclose(volumes.xyz[1], np.tile(light.white, (42, 1)), atol=1e-7)
 
 
 def test_the_volume_is_that_of_the_hull_of_linear_programs(sensor):
@@ -186,7 +183,7 @@ def test_no_metamer_differs_more(plain_cube, name):
     assert (found.outer >= found.delta_e_2000).all()
     assert volumes.excess(found.xyz).max() <= ROUNDING
     reference = lab(answers, light.white)
-    np.testing.assert_allclose(
+    assert_allclose(
         found.delta_e_2000, delta_e_2000(lab(found.xyz, light.white), reference)
     )
     for row, each in enumerate(rgb):

@@ -2,16 +2,15 @@
 spectra of models.
 """
 
+import itertools
 import json
-import subprocess
-import sys
-from itertools import product
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.extras.texture.conftest import planes, write_exr
-from tests.helpers import raises, warns
+from tests.helpers import raises, run_python, warns
 from tests.parts import LLVM, need
 from uplift.colorimetry.gamut import map_to_gamut
 from uplift.common.errors import TextureError
@@ -68,9 +67,7 @@ def test_filtering_agrees_with_mitsuba_s_bitmap(mi, texture, spectrum, sensor, o
     for uv in POSITIONS:
         si.uv = mi.Point2f(*uv)
         found = sensor.rgb(spectrum(ours, uv, sensor.wavelengths))
-        np.testing.assert_allclose(
-            found, np.array(reference.eval_3(si)), rtol=0, atol=WITHIN
-        )
+        assert_allclose(found, np.array(reference.eval_3(si)), rtol=0, atol=WITHIN)
 
 
 def test_a_texel_of_an_entry_s_colour_has_the_entry_s_spectrum(
@@ -85,13 +82,9 @@ def test_a_texel_of_an_entry_s_colour_has_the_entry_s_spectrum(
     entry = small_cube.data.atlas.spectra.reflectance(
         np.array([3]), np.array([450.0, 650.0])
     )[0]
-    np.testing.assert_allclose(
-        spectrum(found, (0.25, 0.5), [450, 650]), entry, atol=1e-5
-    )
+    assert_allclose(spectrum(found, (0.25, 0.5), [450, 650]), entry, atol=1e-5)
     other = small_cube.reflectance(image[0, 1], [450, 650], mode="refined")
-    np.testing.assert_allclose(
-        spectrum(found, (0.75, 0.5), [450, 650]), other, atol=1e-5
-    )
+    assert_allclose(spectrum(found, (0.75, 0.5), [450, 650]), other, atol=1e-5)
 
 
 def test_texels_of_an_entry_outside_the_space_have_its_spectrum(
@@ -110,11 +103,11 @@ def test_texels_of_an_entry_outside_the_space_have_its_spectrum(
         {"bitmap": mi.Bitmap(pixels)},
         {"filename": str(tmp_path / "image.exr")},
     ):
-        np.testing.assert_allclose(
+        assert_allclose(
             spectrum(mi.load_dict(nearest | source), (0.25, 0.5), at), entry, atol=1e-5
         )
     colour = ", ".join(map(repr, rgb.tolist()))
-    np.testing.assert_allclose(
+    assert_allclose(
         spectrum(mi.load_dict(every | {"rgb": colour}), (0.5, 0.5), at),
         entry,
         atol=1e-5,
@@ -125,7 +118,7 @@ def test_texels_of_an_entry_outside_the_space_have_its_spectrum(
             every | {"bitmap": mi.Bitmap(pixels), "filter_type": "nearest"}
         )
     mapped = cyan_cube.reflectance(pixels[0, 0].clip(0, 1), at, mode="refined")
-    np.testing.assert_allclose(spectrum(found, (0.25, 0.5), at), mapped, atol=1e-5)
+    assert_allclose(spectrum(found, (0.25, 0.5), at), mapped, atol=1e-5)
 
 
 def test_only_encoded_files_are_decoded_and_layers_are_read(
@@ -141,9 +134,7 @@ def test_only_encoded_files_are_decoded_and_layers_are_read(
         found = mi.load_dict(
             {"type": "uplift", "cube": cube_path, "filename": str(tmp_path / name)}
         )
-        np.testing.assert_allclose(
-            spectrum(found, (0.5, 0.5), [450, 650]), expected, atol=1e-5
-        )
+        assert_allclose(spectrum(found, (0.5, 0.5), [450, 650]), expected, atol=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -177,7 +168,7 @@ def test_colours_outside_are_mapped_with_a_warning(
     first = (
         map_to_gamut(image[0, 0], sensor, "scale").rgb if expected is None else expected
     )
-    np.testing.assert_allclose(rgb, [first, [0.1, 0.2, 0]], rtol=0, atol=1e-4)
+    assert_allclose(rgb, [first, [0.1, 0.2, 0]], rtol=0, atol=1e-4)
 
 
 def test_the_stochastic_filter_chooses_texels_by_their_weights(texture, spectrum):
@@ -190,11 +181,11 @@ def test_the_stochastic_filter_chooses_texels_by_their_weights(texture, spectrum
     assert (values < 0.4).mean() == pytest.approx(0.8, abs=0.05)
 
 
-FILTERS = ("bilinear", "nearest", "stochastic")
-WRAPS = ("repeat", "mirror", "clamp")
 OPTIONS = [
     {"filter_type": filter_type, "wrap_mode": wrap_mode}
-    for filter_type, wrap_mode in product(FILTERS, WRAPS)
+    for filter_type, wrap_mode in itertools.product(
+        ("bilinear", "nearest", "stochastic"), ("repeat", "mirror", "clamp")
+    )
 ]
 
 JIT = """
@@ -226,10 +217,7 @@ def test_a_wavefront_agrees_with_single_rays(mi, small_cube, cube_path, tmp_path
 
     sources = [{"cube": cube_path}, *_textures(small_cube, tmp_path)]
     arguments = [json.dumps(each) for each in (sources, OPTIONS, POSITIONS)]
-    done = subprocess.run(
-        [sys.executable, "-c", JIT, *arguments], capture_output=True, text=True
-    )
-    assert not done.returncode, done.stderr
+    found = json.loads(run_python(JIT, *arguments))
     expected = []
     for source in sources:
         for options in OPTIONS:
@@ -238,10 +226,11 @@ def test_a_wavefront_agrees_with_single_rays(mi, small_cube, cube_path, tmp_path
             values = []
             for uv in POSITIONS:
                 si = drjit.zeros(mi.SurfaceInteraction3f)
-                si.uv, si.wavelengths = mi.Point2f(*uv), mi.Spectrum(400, 500, 600, 700)
+                si.uv = mi.Point2f(*uv)
+                si.wavelengths = mi.Spectrum(400, 500, 600, 700)
                 values.append(np.array(texture.eval(si)))
             expected.append(values)
-    np.testing.assert_allclose(json.loads(done.stdout), expected, rtol=0, atol=1e-5)
+    assert_allclose(found, expected, rtol=0, atol=1e-5)
 
 
 def _textures(cube, folder):
@@ -289,7 +278,7 @@ def test_a_texture_has_the_spectra_of_the_cube(
         }
     )
     expected = small_cube.reflectance(IMAGE[2, 1], WAVELENGTHS, mode=mode)
-    np.testing.assert_allclose(
+    assert_allclose(
         spectrum(found, (0.4, 0.9), WAVELENGTHS), expected, rtol=0, atol=within
     )
 
@@ -338,4 +327,4 @@ def test_blend_is_the_weighted_sum(mi, model):
     weights = [0.5, 0.2, 0.3]
     found = blend(model, multipliers.tolist(), weights, mi.Spectrum(*SAMPLED))
     expected = weights @ evaluate(model, multipliers, SAMPLED)
-    np.testing.assert_allclose(np.array(found), expected, rtol=0, atol=1e-5)
+    assert_allclose(np.array(found), expected, rtol=0, atol=1e-5)

@@ -4,9 +4,7 @@ no other one runs.
 
 import pytest
 
-from benchmarks.browser import browser
-from tests.browsing import check_page, open_page
-from tests.parts import CHROMIUM, need
+from tests.browsing import check_page, open_page, shared_tab
 from uplift.extras.pages.figure import new_figure, to_page_svg
 from uplift.extras.pages.html import Markup, _environment, render
 
@@ -31,11 +29,9 @@ def page(**values):
     )
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def tab():
-    need(CHROMIUM)
-    with browser() as opened:
-        yield opened
+    return shared_tab()
 
 
 def test_shared_parts_fit_and_are_accessible(tmp_path):

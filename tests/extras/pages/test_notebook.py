@@ -5,6 +5,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from uplift.extras.pages.notebook import plot_cube
 from uplift.lookup import Cube
@@ -34,5 +35,5 @@ def test_names_are_escaped(small_cube):
 def test_spectra_are_plotted_in_their_own_colours(small_cube):
     lines = plot_cube(small_cube, COLOURS).axes[0].lines[1::2]
     for line, spectrum in zip(lines, small_cube.reflectance(COLOURS), strict=True):
-        np.testing.assert_array_equal(line.get_ydata(), spectrum)
+        assert_array_equal(line.get_ydata(), spectrum)
     assert lines[0].get_color() != lines[1].get_color()

@@ -7,6 +7,7 @@ import numpy as np
 import OpenEXR
 import pytest
 from matplotlib.image import imread
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.cube.hand_made import hand_made
 from uplift.extras.colour.srgb import encode
@@ -41,7 +42,7 @@ def test_every_node_is_at_its_position():
     for position in product(range(4), repeat=3):
         point = data.lattice.index(np.array(position))
         for number, panel in enumerate(shown):
-            np.testing.assert_array_equal(
+            assert_array_equal(
                 pixel(data, image, number, position),
                 panel.colours[point].astype(np.float32),
             )
@@ -50,22 +51,20 @@ def test_every_node_is_at_its_position():
 def test_colours_agree_with_the_legend():
     data = hand_made()
     image = compose(data).image
-    np.testing.assert_array_equal(
+    assert_array_equal(
         pixel(data, image, COLOUR, (3, 1, 2)), data.points.rgb[3 * 16 + 1 * 4 + 2]
     )
-    np.testing.assert_array_equal(
+    assert_array_equal(
         pixel(data, image, DISTANCE, (0, 0, 0)), HIGHLIGHT[0].astype(np.float32)
     )
     for blue in range(4):
-        np.testing.assert_array_equal(
+        assert_array_equal(
             pixel(data, image, STATE, (0, 0, blue)), STATUS[blue].astype("f4")
         )
-    np.testing.assert_array_equal(
+    assert_array_equal(
         pixel(data, image, ROUND, (0, 0, 0)), HIGHLIGHT[0].astype(np.float32)
     )
-    np.testing.assert_array_equal(
-        pixel(data, image, ROUND, (0, 0, 1)), RAMP[0].astype(np.float32)
-    )
+    assert_array_equal(pixel(data, image, ROUND, (0, 0, 1)), RAMP[0].astype(np.float32))
 
 
 @pytest.mark.parametrize(
@@ -80,9 +79,7 @@ def test_colours_agree_with_the_legend():
 )
 def test_distance_is_logarithmic_up_to_the_threshold(distance, colour):
     panel = panels(hand_made(distance=np.full(64, distance)))[DISTANCE]
-    np.testing.assert_allclose(
-        panel.colours, np.broadcast_to(colour, (64, 3)), atol=1e-9
-    )
+    assert_allclose(panel.colours, np.broadcast_to(colour, (64, 3)), atol=1e-9)
 
 
 def test_exr_is_flat_linear_rgb(tmp_path):
@@ -95,7 +92,7 @@ def test_exr_is_flat_linear_rgb(tmp_path):
     assert image.dtype == np.float32
     for position in ((0, 0, 0), (3, 1, 2), (1, 3, 0)):
         expected = data.points.rgb[data.lattice.index(np.array(position))]
-        np.testing.assert_array_equal(pixel(data, image, COLOUR, position), expected)
+        assert_array_equal(pixel(data, image, COLOUR, position), expected)
     assert (image[0] == np.float32(BACKGROUND)).all()
 
 
@@ -106,7 +103,7 @@ def test_png_is_the_same_in_srgb(tmp_path):
     assert image.shape[1::-1] == Layout(4, 5).size
     for position in ((0, 0, 0), (3, 1, 2), (1, 3, 0)):
         expected = encode(data.points.rgb[data.lattice.index(np.array(position))])
-        np.testing.assert_allclose(
+        assert_allclose(
             pixel(data, image[..., :3], COLOUR, position), expected, atol=0.51 / 255
         )
 

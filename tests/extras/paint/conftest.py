@@ -29,7 +29,8 @@ def parts(rng):
 def paint(rng):
     """Pigments with K and S over five decades, including zeros."""
     K, S = 10 ** rng.uniform(-4, 1, (2, 60))
-    K[:2], S[1:3] = 0, 0
+    K[:2] = 0
+    S[1:3] = 0
     return Pigment(K, S)
 
 

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import OpenEXR
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.extras.texture.conftest import channels, planes, read_channels, write_exr
 from tests.helpers import raises, warns
@@ -44,11 +45,9 @@ def test_a_single_colour_is_unchanged_and_thickness_0_leaves_the_ground(
 ):
     for parts, expected in (([1, 0], two.spectra[0]), ([0, 3], two.spectra[1])):
         found = mix(kind, two, parts, Medium(surface=surface, scattering=rule), WHITE)
-        np.testing.assert_allclose(found, expected, rtol=1e-9)
+        assert_allclose(found, expected, rtol=1e-9)
     ground = rng.uniform(0.1, 1, 5)
-    np.testing.assert_allclose(
-        mix(kind, two, [1, 1], Medium(0.0, surface, rule), ground), ground
-    )
+    assert_allclose(mix(kind, two, [1, 1], Medium(0.0, surface, rule), ground), ground)
 
 
 def test_paint_measured_on_white_and_black_round_trip(rng):
@@ -59,29 +58,25 @@ def test_paint_measured_on_white_and_black_round_trip(rng):
         found = mix(
             "pigment", Ingredients(white[None], (black,)), [2], Medium(1.0, OIL), ground
         )
-        np.testing.assert_allclose(found, expected, rtol=1e-6)
+        assert_allclose(found, expected, rtol=1e-6)
 
 
 def test_filters_and_lights(two):
-    np.testing.assert_allclose(
+    assert_allclose(
         mix("light", two, [2, 1], PLAIN, 0.0), 2 * two.spectra[0] + two.spectra[1]
     )
     # 9.2.1.2 of the thesis: cyan light through an orange and a grey filter.
     filters = Ingredients(np.array([[0, 1, 1], [1, 0.5, 0], [0.5, 0.5, 0.5]]))
-    np.testing.assert_allclose(
-        mix("filter", filters, [1, 1, 1], Medium(), 0.0), [0, 0.25, 0]
-    )
+    assert_allclose(mix("filter", filters, [1, 1, 1], Medium(), 0.0), [0, 0.25, 0])
 
 
 def test_ramps_of_proportions(two):
-    np.testing.assert_allclose(ramp([1, 4, 1], 5)[:, 1], [0, 2, 4, 2, 0])
+    assert_allclose(ramp([1, 4, 1], 5)[:, 1], [0, 2, 4, 2, 0])
     assert ramp([1], 5).shape == (0, 1)
     parts = ramp([2, 1], 4)
     medium = Medium(0.5, scattering=SQUARE_ROOT)
     found = mix("pigment", two, parts, medium, WHITE)
-    np.testing.assert_allclose(
-        found, [mix("pigment", two, each, medium, WHITE) for each in parts]
-    )
+    assert_allclose(found, [mix("pigment", two, each, medium, WHITE) for each in parts])
     with raises(OptionError):
         ramp([1, 1], 1)
 
@@ -118,7 +113,7 @@ def test_colours_darker_than_the_surface_trigger_a_warning(two):
         found = mix(
             "pigment", dark, [0, 1], Medium(surface=OIL, scattering=SQUARE_ROOT), WHITE
         )
-    np.testing.assert_allclose(found, 0.04, atol=1e-4)
+    assert_allclose(found, 0.04, atol=1e-4)
 
 
 @pytest.mark.parametrize("ground", [0.0, 0.3, 1.0])
@@ -131,7 +126,7 @@ def test_a_dye_on_a_ground_is_the_sum_over_passes(surface, ground):
         light = light * T * ground * T
         expected = expected + (1 - surface.inside) * light
         light = surface.inside * light
-    np.testing.assert_allclose(
+    assert_allclose(
         surface.apply(Layer(np.zeros_like(T), T).over(ground)), expected, atol=1e-12
     )
 
@@ -146,7 +141,7 @@ def test_a_plate_is_the_sum_over_passes_and_keeps_the_energy_of_clear_light(rho)
     for number in range(200):
         (above if number % 2 else below)[:] += (1 - rho) * light
         light = rho * light * T
-    np.testing.assert_allclose(
+    assert_allclose(
         [found.reflectance, found.transmittance], [above, below], atol=1e-12
     )
     assert found.reflectance[-1] + found.transmittance[-1] == pytest.approx(1)
@@ -156,7 +151,7 @@ def test_a_plate_is_the_sum_over_passes_and_keeps_the_energy_of_clear_light(rho)
 def test_a_plate_of_index_1_is_the_layer_alone(two):
     for ground in (0.0, 0.3, 1.0):
         found = mix("dye", two, [1, 2], Medium(1.5, plate=True), ground)
-        np.testing.assert_allclose(found, mix("dye", two, [1, 2], Medium(1.5), ground))
+        assert_allclose(found, mix("dye", two, [1, 2], Medium(1.5), ground))
     assert (
         mix("dye", two, [1, 2], Medium(1.5, OIL, plate=True), 0.0) >= OIL.outside
     ).all()
@@ -174,23 +169,21 @@ def test_duntley_s_paint_becomes_kubelka_and_munk_s_and_creates_no_energy(rng, s
             "duntley", Ingredients(constants), [2, 1], Medium(0.7, surface), ground
         )
         layer = Pigment(K, B).mix([2, 1]).layer(0.7)
-        np.testing.assert_allclose(
+        assert_allclose(
             found, surface.apply(layer.over(surface.remove(ground))), atol=1e-6
         )
     clear = rng.uniform(0, 2, (3, 6, 5)) * [[0], [1], [1], [0], [1], [1]]
-    np.testing.assert_allclose(
+    assert_allclose(
         mix("duntley", Ingredients(clear), [1, 2, 3], Medium(0.7, surface), WHITE), 1
     )
 
 
 def test_thicknesses_of_dyes_compose_and_black_is_finite():
     K = np.array([0.2, 3])
-    np.testing.assert_allclose(
+    assert_allclose(
         dye_transmittance(K, 5), dye_transmittance(K, 2) * dye_transmittance(K, 3)
     )
-    np.testing.assert_allclose(
-        dye_transmittance(dye_absorption(T**2), 1), np.maximum(T, DARKEST)
-    )
+    assert_allclose(dye_transmittance(dye_absorption(T**2), 1), np.maximum(T, DARKEST))
 
 
 @pytest.fixture
@@ -215,10 +208,8 @@ def test_painted_colours_are_those_of_the_coated_spectra(small_cube, image, tmp_
         (),
     )
     expected = small_cube.data.sensor.rgb(glaze.over(small_cube.reflectance(image)))
-    np.testing.assert_allclose(
-        read_channels(tmp_path / "out.exr", "RGB"), expected, atol=2e-6
-    )
-    np.testing.assert_array_equal(channels(tmp_path / "out.exr")["mask"], mask)
+    assert_allclose(read_channels(tmp_path / "out.exr", "RGB"), expected, atol=2e-6)
+    assert_array_equal(channels(tmp_path / "out.exr")["mask"], mask)
     header = OpenEXR.File(str(tmp_path / "out.exr"), separate_channels=True).header()
     assert json.loads(header["uplift.mix"]) == {"of": "red"}
 

@@ -4,6 +4,7 @@ Fresnel's equations.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
@@ -15,10 +16,10 @@ INDICES = (1.01, 1.2, 1.5, 1.66, 2.4)
 
 def test_lights_add_up_and_areas_are_averaged(spectra, parts):
     expected = sum(parts[:, i, None] * spectra[:, i] for i in range(3))
-    np.testing.assert_allclose(add_lights(spectra, parts), expected)
+    assert_allclose(add_lights(spectra, parts), expected)
     for scale in (1, 7):
         mean = expected / parts.sum(axis=1, keepdims=True)
-        np.testing.assert_allclose(average_areas(spectra, scale * parts), mean)
+        assert_allclose(average_areas(spectra, scale * parts), mean)
 
 
 def test_reflectance_on_a_ground_is_the_sum_of_all_reflections():
@@ -28,7 +29,7 @@ def test_reflectance_on_a_ground_is_the_sum_of_all_reflections():
         layer.transmittance**2 * ground * (layer.reflectance * ground) ** bounce
         for bounce in range(2000)
     )
-    np.testing.assert_allclose(layer.over(ground), layer.reflectance + sum(passes))
+    assert_allclose(layer.over(ground), layer.reflectance + sum(passes))
     assert Layer(np.ones(1), np.zeros(1)).over(1.0) == 1, (
         "mirrors face to face give no NaN"
     )
@@ -65,7 +66,7 @@ def test_saunderson_round_trip(incidence, n):
     surface = Surface.of_index(n, incidence)
     internal = np.linspace(0, 1, 101)
     measured = surface.apply(internal)
-    np.testing.assert_allclose(surface.remove(measured), internal, atol=1e-12)
+    assert_allclose(surface.remove(measured), internal, atol=1e-12)
     assert (np.diff(measured) > 0).all()
     assert measured[0] == surface.outside
     assert measured[-1] == pytest.approx(

@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.integrate import solve_bvp
 
 from tests.helpers import raises
@@ -38,7 +39,7 @@ def test_reflectance_on_a_ground_follows_kubelka_1948(X, ground):
     b = np.sqrt(a**2 - 1)
     coth = 1 / np.tanh(b * SEVERAL.scattering * X)
     expected = (1 - ground * (a - b * coth)) / (a - ground + b * coth)
-    np.testing.assert_allclose(SEVERAL.layer(X).over(ground), expected)
+    assert_allclose(SEVERAL.layer(X).over(ground), expected)
 
 
 def test_the_thesis_s_example():
@@ -51,7 +52,7 @@ def test_the_thesis_s_example():
 def test_two_layers_equal_one_of_their_total_thickness(paint):
     for ground in (0.0, 0.3, 1.0):
         both = paint.layer(0.7).over(paint.layer(1.6).over(ground))
-        np.testing.assert_allclose(both, paint.layer(2.3).over(ground), rtol=1e-10)
+        assert_allclose(both, paint.layer(2.3).over(ground), rtol=1e-10)
 
 
 def check_energy(layer):
@@ -69,22 +70,22 @@ def test_limits_without_absorption_and_without_scattering():
     """K → 0: R = SX / (1 + SX), and T = 1 − R. S → 0: Beer's law."""
     for tiny in (0.0, 1e-12):
         white = Pigment(np.full(2, tiny), np.array([0.5, 3.0])).layer(2.0)
-        np.testing.assert_allclose(white.reflectance, [1 / 2, 6 / 7], atol=1e-6)
-        np.testing.assert_allclose(white.transmittance, [1 / 2, 1 / 7], atol=1e-6)
+        assert_allclose(white.reflectance, [1 / 2, 6 / 7], atol=1e-6)
+        assert_allclose(white.transmittance, [1 / 2, 1 / 7], atol=1e-6)
         dye = Pigment(np.array([0.5, 3.0]), np.full(2, tiny)).layer(2.0)
-        np.testing.assert_allclose(dye.transmittance, np.exp([-1, -6]), atol=1e-6)
-        np.testing.assert_allclose(dye.reflectance, 0, atol=1e-6)
+        assert_allclose(dye.transmittance, np.exp([-1, -6]), atol=1e-6)
+        assert_allclose(dye.reflectance, 0, atol=1e-6)
 
 
 def test_thick_paint_hides_its_ground_and_thickness_0_shows_it(paint):
     opaque = Pigment(paint.absorption[3:], paint.scattering[3:])
     for ground in (0.0, 1.0):
-        np.testing.assert_allclose(
+        assert_allclose(
             opaque.layer(1e7).over(ground), opaque.opaque_reflectance(), rtol=1e-9
         )
-    np.testing.assert_array_equal(SEVERAL.layer(0.0).over([0.1, 0.5, 1]), [0.1, 0.5, 1])
+    assert_array_equal(SEVERAL.layer(0.0).over([0.1, 0.5, 1]), [0.1, 0.5, 1])
     limits = Pigment(np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]))
-    np.testing.assert_array_equal(limits.opaque_reflectance(), [1, 0, 0])
+    assert_array_equal(limits.opaque_reflectance(), [1, 0, 0])
 
 
 def test_amy_is_exact_for_strong_absorption_and_half_for_white():
@@ -99,8 +100,8 @@ def test_amy_is_exact_for_strong_absorption_and_half_for_white():
 
 @pytest.mark.parametrize("rule", RULES)
 def test_opaque_reflectance_round_trip_alone_and_mixed(rule, spectra, parts):
-    np.testing.assert_allclose(from_opaque(R, rule).opaque_reflectance(), R, rtol=1e-9)
-    np.testing.assert_allclose(
+    assert_allclose(from_opaque(R, rule).opaque_reflectance(), R, rtol=1e-9)
+    assert_allclose(
         from_opaque(np.stack([R, R]), rule).mix([3, 2]).opaque_reflectance(),
         R,
         rtol=1e-9,
@@ -116,12 +117,8 @@ def test_two_grounds_determine_k_and_s(paint):
     known = layer.transmittance > 0.02
     assert known.sum() > 30
     found = from_black_and_white(layer.over(0.0)[known], layer.over(1.0)[known])
-    np.testing.assert_allclose(
-        found.absorption, paint.absorption[known], rtol=1e-6, atol=1e-8
-    )
-    np.testing.assert_allclose(
-        found.scattering, paint.scattering[known], rtol=1e-6, atol=1e-8
-    )
+    assert_allclose(found.absorption, paint.absorption[known], rtol=1e-6, atol=1e-8)
+    assert_allclose(found.scattering, paint.scattering[known], rtol=1e-6, atol=1e-8)
 
 
 @pytest.mark.parametrize(("on_black", "on_white"), [(0.3, 0.3), (0.5, 0.2), (0.6, 1.3)])
@@ -143,7 +140,7 @@ def test_h_is_the_mean_on_one_side_less_that_on_the_other(sensor, rng):
         )
         expected.append(below - above)
     Y = (sensor.cmfs[:, 1] * reflectance).sum() / sensor.cmfs[:, 1].sum()
-    np.testing.assert_allclose(
+    assert_allclose(
         dispersive(sensor)(reflectance),
         Y**0.75 * np.exp(np.array(expected) / 4),
         rtol=1e-12,
@@ -156,10 +153,8 @@ def test_further_wavelengths_change_nothing_and_are_consistent(sensor, rng):
     columns = [14, 34, 0, 80]
     extended = np.concatenate([reflectance, reflectance[:, columns]], axis=1)
     found = dispersive(sensor, [450.0, 550.0, 300.0, 900.0])(extended)
-    np.testing.assert_allclose(found[:, :81], assumed(reflectance), rtol=1e-12)
-    np.testing.assert_allclose(
-        found[:, 81:], assumed(reflectance)[:, columns], rtol=1e-12
-    )
+    assert_allclose(found[:, :81], assumed(reflectance), rtol=1e-12)
+    assert_allclose(found[:, 81:], assumed(reflectance)[:, columns], rtol=1e-12)
 
 
 DIFFUSE = Flux(np.array([0.6, 0.3]), np.array([1.1, 0.5]), np.array([0.8, 2.0]))
@@ -176,16 +171,15 @@ BEAMS += [
 def test_duntley_s_differential_equations_are_satisfied(beam):
     found = duntley_layer(beam, DIFFUSE, 1.3)
     for place in range(2):
-        K, B, mu = (
-            each[place]
-            for each in (DIFFUSE.absorption, DIFFUSE.backward, beam.absorption)
-        )
+        K = DIFFUSE.absorption[place]
+        B = DIFFUSE.backward[place]
         B1 = beam.backward[place]
         F1 = beam.forward[place]
-        mu = mu + B1 + F1
+        mu = beam.absorption[place] + B1 + F1
 
         def slopes(x, flux, K=K, B=B, B1=B1, F1=F1, mu=mu):
-            (t, s), left = flux, np.exp(-mu * x)
+            t, s = flux
+            left = np.exp(-mu * x)
             return np.stack(
                 [F1 * left - (K + B) * t + B * s, (K + B) * s - B * t - B1 * left]
             )
@@ -209,8 +203,8 @@ def test_strong_forward_scattering_gives_the_two_constant_theory():
     beam = Flux(BEAMS[0].absorption, BEAMS[0].backward, np.full(2, 1e7))
     two = Pigment(DIFFUSE.absorption, DIFFUSE.backward).layer(0.9)
     found = duntley_layer(beam, DIFFUSE, 0.9)
-    np.testing.assert_allclose(found.reflectance, two.reflectance, atol=1e-6)
-    np.testing.assert_allclose(found.transmittance, two.transmittance, atol=1e-6)
+    assert_allclose(found.reflectance, two.reflectance, atol=1e-6)
+    assert_allclose(found.transmittance, two.transmittance, atol=1e-6)
 
 
 def test_constants_are_read_from_rows_and_columns(tmp_path):
@@ -228,7 +222,7 @@ def test_constants_are_read_from_rows_and_columns(tmp_path):
             "\n".join(",".join(map(str, row)) for row in cells), encoding="utf-8"
         )
         found = pigments.read_constants(path, np.array([380, 450, 700]))
-        np.testing.assert_allclose(
+        assert_allclose(
             found,
             np.stack([rows[:6, 0], rows[:6, :2].mean(axis=1), rows[:6, 2]], axis=1),
         )
@@ -268,5 +262,5 @@ def test_isotropic_paint_in_a_beam_is_two_r_over_three_minus_r(rng):
     S = rng.uniform(0.2, 3, 30)
     r = Pigment(K, S).opaque_reflectance()
     thick = duntley_layer(Flux(K / 2, S / 2, S / 2), Flux(K, S, S), 400.0).reflectance
-    np.testing.assert_allclose(diffuse_to_beam(r), thick, rtol=1e-6)
-    np.testing.assert_allclose(beam_to_diffuse(diffuse_to_beam(r)), r, rtol=1e-12)
+    assert_allclose(diffuse_to_beam(r), thick, rtol=1e-6)
+    assert_allclose(beam_to_diffuse(diffuse_to_beam(r)), r, rtol=1e-12)

@@ -6,6 +6,7 @@ import colorsys
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from benchmarks.mixing import CRITERIA, acrylics, evaluate, published
@@ -109,9 +110,7 @@ def test_mixbox_s_published_mixtures_are_nearer_than_before(by_name, smooth_cube
 @pytest.mark.parametrize("other", [0, 1])
 def test_ryb_shades_keep_their_chromaticity_and_tints_their_hue(other):
     pairs = np.stack([COLOURS, np.full_like(COLOURS, other)], axis=1)
-    np.testing.assert_allclose(
-        mix_ryb(pairs, [1, 3]), (COLOURS + 3 * other) / 4, atol=1e-12
-    )
+    assert_allclose(mix_ryb(pairs, [1, 3]), (COLOURS + 3 * other) / 4, atol=1e-12)
 
 
 def test_the_thesis_s_complements():
@@ -120,7 +119,7 @@ def test_the_thesis_s_complements():
     orange = [1, 0.5, 0]
     yellow = [1, 1, 0]
     purple = [1, 0, 1]
-    np.testing.assert_allclose(
+    assert_allclose(
         mix_ryb([[blue, orange], [yellow, purple]], [1, 1]), 0.5, atol=1e-12
     )
     assert np.ptp(mix_ryb([[1, 0, 0], [0, 1, 0]], [1, 1])) < 0.2
@@ -133,7 +132,7 @@ def test_phosphor_curves_give_their_colours_and_do_not_amplify_light():
         mix_phosphors(COLOURS[:, None], np.full((len(COLOURS), 1), thickness))
         for thickness in (1, 2)
     )
-    np.testing.assert_allclose(one, COLOURS, atol=1e-12)
+    assert_allclose(one, COLOURS, atol=1e-12)
     assert (two.sum(axis=1) < one.sum(axis=1)).all()
     # Impurity of real filters in Fishkin 1983: white on white is darker than white.
     assert (mix_phosphors(np.ones((2, 3)), np.ones(2)) < 0.6).all()
@@ -142,10 +141,10 @@ def test_phosphor_curves_give_their_colours_and_do_not_amplify_light():
 def test_hsl_agrees_with_the_standard_library_and_round_trips(rng):
     rgb = np.concatenate([rng.random((500, 3)), rng.integers(0, 3, (500, 3)) / 2])
     found = rgb_to_hsl(rgb)
-    np.testing.assert_allclose(hsl_to_rgb(found), rgb, atol=1e-12)
-    np.testing.assert_allclose(
+    assert_allclose(hsl_to_rgb(found), rgb, atol=1e-12)
+    assert_allclose(
         found,
         np.array([colorsys.rgb_to_hls(*one) for one in rgb])[:, [0, 2, 1]],
         atol=1e-12,
     )
-    np.testing.assert_allclose(hsl_to_rgb([-1e-18, 1, 0.5]), [1, 0, 0], atol=1e-12)
+    assert_allclose(hsl_to_rgb([-1e-18, 1, 0.5]), [1, 0, 0], atol=1e-12)

@@ -3,11 +3,13 @@ criteria, atlases and plots.
 """
 
 import dataclasses
+import itertools
 from itertools import product
 
 import numpy as np
 import pytest
 from matplotlib.image import imread
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.helpers import raises, warns
@@ -83,14 +85,10 @@ def at_random(sensor, draw):
     materials = tuple(
         SpectrumSpec(f"m{row}", None) for row in range(draw.integers(1, 4))
     )
-    goals = [
-        ColourGoal(
-            material.name,
-            light.name,
-            **({"free": "x"} if draw.random() < 0.3 else {"rgb": draw.random(3)}),
-        )
-        for material, light in product(materials, lights)
-    ]
+    goals = []
+    for material, light in itertools.product(materials, lights):
+        aim = {"free": "x"} if draw.random() < 0.3 else {"rgb": draw.random(3)}
+        goals.append(ColourGoal(material.name, light.name, **aim))
     weights = {
         "smoothness": float(draw.choice([0, 1e-3])),
         "model_error": float(draw.choice([0, 0.1, 1])),
@@ -143,7 +141,7 @@ def test_colours_of_the_factor_model_can_be_fitted(metamers, model):
     weights = {"model_error": 0.0, "smoothness": 0.0}
     found = design(dataclasses.replace(metamers, fit="factor-model", **weights), model)
     target = np.array([found.free["coat"], found.free["coat"]])
-    np.testing.assert_allclose(matrix(found).factor[:, 0], target, atol=1e-6)
+    assert_allclose(matrix(found).factor[:, 0], target, atol=1e-6)
     assert matrix(found).delta_e.max() < 0.01
     assert np.abs(matrix(found).obtained[:, 0] - target).max() > 1e-4
 

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.conftest import ROOT
 from uplift.colorimetry import delta_e_rgb
@@ -34,13 +35,13 @@ def test_all_goals_are_met(examples, name):
 
 
 def test_the_python_code_of_the_page_runs():
-    page = (ROOT / "docs" / "palette.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "palette.md").read_text("utf-8")
     (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     exec(compile(code, "palette.md", "exec"), {})
 
 
 def test_the_infeasible_example_is_missed_because_of_its_bounds(model, tmp_path):
-    page = (ROOT / "docs" / "palette.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "palette.md").read_text("utf-8")
     text = next(
         text
         for text in re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
@@ -73,7 +74,7 @@ def test_metamers_differ_under_the_second_light_and_the_figure_vanishes_on_its_g
 
 def test_the_smoke_vanishes(examples):
     obtained = matrix(examples["vanish"]).obtained
-    np.testing.assert_allclose(obtained[1, 1], 0, atol=1e-3)
+    assert_allclose(obtained[1, 1], 0, atol=1e-3)
     assert min(obtained[1, 0].min(), obtained[0, 1].max()) > 0.1
 
 

@@ -4,6 +4,7 @@ products without sharpening.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.conftest import ATLASES
 from uplift.atlas import on_grid, read_atlas
@@ -22,17 +23,15 @@ def measured(sensor):
 
 
 def test_the_projection_inverts_the_basis_and_white_is_the_identity_of_products(model):
-    np.testing.assert_allclose(model.projection @ model.basis, np.eye(7), atol=1e-9)
+    assert_allclose(model.projection @ model.basis, np.eye(7), atol=1e-9)
     coefficients = np.array([0.1, 0.9, 0.3, 0.5, 0.2, 0.8, 0.4])
     white = model.reflectance(np.ones(len(model.wavelengths)))
-    np.testing.assert_allclose(
-        model.product(white, coefficients), coefficients, atol=1e-12
-    )
+    assert_allclose(model.product(white, coefficients), coefficients, atol=1e-12)
 
 
 def test_colours_of_spectra_in_the_span_are_exact(model, sensor):
     spectrum = model.spectra([0.1, 0.9, 0.3, 0.5, 0.2, 0.8, 0.4])
-    np.testing.assert_allclose(
+    assert_allclose(
         model.rgb(model.reflectance(spectrum)),
         screen_matrix(sensor) @ spectrum,
         atol=1e-9,
@@ -66,5 +65,5 @@ def test_unsharpened_products_in_the_span_are_exact_and_commute(model):
     """They equal the projection of the full product (eq. 5–7)."""
     first, second = np.random.default_rng(3).random((2, 5, model.count))
     full = (model.spectra(first) * model.spectra(second)) @ model.projection.T
-    np.testing.assert_allclose(linear_product(model, first, second), full, atol=1e-9)
-    np.testing.assert_allclose(linear_product(model, second, first), full, atol=1e-9)
+    assert_allclose(linear_product(model, first, second), full, atol=1e-9)
+    assert_allclose(linear_product(model, second, first), full, atol=1e-9)

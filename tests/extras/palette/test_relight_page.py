@@ -10,9 +10,7 @@ import zlib
 import numpy as np
 import pytest
 
-from benchmarks.browser import browser
-from tests.browsing import check_page
-from tests.parts import CHROMIUM, need
+from tests.browsing import check_page, shared_tab
 from uplift.extras.colour.srgb import encode
 from uplift.extras.palette import design, illuminant
 from uplift.extras.palette.palette import Palette, SpectrumSpec
@@ -52,12 +50,11 @@ def view():
     return arbitrary()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def tab():
-    need(CHROMIUM)
-    with browser() as opened:
-        opened.window(1200, 1100)
-        yield opened
+    tab = shared_tab()
+    tab.window(1200, 1100)
+    return tab
 
 
 @pytest.fixture

@@ -4,6 +4,7 @@ import shutil
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.conftest import MACBETH, ROOT
@@ -89,14 +90,12 @@ def test_a_complete_spec(read, sensor):
     ]
     assert palette.min_differences == (MinDifference(("new", "wild"), "day", 4.5),)
     first, second, third, fourth = palette.goals
-    np.testing.assert_allclose(first.rgb, sensor.decode([128] * 3))
+    assert_allclose(first.rgb, sensor.decode([128] * 3))
     assert (second.rgb.tolist(), second.weight) == ([0.3, 0.2, 0.1], 2)
     assert (third.free, fourth.free, fourth.weight) == ("one", "two", 0)
 
-    np.testing.assert_allclose(
-        palette.free["one"], [sensor.decode([16] * 3), [0.5, 0.6, 0.7]]
-    )
-    np.testing.assert_array_equal(palette.free["two"], [[0] * 3, [1] * 3])
+    assert_allclose(palette.free["one"], [sensor.decode([16] * 3), [0.5, 0.6, 0.7]])
+    assert_array_equal(palette.free["two"], [[0] * 3, [1] * 3])
 
 
 def test_given_spectra_are_those_of_their_sources(read, sensor):
@@ -104,10 +103,10 @@ def test_given_spectra_are_those_of_their_sources(read, sensor):
     atlas = read_atlas(MACBETH)
     cube = uplift.load()
     orange = on_grid(atlas, sensor.wavelengths)[atlas.names.index("orange")]
-    np.testing.assert_array_equal(palette.material("orange").samples, orange)
+    assert_array_equal(palette.material("orange").samples, orange)
     rose = cube.reflectance(cube.decode([0xCC, 0x33, 0x66]), sensor.wavelengths)
-    np.testing.assert_array_equal(palette.material("rose").samples, rose)
-    np.testing.assert_allclose(
+    assert_array_equal(palette.material("rose").samples, rose)
+    assert_allclose(
         sensor.rgb(palette.material("sea").samples), [0.1, 0.2, 0.3], atol=1e-4
     )
 
@@ -125,15 +124,13 @@ def test_lights_have_their_luminance_or_their_norm(read, sensor):
         sensor.xyz(screen_matrix(sensor) @ palette.light(name).samples)[1]
         for name in ("day", "a")
     ]
-    np.testing.assert_allclose(luminances, [1, 0.5], atol=1e-12)
-    np.testing.assert_allclose(palette.light("b").samples, 2, rtol=1e-9)
+    assert_allclose(luminances, [1, 0.5], atol=1e-12)
+    assert_allclose(palette.light("b").samples, 2, rtol=1e-9)
 
 
 def test_a_black_body_of_2856_k_is_illuminant_a(sensor):
     """The CIE defines A by Planck's law; its table has six digits."""
-    np.testing.assert_allclose(
-        planck(sensor, 2855.5), illuminant(sensor, "A"), rtol=1e-3
-    )
+    assert_allclose(planck(sensor, 2855.5), illuminant(sensor, "A"), rtol=1e-3)
 
 
 @pytest.mark.parametrize(

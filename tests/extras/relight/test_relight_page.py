@@ -28,7 +28,7 @@ def page(relit, tmp_path_factory):
 
 
 def test_the_page_is_well_formed_and_holds_its_images(page):
-    found = Page(page.read_text(encoding="utf-8"))
+    found = Page(page.read_text("utf-8"))
     sources = [value for name, value in found.attributes if name == "src"]
     assert len(sources) == 2 * (
         1 + 3 * (2 * 3 + 3)
@@ -104,7 +104,7 @@ def test_maps_of_a_page_have_one_scale(relit, page):
         for rendering in relit.renderings
     ]
     assert len(set(limits)) > 1
-    assert page.read_text(encoding="utf-8").count(f">{max(limits)} and more<") == 2
+    assert page.read_text("utf-8").count(f">{max(limits)} and more<") == 2
 
 
 def test_the_line_moves_by_key_and_by_mouse(tab):

@@ -3,6 +3,7 @@
 import numpy as np
 import OpenEXR
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.extras.texture.conftest import channels, planes, read_channels, write_exr
 from uplift.colorimetry import observer
@@ -27,10 +28,10 @@ def test_layers_are_the_spectra_under_the_lights(
     spectra = small_cube.reflectance(colours)
     for light, names in (("A", "RGB"), ("FL3.1", ["FL3_1.R", "FL3_1.G", "FL3_1.B"])):
         expected = observer.sensor("sRGB", light).rgb(spectra)
-        np.testing.assert_allclose(
+        assert_allclose(
             read_channels(tmp_path / "out.exr", names), expected, rtol=1e-3, atol=1e-4
         )
-    np.testing.assert_array_equal(channels(tmp_path / "out.exr")["Z"], colours[..., 0])
+    assert_array_equal(channels(tmp_path / "out.exr")["Z"], colours[..., 0])
 
 
 def test_colours_stay_in_the_space_of_the_image(small_cube, colours, tmp_path):
@@ -44,11 +45,9 @@ def test_colours_stay_in_the_space_of_the_image(small_cube, colours, tmp_path):
     texture.convert(
         prepare_relighter(small_cube, ("D65", "HP1"), threads=1), source, target
     )
-    np.testing.assert_allclose(
-        read_channels(target, "RGB"), 0.3 + 0.2 * colours, atol=1e-3
-    )
+    assert_allclose(read_channels(target, "RGB"), 0.3 + 0.2 * colours, atol=1e-3)
     header = OpenEXR.File(str(target), header_only=True).parts[0].header
-    np.testing.assert_allclose(header["chromaticities"], AP1, rtol=1e-6)
+    assert_allclose(header["chromaticities"], AP1, rtol=1e-6)
     assert header["uplift.lights"] == "D65, HP1"
     grey = write_exr(
         tmp_path / "grey.exr",
@@ -56,12 +55,9 @@ def test_colours_stay_in_the_space_of_the_image(small_cube, colours, tmp_path):
         chromaticities=AP1,
     )
     texture.convert(
-        prepare_relighter(small_cube, ("HP1",), threads=1),
-        grey,
-        target,
-        force=True,
+        prepare_relighter(small_cube, ("HP1",), threads=1), grey, target, force=True
     )
-    np.testing.assert_allclose(read_channels(target, "RGB"), 0.5, atol=0.02)
+    assert_allclose(read_channels(target, "RGB"), 0.5, atol=0.02)
 
 
 def test_the_tint_of_a_light_is_kept_on_request(small_cube, colours, tmp_path):
@@ -70,6 +66,6 @@ def test_the_tint_of_a_light_is_kept_on_request(small_cube, colours, tmp_path):
     texture.convert(relighter, source, tmp_path / "out.exr")
     xyz = small_cube.reflectance(colours) @ observer.light("A").xyz.T
     expected = xyz @ small_cube.data.sensor.xyz_to_rgb.T
-    np.testing.assert_allclose(
+    assert_allclose(
         read_channels(tmp_path / "out.exr", "RGB"), expected, rtol=1e-3, atol=1e-3
     )

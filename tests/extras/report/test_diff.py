@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.helpers import raises, with_points
@@ -77,7 +78,7 @@ def test_entries_are_compared_by_name(small_cube, plain_cube):
     assert found.pairs.names[-1] == "cyan"  # outside the space, and not renamed
     nm = small_cube.data.sensor.wavelengths
     spectra = small_cube.data.atlas.spectra.reflectance(np.arange(len(names)), nm)
-    np.testing.assert_allclose(
+    assert_allclose(
         found.entries.delta_e[:-1, 0],
         delta_e_spectra(light("D65"), spectra, spectra[::-1]),
     )

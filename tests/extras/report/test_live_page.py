@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from benchmarks.browser import browser
 from tests.browsing import check_page
@@ -35,11 +36,11 @@ def page(small_cube, tmp_path_factory):
 
 
 def test_the_page_loads_nothing(page):
-    assert external_links(page.read_text(encoding="utf-8")) == []
+    assert external_links(page.read_text("utf-8")) == []
 
 
 def test_the_page_fits_and_is_accessible(page, tmp_path):
-    check_page(page.read_text(encoding="utf-8"), tmp_path)
+    check_page(page.read_text("utf-8"), tmp_path)
 
 
 def test_pixels_equal_those_of_python_under_a_mix_of_lights(page, small_cube):
@@ -66,7 +67,7 @@ def test_pixels_equal_those_of_python_under_a_mix_of_lights(page, small_cube):
     ]
     linear = small_cube.reflectance(rgb) @ (0.6 * weights[0] + 0.4 * weights[1]).T
     expected = 255 * encode(np.clip(linear, 0, 1))
-    np.testing.assert_allclose(found, expected, atol=2)
+    assert_allclose(found, expected, atol=2)
     assert np.abs(found - source).max() > 10
     assert curve.startswith("M8.0")
     assert curve.count("L") == 83

@@ -8,13 +8,14 @@ import tomllib
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
-from benchmarks.browser import SETTLE, browser
-from tests.browsing import check_page
+from benchmarks.browser import SETTLE
+from tests.browsing import check_page, shared_tab
 from tests.helpers import raises
 from tests.pages import Page, external_links
-from tests.parts import CHROMIUM, need
-from uplift.colorimetry import lab, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.gamut import SRGB
 from uplift.common.errors import OptionError
 from uplift.extras.colour.srgb import hex_codes, to_display_codes
@@ -40,12 +41,11 @@ def html(small_cube, found):
     return page(small_cube, found)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def tab():
-    need(CHROMIUM)
-    with browser() as opened:
-        opened.window(1440, 900)
-        yield opened
+    tab = shared_tab()
+    tab.window(1440, 900)
+    return tab
 
 
 @pytest.fixture
@@ -69,10 +69,8 @@ def test_the_page_is_well_formed_and_self_contained(html):
 def test_its_spectrum_is_the_answer(html, small_cube, found):
     given = numbers(html)
     start = 1 / (1 + np.exp(-np.array(given["start"])))
-    np.testing.assert_allclose(start, found[0].reflectance[0], atol=1e-9)
-    np.testing.assert_allclose(
-        np.array(given["sensor"]) @ start, given["target"], atol=1e-6
-    )
+    assert_allclose(start, found[0].reflectance[0], atol=1e-9)
+    assert_allclose(np.array(given["sensor"]) @ start, given["target"], atol=1e-6)
     assert np.shape(given["basis"]) == (81, 17)
     assert given["rgb"] == "#8a2a20"
 
@@ -131,13 +129,13 @@ def test_the_page_opens_with_the_answer_and_a_drag_changes_the_spectrum_but_not_
     opened, red, sensor, found
 ):
     before = spectrum(opened)
-    np.testing.assert_allclose(before, found[0].reflectance[0], atol=1e-9)
+    assert_allclose(before, found[0].reflectance[0], atol=1e-9)
     assert text(opened, "state-1") == "free"
     drag(opened, 1, -0.12, -0.04)
     after = spectrum(opened)
     assert np.abs(after - before).max() > 0.05
     assert ((after > 0) & (after < 1)).all()
-    np.testing.assert_allclose(sensor.rgb(after), red[0], atol=1e-5)
+    assert_allclose(sensor.rgb(after), red[0], atol=1e-5)
     codes = to_display_codes(sensor.rgb(np.stack([before, after])), SRGB)
     assert np.abs(codes[1] - codes[0]).max() <= 1
     assert text(opened, "state-1") == "chosen"
@@ -191,7 +189,7 @@ def test_keys_move_and_release_a_colour(opened, found):
     assert value == f"{text(opened, 'lab-1')}, chosen"
     opened.key("0")
     opened.evaluate(SETTLE)
-    np.testing.assert_allclose(spectrum(opened), found[0].reflectance[0], atol=1e-9)
+    assert_allclose(spectrum(opened), found[0].reflectance[0], atol=1e-9)
 
 
 def test_the_page_fits_and_is_accessible(html, tmp_path):

@@ -124,7 +124,7 @@ def test_the_first_file_of_the_recorded_name_decides(tiny_cube, repository, tmp_
     """The recorded content in a later folder or among the shipped atlases does not hide
     that a file has changed.
     """
-    text = (repository / "atlases" / "macbeth.txt").read_text(encoding="utf-8")
+    text = (repository / "atlases" / "macbeth.txt").read_text("utf-8")
     (tmp_path / "macbeth.txt").write_text(text + "\n", encoding="utf-8")
     path = tmp_path / "cube.uplift"
     folder = repository / "atlases"

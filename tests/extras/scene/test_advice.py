@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.conftest import ROOT
@@ -65,7 +66,7 @@ def test_posterior_is_that_of_the_joint_covariance(cube):
         posterior(kernel, np.zeros((0, 3)), both) * (1 + kernel.noise)
     )
     expected = np.linalg.inv(joint[len(known) :, len(known) :]) / (1 + kernel.noise)
-    np.testing.assert_allclose(posterior(kernel, known, lab), expected, rtol=1e-9)
+    assert_allclose(posterior(kernel, known, lab), expected, rtol=1e-9)
     far = posterior(kernel, known, np.array([[50.0, 500.0, 0.0]]))
     assert far == pytest.approx(1)
 
@@ -78,7 +79,7 @@ def test_errors_are_those_of_the_cube_until_something_is_measured(cube):
     for column, name in enumerate(LIGHTS):
         # Nodes store those under one light, which are interpolated.
         expected = cube.standard_error(rgb, name)
-        np.testing.assert_allclose(
+        assert_allclose(
             before.errors[:, column], expected, rtol=0.05 if name == "A" else 1e-9
         )
 
@@ -89,8 +90,8 @@ def test_areas_are_those_of_the_pixels(cube, tmp_path):
     pixels[:, :2] = (200, 60, 20)
     matplotlib.image.imsave(path, pixels)
     found = colour_areas(Images((path,)), cube.data.sensor)
-    np.testing.assert_allclose(found.share, [0.75, 0.25])
-    np.testing.assert_allclose(cube.encode(found.rgb[1]), (200, 60, 20), atol=1e-6)
+    assert_allclose(found.share, [0.75, 0.25])
+    assert_allclose(cube.encode(found.rgb[1]), (200, 60, 20), atol=1e-6)
     noise = tmp_path / "noise.png"
     matplotlib.image.imsave(
         noise, np.random.default_rng(0).integers(0, 256, (128, 128, 3), dtype=np.uint8)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from benchmarks import read_reference
 from benchmarks.wavelengths import CHANNELS, errors_by_total, mean_error, run_trials
@@ -23,10 +24,9 @@ from uplift.extras.scene.wavelengths.sampling import balanced, evaluate
 
 
 def _matrix(space):
-    own = [
-        row for row in read_reference("meyer1988_matrices.csv") if row["space"] == space
-    ]
-    return np.array([[row["X"], row["Y"], row["Z"]] for row in own], dtype=float)
+    rows = read_reference("meyer1988_matrices.csv")
+    cells = [(row["X"], row["Y"], row["Z"]) for row in rows if row["space"] == space]
+    return np.array(cells, dtype=float)
 
 
 @pytest.fixture(scope="module")
@@ -45,8 +45,8 @@ def setting_c(checker):
 
 
 def test_matrices_equal_the_printed_ones(cmfs, opponent):
-    np.testing.assert_allclose(cone_space(grid(), cmfs), _matrix("SML"), atol=1.5e-4)
-    np.testing.assert_allclose(opponent, _matrix("AC1C2"), atol=1.5e-4)
+    assert_allclose(cone_space(grid(), cmfs), _matrix("SML"), atol=1.5e-4)
+    assert_allclose(opponent, _matrix("AC1C2"), atol=1.5e-4)
 
 
 def test_eigenvalues_equal_the_printed_ones(cmfs):
@@ -55,7 +55,7 @@ def test_eigenvalues_equal_the_printed_ones(cmfs):
         for row in read_reference("meyer1988_matrices.csv")
         if row["eigenvalue"]
     ]
-    np.testing.assert_allclose(opponent_space(grid(), cmfs)[1], printed, rtol=3e-3)
+    assert_allclose(opponent_space(grid(), cmfs)[1], printed, rtol=3e-3)
 
 
 def test_rules_equal_tables_1a_and_1b(cmfs, opponent):
@@ -65,29 +65,29 @@ def test_rules_equal_tables_1a_and_1b(cmfs, opponent):
     undefined = []
     for channel, orders in zip(CHANNELS, rules, strict=True):
         for order, rule in orders.items():
-            own = [
+            table = [
                 row
                 for row in printed
                 if (row["channel"], row["order"]) == (channel, str(order))
             ]
             if isinstance(rule, str):
                 undefined.append((channel, order))
-                assert not own
+                assert not table
                 continue
-            nodes = [float(row["wavelength"]) for row in own]
-            np.testing.assert_allclose(
+            nodes = [float(row["wavelength"]) for row in table]
+            assert_allclose(
                 rule.nodes, nodes, atol=0.101, err_msg=f"{channel}, order {order}"
             )
             pairs += [
                 (w, float(row["weight"]))
-                for w, row in zip(rule.weights, own, strict=True)
+                for w, row in zip(rule.weights, table, strict=True)
             ]
     assert undefined == [("C1", n) for n in (1, 3, 5, 7, 9)] + [
         ("C2", n) for n in (4, 5, 6, 8)
     ]
     weights, as_printed = np.array(pairs).T
     factor = weights @ as_printed / (weights @ weights)
-    np.testing.assert_allclose(factor * weights, as_printed, atol=4e-4)
+    assert_allclose(factor * weights, as_printed, atol=4e-4)
 
 
 def test_four_wavelength_rule_equals_table_2(cmfs, opponent, setting_c):
@@ -96,11 +96,9 @@ def test_four_wavelength_rule_equals_table_2(cmfs, opponent, setting_c):
     table = [row for row in read_reference("meyer1988_table2.csv") if row["row"] == "2"]
     nodes = np.concatenate([rule.nodes for rule in shared])
     weights = np.concatenate([rule.weights for rule in shared])
-    np.testing.assert_allclose(
-        nodes, [float(row["wavelength"]) for row in table], atol=0.101
-    )
+    assert_allclose(nodes, [float(row["wavelength"]) for row in table], atol=0.101)
     printed = np.array([float(row["weight"]) for row in table])
-    np.testing.assert_allclose(weights * (printed[0] / weights[0]), printed, atol=2e-4)
+    assert_allclose(weights * (printed[0] / weights[0]), printed, atol=2e-4)
     # Our ColorChecker is another measurement than the paper's.
     for allocation, row in (
         (shared, "2"),
@@ -132,7 +130,7 @@ def test_figure_6_opponent_space_needs_the_fewest_wavelengths(
 def test_meyer_takes_the_best_allocation(smooth, count, opponent):
     chosen = meyer(smooth, count)
     assert len(chosen) == count
-    np.testing.assert_allclose((chosen.powers @ chosen.to_xyz)[:, 1], 1, rtol=1e-12)
+    assert_allclose((chosen.powers @ chosen.to_xyz)[:, 1], 1, rtol=1e-12)
     reached = evaluate(smooth, chosen).mean()
     for allocation in allocations(smooth, opponent, count):
         assert sum(map(len, allocation)) == count
@@ -147,7 +145,7 @@ def test_meyer_takes_the_best_allocation(smooth, count, opponent):
 def test_given_orders_have_the_wavelengths_of_the_paper(setting_c):
     """Table 2, first row: orders 3, 2 and 1."""
     printed = [456.4, 483.0, 490.9, 557.7, 631.4, 632.3]
-    np.testing.assert_allclose(
+    assert_allclose(
         choose_orders(setting_c, (3, 2, 1)).sampling.wavelengths, printed, atol=0.08
     )
 

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import legendre
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
@@ -34,8 +35,8 @@ def test_legendre_rule_as_masses_gives_the_smaller_legendre_rule(order):
     points, masses = legendre.leggauss(100)
     nodes, weights = legendre.leggauss(order)
     rule = gauss_rule(points, masses, order)
-    np.testing.assert_allclose(rule.nodes, nodes, atol=1e-12)
-    np.testing.assert_allclose(rule.weights, weights, atol=1e-11)
+    assert_allclose(rule.nodes, nodes, atol=1e-12)
+    assert_allclose(rule.weights, weights, atol=1e-11)
 
 
 @pytest.mark.parametrize("order", [1, 3, 8, 20])
@@ -52,22 +53,17 @@ def _exact_nodes(points, masses, order):
     """Roots of the orthogonal polynomial from its moments, by elimination
     in fractions.
     """
-    powers = np.array([Fraction(1)] * len(points))
-    moments = []
-    for _ in range(2 * order):
-        moments.append(powers @ masses)
-        powers = powers * [Fraction(point) for point in points]
-    rows = [[*moments[i : i + order], -moments[i + order]] for i in range(order)]
+    powers = np.arange(2 * order)[:, None]
+    moments = (np.array(points, dtype=object) ** powers) @ np.array(masses)
+    rows = np.array([moments[i : i + order + 1] for i in range(order)]) * Fraction(1)
+    rows[:, -1] *= -1
     for i in range(order):
-        pivot = next(k for k in range(i, order) if rows[k][i])
-        rows[i], rows[pivot] = rows[pivot], rows[i]
-        rows[i] = [value / rows[i][i] for value in rows[i]]
-        for k in range(order):
-            if k != i:
-                rows[k] = [
-                    a - rows[k][i] * b for a, b in zip(rows[k], rows[i], strict=True)
-                ]
-    return np.roots([1.0, *(float(row[-1]) for row in reversed(rows))])
+        pivot = i + np.flatnonzero(rows[i:, i])[0]
+        rows[[i, pivot]] = rows[[pivot, i]]
+        rows[i] /= rows[i, i]
+        for k in set(range(order)) - {i}:
+            rows[k] -= rows[k, i] * rows[i]
+    return np.roots([1.0, *rows[::-1, -1].astype(float)])
 
 
 @given(
@@ -85,7 +81,7 @@ def test_nodes_agree_with_elimination_in_fractions(masses, order):
     expected = np.sort_complex(_exact_nodes(points, masses, order))
     gap = np.diff(result.nodes).min() if order > 1 else 1.0
     if gap > 1e-2:  # np.roots is inaccurate for nearly double roots
-        np.testing.assert_allclose(result.nodes, expected, atol=1e-5)
+        assert_allclose(result.nodes, expected, atol=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -108,5 +104,5 @@ def test_undefined_order_states_its_reason(masses, order, reason):
 )
 def test_interpolatory_rule_is_exact_below_its_number_of_nodes(nodes):
     rule = interpolatory_rule(nodes, POINTS, BELL)
-    np.testing.assert_array_equal(rule.nodes, np.sort(nodes))
+    assert_array_equal(rule.nodes, np.sort(nodes))
     assert _moment_error(rule, POINTS, BELL, len(nodes) - 1) < 1e-12

@@ -5,6 +5,7 @@ other, and invalid input.
 import colour
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import raises
 from uplift.colorimetry import delta_e_2000
@@ -95,7 +96,7 @@ def test_metric_is_delta_e_of_close_colours(spiky):
         np.einsum("kmij,kmj->kmi", FitProblem(spiky).factors, change), axis=-1
     )
     exact = delta_e_2000(spiky.lab, spiky.to_lab(spiky.xyz + change))
-    np.testing.assert_allclose(approximate, exact, rtol=0.02)
+    assert_allclose(approximate, exact, rtol=0.02)
 
 
 def test_jacobian_agrees_with_central_differences(spiky):
@@ -108,7 +109,7 @@ def test_jacobian_agrees_with_central_differences(spiky):
             unknowns + sign * step * np.eye(len(unknowns))[column] for sign in (1, -1)
         )
         slope = (small.residuals(up) - small.residuals(down)) / (2 * step)
-        np.testing.assert_allclose(
+        assert_allclose(
             result[:, column], slope, rtol=1e-4, atol=1e-4 * np.abs(result).max()
         )
 
@@ -118,12 +119,10 @@ def test_prefiltering_keeps_white_and_ramps_exact(checker, light):
     """Both hold even if lines of the light lie between the wavelengths."""
     setup = make_setup(checker, [light])
     sampling = prefiltered(setup, midpoints(6))
-    np.testing.assert_allclose(
-        sampling.powers @ sampling.to_xyz, setup.whites, rtol=1e-12
-    )
+    assert_allclose(sampling.powers @ sampling.to_xyz, setup.whites, rtol=1e-12)
     nm = np.clip(setup.wavelengths, midpoints(6)[0], midpoints(6)[-1])
     ramp = setup.powers * (nm - 400) @ setup.cmfs
-    np.testing.assert_allclose(
+    assert_allclose(
         sampling.powers * (midpoints(6) - 400) @ sampling.to_xyz, ramp, rtol=1e-12
     )
 
@@ -168,7 +167,7 @@ def test_one_material_and_more_materials_than_are_fitted(checker):
 def test_weights_for_given_wavelengths_beat_prefiltering(spiky):
     nm = midpoints(7)
     result = fit_at(spiky, nm[::-1])
-    np.testing.assert_array_equal(result.wavelengths, nm)
+    assert_array_equal(result.wavelengths, nm)
     assert min(result.to_xyz.min(), result.powers.min()) >= 0
     error = evaluate(spiky, result).mean()
     unfitted = evaluate(spiky, prefiltered(spiky, midpoints(7))).mean()

@@ -17,18 +17,14 @@ WAVELENGTHS = (400.0, 430.0, 460.0, 500.0, 540.0, 580.0, 620.0, 660.0, 700.0)
 
 def channels(path, part=0):
     """Read every channel (h, w) of a part."""
-    return {
-        name: channel.pixels
-        for name, channel in OpenEXR.File(str(path), separate_channels=True)
-        .parts[part]
-        .channels.items()
-    }
+    parts = OpenEXR.File(str(path), separate_channels=True).parts
+    return {name: channel.pixels for name, channel in parts[part].channels.items()}
 
 
 def read_channels(path, names, part=0):
     """Read named channels (h, w, N) of a part."""
-    found = channels(path, part)
-    return np.stack([found[name] for name in names], axis=-1)
+    planes = channels(path, part)
+    return np.stack([planes[name] for name in names], axis=-1)
 
 
 def write_exr(path, planes, **header):
@@ -41,13 +37,10 @@ def write_image(path, values, **attributes):
     """Write values (h, w, n) in the format of the suffix. An attribute is a value, or a
     type and a value.
     """
-    spec = OpenImageIO.ImageSpec(
-        values.shape[1], values.shape[0], values.shape[2], str(values.dtype)
-    )
+    height, width, count = values.shape
+    spec = OpenImageIO.ImageSpec(width, height, count, str(values.dtype))
     for name, value in attributes.items():
-        spec.attribute(name, *value) if isinstance(value, tuple) else spec.attribute(
-            name, value
-        )
+        spec.attribute(name, *(value if isinstance(value, tuple) else (value,)))
     image = OpenImageIO.ImageOutput.create(str(path))
     assert image.open(str(path), spec)
     assert image.write_image(values)
@@ -64,9 +57,9 @@ def planes(rgb):
 
 def small_tiles():
     """Describe tiles of 16 × 16 pixels."""
-    found = OpenEXR.TileDescription()
-    found.xSize = found.ySize = 16
-    return found
+    tiles = OpenEXR.TileDescription()
+    tiles.xSize = tiles.ySize = 16
+    return tiles
 
 
 @pytest.fixture(scope="session")
@@ -85,3 +78,22 @@ def colours():
     rgb = np.random.default_rng(0).random((20, 30, 3)).astype(np.float32)
     rgb[0, :8] = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1]), axis=-1).reshape(8, 3)
     return rgb
+
+
+@pytest.fixture
+def to_texture(spectral, tmp_path):
+    """Function that converts an image, a file or planes of one, and returns the
+    outcome.
+    """
+
+    def to_texture(source, converter=spectral, **header):
+        if isinstance(source, dict):
+            source = write_exr(tmp_path / "in.exr", source, **header)
+        return texture.convert(converter, source, tmp_path / "out.exr", force=True)
+
+    return to_texture
+
+
+def rgb_of(conversion):
+    """Read RGB (h, w, 3) of a texture."""
+    return read_channels(conversion.target, "RGB")

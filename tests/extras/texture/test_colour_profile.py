@@ -8,6 +8,7 @@ import zlib
 import colour
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image, ImageCms
 
 from tests.extras.texture.conftest import WAVELENGTHS, planes, read_channels, write_exr
@@ -40,11 +41,10 @@ def d50(space):
 
 def by_matrix(space, curve):
     """Build a display profile of three colorants and a tone curve."""
+    columns = np.rint(65536 * d50(space).T).astype(int)
     tags = {
-        name: struct.pack(
-            ">4sI3i", b"XYZ ", 0, *(round(65536 * value) for value in column)
-        )
-        for name, column in zip((b"rXYZ", b"gXYZ", b"bXYZ"), d50(space).T, strict=True)
+        name: struct.pack(">4sI3i", b"XYZ ", 0, *column)
+        for name, column in zip((b"rXYZ", b"gXYZ", b"bXYZ"), columns, strict=True)
     }
     return icc(space, tags | dict.fromkeys((b"rTRC", b"gTRC", b"bTRC"), curve))
 
@@ -115,7 +115,7 @@ def test_srgb_profiles_change_nothing(data, spectral, tmp_path):
     plain, *_ = convert(spectral, save(tmp_path / "b.png", None))
     rgb, spaces, codes = convert(spectral, save(tmp_path / "a.png", data))
     assert (spaces, codes) == (("sRGB",), ())
-    np.testing.assert_array_equal(rgb, plain)
+    assert_array_equal(rgb, plain)
 
 
 P3 = "Display P3"
@@ -150,9 +150,7 @@ def test_colours_of_profiles_and_code_points_are_converted(
     given = np.asarray(Image.open(path))[0, 0] / 255
     expected = conversion(primaries_of(look_up_space(space)), SRGB) @ curve(given)
     assert (spaces, codes) == ((name,), ())
-    np.testing.assert_allclose(
-        rgb, expected, rtol=0, atol=1e-3 if statement == (9, 14) else 2e-4
-    )
+    assert_allclose(rgb, expected, rtol=0, atol=1e-3 if statement == (9, 14) else 2e-4)
 
 
 @pytest.mark.parametrize(
@@ -210,7 +208,7 @@ def test_spaces_of_openexr_are_converted_and_the_caller_overrides_them(
     )
     expected = conversion(primaries_of(look_up_space("ACEScg")), SRGB) @ [0.3, 0.4, 0.2]
     assert (len(spaces), codes) == (1, ())
-    np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-5)
+    assert_allclose(rgb, expected, rtol=0, atol=2e-5)
 
 
 def test_encoded_spaces_of_opencolorio_decode_floats(small_cube, tmp_path):
@@ -219,13 +217,11 @@ def test_encoded_spaces_of_opencolorio_decode_floats(small_cube, tmp_path):
     )
     rgb, spaces, _ = convert(named, exr(tmp_path / "a.exr", [0.5, 0.6, 0.4]))
     assert spaces == ("sRGB Encoded Rec.709 (sRGB)",)
-    np.testing.assert_allclose(
+    assert_allclose(
         rgb, colour.models.eotf_sRGB(np.array([0.5, 0.6, 0.4])), rtol=0, atol=2e-5
     )
     codes, *_ = convert(named, save(tmp_path / "b.png", None, CODES))
-    np.testing.assert_allclose(
-        codes, colour.models.eotf_sRGB(CODES / 255), rtol=0, atol=2e-5
-    )
+    assert_allclose(codes, colour.models.eotf_sRGB(CODES / 255), rtol=0, atol=2e-5)
     linear = texture.prepare(
         small_cube, encoding="linear", space="sRGB - Texture", threads=1
     )
@@ -245,7 +241,7 @@ def test_images_without_a_statement_are_srgb_codes_or_floats_of_the_cube(tmp_pat
         SRGB, primaries_of(look_up_space("ACEScg"))
     ) @ colour.models.eotf_sRGB(CODES / 255)
     assert (spaces, codes) == (("sRGB",), ("colour-space-assumed",))
-    np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-5)
+    assert_allclose(rgb, expected, rtol=0, atol=2e-5)
     rgb, spaces, codes = convert(wide, exr(tmp_path / "b.exr", [0.3, 0.4, 0.2]))
     assert (spaces, codes) == (("linear ACEScg",), ("colour-space-assumed",))
-    np.testing.assert_allclose(rgb, [0.3, 0.4, 0.2], rtol=0, atol=1e-7)
+    assert_allclose(rgb, [0.3, 0.4, 0.2], rtol=0, atol=1e-7)

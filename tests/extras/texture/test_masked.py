@@ -4,6 +4,7 @@ of masks that do not fit.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 
 import uplift
@@ -71,7 +72,7 @@ def test_numbers_choose_the_cube(
     found = converted(cubes, png(tmp_path / "ids.png", numbers))
     for number, cube in enumerate(cubes):
         rows = numbers == number
-        np.testing.assert_allclose(found[rows], spectra(cube, colours)[rows], atol=2e-6)
+        assert_allclose(found[rows], spectra(cube, colours)[rows], atol=2e-6)
     assert np.abs(spectra(cubes[0], colours) - spectra(cubes[1], colours)).max() > 0.05
 
 
@@ -87,7 +88,7 @@ def test_grey_mixes_two_cubes(converted, cubes, colours, tmp_path, sensor, kind)
         mask = png(tmp_path / "mask.png", codes)
     found = converted(cubes[:2], mask)
     one, two = (spectra(cube, colours) for cube in cubes[:2])
-    np.testing.assert_allclose(
+    assert_allclose(
         found, (1 - ramp)[..., None] * one + ramp[..., None] * two, atol=3e-6
     )
 
@@ -99,7 +100,7 @@ def test_colours_are_weights_of_three_cubes(converted, cubes, colours, tmp_path)
     expected = sum(
         weights[..., k, None] * spectra(cube, colours) for k, cube in enumerate(cubes)
     )
-    np.testing.assert_allclose(found, expected, atol=3e-6)
+    assert_allclose(found, expected, atol=3e-6)
 
 
 def test_moments_and_multipliers_mix_as_reflectances_do(
@@ -113,19 +114,17 @@ def test_moments_and_multipliers_mix_as_reflectances_do(
         for cube in cubes[:2]
     ]
     share = 128 / 255
-    np.testing.assert_allclose(
+    assert_allclose(
         found[:, 1::3], (1 - share) * parts[0] + share * parts[1], atol=1e-5
     )
     # Multipliers are exact in colour, and those of one cube where the mask is black.
     found = converted(cubes[:2], mask, texture.Multipliers()).astype(float)
     spectrum = evaluate(model, found.reshape(-1, 9), sensor.wavelengths)
-    np.testing.assert_allclose(
-        sensor.rgb(spectrum).reshape(*SHAPE, 3), colours, atol=2e-4
-    )
+    assert_allclose(sensor.rgb(spectrum).reshape(*SHAPE, 3), colours, atol=2e-4)
     alone = texture.prepare(cubes[0], texture.Multipliers(), threads=1).sample(
         colours[:, ::3]
     )
-    np.testing.assert_array_equal(found[:, ::3], alone)
+    assert_array_equal(found[:, ::3], alone)
 
 
 @pytest.mark.parametrize(
@@ -198,18 +197,18 @@ def test_an_entry_outside_the_space_answers_where_its_cube_is_chosen(
         read_channels(result.target, names) for names in ("RGB", converter.channels)
     )
     clipped = boxes.rgb[0].clip(0, 1)
-    np.testing.assert_allclose(
+    assert_allclose(
         colours, [boxes.rgb[0], clipped, (boxes.rgb[0] + clipped) / 2], atol=1e-6
     )
     alone = [
         each.convert(colours[None, [row]])[0][1][0, 0]
         for row, each in enumerate(converter.uplifters)
     ]
-    np.testing.assert_allclose(numbers[:2], alone, atol=1e-6)
+    assert_allclose(numbers[:2], alone, atol=1e-6)
     if encoding.name != "multipliers":
-        np.testing.assert_allclose(numbers[2], np.mean(alone, axis=0), atol=1e-6)
+        assert_allclose(numbers[2], np.mean(alone, axis=0), atol=1e-6)
     else:
         spectrum = evaluate(
             data.model, numbers[[2]].astype(float), data.sensor.wavelengths
         )
-        np.testing.assert_allclose(data.sensor.rgb(spectrum)[0], colours[2], atol=1e-4)
+        assert_allclose(data.sensor.rgb(spectrum)[0], colours[2], atol=1e-4)

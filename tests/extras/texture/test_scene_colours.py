@@ -4,6 +4,7 @@ for all others.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 
 from tests.conftest import ATLASES, MACBETH
@@ -46,7 +47,7 @@ def test_points_are_those_of_the_complete_cube(scene_cube, macbeth_cube):
         "standard_error",
     ):
         array = getattr(part.points, name)
-        np.testing.assert_allclose(
+        assert_allclose(
             array[there],
             getattr(whole.points, name)[there],
             rtol=0,
@@ -75,7 +76,7 @@ def test_answers_to_the_scene_are_those_of_the_complete_cube(
 ):
     assert scene_cube.covers(photo_colours).all()
     answers = (answer(cube, photo_colours[::10]) for cube in (scene_cube, macbeth_cube))
-    np.testing.assert_allclose(*answers, rtol=0, atol=1e-6)
+    assert_allclose(*answers, rtol=0, atol=1e-6)
 
 
 def test_an_error_quotes_the_first_colour_that_is_not_covered(small_cube):
@@ -101,7 +102,7 @@ def test_all_images_of_a_scene_are_read_and_decoded(plain_cube, tmp_path):
             data.entry_boxes, data.sensor, lambda done: None
         )
         corners, _ = data.lattice.corners(np.array([[0, 1, 0], [value] * 3]))
-        np.testing.assert_array_equal(np.flatnonzero(points), np.unique(corners))
+        assert_array_equal(np.flatnonzero(points), np.unique(corners))
 
 
 def test_rebuild_needs_no_images(scene_cube):

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.extras.texture.conftest import planes, read_channels, write_exr
 from tests.helpers import raises
@@ -55,7 +56,7 @@ def test_processes_and_a_dask_cluster(workers, jobs, small_cube, colours):
     names = [f"moment.{index:02}" for index in range(9)]
     for frame in (0, 2):
         expected = small_cube.coefficients(np.roll(colours, frame, axis=0))
-        np.testing.assert_allclose(
+        assert_allclose(
             read_channels(jobs[frame].target, names), expected, rtol=0, atol=1e-6
         )
 
@@ -166,6 +167,6 @@ def test_closing_the_iterator_ends_the_conversions(jobs, count, tmp_path):
     results = texture.convert_all(many, processes=count)
     next(results)
     results.close()
-    names = [path.name for path in (tmp_path / "out").iterdir()]
+    names = os.listdir(tmp_path / "out")
     assert 1 <= len(names) < 50
     assert all(name.endswith(".exr") for name in names)  # no unfinished file

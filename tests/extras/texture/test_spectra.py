@@ -9,6 +9,7 @@ import numpy as np
 import OpenEXR
 import OpenImageIO
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.extras.texture.conftest import (
@@ -17,7 +18,7 @@ from tests.extras.texture.conftest import (
     channels,
     planes,
     read_channels,
-    write_exr,
+    rgb_of,
     write_image,
 )
 from tests.helpers import raises
@@ -52,37 +53,32 @@ def photo(tmp_path_factory, small_cube):
     ("depth", "max_error", "within"), [("float", 0.02, 1e-6), ("half", 0.1, 3e-4)]
 )
 def test_colour_science_reads_the_photograph_from_a_spectral_image(
-    photo, small_cube, tmp_path, depth, max_error, within
+    photo, small_cube, to_texture, depth, max_error, within
 ):
     path, linear = photo
-    texture.convert(
-        texture.prepare(small_cube, depth=depth), path, tmp_path / "out.exr"
-    )
+    result = to_texture(path, texture.prepare(small_cube, depth=depth))
     components, specification = read_spectral_image_Fichet2021(
-        tmp_path / "out.exr", additional_data=True
+        result.target, additional_data=True
     )
     assert not specification.is_emissive
     ((at, found),) = components.values()
-    np.testing.assert_array_equal(at, small_cube.data.sensor.wavelengths)
+    assert_array_equal(at, small_cube.data.sensor.wavelengths)
     rgb, _ = components_to_sRGB_Fichet2021({"T": (at, found.astype(float))})
     assert delta_e_rgb(small_cube.data.sensor, linear, rgb).mean() < max_error
-    np.testing.assert_allclose(
-        found, small_cube.reflectance(linear), rtol=0, atol=within
-    )
+    assert_allclose(found, small_cube.reflectance(linear), rtol=0, atol=within)
 
 
 @pytest.mark.parametrize("cube", ["small_cube", "small_sigmoid_cube"])
-def test_multipliers_evaluate_to_the_exact_colour(cube, photo, tmp_path, request):
+def test_multipliers_evaluate_to_the_exact_colour(cube, photo, to_texture, request):
     """By nothing but the file."""
-    sensor, uplifter = (
-        (cube := request.getfixturevalue(cube)).data.sensor,
-        texture.prepare(cube, texture.Multipliers()),
-    )
-    texture.convert(uplifter, photo[0], tmp_path / "out.exr")
-    header = OpenEXR.File(str(tmp_path / "out.exr"), header_only=True).parts[0].header
+    cube = request.getfixturevalue(cube)
+    sensor = cube.data.sensor
+    uplifter = texture.prepare(cube, texture.Multipliers())
+    result = to_texture(photo[0], uplifter)
+    header = OpenEXR.File(str(result.target), header_only=True).parts[0].header
     model = models.from_description(json.loads(header["uplift.model"]))
     multipliers = read_channels(
-        tmp_path / "out.exr", [f"multiplier.{index:02}" for index in range(model.count)]
+        result.target, [f"multiplier.{index:02}" for index in range(model.count)]
     )
     back = sensor.rgb(
         model.to_reflectance(
@@ -98,16 +94,14 @@ def test_multipliers_of_a_colour_do_not_depend_on_how_often_it_occurs(small_cube
     few = rng.uniform(0, 1, (50, 3)).astype(np.float32)
     rows = rng.integers(0, 50, (30, 40))
     sample = texture.prepare(small_cube, texture.Multipliers(), threads=1).sample
-    np.testing.assert_array_equal(sample(few[rows]), sample(few)[rows])
+    assert_array_equal(sample(few[rows]), sample(few)[rows])
 
 
 def test_the_header_identifies_the_cube_and_the_settings(
-    spectral, small_cube, colours, tmp_path
+    small_cube, colours, to_texture
 ):
-    texture.convert(
-        spectral, write_exr(tmp_path / "in.exr", planes(colours)), tmp_path / "out.exr"
-    )
-    header = OpenEXR.File(str(tmp_path / "out.exr"), header_only=True).parts[0].header
+    result = to_texture(planes(colours))
+    header = OpenEXR.File(str(result.target), header_only=True).parts[0].header
     assert (header["uplift.space"], header["uplift.illuminant"]) == ("sRGB", "D65")
     assert header["uplift.cube"] == digest(small_cube.data)
     settings = {
@@ -121,7 +115,7 @@ def test_the_header_identifies_the_cube_and_the_settings(
         "wavelengths": list(WAVELENGTHS),
     }
     srgb = [0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329]
-    np.testing.assert_allclose(header["chromaticities"], srgb, atol=2e-4)
+    assert_allclose(header["chromaticities"], srgb, atol=2e-4)
 
 
 @pytest.mark.parametrize(
@@ -141,12 +135,11 @@ def test_impossible_settings_raise(cube, encoding, options, code, request):
         texture.prepare(request.getfixturevalue(cube), encoding, **options)
 
 
-def test_unrealisable_pixels_are_counted(colours, tmp_path):
+def test_unrealisable_pixels_are_counted(colours, to_texture):
     """Only they are, not all pixels around unrealisable nodes."""
     wide = uplift.build(dim=3, space="ITU-R BT.2020")
     uplifter = texture.prepare(wide, texture.Moments(), threads=1)
-    source = write_exr(tmp_path / "in.exr", planes(colours))
-    counts = texture.convert(uplifter, source, tmp_path / "out.exr").counts
+    counts = to_texture(planes(colours), uplifter).counts
     outside = (
         wide.data.solid.signed_distance(colours.reshape(-1, 3)) > wide.data.threshold
     )
@@ -174,7 +167,8 @@ def sky():
         [0.2 + rows / 40, 0.4 + rows / 60, 1.3 - rows / 20 + columns / 300], axis=-1
     )
     rgb[3:5, 4:6] = (1e5, 9e4, 6e4)
-    rgb[10, 10], rgb[12, 12] = (-0.05, 0.6, 0.5), 0.0
+    rgb[10, 10] = (-0.05, 0.6, 0.5)
+    rgb[12, 12] = 0
     return rgb.astype(np.float32)
 
 
@@ -197,21 +191,19 @@ def largest_difference(sensor, rgb, found):
     ("depth", "scale", "limit"), [("float", 1, 0.001), ("half", 1 / 8, 0.05)]
 )
 def test_colour_science_reads_spectra_of_the_colours_of_the_image(
-    table, sensor, sky, tmp_path, depth, scale, limit
+    table, sensor, sky, to_texture, depth, scale, limit
 ):
-    path = write_exr(tmp_path / "sky.exr", planes(sky * np.float32(scale)))
-    conversion = texture.convert(
+    conversion = to_texture(
+        planes(sky * np.float32(scale)),
         texture.prepare_lights(table, depth=depth, threads=1),
-        path,
-        tmp_path / "out.exr",
     )
     assert conversion.warnings == ()
     components, specification = read_spectral_image_Fichet2021(
-        tmp_path / "out.exr", additional_data=True
+        conversion.target, additional_data=True
     )
     assert specification.is_emissive
     ((at, power),) = components.values()
-    np.testing.assert_array_equal(at, table.wavelengths)
+    assert_array_equal(at, table.wavelengths)
     assert power.min() >= 0
     assert (
         largest_difference(sensor, sky * scale, table.rgb(power.astype(float))) < limit
@@ -219,88 +211,70 @@ def test_colour_science_reads_spectra_of_the_colours_of_the_image(
 
 
 @pytest.mark.parametrize("kind", ["LatLong Environment", "CubeFace Environment"])
-def test_an_environment_map_stays_one(lights, tmp_path, kind):
+def test_an_environment_map_stays_one(lights, to_texture, tmp_path, kind):
     height, width = (24, 4) if kind.startswith("Cube") else (4, 8)
     source = write_image(
         tmp_path / "sky.exr",
         np.full((height, width, 3), 0.5, np.float32),
         textureformat=kind,
     )
-    texture.convert(lights, source, tmp_path / "out.exr")
-    found = OpenImageIO.ImageInput.open(str(tmp_path / "out.exr")).spec()
+    result = to_texture(source, lights)
+    found = OpenImageIO.ImageInput.open(str(result.target)).spec()
     assert found.get_string_attribute("textureformat") == kind
     assert found.get_string_attribute("emissiveUnits") == "W.m^-2.sr^-1"
 
 
-def test_a_radiance_picture_is_read(table, sky, tmp_path):
+def test_a_radiance_picture_is_read(table, sky, to_texture, tmp_path):
     positive = np.abs(sky)
     source = write_image(tmp_path / "sky.hdr", positive)
     # The file names no primaries.
-    texture.convert(
-        texture.prepare_lights(table, space="sRGB", threads=1),
-        source,
-        tmp_path / "out.exr",
-    )
-    found = table.rgb(spectral_channels(tmp_path / "out.exr").astype(float))
+    result = to_texture(source, texture.prepare_lights(table, space="sRGB", threads=1))
+    found = table.rgb(spectral_channels(result.target).astype(float))
     largest = np.maximum(positive.max(axis=-1, keepdims=True), 1e-9)
-    np.testing.assert_allclose(found / largest, positive / largest, rtol=0, atol=0.01)
+    assert_allclose(found / largest, positive / largest, rtol=0, atol=0.01)
 
 
-def test_what_no_light_has_is_moved_and_counted(table, lights, tmp_path):
+def test_what_no_light_has_is_moved_and_counted(table, lights, to_texture):
     rgb = np.array(
         [[[0.5, 0.5, 0.5], [-3, 1, -2], [np.nan, 1, 1], [np.inf, 0, 0], [1e31, 0, 0]]],
         np.float32,
     )
-    conversion = texture.convert(
-        lights, write_exr(tmp_path / "a.exr", planes(rgb)), tmp_path / "out.exr"
-    )
+    conversion = to_texture(planes(rgb), lights)
     assert (conversion.counts.not_lights, conversion.counts.not_finite) == (1, 3)
     assert [each.code for each in conversion.warnings] == [
         "pixels-not-finite",
         "pixels-not-lights",
     ]
-    power = spectral_channels(tmp_path / "out.exr")
+    power = spectral_channels(conversion.target)
     assert np.isfinite(power).all()
     luminance = table.xyz(rgb[0, 1].astype(float))[1]
     xyz = table.xyz(table.rgb(power[0, 1].astype(float)))
-    np.testing.assert_allclose(xyz[1], max(luminance, 0), rtol=1e-5, atol=1e-6)
-    stored = read_channels(tmp_path / "out.exr", "RGB")
+    assert_allclose(xyz[1], max(luminance, 0), rtol=1e-5, atol=1e-6)
+    stored = rgb_of(conversion)
     assert table.contains(stored[0, 1].astype(float) * (1 - 1e-6)).all()
-    np.testing.assert_allclose(
-        stored, table.rgb(power.astype(float)), rtol=1e-4, atol=1e-3
-    )
+    assert_allclose(stored, table.rgb(power.astype(float)), rtol=1e-4, atol=1e-3)
 
 
-def test_half_floats_end_at_their_largest(table, tmp_path):
+def test_half_floats_end_at_their_largest(table, to_texture):
     rgb = np.array([[[1e5, 1e5, 1e5], [1, 1, 1]]], np.float32)
     converter = texture.prepare_lights(table, depth="half", threads=1)
-    conversion = texture.convert(
-        converter, write_exr(tmp_path / "a.exr", planes(rgb)), tmp_path / "out.exr"
-    )
+    conversion = to_texture(planes(rgb), converter)
     assert [
         (each.code, conversion.counts.too_bright) for each in conversion.warnings
     ] == [("pixels-too-bright", 1)]
-    assert spectral_channels(tmp_path / "out.exr")[0, 0].max() == 65504
+    assert spectral_channels(conversion.target)[0, 0].max() == 65504
 
 
-def test_alpha_passes_through_and_divides_nothing(table, lights, tmp_path):
+def test_alpha_passes_through_and_divides_nothing(table, lights, to_texture):
     rgb = np.array([[[0.2, 0.3, 0.4], [5, 5, 5]]], np.float32)
     alpha = np.array([[0.5, 0.0]], np.float32)
-    path = write_exr(tmp_path / "glow.exr", {**planes(rgb), "A": alpha})
-    conversion = texture.convert(lights, path, tmp_path / "out.exr")
+    conversion = to_texture({**planes(rgb), "A": alpha}, lights)
     assert conversion.warnings == ()
-    np.testing.assert_array_equal(channels(tmp_path / "out.exr")["A"], alpha)
-    np.testing.assert_allclose(
-        table.rgb(spectral_channels(tmp_path / "out.exr")), rgb, rtol=1e-5
-    )
+    assert_array_equal(channels(conversion.target)["A"], alpha)
+    assert_allclose(table.rgb(spectral_channels(conversion.target)), rgb, rtol=1e-5)
 
 
-def test_floats_of_lights_are_linear(table, sky, tmp_path):
-    path = write_exr(tmp_path / "sky.exr", planes(sky))
+def test_floats_of_lights_are_linear(table, sky, to_texture, tmp_path):
     with raises(UpliftError, "option"):
-        texture.convert(
-            texture.prepare_lights(table, encoding="encoded"),
-            path,
-            tmp_path / "out.exr",
-        )
+        to_texture(planes(sky), texture.prepare_lights(table, encoding="encoded"))
     assert not (tmp_path / "out.exr").exists()

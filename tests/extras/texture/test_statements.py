@@ -8,6 +8,7 @@ import colour
 import numpy as np
 import OpenImageIO
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 from PIL import Image
 
 from tests.extras.texture import image_bytes as files
@@ -16,6 +17,7 @@ from tests.extras.texture.conftest import (
     channels,
     planes,
     read_channels,
+    rgb_of,
     write_exr,
     write_image,
 )
@@ -31,10 +33,23 @@ from uplift.extras.texture.picture import read_picture
 
 CODES = np.array([[[128, 120, 110], [60, 64, 70]]], np.uint8)
 SHARE = CODES[0] / 255
+FROM_SRGB = colour.models.eotf_sRGB(SHARE)
 TO_SRGB = conversion(primaries_of(look_up_space("ITU-R BT.2020")), SRGB)
 P3_TO_SRGB = conversion(primaries_of(look_up_space(P3)), SRGB)
 PROFILE = by_matrix(P3, SRGB_TABLE)
-P3_COLOURS = colour.models.eotf_sRGB(SHARE) @ P3_TO_SRGB.T
+P3_COLOURS = FROM_SRGB @ P3_TO_SRGB.T
+
+
+@pytest.fixture
+def png(tmp_path):
+    """Function that writes a PNG file of codes and chunks."""
+
+    def png(*args, **options):
+        path = tmp_path / "a.png"
+        path.write_bytes(files.png_bytes(*args, **options))
+        return path
+
+    return png
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -46,14 +61,11 @@ def test_random_images_have_the_colours_that_they_state(seed):
 PNG = {
     "gAMA": ((files.gama(1),), SHARE),
     "gAMA of 2.2 is a power": ((files.gama(0.45455),), SHARE ** (1 / 0.45455)),
-    "cHRM has the curve of sRGB": (
-        (files.chrm(files.BT2020),),
-        colour.models.eotf_sRGB(SHARE) @ TO_SRGB.T,
-    ),
+    "cHRM has the curve of sRGB": ((files.chrm(files.BT2020),), FROM_SRGB @ TO_SRGB.T),
     "gAMA and cHRM": ((files.gama(1), files.chrm(files.BT2020)), SHARE @ TO_SRGB.T),
     "sRGB before gAMA": (
         (files.gama(1), files.chrm(files.BT2020), files.SRGB),
-        colour.models.eotf_sRGB(SHARE),
+        FROM_SRGB,
     ),
     "iCCP before cHRM": (
         (files.gama(1), files.chrm(files.BT2020), files.iccp(PROFILE)),
@@ -65,87 +77,63 @@ PNG = {
 
 @pytest.mark.parametrize(("chunks", "expected"), PNG.values(), ids=PNG)
 def test_chunks_of_png_are_used_in_the_order_of_the_standard(
-    chunks, expected, spectral, tmp_path
+    chunks, expected, to_texture, png
 ):
-    path = tmp_path / "a.png"
-    path.write_bytes(files.png_bytes(CODES, *chunks))
-    result = texture.convert(spectral, path, tmp_path / "out.exr")
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB")[0], expected, rtol=0, atol=2e-4
-    )
+    result = to_texture(png(CODES, *chunks))
+    assert_allclose(rgb_of(result)[0], expected, rtol=0, atol=2e-4)
     assert result.warnings == ()
 
 
-def test_the_chunks_that_were_used_are_named(spectral, tmp_path):
-    path = tmp_path / "a.png"
-    path.write_bytes(files.png_bytes(CODES, files.gama(1), files.chrm(files.BT2020)))
+def test_the_chunks_that_were_used_are_named(spectral, png):
+    path = png(CODES, files.gama(1), files.chrm(files.BT2020))
     assert convert(spectral, path)[1] == ("gAMA 1 and cHRM",)
 
 
-def test_chunks_after_the_pixels_are_ignored(spectral, tmp_path):
-    path = tmp_path / "a.png"
-    path.write_bytes(files.png_bytes(CODES, after=files.gama(1)))
-    rgb, _, codes = convert(spectral, path)
-    np.testing.assert_allclose(
-        rgb, colour.models.eotf_sRGB(SHARE)[0], rtol=0, atol=1e-5
-    )
+def test_chunks_after_the_pixels_are_ignored(spectral, png):
+    rgb, _, codes = convert(spectral, png(CODES, after=files.gama(1)))
+    assert_allclose(rgb, FROM_SRGB[0], rtol=0, atol=1e-5)
     assert codes == ()
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
 @pytest.mark.parametrize("count", [1, 2, 3, 4])
-def test_all_depths_and_kinds_of_png_are_linear_by_gamma(
-    dtype, count, spectral, tmp_path
-):
+def test_all_depths_and_kinds_of_png_are_linear_by_gamma(dtype, count, to_texture, png):
     top = np.iinfo(dtype).max
     codes = np.random.default_rng(0).integers(
         0, top, (3, 5, count), dtype, endpoint=True
     )
-    path = tmp_path / "a.png"
-    path.write_bytes(files.png_bytes(codes, files.gama(1)))
-    result = texture.convert(spectral, path, tmp_path / "out.exr")
+    result = to_texture(png(codes, files.gama(1)))
     expected = codes[..., :3] if count > 2 else np.repeat(codes[..., :1], 3, axis=-1)
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB"), expected / top, rtol=0, atol=1e-6
-    )
+    assert_allclose(rgb_of(result), expected / top, rtol=0, atol=1e-6)
     if count in (2, 4):
-        np.testing.assert_allclose(
+        assert_allclose(
             channels(result.target)["A"], codes[..., -1] / top, rtol=0, atol=1e-3
         )
 
 
 @pytest.mark.parametrize("mode", ["P", "1", "L"])
-def test_palettes_and_bits_of_png_are_linear_by_gamma(mode, spectral, tmp_path):
+def test_palettes_and_bits_of_png_are_linear_by_gamma(mode, to_texture, tmp_path):
     path = tmp_path / "a.png"
     image = Image.fromarray(np.repeat(CODES, 2, axis=0)).convert(mode)
     image.save(path)
     data = path.read_bytes()
     path.write_bytes(data[:33] + files.gama(1) + data[33:])
-    result = texture.convert(spectral, path, tmp_path / "out.exr")
+    result = to_texture(path)
     expected = np.asarray(image.convert("RGB")) / 255
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB"), expected, rtol=0, atol=1e-6
-    )
+    assert_allclose(rgb_of(result), expected, rtol=0, atol=1e-6)
 
 
-def test_a_transparent_colour_of_png_does_not_change_the_gamma(spectral, tmp_path):
-    path = tmp_path / "a.png"
+def test_a_transparent_colour_of_png_does_not_change_the_gamma(to_texture, png):
     transparent = files.png_chunk(b"tRNS", CODES[0, 0].astype(">u2").tobytes())
-    path.write_bytes(files.png_bytes(CODES, files.gama(1), transparent))
-    result = texture.convert(spectral, path, tmp_path / "out.exr")
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB")[0], SHARE, rtol=0, atol=1e-6
-    )
-    np.testing.assert_array_equal(channels(result.target)["A"][0], [0, 1])
+    result = to_texture(png(CODES, files.gama(1), transparent))
+    assert_allclose(rgb_of(result)[0], SHARE, rtol=0, atol=1e-6)
+    assert_array_equal(channels(result.target)["A"][0], [0, 1])
 
 
 UNUSABLE = {
-    "gAMA 0": ((files.gama(0),), colour.models.eotf_sRGB(SHARE)),
-    "cHRM without a gamut": ((files.chrm([0.3] * 8),), colour.models.eotf_sRGB(SHARE)),
-    "gAMA of no size": (
-        (files.png_chunk(b"gAMA", b""),),
-        colour.models.eotf_sRGB(SHARE),
-    ),
+    "gAMA 0": ((files.gama(0),), FROM_SRGB),
+    "cHRM without a gamut": ((files.chrm([0.3] * 8),), FROM_SRGB),
+    "gAMA of no size": ((files.png_chunk(b"gAMA", b""),), FROM_SRGB),
     "a matrix": ((files.cicp(9, 16, 9, 1), files.gama(1)), SHARE),
     "a damaged profile": (
         (files.png_chunk(b"iCCP", b"name\0\0x"), files.gama(1)),
@@ -159,38 +147,26 @@ UNUSABLE = {
 
 
 @pytest.mark.parametrize(("chunks", "expected"), UNUSABLE.values(), ids=UNUSABLE)
-def test_the_next_statement_is_used_with_a_warning(
-    chunks, expected, spectral, tmp_path
-):
-    path = tmp_path / "a.png"
-    path.write_bytes(files.png_bytes(CODES, *chunks))
-    rgb, _, codes = convert(spectral, path)
-    np.testing.assert_allclose(rgb, expected[0], rtol=0, atol=2e-4)
+def test_the_next_statement_is_used_with_a_warning(chunks, expected, spectral, png):
+    rgb, _, codes = convert(spectral, png(CODES, *chunks))
+    assert_allclose(rgb, expected[0], rtol=0, atol=2e-4)
     assert codes == ("colour-space-assumed",)
 
 
 @pytest.mark.parametrize("bits", [8, 16])
-def test_codes_of_narrow_range_are_widened(bits, spectral, tmp_path):
+def test_codes_of_narrow_range_are_widened(bits, to_texture, png):
     step = 2 ** (bits - 8)
     codes = np.array([[[16, 235, 125.5], [0, 16, 235]]]) * step
-    path = tmp_path / "a.png"
-    path.write_bytes(
-        files.png_bytes(codes.astype(f"uint{bits}"), files.cicp(1, 8, 0, 0))
-    )
-    result = texture.convert(spectral, path, tmp_path / "out.exr")
-    found = read_channels(result.target, "RGB")[0]
-    np.testing.assert_allclose(found, [[0, 1, 0.5], [0, 0, 1]], rtol=0, atol=3e-3)
+    result = to_texture(png(codes.astype(f"uint{bits}"), files.cicp(1, 8, 0, 0)))
+    found = rgb_of(result)[0]
+    assert_allclose(found, [[0, 1, 0.5], [0, 0, 1]], rtol=0, atol=3e-3)
 
 
-def test_bright_colours_of_pq_are_mapped_with_a_warning(spectral, tmp_path):
-    path = tmp_path / "a.png"
+def test_bright_colours_of_pq_are_mapped_with_a_warning(to_texture, png):
     codes = np.array([[[200, 200, 200], [100, 100, 100]]], np.uint8)
-    path.write_bytes(files.png_bytes(codes, files.cicp(9, 16, 0, 1)))
-    result = texture.convert(spectral, path, tmp_path / "out.exr")
+    result = to_texture(png(codes, files.cicp(9, 16, 0, 1)))
     expected = np.minimum(colour.models.eotf_ST2084(codes[0] / 255) / 100, 1)
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB")[0], expected, rtol=0, atol=1e-3
-    )
+    assert_allclose(rgb_of(result)[0], expected, rtol=0, atol=1e-3)
     assert [warning.code for warning in result.warnings] == ["pixels-out-of-gamut"]
     assert result.counts.outside == 1
 
@@ -204,17 +180,14 @@ def test_bright_colours_of_pq_are_mapped_with_a_warning(spectral, tmp_path):
         ((files.gama(1), files.chrm(files.BT2020)), "lin_rec2020_scene"),
     ],
 )
-def test_colours_are_those_of_openimageio(chunks, name, spectral, tmp_path):
-    path = tmp_path / "a.png"
-    path.write_bytes(files.png_bytes(CODES, *chunks))
+def test_colours_are_those_of_openimageio(chunks, name, spectral, png):
     image = OpenImageIO.ImageBuf(SHARE[None].astype(np.float32))
     expected = OpenImageIO.ImageBufAlgo.colorconvert(
         image, name, "lin_rec709_scene"
     ).get_pixels("float")
     assert not OpenImageIO.geterror()
-    np.testing.assert_allclose(
-        convert(spectral, path)[0], expected[0, 0], rtol=0, atol=1e-3
-    )
+    rgb, *_ = convert(spectral, png(CODES, *chunks))
+    assert_allclose(rgb, expected[0, 0], rtol=0, atol=1e-3)
 
 
 TABLE = np.rint(65535 * np.linspace(0, 1, 256) ** 1.8).astype(int).tolist()
@@ -222,7 +195,7 @@ PRIMARIES = {318: (5, files.BT2020[6:]), 319: (5, files.BT2020[:6])}
 UNCALIBRATED = {0xA001: (3, [65535])}
 ADOBE_MATRIX = conversion(primaries_of(look_up_space("Adobe RGB (1998)")), SRGB)
 TAGS = {
-    "primaries": (PRIMARIES, None, None, colour.models.eotf_sRGB(SHARE) @ TO_SRGB.T),
+    "primaries": (PRIMARIES, None, None, FROM_SRGB @ TO_SRGB.T),
     "transfer": ({301: (3, TABLE)}, None, None, SHARE**1.8),
     "three tables": (
         {301: (3, TABLE * 3), **PRIMARIES},
@@ -236,12 +209,7 @@ TAGS = {
         {1: (2, b"R03\0")},
         SHARE ** (563 / 256) @ ADOBE_MATRIX.T,
     ),
-    "sRGB": (
-        {},
-        {0xA001: (3, [1])},
-        {1: (2, b"R98\0")},
-        colour.models.eotf_sRGB(SHARE),
-    ),
+    "sRGB": ({}, {0xA001: (3, [1])}, {1: (2, b"R98\0")}, FROM_SRGB),
 }
 
 
@@ -251,7 +219,7 @@ def test_tags_of_tiff(order, tags, exif, index, expected, spectral, tmp_path):
     path = tmp_path / "a.tif"
     path.write_bytes(files.tiff_bytes(CODES, tags, order, exif, index))
     rgb, _, codes = convert(spectral, path)
-    np.testing.assert_allclose(rgb, expected[0], rtol=0, atol=3e-4)
+    assert_allclose(rgb, expected[0], rtol=0, atol=3e-4)
     assert codes == ()
 
 
@@ -268,9 +236,7 @@ def test_tags_that_cannot_be_used_trigger_a_warning(tags, exif, spectral, tmp_pa
     path = tmp_path / "a.tif"
     path.write_bytes(files.tiff_bytes(CODES, tags, exif=exif))
     rgb, _, codes = convert(spectral, path)
-    np.testing.assert_allclose(
-        rgb, colour.models.eotf_sRGB(SHARE)[0], rtol=0, atol=1e-5
-    )
+    assert_allclose(rgb, FROM_SRGB[0], rtol=0, atol=1e-5)
     assert codes == ("colour-space-assumed",)
 
 
@@ -283,7 +249,7 @@ def test_exif_of_jpeg(spectral, tmp_path):
         path, quality=100, exif=exif
     )
     rgb, spaces, codes = convert(spectral, path)
-    np.testing.assert_allclose(rgb, (128 / 255) ** (563 / 256), rtol=0, atol=1e-4)
+    assert_allclose(rgb, (128 / 255) ** (563 / 256), rtol=0, atol=1e-4)
     assert (spaces, codes) == (("Adobe RGB (1998)",), ())
 
 
@@ -292,7 +258,7 @@ def test_primaries_of_radiance_hdr(spectral, tmp_path):
     numbers = " ".join(map(str, files.BT2020))
     path.write_bytes(files.hdr_bytes(CODES, 128, f"PRIMARIES= {numbers}\n"))
     rgb, spaces, codes = convert(spectral, path)
-    np.testing.assert_allclose(rgb, CODES[0, 0] / 256 @ TO_SRGB.T, rtol=0, atol=2e-4)
+    assert_allclose(rgb, CODES[0, 0] / 256 @ TO_SRGB.T, rtol=0, atol=2e-4)
     assert (spaces, codes) == (("PRIMARIES",), ())
     path.write_bytes(files.hdr_bytes(CODES, 128, "PRIMARIES= 1 2 3\n"))
     assert convert(spectral, path)[2] == ("colour-space-assumed",)
@@ -313,60 +279,44 @@ XYZ = RGB @ SRGB.rgb_to_xyz.T
 
 
 def xyz_planes(xyz, layer="", dtype=np.float32):
-    return {
-        layer + letter: np.ascontiguousarray(xyz[..., k], dtype)
-        for k, letter in enumerate("XYZ")
-    }
+    x, y, z = planes(xyz.astype(dtype)).values()
+    return {f"{layer}X": x, f"{layer}Y": y, f"{layer}Z": z}
 
 
 @pytest.mark.parametrize("layer", ["", "beauty."])
 @pytest.mark.parametrize("dtype", [np.float32, np.float16])
-def test_channels_of_xyz_are_converted(layer, dtype, spectral, tmp_path):
+def test_channels_of_xyz_are_converted(layer, dtype, to_texture):
     alpha = np.array([[0.5, 1, 0.7, 0]])
     held = xyz_planes(XYZ * alpha[..., None], layer, dtype) | {
         f"{layer}A": alpha.astype(dtype)
     }
-    result = texture.convert(
-        spectral, write_exr(tmp_path / "a.exr", held), tmp_path / "out.exr"
-    )
+    result = to_texture(held)
     expected = RGB * alpha[..., None]
     tolerance = 1e-4 if dtype is np.float32 else 3e-3
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB"), expected, rtol=0, atol=tolerance
-    )
+    assert_allclose(rgb_of(result), expected, rtol=0, atol=tolerance)
     assert result.warnings == ()
     assert not {f"{layer}X", f"{layer}Y", f"{layer}Z"} & set(channels(result.target))
 
 
-def test_xyz_are_relative_to_the_white_of_the_file(spectral, tmp_path):
+def test_xyz_are_relative_to_the_white_of_the_file(to_texture):
     aces = look_up_space("ACES2065-1")
     primaries = primaries_of(aces)
     stated = tuple(map(float, (*aces.primaries.ravel(), *aces.whitepoint)))
-    source = write_exr(
-        tmp_path / "a.exr",
+    result = to_texture(
         xyz_planes(100 * RGB @ primaries.rgb_to_xyz.T),
         chromaticities=stated,
         whiteLuminance=100.0,
     )
-    result = texture.convert(spectral, source, tmp_path / "out.exr")
     expected = np.clip(RGB @ conversion(primaries, SRGB).T, 0, 1)
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB"), expected, rtol=0, atol=3e-4
-    )
+    assert_allclose(rgb_of(result), expected, rtol=0, atol=3e-4)
     assert "100" in result.spaces[0]
 
 
-def test_relit_images_of_xyz_are_rgb(small_cube, tmp_path):
-    found = []
-    for name, held in (
-        ("rgb", planes(RGB.astype(np.float32))),
-        ("xyz", xyz_planes(XYZ)),
-    ):
-        relighter = prepare_relighter(small_cube, ["A"], threads=1)
-        source = write_exr(tmp_path / f"{name}.exr", held)
-        result = texture.convert(relighter, source, tmp_path / f"{name}-A.exr")
-        found.append(read_channels(result.target, "RGB").astype(float))
-    np.testing.assert_allclose(found[1], found[0], rtol=0, atol=2e-3)
+def test_relit_images_of_xyz_are_rgb(small_cube, to_texture):
+    relighter = prepare_relighter(small_cube, ["A"], threads=1)
+    expected = rgb_of(to_texture(planes(RGB.astype(np.float32)), relighter))
+    relit = rgb_of(to_texture(xyz_planes(XYZ), relighter))
+    assert_allclose(relit.astype(float), expected.astype(float), rtol=0, atol=2e-3)
 
 
 @pytest.mark.parametrize(
@@ -378,111 +328,66 @@ def test_relit_images_of_xyz_are_rgb(small_cube, tmp_path):
         ("View.Normal.X", "View.Normal.Y", "View.Normal.Z"),
     ],
 )
-def test_other_channels_are_neither_grey_nor_xyz(names, spectral, tmp_path):
-    source = write_exr(
-        tmp_path / "a.exr", {name: np.full((2, 2), 0.5, np.float32) for name in names}
-    )
+def test_other_channels_are_neither_grey_nor_xyz(names, to_texture):
     with raises(TextureError):
-        texture.convert(spectral, source, tmp_path / "out.exr")
+        to_texture({name: np.full((2, 2), 0.5, np.float32) for name in names})
 
 
-def test_xyz_are_neither_encoded_nor_rgb_of_a_space(small_cube, tmp_path):
+def test_xyz_are_neither_encoded_nor_rgb_of_a_space(small_cube, to_texture, tmp_path):
     source = write_exr(tmp_path / "a.exr", xyz_planes(XYZ))
     for options, error in (
         ({"space": "ACEScg"}, TextureError),
         ({"encoding": "encoded"}, OptionError),
     ):
         with raises(error):
-            texture.convert(
-                texture.prepare(small_cube, threads=1, **options),
-                source,
-                tmp_path / "out.exr",
-            )
+            to_texture(source, texture.prepare(small_cube, threads=1, **options))
     named = texture.prepare(
         small_cube, depth="float", space="CIE XYZ-D65 - Scene-referred", threads=1
     )
-    result = texture.convert(named, source, tmp_path / "out.exr")
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB"), RGB, rtol=0, atol=1e-3
-    )
+    result = to_texture(source, named)
+    assert_allclose(rgb_of(result), RGB, rtol=0, atol=1e-3)
 
 
-def test_rgb_channels_of_a_space_of_xyz_keep_its_white(spectral, tmp_path):
-    source = write_exr(
-        tmp_path / "a.exr",
-        planes(XYZ.astype(np.float32)),
-        colorInteropID="lin_ciexyzd65_scene",
+def test_rgb_channels_of_a_space_of_xyz_keep_its_white(to_texture):
+    result = to_texture(
+        planes(XYZ.astype(np.float32)), colorInteropID="lin_ciexyzd65_scene"
     )
-    result = texture.convert(spectral, source, tmp_path / "out.exr")
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB"), RGB, rtol=0, atol=1e-3
-    )
+    assert_allclose(rgb_of(result), RGB, rtol=0, atol=1e-3)
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float16])
-def test_light_without_opacity_stays(dtype, spectral, tmp_path):
-    light = np.array(
-        [
-            [
-                [0.3, 0.2, 0.1],
-                [0.3, 0.2, 0.1],
-                [0.25, 0.1, 0],
-                [0, 0, 0],
-                [3e-7, 2e-7, 1e-7],
-            ]
-        ]
-    )
+def test_light_without_opacity_stays(dtype, spectral, to_texture):
+    dark = [3e-7, 2e-7, 1e-7]
+    light = np.array([[*[[0.3, 0.2, 0.1]] * 2, [0.25, 0.1, 0], [0, 0, 0], dark]])
     alpha = np.array([[0, 1e-6, 0.5, 0, 1e-6]])
-    source = write_exr(
-        tmp_path / "a.exr", {**planes(light.astype(dtype)), "A": alpha.astype(dtype)}
-    )
-    result = texture.convert(spectral, source, tmp_path / "out.exr")
+    light = light.astype(dtype)
+    alpha = alpha.astype(dtype)
+    result = to_texture({**planes(light), "A": alpha})
     assert result.warnings == ()
-    np.testing.assert_array_equal(channels(result.target)["A"], alpha.astype(dtype))
-    np.testing.assert_allclose(
-        read_channels(result.target, "RGB"), light, rtol=0, atol=1e-4
-    )
+    assert_array_equal(channels(result.target)["A"], alpha)
+    assert_allclose(rgb_of(result), light, rtol=0, atol=1e-4)
     spectra = read_channels(result.target, spectral.channels)
-    expected = spectral.cube.reflectance(
-        light[0, :1].astype(dtype).astype(float), WAVELENGTHS
-    )
-    np.testing.assert_allclose(
-        spectra[0, :2], np.repeat(expected, 2, axis=0), rtol=0, atol=1e-5
-    )
+    expected = spectral.cube.reflectance(light[0, :2].astype(float), WAVELENGTHS)
+    assert_allclose(spectra[0, :2], expected, rtol=0, atol=1e-5)
     assert (spectra[0, 3] == 0).all()
 
 
-def test_signalling_nan_are_counted_without_a_warning_of_numpy(spectral, tmp_path):
+def test_signalling_nan_are_counted_without_a_warning_of_numpy(to_texture):
     bad = np.full((1, 3), 0x7F800001, np.uint32).view(np.float32)
-    source = write_exr(tmp_path / "a.exr", {**dict.fromkeys("RGB", bad), "A": bad})
-    result = texture.convert(spectral, source, tmp_path / "out.exr")
+    result = to_texture({**dict.fromkeys("RGB", bad), "A": bad})
     assert result.counts.not_finite == 3
 
 
 def test_pictures_show_light_without_opacity(sensor, tmp_path):
     light = np.full((1, 2, 3), 0.25, np.float32)
-    source = write_exr(
-        tmp_path / "a.exr", {**planes(light), "A": np.array([[0, 0.5]], np.float32)}
-    )
-    np.testing.assert_allclose(
-        read_picture(source, sensor, max_side=2).rgb[0], [[0.25] * 3, [0.5] * 3]
-    )
+    alpha = np.array([[0, 0.5]], np.float32)
+    source = write_exr(tmp_path / "a.exr", {**planes(light), "A": alpha})
+    picture = read_picture(source, sensor, max_side=2)
+    assert_allclose(picture.rgb[0], [[0.25] * 3, [0.5] * 3])
 
 
-def test_floats_leave_the_unit_interval_by_rounding_only(spectral, tmp_path):
+def test_floats_leave_the_unit_interval_by_rounding_only(to_texture, tmp_path):
     near = np.array([[[1 + 2.0**-23, -1e-9, 0.5], [-1e-7, 1 + 5e-7, 1]]], np.float32)
-    assert (
-        texture.convert(
-            spectral, write_exr(tmp_path / "a.exr", planes(near)), tmp_path / "b.exr"
-        ).warnings
-        == ()
-    )
-    write_image(tmp_path / "a.tif", near)
-    assert (
-        texture.convert(spectral, tmp_path / "a.tif", tmp_path / "c.exr").warnings == ()
-    )
-    beyond = near + np.float32(1e-4)
-    result = texture.convert(
-        spectral, write_exr(tmp_path / "d.exr", planes(beyond)), tmp_path / "e.exr"
-    )
-    assert result.counts.outside == 2
+    for source in (planes(near), write_image(tmp_path / "a.tif", near)):
+        assert to_texture(source).warnings == ()
+    assert to_texture(planes(near + np.float32(1e-4))).counts.outside == 2

@@ -1,19 +1,19 @@
 """Test sets, and methods against reference implementations."""
 
 from importlib import import_module
-from itertools import chain
 
 import numpy as np
 import pytest
 from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999
+from numpy.testing import assert_allclose
 
 from tests.helpers import raises
 from tests.parts import LLVM, need
 from uplift.atlas import Atlas, Entry, merge, on_grid, read_atlas
-from uplift.colorimetry import in_unit_cube
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import AtlasError, OptionError
 from uplift.extras.images.processes import call_in_child
-from uplift.fit import families_with
+from uplift.fit.families import families_with
 from uplift.lab.chart import mitsuba3
 from uplift.lab.chart.cubes import CubeOptions, built_cube
 from uplift.lab.chart.measure import METHODS, select_methods
@@ -28,33 +28,24 @@ def test_every_second_entry_builds_and_the_others_test(repository):
     # The first atlas has an odd number of entries; counting starts again with each
     # atlas.
     atlases = shipped(repository, "vs", "macbeth")
-    found = make_task(atlases, 16)
-    names = chain.from_iterable(spectra.names[::2] for spectra in atlases.values())
-    assert list(found.kept.names) == list(names)
-    rows = {tuple(row) for row in found.own.round(12)}
-    assert not rows & {tuple(row) for row in found.unseen.round(12)}
-    every = on_grid(merge(atlases.values()), found.sensor.wavelengths)
-    assert (
-        len(found.own) + len(found.unseen)
-        == in_unit_cube(found.sensor.rgb(every)).sum()
-    )
+    task = make_task(atlases, 16)
+    vs, macbeth = atlases.values()
+    assert task.kept.names == vs.names[::2] + macbeth.names[::2]
+    rows = set(map(tuple, task.own.round(12)))
+    assert not rows & set(map(tuple, task.unseen.round(12)))
+    spectra = on_grid(merge(atlases.values()), task.sensor.wavelengths)
+    inside = in_unit_cube(task.sensor.rgb(spectra))
+    assert len(task.own) + len(task.unseen) == inside.sum()
 
 
 def test_edges_contain_every_corner_and_grey_once():
-    found = edges()
-    assert len(np.unique(found, axis=0)) == len(found)
-    assert (
-        (
-            (found == 0)
-            | (found == 1)
-            | (found == found[:, :1]).all(axis=1, keepdims=True)
-        )
-        .any(axis=1)
-        .all()
-    )
-    corners = found[((found == 0) | (found == 1)).all(axis=1)]
-    assert len(corners) == 8
-    assert (np.ptp(found, axis=1) == 0).sum() == 9
+    rgb = edges()
+    assert len(np.unique(rgb, axis=0)) == len(rgb)
+    is_extreme = np.isin(rgb, (0, 1))
+    is_grey = np.ptp(rgb, axis=1) == 0
+    assert (is_extreme.any(axis=1) | is_grey).all()
+    assert is_extreme.all(axis=1).sum() == 8
+    assert is_grey.sum() == 9
 
 
 def test_too_few_colours_or_entries_are_an_error(repository):
@@ -100,7 +91,7 @@ def test_smits_and_mallett_match_colour_science(small_task, colours):
         expected = [
             np.interp(at, sd.wavelengths, sd.values) for sd in map(theirs, colours)
         ]
-        np.testing.assert_allclose(
+        assert_allclose(
             prepared(name, small_task).uplift(colours, at), expected, atol=1e-12
         )
 
@@ -110,7 +101,7 @@ def test_jakob_fit_has_the_colour(small_task):
     found = prepared("jakob2019-direct", small_task).uplift(
         rgb, small_task.sensor.wavelengths
     )
-    np.testing.assert_allclose(small_task.sensor.rgb(found), rgb, atol=2e-3)
+    assert_allclose(small_task.sensor.rgb(found), rgb, atol=2e-3)
 
 
 def test_missing_mitsuba_is_not_installed(small_task, monkeypatch):
@@ -129,7 +120,7 @@ def test_both_types_give_the_same_spectra(small_task, colours, name):
     single = prepared(f"{name}-float32", small_task)
     found = single.uplift(colours.astype(np.float32), at)
     assert found.dtype == np.float32
-    np.testing.assert_allclose(found, double.uplift(colours, at), atol=2e-6)
+    assert_allclose(found, double.uplift(colours, at), atol=2e-6)
 
 
 def vectorised_and_table(task, colours):
@@ -154,7 +145,7 @@ def test_vectorised_mitsuba_gives_the_reflectances_of_its_table(small_task, colo
         vectorised_and_table, small_task, colours, seconds=120
     )
     for compiled, table in zip(found, expected, strict=True):
-        np.testing.assert_allclose(compiled, table, atol=1e-4)
+        assert_allclose(compiled, table, atol=1e-4)
 
 
 def test_prior_of_cubes_does_not_know_the_unseen_materials(small_task):

@@ -2,11 +2,12 @@
 cube, pictures and pages.
 """
 
+import itertools
 import json
 import re
 import shlex
 from dataclasses import replace
-from itertools import pairwise, product
+from itertools import pairwise
 
 import click
 import matplotlib.image
@@ -255,7 +256,7 @@ def test_page_has_markers_of_measured_methods_fits_and_is_accessible(tmp_path):
     text = render_chart(chart)
     panels = range(len(chart.batches) * len(criteria(64)))
     markers = re.findall(r'id="marker-(\d+)-(\d+)"', text)
-    assert sorted(markers) == sorted(product(map(str, panels), "012"))
+    assert sorted(markers) == sorted(itertools.product(map(str, panels), "012"))
     assert HOSTILE not in text
     assert external_links(text) == []
     page = Page(text)

@@ -2,17 +2,20 @@
 predictors.
 """
 
-from itertools import product
+import itertools
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.conftest import ATLASES
 from tests.helpers import raises
 from uplift.atlas import Atlas, Entry, read_atlas, resample
-from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.lights import SCENE_LIGHTS
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import AtlasError
 from uplift.common.progress import Progress
 from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
@@ -118,7 +121,7 @@ def test_local_linear_reproduces_spectra_that_are_linear_in_rgb(data):
     )
     known = spectra[:40]
     queried = spectra[40:]
-    np.testing.assert_allclose(
+    assert_allclose(
         local_linear(data, known, data.sensor.rgb(queried)), queried, atol=1e-3
     )
 
@@ -129,8 +132,8 @@ def test_local_linear_has_the_least_leave_one_out_error_and_the_queried_colours(
     """Compared with leaving out one by one."""
     monkeypatch.setattr(held_out, "BANDWIDTHS", (10.0, 40.0))
     monkeypatch.setattr(held_out, "RIDGES", (1e-6, 1e-2))
-    some = known[:20]
-    colours = data.sensor.rgb(some)
+    known = known[:20]
+    colours = data.sensor.rgb(known)
 
     def predict(known, rgb, smoothing):
         spectra = np.clip(
@@ -139,19 +142,18 @@ def test_local_linear_has_the_least_leave_one_out_error_and_the_queried_colours(
         return held_out.with_least_change(data, spectra, rgb)
 
     def slow(smoothing):
-        found = [
-            predict(some[rest], colours[row : row + 1], smoothing)[0]
-            for row, rest in enumerate(~np.eye(len(some), dtype=bool))
+        predicted = [
+            predict(np.delete(known, row, axis=0), colours[row : row + 1], smoothing)
+            for row in range(len(known))
         ]
-        return np.mean(
-            [
-                delta_e_spectra(observer.light(name), np.array(found), some)
-                for name in SCENE_LIGHTS
-            ]
-        )
+        differences = [
+            delta_e_spectra(observer.light(name), np.concatenate(predicted), known)
+            for name in SCENE_LIGHTS
+        ]
+        return np.mean(differences)
 
-    best = min(product((10.0, 40.0), (1e-6, 1e-2)), key=slow)
-    rgb = data.sensor.rgb(some.mean(axis=0)[None]) * [[0.9, 1.0, 1.1]]
-    found = local_linear(data, some, rgb)
-    np.testing.assert_allclose(found, predict(some, rgb, best), atol=1e-12)
-    np.testing.assert_allclose(data.sensor.rgb(found), rgb, atol=1e-6)
+    best = min(itertools.product((10.0, 40.0), (1e-6, 1e-2)), key=slow)
+    rgb = data.sensor.rgb(known.mean(axis=0)[None]) * [[0.9, 1.0, 1.1]]
+    spectra = local_linear(data, known, rgb)
+    assert_allclose(spectra, predict(known, rgb, best), atol=1e-12)
+    assert_allclose(data.sensor.rgb(spectra), rgb, atol=1e-6)

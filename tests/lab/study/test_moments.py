@@ -6,6 +6,7 @@ import warnings
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 import uplift
@@ -77,7 +78,7 @@ def test_reconstruction_has_its_complex_moments(technique, count):
     again = (
         reflectance @ np.exp(-1j * circle[:, None] * np.arange(count + 1)) / len(circle)
     )
-    np.testing.assert_allclose(again, moments, rtol=0, atol=1e-10)
+    assert_allclose(again, moments, rtol=0, atol=1e-10)
 
 
 @by_label(MIRRORED)
@@ -87,15 +88,13 @@ def test_mirrored_moments_are_those_of_cubes(technique, count):
     model = Moments(count, warp="vision" if technique.warped else "none")
     moments = technique.moments(bumps(20, wavelengths()), wavelengths(), count - 1)
     multipliers = model.from_storage(moments)
-    np.testing.assert_allclose(
+    assert_allclose(
         technique.reconstruct(moments, observer.grid()),
         evaluate(model, multipliers, observer.grid()),
         rtol=0,
         atol=1e-12,
     )
-    np.testing.assert_allclose(
-        model.to_storage(multipliers), moments, rtol=0, atol=1e-10
-    )
+    assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=1e-10)
 
 
 @by_label(TECHNIQUES)
@@ -107,7 +106,7 @@ def test_black_white_and_a_step_are_reconstructed(technique):
         technique.moments(extremes, wavelengths(), 15), observer.grid()
     )
     assert ((actual >= 0) & (actual <= 1)).all()
-    np.testing.assert_allclose(actual[:2], [[0] * 81, [1] * 81], atol=1e-4)
+    assert_allclose(actual[:2], [[0] * 81, [1] * 81], atol=1e-4)
 
 
 @pytest.fixture(scope="module")
@@ -133,9 +132,7 @@ def test_error_falls_with_moments(study, technique):
     assert (means[4] < means[2]).all()
     assert (np.diff(means[:9, 0]) < 0).all()
     grey = study.errors[technique.warped ^ 1, 0]  # mirrored or not
-    np.testing.assert_allclose(
-        study.errors[TECHNIQUES.index(technique), 0], grey, rtol=1e-6
-    )
+    assert_allclose(study.errors[TECHNIQUES.index(technique), 0], grey, rtol=1e-6)
 
 
 @pytest.mark.parametrize("group", ["macbeth", ALL_ATLASES])

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 import uplift
 from uplift.atlas import read_atlas
@@ -99,11 +100,12 @@ def test_changed_atlases_and_their_effect(repository):
         [one.values - other.values for one, other in zip(noisy, entries, strict=True)]
     )
     assert noise.std() == pytest.approx(0.002, rel=0.1)
-    np.testing.assert_array_equal(wrong[0].values, entries[0].values[::-1])
+    assert_array_equal(wrong[0].values, entries[0].values[::-1])
     assert wrong[1:] == left_out == list(entries[1:])
 
     removed = compare(before, rebuild(left_out, {"dim": 8}), LIGHT, "", name)
-    nearest, (_, lab_distance) = removed.distance.argmin(axis=1), removed.distance
+    nearest = removed.distance.argmin(axis=1)
+    _, lab_distance = removed.distance
     assert (removed.delta_e[nearest] > 0).all()
     far = lab_distance > 60
     assert far.sum() > 100

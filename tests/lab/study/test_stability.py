@@ -4,9 +4,12 @@ difficult as their names.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
+from uplift.colorimetry.solid import solid
 
 from tests.helpers import raises
-from uplift.colorimetry import observer, rgb_to_lab, solid
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.errors import UnknownNameError
 from uplift.common.progress import Progress
 from uplift.lab.study import stability
@@ -75,11 +78,12 @@ def test_sample_covers_every_value_of_every_axis():
 
 
 def test_atlases_are_crowded_spiky_and_noisy(sensor):
-    made = []
+    atlases = []
     for make in SYNTHETIC_ATLASES.values():
-        made.append(np.array([entry.values for entry in make()]))
-        np.testing.assert_array_equal(made[-1], [entry.values for entry in make()])
-    crowded, spiky, noisy = made
+        values = np.array([entry.values for entry in make()])
+        assert_array_equal([entry.values for entry in make()], values)
+        atlases.append(values)
+    crowded, spiky, noisy = atlases
     lab = rgb_to_lab(sensor, sensor.rgb(crowded))
     distance = np.linalg.norm(lab[:, None] - lab, axis=-1) + 1e3 * np.eye(len(lab))
     assert np.median(distance.min(axis=1)) < 1

@@ -36,7 +36,7 @@ def test_a_plan_is_printed_written_and_built(run, here):
         max(map(len, result.stdout.partition("kitchen.toml: ")[2].splitlines())) <= 80
     )
     assert "kitchen.plan.json" in result.stderr
-    values = json.loads((here / "kitchen.plan.json").read_text(encoding="utf-8"))
+    values = json.loads((here / "kitchen.plan.json").read_text("utf-8"))
     assert (
         json.loads(run("plan", "kitchen.toml", "--format", "json", "--force").stdout)
         == values

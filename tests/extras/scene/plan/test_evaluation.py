@@ -4,6 +4,7 @@ candidates.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.extras.texture.conftest import planes, write_exr
 from tests.helpers import raises
@@ -118,10 +119,8 @@ def test_small_textures_are_sampled_completely(image, sensor):
     )
     found = sample([image(rgb), image(rgb, "b.exr")], sensor, (4, 6))
     for each in (found.predicting, found.confirming):
-        np.testing.assert_allclose(
-            each.rgb, [[0.1, 0.2, 0.3], [0.5, 0.5, 0.5]], rtol=1e-6
-        )
-        np.testing.assert_allclose(each.share, [0.75, 0.25])
+        assert_allclose(each.rgb, [[0.1, 0.2, 0.3], [0.5, 0.5, 0.5]], rtol=1e-6)
+        assert_allclose(each.share, [0.75, 0.25])
     assert len(found.colour_bins) == len(found.few) == 2
     assert (found.pixels, found.size) == (8, 8 * 12)
 
@@ -143,18 +142,16 @@ def test_the_two_samples_of_a_large_texture_are_disjoint(image, sensor):
     assert found.few is None
     for each in (found.predicting, found.confirming):
         assert each.share.sum() == pytest.approx(1)
-        np.testing.assert_allclose(
-            each.share @ each.rgb, 0.5, atol=0.06
-        )  # equal probability
+        assert_allclose(each.share @ each.rgb, 0.5, atol=0.06)  # equal probability
     again = sample([path], sensor, (300, 600))
-    np.testing.assert_array_equal(again.predicting.rgb, found.predicting.rgb)
+    assert_array_equal(again.predicting.rgb, found.predicting.rgb)
 
 
 def test_rare_colours_have_a_bin(image, sensor):
     rgb = np.full((80, 80, 3), 0.25)
     rgb[40, 40] = [0.9, 0.05, 0.1]
     found = sample([image(rgb)], sensor, (50, 50))
-    np.testing.assert_allclose(np.sort(found.colour_bins[:, 0]), [0.25, 0.9], rtol=1e-6)
+    assert_allclose(np.sort(found.colour_bins[:, 0]), [0.25, 0.9], rtol=1e-6)
 
 
 def test_colours_outside_the_space_are_warned_of(image, sensor):
@@ -190,7 +187,7 @@ def test_the_best_matrices_map_rgb_under_the_light_of_the_space_exactly(
         plain_cube, setup, rgb, np.full(30, 1 / 30), {"textures": slice(0, 30)}, 0.9
     )
     matrices = tests.matrices()
-    np.testing.assert_allclose(matrices[0], np.linalg.inv(sensor.xyz_to_rgb), atol=1e-9)
+    assert_allclose(matrices[0], np.linalg.inv(sensor.xyz_to_rgb), atol=1e-9)
     fitted = tests.error(rgb @ matrices.mT)
     plain = tests.error(rgb @ np.stack([matrices[0], matrices[0]]).mT)
     assert fitted.quantile < plain.quantile

@@ -9,6 +9,7 @@ from dataclasses import asdict, replace
 import colour
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 import uplift
 from tests.extras.scene.plan.conftest import LIGHTS, SMALL, painted
@@ -128,9 +129,7 @@ def test_a_scene_under_the_light_of_its_space_needs_no_spectra(tmp_path):
     path = tmp_path / "a.plan.json"
     values = to_json(found, path)
     matrix = np.array(values["rendering"]["rgb_to_xyz"]["D65"])
-    np.testing.assert_allclose(
-        matrix, np.linalg.inv(found.scene.sensor().xyz_to_rgb), atol=1e-6
-    )
+    assert_allclose(matrix, np.linalg.inv(found.scene.sensor().xyz_to_rgb), atol=1e-6)
     assert not values["lines"]
     path.write_text(json.dumps(values), encoding="utf-8")
     with raises(PlanFileError) as caught:
@@ -159,7 +158,7 @@ def test_a_list_of_spectra_is_written(tmp_path):
     rendering = values["rendering"]
     xyz = spectra * np.array(rendering["powers"]["D65"]) @ np.array(rendering["to_xyz"])
     listed = np.array([each["rgb"] for each in values["spectra"]])
-    np.testing.assert_allclose(
+    assert_allclose(
         xyz, listed @ np.linalg.inv(found.scene.sensor().xyz_to_rgb).T, atol=0.02
     )
 
