@@ -133,12 +133,7 @@ def build_emission(
 
     entries, duplicates = lamp_entries(exact, others, lattice, radiometry)
     if duplicates:
-        pairs = listed([f"'{name}' that of '{other}'" for name, other in duplicates])
-        omitted = pluralise(len(duplicates), "lamp")
-        problem = (
-            f"{omitted} left out, with the chromaticity of an earlier one: {pairs}"
-        )
-        warn(UpliftWarning(problem, code="entry-duplicate"))
+        warn(_duplicates_warning(duplicates))
     return EmissionTable(
         EmissionData(
             space=sensor.space,
@@ -163,6 +158,13 @@ def build_emission(
             },
         )
     )
+
+
+def _duplicates_warning(duplicates: Sequence[tuple[str, str]]) -> UpliftWarning:
+    pairs = listed([f"'{name}' that of '{other}'" for name, other in duplicates])
+    omitted = pluralise(len(duplicates), "lamp")
+    problem = f"{omitted} left out, with the chromaticity of an earlier one: {pairs}"
+    return UpliftWarning(problem, code="entry-duplicate")
 
 
 def _choose_lamps(

@@ -213,4 +213,4 @@ def _to_rim(uv: Array, lattice: ChromaticityLattice) -> Array:
     edges = np.roll(lattice.knots, -1, axis=0) - lattice.knots
     offset = uv[:, None] - lattice.knots
     across = edges[:, 0] * offset[..., 1] - edges[:, 1] * offset[..., 0]
-    return np.asarray((across / np.linalg.norm(edges, axis=1)).min(axis=1).clip(0.0))
+    return (across / np.linalg.norm(edges, axis=1)).min(axis=1).clip(0.0)

@@ -131,7 +131,7 @@ def _corners(uv: Array, white: Array) -> Indices:
 def _angles(first: Array, second: Array) -> Array:
     """Angles (n,) in radians from vectors (n, 2) to others, counterclockwise."""
     cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
-    return np.asarray(np.arctan2(cross, (first * second).sum(axis=1)))
+    return np.arctan2(cross, (first * second).sum(axis=1))
 
 
 def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
@@ -159,7 +159,7 @@ def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
         prior=multipliers,
     )
     power = np.exp(found.multipliers @ basis.T)
-    return np.asarray(power / (power @ radiometry @ DENOMINATOR)[:, None])
+    return power / (power @ radiometry @ DENOMINATOR)[:, None]
 
 
 def mix_with_locus(
@@ -199,4 +199,4 @@ def mix_with_locus(
     share = (1 / np.maximum(length[rows, sector], 1.0))[:, None]
     position = np.clip(along[rows, sector], 0.0, 1.0)[:, None]
     edge = (1 - position) * locus[sector] + position * locus[(sector + 1) % len(locus)]
-    return np.asarray((1 - share) * power + share * edge)
+    return (1 - share) * power + share * edge

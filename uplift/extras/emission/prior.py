@@ -74,9 +74,7 @@ class LampPrior:
         """Standard deviation (L,) of each lamp, as the others predict it; see
         `standard_deviation`.
         """
-        return np.asarray(
-            np.sqrt(1 / np.diag(self.precision) / (1 + self.kernel.nugget))
-        )
+        return np.sqrt(1 / np.diag(self.precision) / (1 + self.kernel.nugget))
 
 
 def fit_lamp_prior(

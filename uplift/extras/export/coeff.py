@@ -116,11 +116,8 @@ def write_coeff(
             if symbol in LAYOUTS[layout]
         ]
         raise OptionError(
-            (
-                f"a {layout} table needs {' or '.join(known)}, got {sensor.space} "
-                "under "
-                f"{sensor.illuminant}"
-            ),
+            f"a {layout} table needs {' or '.join(known)}, got {sensor.space} under "
+            f"{sensor.illuminant}",
             hint="build a cube of this space and illuminant",
         )
     with atomic_write(path, force=force) as temporary:

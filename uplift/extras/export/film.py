@@ -119,10 +119,8 @@ def write_film(
         )
     if not MIN_SIZE <= res <= MAX_SIZE or not 0 < share < 1:
         raise OptionError(
-            (
-                f"res must be from {MIN_SIZE} to {MAX_SIZE} and share in (0, 1), got "
-                f"{res} and {share:g}"
-            ),
+            f"res must be from {MIN_SIZE} to {MAX_SIZE} and share in (0, 1), got "
+            f"{res} and {share:g}",
             hint=f"readers expect {SIZE} rows; the usual share is {SHARE}",
         )
     files = output_files(path, "film")

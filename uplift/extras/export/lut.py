@@ -228,7 +228,7 @@ def _to_moments(data: CubeData) -> Array:
     fraction = np.divide(room, size, out=np.ones_like(size), where=size > room).min(
         axis=0
     )
-    return np.asarray(np.linalg.inv(np.vstack([np.ones(3), slopes * fraction]).T))
+    return np.linalg.inv(np.vstack([np.ones(3), slopes * fraction]).T)
 
 
 def _fourier_table(cube: Cube, nodes: Array, matrix: Array) -> Floats:

@@ -23,6 +23,13 @@ from uplift.common.text import parse_float
 
 FORMAT = "DATA_FORMAT"
 DATA = "DATA"
+SECTIONS = {
+    f"BEGIN_{FORMAT}": FORMAT,
+    f"BEGIN_{DATA}": DATA,
+    f"END_{FORMAT}": "",
+    f"END_{DATA}": "",
+}
+"""The section that follows a line."""
 TOKEN = re.compile(r'"((?:[^"]|"")*)"|(\S+)')
 KEYWORD = re.compile(r'(\w+)\s+(?:"((?:[^"]|"")*)"|(.+))')
 LIGHT_SOURCES = re.compile(r'^\s*DEVICE_CLASS\s+"?DISPLAY', re.MULTILINE)
@@ -45,23 +52,20 @@ def read(document: Document) -> Measurements:
         for line in preamble
         if (match := KEYWORD.match(line))
     }
-    found = _with_exact_wavelengths(
-        read_grid(Grid(rows, location, preamble), document.stem), keywords
+    table = read_grid(Grid(rows, location, preamble), document.stem)
+    measurements = replace(
+        _with_exact_wavelengths(table, keywords),
+        header=Header(one_line(keywords.get("DESCRIPTOR"))),
     )
-    if "SPECTRAL_NORM" in keywords:  # of ArgyllCMS: the value of a perfect reflector
-        norm = parse_number(keywords["SPECTRAL_NORM"], location, "SPECTRAL_NORM")
-        stated = f"SPECTRAL_NORM {keywords['SPECTRAL_NORM']}"
-        found = replace(
-            found, scales=(Scale(check_scale(norm, "SPECTRAL_NORM", location), stated),)
-        )
+    norm = "SPECTRAL_NORM"  # of ArgyllCMS: the value of a perfect reflector
+    if norm in keywords:
+        number = parse_number(keywords[norm], location, norm)
+        scale = Scale(check_scale(number, norm, location), f"{norm} {keywords[norm]}")
+        measurements = replace(measurements, scales=(scale,))
     if light := LIGHT_SOURCES.search("\n".join(preamble)):
-        found = replace(
-            found,
-            quantity=Quantity(
-                "the light of a display", light[0].strip(), of_light=True
-            ),
-        )
-    return replace(found, header=Header(one_line(keywords.get("DESCRIPTOR"))))
+        display = Quantity("the light of a display", light[0].strip(), of_light=True)
+        measurements = replace(measurements, quantity=display)
+    return measurements
 
 
 def _parse(document: Document) -> tuple[list[str], list[Row]]:
@@ -74,20 +78,16 @@ def _parse(document: Document) -> tuple[list[str], list[Row]]:
     section = ""
     for line, text in enumerate(_lines(document), 1):
         word = text.strip()
-        if word in (f"BEGIN_{FORMAT}", f"BEGIN_{DATA}"):
-            if word == f"BEGIN_{FORMAT}" and fields:
+        if word in SECTIONS:
+            section = SECTIONS[word]
+            if section == FORMAT and fields:
                 break  # another table follows
-            section = word.removeprefix("BEGIN_")
-        elif word in (f"END_{FORMAT}", f"END_{DATA}"):
-            section = ""
         elif not word or word.startswith("#"):
             continue
         elif section == FORMAT:
-            fields += [Cell(token, line) for token in _tokens(text, None)]
+            fields += _cells(line, text, None)
         elif section == DATA:
-            sets.append(
-                tuple(Cell(token, line) for token in _tokens(text, len(fields)))
-            )
+            sets.append(_cells(line, text, len(fields)))
         elif not sets:
             preamble.append(text)
     if not fields or not sets:
@@ -116,7 +116,7 @@ def _lines(document: Document) -> list[str]:
         ) from None
 
 
-def _tokens(text: str, count: int | None) -> list[str]:
+def _cells(line: int, text: str, count: int | None) -> Row:
     """Split a line at tabs if that gives ``count`` tokens, or else at blanks outside of
     quotes.
     """
@@ -134,11 +134,12 @@ def _tokens(text: str, count: int | None) -> list[str]:
     words = count == len(by_tabs) or (
         count is None and not any(" " in token for token in by_tabs)
     )
-    return by_tabs if "\t" in text and words else by_blanks
+    tokens = by_tabs if "\t" in text and words else by_blanks
+    return tuple(Cell(token, line) for token in tokens)
 
 
 def _with_exact_wavelengths(
-    found: Measurements, keywords: dict[str, str]
+    table: Measurements, keywords: dict[str, str]
 ) -> Measurements:
     """Replace wavelengths that ArgyllCMS rounds in labels, such as SPEC_383, by those
     of the keywords.
@@ -149,12 +150,11 @@ def _with_exact_wavelengths(
             for key in ("START_NM", "END_NM", "BANDS")
         )
     except ValueError:
-        return found
+        return table
     # The labels must agree with the keywords, up to their rounding.
-    labels = np.asarray(found.spectra[0].wavelengths)
+    labels = np.asarray(table.spectra[0].wavelengths)
     exact = np.linspace(start, end, len(labels))
     if len(labels) != bands or np.abs(exact - labels).max() > 1:
-        return found
-    return replace(
-        found, spectra=tuple(replace(each, wavelengths=exact) for each in found.spectra)
-    )
+        return table
+    spectra = [replace(spectrum, wavelengths=exact) for spectrum in table.spectra]
+    return replace(table, spectra=tuple(spectra))

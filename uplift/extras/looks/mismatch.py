@@ -161,7 +161,7 @@ class MismatchVolumes:
         extremes.
         """
         found = self.directions.directions @ np.linalg.inv(self.scale)
-        return np.asarray(found / np.linalg.norm(found, axis=1)[:, None])
+        return found / np.linalg.norm(found, axis=1)[:, None]
 
     @cached_property
     def corners(self) -> Array:
@@ -172,7 +172,7 @@ class MismatchVolumes:
         directions = self.directions.directions
         scaled = self.xyz @ np.linalg.inv(self.scale).T
         support = np.einsum("kdi,di->kd", scaled, directions)[:, faces]
-        return np.asarray(
+        return (
             np.einsum("fij,kfj->kfi", np.linalg.inv(directions[faces]), support)
             @ self.scale.T
         )
@@ -181,8 +181,8 @@ class MismatchVolumes:
         """Compute by how much (n,) XYZ (n, 3) exceed the body in the direction in which
         they do so most.
         """
-        return np.asarray(
-            np.einsum("kdi,di->kd", xyz[:, None] - self.xyz, self.normals).max(axis=1)
+        return np.einsum("kdi,di->kd", xyz[:, None] - self.xyz, self.normals).max(
+            axis=1
         )
 
 
@@ -231,7 +231,7 @@ def _scale(sensor: Sensor, light: Light) -> Array:
     rest = light.xyz - explained.T @ sensor.matrix
     squares, axes = np.linalg.eigh(rest @ rest.T)
     lengths = np.sqrt(np.maximum(squares, MIN_SCALE**2 * (light.xyz**2).sum()))
-    return np.asarray((axes * lengths) @ axes.T)
+    return (axes * lengths) @ axes.T
 
 
 def _solve(
@@ -392,7 +392,7 @@ class _Search:
         reference = self.reference[row, None]
         rise = delta_e_2000(at + steps, reference) - delta_e_2000(at - steps, reference)
         jacobian = lab_jacobian(xyz, self.volumes.light.white)
-        return np.asarray((rise[:, None, :] @ jacobian)[:, 0] / (2 * DIFFERENCE_STEP))
+        return (rise[:, None, :] @ jacobian)[:, 0] / (2 * DIFFERENCE_STEP)
 
     def _lab(self, xyz: Array) -> Array:
         return lab(xyz, self.volumes.light.white)
@@ -404,7 +404,7 @@ def mesh_volume(points: Array, faces: Indices) -> Array:
     """
     centred = points - points.mean(axis=1, keepdims=True)
     a, b, c = (centred[:, faces[:, corner]] for corner in range(3))
-    return np.asarray(np.einsum("kfi,kfi->k", a, np.cross(b, c)) / 6)
+    return np.einsum("kfi,kfi->k", a, np.cross(b, c)) / 6
 
 
 def outline(points: Array, faces: Indices, angles: int = ANGLES) -> Array:
@@ -433,4 +433,4 @@ def outline(points: Array, faces: Indices, angles: int = ANGLES) -> Array:
     radius = np.where(
         crosses, first @ along + share * ((second - first) @ along), 0
     ).max(axis=0)
-    return np.asarray(centre + (radius[:, None] * along.T * lengths) @ axes.T)
+    return centre + (radius[:, None] * along.T * lengths) @ axes.T

@@ -169,10 +169,8 @@ def targets_of(
         return None
     if model.count <= NO_FREEDOM:
         raise LookError(
-            (
-                f"looks need spectra of more than three coefficients, got {model.name} "
-                f"with {model.count}"
-            ),
+            f"looks need spectra of more than three coefficients, got {model.name} "
+            f"with {model.count}",
             hint='use model="moments" with entry_coefficients of 4 to 17',
         )
     screens = tuple(_screens(look, sensor) for look in looks)
@@ -197,10 +195,8 @@ def targets_of(
             other = known[int(same.argmax())]
             raise look_error(
                 look,
-                (
-                    f"its colour {format_rgb(look.rgb)} is that of {taken[other]}, "
-                    f"'{other}'"
-                ),
+                f"its colour {format_rgb(look.rgb)} is that of {taken[other]}, "
+                f"'{other}'",
                 hint="a colour has one answer: change the look, or leave out the other",
             )
         taken[look.name] = "another look"

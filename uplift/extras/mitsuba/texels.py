@@ -284,14 +284,10 @@ def _model(description: str, count: int) -> Model:
         if model.count == count:
             return model
     raise TextureError(
-        (
-            "the header of a texture must describe the model of its channels in "
-            "uplift.model"
-        ),
-        hint=(
-            "write the texture with 'uplift texture', and keep its header in other "
-            "programs"
-        ),
+        "the header of a texture must describe the model of its channels in "
+        "uplift.model",
+        hint="write the texture with 'uplift texture', and keep its header in other "
+        "programs",
     )
 
 

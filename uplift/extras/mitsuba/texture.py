@@ -10,6 +10,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
+from uplift.common.arrays import Floats
 from uplift.extras.mitsuba.texels import PADDING, Placement, Samples, Texels
 from uplift.models import Moments, Sigmoid
 from uplift.models.model import Model
@@ -39,25 +40,25 @@ def blend(
     """
     first, *functions = _basis(model, wavelengths)
     total = dr.zeros(type(wavelengths))
-    for each, weight in zip(multipliers, weights, strict=True):
-        linear = first * each[0]
+    for texel, weight in zip(multipliers, weights, strict=True):
+        linear = first * texel[0]
         for order, function in enumerate(functions, start=1):
-            linear = dr.fma(function, each[order], linear)
+            linear = dr.fma(function, texel[order], linear)
         total = dr.fma(weight, _to_reflectance(model, linear), total)
     return total
 
 
 def _basis(model: Model, wavelengths: Any) -> list[Any]:
     """Return the C basis functions of the linear part at ``wavelengths``."""
-    one = dr.ones(type(wavelengths))
+    ones = dr.ones(type(wavelengths))
     if isinstance(model, Sigmoid):
         middle = (model.start + model.end) / 2
         half = (model.end - model.start) / 2
         x = (dr.clip(wavelengths, model.start, model.end) - middle) / half
-        return [x * x, x, one]
+        return [x * x, x, ones]
     assert isinstance(model, Moments)
     twice = 2 * dr.cos(_phase(model, wavelengths))
-    functions = [one, twice, dr.fma(twice, twice, -2)]
+    functions = [ones, twice, dr.fma(twice, twice, -2)]
     while len(functions) < model.count:
         functions.append(dr.fma(twice, functions[-1], -functions[-2]))
     return functions
@@ -111,70 +112,25 @@ def _texture_class(variant: str) -> type:
                 self.numbers = mi.Texture2f(mi.TensorXf(numbers), filter_mode=filtered)
 
         def eval(self, si: Any, active: Any = True) -> Any:
-            place = self._texel(self.to_uv @ si.uv)
+            model = self.texels.model
+            folded = _folded(self.to_uv @ si.uv, self.placement.wrap)
+            # in texels of the padded image; centres of texels are at ½
+            place = dr.fma(folded, mi.Vector2f(*self.resolution()), PADDING)
             if self.placement.filter == "stochastic":
-                place += self._offset(si)
-            if isinstance(self.texels.model, Samples):
-                return self._interpolated(place, si.wavelengths, active)
-            height, width, _ = self.numbers.shape
-            uv = place * mi.Vector2f(1 / width, 1 / height)
-            if self.placement.filter != "bilinear":
-                return blend(
-                    self.texels.model,
-                    [self.numbers.eval(uv)],
-                    [mi.Float(1)],
-                    si.wavelengths,
-                )
-            texels = self.numbers.eval_fetch(uv)
-            return blend(
-                self.texels.model, texels, _bilinear_weights(place), si.wavelengths
-            )
-
-        def _texel(self, uv: Any) -> Any:
-            """Return the place of coordinates in the padded image, in texels; centres
-            of texels are at ½.
-            """
-            if self.placement.wrap == "clamp":
-                folded = dr.clip(uv, 0, 1)
-            elif self.placement.wrap == "repeat":
-                folded = uv - dr.floor(uv)
-            else:
-                folded = dr.abs(uv - 2 * dr.round(uv / 2))
-            width, height = self.resolution()
-            return dr.fma(folded, mi.Vector2f(width, height), PADDING)
-
-        def _offset(self, si: Any) -> Any:
-            """Return up to half a texel, by which the nearest texel is one of four with
-            the probability of its weight.
-
-            Textures have no sampler: pseudo-random numbers are hashed from coordinates
-            and wavelengths.
-            """
-            u, v, wavelength = (
-                _bits(each) for each in (si.uv.x, si.uv.y, si.wavelengths[0])
-            )
-            first, second = mi.sample_tea_32(u ^ wavelength, v, HASH_ROUNDS)
-            return mi.Vector2f(mi.Float(first), mi.Float(second)) * 2.0**-32 - 0.5
-
-        def _interpolated(self, place: Any, wavelengths: Any, active: Any) -> Any:
-            """Return reflectances between samples, which lie along the first axis of
-            the texture.
-            """
-            model, (height, width, depth, _) = self.texels.model, self.numbers.shape
-            assert isinstance(model, Samples)
-            if self.placement.filter != "bilinear":
-                place = dr.floor(place) + 0.5
-            uv = place * mi.Vector2f(1 / width, 1 / height)
-            steps = (model.count - 1) / (model.end - model.start)
-            samples = (
-                dr.clip(wavelengths, model.start, model.end) - model.start
-            ) * steps + 0.5
-            return type(wavelengths)(
-                *(
-                    self.numbers.eval(mi.Point3f(each / depth, uv.x, uv.y))[0]
-                    for each in samples
-                )
-            )
+                place += _offset(si)
+            height, width = self.numbers.shape[:2]
+            to_uv = mi.Vector2f(1 / width, 1 / height)
+            is_bilinear = self.placement.filter == "bilinear"
+            if isinstance(model, Samples):
+                if not is_bilinear:
+                    place = dr.floor(place) + 0.5
+                return _interpolated(model, self.numbers, place * to_uv, si.wavelengths)
+            if is_bilinear:
+                texels = self.numbers.eval_fetch(place * to_uv)
+                weights = _bilinear_weights(place)
+                return blend(model, texels, weights, si.wavelengths)
+            texel = self.numbers.eval(place * to_uv)
+            return blend(model, [texel], [mi.Float(1)], si.wavelengths)
 
         def mean(self) -> Any:
             return mi.Float(self.texels.mean)
@@ -190,6 +146,37 @@ def _texture_class(variant: str) -> type:
             return self.texels.describe(self.placement.wrap)
 
     return UpliftTexture
+
+
+def _folded(uv: Any, wrap: str) -> Any:
+    """Return coordinates in [0, 1], by the mode beyond the edges."""
+    if wrap == "clamp":
+        return dr.clip(uv, 0, 1)
+    if wrap == "repeat":
+        return uv - dr.floor(uv)
+    return dr.abs(uv - 2 * dr.round(uv / 2))
+
+
+def _offset(si: Any) -> Any:
+    """Return up to half a texel, by which the nearest texel is one of four with the
+    probability of its weight.
+
+    Textures have no sampler: pseudo-random numbers are hashed from coordinates and
+    wavelengths.
+    """
+    key = _bits(si.uv.x) ^ _bits(si.wavelengths[0])
+    first, second = mi.sample_tea_32(key, _bits(si.uv.y), HASH_ROUNDS)
+    return mi.Vector2f(mi.Float(first), mi.Float(second)) * 2.0**-32 - 0.5
+
+
+def _interpolated(model: Samples, numbers: Any, uv: Any, wavelengths: Any) -> Any:
+    """Return reflectances between samples, along the first axis of the texture."""
+    depth = numbers.shape[2]
+    steps = (model.count - 1) / (model.end - model.start)
+    inside = dr.clip(wavelengths, model.start, model.end)
+    samples = (inside - model.start) * steps + 0.5
+    points = [mi.Point3f(sample / depth, uv.x, uv.y) for sample in samples]
+    return type(wavelengths)(*(numbers.eval(point)[0] for point in points))
 
 
 def make_texture(props: Any, texels: Texels, placement: Placement) -> Any:
@@ -208,16 +195,11 @@ def _environment_class(variant: str) -> type:
             super().__init__(props)
             self.scale = float(props.get("scale", 1.0))
             transform = props.get("to_world", mi.ScalarTransform4f())
-            self.to_local = mi.Transform4f(
-                np.array(transform.inverse().matrix, dtype=np.float32)
-            )
+            to_local = np.array(transform.inverse().matrix, dtype=np.float32)
+            self.to_local = mi.Transform4f(to_local)
             placement = Placement("bilinear", "repeat", np.eye(3))
             self.texture = make_texture(mi.Properties("uplift"), texels, placement)
-            grey = np.repeat(texels.numbers.mean(axis=2, keepdims=True), 3, axis=2)
-            bitmap = mi.Bitmap(np.ascontiguousarray(grey))
-            self.sampler = mi.load_dict(
-                {"type": "envmap", "bitmap": bitmap, "to_world": transform}
-            )
+            self.sampler = _grey_sampler(texels.numbers, transform)
             self.m_flags = self.sampler.flags()
 
         def set_scene(self, scene: Any) -> None:
@@ -243,23 +225,15 @@ def _environment_class(variant: str) -> type:
             return self.sampler.pdf_direction(it, ds, active)
 
         def sample_ray(
-            self,
-            time: Any,
-            sample1: Any,
-            sample2: Any,
-            sample3: Any,
-            active: Any = True,
+            self, time: Any, first: Any, second: Any, third: Any, active: Any = True
         ) -> Any:
             """Sample a ray into the scene, and return it with power over density."""
-            ray, weight = self.sampler.sample_ray(
-                time, sample1, sample2, sample3, active
-            )
-            si = dr.zeros(mi.SurfaceInteraction3f)
-            si.wavelengths = ray.wavelengths
+            ray, weight = self.sampler.sample_ray(time, first, second, third, active)
+            si = _interaction(ray.wavelengths)
             si.wi = ray.d
             grey = self.sampler.eval(si, active)
-            radiance = self._radiance(-ray.d, ray.wavelengths, active)
-            return ray, dr.select(grey > 0, weight * radiance / grey, 0)
+            power = weight * self.eval(si, active)
+            return ray, dr.select(grey > 0, power / grey, 0)
 
         def sample_wavelengths(self, si: Any, sample: Any, active: Any = True) -> Any:
             """Sample wavelengths as Mitsuba does for sensors, and return them with
@@ -273,25 +247,36 @@ def _environment_class(variant: str) -> type:
             return self.sampler.bbox()
 
         def to_string(self) -> str:
-            return self.texture.to_string().replace(
-                "UpliftTexture", "UpliftEnvironment"
-            )
+            text = self.texture.to_string()
+            return text.replace("UpliftTexture", "UpliftEnvironment")
 
         def _radiance(self, direction: Any, wavelengths: Any, active: Any) -> Any:
-            """Return the radiance from a direction, with the layout of Mitsuba's
-            ``envmap``.
-            """
-            local = self.to_local @ direction
-            u = dr.atan2(local.x, -local.z) / (2 * dr.pi)
-            v = dr.safe_acos(local.y) / dr.pi
-            height = self.texture.texels.numbers.shape[0]
-            si = dr.zeros(mi.SurfaceInteraction3f)
-            # The first and the last row lie at the poles.
-            si.uv = mi.Point2f(u - dr.floor(u), (v * (height - 1) + 0.5) / height)
-            si.wavelengths = wavelengths
+            """Return the radiance from a direction."""
+            si = _interaction(wavelengths)
+            si.uv = _to_uv(self.to_local @ direction, self.texture.resolution().y)
             return self.scale * self.texture.eval(si, active)
 
     return UpliftEnvironment
+
+
+def _grey_sampler(numbers: Floats, transform: Any) -> Any:
+    grey = np.repeat(numbers.mean(axis=2, keepdims=True), 3, axis=2)
+    bitmap = mi.Bitmap(np.ascontiguousarray(grey))
+    return mi.load_dict({"type": "envmap", "bitmap": bitmap, "to_world": transform})
+
+
+def _interaction(wavelengths: Any) -> Any:
+    si = dr.zeros(mi.SurfaceInteraction3f)
+    si.wavelengths = wavelengths
+    return si
+
+
+def _to_uv(direction: Any, height: int) -> Any:
+    """Return the coordinates of a direction in the layout of Mitsuba's ``envmap``."""
+    u = dr.atan2(direction.x, -direction.z) / (2 * dr.pi)
+    v = dr.safe_acos(direction.y) / dr.pi
+    # The first and the last row lie at the poles.
+    return mi.Point2f(u - dr.floor(u), (v * (height - 1) + 0.5) / height)
 
 
 def make_environment(props: Any, texels: Texels) -> Any:

@@ -156,9 +156,7 @@ def place_labels(anchors: Array, sizes: Array, markers: Array, panel: Array) -> 
 
 def _corners_around(anchor: Array, size: Array, distance: float) -> Array:
     """Corners (16, 2) of a label at a distance from its anchor, in all directions."""
-    return np.asarray(
-        anchor + distance * DIRECTIONS + size * (np.sign(DIRECTIONS) - 1) / 2
-    )
+    return anchor + distance * DIRECTIONS + size * (np.sign(DIRECTIONS) - 1) / 2
 
 
 def _overlaps(boxes: Array, others: Array) -> Mask:

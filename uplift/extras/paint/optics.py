@@ -26,11 +26,8 @@ def as_amounts(parts: ArrayLike) -> Array:
     array = np.asarray(parts, dtype=float)
     if array.ndim == 0 or not (np.isfinite(array) & (array >= 0)).all():
         raise OptionError(
-            (
-                "parts of a mixture must be a sequence of finite numbers of at least "
-                "0, "
-                f"got {array.tolist()}"
-            ),
+            "parts of a mixture must be a sequence of finite numbers of at least 0, "
+            f"got {array.tolist()}",
             hint="pass one for each component",
         )
     return array
@@ -45,14 +42,12 @@ def as_shares(parts: ArrayLike) -> Array:
             "some part of a mixture must be greater than 0", hint="raise one of them"
         )
     relative = array / largest  # a sum of huge parts would overflow
-    return np.asarray(relative / relative.sum(axis=-1, keepdims=True))
+    return relative / relative.sum(axis=-1, keepdims=True)
 
 
 def weighted_sum(spectra: ArrayLike, weights: Array) -> Array:
     """Return the sum (…, N) of spectra (…, n, N) with weights (…, n)."""
-    return np.asarray(
-        (weights[..., None, :] @ np.asarray(spectra, dtype=float))[..., 0, :]
-    )
+    return (weights[..., None, :] @ np.asarray(spectra, dtype=float))[..., 0, :]
 
 
 def add_lights(spectra: ArrayLike, strengths: ArrayLike) -> Array:

@@ -90,7 +90,7 @@ class PowerOfReflectance:
     exponent: float
 
     def __call__(self, reflectance: Array) -> Array:
-        return np.asarray(reflectance**self.exponent)
+        return reflectance**self.exponent
 
 
 SQUARE_ROOT = PowerOfReflectance(0.5)
@@ -112,7 +112,7 @@ class Dispersive:
         R = np.maximum(reflectance, DARKEST_DISPERSED)
         h = ((1 - R) / np.sqrt(2 * R)) @ self.imbalance.T
         Y = (reflectance @ self.luminance)[..., None]
-        return np.asarray(Y**self.exponent * np.exp(self.weight * h))
+        return Y**self.exponent * np.exp(self.weight * h)
 
 
 def dispersive(sensor: Sensor, further: ArrayLike = ()) -> Dispersive:
@@ -174,7 +174,7 @@ class Pigment:
         """
         K = self.absorption
         S = self.scattering
-        return np.asarray(S / np.maximum(K + S + self.gamma, TINY))
+        return S / np.maximum(K + S + self.gamma, TINY)
 
     def layer(self, thickness: ArrayLike) -> Layer:
         """Return the optical properties of a layer of a thickness X (...) in units of
@@ -197,7 +197,7 @@ class Pigment:
         """
         K = self.absorption
         S = self.scattering
-        return np.asarray(S / np.maximum(2 * (K + S), TINY))
+        return S / np.maximum(2 * (K + S), TINY)
 
 
 def from_opaque(reflectance: ArrayLike, scattering: Scattering) -> Pigment:

@@ -35,7 +35,7 @@ def exposure(sensor: Sensor, rgb: ArrayLike) -> Array:
     """Return the factor (…) that takes linear RGB (…, 3) to the luminance
     of mid-grey.
     """
-    return np.asarray(MID_GREY / sensor.xyz(rgb)[..., 1])
+    return MID_GREY / sensor.xyz(rgb)[..., 1]
 
 
 def lab_per_rgb(sensor: Sensor, rgb: ArrayLike) -> Array:

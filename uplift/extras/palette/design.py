@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -70,11 +71,8 @@ def design(palette: Palette, model: FactorModel) -> Design:
             and palette.light(goal.light).designed
         ):
             raise PaletteError(
-                (
-                    f"light or material of a goal must be given, got {goal}, both to "
-                    "be "
-                    "designed"
-                ),
+                f"light or material of a goal must be given, got {goal}, both to be "
+                "designed",
                 hint="give one of them, or remove the goal",
             )
     where = unknowns(palette)
@@ -88,13 +86,12 @@ def design(palette: Palette, model: FactorModel) -> Design:
             ]
         )
 
-    free = {name: x[where["free", name]] for name in palette.free}
     return Design(
         palette,
         model,
         spectra("light", palette.lights),
         spectra("material", palette.materials),
-        free,
+        {name: x[where["free", name]] for name in palette.free},
     )
 
 
@@ -193,7 +190,6 @@ def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
     """
     colours = matrix(found)
     palette = found.palette
-    fitted = colours.factor if palette.fit == "factor-model" else colours.obtained
     errors = {
         goal: float(colours.delta_e[palette.cell(goal.material, goal.light)])
         for goal in palette.goals
@@ -209,26 +205,31 @@ def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
         remaining = [(name, float(delta_e[cell])) for name, delta_e in relaxed]
         useful = _useful(goal, remaining, MAX_REMAINING * errors[goal])
         unmet.append(UnmetGoal(goal, errors[goal], useful))
+    fitted = colours.factor if palette.fit == "factor-model" else colours.obtained
+    return (*unmet, *_too_alike(palette, fitted))
+
+
+def _too_alike(palette: Palette, colours: Array) -> Iterator[UnmetGoal]:
+    """Yield the pairs whose colours (M, L, 3) differ too little."""
     for pair in palette.min_differences:
         first, second = (
-            fitted[palette.cell(material, pair.light)] for material in pair.materials
+            colours[palette.cell(material, pair.light)] for material in pair.materials
         )
         delta_e = float(delta_e_rgb(palette.sensor, first, second))
         if delta_e < pair.delta_e:
-            unmet.append(UnmetGoal(pair, delta_e))
-    return tuple(unmet)
+            yield UnmetGoal(pair, delta_e)
 
 
 def _useful(
     goal: ColourGoal, remaining: list[tuple[str, float]], limit: float
 ) -> tuple[tuple[str, float], ...]:
     """Relaxed criteria that bring the ΔE00 of a goal below the limit, best first."""
-    useful = []
-    for name, delta_e in remaining:
-        if name != _weight_of(goal) and delta_e < limit:
-            useful.append((name, delta_e))
-    useful.sort(key=lambda relaxation: relaxation[1])
-    return tuple(useful[:MAX_RELAXATIONS])
+    useful = [
+        (name, delta_e)
+        for name, delta_e in remaining
+        if name != _weight_of(goal) and delta_e < limit
+    ]
+    return tuple(sorted(useful, key=itemgetter(1))[:MAX_RELAXATIONS])
 
 
 def _weight_of(goal: ColourGoal) -> str:

@@ -213,10 +213,8 @@ def _weights_of_labels(
         listed = ", ".join(f"#{code:06x}" for code in frequent)
         more = ", …" if unknown.sum() > MAX_LISTED else ""
         raise TextureError(
-            (
-                "every colour must be a label, got "
-                f"{pluralise(counts[unknown].sum(), 'pixel')} of {listed}{more}"
-            ),
+            "every colour must be a label, got "
+            f"{pluralise(counts[unknown].sum(), 'pixel')} of {listed}{more}",
             hint="give each colour a label, and draw without antialiasing",
         )
     weights = np.zeros((*pixels.shape, count), dtype=np.float32)
@@ -229,10 +227,8 @@ def _weights_of_channels(part: Part, values: Values, names: Sequence[str]) -> We
     present = [row for row, name in enumerate(names) if name in part.channels]
     if not present:
         raise TextureError(
-            (
-                "an image of weights must have a channel named after a material "
-                f"({', '.join(names)})"
-            ),
+            "an image of weights must have a channel named after a material "
+            f"({', '.join(names)})",
             hint="rename its channels, or use an 8-bit image of labels",
         )
     weights = np.zeros((*values.shape[:2], len(names)), dtype=np.float32)

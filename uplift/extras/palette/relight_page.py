@@ -117,11 +117,9 @@ def page(view: Relighting) -> str:
     return render(
         "extras/palette/templates/relight_page.html.j2",
         title=view.title,
-        lead=(
-            f"{pluralise(len(view.materials), 'material')} under any mix of "
-            f"{pluralise(len(view.lights), 'light')}: "
-            "move the dial to relight the picture."
-        ),
+        lead=f"{pluralise(len(view.materials), 'material')} under any mix of "
+        f"{pluralise(len(view.lights), 'light')}: "
+        "move the dial to relight the picture.",
         width=width,
         height=height,
         coefficients=view.to_rgb.shape[1],

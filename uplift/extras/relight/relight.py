@@ -318,10 +318,8 @@ def relit_page(relit: Sequence[Relit], *, adapt: bool | None = None) -> str:
     return render(
         "extras/relight/templates/relight_page.html.j2",
         title="Images under other lights",
-        lead=(
-            "RGB multiplied by the light, against spectra under the light. Drag the "
-            "line, or use the arrow keys."
-        ),
+        lead="RGB multiplied by the light, against spectra under the light. Drag the "
+        "line, or use the arrow keys.",
         lights=[rendering.light_label for rendering in first.renderings],
         balanced=[rendering.is_balanced(adapt) for rendering in first.renderings],
         methods=first.methods,

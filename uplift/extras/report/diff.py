@@ -48,7 +48,7 @@ class Changes:
     @property
     def largest(self) -> Array:
         """(n,) largest ΔE00 of each colour under any light."""
-        return np.asarray(self.delta_e.max(axis=1))
+        return self.delta_e.max(axis=1)
 
     @property
     def compared(self) -> Array:

@@ -49,10 +49,8 @@ def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
     return render(
         "extras/report/templates/diff.html.j2",
         title=" and ".join(diff.names),
-        lead=(
-            "Where the answers of two cubes differ: ΔE00 between their spectra, the "
-            "largest under any of the lights."
-        ),
+        lead="Where the answers of two cubes differ: ΔE00 between their spectra, the "
+        "largest under any of the lights.",
         diff=diff,
         figures=to_json(diff, None, worst),
         limit=limit,

@@ -204,7 +204,7 @@ def _with_lattice_errors(
 
     def codes(linear: Array) -> Array:
         rgb = linear[rows]
-        return np.asarray(np.sign(rgb) * cube.encode(np.abs(rgb)))
+        return np.sign(rgb) * cube.encode(np.abs(rgb))
 
     low, centre, high = map(codes, faces)
     is_outside = rows >= len(data.atlas.names)

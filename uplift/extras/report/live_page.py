@@ -51,11 +51,9 @@ def page(data: CubeData) -> str:
     return render(
         "extras/report/templates/live_page.html.j2",
         title="Your images under other lights",
-        lead=(
-            f"Spectra of a cube of {data.lattice.dim}³ nodes and "
-            f"{pluralise(len(data.atlas.names), 'atlas entry')}, "
-            f"evaluated in the browser for every pixel. Drop an image on the page."
-        ),
+        lead=f"Spectra of a cube of {data.lattice.dim}³ nodes and "
+        f"{pluralise(len(data.atlas.names), 'atlas entry')}, "
+        f"evaluated in the browser for every pixel. Drop an image on the page.",
         lights=names,
         second=next(name for name in ("A", "FL11") if name != names[0]),
         numbers=numbers,

@@ -40,10 +40,8 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
     if not found or len(found[0].xyz) != 1:
         count = len(found[0].xyz) if found else 0
         raise OptionError(
-            (
-                "a page shows one colour under some lights, got "
-                f"{pluralise(count, 'colour')}"
-            ),
+            "a page shows one colour under some lights, got "
+            f"{pluralise(count, 'colour')}",
             hint="give a single colour",
         )
     sensor = cube.data.sensor
@@ -59,11 +57,9 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
     return render(
         "extras/report/templates/look_page.html.j2",
         title=f"Looks of {colour}",
-        lead=(
-            f"Many spectra have this RGB under {sensor.illuminant}. Drag its colour "
-            "under another light: the spectrum "
-            f"follows, and the colour under {sensor.illuminant} stays."
-        ),
+        lead=f"Many spectra have this RGB under {sensor.illuminant}. Drag its colour "
+        "under another light: the spectrum "
+        f"follows, and the colour under {sensor.illuminant} stays.",
         build=sensor.illuminant,
         lights=lights,
         likely=f"{LIKELY:.0%}",
@@ -116,7 +112,7 @@ def _written(cube: Cube, rgb: Array) -> str | list[float]:
     """The colour as a file of looks has it: '#rrggbb' where that is exact, else linear
     RGB.
     """
-    codes = np.asarray(cube.encode(rgb))
+    codes = cube.encode(rgb)
     whole = np.rint(codes)
     if (np.abs(codes - whole) <= CODE_SLACK).all():
         return "#" + bytes(whole.astype(np.uint8)).hex()

@@ -147,7 +147,7 @@ def _well_determined(data: CubeData) -> Mask:
     unrealisable = data.points.status == Status.UNREALISABLE
     if not unrealisable.any():
         return np.ones(data.lattice.size, dtype=bool)
-    inside = np.asarray(
+    inside = (
         solid(data.sensor.matrix).signed_distance(data.lattice.points)
         < -BOUNDARY_MARGIN
     )

@@ -131,9 +131,7 @@ class Uncertainty:
         )
 
     def _errors(self, variance: Array) -> Array:
-        return np.asarray(
-            np.sqrt(np.maximum(variance, 0)[..., None] * self.unknown + self.rest)
-        )
+        return np.sqrt(np.maximum(variance, 0)[..., None] * self.unknown + self.rest)
 
 
 @single_threaded_blas()

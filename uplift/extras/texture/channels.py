@@ -20,10 +20,8 @@ HALF_ROUNDING = 1e-3
 1] by rounding.
 """
 VECTORS = re.compile(
-    (
-        r"(.*[._ "
-        r"])?(n|ns|ng|p|po|pos|pref|uv)|.*(normal|position|vector|velocity|motion|tangent|world).*"
-    ),
+    r"(.*[._ "
+    r"])?(n|ns|ng|p|po|pos|pref|uv)|.*(normal|position|vector|velocity|motion|tangent|world).*",
     re.I,
 )
 """Names of layers of renderers whose X, Y and Z are vectors, not CIE XYZ."""
@@ -89,7 +87,7 @@ class ColourChannels:
             colours = np.abs(values[..., self.rgb].astype(float))
             alpha = np.abs(values[..., [self.alpha]].astype(float))
         brightest = colours.max(axis=-1, keepdims=True)
-        return np.asarray((brightest > BRIGHTEST * alpha) & np.isfinite(brightest))
+        return (brightest > BRIGHTEST * alpha) & np.isfinite(brightest)
 
 
 def without_rounding(rgb: Values, tolerance: float = HALF_ROUNDING) -> Values:

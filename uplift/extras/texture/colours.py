@@ -320,10 +320,8 @@ def make_decoder(
         raise OptionError(
             f"encoded floats must use the gamut mapping clip or error, got '{method}'",
             code="encoded-floats-not-mapped",
-            hint=(
-                "their encoding ends at 0 and 1; pass out_of_gamut='clip' or "
-                "encoding='linear'"
-            ),
+            hint="their encoding ends at 0 and 1; pass out_of_gamut='clip' or "
+            "encoding='linear'",
         )
     if is_encoded and source is not None and source.to_gamut is not None:
         raise OptionError("CIE XYZ must be linear", hint="leave out encoding='encoded'")

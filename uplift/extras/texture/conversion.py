@@ -190,11 +190,8 @@ def _layout(
         converted = (*"RGB", *converter.channels)
         if duplicates := set(converted) & set(names):
             raise TextureError(
-                (
-                    f"channel '{min(duplicates)}' exists next to the colour and would "
-                    "be "
-                    "written twice"
-                ),
+                f"channel '{min(duplicates)}' exists next to the colour and would be "
+                "written twice",
                 hint="remove that channel",
             )
         names = (*converted, *names)

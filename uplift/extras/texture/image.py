@@ -176,8 +176,7 @@ class Image:
             if numbers.max(initial=0) > MAX_EXACT_INTEGER:
                 raise TextureError(
                     f"integers must be at most {MAX_EXACT_INTEGER}, got "
-                    f"{numbers.max()} in channel "
-                    f"'{part.channels[index]}'",
+                    f"{numbers.max()} in channel '{part.channels[index]}'",
                     hint="remove that channel",
                 )
             values[..., index] = numbers / UINT32_SCALE
@@ -205,10 +204,8 @@ class Image:
         problem = read_error(self.handle)  # the only sign of a truncated JPEG
         if rows is None or problem:
             raise TextureError(
-                (
-                    f"rows {first} to {end - 1} cannot be read: "
-                    f"{problem or UNKNOWN_PROBLEM}"
-                ),
+                f"rows {first} to {end - 1} cannot be read: "
+                f"{problem or UNKNOWN_PROBLEM}",
                 code="file-unreadable",
                 path=self.path,
                 hint="the file is damaged: write it again",

@@ -59,11 +59,8 @@ def open_mask(
         size = part.window.width, part.window.height
         if size != window:
             raise TextureError(
-                (
-                    f"a mask must have the size of its image, {window[0]} × "
-                    f"{window[1]}, "
-                    f"got {size[0]} × {size[1]}"
-                ),
+                f"a mask must have the size of its image, {window[0]} × {window[1]}, "
+                f"got {size[0]} × {size[1]}",
                 hint="scale the mask",
             )
         colours = colour_channels(part)
@@ -83,6 +80,28 @@ def _interpret(
     """Return the function from the numbers (…, 3) of a mask to weights (…, n). Raises
     `TextureError` for others.
     """
+    low, high, is_grey, is_coloured = _measure(image, part, rgb)
+    white = max(part.max_code, 1)
+    least = MIN_WHITE * part.max_code  # 0 of numbers that are not integer
+    is_weight = min(low, white - high) >= 0
+    if is_grey and high < cubes and part.max_code:
+        return lambda numbers: np.asarray(
+            numbers[..., :1] == np.arange(cubes), dtype=np.float32
+        )
+    if is_grey and is_weight and cubes == 2 and high >= least:
+        return lambda numbers: _pair(
+            np.asarray(numbers[..., 0] / np.float32(white), dtype=np.float32)
+        )
+    if is_coloured and is_weight and cubes == 3:
+        return _normalised
+    kind = "grey" if is_grey else "coloured"
+    raise _no_mask(cubes, f"{kind} values from {low:g} to {high:g}")
+
+
+def _measure(
+    image: Image, part: Part, rgb: tuple[int, int, int]
+) -> tuple[float, float, bool, bool]:
+    """Return the range of the numbers, whether all are grey, or coloured and none 0."""
     low = np.inf
     high = -np.inf
     is_grey = True
@@ -93,23 +112,7 @@ def _interpret(
         high = max(high, np.max(colours))
         is_grey &= bool((colours == colours[..., :1]).all())
         has_black |= bool((colours == 0).all(axis=-1).any())
-    is_integer = part.max_code > 0
-    white = part.max_code or 1
-    is_weight = low >= 0 and high <= white
-    if is_grey:
-        if is_integer and high < cubes:
-            return lambda numbers: np.asarray(
-                numbers[..., :1] == np.arange(cubes), dtype=np.float32
-            )
-        has_white = not is_integer or high >= MIN_WHITE * white
-        if is_weight and cubes == 2 and has_white:
-            return lambda numbers: _pair(
-                np.asarray(numbers[..., 0] / np.float32(white), dtype=np.float32)
-            )
-    elif is_weight and cubes == 3 and not has_black:
-        return _normalised
-    kind = "grey" if is_grey else "coloured"
-    raise _no_mask(cubes, f"{kind} values from {low:g} to {high:g}")
+    return low, high, is_grey, not (is_grey or has_black)
 
 
 def _no_mask(cubes: int, values: str) -> TextureError:
@@ -147,9 +150,8 @@ class MaskedUplifter(Converter):
         sizes = dict.fromkeys(
             (part.window.width, part.window.height) for part, _ in coloured_parts(image)
         )
-        with (
-            contextlib.ExitStack() as stack
-        ):  # a mask that fits one size only is an error for the other
+        with contextlib.ExitStack() as stack:
+            # a mask that fits one size only is an error for the other
             weights, *_ = [
                 stack.enter_context(open_mask(self.mask, len(self.uplifters), size))
                 for size in sizes
@@ -158,10 +160,8 @@ class MaskedUplifter(Converter):
                 yield lambda part, first, rgb: self.mix(
                     rgb, weights(first - part.window.y, len(rgb))
                 )
-            except (
-                ColourError,
-                TextureError,
-            ) as error:  # of the image, not of the mask
+            except (ColourError, TextureError) as error:
+                # of the image, not of the mask
                 error.path = error.path or image.path
                 raise
 
@@ -199,20 +199,17 @@ class MaskedUplifter(Converter):
             if not rows.any():
                 continue
             requested, changed = uplifter.mapped(rgb[rows])
-            (colours, found), counted = uplifter.convert(requested)
+            (colours, uplifted), counted = uplifter.convert(requested)
             counts += counted + replace(changed, pixels=0)
-            kept = is_outside[rows]
-            answered[rows & is_outside] += (
-                weight[rows & is_outside][:, None] * colours[kept]
-            )
+            share = weight[rows][:, None]
+            outside = is_outside[rows]
+            answered[rows & is_outside] += share[outside] * colours[outside]
             mixed = is_mixed[rows]
-            shared = rows[is_mixed]
-            values[rows & ~is_mixed] += (
-                weight[rows & ~is_mixed][:, None] * found[~mixed]
-            )
+            values[rows & ~is_mixed] += share[~mixed] * uplifted[~mixed]
             if mixed.any():
-                parts = uplifter.cube.data.model.to_storage(found[mixed].astype(float))
-                moments[shared] += weight[is_mixed][shared][:, None] * parts
+                model = uplifter.cube.data.model
+                stored = model.to_storage(uplifted[mixed].astype(float))
+                moments[rows[is_mixed]] += share[mixed] * stored
         if len(moments):
             data = self.uplifters[0].cube.data
             start = data.model.from_storage(moments)
@@ -256,43 +253,32 @@ def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
             hint="name the cubes in the order of the numbers in the mask",
         )
     first = uplifters[0]
-    common_sensor(each.cube.data for each in uplifters)
+    common_sensor(uplifter.cube.data for uplifter in uplifters)
     is_model_stored = first.channels[0][:1].islower()
-    models = {
-        json.dumps(each.cube.data.model.describe(), sort_keys=True)
-        for each in uplifters
-    }
-    if len({each.channels for each in uplifters}) > 1 or (
-        is_model_stored and len(models) > 1
-    ):
+    models = [uplifter.cube.data.model.describe() for uplifter in uplifters]
+    is_alike = all(uplifter.channels == first.channels for uplifter in uplifters)
+    if not is_alike or (is_model_stored and models != models[:1] * len(models)):
         raise OptionError(
-            (
-                "cubes of one texture must have the same wavelengths or, for moments "
-                "and "
-                "multipliers, the same model"
-            ),
-            hint=(
-                "write spectra at given wavelengths, or build the cubes with the "
-                "same options"
-            ),
+            "cubes of one texture must have the same wavelengths or, for moments and "
+            "multipliers, the same model",
+            hint="write spectra at given wavelengths, or build the cubes with the same "
+            "options",
         )
     if first.errors:
         raise OptionError(
             "a texture of several cubes has no standard errors",
             hint="write one of each cube",
         )
-    mask_digest = file_digest(mask, TextureError)
-    digests = [each.header["uplift.cube"] for each in uplifters]
-    description = json.loads(first.header["uplift.texture"]) | {
+    digests = [uplifter.header["uplift.cube"] for uplifter in uplifters]
+    description = {
+        **json.loads(first.header["uplift.texture"]),
         "cubes": digests,
-        "mask": mask_digest,
+        "mask": file_digest(mask, TextureError),
     }
-    header = {
+    settings = {field.name: getattr(first, field.name) for field in fields(Converter)}
+    settings["header"] = {
         **first.header,
         "uplift.cube": ", ".join(digests),
         "uplift.texture": json.dumps(description),
     }
-    settings = {each.name: getattr(first, each.name) for each in fields(Converter)}
-    return MaskedUplifter(
-        **settings | {"header": header}, uplifters=tuple(uplifters), mask=mask
-    )
+    return MaskedUplifter(**settings, uplifters=tuple(uplifters), mask=mask)

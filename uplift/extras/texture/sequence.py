@@ -278,10 +278,8 @@ def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
             with contextlib.suppress(OSError):
                 remove_stale(job.target, seconds=0)
     return TextureError(
-        (
-            f"the workers ended unexpectedly; finished: {len(finished)} of "
-            f"{pluralise(len(jobs), 'texture')}"
-        ),
+        f"the workers ended unexpectedly; finished: {len(finished)} of "
+        f"{pluralise(len(jobs), 'texture')}",
         code="workers-lost",
         hint="resume with the others, with fewer processes if memory ran out",
     )

@@ -175,14 +175,11 @@ class Writer:
         free = shutil.disk_usage(self._path.parent).free
         if rest / SPACE_MARGIN > free:
             raise OutputError(
-                (
-                    f"the file needs about {(size + rest) / 1e9:.2g} GB, and "
-                    f"{(size + free) / 1e9:.2g} GB are free"
-                ),
+                f"the file needs about {(size + rest) / 1e9:.2g} GB, and "
+                f"{(size + free) / 1e9:.2g} GB are free",
                 code="not-enough-space",
-                hint=(
-                    "free space on the disk, or write fewer wavelengths or half floats"
-                ),
+                hint="free space on the disk, or write fewer wavelengths or half "
+                "floats",
             )
 
     def _check(self, ok: bool) -> None:

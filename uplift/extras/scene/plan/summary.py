@@ -113,10 +113,9 @@ def describe_error(plan: Plan) -> str:
     measured = ", entries with their measurements" if scene.atlases else ""
     return (
         f"ΔE00 of {100 * scene.quantile:.4g} % of the textures' pixels{materials} is "
-        "at most this value, under the "
-        f"worst of {lights}. Pixels are compared with a cube of the finest lattice "
-        "and the most "
-        f"coefficients at all wavelengths{measured}. {len(plan.measured):,} of "
+        f"at most this value, under the worst of {lights}. Pixels are compared with a "
+        "cube of the finest lattice and the most coefficients at all "
+        f"wavelengths{measured}. {len(plan.measured):,} of "
         f"{pluralise(plan.considered, 'candidate')} were measured; the bounds of the "
         "others exclude them."
     )

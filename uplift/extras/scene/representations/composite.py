@@ -174,7 +174,7 @@ def _analyse(values: Array, waves: Array) -> Array:
     """Coefficients (n, C) of values (n, K) at K evenly spaced points of a period, for
     waves (C, K).
     """
-    return np.asarray(values @ waves.T / (waves**2).sum(axis=1))
+    return values @ waves.T / (waves**2).sum(axis=1)
 
 
 def sun_composite(count: int, threshold: float = SUN_THRESHOLD) -> Representation:

@@ -66,7 +66,7 @@ class Filter:
         """
         x = np.linspace(-1, 1, 2 * (self.extent * upsampling // 2) + 3)[1:-1]
         taps = KINDS[self.kind].curve(x, *self.parameters)
-        return np.asarray(taps / taps.sum())
+        return taps / taps.sum()
 
 
 def resampling_matrix(low_pass: Filter, count: int) -> Array:

@@ -175,9 +175,7 @@ def hero_wavelengths(count: int) -> Representation:
             heroes[:, :, None] + np.arange(WAVELENGTHS_PER_PATH) / WAVELENGTHS_PER_PATH
         ) % 1
         drawn = CENTRE + np.arctanh(low + (high - low) * rotated) / STEEPNESS
-        return np.asarray(
-            np.clip(drawn, observer.START, observer.END).reshape(pixels, -1)
-        )
+        return np.clip(drawn, observer.START, observer.END).reshape(pixels, -1)
 
     def encode(spectra: Array) -> Array:
         pairs = zip(draw(len(spectra)), spectra, strict=True)

@@ -51,7 +51,7 @@ def interpolation_matrix(points: Array) -> Array:
     """Matrix (401, n) that maps dense spectra to their values at ``points`` (n,) nm,
     linear between samples.
     """
-    return np.asarray(np.maximum(1 - np.abs(wavelengths()[:, None] - points), 0))
+    return np.maximum(1 - np.abs(wavelengths()[:, None] - points), 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,7 +183,7 @@ def cell_overlaps(count: int) -> Array:
     low = wavelengths() - STEP / 2
     high = wavelengths() + STEP / 2
     overlap = np.minimum(edges[1:, None], high) - np.maximum(edges[:-1, None], low)
-    return np.asarray(np.maximum(overlap, 0) / STEP)
+    return np.maximum(overlap, 0) / STEP
 
 
 def gauss_samples(count: int) -> Representation:

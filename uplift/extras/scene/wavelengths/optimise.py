@@ -67,9 +67,7 @@ class FitProblem:
         ) / 2
         values, vectors = np.linalg.eigh(form)  # of the lower triangle
         root = np.sqrt(np.maximum(values, MIN_EIGENVALUE))[..., None] * vectors.mT
-        return np.asarray(
-            root @ lab_jacobian(self.setup.xyz, self.setup.whites[:, None])
-        )
+        return root @ lab_jacobian(self.setup.xyz, self.setup.whites[:, None])
 
     @staticmethod
     def pack(sampling: Sampling) -> Array:

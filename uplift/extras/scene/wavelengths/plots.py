@@ -40,7 +40,7 @@ def plot_choice(
         """Sum of the interpolated values of samples: per wavelength and per sample,
         units differ.
         """
-        return np.asarray(np.interp(nm, chosen, values).sum())
+        return np.interp(nm, chosen, values).sum()
 
     with styled():
         count = len(sampling.lights) + 1

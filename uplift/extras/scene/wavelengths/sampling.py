@@ -53,7 +53,7 @@ class RenderSetup:
     @cached_property
     def xyz(self) -> Array:
         """XYZ (K, M, 3) of the materials, summed over the full grid."""
-        return np.asarray(self.reflectances @ (self.powers[:, :, None] * self.cmfs))
+        return self.reflectances @ (self.powers[:, :, None] * self.cmfs)
 
     @cached_property
     def whites(self) -> Array:
@@ -246,7 +246,7 @@ class Sampling:
         ndarray, shape (K, M, 3)
             XYZ.
         """
-        return np.asarray(reflectances @ (self.powers[:, :, None] * self.to_xyz))
+        return reflectances @ (self.powers[:, :, None] * self.to_xyz)
 
 
 def balanced(sampling: Sampling) -> Sampling:
