@@ -177,7 +177,7 @@ def _choose_lamps(
     """
     if atlas is None:
         is_standard = np.isin(known.names, STANDARD_ILLUMINANTS)
-        return _rows(known, is_standard), _rows(known, ~is_standard), ()
+        return known.only(is_standard), known.only(~is_standard), ()
     if not isinstance(atlas, Atlas):
         atlas = read_lamps(
             *([atlas] if isinstance(atlas, str | os.PathLike) else atlas)
@@ -195,11 +195,7 @@ def _choose_lamps(
         and np.abs(exact.power - row).max(axis=1).min() > SAME_LAMP * row.max()
         for name, row in zip(known.names, known.power, strict=True)
     ]
-    return exact, _rows(known, np.array(is_other)), atlas.sources
-
-
-def _rows(lamps: Lamps, kept: NDArray[np.bool_]) -> Lamps:
-    return Lamps(tuple(np.array(lamps.names)[kept].tolist()), lamps.power[kept])
+    return exact, known.only(np.array(is_other)), atlas.sources
 
 
 def _expected_error(

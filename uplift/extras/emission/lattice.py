@@ -26,6 +26,18 @@ spectral locus bends inward.
 TINY = float(np.finfo(np.float64).tiny)
 
 
+def cross(first: Array, second: Array) -> Array:
+    """Compute the cross products (...) of vectors (..., 2)."""
+    return first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
+
+
+def unit_power(power: Array, radiometry: Array) -> Array:
+    """Scale spectra (..., N) to unit X + 15 Y + 3 Z; ``radiometry`` (N, 3) leads from
+    power to XYZ.
+    """
+    return power / (power @ radiometry @ DENOMINATOR)[..., None]
+
+
 def chromaticity(xyz: Array) -> Array:
     """Compute u′v′ (..., 2) of XYZ (..., 3), not black: CIE 015:2018, 8.2.1.1."""
     return xyz[..., :2] * (4.0, 9.0) / (xyz @ DENOMINATOR)[..., None]
@@ -89,9 +101,7 @@ class ChromaticityLattice:
             and (np.diff(self.rings) > 0).all()
         ):
             raise _error("must have rings that increase from 0 to 1")
-        first = self._spokes
-        second = np.roll(self._spokes, -1, axis=0)
-        turns_left = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0] > 0
+        turns_left = cross(self._spokes, np.roll(self._spokes, -1, axis=0)) > 0
         if not turns_left.all() or not (np.diff(self._angles) > 0).all():
             raise _error("must have knots counterclockwise around the centre")
 

@@ -156,7 +156,7 @@ def compose(
     image = table.image()
     text = read_source(f"{kind}.c")
     text = text.replace(
-        "${macros}", "".join(read_source(each) for each in language.macros)
+        "${macros}", "".join(read_source(macro) for macro in language.macros)
     )
     calls = read_source(f"{kind}_calls{language.calls}")
     overview, _, calls = calls.partition(" */\n")

@@ -40,11 +40,9 @@ def read(document: Document) -> Measurements:
     problem = document.location.error(NO_TABLE, HINT, code="not-an-atlas")
     for name in names:
         try:
-            found = read_grid(
-                Grid(_rows(book, name, document), document.location, [name]),
-                document.stem,
-            )
-            return replace(found, notes=(f"sheet: {name}", *found.notes))
+            grid = Grid(_rows(book, name, document), document.location, [name])
+            table = read_grid(grid, document.stem)
+            return replace(table, notes=(f"sheet: {name}", *table.notes))
         except AtlasError as error:
             if error.code != problem.code:
                 raise
@@ -58,21 +56,19 @@ def _rows(book: Any, name: str, document: Document) -> list[Row]:
         _check_cells(sheet.height, sheet.width, document)
         start = sheet.start[0] if sheet.start else 0
         lines = sheet.to_python(skip_empty_area=True)
-    rows = [
-        trimmed(Cell(_text(value), line) for value in values)
-        for line, values in enumerate(lines, start + 1)
-    ]
-    return [row for row in rows if row and not row[0].text.startswith("#")]
+    rows = list[Row]()
+    for line, values in enumerate(lines, start + 1):
+        row = trimmed(Cell(_text(value), line) for value in values)
+        if row and not row[0].text.startswith("#"):
+            rows.append(row)
+    return rows
 
 
 def _text(value: Any) -> str:
     """Return the text of a cell; numbers with all their digits."""
     if isinstance(value, float):
-        return (
-            repr(int(value))
-            if value.is_integer() and abs(value) < 1e15
-            else repr(value)
-        )
+        is_whole = value.is_integer() and abs(value) < 1e15
+        return repr(int(value) if is_whole else value)
     return plain_cell(one_line(value))
 
 
@@ -89,9 +85,8 @@ def _check_content(document: Document) -> None:
     ):
         for member in archive.infolist():
             with archive.open(member) as file:
-                content = file.read(
-                    left + 1
-                )  # the size that an archive states may be wrong
+                # the size that an archive states may be wrong
+                content = file.read(left + 1)
             left -= len(content)
             if left < 0:
                 raise document.location.error(

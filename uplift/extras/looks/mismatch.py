@@ -88,12 +88,12 @@ def sphere(divisions: int) -> Sphere:
     ]
     outwards = np.einsum("ni,ni->n", np.cross(b - a, c - a), a) > 0
     faces = triples[np.logical_and.reduce([*near, outwards])]
-    found = Sphere(
+    mesh = Sphere(
         corners / np.linalg.norm(corners, axis=1)[:, None], faces, np.full(12, -1)
     )
     for _ in range(divisions):
-        found = _divided(found)
-    return found
+        mesh = _divided(mesh)
+    return mesh
 
 
 def _divided(coarse: Sphere) -> Sphere:
@@ -102,14 +102,12 @@ def _divided(coarse: Sphere) -> Sphere:
     edges, which = np.unique(edges, axis=0, return_inverse=True)
     middles = coarse.directions[edges].sum(axis=1)
     middles /= np.linalg.norm(middles, axis=1)[:, None]
-    (a, b, c), (ab, bc, ca) = (
-        coarse.faces.T,
-        (which.reshape(-1, 3) + len(coarse.directions)).T,
-    )
+    a, b, c = coarse.faces.T
+    ab, bc, ca = (which.reshape(-1, 3) + len(coarse.directions)).T
     faces = np.concatenate(
         [
-            np.stack(each, axis=1)
-            for each in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))
+            np.stack(corners, axis=1)
+            for corners in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))
         ]
     )
     return Sphere(
@@ -160,8 +158,8 @@ class MismatchVolumes:
         """Unit vectors (D, 3) of XYZ, in whose directions the boundary points are the
         extremes.
         """
-        found = self.directions.directions @ np.linalg.inv(self.scale)
-        return found / np.linalg.norm(found, axis=1)[:, None]
+        normals = self.directions.directions @ np.linalg.inv(self.scale)
+        return normals / np.linalg.norm(normals, axis=1)[:, None]
 
     @cached_property
     def corners(self) -> Array:
@@ -228,8 +226,8 @@ def _scale(sensor: Sensor, light: Light) -> Array:
     """
     # With P the projection to the sensor's responses, S = ((X − P X)(X − P X)ᵀ)^½.
     explained = np.linalg.lstsq(sensor.matrix.T, light.xyz.T, rcond=None)[0]
-    rest = light.xyz - explained.T @ sensor.matrix
-    squares, axes = np.linalg.eigh(rest @ rest.T)
+    unexplained = light.xyz - explained.T @ sensor.matrix
+    squares, axes = np.linalg.eigh(unexplained @ unexplained.T)
     lengths = np.sqrt(np.maximum(squares, MIN_SCALE**2 * (light.xyz**2).sum()))
     return (axes * lengths) @ axes.T
 
@@ -253,13 +251,17 @@ def _solve(
         start = basis[:, parents[first:last]] if first else basis[:, :last]
         colours = np.repeat(rgb, last - first, axis=0)
         responses = np.tile(response[first:last], (len(rgb), 1))
-        found = extreme_spectra(sensor.matrix, colours, responses, start.reshape(-1, 3))
-        if not found.solved.all():
+        extremes = extreme_spectra(
+            sensor.matrix, colours, responses, start.reshape(-1, 3)
+        )
+        if not extremes.solved.all():
             raise _unrealisable(
                 "rounding prevents a decision whether a reflectance has a colour"
             )
-        xyz[:, first:last] = (found.reflectance @ light.xyz.T).reshape(len(rgb), -1, 3)
-        basis[:, first:last] = found.basis.reshape(len(rgb), -1, 3)
+        xyz[:, first:last] = (extremes.reflectance @ light.xyz.T).reshape(
+            len(rgb), -1, 3
+        )
+        basis[:, first:last] = extremes.basis.reshape(len(rgb), -1, 3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -292,10 +294,10 @@ def largest_difference(volumes: MismatchVolumes, xyz: Array) -> LargestDifferenc
     basis = volumes.basis[row, volumes.directions.faces[faces, 0]]
     search = _Search(volumes, reference)
     slope = search.slope(row, corners[row, faces])
-    found = search.ascend(row, slope, basis)
+    ascended = search.ascend(row, slope, basis)
     normals = np.broadcast_to(volumes.normals, volumes.xyz.shape)
     best = _most_different(
-        len(xyz), _Metamers(sampled, volumes.xyz, normals, volumes.basis), found
+        len(xyz), _Metamers(sampled, volumes.xyz, normals, volumes.basis), ascended
     )
     for _ in range(REFINEMENTS):
         best = search.around(best)
@@ -356,19 +358,21 @@ class _Search:
         """Metamers (m,) where the steps from the extremes in the directions
         (m, 3) end.
         """
-        found = self.extremes(row, slope, basis)
+        metamers = self.extremes(row, slope, basis)
         rises = np.arange(len(row))
         for _ in range(MAX_STEPS):
             trial = self.extremes(
-                row[rises], self.slope(row[rises], found.xyz[rises]), found.basis[rises]
+                row[rises],
+                self.slope(row[rises], metamers.xyz[rises]),
+                metamers.basis[rises],
             )
-            better = trial.delta_e > found.delta_e[rises] + MIN_RISE
+            better = trial.delta_e > metamers.delta_e[rises] + MIN_RISE
             rises = rises[better]
             if not len(rises):
                 break
-            for each, new in zip(found, trial, strict=True):
+            for each, new in zip(metamers, trial, strict=True):
                 each[rises] = new[better]
-        return found
+        return metamers
 
     def around(self, best: _Metamers) -> _Metamers:
         """The most different of metamers (n,) and of those in directions

@@ -78,8 +78,8 @@ class LookTargets:
         )
         designs = np.array(
             [
-                design_reflectance(problem.sensor, *each)
-                for each in zip(goals, expected, strict=True)
+                design_reflectance(problem.sensor, *pair)
+                for pair in zip(goals, expected, strict=True)
             ]
         )
 
@@ -175,7 +175,7 @@ def targets_of(
         )
     screens = tuple(_screens(look, sensor) for look in looks)
     goals = tuple(
-        _goal(look, sensor, each) for look, each in zip(looks, screens, strict=True)
+        _goal(look, sensor, screen) for look, screen in zip(looks, screens, strict=True)
     )
     taken = dict.fromkeys(atlas_names, "an atlas entry")
     codes = np.interp(

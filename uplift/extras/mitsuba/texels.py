@@ -99,8 +99,8 @@ def uplift_texels(uplifter: Uplifter, rgb: Floats) -> tuple[Texels, Counts]:
     data = uplifter.cube.data
     colours = rgb.reshape(-1, 3).astype(float)
     if any(
-        found.rows.size
-        for found in (
+        hits.rows.size
+        for hits in (
             data.entry_boxes.find(colours.clip(0, 1)),
             data.outside_boxes.find(colours),
         )
@@ -194,12 +194,15 @@ def read_texels(path: Path) -> Texels | None:
     with open_image(path) as image:
         channels = image.parts[0].channels
         spectral = next(
-            filter(None, (_spectral_channels(channels, each) for each in QUANTITIES)),
+            filter(
+                None,
+                (_spectral_channels(channels, quantity) for quantity in QUANTITIES),
+            ),
             None,
         )
         if spectral:
             wavelengths = np.array(sorted(spectral))
-            numbers = _numbers(image, [spectral[each] for each in wavelengths])
+            numbers = _numbers(image, [spectral[quantity] for quantity in wavelengths])
             return Texels(
                 _samples(wavelengths), numbers, float(numbers.mean(dtype=float))
             )

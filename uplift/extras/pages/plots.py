@@ -39,17 +39,14 @@ def plot_spectra(
     """Plot reflectances over wavelength as PNG, SVG or PDF, each in its own colour."""
     figure = new_figure(7.2, 4.0)
     axes = figure.subplots()
-    codes = (
-        cube.encode(np.array([each.rgb for each in results])).round().astype(np.uint8)
-    )
-    for result, code in zip(results, codes, strict=True):
-        label = result.entry or f"#{code.tobytes().hex()}"
+    for result in results:
+        code = cube.encode(result.rgb).round().astype(np.uint8)
         _plot_curve(
             axes,
             result.wavelengths,
             result.reflectance,
             to_display_codes(result.rgb, cube.data.sensor),
-            label,
+            result.entry or f"#{code.tobytes().hex()}",
         )
     style_spectrum_axes(axes)
     _write_curves(figure, len(results), path, force)

@@ -4,7 +4,7 @@ in.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
@@ -22,9 +22,8 @@ LEGEND: dict[str, Any] = {
 }
 FONT_MARGIN = 1.06  # share by which the font of a reader may be wider
 _POINTS_PER_INCH = 72
-_MAX_DISTANCE = (
-    14  # points between a marker and its label without a line that joins them
-)
+# Points between a marker and its label without a line that joins them.
+_MAX_DISTANCE = 14
 
 
 @dataclass(frozen=True)
@@ -123,9 +122,11 @@ def draw_labels(
 
 DISTANCES = (6.0, 9.0, 14.0, 20.0, 28.0, 38.0)  # points between a marker and its label
 CLEARANCE = (4.5, 2.5)  # points that labels keep from markers, sideways and upwards
-_SIDES = [(x, y) for x in (1.0, -1.0) for y in (0.0, 0.5, -0.5, 1.0, -1.0)]
 DIRECTIONS = np.array(
-    [*_SIDES, *((x, y) for y in (1.0, -1.0) for x in (0.0, 0.5, -0.5))]
+    [
+        *product((1.0, -1.0), (0.0, 0.5, -0.5, 1.0, -1.0)),
+        *((x, y) for y, x in product((1.0, -1.0), (0.0, 0.5, -0.5))),
+    ]
 )
 
 

@@ -278,8 +278,8 @@ def panels(data: CubeData) -> tuple[Panel, ...]:
         )
     present = data.points.present[:, None]
     background = [
-        np.where(present, each.colours, each.colours.dtype.type(BACKGROUND))
-        for each in quantities
+        np.where(present, quantity.colours, quantity.colours.dtype.type(BACKGROUND))
+        for quantity in quantities
     ]
     return tuple(
         replace(panel, colours=colours)

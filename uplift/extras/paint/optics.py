@@ -124,9 +124,10 @@ def plate(transmittance: ArrayLike, rho: float) -> Layer:
     surfaces reflect ρ, from either side.
     """
     once = np.asarray(transmittance, dtype=float)
-    rest = 1 - (rho * once) ** 2
+    transmitted = 1 - (rho * once) ** 2
     return Layer(
-        rho + rho * ((1 - rho) * once) ** 2 / rest, (1 - rho) ** 2 * once / rest
+        rho + rho * ((1 - rho) * once) ** 2 / transmitted,
+        (1 - rho) ** 2 * once / transmitted,
     )
 
 
@@ -253,8 +254,8 @@ class Surface:
             Internal reflectance, negative where the measured one is below that of the
             surface alone.
         """
-        rest = np.asarray(measured, dtype=float) - self.outside
-        return rest / ((1 - self.outside) * (1 - self.inside) + self.inside * rest)
+        inner = np.asarray(measured, dtype=float) - self.outside
+        return inner / ((1 - self.outside) * (1 - self.inside) + self.inside * inner)
 
 
 NO_SURFACE = Surface()

@@ -292,8 +292,9 @@ def read_constants(path: StrPath, wavelengths: Array) -> Array:
     `AtlasError`.
     """
     document = read_document(path)
-    (_, found), samples = read_any(document), {}
-    for spectrum in () if isinstance(found, Atlas) else found.spectra:
+    _, content = read_any(document)
+    samples = {}
+    for spectrum in () if isinstance(content, Atlas) else content.spectra:
         nm = np.asarray(spectrum.wavelengths, dtype=float)
         values = np.asarray(spectrum.values, dtype=float)
         if not (np.isfinite(values) & (values >= 0)).all():

@@ -72,13 +72,17 @@ def equations(palette: Palette, model: FactorModel) -> Equations:
         *_model_error(palette, model, where),
     ]
     count = max((position.stop for position in where.values()), default=0)
-    matrix = np.zeros((sum(len(part.values) for part in rows), count))
-    values = np.concatenate([part.values for part in rows]) if rows else np.zeros(0)
+    matrix = np.zeros((sum(len(block_rows.values) for block_rows in rows), count))
+    values = (
+        np.concatenate([block_rows.values for block_rows in rows])
+        if rows
+        else np.zeros(0)
+    )
     top = 0
-    for part in rows:
-        for position, block in part.blocks:
-            matrix[top : top + len(part.values), position] = block
-        top += len(part.values)
+    for block_rows in rows:
+        for position, block in block_rows.blocks:
+            matrix[top : top + len(block_rows.values), position] = block
+        top += len(block_rows.values)
     low = np.empty(count)
     high = np.empty(count)
     specs = {("light", spec.name): spec for spec in palette.lights}

@@ -131,7 +131,10 @@ def cut_axes() -> Array:
     """Return the rotation (3, 3) whose rows are right, up and to the viewer in the axes
     of the cut.
     """
-    (a, b), (c, d) = (np.cos(YAW), np.sin(YAW)), (np.cos(PITCH), np.sin(PITCH))
+    a = np.cos(YAW)
+    b = np.sin(YAW)
+    c = np.cos(PITCH)
+    d = np.sin(PITCH)
     return np.array([[a, 0, -b], [-d * b, c, -d * a], [c * b, d, c * a]])
 
 

@@ -283,10 +283,10 @@ def _draw_row(
         codes = rendering.screen_codes(method, balanced=balanced)
         show_image(panel, codes, interpolation="antialiased")
         if method != RGB_PRODUCT:
-            found = mean_p95_max(rendering.differences[RGB_PRODUCT, method])
+            errors = mean_p95_max(rendering.differences[RGB_PRODUCT, method])
             text = (
-                f"ΔE00 from RGB × light: mean {found['mean']:.1f}, 95 % "
-                f"{found['p95']:.1f}"
+                f"ΔE00 from RGB × light: mean {errors['mean']:.1f}, 95 % "
+                f"{errors['p95']:.1f}"
             )
             panel.set_xlabel(text, fontsize=9, color=GREY)
     state = "white-balanced" if balanced else "tinted"

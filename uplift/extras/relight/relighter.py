@@ -6,6 +6,7 @@ import contextlib
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -38,11 +39,8 @@ class Relighter(Converter):
 
     def part_header(self, part: Part) -> dict[str, object]:
         space = source_space(part, self.sensor, self.space)
-        return {
-            "chromaticities": exr.chromaticities(
-                self.sensor if space is None else space.gamut
-            )
-        }
+        gamut = self.sensor if space is None else space.gamut
+        return {"chromaticities": exr.chromaticities(gamut)}
 
     @contextlib.contextmanager
     def opened(self, image: Image) -> Iterator[ConvertRows]:
@@ -59,10 +57,9 @@ class Relighter(Converter):
         space = source_space(part, self.sensor, self.space)
         if space is None or space.matrix_to(self.sensor) is None:
             return lit
-        to_sensor = conversion(space.gamut, self.sensor)
-        return (
-            lit.reshape(-1, 3) @ np.linalg.inv(to_sensor).T.astype(lit.dtype)
-        ).reshape(lit.shape)
+        to_space = np.linalg.inv(conversion(space.gamut, self.sensor))
+        colours = lit.reshape(-1, 3) @ to_space.T.astype(lit.dtype)
+        return colours.reshape(lit.shape)
 
 
 def prepare_relighter(
@@ -132,7 +129,7 @@ def prepare_relighter(
         "half",
         encoding,
         out_of_gamut,
-        tuple(f"{layer}.{letter}" for layer in layers for letter in "RGB"),
+        tuple(map(".".join, product(layers, "RGB"))),
         header,
         sample=prepare_products(
             cube.data,

@@ -129,7 +129,7 @@ def _spectra(diff: CubeDiff, changes: Changes, row: int) -> dict[str, object]:
     wavelengths = sensor.wavelengths
     if changes is diff.entries:
         name = diff.pairs.names[row]
-        answers = [each[row] for each in diff.pairs.spectra]
+        answers = [spectra[row] for spectra in diff.pairs.spectra]
     else:
         name = ""
         answers = [cube.reflectance(rgb, wavelengths) for cube in diff.cubes]

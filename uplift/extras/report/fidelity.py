@@ -111,7 +111,8 @@ def take(table: Rows, rows: ArrayLike) -> Rows:
         return None if value is None else take(value, order)
 
     return replace(
-        table, **{each.name: part(getattr(table, each.name)) for each in fields(table)}
+        table,
+        **{field.name: part(getattr(table, field.name)) for field in fields(table)},
     )
 
 
@@ -252,8 +253,8 @@ def find_alternatives(
     }
     under = [sensor.light for sensor in lights]
     return {
-        name: compare_spectra(each, errors.target, under)
-        for name, each in spectra.items()
+        name: compare_spectra(reflectances, errors.target, under)
+        for name, reflectances in spectra.items()
     }
 
 

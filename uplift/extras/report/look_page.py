@@ -48,9 +48,11 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
     rgb = found[0].volumes.rgb[0]
     written = _written(cube, rgb)
     screens = display_sensors(
-        [each.light.name for each in found], cube.observer, *sensor.range
+        [bounds.light.name for bounds in found], cube.observer, *sensor.range
     )
-    lights = [_light(each, screen) for each, screen in zip(found, screens, strict=True)]
+    lights = [
+        _light(bounds, screen) for bounds, screen in zip(found, screens, strict=True)
+    ]
     colour = written
     if not isinstance(written, str):
         colour = " ".join(f"{number:.4g}" for number in written)
@@ -116,7 +118,7 @@ def _written(cube: Cube, rgb: Array) -> str | list[float]:
     whole = np.rint(codes)
     if (np.abs(codes - whole) <= CODE_SLACK).all():
         return "#" + bytes(whole.astype(np.uint8)).hex()
-    return [round(float(each), 6) for each in rgb]
+    return [round(float(number), 6) for number in rgb]
 
 
 def _rounded(values: Array) -> Any:

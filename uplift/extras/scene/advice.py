@@ -68,10 +68,12 @@ def colour_areas(images: Images, sensor: Sensor) -> PixelSample:
             .sum(axis=(2, 4, 6))
             .reshape(4, -1)
         )
-        found = totals[:, totals[3] > 0]
-        if found.shape[1] <= MAX_COLOURS:
+        occupied = totals[:, totals[3] > 0]
+        if occupied.shape[1] <= MAX_COLOURS:
             break
-    return PixelSample(np.clip(found[:3] / found[3], 0, 1).T, found[3] / found[3].sum())
+    return PixelSample(
+        np.clip(occupied[:3] / occupied[3], 0, 1).T, occupied[3] / occupied[3].sum()
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,14 +115,14 @@ class Uncertainty:
         mean error.
         """
         variance = np.diag(self.covariance)
-        found = np.empty(len(variance))
-        for rows in blocks(len(found), BLOCK_ROWS):
+        errors = np.empty(len(variance))
+        for rows in blocks(len(errors), BLOCK_ROWS):
             # c(x) − c(x, s)² / c(s)
             known = (
                 self.covariance[rows] ** 2 / np.maximum(variance[rows], TINY)[:, None]
             )
-            found[rows] = self._errors(variance - known).mean(axis=-1) @ self.area
-        return np.maximum(self.mean - found, 0)
+            errors[rows] = self._errors(variance - known).mean(axis=-1) @ self.area
+        return np.maximum(self.mean - errors, 0)
 
     def measured(self, colour: int) -> "Uncertainty":
         """Return what remains once a colour, by its number, is measured."""
@@ -147,9 +149,14 @@ def uncertainty(
         prior.get("length", DEFAULT.length), prior.get("noise", DEFAULT.noise)
     )
     errors = [light_errors(data, light) for light in lights]
-    squares = np.stack([each(colours.rgb)[:, 0] ** 2 for each in errors], axis=1)
+    squares = np.stack(
+        [estimate(colours.rgb)[:, 0] ** 2 for estimate in errors], axis=1
+    )
     floors = np.concatenate(
-        [each.expected.radii[0] ** 2 * each.expected.floor for each in errors]
+        [
+            estimate.expected.radii[0] ** 2 * estimate.expected.floor
+            for estimate in errors
+        ]
     )
     rest = np.minimum(floors, squares)
     covariance = posterior(kernel, data.entry_lab, rgb_to_lab(data.sensor, colours.rgb))

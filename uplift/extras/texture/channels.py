@@ -140,9 +140,9 @@ def _colour_names(part: Part) -> tuple[list[str], str]:
     for letters in ("RGB", "XYZ"):
         layers = _layers(part, letters)
         if len(layers) > 1:
-            found = ", ".join(layer[:-1] for layer in layers)
+            names = ", ".join(layer[:-1] for layer in layers)
             raise TextureError(
-                f"a part must have one layer of colour, got {found}",
+                f"a part must have one layer of colour, got {names}",
                 hint="write each layer as a part",
             )
         if layers:

@@ -31,10 +31,10 @@ ADOBE = ImageSpace(
     Primaries((0.64, 0.33), (0.21, 0.71), (0.15, 0.06), SRGB.white),
     code_points.power(563 / 256),
 )
-EXIF_SRGB, EXIF_ADOBE = 1, 2
-"""Values of the EXIF tag ColorSpace. The standard has the first, and cameras write the
-second.
-"""
+EXIF_SRGB = 1
+"""Value of the EXIF tag ColorSpace for sRGB."""
+EXIF_ADOBE = 2
+"""The value that cameras write for Adobe RGB; the standard does not have it."""
 ADOBE_INDEX = "R03"
 """EXIF interoperability index of Adobe RGB (DCF 2.0)."""
 CMYK = "CMYK"
@@ -125,10 +125,10 @@ def _interop_space(name: str) -> ImageSpace | None:
     """Return the space of a name of the Color Interop Forum, which the configuration of
     OpenColorIO has as alias.
     """
-    found = None
+    space = None
     with contextlib.suppress(OptionError):
-        found = find_ocio_space(name)
-    return None if found is None else found.as_image_space()
+        space = find_ocio_space(name)
+    return None if space is None else space.as_image_space()
 
 
 def _by_primaries(name: str, numbers: Any) -> Profile:

@@ -99,8 +99,8 @@ class Counts:
     def __add__(self, other: "Counts") -> "Counts":
         """Counts of both."""
         sums = {
-            each.name: getattr(self, each.name) + getattr(other, each.name)
-            for each in fields(self)
+            count.name: getattr(self, count.name) + getattr(other, count.name)
+            for count in fields(self)
         }
         return Counts(**sums | {"max_change": max(self.max_change, other.max_change)})
 
@@ -122,20 +122,22 @@ class Counts:
             The warnings. They are not emitted.
         """
         words = {"mapped": PAST_TENSE[method], "change": self.max_change}
-        found = [
-            each for each in fields(self) if each.metadata and getattr(self, each.name)
+        changed = [
+            count
+            for count in fields(self)
+            if count.metadata and getattr(self, count.name)
         ]
         return tuple(
             UpliftWarning(
-                f"{getattr(self, each.name):,} of {pluralise(self.pixels, 'pixel')} "
-                f"{each.metadata['text'].format(**words)}",
-                code=each.metadata["code"],
+                f"{getattr(self, count.name):,} of {pluralise(self.pixels, 'pixel')} "
+                f"{count.metadata['text'].format(**words)}",
+                code=count.metadata["code"],
                 path=path,
                 hint=LIGHTS
-                if each.name == "outside" and self.max_change > BRIGHT
+                if count.name == "outside" and self.max_change > BRIGHT
                 else "",
             )
-            for each in found
+            for count in changed
         )
 
 
@@ -176,13 +178,13 @@ def space_warnings(
     """Return warnings about parts whose space is not known: unusable statements, and
     assumptions.
     """
-    found: dict[str, UpliftWarning] = {}
+    problems: dict[str, UpliftWarning] = {}
     for part in image.parts if chosen is None else ():
         if problem := _space_problem(part, sensor):
-            found[problem] = UpliftWarning(
+            problems[problem] = UpliftWarning(
                 problem, code="colour-space-assumed", path=image.path
             )
-    return tuple(found.values())
+    return tuple(problems.values())
 
 
 def _space_problem(part: Part, sensor: Sensor) -> str:

@@ -112,9 +112,8 @@ def convert(
         total = sum(layout.part.window.height for layout in layouts)
         counts = Counts()
         done = 0
-        with open_writer(
-            target, [each.output for each in layouts], force=force
-        ) as writer:
+        outputs = [layout.output for layout in layouts]
+        with open_writer(target, outputs, force=force) as writer:
             for layout in layouts:
                 writer.start_part(layout.part.number)
                 for first, band in _bands(image, layout):
@@ -127,7 +126,7 @@ def convert(
     warnings = (*counts.warnings(converter.out_of_gamut, source), *notes)
     spaces = tuple(
         dict.fromkeys(
-            _space_name(converter, each.part) for each in layouts if each.colours
+            _space_name(converter, layout.part) for layout in layouts if layout.colours
         )
     )
     return Conversion(

@@ -353,10 +353,14 @@ def _part(spec: Any, number: int, header: Mapping[str, Any]) -> Part:
 
 def _metadata(spec: Any) -> dict[str, Attribute]:
     """Return the attributes that are not about how the image is stored."""
-    kept = (each for each in spec.extra_attribs if _is_kept(each.name, each.value))
+    kept = (
+        attribute
+        for attribute in spec.extra_attribs
+        if _is_kept(attribute.name, attribute.value)
+    )
     return {
-        each.name: Attribute(each.type, each.value)
-        for each in itertools.islice(kept, MAX_METADATA)
+        attribute.name: Attribute(attribute.type, attribute.value)
+        for attribute in itertools.islice(kept, MAX_METADATA)
     }
 
 

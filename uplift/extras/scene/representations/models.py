@@ -26,8 +26,10 @@ SHAPE_WEIGHT = 1e-4
 MAX_STEPS = 60
 WAVELENGTHS_PER_PATH = 4
 SEED = 7
-STEEPNESS, CENTRE = 0.0072, 538.0
-"""Parameters of the density 1 / cosh²(0.0072 (λ − 538)), λ in nm."""
+STEEPNESS = 0.0072
+"""Steepness per nm of the density 1 / cosh²(0.0072 (λ − 538)), λ in nm."""
+CENTRE = 538.0
+"""Its centre in nm."""
 
 
 def tabulated(
@@ -157,8 +159,8 @@ def hero_wavelengths(count: int) -> Representation:
     with its own, reproducible random numbers. Spectra remain tables, evaluated at the
     wavelengths of a path. Raises `OptionError` unless the count is a multiple of four.
     """
-    paths, rest = divmod(count, WAVELENGTHS_PER_PATH)
-    if rest or not paths:
+    paths, remainder = divmod(count, WAVELENGTHS_PER_PATH)
+    if remainder or not paths:
         raise OptionError(
             "number of hero wavelengths must be a positive multiple of four, got "
             f"{count}"
