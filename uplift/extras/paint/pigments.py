@@ -69,14 +69,8 @@ DARKEST_DISPERSED = 0.01
 # Relative difference of μ and γ below which the mean of both sides is taken; its error
 # is the square of this.
 MIN_RELATIVE_GAP = 1e-5
-CONSTANTS = (
-    "K'",
-    "B'",
-    "F'",
-    "K",
-    "B",
-    "F",
-)  # of Duntley's eight, those that the others are sums of
+# of Duntley's eight, those that the others are sums of
+CONSTANTS = ("K'", "B'", "F'", "K", "B", "F")
 
 # From reflectances (..., N) in (0, 1] to S (..., N), greater than 0, of which white has
 # 1.
@@ -102,9 +96,8 @@ class Dispersive:
     """S = Y^exponent exp(weight · h), made by `dispersive`."""
 
     luminance: Array  # (N,) weights of Y, of sum 1
-    imbalance: (
-        Array  # (N, N) from √(K/S) to h; rows sum to 0, so that a grey paint has h = 0
-    )
+    # (N, N) from √(K/S) to h; rows sum to 0, so that a grey paint has h = 0
+    imbalance: Array
     exponent: float = 0.75
     weight: float = 0.25
 

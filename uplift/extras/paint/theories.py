@@ -39,9 +39,8 @@ from uplift.extras.paint.optics import (
 from uplift.extras.paint.pigments import Pigment, Scattering
 from uplift.lookup import Cube
 
-Mix = Callable[
-    [Array, Array], Array
-]  # from components (..., n, K) and parts (..., n) to the mixture (..., K)
+# from components (..., n, K) and parts (..., n) to the mixture (..., K)
+Mix = Callable[[Array, Array], Array]
 CRT = "Typical CRT Brainard 1997"
 """Phosphors of a cathode-ray tube, measured by D. H. Brainard."""
 OIL = Surface.of_index(1.5)

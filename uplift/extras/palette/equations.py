@@ -21,9 +21,8 @@ from uplift.fit.bounded_least_squares import solve_bounded
 
 SPACING = 10.0  # sample distance in nm that the weights of the paper refer to
 
-Unknowns = dict[
-    tuple[str, str], slice
-]  # positions in x by kind ("free", "light" or "material") and name
+# positions in x by kind ("free", "light" or "material") and name
+Unknowns = dict[tuple[str, str], slice]
 
 
 @dataclass(frozen=True, eq=False)

@@ -41,9 +41,8 @@ FILL = (np.array([0.75, 0.05, 0.66]), 0.22)
 YAW, PITCH = np.radians(
     [40, 27]
 )  # rotation of the removed octant x, y, z > 0 towards the viewer
-CORNER = (
-    0.16  # width of the darkening along inner edges of the cut, relative to the radius
-)
+# width of the darkening along inner edges of the cut, relative to the radius
+CORNER = 0.16
 OFFSETS = (-0.25, 0.25)  # subpixel positions, four samples per pixel
 
 

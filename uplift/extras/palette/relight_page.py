@@ -29,9 +29,8 @@ class Relighting:
     """
 
     title: str
-    weights: NDArray[
-        np.float32
-    ]  # (H, W, n) amount of each material in each pixel, including shading; 0 or more
+    # (H, W, n) amount of each material in each pixel, including shading; 0 or more
+    weights: NDArray[np.float32]
     materials: tuple[str, ...]
     material_coefficients: Array  # (n, m) of the factor model
     # (n, L, 3) linear sRGB of the materials under each light, by full spectra

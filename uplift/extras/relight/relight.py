@@ -46,9 +46,8 @@ from uplift.lookup.node_table import prepare_products
 
 # name of the method that multiplies the RGB of the image by those of the light
 RGB_PRODUCT = "RGB × light"
-MIN_MAP_LIMIT = (
-    4  # smallest ΔE00 at the dark end of maps: invisible differences stay pale
-)
+# smallest ΔE00 at the dark end of maps: invisible differences stay pale
+MIN_MAP_LIMIT = 4
 # maps are darker by the root of ΔE00, so that one scale serves daylight and sodium
 # lamps
 MAP_EXPONENT = 0.5
@@ -128,9 +127,8 @@ class Relit:
 
     name: str  # Name of the image
     reduction: int  # Pixels of the image per pixel of the colours, along each side
-    original: NDArray[
-        np.uint8
-    ]  # 8-bit sRGB codes (height, width, 3) of the image itself
+    # 8-bit sRGB codes (height, width, 3) of the image itself
+    original: NDArray[np.uint8]
     renderings: tuple[Rendering, ...]  # One for each light
 
     @property

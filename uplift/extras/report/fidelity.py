@@ -32,9 +32,8 @@ class EntryQuery:
     # (E, 3) Linear RGB, outside [0, 1] for the cube's entries outside its space
     rgb: Array
     target: Array  # (E, N) Reflectances at the sensor's wavelengths
-    rows: (
-        Indices | None
-    )  # (E,) Rows of the table of all entries of the cube; None for other entries
+    # (E,) Rows of the table of all entries of the cube; None for other entries
+    rows: Indices | None
 
     def answerable_by(self, cube: Cube) -> "EntryQuery":
         """Keep the entries that a cube has nodes for: a sparse one lacks some."""
@@ -81,9 +80,8 @@ class EntryErrors:
     answers: Answers  # Those of the cube
     # (E,) ΔE00 between answer and ``target`` under the cube's error illuminant
     actual: Array
-    predicted: (
-        Array | None
-    )  # (E,) Standard error of the cube at ``rgb``; None if it has none
+    # (E,) Standard error of the cube at ``rgb``; None if it has none
+    predicted: Array | None
     cells: Indices  # (E, 3) Position of the lowest corner of the cell along the axes
     # Interpolated from the lattice without the entries. This and all further fields are
     # None for entries that the cube was not built from
@@ -91,9 +89,8 @@ class EntryErrors:
     # (E,) Lattice steps from the entry to the faces of its box; 0 if no colour returns
     # the entry
     half_width: Array | None = None
-    half_width_codes: Array | None = (
-        None  # (E,) The same in 8-bit codes, to the nearest pair of faces
-    )
+    # (E,) The same in 8-bit codes, to the nearest pair of faces
+    half_width_codes: Array | None = None
 
 
 Rows = TypeVar("Rows", EntryQuery, Answers, EntryErrors)
@@ -281,9 +278,8 @@ def _sigmoid(data: CubeData, rgb: Array) -> Array:
     return np.where((distance <= data.threshold)[:, None], answer, np.nan)
 
 
-MAX_DISTANCE = (
-    1 + 1e-9
-)  # lattice steps; two entries of one cell are never farther apart
+# lattice steps; two entries of one cell are never farther apart
+MAX_DISTANCE = 1 + 1e-9
 
 
 @dataclass(frozen=True, eq=False)

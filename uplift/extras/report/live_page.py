@@ -14,15 +14,8 @@ from uplift.extras.export.program import cube_program
 from uplift.extras.export.table import COLUMNS, check_complete, make_table
 from uplift.extras.pages.html import Markup, render, resource
 
-LIGHTS = (
-    "D65",
-    "A",
-    "D50",
-    "FL2",
-    "FL11",
-    "HP1",
-    "LED-B3",
-)  # illuminants to choose from
+# illuminants to choose from
+LIGHTS = ("D65", "A", "D50", "FL2", "FL11", "HP1", "LED-B3")
 GROUP = 4  # wavelengths of one call of the program
 SPACE = "sRGB"
 

@@ -148,13 +148,11 @@ class Calibration:
     """
 
     count: int  # Number of entries
-    actual: (
-        float  # Mean that they should have had, so that 68 % of the entries were within
-    )
+    # Mean that they should have had, so that 68 % of the entries were within
+    actual: float
     predicted: float  # Mean of the standard errors
-    within_error: (
-        float  # Fraction of the entries whose error is at most its standard error
-    )
+    # Fraction of the entries whose error is at most its standard error
+    within_error: float
     within_bound: float  # The same of its error bound
 
     @property
