@@ -21,7 +21,7 @@ Finlayson & Morovic 2005, "Metamer sets", JOSA A 22(5). Logvinenko, Funt & Godau
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -201,16 +201,10 @@ def mismatch_volumes(
     response = directions.directions @ np.linalg.solve(scale, light.xyz)
     xyz = np.empty((len(rgb), len(response), 3))
     basis = np.empty(xyz.shape, dtype=np.intp)
+    parents = directions.parents
     for block in blocks(len(rgb), max(BLOCK_PROBLEMS // len(response), 1)):
-        _solve(
-            sensor,
-            light,
-            rgb[block],
-            response,
-            directions.parents,
-            xyz[block],
-            basis[block],
-        )
+        colours = rgb[block]
+        _solve(sensor, light, colours, response, parents, xyz[block], basis[block])
     return MismatchVolumes(sensor, light, rgb, directions, scale, xyz, basis)
 
 
@@ -321,14 +315,15 @@ def _most_different(count: int, *parts: _Metamers) -> _Metamers:
     """Choose the most different metamer of each of n colours, of which each part has
     the same number in order.
     """
-    delta_e, *others = zip(*parts, strict=True)
-    differences = np.concatenate([each.reshape(count, -1) for each in delta_e], axis=1)
-    best = np.arange(count), differences.argmax(axis=1)
-    joined = (
-        np.concatenate([each.reshape(count, -1, 3) for each in other], axis=1)
-        for other in others
-    )
-    return _Metamers(differences[best], *(each[best] for each in joined))
+
+    def by_colour(metamers: _Metamers) -> list[Any]:
+        axes = metamers.delta_e.ndim
+        return [array.reshape(count, -1, *array.shape[axes:]) for array in metamers]
+
+    pairs = zip(*map(by_colour, parts), strict=True)
+    columns = [np.concatenate(arrays, axis=1) for arrays in pairs]
+    best = np.arange(count), columns[0].argmax(axis=1)
+    return _Metamers(*(column[best] for column in columns))
 
 
 @dataclass(frozen=True, eq=False)
@@ -340,19 +335,12 @@ class _Search:
     def extremes(self, row: Indices, direction: Array, basis: Indices) -> _Metamers:
         """Metamers (m,) of colours (m,) in directions (m, 3) of XYZ."""
         light = self.volumes.light
-        extreme = extreme_spectra(
-            self.volumes.sensor.matrix,
-            self.volumes.rgb[row],
-            direction @ light.xyz,
-            basis,
-        )
+        rgb = self.volumes.rgb[row]
+        matrix = self.volumes.sensor.matrix
+        extreme = extreme_spectra(matrix, rgb, direction @ light.xyz, basis)
         xyz = extreme.reflectance @ light.xyz.T
-        return _Metamers(
-            delta_e_2000(self._lab(xyz), self.reference[row]),
-            xyz,
-            direction,
-            extreme.basis,
-        )
+        delta_e = delta_e_2000(self._lab(xyz), self.reference[row])
+        return _Metamers(delta_e, xyz, direction, extreme.basis)
 
     def ascend(self, row: Indices, slope: Array, basis: Indices) -> _Metamers:
         """Metamers (m,) where the steps from the extremes in the directions
@@ -370,8 +358,8 @@ class _Search:
             rises = rises[better]
             if not len(rises):
                 break
-            for each, new in zip(metamers, trial, strict=True):
-                each[rises] = new[better]
+            for array, new in zip(metamers, trial, strict=True):
+                array[rises] = new[better]
         return metamers
 
     def around(self, best: _Metamers) -> _Metamers:

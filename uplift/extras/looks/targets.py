@@ -137,12 +137,11 @@ class LookTargets:
                 }
                 for screen, target, delta_e, possible in rows
             ]
-            weight = float(look.weight)
             records.append(
                 {
                     "name": look.name,
                     "rgb": goal.rgb.tolist(),
-                    "weight": weight,
+                    "weight": float(look.weight),
                     "lights": lights,
                 }
             )
@@ -187,10 +186,8 @@ def targets_of(
             raise look_error(
                 look, f"its name is that of {taken[look.name]}", hint="rename the look"
             )
-        same = (
-            np.abs(codes[: len(known)] - codes[len(known)]).max(axis=1, initial=0)
-            <= SAME_CODE
-        )
+        change = np.abs(codes[: len(known)] - codes[len(known)])
+        same = change.max(axis=1, initial=0) <= SAME_CODE
         if same.any():
             other = known[int(same.argmax())]
             raise look_error(

@@ -98,13 +98,8 @@ def uplift_texels(uplifter: Uplifter, rgb: Floats) -> tuple[Texels, Counts]:
     """
     data = uplifter.cube.data
     colours = rgb.reshape(-1, 3).astype(float)
-    if any(
-        hits.rows.size
-        for hits in (
-            data.entry_boxes.find(colours.clip(0, 1)),
-            data.outside_boxes.find(colours),
-        )
-    ):
+    inside = data.entry_boxes.find(colours.clip(0, 1)).rows
+    if inside.size or data.outside_boxes.find(colours).rows.size:
         uplifter = prepare_texels(uplifter.cube, uplifter.out_of_gamut, of_entries=True)
     assert uplifter.model is not None
     (_, multipliers), counts = uplifter.convert(rgb)
@@ -229,8 +224,8 @@ def read_colours(
     `ColourError` and `OptionError`.
     """
     with open_image(path) as image:
-        part, found = coloured_parts(image)[0]
-        channels = converter.colour_channels(found)
+        part, colours = coloured_parts(image)[0]
+        channels = converter.colour_channels(colours)
         decode = converter.decoder(part)
         bands, counts = zip(
             *(decode(channels.straight(rows)) for _, rows in image.bands(part)),

@@ -273,14 +273,12 @@ def panels(data: CubeData) -> tuple[Panel, ...]:
             _round_panel(data.points.round, data.points.round[data.points.present] < 0)
         )
     present = data.points.present[:, None]
-    background = [
-        np.where(present, quantity.colours, quantity.colours.dtype.type(BACKGROUND))
-        for quantity in quantities
-    ]
-    return tuple(
-        replace(panel, colours=colours)
-        for panel, colours in zip(quantities, background, strict=True)
-    )
+
+    def on_background(panel: Panel) -> Panel:
+        background = panel.colours.dtype.type(BACKGROUND)
+        return replace(panel, colours=np.where(present, panel.colours, background))
+
+    return tuple(map(on_background, quantities))
 
 
 def _rgb_panel(data: CubeData) -> Panel:

@@ -8,7 +8,7 @@ differences are scaled as for samples 10 nm apart, and none extends beyond the e
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product, starmap
 
 import numpy as np
 
@@ -54,10 +54,7 @@ def unknowns(palette: Palette) -> Unknowns:
         ("material", spec.name): samples for spec in palette.materials if spec.designed
     }
     ends = np.cumsum([0, *sizes.values()])
-    return {
-        key: slice(int(a), int(b))
-        for key, a, b in zip(sizes, ends[:-1], ends[1:], strict=True)
-    }
+    return dict(zip(sizes, starmap(slice, pairwise(ends.tolist())), strict=True))
 
 
 def equations(palette: Palette, model: FactorModel) -> Equations:

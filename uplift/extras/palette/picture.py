@@ -99,11 +99,8 @@ def _intersect_sphere(
     dy = (y - centre[1]) / radius
     square = 1 - dx**2 - dy[:, None] ** 2
     rows, columns = np.nonzero(square > 0)
-    return (
-        rows,
-        columns,
-        np.stack([dx[columns], dy[rows], np.sqrt(square[rows, columns])], axis=1),
-    )
+    normals = [dx[columns], dy[rows], np.sqrt(square[rows, columns])]
+    return rows, columns, np.stack(normals, axis=1)
 
 
 def _intersect_opened(

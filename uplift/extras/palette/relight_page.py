@@ -50,9 +50,8 @@ class Relighting:
     @property
     def labels(self) -> NDArray[np.uint8]:
         """Predominant material of each pixel (H, W), counted from 1; 0 for none."""
-        return np.where(
-            self.weights.any(axis=-1), 1 + self.weights.argmax(axis=-1), 0
-        ).astype(np.uint8)
+        labels = 1 + self.weights.argmax(axis=-1)
+        return (labels * self.weights.any(axis=-1)).astype(np.uint8)
 
     @property
     def start_light(self) -> int:
@@ -60,11 +59,8 @@ class Relighting:
         different.
         """
         colours = self.colours.clip(0, 1) ** DISPLAY_EXPONENT
-        return int(
-            np.linalg.norm(colours - colours.mean(axis=0), axis=-1)
-            .mean(axis=0)
-            .argmax()
-        )
+        distances = np.linalg.norm(colours - colours.mean(axis=0), axis=-1)
+        return int(distances.mean(axis=0).argmax())
 
     def rgb(self, mix: ArrayLike) -> Array:
         """Light the picture by weights (L,) of the lights: linear sRGB (H, W, 3), not
@@ -154,10 +150,5 @@ def pack(values: NDArray[Any]) -> str:
     """Deflate an array byte plane by byte plane, which makes half-precision numbers a
     third smaller, as base64.
     """
-    planes = (
-        np.ascontiguousarray(values)
-        .reshape(-1)
-        .view(np.uint8)
-        .reshape(-1, values.itemsize)
-    )
+    planes = np.frombuffer(values.tobytes(), np.uint8).reshape(-1, values.itemsize)
     return base64.b64encode(zlib.compress(planes.T.tobytes(), 9)).decode("ascii")

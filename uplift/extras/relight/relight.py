@@ -249,14 +249,16 @@ def write_relit_sheet(
         )
     for axes, title in zip(grid[0], titles, strict=True):
         axes.set_title(title, fontsize=11, color=INK, pad=6)
-    style = {
-        "fraction": 0.04,
-        "pad": 0.02,
-        "aspect": 15 * len(rows),
-        "extend": "max",
-        "format": "%d",
-    }
-    bar = figure.colorbar(drawn, ax=list(grid[:, -1]), ticks=_ticks(limit), **style)
+    bar = figure.colorbar(
+        drawn,
+        ax=list(grid[:, -1]),
+        ticks=_ticks(limit),
+        fraction=0.04,
+        pad=0.02,
+        aspect=15 * len(rows),
+        extend="max",
+        format="%d",
+    )
     bar.outline.set_visible(False)
     write_figure(figure, path, force=force)
 
@@ -376,10 +378,9 @@ def _layer(
     balanced: bool | None = None,
     kind: str = "jpeg",
 ) -> dict[str, Any]:
-    source = _encoded(codes, kind)
     return {
         "label": label,
-        "source": source,
+        "source": _encoded(codes, kind),
         "light": light,
         "shows": shows,
         "balanced": balanced,
@@ -398,14 +399,10 @@ def _encoded(codes: NDArray[np.uint8], kind: str) -> str:
     spec.attribute("jpeg:subsampling", "4:4:4")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"image.{kind}"
-        image = OpenImageIO.ImageOutput.create(kind)
-        if not (
-            image
-            and image.open(utf8_name(path, OutputError), spec)
-            and image.write_image(codes)
-        ):
+        image: Any = OpenImageIO.ImageOutput.create(kind)
+        is_open = image and image.open(utf8_name(path, OutputError), spec)
+        if not is_open or not image.write_image(codes):
             raise OSError(read_error(image or OpenImageIO))
         image.close()
-        return (
-            f"data:image/{kind};base64,{base64.b64encode(path.read_bytes()).decode()}"
-        )
+        content = base64.b64encode(path.read_bytes()).decode()
+        return f"data:image/{kind};base64,{content}"

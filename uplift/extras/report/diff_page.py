@@ -39,11 +39,9 @@ def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
     made for.
     """
     worst_of = diff.nodes.compared.max(axis=1)
-    limit = (
-        max(MIN_LIMIT, math.ceil(np.quantile(worst_of, SHARE)))
-        if worst_of.size
-        else MIN_LIMIT
-    )
+    limit = MIN_LIMIT
+    if worst_of.size:
+        limit = max(limit, math.ceil(np.quantile(worst_of, SHARE)))
     dim = diff.cubes[0].data.lattice.dim
     nodes = blue_slices(diff.nodes.largest[: dim**3], dim)
     return render(

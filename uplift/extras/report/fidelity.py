@@ -136,10 +136,8 @@ def from_other_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
     """
     measured = resample(atlas, data.sensor.wavelengths).values
     rgb = data.sensor.rgb(measured)
-    return take(
-        EntryQuery(atlas.names, np.clip(rgb, 0, 1), measured, None),
-        np.flatnonzero(in_unit_cube(rgb)),
-    )
+    query = EntryQuery(atlas.names, np.clip(rgb, 0, 1), measured, None)
+    return take(query, np.flatnonzero(in_unit_cube(rgb)))
 
 
 def from_stored_entries(data: CubeData) -> EntryQuery:
@@ -190,9 +188,9 @@ def _with_lattice_errors(
     all its entries.
     """
     data = cube.data
-    table = cube.data.atlas.with_outside
+    table = data.atlas.with_outside
     boxes = data.outside_boxes
-    reach = data.outside_boxes.half_width[:, None]
+    reach = boxes.half_width[:, None]
     lower, upper = data.entry_boxes.faces
     faces = (
         np.concatenate([lower, boxes.rgb - reach]),
@@ -328,9 +326,8 @@ def _nearest(steps: Array) -> tuple[Indices, Array]:
         return np.zeros(len(steps), dtype=np.int64), np.full(len(steps), np.inf)
     distances, rows = KDTree(steps).query(steps, k=2, p=np.inf)
     # The first of the two is the row itself, unless another has the same colour.
-    return np.where(
-        rows[:, 0] == np.arange(len(steps)), rows[:, 1], rows[:, 0]
-    ), distances[:, 1]
+    is_itself = rows[:, 0] == np.arange(len(steps))
+    return np.where(is_itself, rows[:, 1], rows[:, 0]), distances[:, 1]
 
 
 def _lost(data: CubeData) -> tuple[tuple[str, str], ...]:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.gamut import SRGB, Primaries
-from uplift.colorimetry.spaces import ImageSpace, OcioSpace, find_ocio_space
+from uplift.colorimetry.spaces import ImageSpace, find_ocio_space
 from uplift.colorimetry.srgb import decode
 from uplift.common.errors import OptionError
 from uplift.extras.texture import code_points
@@ -66,9 +66,8 @@ def read_profile(spec: Any, header: Mapping[str, Any]) -> Profile | None:
         spec.get_string_attribute("tiff:ColorSpace"),
         spec.get_string_attribute("jpeg:ColorSpace"),
     ):
-        return Profile(
-            CMYK, None, (CMYK,)
-        )  # OpenImageIO converts it to RGB without a profile
+        # OpenImageIO converts it to RGB without a profile
+        return Profile(CMYK, None, (CMYK,))
     for statement in _statements(spec, header):
         if statement.space is not None:
             return replace(statement, unusable=tuple(unusable))
@@ -195,11 +194,8 @@ def _by_parts(
 def _table_curve(numbers: tuple[float, ...]) -> code_points.Curve | None:
     """Return the curve of one or three tables of 16-bit numbers; None for others."""
     tables = np.array(numbers, dtype=float) / 65535
-    tables = (
-        tables.reshape(3, -1)
-        if len(tables) in (3 << 8, 3 << 16)
-        else np.tile(tables, (3, 1))
-    )
+    is_triple = len(tables) in (3 << 8, 3 << 16)
+    tables = tables.reshape(3, -1) if is_triple else np.tile(tables, (3, 1))
     count = tables.shape[1]
     if count not in (1 << 8, 1 << 16) or not (np.diff(tables) >= 0).all():
         return None
@@ -253,23 +249,15 @@ def _icc_space(name: str, data: bytes) -> ImageSpace | None:
         path.write_bytes(data)
         transform = ocio.FileTransform(str(path), direction=ocio.TRANSFORM_DIR_INVERSE)
         try:
-            processor = ocio.Config.CreateRaw().getProcessor(transform)
+            to_xyz = code_points.ocio_space(name, transform)
         except ocio.Exception:
             return None
-    to_xyz = OcioSpace(
-        name, False, processor.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS)
-    )
     corners = to_xyz.convert(np.vstack([np.eye(3), np.ones(3)]))
     gamut = _primaries((corners / corners.sum(axis=1, keepdims=True))[:, :2].ravel())
     if gamut is None:
         return None
     to_linear = np.linalg.inv(to_xyz.matrix).T
     values = to_xyz.convert(np.linspace([0.0] * 3, [1.0] * 3, 256)) @ to_linear
-    is_plausible = (
-        np.isfinite(values).all() and (np.diff(values, axis=0) >= -ROUNDING).all()
-    )
-    return (
-        ImageSpace(name, gamut, lambda codes: to_xyz.convert(codes) @ to_linear)
-        if is_plausible
-        else None
-    )
+    if not (np.isfinite(values).all() and (np.diff(values, axis=0) >= -ROUNDING).all()):
+        return None
+    return ImageSpace(name, gamut, lambda codes: to_xyz.convert(codes) @ to_linear)

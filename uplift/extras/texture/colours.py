@@ -165,11 +165,8 @@ def source_space(
         return chosen or part.xyz
     stated = None if part.profile is None else part.profile.space
     space = chosen or stated or (SRGB_SPACE if part.max_code else None)
-    return (
-        None
-        if space is None or space.agrees_with(sensor, encoded=bool(part.max_code))
-        else space
-    )
+    agrees = space and space.agrees_with(sensor, encoded=bool(part.max_code))
+    return None if agrees else space
 
 
 def space_warnings(
@@ -263,9 +260,8 @@ class Decoder:
             return colours, 0
         finite = np.asarray(np.isfinite(colours).all(axis=-1))
         if self.method != "error":
-            clamped = np.clip(
-                np.nan_to_num(colours, nan=0.0, posinf=1.0, neginf=0.0), 0, 1
-            )
+            numbers = np.nan_to_num(colours, nan=0.0, posinf=1.0, neginf=0.0)
+            clamped = np.clip(numbers, 0, 1)
             colours = np.where(finite[..., None], colours, clamped)
         return colours, int((~finite).sum())
 
@@ -369,11 +365,8 @@ def linear_reader(
     """
     to_linear = (source and source.decode) or (lambda codes: sensor.decode(255 * codes))
     if not part.max_code:
-        return (
-            to_linear
-            if encoding == "encoded" or reads_codes(part, source)
-            else np.asarray
-        )
+        is_encoded = encoding == "encoded" or reads_codes(part, source)
+        return to_linear if is_encoded else np.asarray
     if source is not None and source.mixes_channels and encoding != "linear":
         return lambda codes: to_linear(codes / part.max_code)
     # A table, as channels are independent.
@@ -382,6 +375,4 @@ def linear_reader(
     if (table == table[:, :1]).all():
         curve = table[:, 0].copy()
         return lambda codes: curve[codes]
-    return lambda codes: np.stack(
-        [table[:, k][codes[..., k]] for k in range(3)], axis=-1
-    )
+    return lambda codes: table[codes, np.arange(3)]

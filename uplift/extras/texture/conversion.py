@@ -129,14 +129,8 @@ def convert(
             _space_name(converter, layout.part) for layout in layouts if layout.colours
         )
     )
-    return Conversion(
-        Path(source),
-        Path(target),
-        counts,
-        warnings,
-        time.perf_counter() - begin,
-        spaces,
-    )
+    seconds = time.perf_counter() - begin
+    return Conversion(Path(source), Path(target), counts, warnings, seconds, spaces)
 
 
 def source_stamp(source: StrPath) -> str:
@@ -149,9 +143,7 @@ def _space_name(converter: Converter, part: Part) -> str:
     space = source_space(part, converter.sensor, converter.space)
     if space is not None:
         return space.name
-    return (
-        converter.sensor.space if part.max_code else f"linear {converter.sensor.space}"
-    )
+    return "linear " * (not part.max_code) + converter.sensor.space
 
 
 LOSSLESS = {"half": "half", "uint": "uint", "uint8": "half"}
@@ -195,18 +187,16 @@ def _layout(
             )
         names = (*converted, *names)
         types = (*(converter.depth,) * len(converted), *types)
-    modified = time.strftime(
-        "%Y:%m:%d %H:%M:%S", time.gmtime(image.path.stat().st_mtime)
-    )  # as EXIF writes it
+    modified = time.gmtime(image.path.stat().st_mtime)
+    # as EXIF writes it
+    date = part.date or time.strftime("%Y:%m:%d %H:%M:%S", modified)
     header = {
         **part.metadata,
         **converter.header,
         **converter.part_header(part),
         **made_of,
     }
-    output = OutputPart(
-        part.name, part.window, names, types, header, part.date or modified
-    )
+    output = OutputPart(part.name, part.window, names, types, header, date)
     return _Layout(part, colours, others, converter.decoder(part), output)
 
 

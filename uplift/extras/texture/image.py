@@ -130,12 +130,8 @@ class Part:
         """Largest value if all channels are 8-bit or all are 16-bit
         integers, else 0.
         """
-        types = set(self.types)
-        return (
-            {"uint8": 255, "uint16": 65535}.get(types.pop(), 0)
-            if len(types) == 1
-            else 0
-        )
+        codes = {frozenset(["uint8"]): 255, frozenset(["uint16"]): 65535}
+        return codes.get(frozenset(self.types), 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,22 +147,19 @@ class Image:
         are, else floats.
         """
         window = part.window
-        row = window.width * len(part.channels) * 4
-        step = part.rows_per_block * max(
-            1, MAX_BAND_BYTES // (row * part.rows_per_block)
-        )
+        block = window.width * len(part.channels) * 4 * part.rows_per_block
+        step = part.rows_per_block * max(1, MAX_BAND_BYTES // block)
         for first in range(0, window.height, step):
-            yield (
-                window.y + first,
-                self.rows(part, first, min(step, window.height - first)),
-            )
+            rows = self.rows(part, first, min(step, window.height - first))
+            yield window.y + first, rows
 
     def rows(self, part: Part, first: int, count: int) -> Values:
         """Read rows (count, width, channels) from row ``first`` of the window, as
         `bands` does.
         """
         self.handle.seek_subimage(part.number, 0)
-        first, end = part.window.y + first, part.window.y + first + count
+        first += part.window.y
+        end = first + count
         if part.max_code:
             return self._read(part, first, end, part.types[0])
         integers = [index for index, name in enumerate(part.types) if name == "uint"]
@@ -303,9 +296,8 @@ def _read_start(path: Path) -> bytes:
             code="file-unreadable",
             hint=FORMAT_HINT,
         ) from error
-    if not start.startswith(
-        SIGNATURES
-    ):  # OpenImageIO would try all its formats, for minutes if the file is large
+    # OpenImageIO would try all its formats, for minutes if the file is large
+    if not start.startswith(SIGNATURES):
         raise TextureError("unsupported image format", hint=FORMAT_HINT)
     return start
 
@@ -376,12 +368,13 @@ def _is_kept_value(value: Any) -> bool:
     nor long. Bytes are not.
     """
     if isinstance(value, str | tuple):
-        parts = (
-            all(map(_is_kept_value, value))
-            if isinstance(value, tuple)
-            else _is_text(value)
+        if not 0 < len(value) <= MAX_METADATA_LENGTH:
+            return False
+        return (
+            _is_text(value)
+            if isinstance(value, str)
+            else all(map(_is_kept_value, value))
         )
-        return 0 < len(value) <= MAX_METADATA_LENGTH and parts
     return isinstance(value, int | float)
 
 

@@ -185,9 +185,8 @@ class Spectrum(PixelEncoding):
         channels = spectral_channels("T", at)
         outside = None
         if entries is not None:
-            outside = entries.spectra.reflectance(
-                np.arange(len(entries.names)), at
-            ).astype(np.float32)
+            rows = np.arange(len(entries.names))
+            outside = entries.spectra.reflectance(rows, at).astype(np.float32)
         sample = bulk.spectra(cube, self.wavelengths, threads=threads)
         return Pixels(channels, sample, outside, details={"wavelengths": at.tolist()})
 
@@ -251,19 +250,13 @@ class Multipliers(PixelEncoding):
             outside = numbers.astype(np.float32)
 
         def sample(rgb: Floats) -> Floats:
-            colours, rows = _different(
-                rgb
-            )  # images have few: a colour takes long, and has the same answer each time
-            return blockwise(
-                function, colours.astype(float), model.count, np.float32, threads
-            )[rows]
+            # images have few: a colour takes long, and has the same answer each time
+            colours, rows = _different(rgb)
+            floats = colours.astype(float)
+            return blockwise(function, floats, model.count, np.float32, threads)[rows]
 
-        return Pixels(
-            tuple(f"multiplier.{index:02}" for index in range(model.count)),
-            sample,
-            outside,
-            model,
-        )
+        channels = tuple(f"multiplier.{index:02}" for index in range(model.count))
+        return Pixels(channels, sample, outside, model)
 
 
 PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {
@@ -279,10 +272,8 @@ def _different(rgb: Floats) -> tuple[Floats, Indices]:
     pixel among them.
     """
     flat = np.ascontiguousarray(rgb, dtype=np.float32).reshape(-1, 3)
-    words = flat.view(np.uint32).astype(np.uint64)
-    keys = (words[:, 0] << 32 | words[:, 1]) * np.uint64(0x9E3779B97F4A7C15) ^ words[
-        :, 2
-    ]
+    red, green, blue = flat.view(np.uint32).astype(np.uint64).T
+    keys = (red << 32 | green) * np.uint64(0x9E3779B97F4A7C15) ^ blue
     _, first, rows = np.unique(keys, return_index=True, return_inverse=True)
     if (flat[first][rows] != flat).any():  # two colours have one key
         return flat, np.arange(len(flat)).reshape(rgb.shape[:-1])
@@ -331,9 +322,9 @@ class Uplifter(Converter):
 
     def convert(self, rgb: Floats) -> Converted:
         values, counts = self._convert(rgb)
-        return (
-            (*values, self._standard_errors(rgb)) if self.errors else values
-        ), counts
+        if self.errors:
+            values = (*values, self._standard_errors(rgb))
+        return values, counts
 
     def _standard_errors(self, rgb: Floats) -> Floats:
         colours, rows = _different(np.clip(rgb, 0, 1))
@@ -354,12 +345,9 @@ class Uplifter(Converter):
         data = self.cube.data
         colours = rgb.reshape(-1, 3).astype(float)
         near = colours[is_inexact(data, colours)]
-        is_off = (
-            data.solid.signed_distance(near) > data.threshold if near.size else near
-        )
-        return (rgb, self.sample(rgb)), Counts(
-            unrealisable=int(np.count_nonzero(is_off))
-        )
+        off = data.solid.signed_distance(near) > data.threshold if near.size else near
+        counts = Counts(unrealisable=int(np.count_nonzero(off)))
+        return (rgb, self.sample(rgb)), counts
 
     def _convert_outside(
         self, rgb: Floats, hits: BoxHits, entries: Floats
@@ -384,10 +372,8 @@ class Uplifter(Converter):
             mixture = refine_to_rgb(self.cube.data, self.model, mixture, mixed)
         numbers[hits.rows] = mixture
         colours[hits.rows] = mixed
-        change = float(
-            np.abs(mixed - requested).max(where=is_mixed[:, None], initial=0)
-        )
-        counts += Counts(outside=int(is_mixed.sum()), max_change=change)
+        change = np.abs(mixed - requested).max(where=is_mixed[:, None], initial=0)
+        counts += Counts(outside=int(is_mixed.sum()), max_change=float(change))
         return (colours.reshape(rgb.shape), numbers.reshape(values.shape)), counts
 
     def multiply(
