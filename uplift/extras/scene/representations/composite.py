@@ -174,19 +174,20 @@ def _analyse(values: Array, waves: Array) -> Array:
 # The relative gradients of spikes are those of Kment 2011, section 6.1.
 
 
-def sun_composite(count: int) -> Representation:
+def sun_composite(count: int, threshold: float = 0.3) -> Representation:
     """Sun's composite model (CS): spikes, and ``count`` Fourier coefficients of the
     smooth part.
     """
     smooth = fourier_coefficients(count)
     decoder = waves(count)[:, :: samples.TABLE_STRIDE]
-    return composite(f"CS{count}", "Sun's composite", smooth, decoder, 0.3)
+    return composite(f"CS{count}", "Sun's composite", smooth, decoder, threshold)
 
 
-def enhanced_riemann(count: int) -> Representation:
+def enhanced_riemann(count: int, threshold: float = 0.2) -> Representation:
     """Enhanced Riemann sums (RE): spikes, which meet the mean of their cell, and
     Riemann sums of the smooth part.
     """
     decoder = samples.cell_overlaps(count)[:, :: samples.TABLE_STRIDE]
     smooth = samples.riemann_sums(count)
-    return composite(f"RE{count}", "enhanced Riemann sums", smooth, decoder, 0.2)
+    name = f"RE{count}"
+    return composite(name, "enhanced Riemann sums", smooth, decoder, threshold)
