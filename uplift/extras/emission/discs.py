@@ -146,8 +146,8 @@ def lamp_entries(
     chromaticity.
     """
     power, uv = _unit(constraints.power, radiometry)
-    kept: list[int] = []
-    duplicates: list[tuple[str, str]] = []
+    kept = list[int]()
+    duplicates = list[tuple[str, str]]()
     for row, name in enumerate(constraints.names):
         twins = [
             other
@@ -187,7 +187,7 @@ def touched_bins(
     bin along v′ and u′.
     """
     low, high = (_bins(uv + sign * radius[:, None], count).tolist() for sign in (-1, 1))
-    bins: dict[tuple[int, int], list[int]] = {}
+    bins = dict[tuple[int, int], list[int]]()
     for number, ((left, bottom), (right, top)) in enumerate(
         zip(low, high, strict=True)
     ):

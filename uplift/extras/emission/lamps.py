@@ -46,7 +46,7 @@ def known_lamps(observer: str = DEFAULT_OBSERVER) -> Lamps:
     """
     grid = (START, END, STEP)
     luminance = matching_functions(observer, *grid)[:, 1]
-    lamps: dict[str, Array] = {}
+    lamps = dict[str, Array]()
     for kind in ("illuminant", "light source"):
         for name in tables.names(kind):
             nm = tables.look_up(kind, name).wavelengths

@@ -139,7 +139,7 @@ def plot_bounds(
     """Plot the region of each colour under each light, as PNG, SVG or PDF: a row per
     colour, a column per light.
     """
-    panels: list[tuple[Sequence[Bounds], int]] = []
+    panels = list[tuple[Sequence[Bounds], int]]()
     for block in blocks:
         panels += [(block, row) for row in range(len(block[0].xyz))]
     panels = panels[:MAX_COLOURS]

@@ -171,7 +171,7 @@ def read_weights(
 
 def _parse_labels(names: Sequence[str], labels: Mapping[str, str]) -> dict[int, int]:
     """Return the index of the material by 24-bit colour."""
-    codes: dict[int, int] = {}
+    codes = dict[int, int]()
     for name, label in labels.items():
         if name not in names:
             raise unknown_name(name, names, "material")

@@ -226,7 +226,7 @@ def write_relit_sheet(
     With ``adapt`` the white of each light is shown as white; by default if it
     `looks_white`.
     """
-    rows: list[tuple[Relit, Rendering]] = []
+    rows = list[tuple[Relit, Rendering]]()
     for image in relit:
         rows += [(image, rendering) for rendering in image.renderings]
     first, second = map(figure_text, relit[0].shown_pair)

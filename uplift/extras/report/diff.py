@@ -221,8 +221,8 @@ def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, ob
 
     Rows without a difference come last.
     """
-    differences: list[dict[str, Any]] = []
-    worst_colours: list[dict[str, Any]] = []
+    differences = list[dict[str, Any]]()
+    worst_colours = list[dict[str, Any]]()
     for changes in diff.sets:
         differences += _differences(changes, diff.lights, tolerance)
         names = diff.pairs.names if changes is diff.entries else None

@@ -79,7 +79,7 @@ def colour_areas(images: Images, sensor: Sensor) -> PixelSample:
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
     """Standard errors of n colours of some area (n,) under L lights, √(c ``unknown`` +
-    ``rest``).
+    ``floor``).
 
     c is the diagonal of the posterior ``covariance`` (n, n) of kriging, the others are
     squares of ΔE00 (n, L).
@@ -88,7 +88,7 @@ class Uncertainty:
     area: Array
     covariance: Array
     unknown: Array
-    rest: Array
+    floor: Array
 
     @property
     def errors(self) -> Array:
@@ -133,7 +133,7 @@ class Uncertainty:
         )
 
     def _errors(self, variance: Array) -> Array:
-        return np.sqrt(np.maximum(variance, 0)[..., None] * self.unknown + self.rest)
+        return np.sqrt(np.maximum(variance, 0)[..., None] * self.unknown + self.floor)
 
 
 @single_threaded_blas()
@@ -158,11 +158,11 @@ def uncertainty(
             for estimate in errors
         ]
     )
-    rest = np.minimum(floors, squares)
+    floor = np.minimum(floors, squares)
     covariance = posterior(kernel, data.entry_lab, rgb_to_lab(data.sensor, colours.rgb))
     variance = np.maximum(np.diag(covariance), TINY)
     return Uncertainty(
-        colours.share, covariance, (squares - rest) / variance[:, None], rest
+        colours.share, covariance, (squares - floor) / variance[:, None], floor
     )
 
 
@@ -189,7 +189,7 @@ def advise(scene: Uncertainty, count: int) -> tuple[list[Swatch], Uncertainty]:
     """
     if not 1 <= count <= MAX_SWATCHES:
         raise OptionError(f"count must be in [1, {MAX_SWATCHES}], got {count}")
-    chosen: list[Swatch] = []
+    chosen = list[Swatch]()
     errors = scene.errors.mean(axis=1)
     for _ in range(count):
         gains = scene.gains()

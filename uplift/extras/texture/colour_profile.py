@@ -61,7 +61,7 @@ def read_profile(spec: Any, header: Mapping[str, Any]) -> Profile | None:
     ``spec`` is an `OpenImageIO.ImageSpec`, and ``header`` has the statements that it
     lacks.
     """
-    unusable: list[str] = []
+    unusable = list[str]()
     if CMYK in (
         spec.get_string_attribute("tiff:ColorSpace"),
         spec.get_string_attribute("jpeg:ColorSpace"),

@@ -175,7 +175,7 @@ def space_warnings(
     """Return warnings about parts whose space is not known: unusable statements, and
     assumptions.
     """
-    problems: dict[str, UpliftWarning] = {}
+    problems = dict[str, UpliftWarning]()
     for part in image.parts if chosen is None else ():
         if problem := _space_problem(part, sensor):
             problems[problem] = UpliftWarning(

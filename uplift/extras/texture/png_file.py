@@ -37,7 +37,7 @@ def read_chunks(path: Path) -> dict[str, Any]:
     Raises `TextureError` for a file that is truncated, or whose chunks differ from
     their checksums.
     """
-    chunks: dict[bytes, bytes] = {}
+    chunks = dict[bytes, bytes]()
     with path.open("rb") as file:
         kind = file.read(len(SIGNATURE))
         is_before_pixels = True
@@ -60,7 +60,7 @@ def read_chunks(path: Path) -> dict[str, Any]:
 
 
 def _statements(chunks: Mapping[bytes, bytes]) -> dict[str, Any]:
-    stated: dict[str, Any] = {}
+    stated = dict[str, Any]()
     if b"gAMA" in chunks:
         (stated["gAMA"],) = _fixed(chunks[b"gAMA"], 1)
     if b"cHRM" in chunks:

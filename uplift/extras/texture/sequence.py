@@ -244,7 +244,7 @@ def convert_all(
     if scheduler is None and processes == 1:
         yield from map(run, jobs)
         return
-    finished: list[Path] = []
+    finished = list[Path]()
     try:
         with (
             tied_processes(processes)

@@ -95,7 +95,7 @@ def _directory(file: BinaryIO, order: str, offset: int, is_big: bool) -> dict[in
     entry = order + ("HHQ8s" if is_big else "HHI4s")
     data = file.read(min(count, MAX_ENTRIES) * struct.calcsize(entry))
     wanted = {*TAGS, EXIF, INTEROPERABILITY, INDEX}
-    values: dict[int, Any] = {}
+    values = dict[int, Any]()
     for tag, kind, length, value in struct.iter_unpack(entry, data):
         is_readable = kind == TEXT if tag == INDEX else kind in NUMBERS
         if tag in wanted and is_readable:

@@ -261,7 +261,7 @@ def front(rows: Array) -> list[int]:
     """Numbers of the rows (m, k) that no other dominates, smallest rows first; of equal
     rows the first.
     """
-    kept: list[int] = []
+    kept = list[int]()
     # what dominates a row comes before it
     for row in np.lexsort(rows.T[::-1]).tolist():
         if not dominated(rows[[row]], rows[kept])[0]:

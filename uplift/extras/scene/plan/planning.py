@@ -169,7 +169,7 @@ def _confirm(
     """
     space.progress(Progress("confirmation", 0, 1))
     tests = space.evaluation_set(space.colours.confirming)
-    tried: list[tuple[Candidate, ErrorSummary]] = []
+    tried = list[tuple[Candidate, ErrorSummary]]()
     limit = np.inf
     for finalist in finalists:
         if finalist.error.quantile > limit:

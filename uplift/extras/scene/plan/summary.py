@@ -35,7 +35,7 @@ def front_rows(plan: Plan) -> list[Candidate]:
     """The choice, and candidates whose error is clearly below that of all cheaper ones,
     by what the scene minimises.
     """
-    front: list[Candidate] = []
+    front = list[Candidate]()
     smallest = float("inf")
     for candidate in cheapest_first(plan.measured, plan.scene.minimise):
         error = candidate.error.quantile

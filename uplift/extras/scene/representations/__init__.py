@@ -52,7 +52,7 @@ def all_representations(lights: Array, surfaces: Array) -> tuple[Representation,
     """Every registered representation, and the linear models of a scene of lights (L,
     401) and surfaces (E, 401).
     """
-    registered: list[Representation] = []
+    registered = list[Representation]()
     for make, sizes in FACTORIES.values():
         registered += map(make, sizes)
     linear = [models.linear_model(count, lights, surfaces) for count in COMPONENTS]
