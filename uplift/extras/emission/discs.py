@@ -9,12 +9,13 @@ from itertools import product
 
 import numpy as np
 
-from uplift.common.arrays import Array, Indices, distances
+from uplift.common.arrays import Array, Indices, Mask, distances
 from uplift.common.errors import unknown_name
 from uplift.extras.emission.lattice import (
-    DENOMINATOR,
     ChromaticityLattice,
     chromaticity,
+    cross,
+    unit_power,
 )
 
 BINS = 256
@@ -49,8 +50,11 @@ class Lamps:
         for name in names:
             if name not in self.names:
                 raise unknown_name(name, self.names, "lamp")
-        kept = [row for row, name in enumerate(self.names) if name not in names]
-        return Lamps(tuple(self.names[row] for row in kept), self.power[kept])
+        return self.only(~np.isin(self.names, list(names)))
+
+    def only(self, lamps: Mask | Indices | list[int]) -> "Lamps":
+        """Some of the lamps, by numbers or a mask (L,)."""
+        return Lamps(tuple(np.array(self.names)[lamps].tolist()), self.power[lamps])
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,14 +98,12 @@ class LampEntries:
         rows = near[row]
         entry = candidates[row, column]
         offset = uv[rows] - self.uv[entry]
-        distance = np.hypot(offset[:, 0], offset[:, 1])
-        radius = self.radius[entry]
-        inside = distance < radius
+        inside = np.hypot(*offset.T) < self.radius[entry]
         rows = rows[inside]
         entry = entry[inside]
-        radius = radius[inside]
         offset = offset[inside]
-        distance = distance[inside]
+        radius = self.radius[entry]
+        distance = np.hypot(*offset.T)
         direction = np.divide(
             offset,
             distance[:, None],
@@ -122,10 +124,10 @@ class LampEntries:
         (BINS²,) rows of the bins in the second array, −1 for bins without lamps; (m, k)
         numbers of lamps, the rest −1.
         """
-        found = touched_bins(self.uv, self.radius, BINS)
+        bins = touched_bins(self.uv, self.radius, BINS)
         places = np.full(BINS**2, -1)
-        lists = np.full((len(found), max(map(len, found.values()), default=0)), -1)
-        for row, ((v, u), numbers) in enumerate(found.items()):
+        lists = np.full((len(bins), max(map(len, bins.values()), default=0)), -1)
+        for row, ((v, u), numbers) in enumerate(bins.items()):
             places[u * BINS + v] = row
             lists[row, : len(numbers)] = numbers
         return places, lists
@@ -144,8 +146,8 @@ def lamp_entries(
     chromaticity.
     """
     power, uv = _unit(constraints.power, radiometry)
-    kept: list[int] = []
-    duplicates: list[tuple[str, str]] = []
+    kept = list[int]()
+    duplicates = list[tuple[str, str]]()
     for row, name in enumerate(constraints.names):
         twins = [
             other
@@ -160,10 +162,7 @@ def lamp_entries(
     clear = np.flatnonzero(
         distances(more_uv, uv[kept]).min(axis=1, initial=np.inf) > CLEARANCE
     )
-    names = (
-        *(constraints.names[row] for row in kept),
-        *(others.names[row] for row in clear),
-    )
+    names = constraints.only(kept).names + others.only(clear).names
     uv = np.concatenate([uv[kept], more_uv[clear]])
     spectra = np.concatenate([power[kept], more[clear]])
     apart = distances(uv, uv) + np.diag(np.full(len(uv), np.inf))
@@ -188,13 +187,13 @@ def touched_bins(
     bin along v′ and u′.
     """
     low, high = (_bins(uv + sign * radius[:, None], count).tolist() for sign in (-1, 1))
-    found: dict[tuple[int, int], list[int]] = {}
+    bins = dict[tuple[int, int], list[int]]()
     for number, ((left, bottom), (right, top)) in enumerate(
         zip(low, high, strict=True)
     ):
         for place in product(range(bottom, top + 1), range(left, right + 1)):
-            found.setdefault(place, []).append(number)
-    return found
+            bins.setdefault(place, []).append(number)
+    return bins
 
 
 def _bins(uv: Array, count: int) -> Indices:
@@ -204,7 +203,7 @@ def _bins(uv: Array, count: int) -> Indices:
 
 def _unit(power: Array, radiometry: Array) -> tuple[Array, Array]:
     """Power of unit X + 15 Y + 3 Z, and u′v′."""
-    unit = power / (power @ radiometry @ DENOMINATOR)[:, None]
+    unit = unit_power(power, radiometry)
     return unit, chromaticity(unit @ radiometry)
 
 
@@ -212,5 +211,4 @@ def _to_rim(uv: Array, lattice: ChromaticityLattice) -> Array:
     """Distances (n,) from the polygon; 0 on it."""
     edges = np.roll(lattice.knots, -1, axis=0) - lattice.knots
     offset = uv[:, None] - lattice.knots
-    across = edges[:, 0] * offset[..., 1] - edges[:, 1] * offset[..., 0]
-    return np.asarray((across / np.linalg.norm(edges, axis=1)).min(axis=1).clip(0.0))
+    return (cross(edges, offset) / np.linalg.norm(edges, axis=1)).min(axis=1).clip(0.0)

@@ -14,6 +14,8 @@ from uplift.extras.emission.lattice import (
     LOCUS_TOLERANCE,
     ChromaticityLattice,
     chromaticity,
+    cross,
+    unit_power,
     unit_xyz,
 )
 from uplift.fit.solver import solve
@@ -114,23 +116,16 @@ def _corners(uv: Array, white: Array) -> Indices:
     )[2]
     corners = list(hull)
     for row in np.flatnonzero(length >= 1 - LOCUS_TOLERANCE):
-        apart = np.abs(
-            _angles(
-                uv[corners] - white, np.broadcast_to(uv[row] - white, (len(corners), 2))
-            )
-        )
+        apart = np.abs(_angles(uv[corners] - white, uv[row] - white))
         if apart.min() >= MIN_ANGLE:
             corners.append(row)
-    turn = _angles(
-        np.broadcast_to(uv[hull[0]] - white, (len(corners), 2)), uv[corners] - white
-    ) % (2 * np.pi)
+    turn = _angles(uv[hull[0]] - white, uv[corners] - white) % (2 * np.pi)
     return np.array(corners)[np.argsort(turn)]
 
 
 def _angles(first: Array, second: Array) -> Array:
     """Angles (n,) in radians from vectors (n, 2) to others, counterclockwise."""
-    cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
-    return np.asarray(np.arctan2(cross, (first * second).sum(axis=1)))
+    return np.arctan2(cross(first, second), (first * second).sum(axis=-1))
 
 
 def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
@@ -145,11 +140,9 @@ def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
     wavelengths = np.linspace(0.0, 1.0, len(radiometry))
     basis = model.basis(wavelengths)
     positive = np.maximum(prior, FAINTEST * prior.mean(axis=1, keepdims=True))
-    positive = positive / (positive @ radiometry @ DENOMINATOR)[:, None]
-    multipliers = np.asarray(
-        np.linalg.solve(basis, model.from_reflectance(positive).T).T, dtype=float
-    )
-    found = solve(
+    logarithm = model.from_reflectance(unit_power(positive, radiometry))
+    multipliers = np.asarray(np.linalg.solve(basis, logarithm.T).T, dtype=float)
+    solution = solve(
         forward_map(model, wavelengths, radiometry.T),
         multipliers,
         unit_xyz(uv),
@@ -157,8 +150,7 @@ def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
         max_passes=MAX_PASSES,
         prior=multipliers,
     )
-    power = np.exp(found.multipliers @ basis.T)
-    return np.asarray(power / (power @ radiometry @ DENOMINATOR)[:, None])
+    return unit_power(np.exp(solution.multipliers @ basis.T), radiometry)
 
 
 def mix_with_locus(
@@ -181,16 +173,12 @@ def mix_with_locus(
     # polygon: the solutions of reached + length (uv − reached) = knot + along edge, for
     # all rays and edges.
     direction = uv - reached
-    denominator = (
-        direction[:, None, 0] * edges[:, 1] - direction[:, None, 1] * edges[:, 0]
-    )
+    denominator = cross(direction[:, None], edges)
     offset = knots - reached[:, None]
     valid = np.abs(denominator) > 0
     safe = np.where(valid, denominator, 1.0)
-    length = (offset[..., 0] * edges[:, 1] - offset[..., 1] * edges[:, 0]) / safe
-    along = (
-        offset[..., 0] * direction[:, None, 1] - offset[..., 1] * direction[:, None, 0]
-    ) / safe
+    length = cross(offset, edges) / safe
+    along = cross(offset, direction[:, None]) / safe
     inside = valid & (length > 0) & (along >= -1e-9) & (along <= 1 + 1e-9)
     length = np.where(inside, length, np.inf)
     rows = np.arange(len(uv))
@@ -198,4 +186,4 @@ def mix_with_locus(
     share = (1 / np.maximum(length[rows, sector], 1.0))[:, None]
     position = np.clip(along[rows, sector], 0.0, 1.0)[:, None]
     edge = (1 - position) * locus[sector] + position * locus[(sector + 1) % len(locus)]
-    return np.asarray((1 - share) * power + share * edge)
+    return (1 - share) * power + share * edge

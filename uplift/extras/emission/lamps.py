@@ -46,32 +46,28 @@ SAME_LAMP = 1e-3
 """Difference, as a fraction of the largest power, below which two lamps are one."""
 
 
-def known_lamps(
-    observer: str = DEFAULT_OBSERVER,
-    start: float = START,
-    end: float = END,
-    step: float = STEP,
-) -> Lamps:
+def known_lamps(observer: str = DEFAULT_OBSERVER) -> Lamps:
     """Return the lights of colour-science: CIE illuminants and measured lamps.
 
     Lights that are measured on less than 400–700 nm, and lights with the spectrum of an
     earlier one, are left out.
     """
-    luminance = matching_functions(observer, start, end, step)[:, 1]
-    found: dict[str, Array] = {}
+    grid = (START, END, STEP)
+    luminance = matching_functions(observer, *grid)[:, 1]
+    lamps = dict[str, Array]()
     for kind in ("illuminant", "light source"):
         for name in tables.names(kind):
             nm = tables.look_up(kind, name).wavelengths
             if nm[0] > VISIBLE[0] or nm[-1] < VISIBLE[1]:
                 continue
-            power = np.maximum(tables.samples(kind, name, start, end, step), 0.0)
+            power = np.maximum(tables.samples(kind, name, *grid), 0.0)
             power = power * (luminance.sum() / (power @ luminance))
             if all(
                 np.abs(power - other).max() > SAME_LAMP * other.max()
-                for other in found.values()
+                for other in lamps.values()
             ):
-                found[name] = power
-    return Lamps(tuple(found), np.array(list(found.values())))
+                lamps[name] = power
+    return Lamps(tuple(lamps), np.array(list(lamps.values())))
 
 
 def read_lamps(*paths: StrPath) -> Atlas:
@@ -126,7 +122,7 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
     if name is not None and name not in lamps.names:
         raise unknown_name(name, lamps.names, f"lamp of {file}")
     if name is None and len(lamps) != 1:
-        names = listed([f"'{each}'" for each in lamps.names])
+        names = listed([f"'{lamp}'" for lamp in lamps.names])
         problem = f"a light is one lamp, got a file of {len(lamps)}: {names}"
         raise location.error(
             problem,
@@ -194,9 +190,7 @@ def _read(document: Document) -> Atlas:
         raise _not_a_lamp("reflectance spectrum", document)
     stated = [spectrum.quantity or content.quantity for spectrum in content.spectra]
     of_material = [
-        quantity
-        for quantity in stated
-        if quantity is not None and not quantity.of_light
+        quantity for quantity in stated if quantity and not quantity.of_light
     ]
     if of_material and len(of_material) == len(stated):
         raise _not_a_lamp(of_material[0].text, document)
@@ -215,7 +209,7 @@ def _scaled(document: Document, measurements: Measurements) -> Measurements:
     spectra = []
     for spectrum in measurements.spectra:
         quantity = spectrum.quantity or measurements.quantity
-        if quantity is not None and not quantity.of_light:
+        if quantity and not quantity.of_light:
             continue
         values = np.array(spectrum.values, dtype=float)
         values[is_missing(values)] = np.nan

@@ -26,6 +26,18 @@ spectral locus bends inward.
 TINY = float(np.finfo(np.float64).tiny)
 
 
+def cross(first: Array, second: Array) -> Array:
+    """Compute the cross products (...) of vectors (..., 2)."""
+    return first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
+
+
+def unit_power(power: Array, radiometry: Array) -> Array:
+    """Scale spectra (..., N) to unit X + 15 Y + 3 Z; ``radiometry`` (N, 3) leads from
+    power to XYZ.
+    """
+    return power / (power @ radiometry @ DENOMINATOR)[..., None]
+
+
 def chromaticity(xyz: Array) -> Array:
     """Compute u′v′ (..., 2) of XYZ (..., 3), not black: CIE 015:2018, 8.2.1.1."""
     return xyz[..., :2] * (4.0, 9.0) / (xyz @ DENOMINATOR)[..., None]
@@ -89,9 +101,7 @@ class ChromaticityLattice:
             and (np.diff(self.rings) > 0).all()
         ):
             raise _error("must have rings that increase from 0 to 1")
-        first = self._spokes
-        second = np.roll(self._spokes, -1, axis=0)
-        turns_left = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0] > 0
+        turns_left = cross(self._spokes, np.roll(self._spokes, -1, axis=0)) > 0
         if not turns_left.all() or not (np.diff(self._angles) > 0).all():
             raise _error("must have knots counterclockwise around the centre")
 
@@ -109,12 +119,12 @@ class ChromaticityLattice:
     @property
     def nodes(self) -> Array:
         """(K, R, 2) u′v′ of all nodes."""
-        return np.asarray(self.white + self._spokes[:, None] * self.rings[:, None])
+        return self.white + self._spokes[:, None] * self.rings[:, None]
 
     @cached_property
     def _spokes(self) -> Array:
         """(K, 2) from the centre to the knots."""
-        return np.asarray(self.knots - self.white)
+        return self.knots - self.white
 
     @cached_property
     def _first_angle(self) -> float:
@@ -124,13 +134,13 @@ class ChromaticityLattice:
     @cached_property
     def _angles(self) -> Array:
         """(K,) `_pseudo_angle` of the knots from the first one, increasing from 0."""
-        return np.asarray((_pseudo_angle(self._spokes) - self._first_angle) % 4.0)
+        return (_pseudo_angle(self._spokes) - self._first_angle) % 4.0
 
     @cached_property
     def _inverses(self) -> Array:
         """(K, 2, 2) from an offset to its shares of the two spokes of a sector."""
         pairs = np.stack([self._spokes, np.roll(self._spokes, -1, axis=0)], axis=2)
-        return np.asarray(np.linalg.inv(pairs))
+        return np.linalg.inv(pairs)
 
     def sectors(self) -> tuple[Array, Array]:
         """Return the pseudo angles (K,) of the knots, and the matrices (K, 2, 2) from
@@ -189,7 +199,7 @@ class ChromaticityLattice:
 
     def contains(self, uv: Array) -> Mask:
         """Test whether chromaticities (n, 2) are realisable; NaN is not."""
-        return np.asarray(self.polar(uv - self.white)[2] <= 1 + LOCUS_TOLERANCE)
+        return self.polar(uv - self.white)[2] <= 1 + LOCUS_TOLERANCE
 
 
 def _error(problem: str) -> OptionError:
@@ -203,4 +213,4 @@ def _pseudo_angle(offset: Array) -> Array:
     u = offset[..., 0]
     v = offset[..., 1]
     slope = u / np.maximum(np.abs(u) + np.abs(v), TINY)
-    return np.asarray(2.0 - np.copysign(1.0 + slope, v))
+    return 2.0 - np.copysign(1.0 + slope, v)

@@ -211,7 +211,7 @@ class EmissionTable:
         return blockwise(power, as_rgb(colours), len(at), kind, count)
 
     def _rows_to_xyz(self, rgb: NDArray[Any]) -> Array:
-        return np.asarray(blocked_matmul(_checked(rgb), self.data.rgb_to_xyz.T))
+        return blocked_matmul(_checked(rgb), self.data.rgb_to_xyz.T)
 
     def xyz(self, rgb: ArrayLike) -> Array:
         """Convert linear RGB to XYZ.
@@ -261,9 +261,7 @@ class EmissionTable:
         ndarray, shape (..., 3)
             Linear RGB.
         """
-        return np.asarray(
-            np.asarray(xyz, dtype=float) @ np.linalg.inv(self.data.rgb_to_xyz).T
-        )
+        return np.asarray(xyz, dtype=float) @ np.linalg.inv(self.data.rgb_to_xyz).T
 
     def contains(self, rgb: ArrayLike) -> Mask:
         """Test whether a light can have the colours: black, or a chromaticity within
@@ -396,7 +394,7 @@ def _resample(spectra: Values, grid: Array, wavelengths: Array) -> Values:
     )
     low = np.minimum(place.astype(int), len(grid) - 2)
     share = place - low
-    return np.asarray(spectra[:, low] * (1 - share) + spectra[:, low + 1] * share)
+    return spectra[:, low] * (1 - share) + spectra[:, low + 1] * share
 
 
 def _power(
@@ -463,8 +461,8 @@ def _is_light(xyz: Array, size: Array, length: Array) -> Mask:
     """Test whether XYZ (n, 3) are black or within the spectral locus, beyond which
     `LOCUS_TOLERANCE` is allowed.
     """
-    return np.asarray(
-        ((size > 0) & (length <= size * (1 + LOCUS_TOLERANCE))) | (xyz == 0).all(axis=1)
+    return ((size > 0) & (length <= size * (1 + LOCUS_TOLERANCE))) | (xyz == 0).all(
+        axis=1
     )
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from uplift.colorimetry import delta_e_2000, lab
 from uplift.common.arrays import Array
 from uplift.extras.emission.fit import nearest_lights
-from uplift.extras.emission.lattice import DENOMINATOR, chromaticity
+from uplift.extras.emission.lattice import chromaticity, unit_power
 
 LENGTHS = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
 NUGGETS = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6)
@@ -74,9 +74,7 @@ class LampPrior:
         """Standard deviation (L,) of each lamp, as the others predict it; see
         `standard_deviation`.
         """
-        return np.asarray(
-            np.sqrt(1 / np.diag(self.precision) / (1 + self.kernel.nugget))
-        )
+        return np.sqrt(1 / np.diag(self.precision) / (1 + self.kernel.nugget))
 
 
 def fit_lamp_prior(
@@ -90,7 +88,7 @@ def fit_lamp_prior(
     Returns also the light (L, N) that is expected at the chromaticity of each lamp
     without the lamp, exact in chromaticity.
     """
-    power = power / (power @ radiometry @ DENOMINATOR)[:, None]
+    power = unit_power(power, radiometry)
     uv = chromaticity(power @ radiometry)
     smooth = smoothest_lights(uv, radiometry)
     own_share = np.where(np.arange(len(uv)) < exact, EXACT_SHARE, 1.0)

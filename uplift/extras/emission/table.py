@@ -109,7 +109,7 @@ class EmissionData:
     @cached_property
     def radiometry(self) -> Array:
         """(N, 3) from power to XYZ: XYZ of a power s is Σ s cmfs / Σ ȳ."""
-        return np.asarray(self.cmfs / self.cmfs[:, 1].sum())
+        return self.cmfs / self.cmfs[:, 1].sum()
 
 
 def write_emission(

@@ -64,8 +64,12 @@ SMALL_GAIN = 1e-2
 SMALL_PART = 1e-4
 BLOCK = 1 << 10
 """Points of a level that are fitted at a time."""
-START, END, STEP = 360.0, 830.0, 5.0
-"""Range and step in nm of rgb2spec, and of the programs that read its tables."""
+START = 360.0
+"""First wavelength in nm of rgb2spec, and of the programs that read its tables."""
+END = 830.0
+"""Last wavelength in nm."""
+STEP = 5.0
+"""Step in nm."""
 MODEL = Sigmoid(START, END)
 SYMBOLS = {
     ("sRGB", "D65"): "sRGB",
@@ -124,25 +128,18 @@ def write_coeff(
             if symbol in LAYOUTS[layout]
         ]
         raise OptionError(
-            (
-                f"a {layout} table needs {' or '.join(known)}, got {sensor.space} "
-                "under "
-                f"{sensor.illuminant}"
-            ),
+            f"a {layout} table needs {' or '.join(known)}, got {sensor.space} under "
+            f"{sensor.illuminant}",
             hint="build a cube of this space and illuminant",
         )
     with atomic_write(path, force=force) as temporary:
         scale = _scale(res)
-        table = (
-            _fit(data, sensor, scale, _directions(res))
-            .reshape(res, 3, res, res, 3)
-            .swapaxes(0, 1)
-        )
-        content = (
-            _binary(sensor, scale, table)
-            if layout == "coeff"
-            else _source(layout, name, scale, table).encode()
-        )
+        levels = _fit(data, sensor, scale, _directions(res))
+        table = levels.reshape(res, 3, res, res, 3).swapaxes(0, 1)
+        if layout == "coeff":
+            content = _binary(sensor, scale, table)
+        else:
+            content = _source(layout, name, scale, table).encode()
         temporary.write_bytes(content)
     return _errors(data, sensor, scale, table)
 
@@ -194,9 +191,8 @@ def _directions(res: int) -> Array:
     share = np.linspace(0, 1, res)
     second, first = np.meshgrid(share, share, indexing="ij")
     shares = np.stack([np.ones_like(first), first, second], axis=-1)
-    return np.stack(
-        [np.roll(shares, largest, axis=-1) for largest in range(3)]
-    ).reshape(-1, 3)
+    rolled = [np.roll(shares, largest, axis=-1) for largest in range(3)]
+    return np.stack(rolled).reshape(-1, 3)
 
 
 def _fit(data: CubeData, sensor: Sensor, scale: Array, directions: Array) -> Floats:

@@ -56,12 +56,13 @@ MIDGRAY = 0.184
 """Reflectance that readers expose as medium grey."""
 MARGIN = 1e-3
 """Smallest component of RGB inside the gamut of the cube, relative to that of white."""
-LAYERS, LAYER_WIDTH = np.array([450.0, 550.0, 640.0]), 30.0
-"""Peaks and standard deviation in nm of the sensitivity of layers, for the stated
-error.
-"""
-SAMPLES, SEED = 4096, 7
+LAYERS = np.array([450.0, 550.0, 640.0])
+"""Peaks in nm of the sensitivity of layers, for the stated error."""
+LAYER_WIDTH = 30.0
+"""Their standard deviation in nm."""
+SAMPLES = 4096
 """Random colours of the stated error, even in codes."""
+SEED = 7
 REACH = 10.0
 """Factor that takes RGB of a unit sum of XYZ out of the solid of reflectances."""
 TINY = 1e-12
@@ -129,10 +130,8 @@ def write_film(
         )
     if not MIN_SIZE <= res <= MAX_SIZE or not 0 < share < 1:
         raise OptionError(
-            (
-                f"res must be from {MIN_SIZE} to {MAX_SIZE} and share in (0, 1), got "
-                f"{res} and {share:g}"
-            ),
+            f"res must be from {MIN_SIZE} to {MAX_SIZE} and share in (0, 1), got "
+            f"{res} and {share:g}",
             hint=f"readers expect {SIZE} rows; the usual share is {SHARE}",
         )
     files = output_files(path, "film")
@@ -140,14 +139,10 @@ def write_film(
     scene = _scene(sensor, light)
     unit = _chromaticities(res)
     spectra, inside = _spectra(cube, scene, unit, share)
-    table = (
-        (spectra if light else spectra / scene.power)
-        .reshape(res, res, -1)
-        .astype("<f2")
-    )
-    described = _description(
-        Path(path), scene.name, "irradiance" if light else "reflectance", res
-    )
+    kind = "irradiance" if light else "reflectance"
+    stored = spectra if light else spectra / scene.power
+    table = stored.reshape(res, res, -1).astype("<f2")
+    described = _description(Path(path), scene.name, kind, res)
     with atomic_write(path, force=force) as temporary, temporary.open("wb") as file:
         np.save(file, table, allow_pickle=False)
         write_text(described, files[1], force=force)
@@ -239,9 +234,8 @@ def _outer_lights(xyz: Array, white: Array, change: Array) -> tuple[Array, Array
     bands = _unit_sum(bands[sums >= WEAKEST * sums.max()], xyz)
     ring = np.concatenate([bands, bands[:1]])
     edge, fraction, reach = crossing((ring @ xyz - white)[:, :2], change[:, :2])
-    return reach, (1 - fraction)[:, None] * ring[edge] + fraction[:, None] * ring[
-        edge + 1
-    ]
+    share = fraction[:, None]
+    return reach, (1 - share) * ring[edge] + share * ring[edge + 1]
 
 
 def _unit_sum(power: Array, xyz: Array) -> Array:
@@ -262,31 +256,25 @@ def _stops(cube: Cube, scene: Scene, table: Array) -> float:
     x, y, _ = (xyz / xyz.sum(axis=1, keepdims=True)).T
     layers = np.exp(-0.5 * ((grid()[:, None] - LAYERS) / LAYER_WIDTH) ** 2)
     axis = np.linspace(0, 1, len(table))
-    read = RegularGridInterpolator((axis, axis), table @ layers)(
-        np.clip([(1 - x) ** 2, y / (1 - x)], 0, 1).T
-    )
-    return float(
-        np.abs(np.log2(xyz.sum(axis=1, keepdims=True) * read / (power @ layers))).mean()
-    )
+    read = RegularGridInterpolator((axis, axis), table @ layers)
+    exposure = read(np.clip([(1 - x) ** 2, y / (1 - x)], 0, 1).T)
+    ratio = xyz.sum(axis=1, keepdims=True) * exposure / (power @ layers)
+    return float(np.abs(np.log2(ratio)).mean())
 
 
 def _description(path: Path, light: str, kind: str, size: int) -> str:
     """Return the text of the TOML file; lights have no section of their reflectance."""
     text = Template(read_source("film.toml")).substitute(
-        {
-            "stem": path.stem,
-            "file": path.name,
-            "kind": kind,
-            "light": light,
-            "observer": DEFAULT_OBSERVER,
-        },
-        **{
-            "size": size,
-            "bands": len(grid()),
-            "start": START,
-            "end": END,
-            "step": STEP,
-            "midgray": MIDGRAY,
-        },
+        stem=path.stem,
+        file=path.name,
+        kind=kind,
+        light=light,
+        observer=DEFAULT_OBSERVER,
+        size=size,
+        bands=len(grid()),
+        start=START,
+        end=END,
+        step=STEP,
+        midgray=MIDGRAY,
     )
     return text if kind == "reflectance" else text.partition("\n[reflectance]")[0]

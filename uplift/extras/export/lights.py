@@ -95,7 +95,7 @@ def _matrix(data: EmissionData) -> Array:
         ]
     )
     luminance = np.array([[0, 9 / white[1], 0]])
-    return np.asarray(np.concatenate([rows, luminance]) @ data.rgb_to_xyz)
+    return np.concatenate([rows, luminance]) @ data.rgb_to_xyz
 
 
 def _first_angle(lattice: ChromaticityLattice) -> float:

@@ -94,25 +94,24 @@ def write_lut(
             f"res must be from {MIN_SIZE} to {MAX_SIZE}, got {res}",
             hint=f"{SIZE} is usual",
         )
-    own = cube.data.sensor
-    own.require_xyz()
-    (lit,) = display_sensors([light], own.observer, *own.range, space=own.space)
+    sensor = cube.data.sensor
+    sensor.require_xyz()
+    (lit,) = display_sensors(
+        [light], sensor.observer, *sensor.range, space=sensor.space
+    )
     # RGB = M XYZ: M adapted to the white of the light, or that of the cube's own
     # illuminant.
-    screen = lit if adapt else replace(lit, xyz_to_rgb=own.xyz_to_rgb)
+    screen = lit if adapt else replace(lit, xyz_to_rgb=sensor.xyz_to_rgb)
     codes = np.linspace(0, 1, res)
-    nodes = np.stack(np.meshgrid(codes, codes, codes, indexing="ij"), axis=-1).reshape(
-        -1, 3
-    )  # blue varies fastest
+    # blue varies fastest
+    grid = np.meshgrid(codes, codes, codes, indexing="ij")
+    nodes = np.stack(grid, axis=-1).reshape(-1, 3)
     table = _encode(_relit(cube, nodes, screen)).astype(np.float32)
     transform = _linear_to_linear(table, res)
-    title = f"uplift: {own.space} under {own.illuminant} to {screen.illuminant}"
+    title = f"uplift: {sensor.space} under {sensor.illuminant} to {screen.illuminant}"
     is_clf = os.fspath(path).lower().endswith(".clf")
-    write_text(
-        _clf(transform, title) if is_clf else cube_text(table, title, res),
-        path,
-        force=force,
-    )
+    text = _clf(transform, title) if is_clf else cube_text(table, title, res)
+    write_text(text, path, force=force)
     return _errors(cube, transform, screen)
 
 
@@ -245,7 +244,7 @@ def _to_moments(data: CubeData) -> Array:
     fraction = np.divide(room, size, out=np.ones_like(size), where=size > room).min(
         axis=0
     )
-    return np.asarray(np.linalg.inv(np.vstack([np.ones(3), slopes * fraction]).T))
+    return np.linalg.inv(np.vstack([np.ones(3), slopes * fraction]).T)
 
 
 def _fourier_table(cube: Cube, nodes: Array, matrix: Array) -> Floats:

@@ -13,8 +13,6 @@ def output_files(path: StrPath, form: str) -> list[Path]:
     form: ``path`` first.
     """
     path = Path(path)
-    return (
-        [path, path.with_suffix(SECOND_SUFFIXES[form])]
-        if form in SECOND_SUFFIXES
-        else [path]
-    )
+    if form in SECOND_SUFFIXES:
+        return [path, path.with_suffix(SECOND_SUFFIXES[form])]
+    return [path]

@@ -188,7 +188,7 @@ def compose(
     image = table.image()
     text = read_source(f"{kind}.c")
     text = text.replace(
-        "${macros}", "".join(read_source(each) for each in language.macros)
+        "${macros}", "".join(read_source(macro) for macro in language.macros)
     )
     calls = read_source(f"{kind}_calls{language.calls}")
     overview, _, calls = calls.partition(" */\n")
@@ -282,13 +282,8 @@ def identifier(stem: str) -> str:
 
 def comment(text: str) -> str:
     """Return text that cannot end a comment; names in a cube file are arbitrary."""
-    return (
-        text.encode("ascii", "replace")
-        .decode()
-        .replace("*", "")
-        .replace("\n", " ")
-        .replace("$", "")
-    )
+    ascii_text = text.encode("ascii", "replace").decode()
+    return re.sub(r"[*$]", "", ascii_text).replace("\n", " ")
 
 
 def read_source(name: str) -> str:
@@ -301,9 +296,8 @@ def _unroll(text: str, constants: dict[str, Any]) -> str:
     """
 
     def copies(loop: re.Match[str]) -> str:
-        values = range(
-            _bound(loop["start"], constants), _bound(loop["stop"], constants)
-        )
+        start = _bound(loop["start"], constants)
+        values = range(start, _bound(loop["stop"], constants))
         counter = re.compile(rf"\b{loop['name']}\b")
         bodies = (counter.sub(str(value), loop["body"]) for value in values)
         return _unroll("".join(f"{loop['indent']}{body}" for body in bodies), constants)

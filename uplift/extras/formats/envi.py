@@ -3,7 +3,6 @@ package spectral.
 """
 
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -28,8 +27,10 @@ HEADER = ".hdr"
 LIBRARY = ".sli"
 MAGIC = b"ENVI"
 FILE_TYPE = "ENVI Spectral Library"
-FACTOR, IGNORED = "reflectance scale factor", "data ignore value"
-"""Fields of the divisor of the values, and of the number for a missing one."""
+FACTOR = "reflectance scale factor"
+"""Field of the divisor of the values."""
+IGNORED = "data ignore value"
+"""Field of the number for a missing value."""
 TEXTS = ("description", "z plot titles", "data units")
 """Fields that may state scale and quantity."""
 UNSPECIFIED = ("", "<unspecified>", "unknown")
@@ -65,11 +66,10 @@ def read(document: Document) -> Measurements:
         names = list(map(one_line, library.names))
         centers = library.bands.centers
         values = np.asarray(library.spectra, dtype=float)
-        scales = tuple(_scale(fields, location))
+        scales = _scales(fields, location)
         if IGNORED in fields:
-            values[np.isclose(values, float(fields[IGNORED]), rtol=1e-6, atol=0)] = (
-                np.nan
-            )
+            ignored = float(fields[IGNORED])
+            values[np.isclose(values, ignored, rtol=1e-6, atol=0)] = np.nan
     if centers is None:
         raise location.error("the header has no wavelengths", HINT)
     unit = one_line(fields.get("wavelength units"))
@@ -93,13 +93,12 @@ def read(document: Document) -> Measurements:
     )
 
 
-def _scale(fields: dict[str, str], location: SourceLocation) -> Iterator[Scale]:
-    """Yield the scale that a header states."""
-    if FACTOR in fields:
-        yield Scale(
-            check_scale(float(fields[FACTOR]), f"the {FACTOR}", location),
-            f"{FACTOR} = {fields[FACTOR]}",
-        )
+def _scales(fields: dict[str, str], location: SourceLocation) -> tuple[Scale, ...]:
+    """Return the scale that a header states."""
+    if FACTOR not in fields:
+        return ()
+    factor = check_scale(float(fields[FACTOR]), f"the {FACTOR}", location)
+    return (Scale(factor, f"{FACTOR} = {fields[FACTOR]}"),)
 
 
 def _pair(document: Document) -> tuple[Path, Path]:

@@ -40,11 +40,9 @@ def read(document: Document) -> Measurements:
     problem = document.location.error(NO_TABLE, HINT, code="not-an-atlas")
     for name in names:
         try:
-            found = read_grid(
-                Grid(_rows(book, name, document), document.location, [name]),
-                document.stem,
-            )
-            return replace(found, notes=(f"sheet: {name}", *found.notes))
+            grid = Grid(_rows(book, name, document), document.location, [name])
+            table = read_grid(grid, document.stem)
+            return replace(table, notes=(f"sheet: {name}", *table.notes))
         except AtlasError as error:
             if error.code != problem.code:
                 raise
@@ -69,11 +67,8 @@ def _rows(book: Any, name: str, document: Document) -> list[Row]:
 def _text(value: Any) -> str:
     """Return the text of a cell; numbers with all their digits."""
     if isinstance(value, float):
-        return (
-            repr(int(value))
-            if value.is_integer() and abs(value) < 1e15
-            else repr(value)
-        )
+        is_whole = value.is_integer() and abs(value) < 1e15
+        return repr(int(value) if is_whole else value)
     return plain_cell(one_line(value))
 
 
@@ -90,9 +85,8 @@ def _check_content(document: Document) -> None:
     ):
         for member in archive.infolist():
             with archive.open(member) as file:
-                content = file.read(
-                    left + 1
-                )  # the size that an archive states may be wrong
+                # the size that an archive states may be wrong
+                content = file.read(left + 1)
             left -= len(content)
             if left < 0:
                 raise document.location.error(

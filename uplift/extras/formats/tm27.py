@@ -18,12 +18,12 @@ def read(document: Document) -> Measurements:
     check_xml(document)
     colour = colour_science()
     with parsed_by("colour-science", "IES TM-27 files", document):
-        found = colour.SpectralDistribution_IESTM2714(document.path).read()
-        quantity = one_line(found.spectral_quantity).lower()
-        described = one_line(found.header.description)
-        date = one_line(found.header.report_date)
-        nm = found.wavelengths.tolist()
-        values = found.values.tolist()
+        spectrum = colour.SpectralDistribution_IESTM2714(document.path).read()
+        quantity = one_line(spectrum.spectral_quantity).lower()
+        described = one_line(spectrum.header.description)
+        date = one_line(spectrum.header.report_date)
+        nm = spectrum.wavelengths.tolist()
+        values = spectrum.values.tolist()
     name = "reflectance" if quantity in REFLECTANCES else quantity
     return Measurements(
         (

@@ -23,12 +23,10 @@ NODE_BYTES = 220
 MAX_FLOAT32 = float(np.finfo(np.float32).max)
 COMMENTS = (
     "A blue slice of a spectral uplifting cube. A pixel is a node: red rises to the "
-    "right, green "
-    "upwards (the top row has the highest). R, G, B and lattice: what the stored "
-    "spectrum evaluates to; target: "
-    "the node itself, both linear. distance: largest difference of the two. entry and "
-    "round: -1 for none. "
-    "Absent nodes, of a cube built for a scene, hold nothing but their status."
+    "right, green upwards (the top row has the highest). R, G, B and lattice: what "
+    "the stored spectrum evaluates to; target: the node itself, both linear. "
+    "distance: largest difference of the two. entry and round: -1 for none. Absent "
+    "nodes, of a cube built for a scene, hold nothing but their status."
 )
 """The ``comments`` attribute of every part."""
 

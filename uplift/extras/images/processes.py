@@ -92,10 +92,9 @@ def _tie() -> None:
     all processes.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    for name in {"SIGTERM", "SIGHUP"} & {
-        each.name for each in signal.Signals
-    }:  # SIGHUP is not on Windows
-        signal.signal(signal.Signals[name], lambda number, frame: _end(128 + number))
+    for kind in signal.Signals:
+        if kind.name in ("SIGTERM", "SIGHUP"):  # the latter is not on Windows
+            signal.signal(kind, lambda number, frame: _end(128 + number))
     threading.Thread(target=_wait, daemon=True).start()
 
 

@@ -29,11 +29,13 @@ from uplift.models import evaluate
 
 MET = 0.1
 """ΔE00 within which a target is met."""
-FIT_WEIGHTS, REACHED = ({"weight": 1.0}, {"weight": 0.3, "smoothness": 3e-3}), 0.5
+FIT_WEIGHTS = ({"weight": 1.0}, {"weight": 0.3, "smoothness": 3e-3})
 """Weights of the fit of a design: the lights count as much as the spectrum allows, or
-less where that ends at more than so many ΔE00 from the colours of the design, as then
-the spectrum would be bent towards them without end.
+less where that misses the colours of the design, as then the spectrum would be bent
+towards them without end.
 """
+REACHED = 0.5
+"""ΔE00 from the colours of the design above which a fit misses them."""
 SHAPES = (0.3, 0.03)
 """ΔE00 that a root-mean-square change of the reflectance by 1 weighs. The second is
 used where the first misses.
@@ -107,7 +109,7 @@ def _shape(wavelengths: Array) -> Array:
     `SMOOTH` times its slope.
     """
     count = len(wavelengths)
-    slope = np.diff(np.eye(len(wavelengths)), axis=0)
+    slope = np.diff(np.eye(count), axis=0)
     slope *= SMOOTH / np.diff(wavelengths)[:, None]
     return np.concatenate([np.eye(count), slope]) / np.sqrt(count)
 
@@ -144,7 +146,7 @@ def fit_designs(
     its goal.
     """
     return join_entries(
-        *(_fit_design(problem, *each) for each in zip(goals, designs, strict=True))
+        *(_fit_design(problem, *pair) for pair in zip(goals, designs, strict=True))
     )
 
 
@@ -152,11 +154,11 @@ def _fit_design(problem: Problem, goal: LookGoal, design: Array) -> FittedEntrie
     """Fit a reflectance (N,) with the first weights that reach its colours, or the
     last.
     """
-    own = replace(
+    weighted = replace(
         problem, lights=(problem.sensor.light, *goal.lights), method=LeastChange
     )
     for weights in FIT_WEIGHTS:
-        fitted = fit_entries(own, design[None], goal.rgb[None], **weights)
+        fitted = fit_entries(weighted, design[None], goal.rgb[None], **weights)
         answer = evaluate(
             problem.model, fitted.multipliers, problem.sensor.wavelengths
         )[0]

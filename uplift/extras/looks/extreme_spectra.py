@@ -55,28 +55,28 @@ def extreme_spectra(
     ``basis`` (n, 3).
     """
     start = np.tile(first_basis(matrix), (len(rgb), 1)) if basis is None else basis
-    found = ExtremeSpectra(
+    spectra = ExtremeSpectra(
         np.empty(response.shape), start.copy(), np.zeros(len(rgb), dtype=bool)
     )
     for block in blocks(len(rgb), max(BLOCK_NUMBERS // matrix.shape[1], 1)):
-        part = ExtremeSpectra(
-            found.reflectance[block], found.basis[block], found.solved[block]
+        block_spectra = ExtremeSpectra(
+            spectra.reflectance[block], spectra.basis[block], spectra.solved[block]
         )
-        _solve(matrix, rgb[block], _perturbed(response[block]), part)
-    return found
+        _solve(matrix, rgb[block], _perturbed(response[block]), block_spectra)
+    return spectra
 
 
 def first_basis(matrix: Array) -> Indices:
     """Choose three wavelengths (3,) with independent colours: the largest part that
     those before do not share.
     """
-    rest = matrix.copy()
+    remaining = matrix.copy()
     chosen = []
     for _ in range(3):
-        lengths = np.linalg.norm(rest, axis=0)
+        lengths = np.linalg.norm(remaining, axis=0)
         chosen.append(int(lengths.argmax()))
-        axis = rest[:, chosen[-1]] / lengths[chosen[-1]]
-        rest -= np.outer(axis, axis @ rest)
+        axis = remaining[:, chosen[-1]] / lengths[chosen[-1]]
+        remaining -= np.outer(axis, axis @ remaining)
     return np.array(chosen)
 
 

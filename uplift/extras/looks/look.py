@@ -117,11 +117,9 @@ def look_error(
 
 def format_rgb(rgb: WrittenRgb) -> str:
     """Return a colour as written on one line: ``#8a2a20`` or ``0.25 0.02 0.01``."""
-    return (
-        rgb
-        if isinstance(rgb, str)
-        else " ".join(f"{value:.4g}" for value in np.ravel(rgb).tolist())
-    )
+    if isinstance(rgb, str):
+        return rgb
+    return " ".join(map("{:.4g}".format, np.ravel(rgb).tolist()))
 
 
 def as_looks(looks: LooksLike) -> tuple[Look, ...]:
@@ -129,9 +127,9 @@ def as_looks(looks: LooksLike) -> tuple[Look, ...]:
     if isinstance(looks, str | os.PathLike):
         return read_looks(looks)
     given = (looks,) if isinstance(looks, Look) else tuple(looks)
-    for each in given:
-        if not isinstance(each, Look):
-            raise LookError(f"looks must be Look objects, got {format_value(each)}")
+    for item in given:
+        if not isinstance(item, Look):
+            raise LookError(f"looks must be Look objects, got {format_value(item)}")
     return given
 
 
@@ -168,9 +166,7 @@ def read_looks(path: StrPath) -> tuple[Look, ...]:
 
     file = read_toml(path, LookError)
     tables = file.values.get(TABLE, [])
-    is_list = isinstance(tables, list) and all(
-        isinstance(each, dict) for each in tables
-    )
+    is_list = isinstance(tables, list) and {*map(type, tables)} <= {dict}
     if set(file.values) != {TABLE} or not is_list or not 0 < len(tables) <= MAX_LOOKS:
         file.fail(
             (),

@@ -72,7 +72,7 @@ class Bounds:
         # With Σ = V Λ Vᵀ, the ellipse is μ + radius · V √Λ (cos, sin).
         turn = np.linspace(0, 2 * np.pi, 73)[:-1]
         circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        return np.asarray(
+        return (
             self.lab[row, 1:]
             + self.likely_radius * (circle * np.sqrt(np.maximum(values, 0))) @ axes.T
         )

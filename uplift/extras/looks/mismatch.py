@@ -94,12 +94,12 @@ def sphere(divisions: int) -> Sphere:
     ]
     outwards = np.einsum("ni,ni->n", np.cross(b - a, c - a), a) > 0
     faces = triples[np.logical_and.reduce([*near, outwards])]
-    found = Sphere(
+    mesh = Sphere(
         corners / np.linalg.norm(corners, axis=1)[:, None], faces, np.full(12, -1)
     )
     for _ in range(divisions):
-        found = _divided(found)
-    return found
+        mesh = _divided(mesh)
+    return mesh
 
 
 def _divided(coarse: Sphere) -> Sphere:
@@ -108,14 +108,12 @@ def _divided(coarse: Sphere) -> Sphere:
     edges, which = np.unique(edges, axis=0, return_inverse=True)
     middles = coarse.directions[edges].sum(axis=1)
     middles /= np.linalg.norm(middles, axis=1)[:, None]
-    (a, b, c), (ab, bc, ca) = (
-        coarse.faces.T,
-        (which.reshape(-1, 3) + len(coarse.directions)).T,
-    )
+    a, b, c = coarse.faces.T
+    ab, bc, ca = (which.reshape(-1, 3) + len(coarse.directions)).T
     faces = np.concatenate(
         [
-            np.stack(each, axis=1)
-            for each in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))
+            np.stack(corners, axis=1)
+            for corners in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))
         ]
     )
     return Sphere(
@@ -166,8 +164,8 @@ class MismatchVolumes:
         """Unit vectors (D, 3) of XYZ, in whose directions the boundary points are the
         extremes.
         """
-        found = self.directions.directions @ np.linalg.inv(self.scale)
-        return np.asarray(found / np.linalg.norm(found, axis=1)[:, None])
+        normals = self.directions.directions @ np.linalg.inv(self.scale)
+        return normals / np.linalg.norm(normals, axis=1)[:, None]
 
     @cached_property
     def corners(self) -> Array:
@@ -178,7 +176,7 @@ class MismatchVolumes:
         directions = self.directions.directions
         scaled = self.xyz @ np.linalg.inv(self.scale).T
         support = np.einsum("kdi,di->kd", scaled, directions)[:, faces]
-        return np.asarray(
+        return (
             np.einsum("fij,kfj->kfi", np.linalg.inv(directions[faces]), support)
             @ self.scale.T
         )
@@ -187,8 +185,8 @@ class MismatchVolumes:
         """Compute by how much (n,) XYZ (n, 3) exceed the body in the direction in which
         they do so most.
         """
-        return np.asarray(
-            np.einsum("kdi,di->kd", xyz[:, None] - self.xyz, self.normals).max(axis=1)
+        return np.einsum("kdi,di->kd", xyz[:, None] - self.xyz, self.normals).max(
+            axis=1
         )
 
 
@@ -209,16 +207,10 @@ def mismatch_volumes(
     response = directions.directions @ np.linalg.solve(scale, light.xyz)
     xyz = np.empty((len(rgb), len(response), 3))
     basis = np.empty(xyz.shape, dtype=np.intp)
+    parents = directions.parents
     for block in blocks(len(rgb), max(BLOCK_PROBLEMS // len(response), 1)):
-        _solve(
-            sensor,
-            light,
-            rgb[block],
-            response,
-            directions.parents,
-            xyz[block],
-            basis[block],
-        )
+        colours = rgb[block]
+        _solve(sensor, light, colours, response, parents, xyz[block], basis[block])
     return MismatchVolumes(sensor, light, rgb, directions, scale, xyz, basis)
 
 
@@ -234,10 +226,10 @@ def _scale(sensor: Sensor, light: Light) -> Array:
     """
     # With P the projection to the sensor's responses, S = ((X − P X)(X − P X)ᵀ)^½.
     explained = np.linalg.lstsq(sensor.matrix.T, light.xyz.T, rcond=None)[0]
-    rest = light.xyz - explained.T @ sensor.matrix
-    squares, axes = np.linalg.eigh(rest @ rest.T)
+    unexplained = light.xyz - explained.T @ sensor.matrix
+    squares, axes = np.linalg.eigh(unexplained @ unexplained.T)
     lengths = np.sqrt(np.maximum(squares, MIN_SCALE**2 * (light.xyz**2).sum()))
-    return np.asarray((axes * lengths) @ axes.T)
+    return (axes * lengths) @ axes.T
 
 
 def _solve(
@@ -259,13 +251,17 @@ def _solve(
         start = basis[:, parents[first:last]] if first else basis[:, :last]
         colours = np.repeat(rgb, last - first, axis=0)
         responses = np.tile(response[first:last], (len(rgb), 1))
-        found = extreme_spectra(sensor.matrix, colours, responses, start.reshape(-1, 3))
-        if not found.solved.all():
+        extremes = extreme_spectra(
+            sensor.matrix, colours, responses, start.reshape(-1, 3)
+        )
+        if not extremes.solved.all():
             raise _unrealisable(
                 "rounding prevents a decision whether a reflectance has a colour"
             )
-        xyz[:, first:last] = (found.reflectance @ light.xyz.T).reshape(len(rgb), -1, 3)
-        basis[:, first:last] = found.basis.reshape(len(rgb), -1, 3)
+        xyz[:, first:last] = (extremes.reflectance @ light.xyz.T).reshape(
+            len(rgb), -1, 3
+        )
+        basis[:, first:last] = extremes.basis.reshape(len(rgb), -1, 3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -298,10 +294,10 @@ def largest_difference(volumes: MismatchVolumes, xyz: Array) -> LargestDifferenc
     basis = volumes.basis[row, volumes.directions.faces[faces, 0]]
     search = _Search(volumes, reference)
     slope = search.slope(row, corners[row, faces])
-    found = search.ascend(row, slope, basis)
+    ascended = search.ascend(row, slope, basis)
     normals = np.broadcast_to(volumes.normals, volumes.xyz.shape)
     best = _most_different(
-        len(xyz), _Metamers(sampled, volumes.xyz, normals, volumes.basis), found
+        len(xyz), _Metamers(sampled, volumes.xyz, normals, volumes.basis), ascended
     )
     for _ in range(REFINEMENTS):
         best = search.around(best)
@@ -344,37 +340,32 @@ class _Search:
     def extremes(self, row: Indices, direction: Array, basis: Indices) -> _Metamers:
         """Metamers (m,) of colours (m,) in directions (m, 3) of XYZ."""
         light = self.volumes.light
-        extreme = extreme_spectra(
-            self.volumes.sensor.matrix,
-            self.volumes.rgb[row],
-            direction @ light.xyz,
-            basis,
-        )
+        rgb = self.volumes.rgb[row]
+        matrix = self.volumes.sensor.matrix
+        extreme = extreme_spectra(matrix, rgb, direction @ light.xyz, basis)
         xyz = extreme.reflectance @ light.xyz.T
-        return _Metamers(
-            delta_e_2000(self._lab(xyz), self.reference[row]),
-            xyz,
-            direction,
-            extreme.basis,
-        )
+        delta_e = delta_e_2000(self._lab(xyz), self.reference[row])
+        return _Metamers(delta_e, xyz, direction, extreme.basis)
 
     def ascend(self, row: Indices, slope: Array, basis: Indices) -> _Metamers:
         """Metamers (m,) where the steps from the extremes in the directions
         (m, 3) end.
         """
-        found = self.extremes(row, slope, basis)
+        metamers = self.extremes(row, slope, basis)
         rises = np.arange(len(row))
         for _ in range(MAX_STEPS):
             trial = self.extremes(
-                row[rises], self.slope(row[rises], found.xyz[rises]), found.basis[rises]
+                row[rises],
+                self.slope(row[rises], metamers.xyz[rises]),
+                metamers.basis[rises],
             )
-            better = trial.delta_e > found.delta_e[rises] + MIN_RISE
+            better = trial.delta_e > metamers.delta_e[rises] + MIN_RISE
             rises = rises[better]
             if not len(rises):
                 break
-            for each, new in zip(found, trial, strict=True):
-                each[rises] = new[better]
-        return found
+            for array, new in zip(metamers, trial, strict=True):
+                array[rises] = new[better]
+        return metamers
 
     def around(self, best: _Metamers) -> _Metamers:
         """The most different of metamers (n,) and of those in directions
@@ -398,7 +389,7 @@ class _Search:
         reference = self.reference[row, None]
         rise = delta_e_2000(at + steps, reference) - delta_e_2000(at - steps, reference)
         jacobian = lab_jacobian(xyz, self.volumes.light.white)
-        return np.asarray((rise[:, None, :] @ jacobian)[:, 0] / (2 * DIFFERENCE_STEP))
+        return (rise[:, None, :] @ jacobian)[:, 0] / (2 * DIFFERENCE_STEP)
 
     def _lab(self, xyz: Array) -> Array:
         return lab(xyz, self.volumes.light.white)
@@ -410,7 +401,7 @@ def mesh_volume(points: Array, faces: Indices) -> Array:
     """
     centred = points - points.mean(axis=1, keepdims=True)
     a, b, c = (centred[:, faces[:, corner]] for corner in range(3))
-    return np.asarray(np.einsum("kfi,kfi->k", a, np.cross(b, c)) / 6)
+    return np.einsum("kfi,kfi->k", a, np.cross(b, c)) / 6
 
 
 def outline(points: Array, faces: Indices, angles: int = ANGLES) -> Array:
@@ -439,4 +430,4 @@ def outline(points: Array, faces: Indices, angles: int = ANGLES) -> Array:
     radius = np.where(
         crosses, first @ along + share * ((second - first) @ along), 0
     ).max(axis=0)
-    return np.asarray(centre + (radius[:, None] * along.T * lengths) @ axes.T)
+    return centre + (radius[:, None] * along.T * lengths) @ axes.T

@@ -74,8 +74,8 @@ class LookTargets:
         )
         designs = np.array(
             [
-                design_reflectance(problem.sensor, *each)
-                for each in zip(goals, expected, strict=True)
+                design_reflectance(problem.sensor, *pair)
+                for pair in zip(goals, expected, strict=True)
             ]
         )
 
@@ -133,12 +133,11 @@ class LookTargets:
                 }
                 for screen, target, delta_e, possible in rows
             ]
-            weight = float(look.weight)
             records.append(
                 {
                     "name": look.name,
                     "rgb": goal.rgb.tolist(),
-                    "weight": weight,
+                    "weight": float(look.weight),
                     "lights": lights,
                 }
             )
@@ -165,15 +164,13 @@ def targets_of(
         return None
     if model.count <= NO_FREEDOM:
         raise LookError(
-            (
-                f"looks need spectra of more than three coefficients, got {model.name} "
-                f"with {model.count}"
-            ),
+            f"looks need spectra of more than three coefficients, got {model.name} "
+            f"with {model.count}",
             hint='use model="moments" with entry_coefficients of 4 to 17',
         )
     screens = tuple(_screens(look, sensor) for look in looks)
     goals = tuple(
-        _goal(look, sensor, each) for look, each in zip(looks, screens, strict=True)
+        _goal(look, sensor, screen) for look, screen in zip(looks, screens, strict=True)
     )
     taken = dict.fromkeys(atlas_names, "an atlas entry")
     codes = np.interp(
@@ -185,18 +182,14 @@ def targets_of(
             raise look_error(
                 look, f"its name is that of {taken[look.name]}", hint="rename the look"
             )
-        same = (
-            np.abs(codes[: len(known)] - codes[len(known)]).max(axis=1, initial=0)
-            <= SAME_CODE
-        )
+        change = np.abs(codes[: len(known)] - codes[len(known)])
+        same = change.max(axis=1, initial=0) <= SAME_CODE
         if same.any():
             other = known[int(same.argmax())]
             raise look_error(
                 look,
-                (
-                    f"its colour {format_rgb(look.rgb)} is that of {taken[other]}, "
-                    f"'{other}'"
-                ),
+                f"its colour {format_rgb(look.rgb)} is that of {taken[other]}, "
+                f"'{other}'",
                 hint="a colour has one answer: change the look, or leave out the other",
             )
         taken[look.name] = "another look"

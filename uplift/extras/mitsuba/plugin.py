@@ -27,8 +27,10 @@ from uplift.extras.texture.lights import prepare_lights
 from uplift.lookup import Cube, load
 from uplift.models import evaluate
 
-START, END = 360, 830
-"""Wavelength range of Mitsuba in nm."""
+START = 360
+"""First wavelength of Mitsuba in nm."""
+END = 830
+"""Last wavelength of Mitsuba in nm."""
 IMAGES = ("filename", "bitmap")
 SOURCES = ("rgb", *IMAGES)
 HINTS = {

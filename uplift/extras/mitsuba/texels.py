@@ -96,13 +96,8 @@ def uplift_texels(uplifter: Uplifter, rgb: Floats) -> tuple[Texels, Counts]:
     """
     data = uplifter.cube.data
     colours = rgb.reshape(-1, 3).astype(float)
-    if any(
-        found.rows.size
-        for found in (
-            data.entry_boxes.find(colours.clip(0, 1)),
-            data.outside_boxes.find(colours),
-        )
-    ):
+    inside = data.entry_boxes.find(colours.clip(0, 1)).rows
+    if inside.size or data.outside_boxes.find(colours).rows.size:
         uplifter = prepare_texels(uplifter.cube, uplifter.out_of_gamut, of_entries=True)
     assert uplifter.model is not None
     (_, multipliers), counts = uplifter.convert(rgb)
@@ -192,12 +187,15 @@ def read_texels(path: Path) -> Texels | None:
     with open_image(path) as image:
         channels = image.parts[0].channels
         spectral = next(
-            filter(None, (_spectral_channels(channels, each) for each in QUANTITIES)),
+            filter(
+                None,
+                (_spectral_channels(channels, quantity) for quantity in QUANTITIES),
+            ),
             None,
         )
         if spectral:
             wavelengths = np.array(sorted(spectral))
-            numbers = _numbers(image, [spectral[each] for each in wavelengths])
+            numbers = _numbers(image, [spectral[quantity] for quantity in wavelengths])
             return Texels(
                 _samples(wavelengths), numbers, float(numbers.mean(dtype=float))
             )
@@ -224,8 +222,8 @@ def read_colours(
     `ColourError` and `OptionError`.
     """
     with open_image(path) as image:
-        part, found = coloured_parts(image)[0]
-        channels = converter.colour_channels(found)
+        part, colours = coloured_parts(image)[0]
+        channels = converter.colour_channels(colours)
         decode = converter.decoder(part)
         bands, counts = zip(
             *(decode(channels.straight(rows)) for _, rows in image.bands(part)),
@@ -282,14 +280,10 @@ def _model(description: str, count: int) -> Model:
         if model.count == count:
             return model
     raise TextureError(
-        (
-            "the header of a texture must describe the model of its channels in "
-            "uplift.model"
-        ),
-        hint=(
-            "write the texture with 'uplift texture', and keep its header in other "
-            "programs"
-        ),
+        "the header of a texture must describe the model of its channels in "
+        "uplift.model",
+        hint="write the texture with 'uplift texture', and keep its header in other "
+        "programs",
     )
 
 

@@ -134,8 +134,9 @@ def lamp_window(table: EmissionTable) -> Window:
     high = uv.max(axis=0) + MARGIN
     full = np.array([ALL.u[1] - ALL.u[0], ALL.v[1] - ALL.v[0]])
     half = full * ((high - low) / full).max() / 2
-    (u, v), (du, dv) = ((low + high) / 2).tolist(), half.tolist()
-    return Window((u - du, u + du), (v - dv, v + dv))
+    middle = (low + high) / 2
+    u, v = np.stack([middle - half, middle + half], axis=1).tolist()
+    return Window(tuple(u), tuple(v))
 
 
 def _pixels(table: EmissionTable, window: Window) -> Array:

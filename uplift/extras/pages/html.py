@@ -59,8 +59,7 @@ def content_security_policy(script: str) -> str:
     scripts = f"'sha256-{digest}'" if script else "'none'"
     return (
         f"default-src 'none'; script-src {scripts}; style-src 'unsafe-inline'; "
-        "img-src data:; "
-        "base-uri 'none'; form-action 'none'"
+        "img-src data:; base-uri 'none'; form-action 'none'"
     )
 
 

@@ -34,12 +34,9 @@ PRIMARIES = np.array(
     ]
 )
 SWATCH = "display:inline-block;width:1.4em;height:1.4em;margin:1px;background:"
-SPARKLINE = (
-    120,
-    24,
-    # width and height of the plot of an entry in pixels; the height is reflectance from
-    # 0 to 1
-)
+# Width and height of the plot of an entry in pixels; the height is reflectance from 0
+# to 1.
+SPARKLINE = (120, 24)
 
 
 def plot_cube(cube: Cube, rgb: Array) -> Figure:
@@ -84,11 +81,10 @@ def atlas_html(atlas: Atlas) -> Markup:
         for name, code, values in zip(shown.names, codes, spectra, strict=True)
     )
     more = len(atlas) - len(shown)
-    rows += (
-        Markup("<tr><td></td><td colspan='2'>and {} more</td></tr>").format(more)
-        if more
-        else ""
-    )
+    if more:
+        rows += Markup("<tr><td></td><td colspan='2'>and {} more</td></tr>").format(
+            more
+        )
     return Markup("<table><caption>{}</caption>{}</table>").format(repr(atlas), rows)
 
 

@@ -38,17 +38,14 @@ def plot_spectra(
     """Plot reflectances over wavelength as PNG, SVG or PDF, each in its own colour."""
     figure = new_figure(7.2, 4.0)
     axes = figure.subplots()
-    codes = (
-        cube.encode(np.array([each.rgb for each in results])).round().astype(np.uint8)
-    )
-    for result, code in zip(results, codes, strict=True):
-        label = result.entry or f"#{code.tobytes().hex()}"
+    for result in results:
+        code = cube.encode(result.rgb).round().astype(np.uint8)
         _plot_curve(
             axes,
             result.wavelengths,
             result.reflectance,
             to_display_codes(result.rgb, cube.data.sensor),
-            label,
+            result.entry or f"#{code.tobytes().hex()}",
         )
     style_spectrum_axes(axes)
     _write_curves(figure, len(results), path, force)
@@ -141,7 +138,7 @@ def plot_bounds(
     """Plot the region of each colour under each light, as PNG, SVG or PDF: a row per
     colour, a column per light.
     """
-    panels: list[tuple[Sequence[Bounds], int]] = []
+    panels = list[tuple[Sequence[Bounds], int]]()
     for block in blocks:
         panels += [(block, row) for row in range(len(block[0].xyz))]
     panels = panels[:MAX_COLOURS]

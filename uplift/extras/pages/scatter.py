@@ -22,9 +22,8 @@ LEGEND: dict[str, Any] = {
 }
 FONT_MARGIN = 1.06  # share by which the font of a reader may be wider
 _POINTS_PER_INCH = 72
-_MAX_DISTANCE = (
-    14  # points between a marker and its label without a line that joins them
-)
+# Points between a marker and its label without a line that joins them.
+_MAX_DISTANCE = 14
 
 
 @dataclass(frozen=True)
@@ -156,9 +155,7 @@ def place_labels(anchors: Array, sizes: Array, markers: Array, panel: Array) -> 
 
 def _corners_around(anchor: Array, size: Array, distance: float) -> Array:
     """Corners (16, 2) of a label at a distance from its anchor, in all directions."""
-    return np.asarray(
-        anchor + distance * DIRECTIONS + size * (np.sign(DIRECTIONS) - 1) / 2
-    )
+    return anchor + distance * DIRECTIONS + size * (np.sign(DIRECTIONS) - 1) / 2
 
 
 def _overlaps(boxes: Array, others: Array) -> Mask:

@@ -134,13 +134,10 @@ class Layout:
         self.rows = math.ceil(dim / self.columns)
         self.scale = max(1, round(PANEL / (self.columns * dim)))  # width of a node
         self.pitch = dim * self.scale + GAP  # distance from tile to tile
-        self.panel = (
-            self.columns * self.pitch - GAP,
-            self.rows * self.pitch - GAP,
-        )  # width and height of a panel's tiles
-        self.em = max(
-            13, self.panel[0] // 48
-        )  # height of the text; all spacing around it is a multiple
+        # width and height of a panel's tiles
+        self.panel = (self.columns * self.pitch - GAP, self.rows * self.pitch - GAP)
+        # height of the text; all spacing around it is a multiple
+        self.em = max(13, self.panel[0] // 48)
         # Distance from panel to panel: title, tiles, legend and spacing
         self.block = (
             self.panel[0] + 3 * self.em,
@@ -192,9 +189,8 @@ def compose(data: CubeData) -> Sheet:
         x, y = layout.origin(number)
         labels.append(Label(x, y - em, panel.title, 1.2 * em))
         for key, (left, top) in zip(panel.keys, layout.keys(number), strict=False):
-            width = (
-                em if len(key.colours) == 1 else 6 * em
-            )  # a square, or a strip for a ramp
+            # a square, or a strip for a ramp
+            width = em if len(key.colours) == 1 else 6 * em
             strip = key.colours[np.arange(width) * len(key.colours) // width]
             _paint(image, (left, top), np.broadcast_to(strip, (em, width, 3)))
             labels.append(Label(left + width + 0.6 * em, top + em / 2, key.text, em))
@@ -277,14 +273,12 @@ def panels(data: CubeData) -> tuple[Panel, ...]:
             _round_panel(data.points.round, data.points.round[data.points.present] < 0)
         )
     present = data.points.present[:, None]
-    background = [
-        np.where(present, each.colours, each.colours.dtype.type(BACKGROUND))
-        for each in quantities
-    ]
-    return tuple(
-        replace(panel, colours=colours)
-        for panel, colours in zip(quantities, background, strict=True)
-    )
+
+    def on_background(panel: Panel) -> Panel:
+        background = panel.colours.dtype.type(BACKGROUND)
+        return replace(panel, colours=np.where(present, panel.colours, background))
+
+    return tuple(map(on_background, quantities))
 
 
 def _rgb_panel(data: CubeData) -> Panel:

@@ -335,9 +335,8 @@ class Overpainter(Converter):
     """
 
     coat: Coat  # at the wavelengths of the sensor
-    reflectance: Callable[
-        [Floats], Floats
-    ]  # from linear RGB (..., 3) to reflectances (..., N)
+    # from linear RGB (..., 3) to reflectances (..., N)
+    reflectance: Callable[[Floats], Floats]
     threads: int  # that share a band
 
     def paint(self, rgb: Floats) -> Floats:

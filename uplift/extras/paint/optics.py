@@ -26,11 +26,8 @@ def as_amounts(parts: ArrayLike) -> Array:
     array = np.asarray(parts, dtype=float)
     if array.ndim == 0 or not (np.isfinite(array) & (array >= 0)).all():
         raise OptionError(
-            (
-                "parts of a mixture must be a sequence of finite numbers of at least "
-                "0, "
-                f"got {array.tolist()}"
-            ),
+            "parts of a mixture must be a sequence of finite numbers of at least 0, "
+            f"got {array.tolist()}",
             hint="pass one for each component",
         )
     return array
@@ -45,14 +42,12 @@ def as_shares(parts: ArrayLike) -> Array:
             "some part of a mixture must be greater than 0", hint="raise one of them"
         )
     relative = array / largest  # a sum of huge parts would overflow
-    return np.asarray(relative / relative.sum(axis=-1, keepdims=True))
+    return relative / relative.sum(axis=-1, keepdims=True)
 
 
 def weighted_sum(spectra: ArrayLike, weights: Array) -> Array:
     """Return the sum (…, N) of spectra (…, n, N) with weights (…, n)."""
-    return np.asarray(
-        (weights[..., None, :] @ np.asarray(spectra, dtype=float))[..., 0, :]
-    )
+    return (weights[..., None, :] @ np.asarray(spectra, dtype=float))[..., 0, :]
 
 
 def add_lights(spectra: ArrayLike, strengths: ArrayLike) -> Array:
@@ -129,9 +124,10 @@ def plate(transmittance: ArrayLike, rho: float) -> Layer:
     surfaces reflect ρ, from either side.
     """
     once = np.asarray(transmittance, dtype=float)
-    rest = 1 - (rho * once) ** 2
+    transmitted = 1 - (rho * once) ** 2
     return Layer(
-        rho + rho * ((1 - rho) * once) ** 2 / rest, (1 - rho) ** 2 * once / rest
+        rho + rho * ((1 - rho) * once) ** 2 / transmitted,
+        (1 - rho) ** 2 * once / transmitted,
     )
 
 
@@ -258,8 +254,8 @@ class Surface:
             Internal reflectance, negative where the measured one is below that of the
             surface alone.
         """
-        rest = np.asarray(measured, dtype=float) - self.outside
-        return rest / ((1 - self.outside) * (1 - self.inside) + self.inside * rest)
+        inner = np.asarray(measured, dtype=float) - self.outside
+        return inner / ((1 - self.outside) * (1 - self.inside) + self.inside * inner)
 
 
 NO_SURFACE = Surface()

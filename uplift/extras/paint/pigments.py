@@ -68,14 +68,8 @@ DARKEST_DISPERSED = 0.01
 # Relative difference of μ and γ below which the mean of both sides is taken; its error
 # is the square of this.
 MIN_RELATIVE_GAP = 1e-5
-CONSTANTS = (
-    "K'",
-    "B'",
-    "F'",
-    "K",
-    "B",
-    "F",
-)  # of Duntley's eight, those that the others are sums of
+# of Duntley's eight, those that the others are sums of
+CONSTANTS = ("K'", "B'", "F'", "K", "B", "F")
 
 # From reflectances (..., N) in (0, 1] to S (..., N), greater than 0, of which white has
 # 1.
@@ -89,7 +83,7 @@ class PowerOfReflectance:
     exponent: float
 
     def __call__(self, reflectance: Array) -> Array:
-        return np.asarray(reflectance**self.exponent)
+        return reflectance**self.exponent
 
 
 SQUARE_ROOT = PowerOfReflectance(0.5)
@@ -101,9 +95,8 @@ class Dispersive:
     """S = Y^exponent exp(weight · h), made by `dispersive`."""
 
     luminance: Array  # (N,) weights of Y, of sum 1
-    imbalance: (
-        Array  # (N, N) from √(K/S) to h; rows sum to 0, so that a grey paint has h = 0
-    )
+    # (N, N) from √(K/S) to h; rows sum to 0, so that a grey paint has h = 0
+    imbalance: Array
     exponent: float = 0.75
     weight: float = 0.25
 
@@ -111,7 +104,7 @@ class Dispersive:
         R = np.maximum(reflectance, DARKEST_DISPERSED)
         h = ((1 - R) / np.sqrt(2 * R)) @ self.imbalance.T
         Y = (reflectance @ self.luminance)[..., None]
-        return np.asarray(Y**self.exponent * np.exp(self.weight * h))
+        return Y**self.exponent * np.exp(self.weight * h)
 
 
 def dispersive(sensor: Sensor, further: ArrayLike = ()) -> Dispersive:
@@ -173,7 +166,7 @@ class Pigment:
         """
         K = self.absorption
         S = self.scattering
-        return np.asarray(S / np.maximum(K + S + self.gamma, TINY))
+        return S / np.maximum(K + S + self.gamma, TINY)
 
     def layer(self, thickness: ArrayLike) -> Layer:
         """Return the optical properties of a layer of a thickness X (...) in units of
@@ -196,7 +189,7 @@ class Pigment:
         """
         K = self.absorption
         S = self.scattering
-        return np.asarray(S / np.maximum(2 * (K + S), TINY))
+        return S / np.maximum(2 * (K + S), TINY)
 
 
 def from_opaque(reflectance: ArrayLike, scattering: Scattering) -> Pigment:

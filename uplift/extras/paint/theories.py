@@ -39,9 +39,8 @@ from uplift.extras.paint.optics import (
 from uplift.extras.paint.pigments import Pigment, Scattering
 from uplift.lookup import Cube
 
-Mix = Callable[
-    [Array, Array], Array
-]  # from components (..., n, K) and parts (..., n) to the mixture (..., K)
+# from components (..., n, K) and parts (..., n) to the mixture (..., K)
+Mix = Callable[[Array, Array], Array]
 CRT = "Typical CRT Brainard 1997"
 """Phosphors of a cathode-ray tube, measured by D. H. Brainard."""
 OIL = Surface.of_index(1.5)
@@ -162,7 +161,6 @@ def rgb_to_hsl(rgb: ArrayLike) -> Array:
     smallest = rgb.min(axis=-1)
     chroma = largest - smallest
     lightness = (largest + smallest) / 2
-    max_chroma = np.minimum(2 * lightness, 2 - 2 * lightness)
     red, green, blue = np.moveaxis(rgb, -1, 0)
     safe = np.where(chroma > 0, chroma, 1)
     position = np.select(
@@ -170,12 +168,16 @@ def rgb_to_hsl(rgb: ArrayLike) -> Array:
         [(green - blue) / safe % 6, (blue - red) / safe + 2],
         (red - green) / safe + 4,
     )
-    saturation = np.where(
-        max_chroma > 0, chroma / np.where(max_chroma > 0, max_chroma, 1), 0
-    )
-    return np.stack(
-        [np.where(chroma > 0, position / 6 % 1, 0), saturation, lightness], axis=-1
-    )
+    hue = np.where(chroma > 0, position / 6 % 1, 0)
+    return np.stack([hue, _saturation(chroma, lightness), lightness], axis=-1)
+
+
+def _saturation(chroma: Array, lightness: Array) -> Array:
+    """Return chroma as a fraction of the largest of its lightness; 0 of black and
+    white.
+    """
+    largest = np.minimum(2 * lightness, 2 - 2 * lightness)
+    return np.where(largest > 0, chroma / np.where(largest > 0, largest, 1), 0)
 
 
 def mix_ryb(rgb: ArrayLike, parts: ArrayLike) -> Array:
@@ -193,10 +195,7 @@ def mix_ryb(rgb: ArrayLike, parts: ArrayLike) -> Array:
     # The centroid, and back.
     x, y, lightness = np.moveaxis(weighted_sum(cone, as_shares(parts)), -1, 0)
     hue = np.interp(np.arctan2(y, x) / (2 * np.pi) % 1, RYB_WHEEL, RGB_WHEEL)
-    max_chroma = np.minimum(2 * lightness, 2 - 2 * lightness)
-    saturation = np.where(
-        max_chroma > 0, np.hypot(x, y) / np.where(max_chroma > 0, max_chroma, 1), 0
-    )
+    saturation = _saturation(np.hypot(x, y), lightness)
     return hsl_to_rgb(np.stack([hue, np.minimum(saturation, 1), lightness], axis=-1))
 
 

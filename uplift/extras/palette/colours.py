@@ -16,9 +16,8 @@ MID_GREY = 0.18
 C2 = 1.438776877e7  # second radiation constant in nm K (CODATA 2018)
 MIN_KELVIN = 500.0  # below, a black body has no visible power
 MAX_KELVIN = 1e6  # above, the colour of a black body no longer changes
-REFERENCE_NM = (
-    560.0  # wavelength of unit power before scaling, which keeps all powers near 1
-)
+# wavelength of unit power before scaling, which keeps all powers near 1
+REFERENCE_NM = 560.0
 
 
 def screen_matrix(sensor: Sensor) -> Array:
@@ -34,7 +33,7 @@ def exposure(sensor: Sensor, rgb: ArrayLike) -> Array:
     """Return the factor (…) that takes linear RGB (…, 3) to the luminance
     of mid-grey.
     """
-    return np.asarray(MID_GREY / sensor.xyz(rgb)[..., 1])
+    return MID_GREY / sensor.xyz(rgb)[..., 1]
 
 
 def lab_per_rgb(sensor: Sensor, rgb: ArrayLike) -> Array:

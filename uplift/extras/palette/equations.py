@@ -8,7 +8,7 @@ differences are scaled as for samples 10 nm apart, and none extends beyond the e
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product, starmap
 
 import numpy as np
 
@@ -21,9 +21,8 @@ from uplift.extras.palette.palette import Palette, SpectrumSpec
 
 SPACING = 10.0  # sample distance in nm that the weights of the paper refer to
 
-Unknowns = dict[
-    tuple[str, str], slice
-]  # positions in x by kind ("free", "light" or "material") and name
+# positions in x by kind ("free", "light" or "material") and name
+Unknowns = dict[tuple[str, str], slice]
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,10 +54,7 @@ def unknowns(palette: Palette) -> Unknowns:
         ("material", spec.name): samples for spec in palette.materials if spec.designed
     }
     ends = np.cumsum([0, *sizes.values()])
-    return {
-        key: slice(int(a), int(b))
-        for key, a, b in zip(sizes, ends[:-1], ends[1:], strict=True)
-    }
+    return dict(zip(sizes, starmap(slice, pairwise(ends.tolist())), strict=True))
 
 
 def equations(palette: Palette, model: FactorModel) -> Equations:
@@ -72,13 +68,17 @@ def equations(palette: Palette, model: FactorModel) -> Equations:
         *_model_error(palette, model, where),
     ]
     count = max((position.stop for position in where.values()), default=0)
-    matrix = np.zeros((sum(len(part.values) for part in rows), count))
-    values = np.concatenate([part.values for part in rows]) if rows else np.zeros(0)
+    matrix = np.zeros((sum(len(block_rows.values) for block_rows in rows), count))
+    values = (
+        np.concatenate([block_rows.values for block_rows in rows])
+        if rows
+        else np.zeros(0)
+    )
     top = 0
-    for part in rows:
-        for position, block in part.blocks:
-            matrix[top : top + len(part.values), position] = block
-        top += len(part.values)
+    for block_rows in rows:
+        for position, block in block_rows.blocks:
+            matrix[top : top + len(block_rows.values), position] = block
+        top += len(block_rows.values)
     low = np.empty(count)
     high = np.empty(count)
     specs = {("light", spec.name): spec for spec in palette.lights}

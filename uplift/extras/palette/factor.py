@@ -38,9 +38,8 @@ class FactorModel:
     basis: Array  # (N, m)
     # (m, m) from coefficients of the principal basis to those of the sharpened one
     transform: Array
-    projection: (
-        Array  # (m, N) from spectra to coefficients, which are 1 for the flat spectrum
-    )
+    # (m, N) from spectra to coefficients, which are 1 for the flat spectrum
+    projection: Array
     # (m, N) from powers to the coefficients that tint reflectances as the power does
     light_projection: Array
     matrix: Array  # (3, m) from coefficients to linear RGB (eq. 17)

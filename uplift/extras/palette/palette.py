@@ -35,9 +35,8 @@ class ColourGoal:
     material: str
     light: str
     rgb: Array | None = None  # (3,) target in linear RGB
-    free: str | None = (
-        None  # or the name of a free colour, which all goals of this name share
-    )
+    # or the name of a free colour, which all goals of this name share
+    free: str | None = None
     weight: float = 1.0  # 0 or more
 
     def __str__(self) -> str:
@@ -63,14 +62,12 @@ class Palette:
     lights: tuple[SpectrumSpec, ...]  # columns of the matrix
     materials: tuple[SpectrumSpec, ...]  # its rows
     goals: tuple[ColourGoal, ...]  # at most one for each material under each light
-    free: Mapping[
-        str, tuple[Array, Array]
-    ]  # lowest and highest linear RGB (3,) of every free colour
+    # lowest and highest linear RGB (3,) of every free colour
+    free: Mapping[str, tuple[Array, Array]]
     min_differences: tuple[MinDifference, ...] = ()
     smoothness: float = 0.001  # ω_D, of the second differences of designed spectra
-    model_error: float = (
-        0.1  # ω_F, of the colours of the factor model less those of full spectra
-    )
+    # ω_F, of the colours of the factor model less those of full spectra
+    model_error: float = 0.1
     count: int = 7  # coefficients of the factor model
     fit: Fit = "spectra"
     sources: tuple[Path, ...] = ()  # files that the palette was read from

@@ -41,9 +41,8 @@ FILL = (np.array([0.75, 0.05, 0.66]), 0.22)
 YAW, PITCH = np.radians(
     [40, 27]
 )  # rotation of the removed octant x, y, z > 0 towards the viewer
-CORNER = (
-    0.16  # width of the darkening along inner edges of the cut, relative to the radius
-)
+# width of the darkening along inner edges of the cut, relative to the radius
+CORNER = 0.16
 OFFSETS = (-0.25, 0.25)  # subpixel positions, four samples per pixel
 
 
@@ -100,11 +99,8 @@ def _intersect_sphere(
     dy = (y - centre[1]) / radius
     square = 1 - dx**2 - dy[:, None] ** 2
     rows, columns = np.nonzero(square > 0)
-    return (
-        rows,
-        columns,
-        np.stack([dx[columns], dy[rows], np.sqrt(square[rows, columns])], axis=1),
-    )
+    normals = [dx[columns], dy[rows], np.sqrt(square[rows, columns])]
+    return rows, columns, np.stack(normals, axis=1)
 
 
 def _intersect_opened(
@@ -131,7 +127,10 @@ def cut_axes() -> Array:
     """Return the rotation (3, 3) whose rows are right, up and to the viewer in the axes
     of the cut.
     """
-    (a, b), (c, d) = (np.cos(YAW), np.sin(YAW)), (np.cos(PITCH), np.sin(PITCH))
+    a = np.cos(YAW)
+    b = np.sin(YAW)
+    c = np.cos(PITCH)
+    d = np.sin(PITCH)
     return np.array([[a, 0, -b], [-d * b, c, -d * a], [c * b, d, c * a]])
 
 
@@ -172,7 +171,7 @@ def read_weights(
 
 def _parse_labels(names: Sequence[str], labels: Mapping[str, str]) -> dict[int, int]:
     """Return the index of the material by 24-bit colour."""
-    codes: dict[int, int] = {}
+    codes = dict[int, int]()
     for name, label in labels.items():
         if name not in names:
             raise unknown_name(name, names, "material")
@@ -213,10 +212,8 @@ def _weights_of_labels(
         listed = ", ".join(f"#{code:06x}" for code in frequent)
         more = ", …" if unknown.sum() > MAX_LISTED else ""
         raise TextureError(
-            (
-                "every colour must be a label, got "
-                f"{pluralise(counts[unknown].sum(), 'pixel')} of {listed}{more}"
-            ),
+            "every colour must be a label, got "
+            f"{pluralise(counts[unknown].sum(), 'pixel')} of {listed}{more}",
             hint="give each colour a label, and draw without antialiasing",
         )
     weights = np.zeros((*pixels.shape, count), dtype=np.float32)
@@ -229,10 +226,8 @@ def _weights_of_channels(part: Part, values: Values, names: Sequence[str]) -> We
     present = [row for row, name in enumerate(names) if name in part.channels]
     if not present:
         raise TextureError(
-            (
-                "an image of weights must have a channel named after a material "
-                f"({', '.join(names)})"
-            ),
+            "an image of weights must have a channel named after a material "
+            f"({', '.join(names)})",
             hint="rename its channels, or use an 8-bit image of labels",
         )
     weights = np.zeros((*values.shape[:2], len(names)), dtype=np.float32)

@@ -111,7 +111,8 @@ def plot_spectra(design: Design, path: StrPath, *, force: bool = False) -> None:
 def _cell(
     axes: Any, corner: tuple[float, float], colours: Matrix, at: tuple[int, int]
 ) -> None:
-    (x, y), (width, height) = corner, (CELL[0] * PATCH[0], CELL[1] * PATCH[1])
+    x, y = corner
+    width, height = np.multiply(CELL, PATCH)
     has_goal = not np.isnan(colours.delta_e[at])
     split = width / 2 if has_goal else 0.0
     if has_goal:

@@ -29,9 +29,8 @@ class Relighting:
     """
 
     title: str
-    weights: NDArray[
-        np.float32
-    ]  # (H, W, n) amount of each material in each pixel, including shading; 0 or more
+    # (H, W, n) amount of each material in each pixel, including shading; 0 or more
+    weights: NDArray[np.float32]
     materials: tuple[str, ...]
     material_coefficients: Array  # (n, m) of the factor model
     # (n, L, 3) linear sRGB of the materials under each light, by full spectra
@@ -51,9 +50,8 @@ class Relighting:
     @property
     def labels(self) -> NDArray[np.uint8]:
         """Predominant material of each pixel (H, W), counted from 1; 0 for none."""
-        return np.where(
-            self.weights.any(axis=-1), 1 + self.weights.argmax(axis=-1), 0
-        ).astype(np.uint8)
+        labels = 1 + self.weights.argmax(axis=-1)
+        return (labels * self.weights.any(axis=-1)).astype(np.uint8)
 
     @property
     def start_light(self) -> int:
@@ -61,11 +59,8 @@ class Relighting:
         different.
         """
         colours = self.colours.clip(0, 1) ** DISPLAY_EXPONENT
-        return int(
-            np.linalg.norm(colours - colours.mean(axis=0), axis=-1)
-            .mean(axis=0)
-            .argmax()
-        )
+        distances = np.linalg.norm(colours - colours.mean(axis=0), axis=-1)
+        return int(distances.mean(axis=0).argmax())
 
     def rgb(self, mix: ArrayLike) -> Array:
         """Light the picture by weights (L,) of the lights: linear sRGB (H, W, 3), not
@@ -117,11 +112,9 @@ def page(view: Relighting) -> str:
     return render(
         "extras/palette/templates/relight_page.html.j2",
         title=view.title,
-        lead=(
-            f"{pluralise(len(view.materials), 'material')} under any mix of "
-            f"{pluralise(len(view.lights), 'light')}: "
-            "move the dial to relight the picture."
-        ),
+        lead=f"{pluralise(len(view.materials), 'material')} under any mix of "
+        f"{pluralise(len(view.lights), 'light')}: "
+        "move the dial to relight the picture.",
         width=width,
         height=height,
         coefficients=view.to_rgb.shape[1],
@@ -157,10 +150,5 @@ def pack(values: NDArray[Any]) -> str:
     """Deflate an array byte plane by byte plane, which makes half-precision numbers a
     third smaller, as base64.
     """
-    planes = (
-        np.ascontiguousarray(values)
-        .reshape(-1)
-        .view(np.uint8)
-        .reshape(-1, values.itemsize)
-    )
+    planes = np.frombuffer(values.tobytes(), np.uint8).reshape(-1, values.itemsize)
     return base64.b64encode(zlib.compress(planes.T.tobytes(), 9)).decode("ascii")

@@ -41,9 +41,8 @@ def make_light_paths(reflectances: Array, lights: Array) -> Array:
         ]
         surfaces = [reflectances, *others]
         for count in range(1, MAX_REFLECTIONS + 1):
-            paths.append(
-                [power, *surfaces[:count], *[white] * (MAX_REFLECTIONS - count)]
-            )
+            whites = [white] * (MAX_REFLECTIONS - count)
+            paths.append([power, *surfaces[:count], *whites])
     return np.concatenate(paths, axis=1)
 
 

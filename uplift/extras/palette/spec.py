@@ -90,15 +90,19 @@ def read_palette(path: StrPath) -> Palette:
     for goal in goals:
         if goal.free is not None:
             free.setdefault(goal.free, _FreeRange())
-    named = (*table.materials.values(), *table.lights.values())
+    named = [
+        spec.file
+        for spec in (*table.materials.values(), *table.lights.values())
+        if spec.file is not None
+    ]
     return Palette(
         sensor=sensor,
         lights=tuple(
             light.spectrum(name, sensor, folder) for name, light in table.lights.items()
         ),
         materials=tuple(
-            each.spectrum(name, sensor, folder)
-            for name, each in table.materials.items()
+            material.spectrum(name, sensor, folder)
+            for name, material in table.materials.items()
         ),
         goals=goals,
         free={
@@ -107,9 +111,11 @@ def read_palette(path: StrPath) -> Palette:
         },
         min_differences=tuple(
             MinDifference(
-                (each.materials[0], each.materials[1]), each.light, each.delta_e
+                (difference.materials[0], difference.materials[1]),
+                difference.light,
+                difference.delta_e,
             )
-            for each in table.apart
+            for difference in table.apart
         ),
         smoothness=table.smoothness,
         model_error=table.model_error,
@@ -117,11 +123,7 @@ def read_palette(path: StrPath) -> Palette:
         fit=table.fit,
         sources=(
             file.path,
-            *(
-                Path(lamp_file(str(folder / each.file)))
-                for each in named
-                if each.file is not None
-            ),
+            *(Path(lamp_file(str(folder / name))) for name in named),
         ),
     )
 
@@ -146,7 +148,7 @@ def _parse_bounds(value: Any) -> tuple[float, float]:
         return -math.inf, math.inf
     is_pair = isinstance(value, list) and len(value) == 2
     if not is_pair or not all(
-        is_number(each) or each in (-math.inf, math.inf) for each in value
+        is_number(number) or number in (-math.inf, math.inf) for number in value
     ):
         raise problem(f"must be [low, high] or false, got {format_value(value)}")
     if not value[0] < value[1]:
@@ -297,16 +299,8 @@ class _RgbMaterial(SpecModel):
         return SpectrumSpec(name, cube.reflectance(rgb, sensor.wavelengths))
 
 
-class _DesignedMaterial(SpecModel):
-    design: Literal[True]
+class _DesignedMaterial(_DesignedLight):
     bounds: _Bounds = (0.0, 1.0)
-
-    @property
-    def file(self) -> str | None:
-        return None
-
-    def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
-        return SpectrumSpec(name, None, *self.bounds)
 
 
 class _RgbGoal(SpecModel):
@@ -362,13 +356,9 @@ def _tag(*kinds: str) -> Callable[[Any], str]:
 
 
 def _goal_tag(value: Any) -> str:
-    return (
-        "~colour"
-        if not isinstance(value, dict)
-        else "~free"
-        if "free" in value
-        else "~rgb"
-    )
+    if not isinstance(value, dict):
+        return "~colour"
+    return "~free" if "free" in value else "~rgb"
 
 
 _Light = Annotated[

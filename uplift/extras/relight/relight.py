@@ -46,9 +46,8 @@ from uplift.lookup.node_table import prepare_products
 
 # name of the method that multiplies the RGB of the image by those of the light
 RGB_PRODUCT = "RGB × light"
-MIN_MAP_LIMIT = (
-    4  # smallest ΔE00 at the dark end of maps: invisible differences stay pale
-)
+# smallest ΔE00 at the dark end of maps: invisible differences stay pale
+MIN_MAP_LIMIT = 4
 # maps are darker by the root of ΔE00, so that one scale serves daylight and sodium
 # lamps
 MAP_EXPONENT = 0.5
@@ -128,9 +127,8 @@ class Relit:
 
     name: str  # Name of the image
     reduction: int  # Pixels of the image per pixel of the colours, along each side
-    original: NDArray[
-        np.uint8
-    ]  # 8-bit sRGB codes (height, width, 3) of the image itself
+    # 8-bit sRGB codes (height, width, 3) of the image itself
+    original: NDArray[np.uint8]
     renderings: tuple[Rendering, ...]  # One for each light
 
     @property
@@ -228,7 +226,7 @@ def write_relit_sheet(
     With ``adapt`` the white of each light is shown as white; by default if it
     `looks_white`.
     """
-    rows: list[tuple[Relit, Rendering]] = []
+    rows = list[tuple[Relit, Rendering]]()
     for image in relit:
         rows += [(image, rendering) for rendering in image.renderings]
     first, second = map(figure_text, relit[0].shown_pair)
@@ -251,14 +249,16 @@ def write_relit_sheet(
         )
     for axes, title in zip(grid[0], titles, strict=True):
         axes.set_title(title, fontsize=11, color=INK, pad=6)
-    style = {
-        "fraction": 0.04,
-        "pad": 0.02,
-        "aspect": 15 * len(rows),
-        "extend": "max",
-        "format": "%d",
-    }
-    bar = figure.colorbar(drawn, ax=list(grid[:, -1]), ticks=_ticks(limit), **style)
+    bar = figure.colorbar(
+        drawn,
+        ax=list(grid[:, -1]),
+        ticks=_ticks(limit),
+        fraction=0.04,
+        pad=0.02,
+        aspect=15 * len(rows),
+        extend="max",
+        format="%d",
+    )
     bar.outline.set_visible(False)
     write_figure(figure, path, force=force)
 
@@ -283,10 +283,10 @@ def _draw_row(
         codes = rendering.screen_codes(method, balanced=balanced)
         show_image(panel, codes, interpolation="antialiased")
         if method != RGB_PRODUCT:
-            found = mean_p95_max(rendering.differences[RGB_PRODUCT, method])
+            errors = mean_p95_max(rendering.differences[RGB_PRODUCT, method])
             text = (
-                f"ΔE00 from RGB × light: mean {found['mean']:.1f}, 95 % "
-                f"{found['p95']:.1f}"
+                f"ΔE00 from RGB × light: mean {errors['mean']:.1f}, 95 % "
+                f"{errors['p95']:.1f}"
             )
             panel.set_xlabel(text, fontsize=9, color=GREY)
     state = "white-balanced" if balanced else "tinted"
@@ -318,10 +318,8 @@ def relit_page(relit: Sequence[Relit], *, adapt: bool | None = None) -> str:
     return render(
         "extras/relight/templates/relight_page.html.j2",
         title="Images under other lights",
-        lead=(
-            "RGB multiplied by the light, against spectra under the light. Drag the "
-            "line, or use the arrow keys."
-        ),
+        lead="RGB multiplied by the light, against spectra under the light. Drag the "
+        "line, or use the arrow keys.",
         lights=[rendering.light_label for rendering in first.renderings],
         balanced=[rendering.is_balanced(adapt) for rendering in first.renderings],
         methods=first.methods,
@@ -380,10 +378,9 @@ def _layer(
     balanced: bool | None = None,
     kind: str = "jpeg",
 ) -> dict[str, Any]:
-    source = _encoded(codes, kind)
     return {
         "label": label,
-        "source": source,
+        "source": _encoded(codes, kind),
         "light": light,
         "shows": shows,
         "balanced": balanced,
@@ -402,14 +399,10 @@ def _encoded(codes: NDArray[np.uint8], kind: str) -> str:
     spec.attribute("jpeg:subsampling", "4:4:4")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"image.{kind}"
-        image = OpenImageIO.ImageOutput.create(kind)
-        if not (
-            image
-            and image.open(utf8_name(path, OutputError), spec)
-            and image.write_image(codes)
-        ):
+        image: Any = OpenImageIO.ImageOutput.create(kind)
+        is_open = image and image.open(utf8_name(path, OutputError), spec)
+        if not is_open or not image.write_image(codes):
             raise OSError(read_error(image or OpenImageIO))
         image.close()
-        return (
-            f"data:image/{kind};base64,{base64.b64encode(path.read_bytes()).decode()}"
-        )
+        content = base64.b64encode(path.read_bytes()).decode()
+        return f"data:image/{kind};base64,{content}"

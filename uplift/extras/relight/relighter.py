@@ -39,11 +39,8 @@ class Relighter(Converter):
 
     def part_header(self, part: Part) -> dict[str, object]:
         space = source_space(part, self.sensor, self.space)
-        return {
-            "chromaticities": exr.chromaticities(
-                self.sensor if space is None else space.gamut
-            )
-        }
+        gamut = self.sensor if space is None else space.gamut
+        return {"chromaticities": exr.chromaticities(gamut)}
 
     @contextlib.contextmanager
     def opened(self, image: Image) -> Iterator[ConvertRows]:
@@ -60,10 +57,9 @@ class Relighter(Converter):
         space = source_space(part, self.sensor, self.space)
         if space is None or space.matrix_to(self.sensor) is None:
             return lit
-        to_sensor = conversion(space.gamut, self.sensor)
-        return (
-            lit.reshape(-1, 3) @ np.linalg.inv(to_sensor).T.astype(lit.dtype)
-        ).reshape(lit.shape)
+        to_space = np.linalg.inv(conversion(space.gamut, self.sensor))
+        colours = lit.reshape(-1, 3) @ to_space.T.astype(lit.dtype)
+        return colours.reshape(lit.shape)
 
 
 def prepare_relighter(

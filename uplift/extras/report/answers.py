@@ -32,7 +32,7 @@ class StoredAnswers:
         that of a cube.
         """
         answers = cube.reflectance(self.rgb, self.wavelengths, mode=mode)
-        return np.asarray(np.abs(answers - self.reflectance).max(axis=-1))
+        return np.abs(answers - self.reflectance).max(axis=-1)
 
 
 def read_answers(path: StrPath) -> StoredAnswers:

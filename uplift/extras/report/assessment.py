@@ -37,34 +37,28 @@ class Assessment:
     size: int  # Bytes of the file
     data: CubeData  # The cube
     facts: dict[str, Any]  # The result of `summarise`
-    failures: dict[
-        str, Any
-    ]  # Nodes over the threshold and missing entries: `collect_failures`
+    # Nodes over the threshold and missing entries: `collect_failures`
+    failures: dict[str, Any]
     distance: Histogram  # Fitting distance of the nodes, max |linear RGB|
-    round_trips: dict[
-        str, Histogram
-    ]  # ΔE00 of random colours under the cube's illuminant, by mode of lookup
+    # ΔE00 of random colours under the cube's illuminant, by mode of lookup
+    round_trips: dict[str, Histogram]
     # Standard errors of the nodes, ΔE00 under ``data.error_illuminant``; None if the
     # cube has none
     standard_error: Histogram | None
     smoothness: Histogram  # rms difference of reflectance between neighbouring nodes
     steepest: Array  # (2, 3) Linear RGB of the two neighbours that differ most
-    lights: tuple[
-        Sensor, ...
-    ]  # Display sensors of the lights under which entries are compared
+    # Display sensors of the lights under which entries are compared
+    lights: tuple[Sensor, ...]
     sources: tuple[str, ...]  # Names of the files that the measured spectra come from
     own: bool  # Whether the cube was built from these files
-    entries: (
-        EntryErrors | None
-    )  # Errors of the entries; None without a measured spectrum to compare with
-    alternatives: dict[
-        str, Answers
-    ]  # Those of other methods at the colours of ``entries``; empty without entries
+    # Errors of the entries; None without a measured spectrum to compare with
+    entries: EntryErrors | None
+    # Those of other methods at the colours of ``entries``; empty without entries
+    alternatives: dict[str, Answers]
     delta_e: dict[str, Histogram]  # ΔE00 of the entries by name of the light
     out_of_gamut: tuple[str, ...]  # Entries of ``sources`` outside the cube's RGB space
-    not_covered: tuple[
-        str, ...
-    ]  # Entries of ``sources`` for which a sparse cube has no nodes
+    # Entries of ``sources`` for which a sparse cube has no nodes
+    not_covered: tuple[str, ...]
     # Actual against predicted errors; None if the cube was built from the entries or
     # has no standard errors
     calibration: Calibration | None

@@ -47,7 +47,7 @@ class Changes:
     @property
     def largest(self) -> Array:
         """(n,) largest ΔE00 of each colour under any light."""
-        return np.asarray(self.delta_e.max(axis=1))
+        return self.delta_e.max(axis=1)
 
     @property
     def compared(self) -> Array:
@@ -220,8 +220,8 @@ def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, ob
 
     Rows without a difference come last.
     """
-    differences: list[dict[str, Any]] = []
-    worst_colours: list[dict[str, Any]] = []
+    differences = list[dict[str, Any]]()
+    worst_colours = list[dict[str, Any]]()
     for changes in diff.sets:
         differences += _differences(changes, diff.lights, tolerance)
         names = diff.pairs.names if changes is diff.entries else None

@@ -39,20 +39,16 @@ def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
     made for.
     """
     worst_of = diff.nodes.compared.max(axis=1)
-    limit = (
-        max(MIN_LIMIT, math.ceil(np.quantile(worst_of, SHARE)))
-        if worst_of.size
-        else MIN_LIMIT
-    )
+    limit = MIN_LIMIT
+    if worst_of.size:
+        limit = max(limit, math.ceil(np.quantile(worst_of, SHARE)))
     dim = diff.cubes[0].data.lattice.dim
     nodes = blue_slices(diff.nodes.largest[: dim**3], dim)
     return render(
         "extras/report/templates/diff.html.j2",
         title=" and ".join(diff.names),
-        lead=(
-            "Where the answers of two cubes differ: ΔE00 between their spectra, the "
-            "largest under any of the lights."
-        ),
+        lead="Where the answers of two cubes differ: ΔE00 between their spectra, the "
+        "largest under any of the lights.",
         diff=diff,
         figures=to_json(diff, None, worst),
         limit=limit,
@@ -131,7 +127,7 @@ def _spectra(diff: CubeDiff, changes: Changes, row: int) -> dict[str, object]:
     wavelengths = sensor.wavelengths
     if changes is diff.entries:
         name = diff.pairs.names[row]
-        answers = [each[row] for each in diff.pairs.spectra]
+        answers = [spectra[row] for spectra in diff.pairs.spectra]
     else:
         name = ""
         answers = [cube.reflectance(rgb, wavelengths) for cube in diff.cubes]

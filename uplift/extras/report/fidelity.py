@@ -30,9 +30,8 @@ class EntryQuery:
     # (E, 3) Linear RGB, outside [0, 1] for the cube's entries outside its space
     rgb: Array
     target: Array  # (E, N) Reflectances at the sensor's wavelengths
-    rows: (
-        Indices | None
-    )  # (E,) Rows of the table of all entries of the cube; None for other entries
+    # (E,) Rows of the table of all entries of the cube; None for other entries
+    rows: Indices | None
 
     def answerable_by(self, cube: Cube) -> "EntryQuery":
         """Keep the entries that a cube has nodes for: a sparse one lacks some."""
@@ -79,9 +78,8 @@ class EntryErrors:
     answers: Answers  # Those of the cube
     # (E,) ΔE00 between answer and ``target`` under the cube's error illuminant
     actual: Array
-    predicted: (
-        Array | None
-    )  # (E,) Standard error of the cube at ``rgb``; None if it has none
+    # (E,) Standard error of the cube at ``rgb``; None if it has none
+    predicted: Array | None
     cells: Indices  # (E, 3) Position of the lowest corner of the cell along the axes
     # Interpolated from the lattice without the entries. This and all further fields are
     # None for entries that the cube was not built from
@@ -89,9 +87,8 @@ class EntryErrors:
     # (E,) Lattice steps from the entry to the faces of its box; 0 if no colour returns
     # the entry
     half_width: Array | None = None
-    half_width_codes: Array | None = (
-        None  # (E,) The same in 8-bit codes, to the nearest pair of faces
-    )
+    # (E,) The same in 8-bit codes, to the nearest pair of faces
+    half_width_codes: Array | None = None
 
 
 Rows = TypeVar("Rows", EntryQuery, Answers, EntryErrors)
@@ -109,7 +106,8 @@ def take(table: Rows, rows: ArrayLike) -> Rows:
         return None if value is None else take(value, order)
 
     return replace(
-        table, **{each.name: part(getattr(table, each.name)) for each in fields(table)}
+        table,
+        **{field.name: part(getattr(table, field.name)) for field in fields(table)},
     )
 
 
@@ -136,10 +134,8 @@ def from_other_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
     """
     measured = resample(atlas, data.sensor.wavelengths).values
     rgb = data.sensor.rgb(measured)
-    return take(
-        EntryQuery(atlas.names, np.clip(rgb, 0, 1), measured, None),
-        np.flatnonzero(in_unit_cube(rgb)),
-    )
+    query = EntryQuery(atlas.names, np.clip(rgb, 0, 1), measured, None)
+    return take(query, np.flatnonzero(in_unit_cube(rgb)))
 
 
 def from_stored_entries(data: CubeData) -> EntryQuery:
@@ -190,9 +186,9 @@ def _with_lattice_errors(
     all its entries.
     """
     data = cube.data
-    table = cube.data.atlas.with_outside
+    table = data.atlas.with_outside
     boxes = data.outside_boxes
-    reach = data.outside_boxes.half_width[:, None]
+    reach = boxes.half_width[:, None]
     lower, upper = data.entry_boxes.faces
     faces = (
         np.concatenate([lower, boxes.rgb - reach]),
@@ -202,7 +198,7 @@ def _with_lattice_errors(
 
     def codes(linear: Array) -> Array:
         rgb = linear[rows]
-        return np.asarray(np.sign(rgb) * cube.encode(np.abs(rgb)))
+        return np.sign(rgb) * cube.encode(np.abs(rgb))
 
     low, centre, high = map(codes, faces)
     is_outside = rows >= len(data.atlas.names)
@@ -250,8 +246,8 @@ def find_alternatives(
     }
     under = [sensor.light for sensor in lights]
     return {
-        name: compare_spectra(each, errors.target, under)
-        for name, each in spectra.items()
+        name: compare_spectra(reflectances, errors.target, under)
+        for name, reflectances in spectra.items()
     }
 
 
@@ -278,9 +274,8 @@ def _sigmoid(data: CubeData, rgb: Array) -> Array:
     return np.where((distance <= data.threshold)[:, None], answer, np.nan)
 
 
-MAX_DISTANCE = (
-    1 + 1e-9
-)  # lattice steps; two entries of one cell are never farther apart
+# lattice steps; two entries of one cell are never farther apart
+MAX_DISTANCE = 1 + 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -329,9 +324,8 @@ def _nearest(steps: Array) -> tuple[Indices, Array]:
         return np.zeros(len(steps), dtype=np.int64), np.full(len(steps), np.inf)
     distances, rows = KDTree(steps).query(steps, k=2, p=np.inf)
     # The first of the two is the row itself, unless another has the same colour.
-    return np.where(
-        rows[:, 0] == np.arange(len(steps)), rows[:, 1], rows[:, 0]
-    ), distances[:, 1]
+    is_itself = rows[:, 0] == np.arange(len(steps))
+    return np.where(is_itself, rows[:, 1], rows[:, 0]), distances[:, 1]
 
 
 def _lost(data: CubeData) -> tuple[tuple[str, str], ...]:

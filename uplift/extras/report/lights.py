@@ -55,14 +55,11 @@ def assess_lights(table: EmissionTable) -> dict[str, Any]:
     luminance 1.
     """
     radiometry = table.data.radiometry
-    xyz = (
-        np.random.default_rng(SEED).random((COLOURS, len(radiometry))) ** PEAKS
-        @ radiometry
-    )
+    random = np.random.default_rng(SEED).random((COLOURS, len(radiometry)))
+    xyz = random**PEAKS @ radiometry
     power = table.spectrum_of_xyz(xyz)
-    distance = np.linalg.norm(
-        chromaticity(power @ radiometry) - chromaticity(xyz), axis=1
-    )
+    change = chromaticity(power @ radiometry) - chromaticity(xyz)
+    distance = np.linalg.norm(change, axis=1)
     expected = table.expected_error(table.rgb_of_xyz(xyz))
     lamps = table.data.entries.spectra @ radiometry
     lamp_rgb = table.rgb_of_xyz(lamps / lamps[:, 1:2])

@@ -17,15 +17,8 @@ from uplift.extras.export.table import COLUMNS, check_complete, make_table
 from uplift.extras.pages.html import Markup, render, resource
 from uplift.lookup import Cube
 
-LIGHTS = (
-    "D65",
-    "A",
-    "D50",
-    "FL2",
-    "FL11",
-    "HP1",
-    "LED-B3",
-)  # illuminants to choose from
+# illuminants to choose from
+LIGHTS = ("D65", "A", "D50", "FL2", "FL11", "HP1", "LED-B3")
 GROUP = 4  # wavelengths of one call of the program
 SPACE = "sRGB"
 
@@ -60,11 +53,9 @@ def page(data: CubeData) -> str:
     return render(
         "extras/report/templates/live_page.html.j2",
         title="Your images under other lights",
-        lead=(
-            f"Spectra of a cube of {data.lattice.dim}³ nodes and "
-            f"{pluralise(len(data.atlas.names), 'atlas entry')}, "
-            f"evaluated in the browser for every pixel. Drop an image on the page."
-        ),
+        lead=f"Spectra of a cube of {data.lattice.dim}³ nodes and "
+        f"{pluralise(len(data.atlas.names), 'atlas entry')}, "
+        f"evaluated in the browser for every pixel. Drop an image on the page.",
         lights=names,
         second=next(name for name in ("A", "FL11") if name != names[0]),
         numbers=numbers,

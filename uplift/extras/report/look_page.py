@@ -40,30 +40,28 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
     if not found or len(found[0].xyz) != 1:
         count = len(found[0].xyz) if found else 0
         raise OptionError(
-            (
-                "a page shows one colour under some lights, got "
-                f"{pluralise(count, 'colour')}"
-            ),
+            "a page shows one colour under some lights, got "
+            f"{pluralise(count, 'colour')}",
             hint="give a single colour",
         )
     sensor = cube.data.sensor
     rgb = found[0].volumes.rgb[0]
     written = _written(cube, rgb)
     screens = display_sensors(
-        [each.light.name for each in found], cube.observer, *sensor.range
+        [bounds.light.name for bounds in found], cube.observer, *sensor.range
     )
-    lights = [_light(each, screen) for each, screen in zip(found, screens, strict=True)]
+    lights = [
+        _light(bounds, screen) for bounds, screen in zip(found, screens, strict=True)
+    ]
     colour = written
     if not isinstance(written, str):
         colour = " ".join(f"{number:.4g}" for number in written)
     return render(
         "extras/report/templates/look_page.html.j2",
         title=f"Looks of {colour}",
-        lead=(
-            f"Many spectra have this RGB under {sensor.illuminant}. Drag its colour "
-            "under another light: the spectrum "
-            f"follows, and the colour under {sensor.illuminant} stays."
-        ),
+        lead=f"Many spectra have this RGB under {sensor.illuminant}. Drag its colour "
+        "under another light: the spectrum "
+        f"follows, and the colour under {sensor.illuminant} stays.",
         build=sensor.illuminant,
         lights=lights,
         likely=f"{LIKELY:.0%}",
@@ -116,11 +114,11 @@ def _written(cube: Cube, rgb: Array) -> str | list[float]:
     """The colour as a file of looks has it: '#rrggbb' where that is exact, else linear
     RGB.
     """
-    codes = np.asarray(cube.encode(rgb))
+    codes = cube.encode(rgb)
     whole = np.rint(codes)
     if (np.abs(codes - whole) <= CODE_SLACK).all():
         return "#" + bytes(whole.astype(np.uint8)).hex()
-    return [round(float(each), 6) for each in rgb]
+    return [round(float(number), 6) for number in rgb]
 
 
 def _rounded(values: Array) -> Any:

@@ -77,9 +77,8 @@ def compute_smoothness(data: CubeData) -> tuple[NDArray[np.float32], Array]:
     dim = data.lattice.dim
     wavelengths = data.sensor.wavelengths
     parts = []
-    none = spectra = np.full(
-        (dim, dim, len(wavelengths)), np.nan
-    )  # of a plane; NaN for absent nodes
+    # of a plane; NaN for absent nodes
+    none = spectra = np.full((dim, dim, len(wavelengths)), np.nan)
     for first in range(0, dim**3, dim**2):
         before = spectra
         spectra = none
@@ -100,8 +99,8 @@ def compute_smoothness(data: CubeData) -> tuple[NDArray[np.float32], Array]:
             known = ~np.isnan(rms)
             parts.append((rms[known], high[known], high[known] - step))
     rms, high, low = map(np.concatenate, zip(*parts, strict=True))
-    steepest = [each[rms.argmax()] for each in (low, high)]
-    return rms.astype(np.float32), data.lattice.target(np.array(steepest))
+    steepest = np.stack([low, high])[:, rms.argmax()]
+    return rms.astype(np.float32), data.lattice.target(steepest)
 
 
 COLOURS = 4096
@@ -149,13 +148,11 @@ class Calibration:
     """
 
     count: int  # Number of entries
-    actual: (
-        float  # Mean that they should have had, so that 68 % of the entries were within
-    )
+    # Mean that they should have had, so that 68 % of the entries were within
+    actual: float
     predicted: float  # Mean of the standard errors
-    within_error: (
-        float  # Fraction of the entries whose error is at most its standard error
-    )
+    # Fraction of the entries whose error is at most its standard error
+    within_error: float
     within_bound: float  # The same of its error bound
 
     @property

@@ -202,8 +202,8 @@ def _looks(assessment: Assessment) -> Iterator[dict[str, Any]]:
     """Name, colour and weight of each look, and a row for each of its lights."""
     for look in assessment.data.provenance.get("looks", ()):
         rows = [
-            {**each, "codes": hex_codes(np.array([each["wish"], each["answer"]]))}
-            for each in look["lights"]
+            {**light, "codes": hex_codes(np.array([light["wish"], light["answer"]]))}
+            for light in look["lights"]
         ]
         (code,) = hex_codes(np.array([look["rgb"]]), assessment.data.sensor)
         yield {
@@ -215,15 +215,15 @@ def _looks(assessment: Assessment) -> Iterator[dict[str, Any]]:
 
 
 def _failed_points(assessment: Assessment) -> Iterator[dict[str, Any]]:
-    for each in assessment.failures["worst"]:
-        target = each["rgb"]
-        actual = each["lattice_rgb"].astype(float)
+    for point in assessment.failures["worst"]:
+        target = point["rgb"]
+        actual = point["lattice_rgb"].astype(float)
         codes = hex_codes(np.array([target, actual]), assessment.data.sensor)
         yield {
             "codes": codes,
             "target": target,
             "actual": actual,
-            "distance": float(each["distance"]),
+            "distance": float(point["distance"]),
         }
 
 
@@ -237,8 +237,8 @@ def _compared(assessment: Assessment, count: int) -> Iterator[dict[str, list[Swa
     for row in range(min(count, len(entries.names))):
         measured = _cells(assessment.lights, entries.target[row], None)
         cells = {
-            name: _cells(assessment.lights, each.spectra[row], each.delta_e[row])
-            for name, each in answers.items()
+            name: _cells(assessment.lights, method.spectra[row], method.delta_e[row])
+            for name, method in answers.items()
         }
         yield {"measured": measured} | cells
 

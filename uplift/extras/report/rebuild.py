@@ -269,19 +269,15 @@ def _read_options(data: CubeData, path: StrPath) -> Options:
         raise _unknown_options(error, path) from error
     if options.solver == CUSTOM:
         raise CubeFileError(
-            (
-                "was built with a solver that was given as an object, which a cube "
-                "cannot record"
-            ),
+            "was built with a solver that was given as an object, which a cube "
+            "cannot record",
             path=path,
             hint="build it again with that solver, or with a named one",
         )
     if options.dim != data.lattice.dim:
         raise CubeFileError(
-            (
-                f"records dim {options.dim}, but has "
-                f"{pluralise(data.lattice.dim, 'node')} along each axis"
-            ),
+            f"records dim {options.dim}, but has "
+            f"{pluralise(data.lattice.dim, 'node')} along each axis",
             path=path,
             hint=REBUILD,
         )

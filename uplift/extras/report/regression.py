@@ -55,12 +55,10 @@ class RebuildDifference:
     # Largest differences by the names in `LIMITS`, over the entries and the nodes whose
     # spectra are well determined
     measures: dict[str, float]
-    stored_counts: dict[
-        str, int
-    ]  # Number of these nodes by status, and of all unfitted nodes
-    rebuilt_counts: dict[
-        str, int
-    ]  # Number of these nodes by status, and of all unfitted nodes
+    # Number of these nodes by status, and of all unfitted nodes
+    stored_counts: dict[str, int]
+    # Number of these nodes by status, and of all unfitted nodes
+    rebuilt_counts: dict[str, int]
     entries: tuple[EntryChange, ...]  # Entries that differ
 
     @property
@@ -147,7 +145,7 @@ def _well_determined(data: CubeData) -> Mask:
     unrealisable = data.points.status == Status.UNREALISABLE
     if not unrealisable.any():
         return np.ones(data.lattice.size, dtype=bool)
-    inside = np.asarray(
+    inside = (
         solid(data.sensor.matrix).signed_distance(data.lattice.points)
         < -BOUNDARY_MARGIN
     )

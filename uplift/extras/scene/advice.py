@@ -68,16 +68,18 @@ def colour_areas(images: Images, sensor: Sensor) -> PixelSample:
             .sum(axis=(2, 4, 6))
             .reshape(4, -1)
         )
-        found = totals[:, totals[3] > 0]
-        if found.shape[1] <= MAX_COLOURS:
+        occupied = totals[:, totals[3] > 0]
+        if occupied.shape[1] <= MAX_COLOURS:
             break
-    return PixelSample(np.clip(found[:3] / found[3], 0, 1).T, found[3] / found[3].sum())
+    return PixelSample(
+        np.clip(occupied[:3] / occupied[3], 0, 1).T, occupied[3] / occupied[3].sum()
+    )
 
 
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
     """Standard errors of n colours of some area (n,) under L lights, √(c ``unknown`` +
-    ``rest``).
+    ``floor``).
 
     c is the diagonal of the posterior ``covariance`` (n, n) of kriging, the others are
     squares of ΔE00 (n, L).
@@ -86,7 +88,7 @@ class Uncertainty:
     area: Array
     covariance: Array
     unknown: Array
-    rest: Array
+    floor: Array
 
     @property
     def errors(self) -> Array:
@@ -113,14 +115,14 @@ class Uncertainty:
         mean error.
         """
         variance = np.diag(self.covariance)
-        found = np.empty(len(variance))
-        for rows in blocks(len(found), BLOCK_ROWS):
+        errors = np.empty(len(variance))
+        for rows in blocks(len(errors), BLOCK_ROWS):
             # c(x) − c(x, s)² / c(s)
             known = (
                 self.covariance[rows] ** 2 / np.maximum(variance[rows], TINY)[:, None]
             )
-            found[rows] = self._errors(variance - known).mean(axis=-1) @ self.area
-        return np.maximum(self.mean - found, 0)
+            errors[rows] = self._errors(variance - known).mean(axis=-1) @ self.area
+        return np.maximum(self.mean - errors, 0)
 
     def measured(self, colour: int) -> "Uncertainty":
         """Return what remains once a colour, by its number, is measured."""
@@ -131,9 +133,7 @@ class Uncertainty:
         )
 
     def _errors(self, variance: Array) -> Array:
-        return np.asarray(
-            np.sqrt(np.maximum(variance, 0)[..., None] * self.unknown + self.rest)
-        )
+        return np.sqrt(np.maximum(variance, 0)[..., None] * self.unknown + self.floor)
 
 
 @single_threaded_blas()
@@ -149,15 +149,20 @@ def uncertainty(
         prior.get("length", DEFAULT.length), prior.get("noise", DEFAULT.noise)
     )
     errors = [light_errors(data, light) for light in lights]
-    squares = np.stack([each(colours.rgb)[:, 0] ** 2 for each in errors], axis=1)
-    floors = np.concatenate(
-        [each.expected.radii[0] ** 2 * each.expected.floor for each in errors]
+    squares = np.stack(
+        [estimate(colours.rgb)[:, 0] ** 2 for estimate in errors], axis=1
     )
-    rest = np.minimum(floors, squares)
+    floors = np.concatenate(
+        [
+            estimate.expected.radii[0] ** 2 * estimate.expected.floor
+            for estimate in errors
+        ]
+    )
+    floor = np.minimum(floors, squares)
     covariance = posterior(kernel, data.entry_lab, rgb_to_lab(data.sensor, colours.rgb))
     variance = np.maximum(np.diag(covariance), TINY)
     return Uncertainty(
-        colours.share, covariance, (squares - rest) / variance[:, None], rest
+        colours.share, covariance, (squares - floor) / variance[:, None], floor
     )
 
 
@@ -184,7 +189,7 @@ def advise(scene: Uncertainty, count: int) -> tuple[list[Swatch], Uncertainty]:
     """
     if not 1 <= count <= MAX_SWATCHES:
         raise OptionError(f"count must be in [1, {MAX_SWATCHES}], got {count}")
-    chosen: list[Swatch] = []
+    chosen = list[Swatch]()
     errors = scene.errors.mean(axis=1)
     for _ in range(count):
         gains = scene.gains()

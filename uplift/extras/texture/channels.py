@@ -20,10 +20,8 @@ HALF_ROUNDING = 1e-3
 1] by rounding.
 """
 VECTORS = re.compile(
-    (
-        r"(.*[._ "
-        r"])?(n|ns|ng|p|po|pos|pref|uv)|.*(normal|position|vector|velocity|motion|tangent|world).*"
-    ),
+    r"(.*[._ "
+    r"])?(n|ns|ng|p|po|pos|pref|uv)|.*(normal|position|vector|velocity|motion|tangent|world).*",
     re.I,
 )
 """Names of layers of renderers whose X, Y and Z are vectors, not CIE XYZ."""
@@ -73,9 +71,8 @@ class ColourChannels:
         if self.alpha is None:
             return None
         alpha = values[..., [self.alpha]]
-        scale = (
-            np.iinfo(alpha.dtype).max if np.issubdtype(alpha.dtype, np.integer) else 1
-        )
+        is_integer = np.issubdtype(alpha.dtype, np.integer)
+        scale = np.iinfo(alpha.dtype).max if is_integer else 1
         with np.errstate(invalid="ignore"):  # signalling NaN
             opacity = np.clip(np.nan_to_num(alpha / scale, nan=0.0), 0, 1)
         return np.where(self._is_light(values), 1, opacity).astype(np.float32)
@@ -89,7 +86,7 @@ class ColourChannels:
             colours = np.abs(values[..., self.rgb].astype(float))
             alpha = np.abs(values[..., [self.alpha]].astype(float))
         brightest = colours.max(axis=-1, keepdims=True)
-        return np.asarray((brightest > BRIGHTEST * alpha) & np.isfinite(brightest))
+        return (brightest > BRIGHTEST * alpha) & np.isfinite(brightest)
 
 
 def without_rounding(rgb: Values, tolerance: float = HALF_ROUNDING) -> Values:
@@ -120,10 +117,8 @@ def colour_channels(part: Part) -> ColourChannels | None:
     if not names:
         return None
     first, second, third = map(part.channels.index, names)
-    if (
-        types := {part.types[channel] for channel in (first, second, third)}
-        - COLOUR_TYPES
-    ):
+    types = {part.types[first], part.types[second], part.types[third]} - COLOUR_TYPES
+    if types:
         raise TextureError(
             f"colour channels must be 8-bit, 16-bit, half or float, got {min(types)}",
             hint="convert them",
@@ -142,9 +137,9 @@ def _colour_names(part: Part) -> tuple[list[str], str]:
     for letters in ("RGB", "XYZ"):
         layers = _layers(part, letters)
         if len(layers) > 1:
-            found = ", ".join(layer[:-1] for layer in layers)
+            names = ", ".join(layer[:-1] for layer in layers)
             raise TextureError(
-                f"a part must have one layer of colour, got {found}",
+                f"a part must have one layer of colour, got {names}",
                 hint="write each layer as a part",
             )
         if layers:
@@ -165,11 +160,7 @@ def _layers(part: Part, letters: str) -> list[str]:
         for name in part.channels
         if name == first or name.endswith(f".{first}")
     ]
-
-    def is_complete(layer: str) -> bool:
-        return all(layer + letter in names for letter in others)
-
-    layers = [layer for layer in ends if is_complete(layer)]
+    layers = [layer for layer in ends if names.issuperset(map(layer.__add__, others))]
     if letters == "XYZ":
         layers = [
             layer for layer in layers if not VECTORS.fullmatch(layer.removesuffix("."))

@@ -6,6 +6,7 @@ BT.2100, 1000 cd/m²) are used.
 """
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -37,9 +38,9 @@ XYZ_TO_HLG = "DISPLAY - CIE-XYZ-D65_to_REC.2100-HLG-1000nit"
 
 def _decode_bt709(codes: Array) -> Array:
     """Invert the transfer function of ITU-R BT.709, which BT.2020 shares."""
-    return np.where(
-        codes < 0.081, codes / 4.5, (np.maximum(codes, 0.081) + 0.099) / 1.099
-    ) ** np.where(codes < 0.081, 1, 1 / 0.45)
+    is_line = codes < 0.081
+    values = np.where(is_line, codes / 4.5, (np.maximum(codes, 0.081) + 0.099) / 1.099)
+    return values ** np.where(is_line, 1, 1 / 0.45)
 
 
 def power(gamma: float) -> Curve:
@@ -64,7 +65,13 @@ def _built_in(name: str, *, is_inverse: bool = False) -> OcioSpace:
     import PyOpenColorIO as ocio  # noqa: N813
 
     direction = ocio.TRANSFORM_DIR_INVERSE if is_inverse else ocio.TRANSFORM_DIR_FORWARD
-    transform = ocio.BuiltinTransform(name, direction)
+    return ocio_space(name, ocio.BuiltinTransform(name, direction))
+
+
+def ocio_space(name: str, transform: Any) -> OcioSpace:
+    """Return the conversion by a transform of OpenColorIO."""
+    import PyOpenColorIO as ocio  # noqa: N813
+
     processor = ocio.Config.CreateRaw().getProcessor(transform)
     return OcioSpace(
         name, False, processor.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS)
@@ -95,7 +102,7 @@ def find_space(name: str, points: Sequence[int], bits: int) -> ImageSpace | None
     gamut = PRIMARIES.get(primaries)
     if gamut is None or matrix != 0:
         return None
-    to_full = _as_given if is_full else _widen(bits)
+    to_full = (lambda codes: codes) if is_full else _widen(bits)
     if transfer == HLG and primaries == BT2020:
         return ImageSpace(
             name,
@@ -108,10 +115,6 @@ def find_space(name: str, points: Sequence[int], bits: int) -> ImageSpace | None
     if curve is None:
         return None
     return ImageSpace(name, gamut, lambda codes: curve(to_full(codes)))
-
-
-def _as_given(codes: Array) -> Array:
-    return codes
 
 
 def _widen(bits: int) -> Curve:

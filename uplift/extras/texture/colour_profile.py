@@ -16,7 +16,7 @@ import numpy as np
 
 from uplift.colorimetry.gamut import SRGB, Primaries
 from uplift.common.errors import OptionError
-from uplift.extras.colour.spaces import ImageSpace, OcioSpace, find_ocio_space
+from uplift.extras.colour.spaces import ImageSpace, find_ocio_space
 from uplift.extras.colour.srgb import decode
 from uplift.extras.texture import code_points
 
@@ -31,10 +31,10 @@ ADOBE = ImageSpace(
     Primaries((0.64, 0.33), (0.21, 0.71), (0.15, 0.06), SRGB.white),
     code_points.power(563 / 256),
 )
-EXIF_SRGB, EXIF_ADOBE = 1, 2
-"""Values of the EXIF tag ColorSpace. The standard has the first, and cameras write the
-second.
-"""
+EXIF_SRGB = 1
+"""Value of the EXIF tag ColorSpace for sRGB."""
+EXIF_ADOBE = 2
+"""The value that cameras write for Adobe RGB; the standard does not have it."""
 ADOBE_INDEX = "R03"
 """EXIF interoperability index of Adobe RGB (DCF 2.0)."""
 CMYK = "CMYK"
@@ -61,14 +61,13 @@ def read_profile(spec: Any, header: Mapping[str, Any]) -> Profile | None:
     ``spec`` is an `OpenImageIO.ImageSpec`, and ``header`` has the statements that it
     lacks.
     """
-    unusable: list[str] = []
+    unusable = list[str]()
     if CMYK in (
         spec.get_string_attribute("tiff:ColorSpace"),
         spec.get_string_attribute("jpeg:ColorSpace"),
     ):
-        return Profile(
-            CMYK, None, (CMYK,)
-        )  # OpenImageIO converts it to RGB without a profile
+        # OpenImageIO converts it to RGB without a profile
+        return Profile(CMYK, None, (CMYK,))
     for statement in _statements(spec, header):
         if statement.space is not None:
             return replace(statement, unusable=tuple(unusable))
@@ -125,10 +124,10 @@ def _interop_space(name: str) -> ImageSpace | None:
     """Return the space of a name of the Color Interop Forum, which the configuration of
     OpenColorIO has as alias.
     """
-    found = None
+    space = None
     with contextlib.suppress(OptionError):
-        found = find_ocio_space(name)
-    return None if found is None else found.as_image_space()
+        space = find_ocio_space(name)
+    return None if space is None else space.as_image_space()
 
 
 def _by_primaries(name: str, numbers: Any) -> Profile:
@@ -195,11 +194,8 @@ def _by_parts(
 def _table_curve(numbers: tuple[float, ...]) -> code_points.Curve | None:
     """Return the curve of one or three tables of 16-bit numbers; None for others."""
     tables = np.array(numbers, dtype=float) / 65535
-    tables = (
-        tables.reshape(3, -1)
-        if len(tables) in (3 << 8, 3 << 16)
-        else np.tile(tables, (3, 1))
-    )
+    is_triple = len(tables) in (3 << 8, 3 << 16)
+    tables = tables.reshape(3, -1) if is_triple else np.tile(tables, (3, 1))
     count = tables.shape[1]
     if count not in (1 << 8, 1 << 16) or not (np.diff(tables) >= 0).all():
         return None
@@ -253,23 +249,15 @@ def _icc_space(name: str, data: bytes) -> ImageSpace | None:
         path.write_bytes(data)
         transform = ocio.FileTransform(str(path), direction=ocio.TRANSFORM_DIR_INVERSE)
         try:
-            processor = ocio.Config.CreateRaw().getProcessor(transform)
+            to_xyz = code_points.ocio_space(name, transform)
         except ocio.Exception:
             return None
-    to_xyz = OcioSpace(
-        name, False, processor.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS)
-    )
     corners = to_xyz.convert(np.vstack([np.eye(3), np.ones(3)]))
     gamut = _primaries((corners / corners.sum(axis=1, keepdims=True))[:, :2].ravel())
     if gamut is None:
         return None
     to_linear = np.linalg.inv(to_xyz.matrix).T
     values = to_xyz.convert(np.linspace([0.0] * 3, [1.0] * 3, 256)) @ to_linear
-    is_plausible = (
-        np.isfinite(values).all() and (np.diff(values, axis=0) >= -ROUNDING).all()
-    )
-    return (
-        ImageSpace(name, gamut, lambda codes: to_xyz.convert(codes) @ to_linear)
-        if is_plausible
-        else None
-    )
+    if not (np.isfinite(values).all() and (np.diff(values, axis=0) >= -ROUNDING).all()):
+        return None
+    return ImageSpace(name, gamut, lambda codes: to_xyz.convert(codes) @ to_linear)

@@ -99,8 +99,8 @@ class Counts:
     def __add__(self, other: "Counts") -> "Counts":
         """Counts of both."""
         sums = {
-            each.name: getattr(self, each.name) + getattr(other, each.name)
-            for each in fields(self)
+            count.name: getattr(self, count.name) + getattr(other, count.name)
+            for count in fields(self)
         }
         return Counts(**sums | {"max_change": max(self.max_change, other.max_change)})
 
@@ -122,20 +122,22 @@ class Counts:
             The warnings. They are not emitted.
         """
         words = {"mapped": PAST_TENSE[method], "change": self.max_change}
-        found = [
-            each for each in fields(self) if each.metadata and getattr(self, each.name)
+        changed = [
+            count
+            for count in fields(self)
+            if count.metadata and getattr(self, count.name)
         ]
         return tuple(
             UpliftWarning(
-                f"{getattr(self, each.name):,} of {pluralise(self.pixels, 'pixel')} "
-                f"{each.metadata['text'].format(**words)}",
-                code=each.metadata["code"],
+                f"{getattr(self, count.name):,} of {pluralise(self.pixels, 'pixel')} "
+                f"{count.metadata['text'].format(**words)}",
+                code=count.metadata["code"],
                 path=path,
                 hint=LIGHTS
-                if each.name == "outside" and self.max_change > BRIGHT
+                if count.name == "outside" and self.max_change > BRIGHT
                 else "",
             )
-            for each in found
+            for count in changed
         )
 
 
@@ -163,11 +165,8 @@ def source_space(
         return chosen or part.xyz
     stated = None if part.profile is None else part.profile.space
     space = chosen or stated or (SRGB_SPACE if part.max_code else None)
-    return (
-        None
-        if space is None or space.agrees_with(sensor, encoded=bool(part.max_code))
-        else space
-    )
+    agrees = space and space.agrees_with(sensor, encoded=bool(part.max_code))
+    return None if agrees else space
 
 
 def space_warnings(
@@ -176,13 +175,13 @@ def space_warnings(
     """Return warnings about parts whose space is not known: unusable statements, and
     assumptions.
     """
-    found: dict[str, UpliftWarning] = {}
+    problems = dict[str, UpliftWarning]()
     for part in image.parts if chosen is None else ():
         if problem := _space_problem(part, sensor):
-            found[problem] = UpliftWarning(
+            problems[problem] = UpliftWarning(
                 problem, code="colour-space-assumed", path=image.path
             )
-    return tuple(found.values())
+    return tuple(problems.values())
 
 
 def _space_problem(part: Part, sensor: Sensor) -> str:
@@ -261,9 +260,8 @@ class Decoder:
             return colours, 0
         finite = np.asarray(np.isfinite(colours).all(axis=-1))
         if self.method != "error":
-            clamped = np.clip(
-                np.nan_to_num(colours, nan=0.0, posinf=1.0, neginf=0.0), 0, 1
-            )
+            numbers = np.nan_to_num(colours, nan=0.0, posinf=1.0, neginf=0.0)
+            clamped = np.clip(numbers, 0, 1)
             colours = np.where(finite[..., None], colours, clamped)
         return colours, int((~finite).sum())
 
@@ -320,10 +318,8 @@ def make_decoder(
         raise OptionError(
             f"encoded floats must use the gamut mapping clip or error, got '{method}'",
             code="encoded-floats-not-mapped",
-            hint=(
-                "their encoding ends at 0 and 1; pass out_of_gamut='clip' or "
-                "encoding='linear'"
-            ),
+            hint="their encoding ends at 0 and 1; pass out_of_gamut='clip' or "
+            "encoding='linear'",
         )
     if is_encoded and source is not None and source.to_gamut is not None:
         raise OptionError("CIE XYZ must be linear", hint="leave out encoding='encoded'")
@@ -369,11 +365,8 @@ def linear_reader(
     """
     to_linear = (source and source.decode) or (lambda codes: sensor.decode(255 * codes))
     if not part.max_code:
-        return (
-            to_linear
-            if encoding == "encoded" or reads_codes(part, source)
-            else np.asarray
-        )
+        is_encoded = encoding == "encoded" or reads_codes(part, source)
+        return to_linear if is_encoded else np.asarray
     if source is not None and source.mixes_channels and encoding != "linear":
         return lambda codes: to_linear(codes / part.max_code)
     # A table, as channels are independent.
@@ -382,6 +375,4 @@ def linear_reader(
     if (table == table[:, :1]).all():
         curve = table[:, 0].copy()
         return lambda codes: curve[codes]
-    return lambda codes: np.stack(
-        [table[:, k][codes[..., k]] for k in range(3)], axis=-1
-    )
+    return lambda codes: table[codes, np.arange(3)]

@@ -112,9 +112,8 @@ def convert(
         total = sum(layout.part.window.height for layout in layouts)
         counts = Counts()
         done = 0
-        with open_writer(
-            target, [each.output for each in layouts], force=force
-        ) as writer:
+        outputs = [layout.output for layout in layouts]
+        with open_writer(target, outputs, force=force) as writer:
             for layout in layouts:
                 writer.start_part(layout.part.number)
                 for first, band in _bands(image, layout):
@@ -127,17 +126,11 @@ def convert(
     warnings = (*counts.warnings(converter.out_of_gamut, source), *notes)
     spaces = tuple(
         dict.fromkeys(
-            _space_name(converter, each.part) for each in layouts if each.colours
+            _space_name(converter, layout.part) for layout in layouts if layout.colours
         )
     )
-    return Conversion(
-        Path(source),
-        Path(target),
-        counts,
-        warnings,
-        time.perf_counter() - begin,
-        spaces,
-    )
+    seconds = time.perf_counter() - begin
+    return Conversion(Path(source), Path(target), counts, warnings, seconds, spaces)
 
 
 def source_stamp(source: StrPath) -> str:
@@ -150,9 +143,7 @@ def _space_name(converter: Converter, part: Part) -> str:
     space = source_space(part, converter.sensor, converter.space)
     if space is not None:
         return space.name
-    return (
-        converter.sensor.space if part.max_code else f"linear {converter.sensor.space}"
-    )
+    return "linear " * (not part.max_code) + converter.sensor.space
 
 
 LOSSLESS = {"half": "half", "uint": "uint", "uint8": "half"}
@@ -190,27 +181,22 @@ def _layout(
         converted = (*"RGB", *converter.channels)
         if duplicates := set(converted) & set(names):
             raise TextureError(
-                (
-                    f"channel '{min(duplicates)}' exists next to the colour and would "
-                    "be "
-                    "written twice"
-                ),
+                f"channel '{min(duplicates)}' exists next to the colour and would be "
+                "written twice",
                 hint="remove that channel",
             )
         names = (*converted, *names)
         types = (*(converter.depth,) * len(converted), *types)
-    modified = time.strftime(
-        "%Y:%m:%d %H:%M:%S", time.gmtime(image.path.stat().st_mtime)
-    )  # as EXIF writes it
+    modified = time.gmtime(image.path.stat().st_mtime)
+    # as EXIF writes it
+    date = part.date or time.strftime("%Y:%m:%d %H:%M:%S", modified)
     header = {
         **part.metadata,
         **converter.header,
         **converter.part_header(part),
         **made_of,
     }
-    output = OutputPart(
-        part.name, part.window, names, types, header, part.date or modified
-    )
+    output = OutputPart(part.name, part.window, names, types, header, date)
     return _Layout(part, colours, others, converter.decoder(part), output)
 
 

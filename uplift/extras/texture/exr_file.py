@@ -46,9 +46,9 @@ def check_size(path: Path) -> None:
     """
     with path.open("rb") as file:
         end = os.fstat(file.fileno()).st_size
-        start = _read(file, 8)
+        start = read_exactly(file, 8)
         if start[:4] != MAGIC:
-            raise _damaged()
+            raise damaged()
         is_multi_part = bool(int.from_bytes(start[4:], "little") & MULTI_PART)
         is_first = True
         attributes = 0
@@ -61,10 +61,10 @@ def check_size(path: Path) -> None:
                 continue
             attributes += 1
             kind = _name(file)
-            (size,) = struct.unpack("<i", _read(file, 4))
+            (size,) = struct.unpack("<i", read_exactly(file, 4))
             value = file.tell()
             if not 0 <= size <= end - value:
-                raise _damaged()
+                raise damaged()
             if kind == b"chlist":
                 channels += _count_channels(file, value + size, MAX_CHANNELS - channels)
             file.seek(value + size)
@@ -119,7 +119,7 @@ def _checksum_place(file: BinaryIO) -> int:
     head = file.read(BLOCK)
     place = head.find(CHECKSUM_MARK)
     if not head.startswith(MAGIC) or place < 0:
-        raise _damaged()
+        raise damaged()
     return place + len(CHECKSUM_MARK)
 
 
@@ -139,21 +139,23 @@ def _name(file: BinaryIO) -> bytes:
     start = file.tell()
     text, zero, _ = file.read(MAX_NAME + 1).partition(b"\0")
     if not zero:
-        raise _damaged()
+        raise damaged()
     file.seek(start + len(text) + 1)
     return text
 
 
-def _read(file: BinaryIO, size: int) -> bytes:
+def read_exactly(file: BinaryIO, size: int, name: str = "OpenEXR") -> bytes:
+    """Read bytes. Raises `TextureError` at the end of a file of this format."""
     data = file.read(size)
     if len(data) < size:
-        raise _damaged()
+        raise damaged(name)
     return data
 
 
-def _damaged() -> TextureError:
+def damaged(name: str = "OpenEXR") -> TextureError:
+    """The error for a file of this format."""
     return TextureError(
-        "the OpenEXR file is damaged or incomplete",
+        f"the {name} file is damaged or incomplete",
         code="file-unreadable",
         hint="write the file again",
     )

@@ -18,7 +18,7 @@ def read_primaries(path: Path) -> dict[str, Any]:
     """
     with path.open("rb") as file:
         header, _, _ = file.read(MAX_HEADER).partition(b"\n\n")
-    stated: dict[str, Any] = {}
+    stated = dict[str, Any]()
     for line in header.splitlines():
         if line.startswith(PRIMARIES):
             stated["PRIMARIES"] = tuple(line.removeprefix(PRIMARIES).split())

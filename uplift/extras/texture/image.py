@@ -130,12 +130,8 @@ class Part:
         """Largest value if all channels are 8-bit or all are 16-bit
         integers, else 0.
         """
-        types = set(self.types)
-        return (
-            {"uint8": 255, "uint16": 65535}.get(types.pop(), 0)
-            if len(types) == 1
-            else 0
-        )
+        codes = {frozenset(["uint8"]): 255, frozenset(["uint16"]): 65535}
+        return codes.get(frozenset(self.types), 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,22 +147,19 @@ class Image:
         are, else floats.
         """
         window = part.window
-        row = window.width * len(part.channels) * 4
-        step = part.rows_per_block * max(
-            1, MAX_BAND_BYTES // (row * part.rows_per_block)
-        )
+        block = window.width * len(part.channels) * 4 * part.rows_per_block
+        step = part.rows_per_block * max(1, MAX_BAND_BYTES // block)
         for first in range(0, window.height, step):
-            yield (
-                window.y + first,
-                self.rows(part, first, min(step, window.height - first)),
-            )
+            rows = self.rows(part, first, min(step, window.height - first))
+            yield window.y + first, rows
 
     def rows(self, part: Part, first: int, count: int) -> Values:
         """Read rows (count, width, channels) from row ``first`` of the window, as
         `bands` does.
         """
         self.handle.seek_subimage(part.number, 0)
-        first, end = part.window.y + first, part.window.y + first + count
+        first += part.window.y
+        end = first + count
         if part.max_code:
             return self._read(part, first, end, part.types[0])
         integers = [index for index, name in enumerate(part.types) if name == "uint"]
@@ -176,8 +169,7 @@ class Image:
             if numbers.max(initial=0) > MAX_EXACT_INTEGER:
                 raise TextureError(
                     f"integers must be at most {MAX_EXACT_INTEGER}, got "
-                    f"{numbers.max()} in channel "
-                    f"'{part.channels[index]}'",
+                    f"{numbers.max()} in channel '{part.channels[index]}'",
                     hint="remove that channel",
                 )
             values[..., index] = numbers / UINT32_SCALE
@@ -205,10 +197,8 @@ class Image:
         problem = read_error(self.handle)  # the only sign of a truncated JPEG
         if rows is None or problem:
             raise TextureError(
-                (
-                    f"rows {first} to {end - 1} cannot be read: "
-                    f"{problem or UNKNOWN_PROBLEM}"
-                ),
+                f"rows {first} to {end - 1} cannot be read: "
+                f"{problem or UNKNOWN_PROBLEM}",
                 code="file-unreadable",
                 path=self.path,
                 hint="the file is damaged: write it again",
@@ -306,9 +296,8 @@ def _read_start(path: Path) -> bytes:
             code="file-unreadable",
             hint=FORMAT_HINT,
         ) from error
-    if not start.startswith(
-        SIGNATURES
-    ):  # OpenImageIO would try all its formats, for minutes if the file is large
+    # OpenImageIO would try all its formats, for minutes if the file is large
+    if not start.startswith(SIGNATURES):
         raise TextureError("unsupported image format", hint=FORMAT_HINT)
     return start
 
@@ -356,10 +345,14 @@ def _part(spec: Any, number: int, header: Mapping[str, Any]) -> Part:
 
 def _metadata(spec: Any) -> dict[str, Attribute]:
     """Return the attributes that are not about how the image is stored."""
-    kept = (each for each in spec.extra_attribs if _is_kept(each.name, each.value))
+    kept = (
+        attribute
+        for attribute in spec.extra_attribs
+        if _is_kept(attribute.name, attribute.value)
+    )
     return {
-        each.name: Attribute(each.type, each.value)
-        for each in itertools.islice(kept, MAX_METADATA)
+        attribute.name: Attribute(attribute.type, attribute.value)
+        for attribute in itertools.islice(kept, MAX_METADATA)
     }
 
 
@@ -375,12 +368,13 @@ def _is_kept_value(value: Any) -> bool:
     nor long. Bytes are not.
     """
     if isinstance(value, str | tuple):
-        parts = (
-            all(map(_is_kept_value, value))
-            if isinstance(value, tuple)
-            else _is_text(value)
+        if not 0 < len(value) <= MAX_METADATA_LENGTH:
+            return False
+        return (
+            _is_text(value)
+            if isinstance(value, str)
+            else all(map(_is_kept_value, value))
         )
-        return 0 < len(value) <= MAX_METADATA_LENGTH and parts
     return isinstance(value, int | float)
 
 

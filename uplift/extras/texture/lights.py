@@ -67,9 +67,8 @@ class LightUplifter(uplifter.Converter):
         lights = rgb.astype(float)
         limit = np.finfo(np.float16 if self.depth == "half" else np.float32).max
         wrong = ~self.table.contains(lights)
-        lights[wrong] = self.table.rgb(
-            self.table.spectrum(lights[wrong], outside="clip")
-        )
+        clipped = self.table.spectrum(lights[wrong], outside="clip")
+        lights[wrong] = self.table.rgb(clipped)
         power = self.table.spectrum(
             lights,
             self.wavelengths,
@@ -77,12 +76,12 @@ class LightUplifter(uplifter.Converter):
             dtype=np.float32,
             threads=self.threads,
         )
-        values = lights.astype(np.float32), power
-        bright = (np.abs(values[0]) > limit).any(axis=-1) | (power > limit).any(axis=-1)
+        stored = lights.astype(np.float32)
+        bright = (np.abs(stored) > limit).any(axis=-1) | (power > limit).any(axis=-1)
         counts = colours.Counts(
             not_lights=int(wrong.sum()), too_bright=int(bright.sum())
         )
-        return (np.clip(values[0], -limit, limit), np.clip(values[1], 0, limit)), counts
+        return (stored.clip(-limit, limit), power.clip(0, limit)), counts
 
 
 def prepare_lights(

@@ -9,9 +9,9 @@ import struct
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
-from uplift.common.errors import TextureError
+from uplift.extras.texture.exr_file import damaged, read_exactly
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 NECESSARY = (b"IHDR", b"PLTE", b"IDAT", b"IEND")
@@ -37,22 +37,22 @@ def read_chunks(path: Path) -> dict[str, Any]:
     Raises `TextureError` for a file that is truncated, or whose chunks differ from
     their checksums.
     """
-    chunks: dict[bytes, bytes] = {}
+    chunks = dict[bytes, bytes]()
     with path.open("rb") as file:
         kind = file.read(len(SIGNATURE))
         is_before_pixels = True
         while kind != NECESSARY[-1]:
-            length, kind = struct.unpack(">I4s", _read(file, 8))
+            length, kind = struct.unpack(">I4s", read_exactly(file, 8, "PNG"))
             crc = zlib.crc32(kind)
             start = b""
             while length:
-                block = _read(file, min(length, BLOCK))
+                block = read_exactly(file, min(length, BLOCK), "PNG")
                 start = start or block[:STATEMENT_BYTES]
                 crc = zlib.crc32(block, crc)
                 length -= len(block)
             is_unknown = kind[:1].isupper() and kind not in NECESSARY
-            if struct.pack(">I", crc) != _read(file, 4) or is_unknown:
-                raise _damaged()
+            if struct.pack(">I", crc) != read_exactly(file, 4, "PNG") or is_unknown:
+                raise damaged("PNG")
             is_before_pixels &= kind not in PIXELS
             if is_before_pixels:
                 chunks.setdefault(kind, start)
@@ -60,7 +60,7 @@ def read_chunks(path: Path) -> dict[str, Any]:
 
 
 def _statements(chunks: Mapping[bytes, bytes]) -> dict[str, Any]:
-    stated: dict[str, Any] = {}
+    stated = dict[str, Any]()
     if b"gAMA" in chunks:
         (stated["gAMA"],) = _fixed(chunks[b"gAMA"], 1)
     if b"cHRM" in chunks:
@@ -79,18 +79,3 @@ def _fixed(data: bytes, count: int) -> tuple[float, ...]:
     if len(data) != 4 * count:
         return (float("nan"),) * count
     return tuple(number / UNITS for number in struct.unpack(f">{count}I", data))
-
-
-def _read(file: BinaryIO, size: int) -> bytes:
-    data = file.read(size)
-    if len(data) < size:
-        raise _damaged()
-    return data
-
-
-def _damaged() -> TextureError:
-    return TextureError(
-        "the PNG file is damaged or incomplete",
-        code="file-unreadable",
-        hint="write the file again",
-    )

@@ -129,12 +129,11 @@ def cells_touched(lattice: Lattice, rgb: Array) -> Indices:
     """Return the numbers (m,) of the cells around linear RGB (n, 3), and of those
     within rounding error of them.
     """
-    (low, _), (high, _) = lattice.cell(rgb - MARGIN), lattice.cell(rgb + MARGIN)
+    low, _ = lattice.cell(rgb - MARGIN)
+    high, _ = lattice.cell(rgb + MARGIN)
     on_face = (low != high).any(axis=1)
-    adjacent = np.where(CORNERS[:, None, :] == 1, high[on_face], low[on_face]).reshape(
-        -1, 3
-    )
-    return np.concatenate([lattice.index(low), lattice.index(adjacent)])
+    adjacent = np.where(CORNERS[:, None, :] == 1, high[on_face], low[on_face])
+    return lattice.index(np.concatenate([low, adjacent.reshape(-1, 3)]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,8 +212,8 @@ def sample_colours(
     for done, path in enumerate(images.paths):
         progress(Progress("textures", done, len(images.paths)))
         changed = Counts()
-        for rgb, found in images.blocks(path, sensor, step):
-            changed += found
+        for rgb, counted in images.blocks(path, sensor, step):
+            changed += counted
             bins[bin_index(sensor, rgb)] = rgb
             lot = rng.random(len(rgb))
             samples[0].append(rgb[(lot < first) | (last > 1)])
@@ -225,7 +224,7 @@ def sample_colours(
             warn(warning)
     occupied = bins[~np.isnan(bins[:, 0])]
     predicting, confirming = (
-        _distinct(np.concatenate(each), occupied) for each in samples
+        _distinct(np.concatenate(sample), occupied) for sample in samples
     )
     is_few = step == 1 and len(few) <= MAX_LIST
     return SampledColours(

@@ -96,22 +96,16 @@ class TextureSettings:
             for name in ("depth", "encoding", "space", "threads")
         }
         if self.emission:
-            at = (
-                self.pixel_encoding.wavelengths
-                if isinstance(self.pixel_encoding, Spectrum)
-                else None
-            )
+            at = getattr(self.pixel_encoding, "wavelengths", None)
             return prepare_lights(load_emission(self.cubes[0]), at, **shared)
         cubes = [load(path) for path in self.cubes]
         if self.fill_missing:
             cubes = [cube.fill_missing(threads=self.threads) for cube in cubes]
         shared |= {"out_of_gamut": self.out_of_gamut, "errors": self.errors}
         uplifters = [prepare(cube, self.pixel_encoding, **shared) for cube in cubes]
-        return (
-            uplifters[0]
-            if self.mask is None
-            else prepare_masked(uplifters, Path(self.mask))
-        )
+        if self.mask is None:
+            return uplifters[0]
+        return prepare_masked(uplifters, Path(self.mask))
 
 
 @dataclass(frozen=True)
@@ -251,7 +245,7 @@ def convert_all(
     if scheduler is None and processes == 1:
         yield from map(run, jobs)
         return
-    finished: list[Path] = []
+    finished = list[Path]()
     try:
         with (
             tied_processes(processes)
@@ -265,10 +259,8 @@ def convert_all(
                 yield result
     except Exception as error:
         is_of_dask = type(error).__module__.partition(".")[0] == "distributed"
-        if not (
-            is_of_dask
-            or isinstance(error, BrokenExecutor | CancelledError | TimeoutError)
-        ):
+        lost = BrokenExecutor | CancelledError | TimeoutError
+        if not is_of_dask and not isinstance(error, lost):
             raise
         raise _workers_lost(jobs, finished) from error
 
@@ -279,10 +271,8 @@ def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
             with contextlib.suppress(OSError):
                 remove_stale(job.target, seconds=0)
     return TextureError(
-        (
-            f"the workers ended unexpectedly; finished: {len(finished)} of "
-            f"{pluralise(len(jobs), 'texture')}"
-        ),
+        f"the workers ended unexpectedly; finished: {len(finished)} of "
+        f"{pluralise(len(jobs), 'texture')}",
         code="workers-lost",
         hint="resume with the others, with fewer processes if memory ran out",
     )
@@ -302,9 +292,8 @@ def _dask_executor(address: str) -> Iterator[Executor]:
     """Connect to a cluster. Raises `OptionError`."""
     distributed = import_distributed()
     with contextlib.ExitStack() as stack:
-        for handler in logging.getLogger(
-            "distributed"
-        ).handlers:  # lost connections are raised as errors
+        # lost connections are raised as errors
+        for handler in logging.getLogger("distributed").handlers:
             stack.callback(handler.setLevel, handler.level)
             handler.setLevel(logging.CRITICAL + 1)
         try:

@@ -16,8 +16,10 @@ TAGS = {
     0xA001: "ColorSpace",
 }
 """Names of the tags that are read."""
-EXIF, INTEROPERABILITY = 0x8769, 0xA005
-"""Tags with the offsets of further directories."""
+EXIF = 0x8769
+"""Tag with the offset of the directory of EXIF."""
+INTEROPERABILITY = 0xA005
+"""Tag with the offset of the directory of interoperability."""
 INDEX = 1
 """Tag of the interoperability index in its directory."""
 NUMBERS = {1: "B", 3: "H", 4: "I", 5: "II", 11: "f", 12: "d", 13: "I", 16: "Q"}
@@ -72,12 +74,12 @@ def _tags(file: BinaryIO) -> dict[str, Any]:
     first = _directory(file, order, offset, is_big)
     exif = _subdirectory(file, order, first, EXIF, is_big)
     interoperability = _subdirectory(file, order, exif, INTEROPERABILITY, is_big)
-    found = {TAGS[tag]: value for tag, value in (first | exif).items() if tag in TAGS}
-    if "ColorSpace" in found:
-        found["ColorSpace"] = found["ColorSpace"][0]
+    tags = {TAGS[tag]: value for tag, value in (first | exif).items() if tag in TAGS}
+    if "ColorSpace" in tags:
+        tags["ColorSpace"] = tags["ColorSpace"][0]
     if INDEX in interoperability:
-        found["InteroperabilityIndex"] = interoperability[INDEX]
-    return found
+        tags["InteroperabilityIndex"] = interoperability[INDEX]
+    return tags
 
 
 def _subdirectory(
@@ -93,12 +95,12 @@ def _directory(file: BinaryIO, order: str, offset: int, is_big: bool) -> dict[in
     entry = order + ("HHQ8s" if is_big else "HHI4s")
     data = file.read(min(count, MAX_ENTRIES) * struct.calcsize(entry))
     wanted = {*TAGS, EXIF, INTEROPERABILITY, INDEX}
-    found: dict[int, Any] = {}
+    values = dict[int, Any]()
     for tag, kind, length, value in struct.iter_unpack(entry, data):
         is_readable = kind == TEXT if tag == INDEX else kind in NUMBERS
         if tag in wanted and is_readable:
-            found[tag] = _value(file, order, kind, length, value)
-    return {tag: value for tag, value in found.items() if value}
+            values[tag] = _value(file, order, kind, length, value)
+    return {tag: value for tag, value in values.items() if value}
 
 
 def _value(file: BinaryIO, order: str, kind: int, length: int, value: bytes) -> Any:

@@ -83,7 +83,7 @@ class Converter(ABC):
         self, values: tuple[Floats, ...], opacity: Floats
     ) -> tuple[Floats, ...]:
         """Multiply the arrays of `convert`, which are not changed, by alpha (…, 1)."""
-        return tuple(each * opacity for each in values)
+        return tuple(array * opacity for array in values)
 
     def colour_channels(self, found: ColourChannels) -> ColourChannels:
         """How the colour channels that a part has are read: by default as they were
@@ -186,9 +186,8 @@ class Spectrum(PixelEncoding):
         channels = spectral_channels("T", at)
         outside = None
         if entries is not None:
-            outside = entries.spectra.reflectance(
-                np.arange(len(entries.names)), at
-            ).astype(np.float32)
+            rows = np.arange(len(entries.names))
+            outside = entries.spectra.reflectance(rows, at).astype(np.float32)
         sample = bulk.spectra(cube, self.wavelengths, threads=threads)
         return Pixels(channels, sample, outside, details={"wavelengths": at.tolist()})
 
@@ -244,31 +243,27 @@ class Multipliers(PixelEncoding):
             function = partial(extended_multipliers, data)
             model = data.atlas.spectra.model
         if entries is not None:
-            own = (
+            numbers = (
                 entries.spectra.multipliers
                 if self.of_entries
                 else data.model.from_storage(entries.coefficients)
             )
-            outside = own.astype(np.float32)
+            outside = numbers.astype(np.float32)
 
         def sample(rgb: Floats) -> Floats:
-            colours, rows = _different(
-                rgb
-            )  # images have few: a colour takes long, and has the same answer each time
-            return blockwise(
-                function, colours.astype(float), model.count, np.float32, threads
-            )[rows]
+            # images have few: a colour takes long, and has the same answer each time
+            colours, rows = _different(rgb)
+            floats = colours.astype(float)
+            return blockwise(function, floats, model.count, np.float32, threads)[rows]
 
-        return Pixels(
-            tuple(f"multiplier.{index:02}" for index in range(model.count)),
-            sample,
-            outside,
-            model,
-        )
+        channels = tuple(f"multiplier.{index:02}" for index in range(model.count))
+        return Pixels(channels, sample, outside, model)
 
 
 PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {
-    each.name: each for each in (Spectrum, Moments, Multipliers)
+    Spectrum.name: Spectrum,
+    Moments.name: Moments,
+    Multipliers.name: Multipliers,
 }
 """Pixel encodings with their defaults, by name."""
 
@@ -278,10 +273,8 @@ def _different(rgb: Floats) -> tuple[Floats, Indices]:
     pixel among them.
     """
     flat = np.ascontiguousarray(rgb, dtype=np.float32).reshape(-1, 3)
-    words = flat.view(np.uint32).astype(np.uint64)
-    keys = (words[:, 0] << 32 | words[:, 1]) * np.uint64(0x9E3779B97F4A7C15) ^ words[
-        :, 2
-    ]
+    red, green, blue = flat.view(np.uint32).astype(np.uint64).T
+    keys = (red << 32 | green) * np.uint64(0x9E3779B97F4A7C15) ^ blue
     _, first, rows = np.unique(keys, return_index=True, return_inverse=True)
     if (flat[first][rows] != flat).any():  # two colours have one key
         return flat, np.arange(len(flat)).reshape(rgb.shape[:-1])
@@ -330,19 +323,19 @@ class Uplifter(Converter):
 
     def convert(self, rgb: Floats) -> Converted:
         values, counts = self._convert(rgb)
-        return (
-            (*values, self._standard_errors(rgb)) if self.errors else values
-        ), counts
+        if self.errors:
+            values = (*values, self._standard_errors(rgb))
+        return values, counts
 
     def _standard_errors(self, rgb: Floats) -> Floats:
         colours, rows = _different(np.clip(rgb, 0, 1))
-        found = [
-            blockwise(each, colours.astype(float), 2, np.float32)[:, 0]
-            for each in self.errors
+        columns = [
+            blockwise(estimate, colours.astype(float), 2, np.float32)[:, 0]
+            for estimate in self.errors
         ]
-        errors = np.stack(found, axis=-1)[rows]
+        errors = np.stack(columns, axis=-1)[rows]
         hits = self.boxes.find(rgb.reshape(-1, 3))
-        errors.reshape(-1, len(found))[hits.rows] *= hits.lattice_weight[:, None]
+        errors.reshape(-1, len(columns))[hits.rows] *= hits.lattice_weight[:, None]
         return errors
 
     def _convert(self, rgb: Floats) -> Converted:
@@ -353,12 +346,9 @@ class Uplifter(Converter):
         data = self.cube.data
         colours = rgb.reshape(-1, 3).astype(float)
         near = colours[is_inexact(data, colours)]
-        is_off = (
-            data.solid.signed_distance(near) > data.threshold if near.size else near
-        )
-        return (rgb, self.sample(rgb)), Counts(
-            unrealisable=int(np.count_nonzero(is_off))
-        )
+        off = data.solid.signed_distance(near) > data.threshold if near.size else near
+        counts = Counts(unrealisable=int(np.count_nonzero(off)))
+        return (rgb, self.sample(rgb)), counts
 
     def _convert_outside(
         self, rgb: Floats, hits: BoxHits, entries: Floats
@@ -366,7 +356,6 @@ class Uplifter(Converter):
         """Mix the answers to mapped colours with those of entries, as their colours: t
         · mapped + (1 − t) · entry.
         """
-        data = self.cube.data
         colours = rgb.reshape(-1, 3).copy()
         requested = colours[hits.rows]
         is_mixed = hits.lattice_weight > 0
@@ -377,18 +366,16 @@ class Uplifter(Converter):
         mapped = map_to_gamut(requested, self.sensor, method).rgb
         mixed = weight * mapped + (1 - weight) * self.boxes.rgb[hits.entry]
         colours[hits.rows] = mapped
-        (_, found), counts = self._convert(colours.reshape(rgb.shape))
-        numbers = found.reshape(len(colours), -1)
-        own = weight * numbers[hits.rows] + (1 - weight) * entries[hits.entry]
-        numbers[hits.rows] = (
-            own if self.model is None else refine_to_rgb(data, self.model, own, mixed)
-        )
+        (_, values), counts = self._convert(colours.reshape(rgb.shape))
+        numbers = values.reshape(len(colours), -1)
+        mixture = weight * numbers[hits.rows] + (1 - weight) * entries[hits.entry]
+        if self.model is not None:
+            mixture = refine_to_rgb(self.cube.data, self.model, mixture, mixed)
+        numbers[hits.rows] = mixture
         colours[hits.rows] = mixed
-        change = float(
-            np.abs(mixed - requested).max(where=is_mixed[:, None], initial=0)
-        )
-        counts += Counts(outside=int(is_mixed.sum()), max_change=change)
-        return (colours.reshape(rgb.shape), numbers.reshape(found.shape)), counts
+        change = np.abs(mixed - requested).max(where=is_mixed[:, None], initial=0)
+        counts += Counts(outside=int(is_mixed.sum()), max_change=float(change))
+        return (colours.reshape(rgb.shape), numbers.reshape(values.shape)), counts
 
     def multiply(
         self, values: tuple[Floats, ...], opacity: Floats
@@ -463,8 +450,9 @@ def prepare(
         light(name, cube.observer, *cube.data.sensor.range)
         for name in dict.fromkeys(errors)
     ]
-    settings |= {"errors": [each.name for each in lights]} if lights else {}
-    lamps = [asdict(each) for each in errors if isinstance(each, Lamp)]
+    names = [light.name for light in lights]
+    settings |= {"errors": names} if names else {}
+    lamps = [asdict(lamp) for lamp in errors if isinstance(lamp, Lamp)]
     settings |= {"lamps": lamps} if lamps else {}
     description = json.dumps(
         {"as": kind.name, **pixels.details, **settings}, allow_nan=False
@@ -475,13 +463,13 @@ def prepare(
         depth,
         encoding,
         out_of_gamut,
-        (*pixels.channels, *(f"error.{channel_name(each.name)}" for each in lights)),
+        (*pixels.channels, *(f"error.{channel_name(name)}" for name in names)),
         header,
         cube,
         sample=pixels.sample,
         model=pixels.model,
         outside=pixels.outside,
-        errors=tuple(light_errors(cube.data, each) for each in lights),
+        errors=tuple(map(partial(light_errors, cube.data), lights)),
         space=None if space is None else find_space(space),
     )
 

@@ -24,10 +24,10 @@ from uplift.extras.texture.image import (
 
 ROWS_PER_CHUNK = 16
 """Rows that OpenEXR compresses together as ZIP."""
-MIN_BAND_BYTES, MAX_BAND_BYTES = 1 << 24, 1 << 27
-"""Sizes of a band to write, as floats: larger ones than the first are for more
-processors, which compress it.
-"""
+MIN_BAND_BYTES = 1 << 24
+"""Size of a band to write, as floats, for few processors, which compress it."""
+MAX_BAND_BYTES = 1 << 27
+"""Largest size, for more processors."""
 COMPRESSION = "zip:1"
 """ZIP at its lowest level: the same pixels in files a few per cent larger, compressed
 in 2/3 of the time.
@@ -76,9 +76,8 @@ class OutputPart:
         spec.full_x, spec.full_y, spec.full_width, spec.full_height = window.display
         spec.attribute("PixelAspectRatio", window.aspect)
         spec.attribute("compression", COMPRESSION)
-        spec.attribute(
-            "DateTime", self.date
-        )  # the default is now, which makes every file different
+        # the default is now, which makes every file different
+        spec.attribute("DateTime", self.date)
         if self.name:
             spec.attribute("oiio:subimagename", self.name)
         for name, value in self.header.items():
@@ -99,7 +98,8 @@ class Writer:
     def __init__(self, path: Path, parts: Sequence[OutputPart]) -> None:
         import OpenImageIO
 
-        self._path, self._specs = path, [part.spec() for part in parts]
+        self._path = path
+        self._specs = [part.spec() for part in parts]
         self._specs[0].attribute(exr_file.CHECKSUM, exr_file.NO_CHECKSUM)
         self._total = sum(
             part.window.height * part.window.width * len(part.channels)
@@ -107,12 +107,10 @@ class Writer:
         )
         self._written = 0
         specs = tuple(self._specs) if len(self._specs) > 1 else self._specs[0]
-        with _compression_threads(
-            max(part.rows_per_band for part in parts) // ROWS_PER_CHUNK
-        ):
-            self._handle: Any = OpenImageIO.ImageOutput.create(
-                "openexr"
-            )  # takes the number of threads
+        rows = max(part.rows_per_band for part in parts)
+        with _compression_threads(rows // ROWS_PER_CHUNK):
+            # takes the number of threads
+            self._handle: Any = OpenImageIO.ImageOutput.create("openexr")
             if self._handle is None:
                 raise OSError(read_error(OpenImageIO))
             self._check(self._handle.open(utf8_name(path, OutputError), specs))
@@ -120,21 +118,16 @@ class Writer:
     def start_part(self, number: int) -> None:
         """Start a part."""
         if number:
-            self._check(
-                self._handle.open(
-                    os.fspath(self._path), self._specs[number], "AppendSubimage"
-                )
-            )
+            path = os.fspath(self._path)
+            spec = self._specs[number]
+            self._check(self._handle.open(path, spec, "AppendSubimage"))
 
     def write_rows(self, first: int, values: Values) -> None:
         """Write rows (k, width, channels) from row ``first``. Raises `OSError`, and
         `OutputError` as `_check_space`.
         """
-        self._check(
-            self._handle.write_scanlines(
-                first, first + len(values), 0, np.ascontiguousarray(values)
-            )
-        )
+        rows = np.ascontiguousarray(values)
+        self._check(self._handle.write_scanlines(first, first + len(rows), 0, rows))
         self._written += values.size
         self._check_space()
 
@@ -171,18 +164,15 @@ class Writer:
         on the disk.
         """
         size = self._path.stat().st_size
-        rest = size * (self._total - self._written) / self._written
+        remaining = size * (self._total - self._written) / self._written
         free = shutil.disk_usage(self._path.parent).free
-        if rest / SPACE_MARGIN > free:
+        if remaining / SPACE_MARGIN > free:
             raise OutputError(
-                (
-                    f"the file needs about {(size + rest) / 1e9:.2g} GB, and "
-                    f"{(size + free) / 1e9:.2g} GB are free"
-                ),
+                f"the file needs about {(size + remaining) / 1e9:.2g} GB, and "
+                f"{(size + free) / 1e9:.2g} GB are free",
                 code="not-enough-space",
-                hint=(
-                    "free space on the disk, or write fewer wavelengths or half floats"
-                ),
+                hint="free space on the disk, or write fewer wavelengths or half "
+                "floats",
             )
 
     def _check(self, ok: bool) -> None:
@@ -201,9 +191,8 @@ def _compression_threads(chunks: int) -> Iterator[None]:
 
     name = "exr_threads"
     before = OpenImageIO.get_int_attribute(name)
-    OpenImageIO.attribute(
-        name, min(before if before > 0 else os.cpu_count() or 1, chunks)
-    )
+    most = before if before > 0 else os.cpu_count() or 1
+    OpenImageIO.attribute(name, min(most, chunks))
     try:
         yield
     finally:

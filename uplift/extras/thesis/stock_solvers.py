@@ -182,7 +182,8 @@ class EachRow(BatchSolver):
         row is given.
         """
         x, prior = (
-            each @ self.forward.inverse_root.T for each in (y, options["prior"])
+            multipliers @ self.forward.inverse_root.T
+            for multipliers in (y, options["prior"])
         )
         return x, (prior, options["closeness"], args)
 
@@ -206,6 +207,6 @@ def _objective(solver: Solver, residuals: Any) -> Any:
 
     def half_squares(y: Any, args: Any) -> tuple[Any, None]:
         values, aux = residuals(y, args)
-        return sum((each**2).sum() for each in jax.tree.leaves(values)) / 2, aux
+        return sum((residual**2).sum() for residual in jax.tree.leaves(values)) / 2, aux
 
     return half_squares

@@ -5,7 +5,9 @@ per ray), and the search.
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import compress
 from math import prod
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -70,9 +72,10 @@ DEPTHS: dict[str, np.dtype[Any]] = {
     "half": np.dtype(np.float16),
     "float": np.dtype(np.float32),
 }
-RGB, INDEX = "rgb", "index"
-"""Forms of pixels without a pixel encoding: colours, and numbers of a list of spectra.
-"""
+RGB = "rgb"
+"""Form of pixels without a pixel encoding: colours."""
+INDEX = "index"
+"""The other form: numbers of a list of spectra."""
 
 
 class Cost(NamedTuple):
@@ -92,10 +95,8 @@ class Cost(NamedTuple):
         """Sort key: the minimised cost, and the product of all three where that is
         equal.
         """
-        product = prod(self)
-        return (
-            (product,) if minimise == "balance" else (getattr(self, minimise), product)
-        )
+        balance = prod(self)
+        return balance if minimise == "balance" else getattr(self, minimise), balance
 
 
 @dataclass(frozen=True)
@@ -115,13 +116,9 @@ class Pixel:
     @property
     def name(self) -> str:
         """Short text."""
-        return (
-            f"RGB, lookup of {self.mode}"
-            if self.mode
-            else f"{self.form}, {self.depth}"
-            if self.depth
-            else self.form
-        )
+        if self.mode:
+            return f"RGB, lookup of {self.mode}"
+        return f"{self.form}, {self.depth}" if self.depth else self.form
 
     def size(self, count: int, samples: int) -> int:
         """Bytes of a pixel of a texture for a cube of ``count`` coefficients, 0 for the
@@ -157,18 +154,14 @@ class Pixel:
         """
         kind = DEPTHS[self.depth or "float"]
         if self.mode or self.form in (texture.Spectrum.name, INDEX):
-            return (
-                cube.reflectance(rgb, nm, self.mode or "spectra")
-                .astype(kind)
-                .astype(float)
-            )
+            reflectances = cube.reflectance(rgb, nm, self.mode or "spectra")
+            return reflectances.astype(kind).astype(float)
         if self.form == texture.Multipliers.name:
             values = refined_multipliers(cube.data, rgb).astype(kind)
             return evaluate(cube.data.model, values.astype(float), nm)
         try:
-            return reflectance(
-                cube.data.model, cube.coefficients(rgb).astype(kind).astype(float), nm
-            )
+            values = cube.coefficients(rgb).astype(kind)
+            return reflectance(cube.data.model, values.astype(float), nm)
         except UpliftError:
             return np.full((len(rgb), len(nm)), np.nan)
 
@@ -205,22 +198,13 @@ class Candidate:
     @property
     def cube_name(self) -> str:
         """Short text, with all that differs from the defaults; empty without a cube."""
-        if self.cube is None:
+        cube = self.cube
+        if cube is None:
             return ""
-        spectra = (
-            self.cube.model
-            if self.cube.model == Sigmoid.name
-            else self.cube.coefficients
-        )
-        others = [
-            value
-            for value in (self.cube.warp, self.cube.axis)
-            if value not in (Options.warp, Options.axis)
-        ]
-        return (
-            ", ".join([f"{self.cube.dim}³ × {spectra}", *others])
-            + " sparse" * self.sparse
-        )
+        spectra = cube.model if cube.model == Sigmoid.name else cube.coefficients
+        words = [f"{cube.dim}³ × {spectra}", cube.warp, cube.axis]
+        named = [word for word in words if word not in (Options.warp, Options.axis)]
+        return ", ".join(named) + " sparse" * self.sparse
 
     @property
     def traced(self) -> str:
@@ -254,13 +238,16 @@ def explore(
         groups[candidate.cube].append(candidate)
     measured = list[Candidate]()
     best = np.empty((0, 4))
-    for cube in sorted(
-        groups, key=lambda cube: min(each.cost.memory for each in groups[cube])
-    ):
-        rows = np.array([(*each.cost, max(each.bound, floor)) for each in groups[cube]])
-        promising = [
-            groups[cube][row] for row in np.flatnonzero(~dominated(rows, best))
-        ]
+
+    def smallest(cube: Options | None) -> float:
+        return min(candidate.cost.memory for candidate in groups[cube])
+
+    for cube in sorted(groups, key=smallest):
+        group = groups[cube]
+        rows = np.array(
+            [(*candidate.cost, max(candidate.bound, floor)) for candidate in group]
+        )
+        promising = list(compress(group, ~dominated(rows, best)))
         if promising:
             measured += measure(cube, promising)
             best = positions(pareto_front(measured), floor)
@@ -271,10 +258,9 @@ def front(rows: Array) -> list[int]:
     """Numbers of the rows (m, k) that no other dominates, smallest rows first; of equal
     rows the first.
     """
-    kept: list[int] = []
-    for row in np.lexsort(
-        rows.T[::-1]
-    ).tolist():  # what dominates a row comes before it
+    kept = list[int]()
+    # what dominates a row comes before it
+    for row in np.lexsort(rows.T[::-1]).tolist():
         if not dominated(rows[[row]], rows[kept])[0]:
             kept.append(row)
     return kept
@@ -282,19 +268,19 @@ def front(rows: Array) -> list[int]:
 
 def positions(measured: Sequence[Candidate], floor: float = 0.0) -> Array:
     """Costs and errors (m, 4) of candidates."""
-    return np.array(
-        [(*each.cost, max(each.error.quantile, floor)) for each in measured]
-    ).reshape(-1, 4)
+    rows = [
+        (*candidate.cost, max(candidate.error.quantile, floor))
+        for candidate in measured
+    ]
+    return np.array(rows).reshape(-1, 4)
 
 
 def pareto_front(measured: Sequence[Candidate]) -> list[Candidate]:
     """Candidates that no other dominates in cost and error, by ascending error; one of
     equal ones.
     """
-    return sorted(
-        (measured[row] for row in front(positions(measured))),
-        key=lambda each: each.error.quantile,
-    )
+    rows = front(positions(measured))
+    return sorted(map(measured.__getitem__, rows), key=attrgetter("error.quantile"))
 
 
 def cheapest_first(
@@ -302,7 +288,8 @@ def cheapest_first(
 ) -> list[Candidate]:
     """Candidates by cost, then by error."""
     return sorted(
-        measured, key=lambda each: (each.cost.ranked(minimise), each.error.quantile)
+        sorted(measured, key=attrgetter("error.quantile")),
+        key=lambda candidate: candidate.cost.ranked(minimise),
     )
 
 

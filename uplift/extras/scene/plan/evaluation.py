@@ -101,11 +101,9 @@ class Rendering:
         """
         count = len(sampling)
         steps = np.arange(count) / 10**DIGITS
-        nm = np.round(
-            np.maximum.accumulate(np.round(sampling.wavelengths, DIGITS) - steps)
-            + steps,
-            DIGITS,
-        )
+        rounded_nm = np.round(sampling.wavelengths, DIGITS)
+        distinct = np.maximum.accumulate(rounded_nm - steps) + steps
+        nm = np.round(distinct, DIGITS)
         rounded = replace(sampling, wavelengths=nm)
         return cls(
             f"{count} {name}",
@@ -145,7 +143,7 @@ class EvaluationSet:
         """Rows of at most ``count`` colours of each group, drawn at equal steps of the
         cumulative weight.
         """
-        found = []
+        subsamples = []
         for rows in self.groups.values():
             drawn = np.arange(rows.start, rows.stop)
             size = rows.stop - rows.start
@@ -154,8 +152,8 @@ class EvaluationSet:
                     np.cumsum(self.weights[rows]), (np.arange(count) + 0.5) / count
                 )
                 drawn = drawn[np.unique(np.minimum(steps, size - 1))]
-            found.append(drawn)
-        return np.concatenate(found)
+            subsamples.append(drawn)
+        return np.concatenate(subsamples)
 
     def error(self, xyz: Array) -> ErrorSummary:
         """Errors of XYZ (K, n, 3) under the lights, where white has Y = 1."""
@@ -169,15 +167,8 @@ class EvaluationSet:
                 quantile = np.quantile(
                     errors, self.quantile, weights=weights, method="inverted_cdf"
                 )
-                parts.append(
-                    GroupError(
-                        name,
-                        light,
-                        float(errors @ weights),
-                        float(quantile),
-                        float(errors.max()),
-                    )
-                )
+                values = map(float, (errors @ weights, quantile, errors.max()))
+                parts.append(GroupError(name, light, *values))
         return ErrorSummary(tuple(parts))
 
     def matrices(self) -> Array:
@@ -214,44 +205,33 @@ def renderings(
     rendering costs no more and is as accurate.
     """
 
-    def measured(each: Rendering) -> Rendering:
-        return replace(
-            each,
-            error=tests.error(
-                each.xyz(tests.reference.reflectance(tests.rgb, each.wavelengths))
-            ),
-        )
+    def measured(rendering: Rendering) -> Rendering:
+        nm = rendering.wavelengths
+        xyz = rendering.xyz(tests.reference.reflectance(tests.rgb, nm))
+        return replace(rendering, error=tests.error(xyz))
 
-    def numbers(*of: Rendering) -> Array:
-        return np.array(
-            [
-                (
-                    each.samples,
-                    each.operations,
-                    each.surface,
-                    max(each.error.quantile, floor),
-                )
-                for each in of
-            ]
-        )
+    def numbers(rendering: Rendering) -> tuple[float, ...]:
+        costs = rendering.samples, rendering.operations, rendering.surface
+        return *costs, max(rendering.error.quantile, floor)
 
     setup = tests.setup.only(tests.subsample(FEW))
     full = Sampling(setup.wavelengths, setup.cmfs, setup.lights, setup.powers)
-    found = list[Rendering]()
+    kept = list[Rendering]()
     for done, count in enumerate((*counts, None)):
         progress(Progress("wavelengths", done, len(counts)))
         sampling = full if count is None else choose(setup, count=count).sampling
-        each = measured(Rendering.of_sampling("wavelengths", sampling))
-        if not found or each.error.quantile < found[-1].error.quantile:
-            found.append(each)
-        if found[-1].error.quantile <= floor:
+        rendering = measured(Rendering.of_sampling("wavelengths", sampling))
+        if not kept or rendering.error.quantile < kept[-1].error.quantile:
+            kept.append(rendering)
+        if kept[-1].error.quantile <= floor:
             break
-    for each in _others(setup, tests, others) if others else ():
-        if each.samples < found[-1].samples:
-            each = measured(each)
-            if not dominated(numbers(each), numbers(*found))[0]:
-                found.append(each)
-    return found
+    for other in _others(setup, tests, others) if others else ():
+        if other.samples < kept[-1].samples:
+            rendering = measured(other)
+            rows = np.array([*map(numbers, kept), numbers(rendering)])
+            if not dominated(rows[-1:], rows[:-1])[0]:
+                kept.append(rendering)
+    return kept
 
 
 def dominated(rows: Array, by: Array) -> Mask:
@@ -276,12 +256,12 @@ def _others(
     surfaces = interp_curves(
         samples.wavelengths(), setup.wavelengths, setup.reflectances
     )
-    for each in all_representations(powers, surfaces):
-        if each.name[:2] in FAMILIES:
-            light, surface = each.numbers(powers, surfaces)
-            xyz = partial(_represented_xyz, each, powers, tests)
+    for representation in all_representations(powers, surfaces):
+        if representation.name[:2] in FAMILIES:
+            light, surface = representation.numbers(powers, surfaces)
+            xyz = partial(_represented_xyz, representation, powers, tests)
             yield Rendering(
-                each.name,
+                representation.name,
                 light,
                 surface + 6 * light,
                 surface,
@@ -299,6 +279,6 @@ def _represented_xyz(
     """XYZ (K, n, 3) of dense reflectances (n, 401): those of the 5 nm table, and what
     the representation changes.
     """
-    found = representation.reflected(powers, reflectances)
+    represented = representation.reflected(powers, reflectances)
     exact = (powers[:, None] * reflectances) @ samples.xyz_weights()
-    return tests.xyz(reflectances[:, :: samples.TABLE_STRIDE]) + found - exact
+    return tests.xyz(reflectances[:, :: samples.TABLE_STRIDE]) + represented - exact

@@ -94,6 +94,7 @@ Paths = Annotated[
 Lights = Annotated[
     tuple[Annotated[Any, BeforeValidator(_check_light)], ...], BeforeValidator(_as_list)
 ]
+Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Observer = Annotated[str, resolves(observer.matching_functions)]
 
 
@@ -138,12 +139,8 @@ class SceneFile:
     textures: Paths
     atlases: Paths = ()
     lights: Annotated[Lights, Field(min_length=1)] = SCENE_LIGHTS
-    tolerance: Annotated[
-        float, Field(strict=True, ge=0.01, le=100, allow_inf_nan=False)
-    ] = 1.0
-    quantile: Annotated[
-        float, Field(strict=True, ge=0.5, le=1, allow_inf_nan=False)
-    ] = 0.975
+    tolerance: Annotated[Finite, Field(ge=0.01, le=100)] = 1.0
+    quantile: Annotated[Finite, Field(ge=0.5, le=1)] = 0.975
     minimise: Minimised = "balance"
     limits: dict[CostName, Annotated[float, Field(gt=0, allow_inf_nan=False)]] = field(
         default_factory=dict
@@ -205,11 +202,8 @@ def _read_lights(
     files = list[Path]()
     for number, name in enumerate(dict.fromkeys(names)):
         try:
-            lights.append(
-                name
-                if is_illuminant(name)
-                else find_light(str(file.path.parent / name))
-            )
+            in_folder = str(file.path.parent / name)
+            lights.append(name if is_illuminant(name) else find_light(in_folder))
         except UnknownNameError as error:
             file.fail(
                 ("lights", number),
@@ -220,7 +214,7 @@ def _read_lights(
         except UpliftError as error:
             file.fail(("lights", number), str(error), code=error.code)
         if isinstance(lights[-1], Lamp):
-            files.append(Path(lamp_file(str(file.path.parent / name))))
+            files.append(Path(lamp_file(in_folder)))
     try:
         observer.check_distinct(lights)
     except OptionError as error:
@@ -233,20 +227,19 @@ def _expand(file: SpecFile, key: str, names: tuple[Path, ...]) -> tuple[Path, ..
     of no file.
     """
     folder = file.path.parent
-    found = list[Path]()
+    expanded = list[Path]()
     for number, name in enumerate(map(str, names)):
         is_pattern = glob.has_magic(name) and not os.path.exists(folder / name)
         paths = sorted(glob.glob(name, root_dir=folder)) if is_pattern else [name]
-        if not paths or not all(os.path.isfile(folder / each) for each in paths):
-            text = f"no file named {format_value(name)}"
+        if not paths or not all(os.path.isfile(folder / path) for path in paths):
             file.fail(
                 (key, number),
-                text,
+                f"no file named {format_value(name)}",
                 code="file-not-found",
                 hint="paths start in the folder of this file",
             )
-        found += (folder / each for each in paths)
-    return tuple(found)
+        expanded += (folder / path for path in paths)
+    return tuple(expanded)
 
 
 def cube_name(plan_path: StrPath) -> str:
@@ -344,12 +337,11 @@ def _check_sources(
     for number, (source, path) in enumerate(zip(sources, paths, strict=True)):
         keys = "scene", key, number, "path"
         if not os.path.isfile(path):
-            hint = f"restore it, or {HINT}"
             file.fail(
                 keys,
                 f"no file named {format_value(source.path)}",
                 code="file-not-found",
-                hint=hint,
+                hint=f"restore it, or {HINT}",
             )
         if file_digest(path) != source.digest:
             text = f"{format_value(source.path)} has changed since the plan was made"

@@ -4,6 +4,7 @@ confirmed on other pixels.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 
 import numpy as np
 
@@ -93,14 +94,9 @@ class Plan:
         Candidate or None
             The cheapest measured candidate within it and the limits of the scene.
         """
-        return next(
-            iter(
-                sufficient(
-                    self.measured, tolerance, self.scene.minimise, self.scene.limits
-                )
-            ),
-            None,
-        )
+        scene = self.scene
+        enough = sufficient(self.measured, tolerance, scene.minimise, scene.limits)
+        return enough[0] if enough else None
 
 
 def plan(
@@ -141,18 +137,14 @@ def plan(
     chosen, confirmed = _confirm(space, finalists)
     textures = space.colours.predicting
     few = space.colours.few
-    known = (
+    errors = (
         space.tests.reference.standard_error(textures.rgb, light)
         for light in scene.lights
     )
     spectra = None
     if chosen.pixel.form == INDEX and chosen.rendering is not None and few is not None:
-        spectra = (
-            few,
-            space.cube(few, space.reference).reflectance(
-                few, chosen.rendering.wavelengths
-            ),
-        )
+        listed = space.cube(few, space.reference)
+        spectra = (few, listed.reflectance(few, chosen.rendering.wavelengths))
     return Plan(
         scene=scene,
         measured=tuple(measured),
@@ -163,7 +155,7 @@ def plan(
         without_spectra=space.without_spectra,
         spectra=spectra,
         expected_error=max(
-            (float(each @ textures.share) for each in known if each is not None),
+            (float(error @ textures.share) for error in errors if error is not None),
             default=None,
         ),
     )
@@ -177,21 +169,20 @@ def _confirm(
     """
     space.progress(Progress("confirmation", 0, 1))
     tests = space.evaluation_set(space.colours.confirming)
-    tried: list[tuple[Candidate, ErrorSummary]] = []
-    for each in finalists:
-        if (
-            tried
-            and each.error.quantile > CLEARLY_SMALLER * tried[-1][0].error.quantile
-        ):
+    tried = list[tuple[Candidate, ErrorSummary]]()
+    limit = np.inf
+    for finalist in finalists:
+        if finalist.error.quantile > limit:
             continue
-        cube = space.cube(tests.rgb, each.cube) if each.cube else tests.reference
-        tried.append((each, space.errors(cube, [each], tests)[0].error))
-        if tried[-1][1].quantile <= space.scene.tolerance or len(tried) == FINALISTS:
+        limit = CLEARLY_SMALLER * finalist.error.quantile
+        options = finalist.cube
+        cube = space.cube(tests.rgb, options) if options else tests.reference
+        (measured,) = space.errors(cube, [finalist], tests)
+        tried.append((finalist, measured.error))
+        if measured.error.quantile <= space.scene.tolerance or len(tried) == FINALISTS:
             break
-    return min(
-        tried,
-        key=lambda each: (each[1].quantile > space.scene.tolerance, each[1].quantile),
-    )
+    # Only the last one can be within the tolerance, and then has the smallest error.
+    return min(tried, key=lambda pair: pair[1].quantile)
 
 
 def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileError:
@@ -213,7 +204,7 @@ def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileErr
         )
         hint = f"raise limits.{over[0]} or the tolerance"
     else:
-        best = min(measured, key=lambda each: each.error.quantile).error.worst
+        best = min(measured, key=attrgetter("error.quantile")).error.worst
         problem = (
             f"the smallest error is ΔE00 {format_error(best.quantile)}, of "
             f"{best.group} under {best.light}; tolerance allows {scene.tolerance:g}"

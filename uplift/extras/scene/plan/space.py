@@ -182,61 +182,60 @@ class CandidateSpace:
         colours are few.
         """
         colours = self.colours
-        found = [Candidate(Pixel(RGB), Cost(colours.size, 3 * SAMPLE_OPERATIONS, 3))]
-        (self.without_spectra,) = (each.error for each in self.measure(None, found))
-        if colours.few is not None:
-            for each in self.renderings:
-                if each.sampling is not None:
-                    cost = Cost(
-                        colours.pixels + 2 * len(colours.few) * each.surface,
-                        each.operations,
-                        each.samples,
-                    )
-                    found.append(Candidate(Pixel(INDEX, "half"), cost, each))
-        self.considered = len(found)
+        without_spectra = Cost(colours.size, 3 * SAMPLE_OPERATIONS, 3)
+        candidates = [Candidate(Pixel(RGB), without_spectra)]
+        self.without_spectra = self.measure(None, candidates)[0].error
+        for rendering in self.renderings:
+            if rendering.sampling is not None and colours.few is not None:
+                cost = Cost(
+                    colours.pixels + 2 * len(colours.few) * rendering.surface,
+                    rendering.operations,
+                    rendering.samples,
+                )
+                candidates.append(Candidate(Pixel(INDEX, "half"), cost, rendering))
+        self.considered = len(candidates)
         if colours.few is None and self.without_spectra.quantile > self.floor:
-            found += self._with_cubes()
-        return found
+            candidates += self._with_cubes()
+        return candidates
 
     def measure(
         self, choice: Options | None, candidates: Sequence[Candidate]
     ) -> list[Candidate]:
         """Build the cube that candidates share, and measure their errors."""
         self.progress(Progress(candidates[0].name, 0, 1))
-        return self.errors(
-            self._cube(choice) if choice else self.tests.reference,
-            candidates,
-            self.tests,
-        )
+        cube = self._cube(choice) if choice else self.tests.reference
+        return self.errors(cube, candidates, self.tests)
 
     def errors(
         self, cube: Cube, candidates: Sequence[Candidate], tests: EvaluationSet
     ) -> list[Candidate]:
         """Measure the errors of candidates that share a cube, or need none."""
-        traced = list(
-            dict.fromkeys(each.rendering for each in candidates if each.rendering)
+        traced = dict.fromkeys(
+            filter(None, (candidate.rendering for candidate in candidates))
         )
-        needed = [each.wavelengths for each in traced]
+        needed = [rendering.wavelengths for rendering in traced]
         nm = np.concatenate([[], *needed])
         ends = np.cumsum([0, *map(len, needed)])
         columns = dict(zip(traced, map(slice, ends, ends[1:]), strict=False))
         spectra = cache(lambda pixel: pixel.decoded(cube, tests.rgb, nm))
 
-        def xyz(each: Candidate) -> Array:
-            if each.rendering is None:
-                return tests.rgb @ self.matrices.mT
-            return each.rendering.xyz(spectra(each.pixel)[:, columns[each.rendering]])
+        def measured(candidate: Candidate) -> Candidate:
+            rendering = candidate.rendering
+            if rendering is None:
+                xyz = tests.rgb @ self.matrices.mT
+            else:
+                xyz = rendering.xyz(spectra(candidate.pixel)[:, columns[rendering]])
+            return replace(candidate, error=tests.error(xyz))
 
-        return [replace(each, error=tests.error(xyz(each))) for each in candidates]
+        return list(map(measured, candidates))
 
     def _with_cubes(self) -> Iterator[Candidate]:
         """Candidates that need a cube and whose bounds are below the ceiling."""
         base = _quantiles(self.tests.error(self.base))
         lattices = self._lattices()
-        models = self._models()
         points = {lattice: self._points(lattice) for lattice in lattices}
         for (model, by_model), (lattice, by_lattice) in product(
-            models.items(), lattices.items()
+            self._models().items(), lattices.items()
         ):
             choice = replace(model, dim=lattice.dim, axis=lattice.axis)
             of_cube = _quantiles(self.tests.error(self.base + by_model + by_lattice))
@@ -352,4 +351,4 @@ class CandidateSpace:
 
 
 def _quantiles(error: ErrorSummary) -> Array:
-    return np.array([part.quantile for part in error.parts])
+    return np.array([group.quantile for group in error.parts])

@@ -35,7 +35,7 @@ def front_rows(plan: Plan) -> list[Candidate]:
     """The choice, and candidates whose error is clearly below that of all cheaper ones,
     by what the scene minimises.
     """
-    front: list[Candidate] = []
+    front = list[Candidate]()
     smallest = float("inf")
     for candidate in cheapest_first(plan.measured, plan.scene.minimise):
         error = candidate.error.quantile
@@ -71,33 +71,32 @@ def notes(plan: Plan) -> list[str]:
     """What the choice costs, whether the scene needs spectra, and what its colours are
     worth.
     """
-    found = [f"It costs {_costs(plan.chosen)}."]
+    lines = [f"It costs {_costs(plan.chosen)}."]
     if plan.chosen.rendering is None:
-        found.append(
+        lines.append(
             "This scene needs no spectra: RGB and a 3 × 3 matrix per light suffice."
         )
     else:
         rgb = format_error(plan.without_spectra.quantile)
-        found.append(
+        lines.append(
             "Without spectra, by RGB and the best 3 × 3 matrix per light, ΔE00 is "
             f"{rgb}."
         )
     if plan.chosen.pixel.form == INDEX and plan.spectra is not None:
-        found.append(
+        lines.append(
             f"The textures have {pluralise(len(plan.spectra[0]), 'colour')}: a list "
             "of spectra suffices."
         )
-    if (
-        known := plan.expected_error
-    ) is not None:  # RGB alone does not identify a material
-        found.append(
+    known = plan.expected_error
+    if known is not None:  # RGB alone does not identify a material
+        lines.append(
             f"Your colours are known within ΔE00 {known:.2g}; this plan adds "
             f"{plan.confirmed.quantile:.2g}."
         )
         cheaper = plan.cheapest(known)
         if cheaper is not None and plan.confirmed.quantile <= SHARE * known:
-            found.append(f"With tolerance {known:.2g} it would need {_costs(cheaper)}.")
-    return found
+            lines.append(f"With tolerance {known:.2g} it would need {_costs(cheaper)}.")
+    return lines
 
 
 def _costs(candidate: Candidate) -> str:
@@ -113,10 +112,9 @@ def describe_error(plan: Plan) -> str:
     measured = ", entries with their measurements" if scene.atlases else ""
     return (
         f"ΔE00 of {100 * scene.quantile:.4g} % of the textures' pixels{materials} is "
-        "at most this value, under the "
-        f"worst of {lights}. Pixels are compared with a cube of the finest lattice "
-        "and the most "
-        f"coefficients at all wavelengths{measured}. {len(plan.measured):,} of "
+        f"at most this value, under the worst of {lights}. Pixels are compared with a "
+        "cube of the finest lattice and the most coefficients at all "
+        f"wavelengths{measured}. {len(plan.measured):,} of "
         f"{pluralise(plan.considered, 'candidate')} were measured; the bounds of the "
         "others exclude them."
     )
@@ -255,26 +253,11 @@ def commands(plan: Plan, path: Path) -> tuple[str, ...]:
         if len(scene.textures) == 1
         else "uplifted"
     )
-    words = [
-        "uplift",
-        "texture",
-        *map(str, scene.textures),
-        "-o",
-        target,
-        "--cube",
-        cube,
-    ]
-    words += ["--representation", pixel.form, "--depth", pixel.depth]
+    words = ["uplift", "texture", *map(str, scene.textures), "-o", target]
+    words += ["--cube", cube, "--representation", pixel.form, "--depth", pixel.depth]
     rendering = plan.chosen.rendering
-    if (
-        pixel.form == Spectrum.name
-        and rendering is not None
-        and rendering.sampling is not None
-    ):
-        words += [
-            "--wavelengths",
-            ",".join(f"{each:g}" for each in rendering.wavelengths),
-        ]
+    if pixel.form == Spectrum.name and rendering is not None and rendering.sampling:
+        words += ["--wavelengths", ",".join(map("{:g}".format, rendering.wavelengths))]
     if scene.encoding != SceneFile.encoding:
         words += ["--encoding", scene.encoding]
     return build, shlex.join(words)

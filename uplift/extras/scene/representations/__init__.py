@@ -35,15 +35,11 @@ FACTORIES: Mapping[str, tuple[Callable[[int], Representation], tuple[int, ...]]]
     "PF": (filters.mitchell_point_samples, SIZES),
     "RS": (samples.riemann_sums, SIZES),
     "RE": (composite.enhanced_riemann, SIZES),
-    "CS": (
-        composite.sun_composite,
-        (5, 7, 11, 15),
-    ),  # Fourier coefficients in the thesis
+    # Fourier coefficients in the thesis
+    "CS": (composite.sun_composite, (5, 7, 11, 15)),
     "GQ": (samples.gauss_samples, SIZES),
-    "TM": (
-        models.trigonometric_moments,
-        (5, 9, 13, 17),
-    ),  # moments that cubes may store
+    # moments that cubes may store
+    "TM": (models.trigonometric_moments, (5, 9, 13, 17)),
     "SG": (models.sigmoid_coefficients, (3,)),
     "HW": (models.hero_wavelengths, (4, 16, 64, 256)),  # wavelengths per pixel
 }
@@ -56,7 +52,7 @@ def all_representations(lights: Array, surfaces: Array) -> tuple[Representation,
     """Every registered representation, and the linear models of a scene of lights (L,
     401) and surfaces (E, 401).
     """
-    registered: list[Representation] = []
+    registered = list[Representation]()
     for make, sizes in FACTORIES.values():
         registered += map(make, sizes)
     linear = [models.linear_model(count, lights, surfaces) for count in COMPONENTS]
@@ -72,7 +68,8 @@ def find_representation(text: str) -> Representation:
     """
     name, *low_pass = text.split(":")
     try:
-        (make, sizes), count = FACTORIES[name[:2]], parse_whole(name[2:])
+        make, sizes = FACTORIES[name[:2]]
+        count = parse_whole(name[2:])
         if not 2 <= count <= MAX_SIZE or (len(sizes) == 1 and count not in sizes):
             raise ValueError
         if not low_pass:
@@ -84,9 +81,8 @@ def find_representation(text: str) -> Representation:
         )
         if name[:2] != "PS" or not is_filter or not all(map(math.isfinite, values)):
             raise ValueError
-        return filters.filtered_point_samples(
-            count, filters.Filter(kind, int(extent), values)
-        )
+        low_pass_filter = filters.Filter(kind, int(extent), values)
+        return filters.filtered_point_samples(count, low_pass_filter)
     except (KeyError, ValueError) as error:
         hint = (
             "write for example PF16, RS32 or TM9; a filter as PS16:gaussian:7:0.5, "

@@ -19,8 +19,6 @@ from uplift.extras.scene.representations.samples import Representation
 
 NOISE = 1e-9
 """Heights below this fraction of the highest sample are rounding."""
-SUN_THRESHOLD, ENHANCED_THRESHOLD = 0.3, 0.2
-"""Relative gradients of spikes, from Kment 2011, section 6.1."""
 
 
 class CompositeCode(NamedTuple):
@@ -154,13 +152,9 @@ def fourier_coefficients(count: int) -> Representation:
 
 def waves(count: int) -> Array:
     """Fourier basis (count, 401) at the dense wavelengths."""
-    return _waves(
-        2
-        * np.pi
-        * (samples.wavelengths() - observer.START)
-        / (observer.END - observer.START),
-        count,
-    )
+    period = observer.END - observer.START
+    phase = 2 * np.pi * (samples.wavelengths() - observer.START) / period
+    return _waves(phase, count)
 
 
 def _waves(phase: Array, count: int) -> Array:
@@ -174,10 +168,13 @@ def _analyse(values: Array, waves: Array) -> Array:
     """Coefficients (n, C) of values (n, K) at K evenly spaced points of a period, for
     waves (C, K).
     """
-    return np.asarray(values @ waves.T / (waves**2).sum(axis=1))
+    return values @ waves.T / (waves**2).sum(axis=1)
 
 
-def sun_composite(count: int, threshold: float = SUN_THRESHOLD) -> Representation:
+# The relative gradients of spikes are those of Kment 2011, section 6.1.
+
+
+def sun_composite(count: int, threshold: float = 0.3) -> Representation:
     """Sun's composite model (CS): spikes, and ``count`` Fourier coefficients of the
     smooth part.
     """
@@ -186,17 +183,11 @@ def sun_composite(count: int, threshold: float = SUN_THRESHOLD) -> Representatio
     return composite(f"CS{count}", "Sun's composite", smooth, decoder, threshold)
 
 
-def enhanced_riemann(
-    count: int, threshold: float = ENHANCED_THRESHOLD
-) -> Representation:
+def enhanced_riemann(count: int, threshold: float = 0.2) -> Representation:
     """Enhanced Riemann sums (RE): spikes, which meet the mean of their cell, and
     Riemann sums of the smooth part.
     """
     decoder = samples.cell_overlaps(count)[:, :: samples.TABLE_STRIDE]
-    return composite(
-        f"RE{count}",
-        "enhanced Riemann sums",
-        samples.riemann_sums(count),
-        decoder,
-        threshold,
-    )
+    smooth = samples.riemann_sums(count)
+    name = f"RE{count}"
+    return composite(name, "enhanced Riemann sums", smooth, decoder, threshold)

@@ -23,8 +23,8 @@ from uplift.common.arrays import Array
 from uplift.extras.scene.representations import samples
 from uplift.extras.scene.representations.samples import Representation
 
-MITCHELL_B, MITCHELL_C = -0.4, 1.0
-"""Parameters of the best Mitchell filter in table A.2."""
+MITCHELL = (-0.4, 1.0)
+"""Parameters B and C of the best Mitchell filter in table A.2."""
 FILTER_SPACINGS = 4
 """Width of that filter in spacings of its 16 points, which is the usual width of cubic
 filters.
@@ -66,7 +66,7 @@ class Filter:
         """
         x = np.linspace(-1, 1, 2 * (self.extent * upsampling // 2) + 3)[1:-1]
         taps = KINDS[self.kind].curve(x, *self.parameters)
-        return np.asarray(taps / taps.sum())
+        return taps / taps.sum()
 
 
 def resampling_matrix(low_pass: Filter, count: int) -> Array:
@@ -136,5 +136,5 @@ def mitchell_point_samples(count: int) -> Representation:
     """
     spacing = (len(observer.grid()) - 1) / (count - 1)
     extent = 2 * round((FILTER_SPACINGS * spacing - 1) / 2) + 1
-    low_pass = Filter("mitchell", extent, (MITCHELL_B, MITCHELL_C))
+    low_pass = Filter("mitchell", extent, MITCHELL)
     return replace(filtered_point_samples(count, low_pass), name=f"PF{count}")

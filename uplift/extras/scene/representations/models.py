@@ -25,8 +25,10 @@ SHAPE_WEIGHT = 1e-4
 MAX_STEPS = 60
 WAVELENGTHS_PER_PATH = 4
 SEED = 7
-STEEPNESS, CENTRE = 0.0072, 538.0
-"""Parameters of the density 1 / cosh²(0.0072 (λ − 538)), λ in nm."""
+STEEPNESS = 0.0072
+"""Steepness per nm of the density 1 / cosh²(0.0072 (λ − 538)), λ in nm."""
+CENTRE = 538.0
+"""Its centre in nm."""
 
 
 def tabulated(
@@ -156,8 +158,8 @@ def hero_wavelengths(count: int) -> Representation:
     with its own, reproducible random numbers. Spectra remain tables, evaluated at the
     wavelengths of a path. Raises `OptionError` unless the count is a multiple of four.
     """
-    paths, rest = divmod(count, WAVELENGTHS_PER_PATH)
-    if rest or not paths:
+    paths, remainder = divmod(count, WAVELENGTHS_PER_PATH)
+    if remainder or not paths:
         raise OptionError(
             "number of hero wavelengths must be a positive multiple of four, got "
             f"{count}"
@@ -174,9 +176,7 @@ def hero_wavelengths(count: int) -> Representation:
             heroes[:, :, None] + np.arange(WAVELENGTHS_PER_PATH) / WAVELENGTHS_PER_PATH
         ) % 1
         drawn = CENTRE + np.arctanh(low + (high - low) * rotated) / STEEPNESS
-        return np.asarray(
-            np.clip(drawn, observer.START, observer.END).reshape(pixels, -1)
-        )
+        return np.clip(drawn, observer.START, observer.END).reshape(pixels, -1)
 
     def encode(spectra: Array) -> Array:
         pairs = zip(draw(len(spectra)), spectra, strict=True)

@@ -51,7 +51,7 @@ def interpolation_matrix(points: Array) -> Array:
     """Matrix (401, n) that maps dense spectra to their values at ``points`` (n,) nm,
     linear between samples.
     """
-    return np.asarray(np.maximum(1 - np.abs(wavelengths()[:, None] - points), 0))
+    return np.maximum(1 - np.abs(wavelengths()[:, None] - points), 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,10 +109,9 @@ class Representation:
                 f"{self.name} does not determine a spectrum",
                 hint="use PS, PF, RS, TM or SG",
             )
-        surface = self.encode_surface(reflectances)
-        return self.decode_light(self.encode_light(powers)), (
-            self.decode_surface or self.decode_light
-        )(surface)
+        lights = self.decode_light(self.encode_light(powers))
+        decode = self.decode_surface or self.decode_light
+        return lights, decode(self.encode_surface(reflectances))
 
 
 def linear(
@@ -148,13 +147,8 @@ def point_samples(count: int) -> Representation:
     """
     points = sample_points(count)
     hats = hat_functions(points)
-    return linear(
-        f"PS{count}",
-        "point sampling",
-        interpolation_matrix(points),
-        hats @ xyz_weights(),
-        hats,
-    )
+    encoder = interpolation_matrix(points)
+    return linear(f"PS{count}", "point sampling", encoder, hats @ xyz_weights(), hats)
 
 
 def riemann_sums(count: int) -> Representation:
@@ -183,7 +177,7 @@ def cell_overlaps(count: int) -> Array:
     low = wavelengths() - STEP / 2
     high = wavelengths() + STEP / 2
     overlap = np.minimum(edges[1:, None], high) - np.maximum(edges[:-1, None], low)
-    return np.asarray(np.maximum(overlap, 0) / STEP)
+    return np.maximum(overlap, 0) / STEP
 
 
 def gauss_samples(count: int) -> Representation:

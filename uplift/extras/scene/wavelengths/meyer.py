@@ -31,12 +31,14 @@ CONFUSION_POINTS = np.array([[0.171, -0.003], [1.14, -0.14], [0.735, 0.265]])
 """Chromaticities xy at which the confusion lines of tritanopes, deuteranopes and
 protanopes meet. They belong to the S, M and L cones alone (eq. 20; Estévez 1979).
 """
-UNIQUE_BLUE, UNIQUE_YELLOW = 475.5, 570.0
-"""Wavelengths in nm whose hue does not depend on luminance."""
-S_TO_ML_AT_BLUE, L_TO_M_AT_YELLOW = 1 / 16, 2.0
-"""Cone ratios s / (m + l) at the first and l / m at the second of these wavelengths
-(eq. 21; Walraven 1974).
-"""
+UNIQUE_BLUE = 475.5
+"""Wavelength in nm of a blue whose hue does not depend on luminance."""
+UNIQUE_YELLOW = 570.0
+"""The same of a yellow."""
+S_TO_ML_AT_BLUE = 1 / 16
+"""Cone ratio s / (m + l) at the unique blue (eq. 21; Walraven 1974)."""
+L_TO_M_AT_YELLOW = 2.0
+"""Cone ratio l / m at the unique yellow."""
 
 
 def cone_space(wavelengths: Array, cmfs: Array) -> Array:

@@ -60,16 +60,15 @@ class FitProblem:
             return (delta_e_2000(lab, lab + difference) / STEP) ** 2
 
         # G with dᵀ G d ≈ ΔE00² for small differences d of L*a*b*
-        diagonal, (i, j) = squared(steps), np.tril_indices(3, -1)
+        diagonal = squared(steps)
+        i, j = np.tril_indices(3, -1)
         form = diagonal[..., None] * np.eye(3)
         form[..., i, j] = (
             squared(steps[i] + steps[j]) - diagonal[..., i] - diagonal[..., j]
         ) / 2
         values, vectors = np.linalg.eigh(form)  # of the lower triangle
         root = np.sqrt(np.maximum(values, MIN_EIGENVALUE))[..., None] * vectors.mT
-        return np.asarray(
-            root @ lab_jacobian(self.setup.xyz, self.setup.whites[:, None])
-        )
+        return root @ lab_jacobian(self.setup.xyz, self.setup.whites[:, None])
 
     @staticmethod
     def pack(sampling: Sampling) -> Array:

@@ -21,8 +21,12 @@ from uplift.extras.scene.wavelengths.sampling import (
     statistics,
 )
 
-WIDTH, PANEL_HEIGHT, MARGIN_HEIGHT = 7.2, 1.55, 0.9
-"""Inches: width of the figure, height of a panel, height above and below all panels."""
+WIDTH = 7.2
+"""Width of the figure in inches."""
+PANEL_HEIGHT = 1.55
+"""Height of a panel in inches."""
+MARGIN_HEIGHT = 0.9
+"""Height above and below all panels in inches."""
 CHANNEL_COLOURS = {"X": "#c0392b", "Y": "#2e8b57", "Z": "#2f5fb3"}
 
 
@@ -40,7 +44,7 @@ def plot_choice(
         """Sum of the interpolated values of samples: per wavelength and per sample,
         units differ.
         """
-        return np.asarray(np.interp(nm, chosen, values).sum())
+        return np.interp(nm, chosen, values).sum()
 
     with styled():
         count = len(sampling.lights) + 1
@@ -78,10 +82,9 @@ def plot_choice(
             style_axes(axes)
         figure.align_ylabels()
         mean, p95, largest = statistics(choice.errors).values()
-        found = f"mean {mean:.2f}, 95th percentile {p95:.2f}, max {largest:.2f}"
-        title = (
-            f"{pluralise(len(sampling), 'wavelength')}, {choice.method}: ΔE00 {found}"
-        )
+        measures = f"mean {mean:.2f}, 95th percentile {p95:.2f}, max {largest:.2f}"
+        chosen_text = pluralise(len(sampling), "wavelength")
+        title = f"{chosen_text}, {choice.method}: ΔE00 {measures}"
         figure.suptitle(title, x=0.02, ha="left", fontsize=10, color=INK)
         write_figure(figure, path, force=force)
 

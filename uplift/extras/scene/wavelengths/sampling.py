@@ -17,10 +17,12 @@ from uplift.colorimetry.observer import DEFAULT_OBSERVER
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 
-START, END, STEP = 380.0, 770.0, 1.0
-"""Visible range of Meyer 1988 in nm, with a step that resolves the lines of fluorescent
-lamps.
-"""
+START = 380.0
+"""Start of the visible range of Meyer 1988 in nm."""
+END = 770.0
+"""Its end in nm."""
+STEP = 1.0
+"""Step in nm that resolves the lines of fluorescent lamps."""
 MIN_SAMPLES = 16
 """Fewest samples of a wavelength grid."""
 MEASURES: Mapping[str, Callable[[Array], Any]] = {
@@ -29,8 +31,10 @@ MEASURES: Mapping[str, Callable[[Array], Any]] = {
     "max": np.max,
 }
 """Statistics of ΔE00 by name."""
-UNIFORM_START, UNIFORM_END = 400.0, 700.0
-"""Range in nm for which even spacing has the least error with few wavelengths."""
+UNIFORM_START = 400.0
+"""Start in nm of the range for which even spacing of few wavelengths errs least."""
+UNIFORM_END = 700.0
+"""Its end in nm."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +57,7 @@ class RenderSetup:
     @cached_property
     def xyz(self) -> Array:
         """XYZ (K, M, 3) of the materials, summed over the full grid."""
-        return np.asarray(self.reflectances @ (self.powers[:, :, None] * self.cmfs))
+        return self.reflectances @ (self.powers[:, :, None] * self.cmfs)
 
     @cached_property
     def whites(self) -> Array:
@@ -246,7 +250,7 @@ class Sampling:
         ndarray, shape (K, M, 3)
             XYZ.
         """
-        return np.asarray(reflectances @ (self.powers[:, :, None] * self.to_xyz))
+        return reflectances @ (self.powers[:, :, None] * self.to_xyz)
 
 
 def balanced(sampling: Sampling) -> Sampling:
