@@ -28,7 +28,6 @@ from uplift.models.moments import WARPS
 
 PICTURES = DOCS / "moments"
 FLOATS = (3, 5, 9, 13, 16)
-CUBE_DIM = 16
 COEFFICIENTS = (3, 5, 9)
 Pair = tuple[float, float]
 """Mean and largest error."""
@@ -160,7 +159,7 @@ def cube_errors(atlases: Mapping[str, Atlas], count: int, warp: str) -> Row:
     other atlases.
     """
     cube = uplift.build(
-        MACBETH, dim=CUBE_DIM, coefficients=count, entry_coefficients=count, warp=warp
+        MACBETH, dim=16, coefficients=count, entry_coefficients=count, warp=warp
     )
     others = inside(merge(atlases[name] for name in atlases if name != "macbeth"))
     answers = cube.reflectance(others.rgb)
