@@ -83,14 +83,11 @@ def plot(study: MomentsStudy, thesis: Errors) -> None:
 def read_thesis() -> dict[tuple[Technique, int], Pair]:
     """Return mean and largest ΔE76 of appendix B.1."""
     by_short = {technique.short: technique for technique in TECHNIQUES}
-    rows = read_reference("moments_todova2020.csv")
-    return {
-        (by_short[row["method"]], int(row["moments"])): (
-            float(row["mean"]),
-            float(row["max"]),
-        )
-        for row in rows
-    }
+    errors = {}
+    for row in read_reference("moments_todova2020.csv"):
+        key = by_short[row["method"]], int(row["moments"])
+        errors[key] = float(row["mean"]), float(row["max"])
+    return errors
 
 
 def max_moments(technique: Technique, floats: int) -> int:
