@@ -330,7 +330,8 @@ def records(comparison: Comparison) -> list[dict[str, Any]]:
 COUNTS = (4, 8, 16)
 """Numbers of samples after a filter in the thesis."""
 NONE = "none"
-FINE_STRIDE, COARSE_STRIDE = 1, 5
+FINE_STRIDE = 1
+COARSE_STRIDE = 5
 """A search tries every first or every fifth choice of each parameter."""
 
 
