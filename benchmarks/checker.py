@@ -22,9 +22,6 @@ COLUMNS = 6
 ROWS = 4
 BACKGROUND = 0.03
 """Reflectance between the patches."""
-INSET = 0.3
-"""Margin around the reference square in the middle of a patch, as a share of its width.
-"""
 VARIANT = "scalar_spectral"
 """The spectral variant that does not need LLVM."""
 OF_SURFACES = {"type": "direct", "bsdf_samples": 1, "emitter_samples": 0}
@@ -96,7 +93,7 @@ class Layout:
 
     def middles(self) -> list[Place]:
         """Return the rows and columns of a square in the middle of each patch."""
-        return list(self.patches(round(INSET * self.patch)))
+        return list(self.patches(round(0.3 * self.patch)))
 
     def halves(self) -> list[Place]:
         """Return the rows and columns of the left half of each patch."""

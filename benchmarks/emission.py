@@ -48,8 +48,6 @@ STEPS = 101
 COLOURS = 200_000
 RUNS = 15
 NEAREST = 8
-THIRDS = 3
-WORST = 8
 
 
 def main() -> None:
@@ -84,11 +82,11 @@ def main() -> None:
         rows=summaries(lamps, lights, surfaces, radiometry),
         worst=[
             {"lamp": lamps.names[row], "error": errors[row]}
-            for row in np.argsort(errors)[::-1][:WORST]
+            for row in np.argsort(errors)[::-1][:8]
         ],
         calibration=[
             {"expected": expected[third].mean(), "measured": errors[third].mean()}
-            for third in np.array_split(np.argsort(expected, kind="stable"), THIRDS)
+            for third in np.array_split(np.argsort(expected, kind="stable"), 3)
         ],
         exactness=exactness(table, spokes(table, DIRECTIONS, STEPS)),
         lookups=lookups(),
@@ -161,10 +159,6 @@ def by_nearest(lamps: Lamps, unknown: Mask, radiometry: Array) -> dict[str, Arra
     }
 
 
-PBRT_SCALE = 2.0
-"""Largest component of RGB over that of the colour of the sigmoid of pbrt-v4."""
-
-
 def sigmoid_times_d65(power: Array, table: EmissionTable, d65: Array) -> Array:
     """Return lights with the RGB of others (n, N) as pbrt-v4 makes them.
 
@@ -182,7 +176,7 @@ def sigmoid_times_d65(power: Array, table: EmissionTable, d65: Array) -> Array:
     solution = solve(
         forward_map(model, wavelengths, sensor),
         np.zeros((len(rgb), model.count)),
-        rgb / (PBRT_SCALE * rgb.max(axis=1, keepdims=True)),
+        rgb / (2 * rgb.max(axis=1, keepdims=True)),
         tolerance=1e-7,
         max_passes=200,
     )

@@ -39,9 +39,6 @@ LIGHTS = ("A", "FL11", "HP1", "LED-RGB1")
 PICTURE = DOCS / "looks" / "regions.png"
 DRAWN = ((0x8A, 0x2A, 0x20), (0x5F, 0x7F, 0x9F))
 """Encoded colours of the picture, between entries."""
-DRAWN_LIGHTS = 3
-PAGE_DIVISIONS = 3
-FINE_DIVISIONS = 4
 MANY = 1000
 """Colours that are timed."""
 RUNS = 3
@@ -76,12 +73,10 @@ def main() -> None:
     lights = [light(name, srgb.observer, *srgb.range) for name in LIGHTS]
 
     def search(colours: Array) -> list[Bounds]:
-        return [
-            bounds(cube, colours, lamp, divisions=PAGE_DIVISIONS) for lamp in lights
-        ]
+        return [bounds(cube, colours, lamp, divisions=3) for lamp in lights]
 
     by_light = dict(zip(LIGHTS, search(rgb), strict=True))
-    plot_bounds(cube, [search(drawn)[:DRAWN_LIGHTS]], PICTURE, force=True)
+    plot_bounds(cube, [search(drawn)[:3]], PICTURE, force=True)
     screenshot(cube, search(drawn[:1]))
     colours = []
     for row, name in enumerate(atlas.names):
@@ -103,7 +98,7 @@ def main() -> None:
 
 def method(cube: Cube, rgb: Array, coarse: Bounds) -> Row:
     """Return the cost and the errors of the search under a light."""
-    fine = bounds(cube, rgb, coarse.light, divisions=FINE_DIVISIONS)
+    fine = bounds(cube, rgb, coarse.light, divisions=4)
     more = fine.largest.delta_e_2000 - coarse.largest.delta_e_2000
     many = np.random.default_rng(1).uniform(size=(MANY, 3))
     _, times = time_calls(lambda: bounds(cube, many, coarse.light), RUNS)

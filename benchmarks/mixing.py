@@ -37,8 +37,6 @@ SHARES = np.array([(0.75, 0.25), (0.5, 0.5), (0.25, 0.75)])
 BLUES = ("ultramarine", "cobalt", "cerulean", "phthalo blue")
 ARTISTS = ("#002185", "#fcd200")
 """Cobalt blue and Hansa yellow, as Mixbox's table has them."""
-GREEN_MARGIN = 0.01
-"""Excess of G over R and B, in linear RGB, that counts as green."""
 MIXTURES = 20_000
 LAP = 0.02
 """Shortest duration of a run in seconds."""
@@ -298,7 +296,7 @@ def _greens(cube: Cube, words: Sequence[str], rule: Scattering | None) -> Iterat
     mixtures = Mixtures(paints, np.array([[0, 1]] * 3), SHARES[::-1], np.empty(0))
     for rgb in mix(cube, mixtures, rule):
         code = "#" + bytes(np.rint(cube.encode(rgb)).astype(np.uint8)).hex()
-        yield {"green": rgb[1] > max(rgb[0], rgb[2]) + GREEN_MARGIN, "code": code}
+        yield {"green": rgb[1] > max(rgb[0], rgb[2]) + 0.01, "code": code}
 
 
 # --- pictures ---

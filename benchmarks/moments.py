@@ -27,7 +27,6 @@ from uplift.models.moments import WARPS
 
 PICTURES = DOCS / "moments"
 FLOATS = (3, 5, 9, 13, 16)
-CUBE_DIM = 16
 COEFFICIENTS = (3, 5, 9)
 Pair = tuple[float, float]
 """Mean and largest error."""
@@ -83,14 +82,11 @@ def plot(study: MomentsStudy, thesis: Errors) -> None:
 def read_thesis() -> dict[tuple[Technique, int], Pair]:
     """Return mean and largest ΔE76 of appendix B.1."""
     by_short = {technique.short: technique for technique in TECHNIQUES}
-    rows = read_reference("moments_todova2020.csv")
-    return {
-        (by_short[row["method"]], int(row["moments"])): (
-            float(row["mean"]),
-            float(row["max"]),
-        )
-        for row in rows
-    }
+    errors = {}
+    for row in read_reference("moments_todova2020.csv"):
+        key = by_short[row["method"]], int(row["moments"])
+        errors[key] = float(row["mean"]), float(row["max"])
+    return errors
 
 
 def max_moments(technique: Technique, floats: int) -> int:
@@ -159,7 +155,7 @@ def cube_errors(atlases: Mapping[str, Atlas], count: int, warp: str) -> Row:
     other atlases.
     """
     cube = uplift.build(
-        MACBETH, dim=CUBE_DIM, coefficients=count, entry_coefficients=count, warp=warp
+        MACBETH, dim=16, coefficients=count, entry_coefficients=count, warp=warp
     )
     others = inside(merge(atlases[name] for name in atlases if name != "macbeth"))
     answers = cube.reflectance(others.rgb)

@@ -35,10 +35,6 @@ WINDOW = (1240, 1440)
 """Pixels of the window."""
 BALL = 512
 """Pixels of the picture of a ball along each side."""
-VOXELS = 160
-"""Voxels of the scan along each side."""
-SIDE = 360
-"""Pixels of its image along each side."""
 DENSITIES = {"haze": 0.15, "block": 0.45, "piston": 0.7, "valve": 0.95}
 """Density of each material of engine.toml; air has 0."""
 OPACITIES = {"haze": 0.003, "block": 0.5, "piston": 0.5, "valve": 0.5}
@@ -51,13 +47,10 @@ NOISE = 0.012
 """Standard deviation of its noise."""
 EDGE = 0.05
 """Gradient per voxel at which half of a voxel counts as boundary, of no material."""
-SMOOTHING = 0.01
-"""Blur of the normals, in widths of the scan."""
 TURN = (35, -28)
 """Degrees about the vertical and the horizontal axis."""
 LIGHT = np.array([-0.5, 0.6, 0.62])
 AMBIENT = 0.25
-EXPOSURE = 1.5
 BORES = (-0.48, 0.0, 0.48)
 
 
@@ -72,7 +65,7 @@ def main() -> None:
     order = [list(DENSITIES).index(material.name) for material in palette.materials]
     view = relighting("engine", designed, weights[..., order])
     lit = np.concatenate(list(map(view.rgb, np.eye(len(view.lights)))), axis=1)
-    row = encode(np.clip(EXPOSURE * lit, 0, 1))
+    row = encode(np.clip(1.5 * lit, 0, 1))
     imsave(FOLDER / "scan.jpg", row, pil_kwargs={"quality": 88})
     ball = relighting("engine", designed, cutaway(len(palette.materials), BALL))
     with tempfile.TemporaryDirectory() as folder, browser() as tab:
@@ -106,7 +99,7 @@ def write_weights(weights: Array, path: Path) -> None:
     OpenEXR.File(header, channels).write(str(path))
 
 
-def scan(voxels: int = VOXELS) -> Array:
+def scan(voxels: int = 160) -> Array:
     """Return the densities (n, n, n) over x right, y up, z to the viewer in [−1, 1]."""
     axis = (np.arange(voxels) + 0.5) * 2 / voxels - 1
     x, y, z = np.meshgrid(axis, axis, axis, indexing="ij", sparse=True)
@@ -128,12 +121,12 @@ def scan(voxels: int = VOXELS) -> Array:
     return np.asarray(gaussian_filter(density, BLUR) + noise, dtype=np.float32)
 
 
-def cast(density: Array, side: int = SIDE) -> Array:
+def cast(density: Array, side: int = 360) -> Array:
     """Cast parallel rays through densities (n, n, n): the materials' amounts (side,
     side, 4).
     """
     turned = _turn(density, side)
-    smooth = gaussian_filter(turned, SMOOTHING * side)
+    smooth = gaussian_filter(turned, 0.01 * side)
     weights = np.zeros((side, side, len(DENSITIES)), dtype=np.float32)
     passed = np.ones((side, side))
     for depth in range(side - 2, 0, -1):

@@ -127,9 +127,6 @@ def ours(runs: int) -> list[Peer]:
 
 CERES_SOURCE = ROOT / "benchmarks" / "ceres"
 CERES_BUILT = ROOT / "out" / "ceres"
-CERES_NEEDS = "install Ceres, cmake and a C++ compiler: libceres-dev, cmake, g++"
-CERES_STEPS = 12
-"""Iterations from each start. More, as by default, fit no more moments."""
 CERES_JOBS = (
     ("sigmoid", 3, "sigmoid", 0.99),
     ("moments", 9, "moments", 0.5),
@@ -146,7 +143,7 @@ def ceres(runs: int) -> list[Peer]:
     It grows from the middle of the lattice, every node from its fitted neighbours.
     """
     _install(
-        CERES_NEEDS,
+        "install Ceres, cmake and a C++ compiler: libceres-dev, cmake, g++",
         ["cmake", "-S", CERES_SOURCE, "-B", CERES_BUILT],
         ["cmake", "--build", CERES_BUILT],
     )
@@ -183,7 +180,8 @@ def _run_ceres(program: Path, unknowns: str, count: int) -> tuple[Array, Row]:
         scene = Path(folder, "scene.txt")
         solution = Path(folder, "found")
         scene.write_text("\n".join(lines))
-        options = [unknowns, str(count), str(CERES_STEPS)]
+        # 12 iterations from each start: more, as by default, fit no more moments.
+        options = [unknowns, str(count), "12"]
         # Ceres logs every step outside the moments of reflectances, which would be
         # timed too.
         quiet = os.environ | {"GLOG_minloglevel": "3"}

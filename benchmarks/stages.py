@@ -105,7 +105,7 @@ def run(arguments: list[str], stages: dict[str, str]) -> dict[str, float]:
 
     importlib.import_module(f"uplift_cli.commands.{arguments[0]}")
     for place, stage in stages.items():
-        _replace(place, lambda function, stage=stage: clocked(function, stage))
+        _replace(place, functools.partial(clocked, stage=stage))
     if arguments[0] == "build":
         # JAX traces what the first function returns, and the second.
         _replace(

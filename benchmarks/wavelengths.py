@@ -38,7 +38,6 @@ SPACES = {"AC1C2": "opponent", "SML": "cones", "XYZ": "xyz"}
 """Names of the paper, and of `uplift.extras.scene.wavelengths.choose_orders`."""
 CHANNELS = ("A", "C1", "C2")
 OPTIMISED = "optimised"
-FITTED = "fitted"
 OTHERS = ("meyer", "uniform", "bins")
 """Methods that are not fitted to materials."""
 COUNTS = range(4, 17)
@@ -263,7 +262,7 @@ def tables(
         summary = {
             **head,
             "other_gain": spread(gains),
-            "fitted_gain": spread(means[FITTED] / means[OPTIMISED]),
+            "fitted_gain": spread(means["fitted"] / means[OPTIMISED]),
             "needed": needed,
         }
         yield summary, rows

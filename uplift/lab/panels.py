@@ -28,8 +28,6 @@ CLEAR_RATIO = 0.99
 """Share of an error below which another one is clearly smaller; the rest is noise."""
 SIZE = (4.8, 3.4)
 """Inches of a panel."""
-LEGEND_HEIGHT = 0.2
-"""Inches of a row of the legend."""
 FRONT_LINE: dict[str, Any] = {"color": INK, "linewidth": 1.1, "marker": ""}
 MARKER_SIZES = {"*": 9.5, "D": 5.5}
 """Points; others are 6.5 wide."""
@@ -126,7 +124,7 @@ def panel_figure(
 
     rows = math.ceil(len(panels) / columns)
     legend_rows = math.ceil(len(legend or ()) / (2 * columns))
-    figure = new_figure(columns * SIZE[0], rows * SIZE[1] + legend_rows * LEGEND_HEIGHT)
+    figure = new_figure(columns * SIZE[0], rows * SIZE[1] + legend_rows * 0.2)
     cells = figure.subplots(rows, columns, squeeze=False).ravel()
     for number, (axes, panel) in enumerate(zip(cells, panels, strict=True), first):
         _draw_panel(axes, panel, number)

@@ -6,6 +6,7 @@ import contextlib
 import json
 import os
 import platform
+import re
 import statistics
 import subprocess
 import sys
@@ -54,9 +55,6 @@ class TimingStats:
     min: float
     max: float
     runs: int
-
-    def __format__(self, spec: str) -> str:
-        return f"{self.median:{spec}} ({self.min:{spec}}–{self.max:{spec}})"
 
     def scaled(self, factor: float) -> "TimingStats":
         """Multiply all values by a factor."""
@@ -138,25 +136,16 @@ def environment() -> dict[str, str]:
     """Describe where measurements are taken."""
     cpu = platform.processor() or platform.machine()
     with contextlib.suppress(OSError):
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-        cpu = next(
-            (
-                line.split(":")[1].strip()
-                for line in lines
-                if line.startswith("model name")
-            ),
-            cpu,
-        )
-    packages = ", ".join(
-        [
-            *(f"{name} {metadata.version(name)}" for name in PACKAGES),
-            f"uplift {version()}",
-        ]
-    )
+        text = Path("/proc/cpuinfo").read_text()
+        if named := re.search(r"^model name[^:]*:([^:\n]*)", text, re.MULTILINE):
+            cpu = named[1].strip()
+    versions = [f"Python {sys.version.split()[0]}"]
+    versions += [f"{name} {metadata.version(name)}" for name in PACKAGES]
+    versions.append(f"uplift {version()}")
     system = f"{platform.system()} {platform.machine()}"
     return {
         "machine": f"{cpu}, {os.cpu_count()} cores, {system}",
-        "versions": f"Python {sys.version.split()[0]}, {packages}",
+        "versions": ", ".join(versions),
         "commit": commit(),
     }
 

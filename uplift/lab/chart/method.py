@@ -53,10 +53,6 @@ def published_srgb() -> Sensor:
 COLOURS = 2000
 """Default number of random colours."""
 MIN_COLOURS = 16
-EDGE_STEPS = 9
-"""Colours along each edge of the RGB cube and along its grey diagonal, corners
-included.
-"""
 MIN_SPECTRA = 2
 
 
@@ -173,7 +169,7 @@ def edges() -> Array:
     """Return linear RGB (n, 3) along the edges and the grey diagonal of the RGB cube,
     each once.
     """
-    along = np.linspace(0, 1, EDGE_STEPS)
+    along = np.linspace(0, 1, 9)
     grid = np.array(list(product(along, repeat=3)))
     at_ends = ((grid == 0) | (grid == 1)).sum(axis=1)
     return grid[(at_ends >= 2) | (np.ptp(grid, axis=1) == 0)]

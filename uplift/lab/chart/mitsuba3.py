@@ -31,8 +31,10 @@ from uplift.lab.chart.method import (
 )
 from uplift.models.sigmoid import evaluate_unscaled
 
-VARIANT, COMPILED = "scalar_spectral", "llvm_ad_spectral"
-"""The spectral variant that does not need LLVM, and the vectorised one."""
+VARIANT = "scalar_spectral"
+"""The spectral variant that does not need LLVM."""
+COMPILED = "llvm_ad_spectral"
+"""The vectorised one."""
 XYZ_TO_RGB = np.array(
     [
         [3.240479, -1.53715, -0.498535],
@@ -61,10 +63,10 @@ def table_file() -> Path:
     """Return the file of the table, without loading Mitsuba; raise `NotInstalledError`
     if it is not installed.
     """
-    found = find_spec("mitsuba")
-    if found is None or found.origin is None:
+    spec = find_spec("mitsuba")
+    if spec is None or spec.origin is None:
         raise NotInstalledError(f"needs {MITSUBA}")
-    return Path(found.origin).parent / "data" / "srgb.coeff"
+    return Path(spec.origin).parent / "data" / "srgb.coeff"
 
 
 def _mitsuba(variant: str) -> Any:
@@ -91,9 +93,8 @@ def prepare_compiled(task: Task) -> PreparedMethod:
     """Load Mitsuba's vectorised variant, without the kernels of earlier calls."""
     size = table_file().stat().st_size
     drjit = import_module("drjit")
-    if not drjit.has_backend(
-        drjit.JitBackend.LLVM
-    ):  # true does not mean that LLVM works
+    # True does not mean that LLVM works.
+    if not drjit.has_backend(drjit.JitBackend.LLVM):
         raise NotInstalledError(f"needs {LLVM}")
     drjit.flush_kernel_cache()
     _, seconds = stopwatch(
@@ -132,10 +133,10 @@ def _evaluate(mitsuba: Any, drjit: Any, rgb: Array, wavelengths: Array) -> Array
     at.uv = (mitsuba.Point2f(index % side, index // side) + 0.5) / side
     channels = []
     for start in range(0, len(wavelengths), AT_ONCE):
-        some = wavelengths[start : start + AT_ONCE]
-        at.wavelengths = type(at.wavelengths)(*np.resize(some, AT_ONCE).tolist())
+        block = wavelengths[start : start + AT_ONCE]
+        at.wavelengths = type(at.wavelengths)(*np.resize(block, AT_ONCE).tolist())
         values = texture.eval(at)
-        channels += [values[k] for k in range(len(some))]
+        channels += [values[k] for k in range(len(block))]
     drjit.eval(channels)
     return np.stack(channels).T
 

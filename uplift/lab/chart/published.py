@@ -55,13 +55,11 @@ def prepare_one_by_one(
     cmfs, light = (aligned(kind, look_up(kind, title), *grid) for kind, title in named)
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
-        spectra = (convert(xyz, cmfs, light) for xyz in published_srgb().xyz(rgb))
-        return np.stack(
-            [
-                np.interp(wavelengths, spectrum.wavelengths, spectrum.values)
-                for spectrum in spectra
-            ]
-        )
+        rows = []
+        for xyz in published_srgb().xyz(rgb):
+            spectrum = convert(xyz, cmfs, light)
+            rows.append(np.interp(wavelengths, spectrum.wavelengths, spectrum.values))
+        return np.stack(rows)
 
     otsu = recovery.otsu2018
     clusters = (
@@ -81,9 +79,8 @@ def prepare_jakob_table(task: Task) -> PreparedMethod:
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         # For one colour the coefficients have no axis of colours.
-        return evaluate_unscaled(
-            table.RGB_to_coefficients(rgb).reshape(-1, 3), wavelengths
-        )
+        coefficients = table.RGB_to_coefficients(rgb).reshape(-1, 3)
+        return evaluate_unscaled(coefficients, wavelengths)
 
     return PreparedMethod(uplift, table.coefficients.nbytes, None, seconds)
 
@@ -101,7 +98,7 @@ def prepare_basis(
 
     def uplift(rgb: Values, wavelengths: Array) -> Values:
         at = np.stack([np.interp(wavelengths, centres, row) for row in basis])
-        return np.asarray(weights(rgb) @ at.astype(dtype, copy=False))
+        return weights(rgb) @ at.astype(dtype, copy=False)
 
     return PreparedMethod(uplift, basis.nbytes, load_s=seconds)
 
@@ -133,9 +130,7 @@ def _smits_weights(rgb: Values) -> Values:
 
 @cache
 def smits_sensor() -> Sensor:
-    """Return the sensor of the stated space, sRGB primaries with an
-    equal-energy white.
-    """
+    """Return the sensor of the stated space, sRGB with an equal-energy white."""
     space = colour_science().recovery.smits1999.RGB_COLOURSPACE_SMITS1999
     return stated_sensor(space.matrix_XYZ_to_RGB, space.whitepoint_name)
 
@@ -147,11 +142,10 @@ def _method(
     prepare: Callable[..., PreparedMethod],
     **fields: Any,
 ) -> Method:
-    family = title.partition(",")[0]
     return Method(
         method=name,
         title=title,
-        family=family,
+        family=title.partition(",")[0],
         source=source,
         prepare=prepare,
         **fields,

@@ -27,10 +27,8 @@ MAX_BYTES = 16 << 20
 MAX_NUMBER = 1e30
 ERRORS = ("round_trip", "coarse_round_trip", *CHART_LIGHTS, "lights", "rms")
 OWN_ERRORS = tuple(f"own_{name}" for name in ERRORS[2:])
-REQUIRED = {"bytes", "time_ns", "setup_s", "round_trip_colours", "unseen_spectra"} | {
-    f"{name}_{kind}"
-    for name, kind in product((*ERRORS, *OWN_ERRORS), ("mean", "p99", "max"))
-}
+REQUIRED = {"bytes", "time_ns", "setup_s", "round_trip_colours", "unseen_spectra"}
+REQUIRED |= set(map("_".join, product((*ERRORS, *OWN_ERRORS), ("mean", "p99", "max"))))
 """Numbers of every method that was measured."""
 BATCH = re.compile(r"ns_([1-9]\d{0,8})")
 """Name of a time by the number of colours per call."""
@@ -202,20 +200,18 @@ class Criterion:
 
     def time(self, result: MethodResult) -> float | None:
         """Return the time in ns, None if it is unknown."""
-        each = result.numbers.get(f"ns_{self.batch}")
-        if each is None or not self.whole:
-            return each
-        return 1e9 * result.numbers["setup_s"] + self.batch * each
+        per_rgb = result.numbers.get(f"ns_{self.batch}")
+        if per_rgb is None or not self.whole:
+            return per_rgb
+        return 1e9 * result.numbers["setup_s"] + self.batch * per_rgb
 
     def point(self, result: MethodResult) -> tuple[float, float] | None:
         """Return time and mean error, None if either is unknown."""
         time = self.time(result)
         error = result.numbers.get(f"{self.error}_mean")
-        return (
-            None
-            if time is None or error is None
-            else (max(time, MIN_TIME), max(error, MIN_ERROR))
-        )
+        if time is None or error is None:
+            return None
+        return max(time, MIN_TIME), max(error, MIN_ERROR)
 
     def labels(self, result: MethodResult) -> tuple[str, str]:
         """Return time and mean error as text."""
@@ -227,12 +223,13 @@ class Criterion:
         """Return the Pareto front, fastest first: each is clearly more accurate than
         all faster methods.
         """
-        points = {
-            result: point
-            for result in chart.measured
-            if (point := self.point(result)) is not None
-        }
-        return tuple(list(points)[row] for row in pareto_front(list(points.values())))
+        results = []
+        points = []
+        for result in chart.measured:
+            if point := self.point(result):
+                results.append(result)
+                points.append(point)
+        return tuple(results[row] for row in pareto_front(points))
 
 
 UNSEEN = "Unseen materials, mean of five lights"

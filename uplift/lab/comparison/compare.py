@@ -38,10 +38,6 @@ from uplift.extras.scene.representations.samples import Representation
 from uplift.extras.scene.wavelengths.sampling import RenderSetup
 from uplift.lab.timing import TimingStats, environment, time_laps
 
-NAMED_SET = "given"
-"""Name of the set of lights that a user lists."""
-QUICK_SURFACES = 40
-"""Surfaces of a quick comparison."""
 TIMING = (1024, 0.05, 7)
 QUICK_TIMING = (256, 0.005, 3)
 """Products per call, shortest duration of a run in seconds, and runs."""
@@ -75,7 +71,7 @@ class Scene:
         """Return the powers of all lights, (L, 401)."""
         return np.concatenate([light_set.powers for light_set in self.sets])
 
-    def thinned(self, count: int = QUICK_SURFACES) -> "Scene":
+    def thinned(self, count: int = 40) -> "Scene":
         """Select at most ``count`` surfaces, evenly spaced."""
         rows = np.linspace(0, len(self.surfaces) - 1, count).round().astype(np.intp)
         kept = self.surfaces[np.unique(rows)]
@@ -98,7 +94,7 @@ def make_scene(
     observer.check_distinct(lights)
     named: Mapping[str, tuple[Illuminant, ...]] = KMENT_LIGHTS
     if lights:
-        named = {NAMED_SET: tuple(dict.fromkeys(lights))}
+        named = {"given": tuple(dict.fromkeys(lights))}
     nm = samples.wavelengths()
     weights = samples.xyz_weights()
     surfaces = on_grid(merged, nm)
@@ -335,7 +331,8 @@ def records(comparison: Comparison) -> list[dict[str, Any]]:
 COUNTS = (4, 8, 16)
 """Numbers of samples after a filter in the thesis."""
 NONE = "none"
-FINE_STRIDE, COARSE_STRIDE = 1, 5
+FINE_STRIDE = 1
+COARSE_STRIDE = 5
 """A search tries every first or every fifth choice of each parameter."""
 
 

@@ -98,8 +98,6 @@ TECHNIQUES = tuple(starmap(Technique, product((True, False), repeat=2)))
 """All techniques, in the order of the tables of the thesis."""
 
 
-DEFAULT_MAX_MOMENTS = 15
-"""Largest number of moments above the zeroth in the thesis."""
 MAX_MOMENTS = 32
 """Largest number of cosines that a 5 nm grid still resolves."""
 MEASURES = ("delta_e_76_D65", *(f"delta_e_00_{name}" for name in REPORT_LIGHTS), "rms")
@@ -196,7 +194,7 @@ class MomentsStudy:
 
 def study_moments(
     atlases: Mapping[str, Atlas],
-    max_moments: int = DEFAULT_MAX_MOMENTS,
+    max_moments: int = 15,
     progress: ProgressCallback = ignore_progress,
 ) -> MomentsStudy:
     """Reduce every entry to 0 … ``max_moments`` moments, and reconstruct it, by all

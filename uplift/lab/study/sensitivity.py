@@ -28,12 +28,8 @@ abruptly.
 """
 CODE_STEPS = {"1/255": 1.0, "1/1023": 255 / 1023}
 """Steps of one code of 8 and of 10 bits, in 8-bit codes."""
-ROUNDING_STEP = 1e-7
-"""Rounding of a float32, in linear RGB."""
 NOISE = 0.002
 """Repeatability of a spectrophotometer: standard deviation of a reflectance."""
-NOISE_DRAWS = 3
-"""Number of atlases with noise."""
 HALVINGS = 16
 """Halvings of a step, after which that of an 8-bit code is rounding."""
 HALVED = 16
@@ -145,7 +141,7 @@ def perturb_answers(
     signs = rng.choice([-1.0, 1.0], (count, 3))
     rgb = decode(codes)
     moved = {name: decode(codes + step * signs) for name, step in CODE_STEPS.items()}
-    moved["1e-7"] = np.clip(rgb + ROUNDING_STEP * signs, 0, 1)
+    moved["1e-7"] = np.clip(rgb + 1e-7 * signs, 0, 1)  # rounding of a float32
     before = answer(rgb)
     moves: list[Record] = []
     for step, colours in moved.items():
@@ -197,7 +193,7 @@ def changed_atlases(
     Changes are `NOISE` on all entries, an entry with its wavelengths in reverse order,
     as an example of a wrong measurement, and an entry left out.
     """
-    for seed in range(NOISE_DRAWS):
+    for seed in range(3):
         rng = np.random.default_rng(seed)
         noisy = []
         for entry in entries:

@@ -25,16 +25,8 @@ from uplift.models import Sigmoid
 from uplift.pipeline.build import build
 from uplift.pipeline.options import ModelName
 
-CROWDED_ENTRIES = 120
-"""Number of entries of the crowded atlas."""
 ENTRIES = 24
-"""Number of entries of the other atlases."""
-ATLAS_NOISE = 0.05
-"""Standard deviation of the reflectances of the noisy atlas, as of a poor instrument in
-a dark room.
-"""
-PEAK_HALF_WIDTH = 8.0
-"""Half-width in nm of the peaks of the spiky atlas."""
+"""Number of entries of the spiky and of the noisy atlas."""
 HIGHEST = 1.05
 """Largest reflectance of the noisy atlas."""
 
@@ -43,27 +35,29 @@ def crowded() -> Atlas:
     """Make 120 smooth spectra of one paint, whose colours differ by about 1 ΔE."""
     rng = np.random.default_rng(1)
     paint = 0.3 + 0.15 * np.tanh((observer.grid() - 580) / 60)
-    spectra = [paint + _smooth_deviation(rng, 0.01) for _ in range(CROWDED_ENTRIES)]
+    spectra = [paint + _smooth_deviation(rng, 0.01) for _ in range(120)]
     return _atlas("crowded", spectra)
 
 
 def spiky() -> Atlas:
-    """Make spectra of two narrow peaks or dips, which few moments cannot represent."""
+    """Make spectra of two peaks or dips of 8 nm, which few moments cannot represent."""
     rng = np.random.default_rng(2)
     spectra = []
     for number in range(ENTRIES):
         offset = observer.grid()[:, None] - rng.uniform(430, 670, 2)
-        peaks = np.exp(-((offset / PEAK_HALF_WIDTH) ** 2)).max(axis=1)
+        peaks = np.exp(-((offset / 8) ** 2)).max(axis=1)
         spectra.append(0.95 - 0.93 * peaks if number % 2 else 0.02 + 0.93 * peaks)
     return _atlas("spiky", spectra)
 
 
 def noisy() -> Atlas:
-    """Make smooth spectra with noise that leaves [0, 1] as far as readers allow."""
+    """Make smooth spectra with noise, as of a poor instrument in a dark room, that
+    leaves [0, 1].
+    """
     rng = np.random.default_rng(3)
     spectra = []
     for level in np.linspace(0.05, 0.95, ENTRIES):
-        noise = rng.normal(0, ATLAS_NOISE, len(observer.grid()))
+        noise = rng.normal(0, 0.05, len(observer.grid()))
         reflectance = level + _smooth_deviation(rng, 0.1) + noise
         spectra.append(np.clip(reflectance, LOWEST, HIGHEST))
     return _atlas("noisy", spectra)
