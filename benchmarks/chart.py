@@ -12,7 +12,7 @@ from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.lab.chart.measure import measure_methods, select_methods
 from uplift.lab.chart.method import Effort, make_task
 from uplift.lab.chart.picture import render_chart, write_picture
-from uplift.lab.chart.table import (
+from uplift.lab.chart.results import (
     MEASURED,
     Chart,
     MethodResult,

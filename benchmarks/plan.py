@@ -19,7 +19,7 @@ from benchmarks import ATLASES, DOCS, MACBETH, Row, record
 from benchmarks.performance import UPLIFT
 from benchmarks.pictures import Picture, pictures
 from uplift.colorimetry import delta_e_spectra
-from uplift.colorimetry.lights import SCENE_LIGHTS
+from uplift.colorimetry.illuminants import SCENE_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.extras.pages.figure import ACCENT, INK
 from uplift.extras.pages.format import format_size

@@ -22,7 +22,7 @@ from .startup import hide_drawing_notes
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
     from uplift.colorimetry import Sensor
-    from uplift.colorimetry.lights import Illuminant
+    from uplift.colorimetry.illuminants import Illuminant
     from uplift.common.arrays import Array
     from uplift.extras.colour.spaces import ImageSpace
     from uplift.extras.texture.picture import Picture

@@ -274,7 +274,9 @@ def completion(
 complete_atlas = completion("atlas:shipped_atlases", files=True)
 complete_cube = completion("lookup.cube:PACKAGED", files=True)
 complete_light = completion(
-    "colorimetry.lights:COMMON_NAMES", "colorimetry.tables:names:illuminant", files=True
+    "colorimetry.illuminants:COMMON_NAMES",
+    "colorimetry.tables:names:illuminant",
+    files=True,
 )
 complete_observer = completion(
     "colorimetry.tables:names:observer", "colorimetry.tables:names:camera", files=True

@@ -69,7 +69,7 @@ def test_prose_has_no_number_of_its_own(path):
 
 
 def test_constants_data_and_stated_numbers():
-    assert code("uplift.colorimetry.lights:TEMPERATURES.0") == 1000
+    assert code("uplift.colorimetry.illuminants:TEMPERATURES.0") == 1000
     place = "weights[channel=C2,order=7].printed.2"
     assert datum("wavelengths", place) == 0.27643
     assert stated("2e−7", "uplift/models/model.py") == "2e−7"

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.text import pluralise
 
 from .. import options

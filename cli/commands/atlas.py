@@ -31,7 +31,7 @@ from ..outputs import check_outputs
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
     from uplift.colorimetry import Sensor
-    from uplift.colorimetry.lights import Illuminant
+    from uplift.colorimetry.illuminants import Illuminant
     from uplift.common.arrays import Array
 
 SHIPPED = ("name", "entries", "content", "source", "licence")

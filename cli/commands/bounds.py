@@ -24,7 +24,7 @@ from ..outputs import check_outputs
 from .query import Answers, colour_options, result_object
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.lights import Illuminant
+    from uplift.colorimetry.illuminants import Illuminant
     from uplift.extras.colour.query import QueryResult
     from uplift.extras.looks.metamer_bounds import Bounds
     from uplift.lookup import Cube

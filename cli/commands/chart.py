@@ -18,7 +18,7 @@ from ..outputs import check_folder, write_files
 from ..startup import enable_jit_cache, use_one_blas_thread
 
 if TYPE_CHECKING:
-    from uplift.lab.chart.table import Chart
+    from uplift.lab.chart.results import Chart
 
 PRINTED = 3
 """Pareto fronts of each number of colours that are printed; the page has all."""
@@ -115,7 +115,7 @@ def command(
         raise click.UsageError("The limits of a recommendation require --recommend.")
     from uplift.common.files import write_text
     from uplift.lab.chart.picture import render_chart, write_picture
-    from uplift.lab.chart.table import chart_csv, read_chart
+    from uplift.lab.chart.results import chart_csv, read_chart
 
     check_folder(output, FILES, inputs=atlas_files(files))
     chart = (
@@ -132,7 +132,7 @@ def command(
 def _recommend(source: str | None, required: dict[str, Any]) -> None:
     """Print the cube that meets the requirement, or those of common situations."""
     from uplift.extras.pages.format import format_error, format_size, format_time
-    from uplift.lab.chart.table import (
+    from uplift.lab.chart.results import (
         SITUATIONS,
         Requirement,
         read_chart,
@@ -171,7 +171,7 @@ def _measure(
 
 def _print_fronts(chart: Chart) -> None:
     from uplift.extras.pages.format import format_size
-    from uplift.lab.chart.table import State, criteria
+    from uplift.lab.chart.results import State, criteria
 
     say("Pareto fronts, from the fastest to the most accurate")
     tables = []

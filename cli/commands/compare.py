@@ -18,7 +18,7 @@ from ..outputs import check_folder, write_files
 from ..startup import use_one_blas_thread
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.lights import Illuminant
+    from uplift.colorimetry.illuminants import Illuminant
     from uplift.lab.comparison.compare import Comparison, TunedFilter
 
 FILES = ("compare-boxes.png", "compare-cost.png", "compare.html")

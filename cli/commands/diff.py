@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.text import pluralise
 
 from .. import options
@@ -65,7 +65,7 @@ def command(
     force: bool,
     **pixels: Any,
 ) -> None:
-    from uplift.colorimetry.lights import SCENE_LIGHTS
+    from uplift.colorimetry.illuminants import SCENE_LIGHTS
     from uplift.common.errors import OptionError
     from uplift.common.files import write_text
     from uplift.extras.report.diff import diff_cubes, to_json

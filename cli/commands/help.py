@@ -120,7 +120,7 @@ def _print_parts(parts: Iterable[Part]) -> None:
 
 
 def _illuminants() -> list[Part]:
-    from uplift.colorimetry.lights import COMMON_NAMES
+    from uplift.colorimetry.illuminants import COMMON_NAMES
     from uplift.extras.colour.light_sets import DESCRIPTIONS
 
     words = ", ".join(

@@ -134,8 +134,8 @@ def build(
 def info(
     table_path: str, style: str, plot_path: str | None, html: str | None, force: bool
 ) -> None:
+    from uplift.extras.emission.file import summarise
     from uplift.extras.emission.lookup import find_table, load_emission
-    from uplift.extras.emission.table import summarise
 
     check_outputs((plot_path, html), inputs=[table_path], force=force)
     table = load_emission(table_path)
@@ -145,7 +145,7 @@ def info(
 
         write_figure(light_figure(table), plot_path, force=force)
     if html is not None:
-        from uplift.extras.report.lights import render_light_report
+        from uplift.extras.report.emission_page import render_light_report
 
         file = Path(find_table(table_path))
         write_text(

@@ -40,7 +40,7 @@ from ..outputs import check_outputs
 
 if TYPE_CHECKING:
     from uplift.colorimetry import Light
-    from uplift.colorimetry.lights import Illuminant
+    from uplift.colorimetry.illuminants import Illuminant
     from uplift.common.arrays import Array
     from uplift.extras.colour.query import QueryResult
     from uplift.lookup import Cube

@@ -24,7 +24,7 @@ from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.lights import Illuminant
+    from uplift.colorimetry.illuminants import Illuminant
     from uplift.extras.relight.relight import Relit
     from uplift.lookup import Cube
 

@@ -18,7 +18,7 @@ from ..outputs import check_outputs
 
 if TYPE_CHECKING:
     from uplift.colorimetry import Sensor
-    from uplift.colorimetry.lights import Illuminant
+    from uplift.colorimetry.illuminants import Illuminant
     from uplift.common.arrays import Array
     from uplift.extras.scene.wavelengths import Choice
 

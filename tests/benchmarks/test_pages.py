@@ -17,7 +17,7 @@ from tests.conftest import ROOT
 from tests.parts import MITSUBA, need
 from tools import render_docs
 from tools.render_docs import read_data, render
-from uplift.lab.chart.table import read_chart
+from uplift.lab.chart.results import read_chart
 
 DOCS = ROOT / "docs"
 

@@ -12,7 +12,7 @@ from uplift_cli.main import main
 
 from tests.lab.chart import faulty
 from uplift.lab.chart import measure, method
-from uplift.lab.chart.table import read_chart
+from uplift.lab.chart.results import read_chart
 from uplift.lab.timing import ONE_THREAD
 
 FILES = ["chart.csv", "chart.html", "chart.png"]

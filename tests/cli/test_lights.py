@@ -11,7 +11,7 @@ from uplift_cli.output.diagnostics import hint_for
 
 import uplift
 from uplift.extras.emission.build import build_emission
-from uplift.extras.emission.table import emission_digest
+from uplift.extras.emission.file import emission_digest
 
 
 def test_a_light_has_its_colour_and_power_of_any_size(ask):

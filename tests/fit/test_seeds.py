@@ -23,7 +23,7 @@ from uplift.colorimetry import (
     observer,
     rgb_to_lab,
 )
-from uplift.colorimetry.lights import SCENE_LIGHTS
+from uplift.colorimetry.illuminants import SCENE_LIGHTS
 from uplift.fit import (
     Prior,
     Problem,

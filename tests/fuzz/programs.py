@@ -13,7 +13,7 @@ import numpy as np
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.extras.export.program import cube_program
-from uplift.extras.export.table import make_table
+from uplift.extras.export.program_table import make_table
 
 READ = (
     "DIM",

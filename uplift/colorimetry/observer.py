@@ -18,7 +18,7 @@ from uplift.colorimetry.camera import (
     Camera,
     camera_sensor,
 )
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, Illuminant, Lamp
+from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT, Illuminant, Lamp
 from uplift.colorimetry.sensor import Light, Sensor, in_unit_cube
 from uplift.colorimetry.tables import WAVELENGTHS, samples
 from uplift.common.arrays import Array

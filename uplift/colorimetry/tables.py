@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import lights
-from uplift.colorimetry.lights import Illuminant, Lamp
+from uplift.colorimetry import illuminants as lights
+from uplift.colorimetry.illuminants import Illuminant, Lamp
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import OptionError, UnknownNameError, unknown_name

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.colorimetry import rgb_to_lab
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import unknown_name
 from uplift.common.extensions import extension

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.camera import Camera
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS, Illuminant
+from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT, SCENE_LIGHTS, Illuminant
 from uplift.common.arrays import StrPath
 from uplift.common.extensions import extension
 from uplift.common.progress import ProgressCallback, ignore_progress

@@ -8,7 +8,12 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from uplift.colorimetry.camera import CAMERA
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS, Illuminant, Lamp
+from uplift.colorimetry.illuminants import (
+    DEFAULT_ILLUMINANT,
+    SCENE_LIGHTS,
+    Illuminant,
+    Lamp,
+)
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP
 from uplift.common import machine
 from uplift.common.errors import OptionError, unknown_name

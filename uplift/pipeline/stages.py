@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from uplift.colorimetry import Sensor
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.camera import Camera
-from uplift.colorimetry.lights import ERROR_ILLUMINANT
+from uplift.colorimetry.illuminants import ERROR_ILLUMINANT
 from uplift.common.arrays import Indices, Mask
 from uplift.common.errors import UpliftWarning, warn
 from uplift.common.extensions import extension

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import uplift
 from tests.helpers import quiet_build, raises
 from uplift.colorimetry import observer
-from uplift.colorimetry.lights import Lamp
+from uplift.colorimetry.illuminants import Lamp
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError
 from uplift.extras.emission.lamps import find_light, read_lamp
 from uplift.extras.report.rebuild import rebuild

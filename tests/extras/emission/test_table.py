@@ -12,8 +12,8 @@ import uplift
 from tests.helpers import raises
 from uplift.common.errors import CubeFileError, OutputError
 from uplift.cube import container
-from uplift.extras.emission import table
-from uplift.extras.emission.table import emission_digest, read_emission, write_emission
+from uplift.extras.emission import file as table
+from uplift.extras.emission.file import emission_digest, read_emission, write_emission
 
 
 @pytest.fixture(scope="module")

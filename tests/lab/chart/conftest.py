@@ -5,7 +5,7 @@ import pytest
 from tests.conftest import MACBETH
 from uplift.atlas import read_atlas
 from uplift.lab.chart.method import Effort, Method, PreparedMethod, make_task
-from uplift.lab.chart.table import FACTS, REQUIRED, TEXTS, Chart, MethodResult, State
+from uplift.lab.chart.results import FACTS, REQUIRED, TEXTS, Chart, MethodResult, State
 
 BATCHES = (1, 64)
 HASTE = Effort(

@@ -9,7 +9,7 @@ from tests.lab.chart.conftest import BATCHES, method_of
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.lab.chart.measure import MAX_CLAIM_RATIO, SLOW_STEP, measure_method
 from uplift.lab.chart.method import PreparedMethod, ours
-from uplift.lab.chart.table import State
+from uplift.lab.chart.results import State
 from uplift.lab.study.held_out import spectrum_errors
 
 

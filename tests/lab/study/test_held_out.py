@@ -14,7 +14,7 @@ from tests.helpers import raises
 from uplift.atlas import Atlas, Entry, read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.colorimetry.lights import SCENE_LIGHTS
+from uplift.colorimetry.illuminants import SCENE_LIGHTS
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import AtlasError
 from uplift.common.progress import Progress

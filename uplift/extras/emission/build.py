@@ -18,6 +18,7 @@ from uplift.common.version import version
 from uplift.extras.colour.light_sets import STANDARD_ILLUMINANTS
 from uplift.extras.colour.spaces import look_up_space, primaries_of
 from uplift.extras.emission.discs import Lamps, lamp_entries
+from uplift.extras.emission.file import EmissionData
 from uplift.extras.emission.fit import locus_lattice, mix_with_locus, nearest_lights
 from uplift.extras.emission.lamps import SAME_LAMP, known_lamps, read_lamps
 from uplift.extras.emission.lattice import ChromaticityLattice, chromaticity
@@ -28,7 +29,6 @@ from uplift.extras.emission.prior import (
     fit_lamp_prior,
     relit_delta_e,
 )
-from uplift.extras.emission.table import EmissionData
 
 ERROR_LENGTH = 0.02
 """Distance in u′v′ over which errors of left-out lamps are averaged."""

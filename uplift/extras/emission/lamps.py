@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from uplift.atlas import (
+    VISIBLE,
     Atlas,
     Document,
     Entry,
@@ -18,7 +19,7 @@ from uplift.atlas import (
     truncate,
 )
 from uplift.colorimetry import tables
-from uplift.colorimetry.lights import Illuminant, Lamp
+from uplift.colorimetry.illuminants import Illuminant, Lamp
 from uplift.colorimetry.observer import (
     DEFAULT_OBSERVER,
     END,
@@ -40,8 +41,6 @@ from uplift.extras.emission.discs import Lamps
 from uplift.extras.formats.measurements import Measurements
 from uplift.extras.formats.samples import is_missing
 
-VISIBLE = (400.0, 700.0)
-"""Range in nm that a lamp must cover."""
 SAME_LAMP = 1e-3
 """Difference, as a fraction of the largest power, below which two lamps are one."""
 

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from uplift.colorimetry import as_rgb
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError, OptionError
+from uplift.extras.emission.file import EmissionData, read_emission, write_emission
 from uplift.extras.emission.lattice import DENOMINATOR, LOCUS_TOLERANCE, Cells
-from uplift.extras.emission.table import EmissionData, read_emission, write_emission
 from uplift.lattice import weighted_sum
 from uplift.lookup import (
     Function,

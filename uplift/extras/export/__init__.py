@@ -5,11 +5,11 @@ format.
 from uplift.extras.export.arrays import write_csv, write_npz
 from uplift.extras.export.coeff import write_coeff
 from uplift.extras.export.film import write_film
-from uplift.extras.export.lights import write_light_program
+from uplift.extras.export.light_program import write_light_program
 from uplift.extras.export.lut import write_fourier, write_lut
 from uplift.extras.export.outputs import output_files
 from uplift.extras.export.program import LANGUAGES, check_form, write_program
-from uplift.extras.export.table import moved_cells, rounding_error
+from uplift.extras.export.program_table import moved_cells, rounding_error
 from uplift.extras.export.table_error import TableError
 
 __all__ = [

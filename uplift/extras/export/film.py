@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry import Sensor, solid
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import (
     DEFAULT_OBSERVER,
     END,

@@ -29,7 +29,7 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry import Sensor, delta_e_rgb
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array, Floats, StrPath, Values
 from uplift.common.errors import OptionError, TextureError
@@ -38,7 +38,7 @@ from uplift.cube import CubeData
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.export.outputs import output_files
 from uplift.extras.export.program import identifier, literal, read_source
-from uplift.extras.export.table import model_constants
+from uplift.extras.export.program_table import model_constants
 from uplift.extras.export.table_error import TableError, find_errors
 from uplift.extras.files.outputs import check_outputs
 from uplift.lookup import Cube, blockwise

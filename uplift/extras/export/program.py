@@ -28,7 +28,7 @@ from uplift.common.text import pluralise, round_up
 from uplift.common.version import version
 from uplift.cube import CubeData, digest
 from uplift.extras.export.outputs import output_files
-from uplift.extras.export.table import (
+from uplift.extras.export.program_table import (
     COLUMNS,
     PROGRAM_MODES,
     Table,

@@ -22,8 +22,8 @@ from uplift.extras.colour.srgb import decode
 from uplift.extras.emission.lookup import EmissionTable, load_emission
 from uplift.extras.mitsuba import texels
 from uplift.extras.texture.colours import Counts
+from uplift.extras.texture.emission import prepare_lights
 from uplift.extras.texture.exr_file import is_exr
-from uplift.extras.texture.lights import prepare_lights
 from uplift.lookup import Cube, load
 from uplift.models import evaluate
 

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry import Sensor, observer
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
+from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT
 from uplift.colorimetry.tables import samples
 from uplift.common.arrays import Array
 from uplift.extras.paint import pigments

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry import Sensor, lab_jacobian, observer
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 

@@ -27,7 +27,7 @@ from uplift.extras.palette.palette import (
 
 # ΔE00 above which a goal is missed: about half of a difference that is visible side by
 # side
-VISIBLE = 0.5
+MISSED = 0.5
 MAX_REMAINING = 0.8  # fraction of the ΔE00 that a useful relaxation may leave
 MAX_RELAXATIONS = 3  # relaxations that are listed for a goal
 
@@ -197,7 +197,7 @@ def unmet_goals(found: Design) -> tuple[UnmetGoal, ...]:
         goal: float(colours.delta_e[palette.cell(goal.material, goal.light)])
         for goal in palette.goals
     }
-    missed = [goal for goal in palette.goals if goal.weight and errors[goal] > VISIBLE]
+    missed = [goal for goal in palette.goals if goal.weight and errors[goal] > MISSED]
     relaxed = []
     for name, changed in _relaxed(palette) if missed else ():
         relaxed.append((name, matrix(design(changed, found.model)).delta_e))

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from uplift.colorimetry import Sensor, delta_e_2000, rgb_to_lab
 from uplift.colorimetry.gamut import SRGB, conversion
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array, Floats, StrPath
 from uplift.common.errors import OutputError

@@ -11,7 +11,7 @@ from itertools import product
 import numpy as np
 
 from uplift.colorimetry.gamut import conversion
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Floats
 from uplift.extras.colour.spaces import find_space

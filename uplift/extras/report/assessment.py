@@ -8,7 +8,7 @@ import numpy as np
 
 from uplift.atlas import Atlas
 from uplift.colorimetry import Sensor
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array
 from uplift.cube import CubeData, summarise

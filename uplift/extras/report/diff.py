@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import check_distinct, light
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError

@@ -13,7 +13,7 @@ from uplift.common.text import pluralise
 from uplift.cube import CubeData
 from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.export.program import cube_program
-from uplift.extras.export.table import COLUMNS, check_complete, make_table
+from uplift.extras.export.program_table import COLUMNS, check_complete, make_table
 from uplift.extras.pages.html import Markup, render, resource
 from uplift.lookup import Cube
 

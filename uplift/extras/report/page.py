@@ -157,7 +157,7 @@ def _by_light(other: Answers, lights: tuple[Sensor, ...]) -> dict[str, Any]:
 Swatch = tuple[str, float | None]
 """``#rrggbb`` of an answer under a light, or nothing, and its ΔE00."""
 
-VISIBLE = 1.0
+JUST_VISIBLE = 1.0
 """ΔE00 that is just visible side by side."""
 LARGE = 3.0
 """ΔE00 that is obvious."""
@@ -188,14 +188,14 @@ def render_report(assessment: Assessment, worst: int) -> str:
             default=0,
         ),
         severity=_severity,
-        visible=VISIBLE,
+        visible=JUST_VISIBLE,
         large=LARGE,
     )
 
 
 def _severity(delta_e: float) -> str | None:
     """CSS class of a ΔE00."""
-    return "bad" if delta_e > LARGE else "visible" if delta_e > VISIBLE else None
+    return "bad" if delta_e > LARGE else "visible" if delta_e > JUST_VISIBLE else None
 
 
 def _looks(assessment: Assessment) -> Iterator[dict[str, Any]]:

@@ -14,7 +14,7 @@ Examples
 
 from uplift.extras.texture.colours import Counts
 from uplift.extras.texture.conversion import Conversion, convert
-from uplift.extras.texture.lights import prepare_lights
+from uplift.extras.texture.emission import prepare_lights
 from uplift.extras.texture.mask import prepare_masked
 from uplift.extras.texture.sequence import (
     Failure,

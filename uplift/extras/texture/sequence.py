@@ -10,7 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.errors import (
     OptionError,
     OutputError,
@@ -27,8 +27,8 @@ from uplift.extras.files.outputs import check_folder, make_folder
 from uplift.extras.images.processes import tied_processes
 from uplift.extras.texture import exr_file
 from uplift.extras.texture.conversion import SOURCE, Conversion, convert, source_stamp
+from uplift.extras.texture.emission import prepare_lights
 from uplift.extras.texture.image import open_image
-from uplift.extras.texture.lights import prepare_lights
 from uplift.extras.texture.mask import prepare_masked
 from uplift.extras.texture.uplifter import Converter, PixelEncoding, Spectrum, prepare
 from uplift.lookup import load

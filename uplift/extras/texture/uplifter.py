@@ -16,7 +16,7 @@ import numpy as np
 from uplift import models
 from uplift.colorimetry import Sensor
 from uplift.colorimetry.gamut import check_method, map_to_gamut
-from uplift.colorimetry.lights import Illuminant, Lamp
+from uplift.colorimetry.illuminants import Illuminant, Lamp
 from uplift.colorimetry.observer import check_distinct, light
 from uplift.common.arrays import Array, Floats, Indices, Values
 from uplift.common.errors import OptionError

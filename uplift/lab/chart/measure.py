@@ -33,7 +33,7 @@ from uplift.lab.chart.method import (
     make_task,
     stopwatch,
 )
-from uplift.lab.chart.table import REFERENCE, Chart, MethodResult, State
+from uplift.lab.chart.results import REFERENCE, Chart, MethodResult, State
 from uplift.lab.study.held_out import spectrum_errors
 from uplift.lab.study.sensitivity import COLOURS, perturb_answers
 from uplift.lab.timing import TimingStats, environment, time_laps

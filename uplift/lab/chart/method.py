@@ -17,7 +17,7 @@ import numpy as np
 
 from uplift.atlas import Atlas, merge, resample
 from uplift.colorimetry import Sensor, in_unit_cube, observer
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
+from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import AtlasError, OptionError

@@ -27,7 +27,7 @@ from uplift.extras.pages.format import (
 )
 from uplift.extras.pages.html import Tooltip, render
 from uplift.extras.pages.scatter import Label, draw_labels
-from uplift.lab.chart.table import (
+from uplift.lab.chart.results import (
     REFERENCE,
     Chart,
     Criterion,

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, Entry, merge, on_grid
 from uplift.colorimetry import delta_e_2000, observer
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array
 from uplift.common.errors import (

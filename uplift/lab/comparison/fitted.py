@@ -9,7 +9,7 @@ from itertools import chain
 import numpy as np
 
 from uplift.colorimetry import observer
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.arrays import Array
 from uplift.extras.palette.factor import factor_model
 from uplift.extras.scene.representations import (

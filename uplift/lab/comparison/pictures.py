@@ -56,7 +56,7 @@ COSTS: dict[
 """Costs, and their texts, by title."""
 BOX_SIZE = (4.1, 0.155)
 """Inches of the width of box plots, and of the height of a box."""
-VISIBLE = 1.0
+JUST_VISIBLE = 1.0
 """ΔE00 that is just visible side by side; the thesis prints smaller ones in bold."""
 TITLE = "Representations of spectra"
 SOURCES = (
@@ -141,7 +141,9 @@ def draw_boxes(
             axes.barh(row, width, left=values.q25, height=0.62, color=colour)
             ends = row - 0.31, row + 0.31
             axes.vlines(values.median, *ends, color="white", linewidth=1.4)
-        axes.axvline(VISIBLE, color=INK, linewidth=0.8, linestyle=(0, (3, 2)), zorder=0)
+        axes.axvline(
+            JUST_VISIBLE, color=INK, linewidth=0.8, linestyle=(0, (3, 2)), zorder=0
+        )
         axes.set(xscale="log", xlabel="ΔE00")
         axes.set_yticks(range(len(results)), [result.name for result in results])
         axes.margins(y=0.01)

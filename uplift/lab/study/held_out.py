@@ -19,7 +19,7 @@ from uplift.colorimetry import (
     observer,
     rgb_to_lab,
 )
-from uplift.colorimetry.lights import SCENE_LIGHTS
+from uplift.colorimetry.illuminants import SCENE_LIGHTS
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress

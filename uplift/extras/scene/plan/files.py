@@ -11,7 +11,12 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, ConfigDict, Field
 
 from uplift.colorimetry import Sensor, observer
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS, Illuminant, Lamp
+from uplift.colorimetry.illuminants import (
+    DEFAULT_ILLUMINANT,
+    SCENE_LIGHTS,
+    Illuminant,
+    Lamp,
+)
 from uplift.common.arrays import StrPath
 from uplift.common.errors import (
     OptionError,

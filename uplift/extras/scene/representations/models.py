@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from uplift.colorimetry import observer
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
+from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError
 from uplift.extras.scene.representations import samples

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
-from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import DEFAULT_OBSERVER
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError

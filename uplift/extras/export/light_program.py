@@ -7,10 +7,10 @@ import numpy as np
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError
 from uplift.extras.emission.discs import MIN_RADIUS, touched_bins
+from uplift.extras.emission.file import EmissionData, emission_digest
 from uplift.extras.emission.lattice import DENOMINATOR, ChromaticityLattice
-from uplift.extras.emission.table import EmissionData, emission_digest
 from uplift.extras.export.program import check_form, comment, compose, write_files
-from uplift.extras.export.table import Table, concatenate
+from uplift.extras.export.program_table import Table, concatenate
 
 STYLES = ("c", "glsl")
 """Languages of `write_light_program`."""

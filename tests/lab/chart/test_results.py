@@ -24,7 +24,7 @@ from tests.pages import Page, external_links
 from tests.parts import CHROMIUM, need
 from uplift.common.errors import ChartFileError, OptionError, UnknownNameError
 from uplift.lab.chart.picture import drawn_results, render_chart, write_picture
-from uplift.lab.chart.table import (
+from uplift.lab.chart.results import (
     MIN_ERROR,
     Requirement,
     State,

@@ -12,9 +12,9 @@ import uplift
 from tests.browsing import check_page
 from tests.extras.report.conftest import HOSTILE
 from tests.pages import Page, external_links
+from uplift.extras.emission.file import emission_digest
 from uplift.extras.emission.lookup import EmissionTable
-from uplift.extras.emission.table import emission_digest
-from uplift.extras.report.lights import assess_lights, render_light_report
+from uplift.extras.report.emission_page import assess_lights, render_light_report
 
 TABLE = uplift.load_emission()
 

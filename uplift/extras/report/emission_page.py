@@ -9,9 +9,9 @@ import numpy as np
 from markupsafe import Markup
 
 from uplift.extras.colour.srgb import hex_codes
+from uplift.extras.emission.file import summarise
 from uplift.extras.emission.lattice import chromaticity
 from uplift.extras.emission.lookup import EmissionTable
-from uplift.extras.emission.table import summarise
 from uplift.extras.pages.chromaticity import draw_colours, draw_errors, draw_lamps
 from uplift.extras.pages.figure import styled, to_page_svg
 from uplift.extras.pages.html import render

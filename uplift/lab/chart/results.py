@@ -9,7 +9,7 @@ from enum import StrEnum
 from importlib.resources import files
 from itertools import product
 
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
+from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT
 from uplift.common.arrays import StrPath
 from uplift.common.errors import ChartFileError, OptionError, unknown_name
 from uplift.common.files import read_bytes

@@ -12,8 +12,8 @@ from uplift.colorimetry.observer import sensor
 from uplift.common.arrays import Array, Floats, Values
 from uplift.common.errors import OptionError
 from uplift.extras.colour.spaces import find_space
+from uplift.extras.emission.file import emission_digest
 from uplift.extras.emission.lookup import MAX_VALUE, EmissionTable
-from uplift.extras.emission.table import emission_digest
 from uplift.extras.images import exr
 from uplift.extras.texture import colours, uplifter
 from uplift.extras.texture.channels import BRIGHTEST, ColourChannels
