@@ -42,12 +42,12 @@ def _command(command: click.Command, name: str, parent: click.Context) -> Iterat
             is_code = paragraph.startswith(VERBATIM)
             yield _code_block(paragraph) if is_code else f"\n{_escape(paragraph)}\n"
         yield "\n| option | |\n|---|---|\n"
-        for each in command.get_params(context):
-            option, text = each.get_help_record(context) or ("", "")
+        for parameter in command.get_params(context):
+            option, text = parameter.get_help_record(context) or ("", "")
             if text:
                 yield f"| `{option.replace('|', PIPE)}` | {_escape(text)} |\n"
-        for each in getattr(command, "commands", {}).values():
-            yield from _command(each, each.name, context)
+        for subcommand in getattr(command, "commands", {}).values():
+            yield from _command(subcommand, subcommand.name, context)
 
 
 def _code_block(paragraph: str) -> str:

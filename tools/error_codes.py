@@ -3,7 +3,7 @@
 import ast
 import json
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -18,57 +18,51 @@ def codes(tree: ast.AST) -> Iterator[tuple[str, str]]:
     """Yield function or class and code: of classes, of arguments, and of names that
     have a text in the same file.
     """
-    named = defaultdict(list)
+    named = assigned_values(ast.walk(tree))
     for node in ast.walk(tree):
-        if isinstance(node, ast.Assign):
-            sides = (
-                getattr(side, "elts", [side]) for side in (node.targets[0], node.value)
-            )
-            for target, value in zip(*sides, strict=False):
-                named[ast.unparse(target)].append(value)
-    for node in ast.walk(tree):
-        found: list[tuple[str, ast.expr]] = []
+        name = ""
+        values: list[ast.expr] = []
         if isinstance(node, ast.ClassDef):
-            own = (each for each in node.body if isinstance(each, ast.Assign))
-            found = [
-                (node.name, each.value)
-                for each in own
-                if ast.unparse(each.targets[0]) == "code"
-            ]
+            name = node.name
+            members = [item for item in node.body if isinstance(item, ast.Assign)]
+            values = assigned_values(members)["code"]
         elif isinstance(node, ast.Call):
             name = ast.unparse(node.func).rpartition(".")[2]
-            values = [
-                keyword.value for keyword in node.keywords if keyword.arg in KEYWORDS
-            ]
-            found = [
-                (name, each)
-                for value in values
-                for each in named.get(ast.unparse(value), [value])
-            ]
-        yield from (
-            (name, str(each.value))
-            for name, each in found
-            if isinstance(each, ast.Constant) and each.value
-        )
+            for keyword in node.keywords:
+                if keyword.arg in KEYWORDS:
+                    value = keyword.value
+                    values += named.get(ast.unparse(value), [value])
+        for value in values:
+            if isinstance(value, ast.Constant) and value.value:
+                yield name, str(value.value)
+
+
+def assigned_values(nodes: Iterable[ast.AST]) -> dict[str, list[ast.expr]]:
+    """Return the values that are assigned to each name."""
+    values = defaultdict(list)
+    for node in nodes:
+        if isinstance(node, ast.Assign):
+            targets = getattr(node.targets[0], "elts", node.targets)
+            parts = getattr(node.value, "elts", [node.value])
+            for target, value in zip(targets, parts, strict=False):
+                values[ast.unparse(target)].append(value)
+    return values
 
 
 def collect(root: Path = ROOT) -> list[dict[str, Any]]:
     """Return ``code``, ``kind`` ("error" or "warning") and ``packages`` that use it, by
     code.
     """
-    found: dict[tuple[str, str], set[str]] = {}
-    for path in sorted(
-        chain.from_iterable(
-            (root / folder).rglob("*.py") for folder in ("cli", "uplift")
-        )
-    ):
+    users: dict[tuple[str, str], set[str]] = defaultdict(set)
+    sources = chain((root / "cli").rglob("*.py"), (root / "uplift").rglob("*.py"))
+    for path in sources:
         package = ".".join(path.relative_to(root).parent.parts)
         for name, code in codes(ast.parse(path.read_text(encoding="utf-8"))):
             kind = "warning" if "warn" in name.lower() else "error"
-            found.setdefault((code, kind), set()).add(package)
+            users[code, kind].add(package)
     return [
         {"code": code, "kind": kind, "packages": sorted(packages)}
-        for (code, kind), packages in sorted(found.items())
+        for (code, kind), packages in sorted(users.items())
     ]
 
 

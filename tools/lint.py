@@ -10,7 +10,9 @@ import subprocess
 import sys
 import tokenize
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).parents[1]
 WORDS = ROOT / "tools" / "banned_words.txt"
@@ -77,26 +79,22 @@ def prose(path: Path) -> Iterator[tuple[int, str]]:
 
 def check_words() -> list[str]:
     """Return a line for every banned expression."""
-    lines = [
-        line.partition("  ") for line in WORDS.read_text(encoding="utf-8").splitlines()
-    ]
-    banned = {
-        line[0]: line[2].strip()
-        for line in lines
-        if line[0] and not line[0].startswith("#")
-    }
-    patterns = {
-        re.compile(rf"\b(?:{expression})\b", re.IGNORECASE): advice
-        for expression, advice in banned.items()
-    }
-    return [
-        f"{path.relative_to(ROOT)}:{number}: '{match.group()}': {advice}"
-        for path in tracked()
-        if path != Path(__file__)
-        for number, line in prose(path)
-        for pattern, advice in patterns.items()
-        for match in pattern.finditer(line)
-    ]
+    patterns = {}
+    for line in WORDS.read_text(encoding="utf-8").splitlines():
+        expression, _, advice = line.partition("  ")
+        if expression and not expression.startswith("#"):
+            pattern = re.compile(rf"\b(?:{expression})\b", re.IGNORECASE)
+            patterns[pattern] = advice.strip()
+    findings = []
+    for path in tracked():
+        if path == Path(__file__):
+            continue
+        for number, line in prose(path):
+            place = f"{path.relative_to(ROOT)}:{number}"
+            for pattern, advice in patterns.items():
+                for match in pattern.finditer(line):
+                    findings.append(f"{place}: '{match.group()}': {advice}")
+    return findings
 
 
 def documented(package: str) -> Iterator[tuple[str, frozenset[str]]]:
@@ -106,24 +104,30 @@ def documented(package: str) -> Iterator[tuple[str, frozenset[str]]]:
     Methods with an inherited docstring are left out.
     """
     module = importlib.import_module(package)
-    for found in (getattr(module, name) for name in getattr(module, "__all__", ())):
-        name = f"{found.__module__}.{found.__qualname__}" if callable(found) else ""
-        if inspect.isfunction(found):
-            yield name, REQUIRED
-        elif inspect.isclass(found):
-            own_constructor = "__init__" in vars(found) and not getattr(
-                found, "_is_protocol", False
-            )
-            yield name, REQUIRED if own_constructor else REQUIRED - {"PR01"}
-            for key, value in vars(found).items():
-                is_method = inspect.isfunction(value) or isinstance(
-                    value, property | classmethod
-                )
-                inherited = value.__doc__ is None and inspect.getdoc(
-                    getattr(found, key, None)
-                )
-                if is_method and not key.startswith("_") and not inherited:
-                    yield f"{name}.{key}", REQUIRED
+    for exported in getattr(module, "__all__", ()):
+        value = getattr(module, exported)
+        if inspect.isfunction(value):
+            yield dotted_name(value), REQUIRED
+        elif inspect.isclass(value):
+            is_protocol = getattr(value, "_is_protocol", False)
+            constructed = "__init__" in vars(value) and not is_protocol
+            yield dotted_name(value), REQUIRED if constructed else REQUIRED - {"PR01"}
+            for method in public_methods(value):
+                yield f"{dotted_name(value)}.{method}", REQUIRED
+
+
+def dotted_name(value: Any) -> str:
+    """Return module and name of a function or class."""
+    return f"{value.__module__}.{value.__qualname__}"
+
+
+def public_methods(cls: type) -> Iterator[str]:
+    """Yield the public methods of a class that have their own docstrings, or none."""
+    for name, value in vars(cls).items():
+        if inspect.isfunction(value) or isinstance(value, property | classmethod):
+            inherited = value.__doc__ is None and inspect.getdoc(getattr(cls, name))
+            if not name.startswith("_") and not inherited:
+                yield name
 
 
 def check_docstrings() -> list[str]:
@@ -134,13 +138,13 @@ def check_docstrings() -> list[str]:
 
     page = (ROOT / "docs" / "reference" / "python.md").read_text(encoding="utf-8")
     packages = re.findall(r"^\.\. automodule:: (\S+)$", page, re.MULTILINE)
-    return [
-        f"{name}: {code} {text}"
-        for package in packages
-        for name, checks in dict.fromkeys(documented(package))
-        for code, text in validate(name)["errors"]
-        if code in checks
-    ]
+    names = dict.fromkeys(chain.from_iterable(map(documented, packages)))
+    findings = []
+    for name, checks in names:
+        for code, text in validate(name)["errors"]:
+            if code in checks:
+                findings.append(f"{name}: {code} {text}")
+    return findings
 
 
 if __name__ == "__main__":

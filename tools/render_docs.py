@@ -112,10 +112,8 @@ def leaves(
         for key, item in value.items():
             yield from leaves(item, parts, f"{name}.{key}" if name else str(key))
     elif isinstance(value, list):
-        yield (
-            name,
-            "; ".join(str(item) for each in value for _, item in leaves(each, ())),
-        )
+        inner = chain.from_iterable(leaves(item, ()) for item in value)
+        yield name, "; ".join(str(leaf) for _, leaf in inner)
     else:
         yield name, f"{value:.6g}" if isinstance(value, float) else value
 
@@ -124,32 +122,30 @@ def flat_csv(rows: Iterable[Row], parts: Sequence[str]) -> str:
     """Return nested rows as CSV, with a column for each leaf."""
     flat = [dict(leaves(row, parts)) for row in rows]
     columns = list(dict.fromkeys(chain.from_iterable(flat)))
-    return csv_text(columns, ([row.get(key) for key in columns] for row in flat))
+    return csv_text(columns, (list(map(row.get, columns)) for row in flat))
 
 
 def where(rows: Iterable[Row], **conditions: Any) -> list[Row]:
     """Return the rows with these values."""
-    return [
-        row
-        for row in rows
-        if all(row[key] == value for key, value in conditions.items())
-    ]
+    for key, value in conditions.items():
+        rows = [row for row in rows if row[key] == value]
+    return list(rows)
 
 
 def pick(rows: Iterable[Row], **conditions: Any) -> Row:
     """Return the one row with these values; raise `ValueError` if there is none, or
     more than one.
     """
-    (found,) = where(rows, **conditions)
-    return found
+    (row,) = where(rows, **conditions)
+    return row
 
 
 def recommended() -> list[Row]:
     """Return the cubes that ``uplift chart --recommend`` names, by situation."""
     chart = shipped_chart()
     return [
-        {"title": name, "needed": each, "cube": recommend_cube(chart, each)}
-        for name, each in SITUATIONS.items()
+        {"title": name, "needed": needed, "cube": recommend_cube(chart, needed)}
+        for name, needed in SITUATIONS.items()
     ]
 
 
@@ -186,19 +182,20 @@ def render(name: str, data: Mapping[str, Any] | None = None) -> dict[Path, str]:
         tables[path] = flat_csv(rows, parts)
         return f"[{path.name}]({Path(os.path.relpath(path, page.parent)).as_posix()})"
 
-    style = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
     environment = Environment(
-        loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, **style
+        loader=FileSystemLoader(TEMPLATES),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
     )
     environment.filters |= {"num": number, "mean": statistics.fmean}
-    functions = {
+    environment.globals |= {
         "load": read_data,
         "text": read_text,
         "table": table,
         "where": where,
         "pick": pick,
-    }
-    environment.globals |= functions | {
         "long_table": long_table,
         "recommended": recommended,
     }

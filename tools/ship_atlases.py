@@ -42,11 +42,8 @@ ATLASES = {
         ("{name}", '"{lower}" patch of the Macbeth ColorChecker'),
     ),
     "babelcolor": (
-        (
-            "24 patches of the ColorChecker Classic, average of 30 charts by "
-            "BabelColor "
-            "(2012)"
-        ),
+        "24 patches of the ColorChecker Classic, average of 30 charts by BabelColor "
+        "(2012)",
         CHECKERS["BabelColor Average"],
         ("BabelColor {name}", '"{lower}" patch, average of 30 ColorChecker charts'),
     ),
@@ -71,10 +68,8 @@ ATLASES = {
         ("CES{number:02}", "CIE 224:2017 colour evaluation sample {number}"),
     ),
     "rawtoaces": (
-        (
-            "190 patches that RAW to ACES 1.0 trains camera transforms on, Dyer et al. "
-            "(2017)"
-        ),
+        "190 patches that RAW to ACES 1.0 trains camera transforms on, Dyer et al. "
+        "(2017)",
         columns(read_training_data_rawtoaces_v1()),
         ("patch{number:03}", "RAW to ACES training patch {number}"),
     ),
@@ -88,20 +83,14 @@ def main(folder: Path = FOLDER) -> None:
         entries = []
         for number, (key, spectrum) in enumerate(spectra.items(), start=1):
             name, description = (
-                each.format(name=key, lower=key.lower(), number=number)
-                for each in patterns
+                pattern.format(name=key, lower=key.lower(), number=number)
+                for pattern in patterns
             )
-            entries.append(
-                Entry(
-                    name, spectrum.wavelengths, spectrum.values, description=description
-                )
-            )
+            samples = (spectrum.wavelengths, spectrum.values)
+            entries.append(Entry(name, *samples, description=description))
         owner = BABELCOLOR + COPYRIGHT if file == "babelcolor" else COPYRIGHT
-        write_atlas(
-            Atlas(tuple(entries)),
-            folder / f"{file}.txt",
-            Header(content, owner, LICENCE),
-        )
+        header = Header(content, owner, LICENCE)
+        write_atlas(Atlas(tuple(entries)), folder / f"{file}.txt", header)
 
 
 if __name__ == "__main__":

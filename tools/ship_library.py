@@ -31,17 +31,17 @@ FAMILIES = {"checker": ("macbeth", "babelcolor")} | {
     name: (name,) for name in ("pmc", "tcs", "vs", "cie2017", "rawtoaces")
 }
 """Shipped atlases by family: the two ColorCheckers are one chart."""
-SPREAD, OTSU_SPREAD = 5.0, 3.0
-"""Variance of what is peculiar to a family, chosen in docs/prior.md; the Munsell book
-is larger than the others.
-"""
+SPREAD = 5.0
+"""Variance of what is peculiar to a family, chosen in docs/prior.md."""
+OTSU_SPREAD = 3.0
+"""That of the Munsell book, which is larger than the others."""
 SPACES = ("sRGB", "ACEScg", "ITU-R BT.2020")
 """RGB spaces whose tables are stored."""
 SPACE = "ITU-R BT.2020"
-CANDIDATES, SPECTRA = 30_000, 320
-"""Random colours, and those of them that are taken: in turn the one farthest from all
-before.
-"""
+CANDIDATES = 30_000
+"""Random colours."""
+SPECTRA = 320
+"""Colours taken of them: in turn the one farthest from all before."""
 BLUR = 0.01
 """Width, in CIE xy, of the transition between clusters: their seams must not show."""
 
@@ -98,13 +98,8 @@ def blurred_otsu(xyz: Array, light: Array) -> Array:
     resampled = np.stack(
         [np.interp(observer.grid(), shape.wavelengths, row) for row in np.eye(36)]
     )
-    basis, means = (
-        table @ resampled
-        for table in (
-            otsu2018.BASIS_FUNCTIONS_OTSU2018,
-            otsu2018.CLUSTER_MEANS_OTSU2018,
-        )
-    )
+    basis = otsu2018.BASIS_FUNCTIONS_OTSU2018 @ resampled
+    means = otsu2018.CLUSTER_MEANS_OTSU2018 @ resampled
     xy = colour.XYZ_to_xy(xyz)
     spectra = np.zeros((len(xyz), basis.shape[-1]))
     for cluster, share in enumerate(shares(xy, len(basis)).T):
@@ -120,21 +115,22 @@ def shares(xy: Array, clusters: int) -> Array:
     blurred thresholds.
     """
     tree = otsu2018.SELECTOR_ARRAY_OTSU2018
-    found = np.zeros((len(xy), clusters))
+    total = np.zeros((len(xy), clusters))
 
-    def descend(node: int, share: Array) -> None:
-        threshold, axis, *branches = tree[node]
-        above = 1 / (1 + np.exp((threshold - xy[:, int(axis)]) / BLUR))
-        for branch, part in zip(
-            map(int, branches), (share * (1 - above), share * above), strict=True
-        ):
-            if branch < 0:
-                descend(-branch, part)
-            else:
-                found[:, branch] += part
+    def split(node: int, share: Array) -> None:
+        threshold, axis, below, above = tree[node]
+        weight = 1 / (1 + np.exp((threshold - xy[:, int(axis)]) / BLUR))
+        follow(int(below), share * (1 - weight))
+        follow(int(above), share * weight)
 
-    descend(0, np.ones(len(xy)))
-    return found
+    def follow(branch: int, share: Array) -> None:
+        if branch < 0:
+            split(-branch, share)
+        else:
+            total[:, branch] += share
+
+    split(0, np.ones(len(xy)))
+    return total
 
 
 def farthest(points: Array, count: int) -> list[int]:

@@ -14,6 +14,13 @@ import numpy as np
 
 from uplift.colorimetry.tables import PATH, SPECTRA, TABLES, WAVELENGTHS, aligned
 
+SPACE_FIELDS = {
+    "primaries": "primaries",
+    "whitepoint": "whitepoint",
+    "matrix": "matrix_XYZ_to_RGB",
+}
+"""Attributes of RGB spaces by their names in the file."""
+
 
 def tables() -> dict[str, np.ndarray]:
     """Return the arrays of the file by name."""
@@ -22,27 +29,22 @@ def tables() -> dict[str, np.ndarray]:
         "bradford": colour.adaptation.CHROMATIC_ADAPTATION_TRANSFORMS["Bradford"],
     }
     for kind, table in TABLES.items():
-        found: Mapping[str, Any] = attrgetter(table)(colour)
-        arrays[f"{kind}: names"] = np.array(list(found))
-        arrays[f"{kind}: stated"] = np.array([each.name for each in found.values()])
+        entries: Mapping[str, Any] = attrgetter(table)(colour)
+        arrays[f"{kind}: names"] = np.array(list(entries))
+        arrays[f"{kind}: stated"] = np.array([item.name for item in entries.values()])
         if kind in SPECTRA:
-            arrays[f"{kind}: samples"] = np.array(
-                [aligned(kind, each, *WAVELENGTHS).values for each in found.values()]
-            )
-    spaces = colour.RGB_COLOURSPACES
-    arrays["RGB space: primaries"] = np.array(
-        [each.primaries for each in spaces.values()], dtype=float
-    )
-    arrays["RGB space: whitepoint"] = np.array(
-        [each.whitepoint for each in spaces.values()], dtype=float
-    )
-    arrays["RGB space: matrix"] = np.array(
-        [each.matrix_XYZ_to_RGB for each in spaces.values()], dtype=float
-    )
+            samples = [
+                aligned(kind, spectrum, *WAVELENGTHS).values
+                for spectrum in entries.values()
+            ]
+            arrays[f"{kind}: samples"] = np.array(samples)
+    spaces = colour.RGB_COLOURSPACES.values()
+    for field, attribute in SPACE_FIELDS.items():
+        values = [getattr(space, attribute) for space in spaces]
+        arrays[f"RGB space: {field}"] = np.array(values, dtype=float)
     codes = np.arange(256) / 255
-    arrays["RGB space: decoding"] = np.array(
-        [each.cctf_decoding(codes) for each in spaces.values()], dtype=float
-    )
+    decoded = [space.cctf_decoding(codes) for space in spaces]
+    arrays["RGB space: decoding"] = np.array(decoded, dtype=float)
     return arrays
 
 

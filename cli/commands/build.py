@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,7 +26,7 @@ from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
-    from uplift.atlas import Atlas
+    from uplift.atlas.atlas import Source
     from uplift.lookup import Cube
 
 ALLOWED_WITH_PLAN = {"plan_path", "output", "debug", "force", "quiet", "verbose"}
@@ -172,11 +173,8 @@ def parse_range(
 @options.repeatable(
     "--exclude-family",
     "leave_out",
-    (
-        "Family of the shipped library that the learnt prior must not know, for tests "
-        "on "
-        "it"
-    ),
+    "Family of the shipped library that the learnt prior must not know, for tests on "
+    "it",
     metavar="FAMILY",
 )
 @click.option(
@@ -233,75 +231,25 @@ def parse_range(
 @options.verbose
 def command(
     plan_path: str | None,
-    files: tuple[str, ...],
-    scale: Any,
-    missing: Any,
     output: str | None,
-    images: tuple[str, ...],
     force: bool,
     quiet: bool,
     verbose: bool,
     **settings: Any,
 ) -> None:
     enable_jit_cache()
-    context = click.get_current_context()
-    given = {
-        str(each.name): each.opts[-1]
-        for each in context.command.params
-        if context.get_parameter_source(str(each.name)) is ParameterSource.COMMANDLINE
-    }
-    inputs: tuple[str | Path, ...] = ()
-    notes: list[UpliftWarning] = []
-    atlas = None
-    if plan_path is not None:
-        if others := [
-            option for name, option in given.items() if name not in ALLOWED_WITH_PLAN
-        ]:
-            raise click.UsageError(
-                f"The plan already sets these options: leave out {', '.join(others)}."
-            )
-        from uplift.extras.scene.plan.files import cube_name, read_plan
-
-        plan = read_plan(plan_path)
-        make: Callable[..., Cube] = partial(plan.build, debug=settings["debug"])
-        name = cube_name(plan_path) if output is None else output
-        inputs = (*plan.images.paths, *plan.atlases)
+    debug = settings["debug"]
+    if plan_path is None:
+        task = _task_of_atlases(output, **settings)
     else:
-        if not images and (
-            useless := [given[name] for name in OF_IMAGES if name in given]
-        ):
-            raise click.UsageError(
-                f"{', '.join(useless)}: no --scene image is given to which this "
-                "applies."
-            )
-        name = _default_name(files, images, settings) if output is None else output
-        settings["shortest"], settings["longest"] = settings.pop("limits")
-        pixels = [settings.pop(name) for name in OF_IMAGES]
-        if images:
-            from uplift.extras.texture.scene_colours import Images
-
-            settings["scene"] = Images(
-                tuple(map(Path, expand_patterns(images))), *pixels
-            )
-            inputs = settings["scene"].paths
-        from uplift.atlas import read_atlas
-        from uplift.pipeline.build import build
-
-        stated = {
-            name: value for name, value in settings.items() if value not in (None, ())
-        }
-        if files:
-            atlas, notes = collect_notes(
-                partial(read_atlas, *files, measured=scale, missing=missing)
-            )
-        make = partial(build, atlas, **stated)
-    path = Path(name)
-    slices = path.with_suffix(".exr") if settings["debug"] else None
-    check_outputs(path, slices, inputs=inputs)
+        task = _task_of_plan(plan_path, output, debug)
+    path = Path(task.output)
+    slices = path.with_suffix(".exr") if debug else None
+    check_outputs(path, slices, inputs=task.inputs)
     begin = time.perf_counter()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
-        cube, notes_of_build = collect_notes(partial(make, progress=progress))
-    notes += notes_of_build
+        cube, notes = collect_notes(partial(task.make, progress=progress))
+    notes = [*task.notes, *notes]
     cube.save(path, force=force)
     if slices is not None:
         from uplift.extras.images.exr import write_slices
@@ -314,14 +262,89 @@ def command(
     if slices is not None:
         say(f"{slices}: {pluralise(cube.data.lattice.dim, 'blue slice')}")
     print_notes(cube, notes)
-    _print_assumptions(atlas)
-
-
-def _print_assumptions(atlas: Atlas | None) -> None:
-    """Print the scale of files that state none."""
-    for source in () if atlas is None else atlas.sources:
+    for source in task.sources:  # of which some state no scale
         for note in source.assumptions:
             paragraph(f"{source.name}: {note}")
+
+
+@dataclass(frozen=True)
+class _Task:
+    """A cube to build: its file, what builds it, and the files that it reads."""
+
+    output: str | Path
+    make: Callable[..., Cube]
+    inputs: Sequence[str | Path] = ()
+    sources: Sequence[Source] = ()
+    notes: Sequence[UpliftWarning] = ()
+
+
+def _given_options() -> dict[str, str]:
+    """Return the options of the command line by the names of their parameters."""
+    context = click.get_current_context()
+    given = {}
+    for parameter in context.command.params:
+        name = str(parameter.name)
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+            given[name] = parameter.opts[-1]
+    return given
+
+
+def _task_of_plan(plan_path: str, output: str | None, debug: bool) -> _Task:
+    from uplift.extras.scene.plan.files import cube_name, read_plan
+
+    given = _given_options()
+    others = [given[name] for name in given if name not in ALLOWED_WITH_PLAN]
+    if others:
+        raise click.UsageError(
+            f"The plan already sets these options: leave out {', '.join(others)}."
+        )
+    plan = read_plan(plan_path)
+    return _Task(
+        cube_name(plan_path) if output is None else output,
+        partial(plan.build, debug=debug),
+        (*plan.images.paths, *plan.atlases),
+    )
+
+
+def _task_of_atlases(
+    output: str | None,
+    files: tuple[str, ...],
+    scale: Any,
+    missing: Any,
+    images: tuple[str, ...],
+    limits: tuple[float, float],
+    **settings: Any,
+) -> _Task:
+    if not images:
+        given = _given_options()
+        useless = [given[name] for name in OF_IMAGES if name in given]
+        if useless:
+            raise click.UsageError(
+                f"{', '.join(useless)}: no --scene image is given to which this "
+                "applies."
+            )
+    if output is None:
+        output = _default_name(files, images, settings)
+    settings["shortest"], settings["longest"] = limits
+    pixels = [settings.pop(name) for name in OF_IMAGES]
+    paths: tuple[Path, ...] = ()
+    if images:
+        from uplift.extras.texture.scene_colours import Images
+
+        paths = tuple(map(Path, expand_patterns(images)))
+        settings["scene"] = Images(paths, *pixels)
+    from uplift.atlas import read_atlas
+    from uplift.pipeline.build import build
+
+    stated = {
+        name: value for name, value in settings.items() if value not in (None, ())
+    }
+    if not files:
+        return _Task(output, partial(build, None, **stated), paths)
+    read = partial(read_atlas, *files, measured=scale, missing=missing)
+    atlas, notes = collect_notes(read)
+    make = partial(build, atlas, **stated)
+    return _Task(output, make, paths, atlas.sources, notes)
 
 
 def _default_name(
@@ -343,22 +366,16 @@ def _default_name(
 
 def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
     data = cube.data
-    counts = cube.data.points.counts()
-    measured = data.atlas.measured_count
-    looks = data.atlas.looks
+    counts = data.points.counts()
     facts = [f"{data.lattice.dim}³ nodes"]
     if data.complete_cells is not None:
         count = int(data.points.present.sum())
-        facts = [
-            (
-                f"{count:,} of {pluralise(data.lattice.size, 'node')} "
-                f"({count / data.lattice.size:.1%})"
-            )
-        ]
+        nodes = pluralise(data.lattice.size, "node")
+        facts = [f"{count:,} of {nodes} ({count / data.lattice.size:.1%})"]
     if data.provenance["atlases"]:
-        facts.append(pluralise(measured, "atlas entry"))
-    if looks:
-        facts.append(pluralise(looks, "look"))
+        facts.append(pluralise(data.atlas.measured_count, "atlas entry"))
+    if data.atlas.looks:
+        facts.append(pluralise(data.atlas.looks, "look"))
     facts += [f"{path.stat().st_size / 1e6:.1f} MB", f"{seconds:.1f} s"]
     paragraph(f"{path}: {', '.join(facts)}")
     if unrealisable := counts["unrealisable"]:
