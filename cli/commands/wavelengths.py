@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import chain
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
     from uplift.extras.scene.wavelengths import Choice
+    from uplift.extras.scene.wavelengths.sampling import RenderSetup
 
 
 @click.command(
@@ -67,10 +68,8 @@ if TYPE_CHECKING:
     nargs=3,
     metavar="A C1 C2",
     type=options.WHOLE,
-    help=(
-        "Meyer's quadrature with these numbers of wavelengths for the three "
-        "channels, 1 to 10 each."
-    ),
+    help="Meyer's quadrature with these numbers of wavelengths for the three "
+    "channels, 1 to 10 each.",
 )
 @click.option(
     "--channels",
@@ -86,6 +85,46 @@ if TYPE_CHECKING:
 @options.plot("Plot lights, wavelengths and weights")
 @options.force
 def command(
+    files: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
+    space: str,
+    illuminant: Illuminant,
+    observer: str,
+    style: str,
+    plot_path: str | None,
+    force: bool,
+    **goal: Any,
+) -> None:
+    _check_goal(**goal)
+    from uplift.atlas import merge, on_grid
+    from uplift.colorimetry.observer import require_observer, sensor
+    from uplift.extras.scene.wavelengths import grid, make_setup
+
+    check_outputs(plot_path, inputs=atlas_files(files))
+    require_observer(observer, "weights of wavelengths")
+    target = sensor(space, illuminant, observer)
+    atlas = merge(read_atlases(files).values())
+    reflectances = on_grid(atlas, grid())
+    setup = make_setup(reflectances, lights or ("D65",), observer_name=observer)
+    with progress_bar("fitting wavelengths"):
+        choice = _choose(setup, **goal)
+    if plot_path is not None:
+        from uplift.extras.scene.wavelengths.plots import plot_choice
+
+        plot_choice(setup, choice, plot_path, force=force)
+        say(f"{plot_path}: lights, wavelengths and weights", err=True)
+    errors = _summarise(choice, atlas.names)
+    if style == "json":
+        _print_json(choice, target, len(atlas), errors)
+    elif style == "csv":
+        lights = choice.sampling.lights
+        headings = ["wavelength", *"XYZ", *"rgb", *map("power {}".format, lights)]
+        print_csv(headings, _rows(choice, target))
+    else:
+        _print_table(choice, target, len(atlas), errors)
+
+
+def _check_goal(
     count: int | None,
     tolerance: float | None,
     wavelengths: Array | None,
@@ -93,17 +132,9 @@ def command(
     method: str | None,
     orders: tuple[int, int, int] | None,
     channels: str | None,
-    files: tuple[str, ...],
-    lights: tuple[Illuminant, ...],
-    style: str,
-    plot_path: str | None,
-    force: bool,
-    **camera: Any,
 ) -> None:
-    if (
-        sum(option is not None for option in (count, tolerance, wavelengths, orders))
-        != 1
-    ):
+    goals = (count, tolerance, wavelengths, orders)
+    if sum(goal is not None for goal in goals) != 1:
         raise click.UsageError(
             "Give one of --count, --tolerance, --wavelengths and --orders."
         )
@@ -115,107 +146,94 @@ def command(
         )
     if channels is not None and orders is None:
         raise click.UsageError("--channels requires --orders.")
-    from uplift.atlas import merge, on_grid
-    from uplift.colorimetry import observer
+
+
+def _choose(
+    setup: RenderSetup,
+    count: int | None,
+    tolerance: float | None,
+    wavelengths: Array | None,
+    measure: str | None,
+    method: str | None,
+    orders: tuple[int, int, int] | None,
+    channels: str | None,
+) -> Choice:
     from uplift.extras.scene import wavelengths as library
 
-    check_outputs(plot_path, inputs=atlas_files(files))
-    observer.require_observer(camera["observer"], "weights of wavelengths")
-    sensor = observer.sensor(**camera)
-    atlas = merge(read_atlases(files).values())
-    setting = library.make_setup(
-        on_grid(atlas, library.grid()),
-        lights or ("D65",),
-        observer_name=camera["observer"],
+    if orders is not None:
+        return library.choose_orders(setup, orders, channels or "opponent")
+    if wavelengths is not None:
+        check_range(wavelengths, library.grid())
+        return library.fit_weights(setup, wavelengths)
+    return library.choose(
+        setup,
+        count=count,
+        target=tolerance,
+        measure=measure or "max",
+        method=method or "optimised",
     )
-    with progress_bar("fitting wavelengths"):
-        if orders is not None:
-            choice = library.choose_orders(setting, orders, channels or "opponent")
-        elif wavelengths is not None:
-            check_range(wavelengths, library.grid())
-            choice = library.fit_weights(setting, wavelengths)
-        else:
-            choice = library.choose(
-                setting,
-                count=count,
-                target=tolerance,
-                measure=measure or "max",
-                method=method or "optimised",
-            )
-    if plot_path is not None:
-        from uplift.extras.scene.wavelengths.plots import plot_choice
-
-        plot_choice(setting, choice, plot_path, force=force)
-        say(f"{plot_path}: lights, wavelengths and weights", err=True)
-    _print(choice, sensor, atlas.names, style)
 
 
-def _print(
-    choice: Choice, camera: Sensor, materials: tuple[str, ...], style: str
-) -> None:
+def _summarise(choice: Choice, materials: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Return statistics of the errors and the worst material, by light."""
     from uplift.extras.scene.wavelengths.sampling import statistics
 
+    by_light = dict(zip(choice.sampling.lights, choice.errors, strict=True))
+    if len(by_light) > 1:
+        by_light["all lights"] = choice.errors
+    summary = {}
+    for light, errors in by_light.items():
+        worst = materials[errors.argmax() % len(materials)]
+        summary[light] = {**statistics(errors), "worst": worst}
+    return summary
+
+
+def _rows(choice: Choice, sensor: Sensor) -> list[list[float]]:
+    """Return wavelength, weights to XYZ and to RGB, and powers of the lights."""
+    import numpy as np
+
     sampling = choice.sampling
-    to_rgb = sampling.to_rgb(camera)
-    errors = dict(zip(sampling.lights, choice.errors, strict=True))
-    if len(errors) > 1:
-        errors["all lights"] = choice.errors
-    worst = {
-        name: materials[each.argmax() % len(materials)] for name, each in errors.items()
+    weights = (sampling.to_xyz, sampling.to_rgb(sensor))
+    table = np.column_stack([sampling.wavelengths, *weights, sampling.powers.T])
+    return table.tolist()
+
+
+def _print_json(
+    choice: Choice, sensor: Sensor, materials: int, errors: dict[str, dict[str, Any]]
+) -> None:
+    sampling = choice.sampling
+    fields = {
+        "method": choice.method,
+        "count": len(sampling),
+        "materials": materials,
+        "observer": sensor.observer,
+        "space": sensor.space,
+        "illuminant": sensor.illuminant,
+        "wavelengths": sampling.wavelengths.tolist(),
+        "to_xyz": sampling.to_xyz.tolist(),
+        "to_rgb": sampling.to_rgb(sensor).tolist(),
+        "powers": dict(zip(sampling.lights, sampling.powers.tolist(), strict=True)),
+        "errors": errors,
     }
-    summary = {name: statistics(each) for name, each in errors.items()}
-    # wavelength, weights to XYZ and to RGB, and powers of the lights
-    parts = (sampling.wavelengths[:, None], sampling.to_xyz, to_rgb, sampling.powers.T)
-    rows = [
-        list(chain.from_iterable(part[row].tolist() for part in parts))
-        for row in range(len(sampling))
-    ]
-    if style == "json":
-        fields = {
-            "method": choice.method,
-            "count": len(sampling),
-            "materials": len(materials),
-            "observer": camera.observer,
-            "space": camera.space,
-            "illuminant": camera.illuminant,
-            "wavelengths": sampling.wavelengths.tolist(),
-            "to_xyz": sampling.to_xyz.tolist(),
-            "to_rgb": to_rgb.tolist(),
-            "powers": dict(zip(sampling.lights, sampling.powers.tolist(), strict=True)),
-            "errors": {
-                name: {**each, "worst": worst[name]} for name, each in summary.items()
-            },
-        }
-        print_json(fields)
-    elif style == "csv":
-        print_csv(
-            [
-                "wavelength",
-                *"XYZ",
-                *"rgb",
-                *(f"power {light}" for light in sampling.lights),
-            ],
-            rows,
-        )
-    else:
-        weights = make_table(
-            (),
-            ("nm", *"XYZRGB"),
-            title=f"{pluralise(len(sampling), 'wavelength')}, {choice.method}: weights",
-        )
-        powers = make_table((), ("nm", *sampling.lights), title="power of the lights")
-        for nm, *others in rows:
-            cells = [f"{other:.4f}" for other in others]
-            weights.add_row(f"{nm:.1f}", *cells[:6])
-            powers.add_row(f"{nm:.1f}", *cells[6:])
-        table = make_table(
-            ("light",),
-            ("mean", "95 %", "max"),
-            title=f"ΔE00 of {pluralise(len(materials), 'material')}",
-        )
-        table.add_column("worst material")
-        for name, each in summary.items():
-            table.add_row(
-                name, *(f"{number:.3f}" for number in each.values()), worst[name]
-            )
-        show(weights, powers, table)
+    print_json(fields)
+
+
+def _print_table(
+    choice: Choice, sensor: Sensor, materials: int, errors: dict[str, dict[str, Any]]
+) -> None:
+    lights = choice.sampling.lights
+    count = pluralise(len(choice.sampling), "wavelength")
+    title = f"{count}, {choice.method}: weights"
+    weights = make_table((), ("nm", *"XYZRGB"), title=title)
+    powers = make_table((), ("nm", *lights), title="power of the lights")
+    for wavelength, *values in _rows(choice, sensor):
+        cells = [f"{value:.4f}" for value in values]
+        weights.add_row(f"{wavelength:.1f}", *cells[:6])
+        powers.add_row(f"{wavelength:.1f}", *cells[6:])
+    title = f"ΔE00 of {pluralise(materials, 'material')}"
+    table = make_table(("light",), ("mean", "95 %", "max"), title=title)
+    table.add_column("worst material")
+    for light, row in errors.items():
+        *numbers, worst = row.values()
+        table.add_row(light, *map("{:.3f}".format, numbers), worst)
+    show(weights, powers, table)
