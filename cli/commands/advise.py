@@ -1,6 +1,7 @@
 """``uplift advise``: the expected errors of a scene, and what to measure next."""
 
 from dataclasses import asdict
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -74,63 +75,64 @@ def command(
     cube = load(cube_path)
     sensor = cube.data.sensor
     check_distinct(lights)
-    lit = [
-        light(name, cube.observer, *sensor.range) for name in lights or RELIGHT_LIGHTS
-    ]
+    names = lights or RELIGHT_LIGHTS
+    lit = [light(name, cube.observer, *sensor.range) for name in names]
     with progress_bar("choosing swatches"):
         colours = advice.colour_areas(Images(tuple(map(Path, paths)), **pixels), sensor)
         before = advice.uncertainty(cube, colours, lit)
         chosen, after = advice.advise(before, count)
-    rgb = colours.rgb[[each.colour for each in chosen]]
-    codes = hex_codes(rgb, sensor)
+    rgb = colours.rgb[[swatch.colour for swatch in chosen]]
+    swatches = [
+        {"hex": code, **asdict(swatch)}
+        for code, swatch in zip(hex_codes(rgb, sensor), chosen, strict=True)
+    ]
     if plot_path is not None:
         from uplift.extras.pages.figure import write_figure
 
         shown = paths[:SHOWN]
+        images_read = read_pictures(shown, sensor, **pixels)
         pictures = {
-            path: each.rgb
-            for path, each in zip(
-                shown, read_pictures(shown, sensor, **pixels), strict=True
-            )
+            path: picture.rgb for path, picture in zip(shown, images_read, strict=True)
         }
-        texts = [
-            f"{code}\nlowers the mean\nby ΔE00 {each.gain:.2f}"
-            for code, each in zip(codes, chosen, strict=True)
-        ]
+        texts = map("{hex}\nlowers the mean\nby ΔE00 {gain:.2f}".format_map, swatches)
         chips = list(zip(texts, rgb, strict=True))
-        write_figure(
-            advice.draw_advice(cube, pictures, lit, chips), plot_path, force=force
-        )
+        figure = advice.draw_advice(cube, pictures, lit, chips)
+        write_figure(figure, plot_path, force=force)
     stages = zip(lit, before.by_light(), after.by_light(), strict=True)
-    errors = {each.name: {"before": now, "after": then} for each, now, then in stages}
-    swatches = [
-        {"hex": code, **asdict(each)} for code, each in zip(codes, chosen, strict=True)
-    ]
+    errors = {light.name: {"before": now, "after": then} for light, now, then in stages}
     if style == "json":
         print_json(
-            {"images": paths, "cube": cube_path, "lights": errors, "swatches": swatches}
+            {
+                "images": paths,
+                "cube": cube_path,
+                "lights": errors,
+                "swatches": swatches,
+            }
         )
         return
-    summary = make_table(
-        ("light",),
-        (
-            "expected ΔE00",
-            "95 % of the area",
-            f"after {pluralise(len(chosen), 'swatch')}",
-            "95 %",
-        ),
+    _print_tables(errors, swatches)
+    if plot_path is not None:
+        say(plot_path, err=True)
+
+
+def _print_tables(
+    errors: dict[str, dict[str, dict[str, float]]], swatches: list[dict[str, Any]]
+) -> None:
+    headings = (
+        "expected ΔE00",
+        "95 % of the area",
+        f"after {pluralise(len(swatches), 'swatch')}",
+        "95 %",
     )
-    for name, each in errors.items():
-        summary.add_row(
-            name,
-            *(f"{number:.2f}" for stage in each.values() for number in stage.values()),
-        )
+    summary = make_table(("light",), headings)
+    for name, stages in errors.items():
+        numbers = chain.from_iterable(stage.values() for stage in stages.values())
+        summary.add_row(name, *map("{:.2f}".format, numbers))
     table = make_table(
         ("swatch",), ("area", "expected ΔE00", "gain in ΔE00", "mean ΔE00 after")
     )
     for row in swatches:
-        numbers = (f"{row[name]:.2f}" for name in ("error", "gain", "mean_after"))
-        table.add_row(row["hex"], f"{row['area']:.1%}", *numbers)
+        areas = f"{row['area']:.1%}"
+        reduced = (row["error"], row["gain"], row["mean_after"])
+        table.add_row(row["hex"], areas, *map("{:.2f}".format, reduced))
     show(summary, table)
-    if plot_path is not None:
-        say(plot_path, err=True)

@@ -5,7 +5,8 @@ integration.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +22,8 @@ from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
+    from rich.text import Text
+
     from uplift.common.progress import ProgressCallback
     from uplift.lookup import Cube
 
@@ -82,19 +85,32 @@ def command(
         print_json(records)
     elif not quiet:
         _print_table(records)
-    is_failed = False
-    for record, rebuilt, error in results:
-        if record["failures"] and update and rebuilt:
-            rebuilt.save(record["cube"], force=True)
-            say(f"{record['cube']}: replaced", err=True)
-        elif record["failures"]:
-            is_failed = True
-            if error and style != "json":
-                CommandFailure(error).show()
-    if any(error for _, _, error in results):
-        raise SystemExit(BAD_INPUT)
-    if is_failed:
-        raise SystemExit(FAILED_CHECK)
+    code = 0
+    for result in results:
+        code = max(code, _settle(*result, update=update, is_shown=style != "json"))
+    if code:
+        raise SystemExit(code)
+
+
+def _settle(
+    record: dict[str, Any],
+    rebuilt: Cube | None,
+    error: UpliftError | None,
+    *,
+    update: bool,
+    is_shown: bool,
+) -> int:
+    """Replace a failed cube or show its error, and return the exit code."""
+    is_failed = not record["passed"]
+    if is_failed and update and rebuilt:
+        rebuilt.save(record["cube"], force=True)
+        say(f"{record['cube']}: replaced", err=True)
+        is_failed = False
+    elif error and is_shown:
+        CommandFailure(error).show()
+    if error:
+        return BAD_INPUT
+    return FAILED_CHECK if is_failed else 0
 
 
 def _check(
@@ -108,39 +124,45 @@ def _check(
     from uplift.lookup import load
 
     rebuilt = comparison = error = None
-    noted: list[UpliftWarning] = []
+    notes: list[UpliftWarning] = []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UpliftWarning)
         try:
             stored = load(path)
             rebuilt = rebuild(stored, path, folders, progress=progress)
-            noted = [
-                each.message
-                for each in caught
-                if isinstance(each.message, UpliftWarning)
-            ]
+            messages = [warning.message for warning in caught]
+            notes = [note for note in messages if isinstance(note, UpliftWarning)]
             comparison = compare_rebuilt(path, stored.data, rebuilt.data)
         except UpliftError as cause:
             error = cause
-    changed = [note.problem for note in noted if note.code == "atlas-changed"]
-    codes = [error.code] if error else ["atlas-changed"] if changed else []
-    failures = [*(comparison.failures if comparison else ()), *codes]
+    failures: list[str] = []
+    compared: dict[str, Any] = {"measures": {}, "status": {}, "entries": []}
+    if comparison:
+        failures += comparison.failures
+        compared = {
+            "measures": comparison.measures,
+            "status": {
+                "stored": comparison.stored_counts,
+                "rebuilt": comparison.rebuilt_counts,
+            },
+            "entries": list(map(asdict, comparison.entries)),
+        }
+    problems = defaultdict(list)
+    for note in notes:
+        problems[note.code == "atlas-changed"].append(note.problem)
+    if error:
+        failures.append(error.code)
+    elif problems[True]:
+        failures.append("atlas-changed")
     record = {
         "cube": str(path),
         "passed": not failures,
         "failures": failures,
-        "measures": comparison.measures if comparison else {},
-        "status": {
-            "stored": comparison.stored_counts,
-            "rebuilt": comparison.rebuilt_counts,
-        }
-        if comparison
-        else {},
-        "atlas_changed": changed,
-        "notes": [note.problem for note in noted if note.problem not in changed],
-        "entries": [asdict(entry) for entry in comparison.entries]
-        if comparison
-        else [],
+        "measures": compared["measures"],
+        "status": compared["status"],
+        "atlas_changed": problems[True],
+        "notes": problems[False],
+        "entries": compared["entries"],
         "error": error_object(error) if error else None,
     }
     return record, rebuilt, error
@@ -152,8 +174,6 @@ def _short(value: float) -> str:
 
 
 def _print_table(records: Sequence[dict[str, Any]]) -> None:
-    from rich.text import Text
-
     from uplift.extras.report.regression import LIMITS
 
     headings = {
@@ -165,27 +185,9 @@ def _print_table(records: Sequence[dict[str, Any]]) -> None:
     measures = [headings.get(name, name.removeprefix("delta_e_")) for name in LIMITS]
     table = make_table(("cube", "result", "atlas", "nodes"), measures)
     for record in records:
-        failures = record["failures"]
-        cells = dict.fromkeys(("atlas-changed", "status", *LIMITS), "–")
-        if record["measures"]:
-            cells["atlas-changed"] = (
-                "changed" if "atlas-changed" in failures else "same"
-            )
-            cells["status"] = "differs" if "status" in failures else "same"
-            cells |= {name: _short(record["measures"][name]) for name in LIMITS}
-        styled = (
-            Text(text, style="bold red" if name in failures else "")
-            for name, text in cells.items()
-        )
-        verdict = (
-            Text("passed", style="green")
-            if record["passed"]
-            else Text("FAILED", style="bold red")
-        )
-        table.add_row(record["cube"], verdict, *styled)
-    table.add_row(
-        "limit", "", "same", "same", *map(_short, LIMITS.values()), style="dim"
-    )
+        table.add_row(record["cube"], *_cells(record, LIMITS))
+    limits = map(_short, LIMITS.values())
+    table.add_row("limit", "", "same", "same", *limits, style="dim")
     show(table)
     for record in records:
         for problem in (*record["atlas_changed"], *record["notes"]):
@@ -193,3 +195,22 @@ def _print_table(records: Sequence[dict[str, Any]]) -> None:
         for entry in record["entries"]:
             by = "" if entry["delta_e"] is None else f", ΔE00 {entry['delta_e']:.2g}"
             say(f"  {entry['name']}: {entry['change']}{by}")
+
+
+def _cells(record: dict[str, Any], measures: Iterable[str]) -> Iterator[Text]:
+    """Yield the verdict, and every comparison, red where it failed."""
+    from rich.text import Text
+
+    if record["passed"]:
+        yield Text("passed", style="green")
+    else:
+        yield Text("FAILED", style="bold red")
+    texts = dict.fromkeys(("atlas-changed", "status", *measures), "–")
+    failed = dict.fromkeys(record["failures"], "bold red")
+    if record["measures"]:
+        texts["atlas-changed"] = "changed" if "atlas-changed" in failed else "same"
+        texts["status"] = "differs" if "status" in failed else "same"
+        for name in measures:
+            texts[name] = _short(record["measures"][name])
+    for name, text in texts.items():
+        yield Text(text, style=failed.get(name, ""))

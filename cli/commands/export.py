@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -229,6 +229,30 @@ def command(
     force: bool,
     **given: Any,
 ) -> None:
+    style = _find_format(style, output)
+    export = EXPORTS[style]
+    settings = {name: value for name, value in given.items() if value is not None}
+    _check_settings(export, settings)
+    from uplift.common.files import check_output, check_outputs
+    from uplift.extras.export import check_form, output_files
+    from uplift.lookup import load
+
+    form = style
+    if export.options == PROGRAM:
+        form = check_form(style, settings.get("table"))
+    files = output_files(output or Path(cube).stem + export.suffix, form)
+    inputs = stated_inputs()
+    path = check_output(files[0], inputs=inputs, force=force)
+    # second files that exist are judged by their content
+    check_outputs(files, inputs=inputs, force=True)
+    loaded = load(cube)
+    if fill_missing:
+        loaded = loaded.fill_missing()
+    say(f"{path}: {export.write(loaded, path, style, force=force, **settings)}")
+
+
+def _find_format(style: str | None, output: str | None) -> str:
+    """Return the format that is given, or else that of the output's suffix."""
     suffixes = {export.suffix: name for name, export in EXPORTS.items()}
     if style is None and output is not None:
         suffix = Path(output).suffix.lower()
@@ -237,8 +261,10 @@ def command(
         raise click.UsageError(
             f"Give --format, or --output ending in {', '.join(suffixes)}."
         )
-    export = EXPORTS[style]
-    settings = {name: value for name, value in given.items() if value is not None}
+    return style
+
+
+def _check_settings(export: Export, settings: Collection[str]) -> None:
     for name in settings:
         if name not in export.options:
             formats = [key for key in EXPORTS if name in EXPORTS[key].options]
@@ -248,18 +274,3 @@ def command(
             "A cube or clf table shows the colours under a light: give --light, such "
             "as HP1."
         )
-    from uplift.common.files import check_output, check_outputs
-    from uplift.extras.export import check_form, output_files
-    from uplift.lookup import load
-
-    form = (
-        check_form(style, settings.get("table")) if export.options == PROGRAM else style
-    )
-    files = output_files(output or Path(cube).stem + export.suffix, form)
-    inputs = stated_inputs()
-    path = check_output(files[0], inputs=inputs, force=force)
-    check_outputs(
-        files, inputs=inputs, force=True
-    )  # second files that exist are judged by their content
-    loaded = load(cube).fill_missing() if fill_missing else load(cube)
-    say(f"{path}: {export.write(loaded, path, style, force=force, **settings)}")
