@@ -10,6 +10,7 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import IO, TYPE_CHECKING
 
 import click
@@ -31,8 +32,8 @@ AMBIGUOUS = re.compile(r"(?:[01](?:,\d+)?,){2}[01](?:,\d+)?", re.ASCII)
 commas.
 """
 RGBA = re.compile(r"[01](?:,[01]){3}")
-DECIMAL = re.compile(r"[+-]?\d+(?:,\d+)?", re.ASCII)
-"""A whole number, or one with a decimal comma."""
+TRIPLE = re.compile(r"[+-]?\d+(?:,\d+)?(?: [+-]?\d+(?:,\d+)?){2}", re.ASCII)
+"""Three numbers, whole or with decimal commas."""
 DECIMALS = (
     "write decimal points, or separate numbers with decimal commas by semicolons: "
     "'0,2;0,3;0,4'"
@@ -83,8 +84,8 @@ class ColourSource:
         colours = _parse_words(self.words)
         if self.encoded:
             _warn_of_fractions(colours)
-        elif ambiguous := [word for word in self.words if _is_ambiguous(word)]:
-            raise _ambiguous(ambiguous[0])
+        for word in self.words:
+            self._check_commas(word)
         return [self._linear(colours, sensor)]
 
     def _read(self, path: str, sensor: Sensor, bounded: bool) -> Iterator[Array]:
@@ -108,18 +109,20 @@ class ColourSource:
         decimal commas. A first line without numbers is a header. Further columns are
         ignored.
         """
-        empty, width = True, 0  # cells of the header
+        empty = True
+        width = None  # cells of the header, 0 without one
         for rows in _row_blocks(file, name):
             colours = list[Colour]()
             for line, text, row in rows:
-                if empty and not colours and not width and _is_header(row):
-                    width = len(row)
-                    continue
+                if width is None:
+                    width = len(row) if _is_header(row) else 0
+                    if width:
+                        continue
                 colour = _parse(row[:1] if row[0].startswith("#") else row)
                 if colour is None:
                     raise _not_a_colour(text, name, line)
-                if not self.encoded and width != len(row) and _is_ambiguous(text):
-                    raise _ambiguous(text, name, line)
+                if width != len(row):
+                    self._check_commas(text, name, line)
                 self._check_range(colour, text, name, line, bounded)
                 colours.append(colour)
             if colours:
@@ -130,6 +133,19 @@ class ColourSource:
                 "has no colours",
                 path=name,
                 hint="give lines of r,g,b or of hex colours",
+            )
+
+    def _check_commas(
+        self, text: str, path: str | None = None, line: int | None = None
+    ) -> None:
+        if not self.encoded and _is_ambiguous(text):
+            raise ColourError(
+                f"{format_value(text)} may have decimal commas, or more than three "
+                "numbers",
+                code="ambiguous-numbers",
+                path=path,
+                line=line,
+                hint=DECIMALS,
             )
 
     def _check_range(
@@ -219,16 +235,16 @@ def _row_blocks(
     )
     read = getattr(file, "read1", file.read)
     first = 1
-    rest = ""
+    last = ""
     at_end = False
     while not at_end:
         chunk = read(CHUNK)
         at_end = not chunk
         try:
-            *lines, rest = (rest + decoder.decode(chunk, final=at_end)).split("\n")
+            *lines, last = (last + decoder.decode(chunk, final=at_end)).split("\n")
         except UnicodeDecodeError as error:
             raise ColourError("is not a text file", path=name, hint=TABLE) from error
-        numbered = list(enumerate([*lines, rest], first))
+        numbered = list(enumerate([*lines, last], first))
         for line, text in numbered:
             if len(text) > MAX_LINE:
                 raise ColourError(
@@ -282,13 +298,17 @@ def _is_ambiguous(text: str) -> bool:
     )
 
 
-def _parse(parts: Sequence[str]) -> Colour | None:
+def _parse(cells: Sequence[str]) -> Colour | None:
     """Parse one hex colour, or the first three of several numbers."""
-    if len(parts) == 1 and (match := HEX.fullmatch(parts[0])):
+    if len(cells) == 1 and (match := HEX.fullmatch(cells[0])):
         digits = match[1] or "".join(2 * digit for digit in match[2])
-        return [int(digits[i : i + 2], 16) for i in (0, 2, 4)], True
-    numbers = [number for part in parts[:3] if (number := _number(part)) is not None]
-    return (numbers, False) if len(numbers) == 3 else None
+        return list(bytes.fromhex(digits)), True
+    if len(cells) < 3:
+        return None
+    try:
+        return list(map(parse_decimal, cells[:3])), False
+    except ValueError:
+        return None
 
 
 def _parse_words(words: Sequence[str]) -> list[Colour]:
@@ -297,47 +317,37 @@ def _parse_words(words: Sequence[str]) -> list[Colour]:
     Three numbers of which one has a decimal comma, such as '0,2 0,3 1' or '0,2;0,3;1',
     are a colour too.
     """
-    given = words
-    words = [word for text in given for word in re.split(r"[;\s]+", text) if word]
-    parts = list[str]()
-    while words:
-        has_commas = (
-            len(words) > 2
-            and all(map(DECIMAL.fullmatch, words[:3]))
-            and "," in "".join(words[:3])
-        )
-        parts += words[:3] if has_commas else filter(None, words[0].split(","))
-        words = words[3 if has_commas else 1 :]
+    text = " ".join(words)
+    unread = text.replace(";", " ").split()
+    cells = list[str]()
+    while unread:
+        triple = " ".join(unread[:3])
+        if "," in triple and TRIPLE.fullmatch(triple):
+            cells += unread[:3]
+            unread = unread[3:]
+        else:
+            cells += filter(None, unread[0].split(","))
+            unread = unread[1:]
     colours: list[Colour] = []
-    while parts:
-        numbers = [_number(part) for part in parts[:3]]
-        length = 3 if len(numbers) == 3 and None not in numbers else 1
-        colour = _parse(parts[:length])
+    while cells:
+        length = 3 if _parse(cells[:3]) else 1
+        colour = _parse(cells[:length])
         if colour is None:
-            unread = parts[:4] if colours else given
-            raise _not_a_colour(" ".join(unread))
+            raise _not_a_colour(" ".join(cells[:4]) if colours else text)
         colours.append(colour)
-        parts = parts[length:]
+        cells = cells[length:]
     return colours
 
 
 def _warn_of_fractions(colours: Sequence[Colour]) -> None:
     """Warn of codes that look like numbers from 0 to 1."""
-    values = [number for numbers, is_hex in colours for number in numbers if not is_hex]
+    decimals = (numbers for numbers, is_hex in colours if not is_hex)
+    values = list(chain.from_iterable(decimals))
     if values and max(values) <= 1 and any(value % 1 for value in values):
         codes = " ".join(f"{255 * value:.0f}" for value in values[:3])
         problem = f"8-bit codes run from 0 to 255, got numbers up to {max(values):g}"
-        warn(
-            [
-                UpliftWarning(
-                    problem,
-                    hint=(
-                        "for encoded numbers from 0 to 1 give 255 times as much: "
-                        f"{codes}"
-                    ),
-                )
-            ]
-        )
+        hint = f"for encoded numbers from 0 to 1 give 255 times as much: {codes}"
+        warn([UpliftWarning(problem, hint=hint)])
 
 
 def _number(word: str) -> float | None:
@@ -345,17 +355,6 @@ def _number(word: str) -> float | None:
         return parse_decimal(word)
     except ValueError:
         return None
-
-
-def _ambiguous(
-    text: str, path: str | None = None, line: int | None = None
-) -> ColourError:
-    problem = (
-        f"{format_value(text)} may have decimal commas, or more than three numbers"
-    )
-    return ColourError(
-        problem, code="ambiguous-numbers", path=path, line=line, hint=DECIMALS
-    )
 
 
 def _not_a_colour(

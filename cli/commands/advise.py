@@ -132,7 +132,7 @@ def _print_tables(
         ("swatch",), ("area", "expected ΔE00", "gain in ΔE00", "mean ΔE00 after")
     )
     for row in swatches:
-        areas = f"{row['area']:.1%}"
+        area = f"{row['area']:.1%}"
         reduced = (row["error"], row["gain"], row["mean_after"])
-        table.add_row(row["hex"], areas, *map("{:.2f}".format, reduced))
+        table.add_row(row["hex"], area, *map("{:.2f}".format, reduced))
     show(summary, table)

@@ -83,19 +83,19 @@ def command(
             path: picture.rgb.astype(float)
             for path, picture in zip(paths, read, strict=True)
         }
-        found = diff_cubes(cubes, lights or SCENE_LIGHTS, pictures)
+        difference = diff_cubes(cubes, lights or SCENE_LIGHTS, pictures)
         if output is not None:
             from uplift.extras.report.diff_page import render_diff
 
-            write_text(render_diff(found, pictures, worst), output, force=force)
-    figures = to_json(found, tolerance, worst)
+            write_text(render_diff(difference, pictures, worst), output, force=force)
+    figures = to_json(difference, tolerance, worst)
     if style == "json":
         print_json(figures)
     else:
         _print(figures)
         if output is not None:
             say(f"{output}: where they differ")
-    if tolerance is not None and not found.is_within(tolerance):
+    if tolerance is not None and not difference.is_within(tolerance):
         raise SystemExit(1)
 
 
@@ -103,20 +103,18 @@ def _print(figures: dict[str, Any]) -> None:
     moved = ("moved",) if "tolerance" in figures else ()
     table = make_table(("colours", "light"), ("mean ΔE00", "95 %", "largest", *moved))
     for row in figures["differences"]:
-        numbers = [f"{row[name]:.3f}" for name in ("mean", "p95", "max")]
-        table.add_row(
-            row["set"], row["light"], *numbers, *(f"{row[name]:,}" for name in moved)
-        )
+        numbers = map("{:.3f}".format, (row["mean"], row["p95"], row["max"]))
+        counts = (f"{row[name]:,}" for name in moved)
+        table.add_row(row["set"], row["light"], *numbers, *counts)
     worst = make_table(("worst colours", "linear RGB", "light"), ("ΔE00",))
     for row in figures["worst"]:
-        rgb = " ".join(f"{value:.4f}" for value in row["rgb"])
-        worst.add_row(
-            row.get("entry", row["set"]), rgb, row["light"], f"{row['delta_e']:.3f}"
-        )
+        name = row.get("entry", row["set"])
+        rgb = " ".join(map("{:.4f}".format, row["rgb"]))
+        worst.add_row(name, rgb, row["light"], f"{row['delta_e']:.3f}")
     show(table, *([worst] if figures["worst"] else []))
     for change in ("removed", "added"):
-        if figures[f"entries_{change}"]:
-            paragraph(f"entries {change}: {', '.join(figures[f'entries_{change}'])}")
+        if names := figures[f"entries_{change}"]:
+            paragraph(f"entries {change}: {', '.join(names)}")
     for row in figures["lacking"]:
         say(
             f"{row['set']}: {row['cubes']} cannot answer "

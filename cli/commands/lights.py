@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -180,13 +180,12 @@ def export(table_path: str, output: str, table: str | None, force: bool) -> None
         raise click.UsageError(f"--output must end in {' or '.join(LANGUAGES)}.")
     files = output_files(output, check_form(language, table))
     path = check_output(files[0], inputs=[table_path], force=force)
-    check_outputs(
-        files, inputs=[table_path], force=True
-    )  # a table that exists is judged by its content
+    # a table that exists is judged by its content
+    check_outputs(files, inputs=[table_path], force=True)
     data = load_emission(table_path).data
     written = write_light_program(data, path, style=language, form=table, force=force)
-    size = sum(each.stat().st_size for each in written) / 1e6
-    tables = "".join(f", table in {each}" for each in written[1:])
+    size = sum(file.stat().st_size for file in written) / 1e6
+    tables = "".join(map(", table in {}".format, written[1:]))
     knots, rings = data.lattice.shape
     lamps = pluralise(len(data.entries.names), "lamp")
     say(f"{path}: {pluralise(knots * rings, 'node')}, {lamps}, {size:.1f} MB{tables}")
@@ -218,11 +217,10 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
     from uplift.extras.texture import Spectrum
 
     table = None if table_path is None else os.path.abspath(find_table(table_path))
-    own = load_emission(
-        table_path
-    ).wavelengths  # a table that cannot be read is reported before images are
+    # a table that cannot be read is reported before images are
+    loaded = load_emission(table_path)
     if wavelengths is not None:
-        check_range(wavelengths, own)
+        check_range(wavelengths, loaded.wavelengths)
     convert((table,), Spectrum(as_tuple(wavelengths)), emission=True, **settings)
 
 
@@ -276,56 +274,54 @@ def query(
     table = load_emission(table_path)
     at = table.wavelengths if wavelengths is None else wavelengths
     check_range(at, table.wavelengths)
-    blocks = (
-        [np.array([source.xyz])]
-        if source.xyz
-        else map(table.xyz, source.blocks(sensor(table.space)))
-    )
+    if source.xyz:
+        blocks: Iterable[Array] = [np.array([source.xyz])]
+    else:
+        blocks = map(table.xyz, source.blocks(sensor(table.space)))
     results: Iterable[dict[str, Any]] = _answers(table, blocks, at, outside)
     if plot_path is not None:
         from uplift.extras.pages.plots import plot_lights
 
         results = list(results)
-        plot_lights(
-            [(np.array(each["rgb"]), at, each["power"]) for each in results],
-            table,
-            plot_path,
-            force=force,
-        )
+        lights = [(np.array(light["rgb"]), at, light["power"]) for light in results]
+        plot_lights(lights, table, plot_path, force=force)
         say(f"{plot_path}: {pluralise(len(results), 'light')}", err=True)
     if style == "json":
         values = (result | {"power": result["power"].tolist()} for result in results)
         print_json_answers(values, single=source.single)
     elif style == "csv":
-        header = ["r", "g", "b", "expected_error", *(f"{each:g}" for each in at)]
-        print_csv(
-            header,
-            (
-                [*each["rgb"], each["expected_error"], *each["power"].tolist()]
-                for each in results
-            ),
-        )
+        header = ["r", "g", "b", "expected_error", *map("{:g}".format, at)]
+        print_csv(header, map(_csv_row, results))
     elif source.single:
         (result,) = results
-        power = result["power"]
-        fields = {
-            "linear RGB": f"{format_rgb(result['rgb'])} ({table.space})",
-            "round trip": format_rgb(result["round_trip"]["rgb"]),
-            "expected error": (
-                f"ΔE00 {result['expected_error']:.2g} of surfaces, to a measured "
-                "lamp of this RGB"
-            ),
-            "peak": f"{power.max():.5g} at {at[power.argmax()]:g} nm",
-        }
-        print_spectrum(
-            fields, at, power, complete=wavelengths is not None, highest=_peak(power)
-        )
+        _print_light(result, table.space, at, complete=wavelengths is not None)
     else:
         say(f"{'linear RGB':<34}{'ΔE00':>6}  spectrum")
         for result in results:
-            text = " ".join(f"{value:.4g}" for value in result["rgb"])
+            text = " ".join(map("{:.4g}".format, result["rgb"]))
             shape = sparkline(result["power"] / _peak(result["power"]), 32)
             say(f"{text:<34}{result['expected_error']:>6.2f}  {shape}")
+
+
+def _csv_row(result: dict[str, Any]) -> Sequence[float]:
+    return [*result["rgb"], result["expected_error"], *result["power"].tolist()]
+
+
+def _print_light(
+    result: dict[str, Any], space: str, wavelengths: Array, *, complete: bool
+) -> None:
+    power = result["power"]
+    peak = f"{power.max():.5g} at {wavelengths[power.argmax()]:g} nm"
+    fields = {
+        "linear RGB": f"{format_rgb(result['rgb'])} ({space})",
+        "round trip": format_rgb(result["round_trip"]["rgb"]),
+        "expected error": (
+            f"ΔE00 {result['expected_error']:.2g} of surfaces, to a measured lamp of "
+            "this RGB"
+        ),
+        "peak": peak,
+    }
+    print_spectrum(fields, wavelengths, power, complete=complete, highest=_peak(power))
 
 
 def _answers(

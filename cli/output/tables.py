@@ -5,6 +5,7 @@ rich.
 import copy
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 from typing import Any
 
 from rich.cells import cell_len
@@ -99,9 +100,8 @@ def narrowest(column: Column) -> int:
     natural = max(map(cell_len, texts))
     if column.no_wrap:
         return natural
-    longest_word = max(
-        cell_len(word) for text in texts for word in text.split() or [""]
-    )
+    words = chain.from_iterable(map(str.split, texts))
+    longest_word = max(map(cell_len, words), default=0)
     return max(longest_word, min(natural, WRAPPED))
 
 
