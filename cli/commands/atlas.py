@@ -4,8 +4,9 @@ between formats.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
 
 SHIPPED = ("name", "entries", "content", "source", "licence")
 """Columns of the list of shipped atlases."""
+COLUMNS = ("name", "start", "end", "step", *"rgb", "in_gamut", "warnings")
+"""Columns of entries in CSV."""
 SOURCE = ("name", "digest", "format", "measured", "missing", "notes")
 """Fields of the source of an atlas in JSON."""
 
@@ -101,31 +104,27 @@ def command(
     rows, codes, smallest = _list_entries(atlas, target, camera["illuminant"])
     if style == "json":
         fields = {
-            **{name: getattr(target, name) for name in camera},
-            "sources": [
-                {name: getattr(source, name) for name in SOURCE}
-                for source in atlas.sources
-            ],
+            **_pick(target, camera),
+            "sources": [_pick(source, SOURCE) for source in atlas.sources],
             "smallest_space": smallest,
             "entries": rows,
-            "skipped": [asdict(skipped) for skipped in atlas.skipped],
+            "skipped": list(map(asdict, atlas.skipped)),
         }
         print_json(fields)
     elif style == "csv":
-        print_csv(
-            ["name", "start", "end", "step", "r", "g", "b", "in_gamut", "warnings"],
-            [
-                [
-                    *list(row.values())[:4],
-                    *row["rgb"],
-                    str(row["in_gamut"]).lower(),
-                    "; ".join(row["warnings"]),
-                ]
-                for row in rows
-            ],
-        )
+        print_csv(COLUMNS, map(_csv_row, rows))
     else:
         _print_table(atlas, target, rows, codes, smallest)
+
+
+def _pick(item: object, names: Iterable[str]) -> dict[str, Any]:
+    """Return some attributes by their names."""
+    return {name: getattr(item, name) for name in names}
+
+
+def _csv_row(row: dict[str, Any]) -> Sequence[Any]:
+    *place, rgb, in_gamut, warnings = row.values()
+    return [*place, *rgb, str(in_gamut).lower(), "; ".join(warnings)]
 
 
 def _print_shipped(style: str) -> None:
@@ -133,15 +132,13 @@ def _print_shipped(style: str) -> None:
 
     atlases = shipped_atlases()
     if style == "json":
-        rows = ({name: getattr(atlas, name) for name in SHIPPED} for atlas in atlases)
-        files = ({"path": str(atlas.path), "digest": atlas.digest} for atlas in atlases)
-        print_json(
-            {"atlases": [row | file for row, file in zip(rows, files, strict=True)]}
-        )
+        rows = []
+        for atlas in atlases:
+            file = {"path": str(atlas.path), "digest": atlas.digest}
+            rows.append(_pick(atlas, SHIPPED) | file)
+        print_json({"atlases": rows})
     elif style == "csv":
-        print_csv(
-            SHIPPED, ([getattr(atlas, name) for name in SHIPPED] for atlas in atlases)
-        )
+        print_csv(SHIPPED, map(attrgetter(*SHIPPED), atlases))
     else:
         for atlas in atlases:
             print_fields(
@@ -196,12 +193,10 @@ def _print_table(
         texts, "RGB", title=f"linear {sensor.space} under {sensor.illuminant}"
     )
     for row, code in zip(rows, codes.tolist(), strict=True):
-        wavelengths = ":".join(
-            f"{row[name]:g}"
-            for name in ("start", "end", "step")
-            if row[name] is not None
-        )
-        rgb = (f"{channel:.4f}" for channel in row["rgb"])
+        wavelengths = f"{row['start']:g}:{row['end']:g}"
+        if row["step"] is not None:
+            wavelengths += f":{row['step']:g}"
+        rgb = map("{:.4f}".format, row["rgb"])
         table.add_row(*[swatch(code)] * coloured, row["name"], wavelengths, *rgb)
     show(table)
     for row in rows:
@@ -212,18 +207,16 @@ def _print_table(
     for source in atlas.sources:
         paragraph("; ".join((f"{source.name}: {source.format}", *source.notes)))
     outside = [row["name"] for row in rows if not row["in_gamut"]]
-    skipped = [skipped.name for skipped in atlas.skipped]
-    entries = pluralise(len(rows), "entry")
+    skipped = [entry.name for entry in atlas.skipped]
     text = (
-        f"{entries}, {_count(outside, f'out of the {sensor.space} gamut')}, "
+        f"{pluralise(len(rows), 'entry')}, "
+        f"{_count(outside, f'out of the {sensor.space} gamut')}, "
         f"{_count(skipped, 'skipped')}"
     )
-    if outside:
-        text += (
-            f"; {smallest} holds all {len(rows)}"
-            if smallest
-            else "; no common RGB space holds all"
-        )
+    if outside and smallest:
+        text += f"; {smallest} holds all {len(rows)}"
+    elif outside:
+        text += "; no common RGB space holds all"
     paragraph(text)
 
 

@@ -18,7 +18,8 @@ from ..outputs import check_folder, write_files
 from ..startup import enable_jit_cache
 
 MOMENTS_PLOTS = ("moments.png", "moments-patches.png", "moments-worst.png")
-STABILITY_PLOTS, SENSITIVITY_PLOTS = ("stability.png",), ("sensitivity-locality.png",)
+STABILITY_PLOTS = ("stability.png",)
+SENSITIVITY_PLOTS = ("sensitivity-locality.png",)
 """Files of --output."""
 MACBETH = "macbeth"
 Row = Mapping[str, Any]
@@ -82,16 +83,24 @@ def _print(
 def _print_table(rows: Sequence[Row], title: str | None = None) -> None:
     texts = [key for key, value in rows[0].items() if isinstance(value, str)]
     numbers = [key for key in rows[0] if key not in texts]
-    table = make_table(
-        *([HEADINGS.get(key, key) for key in keys] for keys in (texts, numbers)),
-        title=title,
-    )
+    table = make_table(texts, [HEADINGS.get(key, key) for key in numbers], title=title)
     for row in rows:
-        cells = ("" if row[key] is None else row[key] for key in (*texts, *numbers))
-        table.add_row(
-            *(f"{cell:.3g}" if isinstance(cell, float) else str(cell) for cell in cells)
-        )
+        table.add_row(*(_cell(row[key]) for key in (*texts, *numbers)))
     show(table)
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    return f"{value:.3g}" if isinstance(value, float) else str(value)
+
+
+def _without(records: Sequence[Row], *names: str) -> list[Row]:
+    """Return records without some keys."""
+    shown = list[Row]()
+    for record in records:
+        shown.append({key: record[key] for key in record if key not in names})
+    return shown
 
 
 @command.command(
@@ -144,23 +153,20 @@ def moments(
     if output is not None:
         from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
 
-        plots = (
+        write_files(
+            output,
+            MOMENTS_PLOTS,
             partial(plot_errors, {"all entries": study.curves()}),
             partial(plot_patches, study),
+            partial(plot_worst, study),
         )
-        write_files(output, MOMENTS_PLOTS, *plots, partial(plot_worst, study))
-    results = [
-        [study.result(technique, count) for technique in TECHNIQUES]
-        for count in range(max_moments + 1)
-    ]
-    table = [
-        {"moments": str(count)}
-        | {
-            each.label: f"{one.mean[0]:.2f} / {one.max[0]:6.2f}"
-            for each, one in zip(TECHNIQUES, row, strict=True)
-        }
-        for count, row in enumerate(results)
-    ]
+    table = []
+    for count in range(max_moments + 1):
+        row = {"moments": str(count)}
+        for technique in TECHNIQUES:
+            errors = study.result(technique, count)
+            row[technique.label] = f"{errors.mean[0]:.2f} / {errors.max[0]:6.2f}"
+        table.append(row)
     records = study.records()
     _print(style, records, records, table, "mean / largest ΔE76 under D65")
 
@@ -206,12 +212,9 @@ def held_out(
     records: list[dict[str, Any]] = []
     for name, atlas in read_atlases(files).items():
         with progress_bar(name) as progress:
-            found = holdout(atlas, splits, progress, dim=dim, coefficients=coefficients)
-        records += [{"atlas": name, **record} for record in split_records(found)]
-    rows = [
-        {key: value for key, value in record.items() if key != "standard_error"}
-        for record in records
-    ]
+            split = holdout(atlas, splits, progress, dim=dim, coefficients=coefficients)
+        records += [{"atlas": name, **record} for record in split_records(split)]
+    rows = _without(records, "standard_error")
     _print(style, records, rows, rows)
     for record in records if style == "table" else ():
         if errors := record.get("standard_error"):
@@ -280,13 +283,8 @@ def stability(
         from uplift.lab.study.plots import plot_map
 
         write_files(output, STABILITY_PLOTS, partial(plot_map, records))
-    hidden = ("success", "points", "stand_ins")
-    _print(
-        style,
-        records,
-        records,
-        [{key: row[key] for key in row if key not in hidden} for row in records],
-    )
+    table = _without(records, "success", "points", "stand_ins")
+    _print(style, records, records, table)
     if style == "table":
         failed = [row["unfitted"] for row in records if row["unfitted"]]
         nodes = sum(row["realisable"] for row in records)
