@@ -355,10 +355,8 @@ def choice(
 encoding = choice(
     "--encoding",
     *("auto", "linear", "encoded"),
-    help=(
-        "Encoding of images. auto: whole numbers have the transfer function of the "
-        "cube's space, floats are linear."
-    ),
+    help="Encoding of images. auto: whole numbers have the transfer function of the "
+    "cube's space, floats are linear.",
 )
 
 
@@ -470,10 +468,8 @@ cube_argument = click.argument("cube", metavar="CUBE", shell_complete=complete_c
 scale = choice(
     "--scale",
     *("auto", "percent", "fraction"),
-    help=(
-        "Scale of measured values. auto: as the atlas file states, or else by its "
-        "values."
-    ),
+    help="Scale of measured values. auto: as the atlas file states, or else by its "
+    "values.",
 )
 missing = choice(  # names of uplift.atlas.measurements.MISSING
     "--missing",
@@ -601,10 +597,8 @@ sensor = stacked(
         metavar="NAME|FILE",
         type=LIGHT,
         default="D65",
-        help=(
-            "Illuminant under which RGB are defined; a cube needs a name, other "
-            "commands read the file of a lamp."
-        ),
+        help="Illuminant under which RGB are defined; a cube needs a name, other "
+        "commands read the file of a lamp.",
         shell_complete=complete_light,
     ),
     observer(

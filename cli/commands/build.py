@@ -105,10 +105,8 @@ def parse_range(
     default=32,
     type=options.WHOLE_OR_AUTO,
     metavar="N",
-    help=(
-        "Lattice nodes along each axis. 'auto' chooses the smallest dim, and its "
-        "axis, that resolves every entry."
-    ),
+    help="Lattice nodes along each axis. 'auto' chooses the smallest dim, and its "
+    "axis, that resolves every entry.",
 )
 @options.tolerance(
     "auto_tolerance",
@@ -148,10 +146,8 @@ def parse_range(
 @click.option(
     "--prior",
     default="learnt",
-    help=(
-        "Spectra of colours without measurements: learnt (from real materials) or "
-        "smooth."
-    ),
+    help="Spectra of colours without measurements: learnt (from real materials) or "
+    "smooth.",
 )
 @click.option(
     "--neutral",
@@ -193,16 +189,13 @@ def parse_range(
     "--growth",
     default="outward",
     help="Order of the nodes: outward from the entries, coarse-to-fine, or neighbours: "
-    "outward, each node from the "
-    "spectra of its neighbours.",
+    "outward, each node from the spectra of its neighbours.",
 )
 @click.option(
     "--solver",
     default="least-change",
-    help=(
-        "Solver: least-change, dogleg, levenberg-marquardt or gauss-newton. Only "
-        "nearly box-shaped spectra differ."
-    ),
+    help="Solver: least-change, dogleg, levenberg-marquardt or gauss-newton. Only "
+    "nearly box-shaped spectra differ.",
 )
 @options.encoding
 @options.input_space("--scene images")
@@ -216,10 +209,8 @@ def parse_range(
 @click.option(
     "--seed-corners",
     is_flag=True,
-    help=(
-        "Start all eight nodes around an entry from it: closer near entries, less so "
-        "for other materials."
-    ),
+    help="Start all eight nodes around an entry from it: closer near entries, less so "
+    "for other materials.",
 )
 @click.option(
     "--debug",

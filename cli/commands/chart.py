@@ -71,10 +71,8 @@ FILES = ("chart.csv", "chart.png", "chart.html")
 @click.option(
     "--recommend",
     is_flag=True,
-    help=(
-        "Recommend a cube for common situations, or for limits, by the packaged "
-        "chart or --from."
-    ),
+    help="Recommend a cube for common situations, or for limits, by the packaged chart "
+    "or --from.",
 )
 @click.option(
     "--time-ns",
@@ -84,10 +82,8 @@ FILES = ("chart.csv", "chart.png", "chart.html")
 @options.tolerance("delta_e", help="With --recommend: largest mean ΔE00.")
 @click.option(
     "--light",
-    help=(
-        "With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: "
-        "mean of five]"
-    ),
+    help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: "
+    "mean of five]",
 )
 @click.option(
     "--atlas-materials",

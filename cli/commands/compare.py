@@ -85,9 +85,8 @@ SPECTRA = ("surfaces.csv", "lights.csv")
     "--write",
     metavar="NAME",
     help="Write surfaces and lights as a representation or filter stores them to "
-    "--output, and compare nothing: PS16, "
-    "PF16, RS32, TM9, SG3, or PS16:KIND:EXTENT:PARAMETERS with a filter, such as "
-    "PS16:gaussian:7:0.5.",
+    "--output, and compare nothing: PS16, PF16, RS32, TM9, SG3, or "
+    "PS16:KIND:EXTENT:PARAMETERS with a filter, such as PS16:gaussian:7:0.5.",
 )
 @options.output(help="Folder for tables and plots.", metavar="DIR")
 @options.output_format("table", "json", "csv")
@@ -206,9 +205,8 @@ def _print_advice(comparison: Comparison, tolerance: float) -> None:
         else:
             text = (
                 f"{row.name} ({row.family}): 97.5 % below "
-                f"{format_error(row.statistics.q97_5)}, "
-                f"{row.floats:.4g} floats per surface, {row.light_floats:.4g} per "
-                "light, "
+                f"{format_error(row.statistics.q97_5)}, {row.floats:.4g} floats per "
+                f"surface, {row.light_floats:.4g} per light, "
                 f"{format_time(row.ns.median)} per product"
             )
         say(f"{title}: {text}")

@@ -38,8 +38,7 @@ from ..outputs import check_outputs
 @options.light("Illuminant", "D65 A FL2 FL11 LED-B3")
 @options.tolerance(
     help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by "
-    "more, if one cube alone lacks a "
-    "colour, or if entries were added or removed."
+    "more, if one cube alone lacks a colour, or if entries were added or removed."
 )
 @click.option(
     "--worst",

@@ -197,10 +197,8 @@ EXPORTS = {
 @click.option(
     "--res",
     type=options.WHOLE,
-    help=(
-        "Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier "
-        "33, film 192]"
-    ),
+    help="Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier "
+    "33, film 192]",
 )
 @click.option(
     "--light",
@@ -213,10 +211,8 @@ EXPORTS = {
 @click.option(
     "--mode",
     type=click.Choice(("spectra", "moments")),
-    help=(
-        "What programs interpolate: spectra, with exact colours, or coefficients. "
-        "[default: spectra]"
-    ),
+    help="What programs interpolate: spectra, with exact colours, or coefficients. "
+    "[default: spectra]",
 )
 @options.table
 @options.fill

@@ -101,8 +101,7 @@ def build(
         knots, rings = table.data.lattice.shape
         say(
             f"{path}: {knots} × {rings} nodes, "
-            f"{pluralise(len(table.lamp_names), 'lamp')}, "
-            "expected ΔE00 of surfaces "
+            f"{pluralise(len(table.lamp_names), 'lamp')}, expected ΔE00 of surfaces "
             f"{float(table.expected_error([1.0, 1.0, 1.0])):.1f} (white), "
             f"{path.stat().st_size / 1e6:.1f} MB, {time.perf_counter() - begin:.1f} s"
         )
@@ -247,10 +246,8 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
 @options.choice(
     *("--out-of-gamut", "error", "clip"),
     name="outside",
-    help=(
-        "Treatment of colours that no light has: raise an error, or take the nearest "
-        "one towards white."
-    ),
+    help="Treatment of colours that no light has: raise an error, or take the nearest "
+    "one towards white.",
 )
 @options.output_format("table", "json", "csv")
 @options.plot("Plot the spectra")

@@ -122,26 +122,21 @@ if TYPE_CHECKING:
     "--surface-reflectance",
     type=options.NUMBER,
     metavar="K1",
-    help=(
-        "Saunderson's reflectance of the surface for light from air. [default: by "
-        "--refractive-index]"
-    ),
+    help="Saunderson's reflectance of the surface for light from air. [default: by "
+    "--refractive-index]",
 )
 @click.option(
     "--internal-reflectance",
     type=options.NUMBER,
     metavar="K2",
-    help=(
-        "Saunderson's reflectance of the surface for diffuse light from within. "
-        "[default: by --refractive-index]"
-    ),
+    help="Saunderson's reflectance of the surface for diffuse light from within. "
+    "[default: by --refractive-index]",
 )
 @click.option(
     "--plate",
     type=click.Choice(("reflected", "transmitted")),
     help="With --dye: the light that a free plate of the dye reflects, with --ground "
-    "behind it, or transmits. "
-    "--refractive-index is that of the plate.",
+    "behind it, or transmits. --refractive-index is that of the plate.",
 )
 @options.choice(
     "--scattering",
@@ -153,10 +148,8 @@ if TYPE_CHECKING:
 @click.option(
     "--theories",
     is_flag=True,
-    help=(
-        "Mix the colours by every model: Kubelka and Munk, Amy, Duntley, dyes, "
-        "filters, and heuristics of RGB."
-    ),
+    help="Mix the colours by every model: Kubelka and Munk, Amy, Duntley, dyes, "
+    "filters, and heuristics of RGB.",
 )
 @options.cube()
 @options.atlas("Measured spectra whose entries are ingredients")

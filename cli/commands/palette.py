@@ -64,10 +64,8 @@ LEGEND = "requested, obtained, factor model, ΔE00 of obtained/model; * designed
 @click.option(
     "--image",
     metavar="FILE",
-    help=(
-        "Picture for the page: an 8-bit image of labels, or EXR channels with the "
-        "names of the materials."
-    ),
+    help="Picture for the page: an 8-bit image of labels, or EXR channels with the "
+    "names of the materials.",
 )
 @options.repeatable(
     "--label",

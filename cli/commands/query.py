@@ -65,10 +65,8 @@ colour_options = options.stacked(
     options.choice(
         "--mode",
         *("spectra", "moments", "refined", "nearest"),
-        help=(
-            "Interpolate spectra (exact), coefficients (fast), coefficients with "
-            "refinement, or use the nearest node."
-        ),
+        help="Interpolate spectra (exact), coefficients (fast), coefficients with "
+        "refinement, or use the nearest node.",
     ),
     options.out_of_gamut("error", "as such a number is often a mistake"),
     options.fill,

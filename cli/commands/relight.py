@@ -99,10 +99,8 @@ def _check_output(path: str) -> str:
 )
 @options.pixels()
 @options.output(
-    help=(
-        "File to write: a figure if it ends in .png, .svg or .pdf, a page if in "
-        ".html, the image itself if in .exr."
-    ),
+    help="File to write: a figure if it ends in .png, .svg or .pdf, a page if in "
+    ".html, the image itself if in .exr.",
     default="relit.png",
     type=options.OutputFile(_check_output),
 )

@@ -120,10 +120,8 @@ image_options = options.stacked(
 @click.option(
     "--mask",
     metavar="FILE",
-    help=(
-        "Image of which cube a pixel belongs to: 0 for the first, 1 for the second "
-        "…, or from black to white."
-    ),
+    help="Image of which cube a pixel belongs to: 0 for the first, 1 for the second …, "
+    "or from black to white.",
 )
 @options.choice(
     "--representation",
