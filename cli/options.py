@@ -14,6 +14,7 @@ from importlib import import_module
 from typing import Any
 
 import click
+from click.core import ParameterSource
 from click.shell_completion import CompletionItem
 
 from uplift.common.text import format_value, parse_float, parse_whole
@@ -86,26 +87,23 @@ class Command(click.Command):
         self, ctx: click.Context, formatter: click.HelpFormatter
     ) -> None:
         """Write the text, after the form feed for --help-all only."""
-        short, _, rest = inspect.cleandoc(self.help or "").partition("\f")
+        short, _, further = inspect.cleandoc(self.help or "").partition("\f")
         formatter.write_paragraph()
         with formatter.indentation():
-            formatter.write_text(short + rest if HELP_ALL in ctx.meta else short)
+            formatter.write_text(short + further if HELP_ALL in ctx.meta else short)
 
     def format_options(
         self, ctx: click.Context, formatter: click.HelpFormatter
     ) -> None:
         """Write the options of every day, the last two of help, or all options."""
-        *own, help_all, help_option = (
-            each for each in self.get_params(ctx) if isinstance(each, click.Option)
-        )
-        shown = [
-            each for each in own if HELP_ALL in ctx.meta or each.name in self.everyday
-        ]
-        records = (
-            each.get_help_record(ctx) for each in (*shown, help_all, help_option)
-        )
+        params = self.get_params(ctx)
+        shown = [option for option in params if isinstance(option, click.Option)]
+        if HELP_ALL not in ctx.meta:
+            names = (*self.everyday, *(option.name for option in shown[-2:]))
+            shown = [option for option in shown if option.name in names]
+        records = (option.get_help_record(ctx) for option in shown)
         with formatter.section("Options"):
-            formatter.write_dl([record for record in records if record is not None])
+            formatter.write_dl(list(filter(None, records)))
 
 
 class Group(click.Group):
@@ -191,9 +189,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
     def __init__(self, function: Callable[[str], Any]) -> None:
         self.function = function
 
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> Any:
+    def convert(self, value: Any, *_: Any) -> Any:
         """Return what the function makes of the text."""
         return self.function(value)
 
@@ -201,9 +197,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
 class Checked(Parsed):
     """A text that a function of `uplift_cli.inputs` checks."""
 
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> Any:
+    def convert(self, value: Any, *_: Any) -> Any:
         """Return the text."""
         self.function(value)
         return value
@@ -251,21 +245,17 @@ def completion(
     def complete(
         ctx: click.Context, param: click.Parameter, text: str
     ) -> list[CompletionItem]:
-        items = [
-            CompletionItem(text, type="file")
-        ] * files  # first: bash drops the items before it
+        # first: bash drops the items before it
+        items = [CompletionItem(text, type="file")] * files
         for source in sources:
-            module, name, *arguments = source.split(":")
-            names = getattr(import_module(f"uplift.{module}"), name)
-            found = (
-                getattr(each, "name", each)
-                for each in (names(*arguments) if callable(names) else names)
-            )
-            items += [
-                CompletionItem(each)
-                for each in found
-                if each.lower().startswith(text.lower())
-            ]
+            module, attribute, *arguments = source.split(":")
+            values = getattr(import_module(f"uplift.{module}"), attribute)
+            if callable(values):
+                values = values(*arguments)
+            for value in values:
+                name = getattr(value, "name", value)
+                if name.lower().startswith(text.lower()):
+                    items.append(CompletionItem(name))
         return items
 
     return complete
@@ -282,10 +272,21 @@ complete_observer = completion(
 complete_space = completion("colorimetry.tables:names:RGB space")
 
 
+def given() -> dict[str, str]:
+    """Return the options of the command line by the names of their parameters."""
+    context = click.get_current_context()
+    options = {}
+    for parameter in context.command.params:
+        name = str(parameter.name)
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+            options[name] = parameter.opts[-1]
+    return options
+
+
 def stacked(*decorators: Decorator) -> Decorator:
     """Combine decorators, the first one outermost."""
     return lambda function: reduce(
-        lambda inner, each: each(inner), reversed(decorators), function
+        lambda inner, decorate: decorate(inner), reversed(decorators), function
     )
 
 

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.text import format_value, parse_float, pluralise
@@ -269,21 +268,10 @@ class _Task:
     notes: Sequence[UpliftWarning] = ()
 
 
-def _given_options() -> dict[str, str]:
-    """Return the options of the command line by the names of their parameters."""
-    context = click.get_current_context()
-    given = {}
-    for parameter in context.command.params:
-        name = str(parameter.name)
-        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
-            given[name] = parameter.opts[-1]
-    return given
-
-
 def _task_of_plan(plan_path: str, output: str | None, debug: bool) -> _Task:
     from uplift.extras.scene.plan.files import cube_name, read_plan
 
-    given = _given_options()
+    given = options.given()
     others = [given[name] for name in given if name not in ALLOWED_WITH_PLAN]
     if others:
         raise click.UsageError(
@@ -307,7 +295,7 @@ def _task_of_atlases(
     **settings: Any,
 ) -> _Task:
     if not images:
-        given = _given_options()
+        given = options.given()
         useless = [given[name] for name in OF_IMAGES if name in given]
         if useless:
             raise click.UsageError(

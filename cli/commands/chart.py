@@ -5,7 +5,6 @@ the cube to build.
 from __future__ import annotations
 
 from functools import partial
-from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -114,11 +113,10 @@ def command(
     from uplift.lab.chart.table import chart_csv, read_chart
 
     check_folder(output, FILES, inputs=atlas_files(files))
-    chart = (
-        read_chart(source)
-        if source is not None
-        else _measure(files, patterns, quick=quick)
-    )
+    if source is None:
+        chart = _measure(files, patterns, quick=quick)
+    else:
+        chart = read_chart(source)
     table = partial(write_text, chart_csv(chart))
     page = partial(write_text, render_chart(chart))
     write_files(output, FILES, table, partial(write_picture, chart), page)
@@ -137,17 +135,16 @@ def _recommend(source: str | None, required: dict[str, Any]) -> None:
     )
 
     chart = read_chart(source) if source is not None else shipped_chart()
-    for title, each in (
-        {"": Requirement(**required)}.items()
-        if any(required.values())
-        else SITUATIONS.items()
-    ):
-        row = recommend_cube(chart, each)
+    situations = SITUATIONS
+    if any(required.values()):
+        situations = {"": Requirement(**required)}
+    for title, requirement in situations.items():
+        row = recommend_cube(chart, requirement)
         paragraph(
             f"{title}{': ' * bool(title)}{row.title}: "
             f"{format_time(row.numbers['time_ns'])} per RGB, mean ΔE00 "
-            f"{format_error(row.numbers[each.error])} {each.description}, "
-            f"{format_size(row.numbers['bytes'])}"
+            f"{format_error(row.numbers[requirement.error])} "
+            f"{requirement.description}, {format_size(row.numbers['bytes'])}"
         )
         say(f"  {row.build}")
         say(f"  {row.call}")
@@ -171,16 +168,15 @@ def _print_fronts(chart: Chart) -> None:
 
     say("Pareto fronts, from the fastest to the most accurate")
     tables = []
-    for criterion in chain.from_iterable(
-        criteria(batch)[:PRINTED] for batch in chart.batches
-    ):
-        title = f"{criterion.title}: {criterion.colours}"
-        table = make_table(("method",), ("time", criterion.unit, "bytes"), title=title)
-        for row in criterion.front(chart):
-            table.add_row(
-                row.method, *criterion.labels(row), format_size(row.numbers["bytes"])
-            )
-        tables.append(table)
+    for batch in chart.batches:
+        for criterion in criteria(batch)[:PRINTED]:
+            title = f"{criterion.title}: {criterion.colours}"
+            numbers = ("time", criterion.unit, "bytes")
+            table = make_table(("method",), numbers, title=title)
+            for row in criterion.front(chart):
+                size = format_size(row.numbers["bytes"])
+                table.add_row(row.method, *criterion.labels(row), size)
+            tables.append(table)
     show(*tables)
     for row in chart.results:
         if row.state != State.MEASURED:

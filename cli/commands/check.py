@@ -135,18 +135,7 @@ def _check(
             comparison = compare_rebuilt(path, stored.data, rebuilt.data)
         except UpliftError as cause:
             error = cause
-    failures: list[str] = []
-    compared: dict[str, Any] = {"measures": {}, "status": {}, "entries": []}
-    if comparison:
-        failures += comparison.failures
-        compared = {
-            "measures": comparison.measures,
-            "status": {
-                "stored": comparison.stored_counts,
-                "rebuilt": comparison.rebuilt_counts,
-            },
-            "entries": list(map(asdict, comparison.entries)),
-        }
+    failures = list(comparison.failures) if comparison else []
     problems = defaultdict(list)
     for note in notes:
         problems[note.code == "atlas-changed"].append(note.problem)
@@ -158,13 +147,20 @@ def _check(
         "cube": str(path),
         "passed": not failures,
         "failures": failures,
-        "measures": compared["measures"],
-        "status": compared["status"],
+        "measures": {},
+        "status": {},
         "atlas_changed": problems[True],
         "notes": problems[False],
-        "entries": compared["entries"],
+        "entries": [],
         "error": error_object(error) if error else None,
     }
+    if comparison:
+        record["measures"] = comparison.measures
+        record["status"] = {
+            "stored": comparison.stored_counts,
+            "rebuilt": comparison.rebuilt_counts,
+        }
+        record["entries"] = list(map(asdict, comparison.entries))
     return record, rebuilt, error
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import click
@@ -125,13 +126,12 @@ def command(
             write_costs,
         )
 
-        page = partial(write_text, render_comparison(comparison, tuned))
         write_files(
             output,
             FILES,
             partial(write_boxes, comparison),
             partial(write_costs, comparison),
-            page,
+            partial(write_text, render_comparison(comparison, tuned)),
         )
     if tolerance is not None:
         _print_advice(comparison, tolerance)
@@ -177,7 +177,8 @@ def _measure(
     from uplift.lab.comparison.fitted import scene_representations
 
     scene = make_scene(read_atlases(files), lights)
-    scene = scene.thinned() if quick else scene
+    if quick:
+        scene = scene.thinned()
     with progress_bar("representations") as progress:
         comparison = compare(
             scene, scene_representations(scene), quick=quick, progress=progress
@@ -224,23 +225,18 @@ def _print_table(
         table = make_table(("representation",), numbers, title=f"ΔE00 under {title}")
         for row in comparison.of(name) if every else pareto(comparison, name):
             errors = (row.statistics.mean, row.statistics.median, row.statistics.q97_5)
-            cost = (
-                f"{row.floats:.1f}",
-                f"{row.light_floats:.1f}",
-                format_time(row.ns.median),
-            )
-            table.add_row(row.name, *(f"{error:.3f}" for error in errors), *cost)
+            floats = map("{:.1f}".format, (row.floats, row.light_floats))
+            time = format_time(row.ns.median)
+            table.add_row(row.name, *map("{:.3f}".format, errors), *floats, time)
         tables.append(table)
     if tuned:
         title = "point sampling after the best low-pass filter of each kind"
-        table = make_table(
-            ("lights", "samples", "filter", "parameters"), HEADINGS, title=title
-        )
-        for one in sorted(
-            tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)
-        ):
-            values = (f"{value:.3f}" for value in one.statistics)
-            table.add_row(one.lights, str(one.count), one.kind, one.parameters, *values)
+        texts = ("lights", "samples", "filter", "parameters")
+        table = make_table(texts, HEADINGS, title=title)
+        order = attrgetter("lights", "count", "statistics.mean")
+        for best in sorted(tuned, key=order):
+            setting = (best.lights, str(best.count), best.kind, best.parameters)
+            table.add_row(*setting, *map("{:.3f}".format, best.statistics))
         tables.append(table)
     show(*tables)
 

@@ -6,7 +6,6 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 from uplift.common.errors import OutputError, UpliftWarning
 from uplift.common.text import pluralise
@@ -200,9 +199,9 @@ def command(
 ) -> None:
     from uplift.extras.paint import Medium
 
-    _check_coat(kind, ground, plate, over, output, plot_path)
+    _check_coat(kind, plate)
     if theories:
-        _check_theories(kind, (thickness, ground, plate, over, plot_path))
+        _check_theories(kind)
     _check_image(output)
     check_outputs(plot_path, output, inputs=[word.partition(":")[2] for word in words])
     resolver, further = _prepare_resolver(
@@ -235,35 +234,30 @@ def command(
         _print_table(recipe, mixture, further, complete=wavelengths is not None)
 
 
-def _check_coat(
-    kind: str,
-    ground: str | None,
-    plate: str | None,
-    over: str | None,
-    output: str | None,
-    plot_path: str | None,
-) -> None:
+def _check_coat(kind: str, plate: str | None) -> None:
     from uplift.extras.paint.coats import COATS
 
-    if (over is None) != (output is None):
+    given = options.given().keys()
+    if len(given & {"over", "output"}) == 1:
         raise click.UsageError("--over IMAGE and --output EXR require each other.")
-    if ground is not None and (kind not in COATS or over is not None):
+    if "ground" in given and (kind not in COATS or "over" in given):
         raise click.UsageError(
             "--ground applies to coats of --pigment, --dye or --duntley, without "
             "--over."
         )
     if plate is not None and kind != "dye":
         raise click.UsageError("--plate applies to --dye.")
-    if plate == "transmitted" and (ground is not None or over is not None):
+    if plate == "transmitted" and given & {"ground", "over"}:
         raise click.UsageError(
             "--plate transmitted does not apply to --ground and --over."
         )
-    if over is not None and plot_path is not None:
+    if given >= {"over", "plot_path"}:
         raise click.UsageError("--plot shows a mixture and does not apply to --over.")
 
 
-def _check_theories(kind: str, others: tuple[object, ...]) -> None:
-    if kind == "duntley" or any(value is not None for value in others):
+def _check_theories(kind: str) -> None:
+    excluded = {"thickness", "ground", "plate", "over", "plot_path"}
+    if kind == "duntley" or excluded & options.given().keys():
         raise click.UsageError(
             "--theories mixes opaque colours, without --duntley, --thickness, "
             "--ground, --plate, --over and --plot."
@@ -309,8 +303,7 @@ def _prepare_resolver(
     grid = np.concatenate([cube.data.sensor.wavelengths, further])
     # The default is for mixtures: an ingredient outside [0, 1] is a mistake, unless the
     # option is given.
-    source = click.get_current_context().get_parameter_source("method")
-    if source is not ParameterSource.COMMANDLINE:
+    if "method" not in options.given():
         method = "error"
     atlas = read_atlas(*files) if files else Atlas()
     return SpectrumResolver(cube, atlas, grid, space, method), further
@@ -384,12 +377,13 @@ def _paint(
 
     provenance = {
         "kind": recipe.kind,
-        "of": [list(pair) for pair in zip(recipe.parts, recipe.names, strict=True)],
+        "of": list(map(list, zip(recipe.parts, recipe.names, strict=True))),
         "thickness": medium.thickness,
         "surface": asdict(medium.surface),
         "scattering": scattering,
-        **({"plate": True} if medium.plate else {}),
     }
+    if medium.plate:
+        provenance["plate"] = True
     coat = make_coat(recipe.kind, recipe.ingredients, recipe.parts, medium)
     painter = overpainter(recipe.cube, coat, provenance, **looks)
     with progress_bar("rows") as progress:
@@ -479,16 +473,15 @@ def _print_table(
     fields |= describe_coordinates(colour)
     if len(recipe.names) > 1:
         fields["ramp"] = " ".join(step["hex"] for step in mixture.colours[1:])
-    patches = {
-        "linear RGB": patch(cube, mixture.rgb[0]),
-        "ramp": "".join(patch(cube, rgb, 4) for rgb in mixture.rgb[1:]),
-    }
     print_spectrum(
         fields,
         wavelengths,
         mixture.values,
         complete=complete,
-        patches=patches,
+        patches={
+            "linear RGB": patch(cube, mixture.rgb[0]),
+            "ramp": "".join(patch(cube, rgb, 4) for rgb in mixture.rgb[1:]),
+        },
         highest=max(1, mixture.values.max()),
     )
 

@@ -151,12 +151,12 @@ def _read_picture(
                 f"labels must be NAME=#rrggbb, one per material, got '{label}'"
             )
         colours[name] = colour
-    return read_weights(
-        image, [part.name for part in palette.materials], colours or None
-    )
+    names = [material.name for material in palette.materials]
+    return read_weights(image, names, colours or None)
 
 
 def _print_table(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
+    import numpy as np
     from rich.text import Text
 
     from uplift.colorimetry.srgb import hex_codes
@@ -167,19 +167,20 @@ def _print_table(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
         table.add_column(light.name + "*" * light.designed, no_wrap=True)
     for row, material in enumerate(design.palette.materials):
         cells = []
-        for at in ((row, column) for column in range(len(design.palette.lights))):
-            has_goal = not math.isnan(colours.delta_e[at])
+        for column in range(len(design.palette.lights)):
+            at = row, column
+            shown = [colours.obtained[at], colours.factor[at]]
+            error = "–"
+            if not math.isnan(colours.delta_e[at]):
+                shown.insert(0, colours.target[at])
+                error = f"{colours.delta_e[at]:.2f}"
             cell = Text()
-            for rgb in [colours.target[at]] * has_goal + [
-                colours.obtained[at],
-                colours.factor[at],
-            ]:
-                (code,) = hex_codes(rgb[None])
-                cell.append(
-                    "    " if coloured else code, style=f"on {code}" if coloured else ""
-                )
+            for code in hex_codes(np.stack(shown)):
+                if coloured:
+                    cell.append("    ", style=f"on {code}")
+                else:
+                    cell.append(code)
                 cell.append(" ")
-            error = f"{colours.delta_e[at]:.2f}" if has_goal else "–"
             cells.append(cell.append(f"{error}/{colours.model_error[at]:.2f}"))
         table.add_row(material.name + "*" * material.designed, *cells)
     show(table)
@@ -231,10 +232,10 @@ def _parts(
 ) -> list[dict[str, object]]:
     return [
         {
-            "name": part.name,
-            "designed": part.designed,
+            "name": spec.name,
+            "designed": spec.designed,
             "samples": samples.tolist(),
             "coefficients": coefficients(samples).tolist(),
         }
-        for part, samples in zip(specs, spectra, strict=True)
+        for spec, samples in zip(specs, spectra, strict=True)
     ]

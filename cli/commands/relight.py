@@ -131,17 +131,9 @@ def command(
     if not images and cube_path is None:
         atlases = files or (SAMPLE_ATLAS,)
     write = _write_image if is_image else _write_pictures
-    extra, notes = write(
-        paths,
-        cube_path,
-        atlases,
-        lights or RELIGHT_LIGHTS,
-        output,
-        style,
-        adapt=adapt,
-        force=force,
-        **pixels,
-    )
+    lights = lights or RELIGHT_LIGHTS
+    settings = {"adapt": adapt, "force": force, **pixels}
+    extra, notes = write(paths, cube_path, atlases, lights, output, style, **settings)
     if extra is not None and files:
         print_notes(extra, notes, err=style == "json")
 
@@ -192,9 +184,8 @@ def _write_image(
     if style == "json":
         print_json({"output": output, "lights": shown, "pixels": count})
     else:
-        names = ", ".join(shown)
-        size = pluralise(count, "pixel")
-        paragraph(f"{output}: {Path(paths[0]).name} under {names}, {size}")
+        facts = f"{', '.join(shown)}, {pluralise(count, 'pixel')}"
+        paragraph(f"{output}: {Path(paths[0]).name} under {facts}")
     return extra, notes
 
 
@@ -225,9 +216,8 @@ def _write_pictures(
         if extra is not None:
             stems = [Path(path).stem for path in atlases or [cube_path or ""]]
             cubes[f"{SPECTRAL} with {', '.join(stems)}"] = extra
-        relit = []
-        for path, picture in zip(paths, pictures, strict=True):
-            image = relight(
+        relit = [
+            relight(
                 Path(path).name,
                 picture.rgb,
                 cubes,
@@ -235,7 +225,8 @@ def _write_pictures(
                 opacity=picture.opacity,
                 reduction=picture.reduction,
             )
-            relit.append(image)
+            for path, picture in zip(paths, pictures, strict=True)
+        ]
         if Path(output).suffix.lower() == PAGE:
             write_text(relit_page(relit, adapt=adapt), output, force=force)
         else:
@@ -259,28 +250,25 @@ def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:
     for image in relit:
         for rendering in image.renderings:
             for spectra in image.methods[1:]:
-                key = {
+                differences = rendering.differences[RGB_PRODUCT, spectra]
+                row = {
                     "image": image.name,
                     "light": rendering.light,
                     "spectra": spectra,
+                    **mean_p95_max(differences),
                 }
-                rows.append(
-                    key | mean_p95_max(rendering.differences[RGB_PRODUCT, spectra])
-                )
+                rows.append(row)
     if style == "json":
         print_json({"output": output, "differences": rows})
         return
     table = make_table(("image", "light", "spectra"), ("mean ΔE00", "95 %", "largest"))
     for row in rows:
-        table.add_row(
-            *(cell if isinstance(cell, str) else f"{cell:.2f}" for cell in row.values())
-        )
+        *texts, mean, p95, largest = row.values()
+        table.add_row(*texts, *map("{:.2f}".format, (mean, p95, largest)))
     show(table)
     names = ", ".join(image.name for image in relit)
-    paragraph(
-        f"{output}: {names} under "
-        f"{', '.join(rendering.light for rendering in relit[0].renderings)}"
-    )
+    lights = ", ".join(rendering.light for rendering in relit[0].renderings)
+    paragraph(f"{output}: {names} under {lights}")
 
 
 def _cube_of_user(

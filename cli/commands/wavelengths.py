@@ -95,7 +95,7 @@ def command(
     force: bool,
     **goal: Any,
 ) -> None:
-    _check_goal(**goal)
+    _check_goal()
     from uplift.atlas import merge, on_grid
     from uplift.colorimetry.observer import require_observer, sensor
     from uplift.extras.scene.wavelengths import grid, make_setup
@@ -124,27 +124,19 @@ def command(
         _print_table(choice, target, len(atlas), errors)
 
 
-def _check_goal(
-    count: int | None,
-    tolerance: float | None,
-    wavelengths: Array | None,
-    measure: str | None,
-    method: str | None,
-    orders: tuple[int, int, int] | None,
-    channels: str | None,
-) -> None:
-    goals = (count, tolerance, wavelengths, orders)
-    if sum(goal is not None for goal in goals) != 1:
+def _check_goal() -> None:
+    given = options.given().keys()
+    if len(given & {"count", "tolerance", "wavelengths", "orders"}) != 1:
         raise click.UsageError(
             "Give one of --count, --tolerance, --wavelengths and --orders."
         )
-    if (measure is not None and tolerance is None) or (
-        method is not None and count is None and tolerance is None
+    if ("measure" in given and "tolerance" not in given) or (
+        "method" in given and not given & {"count", "tolerance"}
     ):
         raise click.UsageError(
             "--measure requires --tolerance, --method requires --count or --tolerance."
         )
-    if channels is not None and orders is None:
+    if "channels" in given and "orders" not in given:
         raise click.UsageError("--channels requires --orders.")
 
 
