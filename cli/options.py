@@ -283,6 +283,11 @@ def given() -> dict[str, str]:
     return options
 
 
+flag = partial(click.option, is_flag=True)
+number = partial(click.option, type=NUMBER)
+whole = partial(click.option, type=WHOLE)
+
+
 def stacked(*decorators: Decorator) -> Decorator:
     """Combine decorators, the first one outermost."""
     return lambda function: reduce(
@@ -315,7 +320,7 @@ named_lights = partial(
 )
 light = partial(named_lights, "--light", "lights", examples=LAMPS)
 """Why its defaults differ is in `uplift help illuminants`."""
-tolerance = partial(click.option, "--tolerance", metavar="ΔE00", type=NUMBER)
+tolerance = partial(number, "--tolerance", metavar="ΔE00")
 output = partial(click.option, "-o", "--output", metavar="FILE", type=OUTPUT)
 OF_PACKAGE = (
     ", or ACEScg for the packaged ACEScg cube{}. [default: the packaged sRGB cube]"
@@ -413,6 +418,12 @@ def pixels() -> Decorator:
     )
 
 
+def _remember_format(ctx: click.Context, param: click.Parameter, value: str) -> str:
+    """Keep the format where the main command finds it if it has an error to report."""
+    ctx.meta[OUTPUT_FORMAT] = value
+    return value
+
+
 def output_format(*choices: str) -> Decorator:
     """``--format`` as ``style``; the first choice is the default."""
     return click.option(
@@ -426,10 +437,8 @@ def output_format(*choices: str) -> Decorator:
     )
 
 
-def _remember_format(ctx: click.Context, param: click.Parameter, value: str) -> str:
-    """Keep the format where the main command finds it if it has an error to report."""
-    ctx.meta[OUTPUT_FORMAT] = value
-    return value
+table_or_json = output_format("table", "json")
+table_json_or_csv = output_format("table", "json", "csv")
 
 
 def plot(help: str, option: str = "--plot", name: str = "plot_path") -> Decorator:
@@ -517,34 +526,23 @@ def colours(xyz: str, space: str) -> Decorator:
             metavar="FILE",
             help="Table of colours, one per line; '-' is standard input.",
         ),
-        click.option(
-            "--xyz", type=NUMBER, nargs=3, metavar="X Y Z", help=f"Colour by XYZ {xyz}."
-        ),
-        click.option(
+        number("--xyz", nargs=3, metavar="X Y Z", help=f"Colour by XYZ {xyz}."),
+        number(
             "--xy",
-            type=NUMBER,
             nargs=2,
             metavar="X Y",
             help="Colour by chromaticity, with --luminance, as for --xyz.",
         ),
-        click.option(
-            "--luminance",
-            type=NUMBER,
-            metavar="Y",
-            help="Luminance of --xy, where white has 1.",
+        number(
+            "--luminance", metavar="Y", help="Luminance of --xy, where white has 1."
         ),
-        click.option(
-            "--encoded",
-            is_flag=True,
-            help="Numbers are encoded 8-bit codes from 0 to 255.",
-        ),
+        flag("--encoded", help="Numbers are encoded 8-bit codes from 0 to 255."),
         input_space("the colours", default=space),
     )
 
 
-fill = click.option(
+fill = flag(
     "--fill-missing",
-    is_flag=True,
     help="Take colours that a cube built with --scene lacks from the packaged cube.",
 )
 atlas_folders = repeatable(
@@ -554,15 +552,10 @@ atlas_folders = repeatable(
     metavar="DIR",
     type=click.Path(exists=True, file_okay=False),
 )
-force = click.option("--force", is_flag=True, help="Replace existing files.")
-quiet = click.option(
-    "-q", "--quiet", is_flag=True, help="Print only warnings and errors."
-)
-verbose = click.option(
-    "-v",
-    "--verbose",
-    is_flag=True,
-    help="Print a line for every round and improvement step.",
+force = flag("--force", help="Replace existing files.")
+quiet = flag("-q", "--quiet", help="Print only warnings and errors.")
+verbose = flag(
+    "-v", "--verbose", help="Print a line for every round and improvement step."
 )
 
 

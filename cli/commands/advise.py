@@ -51,7 +51,7 @@ SHOWN = 4
 )
 @options.pixels()
 @options.plot("Draw the first 4 images, their expected errors and the swatches")
-@options.output_format("table", "json")
+@options.table_or_json
 @options.force
 def command(
     images: tuple[str, ...],

@@ -72,11 +72,11 @@ SOURCE = ("name", "digest", "format", "measured", "missing", "notes")
 @options.scale
 @options.missing
 @options.sensor
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.output(help="Write all entries to FILE instead of a list.")
 @options.force
 def command(
-    files: tuple[str, ...],
+    files: Sequence[str],
     scale: Any,
     missing: Any,
     style: str,

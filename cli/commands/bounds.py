@@ -71,7 +71,7 @@ COLUMNS = (
 )
 @colour_options
 @options.light("Illuminant under which the bounds are shown", "A FL11 HP1")
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.plot("Plot the bounds")
 @options.page(
     "Write a page on which the colour under each --light is dragged within its "
@@ -79,7 +79,7 @@ COLUMNS = (
 )
 @options.force
 def command(
-    lights: tuple[Illuminant, ...],
+    lights: Sequence[Illuminant],
     style: str,
     plot_path: str | None,
     html: str | None,

@@ -114,9 +114,8 @@ def parse_range(
 )
 @click.option("--model", default="moments", help="Spectrum model: moments or sigmoid.")
 @options.coefficients
-@click.option(
+@options.whole(
     "--entry-coefficients",
-    type=options.WHOLE,
     default=17,
     metavar="N",
     help="Coefficients per spectrum of an atlas entry, from --coefficients to 17.",
@@ -133,12 +132,7 @@ def parse_range(
     callback=parse_range,
     help="First and last wavelength of the spectra in nm, from 300 to 1000.",
 )
-@click.option(
-    "--step",
-    type=options.NUMBER,
-    default=5,
-    help="Distance of wavelengths in nm: 1, 5 or 10.",
-)
+@options.number("--step", default=5, help="Distance of wavelengths in nm: 1, 5 or 10.")
 @options.light(
     "Illuminant under which entries must keep their colour", "D65 A FL2 FL11 LED-B3"
 )
@@ -172,11 +166,8 @@ def parse_range(
     "it",
     metavar="FAMILY",
 )
-@click.option(
-    "--threshold",
-    type=options.NUMBER,
-    default=1e-4,
-    help="Largest residual of a node, |linear RGB|.",
+@options.number(
+    "--threshold", default=1e-4, help="Largest residual of a node, |linear RGB|."
 )
 @options.repeatable(
     "--scene",
@@ -205,15 +196,13 @@ def parse_range(
     help="Build the cube of a plan by 'uplift plan'.",
 )
 @options.out_of_gamut(*options.PIXELS, "pixels of --scene images")
-@click.option(
+@options.flag(
     "--seed-corners",
-    is_flag=True,
     help="Start all eight nodes around an entry from it: closer near entries, less so "
     "for other materials.",
 )
-@click.option(
+@options.flag(
     "--debug",
-    is_flag=True,
     help="Store the round of every node, and write slices as .exr next to the cube.",
 )
 @options.force
@@ -287,10 +276,10 @@ def _task_of_plan(plan_path: str, output: str | None, debug: bool) -> _Task:
 
 def _task_of_atlases(
     output: str | None,
-    files: tuple[str, ...],
+    files: Sequence[str],
     scale: Any,
     missing: Any,
-    images: tuple[str, ...],
+    images: Sequence[str],
     limits: tuple[float, float],
     **settings: Any,
 ) -> _Task:
@@ -327,7 +316,7 @@ def _task_of_atlases(
 
 
 def _default_name(
-    atlases: tuple[str, ...], images: tuple[str, ...], settings: dict[str, Any]
+    atlases: Sequence[str], images: Sequence[str], settings: dict[str, Any]
 ) -> str:
     """Return the name of a cube file: atlases, dim, and the space if it is not sRGB."""
     from uplift.colorimetry.camera import CAMERA

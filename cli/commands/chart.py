@@ -56,10 +56,8 @@ FILES = ("chart.csv", "chart.png", "chart.html")
     "--method", "patterns", "Methods by name, with '*' as a wildcard", metavar="PATTERN"
 )
 @options.atlas("Measured spectra", DEFAULT_ATLASES)
-@click.option(
-    "--quick",
-    is_flag=True,
-    help="Few methods and repeats: about a minute instead of half an hour.",
+@options.flag(
+    "--quick", help="Few methods and repeats: about a minute instead of half an hour."
 )
 @click.option(
     "--from",
@@ -67,27 +65,21 @@ FILES = ("chart.csv", "chart.png", "chart.html")
     metavar="CSV",
     help="Table of an earlier chart to draw or to recommend from.",
 )
-@click.option(
+@options.flag(
     "--recommend",
-    is_flag=True,
     help="Recommend a cube for common situations, or for limits, by the packaged chart "
     "or --from.",
 )
-@click.option(
-    "--time-ns",
-    type=options.NUMBER,
-    help="With --recommend: largest CPU time per RGB, in ns.",
-)
+@options.number("--time-ns", help="With --recommend: largest CPU time per RGB, in ns.")
 @options.tolerance("delta_e", help="With --recommend: largest mean ΔE00.")
 @click.option(
     "--light",
     help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: "
     "mean of five]",
 )
-@click.option(
+@options.flag(
     "--atlas-materials",
     "own",
-    is_flag=True,
     help="With --recommend: ΔE00 of the atlas entries instead of unseen materials.",
 )
 @options.force

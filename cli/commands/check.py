@@ -61,15 +61,13 @@ if TYPE_CHECKING:
     shell_complete=options.complete_cube,
 )
 @options.atlas_folders
-@click.option(
-    "--update", is_flag=True, help="Replace the cubes that differ by the rebuilt ones."
-)
-@options.output_format("table", "json")
+@options.flag("--update", help="Replace the cubes that differ by the rebuilt ones.")
+@options.table_or_json
 @options.quiet
 @options.verbose
 def command(
-    files: tuple[str, ...],
-    folders: tuple[str, ...],
+    files: Sequence[str],
+    folders: Sequence[str],
     update: bool,
     style: str,
     quiet: bool,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from operator import attrgetter
 from typing import TYPE_CHECKING
@@ -64,23 +65,17 @@ SPECTRA = ("surfaces.csv", "lights.csv")
 @options.tolerance(
     help="Print the cheapest representation with 97.5 % of errors below this value."
 )
-@click.option(
+@options.flag(
     "--filters",
-    is_flag=True,
     help=(
         "Also search the best low-pass filters for point sampling, which takes minutes."
     ),
 )
-@click.option(
-    "--all",
-    "every",
-    is_flag=True,
-    help="Print all representations, not the Pareto front alone.",
+@options.flag(
+    "--all", "every", help="Print all representations, not the Pareto front alone."
 )
-@click.option(
-    "--quick",
-    is_flag=True,
-    help="At most forty surfaces, few repeats and a coarse search: seconds.",
+@options.flag(
+    "--quick", help="At most forty surfaces, few repeats and a coarse search: seconds."
 )
 @click.option(
     "--write",
@@ -90,11 +85,11 @@ SPECTRA = ("surfaces.csv", "lights.csv")
     "PS16:KIND:EXTENT:PARAMETERS with a filter, such as PS16:gaussian:7:0.5.",
 )
 @options.output(help="Folder for tables and plots.", metavar="DIR")
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.force
 def command(
-    files: tuple[str, ...],
-    lights: tuple[Illuminant, ...],
+    files: Sequence[str],
+    lights: Sequence[Illuminant],
     tolerance: float | None,
     filters: bool,
     every: bool,
@@ -142,7 +137,7 @@ def command(
 
 
 def _write_spectra(
-    name: str, files: tuple[str, ...], lights: tuple[Illuminant, ...], output: str
+    name: str, files: Sequence[str], lights: Sequence[Illuminant], output: str
 ) -> None:
     from uplift.atlas import merge, write_atlas
     from uplift.extras.scene.representations import find_representation
@@ -161,8 +156,8 @@ def _write_spectra(
 
 
 def _measure(
-    files: tuple[str, ...],
-    lights: tuple[Illuminant, ...],
+    files: Sequence[str],
+    lights: Sequence[Illuminant],
     *,
     filters: bool,
     quick: bool,

@@ -50,7 +50,7 @@ from ..outputs import check_outputs
 @options.output(
     help="HTML page with pictures of where the cubes differ.", type=options.FIGURE_PAGE
 )
-@options.output_format("table", "json")
+@options.table_or_json
 @options.force
 def command(
     first: str,

@@ -194,9 +194,8 @@ EXPORTS = {
     metavar="FORMAT",
     help="Format to write. [default: by the suffix of --output]",
 )
-@click.option(
+@options.whole(
     "--res",
-    type=options.WHOLE,
     help="Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier "
     "33, film 192]",
 )

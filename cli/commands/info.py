@@ -46,7 +46,7 @@ OPTIONS = {
 @click.argument(
     "cube", metavar="[CUBE]", required=False, shell_complete=options.complete_cube
 )
-@options.output_format("table", "json")
+@options.table_or_json
 def command(cube: str | None, style: str) -> None:
     from uplift.cube import summarise
     from uplift.lookup import load

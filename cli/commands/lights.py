@@ -82,7 +82,7 @@ def command() -> None:
 @options.force
 @options.quiet
 def build(
-    files: tuple[str, ...],
+    files: Sequence[str],
     output: str | None,
     space: str,
     observer: str,
@@ -122,7 +122,7 @@ def build(
     """,
 )
 @table_argument
-@options.output_format("table", "json")
+@options.table_or_json
 @options.plot("Plot colours, expected errors and lamps over u′v′")
 @options.page(
     "Write a page with the plots, answers to random lights, and all lamps.",
@@ -249,7 +249,7 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
     help="Treatment of colours that no light has: raise an error, or take the nearest "
     "one towards white.",
 )
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.plot("Plot the spectra")
 @options.force
 def query(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -101,32 +102,28 @@ if TYPE_CHECKING:
 @click.option(
     "--additive", "kind", flag_value="light", help="Add lights; PARTS is the intensity."
 )
-@click.option(
+@options.number(
     "--thickness",
-    type=options.NUMBER,
     metavar="X",
     help="Thickness of the coat. [default: opaque; dyes, --duntley: 1]",
 )
 @click.option(
     "--ground", metavar="COLOUR", help="Substrate of the coat. [default: white]"
 )
-@click.option(
+@options.number(
     "--refractive-index",
-    type=options.NUMBER,
     default=1.0,
     metavar="N",
     help="Refractive index of the binder, 1.5 for oil; 1 leaves out the surface.",
 )
-@click.option(
+@options.number(
     "--surface-reflectance",
-    type=options.NUMBER,
     metavar="K1",
     help="Saunderson's reflectance of the surface for light from air. [default: by "
     "--refractive-index]",
 )
-@click.option(
+@options.number(
     "--internal-reflectance",
-    type=options.NUMBER,
     metavar="K2",
     help="Saunderson's reflectance of the surface for diffuse light from within. "
     "[default: by --refractive-index]",
@@ -144,9 +141,8 @@ if TYPE_CHECKING:
     "strongest on the long-wave side of "
     "an absorption, root is √R for a reflectance R, constant is 1.",
 )
-@click.option(
+@options.flag(
     "--theories",
-    is_flag=True,
     help="Mix the colours by every model: Kubelka and Munk, Amy, Duntley, dyes, "
     "filters, and heuristics of RGB.",
 )
@@ -158,7 +154,7 @@ if TYPE_CHECKING:
     "which keeps the hue of bright mixtures; ingredients: error",
     "mixtures and pixels",
 )
-@options.output_format("table", "json")
+@options.table_or_json
 @options.plot("Plot the ramp from the first ingredient to the last")
 @click.option(
     "--steps",
@@ -176,7 +172,7 @@ if TYPE_CHECKING:
 )
 @options.force
 def command(
-    words: tuple[str, ...],
+    words: Sequence[str],
     kind: str,
     thickness: float | None,
     ground: str | None,
@@ -184,7 +180,7 @@ def command(
     scattering: str,
     theories: bool,
     cube_path: str | None,
-    files: tuple[str, ...],
+    files: Sequence[str],
     wavelengths: Array | None,
     method: str,
     style: str,
@@ -275,7 +271,7 @@ def _check_image(output: str | None) -> None:
 
 def _prepare_resolver(
     cube_path: str | None,
-    files: tuple[str, ...],
+    files: Sequence[str],
     input_space: str | None,
     wavelengths: Array | None,
     method: str,
@@ -315,7 +311,7 @@ class _Recipe:
 
     cube: Cube
     kind: str
-    names: tuple[str, ...]
+    names: Sequence[str]
     parts: tuple[float, ...]
     ingredients: Ingredients
 
@@ -326,7 +322,7 @@ class _Recipe:
 
 
 def _read_recipe(
-    resolver: SpectrumResolver, words: tuple[str, ...], kind: str
+    resolver: SpectrumResolver, words: Sequence[str], kind: str
 ) -> _Recipe:
     import numpy as np
 

@@ -74,7 +74,7 @@ LEGEND = "requested, obtained, factor model, ΔE00 of obtained/model; * designed
     "greys 1, 2, …",
     metavar="NAME=#RRGGBB",
 )
-@options.output_format("table", "json")
+@options.table_or_json
 @options.force
 def command(
     spec: str,
@@ -83,7 +83,7 @@ def command(
     spectra_path: str | None,
     html: str | None,
     image: str | None,
-    labels: tuple[str, ...],
+    labels: Sequence[str],
     style: str,
     force: bool,
 ) -> None:
@@ -128,7 +128,7 @@ def command(
 
 
 def _read_picture(
-    palette: Palette, html: str | None, image: str | None, labels: tuple[str, ...]
+    palette: Palette, html: str | None, image: str | None, labels: Sequence[str]
 ) -> NDArray[np.float32] | None:
     """Read how much of each material a pixel shows; None if the page draws its own
     picture.

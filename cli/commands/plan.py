@@ -46,8 +46,8 @@ from ..startup import enable_jit_cache
 @options.output(
     help="Plan to write. [default: SCENE.plan.json in the folder of the scene]"
 )
-@click.option("--quick", is_flag=True, help="Fewer candidates, and fewer pixels.")
-@options.output_format("table", "json")
+@options.flag("--quick", help="Fewer candidates, and fewer pixels.")
+@options.table_or_json
 @options.force
 def command(
     scene: str, output: str | None, quick: bool, style: str, force: bool

@@ -224,7 +224,7 @@ class Answers:
 )
 @colour_options
 @options.light("Illuminant under which colour and standard error are shown", "none")
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.plot("Plot the spectra")
 @click.option(
     "--check",
@@ -232,15 +232,14 @@ class Answers:
     metavar="FILE",
     help="Compare answers that --format csv has stored; exit code 1.",
 )
-@click.option(
+@options.number(
     "--tolerance",
-    type=options.NUMBER,
     default=1e-4,
     help="Largest difference in reflectance that --check accepts.",
 )
 @options.force
 def command(
-    lights: tuple[Illuminant, ...],
+    lights: Sequence[Illuminant],
     style: str,
     plot_path: str | None,
     stored: str | None,

@@ -104,13 +104,13 @@ def _check_output(path: str) -> str:
     default="relit.png",
     type=options.OutputFile(_check_output),
 )
-@options.output_format("table", "json")
+@options.table_or_json
 @options.force
 def command(
-    images: tuple[str, ...],
-    lights: tuple[Illuminant, ...],
+    images: Sequence[str],
+    lights: Sequence[Illuminant],
     cube_path: str | None,
-    files: tuple[str, ...],
+    files: Sequence[str],
     output: str,
     style: str,
     adapt: bool | None,
@@ -138,7 +138,7 @@ def command(
         print_notes(extra, notes, err=style == "json")
 
 
-def _input_paths(images: tuple[str, ...], is_image: bool) -> list[str]:
+def _input_paths(images: Sequence[str], is_image: bool) -> list[str]:
     from uplift.samples import sample_path
 
     paths = expand_patterns(images) or [str(sample_path(SAMPLE))]
@@ -152,8 +152,8 @@ def _input_paths(images: tuple[str, ...], is_image: bool) -> list[str]:
 def _write_image(
     paths: Sequence[str],
     cube_path: str | None,
-    atlases: tuple[str, ...],
-    lights: tuple[Illuminant, ...],
+    atlases: Sequence[str],
+    lights: Sequence[Illuminant],
     output: str,
     style: str,
     *,
@@ -192,8 +192,8 @@ def _write_image(
 def _write_pictures(
     paths: Sequence[str],
     cube_path: str | None,
-    atlases: tuple[str, ...],
-    lights: tuple[Illuminant, ...],
+    atlases: Sequence[str],
+    lights: Sequence[Illuminant],
     output: str,
     style: str,
     *,
@@ -272,7 +272,7 @@ def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:
 
 
 def _cube_of_user(
-    path: str | None, atlases: tuple[str, ...]
+    path: str | None, atlases: Sequence[str]
 ) -> tuple[Cube | None, list[UpliftWarning]]:
     """Load the cube of a file, or build that of atlases with its warnings; None without
     either.

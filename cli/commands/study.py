@@ -127,18 +127,17 @@ def _without(records: Sequence[Row], *names: str) -> list[Row]:
     """,
 )
 @options.atlas("Atlas", DEFAULT_ATLASES)
-@click.option(
+@options.whole(
     "--max-moments",
     metavar="N",
-    type=options.WHOLE,
     default=15,
     help="Largest number of moments, up to 32.",
 )
 @options.output(help="Folder for plots.", metavar="DIR")
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.force
 def moments(
-    files: tuple[str, ...],
+    files: Sequence[str],
     max_moments: int,
     output: str | None,
     style: str,
@@ -198,13 +197,11 @@ def moments(
     default=3,
     help="Number of splits of each atlas.",
 )
-@click.option(
-    "--dim", type=options.WHOLE, default=32, help="Lattice nodes along each axis."
-)
+@options.whole("--dim", default=32, help="Lattice nodes along each axis.")
 @options.coefficients
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 def held_out(
-    files: tuple[str, ...], splits: int, dim: int, coefficients: int, style: str
+    files: Sequence[str], splits: int, dim: int, coefficients: int, style: str
 ) -> None:
     enable_jit_cache()
     from uplift.lab.study.held_out import holdout, split_records
@@ -248,17 +245,13 @@ def held_out(
       uplift study stability --atlas paints.csv --format json
     """,
 )
-@click.option(
-    "--quick",
-    is_flag=True,
-    help="Small lattices and few values: some seconds per model.",
-)
+@options.flag("--quick", help="Small lattices and few values: some seconds per model.")
 @options.atlas("Atlas in addition to the synthetic ones", MACBETH)
 @options.output(help="Folder for plots.", metavar="DIR")
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.force
 def stability(
-    quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool
+    quick: bool, files: Sequence[str], output: str | None, style: str, force: bool
 ) -> None:
     enable_jit_cache()
     from uplift.lab.study.stability import (
@@ -336,13 +329,13 @@ def stability(
     metavar="NAME",
 )
 @options.output(help="Folder for plots.", metavar="DIR")
-@options.output_format("table", "json")
+@options.table_or_json
 @options.force
 def sensitivity(
     cube: str | None,
-    folders: tuple[str, ...],
+    folders: Sequence[str],
     entries: int,
-    methods: tuple[str, ...],
+    methods: Sequence[str],
     output: str | None,
     style: str,
     force: bool,

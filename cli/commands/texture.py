@@ -62,9 +62,7 @@ image_options = options.stacked(
         type=options.Checked(_check_scheduler),
         help="Dask cluster that converts the images; requires the package distributed.",
     ),
-    click.option(
-        "--resume", is_flag=True, help="Skip images whose textures are complete."
-    ),
+    options.flag("--resume", help="Skip images whose textures are complete."),
     options.force,
     options.quiet,
 )
@@ -144,7 +142,7 @@ image_options = options.stacked(
     shell_complete=options.complete_light,
 )
 def command(
-    cube_paths: tuple[str, ...],
+    cube_paths: Sequence[str],
     mask: str | None,
     kind: str,
     wavelengths: Array | None,
@@ -176,7 +174,7 @@ def convert(
     cubes: tuple[str | None, ...],
     pixel_encoding: PixelEncoding,
     *,
-    sources: tuple[str, ...],
+    sources: Sequence[str],
     target: str,
     processes: int | None,
     scheduler: str | None,

@@ -46,9 +46,7 @@ if TYPE_CHECKING:
       uplift wavelengths --orders 3 2 1 --light C --atlas macbeth
     """,
 )
-@click.option(
-    "--count", metavar="N", type=options.WHOLE, help="Number of wavelengths, 1 to 40."
-)
+@options.whole("--count", metavar="N", help="Number of wavelengths, 1 to 40.")
 @options.tolerance(help="Choose the fewest wavelengths with an error below this ΔE00.")
 @options.wavelengths("; only their weights and powers are fitted.")
 @click.option(
@@ -63,11 +61,10 @@ if TYPE_CHECKING:
     "wavelengths, sampled (uniform), "
     "averaged over bins (bins) or with fitted weights (fitted). [default: optimised]",
 )
-@click.option(
+@options.whole(
     "--orders",
     nargs=3,
     metavar="A C1 C2",
-    type=options.WHOLE,
     help="Meyer's quadrature with these numbers of wavelengths for the three "
     "channels, 1 to 10 each.",
 )
@@ -81,12 +78,12 @@ if TYPE_CHECKING:
 @options.atlas("Materials", DEFAULT_ATLASES)
 @options.light("Illuminant of the scene", "D65")
 @options.sensor
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.plot("Plot lights, wavelengths and weights")
 @options.force
 def command(
-    files: tuple[str, ...],
-    lights: tuple[Illuminant, ...],
+    files: Sequence[str],
+    lights: Sequence[Illuminant],
     space: str,
     illuminant: Illuminant,
     observer: str,
