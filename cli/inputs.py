@@ -100,9 +100,9 @@ def read_pictures(
     """
     from uplift.extras.texture.picture import read_picture
 
-    found = None if space is None else find_input_space(space)
+    stated = None if space is None else find_input_space(space)
     pictures = [
-        read_picture(path, sensor, max_side=MAX_SIDE, space=found, **options)
+        read_picture(path, sensor, max_side=MAX_SIDE, space=stated, **options)
         for path in paths
     ]
     for picture in pictures:
@@ -116,8 +116,8 @@ def parse_wavelengths(text: str) -> Array:
 
     try:
         if ":" not in text:
-            return np.array([parse_float(part) for part in text.split(",")])
-        start, end, step = (parse_float(part) for part in text.split(":"))
+            return np.array(list(map(parse_float, text.split(","))))
+        start, end, step = map(parse_float, text.split(":"))
         count = int((end - start) / step + 1e-9) + 1
         if 0 < step < math.inf and end >= start and count <= MAX_WAVELENGTHS:
             return start + step * np.arange(count, dtype=float)
@@ -180,20 +180,17 @@ def check_plot(path: str) -> None:
     check_suffix(path)
 
 
-def check_range(wavelengths: Array, own: Array) -> None:
+def check_range(wavelengths: Array, known: Array) -> None:
     """Check that wavelengths (N,) lie in the range of a cube or a table; the library
     continues spectra.
     """
-    first, last = own[[0, -1]]
-    outside = [each for each in wavelengths if not first <= each <= last]
-    if outside:
-        micrometres = f"give nm: {outside[0]:g} µm are {1000 * outside[0]:g} nm"
-        hint = (
-            micrometres
-            if outside[0] < 10
-            else "stay in this range; 'uplift build --range' sets that of a cube"
-        )
-        raise OptionError(
-            f"wavelengths must lie in {first:g}-{last:g} nm, got {outside[0]:g}",
-            hint=hint,
-        )
+    first, last = known[[0, -1]]
+    for wavelength in wavelengths:
+        if not first <= wavelength <= last:
+            hint = "stay in this range; 'uplift build --range' sets that of a cube"
+            if wavelength < 10:
+                hint = f"give nm: {wavelength:g} µm are {1000 * wavelength:g} nm"
+            raise OptionError(
+                f"wavelengths must lie in {first:g}-{last:g} nm, got {wavelength:g}",
+                hint=hint,
+            )

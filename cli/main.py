@@ -112,9 +112,8 @@ class LazyGroup(Group):
         except OSError as error:
             CommandFailure(error).show()
             code = BAD_INPUT
-        with contextlib.suppress(
-            OSError
-        ):  # what cannot be written is dropped: it is reported above
+        # what cannot be written is dropped: it is reported above
+        with contextlib.suppress(OSError):
             flush_stdout()
         if options.get("standalone_mode", True):
             sys.exit(code if isinstance(code, int) else 0)

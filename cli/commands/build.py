@@ -41,7 +41,7 @@ def parse_range(
 ) -> tuple[float, float]:
     """Parse '360:830', a first and a last wavelength in nm."""
     try:
-        start, end = (parse_float(part) for part in value.split(":"))
+        start, end = map(parse_float, value.split(":"))
     except ValueError as error:
         problem = f"a range must be START:END in nm, got {format_value(value)}"
         raise OptionError(problem, hint="write for example 360:830") from error

@@ -84,10 +84,9 @@ def command(
         table = make_table(("",), summary.HEADINGS[:4])
         for heading in summary.HEADINGS[4:]:
             table.add_column(heading)
-        for each in summary.front_rows(result):
-            table.add_row(
-                "→" if each is result.chosen else "", *summary.front_row(each)
-            )
+        for candidate in summary.front_rows(result):
+            mark = "→" if candidate is result.chosen else ""
+            table.add_row(mark, *summary.front_row(candidate))
         show(table)
         say()
         paragraph(summary.describe_error(result))

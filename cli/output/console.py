@@ -175,11 +175,11 @@ def show(*tables: SafeTable) -> None:
 
     from .tables import table_width
 
-    parts = list(chain.from_iterable(table.parts(columns()) for table in tables))
-    for number, part in enumerate(parts):
+    divided = chain.from_iterable(table.parts(columns()) for table in tables)
+    for number, table in enumerate(divided):
         if number:
             say()
-        width = max(columns(), table_width(part.columns))
+        width = max(columns(), table_width(table.columns))
         Console(
             file=sys.stdout, width=width, highlight=False, markup=False, emoji=False
-        ).print(part)
+        ).print(table)

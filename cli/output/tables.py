@@ -64,17 +64,17 @@ class SafeTable(Table):
         for column in self.columns:
             column.min_width = narrowest(column)
         keys = self._keys(width)
-        part = list(keys)
+        columns = list(keys)
         caption = self.caption
         self.caption = None
         for column in self.columns[len(keys) :]:
-            if len(part) > len(keys) and table_width([*part, column]) > width:
-                yield self._with_columns(part)
-                part = list(keys)
+            if len(columns) > len(keys) and table_width([*columns, column]) > width:
+                yield self._with_columns(columns)
+                columns = list(keys)
                 self.title = None
-            part.append(column)
+            columns.append(column)
         self.caption = caption
-        yield self._with_columns(part)
+        yield self._with_columns(columns)
 
     def _keys(self, width: int) -> Sequence[Column]:
         count = 1
@@ -87,11 +87,11 @@ class SafeTable(Table):
         return self.columns[:count]
 
     def _with_columns(self, columns: Sequence[Column]) -> "SafeTable":
-        part = copy.copy(self)
-        part.columns = [
+        table = copy.copy(self)
+        table.columns = [
             replace(column, _index=index) for index, column in enumerate(columns)
         ]
-        return part
+        return table
 
 
 def narrowest(column: Column) -> int:
