@@ -328,11 +328,10 @@ def _read_recipe(
 
     from uplift.extras.paint import Ingredients
 
-    names, parts, spectra, on_black = zip(
-        *(resolver.ingredient(word, kind) for word in words), strict=True
-    )
-    ingredients = Ingredients(np.stack(spectra), on_black)
-    return _Recipe(resolver.cube, kind, names, parts, ingredients)
+    ingredients = [resolver.ingredient(word, kind) for word in words]
+    names, parts, spectra, on_black = zip(*ingredients, strict=True)
+    stacked = Ingredients(np.stack(spectra), on_black)
+    return _Recipe(resolver.cube, kind, names, parts, stacked)
 
 
 def _scattering_law(name: str, cube: Cube, further: Array) -> Scattering:

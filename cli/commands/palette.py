@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -196,19 +195,20 @@ def _print_json(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
     palette = design.palette
     model = design.model
     cells = []
-    for at in product(range(len(palette.materials)), range(len(palette.lights))):
-        has_goal = not math.isnan(colours.delta_e[at])
-        cells.append(
-            {
-                "material": palette.materials[at[0]].name,
-                "light": palette.lights[at[1]].name,
+    for row, material in enumerate(palette.materials):
+        for column, light in enumerate(palette.lights):
+            at = row, column
+            has_goal = not math.isnan(colours.delta_e[at])
+            cell = {
+                "material": material.name,
+                "light": light.name,
                 "wanted": colours.target[at].tolist() if has_goal else None,
                 "obtained": colours.obtained[at].tolist(),
                 "factor": colours.factor[at].tolist(),
                 "missed": float(colours.delta_e[at]) if has_goal else None,
                 "model_error": float(colours.model_error[at]),
             }
-        )
+            cells.append(cell)
     fields = {
         "wavelengths": palette.sensor.wavelengths.tolist(),
         "coefficients": model.count,

@@ -113,9 +113,7 @@ def command(
     files: Sequence[str],
     output: str,
     style: str,
-    adapt: bool | None,
-    force: bool,
-    **pixels: Any,
+    **settings: Any,
 ) -> None:
     enable_jit_cache()
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
@@ -132,7 +130,6 @@ def command(
         atlases = files or (SAMPLE_ATLAS,)
     write = _write_image if is_image else _write_pictures
     lights = lights or RELIGHT_LIGHTS
-    settings = {"adapt": adapt, "force": force, **pixels}
     extra, notes = write(paths, cube_path, atlases, lights, output, style, **settings)
     if extra is not None and files:
         print_notes(extra, notes, err=style == "json")
