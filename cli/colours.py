@@ -1,6 +1,4 @@
-"""Colours from arguments, files and standard input as linear RGB. All functions raise
-`ColourError`.
-"""
+"""Colours from arguments, files and standard input. All raise `ColourError`."""
 
 from __future__ import annotations
 
@@ -262,9 +260,7 @@ def _row_blocks(
 
 
 def _cells(text: str, name: str, line: int) -> list[str]:
-    """Return the cells of a line; none of an empty line, and of one that states the
-    delimiter.
-    """
+    """Return the cells of a line; none if it is empty or states the delimiter."""
     if not text.strip("".join(DELIMITERS)) or (
         line == 1 and STATED_DELIMITER.match(text)
     ):
@@ -276,9 +272,7 @@ def _cells(text: str, name: str, line: int) -> list[str]:
 
 
 def _is_header(row: Sequence[str]) -> bool:
-    """Whether the cells of a line are neither numbers nor a hex colour, not even a
-    misspelt one.
-    """
+    """Whether the cells of a line are neither numbers nor like a hex colour."""
     return (
         re.match(r"#\w", row[0]) is None
         and _parse(row[:1]) is None

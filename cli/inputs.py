@@ -50,9 +50,7 @@ def atlas_files(files: Sequence[str | Path]) -> Sequence[str | Path]:
 
 
 def read_atlases(files: Sequence[str | Path]) -> dict[str, Atlas]:
-    """Return atlases by the stems of their file names; without files, the
-    default ones.
-    """
+    """Return atlases, by default the usual ones, by the stems of their files."""
     from uplift.atlas import read_atlas
 
     atlases: dict[str, Atlas] = {}
@@ -95,9 +93,7 @@ def _expand(source: str) -> list[str]:
 def read_pictures(
     paths: Sequence[str], sensor: Sensor, *, space: str | None = None, **options: str
 ) -> list[Picture]:
-    """Return images, reduced to `MAX_SIDE`, with the options of `options.pixels`, and
-    emit their warnings.
-    """
+    """Return images, reduced to `MAX_SIDE`, and emit their warnings."""
     from uplift.extras.texture.picture import read_picture
 
     stated = None if space is None else find_input_space(space)
@@ -130,9 +126,7 @@ def parse_wavelengths(text: str) -> Array:
 
 
 def find_input_space(name: str) -> ImageSpace:
-    """Return the space of a name or of chromaticities. The tables take a second to
-    load.
-    """
+    """Return the space of a name or of chromaticities; tables load in a second."""
     from uplift.colorimetry.spaces import find_space
 
     return find_space(name)

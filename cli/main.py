@@ -1,6 +1,4 @@
-"""``uplift``: find the command, run it, and print errors and warnings on
-one line each.
-"""
+"""``uplift``: find and run a command; print errors and warnings in a line each."""
 
 import contextlib
 import importlib
@@ -92,9 +90,7 @@ class LazyGroup(Group):
                 )
 
     def main(self, *args: Any, **options: Any) -> Any:
-        """Run the command line and exit with one of the codes of `uplift help
-        exit-codes`.
-        """
+        """Run the command line and exit with a code of `uplift help exit-codes`."""
         code: Any
         try:
             code = super().main(*args, **options | {"standalone_mode": False})

@@ -180,9 +180,7 @@ class Whole(click.IntRange):
 
 
 class Parsed(click.ParamType):  # type: ignore[type-arg]
-    """A text that a function of `uplift_cli.inputs` parses, which may raise
-    `UpliftError`.
-    """
+    """A text that a function parses, which may raise `UpliftError`."""
 
     name = "text"
 

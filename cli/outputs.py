@@ -1,6 +1,4 @@
-"""Files that a command writes: compared with all that it reads, before it computes
-anything.
-"""
+"""Files that a command writes, compared beforehand with all that it reads."""
 
 from collections.abc import Callable, Iterable, Sequence
 

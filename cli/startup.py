@@ -1,6 +1,4 @@
-"""Settings of the process: streams, signals, and variables that must precede the import
-of JAX or numpy.
-"""
+"""Settings of the process that must precede the import of JAX or numpy."""
 
 import codecs
 import contextlib
@@ -34,9 +32,7 @@ _CACHES: set[Path] = set()
 
 
 def prepare_process() -> None:
-    """Prepare streams, signals and matplotlib for a command that has the process for
-    itself.
-    """
+    """Prepare streams, signals and matplotlib of a process for one command."""
     _open_closed_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):

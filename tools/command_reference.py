@@ -1,6 +1,4 @@
-"""The reference of the command line: Markdown made from click's commands, for the
-documentation site.
-"""
+"""The reference of the command line: Markdown made from click's commands."""
 
 import inspect
 import re
@@ -30,9 +28,7 @@ def command_reference() -> str:
 
 
 def _command(command: click.Command, name: str, parent: click.Context) -> Iterator[str]:
-    """Yield the usage, the help and the options of a command, followed by its
-    subcommands.
-    """
+    """Yield usage, help and options of a command, and then its subcommands."""
     with click.Context(command, info_name=name, parent=parent) as context:
         usage = " ".join([context.command_path, *command.collect_usage_pieces(context)])
         yield f"\n### {context.command_path}\n\n```text\n{usage}\n```\n"

@@ -50,9 +50,7 @@ def assigned_values(nodes: Iterable[ast.AST]) -> dict[str, list[ast.expr]]:
 
 
 def collect(root: Path = ROOT) -> list[dict[str, Any]]:
-    """Return ``code``, ``kind`` ("error" or "warning") and ``packages`` that use it, by
-    code.
-    """
+    """Return records of ``code``, ``kind`` and ``packages`` that use it, by code."""
     users: dict[tuple[str, str], set[str]] = defaultdict(set)
     sources = chain((root / "cli").rglob("*.py"), (root / "uplift").rglob("*.py"))
     for path in sources:

@@ -27,9 +27,7 @@ FILE_KEYS = {"mended", "told"}
 
 
 def tracked() -> list[Path]:
-    """Return the Python and Markdown files and the templates that git tracks, or would
-    if they were added.
-    """
+    """Return the Python and Markdown files and templates that git does not ignore."""
     command = [
         "git",
         "ls-files",

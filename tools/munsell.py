@@ -15,9 +15,7 @@ from uplift.atlas import Atlas, Entry, write_atlas
 
 
 def main(folder: str, output: str) -> None:
-    """Convert the data of the luxpy installation in ``folder`` to a CSV
-    atlas at 5 nm.
-    """
+    """Convert the data of luxpy, installed in ``folder``, to CSV at 5 nm."""
     data = Path(folder) / "luxpy" / "data" / "rfls"
     table = np.loadtxt(data / "Munsell1269.dat", delimiter=",")
     lines = (

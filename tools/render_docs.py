@@ -133,9 +133,7 @@ def where(rows: Iterable[Row], **conditions: Any) -> list[Row]:
 
 
 def pick(rows: Iterable[Row], **conditions: Any) -> Row:
-    """Return the one row with these values; raise `ValueError` if there is none, or
-    more than one.
-    """
+    """Return the row with these values; raise `ValueError` unless there is one."""
     (row,) = where(rows, **conditions)
     return row
 

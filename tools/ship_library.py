@@ -80,9 +80,7 @@ def measurements(atlases: tuple[str, ...]) -> Array:
 
 
 def otsu_spectra() -> Array:
-    """Spectra (320, 81) by Otsu et al. of colours evenly spread over those that need no
-    clipping.
-    """
+    """Spectra (320, 81) by Otsu et al. of spread colours that need no clipping."""
     sensor = observer.sensor(SPACE)
     rgb = np.random.default_rng(2018).random((CANDIDATES, 3)) ** 2
     spectra = blurred_otsu(sensor.xyz(rgb), sensor.light.xyz)

@@ -1,6 +1,4 @@
-"""``uplift atlas``: list the shipped atlases or the entries of atlases, or convert
-between formats.
-"""
+"""``uplift atlas``: list shipped atlases, or entries; convert between formats."""
 
 from __future__ import annotations
 

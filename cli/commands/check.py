@@ -1,6 +1,4 @@
-"""``uplift check``: compare stored cubes with rebuilt ones, for continuous
-integration.
-"""
+"""``uplift check``: compare stored cubes with rebuilt ones."""
 
 from __future__ import annotations
 

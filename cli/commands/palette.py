@@ -129,9 +129,7 @@ def command(
 def _read_picture(
     palette: Palette, html: str | None, image: str | None, labels: Sequence[str]
 ) -> NDArray[np.float32] | None:
-    """Read how much of each material a pixel shows; None if the page draws its own
-    picture.
-    """
+    """Read the share of each material in a pixel; None without an image."""
     if image is None and labels:
         raise click.UsageError(
             "--label requires --image, the image that has these colours."

@@ -126,9 +126,7 @@ class Answers:
             self.lights = list({light.name: light for light in lit}.values())
 
     def __iter__(self) -> Iterator[list[QueryResult]]:
-        """Answer block by block, and warn at the end of colours that were mapped or
-        filled.
-        """
+        """Answer blocks, and warn at the end of colours that were mapped or filled."""
         from uplift.lookup.query import query, query_xyz
 
         if self.source.xyz is not None:

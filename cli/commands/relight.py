@@ -271,9 +271,7 @@ def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:
 def _cube_of_user(
     path: str | None, atlases: Sequence[str]
 ) -> tuple[Cube | None, list[UpliftWarning]]:
-    """Load the cube of a file, or build that of atlases with its warnings; None without
-    either.
-    """
+    """Load the cube of a file, or build that of atlases; None without either."""
     from uplift.lookup import load
 
     if atlases:

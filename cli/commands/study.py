@@ -67,9 +67,7 @@ def _print(
     table: Sequence[Row],
     title: str | None = None,
 ) -> None:
-    """Print JSON of the records, CSV of rows, or a table, in which floats have three
-    digits.
-    """
+    """Print JSON of the records, CSV of rows, or a table with three digits."""
     from uplift.lab.timing import records_csv
 
     if style == "json":

@@ -1,6 +1,4 @@
-"""Colours and spectra as text: patches, sparklines, columns, and classical
-coordinates.
-"""
+"""Colours and spectra as text: patches, sparklines, columns, coordinates."""
 
 from __future__ import annotations
 
@@ -63,9 +61,7 @@ def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
 
 
 def hex_code(cube: Cube, rgb: Array) -> str:
-    """Return '#rrggbb' of linear RGB (3,), encoded by the transfer function of the
-    cube's space.
-    """
+    """Return '#rrggbb' of linear RGB (3,), encoded as in the cube's space."""
     return "#" + "".join(f"{round(float(code)):02x}" for code in cube.encode(rgb))
 
 

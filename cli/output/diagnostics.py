@@ -1,6 +1,4 @@
-"""Errors and warnings on standard error: one line each, or JSON, with hints in terms of
-command-line options.
-"""
+"""Errors and warnings on standard error, with hints in terms of options."""
 
 import contextlib
 import os
@@ -228,9 +226,7 @@ def error_object(error: UpliftError) -> dict[str, Any]:
 
 
 def show_usage_error(error: click.ClickException) -> None:
-    """Print an error of the command line on one line, with the command that shows the
-    help.
-    """
+    """Print an error of the command line, with the command that shows the help."""
     message = " ".join(error.format_message().split())
     context = getattr(error, "ctx", None)
     _print_error(

@@ -1,6 +1,4 @@
-"""Tables whose texts come from files; imported when a table is printed, as it loads
-rich.
-"""
+"""Tables whose texts come from files; imported when needed, as it loads rich."""
 
 import copy
 from collections.abc import Iterator, Sequence
@@ -34,9 +32,7 @@ window.
 
 
 class SafeTable(Table):
-    """A table that shows its texts as they are: no markup, and control characters
-    escaped.
-    """
+    """A table that shows its texts without markup, control characters escaped."""
 
     def __init__(
         self, *, title: str | None = None, caption: str | None = None, **options: Any
@@ -48,9 +44,7 @@ class SafeTable(Table):
         )
 
     def add_column(self, header: Any = "", *args: Any, **options: Any) -> None:
-        """Add a column with a heading of text, wrapped between words unless it is
-        ``no_wrap``.
-        """
+        """Add a column, wrapped between words unless it is ``no_wrap``."""
         super().add_column(plain(header), *args, **{"overflow": "fold"} | options)
 
     def add_row(self, *cells: Any, **options: Any) -> None:
