@@ -1,6 +1,4 @@
-"""Command line of uplift: parse arguments, call the library, print results. Installed
-as ``uplift_cli``.
-"""
+"""Command line of uplift, installed as ``uplift_cli``: arguments, calls and output."""
 
 if __name__ != "uplift_cli":
     raise ImportError(

@@ -22,9 +22,8 @@ def run() -> None:
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
     finally:
-        if (
-            "OpenImageIO" not in sys.modules
-        ):  # which lists all that is left on the standard error stream
+        # OpenImageIO lists all that is left on the standard error stream
+        if "OpenImageIO" not in sys.modules:
             gc.freeze()  # Python would search them again as it ends
 
 

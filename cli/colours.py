@@ -1,6 +1,4 @@
-"""Colours from arguments, files and standard input as linear RGB. All functions raise
-`ColourError`.
-"""
+"""Colours from arguments, files and standard input. All raise `ColourError`."""
 
 from __future__ import annotations
 
@@ -10,6 +8,7 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import IO, TYPE_CHECKING
 
 import click
@@ -36,8 +35,8 @@ AMBIGUOUS = re.compile(r"(?:[01](?:,\d+)?,){2}[01](?:,\d+)?", re.ASCII)
 commas.
 """
 RGBA = re.compile(r"[01](?:,[01]){3}")
-DECIMAL = re.compile(r"[+-]?\d+(?:,\d+)?", re.ASCII)
-"""A whole number, or one with a decimal comma."""
+TRIPLE = re.compile(r"[+-]?\d+(?:,\d+)?(?: [+-]?\d+(?:,\d+)?){2}", re.ASCII)
+"""Three numbers, whole or with decimal commas."""
 DECIMALS = (
     "write decimal points, or separate numbers with decimal commas by semicolons: "
     "'0,2;0,3;0,4'"
@@ -88,8 +87,8 @@ class ColourSource:
         colours = _parse_words(self.words)
         if self.encoded:
             _warn_of_fractions(colours)
-        elif ambiguous := [word for word in self.words if _is_ambiguous(word)]:
-            raise _ambiguous(ambiguous[0])
+        for word in self.words:
+            self._check_commas(word)
         return [self._linear(colours, sensor)]
 
     def _read(self, path: str, sensor: Sensor, bounded: bool) -> Iterator[Array]:
@@ -114,14 +113,19 @@ class ColourSource:
         ignored.
         """
         empty = True
-        width = 0  # cells of the header
+        width = None  # cells of the header, 0 without one
         for rows in _row_blocks(file, name):
             colours = list[Colour]()
             for line, text, row in rows:
-                if empty and not colours and not width and _is_header(row):
-                    width = len(row)
-                    continue
-                colour = self._parse_row(row, width, text, name, line)
+                if width is None:
+                    width = len(row) if _is_header(row) else 0
+                    if width:
+                        continue
+                colour = _parse(row[:1] if row[0].startswith("#") else row)
+                if colour is None:
+                    raise _not_a_colour(text, name, line)
+                if width != len(row):
+                    self._check_commas(text, name, line)
                 self._check_range(colour, text, name, line, bounded)
                 colours.append(colour)
             if colours:
@@ -134,16 +138,18 @@ class ColourSource:
                 hint="give lines of r,g,b or of hex colours",
             )
 
-    def _parse_row(
-        self, row: Sequence[str], width: int, text: str, name: str, line: int
-    ) -> Colour:
-        """Parse the cells of a line; a header had ``width`` cells."""
-        colour = _parse(row[:1] if row[0].startswith("#") else row)
-        if colour is None:
-            raise _not_a_colour(text, name, line)
-        if not self.encoded and width != len(row) and _is_ambiguous(text):
-            raise _ambiguous(text, name, line)
-        return colour
+    def _check_commas(
+        self, text: str, path: str | None = None, line: int | None = None
+    ) -> None:
+        if not self.encoded and _is_ambiguous(text):
+            raise ColourError(
+                f"{format_value(text)} may have decimal commas, or more than three "
+                "numbers",
+                code="ambiguous-numbers",
+                path=path,
+                line=line,
+                hint=DECIMALS,
+            )
 
     def _check_range(
         self, colour: Colour, text: str, name: str, line: int, bounded: bool
@@ -232,16 +238,16 @@ def _row_blocks(
     )
     read = getattr(file, "read1", file.read)
     first = 1
-    rest = ""
+    last = ""
     at_end = False
     while not at_end:
         chunk = read(CHUNK)
         at_end = not chunk
         try:
-            *lines, rest = (rest + decoder.decode(chunk, final=at_end)).split("\n")
+            *lines, last = (last + decoder.decode(chunk, final=at_end)).split("\n")
         except UnicodeDecodeError as error:
             raise ColourError("is not a text file", path=name, hint=TABLE) from error
-        numbered = list(enumerate([*lines, rest], first))
+        numbered = list(enumerate([*lines, last], first))
         for line, text in numbered:
             if len(text) > MAX_LINE:
                 raise ColourError(
@@ -259,9 +265,7 @@ def _row_blocks(
 
 
 def _cells(text: str, name: str, line: int) -> list[str]:
-    """Return the cells of a line; none of an empty line, and of one that states the
-    delimiter.
-    """
+    """Return the cells of a line; none if it is empty or states the delimiter."""
     if not text.strip("".join(DELIMITERS)) or (
         line == 1 and STATED_DELIMITER.match(text)
     ):
@@ -273,9 +277,7 @@ def _cells(text: str, name: str, line: int) -> list[str]:
 
 
 def _is_header(row: Sequence[str]) -> bool:
-    """Whether the cells of a line are neither numbers nor a hex colour, not even a
-    misspelt one.
-    """
+    """Whether the cells of a line are neither numbers nor like a hex colour."""
     return (
         re.match(r"#\w", row[0]) is None
         and _parse(row[:1]) is None
@@ -295,13 +297,17 @@ def _is_ambiguous(text: str) -> bool:
     )
 
 
-def _parse(parts: Sequence[str]) -> Colour | None:
+def _parse(cells: Sequence[str]) -> Colour | None:
     """Parse one hex colour, or the first three of several numbers."""
-    if len(parts) == 1 and (match := HEX.fullmatch(parts[0])):
+    if len(cells) == 1 and (match := HEX.fullmatch(cells[0])):
         digits = match[1] or "".join(2 * digit for digit in match[2])
-        return [int(digits[i : i + 2], 16) for i in (0, 2, 4)], True
-    numbers = [number for part in parts[:3] if (number := _number(part)) is not None]
-    return (numbers, False) if len(numbers) == 3 else None
+        return list(bytes.fromhex(digits)), True
+    if len(cells) < 3:
+        return None
+    try:
+        return list(map(parse_decimal, cells[:3])), False
+    except ValueError:
+        return None
 
 
 def _parse_words(words: Sequence[str]) -> list[Colour]:
@@ -310,43 +316,32 @@ def _parse_words(words: Sequence[str]) -> list[Colour]:
     Three numbers of which one has a decimal comma, such as '0,2 0,3 1' or '0,2;0,3;1',
     are a colour too.
     """
-    parts = _split_words(words)
-    colours: list[Colour] = []
-    while parts:
-        numbers = [_number(part) for part in parts[:3]]
-        length = 3 if len(numbers) == 3 and None not in numbers else 1
-        colour = _parse(parts[:length])
-        if colour is None:
-            unread = parts[:4] if colours else words
-            raise _not_a_colour(" ".join(unread))
-        colours.append(colour)
-        parts = parts[length:]
-    return colours
-
-
-def _split_words(given: Sequence[str]) -> list[str]:
-    """Split words into numbers, at commas unless three have decimal commas, and hex
-    colours.
-    """
-    words = list(filter(None, re.split(r"[;\s]+", " ".join(given))))
-    parts = list[str]()
-    while words:
-        three = words[:3]
-        are_numbers = len(three) == 3 and all(map(DECIMAL.fullmatch, three))
-        if are_numbers and "," in "".join(three):
-            parts += three
-            words = words[3:]
+    text = " ".join(words)
+    unread = text.replace(";", " ").split()
+    cells = list[str]()
+    while unread:
+        triple = " ".join(unread[:3])
+        if "," in triple and TRIPLE.fullmatch(triple):
+            cells += unread[:3]
+            unread = unread[3:]
         else:
-            parts += filter(None, words[0].split(","))
-            words = words[1:]
-    return parts
+            cells += filter(None, unread[0].split(","))
+            unread = unread[1:]
+    colours: list[Colour] = []
+    while cells:
+        length = 3 if _parse(cells[:3]) else 1
+        colour = _parse(cells[:length])
+        if colour is None:
+            raise _not_a_colour(" ".join(cells[:4]) if colours else text)
+        colours.append(colour)
+        cells = cells[length:]
+    return colours
 
 
 def _warn_of_fractions(colours: Sequence[Colour]) -> None:
     """Warn of codes that look like numbers from 0 to 1."""
-    values = list[float]()
-    for numbers, is_hex in colours:
-        values += [] if is_hex else numbers
+    decimals = (numbers for numbers, is_hex in colours if not is_hex)
+    values = list(chain.from_iterable(decimals))
     if values and max(values) <= 1 and any(value % 1 for value in values):
         codes = " ".join(f"{255 * value:.0f}" for value in values[:3])
         problem = f"8-bit codes run from 0 to 255, got numbers up to {max(values):g}"
@@ -359,17 +354,6 @@ def _number(word: str) -> float | None:
         return parse_decimal(word)
     except ValueError:
         return None
-
-
-def _ambiguous(
-    text: str, path: str | None = None, line: int | None = None
-) -> ColourError:
-    problem = (
-        f"{format_value(text)} may have decimal commas, or more than three numbers"
-    )
-    return ColourError(
-        problem, code="ambiguous-numbers", path=path, line=line, hint=DECIMALS
-    )
 
 
 def _not_a_colour(

@@ -74,9 +74,7 @@ class SpectrumResolver:
         return name, parts, on_white, on_black
 
     def spectrum(self, text: str) -> Array:
-        """Return the spectrum (N,) of a colour, 'white', 'black' or an entry. Raises
-        `ColourError`.
-        """
+        """Return the spectrum (N,) of a colour, 'white', 'black' or an entry."""
         import numpy as np
 
         from uplift.atlas import Atlas, on_grid

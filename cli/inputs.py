@@ -50,9 +50,7 @@ def atlas_files(files: Sequence[str | Path]) -> Sequence[str | Path]:
 
 
 def read_atlases(files: Sequence[str | Path]) -> dict[str, Atlas]:
-    """Return atlases by the stems of their file names; without files, the
-    default ones.
-    """
+    """Return atlases, by default the usual ones, by the stems of their files."""
     from uplift.atlas import read_atlas
 
     atlases: dict[str, Atlas] = {}
@@ -95,14 +93,12 @@ def _expand(source: str) -> list[str]:
 def read_pictures(
     paths: Sequence[str], sensor: Sensor, *, space: str | None = None, **options: str
 ) -> list[Picture]:
-    """Return images, reduced to `MAX_SIDE`, with the options of `options.pixels`, and
-    emit their warnings.
-    """
+    """Return images, reduced to `MAX_SIDE`, and emit their warnings."""
     from uplift.extras.texture.picture import read_picture
 
-    found = None if space is None else find_input_space(space)
+    stated = None if space is None else find_input_space(space)
     pictures = [
-        read_picture(path, sensor, max_side=MAX_SIDE, space=found, **options)
+        read_picture(path, sensor, max_side=MAX_SIDE, space=stated, **options)
         for path in paths
     ]
     for picture in pictures:
@@ -116,8 +112,8 @@ def parse_wavelengths(text: str) -> Array:
 
     try:
         if ":" not in text:
-            return np.array([parse_float(part) for part in text.split(",")])
-        start, end, step = (parse_float(part) for part in text.split(":"))
+            return np.array(list(map(parse_float, text.split(","))))
+        start, end, step = map(parse_float, text.split(":"))
         count = int((end - start) / step + 1e-9) + 1
         if 0 < step < math.inf and end >= start and count <= MAX_WAVELENGTHS:
             return start + step * np.arange(count, dtype=float)
@@ -130,9 +126,7 @@ def parse_wavelengths(text: str) -> Array:
 
 
 def find_input_space(name: str) -> ImageSpace:
-    """Return the space of a name or of chromaticities. The tables take a second to
-    load.
-    """
+    """Return the space of a name or of chromaticities; tables load in a second."""
     from uplift.extras.colour.spaces import find_space
 
     return find_space(name)
@@ -180,22 +174,17 @@ def check_plot(path: str) -> None:
     check_suffix(path)
 
 
-def check_range(wavelengths: Array, own: Array) -> None:
+def check_range(wavelengths: Array, known: Array) -> None:
     """Check that wavelengths (N,) lie in the range of a cube or a table; the library
     continues spectra.
     """
-    first, last = own[[0, -1]]
-    outside = [
-        wavelength for wavelength in wavelengths if not first <= wavelength <= last
-    ]
-    if outside:
-        micrometres = f"give nm: {outside[0]:g} µm are {1000 * outside[0]:g} nm"
-        hint = (
-            micrometres
-            if outside[0] < 10
-            else "stay in this range; 'uplift build --range' sets that of a cube"
-        )
-        raise OptionError(
-            f"wavelengths must lie in {first:g}-{last:g} nm, got {outside[0]:g}",
-            hint=hint,
-        )
+    first, last = known[[0, -1]]
+    for wavelength in wavelengths:
+        if not first <= wavelength <= last:
+            hint = "stay in this range; 'uplift build --range' sets that of a cube"
+            if wavelength < 10:
+                hint = f"give nm: {wavelength:g} µm are {1000 * wavelength:g} nm"
+            raise OptionError(
+                f"wavelengths must lie in {first:g}-{last:g} nm, got {wavelength:g}",
+                hint=hint,
+            )

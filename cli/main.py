@@ -1,6 +1,4 @@
-"""``uplift``: find the command, run it, and print errors and warnings on
-one line each.
-"""
+"""``uplift``: find and run a command; print errors and warnings in a line each."""
 
 import contextlib
 import importlib
@@ -98,9 +96,7 @@ class LazyGroup(Group):
                 )
 
     def main(self, *args: Any, **options: Any) -> Any:
-        """Run the command line and exit with one of the codes of `uplift help
-        exit-codes`.
-        """
+        """Run the command line and exit with a code of `uplift help exit-codes`."""
         code: Any
         try:
             code = super().main(*args, **options | {"standalone_mode": False})
@@ -118,9 +114,8 @@ class LazyGroup(Group):
         except OSError as error:
             CommandFailure(error).show()
             code = BAD_INPUT
-        with contextlib.suppress(
-            OSError
-        ):  # what cannot be written is dropped: it is reported above
+        # what cannot be written is dropped: it is reported above
+        with contextlib.suppress(OSError):
             flush_stdout()
         if options.get("standalone_mode", True):
             sys.exit(code if isinstance(code, int) else 0)

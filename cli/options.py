@@ -14,6 +14,7 @@ from importlib import import_module
 from typing import Any
 
 import click
+from click.core import ParameterSource
 from click.shell_completion import CompletionItem
 
 from uplift.common.text import format_value, parse_float, parse_whole
@@ -86,26 +87,23 @@ class Command(click.Command):
         self, ctx: click.Context, formatter: click.HelpFormatter
     ) -> None:
         """Write the text, after the form feed for --help-all only."""
-        short, _, rest = inspect.cleandoc(self.help or "").partition("\f")
+        short, _, further = inspect.cleandoc(self.help or "").partition("\f")
         formatter.write_paragraph()
         with formatter.indentation():
-            formatter.write_text(short + rest if HELP_ALL in ctx.meta else short)
+            formatter.write_text(short + further if HELP_ALL in ctx.meta else short)
 
     def format_options(
         self, ctx: click.Context, formatter: click.HelpFormatter
     ) -> None:
         """Write the options of every day, the last two of help, or all options."""
-        *own, help_all, help_option = (
-            param for param in self.get_params(ctx) if isinstance(param, click.Option)
-        )
-        shown = [
-            each for each in own if HELP_ALL in ctx.meta or each.name in self.everyday
-        ]
-        records = (
-            each.get_help_record(ctx) for each in (*shown, help_all, help_option)
-        )
+        params = self.get_params(ctx)
+        shown = [option for option in params if isinstance(option, click.Option)]
+        if HELP_ALL not in ctx.meta:
+            names = (*self.everyday, *(option.name for option in shown[-2:]))
+            shown = [option for option in shown if option.name in names]
+        records = (option.get_help_record(ctx) for option in shown)
         with formatter.section("Options"):
-            formatter.write_dl([record for record in records if record is not None])
+            formatter.write_dl(list(filter(None, records)))
 
 
 class Group(click.Group):
@@ -182,18 +180,14 @@ class Whole(click.IntRange):
 
 
 class Parsed(click.ParamType):  # type: ignore[type-arg]
-    """A text that a function of `uplift_cli.inputs` parses, which may raise
-    `UpliftError`.
-    """
+    """A text that a function parses, which may raise `UpliftError`."""
 
     name = "text"
 
     def __init__(self, function: Callable[[str], Any]) -> None:
         self.function = function
 
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> Any:
+    def convert(self, value: Any, *_: Any) -> Any:
         """Return what the function makes of the text."""
         return self.function(value)
 
@@ -201,9 +195,7 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
 class Checked(Parsed):
     """A text that a function of `uplift_cli.inputs` checks."""
 
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> Any:
+    def convert(self, value: Any, *_: Any) -> Any:
         """Return the text."""
         self.function(value)
         return value
@@ -251,21 +243,17 @@ def completion(
     def complete(
         ctx: click.Context, param: click.Parameter, text: str
     ) -> list[CompletionItem]:
-        items = [
-            CompletionItem(text, type="file")
-        ] * files  # first: bash drops the items before it
+        # first: bash drops the items before it
+        items = [CompletionItem(text, type="file")] * files
         for source in sources:
-            module, name, *arguments = source.split(":")
-            names = getattr(import_module(f"uplift.{module}"), name)
-            found = (
-                getattr(each, "name", each)
-                for each in (names(*arguments) if callable(names) else names)
-            )
-            items += [
-                CompletionItem(each)
-                for each in found
-                if each.lower().startswith(text.lower())
-            ]
+            module, attribute, *arguments = source.split(":")
+            values = getattr(import_module(f"uplift.{module}"), attribute)
+            if callable(values):
+                values = values(*arguments)
+            for value in values:
+                name = getattr(value, "name", value)
+                if name.lower().startswith(text.lower()):
+                    items.append(CompletionItem(name))
         return items
 
     return complete
@@ -284,10 +272,26 @@ complete_observer = completion(
 complete_space = completion("colorimetry.tables:names:RGB space")
 
 
+def given() -> dict[str, str]:
+    """Return the options of the command line by the names of their parameters."""
+    context = click.get_current_context()
+    options = {}
+    for parameter in context.command.params:
+        name = str(parameter.name)
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+            options[name] = parameter.opts[-1]
+    return options
+
+
+flag = partial(click.option, is_flag=True)
+number = partial(click.option, type=NUMBER)
+whole = partial(click.option, type=WHOLE)
+
+
 def stacked(*decorators: Decorator) -> Decorator:
     """Combine decorators, the first one outermost."""
     return lambda function: reduce(
-        lambda inner, each: each(inner), reversed(decorators), function
+        lambda inner, decorate: decorate(inner), reversed(decorators), function
     )
 
 
@@ -316,7 +320,7 @@ named_lights = partial(
 )
 light = partial(named_lights, "--light", "lights", examples=LAMPS)
 """Why its defaults differ is in `uplift help illuminants`."""
-tolerance = partial(click.option, "--tolerance", metavar="ΔE00", type=NUMBER)
+tolerance = partial(number, "--tolerance", metavar="ΔE00")
 output = partial(click.option, "-o", "--output", metavar="FILE", type=OUTPUT)
 OF_PACKAGE = (
     ", or ACEScg for the packaged ACEScg cube{}. [default: the packaged sRGB cube]"
@@ -357,17 +361,15 @@ def choice(
 encoding = choice(
     "--encoding",
     *("auto", "linear", "encoded"),
-    help=(
-        "Encoding of images. auto: whole numbers have the transfer function of the "
-        "cube's space, floats are linear."
-    ),
+    help="Encoding of images. auto: whole numbers have the transfer function of the "
+    "cube's space, floats are linear.",
 )
 
 
 def input_space(
     subject: str, default: str = "as the file states", name: str = "input_space"
 ) -> Decorator:
-    """``--input-space``: text for `uplift.extras.colour.spaces.find_space`."""
+    """``--input-space``: text for `uplift.colorimetry.spaces.find_space`."""
     return click.option(
         "--input-space",
         name,
@@ -416,6 +418,12 @@ def pixels() -> Decorator:
     )
 
 
+def _remember_format(ctx: click.Context, param: click.Parameter, value: str) -> str:
+    """Keep the format where the main command finds it if it has an error to report."""
+    ctx.meta[OUTPUT_FORMAT] = value
+    return value
+
+
 def output_format(*choices: str) -> Decorator:
     """``--format`` as ``style``; the first choice is the default."""
     return click.option(
@@ -429,10 +437,8 @@ def output_format(*choices: str) -> Decorator:
     )
 
 
-def _remember_format(ctx: click.Context, param: click.Parameter, value: str) -> str:
-    """Keep the format where the main command finds it if it has an error to report."""
-    ctx.meta[OUTPUT_FORMAT] = value
-    return value
+table_or_json = output_format("table", "json")
+table_json_or_csv = output_format("table", "json", "csv")
 
 
 def plot(help: str, option: str = "--plot", name: str = "plot_path") -> Decorator:
@@ -468,16 +474,14 @@ def wavelengths(help: str) -> Decorator:
 
 
 cube_argument = click.argument("cube", metavar="CUBE", shell_complete=complete_cube)
-# names of uplift.atlas.sources.MEASURED, which is not imported here
+# names of uplift.atlas.measurements.MEASURED, which is not imported here
 scale = choice(
     "--scale",
     *("auto", "percent", "fraction"),
-    help=(
-        "Scale of measured values. auto: as the atlas file states, or else by its "
-        "values."
-    ),
+    help="Scale of measured values. auto: as the atlas file states, or else by its "
+    "values.",
 )
-missing = choice(  # names of uplift.atlas.sources.MISSING
+missing = choice(  # names of uplift.atlas.measurements.MISSING
     "--missing",
     *("refuse", "interpolate", "skip"),
     help="What becomes of an entry that lacks a value within 380-780 nm.",
@@ -522,34 +526,23 @@ def colours(xyz: str, space: str) -> Decorator:
             metavar="FILE",
             help="Table of colours, one per line; '-' is standard input.",
         ),
-        click.option(
-            "--xyz", type=NUMBER, nargs=3, metavar="X Y Z", help=f"Colour by XYZ {xyz}."
-        ),
-        click.option(
+        number("--xyz", nargs=3, metavar="X Y Z", help=f"Colour by XYZ {xyz}."),
+        number(
             "--xy",
-            type=NUMBER,
             nargs=2,
             metavar="X Y",
             help="Colour by chromaticity, with --luminance, as for --xyz.",
         ),
-        click.option(
-            "--luminance",
-            type=NUMBER,
-            metavar="Y",
-            help="Luminance of --xy, where white has 1.",
+        number(
+            "--luminance", metavar="Y", help="Luminance of --xy, where white has 1."
         ),
-        click.option(
-            "--encoded",
-            is_flag=True,
-            help="Numbers are encoded 8-bit codes from 0 to 255.",
-        ),
+        flag("--encoded", help="Numbers are encoded 8-bit codes from 0 to 255."),
         input_space("the colours", default=space),
     )
 
 
-fill = click.option(
+fill = flag(
     "--fill-missing",
-    is_flag=True,
     help="Take colours that a cube built with --scene lacks from the packaged cube.",
 )
 atlas_folders = repeatable(
@@ -559,15 +552,10 @@ atlas_folders = repeatable(
     metavar="DIR",
     type=click.Path(exists=True, file_okay=False),
 )
-force = click.option("--force", is_flag=True, help="Replace existing files.")
-quiet = click.option(
-    "-q", "--quiet", is_flag=True, help="Print only warnings and errors."
-)
-verbose = click.option(
-    "-v",
-    "--verbose",
-    is_flag=True,
-    help="Print a line for every round and improvement step.",
+force = flag("--force", help="Replace existing files.")
+quiet = flag("-q", "--quiet", help="Print only warnings and errors.")
+verbose = flag(
+    "-v", "--verbose", help="Print a line for every round and improvement step."
 )
 
 
@@ -603,10 +591,8 @@ sensor = stacked(
         metavar="NAME|FILE",
         type=LIGHT,
         default="D65",
-        help=(
-            "Illuminant under which RGB are defined; a cube needs a name, other "
-            "commands read the file of a lamp."
-        ),
+        help="Illuminant under which RGB are defined; a cube needs a name, other "
+        "commands read the file of a lamp.",
         shell_complete=complete_light,
     ),
     observer(

@@ -1,6 +1,4 @@
-"""Files that a command writes: compared with all that it reads, before it computes
-anything.
-"""
+"""Files that a command writes, compared beforehand with all that it reads."""
 
 from collections.abc import Callable, Iterable, Sequence
 
@@ -61,17 +59,10 @@ def stated_inputs() -> list[str]:
     name no file do no harm.
     """
     context = click.get_current_context()
-    outputs = [
-        param.name
-        for param in context.command.params
-        if isinstance(param.type, OutputFile)
-    ]
     texts: list[str] = list(context.meta.get(INPUTS, ()))
-    for name, value in context.params.items():
-        if name not in outputs:
-            texts += [
-                text
-                for text in (value if isinstance(value, tuple) else [value])
-                if isinstance(text, str)
-            ]
+    for param in context.command.params:
+        if not isinstance(param.type, OutputFile):
+            value = context.params.get(str(param.name))
+            values = value if isinstance(value, tuple) else [value]
+            texts += [text for text in values if isinstance(text, str)]
     return texts

@@ -1,6 +1,4 @@
-"""Settings of the process: streams, signals, and variables that must precede the import
-of JAX or numpy.
-"""
+"""Settings of the process that must precede the import of JAX or numpy."""
 
 import codecs
 import contextlib
@@ -34,18 +32,15 @@ _CACHES: set[Path] = set()
 
 
 def prepare_process() -> None:
-    """Prepare streams, signals and matplotlib for a command that has the process for
-    itself.
-    """
+    """Prepare streams, signals and matplotlib of a process for one command."""
     _open_closed_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors=_respell.__name__)
     for name in ENDING:
         number = getattr(signal, name, None)
-        if (
-            number is not None and signal.getsignal(number) is signal.SIG_DFL
-        ):  # not under nohup
+        # not under nohup
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
             signal.signal(number, _end)
     if os.name == "posix":
         _watch_signals()
@@ -54,28 +49,24 @@ def prepare_process() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("PJRT_NPROC", "1")
     os.environ["MPLBACKEND"] = "agg"  # which needs no display
-    os.environ["MATPLOTLIBRC"] = (
-        os.devnull
-    )  # figures do not depend on settings of the user
-    os.environ["PYTHONSAFEPATH"] = (
-        "1"  # worker processes load no module from the working folder
-    )
+    # figures do not depend on settings of the user
+    os.environ["MATPLOTLIBRC"] = os.devnull
+    # worker processes load no module from the working folder
+    os.environ["PYTHONSAFEPATH"] = "1"
     if os.path.lexists("matplotlibrc"):  # matplotlib would obey it
         hide_drawing_notes()
         with contextlib.chdir(os.sep), contextlib.suppress(ImportError):
             import matplotlib  # noqa: F401
-    sys.warnoptions.append(
-        "ignore:resource_tracker:UserWarning"
-    )  # of multiprocessing, about a process that was ended
+    # of multiprocessing, about a process that was ended
+    sys.warnoptions.append("ignore:resource_tracker:UserWarning")
 
 
 def _respell(error: UnicodeError) -> tuple[str, int]:
     """Spell characters that the encoding of a stream lacks in ASCII."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
-    return "".join(
-        SPELLINGS.get(letter, "?") for letter in error.object[error.start : error.end]
-    ), error.end
+    letters = error.object[error.start : error.end]
+    return "".join(SPELLINGS.get(letter, "?") for letter in letters), error.end
 
 
 codecs.register_error(_respell.__name__, _respell)
@@ -146,9 +137,8 @@ def enable_jit_cache() -> None:
         return
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        folder = folder.resolve(
-            strict=True
-        )  # the folder that is checked, not a link to it
+        # the folder that is checked, not a link to it
+        folder = folder.resolve(strict=True)
         str(folder).encode()  # JAX takes UTF-8 only
         problem = _exposure(folder) if os.name == "posix" else None
     except (OSError, RuntimeError, UnicodeError) as error:
@@ -185,9 +175,8 @@ def _exposure(folder: Path) -> str | None:
         shared = status.st_mode & stat.S_IWOTH or (
             status.st_mode & stat.S_IWGRP and not _is_private(status.st_gid)
         )
-        if status.st_uid not in (user, 0) or (
-            shared and not status.st_mode & stat.S_ISVTX
-        ):  # as /tmp has
+        is_sticky = status.st_mode & stat.S_ISVTX  # as /tmp is
+        if status.st_uid not in (user, 0) or (shared and not is_sticky):
             return f"other users can write to {place}"
     return None
 
@@ -199,8 +188,8 @@ def _is_private(group: int) -> bool:
 
     with contextlib.suppress(KeyError):  # a user without a name
         name = pwd.getpwuid(os.getuid()).pw_name
-        found = grp.getgrgid(group)
-        return found.gr_name == name and set(found.gr_mem) <= {name}
+        entry = grp.getgrgid(group)
+        return entry.gr_name == name and set(entry.gr_mem) <= {name}
     return False
 
 

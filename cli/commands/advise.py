@@ -1,7 +1,7 @@
 """``uplift advise``: the expected errors of a scene, and what to measure next."""
 
-from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +51,7 @@ SHOWN = 4
 )
 @options.pixels()
 @options.plot("Draw the first 4 images, their expected errors and the swatches")
-@options.output_format("table", "json")
+@options.table_or_json
 @options.force
 def command(
     images: tuple[str, ...],
@@ -63,7 +63,7 @@ def command(
     force: bool,
     **pixels: Any,
 ) -> None:
-    from uplift.colorimetry import observer
+    from uplift.colorimetry.observer import check_distinct, light
     from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
     from uplift.extras.colour.srgb import hex_codes
     from uplift.extras.scene import advice
@@ -74,55 +74,65 @@ def command(
     check_outputs(plot_path, inputs=paths)
     cube = load(cube_path)
     sensor = cube.data.sensor
-    observer.check_distinct(lights)
+    check_distinct(lights)
     names = lights or RELIGHT_LIGHTS
-    lit = [observer.light(name, cube.observer, *sensor.range) for name in names]
+    lit = [light(name, cube.observer, *sensor.range) for name in names]
     with progress_bar("choosing swatches"):
         colours = advice.colour_areas(Images(tuple(map(Path, paths)), **pixels), sensor)
         before = advice.uncertainty(cube, colours, lit)
         chosen, after = advice.advise(before, count)
     rgb = colours.rgb[[swatch.colour for swatch in chosen]]
-    codes = hex_codes(rgb, sensor)
-    coded = list(zip(codes, chosen, strict=True))
+    swatches = [
+        {"hex": code, **asdict(swatch)}
+        for code, swatch in zip(hex_codes(rgb, sensor), chosen, strict=True)
+    ]
     if plot_path is not None:
         from uplift.extras.pages.figure import write_figure
 
         shown = paths[:SHOWN]
-        read = read_pictures(shown, sensor, **pixels)
-        pictures = {path: image.rgb for path, image in zip(shown, read, strict=True)}
-        texts = [
-            f"{code}\nlowers the mean\nby ΔE00 {swatch.gain:.2f}"
-            for code, swatch in coded
-        ]
+        images_read = read_pictures(shown, sensor, **pixels)
+        pictures = {
+            path: picture.rgb for path, picture in zip(shown, images_read, strict=True)
+        }
+        texts = map("{hex}\nlowers the mean\nby ΔE00 {gain:.2f}".format_map, swatches)
         chips = list(zip(texts, rgb, strict=True))
         figure = advice.draw_advice(cube, pictures, lit, chips)
         write_figure(figure, plot_path, force=force)
     stages = zip(lit, before.by_light(), after.by_light(), strict=True)
     errors = {light.name: {"before": now, "after": then} for light, now, then in stages}
-    swatches = [{"hex": code, **asdict(swatch)} for code, swatch in coded]
     if style == "json":
         print_json(
-            {"images": paths, "cube": cube_path, "lights": errors, "swatches": swatches}
+            {
+                "images": paths,
+                "cube": cube_path,
+                "lights": errors,
+                "swatches": swatches,
+            }
         )
         return
-    _print(errors, swatches)
+    _print_tables(errors, swatches)
     if plot_path is not None:
         say(plot_path, err=True)
 
 
-def _print(
-    errors: Mapping[str, Mapping[str, Mapping[str, float]]],
-    swatches: Sequence[Mapping[str, Any]],
+def _print_tables(
+    errors: dict[str, dict[str, dict[str, float]]], swatches: list[dict[str, Any]]
 ) -> None:
-    after = f"after {pluralise(len(swatches), 'swatch')}"
-    columns = ("expected ΔE00", "95 % of the area", after, "95 %")
-    summary = make_table(("light",), columns)
+    headings = (
+        "expected ΔE00",
+        "95 % of the area",
+        f"after {pluralise(len(swatches), 'swatch')}",
+        "95 %",
+    )
+    summary = make_table(("light",), headings)
     for name, stages in errors.items():
-        numbers = [*stages["before"].values(), *stages["after"].values()]
-        summary.add_row(name, *[f"{number:.2f}" for number in numbers])
-    columns = ("area", "expected ΔE00", "gain in ΔE00", "mean ΔE00 after")
-    table = make_table(("swatch",), columns)
+        numbers = chain.from_iterable(stage.values() for stage in stages.values())
+        summary.add_row(name, *map("{:.2f}".format, numbers))
+    table = make_table(
+        ("swatch",), ("area", "expected ΔE00", "gain in ΔE00", "mean ΔE00 after")
+    )
     for row in swatches:
-        cells = [f"{row[name]:.2f}" for name in ("error", "gain", "mean_after")]
-        table.add_row(row["hex"], f"{row['area']:.1%}", *cells)
+        area = f"{row['area']:.1%}"
+        reduced = (row["error"], row["gain"], row["mean_after"])
+        table.add_row(row["hex"], area, *map("{:.2f}".format, reduced))
     show(summary, table)

@@ -1,12 +1,10 @@
-"""``uplift atlas``: list the shipped atlases or the entries of atlases, or convert
-between formats.
-"""
+"""``uplift atlas``: list shipped atlases, or entries; convert between formats."""
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -36,6 +34,8 @@ if TYPE_CHECKING:
 
 SHIPPED = ("name", "entries", "content", "source", "licence")
 """Columns of the list of shipped atlases."""
+COLUMNS = ("name", "start", "end", "step", *"rgb", "in_gamut", "warnings")
+"""Columns of entries in CSV."""
 SOURCE = ("name", "digest", "format", "measured", "missing", "notes")
 """Fields of the source of an atlas in JSON."""
 
@@ -70,11 +70,11 @@ SOURCE = ("name", "digest", "format", "measured", "missing", "notes")
 @options.scale
 @options.missing
 @options.sensor
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.output(help="Write all entries to FILE instead of a list.")
 @options.force
 def command(
-    files: tuple[str, ...],
+    files: Sequence[str],
     scale: Any,
     missing: Any,
     style: str,
@@ -102,28 +102,27 @@ def command(
     rows, codes, smallest = _list_entries(atlas, target, camera["illuminant"])
     if style == "json":
         fields = {
-            **_fields(target, camera),
-            "sources": [_fields(source, SOURCE) for source in atlas.sources],
+            **_pick(target, camera),
+            "sources": [_pick(source, SOURCE) for source in atlas.sources],
             "smallest_space": smallest,
             "entries": rows,
-            "skipped": [asdict(skipped) for skipped in atlas.skipped],
+            "skipped": list(map(asdict, atlas.skipped)),
         }
         print_json(fields)
     elif style == "csv":
-        print_csv(
-            ["name", "start", "end", "step", "r", "g", "b", "in_gamut", "warnings"],
-            [
-                [
-                    *list(row.values())[:4],
-                    *row["rgb"],
-                    str(row["in_gamut"]).lower(),
-                    "; ".join(row["warnings"]),
-                ]
-                for row in rows
-            ],
-        )
+        print_csv(COLUMNS, map(_csv_row, rows))
     else:
         _print_table(atlas, target, rows, codes, smallest)
+
+
+def _pick(item: object, names: Iterable[str]) -> dict[str, Any]:
+    """Return some attributes by their names."""
+    return {name: getattr(item, name) for name in names}
+
+
+def _csv_row(row: dict[str, Any]) -> Sequence[Any]:
+    *place, rgb, in_gamut, warnings = row.values()
+    return [*place, *rgb, str(in_gamut).lower(), "; ".join(warnings)]
 
 
 def _print_shipped(style: str) -> None:
@@ -134,10 +133,10 @@ def _print_shipped(style: str) -> None:
         rows = []
         for atlas in atlases:
             file = {"path": str(atlas.path), "digest": atlas.digest}
-            rows.append(_fields(atlas, SHIPPED) | file)
+            rows.append(_pick(atlas, SHIPPED) | file)
         print_json({"atlases": rows})
     elif style == "csv":
-        print_csv(SHIPPED, map(operator.attrgetter(*SHIPPED), atlases))
+        print_csv(SHIPPED, map(attrgetter(*SHIPPED), atlases))
     else:
         for atlas in atlases:
             print_fields(
@@ -145,10 +144,6 @@ def _print_shipped(style: str) -> None:
             )
         say()
         paragraph("Use a name as --atlas NAME, or in place of FILE.")
-
-
-def _fields(item: object, names: Iterable[str]) -> dict[str, Any]:
-    return {name: getattr(item, name) for name in names}
 
 
 def _list_entries(
@@ -196,28 +191,12 @@ def _print_table(
         texts, "RGB", title=f"linear {sensor.space} under {sensor.illuminant}"
     )
     for row, code in zip(rows, codes.tolist(), strict=True):
-        numbers = [row["start"], row["end"], row["step"]]
-        known = [f"{number:g}" for number in numbers if number is not None]
-        wavelengths = ":".join(known)
-        rgb = (f"{channel:.4f}" for channel in row["rgb"])
+        wavelengths = f"{row['start']:g}:{row['end']:g}"
+        if row["step"] is not None:
+            wavelengths += f":{row['step']:g}"
+        rgb = map("{:.4f}".format, row["rgb"])
         table.add_row(*[swatch(code)] * coloured, row["name"], wavelengths, *rgb)
     show(table)
-    _print_notes(atlas, rows)
-    outside = [row["name"] for row in rows if not row["in_gamut"]]
-    skipped = [skipped.name for skipped in atlas.skipped]
-    entries = pluralise(len(rows), "entry")
-    text = (
-        f"{entries}, {_count(outside, f'out of the {sensor.space} gamut')}, "
-        f"{_count(skipped, 'skipped')}"
-    )
-    if outside and smallest:
-        text += f"; {smallest} holds all {len(rows)}"
-    elif outside:
-        text += "; no common RGB space holds all"
-    paragraph(text)
-
-
-def _print_notes(atlas: Atlas, rows: Sequence[dict[str, Any]]) -> None:
     for row in rows:
         for warning in row["warnings"]:
             paragraph(f"{row['name']}: {warning}")
@@ -225,6 +204,18 @@ def _print_notes(atlas: Atlas, rows: Sequence[dict[str, Any]]) -> None:
         paragraph(f"{entry.name}: skipped: {entry.reason}")
     for source in atlas.sources:
         paragraph("; ".join((f"{source.name}: {source.format}", *source.notes)))
+    outside = [row["name"] for row in rows if not row["in_gamut"]]
+    skipped = [entry.name for entry in atlas.skipped]
+    text = (
+        f"{pluralise(len(rows), 'entry')}, "
+        f"{_count(outside, f'out of the {sensor.space} gamut')}, "
+        f"{_count(skipped, 'skipped')}"
+    )
+    if outside and smallest:
+        text += f"; {smallest} holds all {len(rows)}"
+    elif outside:
+        text += "; no common RGB space holds all"
+    paragraph(text)
 
 
 def _count(names: Sequence[str], label: str) -> str:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import chain, product
+from collections.abc import Iterable, Sequence
+from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -31,10 +32,16 @@ if TYPE_CHECKING:
 
 Block = tuple[Sequence["QueryResult"], Sequence["Bounds"]]
 """Answers, and their bounds under each light."""
-DIVISIONS, SINGLE_DIVISIONS = 2, 3
-"""Density of the directions of bounds: 162 of each of many colours, 642 of a single
-one.
-"""
+DIVISIONS = 2
+"""Density of the directions of bounds: 162 of each of many colours."""
+SINGLE_DIVISIONS = 3
+"""That of a single colour: 642."""
+COLUMNS = (
+    *("r", "g", "b", "light", "L*", "a*", "b*", "standard_error", "error_bound"),
+    *("largest", "outer"),
+    *("L*_min", "a*_min", "b*_min", "L*_max", "a*_max", "b*_max", "share"),
+)
+"""Columns of CSV."""
 
 
 @click.command(
@@ -64,7 +71,7 @@ one.
 )
 @colour_options
 @options.light("Illuminant under which the bounds are shown", "A FL11 HP1")
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.plot("Plot the bounds")
 @options.page(
     "Write a page on which the colour under each --light is dragged within its "
@@ -72,7 +79,7 @@ one.
 )
 @options.force
 def command(
-    lights: tuple[Illuminant, ...],
+    lights: Sequence[Illuminant],
     style: str,
     plot_path: str | None,
     html: str | None,
@@ -85,102 +92,94 @@ def command(
     answers = Answers(lights=lights or RELIGHT_LIGHTS, **colours)
     if html is not None and not answers.single:
         raise click.UsageError("--html shows one colour: give it on the command line.")
-
-    blocks = _blocks(answers)
-    if plot_path is not None or html is not None:
-        blocks = list(blocks)
+    blocks: Iterable[Block] = map(partial(_compute, answers), answers)
     if plot_path is not None:
         from uplift.extras.pages.plots import plot_bounds
 
-        shown = [bounds for _, bounds in blocks]
-        plot_bounds(answers.cube, shown, plot_path, force=force)
+        blocks = list(blocks)
+        by_light = [bounds for _, bounds in blocks]
+        plot_bounds(answers.cube, by_light, plot_path, force=force)
         say(f"{plot_path}: bounds", err=True)
     if html is not None:
         from uplift.extras.report.look_page import page
 
-        _, bounds = next(iter(blocks))
+        blocks = list(blocks)
+        [(_, bounds)] = blocks
         write_text(page(answers.cube, bounds), html, force=force)
         say(f"{html}: page to choose a look on", err=True)
     if style == "json":
         objects = chain.from_iterable(_objects(answers, *block) for block in blocks)
         print_json_answers(objects, single=answers.single)
     elif style == "csv":
-        _print_csv(blocks)
+        print_csv(COLUMNS, chain.from_iterable(_rows(*block) for block in blocks))
     else:
         _print_table(answers.cube, blocks, single=answers.single)
 
 
-def _blocks(answers: Answers) -> Iterable[Block]:
-    """Yield blocks of the results of a query, and their bounds under each light."""
+def _compute(answers: Answers, results: Sequence[QueryResult]) -> Block:
     import numpy as np
 
     from uplift.extras.looks.metamer_bounds import bounds
 
+    rgb = np.stack([result.rgb for result in results])
     divisions = SINGLE_DIVISIONS if answers.single else DIVISIONS
-    for block in answers:
-        rgb = np.stack([result.rgb for result in block])
-        yield (
-            block,
-            [
-                bounds(answers.cube, rgb, light, answers.mode, divisions)
-                for light in answers.lights
-            ],
-        )
+    return results, [
+        bounds(answers.cube, rgb, light, answers.mode, divisions)
+        for light in answers.lights
+    ]
 
 
 def _objects(
-    answers: Answers, results: Sequence[QueryResult], found: Sequence[Bounds]
+    answers: Answers, results: Sequence[QueryResult], by_light: Sequence[Bounds]
 ) -> Iterable[dict[str, Any]]:
     from uplift.colorimetry import lab
     from uplift.extras.looks.lab_errors import LIKELY
 
     for row, result in enumerate(results):
         fields = {}
-        for each in found:
-            likely = each.likely(row)
-            fields[each.light.name] = {
-                "lab": each.lab[row].tolist(),
-                "largest_delta_e_2000": float(each.largest.delta_e_2000[row]),
-                "largest_lab": lab(each.largest.xyz[row], each.light.white).tolist(),
-                "outer_delta_e_2000": float(each.largest.outer[row]),
-                "lab_range": each.box[row].tolist(),
-                "share": float(each.share[row]),
-                "outline": each.outline(row).tolist(),
-                "covariance": None
-                if each.covariance is None
-                else each.covariance[row].tolist(),
+        for bounds in by_light:
+            largest = bounds.largest
+            likely = bounds.likely(row)
+            covariance = bounds.covariance
+            fields[bounds.light.name] = {
+                "lab": bounds.lab[row].tolist(),
+                "largest_delta_e_2000": float(largest.delta_e_2000[row]),
+                "largest_lab": lab(largest.xyz[row], bounds.light.white).tolist(),
+                "outer_delta_e_2000": float(largest.outer[row]),
+                "lab_range": bounds.box[row].tolist(),
+                "share": float(bounds.share[row]),
+                "outline": bounds.outline(row).tolist(),
+                "covariance": None if covariance is None else covariance[row].tolist(),
                 "likely": None if likely is None else likely.tolist(),
                 "likely_share": LIKELY,
             }
         yield result_object(answers, result) | {"bounds": fields}
 
 
-def _print_csv(blocks: Iterable[Block]) -> None:
-    limits = ["L*_min", "a*_min", "b*_min", "L*_max", "a*_max", "b*_max"]
-    columns = [*"rgb", "light", "L*", "a*", "b*", "standard_error", "error_bound"]
-    print_csv([*columns, "largest", "outer", *limits, "share"], _csv_rows(blocks))
-
-
-def _csv_rows(blocks: Iterable[Block]) -> Iterator[list[Any]]:
-    for results, bounds in blocks:
-        for (row, result), shown in product(enumerate(results), bounds):
+def _rows(
+    results: Sequence[QueryResult], by_light: Sequence[Bounds]
+) -> Iterable[list[Any]]:
+    """Yield the rows of CSV, of the columns `COLUMNS`."""
+    for row, result in enumerate(results):
+        for bounds in by_light:
+            light = bounds.light.name
             yield [
                 *as_lists(result.rgb),
-                shown.light.name,
-                *shown.lab[row].tolist(),
-                result.standard_errors.get(shown.light.name),
-                result.error_bounds.get(shown.light.name),
-                float(shown.largest.delta_e_2000[row]),
-                float(shown.largest.outer[row]),
-                *shown.box[row].ravel().tolist(),
-                float(shown.share[row]),
+                light,
+                *bounds.lab[row].tolist(),
+                result.standard_errors.get(light),
+                result.error_bounds.get(light),
+                float(bounds.largest.delta_e_2000[row]),
+                float(bounds.largest.outer[row]),
+                *bounds.box[row].ravel().tolist(),
+                float(bounds.share[row]),
             ]
 
 
 def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
     from uplift.extras.looks.lab_errors import LIKELY
 
-    for number, (results, found) in enumerate(blocks):
+    for number, (results, by_light) in enumerate(blocks):
         if single:
             rgb = results[0].rgb
             print_fields(
@@ -194,18 +193,20 @@ def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
             show_header=number == 0,
         )
         for row, result in enumerate(results):
-            for column, each in enumerate(found):
-                code = hex_code(cube, result.rgb) if column == 0 else ""
-                error = result.error_bounds.get(each.light.name)
-                (_, least_a, least_b), (_, most_a, most_b) = each.box[row].tolist()
+            code = hex_code(cube, result.rgb)
+            for bounds in by_light:
+                light = bounds.light.name
+                error = result.error_bounds.get(light)
+                (_, least_a, least_b), (_, most_a, most_b) = bounds.box[row].tolist()
                 table.add_row(
                     *(code,) * (not single),
-                    each.light.name,
-                    " ".join(f"{value:.1f}" for value in each.lab[row]),
+                    light,
+                    " ".join(map("{:.1f}".format, bounds.lab[row])),
                     "–" if error is None else f"{error:.2f}",
-                    f"{each.largest.delta_e_2000[row]:.2f}",
+                    f"{bounds.largest.delta_e_2000[row]:.2f}",
                     f"{round(least_a)}..{round(most_a)}",
                     f"{round(least_b)}..{round(most_b)}",
-                    f"{100 * each.share[row]:.2g}%",
+                    f"{100 * bounds.share[row]:.2g}%",
                 )
+                code = ""  # once for all lights
         show(table)

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 from uplift.common.errors import OptionError, OutputError, UpliftWarning
 from uplift.common.text import format_value, parse_float, pluralise
@@ -26,7 +25,7 @@ from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
-    from uplift.atlas import Atlas
+    from uplift.atlas import Source
     from uplift.lookup import Cube
 
 ALLOWED_WITH_PLAN = {"plan_path", "output", "debug", "force", "quiet", "verbose"}
@@ -47,7 +46,7 @@ def parse_range(
 ) -> tuple[float, float]:
     """Parse '360:830', a first and a last wavelength in nm."""
     try:
-        start, end = (parse_float(part) for part in value.split(":"))
+        start, end = map(parse_float, value.split(":"))
     except ValueError as error:
         problem = f"a range must be START:END in nm, got {format_value(value)}"
         raise OptionError(problem, hint="write for example 360:830") from error
@@ -110,10 +109,8 @@ def parse_range(
     default=32,
     type=options.WHOLE_OR_AUTO,
     metavar="N",
-    help=(
-        "Lattice nodes along each axis. 'auto' chooses the smallest dim, and its "
-        "axis, that resolves every entry."
-    ),
+    help="Lattice nodes along each axis. 'auto' chooses the smallest dim, and its "
+    "axis, that resolves every entry.",
 )
 @options.tolerance(
     "auto_tolerance",
@@ -122,9 +119,8 @@ def parse_range(
 )
 @click.option("--model", default="moments", help="Spectrum model: moments or sigmoid.")
 @options.coefficients
-@click.option(
+@options.whole(
     "--entry-coefficients",
-    type=options.WHOLE,
     default=17,
     metavar="N",
     help="Coefficients per spectrum of an atlas entry, from --coefficients to 17.",
@@ -141,22 +137,15 @@ def parse_range(
     callback=parse_range,
     help="First and last wavelength of the spectra in nm, from 300 to 1000.",
 )
-@click.option(
-    "--step",
-    type=options.NUMBER,
-    default=5,
-    help="Distance of wavelengths in nm: 1, 5 or 10.",
-)
+@options.number("--step", default=5, help="Distance of wavelengths in nm: 1, 5 or 10.")
 @options.light(
     "Illuminant under which entries must keep their colour", "D65 A FL2 FL11 LED-B3"
 )
 @click.option(
     "--prior",
     default="learnt",
-    help=(
-        "Spectra of colours without measurements: learnt (from real materials) or "
-        "smooth."
-    ),
+    help="Spectra of colours without measurements: learnt (from real materials) or "
+    "smooth.",
 )
 @click.option(
     "--neutral",
@@ -178,18 +167,12 @@ def parse_range(
 @options.repeatable(
     "--exclude-family",
     "leave_out",
-    (
-        "Family of the shipped library that the learnt prior must not know, for tests "
-        "on "
-        "it"
-    ),
+    "Family of the shipped library that the learnt prior must not know, for tests on "
+    "it",
     metavar="FAMILY",
 )
-@click.option(
-    "--threshold",
-    type=options.NUMBER,
-    default=1e-4,
-    help="Largest residual of a node, |linear RGB|.",
+@options.number(
+    "--threshold", default=1e-4, help="Largest residual of a node, |linear RGB|."
 )
 @options.repeatable(
     "--scene",
@@ -201,16 +184,13 @@ def parse_range(
     "--growth",
     default="outward",
     help="Order of the nodes: outward from the entries, coarse-to-fine, or neighbours: "
-    "outward, each node from the "
-    "spectra of its neighbours.",
+    "outward, each node from the spectra of its neighbours.",
 )
 @click.option(
     "--solver",
     default="least-change",
-    help=(
-        "Solver: least-change, dogleg, levenberg-marquardt or gauss-newton. Only "
-        "nearly box-shaped spectra differ."
-    ),
+    help="Solver: least-change, dogleg, levenberg-marquardt or gauss-newton. Only "
+    "nearly box-shaped spectra differ.",
 )
 @options.encoding
 @options.input_space("--scene images")
@@ -221,17 +201,13 @@ def parse_range(
     help="Build the cube of a plan by 'uplift plan'.",
 )
 @options.out_of_gamut(*options.PIXELS, "pixels of --scene images")
-@click.option(
+@options.flag(
     "--seed-corners",
-    is_flag=True,
-    help=(
-        "Start all eight nodes around an entry from it: closer near entries, less so "
-        "for other materials."
-    ),
+    help="Start all eight nodes around an entry from it: closer near entries, less so "
+    "for other materials.",
 )
-@click.option(
+@options.flag(
     "--debug",
-    is_flag=True,
     help="Store the round of every node, and write slices as .exr next to the cube.",
 )
 @options.force
@@ -239,11 +215,7 @@ def parse_range(
 @options.verbose
 def command(
     plan_path: str | None,
-    files: tuple[str, ...],
-    scale: Any,
-    missing: Any,
     output: str | None,
-    images: tuple[str, ...],
     force: bool,
     quiet: bool,
     verbose: bool,
@@ -251,20 +223,20 @@ def command(
 ) -> None:
     enable_jit_cache()
     debug = settings["debug"]
-    if plan_path is not None:
-        planned = _of_plan(plan_path, output, debug)
+    if plan_path is None:
+        task = _task_of_atlases(output, **settings)
     else:
-        planned = _of_options(files, output, scale, missing, images, settings)
-    path = planned.path
+        task = _task_of_plan(plan_path, output, debug)
+    path = Path(task.output)
     if path.suffix.lower() in OTHER_FILES:
         hint = "give a name ending in .uplift; uplift export writes other formats"
         raise OutputError("cubes are .uplift files", path=path, hint=hint)
     slices = path.with_suffix(".exr") if debug else None
-    check_outputs(path, slices, inputs=planned.inputs)
+    check_outputs(path, slices, inputs=task.inputs)
     begin = time.perf_counter()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
-        cube, notes_of_build = collect_notes(partial(planned.make, progress=progress))
-    notes = [*planned.notes, *notes_of_build]
+        cube, notes = collect_notes(partial(task.make, progress=progress))
+    notes = [*task.notes, *notes]
     cube.save(path, force=force)
     if slices is not None:
         from uplift.extras.images.exr import write_slices
@@ -277,91 +249,82 @@ def command(
     if slices is not None:
         say(f"{slices}: {pluralise(cube.data.lattice.dim, 'blue slice')}")
     print_notes(cube, notes)
-    _print_assumptions(planned.atlas)
-
-
-@dataclass(frozen=True)
-class Planned:
-    """A build to run."""
-
-    make: Callable[..., Cube]
-    path: Path
-    inputs: tuple[str | Path, ...] = ()
-    """Files that it reads, next to those that parameters name."""
-    atlas: Atlas | None = None
-    notes: Sequence[UpliftWarning] = ()
-    """Notes of reading the atlas."""
-
-
-def _given() -> dict[str, str]:
-    """Return the options on the command line, by the names of their parameters."""
-    context = click.get_current_context()
-    return {
-        str(param.name): param.opts[-1]
-        for param in context.command.params
-        if context.get_parameter_source(str(param.name)) is ParameterSource.COMMANDLINE
-    }
-
-
-def _of_plan(path: str, output: str | None, debug: bool) -> Planned:
-    others = [text for name, text in _given().items() if name not in ALLOWED_WITH_PLAN]
-    if others:
-        raise click.UsageError(
-            f"The plan already sets these options: leave out {', '.join(others)}."
-        )
-    from uplift.extras.scene.plan.files import cube_name, read_plan
-
-    plan = read_plan(path)
-    inputs = (*plan.images.paths, *plan.atlases)
-    name = output or cube_name(path)
-    return Planned(partial(plan.build, debug=debug), Path(name), inputs)
-
-
-def _of_options(
-    files: tuple[str, ...],
-    output: str | None,
-    scale: Any,
-    missing: Any,
-    images: tuple[str, ...],
-    settings: dict[str, Any],
-) -> Planned:
-    given = _given()
-    useless = [given[name] for name in OF_IMAGES if name in given]
-    if useless and not images:
-        raise click.UsageError(
-            f"{', '.join(useless)}: no --scene image is given to which this applies."
-        )
-    name = output or _default_name(files, images, settings)
-    settings["shortest"], settings["longest"] = settings.pop("limits")
-    pixels = [settings.pop(option) for option in OF_IMAGES]
-    inputs = tuple(map(Path, expand_patterns(images)))
-    if images:
-        from uplift.extras.texture.scene_colours import Images
-
-        settings["scene"] = Images(inputs, *pixels)
-    from uplift.atlas import read_atlas
-    from uplift.pipeline.build import build
-
-    stated = {
-        option: value for option, value in settings.items() if value not in (None, ())
-    }
-    atlas = None
-    notes: list[UpliftWarning] = []
-    if files:
-        read = partial(read_atlas, *files, measured=scale, missing=missing)
-        atlas, notes = collect_notes(read)
-    return Planned(partial(build, atlas, **stated), Path(name), inputs, atlas, notes)
-
-
-def _print_assumptions(atlas: Atlas | None) -> None:
-    """Print the scale of files that state none."""
-    for source in () if atlas is None else atlas.sources:
+    for source in task.sources:  # of which some state no scale
         for note in source.assumptions:
             paragraph(f"{source.name}: {note}")
 
 
+@dataclass(frozen=True)
+class _Task:
+    """A cube to build: its file, what builds it, and the files that it reads."""
+
+    output: str | Path
+    make: Callable[..., Cube]
+    inputs: Sequence[str | Path] = ()
+    sources: Sequence[Source] = ()
+    notes: Sequence[UpliftWarning] = ()
+
+
+def _task_of_plan(plan_path: str, output: str | None, debug: bool) -> _Task:
+    from uplift.extras.scene.plan.files import cube_name, read_plan
+
+    given = options.given()
+    others = [given[name] for name in given if name not in ALLOWED_WITH_PLAN]
+    if others:
+        raise click.UsageError(
+            f"The plan already sets these options: leave out {', '.join(others)}."
+        )
+    plan = read_plan(plan_path)
+    return _Task(
+        cube_name(plan_path) if output is None else output,
+        partial(plan.build, debug=debug),
+        (*plan.images.paths, *plan.atlases),
+    )
+
+
+def _task_of_atlases(
+    output: str | None,
+    files: Sequence[str],
+    scale: Any,
+    missing: Any,
+    images: Sequence[str],
+    limits: tuple[float, float],
+    **settings: Any,
+) -> _Task:
+    if not images:
+        given = options.given()
+        useless = [given[name] for name in OF_IMAGES if name in given]
+        if useless:
+            raise click.UsageError(
+                f"{', '.join(useless)}: no --scene image is given to which this "
+                "applies."
+            )
+    if output is None:
+        output = _default_name(files, images, settings)
+    settings["shortest"], settings["longest"] = limits
+    pixels = [settings.pop(name) for name in OF_IMAGES]
+    paths: tuple[Path, ...] = ()
+    if images:
+        from uplift.extras.texture.scene_colours import Images
+
+        paths = tuple(map(Path, expand_patterns(images)))
+        settings["scene"] = Images(paths, *pixels)
+    from uplift.atlas import read_atlas
+    from uplift.pipeline.build import build
+
+    stated = {
+        name: value for name, value in settings.items() if value not in (None, ())
+    }
+    if not files:
+        return _Task(output, partial(build, None, **stated), paths)
+    read = partial(read_atlas, *files, measured=scale, missing=missing)
+    atlas, notes = collect_notes(read)
+    make = partial(build, atlas, **stated)
+    return _Task(output, make, paths, atlas.sources, notes)
+
+
 def _default_name(
-    atlases: tuple[str, ...], images: tuple[str, ...], settings: dict[str, Any]
+    atlases: Sequence[str], images: Sequence[str], settings: dict[str, Any]
 ) -> str:
     """Return the name of a cube file: atlases, dim, and the space if it is not sRGB."""
     from uplift.colorimetry.camera import CAMERA
@@ -379,22 +342,16 @@ def _default_name(
 
 def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
     data = cube.data
-    counts = cube.data.points.counts()
-    measured = data.atlas.measured_count
-    looks = data.atlas.looks
+    counts = data.points.counts()
     facts = [f"{data.lattice.dim}³ nodes"]
     if data.complete_cells is not None:
         count = int(data.points.present.sum())
-        facts = [
-            (
-                f"{count:,} of {pluralise(data.lattice.size, 'node')} "
-                f"({count / data.lattice.size:.1%})"
-            )
-        ]
+        nodes = pluralise(data.lattice.size, "node")
+        facts = [f"{count:,} of {nodes} ({count / data.lattice.size:.1%})"]
     if data.provenance["atlases"]:
-        facts.append(pluralise(measured, "atlas entry"))
-    if looks:
-        facts.append(pluralise(looks, "look"))
+        facts.append(pluralise(data.atlas.measured_count, "atlas entry"))
+    if data.atlas.looks:
+        facts.append(pluralise(data.atlas.looks, "look"))
     facts += [f"{path.stat().st_size / 1e6:.1f} MB", f"{seconds:.1f} s"]
     paragraph(f"{path}: {', '.join(facts)}")
     if unrealisable := counts["unrealisable"]:

@@ -5,7 +5,6 @@ the cube to build.
 from __future__ import annotations
 
 from functools import partial
-from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -57,10 +56,8 @@ FILES = ("chart.csv", "chart.png", "chart.html")
     "--method", "patterns", "Methods by name, with '*' as a wildcard", metavar="PATTERN"
 )
 @options.atlas("Measured spectra", DEFAULT_ATLASES)
-@click.option(
-    "--quick",
-    is_flag=True,
-    help="Few methods and repeats: about a minute instead of half an hour.",
+@options.flag(
+    "--quick", help="Few methods and repeats: about a minute instead of half an hour."
 )
 @click.option(
     "--from",
@@ -68,31 +65,21 @@ FILES = ("chart.csv", "chart.png", "chart.html")
     metavar="CSV",
     help="Table of an earlier chart to draw or to recommend from.",
 )
-@click.option(
+@options.flag(
     "--recommend",
-    is_flag=True,
-    help=(
-        "Recommend a cube for common situations, or for limits, by the packaged "
-        "chart or --from."
-    ),
+    help="Recommend a cube for common situations, or for limits, by the packaged chart "
+    "or --from.",
 )
-@click.option(
-    "--time-ns",
-    type=options.NUMBER,
-    help="With --recommend: largest CPU time per RGB, in ns.",
-)
+@options.number("--time-ns", help="With --recommend: largest CPU time per RGB, in ns.")
 @options.tolerance("delta_e", help="With --recommend: largest mean ΔE00.")
 @click.option(
     "--light",
-    help=(
-        "With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: "
-        "mean of five]"
-    ),
+    help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: "
+    "mean of five]",
 )
-@click.option(
+@options.flag(
     "--atlas-materials",
     "own",
-    is_flag=True,
     help="With --recommend: ΔE00 of the atlas entries instead of unseen materials.",
 )
 @options.force
@@ -118,11 +105,10 @@ def command(
     from uplift.lab.chart.results import chart_csv, read_chart
 
     check_folder(output, FILES, inputs=atlas_files(files))
-    chart = (
-        read_chart(source)
-        if source is not None
-        else _measure(files, patterns, quick=quick)
-    )
+    if source is None:
+        chart = _measure(files, patterns, quick=quick)
+    else:
+        chart = read_chart(source)
     table = partial(write_text, chart_csv(chart))
     page = partial(write_text, render_chart(chart))
     write_files(output, FILES, table, partial(write_picture, chart), page)
@@ -141,17 +127,16 @@ def _recommend(source: str | None, required: dict[str, Any]) -> None:
     )
 
     chart = read_chart(source) if source is not None else shipped_chart()
-    for title, each in (
-        {"": Requirement(**required)}.items()
-        if any(required.values())
-        else SITUATIONS.items()
-    ):
-        row = recommend_cube(chart, each)
+    situations = SITUATIONS
+    if any(required.values()):
+        situations = {"": Requirement(**required)}
+    for title, requirement in situations.items():
+        row = recommend_cube(chart, requirement)
         paragraph(
             f"{title}{': ' * bool(title)}{row.title}: "
             f"{format_time(row.numbers['time_ns'])} per RGB, mean ΔE00 "
-            f"{format_error(row.numbers[each.error])} {each.description}, "
-            f"{format_size(row.numbers['bytes'])}"
+            f"{format_error(row.numbers[requirement.error])} "
+            f"{requirement.description}, {format_size(row.numbers['bytes'])}"
         )
         say(f"  {row.build}")
         say(f"  {row.call}")
@@ -175,16 +160,15 @@ def _print_fronts(chart: Chart) -> None:
 
     say("Pareto fronts, from the fastest to the most accurate")
     tables = []
-    for criterion in chain.from_iterable(
-        criteria(batch)[:PRINTED] for batch in chart.batches
-    ):
-        title = f"{criterion.title}: {criterion.colours}"
-        table = make_table(("method",), ("time", criterion.unit, "bytes"), title=title)
-        for row in criterion.front(chart):
-            table.add_row(
-                row.method, *criterion.labels(row), format_size(row.numbers["bytes"])
-            )
-        tables.append(table)
+    for batch in chart.batches:
+        for criterion in criteria(batch)[:PRINTED]:
+            title = f"{criterion.title}: {criterion.colours}"
+            numbers = ("time", criterion.unit, "bytes")
+            table = make_table(("method",), numbers, title=title)
+            for row in criterion.front(chart):
+                size = format_size(row.numbers["bytes"])
+                table.add_row(row.method, *criterion.labels(row), size)
+            tables.append(table)
     show(*tables)
     for row in chart.results:
         if row.state != State.MEASURED:

@@ -1,12 +1,11 @@
-"""``uplift check``: compare stored cubes with rebuilt ones, for continuous
-integration.
-"""
+"""``uplift check``: compare stored cubes with rebuilt ones."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,8 +20,9 @@ from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
+    from rich.text import Text
+
     from uplift.common.progress import ProgressCallback
-    from uplift.extras.report.regression import RebuildDifference
     from uplift.lookup import Cube
 
 
@@ -59,15 +59,13 @@ if TYPE_CHECKING:
     shell_complete=options.complete_cube,
 )
 @options.atlas_folders
-@click.option(
-    "--update", is_flag=True, help="Replace the cubes that differ by the rebuilt ones."
-)
-@options.output_format("table", "json")
+@options.flag("--update", help="Replace the cubes that differ by the rebuilt ones.")
+@options.table_or_json
 @options.quiet
 @options.verbose
 def command(
-    files: tuple[str, ...],
-    folders: tuple[str, ...],
+    files: Sequence[str],
+    folders: Sequence[str],
     update: bool,
     style: str,
     quiet: bool,
@@ -78,91 +76,88 @@ def command(
         results = [
             _check(Path(file), folders, progress) for file in dict.fromkeys(files)
         ]
-    records = [result.record() for result in results]
+    records = [record for record, _, _ in results]
     if style == "json":
         print_json(records)
     elif not quiet:
         _print_table(records)
-    kept = 0
+    code = 0
     for result in results:
-        if result.failures and update and result.rebuilt:
-            result.rebuilt.save(result.path, force=True)
-            say(f"{result.path}: replaced", err=True)
-        elif result.failures:
-            kept += 1
-            if result.error and style != "json":
-                CommandFailure(result.error).show()
-    if any(result.error for result in results):
-        raise SystemExit(BAD_INPUT)
-    if kept:
-        raise SystemExit(FAILED_CHECK)
+        code = max(code, _settle(*result, update=update, is_shown=style != "json"))
+    if code:
+        raise SystemExit(code)
 
 
-@dataclass
-class Result:
-    """A check of a cube: what could be done of it before an error."""
-
-    path: Path
-    rebuilt: Cube | None = None
-    comparison: RebuildDifference | None = None
-    error: UpliftError | None = None
-    noted: Sequence[UpliftWarning] = ()
-
-    @property
-    def changed(self) -> list[str]:
-        """Notes of atlases that have changed."""
-        return [note.problem for note in self.noted if note.code == "atlas-changed"]
-
-    @property
-    def failures(self) -> list[str]:
-        """Names of the measures and codes of the errors that failed."""
-        failures = list(self.comparison.failures) if self.comparison else []
-        if self.error:
-            return [*failures, self.error.code]
-        return [*failures, "atlas-changed"] if self.changed else failures
-
-    def record(self) -> dict[str, Any]:
-        """Describe the check in JSON values."""
-        notes = [note.problem for note in self.noted if note.code != "atlas-changed"]
-        record = {
-            "cube": str(self.path),
-            "passed": not self.failures,
-            "failures": self.failures,
-            "measures": {},
-            "status": {},
-            "atlas_changed": self.changed,
-            "notes": notes,
-            "entries": [],
-            "error": error_object(self.error) if self.error else None,
-        }
-        if self.comparison:
-            record["measures"] = self.comparison.measures
-            record["status"] = {
-                "stored": self.comparison.stored_counts,
-                "rebuilt": self.comparison.rebuilt_counts,
-            }
-            record["entries"] = [asdict(entry) for entry in self.comparison.entries]
-        return record
+def _settle(
+    record: dict[str, Any],
+    rebuilt: Cube | None,
+    error: UpliftError | None,
+    *,
+    update: bool,
+    is_shown: bool,
+) -> int:
+    """Replace a failed cube or show its error, and return the exit code."""
+    is_failed = not record["passed"]
+    if is_failed and update and rebuilt:
+        rebuilt.save(record["cube"], force=True)
+        say(f"{record['cube']}: replaced", err=True)
+        is_failed = False
+    elif error and is_shown:
+        CommandFailure(error).show()
+    if error:
+        return BAD_INPUT
+    return FAILED_CHECK if is_failed else 0
 
 
-def _check(path: Path, folders: Sequence[str], progress: ProgressCallback) -> Result:
-    """Rebuild a cube and compare."""
+def _check(
+    path: Path, folders: Sequence[str], progress: ProgressCallback
+) -> tuple[dict[str, Any], Cube | None, UpliftError | None]:
+    """Return the record of a check, the rebuilt cube if there is one, and the error
+    that prevented the comparison.
+    """
     from uplift.extras.report.rebuild import rebuild
     from uplift.extras.report.regression import compare_rebuilt
     from uplift.lookup import load
 
-    result = Result(path)
-    try:
-        stored = load(path)
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", UpliftWarning)
-            result.rebuilt = rebuild(stored, path, folders, progress=progress)
-        messages = [warning.message for warning in caught]
-        result.noted = [note for note in messages if isinstance(note, UpliftWarning)]
-        result.comparison = compare_rebuilt(path, stored.data, result.rebuilt.data)
-    except UpliftError as error:
-        result.error = error
-    return result
+    rebuilt = comparison = error = None
+    notes: list[UpliftWarning] = []
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UpliftWarning)
+        try:
+            stored = load(path)
+            rebuilt = rebuild(stored, path, folders, progress=progress)
+            messages = [warning.message for warning in caught]
+            notes = [note for note in messages if isinstance(note, UpliftWarning)]
+            comparison = compare_rebuilt(path, stored.data, rebuilt.data)
+        except UpliftError as cause:
+            error = cause
+    failures = list(comparison.failures) if comparison else []
+    problems = defaultdict(list)
+    for note in notes:
+        problems[note.code == "atlas-changed"].append(note.problem)
+    if error:
+        failures.append(error.code)
+    elif problems[True]:
+        failures.append("atlas-changed")
+    record = {
+        "cube": str(path),
+        "passed": not failures,
+        "failures": failures,
+        "measures": {},
+        "status": {},
+        "atlas_changed": problems[True],
+        "notes": problems[False],
+        "entries": [],
+        "error": error_object(error) if error else None,
+    }
+    if comparison:
+        record["measures"] = comparison.measures
+        record["status"] = {
+            "stored": comparison.stored_counts,
+            "rebuilt": comparison.rebuilt_counts,
+        }
+        record["entries"] = list(map(asdict, comparison.entries))
+    return record, rebuilt, error
 
 
 def _short(value: float) -> str:
@@ -171,8 +166,6 @@ def _short(value: float) -> str:
 
 
 def _print_table(records: Sequence[dict[str, Any]]) -> None:
-    from rich.text import Text
-
     from uplift.extras.report.regression import LIMITS
 
     headings = {
@@ -183,32 +176,33 @@ def _print_table(records: Sequence[dict[str, Any]]) -> None:
     }
     measures = [headings.get(name, name.removeprefix("delta_e_")) for name in LIMITS]
     table = make_table(("cube", "result", "atlas", "nodes"), measures)
-    passed = Text("passed", style="green")
-    failed = Text("FAILED", style="bold red")
     for record in records:
-        failures = record["failures"]
-        cells = dict.fromkeys(("atlas-changed", "status", *LIMITS), "–")
-        if record["measures"]:
-            cells |= {"atlas-changed": "same", "status": "same"}
-            cells |= {name: _short(record["measures"][name]) for name in LIMITS}
-            differing = {"atlas-changed": "changed", "status": "differs"}
-            cells |= {name: differing[name] for name in differing if name in failures}
-        styled = [
-            Text(text, style="bold red" if name in failures else "")
-            for name, text in cells.items()
-        ]
-        verdict = passed if record["passed"] else failed
-        table.add_row(record["cube"], verdict, *styled)
+        table.add_row(record["cube"], *_cells(record, LIMITS))
     limits = map(_short, LIMITS.values())
     table.add_row("limit", "", "same", "same", *limits, style="dim")
     show(table)
-    _print_changes(records)
-
-
-def _print_changes(records: Sequence[dict[str, Any]]) -> None:
     for record in records:
         for problem in (*record["atlas_changed"], *record["notes"]):
             paragraph(f"{record['cube']}: {problem}")
         for entry in record["entries"]:
             by = "" if entry["delta_e"] is None else f", ΔE00 {entry['delta_e']:.2g}"
             say(f"  {entry['name']}: {entry['change']}{by}")
+
+
+def _cells(record: dict[str, Any], measures: Iterable[str]) -> Iterator[Text]:
+    """Yield the verdict, and every comparison, red where it failed."""
+    from rich.text import Text
+
+    if record["passed"]:
+        yield Text("passed", style="green")
+    else:
+        yield Text("FAILED", style="bold red")
+    texts = dict.fromkeys(("atlas-changed", "status", *measures), "–")
+    failed = dict.fromkeys(record["failures"], "bold red")
+    if record["measures"]:
+        texts["atlas-changed"] = "changed" if "atlas-changed" in failed else "same"
+        texts["status"] = "differs" if "status" in failed else "same"
+        for name in measures:
+            texts[name] = _short(record["measures"][name])
+    for name, text in texts.items():
+        yield Text(text, style=failed.get(name, ""))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import click
@@ -63,38 +65,31 @@ SPECTRA = ("surfaces.csv", "lights.csv")
 @options.tolerance(
     help="Print the cheapest representation with 97.5 % of errors below this value."
 )
-@click.option(
+@options.flag(
     "--filters",
-    is_flag=True,
     help=(
         "Also search the best low-pass filters for point sampling, which takes minutes."
     ),
 )
-@click.option(
-    "--all",
-    "every",
-    is_flag=True,
-    help="Print all representations, not the Pareto front alone.",
+@options.flag(
+    "--all", "every", help="Print all representations, not the Pareto front alone."
 )
-@click.option(
-    "--quick",
-    is_flag=True,
-    help="At most forty surfaces, few repeats and a coarse search: seconds.",
+@options.flag(
+    "--quick", help="At most forty surfaces, few repeats and a coarse search: seconds."
 )
 @click.option(
     "--write",
     metavar="NAME",
     help="Write surfaces and lights as a representation or filter stores them to "
-    "--output, and compare nothing: PS16, "
-    "PF16, RS32, TM9, SG3, or PS16:KIND:EXTENT:PARAMETERS with a filter, such as "
-    "PS16:gaussian:7:0.5.",
+    "--output, and compare nothing: PS16, PF16, RS32, TM9, SG3, or "
+    "PS16:KIND:EXTENT:PARAMETERS with a filter, such as PS16:gaussian:7:0.5.",
 )
 @options.output(help="Folder for tables and plots.", metavar="DIR")
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.force
 def command(
-    files: tuple[str, ...],
-    lights: tuple[Illuminant, ...],
+    files: Sequence[str],
+    lights: Sequence[Illuminant],
     tolerance: float | None,
     filters: bool,
     every: bool,
@@ -126,13 +121,12 @@ def command(
             write_costs,
         )
 
-        page = partial(write_text, render_comparison(comparison, tuned))
         write_files(
             output,
             FILES,
             partial(write_boxes, comparison),
             partial(write_costs, comparison),
-            page,
+            partial(write_text, render_comparison(comparison, tuned)),
         )
     if tolerance is not None:
         _print_advice(comparison, tolerance)
@@ -143,7 +137,7 @@ def command(
 
 
 def _write_spectra(
-    name: str, files: tuple[str, ...], lights: tuple[Illuminant, ...], output: str
+    name: str, files: Sequence[str], lights: Sequence[Illuminant], output: str
 ) -> None:
     from uplift.atlas import merge, write_atlas
     from uplift.extras.scene.representations import find_representation
@@ -162,8 +156,8 @@ def _write_spectra(
 
 
 def _measure(
-    files: tuple[str, ...],
-    lights: tuple[Illuminant, ...],
+    files: Sequence[str],
+    lights: Sequence[Illuminant],
     *,
     filters: bool,
     quick: bool,
@@ -178,7 +172,8 @@ def _measure(
     from uplift.lab.comparison.fitted import scene_representations
 
     scene = make_scene(read_atlases(files), lights)
-    scene = scene.thinned() if quick else scene
+    if quick:
+        scene = scene.thinned()
     with progress_bar("representations") as progress:
         comparison = compare(
             scene, scene_representations(scene), quick=quick, progress=progress
@@ -206,9 +201,8 @@ def _print_advice(comparison: Comparison, tolerance: float) -> None:
         else:
             text = (
                 f"{row.name} ({row.family}): 97.5 % below "
-                f"{format_error(row.statistics.q97_5)}, "
-                f"{row.floats:.4g} floats per surface, {row.light_floats:.4g} per "
-                "light, "
+                f"{format_error(row.statistics.q97_5)}, {row.floats:.4g} floats per "
+                f"surface, {row.light_floats:.4g} per light, "
                 f"{format_time(row.ns.median)} per product"
             )
         say(f"{title}: {text}")
@@ -226,23 +220,18 @@ def _print_table(
         table = make_table(("representation",), numbers, title=f"ΔE00 under {title}")
         for row in comparison.of(name) if every else pareto(comparison, name):
             errors = (row.statistics.mean, row.statistics.median, row.statistics.q97_5)
-            cost = (
-                f"{row.floats:.1f}",
-                f"{row.light_floats:.1f}",
-                format_time(row.ns.median),
-            )
-            table.add_row(row.name, *(f"{error:.3f}" for error in errors), *cost)
+            floats = map("{:.1f}".format, (row.floats, row.light_floats))
+            time = format_time(row.ns.median)
+            table.add_row(row.name, *map("{:.3f}".format, errors), *floats, time)
         tables.append(table)
     if tuned:
         title = "point sampling after the best low-pass filter of each kind"
-        table = make_table(
-            ("lights", "samples", "filter", "parameters"), HEADINGS, title=title
-        )
-        for one in sorted(
-            tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)
-        ):
-            values = (f"{value:.3f}" for value in one.statistics)
-            table.add_row(one.lights, str(one.count), one.kind, one.parameters, *values)
+        texts = ("lights", "samples", "filter", "parameters")
+        table = make_table(texts, HEADINGS, title=title)
+        order = attrgetter("lights", "count", "statistics.mean")
+        for best in sorted(tuned, key=order):
+            setting = (best.lights, str(best.count), best.kind, best.parameters)
+            table.add_row(*setting, *map("{:.3f}".format, best.statistics))
         tables.append(table)
     show(*tables)
 

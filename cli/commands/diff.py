@@ -38,8 +38,7 @@ from ..outputs import check_outputs
 @options.light("Illuminant", "D65 A FL2 FL11 LED-B3")
 @options.tolerance(
     help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by "
-    "more, if one cube alone lacks a "
-    "colour, or if entries were added or removed."
+    "more, if one cube alone lacks a colour, or if entries were added or removed."
 )
 @click.option(
     "--worst",
@@ -51,7 +50,7 @@ from ..outputs import check_outputs
 @options.output(
     help="HTML page with pictures of where the cubes differ.", type=options.FIGURE_PAGE
 )
-@options.output_format("table", "json")
+@options.table_or_json
 @options.force
 def command(
     first: str,
@@ -83,19 +82,19 @@ def command(
             path: picture.rgb.astype(float)
             for path, picture in zip(paths, read, strict=True)
         }
-        found = diff_cubes(cubes, lights or SCENE_LIGHTS, pictures)
+        difference = diff_cubes(cubes, lights or SCENE_LIGHTS, pictures)
         if output is not None:
             from uplift.extras.report.diff_page import render_diff
 
-            write_text(render_diff(found, pictures, worst), output, force=force)
-    figures = to_json(found, tolerance, worst)
+            write_text(render_diff(difference, pictures, worst), output, force=force)
+    figures = to_json(difference, tolerance, worst)
     if style == "json":
         print_json(figures)
     else:
         _print(figures)
         if output is not None:
             say(f"{output}: where they differ")
-    if tolerance is not None and not found.is_within(tolerance):
+    if tolerance is not None and not difference.is_within(tolerance):
         raise SystemExit(1)
 
 
@@ -103,22 +102,26 @@ def _print(figures: dict[str, Any]) -> None:
     moved = ("moved",) if "tolerance" in figures else ()
     table = make_table(("colours", "light"), ("mean ΔE00", "95 %", "largest", *moved))
     for row in figures["differences"]:
-        numbers = [f"{row[name]:.3f}" for name in ("mean", "p95", "max")]
-        counts = [f"{row[name]:,}" for name in moved]
+        numbers = map("{:.3f}".format, (row["mean"], row["p95"], row["max"]))
+        counts = (f"{row[name]:,}" for name in moved)
         table.add_row(row["set"], row["light"], *numbers, *counts)
     worst = make_table(("worst colours", "linear RGB", "light"), ("ΔE00",))
     for row in figures["worst"]:
-        rgb = " ".join(f"{value:.4f}" for value in row["rgb"])
-        worst.add_row(
-            row.get("entry", row["set"]), rgb, row["light"], f"{row['delta_e']:.3f}"
-        )
+        name = row.get("entry", row["set"])
+        rgb = " ".join(map("{:.4f}".format, row["rgb"]))
+        worst.add_row(name, rgb, row["light"], f"{row['delta_e']:.3f}")
     show(table, *([worst] if figures["worst"] else []))
     for change in ("removed", "added"):
-        if figures[f"entries_{change}"]:
-            paragraph(f"entries {change}: {', '.join(figures[f'entries_{change}'])}")
+        if names := figures[f"entries_{change}"]:
+            paragraph(f"entries {change}: {', '.join(names)}")
     for row in figures["lacking"]:
-        colours = pluralise(row["colours"], "colour")
-        say(f"{row['set']}: {row['cubes']} cannot answer {colours}")
+        say(
+            f"{row['set']}: {row['cubes']} cannot answer "
+            f"{pluralise(row['colours'], 'colour')}"
+        )
     if "tolerance" in figures:
-        failed = f"FAILED: the tolerance is ΔE00 {figures['tolerance']:g}"
-        say("passed" if figures["passed"] else failed)
+        say(
+            "passed"
+            if figures["passed"]
+            else f"FAILED: the tolerance is ΔE00 {figures['tolerance']:g}"
+        )

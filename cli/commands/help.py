@@ -110,13 +110,13 @@ def _find_context(names: Iterable[str]) -> click.Context:
 
 def _print_parts(parts: Iterable[Part]) -> None:
     """Print paragraphs and tables, with a blank line between them."""
-    for number, part in enumerate(parts):
+    for number, content in enumerate(parts):
         if number:
             say()
-        if isinstance(part, str):
-            paragraph(" ".join(part.split()))
+        if isinstance(content, str):
+            paragraph(" ".join(content.split()))
         else:
-            print_fields(part)
+            print_fields(content)
 
 
 def _illuminants() -> list[Part]:

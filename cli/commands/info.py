@@ -46,7 +46,7 @@ OPTIONS = {
 @click.argument(
     "cube", metavar="[CUBE]", required=False, shell_complete=options.complete_cube
 )
-@options.output_format("table", "json")
+@options.table_or_json
 def command(cube: str | None, style: str) -> None:
     from uplift.cube import summarise
     from uplift.lookup import load
@@ -64,8 +64,8 @@ def print_facts(name: str, fields: dict[str, Any], style: str) -> None:
         del provenance["left_out"]
     settings = provenance.pop("options", {})
     looks = {
-        f"look {each['name'].removeprefix('look ')}": _look(each)
-        for each in provenance.pop("looks", ())
+        f"look {look['name'].removeprefix('look ')}": _look(look)
+        for look in provenance.pop("looks", ())
     }
     facts = fields | looks | provenance
     if "status" in facts:  # of a cube
@@ -95,12 +95,9 @@ def _as_options(settings: dict[str, Any]) -> str:
         if isinstance(value, bool):
             words += [option] * value
         else:
-            values = value if isinstance(value, list) else [value]
-            values = [
-                each["name"] if isinstance(each, dict) else each for each in values
-            ]
-            for item in values:
-                text = f"{item:g}" if isinstance(item, float) else str(item)
+            for item in value if isinstance(value, list) else [value]:
+                name = item["name"] if isinstance(item, dict) else item
+                text = f"{name:g}" if isinstance(name, float) else str(name)
                 words.append(f"{option} {shlex.quote(text)}")
     return " ".join(words)
 
@@ -111,15 +108,11 @@ def _look(record: dict[str, Any]) -> str:
 
     from uplift.extras.colour.srgb import hex_codes
 
-    wishes = (
-        (
-            f"{each['light']} {hex_codes(np.array([each['wish']]))[0]} (ΔE00 "
-            f"{each['delta_e']:.2f})"
-        )
-        for each in record["lights"]
-    )
-    weight = "" if record["weight"] == 1 else f"weight {record['weight']:g}, "
-    return weight + ", ".join(wishes)
+    facts = [] if record["weight"] == 1 else [f"weight {record['weight']:g}"]
+    for light in record["lights"]:
+        [code] = hex_codes(np.array([light["wish"]]))
+        facts.append(f"{light['light']} {code} (ΔE00 {light['delta_e']:.2f})")
+    return ", ".join(facts)
 
 
 def _text(value: Any) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -83,7 +83,7 @@ def command() -> None:
 @options.force
 @options.quiet
 def build(
-    files: tuple[str, ...],
+    files: Sequence[str],
     output: str | None,
     space: str,
     observer: str,
@@ -102,8 +102,7 @@ def build(
         knots, rings = table.data.lattice.shape
         say(
             f"{path}: {knots} × {rings} nodes, "
-            f"{pluralise(len(table.lamp_names), 'lamp')}, "
-            "expected ΔE00 of surfaces "
+            f"{pluralise(len(table.lamp_names), 'lamp')}, expected ΔE00 of surfaces "
             f"{float(table.expected_error([1.0, 1.0, 1.0])):.1f} (white), "
             f"{path.stat().st_size / 1e6:.1f} MB, {time.perf_counter() - begin:.1f} s"
         )
@@ -124,7 +123,7 @@ def build(
     """,
 )
 @table_argument
-@options.output_format("table", "json")
+@options.table_or_json
 @options.plot("Plot colours, expected errors and lamps over u′v′")
 @options.page(
     "Write a page with the plots, answers to random lights, and all lamps.",
@@ -181,13 +180,12 @@ def export(table_path: str, output: str, table: str | None, force: bool) -> None
         raise click.UsageError(f"--output must end in {' or '.join(LANGUAGES)}.")
     files = output_files(output, check_form(language, table))
     path = check_output(files[0], inputs=[table_path], force=force)
-    check_outputs(
-        files, inputs=[table_path], force=True
-    )  # a table that exists is judged by its content
+    # a table that exists is judged by its content
+    check_outputs(files, inputs=[table_path], force=True)
     data = load_emission(table_path).data
     written = write_light_program(data, path, style=language, form=table, force=force)
-    size = sum(each.stat().st_size for each in written) / 1e6
-    tables = "".join(f", table in {each}" for each in written[1:])
+    size = sum(file.stat().st_size for file in written) / 1e6
+    tables = "".join(map(", table in {}".format, written[1:]))
     knots, rings = data.lattice.shape
     lamps = pluralise(len(data.entries.names), "lamp")
     say(f"{path}: {pluralise(knots * rings, 'node')}, {lamps}, {size:.1f} MB{tables}")
@@ -219,11 +217,10 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
     from uplift.extras.texture import Spectrum
 
     table = None if table_path is None else os.path.abspath(find_table(table_path))
-    own = load_emission(
-        table_path
-    ).wavelengths  # a table that cannot be read is reported before images are
+    # a table that cannot be read is reported before images are
+    loaded = load_emission(table_path)
     if wavelengths is not None:
-        check_range(wavelengths, own)
+        check_range(wavelengths, loaded.wavelengths)
     convert((table,), Spectrum(as_tuple(wavelengths)), emission=True, **settings)
 
 
@@ -250,12 +247,10 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
 @options.choice(
     *("--out-of-gamut", "error", "clip"),
     name="outside",
-    help=(
-        "Treatment of colours that no light has: raise an error, or take the nearest "
-        "one towards white."
-    ),
+    help="Treatment of colours that no light has: raise an error, or take the nearest "
+    "one towards white.",
 )
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.plot("Plot the spectra")
 @options.force
 def query(
@@ -277,44 +272,44 @@ def query(
     table = load_emission(table_path)
     at = table.wavelengths if wavelengths is None else wavelengths
     check_range(at, table.wavelengths)
-    blocks = (
-        [np.array([source.xyz])]
-        if source.xyz
-        else map(table.xyz, source.blocks(sensor(table.space)))
-    )
+    if source.xyz:
+        blocks: Iterable[Array] = [np.array([source.xyz])]
+    else:
+        blocks = map(table.xyz, source.blocks(sensor(table.space)))
     results: Iterable[dict[str, Any]] = _answers(table, blocks, at, outside)
     if plot_path is not None:
         from uplift.extras.pages.plots import plot_lights
 
         results = list(results)
-        spectra = [(np.array(light["rgb"]), at, light["power"]) for light in results]
-        plot_lights(spectra, table, plot_path, force=force)
+        lights = [(np.array(light["rgb"]), at, light["power"]) for light in results]
+        plot_lights(lights, table, plot_path, force=force)
         say(f"{plot_path}: {pluralise(len(results), 'light')}", err=True)
     if style == "json":
         values = (result | {"power": result["power"].tolist()} for result in results)
         print_json_answers(values, single=source.single)
     elif style == "csv":
-        header = ["r", "g", "b", "expected_error", *(f"{nm:g}" for nm in at)]
-        rows = (
-            [*light["rgb"], light["expected_error"], *light["power"].tolist()]
-            for light in results
-        )
-        print_csv(header, rows)
+        header = ["r", "g", "b", "expected_error", *map("{:g}".format, at)]
+        print_csv(header, map(_csv_row, results))
     elif source.single:
         (result,) = results
         _print_light(result, table.space, at, complete=wavelengths is not None)
     else:
         say(f"{'linear RGB':<34}{'ΔE00':>6}  spectrum")
         for result in results:
-            text = " ".join(f"{value:.4g}" for value in result["rgb"])
+            text = " ".join(map("{:.4g}".format, result["rgb"]))
             shape = sparkline(result["power"] / _peak(result["power"]), 32)
             say(f"{text:<34}{result['expected_error']:>6.2f}  {shape}")
 
 
+def _csv_row(result: dict[str, Any]) -> Sequence[float]:
+    return [*result["rgb"], result["expected_error"], *result["power"].tolist()]
+
+
 def _print_light(
-    result: dict[str, Any], space: str, at: Array, *, complete: bool
+    result: dict[str, Any], space: str, wavelengths: Array, *, complete: bool
 ) -> None:
     power = result["power"]
+    peak = f"{power.max():.5g} at {wavelengths[power.argmax()]:g} nm"
     fields = {
         "linear RGB": f"{format_rgb(result['rgb'])} ({space})",
         "round trip": format_rgb(result["round_trip"]["rgb"]),
@@ -322,9 +317,9 @@ def _print_light(
             f"ΔE00 {result['expected_error']:.2g} of surfaces, to a measured lamp of "
             "this RGB"
         ),
-        "peak": f"{power.max():.5g} at {at[power.argmax()]:g} nm",
+        "peak": peak,
     }
-    print_spectrum(fields, at, power, complete=complete, highest=_peak(power))
+    print_spectrum(fields, wavelengths, power, complete=complete, highest=_peak(power))
 
 
 def _answers(

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 from uplift.common.errors import OutputError, UpliftWarning
 from uplift.common.text import pluralise
@@ -102,46 +102,37 @@ if TYPE_CHECKING:
 @click.option(
     "--additive", "kind", flag_value="light", help="Add lights; PARTS is the intensity."
 )
-@click.option(
+@options.number(
     "--thickness",
-    type=options.NUMBER,
     metavar="X",
     help="Thickness of the coat. [default: opaque; dyes, --duntley: 1]",
 )
 @click.option(
     "--ground", metavar="COLOUR", help="Substrate of the coat. [default: white]"
 )
-@click.option(
+@options.number(
     "--refractive-index",
-    type=options.NUMBER,
     default=1.0,
     metavar="N",
     help="Refractive index of the binder, 1.5 for oil; 1 leaves out the surface.",
 )
-@click.option(
+@options.number(
     "--surface-reflectance",
-    type=options.NUMBER,
     metavar="K1",
-    help=(
-        "Saunderson's reflectance of the surface for light from air. [default: by "
-        "--refractive-index]"
-    ),
+    help="Saunderson's reflectance of the surface for light from air. [default: by "
+    "--refractive-index]",
 )
-@click.option(
+@options.number(
     "--internal-reflectance",
-    type=options.NUMBER,
     metavar="K2",
-    help=(
-        "Saunderson's reflectance of the surface for diffuse light from within. "
-        "[default: by --refractive-index]"
-    ),
+    help="Saunderson's reflectance of the surface for diffuse light from within. "
+    "[default: by --refractive-index]",
 )
 @click.option(
     "--plate",
     type=click.Choice(("reflected", "transmitted")),
     help="With --dye: the light that a free plate of the dye reflects, with --ground "
-    "behind it, or transmits. "
-    "--refractive-index is that of the plate.",
+    "behind it, or transmits. --refractive-index is that of the plate.",
 )
 @options.choice(
     "--scattering",
@@ -150,13 +141,10 @@ if TYPE_CHECKING:
     "strongest on the long-wave side of "
     "an absorption, root is √R for a reflectance R, constant is 1.",
 )
-@click.option(
+@options.flag(
     "--theories",
-    is_flag=True,
-    help=(
-        "Mix the colours by every model: Kubelka and Munk, Amy, Duntley, dyes, "
-        "filters, and heuristics of RGB."
-    ),
+    help="Mix the colours by every model: Kubelka and Munk, Amy, Duntley, dyes, "
+    "filters, and heuristics of RGB.",
 )
 @options.cube()
 @options.atlas("Measured spectra whose entries are ingredients")
@@ -166,7 +154,7 @@ if TYPE_CHECKING:
     "which keeps the hue of bright mixtures; ingredients: error",
     "mixtures and pixels",
 )
-@options.output_format("table", "json")
+@options.table_or_json
 @options.plot("Plot the ramp from the first ingredient to the last")
 @click.option(
     "--steps",
@@ -184,7 +172,7 @@ if TYPE_CHECKING:
 )
 @options.force
 def command(
-    words: tuple[str, ...],
+    words: Sequence[str],
     kind: str,
     thickness: float | None,
     ground: str | None,
@@ -192,7 +180,7 @@ def command(
     scattering: str,
     theories: bool,
     cube_path: str | None,
-    files: tuple[str, ...],
+    files: Sequence[str],
     wavelengths: Array | None,
     method: str,
     style: str,
@@ -207,9 +195,9 @@ def command(
 ) -> None:
     from uplift.extras.paint import Medium
 
-    _check_coat(kind, ground, plate, over, output, plot_path)
+    _check_coat(kind, plate)
     if theories:
-        _check_theories(kind, (thickness, ground, plate, over, plot_path))
+        _check_theories(kind)
     _check_image(output)
     check_outputs(plot_path, output, inputs=[word.partition(":")[2] for word in words])
     resolver, further = _prepare_resolver(
@@ -242,35 +230,30 @@ def command(
         _print_table(recipe, mixture, further, complete=wavelengths is not None)
 
 
-def _check_coat(
-    kind: str,
-    ground: str | None,
-    plate: str | None,
-    over: str | None,
-    output: str | None,
-    plot_path: str | None,
-) -> None:
+def _check_coat(kind: str, plate: str | None) -> None:
     from uplift.extras.paint.coats import COATS
 
-    if (over is None) != (output is None):
+    given = options.given().keys()
+    if len(given & {"over", "output"}) == 1:
         raise click.UsageError("--over IMAGE and --output EXR require each other.")
-    if ground is not None and (kind not in COATS or over is not None):
+    if "ground" in given and (kind not in COATS or "over" in given):
         raise click.UsageError(
             "--ground applies to coats of --pigment, --dye or --duntley, without "
             "--over."
         )
     if plate is not None and kind != "dye":
         raise click.UsageError("--plate applies to --dye.")
-    if plate == "transmitted" and (ground is not None or over is not None):
+    if plate == "transmitted" and given & {"ground", "over"}:
         raise click.UsageError(
             "--plate transmitted does not apply to --ground and --over."
         )
-    if over is not None and plot_path is not None:
+    if given >= {"over", "plot_path"}:
         raise click.UsageError("--plot shows a mixture and does not apply to --over.")
 
 
-def _check_theories(kind: str, others: tuple[object, ...]) -> None:
-    if kind == "duntley" or any(value is not None for value in others):
+def _check_theories(kind: str) -> None:
+    excluded = {"thickness", "ground", "plate", "over", "plot_path"}
+    if kind == "duntley" or excluded & options.given().keys():
         raise click.UsageError(
             "--theories mixes opaque colours, without --duntley, --thickness, "
             "--ground, --plate, --over and --plot."
@@ -288,7 +271,7 @@ def _check_image(output: str | None) -> None:
 
 def _prepare_resolver(
     cube_path: str | None,
-    files: tuple[str, ...],
+    files: Sequence[str],
     input_space: str | None,
     wavelengths: Array | None,
     method: str,
@@ -315,8 +298,7 @@ def _prepare_resolver(
     grid = np.concatenate([cube.data.sensor.wavelengths, further])
     # The default is for mixtures: an ingredient outside [0, 1] is a mistake, unless the
     # option is given.
-    source = click.get_current_context().get_parameter_source("method")
-    if source is not ParameterSource.COMMANDLINE:
+    if "method" not in options.given():
         method = "error"
     atlas = read_atlas(*files) if files else Atlas()
     return SpectrumResolver(cube, atlas, grid, space, method), further
@@ -328,7 +310,7 @@ class _Recipe:
 
     cube: Cube
     kind: str
-    names: tuple[str, ...]
+    names: Sequence[str]
     parts: tuple[float, ...]
     ingredients: Ingredients
 
@@ -339,17 +321,16 @@ class _Recipe:
 
 
 def _read_recipe(
-    resolver: SpectrumResolver, words: tuple[str, ...], kind: str
+    resolver: SpectrumResolver, words: Sequence[str], kind: str
 ) -> _Recipe:
     import numpy as np
 
     from uplift.extras.paint import Ingredients
 
-    names, parts, spectra, on_black = zip(
-        *(resolver.ingredient(word, kind) for word in words), strict=True
-    )
-    ingredients = Ingredients(np.stack(spectra), on_black)
-    return _Recipe(resolver.cube, kind, names, parts, ingredients)
+    ingredients = [resolver.ingredient(word, kind) for word in words]
+    names, parts, spectra, on_black = zip(*ingredients, strict=True)
+    stacked = Ingredients(np.stack(spectra), on_black)
+    return _Recipe(resolver.cube, kind, names, parts, stacked)
 
 
 def _scattering_law(name: str, cube: Cube, further: Array) -> Scattering:
@@ -390,12 +371,13 @@ def _paint(
 
     provenance = {
         "kind": recipe.kind,
-        "of": [list(pair) for pair in zip(recipe.parts, recipe.names, strict=True)],
+        "of": list(map(list, zip(recipe.parts, recipe.names, strict=True))),
         "thickness": medium.thickness,
         "surface": asdict(medium.surface),
         "scattering": scattering,
-        **({"plate": True} if medium.plate else {}),
     }
+    if medium.plate:
+        provenance["plate"] = True
     coat = make_coat(recipe.kind, recipe.ingredients, recipe.parts, medium)
     painter = overpainter(recipe.cube, coat, provenance, **looks)
     with progress_bar("rows") as progress:
@@ -485,16 +467,15 @@ def _print_table(
     fields |= describe_coordinates(colour)
     if len(recipe.names) > 1:
         fields["ramp"] = " ".join(step["hex"] for step in mixture.colours[1:])
-    patches = {
-        "linear RGB": patch(cube, mixture.rgb[0]),
-        "ramp": "".join(patch(cube, rgb, 4) for rgb in mixture.rgb[1:]),
-    }
     print_spectrum(
         fields,
         wavelengths,
         mixture.values,
         complete=complete,
-        patches=patches,
+        patches={
+            "linear RGB": patch(cube, mixture.rgb[0]),
+            "ramp": "".join(patch(cube, rgb, 4) for rgb in mixture.rgb[1:]),
+        },
         highest=max(1, mixture.values.max()),
     )
 

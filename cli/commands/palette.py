@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -64,10 +63,8 @@ LEGEND = "requested, obtained, factor model, ΔE00 of obtained/model; * designed
 @click.option(
     "--image",
     metavar="FILE",
-    help=(
-        "Picture for the page: an 8-bit image of labels, or EXR channels with the "
-        "names of the materials."
-    ),
+    help="Picture for the page: an 8-bit image of labels, or EXR channels with the "
+    "names of the materials.",
 )
 @options.repeatable(
     "--label",
@@ -76,7 +73,7 @@ LEGEND = "requested, obtained, factor model, ΔE00 of obtained/model; * designed
     "greys 1, 2, …",
     metavar="NAME=#RRGGBB",
 )
-@options.output_format("table", "json")
+@options.table_or_json
 @options.force
 def command(
     spec: str,
@@ -85,7 +82,7 @@ def command(
     spectra_path: str | None,
     html: str | None,
     image: str | None,
-    labels: tuple[str, ...],
+    labels: Sequence[str],
     style: str,
     force: bool,
 ) -> None:
@@ -130,11 +127,9 @@ def command(
 
 
 def _read_picture(
-    palette: Palette, html: str | None, image: str | None, labels: tuple[str, ...]
+    palette: Palette, html: str | None, image: str | None, labels: Sequence[str]
 ) -> NDArray[np.float32] | None:
-    """Read how much of each material a pixel shows; None if the page draws its own
-    picture.
-    """
+    """Read the share of each material in a pixel; None without an image."""
     if image is None and labels:
         raise click.UsageError(
             "--label requires --image, the image that has these colours."
@@ -153,12 +148,12 @@ def _read_picture(
                 f"labels must be NAME=#rrggbb, one per material, got '{label}'"
             )
         colours[name] = colour
-    return read_weights(
-        image, [material.name for material in palette.materials], colours or None
-    )
+    names = [material.name for material in palette.materials]
+    return read_weights(image, names, colours or None)
 
 
 def _print_table(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
+    import numpy as np
     from rich.text import Text
 
     from uplift.extras.colour.srgb import hex_codes
@@ -169,19 +164,20 @@ def _print_table(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
         table.add_column(light.name + "*" * light.designed, no_wrap=True)
     for row, material in enumerate(design.palette.materials):
         cells = []
-        for at in ((row, column) for column in range(len(design.palette.lights))):
-            has_goal = not math.isnan(colours.delta_e[at])
+        for column in range(len(design.palette.lights)):
+            at = row, column
+            shown = [colours.obtained[at], colours.factor[at]]
+            error = "–"
+            if not math.isnan(colours.delta_e[at]):
+                shown.insert(0, colours.target[at])
+                error = f"{colours.delta_e[at]:.2f}"
             cell = Text()
-            for rgb in [colours.target[at]] * has_goal + [
-                colours.obtained[at],
-                colours.factor[at],
-            ]:
-                (code,) = hex_codes(rgb[None])
-                cell.append(
-                    "    " if coloured else code, style=f"on {code}" if coloured else ""
-                )
+            for code in hex_codes(np.stack(shown)):
+                if coloured:
+                    cell.append("    ", style=f"on {code}")
+                else:
+                    cell.append(code)
                 cell.append(" ")
-            error = f"{colours.delta_e[at]:.2f}" if has_goal else "–"
             cells.append(cell.append(f"{error}/{colours.model_error[at]:.2f}"))
         table.add_row(material.name + "*" * material.designed, *cells)
     show(table)
@@ -197,19 +193,20 @@ def _print_json(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
     palette = design.palette
     model = design.model
     cells = []
-    for at in product(range(len(palette.materials)), range(len(palette.lights))):
-        has_goal = not math.isnan(colours.delta_e[at])
-        cells.append(
-            {
-                "material": palette.materials[at[0]].name,
-                "light": palette.lights[at[1]].name,
+    for row, material in enumerate(palette.materials):
+        for column, light in enumerate(palette.lights):
+            at = row, column
+            has_goal = not math.isnan(colours.delta_e[at])
+            cell = {
+                "material": material.name,
+                "light": light.name,
                 "wanted": colours.target[at].tolist() if has_goal else None,
                 "obtained": colours.obtained[at].tolist(),
                 "factor": colours.factor[at].tolist(),
                 "missed": float(colours.delta_e[at]) if has_goal else None,
                 "model_error": float(colours.model_error[at]),
             }
-        )
+            cells.append(cell)
     fields = {
         "wavelengths": palette.sensor.wavelengths.tolist(),
         "coefficients": model.count,

@@ -46,8 +46,8 @@ from ..startup import enable_jit_cache
 @options.output(
     help="Plan to write. [default: SCENE.plan.json in the folder of the scene]"
 )
-@click.option("--quick", is_flag=True, help="Fewer candidates, and fewer pixels.")
-@options.output_format("table", "json")
+@options.flag("--quick", help="Fewer candidates, and fewer pixels.")
+@options.table_or_json
 @options.force
 def command(
     scene: str, output: str | None, quick: bool, style: str, force: bool
@@ -84,8 +84,9 @@ def command(
         table = make_table(("",), summary.HEADINGS[:4])
         for heading in summary.HEADINGS[4:]:
             table.add_column(heading)
-        for row in summary.front_rows(result):
-            table.add_row("→" if row is result.chosen else "", *summary.front_row(row))
+        for candidate in summary.front_rows(result):
+            mark = "→" if candidate is result.chosen else ""
+            table.add_row(mark, *summary.front_row(candidate))
         show(table)
         say()
         paragraph(summary.describe_error(result))

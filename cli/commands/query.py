@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -55,11 +56,8 @@ LARGEST = 1e30
 
 colour_options = options.stacked(
     options.colours(
-        (
-            "under the cube's illuminant, where white has Y = 1; also outside the "
-            "cube's "
-            "space"
-        ),
+        "under the cube's illuminant, where white has Y = 1; also outside the cube's "
+        "space",
         "that of the cube",
     ),
     options.cube(),
@@ -67,10 +65,8 @@ colour_options = options.stacked(
     options.choice(
         "--mode",
         *("spectra", "moments", "refined", "nearest"),
-        help=(
-            "Interpolate spectra (exact), coefficients (fast), coefficients with "
-            "refinement, or use the nearest node."
-        ),
+        help="Interpolate spectra (exact), coefficients (fast), coefficients with "
+        "refinement, or use the nearest node.",
     ),
     options.out_of_gamut("error", "as such a number is often a mistake"),
     options.fill,
@@ -113,41 +109,29 @@ class Answers:
         atlases = [source["name"] for source in data.provenance.get("atlases", ())]
         file = cube_path or PACKAGED
         dim = data.lattice.dim
-        self.origin: dict[str, Any] = {"file": file, "dim": dim, "atlases": atlases}
+        self.origin = {"file": file, "dim": dim, "atlases": atlases}
         self.title = (
             f"{Path(file).name}: {dim}³ nodes, {', '.join(atlases) or 'no atlas'}"
         )
         self.lights: list[Light] = []
-        self.to_srgb: dict[
-            str, Array
-        ] = {}  # matrices from XYZ under a light to linear sRGB with the same white
+        # matrices from XYZ under a light to linear sRGB with the same white
+        self.to_srgb: dict[str, Array] = {}
         if lights:
             from uplift.colorimetry.observer import display_sensors, light
 
             setting = self.cube.observer, *data.sensor.range
-            self.to_srgb = {
-                sensor.illuminant: sensor.xyz_to_rgb
-                for sensor in display_sensors(lights, *setting)
-            }
-            lit = [light(given, *setting) for given in lights]
-            self.lights = list({each.name: each for each in lit}.values())
+            for display in display_sensors(lights, *setting):
+                self.to_srgb[display.illuminant] = display.xyz_to_rgb
+            lit = [light(illuminant, *setting) for illuminant in lights]
+            self.lights = list({light.name: light for light in lit}.values())
 
     def __iter__(self) -> Iterator[list[QueryResult]]:
-        """Answer block by block, and warn at the end of colours that were mapped or
-        filled.
-        """
+        """Answer blocks, and warn at the end of colours that were mapped or filled."""
         from uplift.extras.colour.query import query, query_xyz
 
         if self.source.xyz is not None:
-            yield list(
-                query_xyz(
-                    self.cube,
-                    [self.source.xyz],
-                    self.wavelengths,
-                    self.mode,
-                    self.lights,
-                )
-            )
+            how = (self.wavelengths, self.mode, self.lights)
+            yield list(query_xyz(self.cube, [self.source.xyz], *how))
             return
         count = mapped = filled = 0
         change = 0.0
@@ -159,7 +143,7 @@ class Answers:
 
                 inside = map_to_gamut(requested, self.cube.data.sensor, self.method)
                 rgb = inside.rgb
-                mapped = mapped + inside.count
+                mapped += inside.count
                 change = max(change, inside.max_change)
             count += len(rgb)
             if self.fill_missing:
@@ -176,13 +160,8 @@ class Answers:
                 f"mapped into the gamut ({self.method}), a component by up to "
                 f"{change:.3g}"
             )
-            warn(
-                [
-                    UpliftWarning(
-                        f"{mapped} of {pluralise(count, 'colour')} outside [0, 1]: {by}"
-                    )
-                ]
-            )
+            outside = f"{mapped} of {pluralise(count, 'colour')} outside [0, 1]"
+            warn([UpliftWarning(f"{outside}: {by}")])
         if filled:
             problem = (
                 f"{filled} of {pluralise(count, 'colour')} outside the cube's scene: "
@@ -243,7 +222,7 @@ class Answers:
 )
 @colour_options
 @options.light("Illuminant under which colour and standard error are shown", "none")
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.plot("Plot the spectra")
 @click.option(
     "--check",
@@ -251,15 +230,14 @@ class Answers:
     metavar="FILE",
     help="Compare answers that --format csv has stored; exit code 1.",
 )
-@click.option(
+@options.number(
     "--tolerance",
-    type=options.NUMBER,
     default=1e-4,
     help="Largest difference in reflectance that --check accepts.",
 )
 @options.force
 def command(
-    lights: tuple[Illuminant, ...],
+    lights: Sequence[Illuminant],
     style: str,
     plot_path: str | None,
     stored: str | None,
@@ -268,8 +246,8 @@ def command(
     **colours: Any,
 ) -> None:
     if stored is not None:
-        others = [colours[name] for name in ("input_path", "xyz", "xy")]
-        if colours["colour"] or others != [None] * 3:
+        given = [colours[name] for name in ("colour", "input_path", "xyz", "xy")]
+        if given != [(), None, None, None]:
             raise click.UsageError(
                 "--check takes the colours from its FILE: give no others."
             )
@@ -285,9 +263,8 @@ def command(
         plot_spectra(answers.cube, results, plot_path, force=force)
         say(f"{plot_path}: {pluralise(len(results), 'colour')}", err=True)
     if style == "json":
-        print_json_answers(
-            (result_object(answers, each) for each in results), single=answers.single
-        )
+        objects = map(partial(result_object, answers), results)
+        print_json_answers(objects, single=answers.single)
     elif style == "csv":
         _print_csv(answers, results)
     elif answers.single:
@@ -302,15 +279,10 @@ def command(
     else:
         _print_lines(answers, results)
     if style == "table" and colours["cube_path"] is None:
-        _advise_cube()
-
-
-def _advise_cube() -> None:
-    """Name the only cube of the current folder, which is not the packaged one."""
-    cubes = list(Path().glob("*.uplift"))
-    if len(cubes) == 1:
-        hint = f"hint: to use the cube of this folder, add --cube {cubes[0]}"
-        paragraph(hint, err=True)
+        cubes = list(Path().glob("*.uplift"))
+        if len(cubes) == 1:
+            hint = f"to use the cube of this folder, add --cube {cubes[0]}"
+            paragraph(f"hint: {hint}", err=True)
 
 
 def _check(
@@ -446,16 +418,17 @@ def _print_csv(answers: Answers, results: Iterable[QueryResult]) -> None:
     columns = [*"rgb", "delta_e_2000", "standard_error", "error_bound"]
     for light in known:
         columns += [f"standard_error_{light}", f"error_bound_{light}"]
-    columns += [*(f"hex_{light}" for light in lights), "entry"]
-    wavelengths = (
-        cube.wavelengths if answers.wavelengths is None else answers.wavelengths
-    )
-    rows = (_csv_row(answers, result, known) for result in results)
-    print_csv([*columns, *(f"{wavelength:g}" for wavelength in wavelengths)], rows)
+    columns += map("hex_{}".format, lights)
+    wavelengths = answers.wavelengths
+    if wavelengths is None:
+        wavelengths = cube.wavelengths
+    columns += ["entry", *map("{:g}".format, wavelengths)]
+    print_csv(columns, map(partial(_csv_row, answers, known), results))
 
 
-def _csv_row(answers: Answers, result: QueryResult, known: Sequence[str]) -> list[Any]:
-    """Return the cells of a result, with the errors under the ``known`` lights."""
+def _csv_row(
+    answers: Answers, known: Sequence[str], result: QueryResult
+) -> Sequence[Any]:
     row = [*as_lists(result.rgb), result.delta_e_2000]
     row += [result.standard_error, result.error_bound]
     for light in known:

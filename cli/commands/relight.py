@@ -99,25 +99,21 @@ def _check_output(path: str) -> str:
 )
 @options.pixels()
 @options.output(
-    help=(
-        "File to write: a figure if it ends in .png, .svg or .pdf, a page if in "
-        ".html, the image itself if in .exr."
-    ),
+    help="File to write: a figure if it ends in .png, .svg or .pdf, a page if in "
+    ".html, the image itself if in .exr.",
     default="relit.png",
     type=options.OutputFile(_check_output),
 )
-@options.output_format("table", "json")
+@options.table_or_json
 @options.force
 def command(
-    images: tuple[str, ...],
-    lights: tuple[Illuminant, ...],
+    images: Sequence[str],
+    lights: Sequence[Illuminant],
     cube_path: str | None,
-    files: tuple[str, ...],
+    files: Sequence[str],
     output: str,
     style: str,
-    adapt: bool | None,
-    force: bool,
-    **pixels: Any,
+    **settings: Any,
 ) -> None:
     enable_jit_cache()
     from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
@@ -133,22 +129,13 @@ def command(
     if not images and cube_path is None:
         atlases = files or (SAMPLE_ATLAS,)
     write = _write_image if is_image else _write_pictures
-    extra, notes = write(
-        paths,
-        cube_path,
-        atlases,
-        lights or RELIGHT_LIGHTS,
-        output,
-        style,
-        adapt=adapt,
-        force=force,
-        **pixels,
-    )
+    lights = lights or RELIGHT_LIGHTS
+    extra, notes = write(paths, cube_path, atlases, lights, output, style, **settings)
     if extra is not None and files:
         print_notes(extra, notes, err=style == "json")
 
 
-def _input_paths(images: tuple[str, ...], is_image: bool) -> list[str]:
+def _input_paths(images: Sequence[str], is_image: bool) -> list[str]:
     from uplift.samples import sample_path
 
     paths = expand_patterns(images) or [str(sample_path(SAMPLE))]
@@ -162,8 +149,8 @@ def _input_paths(images: tuple[str, ...], is_image: bool) -> list[str]:
 def _write_image(
     paths: Sequence[str],
     cube_path: str | None,
-    atlases: tuple[str, ...],
-    lights: tuple[Illuminant, ...],
+    atlases: Sequence[str],
+    lights: Sequence[Illuminant],
     output: str,
     style: str,
     *,
@@ -194,17 +181,16 @@ def _write_image(
     if style == "json":
         print_json({"output": output, "lights": shown, "pixels": count})
     else:
-        names = ", ".join(shown)
-        size = pluralise(count, "pixel")
-        paragraph(f"{output}: {Path(paths[0]).name} under {names}, {size}")
+        facts = f"{', '.join(shown)}, {pluralise(count, 'pixel')}"
+        paragraph(f"{output}: {Path(paths[0]).name} under {facts}")
     return extra, notes
 
 
 def _write_pictures(
     paths: Sequence[str],
     cube_path: str | None,
-    atlases: tuple[str, ...],
-    lights: tuple[Illuminant, ...],
+    atlases: Sequence[str],
+    lights: Sequence[Illuminant],
     output: str,
     style: str,
     *,
@@ -227,9 +213,8 @@ def _write_pictures(
         if extra is not None:
             stems = [Path(path).stem for path in atlases or [cube_path or ""]]
             cubes[f"{SPECTRAL} with {', '.join(stems)}"] = extra
-        relit = []
-        for path, picture in zip(paths, pictures, strict=True):
-            image = relight(
+        relit = [
+            relight(
                 Path(path).name,
                 picture.rgb,
                 cubes,
@@ -237,7 +222,8 @@ def _write_pictures(
                 opacity=picture.opacity,
                 reduction=picture.reduction,
             )
-            relit.append(image)
+            for path, picture in zip(paths, pictures, strict=True)
+        ]
         if Path(output).suffix.lower() == PAGE:
             write_text(relit_page(relit, adapt=adapt), output, force=force)
         else:
@@ -261,36 +247,31 @@ def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:
     for image in relit:
         for rendering in image.renderings:
             for spectra in image.methods[1:]:
-                key = {
+                differences = rendering.differences[RGB_PRODUCT, spectra]
+                row = {
                     "image": image.name,
                     "light": rendering.light,
                     "spectra": spectra,
+                    **mean_p95_max(differences),
                 }
-                rows.append(
-                    key | mean_p95_max(rendering.differences[RGB_PRODUCT, spectra])
-                )
+                rows.append(row)
     if style == "json":
         print_json({"output": output, "differences": rows})
         return
     table = make_table(("image", "light", "spectra"), ("mean ΔE00", "95 %", "largest"))
     for row in rows:
-        table.add_row(
-            *(cell if isinstance(cell, str) else f"{cell:.2f}" for cell in row.values())
-        )
+        *texts, mean, p95, largest = row.values()
+        table.add_row(*texts, *map("{:.2f}".format, (mean, p95, largest)))
     show(table)
     names = ", ".join(image.name for image in relit)
-    paragraph(
-        f"{output}: {names} under "
-        f"{', '.join(rendering.light for rendering in relit[0].renderings)}"
-    )
+    lights = ", ".join(rendering.light for rendering in relit[0].renderings)
+    paragraph(f"{output}: {names} under {lights}")
 
 
 def _cube_of_user(
-    path: str | None, atlases: tuple[str, ...]
+    path: str | None, atlases: Sequence[str]
 ) -> tuple[Cube | None, list[UpliftWarning]]:
-    """Load the cube of a file, or build that of atlases with its warnings; None without
-    either.
-    """
+    """Load the cube of a file, or build that of atlases; None without either."""
     from uplift.lookup import load
 
     if atlases:

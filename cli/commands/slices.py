@@ -44,10 +44,8 @@ SHEET = options.OutputFile(_check_sheet)
 )
 @options.cube_argument
 @options.output(
-    help=(
-        "Slices to write, as .exr. [default: CUBE's name with .exr, in the current "
-        "folder]"
-    )
+    help="Slices to write, as .exr. [default: CUBE's name with .exr, in the current "
+    "folder]"
 )
 @click.option(
     "--plot",

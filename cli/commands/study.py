@@ -1,6 +1,6 @@
 """``uplift study``: measurements of models, solver and errors."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -18,7 +18,8 @@ from ..outputs import check_folder, write_files
 from ..startup import enable_jit_cache
 
 MOMENTS_PLOTS = ("moments.png", "moments-patches.png", "moments-worst.png")
-STABILITY_PLOTS, SENSITIVITY_PLOTS = ("stability.png",), ("sensitivity-locality.png",)
+STABILITY_PLOTS = ("stability.png",)
+SENSITIVITY_PLOTS = ("sensitivity-locality.png",)
 """Files of --output."""
 MACBETH = "macbeth"
 Row = Mapping[str, Any]
@@ -66,9 +67,7 @@ def _print(
     table: Sequence[Row],
     title: str | None = None,
 ) -> None:
-    """Print JSON of the records, CSV of rows, or a table, in which floats have three
-    digits.
-    """
+    """Print JSON of the records, CSV of rows, or a table with three digits."""
     from uplift.lab.timing import records_csv
 
     if style == "json":
@@ -82,29 +81,24 @@ def _print(
 def _print_table(rows: Sequence[Row], title: str | None = None) -> None:
     texts = [key for key, value in rows[0].items() if isinstance(value, str)]
     numbers = [key for key in rows[0] if key not in texts]
-    headings = {key: HEADINGS.get(key, key) for key in rows[0]}
-    table = make_table(
-        [headings[key] for key in texts],
-        [headings[key] for key in numbers],
-        title=title,
-    )
+    table = make_table(texts, [HEADINGS.get(key, key) for key in numbers], title=title)
     for row in rows:
-        table.add_row(*[_cell(row[key]) for key in (*texts, *numbers)])
+        table.add_row(*(_cell(row[key]) for key in (*texts, *numbers)))
     show(table)
-
-
-def _without(rows: Iterable[Row], keys: Collection[str]) -> Sequence[Row]:
-    kept = [dict(row) for row in rows]
-    for row in kept:
-        for key in keys:
-            row.pop(key, None)
-    return kept
 
 
 def _cell(value: Any) -> str:
     if value is None:
         return ""
     return f"{value:.3g}" if isinstance(value, float) else str(value)
+
+
+def _without(records: Sequence[Row], *names: str) -> list[Row]:
+    """Return records without some keys."""
+    shown = list[Row]()
+    for record in records:
+        shown.append({key: record[key] for key in record if key not in names})
+    return shown
 
 
 @command.command(
@@ -131,18 +125,17 @@ def _cell(value: Any) -> str:
     """,
 )
 @options.atlas("Atlas", DEFAULT_ATLASES)
-@click.option(
+@options.whole(
     "--max-moments",
     metavar="N",
-    type=options.WHOLE,
     default=15,
     help="Largest number of moments, up to 32.",
 )
 @options.output(help="Folder for plots.", metavar="DIR")
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.force
 def moments(
-    files: tuple[str, ...],
+    files: Sequence[str],
     max_moments: int,
     output: str | None,
     style: str,
@@ -157,17 +150,19 @@ def moments(
     if output is not None:
         from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
 
-        plots = (
+        write_files(
+            output,
+            MOMENTS_PLOTS,
             partial(plot_errors, {"all entries": study.curves()}),
             partial(plot_patches, study),
+            partial(plot_worst, study),
         )
-        write_files(output, MOMENTS_PLOTS, *plots, partial(plot_worst, study))
     table = []
     for count in range(max_moments + 1):
         row = {"moments": str(count)}
         for technique in TECHNIQUES:
-            result = study.result(technique, count)
-            row[technique.label] = f"{result.mean[0]:.2f} / {result.max[0]:6.2f}"
+            errors = study.result(technique, count)
+            row[technique.label] = f"{errors.mean[0]:.2f} / {errors.max[0]:6.2f}"
         table.append(row)
     records = study.records()
     _print(style, records, records, table, "mean / largest ΔE76 under D65")
@@ -200,13 +195,11 @@ def moments(
     default=3,
     help="Number of splits of each atlas.",
 )
-@click.option(
-    "--dim", type=options.WHOLE, default=32, help="Lattice nodes along each axis."
-)
+@options.whole("--dim", default=32, help="Lattice nodes along each axis.")
 @options.coefficients
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 def held_out(
-    files: tuple[str, ...], splits: int, dim: int, coefficients: int, style: str
+    files: Sequence[str], splits: int, dim: int, coefficients: int, style: str
 ) -> None:
     enable_jit_cache()
     from uplift.lab.study.held_out import holdout, split_records
@@ -214,9 +207,9 @@ def held_out(
     records: list[dict[str, Any]] = []
     for name, atlas in read_atlases(files).items():
         with progress_bar(name) as progress:
-            found = holdout(atlas, splits, progress, dim=dim, coefficients=coefficients)
-        records += [{"atlas": name, **record} for record in split_records(found)]
-    rows = _without(records, {"standard_error"})
+            split = holdout(atlas, splits, progress, dim=dim, coefficients=coefficients)
+        records += [{"atlas": name, **record} for record in split_records(split)]
+    rows = _without(records, "standard_error")
     _print(style, records, rows, rows)
     for record in records if style == "table" else ():
         if errors := record.get("standard_error"):
@@ -250,17 +243,13 @@ def held_out(
       uplift study stability --atlas paints.csv --format json
     """,
 )
-@click.option(
-    "--quick",
-    is_flag=True,
-    help="Small lattices and few values: some seconds per model.",
-)
+@options.flag("--quick", help="Small lattices and few values: some seconds per model.")
 @options.atlas("Atlas in addition to the synthetic ones", MACBETH)
 @options.output(help="Folder for plots.", metavar="DIR")
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.force
 def stability(
-    quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool
+    quick: bool, files: Sequence[str], output: str | None, style: str, force: bool
 ) -> None:
     enable_jit_cache()
     from uplift.lab.study.stability import (
@@ -285,8 +274,8 @@ def stability(
         from uplift.lab.study.plots import plot_map
 
         write_files(output, STABILITY_PLOTS, partial(plot_map, records))
-    hidden = ("success", "points", "stand_ins")
-    _print(style, records, records, _without(records, hidden))
+    table = _without(records, "success", "points", "stand_ins")
+    _print(style, records, records, table)
     if style == "table":
         failed = [row["unfitted"] for row in records if row["unfitted"]]
         nodes = sum(row["realisable"] for row in records)
@@ -338,13 +327,13 @@ def stability(
     metavar="NAME",
 )
 @options.output(help="Folder for plots.", metavar="DIR")
-@options.output_format("table", "json")
+@options.table_or_json
 @options.force
 def sensitivity(
     cube: str | None,
-    folders: tuple[str, ...],
+    folders: Sequence[str],
     entries: int,
-    methods: tuple[str, ...],
+    methods: Sequence[str],
     output: str | None,
     style: str,
     force: bool,

@@ -7,14 +7,14 @@ import glob
 import os
 import re
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.common.errors import OptionError, OutputError
+from uplift.common.errors import OptionError, OutputError, UpliftError
 from uplift.common.progress import Progress
 from uplift.common.text import pluralise
 from uplift.extras.files.outputs import check_outputs
@@ -29,7 +29,7 @@ from ..startup import enable_jit_cache
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
     from uplift.extras.texture.conversion import Conversion
-    from uplift.extras.texture.sequence import Outcome
+    from uplift.extras.texture.sequence import Job, Outcome
     from uplift.extras.texture.uplifter import PixelEncoding
 
 
@@ -62,9 +62,7 @@ image_options = options.stacked(
         type=options.Checked(_check_scheduler),
         help="Dask cluster that converts the images; requires the package distributed.",
     ),
-    click.option(
-        "--resume", is_flag=True, help="Skip images whose textures are complete."
-    ),
+    options.flag("--resume", help="Skip images whose textures are complete."),
     options.force,
     options.quiet,
 )
@@ -120,10 +118,8 @@ image_options = options.stacked(
 @click.option(
     "--mask",
     metavar="FILE",
-    help=(
-        "Image of which cube a pixel belongs to: 0 for the first, 1 for the second "
-        "…, or from black to white."
-    ),
+    help="Image of which cube a pixel belongs to: 0 for the first, 1 for the second …, "
+    "or from black to white.",
 )
 @options.choice(
     "--representation",
@@ -138,20 +134,15 @@ image_options = options.stacked(
 @options.pixels()
 @options.fill
 @options.repeatable(
-    *(
-        "--errors",
-        "errors",
-        (
-            "Add a channel with the standard error, ΔE00, under an illuminant, such as "
-            "error.A"
-        ),
-    ),
+    "--errors",
+    "errors",
+    "Add a channel with the standard error, ΔE00, under an illuminant, such as error.A",
     metavar="NAME|FILE",
     type=options.LIGHT,
     shell_complete=options.complete_light,
 )
 def command(
-    cube_paths: tuple[str, ...],
+    cube_paths: Sequence[str],
     mask: str | None,
     kind: str,
     wavelengths: Array | None,
@@ -169,24 +160,21 @@ def command(
             "Several cubes need --mask, an image of which cube a pixel belongs to."
         )
     cubes = tuple(os.path.abspath(find_file(path)) for path in cube_paths) or (None,)
+    pixels = encode()
     if wavelengths is not None:
         for path in cubes:
             check_range(wavelengths, load(path).wavelengths)
-    pixels = (
-        texture.Spectrum(as_tuple(wavelengths))
-        if encode is texture.Spectrum
-        else encode()
-    )
-    convert(
-        cubes, pixels, mask=None if mask is None else os.path.abspath(mask), **settings
-    )
+        pixels = texture.Spectrum(as_tuple(wavelengths))
+    if mask is not None:
+        mask = os.path.abspath(mask)
+    convert(cubes, pixels, mask=mask, **settings)
 
 
 def convert(
     cubes: tuple[str | None, ...],
     pixel_encoding: PixelEncoding,
     *,
-    sources: tuple[str, ...],
+    sources: Sequence[str],
     target: str,
     processes: int | None,
     scheduler: str | None,
@@ -200,7 +188,7 @@ def convert(
     """
     enable_jit_cache()
     from uplift.extras import texture
-    from uplift.extras.texture.sequence import converter_for, run
+    from uplift.extras.texture.sequence import converter_for
 
     pairs = _texture_paths(sources, target)
     inputs = click.get_current_context().meta.get(options.INPUTS, ())
@@ -218,46 +206,55 @@ def convert(
     pending = texture.pending(jobs)
     converter_for(settings)  # reports invalid options once, not once per image
     begin = time.perf_counter()
-    if scheduler is None and len(jobs) == 1:
-        with progress_bar("rows", quiet=quiet) as progress:
-            results = [run(job, progress) for job in pending]
-    else:
-        outcomes = texture.convert_all(pending, processes=count, scheduler=scheduler)
-        results = _collect(outcomes, len(pending), quiet=quiet)
-    seconds = time.perf_counter() - begin
-    converted = [result for result in results if isinstance(result, texture.Conversion)]
+    outcomes = _run_jobs(
+        pending,
+        quiet,
+        is_single=scheduler is None and len(jobs) == 1,
+        processes=count,
+        scheduler=scheduler,
+    )
+    converted = [item for item in outcomes if isinstance(item, texture.Conversion)]
+    failures = [item.error for item in outcomes if isinstance(item, texture.Failure)]
     for conversion in converted:
         warn(conversion.warnings)
-    failures = [result for result in results if isinstance(result, texture.Failure)]
     if not quiet and len(failures) < len(jobs):
         skipped = len(jobs) - len(converted) - len(failures)
         is_spectrum = isinstance(pixel_encoding, texture.Spectrum)
-        _print_summary(target, converted, skipped, seconds, is_spectrum)
-    for failure in failures[1:]:
-        CommandFailure(failure.error).show()
-    if failures:
-        raise failures[0].error
+        _print_summary(target, converted, skipped, begin, is_spectrum)
+    _raise_first(failures)
+
+
+def _raise_first(errors: Sequence[UpliftError]) -> None:
+    """Raise the first of the errors of images, after the others are printed."""
+    for error in errors[1:]:
+        CommandFailure(error).show()
+    if errors:
+        raise errors[0]
 
 
 def _print_summary(
     target: str,
     converted: Sequence[Conversion],
     skipped: int,
-    seconds: float,
+    begin: float,
     is_spectrum: bool,
 ) -> None:
     pixels = sum(conversion.counts.pixels for conversion in converted)
     size = sum(conversion.target.stat().st_size for conversion in converted) / 1e6
     spaces = chain.from_iterable(conversion.spaces for conversion in converted)
     read_as = ", ".join(dict.fromkeys(spaces))
-    say(
-        f"{target}: {pluralise(len(converted), 'texture')}"
-        f"{f', {skipped} skipped' if skipped else ''}, {pluralise(pixels, 'pixel')}, "
-        f"{size:.1f} MB, {seconds:.1f} s{f', read as {read_as}' if read_as else ''}"
-    )
+    facts = [pluralise(len(converted), "texture")]
+    if skipped:
+        facts.append(f"{skipped} skipped")
+    facts.append(pluralise(pixels, "pixel"))
+    facts.append(f"{size:.1f} MB")
+    facts.append(f"{time.perf_counter() - begin:.1f} s")
+    if read_as:
+        facts.append(f"read as {read_as}")
+    say(f"{target}: {', '.join(facts)}")
     if size > LARGE and is_spectrum:
-        smaller = "--representation moments --depth half"
-        say(f"hint: {smaller} takes a fraction of the size", err=True)
+        hint = "--representation moments --depth half takes a fraction of the size"
+        say(f"hint: {hint}", err=True)
 
 
 def _texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path]]:
@@ -300,34 +297,39 @@ def _tiles(
         raise OutputError(
             f"{UDIM} in the output needs one input with {UDIM}", path=target, hint=hint
         )
-    before, _, after = (re.escape(part) for part in sources[0].partition(UDIM))
-    numbers = (re.fullmatch(f"{before}(\\d{{4}}){after}", image) for image in images)
-    pairs = zip(images, numbers, strict=True)
-    return [
-        (Path(image), Path(target.replace(UDIM, match[1])))
-        for image, match in pairs
-        if match
-    ]
+    before, after = map(re.escape, sources[0].split(UDIM))
+    pairs = []
+    for image in images:
+        if tile := re.fullmatch(f"{before}(\\d{{4}}){after}", image):
+            pairs.append((Path(image), Path(target.replace(UDIM, tile[1]))))
+    return pairs
 
 
 def as_tuple(wavelengths: Array | None) -> tuple[float, ...] | None:
     return None if wavelengths is None else tuple(wavelengths.tolist())
 
 
-def _collect(results: Generator[Outcome], total: int, *, quiet: bool) -> list[Outcome]:
-    collected = []
+def _run_jobs(
+    jobs: Sequence[Job], quiet: bool, *, is_single: bool, **workers: Any
+) -> list[Outcome]:
+    from uplift.extras.texture.sequence import convert_all, run
+
+    if is_single:
+        with progress_bar("rows", quiet=quiet) as progress:
+            return [run(job, progress) for job in jobs]
+    outcomes = []
     try:
         with (
-            contextlib.closing(results),
+            contextlib.closing(convert_all(jobs, **workers)) as results,
             progress_bar("images", quiet=quiet) as progress,
         ):
-            for result in results:
-                collected.append(result)
-                progress(Progress("images", len(collected), total))
+            for outcome in results:
+                outcomes.append(outcome)
+                progress(Progress("images", len(outcomes), len(jobs)))
     except KeyboardInterrupt as interrupt:
         interrupt.add_note(
-            f"{len(collected)} of {pluralise(total, 'image')} finished, continue with "
-            "--resume"
+            f"{len(outcomes)} of {pluralise(len(jobs), 'image')} finished, continue "
+            "with --resume"
         )
         raise
-    return collected
+    return outcomes

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import partial
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
     from uplift.common.arrays import Array
     from uplift.extras.scene.wavelengths import Choice
+    from uplift.extras.scene.wavelengths.sampling import RenderSetup
 
 
 @click.command(
@@ -46,9 +46,7 @@ if TYPE_CHECKING:
       uplift wavelengths --orders 3 2 1 --light C --atlas macbeth
     """,
 )
-@click.option(
-    "--count", metavar="N", type=options.WHOLE, help="Number of wavelengths, 1 to 40."
-)
+@options.whole("--count", metavar="N", help="Number of wavelengths, 1 to 40.")
 @options.tolerance(help="Choose the fewest wavelengths with an error below this ΔE00.")
 @options.wavelengths("; only their weights and powers are fitted.")
 @click.option(
@@ -63,15 +61,12 @@ if TYPE_CHECKING:
     "wavelengths, sampled (uniform), "
     "averaged over bins (bins) or with fitted weights (fitted). [default: optimised]",
 )
-@click.option(
+@options.whole(
     "--orders",
     nargs=3,
     metavar="A C1 C2",
-    type=options.WHOLE,
-    help=(
-        "Meyer's quadrature with these numbers of wavelengths for the three "
-        "channels, 1 to 10 each."
-    ),
+    help="Meyer's quadrature with these numbers of wavelengths for the three "
+    "channels, 1 to 10 each.",
 )
 @click.option(
     "--channels",
@@ -83,10 +78,67 @@ if TYPE_CHECKING:
 @options.atlas("Materials", DEFAULT_ATLASES)
 @options.light("Illuminant of the scene", "D65")
 @options.sensor
-@options.output_format("table", "json", "csv")
+@options.table_json_or_csv
 @options.plot("Plot lights, wavelengths and weights")
 @options.force
 def command(
+    files: Sequence[str],
+    lights: Sequence[Illuminant],
+    space: str,
+    illuminant: Illuminant,
+    observer: str,
+    style: str,
+    plot_path: str | None,
+    force: bool,
+    **goal: Any,
+) -> None:
+    _check_goal()
+    from uplift.atlas import merge, on_grid
+    from uplift.colorimetry.observer import require_observer, sensor
+    from uplift.extras.scene.wavelengths import grid, make_setup
+
+    check_outputs(plot_path, inputs=atlas_files(files))
+    require_observer(observer, "weights of wavelengths")
+    target = sensor(space, illuminant, observer)
+    atlas = merge(read_atlases(files).values())
+    reflectances = on_grid(atlas, grid())
+    setup = make_setup(reflectances, lights or ("D65",), observer_name=observer)
+    with progress_bar("fitting wavelengths"):
+        choice = _choose(setup, **goal)
+    if plot_path is not None:
+        from uplift.extras.scene.wavelengths.plots import plot_choice
+
+        plot_choice(setup, choice, plot_path, force=force)
+        say(f"{plot_path}: lights, wavelengths and weights", err=True)
+    errors = _summarise(choice, atlas.names)
+    if style == "json":
+        _print_json(choice, target, len(atlas), errors)
+    elif style == "csv":
+        lights = choice.sampling.lights
+        headings = ["wavelength", *"XYZ", *"rgb", *map("power {}".format, lights)]
+        print_csv(headings, _rows(choice, target))
+    else:
+        _print_table(choice, target, len(atlas), errors)
+
+
+def _check_goal() -> None:
+    given = options.given().keys()
+    if len(given & {"count", "tolerance", "wavelengths", "orders"}) != 1:
+        raise click.UsageError(
+            "Give one of --count, --tolerance, --wavelengths and --orders."
+        )
+    if ("measure" in given and "tolerance" not in given) or (
+        "method" in given and not given & {"count", "tolerance"}
+    ):
+        raise click.UsageError(
+            "--measure requires --tolerance, --method requires --count or --tolerance."
+        )
+    if "channels" in given and "orders" not in given:
+        raise click.UsageError("--channels requires --orders.")
+
+
+def _choose(
+    setup: RenderSetup,
     count: int | None,
     tolerance: float | None,
     wavelengths: Array | None,
@@ -94,125 +146,83 @@ def command(
     method: str | None,
     orders: tuple[int, int, int] | None,
     channels: str | None,
-    files: tuple[str, ...],
-    lights: tuple[Illuminant, ...],
-    style: str,
-    plot_path: str | None,
-    force: bool,
-    **camera: Any,
-) -> None:
-    ways = (count, tolerance, wavelengths, orders)
-    if sum(way is not None for way in ways) != 1:
-        raise click.UsageError(
-            "Give one of --count, --tolerance, --wavelengths and --orders."
-        )
-    is_searched = count is not None or tolerance is not None
-    if (measure and tolerance is None) or (method and not is_searched):
-        raise click.UsageError(
-            "--measure requires --tolerance, --method requires --count or --tolerance."
-        )
-    if channels and orders is None:
-        raise click.UsageError("--channels requires --orders.")
-    from uplift.atlas import merge, on_grid
-    from uplift.colorimetry import observer
+) -> Choice:
     from uplift.extras.scene import wavelengths as library
 
-    check_outputs(plot_path, inputs=atlas_files(files))
-    observer.require_observer(camera["observer"], "weights of wavelengths")
-    sensor = observer.sensor(**camera)
-    atlas = merge(read_atlases(files).values())
-    setting = library.make_setup(
-        on_grid(atlas, library.grid()),
-        lights or ("D65",),
-        observer_name=camera["observer"],
-    )
+    if orders is not None:
+        return library.choose_orders(setup, orders, channels or "opponent")
     if wavelengths is not None:
         check_range(wavelengths, library.grid())
-        fit = partial(library.fit_weights, setting, wavelengths)
-    elif orders is not None:
-        fit = partial(library.choose_orders, setting, orders, channels or "opponent")
-    else:
-        fit = partial(
-            library.choose,
-            setting,
-            count=count,
-            target=tolerance,
-            measure=measure or "max",
-            method=method or "optimised",
-        )
-    with progress_bar("fitting wavelengths"):
-        choice = fit()
-    if plot_path is not None:
-        from uplift.extras.scene.wavelengths.plots import plot_choice
-
-        plot_choice(setting, choice, plot_path, force=force)
-        say(f"{plot_path}: lights, wavelengths and weights", err=True)
-    _print(choice, sensor, atlas.names, style)
+        return library.fit_weights(setup, wavelengths)
+    return library.choose(
+        setup,
+        count=count,
+        target=tolerance,
+        measure=measure or "max",
+        method=method or "optimised",
+    )
 
 
-def _print(
-    choice: Choice, camera: Sensor, materials: tuple[str, ...], style: str
-) -> None:
-    import numpy as np
-
+def _summarise(choice: Choice, materials: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Return statistics of the errors and the worst material, by light."""
     from uplift.extras.scene.wavelengths.sampling import statistics
 
-    sampling = choice.sampling
-    to_rgb = sampling.to_rgb(camera)
-    by_light = dict(zip(sampling.lights, choice.errors, strict=True))
+    by_light = dict(zip(choice.sampling.lights, choice.errors, strict=True))
     if len(by_light) > 1:
         by_light["all lights"] = choice.errors
-    errors = {}
-    for name, values in by_light.items():
-        worst = materials[values.argmax() % len(materials)]
-        errors[name] = {**statistics(values), "worst": worst}
-    # wavelength, weights to XYZ and to RGB, and powers of the lights
-    rows = np.column_stack(
-        [sampling.wavelengths, sampling.to_xyz, to_rgb, sampling.powers.T]
-    ).tolist()
-    if style == "json":
-        fields = {
-            "method": choice.method,
-            "count": len(sampling),
-            "materials": len(materials),
-            "observer": camera.observer,
-            "space": camera.space,
-            "illuminant": camera.illuminant,
-            "wavelengths": sampling.wavelengths.tolist(),
-            "to_xyz": sampling.to_xyz.tolist(),
-            "to_rgb": to_rgb.tolist(),
-            "powers": dict(zip(sampling.lights, sampling.powers.tolist(), strict=True)),
-            "errors": errors,
-        }
-        print_json(fields)
-    elif style == "csv":
-        powers = [f"power {light}" for light in sampling.lights]
-        print_csv(["wavelength", *"XYZ", *"rgb", *powers], rows)
-    else:
-        title = f"{pluralise(len(sampling), 'wavelength')}, {choice.method}: weights"
-        _print_tables(sampling.lights, rows, errors, title, len(materials))
+    summary = {}
+    for light, errors in by_light.items():
+        worst = materials[errors.argmax() % len(materials)]
+        summary[light] = {**statistics(errors), "worst": worst}
+    return summary
 
 
-def _print_tables(
-    lights: Sequence[str],
-    rows: Sequence[Sequence[float]],
-    errors: Mapping[str, Mapping[str, Any]],
-    title: str,
-    materials: int,
+def _rows(choice: Choice, sensor: Sensor) -> list[list[float]]:
+    """Return wavelength, weights to XYZ and to RGB, and powers of the lights."""
+    import numpy as np
+
+    sampling = choice.sampling
+    weights = (sampling.to_xyz, sampling.to_rgb(sensor))
+    table = np.column_stack([sampling.wavelengths, *weights, sampling.powers.T])
+    return table.tolist()
+
+
+def _print_json(
+    choice: Choice, sensor: Sensor, materials: int, errors: dict[str, dict[str, Any]]
 ) -> None:
+    sampling = choice.sampling
+    fields = {
+        "method": choice.method,
+        "count": len(sampling),
+        "materials": materials,
+        "observer": sensor.observer,
+        "space": sensor.space,
+        "illuminant": sensor.illuminant,
+        "wavelengths": sampling.wavelengths.tolist(),
+        "to_xyz": sampling.to_xyz.tolist(),
+        "to_rgb": sampling.to_rgb(sensor).tolist(),
+        "powers": dict(zip(sampling.lights, sampling.powers.tolist(), strict=True)),
+        "errors": errors,
+    }
+    print_json(fields)
+
+
+def _print_table(
+    choice: Choice, sensor: Sensor, materials: int, errors: dict[str, dict[str, Any]]
+) -> None:
+    lights = choice.sampling.lights
+    count = pluralise(len(choice.sampling), "wavelength")
+    title = f"{count}, {choice.method}: weights"
     weights = make_table((), ("nm", *"XYZRGB"), title=title)
     powers = make_table((), ("nm", *lights), title="power of the lights")
-    for nm, *others in rows:
-        cells = [f"{other:.4f}" for other in others]
-        weights.add_row(f"{nm:.1f}", *cells[:6])
-        powers.add_row(f"{nm:.1f}", *cells[6:])
-    table = make_table(
-        ("light",),
-        ("mean", "95 %", "max"),
-        title=f"ΔE00 of {pluralise(materials, 'material')}",
-    )
+    for wavelength, *values in _rows(choice, sensor):
+        cells = [f"{value:.4f}" for value in values]
+        weights.add_row(f"{wavelength:.1f}", *cells[:6])
+        powers.add_row(f"{wavelength:.1f}", *cells[6:])
+    title = f"ΔE00 of {pluralise(materials, 'material')}"
+    table = make_table(("light",), ("mean", "95 %", "max"), title=title)
     table.add_column("worst material")
-    for name, row in errors.items():
+    for light, row in errors.items():
         *numbers, worst = row.values()
-        table.add_row(name, *[f"{number:.3f}" for number in numbers], worst)
+        table.add_row(light, *map("{:.3f}".format, numbers), worst)
     show(weights, powers, table)

@@ -1,6 +1,4 @@
-"""Colours and spectra as text: patches, sparklines, columns, and classical
-coordinates.
-"""
+"""Colours and spectra as text: patches, sparklines, columns, coordinates."""
 
 from __future__ import annotations
 
@@ -58,15 +56,12 @@ def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
         return ""
     from uplift.extras.colour.srgb import to_display_codes
 
-    return click.style(
-        " " * width, bg=to_display_codes(rgb, cube.data.sensor).astype(int).tolist()
-    )
+    codes = to_display_codes(rgb, cube.data.sensor)
+    return click.style(" " * width, bg=codes.astype(int).tolist())
 
 
 def hex_code(cube: Cube, rgb: Array) -> str:
-    """Return '#rrggbb' of linear RGB (3,), encoded by the transfer function of the
-    cube's space.
-    """
+    """Return '#rrggbb' of linear RGB (3,), encoded as in the cube's space."""
     return "#" + "".join(f"{round(float(code)):02x}" for code in cube.encode(rgb))
 
 
@@ -79,21 +74,19 @@ def as_lists(values: Array) -> list[Any]:
 
 def format_rgb(rgb: Iterable[float]) -> str:
     """Return numbers with six decimals, separated by spaces."""
-    return " ".join(
-        f"{round(value, 6) + 0.0:.6f}" for value in rgb
-    )  # -0.0 + 0.0 is 0.0
+    # -0.0 + 0.0 is 0.0
+    return " ".join(f"{round(value, 6) + 0.0:.6f}" for value in rgb)
 
 
 def sparkline(values: Array, width: int = 40) -> str:
     """Return a spectrum as block characters, from 0 to 1 in eighths."""
-    count = len(values)
-    picks = [
-        round(i * (count - 1) / max(min(width, count) - 1, 1))
-        for i in range(min(width, count))
-    ]
-    return "".join(
-        BLOCKS[round(float(values[pick]) * (len(BLOCKS) - 1))] for pick in picks
-    )
+    last = len(values) - 1
+    width = min(width, len(values))
+    blocks = []
+    for cell in range(width):
+        value = float(values[round(cell * last / max(width - 1, 1))])
+        blocks.append(BLOCKS[round(value * (len(BLOCKS) - 1))])
+    return "".join(blocks)
 
 
 def coordinates(cube: Cube, rgb: Array) -> dict[str, Any]:

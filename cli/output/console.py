@@ -83,9 +83,7 @@ def paragraph(
 def print_fields(
     fields: Mapping[str, str], patches: Mapping[str, str] | None = None
 ) -> None:
-    """Print names and values in two columns, and the patches of colour that belong to a
-    value.
-    """
+    """Print names and values in two columns, and the patches of values."""
     names = {name: printable(name) for name in fields}
     width = max(12, *(len(name) + 2 for name in names.values()))
     for name, text in fields.items():
@@ -94,9 +92,7 @@ def print_fields(
 
 
 def json_text(values: Any, indent: int | None = 2, *, ascii_only: bool = False) -> str:
-    """Return standard JSON. Raises ValueError for NaN and infinity, which it cannot
-    represent.
-    """
+    """Return standard JSON. Raises ValueError for NaN and infinity."""
     return json_escapes(
         json.dumps(values, indent=indent, ensure_ascii=ascii_only, allow_nan=False)
     )
@@ -111,9 +107,7 @@ def print_json(
 
 
 def print_json_answers(objects: Iterable[Any], *, single: bool) -> None:
-    """Print one object on a line, or else an array, each object before the next one is
-    computed.
-    """
+    """Print an object, or an array, each before the next one is computed."""
     if single:
         (values,) = objects
         print_json(values, indent=None)
@@ -152,9 +146,7 @@ def swatch(codes: Iterable[int], text: str = "   ") -> Text:
 def make_table(
     texts: Iterable[str] = (), numbers: Iterable[str] = (), **options: Any
 ) -> SafeTable:
-    """Return a table with left-aligned columns of text followed by right-aligned
-    columns of numbers.
-    """
+    """Return a table of left-aligned texts followed by right-aligned numbers."""
     from rich import box
 
     from .tables import SafeTable
@@ -175,11 +167,11 @@ def show(*tables: SafeTable) -> None:
 
     from .tables import table_width
 
-    parts = list(chain.from_iterable(table.parts(columns()) for table in tables))
-    for number, part in enumerate(parts):
+    divided = chain.from_iterable(table.parts(columns()) for table in tables)
+    for number, table in enumerate(divided):
         if number:
             say()
-        width = max(columns(), table_width(part.columns))
+        width = max(columns(), table_width(table.columns))
         Console(
             file=sys.stdout, width=width, highlight=False, markup=False, emoji=False
-        ).print(part)
+        ).print(table)

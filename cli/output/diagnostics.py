@@ -1,6 +1,4 @@
-"""Errors and warnings on standard error: one line each, or JSON, with hints in terms of
-command-line options.
-"""
+"""Errors and warnings on standard error, with hints in terms of options."""
 
 import contextlib
 import os
@@ -27,7 +25,9 @@ from uplift.common.text import printable
 from ..startup import remove_compiled_code
 from .console import emit, json_text
 
-FAILED_CHECK, BAD_INPUT, INTERNAL_ERROR = 1, 2, 70
+FAILED_CHECK = 1
+BAD_INPUT = 2
+INTERNAL_ERROR = 70
 """Exit codes; 70 is EX_SOFTWARE of sysexits.h."""
 EXIT_CODES = {"internal-error": INTERNAL_ERROR, "interrupted": 128 + signal.SIGINT}
 """Exit codes by code of the error."""
@@ -147,7 +147,8 @@ class CommandFailure(click.ClickException):
     """
 
     def __init__(self, cause: BaseException, *, as_json: bool = False) -> None:
-        self.error, self.as_json = _as_uplift_error(cause), as_json
+        self.error = _as_uplift_error(cause)
+        self.as_json = as_json
         super().__init__(self.error.describe(hint_for(self.error)))
 
     @property
@@ -225,9 +226,7 @@ def error_object(error: UpliftError) -> dict[str, Any]:
 
 
 def show_usage_error(error: click.ClickException) -> None:
-    """Print an error of the command line on one line, with the command that shows the
-    help.
-    """
+    """Print an error of the command line, with the command that shows the help."""
     message = " ".join(error.format_message().split())
     context = getattr(error, "ctx", None)
     _print_error(
@@ -236,10 +235,10 @@ def show_usage_error(error: click.ClickException) -> None:
     )
 
 
-def warn(found: Iterable[UpliftWarning]) -> None:
+def warn(notes: Iterable[UpliftWarning]) -> None:
     """Emit warnings that the library returned as data."""
-    for each in found:
-        warnings.warn(each, stacklevel=1)
+    for note in notes:
+        warnings.warn(note, stacklevel=1)
 
 
 def show_warning(
@@ -260,7 +259,6 @@ def _print_error(text: str) -> None:
 
 
 def _print(text: str) -> None:
-    with contextlib.suppress(
-        OSError
-    ):  # nowhere else is left to report it; the exit code shows that it failed
+    # nowhere else is left to report it; the exit code shows that it failed
+    with contextlib.suppress(OSError):
         emit(text, err=True)

@@ -1,10 +1,9 @@
-"""Tables whose texts come from files; imported when a table is printed, as it loads
-rich.
-"""
+"""Tables whose texts come from files; imported when needed, as it loads rich."""
 
 import copy
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 from typing import Any
 
 from rich.cells import cell_len
@@ -33,9 +32,7 @@ window.
 
 
 class SafeTable(Table):
-    """A table that shows its texts as they are: no markup, and control characters
-    escaped.
-    """
+    """A table that shows its texts without markup, control characters escaped."""
 
     def __init__(
         self, *, title: str | None = None, caption: str | None = None, **options: Any
@@ -47,9 +44,7 @@ class SafeTable(Table):
         )
 
     def add_column(self, header: Any = "", *args: Any, **options: Any) -> None:
-        """Add a column with a heading of text, wrapped between words unless it is
-        ``no_wrap``.
-        """
+        """Add a column, wrapped between words unless it is ``no_wrap``."""
         super().add_column(plain(header), *args, **{"overflow": "fold"} | options)
 
     def add_row(self, *cells: Any, **options: Any) -> None:
@@ -63,17 +58,17 @@ class SafeTable(Table):
         for column in self.columns:
             column.min_width = narrowest(column)
         keys = self._keys(width)
-        part = list(keys)
+        columns = list(keys)
         caption = self.caption
         self.caption = None
         for column in self.columns[len(keys) :]:
-            if len(part) > len(keys) and table_width([*part, column]) > width:
-                yield self._with_columns(part)
-                part = list(keys)
+            if len(columns) > len(keys) and table_width([*columns, column]) > width:
+                yield self._with_columns(columns)
+                columns = list(keys)
                 self.title = None
-            part.append(column)
+            columns.append(column)
         self.caption = caption
-        yield self._with_columns(part)
+        yield self._with_columns(columns)
 
     def _keys(self, width: int) -> Sequence[Column]:
         count = 1
@@ -86,11 +81,11 @@ class SafeTable(Table):
         return self.columns[:count]
 
     def _with_columns(self, columns: Sequence[Column]) -> "SafeTable":
-        part = copy.copy(self)
-        part.columns = [
+        table = copy.copy(self)
+        table.columns = [
             replace(column, _index=index) for index, column in enumerate(columns)
         ]
-        return part
+        return table
 
 
 def narrowest(column: Column) -> int:
@@ -99,7 +94,8 @@ def narrowest(column: Column) -> int:
     natural = max(map(cell_len, texts))
     if column.no_wrap:
         return natural
-    longest_word = max(map(cell_len, " ".join(texts).split()), default=0)
+    words = chain.from_iterable(map(str.split, texts))
+    longest_word = max(map(cell_len, words), default=0)
     return max(longest_word, min(natural, WRAPPED))
 
 
