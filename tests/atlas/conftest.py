@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from uplift.atlas import Atlas, read_atlas
+
 
 @pytest.fixture
 def save(tmp_path: Path) -> Callable[..., Path]:
@@ -16,3 +18,9 @@ def save(tmp_path: Path) -> Callable[..., Path]:
         return path
 
     return save
+
+
+@pytest.fixture
+def read(save: Callable[..., Path]) -> Callable[..., Atlas]:
+    """Read text or bytes as an atlas."""
+    return lambda *args: read_atlas(save(*args))

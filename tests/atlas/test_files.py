@@ -52,11 +52,9 @@ def test_unreadable_files_raise(path, code):
         read_atlas(path)
 
 
-def test_content_determines_the_format(save):
-    assert read_atlas(save(PLAIN, "atlas.csv")).names == ("grey",)
-    assert read_atlas(save("name,400,700\nblue,0.5,0.25\n", "atlas.ark")).names == (
-        "blue",
-    )
+def test_content_determines_the_format(read):
+    assert read(PLAIN, "atlas.csv").names == ("grey",)
+    assert read("name,400,700\nblue,0.5,0.25\n", "atlas.ark").names == ("blue",)
 
 
 def test_several_files_make_one_atlas_in_order(save):
@@ -220,8 +218,8 @@ TALL = "wavelength,red,blue\n400,0.1,0.8\n550,0.2,0.3\n700,0.9,0.05\n"
         TALL.replace("red", "1").replace("blue", "2"),
     ],
 )
-def test_layouts(save, text):
-    spectra = read_atlas(save(text, "table.csv"))
+def test_layouts(read, text):
+    spectra = read(text, "table.csv")
     assert spectra.names in (("red", "blue"), ("1", "2"))
     assert [entry.wavelengths.tolist() for entry in spectra.entries] == [
         [400, 550, 700]
@@ -236,9 +234,9 @@ def test_layouts(save, text):
     "text",
     ["name,400,700\nred,10,90\nblue,5,1.5\n", "nm,red,blue\n400,10,5\n700,90,1.5\n"],
 )
-def test_percent(save, text):
+def test_percent(read, text):
     with warns("values-in-percent") as caught:
-        spectra = read_atlas(save(text))
+        spectra = read(text)
     assert caught[0].entry == "red"
     assert "90" in caught[0].problem
     assert [entry.values.tolist() for entry in spectra.entries] == [
@@ -268,12 +266,12 @@ def test_faults_report_file_and_line(save, text, line, code):
     assert caught.value.where.startswith(f"{path}:{line}")
 
 
-def test_endless_cells_and_numbers_raise(save):
+def test_endless_cells_and_numbers_raise(read):
     for text in ('name,"' + "x" * 200_000, WIDE + '"' + "x" * 200_000):
         with raises(AtlasError, "atlas"):
-            read_atlas(save(text))
+            read(text)
     with np.errstate(over="raise"), raises(AtlasError, "atlas"):
-        read_atlas(save("name,400,550,700\nred,1e308,1e308,1e308\n"))
+        read("name,400,550,700\nred,1e308,1e308,1e308\n")
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -289,9 +287,9 @@ def test_endless_cells_and_numbers_raise(save):
         ("blue,30,40", "missing value at 700 nm"),
     ],
 )
-def test_errors_of_a_row_show_what_is_in_the_file(save, row, words):
+def test_errors_of_a_row_show_what_is_in_the_file(read, row, words):
     with raises(AtlasError) as caught:
-        read_atlas(save(f"name,400,550,700\nred,10,20,60\n{row}\ngrey,50,50,50\n"))
+        read(f"name,400,550,700\nred,10,20,60\n{row}\ngrey,50,50,50\n")
     assert words in str(caught.value)
 
 

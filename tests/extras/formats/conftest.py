@@ -1,5 +1,5 @@
 """Fixtures of the tests of atlases."""
 
-from tests.atlas.conftest import save
+from tests.atlas.conftest import read, save
 
-__all__ = ["save"]
+__all__ = ["read", "save"]

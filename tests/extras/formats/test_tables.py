@@ -61,9 +61,9 @@ def test_generated_tables_are_read(tmp_path, seed):
         "sample,wavelength,Reflectance (%)\n" + lines("felt,{:g},{:g}"),
     ],
 )
-def test_a_stated_percentage_wins_over_small_values(save, text):
+def test_a_stated_percentage_wins_over_small_values(read, text):
     with warns("dark-percent"):
-        atlas = read_atlas(save(text))
+        atlas = read(text)
     assert "%" in atlas.sources[0].notes[-1] or "percent" in atlas.sources[0].notes[-1]
     check_values(atlas, VALUES / 100)
 
@@ -78,19 +78,19 @@ def test_a_stated_percentage_wins_over_small_values(save, text):
         (lines("{:g} {:g}", 8), "scale-not-stated"),  # a lamp, perhaps
     ],
 )
-def test_contradictions_and_doubts_are_refused(save, text, code):
+def test_contradictions_and_doubts_are_refused(read, text, code):
     with raises(AtlasError, code) as caught:
-        read_atlas(save(text))
+        read(text)
     assert "measured=" in caught.value.hint
 
 
-def test_percent_signs_in_some_cells_are_refused(save):
+def test_percent_signs_in_some_cells_are_refused(read):
     with raises(AtlasError, "mixed-scales"):
-        read_atlas(save(HEADER + row("a").replace("\n", "%\n")))
+        read(HEADER + row("a").replace("\n", "%\n"))
 
 
-def test_names_with_percentages_are_names(save):
-    atlas = read_atlas(save(HEADER + row("grey 50%") + row("100 % black")))
+def test_names_with_percentages_are_names(read):
+    atlas = read(HEADER + row("grey 50%") + row("100 % black"))
     assert atlas.names == ("grey 50%", "100 % black")
     assert "assumed" in atlas.sources[0].notes[-1]
     check_values(atlas)
@@ -122,9 +122,9 @@ def test_lights_are_no_reflectances(save, text):
 
 
 @pytest.mark.parametrize("text", MATERIALS)
-def test_other_quantities_of_materials_are_neither(save, text):
+def test_other_quantities_of_materials_are_neither(save, read, text):
     with raises(AtlasError, "not-reflectance"):
-        read_atlas(save(text))
+        read(text)
     with raises(AtlasError, "not-a-lamp"):
         read_lamps(save(text))
 
@@ -145,14 +145,14 @@ def test_reflectances_are_no_lamps(save, text):
         read_lamps(path)
 
 
-def test_columns_of_other_quantities_are_skipped_by_name(save):
+def test_columns_of_other_quantities_are_skipped_by_name(read):
     text = "nm,ochre,Transmittance,Std Dev\n" + lines("{:g},{:g},0.5,0.001")
     with warns("entry-skipped"):
-        atlas = read_atlas(save(text))
+        atlas = read(text)
     assert atlas.names == ("ochre",)
     assert [entry.name for entry in atlas.skipped] == ["Transmittance", "Std Dev"]
     with warns("entry-skipped"):
-        rows = read_atlas(save(HEADER + row("ochre") + row("Std Dev", 0.01)))
+        rows = read(HEADER + row("ochre") + row("Std Dev", 0.01))
     assert rows.names == ("ochre",)
 
 
@@ -169,16 +169,12 @@ def test_columns_of_other_quantities_are_skipped_by_name(save):
         "Spectral Data {}[nm]",
     ],
 )
-def test_labels_are_wavelengths_in_rows_and_columns(save, label):
+def test_labels_are_wavelengths_in_rows_and_columns(read, label):
     factor = 100 if "%" in label else 1
     heads = ["id", *(label.format(at) for at in NM)]
-    check_values(
-        read_atlas(save(",".join(heads) + "\n" + row("a", factor), "wide.csv"))
-    )
+    check_values(read(",".join(heads) + "\n" + row("a", factor), "wide.csv"))
     labels = [label.format(at) for at in NM]
-    check_values(
-        read_atlas(save("label,a\n" + lines("{},{:g}", factor, labels), "tall.csv"))
-    )
+    check_values(read("label,a\n" + lines("{},{:g}", factor, labels), "tall.csv"))
 
 
 @pytest.mark.parametrize(
@@ -194,23 +190,23 @@ def test_labels_are_wavelengths_in_rows_and_columns(save, label):
         ("Wavelength accuracy: 0.1 nm\nwavelength,a", "{:.4f},{:g}", NM / 1000),
     ],
 )
-def test_units_of_wavelengths(save, head, pattern, numbers):
-    check_values(read_atlas(save(f"{head}\n" + lines(pattern, nm=numbers))))
+def test_units_of_wavelengths(read, head, pattern, numbers):
+    check_values(read(f"{head}\n" + lines(pattern, nm=numbers)))
 
 
 @pytest.mark.parametrize(
     "text", [lines(nm=NM * 10), lines(nm=1e7 / NM), lines(nm=NM + 600)]
 )
-def test_units_that_nothing_states_are_refused_by_their_numbers(save, text):
+def test_units_that_nothing_states_are_refused_by_their_numbers(read, text):
     with raises(AtlasError, "atlas") as caught:
-        read_atlas(save(text))
+        read(text)
     assert "400–700 nm" in caught.value.problem
 
 
-def test_samples_in_any_order_are_sorted_with_a_note(save):
+def test_samples_in_any_order_are_sorted_with_a_note(read):
     order = np.random.default_rng(0).permutation(len(NM))
     shuffled = "nm,a\n" + "".join(f"{NM[at]},{VALUES[at]}\n" for at in order)
-    atlas = read_atlas(save(shuffled))
+    atlas = read(shuffled)
     check_values(atlas)
     assert any("sorted" in note for note in atlas.sources[0].notes)
 
@@ -224,8 +220,8 @@ def test_samples_in_any_order_are_sorted_with_a_note(save):
         ["820 --", "840 -999"],
     ],
 )  # fmt: skip
-def test_faults_outside_the_used_range_are_cut_off(save, outside):
-    atlas = read_atlas(save(lines("{:g} {:g}") + "\n".join(outside) + "\n"))
+def test_faults_outside_the_used_range_are_cut_off(read, outside):
+    atlas = read(lines("{:g} {:g}") + "\n".join(outside) + "\n")
     inside = (atlas[0].wavelengths >= 380) & (atlas[0].wavelengths <= 780)
     assert_allclose(atlas[0].values[inside], VALUES)
 
@@ -249,7 +245,7 @@ def test_missing_values_within_the_range(save, mark):
         read_atlas(path, missing="zero")
 
 
-def test_values_in_percent_as_spreadsheets_write_them(save):
+def test_values_in_percent_as_spreadsheets_write_them(read):
     text = (
         HEADER.replace(",", ";")
         + row("a", 100)
@@ -259,18 +255,18 @@ def test_values_in_percent_as_spreadsheets_write_them(save):
         .strip()
         + " %\n"
     )
-    check_values(read_atlas(save(text)))
+    check_values(read(text))
 
 
 @pytest.mark.parametrize("value", [10.0, 0.1])
-def test_a_value_ten_times_its_neighbours_is_warned_of(save, value):
+def test_a_value_ten_times_its_neighbours_is_warned_of(read, value):
     values = np.full(81, 0.3 if value < 1 else 0.08)
     values[40] *= 1.1 * value if value > 1 else value / 1.1
     text = "nm,a\n" + "".join(
         f"{380 + 5 * at},{each:.4f}\n" for at, each in enumerate(values)
     )
     with warns("odd-value") as caught:
-        read_atlas(save(text))
+        read(text)
     assert (caught[0].entry, "580 nm" in caught[0].problem) == ("a", True)
 
 
@@ -297,27 +293,23 @@ def test_a_value_ten_times_its_neighbours_is_warned_of(save, value):
         + "".join(row(str(number)) for number in range(101, 801, 100)),
     ],
 )
-def test_where_a_table_begins_and_ends(save, text):
-    check_values(read_atlas(save(text)))
+def test_where_a_table_begins_and_ends(read, text):
+    check_values(read(text))
 
 
-def test_pairs_on_a_line_are_one_spectrum(save):
+def test_pairs_on_a_line_are_one_spectrum(read):
     pairs = [f"{at:g} {value:g}" for at, value in zip(NM, VALUES, strict=True)]
-    atlas = read_atlas(
-        save(
-            "\n".join(" ".join(pairs[at : at + 3]) for at in range(0, len(pairs), 3)),
-            "paint.txt",
-        )
+    atlas = read(
+        "\n".join(" ".join(pairs[at : at + 3]) for at in range(0, len(pairs), 3)),
+        "paint.txt",
     )
     assert atlas.names == ("paint",)
     check_values(atlas)
 
 
-def test_a_second_table_is_skipped_by_name(save):
+def test_a_second_table_is_skipped_by_name(read):
     with warns("entry-skipped"):
-        atlas = read_atlas(
-            save("nm R\n" + lines("{:g} {:g}") + "\nnm R\n" + lines("{:g} {:g}"))
-        )
+        atlas = read("nm R\n" + lines("{:g} {:g}") + "\nnm R\n" + lines("{:g} {:g}"))
     assert [entry.line for entry in atlas.skipped] == [25]
     check_values(atlas)
 
@@ -333,9 +325,9 @@ def test_a_second_table_is_skipped_by_name(save):
         "nm,a\n" + lines("{:g},0,{:g}"),
     ],
 )
-def test_tables_that_may_mean_two_things_are_refused(save, text):
+def test_tables_that_may_mean_two_things_are_refused(read, text):
     with raises(AtlasError):
-        read_atlas(save(text))
+        read(text)
 
 
 @pytest.mark.parametrize(
@@ -346,9 +338,9 @@ def test_tables_that_may_mean_two_things_are_refused(save, text):
         ("name,400,x,700\na,1,1,1\n", 1),
     ],
 )
-def test_errors_show_the_line_that_was_not_understood(save, text, line):
+def test_errors_show_the_line_that_was_not_understood(read, text, line):
     with raises(AtlasError, "not-an-atlas") as caught:
-        read_atlas(save(text))
+        read(text)
     assert caught.value.line == line
     assert text.split("\n")[line - 1].replace(",", " ") in caught.value.problem
 
@@ -372,7 +364,7 @@ def test_values_without_their_wavelengths(tmp_path):
 
 
 @pytest.mark.parametrize(("xy", "factor"), [("{:g},0 {}", 100), ("{:g},0; {}", 100)])
-def test_decimal_commas_of_jcamp(save, xy, factor):
+def test_decimal_commas_of_jcamp(read, xy, factor):
     head = (
         "##TITLE=a\n##JCAMP-DX=4.24\n##XUNITS=NANOMETERS\n##YUNITS=% "
         "REFLECTANCE\n##XYPOINTS=(XY..XY)\n"
@@ -381,8 +373,8 @@ def test_decimal_commas_of_jcamp(save, xy, factor):
         xy.format(at, f"{value * factor:.4f}".replace(".", ",")) + "\n"
         for at, value in zip(NM, VALUES, strict=True)
     )
-    check_values(read_atlas(save(head + text + "##END=\n")))
+    check_values(read(head + text + "##END=\n"))
     pairs = "".join(
         f"{at:g},{value * factor:.0f}\n" for at, value in zip(NM, VALUES, strict=True)
     )
-    check_values(read_atlas(save(head + pairs + "##END=\n")), np.round(VALUES, 2))
+    check_values(read(head + pairs + "##END=\n"), np.round(VALUES, 2))

@@ -40,9 +40,9 @@ def test_spectra_are_those_that_were_written(tmp_path, vendor):
     "label",
     ["nm{}", "R{}", "{}nm", "{} nm", "SPECTRAL_NM{}", "R_{}", "Refl ({} nm)", "λ{}"],
 )
-def test_labels_of_wavelengths(save, label):
+def test_labels_of_wavelengths(read, label):
     heads = ",".join(label.format(nm) for nm in (400, 550, 700))
-    (entry,) = read_atlas(save(f"id,L*,a*,b*,{heads}\ngrey,50,0,0,0.1,0.2,0.3\n"))
+    (entry,) = read(f"id,L*,a*,b*,{heads}\ngrey,50,0,0,0.1,0.2,0.3\n")
     assert (entry.name, entry.wavelengths.tolist(), entry.values.tolist()) == (
         "grey",
         [400, 550, 700],
@@ -50,11 +50,11 @@ def test_labels_of_wavelengths(save, label):
     )
 
 
-def test_rows_of_single_samples(save):
+def test_rows_of_single_samples(read):
     rows = ["Sample,Wavelength (nm),Reflectance"]
     for nm, value in ((700, 0.3), (400, 0.1), (550, 0.2)):
         rows += [f"a,{nm},{value}", f"b,{nm},{value}"]
-    first, second = read_atlas(save("\n".join(rows)))
+    first, second = read("\n".join(rows))
     assert (first.name, first.wavelengths.tolist(), first.values.tolist()) == (
         "a",
         [400, 550, 700],
@@ -62,7 +62,7 @@ def test_rows_of_single_samples(save):
     )
     assert (second.name, second.values.tolist()) == ("b", [0.1, 0.2, 0.3])
     with raises(AtlasError, "atlas") as caught:
-        read_atlas(save("sample,wavelength,reflectance\na,400,0.1\na,red,0.2\n"))
+        read("sample,wavelength,reflectance\na,400,0.1\na,red,0.2\n")
     assert (caught.value.line, caught.value.entry) == (3, "a")
 
 
@@ -82,9 +82,9 @@ SETS = (
         (ROW + "a,0.2,0.3,0.4,50\n", 2, "a"),
     ],
 )
-def test_mixed_scales_name_the_row(save, text, line, entry):
+def test_mixed_scales_name_the_row(read, text, line, entry):
     with raises(AtlasError, "mixed-scales") as caught:
-        read_atlas(save(text))
+        read(text)
     assert (caught.value.line, caught.value.entry) == (line, entry)
 
 
@@ -121,9 +121,9 @@ def test_scale_given_by_the_caller(save):
         "</SpectralDistribution></IESTM2714>",
     ],
 )
-def test_other_quantities_are_refused(save, text):
+def test_other_quantities_are_refused(read, text):
     with raises(AtlasError, "not-reflectance"):
-        read_atlas(save(text))
+        read(text)
 
 
 def test_conditions_of_cxf_are_kept_in_names(tmp_path):
@@ -232,9 +232,9 @@ def test_missing_packages_are_named(tmp_path, monkeypatch, format):
         ("name,nm410,nm550,nm690\na,1,1,1\n", "atlas"),
     ],
 )
-def test_damaged_files_raise(save, text, code):
+def test_damaged_files_raise(read, text, code):
     with raises(AtlasError, code):
-        read_atlas(save(text))
+        read(text)
 
 
 SHEET_XML = (
