@@ -35,7 +35,8 @@ def test_builds_for_debugging_write_their_slices(run, refuse, home):
     assert summary.startswith("two.uplift: 2³ nodes, ")
     assert slices == "two.exr: 2 blue slices"
     assert len(OpenEXR.File(str(home / "two.exr")).parts) == 2
-    assert refuse(f"{words} -o two.cube").where == "two.exr"
+    (home / "two.uplift").unlink()
+    assert refuse(f"{words} -o two.uplift").where == "two.exr"
 
 
 def test_bad_input_is_refused(run, refuse, cube, home):

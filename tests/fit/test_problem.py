@@ -8,12 +8,12 @@ import platform
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from uplift.colorimetry.solid import solid
 
 import uplift
 from tests.conftest import ROOT
 from tests.helpers import run_python
 from uplift.colorimetry import observer
+from uplift.colorimetry.object_colours import solid
 from uplift.fit.problem import MARGIN, nodes_of
 from uplift.lattice import Lattice, Status, axis_nodes
 from uplift.models import reflectance

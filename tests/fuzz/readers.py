@@ -88,7 +88,7 @@ def use_atlas(path: Path) -> None:
     if not ((values >= 0) & (values <= 1)).all():
         raise ValueError("reflectances outside [0, 1]")
     if atlas.entries:
-        copy = path.with_suffix(".copy")
+        copy = path.with_suffix(".copy.txt")
         try:
             write_atlas(atlas, copy, force=True)
             if read_atlas(copy).names != atlas.names:

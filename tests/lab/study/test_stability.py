@@ -5,11 +5,11 @@ difficult as their names.
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
-from uplift.colorimetry.solid import solid
 
 from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import rgb_to_lab
+from uplift.colorimetry.object_colours import solid
 from uplift.common.errors import UnknownNameError
 from uplift.common.progress import Progress
 from uplift.lab.study import stability

@@ -171,10 +171,13 @@ def _analyse(values: Array, waves: Array) -> Array:
     return values @ waves.T / (waves**2).sum(axis=1)
 
 
-# The relative gradients of spikes are those of Kment 2011, section 6.1.
+SUN_THRESHOLD = 0.3
+"""Relative gradient of spikes of `sun_composite`, from Kment 2011, section 6.1."""
+ENHANCED_THRESHOLD = 0.2
+"""Likewise of `enhanced_riemann`."""
 
 
-def sun_composite(count: int, threshold: float = 0.3) -> Representation:
+def sun_composite(count: int, threshold: float = SUN_THRESHOLD) -> Representation:
     """Sun's composite model (CS): spikes, and ``count`` Fourier coefficients of the
     smooth part.
     """
@@ -183,7 +186,9 @@ def sun_composite(count: int, threshold: float = 0.3) -> Representation:
     return composite(f"CS{count}", "Sun's composite", smooth, decoder, threshold)
 
 
-def enhanced_riemann(count: int, threshold: float = 0.2) -> Representation:
+def enhanced_riemann(
+    count: int, threshold: float = ENHANCED_THRESHOLD
+) -> Representation:
     """Enhanced Riemann sums (RE): spikes, which meet the mean of their cell, and
     Riemann sums of the smooth part.
     """
