@@ -13,7 +13,7 @@ import OpenEXR
 import uplift
 from benchmarks import CUBES, MACBETH, Row, record
 from benchmarks.performance import UPLIFT
-from benchmarks.pictures import Picture, colour, pictures
+from benchmarks.pictures import Picture, pictures
 from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.extras import texture
@@ -95,7 +95,8 @@ def _rgb(cube: Cube, form: PixelEncoding, names: tuple[str, ...], path: Path) ->
 
 def _rgb_by_colour_science(path: Path) -> Array:
     """Return linear sRGB, read and converted by colour-science alone."""
-    io = colour.io.fichet2021
+    from colour.io import fichet2021 as io  # without the warnings of its import
+
     with warnings.catch_warnings(action="ignore"):
         at, values = io.read_spectral_image_Fichet2021(path)["T"]
         blocks = []

@@ -12,7 +12,8 @@ from benchmarks import choices
 from benchmarks.__main__ import pages
 from benchmarks.cameras import ATLAS, CHOSEN_AS
 from benchmarks.chart import optimistic_mark
-from benchmarks.choices import ALONE, MARK, OURS, SHIPPED, is_optimistic, mark
+from benchmarks.choices import ALONE, MARK, OURS, is_optimistic, mark
+from benchmarks.materials import SHIPPED
 from tests.conftest import ROOT
 from tests.parts import MITSUBA, need
 from tools import render_docs

@@ -15,9 +15,8 @@ def test_spread_is_median_min_and_max():
 
 def test_laps_are_long_enough_and_runs_are_limited(monkeypatch):
     calls: list[float] = []
-    monkeypatch.setattr(
-        timing.time, "process_time", lambda: sum(calls)
-    )  # a clock that only the calls move
+    # a clock that only the calls move
+    monkeypatch.setattr("time.process_time", lambda: sum(calls))
     found = timing.time_laps(lambda: calls.append(0.001), 0.01, 5)
     assert (found.runs, len(calls)) == (5, 2 + 5 * 10)
     assert found.median == pytest.approx(0.001)

@@ -249,9 +249,9 @@ def test_invalid_constants_raise(tmp_path, old, new, problem):
 
 @pytest.mark.parametrize("X", [0.01, 1.0, 30.0])
 def test_duntley_creates_no_energy(rng, X):
-    check_energy(
-        duntley_layer(*(Flux(*10 ** rng.uniform(-3, 1, (3, 200))) for _ in range(2)), X)
-    )
+    first = Flux(*10 ** rng.uniform(-3, 1, (3, 200)))
+    second = Flux(*10 ** rng.uniform(-3, 1, (3, 200)))
+    check_energy(duntley_layer(first, second, X))
 
 
 def test_isotropic_paint_in_a_beam_is_two_r_over_three_minus_r(rng):

@@ -133,7 +133,8 @@ def test_several_parts_tiles_windows_and_other_channels(
     depth = rng.normal(0, 1e6, shape).astype(np.float32)
     depth[0, :3] = (np.nan, np.inf, -np.inf)
     ids = rng.integers(0, 1 << 24, shape, dtype=np.uint32, endpoint=True)
-    others = {"mask": rng.random(shape).astype(np.float16), "Z": depth, "id": ids}
+    mask = rng.random(shape).astype(np.float16)
+    others: dict[str, np.ndarray] = {"mask": mask, "Z": depth, "id": ids}
     header = {
         "type": kind,
         "dataWindow": ((5, -7), (5 + shape[1] - 1, -7 + shape[0] - 1)),
