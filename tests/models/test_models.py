@@ -10,10 +10,12 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.testing import assert_allclose, assert_array_equal
 
+import uplift.models
 from tests.helpers import raises
 from uplift.common.errors import OptionError, UnknownNameError
 from uplift.models import Moments, Sigmoid, evaluate, from_description
 from uplift.models.moments import WARPS, multipliers_of_rounded
+from uplift.pipeline import options
 
 GRID = np.arange(380.0, 781.0, 5.0)
 LIMIT = 2e-7
@@ -188,3 +190,7 @@ def test_moments_that_rounding_moved_outside_return():
     multipliers, valid = multipliers_of_rounded(model, rounded)
     assert valid.all()
     assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=0.01)
+
+
+def test_builds_name_the_models_that_files_have():
+    assert set(uplift.models.MODELS) == set(options.MODELS)

@@ -17,6 +17,7 @@ from uplift.models.moments import Moments
 from uplift.models.sigmoid import Sigmoid
 
 __all__ = [
+    "MODELS",
     "ForwardMap",
     "Model",
     "Moments",
@@ -29,6 +30,10 @@ __all__ = [
     "reflectance",
     "solve_damped",
 ]
+
+
+MODELS: dict[str, type[Model]] = {Moments.name: Moments, Sigmoid.name: Sigmoid}
+"""Models by name."""
 
 
 def from_description(description: Mapping[str, Any]) -> Model:
@@ -59,9 +64,6 @@ def from_description(description: Mapping[str, Any]) -> Model:
     >>> from_description(Sigmoid().describe())
     Sigmoid(start=380.0, end=780.0)
     """
+    model = MODELS[description["name"]]
     parameters = {key: value for key, value in description.items() if key != "name"}
-    if description["name"] == Sigmoid.name:
-        return Sigmoid(**parameters)
-    if description["name"] == Moments.name:
-        return Moments(parameters["count"], **parameters["phase"])
-    raise KeyError(description["name"])
+    return model.from_parameters(**parameters)

@@ -25,6 +25,11 @@ class Model(ABC):
 
     name: ClassVar[str]
 
+    @classmethod
+    def from_parameters(cls, **parameters: Any) -> "Model":
+        """Create the model from what `describe` has next to its name."""
+        return cls(**parameters)
+
     @property
     @abstractmethod
     def count(self) -> int:

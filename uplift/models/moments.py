@@ -107,6 +107,11 @@ class Moments(Model):
     warp: str = "none"
     name = "moments"
 
+    @classmethod
+    def from_parameters(cls, **parameters: Any) -> "Moments":
+        """Create the model from what `describe` has next to its name."""
+        return cls(parameters["count"], **parameters["phase"])
+
     def __post_init__(self) -> None:
         if self.warp not in WARPS:
             raise unknown_name(str(self.warp), WARPS, "warp")
