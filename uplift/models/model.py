@@ -27,7 +27,17 @@ class Model(ABC):
 
     @classmethod
     def from_parameters(cls, **parameters: Any) -> "Model":
-        """Create the model from what `describe` has next to its name."""
+        """Create the model from what `describe` has next to its name.
+
+        Parameters
+        ----------
+        **parameters
+            JSON values.
+
+        Returns
+        -------
+        Model
+        """
         return cls(**parameters)
 
     @property
