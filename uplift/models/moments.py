@@ -109,17 +109,6 @@ class Moments(Model):
 
     @classmethod
     def from_parameters(cls, **parameters: Any) -> "Moments":
-        """Create the model from what `describe` has next to its name.
-
-        Parameters
-        ----------
-        **parameters
-            JSON values.
-
-        Returns
-        -------
-        Model
-        """
         return cls(parameters["count"], **parameters["phase"])
 
     def __post_init__(self) -> None:
