@@ -72,10 +72,9 @@ class LazyGroup(Group):
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         """Import a command, of this package or another; None for an unknown name."""
-        command: click.Command | None = None
         if name not in self.commands:
             load = installed(KIND).get(name)
-            return command if load is None else load()
+            return None if load is None else load()
         if name not in QUICK:
             hide_drawing_notes()
         return importlib.import_module(f"uplift_cli.commands.{name}").command
