@@ -207,6 +207,15 @@ def parse_range(
     "for other materials.",
 )
 @options.flag(
+    "--trust-atlas",
+    help="Expect every material to be like those of the atlas: for scenes painted with "
+    "nothing else.",
+)
+@options.flag(
+    "--exact-entries",
+    help="Keep exact spectra of entries that show as spots under other lights.",
+)
+@options.flag(
     "--debug",
     help="Store the round of every node, and write slices as .exr next to the cube.",
 )

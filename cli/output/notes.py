@@ -16,7 +16,13 @@ if TYPE_CHECKING:
     from uplift.lookup import Cube
 
 Made = TypeVar("Made")
-NOTES = ("entry-clipped", "entry-crowded", "shipped-atlas", "values-in-percent")
+NOTES = (
+    "entry-clipped",
+    "entry-crowded",
+    "entry-smoothed",
+    "shipped-atlas",
+    "values-in-percent",
+)
 """Codes of warnings that state facts of an atlas, and no mistake."""
 
 

@@ -190,10 +190,17 @@ def familiar_distance(locations: Array) -> float:
     """ΔE*ab within which `FAMILIAR` of the entries at L*a*b* (E, 3) have another one; 0
     for fewer than two.
     """
+    return neighbour_distance(locations, FAMILIAR)
+
+
+def neighbour_distance(locations: Array, share: float) -> float:
+    """Distance within which a share of the entries at locations (E, 3) have another
+    one; 0 for fewer than two.
+    """
     if len(locations) < 2:
         return 0.0
     step = -(-len(locations) // MAX_ROWS)
     rows = np.arange(0, len(locations), step)
     apart = distances(locations[rows], locations)
     apart[np.arange(len(rows)), rows] = np.inf
-    return float(np.quantile(apart.min(axis=1), FAMILIAR))
+    return float(np.quantile(apart.min(axis=1), share))

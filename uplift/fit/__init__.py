@@ -3,7 +3,13 @@ nodes.
 """
 
 from uplift.fit.base import NO_FREEDOM, learn_base
-from uplift.fit.entries import FittedEntries, Marquardt, fit_entries, join_entries
+from uplift.fit.entries import (
+    FittedEntries,
+    Marquardt,
+    fit_entries,
+    join_entries,
+    with_multipliers,
+)
 from uplift.fit.families import Family, families_with, shipped_library
 from uplift.fit.growth_outward import grow_outward, shells
 from uplift.fit.kriging import posterior
@@ -28,4 +34,5 @@ __all__ = [
     "posterior",
     "shells",
     "shipped_library",
+    "with_multipliers",
 ]

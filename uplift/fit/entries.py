@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from uplift.colorimetry import Light, delta_e_spectra, lab, lab_jacobian
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array, Indices, Mask
 from uplift.fit.problem import Problem
 from uplift.fit.solver import (
     BatchSolver,
@@ -289,13 +289,28 @@ def fit_entries(
     multipliers = solve_in_numpy(
         problem.forward, near, rgb, problem.tolerance, MAX_STEPS
     )
+    error = _errors(problem, multipliers, measured)
+    return FittedEntries(rgb, measured, multipliers, error).rows(np.argsort(order))
+
+
+def _errors(problem: Problem, multipliers: Array, measured: Array) -> Array:
+    """ΔE00 (E,) between fitted and measured spectra under the light of the errors."""
     spectra = np.asarray(
         problem.model.to_reflectance(multipliers @ problem.forward.basis.T)
     )
-    error = delta_e_spectra(
-        problem.error_light or problem.sensor.light, spectra, measured
-    )
-    return FittedEntries(rgb, measured, multipliers, error).rows(np.argsort(order))
+    light = problem.error_light or problem.sensor.light
+    return delta_e_spectra(light, spectra, measured)
+
+
+def with_multipliers(
+    problem: Problem, entries: FittedEntries, rows: Indices, multipliers: Array
+) -> FittedEntries:
+    """Return entries of which rows (k,) have other multipliers, and errors of these."""
+    changed = entries.multipliers.copy()
+    changed[rows] = multipliers
+    error = entries.error.copy()
+    error[rows] = _errors(problem, multipliers, entries.measured[rows])
+    return entries._replace(multipliers=changed, error=error)
 
 
 def join_entries(*parts: FittedEntries) -> FittedEntries:

@@ -6,41 +6,28 @@ and 5.4.2 for leave-one-out.
 """
 
 from dataclasses import dataclass
-from itertools import product
 from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
-from uplift.colorimetry import delta_e_2000_weights, lab, lab_jacobian
 from uplift.common.arrays import Array, Indices, blocks, distances
-from uplift.fit.problem import Problem
 
 METRIC = np.array([0.5, 1.0, 1.0])
 """Weights of differences of L*, a* and b*: materials of one hue are more alike than
 those of one lightness.
 """
 REACH = 10.0
-"""Distance within which the noise of an entry fades away."""
+"""Distance within which the noise of an entry fades away, at most."""
+NEARBY = 3.0
+"""Reaches of an entry within which materials are trusted to be of its kind."""
 WHITE = 0.1
 """Share of the noise of an entry that is white."""
 BLOCK_NUMBERS = 1 << 20
 """Numbers of the kernel matrix that are held at a time, at most."""
 BLOCK_ROWS = 1 << 13
 """Rows of the kernel matrix that are held at a time, at most."""
-DOUBT = 0.5
-"""Entries' worth of the preference for `DEFAULT`, per squared doubling of the length or
-quadrupling of the noise.
-"""
-MIN_ENTRIES = 8
-"""Entries needed to learn a kernel."""
-MEDIAN_STEPS = 3
-"""Steps towards the median."""
-DOUBTFUL = 0.2
-"""Share of the mean error that is added to each error."""
-INVISIBLE = 1e-3
-"""ΔE00 below which errors do not matter."""
 MAX_POINTS = 1200
 """Points of a kriging. More spectra are averaged in cubes of L*a*b*."""
 CELLS = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)
@@ -51,7 +38,7 @@ class Kernel(NamedTuple):
     """Covariance exp(−d / l) + ν √(v v′) ((1 − w) (1 − d / r)⁴₊ (1 + 4 d / r) + w [same
     material]).
 
-    Here l is ``length``, ν ``noise``, r `REACH` and w `WHITE`.
+    Here l is ``length``, ν ``noise``, r ``reach`` and w `WHITE`.
 
     The first term is common to the materials of an atlas. The noise ν v belongs to one
     of them: kriging keeps most of it at the colour of an entry and near it, and
@@ -62,14 +49,11 @@ class Kernel(NamedTuple):
 
     length: float
     noise: float
+    reach: float = REACH
 
 
 DEFAULT = Kernel(length=12.0, noise=0.3)
 """Kernel of atlases that are too small to learn one."""
-KERNELS = tuple(
-    Kernel(*pair)
-    for pair in product((6.0, 12.0, 24.0, 48.0), (0.01, 0.03, 0.1, 0.3, 1.0, 3.0))
-)
 
 
 class Points(NamedTuple):
@@ -109,11 +93,12 @@ def average_close(locations: Array, deviations: Array) -> Points:
 
 @dataclass(frozen=True, eq=False)
 class Kriging:
-    """Expected deviation d(x) = k(x)ᵀ w of E entries, from the locations (P, 3) and
-    weights (P, C) of points.
+    """Expected deviation d(x) = s(x) k(x)ᵀ w of E entries, from the locations (P, 3)
+    and weights (P, C) of points.
 
     ``noise`` (P,) are the variances ν v of the points, and ``variances`` (E,) the v of
-    the entries.
+    the entries. ``trust`` is the share s far from entries: the probability that a
+    material is of their kind. It rises to 1 at an entry.
     """
 
     kernel: Kernel
@@ -121,13 +106,16 @@ class Kriging:
     weights: Array
     noise: Array
     variances: Array
+    trust: float = 1.0
 
     def __call__(self, lab: Array) -> Array:
         """Deviation (n, C) at L*a*b* (n, 3)."""
-        spread = np.sqrt(self.kernel.noise * self.noise)
-        return kernel_sums(
-            lab * METRIC, self.locations, self.weights, self.kernel.length, spread
-        )[0]
+        own = np.sqrt(self.kernel.noise * self.noise)
+        sums, nearest = kernel_sums(
+            lab * METRIC, self.locations, self.weights, self.kernel, own
+        )
+        near = _faded(nearest / (NEARBY * self.kernel.reach))
+        return (self.trust + (1 - self.trust) * near)[:, None] * sums
 
 
 def krige(
@@ -139,20 +127,20 @@ def krige(
     ``variances`` (E,) are those of the noise of the entries, relative to that of the
     kernel, 1 by default.
     """
-    return _krige(
-        average_close(lab * METRIC, deviations), deviations, kernel, variances
-    )
+    points = average_close(lab * METRIC, deviations)
+    return krige_points(points, deviations, kernel, variances)
 
 
-def _krige(
+def krige_points(
     points: Points, deviations: Array, kernel: Kernel, variances: Array | None = None
 ) -> tuple[Kriging, Array]:
+    """As `krige`, of deviations that are averaged already."""
     variances = np.ones(len(deviations)) if variances is None else variances
     noise = kernel.noise * np.bincount(points.point, variances) / points.counts
     distance = distances(points.locations, points.locations)
     spread = np.sqrt(noise)
     white = WHITE * noise / points.counts
-    own = spread * _own(distance) * spread[:, None]
+    own = spread * _own(distance, kernel.reach) * spread[:, None]
     precision = np.linalg.inv(_shared(distance, kernel.length) + own + np.diag(white))
     weights = precision @ points.deviations
     # A point of n entries answers its mean less w ν v u / n, where u is its weight, and
@@ -167,49 +155,6 @@ def _krige(
     ), residuals / others[points.point, None]
 
 
-def learn_kriging(
-    lab: Array, deviations: Array, visible: Array
-) -> tuple[Kriging, Array]:
-    """Return the kriging with the least mean visible error of left-out entries, and its
-    errors, as `krige` does.
-
-    The entries have L*a*b* (E, 3) and deviations (E, C), whose `visible_change` is (E,
-    L, 3, C). Few entries lean towards `DEFAULT`.
-    """
-    points = average_close(lab * METRIC, deviations)
-    if len(lab) < MIN_ENTRIES:
-        return _krige(points, deviations, DEFAULT)
-
-    def changes(errors: Array) -> Array:
-        return (
-            np.linalg.norm(np.einsum("elkc,ec->elk", visible, errors), axis=-1).mean(
-                axis=1
-            )
-            + INVISIBLE
-        )
-
-    def loss(kernel: Kernel) -> float:
-        # Visible leave-one-out error, and the surprise at a kernel that is not the
-        # default
-        doublings, quadruplings = np.log2(np.divide(kernel, DEFAULT)) / (1, 2)
-        error = changes(_krige(points, deviations, kernel)[1]).mean()
-        return float(
-            np.log(error) + DOUBT / len(lab) * (doublings**2 + quadruplings**2)
-        )
-
-    # Entries vary as they deviate: weights 1 / v of squares |e|² with v = |e| minimise
-    # the sum of |e|, a median.
-    kernel = min(KERNELS, key=loss)
-    kriging, errors = _krige(points, deviations, kernel)
-    for _ in range(MEDIAN_STEPS):
-        missed = changes(errors)
-        missed += DOUBTFUL * missed.mean()
-        kriging, errors = _krige(
-            points, deviations, kernel, missed / np.exp(np.log(missed).mean())
-        )
-    return kriging, errors
-
-
 def posterior(kernel: Kernel, known: Array, lab: Array) -> Array:
     """Covariance (n, n) of the deviations of materials at L*a*b* (n, 3), given those of
     known ones (E, 3).
@@ -222,7 +167,8 @@ def posterior(kernel: Kernel, known: Array, lab: Array) -> Array:
     def covariance(first: Array, second: Array) -> Array:
         distance = distances(first, second)
         return np.asarray(
-            _shared(distance, kernel.length) + kernel.noise * _own(distance)
+            _shared(distance, kernel.length)
+            + kernel.noise * _own(distance, kernel.reach)
         )
 
     white = WHITE * kernel.noise
@@ -240,10 +186,10 @@ def posterior(kernel: Kernel, known: Array, lab: Array) -> Array:
 
 
 def kernel_sums(
-    at: Array, locations: Array, columns: Array, length: float, own: Array
+    at: Array, locations: Array, columns: Array, kernel: Kernel, own: Array
 ) -> tuple[Array, Array]:
     """Sums (n, K) of columns (P, K) weighted by the kernel at locations (n, 3), and the
-    largest weight (n,).
+    distance (n,) of the nearest location.
 
     ``own`` (P,) weigh the part of the noise that is not white.
     """
@@ -256,7 +202,9 @@ def kernel_sums(
             some = (
                 at[block] if count == rows else np.resize(at[block], (rows, 3))
             )  # one shape is compiled
-            arrays = _kernel_block(length, own, some, locations, columns)
+            arrays = _kernel_block(
+                kernel.length, kernel.reach, own, some, locations, columns
+            )
             sums[block], nearest[block] = (
                 np.asarray(array)[:count] for array in arrays
             )
@@ -266,6 +214,7 @@ def kernel_sums(
 @jax.jit
 def _kernel_block(
     length: float,
+    reach: float,
     own: jax.Array,
     at: jax.Array,
     locations: jax.Array,
@@ -275,8 +224,8 @@ def _kernel_block(
     distance = jnp.sqrt(
         sum((at[:, axis, None] - locations[:, axis]) ** 2 for axis in range(3))
     )
-    weights = _shared(distance, length) + own * _own(distance)
-    return weights @ columns, weights.max(axis=1)
+    weights = _shared(distance, length) + own * _own(distance, reach)
+    return weights @ columns, distance.min(axis=1)
 
 
 def _shared(distance: Any, length: float) -> Any:
@@ -284,34 +233,13 @@ def _shared(distance: Any, length: float) -> Any:
     return distance.__array_namespace__().exp(distance / -length)
 
 
-def _own(distance: Any) -> Any:
+def _own(distance: Any, reach: float) -> Any:
     """Covariance of the noise that is not white, of variance 1, likewise."""
-    relative = distance.__array_namespace__().minimum(distance / REACH, 1.0)
-    fade = (1 - relative) ** 2
-    return (1 - WHITE) * fade * fade * (1 + 4 * relative)
+    return (1 - WHITE) * _faded(distance / reach)
 
 
-def visible_change(problem: Problem, measured: Array) -> Array:
-    """Derivative (E, L, 3, C) of the colours of reflectances (E, N) under L lights by
-    coefficients, in units of ΔE00.
-
-    Lightness, chroma and hue difference change once the colour of the build is exact
-    again. Moments are linear in the spectrum, which they determine up to its roughest
-    parts: their basis approximates the change of the spectrum.
-    """
-    basis = problem.forward.basis
-    sensor = problem.forward.sensor @ problem.forward.basis
-    # Of changes of the coefficients, only the part remains that a smooth change of the
-    # same colour does not undo: I − M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ J with J = W B.
-    smooth = sensor.T / problem.model.metric_diagonal()[:, None]
-    metameric = np.eye(problem.model.count) - smooth @ np.linalg.solve(
-        sensor @ smooth, sensor
-    )
-    changes = []
-    for light in problem.lights:
-        xyz = measured @ light.xyz.T
-        to_delta_e = delta_e_2000_weights(lab(xyz, light.white)) @ lab_jacobian(
-            xyz, light.white
-        )
-        changes.append(to_delta_e @ (light.xyz @ basis @ metameric))
-    return np.stack(changes, axis=1)
+def _faded(relative: Any) -> Any:
+    """Wendland's (1 − x)⁴₊ (1 + 4 x), an array of numpy or JAX."""
+    within = relative.__array_namespace__().minimum(relative, 1.0)
+    fade = (1 - within) ** 2
+    return fade * fade * (1 + 4 * within)

@@ -15,16 +15,8 @@ from uplift.colorimetry.likely_errors import LENGTH, ExpectedError, expected_err
 from uplift.common.arrays import Array, Mask, largest
 from uplift.fit.base import NO_FREEDOM, Base, learn_base, moment_matrix
 from uplift.fit.entries import FittedEntries
-from uplift.fit.kriging import (
-    DEFAULT,
-    MIN_ENTRIES,
-    Kernel,
-    Kriging,
-    kernel_sums,
-    krige,
-    learn_kriging,
-    visible_change,
-)
+from uplift.fit.kernel_learning import MIN_ENTRIES, learn_kriging, visible_change
+from uplift.fit.kriging import DEFAULT, Kernel, Kriging, kernel_sums, krige
 from uplift.fit.problem import Problem
 from uplift.lattice import Lattice
 from uplift.models import Model, Moments, evaluate, reflectance
@@ -134,11 +126,18 @@ class Prior:
         columns = np.pad(self.errors.columns, ((0, 0), (0, self.model.count - used)))
         none = np.zeros(len(columns))
         sums, nearest = kernel_sums(
-            rgb_to_lab(self.sensor, rgb), self.errors.locations, columns, LENGTH, none
+            rgb_to_lab(self.sensor, rgb),
+            self.errors.locations,
+            columns,
+            Kernel(LENGTH, 0.0),
+            none,
         )
         # Expected square v(x) Σ k e² / Σ k + f, and the learnt radius of 68 % in its
         # root
-        squares = self.errors.combine(sums[:, :used], nearest)[:, 0] + self.errors.floor
+        squares = (
+            self.errors.combine(sums[:, :used], np.exp(nearest / -LENGTH))[:, 0]
+            + self.errors.floor
+        )
         standard, _ = self.errors.radii
         return np.asarray(standard * np.sqrt(squares))
 
@@ -154,22 +153,28 @@ class Prior:
         deviations, _ = _deviations(self.model, self.base, entries.rows(order))
         kernel = DEFAULT
         variances = np.zeros(0)
+        trust = 1.0
         if self.kriging is not None:
             kernel = self.kriging.kernel
             variances = self.kriging.variances
+            trust = self.kriging.trust
         variances = np.append(variances, np.full(looks, LOOK_VARIANCE))
         kriging, _ = krige(
             rgb_to_lab(self.sensor, entries.rgb[order]), deviations, kernel, variances
         )
-        return replace(self, kriging=kriging)
+        return replace(self, kriging=replace(kriging, trust=trust))
 
 
 def fit_prior(
-    problem: Problem, entries: FittedEntries, base: Base | None = None
+    problem: Problem,
+    entries: FittedEntries,
+    base: Base | None = None,
+    trust: float | None = None,
 ) -> Prior:
     """Fit the prior to atlas entries; the base is that of smooth spectra by default.
 
-    The order of the entries does not change the rounding of sums.
+    The trust in the atlas is learnt if it is not given. The order of the entries does
+    not change the rounding of sums.
     """
     model = problem.model
     sensor = problem.sensor
@@ -185,7 +190,7 @@ def fit_prior(
     else:
         brightness = base.brightness(entries.rgb)
         visible = visible_change(problem, entries.measured) * brightness[:, None, None]
-        kriging, errors = learn_kriging(locations, deviations, visible)
+        kriging, errors = learn_kriging(locations, deviations, visible, trust)
     if len(entries.rgb) < MIN_ENTRIES:
         return Prior(model, sensor, base, kriging)
     # Each entry as the others predict it: its deviation less its leave-one-out error,

@@ -4,6 +4,7 @@ nodes start from, and the lattice that keeps all entries.
 Tódová 2020, "Constrained spectral uplifting", section 3.1.2; docs/mathematics.md, 6.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,8 @@ NEAR = 8.0
 """ΔE*ab up to which a corner is near its entry."""
 FAR = 16.0
 """ΔE*ab from which a corner is far from its entry."""
+CORNER_SHARE = 0.6
+"""Weight of an entry in the start of near corners, if no other entry is close."""
 MAX_HALF_WIDTH = 1.0
 """Lattice steps: the half width of an entry box without other entries nearby."""
 SAME_COLOUR = 1e-6
@@ -83,11 +86,12 @@ class Seeds:
     """Nodes (S,) that start from the entries (S,) of linear RGB (E, 3).
 
     ``primary`` (S,) marks the node nearest to its entry. ``crowded`` are entries whose
-    nearest node a closer one has.
+    nearest node a closer one has. ``half_width`` (E,) are those of the boxes.
     """
 
     lattice: Lattice
     rgb: Array
+    half_width: Array
     points: Indices
     entry: Indices
     primary: Mask
@@ -126,6 +130,7 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
     return Seeds(
         lattice=lattice,
         rgb=rgb,
+        half_width=half_widths(lattice.to_steps(rgb)),
         points=np.array(list(owner), dtype=np.int64),
         entry=np.array(list(owner.values()), dtype=np.int64),
         primary=np.arange(len(owner)) < primaries,
@@ -133,21 +138,26 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
     )
 
 
-Blend = tuple[float, float]
-"""Weights of an entry in the start of the corners of its cell, up to `NEAR` ΔE*ab from
-the entry and from `FAR`.
-
-The weight changes linearly between them; the rest is the prior.
+Blend = Callable[[Array, Array], Array]
+"""From the ΔE*ab (k,) between corners and their entries, and the half widths (k,) of
+the boxes of these, to the weights (k,) of entries in the start of the corners. The rest
+is the prior.
 """
-HALF_ENTRY: Blend = (0.5, 0.0)
-"""The default: shades of an entry, paint of nearly its colour, are like it, other
-materials near it like the prior.
 
-More of the entry is worse for other materials, and less is worse for shades. Corners of
-coarse lattices whose colour is another one start from the prior alone.
-"""
-FULL_ENTRY: Blend = (1.0, 1.0)
-"""Tódová 2020, section 3.1.2."""
+
+def near_entry(distance: Array, half_width: Array) -> Array:
+    """The default: shades of an entry, paint of nearly its colour, are like it, other
+    materials near it like the prior.
+
+    Where others are close, corners start from the prior alone: neighbouring nodes of
+    two entries would show as spots under other lights.
+    """
+    return half_width * np.interp(distance, (NEAR, FAR), (CORNER_SHARE, 0))
+
+
+def full_entry(distance: Array, half_width: Array) -> Array:
+    """Tódová 2020, section 3.1.2."""
+    return np.ones_like(distance)
 
 
 def initial_guess(
@@ -161,9 +171,8 @@ def initial_guess(
     """Multipliers (k, C) that nodes (k,), which are fitted to linear RGB (k, 3), start
     from.
 
-    The primary node of an entry starts from its multipliers in ``entries`` (E, C), the
-    other corners of its cell from a blend of these with the prior, and all other nodes
-    from the prior.
+    Corners of the cell of an entry start from a blend of its multipliers in ``entries``
+    (E, C) with the prior, all other nodes from the prior.
     """
     multipliers = prior.at_nodes(seeds.lattice, rgb)
     _, seeded, row = np.intersect1d(
@@ -173,8 +182,7 @@ def initial_guess(
     node_lab = rgb_to_lab(prior.sensor, rgb[seeded])
     entry_lab = rgb_to_lab(prior.sensor, seeds.rgb)
     distance = delta_e_1976(node_lab, entry_lab[entry])
-    near = np.interp(distance, (NEAR, FAR), blend)
-    weight = np.where(seeds.primary[row], 1.0, near)
+    weight = blend(distance, seeds.half_width[entry])
     multipliers[seeded] = blended(
         prior.model, entries[entry], multipliers[seeded], weight
     )

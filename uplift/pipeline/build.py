@@ -51,6 +51,8 @@ def build(
     threshold: float = 1e-4,
     auto_tolerance: float = 0.5,
     seed_corners: bool = False,
+    trust_atlas: bool = False,
+    exact_entries: bool = False,
     growth: GrowthName = "outward",
     solver: Any = "least-change",
     debug: bool = False,
@@ -124,9 +126,16 @@ def build(
         lattice.
     seed_corners : bool, default False
         Start all eight corners of the cell of each atlas entry from the entry, as
-        Tódová 2020 does. By default, seven of them start half-way between entry and
-        prior, and at colours unlike the entry's nearer to the prior.
+        Tódová 2020 does. By default, they start between entry and prior, and nearer to
+        the prior at colours unlike the entry's and where other entries are close.
         ``growth="neighbours"`` always does.
+    trust_atlas : bool, default False
+        Expect every material to be like those of the atlas. By default the prior trusts
+        an atlas only as far as its own entries are the better predicted, so that it
+        does not mislead about other materials (docs/prior.md).
+    exact_entries : bool, default False
+        Keep the exact spectra of entries that contradict their surroundings. By default
+        they are smoothed where they would show as spots under other lights.
     growth : {"outward", "coarse-to-fine", "neighbours"}, default "outward"
         Order in which nodes are fitted: outward from the atlas entries, in shells, or
         from a coarse lattice to finer ones. Both start from the spectrum that the atlas
@@ -169,8 +178,9 @@ def build(
     Warns
     -----
     UpliftWarning
-        Entries with the colour of another entry (``entry-duplicate``) or close to
-        another entry (``entry-crowded``). Spectra of a library out of gamut
+        Entries with the colour of another entry (``entry-duplicate``), close to another
+        entry (``entry-crowded``) or unlike all others of close colours
+        (``entry-smoothed``). Spectra of a library out of gamut
         (``entry-out-of-gamut``) or outside [0, 1] (``entry-clipped``). Looks that no
         reflectance meets (``look-impossible``), or that the coefficients of entries do
         not reach (``look-not-reached``); the nearest colour is used. Entries out of
@@ -203,6 +213,8 @@ def build(
         threshold=threshold,
         auto_tolerance=auto_tolerance,
         seed_corners=seed_corners,
+        trust_atlas=trust_atlas,
+        exact_entries=exact_entries,
         growth=growth,
         solver=solver if isinstance(solver, str) else CUSTOM,
         debug=debug,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from uplift.atlas import Atlas, Source, on_grid, read_atlas, resample
 from uplift.colorimetry import Sensor, in_unit_cube
 from uplift.colorimetry.observer import COMMON_SPACES, grid, smallest_space
-from uplift.common.arrays import Array, StrPath
+from uplift.common.arrays import Array, Indices, StrPath
 from uplift.common.errors import AtlasError, OptionError, UpliftWarning, warn
 from uplift.common.text import format_value, listed
 from uplift.cube import AtlasTable, EntrySpectra
@@ -24,6 +24,7 @@ from uplift.fit import (
     Problem,
     fit_entries,
     shipped_library,
+    with_multipliers,
 )
 from uplift.models import Model
 from uplift.pipeline.options import Options
@@ -87,6 +88,16 @@ class Constraints:
             self.at_entries.multipliers
         )  # c_j = (1/π) ∫ g cos jφ dφ for any count
         return model.from_storage(stored[:, : model.count])
+
+    @property
+    def measured_count(self) -> int:
+        """Number of entries that are no looks."""
+        return len(self.names) - self.looks
+
+    def reflectance(self, problem: Problem, rows: Indices) -> Array:
+        """Spectra (k, N) that entries answer."""
+        spectra = self.table(problem.model, np.zeros(len(self.names)), None).spectra
+        return spectra.reflectance(rows, problem.sensor.wavelengths)
 
     def table(
         self, model: Model, half_width: Array, measured: NDArray[np.float32] | None
@@ -184,6 +195,20 @@ def fit_constraints(
             replace(problem, model=entry_model), entries.reflectances, entries.rgb
         )
     return Constraints(entries.names, entry_model, at_nodes, at_entries)
+
+
+def replaced(
+    problem: Problem, entries: Constraints, rows: Indices, others: Constraints
+) -> Constraints:
+    """Return constraints of which rows (k,) have the spectra of others."""
+    multipliers = others.at_nodes.multipliers
+    at_nodes = with_multipliers(problem, entries.at_nodes, rows, multipliers)
+    at_entries = at_nodes
+    if entries.at_entries is not entries.at_nodes:
+        problem = replace(problem, model=entries.entry_model)
+        multipliers = others.at_entries.multipliers
+        at_entries = with_multipliers(problem, entries.at_entries, rows, multipliers)
+    return replace(entries, at_nodes=at_nodes, at_entries=at_entries)
 
 
 def warn_of_close(

@@ -94,6 +94,8 @@ class Options:
     threshold: float = 1e-4
     auto_tolerance: float = 0.5
     seed_corners: bool = False
+    trust_atlas: bool = False
+    exact_entries: bool = False
     growth: str = "outward"
     solver: str = "least-change"
     debug: bool = False

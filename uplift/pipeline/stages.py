@@ -48,6 +48,7 @@ from uplift.pipeline.options import (
     Options,
     check_memory,
 )
+from uplift.pipeline.spots import smooth_spots, warn_of_spots
 
 
 class SceneLike(Protocol):
@@ -139,14 +140,17 @@ def learn(
     entry_model: Model,
     measured: MeasuredEntries,
     families: Sequence[Family],
+    trust: float | None,
 ) -> Learnt:
-    """Fit the entries and the prior."""
+    """Fit the entries and the prior, whose trust in them is learnt if it is not
+    given.
+    """
     # Entries p_i: min ‖g − m‖² + Σ |w ΔL*a*b*|² subject to r(p) = t
     # (docs/mathematics.md, 6). Prior c(x) = s(x) + d(x): smooth spectra, what families
     # deviate from them, and kriging of the entries (7).
     constraints = entries.fit_constraints(problem, entry_model, measured)
     base, relevance = learn_base(problem, families, constraints.at_nodes)
-    prior = fit_prior(problem, constraints.at_nodes, base)
+    prior = fit_prior(problem, constraints.at_nodes, base, trust)
     return Learnt(constraints, prior, relevance)
 
 
@@ -172,7 +176,8 @@ def build_stages(
         targets_of = extension("looks", "targets")
         names = spectra.atlas.names
         targets = targets_of(looks, entry_model, sensor, names, spectra.measured)
-    learnt = learn(problem, entry_model, spectra.measured, spectra.families)
+    trust = 1.0 if options.trust_atlas else None
+    learnt = learn(problem, entry_model, spectra.measured, spectra.families, trust)
     constraints = learnt.constraints
     prior = learnt.prior
     if options.neutral == "flat":
@@ -187,6 +192,10 @@ def build_stages(
     points, improvements = _fit_nodes(
         options, problem, constraints, prior, seeded, kept, progress
     )
+    smoothed: dict[str, float] = {}
+    if not options.exact_entries:
+        constraints, smoothed = smooth_spots(problem, constraints, boxes, points)
+        warn_of_spots(smoothed)
     table = _atlas_table(problem, constraints, prior, boxes, spectra.measured)
     outside = _outside_table(
         problem, prior, entry_model, spectra.outside, seeded.lattice
@@ -196,6 +205,7 @@ def build_stages(
         "options": options.record(),
         **_describe_atlas(spectra),
         "prior": _describe_prior(prior),
+        "smoothed": smoothed,
         "improvements": improvements,
         **({} if scene is None else {"scene": scene.describe()}),
         **_describe_library(spectra, learnt.relevance),
@@ -225,8 +235,8 @@ def _place_entries(
         options = _choose_lattice(options, problem, constraints, prior)
     lattice = Lattice(axis_nodes(options.axis, int(options.dim)))
     rgb = constraints.at_nodes.rgb
-    boxes = EntryBoxes(lattice, rgb, seeds.half_widths(lattice.to_steps(rgb)))
     seeded = seeds.seed(lattice, rgb)
+    boxes = EntryBoxes(lattice, rgb, seeded.half_width)
     # The choice of the lattice has counted the entries that none keeps.
     crowded = () if is_chosen else seeded.crowded
     entries.warn_of_close(constraints.names, boxes.half_width, crowded)
@@ -238,8 +248,8 @@ def _blend(options: Options) -> seeds.Blend:
     thesis.
     """
     if options.seed_corners or options.growth == "neighbours":
-        return seeds.FULL_ENTRY
-    return seeds.HALF_ENTRY
+        return seeds.full_entry
+    return seeds.near_entry
 
 
 def _fit_nodes(
@@ -357,7 +367,9 @@ def _describe_atlas(spectra: Spectra) -> dict[str, Any]:
 
 def _describe_prior(prior: Prior) -> dict[str, Any]:
     """Return what the kriging learnt, and the errors if the atlas is large enough."""
-    learnt = {} if prior.kriging is None else prior.kriging.kernel._asdict()
+    learnt = {}
+    if prior.kriging is not None:
+        learnt = {**prior.kriging.kernel._asdict(), "trust": prior.kriging.trust}
     if prior.errors is not None:
         standard, bound = prior.errors.radii
         learnt["error_bound"] = bound / standard

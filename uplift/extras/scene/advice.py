@@ -145,9 +145,8 @@ def uncertainty(
     """
     data = cube.data
     prior = cube.data.provenance.get("prior", {})
-    kernel = Kernel(
-        prior.get("length", DEFAULT.length), prior.get("noise", DEFAULT.noise)
-    )
+    known = {name: prior[name] for name in Kernel._fields if name in prior}
+    kernel = DEFAULT._replace(**known)
     errors = [light_errors(data, light) for light in lights]
     squares = np.stack(
         [estimate(colours.rgb)[:, 0] ** 2 for estimate in errors], axis=1
