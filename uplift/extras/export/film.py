@@ -49,7 +49,7 @@ from uplift.lookup import Cube
 SIZE = 192
 MIN_SIZE = 2
 MAX_SIZE = 1024
-SHARE = 0.5
+SHARE = 0.4
 """Luminance of a stored reflectance, as a fraction of the largest of its chromaticity.
 """
 MIDGRAY = 0.184
