@@ -22,7 +22,7 @@ from scipy.special import ndtr
 import uplift
 from benchmarks import ROOT, Row, record
 from benchmarks.checker import BACKGROUND, Layout, chart
-from benchmarks.materials import materials
+from benchmarks.materials import Materials, materials
 from benchmarks.showcase import ATLAS, DIM, FOLDER, MEASURED, PLAIN
 from uplift.colorimetry import Sensor
 from uplift.colorimetry.observer import (
@@ -149,18 +149,20 @@ def measure_stocks(stocks: Sequence[Stock]) -> list[Row]:
     tested = materials(TESTED)
     cube = uplift.build(dim=DIM, leave_out=(TESTED,))
     lit = cube.reflectance(tested.rgb) * film_power()
-    measured = tested.measured * film_power()
     _, table = film_table(cube, SHARE)
-    program = np.load(PROGRAM_TABLE).astype(float)
+    tables = {"table": table, "program": np.load(PROGRAM_TABLE).astype(float)}
     rows = []
     for stock in stocks:
-        truth = relative(measured @ stock.plain, film_power() @ stock.plain)
-        spectra = relative(lit @ stock.plain, film_power() @ stock.plain)
-        row = {"stock": stock.name, "cube": stops(spectra, truth)}
-        for name, spectra_of in (("table", table), ("program", program)):
-            row[name] = table_stops(spectra_of @ stock.plain, tested.rgb, truth)
+        truth = tested.measured * film_power() @ stock.plain
+        row: Row = {"stock": stock.name, "cube": stops(lit @ stock.plain, truth)}
+        for name, spectra in tables.items():
+            row[name] = table_stops(spectra @ stock.plain, tested.rgb, truth)
+            row[f"{name}, balanced"] = balanced(stock, stock.plain, spectra, tested)
             row[f"{name}, window"] = table_stops(
-                spectra_of @ stock.windowed, tested.rgb, truth
+                spectra @ stock.windowed, tested.rgb, truth
+            )
+            row[f"{name}, window, balanced"] = balanced(
+                stock, stock.windowed, spectra, tested
             )
         rows.append(row)
     return rows
@@ -175,22 +177,28 @@ def measure_shares(stocks: Sequence[Stock], name: str) -> Row:
         _, table = film_table(cube, share)
         by_stock = []
         for stock in stocks:
-            exposure = tested.measured * film_power() @ stock.plain
-            truth = relative(exposure, film_power() @ stock.plain)
+            truth = tested.measured * film_power() @ stock.plain
             by_stock.append(table_stops(table @ stock.plain, tested.rgb, truth))
         errors[str(share)] = float(np.mean(by_stock))
     return {"materials": name, "stops": errors}
 
 
-def table_stops(table: Array, rgb: Array, truth: Array) -> float:
-    """Mean error of relative exposures of linear sRGB (n, 3) by a table (k, k, 3)."""
+def balanced(
+    stock: Stock, sensitivity: Array, spectra: Array, tested: Materials
+) -> float:
+    """Error of a table (k, k, N) if white is exposed as it should be, as in a print
+    that is balanced for white.
+    """
+    table = spectra @ sensitivity
     white = exposures(table, sensor(), np.ones((1, 3)))
-    return stops(relative(exposures(table, sensor(), rgb), white), truth)
+    table *= film_power() @ stock.plain / white
+    truth = tested.measured * film_power() @ stock.plain
+    return table_stops(table, tested.rgb, truth)
 
 
-def relative(exposure: Array, white: Array) -> Array:
-    """Exposures (n, 3) as fractions of that of white, which a print is balanced for."""
-    return exposure / white
+def table_stops(table: Array, rgb: Array, truth: Array) -> float:
+    """Mean error of exposures of linear sRGB (n, 3) by a table (k, k, 3)."""
+    return stops(exposures(table, sensor(), rgb), truth)
 
 
 def stops(exposure: Array, truth: Array) -> float:
