@@ -29,6 +29,7 @@ from uplift.fit import shipped_library
 
 DIM = 32
 LIGHTS = ("A", "FL11", "LED-B3", "HP1")
+METHODS = CUBE, MAP, AVERAGE = "cube", "root-polynomial", "average"
 WEIGHTS = np.linspace(0, 1, 11)
 """Weights of the root-polynomial in averages with the cube's colours."""
 STEPS = 6
@@ -57,9 +58,9 @@ def main() -> None:
                     "light": light,
                     "colours": errors[name].shape[-1],
                     "weight": WEIGHTS[chosen],
-                    "cube": summary(errors[name][number, 0]),
-                    "root-polynomial": summary(errors[name][number, -1]),
-                    "average": summary(errors[name][number, chosen]),
+                    CUBE: summary(errors[name][number, 0]),
+                    MAP: summary(errors[name][number, -1]),
+                    AVERAGE: summary(errors[name][number, chosen]),
                 }
             )
     record("grading", dim=DIM, lights=list(LIGHTS), rows=rows, pooled=pooled(rows))
@@ -139,18 +140,14 @@ def pooled(rows: list[Row]) -> list[Row]:
     summaries = []
     for light in LIGHTS:
         of_light = [row for row in rows if row["light"] == light]
-        summaries.append(
-            {
-                "light": light,
-                "families": len(of_light),
-                "weights": sorted({row["weight"] for row in of_light}),
-            }
-            | {
-                method: {
-                    figure: np.mean([row[method][figure] for row in of_light])
-                    for figure in ("mean", "p95")
-                }
-                for method in ("cube", "root-polynomial", "average")
-            }
-        )
+        weights = sorted({row["weight"] for row in of_light})
+        means = {method: mean_over(of_light, method) for method in METHODS}
+        about = {"light": light, "families": len(of_light), "weights": weights}
+        summaries.append(about | means)
     return summaries
+
+
+def mean_over(rows: list[Row], method: str) -> dict[str, float]:
+    """Return the averages of the figures of a method."""
+    means = np.mean([list(row[method].values()) for row in rows], axis=0)
+    return dict(zip(rows[0][method], means, strict=True))
