@@ -5,8 +5,8 @@ A root-polynomial maps XYZ x, y, z under D65, relative to white, to XYZ under a 
 6 terms x, y, z, √xy, √yz, √xz for each of X, Y and Z (Finlayson, Mackiewicz & Hurlbert
 2015, "Color correction using root-polynomial regression"). It is fitted to colours of
 the library in L*a*b*, white stays exact, and each family weighs as the root of its
-size. Cube and map do not know the family that they are asked for. Neither do they know
-the spectra of Otsu et al. when they are asked for the Munsell book that these stand
+size. Cube and map do not know the family that is predicted. Neither do they know
+the spectra of Otsu et al. to predict the Munsell book that these stand
 for. The weight of the map in the average is the best one for the other families.
 """
 
