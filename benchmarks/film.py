@@ -64,8 +64,8 @@ def main() -> None:
     """Expose the chart and draw it, and measure the films of the program."""
     FOLDER.mkdir(exist_ok=True)
     expose_chart()
-    stocks = read_stocks()
-    if stocks:
+    if PROGRAM_TABLE.exists():
+        stocks = read_stocks()
         record(
             "film",
             "film-stocks",
