@@ -1,37 +1,21 @@
-"""Pictures of the README, docs/materials.md and docs/guides/film.md, and their numbers.
+"""Pictures of the README and docs/materials.md, and their numbers.
 
 The light on the charts is uniform, so that spectra are integrated
 instead of rendered; docs/scene.md has renderings of the same chart, which agree.
 """
 
 import tempfile
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 from PIL import Image
-from scipy.ndimage import map_coordinates
 
 import uplift
 from benchmarks import DOCS, Row, record
 from benchmarks.checker import BACKGROUND, Layout, chart, draw
 from tests.examples import build_wheel, run_lines, unpack
-from uplift.colorimetry import Sensor, delta_e_2000, lab
-from uplift.colorimetry.observer import (
-    DEFAULT_OBSERVER,
-    grid,
-    illuminant_spd,
-    light,
-    matching_functions,
-    sensor,
-)
-from uplift.common.arrays import Array
+from uplift.colorimetry import delta_e_2000, lab
+from uplift.colorimetry.observer import light, sensor
 from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
-from uplift.extras.colour.srgb import encode
-from uplift.extras.export import write_film
-from uplift.extras.export.film import CAT16, LAYER_WIDTH, LAYERS
-from uplift.extras.pages.figure import new_figure, show_image, write_png
 from uplift.extras.relight.relight import relight, write_relit_sheet
 from uplift.lab.chart import mitsuba3
 from uplift.samples import sample_path
@@ -45,8 +29,6 @@ METHODS = MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
     "uplift, with the chart",
 )
 Cubes = dict[str, uplift.Cube]
-FILM_LIGHT = "D55"
-FILM_SIZE = (11.2, 2.9)
 LAYOUT = Layout(patch=32, gap=4)
 SIZE = (11.2, 5.2)
 TRUTH_LIGHTS = RELIGHT_LIGHTS[:2]
@@ -69,12 +51,11 @@ SESSION = (
 
 
 def main() -> None:
-    """Draw the charts, the still life and the film, and store the charts' errors."""
+    """Draw the charts and the still life, and store the charts' errors."""
     FOLDER.mkdir(exist_ok=True)
     cubes = {PLAIN: uplift.load(), ATLAS: uplift.build("macbeth", dim=DIM)}
     means = draw_charts(cubes)
     draw_still_life(cubes)
-    expose_film(cubes)
     record("showcase", session=session(), dim=DIM, means=means)
 
 
@@ -148,72 +129,3 @@ def draw_still_life(cubes: Cubes) -> None:
             size = (JPEG_WIDTH, round(image.height * JPEG_WIDTH / image.width))
             small = image.convert("RGB").resize(size, Image.Resampling.LANCZOS)
     small.save(FOLDER / "relit.jpg", quality=JPEG_QUALITY, subsampling=0)
-
-
-def expose_film(cubes: Cubes) -> None:
-    """Expose the chart on a film by tables, draw the layers as red, green and blue, and
-    store the errors in stops.
-    """
-    painted = chart()
-    luminous = matching_functions(DEFAULT_OBSERVER)[:, 1]
-    spd = illuminant_spd(FILM_LIGHT)
-    power = spd / (spd @ luminous / luminous.sum())
-    layers = np.exp(-0.5 * ((grid()[:, None] - LAYERS[::-1]) / LAYER_WIDTH) ** 2)
-    measured = painted.measured * power @ layers
-    figure = new_figure(*FILM_SIZE)
-    panels = figure.subplots(1, 1 + len(cubes))
-    draw_layers(panels[0], MEASURED, measured / (power @ layers))
-    rows = []
-    for axes, (name, cube) in zip(panels[1:], cubes.items(), strict=True):
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "film.npy"
-            stated = write_film(cube, path, light=FILM_LIGHT).stops
-            table = np.load(path).astype(float) @ layers
-        exposure = exposures(table, cube.data.sensor, painted.painted)
-        stops = np.abs(np.log2(exposure / measured)).mean(axis=1)
-        draw_layers(axes, name, exposure / (power @ layers), stops)
-        rows.append(
-            {
-                "cube": name,
-                "stated": stated,
-                "mean": stops.mean(),
-                "largest": stops.max(),
-                "patches": stops,
-            }
-        )
-    write_png(figure, FOLDER / "film.png", force=True)
-    record("showcase", "film", light=FILM_LIGHT, cubes=rows)
-
-
-def exposures(table: Array, srgb: Sensor, rgb: Array) -> Array:
-    """Look up linear sRGB (n, 3) in a table (k, k, 3) of a film, as readers do.
-
-    They adapt to the light of the film, look up the chromaticity, and scale by X + Y +
-    Z.
-    """
-    gain = (CAT16 @ light(FILM_LIGHT).white) / (CAT16 @ srgb.light.white)
-    xyz = np.linalg.solve(CAT16, gain[:, None] * (CAT16 @ srgb.xyz(rgb).T))
-    total = xyz.sum(axis=0)
-    x, y, _ = xyz / total
-    places = np.array([(1 - x) ** 2, y / (1 - x)]) * (len(table) - 1)
-    layers = [
-        map_coordinates(layer, places, order=1) for layer in np.moveaxis(table, -1, 0)
-    ]
-    return np.stack(layers, axis=1) * total[:, None]
-
-
-def draw_layers(
-    axes: Any, name: str, exposure: Array, stops: Sequence[float] = ()
-) -> None:
-    """Show exposures (24, 3) as linear RGB, with errors in stops on the patches."""
-    image = LAYOUT.paint(exposure, np.full(3, BACKGROUND))
-    for (rows, columns), error in zip(LAYOUT.patches(), stops, strict=False):
-        axes.text(
-            columns.start + 2,
-            rows.stop - 3,
-            f"{error:.2f}",
-            fontsize=8,
-            color="w" if image[rows, columns].mean() < 0.25 else "k",
-        )
-    show_image(axes, encode(np.clip(image, 0, 1)), interpolation="nearest")
-    axes.set_title(name)

@@ -9,6 +9,10 @@ of its chromaticity times its X + Y + Z. The table has kind ``irradiance``, ligh
 reaches the film, or ``reflectance``, which readers multiply by a light of their own. A
 TOML file next to it has the kind, the sizes and the illuminant of the chromaticities.
 
+Readers adapt XYZ to the light of the film. Adapted colours are not those that
+reflectances have under this light, so spectra are stored with the sum that makes the
+product for a pixel the lit reflectance of the cube; it is near 1.
+
 A chromaticity has reflectances from black to the brightest that is possible; the table
 keeps one of them. Beyond the gamut of the cube, light at its edge is mixed with light
 of a narrow band, and beyond such bands there is light of the band alone.
@@ -49,7 +53,7 @@ from uplift.lookup import Cube
 SIZE = 192
 MIN_SIZE = 2
 MAX_SIZE = 1024
-SHARE = 0.5
+SHARE = 0.4
 """Luminance of a stored reflectance, as a fraction of the largest of its chromaticity.
 """
 MIDGRAY = 0.184
@@ -214,7 +218,7 @@ def _spectra(
     )
     brightest = REACH * solid(coarse).ray_fraction(np.zeros_like(rgb), REACH * rgb)
     rgb *= np.minimum(share * brightest, 1 / rgb.max(axis=1))[:, None]
-    lights = _unit_sum(cube.reflectance(rgb, grid()) * scene.power, scene.xyz)
+    lights = cube.reflectance(rgb, grid()) * scene.power / _reader_sum(scene, rgb)
     beyond = np.flatnonzero(edge < 1)
     far = np.maximum(real[beyond], edge[beyond] + TINY)
     mixed = ((np.minimum(1, far) - edge[beyond]) / (far - edge[beyond]))[:, None]
@@ -236,6 +240,12 @@ def _outer_lights(xyz: Array, white: Array, change: Array) -> tuple[Array, Array
     edge, fraction, reach = crossing((ring @ xyz - white)[:, :2], change[:, :2])
     share = fraction[:, None]
     return reach, (1 - share) * ring[edge] + share * ring[edge + 1]
+
+
+def _reader_sum(scene: Scene, rgb: Array) -> Array:
+    """X + Y + Z (n, 1) that readers multiply the spectra of RGB (n, 3) by."""
+    xyz = np.linalg.solve(scene.xyz_to_rgb, rgb.T).T
+    return np.asarray(xyz.sum(axis=1, keepdims=True))
 
 
 def _unit_sum(power: Array, xyz: Array) -> Array:

@@ -36,6 +36,7 @@ from uplift.common.errors import OptionError, TextureError
 from uplift.common.files import atomic_write, write_text
 from uplift.cube import CubeData
 from uplift.extras.colour.srgb import decode, encode
+from uplift.extras.export.material_error import material_error
 from uplift.extras.export.outputs import output_files
 from uplift.extras.export.program import identifier, literal, read_source
 from uplift.extras.export.program_table import model_constants
@@ -63,7 +64,8 @@ def export_lut(cube: Cube, path: Path, style: str, **settings: Any) -> str:
             hint="give an illuminant, such as HP1",
         )
     error = write_lut(cube, path=path, **settings)
-    return f"colours under {settings['light']}, {error}"
+    light = settings["light"]
+    return f"colours under {light}, {error}; {material_error(cube, light)}"
 
 
 def export_fourier(cube: Cube, path: Path, style: str, **settings: Any) -> str:
