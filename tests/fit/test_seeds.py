@@ -35,8 +35,6 @@ from uplift.fit import (
 from uplift.fit.seeds import (
     DIMS,
     FAR,
-    FULL_ENTRY,
-    HALF_ENTRY,
     NEAR,
     choose_lattice,
     initial_guess,
@@ -92,7 +90,7 @@ def prior(sensor):
 
 
 def test_the_share_of_the_entry_falls_from_near_to_far_corners(prior):
-    """The primary node starts from its entry at any distance."""
+    """Less for entries with narrow boxes."""
     shares = []
     for dim in (6, 12, 16, 24):
         lattice = Lattice(np.linspace(0, 1, dim))
@@ -102,10 +100,9 @@ def test_the_share_of_the_entry_falls_from_near_to_far_corners(prior):
         distance = delta_e_1976(
             *(rgb_to_lab(prior.sensor, rgb) for rgb in (nodes, RGB[seeds.entry]))
         )
-        share = np.where(
-            seeds.primary, 1, np.clip((FAR - distance) / (FAR - NEAR), 0, 1)
-        )
-        start = initial_guess(seeds.points, nodes, prior, seeds, ENTRIES, (1.0, 0.0))
+        width = seeds.half_width[seeds.entry]
+        share = CORNER_SHARE * width * np.clip((FAR - distance) / (FAR - NEAR), 0, 1)
+        start = initial_guess(seeds.points, nodes, prior, seeds, ENTRIES, near_entry)
         mixed = share[:, None] * MODEL.to_storage(own) + (
             1 - share[:, None]
         ) * MODEL.to_storage(prior(nodes))
@@ -119,7 +116,7 @@ def test_all_other_points_start_from_the_prior(prior):
     seeds = seed(LATTICE, RGB)
     points = np.setdiff1d(np.arange(LATTICE.size), seeds.points)
     start = initial_guess(
-        points, LATTICE.points[points], prior, seeds, ENTRIES, FULL_ENTRY
+        points, LATTICE.points[points], prior, seeds, ENTRIES, full_entry
     )
     assert_array_equal(start, prior(LATTICE.points[points]))
 
@@ -148,7 +145,7 @@ def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor, seed_corner
         problem,
         data.lattice,
         prior,
-        FULL_ENTRY if seed_corners else HALF_ENTRY,
+        full_entry if seed_corners else near_entry,
         entries,
     )
     corners, weights = data.lattice.corners(entries.rgb)
@@ -163,11 +160,11 @@ def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor, seed_corner
 
 def test_the_smallest_lattice_that_keeps_all_entries_is_chosen(stage):
     problem, prior, entries = stage
-    _, dim, lost = choose_lattice(problem, prior, HALF_ENTRY, entries, 0.5)
+    _, dim, lost = choose_lattice(problem, prior, near_entry, entries, 0.5)
     assert lost == 0
     for axis in AXES:
         smaller = Lattice(axis_nodes(axis, DIMS[DIMS.index(dim) - 1]))
-        assert lattice_error(problem, smaller, prior, HALF_ENTRY, entries).max() > 0.5
+        assert lattice_error(problem, smaller, prior, near_entry, entries).max() > 0.5
 
 
 def test_without_an_atlas_the_smallest_lattice_is_chosen():

@@ -54,7 +54,8 @@ class Prior:
     reflectances expected at the colours of the entries without them, in their order;
     both None for an atlas of fewer than 8 entries. ``shares`` (3, C) are the
     coefficients of spectra of the primaries that sum to 1, after `with_flat_greys`,
-    else None.
+    else None. ``surprise`` (E,) is the largest ΔE00 between each entry and what is
+    expected without it, under the lights of the build; None likewise.
     """
 
     model: Model
@@ -64,6 +65,7 @@ class Prior:
     errors: ExpectedError | None = None
     left_out: Array | None = None
     shares: Array | None = None
+    surprise: Array | None = None
 
     def __call__(self, rgb: Array) -> Array:
         """Multipliers (n, C) expected at linear RGB (n, 3)."""
@@ -162,7 +164,11 @@ class Prior:
         kriging, _ = krige(
             rgb_to_lab(self.sensor, entries.rgb[order]), deviations, kernel, variances
         )
-        return replace(self, kriging=replace(kriging, trust=trust))
+        surprise = self.surprise
+        if surprise is not None:
+            surprise = np.append(surprise, np.zeros(looks))
+        kriging = replace(kriging, trust=trust)
+        return replace(self, kriging=kriging, surprise=surprise)
 
 
 def fit_prior(
@@ -204,8 +210,18 @@ def fit_prior(
         problem.error_light or problem.sensor.light, spectra, entries.measured
     )
     expected_errors = expected_error(locations, missed, entries.error)
+    changes = [
+        delta_e_spectra(lit, spectra, entries.measured) for lit in problem.lights
+    ]
+    back = np.argsort(order)
     return Prior(
-        model, sensor, base, kriging, expected_errors, spectra[np.argsort(order)]
+        model,
+        sensor,
+        base,
+        kriging,
+        expected_errors,
+        spectra[back],
+        surprise=np.max(changes, axis=0)[back] if changes else None,
     )
 
 

@@ -21,7 +21,13 @@ NEAR = 8.0
 """ΔE*ab up to which a corner is near its entry."""
 FAR = 16.0
 """ΔE*ab from which a corner is far from its entry."""
-CORNER_SHARE = 0.6
+CODES = 255
+GENTLE_STEP = 0.2
+"""ΔE00 by which an 8-bit step between nodes may change because one starts from an
+entry.
+"""
+TINY = 1e-9
+CORNER_SHARE = 0.8
 """Weight of an entry in the start of near corners, if no other entry is close."""
 MAX_HALF_WIDTH = 1.0
 """Lattice steps: the half width of an entry box without other entries nearby."""
@@ -138,24 +144,29 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
     )
 
 
-Blend = Callable[[Array, Array], Array]
-"""From the ΔE*ab (k,) between corners and their entries, and the half widths (k,) of
-the boxes of these, to the weights (k,) of entries in the start of the corners. The rest
-is the prior.
+Blend = Callable[[Prior, Seeds, Indices, Array], Array]
+"""From the ΔE*ab (k,) between corners and their entries, rows (k,), to the weights (k,)
+of entries in the start of the corners. The rest is the prior.
 """
 
 
-def near_entry(distance: Array, half_width: Array) -> Array:
+def near_entry(prior: Prior, seeds: Seeds, entry: Indices, distance: Array) -> Array:
     """The default: shades of an entry, paint of nearly its colour, are like it, other
     materials near it like the prior.
 
-    Where others are close, corners start from the prior alone: neighbouring nodes of
-    two entries would show as spots under other lights.
+    The weight is smaller where others are close, and for entries that surprise: nodes
+    that differ much from their neighbours would show as spots under other lights.
     """
-    return half_width * np.interp(distance, (NEAR, FAR), (CORNER_SHARE, 0))
+    share = CORNER_SHARE * np.interp(distance, (NEAR, FAR), (1, 0))
+    share *= seeds.half_width[entry]
+    if prior.surprise is not None:
+        node_codes = CODES / (seeds.lattice.dim - 1)
+        gentle = GENTLE_STEP * node_codes / np.maximum(prior.surprise, TINY)
+        share *= np.minimum(gentle, 1)[entry]
+    return share
 
 
-def full_entry(distance: Array, half_width: Array) -> Array:
+def full_entry(prior: Prior, seeds: Seeds, entry: Indices, distance: Array) -> Array:
     """Tódová 2020, section 3.1.2."""
     return np.ones_like(distance)
 
@@ -182,7 +193,7 @@ def initial_guess(
     node_lab = rgb_to_lab(prior.sensor, rgb[seeded])
     entry_lab = rgb_to_lab(prior.sensor, seeds.rgb)
     distance = delta_e_1976(node_lab, entry_lab[entry])
-    weight = blend(distance, seeds.half_width[entry])
+    weight = blend(prior, seeds, entry, distance)
     multipliers[seeded] = blended(
         prior.model, entries[entry], multipliers[seeded], weight
     )
