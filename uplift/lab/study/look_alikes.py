@@ -1,0 +1,29 @@
+"""Families of the library that are too close to spectra to be tested with them."""
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from uplift.common.arrays import Array
+from uplift.fit import families_with, shipped_library
+
+LOOK_ALIKE = 0.02
+"""rms difference within which spectra look alike."""
+MANY = 0.25
+"""Share of a set from which its look-alikes count: two in five patches of ColorCheckers
+have one in rawtoaces, and other sets in other families under a quarter.
+"""
+
+
+def families_like(measured: Array) -> tuple[str, ...]:
+    """Names of the shipped families that contain one of some spectra (n, 81), or
+    look-alikes of many of them.
+    """
+    same = families_with(measured)
+    limit = LOOK_ALIKE * np.sqrt(measured.shape[1])
+    names = []
+    for family in shipped_library():
+        distance = KDTree(family.measured).query(measured)[0]
+        many = len(measured) and (distance <= limit).mean() >= MANY
+        if family.name in same or many:
+            names.append(family.name)
+    return tuple(names)
