@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import KDTree
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Mask
 from uplift.fit import families_with, shipped_library
 
 LOOK_ALIKE = 0.02
@@ -18,12 +18,21 @@ def families_like(measured: Array) -> tuple[str, ...]:
     """Names of the shipped families that contain one of some spectra (n, 81), or
     look-alikes of many of them.
     """
+    if not len(measured):
+        return ()
     same = families_with(measured)
-    limit = LOOK_ALIKE * np.sqrt(measured.shape[1])
     names = []
+    for name, alike in look_alikes(measured).items():
+        if name in same or alike.mean() >= MANY:
+            names.append(name)
+    return tuple(names)
+
+
+def look_alikes(measured: Array) -> dict[str, Mask]:
+    """Whether each of some spectra (n, 81) has a look-alike, by shipped family."""
+    limit = LOOK_ALIKE * np.sqrt(measured.shape[1])
+    alike = {}
     for family in shipped_library():
         distance = KDTree(family.measured).query(measured)[0]
-        many = len(measured) and (distance <= limit).mean() >= MANY
-        if family.name in same or many:
-            names.append(family.name)
-    return tuple(names)
+        alike[family.name] = distance <= limit
+    return alike
