@@ -104,6 +104,14 @@ def test_jakob_fit_has_the_colour(small_task):
     assert_allclose(small_task.sensor.rgb(found), rgb, atol=2e-3)
 
 
+@pytest.mark.parametrize("name", ["local-linear", "metamer-mean", "burns2019"])
+def test_methods_without_a_table_have_the_colour(small_task, name):
+    sensor = small_task.sensor
+    rgb = np.array([[0.5, 0.4, 0.3], [0.2, 0.3, 0.35]])
+    found = prepared(name, small_task).uplift(rgb, sensor.wavelengths)
+    assert_allclose(sensor.rgb(found), rgb, atol=1e-6)
+
+
 def test_missing_mitsuba_is_not_installed(small_task, monkeypatch):
     monkeypatch.setattr(mitsuba3, "find_spec", lambda name: None)
     for name in ("mitsuba3-table", "mitsuba3-llvm", "jakob2019-table64"):

@@ -9,11 +9,10 @@ import uplift
 from benchmarks.materials import materials
 from uplift.colorimetry import observer
 from uplift.fit import families_with
-from uplift.lab.study import metamer_mean as metamer
 from uplift.lab.study.burns2019 import reconstruct
 from uplift.lab.study.colour_maps import fit_map, term_exponents, terms
 from uplift.lab.study.look_alikes import families_like
-from uplift.lab.study.metamer_mean import metamer_mean
+from uplift.lab.study.metamer_mean import metamer_mean, metamers, nearest_mixture
 from uplift.lab.study.rivals import MAPS, RIVALS, library_spectra, rival_errors
 
 D65 = observer.light("D65")
@@ -23,6 +22,11 @@ FL11 = observer.light("FL11")
 @pytest.fixture(scope="module")
 def measured():
     return materials("tcs").measured
+
+
+@pytest.fixture(scope="module")
+def data():
+    return uplift.load().data
 
 
 @pytest.mark.parametrize(("degree", "count"), [(1, 3), (2, 6), (3, 13)])
@@ -40,9 +44,9 @@ def test_a_matrix_is_exact_for_three_basis_spectra(measured):
     assert_allclose(mapped, spectra @ FL11.xyz.T / FL11.white, atol=1e-9)
 
 
-def test_more_terms_fit_better(measured):
+def test_more_terms_fit_better(data, measured):
     known = library_spectra(())
-    errors = rival_errors(uplift.load().data, known, measured, [FL11])
+    errors = rival_errors(data, known, measured, [FL11])
     assert list(errors) == list(RIVALS)
     matrix, six, thirteen = (errors[name].mean() for name in MAPS)
     assert thirteen < six < matrix
@@ -75,24 +79,27 @@ def test_blocks_do_not_change_burns_spectra(measured, monkeypatch):
     assert_allclose(reconstruct(D65.xyz, xyz), whole, rtol=1e-10)
 
 
-def test_metamers_are_mixtures_of_the_colour(measured):
-    known = library_spectra(("tcs",))
-    xyz = measured @ D65.xyz.T
-    spectra = metamer_mean(D65, known, xyz)
-    assert_allclose(spectra @ D65.xyz.T, xyz, atol=1e-6)
-    assert spectra.min() >= -1e-9
-    assert spectra.max() <= 1 + 1e-9
+def test_metamer_means_have_their_colours(data, measured):
+    rgb = data.sensor.rgb(measured)
+    spectra = metamer_mean(data, library_spectra(("tcs",)), rgb)
+    assert_allclose(data.sensor.rgb(spectra), rgb, atol=1e-6)
+    assert spectra.min() > 0
+    assert spectra.max() < 1
+
+    # No mixture of these has the colour.
+    red = np.array([[0.9, 0.05, 0.05]])
+    (moved,) = metamer_mean(data, measured[:3], red)
+    assert_allclose(data.sensor.rgb(moved), red[0], atol=1e-3)
 
 
-def test_the_only_metamer_is_found_and_a_colour_without_one_gets_the_nearest(measured):
+def test_the_only_metamer_is_found(measured):
     groups = np.array([[0, 1, 2, 3]])
     mixture = np.array([0.1, 0.2, 0.3, 0.4]) @ measured[:4]
     xyz = mixture @ D65.xyz.T
-    found = metamer.metamers(D65, measured[:4], groups, xyz)
+    found = metamers(D65, measured[:4], groups, xyz)
     assert_allclose(found, mixture[None], atol=1e-6)
-    assert len(metamer.metamers(D65, measured[:4], groups, 2 * D65.white)) == 0
-    (white,) = metamer_mean(D65, measured[:3], 1.1 * D65.white[None])
-    assert white @ D65.xyz[1] == pytest.approx(1, abs=0.2)
+    assert len(metamers(D65, measured[:4], groups, 2 * D65.white)) == 0
+    assert_allclose(nearest_mixture(D65, measured[:4], xyz) @ D65.xyz.T, xyz, atol=1e-9)
 
 
 def test_families_with_many_look_alikes_are_not_known():

@@ -3,7 +3,9 @@
 Cleveland & Devlin 1988, "Locally weighted regression", JASA 83(403).
 """
 
-from itertools import product
+from dataclasses import dataclass
+from functools import partial
+from itertools import product, starmap
 
 import numpy as np
 from scipy.spatial.distance import cdist
@@ -29,12 +31,31 @@ colours.
 """
 
 
-def local_linear(data: CubeData, known: Array, rgb: Array) -> Array:
-    """Predict reflectances (n, N) of linear RGB (n, 3) by a local-linear regression on
-    known ones (E, N).
+@dataclass(frozen=True, eq=False)
+class LocalLinear:
+    """Regression on known reflectances (E, N), with a bandwidth and a ridge; ``data``
+    has the sensor, and the model in which predictions move to their colours.
+    """
 
-    Bandwidth and ridge have the least mean leave-one-out ΔE00 of the known materials
-    under the lights of a build. Predictions are moved to their colours.
+    data: CubeData
+    known: Array
+    width: float
+    ridge: float
+
+    def __call__(self, rgb: Array, leave_out: bool = False) -> Array:
+        """Predict reflectances (n, N) of linear RGB (n, 3); ``leave_out`` ignores a
+        query's own row.
+        """
+        spectra = regress(
+            self.data.sensor, self.known, rgb, self.width, self.ridge, leave_out
+        )
+        clipped = np.clip(spectra, LOWEST, 1 - LOWEST)
+        return with_least_change(self.data, clipped, rgb)
+
+
+def tune(data: CubeData, known: Array) -> LocalLinear:
+    """Choose the bandwidth and the ridge with the least mean leave-one-out ΔE00 of the
+    known materials under the lights of a build.
     """
     lights = [
         observer.light(name, data.sensor.observer, *data.sensor.range)
@@ -42,19 +63,20 @@ def local_linear(data: CubeData, known: Array, rgb: Array) -> Array:
     ]
     colours = np.clip(data.sensor.rgb(known), 0, 1)
 
-    def predict(
-        queries: Array, width: float, ridge: float, leave_out: bool = False
-    ) -> Array:
-        spectra = regress(data.sensor, known, queries, width, ridge, leave_out)
-        clipped = np.clip(spectra, LOWEST, 1 - LOWEST)
-        return with_least_change(data, clipped, queries)
-
-    def error(smoothing: tuple[float, float]) -> float:
-        spectra = predict(colours, *smoothing, leave_out=True)
+    def error(regression: LocalLinear) -> float:
+        spectra = regression(colours, leave_out=True)
         errors = [delta_e_spectra(light, spectra, known) for light in lights]
         return float(np.mean(errors))
 
-    return predict(rgb, *min(product(BANDWIDTHS, RIDGES), key=error))
+    candidates = starmap(partial(LocalLinear, data, known), product(BANDWIDTHS, RIDGES))
+    return min(candidates, key=error)
+
+
+def local_linear(data: CubeData, known: Array, rgb: Array) -> Array:
+    """Predict reflectances (n, N) of linear RGB (n, 3) by a local-linear regression on
+    known ones (E, N).
+    """
+    return tune(data, known)(rgb)
 
 
 def with_least_change(data: CubeData, spectra: Array, rgb: Array) -> Array:

@@ -17,6 +17,8 @@ from scipy.spatial.distance import cdist
 
 from uplift.colorimetry import Light, lab
 from uplift.common.arrays import Array, Indices
+from uplift.cube import CubeData
+from uplift.lab.study.local_linear import LOWEST, with_least_change
 
 NEAREST = 20
 """Measured spectra that are mixed, the nearest in CIE L*a*b*: of 12 to 28, a compromise
@@ -30,12 +32,14 @@ SLACK = 1e-9
 """Negative weight that counts as rounding."""
 
 
-def metamer_mean(light: Light, known: Array, xyz: Array) -> Array:
-    """Predict reflectances (n, N) of XYZ (n, 3) under a light from known ones (E, N).
+def metamer_mean(data: CubeData, known: Array, rgb: Array) -> Array:
+    """Predict reflectances (n, N) of linear RGB (n, 3) from known ones (E, N).
 
     A colour that no mixture has takes the mixture of all known spectra that is nearest
-    to it in XYZ.
+    to it in XYZ, moved to its colour.
     """
+    light = data.sensor.light
+    xyz = data.sensor.xyz(rgb)
     ends = np.stack([np.zeros(known.shape[1]), np.ones(known.shape[1])])
     locations = lab(known @ light.xyz.T, light.white)
     distances = cdist(lab(xyz, light.white), locations)
@@ -49,7 +53,8 @@ def metamer_mean(light: Light, known: Array, xyz: Array) -> Array:
             every = np.concatenate([known, ends])
             vertices = nearest_mixture(light, every, colour)[None]
         predicted.append(vertices.mean(axis=0))
-    return np.stack(predicted)
+    clipped = np.clip(np.stack(predicted), LOWEST, 1 - LOWEST)
+    return with_least_change(data, clipped, rgb)
 
 
 def metamers(light: Light, spectra: Array, groups: Indices, xyz: Array) -> Array:

@@ -51,7 +51,7 @@ def rival_errors(
     rgb = np.clip(data.sensor.rgb(measured), 0, 1)
     spectra = {
         LIBRARY_REGRESSION: local_linear(data, known[in_space], rgb),
-        METAMER_MEAN: metamer_mean(build, known, xyz),
+        METAMER_MEAN: metamer_mean(data, known, rgb),
         BURNS: reconstruct(build.xyz, xyz),
     }
     for name, reflectances in spectra.items():
