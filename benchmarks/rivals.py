@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 
 from benchmarks import Row, record
-from benchmarks.choices import ALONE
+from benchmarks.choices import ALONE, is_optimistic
 from benchmarks.materials import (
     FETCHED,
     SHIPPED,
@@ -86,7 +86,8 @@ def of_set(name: str) -> Row:
     """Return the errors of all methods at a set."""
     rows = []
     for method, delta_e in errors(name).items():
-        rows.append({"method": method, **summary(delta_e)})
+        optimistic = is_optimistic([name], method)
+        rows.append({"method": method, "optimistic": optimistic, **summary(delta_e)})
     return {
         "set": name,
         "spectra": len(materials(name).rgb),
