@@ -4,11 +4,12 @@ predictors.
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.conftest import ATLASES
 from tests.helpers import raises
-from uplift.atlas import Atlas, Entry, read_atlas
-from uplift.colorimetry import observer
+from uplift.atlas import Atlas, Entry, read_atlas, resample
+from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.errors import AtlasError
 from uplift.common.progress import Progress
 from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
@@ -92,6 +93,22 @@ def test_records_pool_splits_with_standard_errors():
     assert found["real"] == pytest.approx(2 * (0.5 + 0.68))
     assert (record["rms"], record["FL11"]) == (1, 0)
     assert split_records([unknown])[0]["standard_error"] is None
+
+
+def test_methods_that_know_the_library_are_tested_on_the_queried_half(monkeypatch):
+    """Their errors belong to the entries within sRGB, in the order of the cubes."""
+    atlas = read_atlas(ATLASES / "tcs.txt")
+
+    def marker(data, known, measured, lights):
+        return {"mean": measured.mean(axis=1)}
+
+    monkeypatch.setattr(held_out, "rival_errors", marker)
+    measured = resample(atlas, GRID).values
+    inside = np.flatnonzero(in_unit_cube(observer.sensor().rgb(measured)))
+    assert len(inside) < len(measured)
+    splits = holdout(atlas, 1, dim=4, coefficients=4)
+    for split, (_, other) in zip(splits, halves_both_ways(inside, 1), strict=True):
+        assert_allclose(split.colours["mean"], measured[other].mean(axis=1))
 
 
 def test_small_atlas_raises(family):

@@ -83,12 +83,15 @@ def holdout(
             SIGMOID: build(**{**options, "model": "sigmoid"}),
         }
         progress(Progress("builds", 2, total))
-        colours = _library_errors(others[NO_ATLAS], measured, settings.leave_out)
+        colours = _library_errors(
+            others[NO_ATLAS], measured[inside], settings.leave_out
+        )
         results: list[HoldoutSplit] = []
         for kept, other in halves_both_ways(inside, splits):
             cube = build(Atlas(tuple(atlas.entries[row] for row in kept)), **options)
             cubes = {HALF: cube, **others}
-            of_others = {name: errors[other] for name, errors in colours.items()}
+            rows = np.searchsorted(inside, other)
+            of_others = {name: errors[rows] for name, errors in colours.items()}
             results.append(_evaluate(cubes, measured[kept], measured[other], of_others))
             progress(Progress("builds", 2 + len(results), total))
     return tuple(results)
