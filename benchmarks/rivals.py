@@ -101,7 +101,8 @@ def pooled() -> list[Row]:
     rows = []
     for method in (ALONE, *RIVALS):
         delta_e = np.concatenate([errors(name)[method] for name in SHIPPED])
-        rows.append({"method": method, **summary(delta_e)})
+        optimistic = is_optimistic(SHIPPED, method)
+        rows.append({"method": method, "optimistic": optimistic, **summary(delta_e)})
     return rows
 
 
