@@ -17,7 +17,7 @@ from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
 from uplift.extras.report.measures import delta_e_under
 from uplift.extras.scene.advice import advise, uncertainty
 from uplift.extras.texture.scene_colours import ColourSet, PixelSample
-from uplift.fit import families_with
+from uplift.lab.study.look_alikes import families_like
 
 SETS = ("rawtoaces", "cie2017")
 SCENES = 6
@@ -41,7 +41,7 @@ def run_scene(entries: Atlas, measured: Array, seed: int) -> list[Row]:
     areas = rng.exponential(size=len(hidden))
     areas /= areas.sum()
     lights = [observer.light(name) for name in RELIGHT_LIGHTS]
-    options = {"dim": 16, "leave_out": families_with(measured), "scene": ColourSet(rgb)}
+    options = {"dim": 16, "leave_out": families_like(measured), "scene": ColourSet(rgb)}
 
     def build(swatches: Indices) -> uplift.Cube:
         return uplift.build(select(entries, [*known, *hidden[swatches]]), **options)

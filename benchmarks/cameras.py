@@ -15,8 +15,9 @@ from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.colorimetry import Sensor, delta_e_2000, lab, observer, solid, tables
 from uplift.colorimetry.camera import CAMERA
 from uplift.common.arrays import Array, Indices
-from uplift.fit import families_with, shipped_library
+from uplift.fit import shipped_library
 from uplift.lab.study.held_out import random_halves
+from uplift.lab.study.look_alikes import families_like
 from uplift.lattice import Lattice, axis_nodes
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
@@ -63,7 +64,7 @@ def methods(
     """
     measured = on_grid(atlas, sensor.wavelengths)
     library = np.concatenate(
-        [family.measured for family in shipped_library(families_with(measured))]
+        [family.measured for family in shipped_library(families_like(measured))]
     )
     half = measured[training]
     entries = Atlas(tuple(atlas.entries[row] for row in training))
@@ -102,7 +103,7 @@ def _build(entries: Atlas | None, sensor: Sensor, measured: Array) -> Cube:
         space=CAMERA,
         observer=sensor.space,
         illuminant=sensor.illuminant,
-        leave_out=families_with(measured),
+        leave_out=families_like(measured),
     )
 
 

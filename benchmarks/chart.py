@@ -20,7 +20,11 @@ from uplift.lab.chart.results import (
     chart_csv,
     criteria,
 )
+from uplift.lab.study.held_out import LOCAL_LINEAR
+from uplift.lab.study.rivals import METAMER_MEAN
 
+RIVALS = {"local-linear": LOCAL_LINEAR, "metamer-mean": METAMER_MEAN}
+"""Methods without a cube whose choices were made with measured materials."""
 UNSEEN = ("lights", "rms")
 """Errors of panels that are those of unseen materials."""
 
@@ -105,6 +109,8 @@ def optimistic_mark(row: MethodResult) -> str:
 
     The choices are those of cubes of moments; the colour alone determines a sigmoid.
     """
+    if row.method in RIVALS:
+        return mark(SHIPPED, RIVALS[row.method])
     if not row.build or "--model" in row.build:
         return ""
     return mark(SHIPPED, OURS if "--atlas" in row.build else ALONE)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from benchmarks.materials import MIXTURE, SHIPPED
 from uplift.lab.study.held_out import HALF, LOCAL_LINEAR, NO_ATLAS
+from uplift.lab.study.rivals import LIBRARY_REGRESSION, MAPS, METAMER_MEAN
 
 CHOSEN_ON = ("rawtoaces", "babelcolor", "pmc", "tcs", "vs")
 MEASURED = (*SHIPPED, "munsell")
@@ -49,7 +50,13 @@ CHOICES = (
     Choice(
         "local-linear regression: regressors, criterion and ridge",
         ("rawtoaces", "cie2017"),
-        (LOCAL_LINEAR,),
+        (LOCAL_LINEAR, LIBRARY_REGRESSION),
+    ),
+    Choice("matrix and root polynomials: criterion", MEASURED, MAPS),
+    Choice(
+        "mean of metamers: number of spectra, mean of spectra",
+        ("macbeth", "tcs", "cie2017", "rawtoaces"),
+        (METAMER_MEAN,),
     ),
 )
 

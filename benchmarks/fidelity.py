@@ -48,6 +48,7 @@ from uplift.fit.families import LENGTH, NUGGET
 from uplift.lab.chart.measure import select_methods
 from uplift.lab.chart.method import Uplift, make_task
 from uplift.lab.study import held_out
+from uplift.lab.study.local_linear import local_linear
 from uplift.lookup import Cube
 
 DIM = 32
@@ -74,7 +75,7 @@ def main() -> None:
         lights=list(HELD_OUT_LIGHTS),
         splits=SPLITS,
         choices=map(asdict, CHOICES),
-        sets=map(compare_methods, (*SETS, MIXTURE)),
+        sets=map(compare_methods, (*SETS, *FETCHED, MIXTURE)),
     )
     record(
         "fidelity",
@@ -205,7 +206,8 @@ def covered(pairs: Pairs) -> dict[str, Array]:
 
 def compare_methods(name: str) -> Row:
     """Return the errors of all methods on the held-out halves of a set."""
-    learnt = held_out.holdout(spectra(name), SPLITS)
+    left_out = shipped_families(name)
+    learnt = held_out.holdout(spectra(name), SPLITS, leave_out=left_out)
     smooth = held_out.holdout(spectra(name), SPLITS, prior="smooth", leave_out=())
     results = {
         OURS: pooled(learnt, held_out.HALF),
@@ -233,10 +235,13 @@ def compare_methods(name: str) -> Row:
 
 
 def learning_curve(parts: int) -> Row:
-    """Return the errors at each part of the mixture of cubes that know the others."""
+    """Return the errors at each part of the mixture of cubes, and of regressions, that
+    know the others.
+    """
     mixture = materials(MIXTURE)
     left_out = shipped_families(MIXTURE)
-    delta_e = []
+    of_cubes = []
+    of_regressions = []
     rows = np.arange(len(mixture.rgb))
     for seed in range(SPLITS):
         shuffled = np.random.default_rng(seed).permutation(rows)
@@ -244,10 +249,21 @@ def learning_curve(parts: int) -> Row:
             known = mixture.take(np.setdiff1d(rows, held))
             cube = known.cube(dim=DIM, leave_out=left_out)
             queried = mixture.take(held)
+            regression = local_linear(cube.data, known.measured, queried.rgb)
             answers = cube.reflectance(queried.rgb)
-            delta_e.append(held_out.spectrum_errors(answers, queried.measured).delta_e)
-    mean = np.concatenate(delta_e).mean(axis=0)
-    return {"known": 1 - 1 / parts, "mean": mean.mean(), "errors": by_light(mean)}
+            of_cubes.append(light_errors(answers, queried))
+            of_regressions.append(light_errors(regression, queried))
+    row = {"known": 1 - 1 / parts}
+    named = {held_out.HALF: of_cubes, held_out.LOCAL_LINEAR: of_regressions}
+    for method, delta_e in named.items():
+        mean = np.concatenate(delta_e).mean(axis=0)
+        row[method] = {"mean": mean.mean(), "errors": by_light(mean)}
+    return row
+
+
+def light_errors(answers: Array, queried: Materials) -> Array:
+    """Return ΔE00 (n, L) under each light."""
+    return held_out.spectrum_errors(answers, queried.measured).delta_e
 
 
 @cache
@@ -266,11 +282,6 @@ def published(queried: Materials) -> dict[str, Array]:
         title: uplift_rgb(queried.rgb, SENSOR.wavelengths)
         for title, uplift_rgb in methods().items()
     }
-
-
-def family(name: str) -> list[str]:
-    """Return the family of the shipped library that a set belongs to, if any."""
-    return [key for key, names in FAMILIES.items() if name in names]
 
 
 @cache
@@ -296,7 +307,8 @@ def unseen(name: str, count: int) -> Row:
     those of other methods.
     """
     queried = materials(name)
-    learnt = mean_delta_e(queried, coefficients=count, leave_out=family(name))
+    left_out = shipped_families(name)
+    learnt = mean_delta_e(queried, coefficients=count, leave_out=left_out)
     others = {
         "smooth": smooth_cube(count),
         **published(queried),
@@ -321,7 +333,7 @@ def with_atlas(name: str) -> Row:
     know.
     """
     queried = materials(name)
-    left_out = [*family(name), "checker"]
+    left_out = [*shipped_families(name), "checker"]
     smooth = mean_delta_e(queried, "macbeth", prior="smooth")
     learnt = mean_delta_e(queried, "macbeth", leave_out=left_out)
     ratios = learnt / smooth
@@ -346,7 +358,7 @@ def with_library(name: str) -> Iterator[Row]:
     others = [entry for entry in entries if entry.values.tobytes() not in known]
     queried = inside(Atlas(tuple(others)))
     smooth = means(smooth_cube(9), queried)[1:]
-    learnt = {"leave_out": family(name)}
+    learnt = {"leave_out": shipped_families(name)}
     cubes = {
         "learnt": learnt,
         "learnt, the other half as library": {"library": atlas, **learnt},

@@ -12,8 +12,8 @@ from uplift.atlas import Atlas, Entry, read_atlas, resample
 from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
-from uplift.fit import families_with
 from uplift.lab.study.held_out import halves_both_ways, spectrum_errors
+from uplift.lab.study.look_alikes import families_like
 from uplift.lookup import Cube
 
 MUNSELL = ROOT / "out" / "munsell.csv"
@@ -27,6 +27,9 @@ SHIPPED = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017", "tcs", "vs")
 MIXTURE = "all sets"
 """The shipped sets, and all of them as one: a mixture of families, several of which
 have materials of one colour.
+"""
+DERIVED = {"munsell": ("otsu2018",)}
+"""Families derived from a set: the clusters of Otsu et al. were learnt from this book.
 """
 SENSOR = observer.sensor()
 SPLITS = 3
@@ -82,8 +85,10 @@ def materials(name: str) -> Materials:
 
 
 def shipped_families(name: str) -> tuple[str, ...]:
-    """Return the shipped families that a prior tested on a set must not know."""
-    return tuple(families_with(materials(name).measured))
+    """Return the shipped families that a prior tested on a set must not know: those
+    that have its spectra, look-alikes of many, or were derived from it.
+    """
+    return (*families_like(materials(name).measured), *DERIVED.get(name, ()))
 
 
 def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:

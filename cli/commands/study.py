@@ -176,10 +176,13 @@ def moments(
     Reports the rms difference of the spectra and mean ΔE00 under A, FL2, FL7, FL11,
     LED-B3, LED-RGB1 and HP1, compared with cubes of moments and of sigmoids that have
     no atlas, and the predicted and the actual standard errors. The prior does not know
-    the families of its library that contain spectra of the atlas.
+    the families of its library that contain spectra of the atlas, or look-alikes of a
+    quarter of them.
 
     A plain baseline knows the same half: a local-linear regression of reflectance on
-    RGB.
+    RGB. Other methods know the library, as the prior does: a 3 × 3 matrix and root
+    polynomials, which give colours only, a local-linear regression, the mean of
+    metamers, and the reconstruction of Burns 2019.
 
     \b
     Examples:

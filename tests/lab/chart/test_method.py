@@ -13,11 +13,11 @@ from uplift.atlas import Atlas, Entry, merge, on_grid, read_atlas
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import AtlasError, OptionError
 from uplift.extras.images.processes import call_in_child
-from uplift.fit.families import families_with
 from uplift.lab.chart import mitsuba3
 from uplift.lab.chart.cubes import CubeOptions, built_cube
 from uplift.lab.chart.measure import METHODS, select_methods
 from uplift.lab.chart.method import NotInstalledError, edges, make_task
+from uplift.lab.study.look_alikes import families_like
 
 
 def shipped(repository, *names):
@@ -104,6 +104,14 @@ def test_jakob_fit_has_the_colour(small_task):
     assert_allclose(small_task.sensor.rgb(found), rgb, atol=2e-3)
 
 
+@pytest.mark.parametrize("name", ["local-linear", "metamer-mean", "burns2019"])
+def test_methods_without_a_table_have_the_colour(small_task, name):
+    sensor = small_task.sensor
+    rgb = np.array([[0.5, 0.4, 0.3], [0.2, 0.3, 0.35]])
+    found = prepared(name, small_task).uplift(rgb, sensor.wavelengths)
+    assert_allclose(sensor.rgb(found), rgb, atol=1e-6)
+
+
 def test_missing_mitsuba_is_not_installed(small_task, monkeypatch):
     monkeypatch.setattr(mitsuba3, "find_spec", lambda name: None)
     for name in ("mitsuba3-table", "mitsuba3-llvm", "jakob2019-table64"):
@@ -150,6 +158,6 @@ def test_vectorised_mitsuba_gives_the_reflectances_of_its_table(small_task, colo
 
 def test_prior_of_cubes_does_not_know_the_unseen_materials(small_task):
     cube, _, _ = built_cube(small_task, CubeOptions("moments", 3, 8, atlas=False))
-    unknown = families_with(small_task.unseen)
+    unknown = families_like(small_task.unseen)
     assert unknown
     assert tuple(cube.data.provenance["options"]["leave_out"]) == unknown

@@ -2,20 +2,14 @@
 predictors.
 """
 
-import itertools
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-import uplift
 from tests.conftest import ATLASES
 from tests.helpers import raises
 from uplift.atlas import Atlas, Entry, read_atlas, resample
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.colorimetry.illuminants import SCENE_LIGHTS
-from uplift.colorimetry.sensor import in_unit_cube
+from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.errors import AtlasError
 from uplift.common.progress import Progress
 from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
@@ -25,7 +19,6 @@ from uplift.lab.study.held_out import (
     HoldoutSplit,
     halves_both_ways,
     holdout,
-    local_linear,
     split_records,
 )
 from uplift.pipeline.build import build
@@ -83,11 +76,14 @@ def test_the_prior_does_not_know_the_atlas(monkeypatch):
 
 def test_records_pool_splits_with_standard_errors():
     errors = {"": Answers(np.zeros((2, 81)), np.zeros((2, 7)), np.ones(2))}
+    colours = {"map": np.full((2, 7), 3.0)}
+    actual = np.array([1.0, 3.0])
     known = HoldoutSplit(
-        errors, np.array([1.0, 3.0]), np.array([2.0, 2.0]), np.array([5.0, 5.0])
+        errors, colours, actual, np.array([2.0, 2.0]), np.array([5.0, 5.0])
     )
-    unknown = HoldoutSplit(errors, np.array([5.0, 9.0]), None, None)
-    (record,) = split_records([known, unknown])
+    unknown = HoldoutSplit(errors, colours, np.array([5.0, 9.0]), None, None)
+    record, mapped = split_records([known, unknown])
+    assert (mapped["cube"], mapped["rms"], mapped["HP1"]) == ("map", None, 3)
     found = record["standard_error"]
     assert (found["stated"], found["within_error"], found["within_bound"]) == (
         2,
@@ -99,61 +95,22 @@ def test_records_pool_splits_with_standard_errors():
     assert split_records([unknown])[0]["standard_error"] is None
 
 
+def test_methods_that_know_the_library_are_tested_on_the_queried_half(monkeypatch):
+    """Their errors belong to the entries within sRGB, in the order of the cubes."""
+    atlas = read_atlas(ATLASES / "tcs.txt")
+
+    def marker(data, known, measured, lights):
+        return {"mean": measured.mean(axis=1)}
+
+    monkeypatch.setattr(held_out, "rival_errors", marker)
+    measured = resample(atlas, GRID).values
+    inside = np.flatnonzero(in_unit_cube(observer.sensor().rgb(measured)))
+    assert len(inside) < len(measured)
+    splits = holdout(atlas, 1, dim=4, coefficients=4)
+    for split, (_, other) in zip(splits, halves_both_ways(inside, 1), strict=True):
+        assert_allclose(split.colours["mean"], measured[other].mean(axis=1))
+
+
 def test_small_atlas_raises(family):
     with raises(AtlasError, "too-few-entries"):
         holdout(Atlas(family.entries[:7]), 1, dim=4)
-
-
-@pytest.fixture(scope="module")
-def data():
-    return uplift.load().data
-
-
-@pytest.fixture(scope="module")
-def known(sensor):
-    spectra = resample(read_atlas(ATLASES / "rawtoaces.txt"), sensor.wavelengths).values
-    return spectra[in_unit_cube(sensor.rgb(spectra))][::3]
-
-
-def test_local_linear_reproduces_spectra_that_are_linear_in_rgb(data):
-    spectra = (
-        0.5 + np.random.default_rng(0).uniform(-2, 2, (45, 3)) @ observer.light("A").xyz
-    )
-    known = spectra[:40]
-    queried = spectra[40:]
-    assert_allclose(
-        local_linear(data, known, data.sensor.rgb(queried)), queried, atol=1e-3
-    )
-
-
-def test_local_linear_has_the_least_leave_one_out_error_and_the_queried_colours(
-    data, known, monkeypatch
-):
-    """Compared with leaving out one by one."""
-    monkeypatch.setattr(held_out, "BANDWIDTHS", (10.0, 40.0))
-    monkeypatch.setattr(held_out, "RIDGES", (1e-6, 1e-2))
-    known = known[:20]
-    colours = data.sensor.rgb(known)
-
-    def predict(known, rgb, smoothing):
-        spectra = np.clip(
-            held_out.regress(data.sensor, known, rgb, *smoothing), 1e-4, 1 - 1e-4
-        )
-        return held_out.with_least_change(data, spectra, rgb)
-
-    def slow(smoothing):
-        predicted = [
-            predict(np.delete(known, row, axis=0), colours[row : row + 1], smoothing)
-            for row in range(len(known))
-        ]
-        differences = [
-            delta_e_spectra(observer.light(name), np.concatenate(predicted), known)
-            for name in SCENE_LIGHTS
-        ]
-        return np.mean(differences)
-
-    best = min(itertools.product((10.0, 40.0), (1e-6, 1e-2)), key=slow)
-    rgb = data.sensor.rgb(known.mean(axis=0)[None]) * [[0.9, 1.0, 1.1]]
-    spectra = local_linear(data, known, rgb)
-    assert_allclose(spectra, predict(known, rgb, best), atol=1e-12)
-    assert_allclose(data.sensor.rgb(spectra), rgb, atol=1e-6)

@@ -74,13 +74,13 @@ class CubeOptions:
 @cache
 def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
     """Build, store and load a cube once for all methods; return the CPU seconds too."""
-    from uplift.fit import families_with
+    from uplift.lab.study.look_alikes import families_like
     from uplift.pipeline.build import build
 
     timed = partial(
         build,
         task.kept if options.atlas else None,
-        leave_out=families_with(task.unseen),
+        leave_out=families_like(task.unseen),
         dim=options.dim,
         model=options.model,
         coefficients=options.count,

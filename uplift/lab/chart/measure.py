@@ -22,7 +22,7 @@ from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.extras.colour.srgb import decode
 from uplift.extras.images.processes import ChildError, call_in_child
-from uplift.lab.chart import cubes, mitsuba3, published
+from uplift.lab.chart import cubes, mitsuba3, published, rivals
 from uplift.lab.chart.method import (
     Description,
     Effort,
@@ -38,7 +38,12 @@ from uplift.lab.study.held_out import spectrum_errors
 from uplift.lab.study.sensitivity import COLOURS, perturb_answers
 from uplift.lab.timing import TimingStats, environment, time_laps
 
-METHODS = (*published.METHODS, *mitsuba3.METHODS, *cubes.METHODS)
+METHODS = (
+    *published.METHODS,
+    *rivals.METHODS,
+    *mitsuba3.METHODS,
+    *cubes.METHODS,
+)
 QUICK_METHODS = (
     "jakob2019-*",
     "mallett2019",

@@ -1,0 +1,178 @@
+"""Methods that know the library, compared with a cube without an atlas, for
+docs/materials.md and docs/accuracy.md.
+"""
+
+from collections.abc import Mapping
+from functools import cache
+from itertools import product
+
+import numpy as np
+
+from benchmarks import Row, record
+from benchmarks.choices import ALONE, is_optimistic
+from benchmarks.materials import (
+    FETCHED,
+    SHIPPED,
+    by_light,
+    materials,
+    shipped_families,
+)
+from uplift import build
+from uplift.colorimetry import observer
+from uplift.common.arrays import Array
+from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
+from uplift.extras.report.measures import delta_e_under
+from uplift.fit import families_with
+from uplift.lab.study.look_alikes import look_alikes
+from uplift.lab.study.rivals import MAPS, RIVALS, library_spectra, rival_errors
+
+DIM = 32
+SETS = (*SHIPPED, *FETCHED)
+LARGE_SETS = ("cie2017", "rawtoaces")
+CHECKERS = ("macbeth", "babelcolor")
+ROOT_POLYNOMIALS = MAPS[1:]
+TIE = 0.05
+"""Relative difference of means that counts as a tie."""
+VISIBLE = 1.0
+"""ΔE00 that is just visible."""
+SHARE = 0.95
+"""Share of the errors within the quantile."""
+LIGHTS = [observer.light(name) for name in HELD_OUT_LIGHTS]
+
+
+def main() -> None:
+    """Measure and store."""
+    record(
+        "rivals",
+        dim=DIM,
+        lights=list(HELD_OUT_LIGHTS),
+        tie=TIE,
+        visible=VISIBLE,
+        share=SHARE,
+        sets=map(of_set, SETS),
+        pooled=pooled(),
+        methods=map(verdict, RIVALS),
+        behind=behind(),
+        alike=map(alike, SHIPPED),
+        known=map(effect_of_look_alikes, CHECKERS),
+    )
+
+
+@cache
+def errors(name: str) -> Mapping[str, Array]:
+    """ΔE00 (n, L) of all methods at the materials of a set, whose family they do not
+    know.
+    """
+    queried = materials(name)
+    left_out = shipped_families(name)
+    cube = build(dim=DIM, leave_out=left_out)
+    answers = cube.reflectance(queried.rgb)
+    known = library_spectra(left_out)
+    rivals = rival_errors(cube.data, known, queried.measured, LIGHTS)
+    return {ALONE: delta_e_under(LIGHTS, answers, queried.measured), **rivals}
+
+
+def summary(delta_e: Array) -> Row:
+    """Return mean and 95 % of ΔE00 (n, L), over the lights and under each."""
+    return {
+        "mean": delta_e.mean(),
+        "p95": np.quantile(delta_e, SHARE),
+        "means": by_light(delta_e.mean(axis=0)),
+        "p95s": by_light(np.quantile(delta_e, SHARE, axis=0)),
+    }
+
+
+def of_set(name: str) -> Row:
+    """Return the errors of all methods at a set."""
+    rows = []
+    for method, delta_e in errors(name).items():
+        optimistic = is_optimistic([name], method)
+        rows.append({"method": method, "optimistic": optimistic, **summary(delta_e)})
+    return {
+        "set": name,
+        "spectra": len(materials(name).rgb),
+        "left_out": shipped_families(name),
+        "rows": rows,
+    }
+
+
+def pooled() -> list[Row]:
+    """Return the errors of all methods at the materials of all shipped sets."""
+    rows = []
+    for method in (ALONE, *RIVALS):
+        delta_e = np.concatenate([errors(name)[method] for name in SHIPPED])
+        optimistic = is_optimistic(SHIPPED, method)
+        rows.append({"method": method, "optimistic": optimistic, **summary(delta_e)})
+    return rows
+
+
+def verdict(method: str) -> Row:
+    """Return the sets on which a method is ahead of the cube or ties with it, and the
+    lights under which its mean over the shipped sets is not visible.
+    """
+    ahead = []
+    tied = []
+    for name in SETS:
+        ratio = errors(name)[method].mean() / errors(name)[ALONE].mean()
+        if ratio < 1 - TIE:
+            ahead.append(name)
+        elif ratio <= 1 + TIE:
+            tied.append(name)
+    means = np.concatenate([errors(name)[method] for name in SHIPPED]).mean(axis=0)
+    enough = [
+        light
+        for light, mean in zip(HELD_OUT_LIGHTS, means, strict=True)
+        if mean <= VISIBLE
+    ]
+    return {"method": method, "ahead": ahead, "tied": tied, "enough": enough}
+
+
+def behind() -> list[Row]:
+    """Return the lights under which the cube is behind root polynomials on the large
+    shipped sets, in the mean or at 95 %.
+    """
+    rows = []
+    for name, method in product(LARGE_SETS, ROOT_POLYNOMIALS):
+        cube = summary(errors(name)[ALONE])
+        rival = summary(errors(name)[method])
+        for key, title in (("means", "mean"), ("p95s", f"{SHARE:.0%}")):
+            lights = [
+                light
+                for light in HELD_OUT_LIGHTS
+                if rival[key][light] < cube[key][light]
+            ]
+            if lights:
+                rows.append(
+                    {"set": name, "method": method, "of": title, "lights": lights}
+                )
+    return rows
+
+
+def alike(name: str) -> Row:
+    """Return the numbers of spectra of a set with a look-alike, by family that does not
+    contain the set.
+    """
+    measured = materials(name).measured
+    own = families_with(measured)
+    counts = {
+        family: int(rows.sum())
+        for family, rows in look_alikes(measured).items()
+        if family not in own
+    }
+    return {"set": name, "spectra": len(measured), "counts": counts}
+
+
+def effect_of_look_alikes(name: str) -> Row:
+    """Return the mean ΔE00 of a cube that knows the look-alikes of a set, and of one
+    that does not.
+    """
+    queried = materials(name)
+    cube = build(dim=DIM, leave_out=families_with(queried.measured))
+    known = delta_e_under(LIGHTS, cube.reflectance(queried.rgb), queried.measured)
+    unknown = errors(name)[ALONE]
+    return {
+        "set": name,
+        "known": known.mean(),
+        "unknown": unknown.mean(),
+        "change": unknown.mean() / known.mean() - 1,
+    }

@@ -1,0 +1,38 @@
+"""Families of the library that are too close to spectra to be tested with them."""
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from uplift.common.arrays import Array, Mask
+from uplift.fit import families_with, shipped_library
+
+LOOK_ALIKE = 0.02
+"""rms difference within which spectra look alike."""
+MANY = 0.25
+"""Share of a set from which its look-alikes count: two in five patches of ColorCheckers
+have one in rawtoaces, and other sets in other families under a quarter.
+"""
+
+
+def families_like(measured: Array) -> tuple[str, ...]:
+    """Names of the shipped families that contain one of some spectra (n, 81), or
+    look-alikes of many of them.
+    """
+    if not len(measured):
+        return ()
+    same = families_with(measured)
+    names = []
+    for name, alike in look_alikes(measured).items():
+        if name in same or alike.mean() >= MANY:
+            names.append(name)
+    return tuple(names)
+
+
+def look_alikes(measured: Array) -> dict[str, Mask]:
+    """Whether each of some spectra (n, 81) has a look-alike, by shipped family."""
+    limit = LOOK_ALIKE * np.sqrt(measured.shape[1])
+    alike = {}
+    for family in shipped_library():
+        distance = KDTree(family.measured).query(measured)[0]
+        alike[family.name] = distance <= limit
+    return alike
