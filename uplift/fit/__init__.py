@@ -2,7 +2,7 @@
 nodes.
 """
 
-from uplift.fit.base import NO_FREEDOM, learn_base
+from uplift.fit.base import learn_base
 from uplift.fit.entries import FittedEntries, Marquardt, fit_entries, join_entries
 from uplift.fit.families import Family, families_with, shipped_library
 from uplift.fit.growth_outward import grow_outward, shells
@@ -11,7 +11,6 @@ from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Nodes, Problem, nodes_of
 
 __all__ = [
-    "NO_FREEDOM",
     "Family",
     "FittedEntries",
     "Marquardt",
