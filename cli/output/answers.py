@@ -62,14 +62,25 @@ def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
 
 def hex_code(cube: Cube, rgb: Array) -> str:
     """Return '#rrggbb' of linear RGB (3,), encoded as in the cube's space."""
-    return "#" + "".join(f"{round(float(code)):02x}" for code in cube.encode(rgb))
+    return hex_codes(cube, rgb[None])[0]
+
+
+def hex_codes(cube: Cube, rgb: Array) -> list[str]:
+    """Return the `hex_code` of linear RGB (n, 3)."""
+    codes = cube.encode(rgb).round().astype("u1").tobytes()
+    return [f"#{code}" for code in codes.hex(" ", 3).split()]
 
 
 def as_lists(values: Array) -> list[Any]:
     """Return colours or reflectances as lists. Rounding errors of 0 are 0."""
+    return list(without_rounding(values).tolist())
+
+
+def without_rounding(values: Array) -> Array:
+    """Return colours or reflectances whose rounding errors of 0 are 0."""
     from uplift.colorimetry import ROUNDING
 
-    return list((values * (abs(values) > ROUNDING) + 0.0).tolist())  # -0.0 + 0.0 is 0.0
+    return values * (abs(values) > ROUNDING) + 0.0  # -0.0 + 0.0 is 0.0
 
 
 def format_rgb(rgb: Iterable[float]) -> str:
@@ -80,13 +91,18 @@ def format_rgb(rgb: Iterable[float]) -> str:
 
 def sparkline(values: Array, width: int = 40) -> str:
     """Return a spectrum as block characters, from 0 to 1 in eighths."""
-    last = len(values) - 1
-    width = min(width, len(values))
-    blocks = []
-    for cell in range(width):
-        value = float(values[round(cell * last / max(width - 1, 1))])
-        blocks.append(BLOCKS[round(value * (len(BLOCKS) - 1))])
-    return "".join(blocks)
+    return sparklines(values[None], width)[0]
+
+
+def sparklines(values: Array, width: int) -> list[str]:
+    """Return the `sparkline` of spectra (n, N)."""
+    import numpy as np
+
+    width = min(width, values.shape[1])
+    last = values.shape[1] - 1
+    cells = np.rint(np.arange(width) * last / max(width - 1, 1)).astype(int)
+    levels = np.rint(values[:, cells] * (len(BLOCKS) - 1)).astype(int)
+    return ["".join(row) for row in np.array(list(BLOCKS))[levels].tolist()]
 
 
 def coordinates(cube: Cube, rgb: Array) -> dict[str, Any]:

@@ -129,6 +129,19 @@ def print_csv_text(text: str) -> None:
     _Lines().write(text)
 
 
+def csv_cell(text: str) -> str:
+    """Return a text as the cell of a row that `print_csv` prints."""
+    from uplift.extras.files.csv import csv_text
+
+    cell = csv_text(["", text], [])[1:-1]
+    return "\n".join(map(printable, cell.split("\n")))
+
+
+def print_lines(lines: Iterable[str]) -> None:
+    """Print lines of our own at once."""
+    sys.stdout.write("\n".join([*lines, ""]))
+
+
 class _Lines:
     """Standard output with control characters escaped, but for the ends of lines."""
 
