@@ -2,45 +2,37 @@
 
 from __future__ import annotations
 
-import math
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
-from itertools import chain, repeat
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from uplift.common.errors import UpliftWarning
-from uplift.common.text import pluralise, printable
+from uplift.common.text import pluralise
 
 from .. import options
 from ..colours import find_colours
 from ..inputs import check_range
 from ..output.answers import (
-    as_lists,
     coordinates,
     describe_coordinates,
     format_rgb,
     hex_code,
-    hex_codes,
     patch,
     print_spectrum,
-    sparklines,
-    without_rounding,
 )
 from ..output.console import (
-    csv_cell,
-    has_colours,
     paragraph,
-    print_csv,
     print_json,
     print_json_answers,
-    print_lines,
     say,
 )
 from ..output.diagnostics import warn
+from ..output.query_blocks import json_objects, print_csv_answers, print_table
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
@@ -164,8 +156,8 @@ class Answers:
                 f"mapped into the gamut ({self.method}), a component by up to "
                 f"{change:.3g}"
             )
-            outside = f"{mapped} of {pluralise(count, 'colour')} outside [0, 1]"
-            warn([UpliftWarning(f"{outside}: {by}")])
+            problem = f"{mapped} of {pluralise(count, 'colour')} outside [0, 1]: {by}"
+            warn([UpliftWarning(problem)])
         if filled:
             problem = (
                 f"{filled} of {pluralise(count, 'colour')} outside the cube's scene: "
@@ -271,10 +263,10 @@ def command(
         plot_spectra(answers.cube, results, plot_path, force=force)
         say(f"{plot_path}: {pluralise(len(results), 'colour')}", err=True)
     if style == "json":
-        objects = map(partial(result_object, answers), chain.from_iterable(blocks))
-        print_json_answers(objects, single=answers.single)
+        texts = map(partial(json_objects, answers), blocks)
+        print_json_answers(texts, single=answers.single)
     elif style == "csv":
-        _print_csv(answers, blocks)
+        print_csv_answers(answers, blocks)
     elif answers.single:
         (result,) = chain.from_iterable(blocks)
         print_spectrum(
@@ -285,7 +277,7 @@ def command(
             patches={"linear RGB": patch(answers.cube, result.rgb)},
         )
     else:
-        _print_lines(answers, blocks)
+        print_table(answers, blocks)
     if style == "table" and colours["cube_path"] is None:
         cubes = list(Path().glob("*.uplift"))
         if len(cubes) == 1:
@@ -324,42 +316,6 @@ def _check(
         )
     if not passed:
         raise SystemExit(1)
-
-
-def result_object(answers: Answers, result: QueryResult) -> dict[str, Any]:
-    """Return an answer as JSON values."""
-    cube = answers.cube
-    return {
-        "cube": answers.origin,
-        "rgb": as_lists(result.rgb),
-        "requested_rgb": as_lists(result.requested_rgb),
-        "wavelengths": result.wavelengths.tolist(),
-        "reflectance": as_lists(result.reflectance),
-        "xyz": as_lists(result.xyz),
-        **coordinates(cube, result.rgb),
-        "round_trip": {
-            "rgb": as_lists(result.round_trip),
-            "delta_e_2000": result.delta_e_2000,
-        },
-        "cell": list(result.cell),
-        "status": [status.label for status in result.statuses],
-        "realisable": result.realisable,
-        "entry": result.entry,
-        "standard_error": result.standard_error,
-        "error_bound": result.error_bound,
-        "reference": cube.data.error_illuminant,
-        "standard_errors": dict(result.standard_errors),
-        "error_bounds": dict(result.error_bounds),
-        "lights": {
-            light: {
-                "srgb": as_lists(rgb),
-                "hex": code,
-                "xyz": as_lists(result.light_xyz[light]),
-            }
-            for light, ([rgb], [code]) in answers.light_colours(result).items()
-        },
-        "unlike_atlas": result.unlike_atlas,
-    }
 
 
 def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
@@ -417,97 +373,6 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
     )
     fields["expected error"] = ", ".join(errors) or NO_ERROR
     return fields
-
-
-def _print_csv(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
-    cube = answers.cube
-    lights = [light.name for light in answers.lights]
-    known = lights if cube.data.points.standard_error is not None else []
-    columns = [*"rgb", "delta_e_2000", "standard_error", "error_bound"]
-    for light in known:
-        columns += [f"standard_error_{light}", f"error_bound_{light}"]
-    columns += map("hex_{}".format, lights)
-    wavelengths = answers.wavelengths
-    if wavelengths is None:
-        wavelengths = cube.wavelengths
-    columns += ["entry", *map("{:g}".format, wavelengths)]
-    print_csv(columns, [])
-    for block in blocks:
-        print_lines(_csv_lines(answers, known, block))
-
-
-def _csv_lines(
-    answers: Answers, known: Sequence[str], block: QueryBlock
-) -> Iterator[str]:
-    """Yield the lines of `print_csv`, column by column, which is many times faster."""
-    from uplift.extras.files.numbers import number_rows
-
-    columns = [number_rows(without_rounding(block.rgb))]
-    columns += map(_known_cells, [block.delta_e_2000, *block.errors.T])
-    for light in known:
-        columns += map(_known_cells, block.light_errors[light].T)
-    columns += [codes for _, codes in answers.light_colours(block).values()]
-    cells = {name: "" if name is None else csv_cell(name) for name in set(block.entry)}
-    columns.append([cells[name] for name in block.entry])
-    columns.append(number_rows(without_rounding(block.reflectance)))
-    return map(",".join, zip(*columns, strict=True))
-
-
-def _known_cells(values: Array) -> list[str]:
-    """Format numbers (n,); NaN are empty cells."""
-    return ["" if value != value else repr(value) for value in values.tolist()]
-
-
-def _print_lines(answers: Answers, blocks: Iterable[QueryBlock]) -> None:
-    cube = answers.cube
-    for number, block in enumerate(blocks):
-        errors = _known_errors(cube, block)
-        if number == 0:
-            names = list(errors) or [f"{'spectrum':<16}"]
-            indent = " " * 5 * has_colours()
-            say(f"cube     {answers.title}")
-            say(
-                f"{indent}hex      {'linear RGB':<17}  {'ΔE00':<7}  "
-                f"{'  '.join(names)}  atlas entry"
-            )
-        print_lines(_table_lines(cube, block, errors))
-
-
-def _table_lines(
-    cube: Cube, block: QueryBlock, errors: Mapping[str, Array]
-) -> Iterator[str]:
-    """Yield a line for each answer, of columns that are computed for all at once."""
-    numbers = [*block.rgb.T, block.delta_e_2000, *errors.values()]
-    swatches: Iterable[str] = repeat("", len(block))
-    if has_colours():
-        swatches = (f"{patch(cube, rgb, 3)}  " for rgb in block.rgb)
-    columns: list[Iterable[Any]] = [swatches, hex_codes(cube, block.rgb)]
-    columns += [column.tolist() for column in numbers]
-    line = "%s%s  %.3f %.3f %.3f  %-7.2g  "
-    line += "  ".join(f"%{len(name)}.2f" for name in errors) or "%s"
-    if not errors:
-        columns.append(sparklines(block.reflectance, 16))
-    names = {name: printable((name or "").rstrip()) for name in set(block.entry)}
-    remarks = ("", "unlike the atlas")
-    columns.append(
-        names[name] or remarks[bool(errors) and unlike]
-        for name, unlike in zip(block.entry, block.unlike_atlas.tolist(), strict=True)
-    )
-    line += "  %s"
-    for cells in zip(*columns, strict=True):
-        yield (line % cells).rstrip()
-
-
-def _known_errors(cube: Cube, block: QueryBlock) -> dict[str, Array]:
-    """Return standard errors (n,) by heading, that of the cube first; empty if they are
-    unknown.
-    """
-    if any(math.isnan(error) for error in block.errors[:, 0]):
-        return {}
-    errors = {cube.data.error_illuminant: block.errors}
-    for light, values in block.light_errors.items():
-        errors.setdefault(light, values)
-    return {f"± {light}": values[:, 0] for light, values in errors.items()}
 
 
 def _errors(cube: Cube, result: QueryResult) -> list[tuple[str, float, float]]:

@@ -106,28 +106,41 @@ def sparklines(values: Array, width: int) -> list[str]:
 
 
 def coordinates(cube: Cube, rgb: Array) -> dict[str, Any]:
-    """Return HSV, HSL, YIQ, dominant wavelength and purity of linear RGB (3,) for JSON
-    (Fishkin 1983, 3.11–3.13).
+    """Return the `coordinate_columns` of linear RGB (3,)."""
+    columns = coordinate_columns(cube, rgb[None])
+    return {name: column[0] for name, column in columns.items()}
+
+
+def coordinate_columns(cube: Cube, rgb: Array) -> dict[str, list[Any]]:
+    """Return HSV, HSL, YIQ, dominant wavelength and purity of linear RGB (n, 3) for
+    JSON (Fishkin 1983, 3.11–3.13).
 
     HSV, HSL and YIQ are those of the encoded components, as displays and broadcasts use
     them, clipped to [0, 1]. Empty for a camera, whose values no display shows.
     """
-    from uplift.extras.colour.dominant import dominant_wavelength
+    from uplift.extras.colour.dominant import dominant_wavelengths
 
     sensor = cube.data.sensor
     if sensor.sensitivities is not None:
         return {}
-    encoded = (cube.encode(rgb) / 255).tolist()
-    hue, lightness, saturation = colorsys.rgb_to_hls(*encoded)
-    dominant = dominant_wavelength(sensor.xyz(rgb), sensor)
+    encoded = (cube.encode(rgb) / 255).T.tolist()
+    hls = map(colorsys.rgb_to_hls, *encoded)
+    # one by one, as the rounding of a product depends on its size
+    xyz = sensor.xyz(rgb[:, None])[:, 0]
+    wavelengths, complementary, purity = dominant_wavelengths(xyz, sensor)
     return {
-        "hsv": list(colorsys.rgb_to_hsv(*encoded)),
-        "hsl": [hue, saturation, lightness],
-        "yiq": list(colorsys.rgb_to_yiq(*encoded)),
-        "dominant_wavelength": dominant.wavelength,
-        "complementary": dominant.complementary,
-        "purity": dominant.purity,
+        "hsv": list(map(list, map(colorsys.rgb_to_hsv, *encoded))),
+        "hsl": [[hue, saturation, lightness] for hue, lightness, saturation in hls],
+        "yiq": list(map(list, map(colorsys.rgb_to_yiq, *encoded))),
+        "dominant_wavelength": known(wavelengths),
+        "complementary": complementary.tolist(),
+        "purity": purity.tolist(),
     }
+
+
+def known(values: Array) -> list[float | None]:
+    """Return numbers (n,), None for NaN."""
+    return [None if value != value else value for value in values.tolist()]
 
 
 def describe_coordinates(values: dict[str, Any]) -> dict[str, str]:

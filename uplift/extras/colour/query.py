@@ -1,5 +1,6 @@
 """Queries in full detail: spectrum, provenance and round trip of every colour."""
 
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,11 +8,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from uplift.colorimetry import Light, Solid, as_rgb, delta_e_rgb
+from uplift.colorimetry import Light, Solid, as_rgb, delta_e_rgb, in_unit_cube
 from uplift.common.arrays import Array, Indices, Mask, blocks
 from uplift.common.errors import ColourError, unknown_name
 from uplift.cube import CubeData
-from uplift.lattice import Status
+from uplift.lattice import CORNERS, Status
 from uplift.lookup import (
     BLOCK,
     MODES,
@@ -40,8 +41,8 @@ class QueryBlock:
     xyz: Array
     delta_e_2000: Array
     cell: Indices
-    status: NDArray[np.uint8]
-    """(n, 8) statuses of the corners of the cells."""
+    corner_statuses: NDArray[np.uint8]
+    """(n, 8)."""
     entry: list[str | None]
     errors: Array
     """(n, 2) standard errors and error bounds, NaN where they are unknown."""
@@ -54,14 +55,29 @@ class QueryBlock:
 
     @cached_property
     def realisable(self) -> Mask:
+        # The solid is convex: with the corners of RGB it contains everything between.
+        if (
+            in_unit_cube(self.rgb).all()
+            and self.solid.contains(CORNERS.astype(float)).all()
+        ):
+            return np.ones(len(self), dtype=bool)
         return self.solid.contains(self.rgb)
+
+    @cached_property
+    def statuses(self) -> list[tuple[Status, ...]]:
+        keys = self.corner_statuses.view("u8")[:, 0].tolist()
+        # np.unique without counts imports numpy.ma, which takes time.
+        distinct = {
+            key: tuple(map(Status, sorted(set(key.to_bytes(8, sys.byteorder)))))
+            for key in set(keys)
+        }
+        return [distinct[key] for key in keys]
 
     def __len__(self) -> int:
         return len(self.rgb)
 
     def __iter__(self) -> Iterator["QueryResult"]:
         cells = self.cell.tolist()
-        statuses = self.status.tolist()
         for row, entry in enumerate(self.entry):
             yield QueryResult(
                 rgb=self.rgb[row],
@@ -72,7 +88,7 @@ class QueryBlock:
                 xyz=self.xyz[row],
                 delta_e_2000=float(self.delta_e_2000[row]),
                 cell=tuple(cells[row]),
-                statuses=tuple(map(Status, sorted(set(statuses[row])))),
+                statuses=self.statuses[row],
                 entry=entry,
                 standard_error=_known(self.errors[row, 0]),
                 error_bound=_known(self.errors[row, 1]),
@@ -266,7 +282,7 @@ def _block(
         xyz=xyz,
         delta_e_2000=delta_e,
         cell=low,
-        status=data.points.status[data.lattice.cell_corners(low, fraction)[0]],
+        corner_statuses=data.points.status[data.lattice.cell_corners(low, fraction)[0]],
         entry=names,
         errors=errors,
         light_errors=light_errors,
@@ -298,7 +314,7 @@ def _entry_names(
     for rows in blocks(len(rgb) if len(entry_codes) else 0, NAMED_ROWS):
         difference = np.abs(codes[rows, None] - entry_codes).max(axis=2)
         near = (difference.min(axis=1) <= CODE_TOLERANCE) & ~outside[rows]
-        for row in np.flatnonzero(near):
+        for row in np.flatnonzero(near).tolist():
             names[rows.start + row] = atlas.names[difference[row].argmin()]
     if atlas.outside is not None:
         for row, entry in outside_entries.items():

@@ -11,8 +11,8 @@ LEAST_LARGE = 1e16
 """Least number that Python writes with a positive exponent."""
 
 
-def number_rows(values: Array) -> list[str]:
-    """Format rows (n, k) of floats, n and k > 0, as `repr` does, separated by commas.
+def number_rows(values: Array, separator: str = ",") -> list[str]:
+    """Format rows (n, k) of floats, n and k > 0, as `repr` does.
 
     The JSON of pydantic is ten times as fast. It has the same digits, but exponents
     only for smaller and larger numbers than Python.
@@ -20,8 +20,9 @@ def number_rows(values: Array) -> list[str]:
     >>> number_rows(np.array([[0.1, 2e-7], [1, np.inf]]))
     ['0.1,2e-07', '1.0,inf']
     """
-    rows = to_json(values.tolist()).decode()[2:-2].split("],[")
+    text = to_json(values.tolist()).decode().replace(",", separator)
+    rows = text[2:-2].split(f"]{separator}[")
     alike = (values.min(axis=1) >= LEAST_PLAIN) & (values.max(axis=1) < LEAST_LARGE)
     for row in np.flatnonzero(~alike):
-        rows[row] = ",".join(map(repr, values[row].tolist()))
+        rows[row] = separator.join(map(repr, values[row].tolist()))
     return rows
