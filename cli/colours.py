@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import codecs
 import io
-import math
 import re
+import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -42,6 +42,12 @@ DECIMALS = (
     "'0,2;0,3;0,4'"
 )
 HEX = re.compile(r"#?([0-9a-fA-F]{6})|#([0-9a-fA-F]{3})")
+_NUMBER = r"[+-]?+(?:[0-9]++\.?+[0-9]*+|\.[0-9]++)(?:[eE][+-]?+[0-9]++)?+"
+PLAIN_LINES = re.compile(
+    rf"(?:{_NUMBER}(, ?|[;\t ]){_NUMBER}\1{_NUMBER}\n)++|(?:#[0-9a-fA-F]{{6}}\n)++"
+)
+"""Lines of three numbers with decimal points, or of hex colours: parsed at once."""
+SEPARATORS = str.maketrans(",;", "  ")
 STATED_DELIMITER = re.compile(r"\s*\"?sep=.\"?\s*", re.IGNORECASE)
 """First line that states the delimiter to spreadsheets."""
 SYNTAX = "write three numbers (R G B) or a hex colour such as '#cc3319'"
@@ -53,7 +59,8 @@ MAX_LINE = 1 << 16
 
 
 Colour = tuple[list[float], bool]
-"""Three numbers, and whether they are encoded 8-bit codes."""
+"""Three numbers, or those of several colours, and whether they are encoded 8-bit codes.
+"""
 
 
 @dataclass(frozen=True)
@@ -117,6 +124,10 @@ class ColourSource:
         for rows in _row_blocks(file, name):
             colours = list[Colour]()
             for line, text, row in rows:
+                if not row:
+                    colours.append(self._parse_plain(text, name, line, bounded))
+                    width = width or 0
+                    continue
                 if width is None:
                     width = len(row) if _is_header(row) else 0
                     if width:
@@ -151,36 +162,55 @@ class ColourSource:
                 hint=DECIMALS,
             )
 
+    def _parse_plain(self, text: str, name: str, line: int, bounded: bool) -> Colour:
+        """Parse `PLAIN_LINES`."""
+        is_hex = text.startswith("#")
+        if is_hex:
+            numbers = list[float](bytes.fromhex(text.replace("#", "")))
+        else:
+            numbers = list(map(float, text.translate(SEPARATORS).split()))
+        low, high = self._limits(is_hex, bounded)
+        if not low <= min(numbers) <= max(numbers) <= high:
+            for row, words in enumerate(text.splitlines()):
+                colour = numbers[3 * row : 3 * row + 3], is_hex
+                self._check_range(colour, words, name, line + row, bounded)
+        return numbers, is_hex
+
+    def _limits(self, is_hex: bool, bounded: bool) -> tuple[float, float]:
+        from uplift.colorimetry.sensor import SLACK
+
+        if self.encoded or is_hex:
+            return 0, 255
+        if bounded:
+            return -SLACK, 1 + SLACK
+        return -sys.float_info.max, sys.float_info.max
+
     def _check_range(
         self, colour: Colour, text: str, name: str, line: int, bounded: bool
     ) -> None:
         """Check the range as the cube does, but report the line."""
-        from uplift.colorimetry.sensor import SLACK
-
         numbers, encoded = colour
+        low, high = self._limits(encoded, bounded)
+        if all(low <= number <= high for number in numbers):
+            return
         values = format_value(text)
         if self.encoded or encoded:
-            if not all(0 <= number <= 255 for number in numbers):
-                problem = f"8-bit codes must be in [0, 255], got {values}"
-                raise ColourError(problem, code="invalid-codes", path=name, line=line)
-        elif bounded:
-            if not all(-SLACK <= number <= 1 + SLACK for number in numbers):
-                problem = f"linear RGB must be in [0, 1], got {values}"
-                raise ColourError(
-                    problem, code="rgb-out-of-gamut", path=name, line=line
-                )
-        elif not all(map(math.isfinite, numbers)):
-            raise ColourError(
-                f"{values} is not finite", path=name, line=line, hint=SYNTAX
-            )
+            problem = f"8-bit codes must be in [0, 255], got {values}"
+            raise ColourError(problem, code="invalid-codes", path=name, line=line)
+        if bounded:
+            problem = f"linear RGB must be in [0, 1], got {values}"
+            raise ColourError(problem, code="rgb-out-of-gamut", path=name, line=line)
+        raise ColourError(f"{values} is not finite", path=name, line=line, hint=SYNTAX)
 
     def _linear(self, colours: list[Colour], sensor: Sensor) -> Array:
         """Decode codes, and convert colours of another space to the sensor's."""
         import numpy as np
 
         space = self.space
-        values = np.array([numbers for numbers, _ in colours], dtype=float)
-        mask = np.array([self.encoded or encoded for _, encoded in colours])
+        values = np.array(list(chain.from_iterable(numbers for numbers, _ in colours)))
+        values = values.astype(float).reshape(-1, 3)
+        codes = [self.encoded or encoded for _, encoded in colours]
+        mask = np.repeat(codes, [len(numbers) // 3 for numbers, _ in colours])
         if space is not None and space.decode is not None:
             values[mask] = space.decode(values[mask] / 255)
             if space.floats_are_codes:
@@ -231,37 +261,45 @@ def _row_blocks(
     file: IO[bytes], name: str
 ) -> Iterator[list[tuple[int, str, list[str]]]]:
     """Yield line numbers, texts and cells in blocks, each as soon as it can be read: a
-    stream may never end.
+    stream may never end. `PLAIN_LINES` have one text and no cells.
     """
     decoder = io.IncrementalNewlineDecoder(
         codecs.getincrementaldecoder("utf-8-sig")(), translate=True
     )
     read = getattr(file, "read1", file.read)
-    first = 1
-    last = ""
+    line = 1
+    unread = ""
     at_end = False
     while not at_end:
         chunk = read(CHUNK)
         at_end = not chunk
         try:
-            *lines, last = (last + decoder.decode(chunk, final=at_end)).split("\n")
+            unread += decoder.decode(chunk, final=at_end)
         except UnicodeDecodeError as error:
             raise ColourError("is not a text file", path=name, hint=TABLE) from error
-        numbered = list(enumerate([*lines, last], first))
-        for line, text in numbered:
+        for number, text in enumerate(unread.split("\n"), line):
             if len(text) > MAX_LINE:
                 raise ColourError(
                     f"lines must not exceed {MAX_LINE:,} characters",
                     path=name,
-                    line=line,
+                    line=number,
                     hint=TABLE,
                 )
-        rows = (
-            (line, text.strip(), _cells(text, name, line))
-            for line, text in numbered[: None if at_end else -1]
-        )
-        yield [(line, text, row) for line, text, row in rows if row]
-        first += len(lines)
+        if at_end:
+            unread += "\n"
+        rows = []
+        start = 0
+        while end := unread.find("\n", start) + 1:
+            plain = PLAIN_LINES.match(unread, start)
+            if plain:
+                end = plain.end()
+                rows.append((line, plain[0], list[str]()))
+            elif row := _cells(unread[start : end - 1], name, line):
+                rows.append((line, unread[start:end].strip(), row))
+            line += unread.count("\n", start, end)
+            start = end
+        unread = unread[start:]
+        yield rows
 
 
 def _cells(text: str, name: str, line: int) -> list[str]:

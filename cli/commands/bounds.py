@@ -14,6 +14,7 @@ from uplift.common.files import write_text
 from .. import options
 from ..output.answers import as_lists, format_rgb, hex_code, patch
 from ..output.console import (
+    json_output,
     make_table,
     print_csv,
     print_fields,
@@ -21,16 +22,17 @@ from ..output.console import (
     say,
     show,
 )
+from ..output.query_blocks import json_objects
 from ..outputs import check_outputs
-from .query import Answers, colour_options, result_object
+from .query import Answers, colour_options
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.extras.colour.query import QueryResult
+    from uplift.extras.colour.query import QueryBlock
     from uplift.extras.looks.metamer_bounds import Bounds
     from uplift.lookup import Cube
 
-Block = tuple[Sequence["QueryResult"], Sequence["Bounds"]]
+Block = tuple["QueryBlock", Sequence["Bounds"]]
 """Answers, and their bounds under each light."""
 DIVISIONS = 2
 """Density of the directions of bounds: 162 of each of many colours."""
@@ -108,7 +110,7 @@ def command(
         write_text(page(answers.cube, bounds), html, force=force)
         say(f"{html}: page to choose a look on", err=True)
     if style == "json":
-        objects = chain.from_iterable(_objects(answers, *block) for block in blocks)
+        objects = (_objects(answers, *block) for block in blocks)
         print_json_answers(objects, single=answers.single)
     elif style == "csv":
         print_csv(COLUMNS, chain.from_iterable(_rows(*block) for block in blocks))
@@ -116,26 +118,23 @@ def command(
         _print_table(answers.cube, blocks, single=answers.single)
 
 
-def _compute(answers: Answers, results: Sequence[QueryResult]) -> Block:
-    import numpy as np
-
+def _compute(answers: Answers, results: QueryBlock) -> Block:
     from uplift.extras.looks.metamer_bounds import bounds
 
-    rgb = np.stack([result.rgb for result in results])
     divisions = SINGLE_DIVISIONS if answers.single else DIVISIONS
     return results, [
-        bounds(answers.cube, rgb, light, answers.mode, divisions)
+        bounds(answers.cube, results.rgb, light, answers.mode, divisions)
         for light in answers.lights
     ]
 
 
 def _objects(
-    answers: Answers, results: Sequence[QueryResult], by_light: Sequence[Bounds]
-) -> Iterable[dict[str, Any]]:
+    answers: Answers, results: QueryBlock, by_light: Sequence[Bounds]
+) -> Iterable[str]:
     from uplift.colorimetry import lab
     from uplift.extras.looks.lab_errors import LIKELY
 
-    for row, result in enumerate(results):
+    for row, text in enumerate(json_objects(answers, results)):
         fields = {}
         for bounds in by_light:
             largest = bounds.largest
@@ -153,12 +152,10 @@ def _objects(
                 "likely": None if likely is None else likely.tolist(),
                 "likely_share": LIKELY,
             }
-        yield result_object(answers, result) | {"bounds": fields}
+        yield f"{text[:-1]}, {json_output({'bounds': fields})[1:]}"
 
 
-def _rows(
-    results: Sequence[QueryResult], by_light: Sequence[Bounds]
-) -> Iterable[list[Any]]:
+def _rows(results: QueryBlock, by_light: Sequence[Bounds]) -> Iterable[list[Any]]:
     """Yield the rows of CSV, of the columns `COLUMNS`."""
     for row, result in enumerate(results):
         for bounds in by_light:
@@ -181,7 +178,7 @@ def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
 
     for number, (results, by_light) in enumerate(blocks):
         if single:
-            rgb = results[0].rgb
+            rgb = results.rgb[0]
             print_fields(
                 {"linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"},
                 {"linear RGB": patch(cube, rgb)},

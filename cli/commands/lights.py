@@ -18,7 +18,7 @@ from .. import options
 from ..colours import find_colours
 from ..inputs import check_range
 from ..output.answers import format_rgb, print_spectrum, sparkline
-from ..output.console import print_csv, print_json_answers, say
+from ..output.console import json_output, print_csv, print_json_answers, say
 from .info import print_facts
 from .texture import as_tuple, convert, image_options
 
@@ -285,8 +285,11 @@ def query(
         plot_lights(lights, table, plot_path, force=force)
         say(f"{plot_path}: {pluralise(len(results), 'light')}", err=True)
     if style == "json":
-        values = (result | {"power": result["power"].tolist()} for result in results)
-        print_json_answers(values, single=source.single)
+        texts = (
+            [json_output(result | {"power": result["power"].tolist()})]
+            for result in results
+        )
+        print_json_answers(texts, single=source.single)
     elif style == "csv":
         header = ["r", "g", "b", "expected_error", *map("{:g}".format, at)]
         print_csv(header, map(_csv_row, results))

@@ -12,38 +12,34 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from uplift.common.errors import UpliftWarning
-from uplift.common.text import pluralise, printable
+from uplift.common.text import pluralise
 
 from .. import options
 from ..colours import find_colours
 from ..inputs import check_range
 from ..output.answers import (
-    as_lists,
     coordinates,
     describe_coordinates,
     format_rgb,
     hex_code,
     patch,
     print_spectrum,
-    sparkline,
 )
 from ..output.console import (
-    emit,
-    has_colours,
     paragraph,
-    print_csv,
     print_json,
     print_json_answers,
     say,
 )
 from ..output.diagnostics import warn
+from ..output.query_blocks import json_objects, print_csv_answers, print_table
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
     from uplift.colorimetry import Light
     from uplift.colorimetry.illuminants import Illuminant
     from uplift.common.arrays import Array
-    from uplift.extras.colour.query import QueryResult
+    from uplift.extras.colour.query import QueryBlock, QueryResult
     from uplift.lookup import Cube
 
 PACKAGED = "packaged"
@@ -125,13 +121,16 @@ class Answers:
             lit = [light(illuminant, *setting) for illuminant in lights]
             self.lights = list({light.name: light for light in lit}.values())
 
-    def __iter__(self) -> Iterator[list[QueryResult]]:
+    def __iter__(self) -> Iterator[QueryBlock]:
         """Answer blocks, and warn at the end of colours that were mapped or filled."""
-        from uplift.extras.colour.query import query, query_xyz
+        from uplift.extras.colour.query import locate_xyz, query_blocks
 
+        how = (self.wavelengths, self.mode)
         if self.source.xyz is not None:
-            how = (self.wavelengths, self.mode, self.lights)
-            yield list(query_xyz(self.cube, [self.source.xyz], *how))
+            rgb, requested, outside = locate_xyz(self.cube, [self.source.xyz])
+            yield from query_blocks(
+                self.cube, rgb, *how, requested, self.lights, outside
+            )
             return
         count = mapped = filled = 0
         change = 0.0
@@ -149,19 +148,16 @@ class Answers:
             if self.fill_missing:
                 filled += int((~self.cube.covers(rgb)).sum())
                 self.cube = self.cube.fill_missing(rgb)
-            yield list(
-                query(
-                    self.cube, rgb, self.wavelengths, self.mode, requested, self.lights
-                )
-            )
-            sys.stdout.flush()
+            for block in query_blocks(self.cube, rgb, *how, requested, self.lights):
+                yield block
+                sys.stdout.flush()
         if mapped:
             by = (
                 f"mapped into the gamut ({self.method}), a component by up to "
                 f"{change:.3g}"
             )
-            outside = f"{mapped} of {pluralise(count, 'colour')} outside [0, 1]"
-            warn([UpliftWarning(f"{outside}: {by}")])
+            problem = f"{mapped} of {pluralise(count, 'colour')} outside [0, 1]: {by}"
+            warn([UpliftWarning(problem)])
         if filled:
             problem = (
                 f"{filled} of {pluralise(count, 'colour')} outside the cube's scene: "
@@ -169,16 +165,19 @@ class Answers:
             )
             warn([UpliftWarning(problem)])
 
-    def light_colours(self, result: QueryResult) -> dict[str, tuple[Array, str]]:
-        """Return linear sRGB (3,) and '#rrggbb' of an answer by light; its white is
-        that of the screen.
+    def light_colours(
+        self, answers: QueryBlock | QueryResult
+    ) -> dict[str, tuple[Array, list[str]]]:
+        """Return linear sRGB (n, 3) and '#rrggbb' (n,) of n answers, or of one, by
+        light; its white is that of the screen.
         """
         from uplift.extras.colour.srgb import hex_codes
 
-        colours = {
-            light: self.to_srgb[light] @ xyz for light, xyz in result.light_xyz.items()
-        }
-        return {light: (rgb, hex_codes(rgb[None])[0]) for light, rgb in colours.items()}
+        colours = {}
+        for light, xyz in answers.light_xyz.items():
+            rgb = (self.to_srgb[light] @ xyz.reshape(-1, 3, 1))[..., 0]
+            colours[light] = rgb, hex_codes(rgb)
+        return colours
 
 
 @click.command(
@@ -255,20 +254,21 @@ def command(
         return
     check_outputs(plot_path)
     answers = Answers(lights=lights, **colours)
-    results: Iterable[QueryResult] = chain.from_iterable(answers)
+    blocks: Iterable[QueryBlock] = answers
     if plot_path is not None:
         from uplift.extras.pages.plots import plot_spectra
 
-        results = list(results)
+        blocks = list(blocks)
+        results = list(chain.from_iterable(blocks))
         plot_spectra(answers.cube, results, plot_path, force=force)
         say(f"{plot_path}: {pluralise(len(results), 'colour')}", err=True)
     if style == "json":
-        objects = map(partial(result_object, answers), results)
-        print_json_answers(objects, single=answers.single)
+        texts = map(partial(json_objects, answers), blocks)
+        print_json_answers(texts, single=answers.single)
     elif style == "csv":
-        _print_csv(answers, results)
+        print_csv_answers(answers, blocks)
     elif answers.single:
-        (result,) = results
+        (result,) = chain.from_iterable(blocks)
         print_spectrum(
             _fields(answers, result),
             result.wavelengths,
@@ -277,7 +277,7 @@ def command(
             patches={"linear RGB": patch(answers.cube, result.rgb)},
         )
     else:
-        _print_lines(answers, results)
+        print_table(answers, blocks)
     if style == "table" and colours["cube_path"] is None:
         cubes = list(Path().glob("*.uplift"))
         if len(cubes) == 1:
@@ -318,42 +318,6 @@ def _check(
         raise SystemExit(1)
 
 
-def result_object(answers: Answers, result: QueryResult) -> dict[str, Any]:
-    """Return an answer as JSON values."""
-    cube = answers.cube
-    return {
-        "cube": answers.origin,
-        "rgb": as_lists(result.rgb),
-        "requested_rgb": as_lists(result.requested_rgb),
-        "wavelengths": result.wavelengths.tolist(),
-        "reflectance": as_lists(result.reflectance),
-        "xyz": as_lists(result.xyz),
-        **coordinates(cube, result.rgb),
-        "round_trip": {
-            "rgb": as_lists(result.round_trip),
-            "delta_e_2000": result.delta_e_2000,
-        },
-        "cell": list(result.cell),
-        "status": [status.label for status in result.statuses],
-        "realisable": result.realisable,
-        "entry": result.entry,
-        "standard_error": result.standard_error,
-        "error_bound": result.error_bound,
-        "reference": cube.data.error_illuminant,
-        "standard_errors": dict(result.standard_errors),
-        "error_bounds": dict(result.error_bounds),
-        "lights": {
-            light: {
-                "srgb": as_lists(rgb),
-                "hex": code,
-                "xyz": as_lists(result.light_xyz[light]),
-            }
-            for light, (rgb, code) in answers.light_colours(result).items()
-        },
-        "unlike_atlas": result.unlike_atlas,
-    }
-
-
 def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
     from uplift.colorimetry import delta_e_rgb
     from uplift.colorimetry.sensor import SLACK
@@ -392,7 +356,7 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
     if result.light_xyz:
         relit = answers.light_colours(result).items()
         fields["sRGB under"] = ", ".join(
-            f"{name}: {code} ({format_rgb(lit)})" for name, (lit, code) in relit
+            f"{name}: {code} ({format_rgb(lit)})" for name, ([lit], [code]) in relit
         )
     if result.entry is None:
         fields["atlas entry"] = (
@@ -409,61 +373,6 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
     )
     fields["expected error"] = ", ".join(errors) or NO_ERROR
     return fields
-
-
-def _print_csv(answers: Answers, results: Iterable[QueryResult]) -> None:
-    cube = answers.cube
-    lights = [light.name for light in answers.lights]
-    known = lights if cube.data.points.standard_error is not None else []
-    columns = [*"rgb", "delta_e_2000", "standard_error", "error_bound"]
-    for light in known:
-        columns += [f"standard_error_{light}", f"error_bound_{light}"]
-    columns += map("hex_{}".format, lights)
-    wavelengths = answers.wavelengths
-    if wavelengths is None:
-        wavelengths = cube.wavelengths
-    columns += ["entry", *map("{:g}".format, wavelengths)]
-    print_csv(columns, map(partial(_csv_row, answers, known), results))
-
-
-def _csv_row(
-    answers: Answers, known: Sequence[str], result: QueryResult
-) -> Sequence[Any]:
-    row = [*as_lists(result.rgb), result.delta_e_2000]
-    row += [result.standard_error, result.error_bound]
-    for light in known:
-        row += [result.standard_errors.get(light), result.error_bounds.get(light)]
-    row += [code for _, code in answers.light_colours(result).values()]
-    return [*row, result.entry, *as_lists(result.reflectance)]
-
-
-def _print_lines(answers: Answers, results: Iterable[QueryResult]) -> None:
-    cube = answers.cube
-    for number, result in enumerate(results):
-        errors = {
-            f"± {light}": f"{error:.2f}" for light, error, _ in _errors(cube, result)
-        }
-        if number == 0:
-            names = list(errors) or [f"{'spectrum':<16}"]
-            indent = " " * 5 * has_colours()
-            say(f"cube     {answers.title}")
-            say(
-                f"{indent}hex      {'linear RGB':<17}  {'ΔE00':<7}  "
-                f"{'  '.join(names)}  atlas entry"
-            )
-        last = [f"{error:>{len(name)}}" for name, error in errors.items()] or [
-            sparkline(result.reflectance, 16)
-        ]
-        rgb = " ".join(f"{value:.3f}" for value in result.rgb)
-        entry = result.entry or (
-            "unlike the atlas" if errors and result.unlike_atlas else ""
-        )
-        line = (
-            f"{hex_code(cube, result.rgb)}  {rgb}  {result.delta_e_2000:<7.2g}  "
-            f"{'  '.join(last)}  {entry}"
-        )
-        swatch = patch(cube, result.rgb, 3)
-        emit((swatch and f"{swatch}  ") + printable(line.rstrip()))
 
 
 def _errors(cube: Cube, result: QueryResult) -> list[tuple[str, float, float]]:

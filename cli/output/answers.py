@@ -62,14 +62,25 @@ def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
 
 def hex_code(cube: Cube, rgb: Array) -> str:
     """Return '#rrggbb' of linear RGB (3,), encoded as in the cube's space."""
-    return "#" + "".join(f"{round(float(code)):02x}" for code in cube.encode(rgb))
+    return hex_codes(cube, rgb[None])[0]
+
+
+def hex_codes(cube: Cube, rgb: Array) -> list[str]:
+    """Return the `hex_code` of linear RGB (n, 3)."""
+    codes = cube.encode(rgb).round().astype("u1").tobytes()
+    return [f"#{code}" for code in codes.hex(" ", 3).split()]
 
 
 def as_lists(values: Array) -> list[Any]:
     """Return colours or reflectances as lists. Rounding errors of 0 are 0."""
+    return list(without_rounding(values).tolist())
+
+
+def without_rounding(values: Array) -> Array:
+    """Return colours or reflectances whose rounding errors of 0 are 0."""
     from uplift.colorimetry import ROUNDING
 
-    return list((values * (abs(values) > ROUNDING) + 0.0).tolist())  # -0.0 + 0.0 is 0.0
+    return values * (abs(values) > ROUNDING) + 0.0  # -0.0 + 0.0 is 0.0
 
 
 def format_rgb(rgb: Iterable[float]) -> str:
@@ -80,38 +91,56 @@ def format_rgb(rgb: Iterable[float]) -> str:
 
 def sparkline(values: Array, width: int = 40) -> str:
     """Return a spectrum as block characters, from 0 to 1 in eighths."""
-    last = len(values) - 1
-    width = min(width, len(values))
-    blocks = []
-    for cell in range(width):
-        value = float(values[round(cell * last / max(width - 1, 1))])
-        blocks.append(BLOCKS[round(value * (len(BLOCKS) - 1))])
-    return "".join(blocks)
+    return sparklines(values[None], width)[0]
+
+
+def sparklines(values: Array, width: int) -> list[str]:
+    """Return the `sparkline` of spectra (n, N)."""
+    import numpy as np
+
+    width = min(width, values.shape[1])
+    last = values.shape[1] - 1
+    cells = np.rint(np.arange(width) * last / max(width - 1, 1)).astype(int)
+    levels = np.rint(values[:, cells] * (len(BLOCKS) - 1)).astype(int)
+    return ["".join(row) for row in np.array(list(BLOCKS))[levels].tolist()]
 
 
 def coordinates(cube: Cube, rgb: Array) -> dict[str, Any]:
-    """Return HSV, HSL, YIQ, dominant wavelength and purity of linear RGB (3,) for JSON
-    (Fishkin 1983, 3.11–3.13).
+    """Return the `coordinate_columns` of linear RGB (3,)."""
+    columns = coordinate_columns(cube, rgb[None])
+    return {name: column[0] for name, column in columns.items()}
+
+
+def coordinate_columns(cube: Cube, rgb: Array) -> dict[str, list[Any]]:
+    """Return HSV, HSL, YIQ, dominant wavelength and purity of linear RGB (n, 3) for
+    JSON (Fishkin 1983, 3.11–3.13).
 
     HSV, HSL and YIQ are those of the encoded components, as displays and broadcasts use
     them, clipped to [0, 1]. Empty for a camera, whose values no display shows.
     """
-    from uplift.extras.colour.dominant import dominant_wavelength
+    from uplift.extras.colour.dominant import dominant_wavelengths
 
     sensor = cube.data.sensor
     if sensor.sensitivities is not None:
         return {}
-    encoded = (cube.encode(rgb) / 255).tolist()
-    hue, lightness, saturation = colorsys.rgb_to_hls(*encoded)
-    dominant = dominant_wavelength(sensor.xyz(rgb), sensor)
+    encoded = (cube.encode(rgb) / 255).T.tolist()
+    hls = map(colorsys.rgb_to_hls, *encoded)
+    # one by one, as the rounding of a product depends on its size
+    xyz = sensor.xyz(rgb[:, None])[:, 0]
+    wavelengths, complementary, purity = dominant_wavelengths(xyz, sensor)
     return {
-        "hsv": list(colorsys.rgb_to_hsv(*encoded)),
-        "hsl": [hue, saturation, lightness],
-        "yiq": list(colorsys.rgb_to_yiq(*encoded)),
-        "dominant_wavelength": dominant.wavelength,
-        "complementary": dominant.complementary,
-        "purity": dominant.purity,
+        "hsv": list(map(list, map(colorsys.rgb_to_hsv, *encoded))),
+        "hsl": [[hue, saturation, lightness] for hue, lightness, saturation in hls],
+        "yiq": list(map(list, map(colorsys.rgb_to_yiq, *encoded))),
+        "dominant_wavelength": known(wavelengths),
+        "complementary": complementary.tolist(),
+        "purity": purity.tolist(),
     }
+
+
+def known(values: Array) -> list[float | None]:
+    """Return numbers (n,), None for NaN."""
+    return [None if value != value else value for value in values.tolist()]
 
 
 def describe_coordinates(values: dict[str, Any]) -> dict[str, str]:

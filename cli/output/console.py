@@ -98,22 +98,30 @@ def json_text(values: Any, indent: int | None = 2, *, ascii_only: bool = False) 
     )
 
 
-def print_json(
-    values: Any, indent: int | None = 2, *, before: str = "", nl: bool = True
-) -> None:
+def print_json(values: Any, indent: int | None = 2) -> None:
     """Print standard JSON, in the characters that standard output has."""
+    emit(json_output(values, indent))
+
+
+def json_output(values: Any, indent: int | None = None) -> str:
+    """Return standard JSON in the characters that standard output has."""
     is_unicode = (sys.stdout.encoding or "utf-8").lower().startswith("utf")
-    emit(before + json_text(values, indent, ascii_only=not is_unicode), nl=nl)
+    return json_text(values, indent, ascii_only=not is_unicode)
 
 
-def print_json_answers(objects: Iterable[Any], *, single: bool) -> None:
-    """Print an object, or an array, each before the next one is computed."""
+def print_json_answers(blocks: Iterable[Iterable[str]], *, single: bool) -> None:
+    """Print an object, or an array of the objects of blocks, which are JSON texts, each
+    block before the next one is computed.
+    """
     if single:
-        (values,) = objects
-        print_json(values, indent=None)
+        ((text,),) = blocks
+        emit(text)
         return
-    for number, values in enumerate(objects):
-        print_json(values, indent=None, before=",\n" if number else "[\n", nl=False)
+    before = "[\n"
+    for texts in blocks:
+        sys.stdout.write(before + ",\n".join(texts))
+        sys.stdout.flush()
+        before = ",\n"
     emit("\n]")
 
 
@@ -127,6 +135,19 @@ def print_csv(header: Sequence[object], rows: Iterable[Sequence[object]]) -> Non
 def print_csv_text(text: str) -> None:
     """Print CSV."""
     _Lines().write(text)
+
+
+def csv_cell(text: str) -> str:
+    """Return a text as the cell of a row that `print_csv` prints."""
+    from uplift.extras.files.csv import csv_text
+
+    cell = csv_text(["", text], [])[1:-1]
+    return "\n".join(map(printable, cell.split("\n")))
+
+
+def print_lines(lines: Iterable[str]) -> None:
+    """Print lines of our own at once."""
+    sys.stdout.write("\n".join([*lines, ""]))
 
 
 class _Lines:

@@ -257,6 +257,26 @@ def test_lines_and_their_numbers_do_not_depend_on_the_blocks(
     )
 
 
+def test_lines_parsed_at_once_are_those_parsed_one_by_one(ask, table):
+    lines = ["0.1,0.2,0.3", ".5 1. 0", "1e-3;2E-2;+1e0", "0.2, 0.3, 0.4", "#cc3319"]
+    text = "\n".join(3 * lines) + "\n"
+    at_once = ask("query --input", table(text))
+    singly = [
+        ask("query", *line.replace(",", " ").replace(";", " ").split())
+        for line in lines
+    ]
+    assert [answer["rgb"] for answer in at_once] == 3 * [one["rgb"] for one in singly]
+    # left to the parser of single lines
+    quoted = text.replace("0.1,0.2,0.3", '"0.1","0.2","0.3"')
+    assert ask("query --input", table(quoted)) == at_once
+
+
+@pytest.mark.parametrize("end", ["", ",x"])
+def test_a_long_line_of_digits_is_refused_at_once(refuse, table, end):
+    error = refuse("query --input", table(60_000 * "1" + end))
+    assert error.line == 1
+
+
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="needs /dev/zero")
 def test_an_endless_line_is_an_error(refuse):
     assert isinstance(refuse("query --input /dev/zero"), ColourError)
@@ -369,6 +389,24 @@ def test_csv_has_a_row_per_colour(run, table):
     assert_allclose(spectra, expected, atol=1e-12)
     assert list(map(float, rows[0][:3])) == [0.8, 0.2, 0.1]
     assert rows[0][4:7] == ["", "", ""]
+
+
+def test_csv_has_the_numbers_of_json(run, ask, table, macbeth_cube):
+    path = table("0.8,0.2,0.1\n0,0,0\n0.1,0.1,0.1\n1,1,1\n#735244\n")
+    line = "query --light A --light FL11 --cube"
+    words = macbeth_cube, "--input", path
+    text = run(line.replace("query", "query --format csv"), *words).stdout
+    rows = csv.DictReader(io.StringIO(text))
+    for row, answer in zip(rows, ask(line, *words), strict=True):
+        assert [float(row[name]) for name in "rgb"] == answer["rgb"]
+        values = [float(row[f"{at:g}"]) for at in answer["wavelengths"]]
+        assert values == answer["reflectance"]
+        assert float(row["standard_error"]) == answer["standard_error"]
+        assert (row["entry"] or None) == answer["entry"]
+        for light in ("A", "FL11"):
+            error = float(row[f"standard_error_{light}"])
+            assert error == answer["standard_errors"][light]
+            assert row[f"hex_{light}"] == answer["lights"][light]["hex"]
 
 
 def test_standard_errors_under_other_lights(ask, run, table, macbeth_cube):

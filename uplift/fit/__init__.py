@@ -2,7 +2,7 @@
 nodes.
 """
 
-from uplift.fit.base import NO_FREEDOM, learn_base
+from uplift.fit.base import learn_base
 from uplift.fit.entries import (
     FittedEntries,
     Marquardt,
@@ -17,7 +17,6 @@ from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Nodes, Problem, nodes_of
 
 __all__ = [
-    "NO_FREEDOM",
     "Family",
     "FittedEntries",
     "Marquardt",

@@ -43,8 +43,6 @@ SAME_SENSOR = 1e-14
 """Difference of elements of W up to which a stored table is that of a sensor: they
 differ between instruction sets.
 """
-NO_FREEDOM = 3
-"""Number of coefficients that the colour alone determines."""
 SAME_COLOUR = 6.0
 """ΔE*ab within which a spectrum of a library may be that of an atlas entry."""
 SAME_SPECTRUM = 0.03
@@ -119,7 +117,7 @@ def smooth(model: Model, forward: ForwardMap, goal: Array | None = None) -> Base
     """Solve the table for smooth spectra of brightened colours ``goal`` (17³, 3), its
     nodes by default.
     """
-    if model.count == NO_FREEDOM:
+    if model.is_determined:
         return Base(model, None)
     goal = TABLE.points if goal is None else goal  # each is solved from its grey
     solution = solve(forward, _grey(model, goal), goal, tolerance=1e-5, max_passes=8)

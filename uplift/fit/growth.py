@@ -134,8 +134,10 @@ class Growth:
 
     def is_smooth(self, correction: Array) -> Mask:
         """Whether corrections (k, C) are small enough to expect similar ones nearby:
-        |R⁻¹ (p − p₀)|∞.
+        |R⁻¹ (p − p₀)|∞. They all are where the colour determines them.
         """
+        if self.problem.model.is_determined:
+            return np.ones(len(correction), dtype=bool)
         return (
             largest(
                 np.abs(blocked_matmul(correction, self.problem.forward.inverse_root.T))

@@ -13,7 +13,7 @@ import numpy as np
 from uplift.colorimetry import Sensor, delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.likely_errors import LENGTH, ExpectedError, expected_error
 from uplift.common.arrays import Array, Mask, largest
-from uplift.fit.base import NO_FREEDOM, Base, learn_base, moment_matrix
+from uplift.fit.base import Base, learn_base, moment_matrix
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kernel_learning import MIN_ENTRIES, learn_kriging, visible_change
 from uplift.fit.kriging import DEFAULT, Kernel, Kriging, kernel_sums, krige
@@ -105,7 +105,7 @@ class Prior:
         Mallett & Yuksel 2019, "Spectral primary decomposition for rendering with sRGB
         reflectance".
         """
-        if self.model.count == NO_FREEDOM or not isinstance(self.model, Moments):
+        if self.model.is_determined or not isinstance(self.model, Moments):
             return self
         primaries = reflectance(
             self.model, self.base.coefficients(np.eye(3)), self.sensor.wavelengths
@@ -191,7 +191,7 @@ def fit_prior(
     entries = entries.rows(order)
     locations = rgb_to_lab(sensor, entries.rgb)
     deviations, expected = _deviations(model, base, entries)
-    if model.count == NO_FREEDOM:
+    if model.is_determined:
         kriging, errors = krige(locations, deviations, DETERMINED)
     else:
         brightness = base.brightness(entries.rgb)

@@ -57,6 +57,8 @@ class Problem:
         """Find multipliers (n, C) of linear RGB (n, 3); see
         `uplift.fit.solver.solve`.
         """
+        if self.model.is_determined:
+            prior = None  # would only slow the convergence down
         return solve(
             self.forward, start, target, self.tolerance, max_passes, prior, self.method
         )

@@ -14,6 +14,9 @@ from numpy.typing import ArrayLike
 from uplift.common.arrays import Array, Mask
 from uplift.models.arithmetic import blocked_matmul
 
+COMPONENTS = 3
+"""Components of a colour."""
+
 
 @dataclass(frozen=True)
 class Model(ABC):
@@ -44,6 +47,11 @@ class Model(ABC):
     @abstractmethod
     def count(self) -> int:
         """Number of coefficients per spectrum, C."""
+
+    @property
+    def is_determined(self) -> bool:
+        """Whether the colour alone determines the spectrum."""
+        return self.count == COMPONENTS
 
     @abstractmethod
     def basis(self, wavelengths: ArrayLike) -> Array:

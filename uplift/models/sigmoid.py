@@ -61,7 +61,8 @@ class Sigmoid(Model):
 
     def derivative(self, x: Any) -> Any:
         # S′(t) = ½ (1 + t²)^(−3/2)
-        return 0.5 / (1 + x * x) ** 1.5
+        square = 1 + x * x
+        return 0.5 / (square * square**0.5)  # powers other than roots are slow
 
     def from_reflectance(self, reflectance: Array) -> Array:
         half = reflectance - 0.5

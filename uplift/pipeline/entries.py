@@ -18,7 +18,6 @@ from uplift.common.errors import AtlasError, OptionError, UpliftWarning, warn
 from uplift.common.text import format_value, listed
 from uplift.cube import AtlasTable, EntrySpectra
 from uplift.fit import (
-    NO_FREEDOM,
     Family,
     FittedEntries,
     Problem,
@@ -276,7 +275,7 @@ def families_of(
     Shipped families are constant outside 380–780 nm. Warns of each library that is not
     used as measured.
     """
-    learnt = options.prior == "learnt" and options.spectrum_model().count > NO_FREEDOM
+    learnt = options.prior == "learnt" and not options.spectrum_model().is_determined
     if libraries and not learnt:
         raise OptionError(
             (

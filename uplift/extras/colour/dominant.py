@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry import Sensor
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Mask
 
 ACHROMATIC = 1e-5
 """Distance in x, y from white within which a colour has no dominant wavelength."""
@@ -43,9 +43,17 @@ def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
     """Find the dominant wavelength and the purity of a colour (3,) relative to the
     white of a sensor.
     """
-    colour = np.asarray(xyz, dtype=float)
-    if not colour.sum() > 0:
+    colour = np.asarray(xyz, dtype=float)[None]
+    [wavelength], [complementary], [purity] = dominant_wavelengths(colour, sensor)
+    if np.isnan(wavelength):
         return GREY
+    return DominantWavelength(float(wavelength), bool(complementary), float(purity))
+
+
+def dominant_wavelengths(xyz: Array, sensor: Sensor) -> tuple[Array, Mask, Array]:
+    """Find the dominant wavelengths of colours (n, 3), NaN for greys and black, whether
+    they are those of the complement, and the purities.
+    """
     responds = sensor.cmfs.any(axis=1)
     wavelengths = sensor.wavelengths[responds]
     locus = sensor.cmfs[responds]
@@ -55,21 +63,26 @@ def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
     xy = curves[:, :2] / curves.sum(axis=1, keepdims=True)
     white = xy[0]
     outline = xy[1:] - xy[0]
-    direction = colour[:2] / colour.sum() - white
-    if np.hypot(*direction) < ACHROMATIC:
-        return GREY
+    total = xyz.sum(axis=1, keepdims=True)
+    is_lit = total > 0
+    directions = xyz[:, :2] / np.where(is_lit, total, 1) - white
+    rows = np.flatnonzero(is_lit[:, 0] & ~(np.hypot(*directions.T) < ACHROMATIC))
+    directions = directions[rows]
     # The ray white + distance · direction leaves the outline at the locus, or at the
     # line of purples, the last edge.
-    edge, fraction, distance = crossing(outline, direction)
-    complementary = edge == len(outline) - 2
-    if complementary:
-        edge, fraction, _ = crossing(outline[:-1], -direction)
-    first, second = wavelengths[edge : edge + 2]
-    return DominantWavelength(
-        float(first + fraction * (second - first)),
-        bool(complementary),
-        float(1 / distance),
-    )
+    edge, fraction, distance = crossing(outline, directions)
+    is_purple = edge == len(outline) - 2
+    opposite = crossing(outline[:-1], -directions[is_purple])
+    edge[is_purple], fraction[is_purple], _ = opposite
+    first = wavelengths[edge]
+    second = wavelengths[edge + 1]
+    wavelength = np.full(len(xyz), np.nan)
+    complementary = np.zeros(len(xyz), dtype=bool)
+    purity = np.zeros(len(xyz))
+    wavelength[rows] = first + fraction * (second - first)
+    complementary[rows] = is_purple
+    purity[rows] = 1 / distance
+    return wavelength, complementary, purity
 
 
 def crossing(path: Array, direction: Array) -> tuple[Any, Array, Array]:

@@ -1,16 +1,18 @@
 """Queries in full detail: spectrum, provenance and round trip of every colour."""
 
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from uplift.colorimetry import Light, as_rgb, delta_e_rgb
-from uplift.common.arrays import Array, Mask
+from uplift.colorimetry import Light, Solid, as_rgb, delta_e_rgb, in_unit_cube
+from uplift.common.arrays import Array, Indices, Mask, blocks
 from uplift.common.errors import ColourError, unknown_name
 from uplift.cube import CubeData
-from uplift.lattice import Status
+from uplift.lattice import CORNERS, Status
 from uplift.lookup import (
     BLOCK,
     MODES,
@@ -22,6 +24,80 @@ from uplift.lookup import (
 
 CODE_TOLERANCE = 0.5
 """A colour is that of an entry if their 8-bit codes differ by at most this."""
+
+NAMED_ROWS = 256
+"""Colours that are compared with the entries at a time."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class QueryBlock:
+    """The answers to n colours by columns, which `QueryResult` describes."""
+
+    rgb: Array
+    requested_rgb: Array
+    wavelengths: Array
+    reflectance: Array
+    round_trip: Array
+    xyz: Array
+    delta_e_2000: Array
+    cell: Indices
+    corner_statuses: NDArray[np.uint8]
+    """(n, 8)."""
+    entry: list[str | None]
+    errors: Array
+    """(n, 2) standard errors and error bounds, NaN where they are unknown."""
+    light_errors: Mapping[str, Array]
+    """The same by light."""
+    light_xyz: Mapping[str, Array]
+    unlike_atlas: Mask
+    solid: Solid
+    """Solid of the realisable colours."""
+
+    @cached_property
+    def realisable(self) -> Mask:
+        # The solid is convex: with the corners of RGB it contains everything between.
+        if (
+            in_unit_cube(self.rgb).all()
+            and self.solid.contains(CORNERS.astype(float)).all()
+        ):
+            return np.ones(len(self), dtype=bool)
+        return self.solid.contains(self.rgb)
+
+    @cached_property
+    def statuses(self) -> list[tuple[Status, ...]]:
+        keys = self.corner_statuses.view("u8")[:, 0].tolist()
+        # np.unique without counts imports numpy.ma, which takes time.
+        distinct = {
+            key: tuple(map(Status, sorted(set(key.to_bytes(8, sys.byteorder)))))
+            for key in set(keys)
+        }
+        return [distinct[key] for key in keys]
+
+    def __len__(self) -> int:
+        return len(self.rgb)
+
+    def __iter__(self) -> Iterator["QueryResult"]:
+        cells = self.cell.tolist()
+        for row, entry in enumerate(self.entry):
+            yield QueryResult(
+                rgb=self.rgb[row],
+                requested_rgb=self.requested_rgb[row],
+                wavelengths=self.wavelengths,
+                reflectance=self.reflectance[row],
+                round_trip=self.round_trip[row],
+                xyz=self.xyz[row],
+                delta_e_2000=float(self.delta_e_2000[row]),
+                cell=tuple(cells[row]),
+                statuses=self.statuses[row],
+                entry=entry,
+                standard_error=_known(self.errors[row, 0]),
+                error_bound=_known(self.errors[row, 1]),
+                standard_errors=_known_at(self.light_errors, row, 0),
+                error_bounds=_known_at(self.light_errors, row, 1),
+                light_xyz={name: xyz[row] for name, xyz in self.light_xyz.items()},
+                unlike_atlas=bool(self.unlike_atlas[row]),
+                realisable=bool(self.realisable[row]),
+            )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -86,6 +162,22 @@ def query(
     lights: Sequence[Light] = (),
     outside: Mask | None = None,
 ) -> Iterator[QueryResult]:
+    """Answer linear RGB (n, 3) in [0, 1] in full detail, as `query_blocks`."""
+    for block in query_blocks(
+        cube, rgb, wavelengths, mode, requested_rgb, lights, outside
+    ):
+        yield from block
+
+
+def query_blocks(
+    cube: Cube,
+    rgb: Array,
+    wavelengths: ArrayLike | None = None,
+    mode: str = "spectra",
+    requested_rgb: Array | None = None,
+    lights: Sequence[Light] = (),
+    outside: Mask | None = None,
+) -> Iterator[QueryBlock]:
     """Answer linear RGB (n, 3) in [0, 1] in full detail, block by block.
 
     ``requested_rgb`` are the colours before gamut mapping, ``lights`` those of
@@ -100,7 +192,7 @@ def query(
     beyond = np.zeros(len(rgb), dtype=bool) if outside is None else outside
     for start in range(0, len(rgb), BLOCK):
         block = slice(start, start + BLOCK)
-        yield from _block(
+        yield _block(
             cube, rgb[block], requested[block], beyond[block], at, mode, lights
         )
 
@@ -121,6 +213,14 @@ def query_xyz(
     (``colour-unrealisable``) if no reflectance has a colour, or the model does not
     reach it.
     """
+    rgb, requested, outside = locate_xyz(cube, xyz)
+    yield from query(cube, rgb, wavelengths, mode, requested, lights, outside)
+
+
+def locate_xyz(cube: Cube, xyz: ArrayLike) -> tuple[Array, Array, Mask]:
+    """Return linear RGB (n, 3) in [0, 1] of XYZ (n, 3), that before gamut mapping, and
+    which colours are outside (n,).
+    """
     from uplift.colorimetry.gamut import map_to_gamut
     from uplift.lookup.outside import MAPPING
 
@@ -132,9 +232,7 @@ def query_xyz(
     rgb = np.asarray(values @ sensor.xyz_to_rgb.T)
     mapped = map_to_gamut(rgb, sensor, MAPPING)
     requested = np.where(mapped.outside[:, None], rgb, mapped.rgb)
-    yield from query(
-        cube, mapped.rgb, wavelengths, mode, requested, lights, mapped.outside
-    )
+    return mapped.rgb, requested, mapped.outside
 
 
 def _block(
@@ -145,7 +243,7 @@ def _block(
     at: Array,
     mode: str,
     lights: Sequence[Light],
-) -> Iterator[QueryResult]:
+) -> QueryBlock:
     data = cube.data
     sensor = data.sensor
     count = len(sensor.wavelengths)
@@ -175,29 +273,23 @@ def _block(
             for light in lights
         }
     low, fraction = data.lattice.cell(rgb)
-    statuses = data.points.status[data.lattice.cell_corners(low, fraction)[0]]
-    realisable = data.solid.contains(answered)
-    for row, cell in enumerate(low.tolist()):
-        yield QueryResult(
-            rgb=answered[row],
-            requested_rgb=requested[row],
-            wavelengths=at,
-            reflectance=spectra[row, count:],
-            round_trip=round_trip[row],
-            xyz=xyz[row],
-            delta_e_2000=float(delta_e[row]),
-            cell=tuple(cell),
-            # np.unique without counts imports numpy.ma, which takes time.
-            statuses=tuple(map(Status, sorted(set(statuses[row].tolist())))),
-            entry=names[row],
-            standard_error=_known(errors[row, 0]),
-            error_bound=_known(errors[row, 1]),
-            standard_errors=_known_at(light_errors, row, 0),
-            error_bounds=_known_at(light_errors, row, 1),
-            light_xyz={name: values[row] for name, values in light_xyz.items()},
-            unlike_atlas=bool(unlike[row]),
-            realisable=bool(realisable[row]),
-        )
+    return QueryBlock(
+        rgb=answered,
+        requested_rgb=requested,
+        wavelengths=at,
+        reflectance=spectra[:, count:],
+        round_trip=round_trip,
+        xyz=xyz,
+        delta_e_2000=delta_e,
+        cell=low,
+        corner_statuses=data.points.status[data.lattice.cell_corners(low, fraction)[0]],
+        entry=names,
+        errors=errors,
+        light_errors=light_errors,
+        light_xyz=light_xyz,
+        unlike_atlas=unlike,
+        solid=data.solid,
+    )
 
 
 def _outside_entries(data: CubeData, rgb: Array) -> dict[int, int]:
@@ -218,10 +310,12 @@ def _entry_names(
     atlas = cube.data.atlas
     names: list[str | None] = [None] * len(rgb)
     entry_codes = cube.encode(atlas.rgb)
-    for row, codes in enumerate(cube.encode(rgb)):
-        difference = np.abs(entry_codes - codes).max(axis=1)
-        if difference.min(initial=np.inf) <= CODE_TOLERANCE and not outside[row]:
-            names[row] = atlas.names[difference.argmin()]
+    codes = cube.encode(rgb)
+    for rows in blocks(len(rgb) if len(entry_codes) else 0, NAMED_ROWS):
+        difference = np.abs(codes[rows, None] - entry_codes).max(axis=2)
+        near = (difference.min(axis=1) <= CODE_TOLERANCE) & ~outside[rows]
+        for row in np.flatnonzero(near).tolist():
+            names[rows.start + row] = atlas.names[difference[row].argmin()]
     if atlas.outside is not None:
         for row, entry in outside_entries.items():
             names[row] = atlas.outside.names[entry]

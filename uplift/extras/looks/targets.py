@@ -23,7 +23,7 @@ from uplift.extras.looks.look import (
     format_rgb,
     look_error,
 )
-from uplift.fit import NO_FREEDOM, Prior, Problem, join_entries
+from uplift.fit import Prior, Problem, join_entries
 from uplift.fit.entries import MAX_STEPS
 from uplift.fit.solver import solve_in_numpy
 from uplift.models import Model, evaluate
@@ -162,7 +162,7 @@ def targets_of(
     looks = as_looks(looks)
     if not looks:
         return None
-    if model.count <= NO_FREEDOM:
+    if model.is_determined:
         raise LookError(
             f"looks need spectra of more than three coefficients, got {model.name} "
             f"with {model.count}",
