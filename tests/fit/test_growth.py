@@ -19,7 +19,7 @@ from uplift.extras.thesis.growth_coarse import grow_coarse_to_fine, strides
 from uplift.fit import Nodes, Prior, Problem, grow_outward, nodes_of, shells
 from uplift.fit.base import smooth
 from uplift.fit.growth import Growth, improve
-from uplift.fit.seeds import FULL_ENTRY, initial_guess, seed
+from uplift.fit.seeds import full_entry, initial_guess, seed
 from uplift.fit.store import MAX_LOSS, store
 from uplift.lattice import NOT_FITTED, Lattice, Status, axis_nodes
 from uplift.models import Moments, Sigmoid, reflectance
@@ -46,7 +46,7 @@ def fitted(model, sensor, lattice, rgb=NO_COLOURS, grow=grow_outward):
     grey = np.zeros((len(rgb), model.count))
 
     expected = partial(
-        initial_guess, prior=prior, seeds=seeds, entries=grey, blend=FULL_ENTRY
+        initial_guess, prior=prior, seeds=seeds, entries=grey, blend=full_entry
     )
     growth = grow(problem, nodes, expected, seeds.points, ignore_progress)
     improvements = improve(growth)

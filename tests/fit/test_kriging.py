@@ -1,8 +1,6 @@
-"""Kriging of deviations against dense linear algebra, and kernels learnt where the best
-kernel is known.
-"""
+"""Kriging of deviations against dense linear algebra."""
 
-from functools import partial
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,39 +8,34 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from tests.conftest import MACBETH
-from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
-from uplift.fit import Problem, kriging
-from uplift.fit.base import smooth
+from uplift.fit import kriging
 from uplift.fit.kriging import (
     CELLS,
-    DEFAULT,
     MAX_POINTS,
     METRIC,
-    MIN_ENTRIES,
-    REACH,
+    NEARBY,
     WHITE,
     Kernel,
     average_close,
     krige,
-    learn_kriging,
-    visible_change,
 )
-from uplift.fit.solver import solve
-from uplift.models import Moments
 
 RNG = np.random.default_rng(5)
 PLACES = RNG.uniform(-20, 60, (30, 3))
 DEVIATIONS = RNG.normal(size=(30, 4))
 VARIANCES = RNG.uniform(0.3, 3, 30)
-KERNEL = Kernel(length=10.0, noise=0.5)
+KERNEL = Kernel(length=10.0, noise=0.5, reach=9.0)
+
+
+def faded(relative):
+    """Wendland's function."""
+    return np.where(relative < 1, (1 - relative) ** 4 * (1 + 4 * relative), 0)
 
 
 def covariance(first, second, variances=1.0, kernel=KERNEL):
     """Covariance of materials at L*a*b*, the white noise of a material left out."""
     apart = np.linalg.norm((first[:, None] - second[None]) * METRIC, axis=-1)
-    own = np.where(apart < REACH, (1 - apart / REACH) ** 4 * (1 + 4 * apart / REACH), 0)
+    own = faded(apart / kernel.reach)
     return np.exp(-apart / kernel.length) + kernel.noise * (1 - WHITE) * own * variances
 
 
@@ -111,86 +104,14 @@ def test_close_spectra_are_averaged_where_there_are_many():
     assert np.abs(many.locations[many.point] - places).max() <= CELLS[-1]
 
 
-LEARNING = np.random.default_rng(8)
-MANY = LEARNING.uniform(0, 60, (150, 3))
-ALL_VISIBLE = np.broadcast_to(np.eye(3), (150, 1, 3, 3))
-
-
-def drawn_from(kernel):
-    drawn = covariance(MANY, MANY, kernel=kernel) + (
-        WHITE * kernel.noise + 1e-9
-    ) * np.eye(150)
-    return np.linalg.cholesky(drawn) @ LEARNING.normal(size=(150, 3))
-
-
-@pytest.mark.parametrize(
-    "truth", [Kernel(48.0, 0.01), Kernel(24.0, 1.0), Kernel(6.0, 0.03)]
-)
-def test_a_large_atlas_tells_its_kernel(truth):
-    learnt = learn_kriging(MANY, drawn_from(truth), ALL_VISIBLE)[0].kernel
-    assert truth.length / 2 <= learnt.length <= truth.length * 2
-    assert truth.noise / 10 <= learnt.noise <= truth.noise * 10
-
-
-def test_without_evidence_the_default_is_kept():
-    few = slice(0, MIN_ENTRIES - 1)
-    deviations = LEARNING.normal(size=(150, 3))
-    assert (
-        learn_kriging(MANY[few], deviations[few], ALL_VISIBLE[few])[0].kernel == DEFAULT
-    )
-    # nor are invisible deviations evidence for another kernel
-    assert learn_kriging(MANY, deviations, 0 * ALL_VISIBLE)[0].kernel == DEFAULT
-    assert learn_kriging(MANY, np.zeros((150, 3)), ALL_VISIBLE)[0].kernel == DEFAULT
-
-
-def test_what_deviates_from_all_others_hardly_counts():
-    """A sixth of the materials is of another kind: the means of the kinds
-    are 0 and 1.
-    """
-    other = LEARNING.random(150) < 1 / 6
-    deviations = 0.1 * LEARNING.normal(size=(150, 3)) + other[:, None]
-    found, _ = learn_kriging(MANY, deviations, ALL_VISIBLE)
-    plain, _ = krige(MANY, deviations, found.kernel)
-    away = LEARNING.uniform(10, 50, (200, 3))
-    assert found(away).mean() < 0.6 * plain(away).mean()
-
-
-def test_visible_change_ranks_metameric_changes_by_delta_e(sensor):
-    """A change of the coefficients, made exact in colour by the solver, against the
-    linear prediction.
-
-    All coefficients change alike. If changes fell off with the order, most of what
-    remains once the colour is exact would lie in the roughest parts of the spectrum,
-    which the prediction neglects: the correlation would be 0.6, and 0.6 without the
-    weights of ΔE00. So it is 0.84 to 0.90 over samples, below 0.79 without these
-    weights, and below 0.70 without the part that a smooth change of the same colour
-    undoes.
-    """
-    model = Moments(9)
-    problem = Problem(sensor, model, (observer.light("A"), observer.light("FL11")))
-    forward = problem.forward
-    measured = on_grid(read_atlas(MACBETH), sensor.wavelengths)
-    measured = np.tile(measured[in_unit_cube(sensor.rgb(measured))], (10, 1))
-    coloured = partial(
-        solve, forward, target=sensor.rgb(measured), tolerance=1e-9, max_passes=32
-    )
-    start = model.from_storage(
-        smooth(model, forward).coefficients(sensor.rgb(measured))
-    )
-    plain = coloured(start=start).multipliers
-    moments = model.to_storage(plain)
-    change = 1e-3 * np.random.default_rng(0).normal(size=moments.shape)
-    moved = coloured(start=model.from_storage(moments + change)).multipliers
-    before, after = (
-        model.to_reflectance(each @ forward.basis.T) for each in (plain, moved)
-    )
-    linear = np.linalg.norm(
-        np.einsum("elkc,ec->elk", visible_change(problem, before), change), axis=-1
-    )
-    actual = np.stack(
-        [delta_e_spectra(light, before, after) for light in problem.lights], axis=1
-    )
-    assert (
-        0.5 < np.sqrt((linear**2).mean() / (actual**2).mean()) < 0.8
-    )  # it neglects the roughest parts
-    assert np.corrcoef(linear.ravel(), actual.ravel())[0, 1] > 0.8
+def test_less_trust_expects_less_away_from_entries():
+    """All of it at an entry, a share farther than `NEARBY` reaches from the next."""
+    full, _ = krige(PLACES, DEVIATIONS, KERNEL, VARIANCES)
+    half = replace(full, trust=0.5)
+    assert_allclose(half(PLACES), full(PLACES), rtol=1e-12)
+    far = np.array([[0.0, 0, 60 + NEARBY * KERNEL.reach + 1]])
+    assert_allclose(half(far), full(far) / 2, rtol=1e-12)
+    between = PLACES[:1] + np.array([0, 0, 0.3 * KERNEL.reach])
+    apart = np.linalg.norm((between - PLACES) * METRIC, axis=1).min()
+    share = 0.5 + 0.5 * faded(apart / (NEARBY * KERNEL.reach))
+    assert_allclose(half(between), share * full(between), rtol=1e-9)

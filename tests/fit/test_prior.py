@@ -10,7 +10,7 @@ from tests.conftest import ATLASES
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
 from uplift.fit import Problem, fit_entries, fit_prior
-from uplift.fit.kriging import MIN_ENTRIES
+from uplift.fit.kernel_learning import MIN_ENTRIES
 from uplift.fit.prior import STEEP, _bounded
 from uplift.models import Moments, evaluate, reflectance
 

@@ -33,12 +33,15 @@ from uplift.fit import (
     shipped_library,
 )
 from uplift.fit.seeds import (
+    CORNER_SHARE,
     DIMS,
     FAR,
     NEAR,
     choose_lattice,
+    full_entry,
     initial_guess,
     lattice_error,
+    near_entry,
     seed,
 )
 from uplift.lattice import AXES, Lattice, axis_nodes
