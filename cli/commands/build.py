@@ -358,7 +358,9 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
         nodes = pluralise(data.lattice.size, "node")
         facts = [f"{count:,} of {nodes} ({count / data.lattice.size:.1%})"]
     if data.provenance["atlases"]:
-        facts.append(pluralise(data.atlas.measured_count, "atlas entry"))
+        entries = pluralise(data.atlas.measured_count, "atlas entry")
+        trust = data.provenance["prior"].get("trust", 1)
+        facts.append(entries if trust == 1 else f"{entries} trusted to {trust:.0%}")
     if data.atlas.looks:
         facts.append(pluralise(data.atlas.looks, "look"))
     facts += [f"{path.stat().st_size / 1e6:.1f} MB", f"{seconds:.1f} s"]

@@ -74,6 +74,8 @@ def test_all_options_are_passed_to_the_build(run, home, monkeypatch, plain_cube)
             "threshold": 1e-3,
             "auto_tolerance": 0.7,
             "seed_corners": True,
+            "trust_atlas": True,
+            "exact_entries": True,
             "debug": True,
         },
     }

@@ -136,7 +136,7 @@ class Options:
                 f"step of {self.space} must be one of {allowed} nm, got {self.step:g}",
                 "use 5",
             )
-        if (self.longest - self.shortest) % self.step != 0:
+        if self.step in steps and (self.longest - self.shortest) % self.step != 0:
             multiple = f"the range must be a multiple of the step of {self.step:g} nm"
             yield (
                 f"{multiple}, got {self.shortest:g} to {self.longest:g}",

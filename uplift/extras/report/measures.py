@@ -40,7 +40,7 @@ def collect_failures(data: CubeData) -> dict[str, Any]:
     the threshold first.
 
     Entries are ``left_out`` by earlier versions only, and ``skipped`` where the atlas
-    reader could not use them.
+    reader could not use them. ``smoothed`` ones keep a share of their spectra.
     """
     points = data.points
     recorded = data.provenance
@@ -64,6 +64,7 @@ def collect_failures(data: CubeData) -> dict[str, Any]:
         if data.atlas.outside is None
         else (),
         "skipped": tuple(recorded.get("skipped", ())),
+        "smoothed": tuple(recorded.get("smoothed", ())),
     }
 
 
