@@ -43,10 +43,10 @@ NEIGHBOURS = 8
 def main() -> None:
     """Measure and store."""
     pairs = [
-        of_pair(atlas, asked)
+        of_pair(atlas, queried)
         for atlas in ATLASES
-        for asked in ATLASES
-        if atlas != asked
+        for queried in ATLASES
+        if atlas != queried
     ]
     record(
         "trust",
@@ -118,20 +118,20 @@ def alone_at(name: str) -> Array:
     return mean_errors(cube, materials(name))
 
 
-def of_pair(atlas: str, asked: str) -> Row:
+def of_pair(atlas: str, queried: str) -> Row:
     """Return how many times the errors of a cube without an atlas those of one with
     another set as atlas are: the mean over lights, and the worst light.
     """
-    row: Row = {"atlas": atlas, "asked": asked}
-    left_out = shipped_families(asked)
+    row: Row = {"atlas": atlas, "queried": queried}
+    left_out = shipped_families(queried)
     for label, options in (("learnt", {}), ("full", {"trust_atlas": True})):
         settings: dict[str, Any] = {"dim": DIM, "leave_out": left_out, **options}
         cube = materials(atlas).cube(**settings)
-        found = mean_errors(cube, materials(asked))
+        found = mean_errors(cube, materials(queried))
         if label == "learnt":
             row["trust"] = cube.data.provenance["prior"]["trust"]
-        row[label] = found.mean() / alone_at(asked).mean()
-        row[f"{label}_worst"] = (found / alone_at(asked)).max()
+        row[label] = found.mean() / alone_at(queried).mean()
+        row[f"{label}_worst"] = (found / alone_at(queried)).max()
     return row
 
 

@@ -90,7 +90,7 @@ class Constraints:
 
     @property
     def measured_count(self) -> int:
-        """Number of entries that are no looks."""
+        """Number of entries without the looks."""
         return len(self.names) - self.looks
 
     def reflectance(self, problem: Problem, rows: Indices) -> Array:

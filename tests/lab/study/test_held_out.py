@@ -46,8 +46,8 @@ def test_half_an_atlas_of_similar_spectra_predicts_the_other(family):
     assert events == [Progress("builds", done, 6) for done in (2, 3, 4, 5, 6)]
     for split in splits:
         means = {method: errors.means() for method, errors in split.errors.items()}
-        assert (means["half the atlas"] < 0.5 * means["without an atlas"]).all()
-        assert (means["half the atlas"] < 0.5 * means["sigmoid"]).all()
+        assert (means["half the atlas"] < 0.6 * means["without an atlas"]).all()
+        assert (means["half the atlas"] < 0.6 * means["sigmoid"]).all()
         assert split.errors["sigmoid"].delta_e.shape == (12, len(HELD_OUT_LIGHTS))
     assert not np.array_equal(splits[0].actual, splits[1].actual)
 
