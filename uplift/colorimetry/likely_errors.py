@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.common.arrays import Array, blocks, distances
+from uplift.common.arrays import Array, blocks, distances, nearest_other
 
 LENGTH = 6.0
 """Length in CIE L*a*b* of the weights exp(−ΔE / length) of the errors of entries around
@@ -32,8 +32,6 @@ atlas may be.
 BLOCK_NUMBERS = 1 << 17
 """Numbers of the matrix of weights held at a time."""
 TINY = np.finfo(float).tiny
-MAX_ROWS = 1000
-"""Entries that the distances between neighbours are learnt from, at most."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -109,7 +107,7 @@ def expected_error(
 
     # The variance v = 1 − k² that a left-out entry has, by the weight k = exp(−ΔE /
     # length) of the nearest other one
-    nearest = np.concatenate([others(block).min(axis=1) for block in parts])
+    nearest = nearest_other(locations)
     variance = np.maximum(1 - np.exp(nearest / -LENGTH) ** 2, MIN_VARIANCE)
     floor = (kept**2).mean()
     products_floor = kept_products.mean(axis=0)
@@ -199,8 +197,4 @@ def neighbour_distance(locations: Array, share: float) -> float:
     """
     if len(locations) < 2:
         return 0.0
-    step = -(-len(locations) // MAX_ROWS)
-    rows = np.arange(0, len(locations), step)
-    apart = distances(locations[rows], locations)
-    apart[np.arange(len(rows)), rows] = np.inf
-    return float(np.quantile(apart.min(axis=1), share))
+    return float(np.quantile(nearest_other(locations), share))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.colorimetry import delta_e_1976, delta_e_spectra, rgb_to_lab
-from uplift.common.arrays import Array, Indices, Mask, blocks
+from uplift.common.arrays import Array, Indices, Mask, blocks, nearest_other
 from uplift.fit.entries import FittedEntries
 from uplift.fit.prior import Prior, blended
 from uplift.fit.problem import Problem
@@ -39,7 +39,7 @@ DIMS = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128)
 """Lattices that `choose_lattice` tries."""
 MAX_PASSES = 32
 BLOCK = 64
-"""Entries whose distances from all others are in memory at once."""
+"""Entries whose distances from others of their colour are in memory at once."""
 
 
 def half_widths(steps: Array) -> Array:
@@ -49,17 +49,17 @@ def half_widths(steps: Array) -> Array:
     No two boxes overlap: a box extends at most half the distance to the nearest other
     entry (docs/mathematics.md, 8). An entry whose colour an earlier entry has gets 0.
     """
+    nearest = nearest_other(steps, np.inf)
+    close = np.flatnonzero(nearest <= SAME_COLOUR)
+    if not close.size:
+        return np.minimum(MAX_HALF_WIDTH, nearest / 2)
     unique = np.ones(len(steps), dtype=bool)
-    for rows in blocks(len(steps), BLOCK):
-        same = _apart(steps[rows], steps) <= SAME_COLOUR
-        unique[rows] = ~np.tril(same, rows.start - 1).any(axis=1)  # no earlier entry
+    for rows in blocks(len(close), BLOCK):
+        apart = np.abs(steps[close[rows], None] - steps[close]).max(axis=-1)
+        earlier = np.tril(apart <= SAME_COLOUR, rows.start - 1)
+        unique[close[rows]] = ~earlier.any(axis=1)
     widths = np.zeros(len(steps))
-    distinct = steps[unique]
-    nearest = np.empty(len(distinct))
-    for rows in blocks(len(distinct), BLOCK):
-        apart = _apart(distinct[rows], distinct)
-        np.fill_diagonal(apart[:, rows], np.inf)
-        nearest[rows] = apart.min(axis=1, initial=np.inf)
+    nearest = nearest_other(steps[unique], np.inf)
     widths[unique] = np.minimum(MAX_HALF_WIDTH, nearest / 2)
     return widths
 
@@ -75,16 +75,6 @@ def outside_half_widths(lattice: Lattice, rgb: Array) -> Array:
         half_widths(steps),
         np.abs(steps - np.clip(steps, 0, lattice.dim - 1)).max(axis=1),
     )
-
-
-def _apart(positions: Array, others: Array) -> Array:
-    """Largest differences (n, m) of a component between positions (n, 3) and (m, 3)."""
-    apart = np.zeros((len(positions), len(others)))
-    # Faster than a maximum over an axis of three
-    for axis in range(3):
-        difference = np.subtract.outer(positions[:, axis], others[:, axis])
-        np.maximum(apart, np.abs(difference, out=difference), out=apart)
-    return apart
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -109,12 +109,13 @@ def _steepest(
     codes = np.arange(len(sensor.decoding))
     centre = np.interp(boxes.rgb[rows], sensor.decoding, codes)
     steepest = np.zeros(len(rows))
+    lights = [light for light in problem.lights if light.name != sensor.light.name]
     for exit_rgb in _exits(boxes, rows):
         passed = np.abs(np.interp(exit_rgb, sensor.decoding, codes) - centre)
         count = np.maximum(passed.max(axis=1), 1)
         answers = _lattice_spectra(problem, boxes, points, exit_rgb)
         expected = delta_e_spectra(sensor.light, own, answers)
-        for light in (*problem.lights, spiky):
+        for light in (*lights, spiky):
             excess = delta_e_spectra(light, own, answers) - expected
             steepest = np.maximum(steepest, excess / count)
     return steepest

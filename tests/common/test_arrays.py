@@ -1,0 +1,23 @@
+"""Distances to the nearest other point, of few points and of many."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from uplift.common import arrays
+from uplift.common.arrays import nearest_other
+
+
+@pytest.mark.parametrize("order", [2, np.inf])
+def test_few_and_many_points_have_the_same_neighbours(monkeypatch, order):
+    points = np.random.default_rng(4).uniform(0, 60, (300, 3))
+    points[7] = points[200]
+    few = nearest_other(points, order)
+    monkeypatch.setattr(arrays, "DENSE", 100)
+    assert_allclose(nearest_other(points, order), few, rtol=1e-12)
+    assert few[7] == few[200] == 0
+
+
+def test_a_point_alone_has_no_neighbour():
+    assert nearest_other(np.zeros((1, 3))).tolist() == [np.inf]
+    assert nearest_other(np.zeros((0, 3))).shape == (0,)
