@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import Row, record
+from benchmarks import DOCS, Row, record
 from benchmarks.materials import (
     FETCHED,
     MIXTURE,
@@ -20,6 +20,8 @@ from benchmarks.materials import (
 )
 from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer, rgb_to_lab
 from uplift.common.arrays import Array, distances
+from uplift.extras.colour.srgb import SRGB, to_display_codes
+from uplift.extras.pages.figure import new_figure, show_image, write_png
 from uplift.extras.report.measures import delta_e_under
 from uplift.lookup import Cube
 
@@ -31,6 +33,10 @@ SETS = (*ATLASES, MIXTURE)
 CODES = 14
 """Codes of a ramp to each side of an entry."""
 DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]])
+SPOT_LIGHT = "HP1"
+"""Light of the strips."""
+STRIPS = 2
+"""Entries that the strips show."""
 BLACK = 0.04
 WHITE = 0.9
 """Reflectances of paint that is mixed with an entry for its shades."""
@@ -48,6 +54,7 @@ def main() -> None:
         for queried in ATLASES
         if atlas != queried
     ]
+    write_png(draw_strips(), DOCS / "prior" / "spots.png", force=True)
     record(
         "trust",
         dim=DIM,
@@ -163,3 +170,31 @@ def steepest(cube: Cube) -> Array:
     steps = [delta_e_spectra(light, before, after) for light in lights]
     excess = np.max(steps, axis=0) - daylight
     return excess.reshape(len(codes), -1).max(axis=1)
+
+
+def draw_strips() -> Any:
+    """Draw gradients through the two entries whose exact spectra show most, under
+    daylight and under `SPOT_LIGHT`.
+    """
+    exact = materials(MIXTURE).cube(dim=DIM, exact_entries=True)
+    smoothed = materials(MIXTURE).cube(dim=DIM)
+    worst = np.argsort(-steepest(exact))[:STRIPS]
+    strips = [
+        ("D65", exact, "daylight"),
+        (SPOT_LIGHT, exact, f"{SPOT_LIGHT}, exact"),
+        (SPOT_LIGHT, smoothed, f"{SPOT_LIGHT}, smoothed"),
+    ]
+    figure = new_figure(6.4, 0.5 * len(strips) * len(worst))
+    panels = figure.subplots(len(strips) * len(worst), 1)
+    for row, entry in enumerate(worst):
+        centre = np.round(exact.encode(exact.data.atlas.rgb[entry]))
+        offsets = np.arange(-CODES, CODES + 1)[:, None] * DIRECTIONS[-1]
+        rgb = exact.decode(np.clip(centre + offsets, 0, 255))
+        for number, (light, cube, title) in enumerate(strips):
+            shown = observer.sensor(illuminant=light)
+            linear = shown.rgb(cube.reflectance(rgb))
+            codes = to_display_codes(linear, SRGB).astype(np.uint8)
+            axes = panels[row * len(strips) + number]
+            show_image(axes, codes[None], aspect="auto")
+            axes.set_title(title, loc="left", pad=2)
+    return figure
