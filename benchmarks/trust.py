@@ -19,8 +19,9 @@ from benchmarks.materials import (
     shipped_families,
 )
 from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer, rgb_to_lab
+from uplift.colorimetry.gamut import SRGB
 from uplift.common.arrays import Array, distances
-from uplift.extras.colour.srgb import SRGB, to_display_codes
+from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.pages.figure import new_figure, show_image, write_png
 from uplift.extras.report.measures import delta_e_under
 from uplift.lookup import Cube

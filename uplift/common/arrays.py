@@ -51,7 +51,7 @@ def distances(first: Array, second: Array) -> Array:
 
 def nearest_other(points: Array, order: float = 2) -> Array:
     """Distances (n,) from points (n, K) to the nearest other one by the norm of an
-    order; infinite if there is no other one.
+    order; infinite for a point alone.
     """
     if len(points) > DENSE:
         # Imported where it pays: SciPy takes as long as a small build.
