@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.common.arrays import Array, blocks, distances, nearest_other
+from uplift.common.arrays import Array, blocks, distances
 
 LENGTH = 6.0
 """Length in CIE L*a*b* of the weights exp(−ΔE / length) of the errors of entries around
@@ -32,6 +32,8 @@ atlas may be.
 BLOCK_NUMBERS = 1 << 17
 """Numbers of the matrix of weights held at a time."""
 TINY = np.finfo(float).tiny
+MAX_ROWS = 1000
+"""Entries that the distances between neighbours are learnt from, at most."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -107,7 +109,7 @@ def expected_error(
 
     # The variance v = 1 − k² that a left-out entry has, by the weight k = exp(−ΔE /
     # length) of the nearest other one
-    nearest = nearest_other(locations)
+    nearest = np.concatenate([others(block).min(axis=1) for block in parts])
     variance = np.maximum(1 - np.exp(nearest / -LENGTH) ** 2, MIN_VARIANCE)
     floor = (kept**2).mean()
     products_floor = kept_products.mean(axis=0)
@@ -188,13 +190,10 @@ def familiar_distance(locations: Array) -> float:
     """ΔE*ab within which `FAMILIAR` of the entries at L*a*b* (E, 3) have another one; 0
     for fewer than two.
     """
-    return neighbour_distance(locations, FAMILIAR)
-
-
-def neighbour_distance(locations: Array, share: float) -> float:
-    """Distance within which a share of the entries at locations (E, 3) have another
-    one; 0 for fewer than two.
-    """
     if len(locations) < 2:
         return 0.0
-    return float(np.quantile(nearest_other(locations), share))
+    step = -(-len(locations) // MAX_ROWS)
+    rows = np.arange(0, len(locations), step)
+    apart = distances(locations[rows], locations)
+    apart[np.arange(len(rows)), rows] = np.inf
+    return float(np.quantile(apart.min(axis=1), FAMILIAR))

@@ -22,10 +22,6 @@ Values = NDArray[Any]
 """Array of numbers of any type, mostly float64 or float32."""
 
 
-DENSE = 1000
-"""Points whose distances from each other are computed at once, at most."""
-
-
 def blocks(count: int, size: int) -> Iterator[slice]:
     """Yield the slices of blocks of at most ``size`` of ``count`` rows, in order."""
     for first in range(0, count, size):
@@ -47,18 +43,3 @@ def distances(first: Array, second: Array) -> Array:
     for one, other in zip(first.T, second.T, strict=True):
         squares += np.subtract.outer(one, other) ** 2
     return np.sqrt(squares, out=squares)
-
-
-def nearest_other(points: Array, order: float = 2) -> Array:
-    """Distances (n,) from points (n, K) to the nearest other one by the norm of an
-    order; infinite for a point alone.
-    """
-    if len(points) > DENSE:
-        # Imported where it pays: SciPy takes as long as a small build.
-        from scipy.spatial import KDTree
-
-        found, _ = KDTree(points).query(points, k=2, p=order)
-        return np.asarray(found[:, 1])
-    apart = np.linalg.norm(points[:, None] - points, ord=order, axis=-1)
-    np.fill_diagonal(apart, np.inf)
-    return np.asarray(apart.min(axis=1, initial=np.inf))

@@ -10,7 +10,6 @@ from itertools import product
 import numpy as np
 
 from uplift.colorimetry import delta_e_2000_weights, lab, lab_jacobian
-from uplift.colorimetry.likely_errors import neighbour_distance
 from uplift.common.arrays import Array
 from uplift.fit.kriging import (
     DEFAULT,
@@ -21,6 +20,7 @@ from uplift.fit.kriging import (
     average_close,
     krige_points,
 )
+from uplift.fit.neighbours import nearest_other
 from uplift.fit.problem import Problem
 
 LENGTHS = (6.0, 12.0, 24.0, 48.0, 96.0, 192.0)
@@ -95,8 +95,10 @@ def entry_reach(lab: Array) -> float:
     """Return the `Kernel.reach` of entries at L*a*b* (E, 3): an entry speaks for what
     is nearer to it than to the next one.
     """
-    spacing = neighbour_distance(lab * METRIC, 0.5)
-    return min(max(spacing, MIN_REACH), REACH) if len(lab) > 1 else REACH
+    if not len(lab):
+        return REACH
+    spacing = float(np.median(nearest_other(lab * METRIC)))
+    return min(max(spacing, MIN_REACH), REACH)
 
 
 def _descend(kernel: Kernel, loss: Callable[[Kernel], float]) -> Kernel:
