@@ -122,8 +122,8 @@ def build(
     threshold : float, default 1e-4
         Largest ``|target − stored|`` of a fitted node in linear RGB, in (0, 0.1].
     auto_tolerance : float, default 0.5
-        With ``dim="auto"``: largest ΔE00, under ``lights``, between an entry and the
-        lattice.
+        With ``dim="auto"``: largest ΔE00, under ``lights``, between an entry and a
+        lattice whose nodes around each entry start from it, which so has room for all.
     seed_corners : bool, default False
         Start all eight corners of the cell of each atlas entry from the entry, as
         Tódová 2020 does. By default, they start between entry and prior, and nearer to

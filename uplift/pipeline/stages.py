@@ -100,13 +100,13 @@ def _choose_lattice(
     constraints: Constraints,
     prior: Prior,
 ) -> Options:
-    """Replace ``dim="auto"`` by the smallest lattice that keeps every entry, if it fits
-    into memory.
+    """Replace ``dim="auto"`` by the smallest lattice with room for every entry, if it
+    fits into memory: one that would keep them if its nodes started from them alone.
     """
     axis, dim, lost = seeds.choose_lattice(
         problem,
         prior,
-        _blend(options),
+        seeds.full_entry,
         constraints.at_nodes,
         options.auto_tolerance,
     )
