@@ -26,15 +26,15 @@ from uplift.fit.kriging import DEFAULT, METRIC, REACH, WHITE, Kernel, krige
 from uplift.fit.solver import solve
 from uplift.models import Moments
 
-LEARNING = np.random.default_rng(8)
-MANY = LEARNING.uniform(0, 60, (150, 3))
+MANY = np.random.default_rng(8).uniform(0, 60, (150, 3))
 ALL_VISIBLE = np.broadcast_to(np.eye(3), (150, 1, 3, 3))
 
 
 def drawn_from(kernel):
+    random = np.random.default_rng(8)
     drawn = covariance(MANY, MANY, kernel=kernel)
     drawn += (WHITE * kernel.noise + 1e-9) * np.eye(150)
-    return np.linalg.cholesky(drawn) @ LEARNING.normal(size=(150, 3))
+    return np.linalg.cholesky(drawn) @ random.normal(size=(150, 3))
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_a_large_atlas_tells_its_kernel(truth):
 def test_without_evidence_the_default_is_kept():
     """Few entries are none, and nor are invisible deviations."""
     few = slice(0, MIN_ENTRIES - 1)
-    deviations = LEARNING.normal(size=(150, 3))
+    deviations = np.random.default_rng(9).normal(size=(150, 3))
     for learnt, _ in (
         learn_kriging(MANY[few], deviations[few], ALL_VISIBLE[few]),
         learn_kriging(MANY, deviations, 0 * ALL_VISIBLE),
@@ -69,7 +69,7 @@ def test_an_entry_reaches_as_far_as_to_the_next():
 def test_an_atlas_that_predicts_itself_is_trusted():
     alike = drawn_from(Kernel(48.0, 0.01))
     assert learn_kriging(MANY, alike, ALL_VISIBLE)[0].trust >= 0.9
-    random = LEARNING.normal(size=(150, 3))
+    random = np.random.default_rng(10).normal(size=(150, 3))
     assert learn_kriging(MANY, random, ALL_VISIBLE)[0].trust == TRUSTS[0]
     few = slice(0, TRUST_ENTRIES - 1)
     assert learn_kriging(MANY[few], alike[few], ALL_VISIBLE[few])[0].trust == TRUST
@@ -87,11 +87,12 @@ def test_what_deviates_from_all_others_hardly_counts():
     """A sixth of the materials is of another kind: the means of the kinds
     are 0 and 1.
     """
-    other = LEARNING.random(150) < 1 / 6
-    deviations = 0.1 * LEARNING.normal(size=(150, 3)) + other[:, None]
+    draw = np.random.default_rng(11)
+    other = draw.random(150) < 1 / 6
+    deviations = 0.1 * draw.normal(size=(150, 3)) + other[:, None]
     found, _ = learn_kriging(MANY, deviations, ALL_VISIBLE, trust=1.0)
     plain, _ = krige(MANY, deviations, found.kernel)
-    away = LEARNING.uniform(10, 50, (200, 3))
+    away = draw.uniform(10, 50, (200, 3))
     assert found(away).mean() < 0.6 * plain(away).mean()
 
 
