@@ -350,6 +350,8 @@ def _default_name(
 
 
 def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
+    from uplift.fit.kernel_learning import TRUST_ENTRIES
+
     data = cube.data
     counts = data.points.counts()
     facts = [f"{data.lattice.dim}³ nodes"]
@@ -360,7 +362,8 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
     if data.provenance["atlases"]:
         entries = pluralise(data.atlas.measured_count, "atlas entry")
         trust = data.provenance["prior"].get("trust", 1)
-        facts.append(entries if trust == 1 else f"{entries} trusted to {trust:.0%}")
+        is_learnt = trust < 1 and data.atlas.measured_count >= TRUST_ENTRIES
+        facts.append(f"{entries} trusted to {trust:.0%}" if is_learnt else entries)
     if data.atlas.looks:
         facts.append(pluralise(data.atlas.looks, "look"))
     facts += [f"{path.stat().st_size / 1e6:.1f} MB", f"{seconds:.1f} s"]

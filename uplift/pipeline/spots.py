@@ -19,7 +19,7 @@ from uplift.pipeline.entries import (
 )
 
 SPIKY = "HP1"
-"""Light under which materials of one colour differ most: with those of the build."""
+"""Light that is added to those of the build: materials of one colour differ most."""
 LARGEST_STEP = 0.8
 """ΔE00 by which the step of an 8-bit code between an entry and a face of its box may
 exceed the step under the light of the build.
