@@ -24,8 +24,8 @@ from uplift.colorimetry import (
     observer,
 )
 from uplift.common.arrays import Array
-from uplift.extras.export.material_error import NOT_MEASURED
 from uplift.fit import shipped_library
+from uplift.fit.families import STAND_IN
 
 DIM = 32
 LIGHTS = ("A", "FL11", "LED-B3", "HP1")
@@ -43,10 +43,10 @@ CHROMA = np.array([0.0, 0.045, 0.03])
 
 def main() -> None:
     """Predict each family, choose weights by the others, and store."""
-    families = [family.name for family in shipped_library(NOT_MEASURED)]
+    families = [family.name for family in shipped_library((STAND_IN,))]
     errors = {name: family_errors(name, (name,)) for name in families}
     for name in FETCHED:
-        errors[name] = family_errors(name, NOT_MEASURED)
+        errors[name] = family_errors(name, (STAND_IN,))
     rows = []
     for name in errors:
         others = [errors[other] for other in families if other != name]

@@ -25,6 +25,8 @@ from uplift.extras.report.measures import delta_e_under
 from uplift.fit import families_with
 from uplift.lab.study.look_alikes import look_alikes
 from uplift.lab.study.rivals import MAPS, RIVALS, library_spectra, rival_errors
+from uplift.lookup import Cube
+from uplift.lookup.errors_under_lights import light_errors
 
 DIM = 32
 SETS = (*SHIPPED, *FETCHED)
@@ -55,7 +57,47 @@ def main() -> None:
         behind=behind(),
         alike=map(alike, SHIPPED),
         known=map(effect_of_look_alikes, CHECKERS),
+        stated=stated(),
     )
+
+
+@cache
+def cube_without(name: str) -> Cube:
+    """A cube without an atlas that does not know the family of a set."""
+    return build(dim=DIM, leave_out=shipped_families(name))
+
+
+@cache
+def within(name: str) -> Array:
+    """Which ΔE00 (n, L, 2) of the materials of a set lie within the standard error and
+    the error bound that the cube without the set states.
+    """
+    queried = materials(name)
+    cube = cube_without(name)
+    missed = errors(name)[ALONE]
+    radii = [light_errors(cube.data, light)(queried.rgb) for light in LIGHTS]
+    return missed[:, :, None] <= np.stack(radii, axis=1)
+
+
+def stated() -> list[Row]:
+    """Return the shares of materials of each set within the stated errors, and of all
+    shipped sets.
+    """
+    inside = {name: within(name) for name in SETS}
+    inside["all shipped"] = np.concatenate([within(name) for name in SHIPPED])
+    rows = []
+    for name, shares in inside.items():
+        standard, bound = shares.mean(axis=0).T
+        rows.append(
+            {
+                "set": name,
+                "standard": shares[..., 0].mean(),
+                "bound": shares[..., 1].mean(),
+                "standards": by_light(standard),
+                "bounds": by_light(bound),
+            }
+        )
+    return rows
 
 
 @cache
@@ -64,10 +106,9 @@ def errors(name: str) -> Mapping[str, Array]:
     know.
     """
     queried = materials(name)
-    left_out = shipped_families(name)
-    cube = build(dim=DIM, leave_out=left_out)
+    cube = cube_without(name)
     answers = cube.reflectance(queried.rgb)
-    known = library_spectra(left_out)
+    known = library_spectra(shipped_families(name))
     rivals = rival_errors(cube.data, known, queried.measured, LIGHTS)
     return {ALONE: delta_e_under(LIGHTS, answers, queried.measured), **rivals}
 

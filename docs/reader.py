@@ -47,6 +47,7 @@ FEATURES = {
     "sparse",
     "outside",
     "outside-measured",
+    "families",
 }
 TERMS = {
     "none": [],

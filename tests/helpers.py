@@ -72,6 +72,13 @@ def with_points(data: CubeData, **arrays: Any) -> CubeData:
     return replace(data, points=replace(data.points, **arrays))
 
 
+def without_evidence(cube: Cube) -> Cube:
+    """A cube as earlier versions wrote it, without left-out materials and errors."""
+    atlas = replace(cube.data.atlas, measured=None, left_out=None)
+    data = with_points(cube.data, standard_error=None)
+    return Cube(replace(data, atlas=atlas, families=None))
+
+
 def with_absent_points(data: CubeData, present: np.ndarray) -> CubeData:
     """Return the cube with the nodes ``present`` (dim³,) only, as a build for a scene
     returns it.

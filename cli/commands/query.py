@@ -44,8 +44,12 @@ if TYPE_CHECKING:
 
 PACKAGED = "packaged"
 """Name of the cube that answers without --cube."""
-NO_ERROR = "unknown; a cube built with --atlas, of 8 entries or more, states it"
-"""In place of an error that is learnt from the entries of an atlas."""
+NO_ERROR = "unknown; a cube that is built again states it"
+"""In place of an error, for cubes without left-out materials."""
+FAMILIES = "among materials of unknown families"
+"""What the errors of a cube hold for that are learnt from families, and not from an
+atlas.
+"""
 LARGEST = 1e30
 """Limit of requested colours: ΔE00 of larger ones overflows."""
 
@@ -359,10 +363,9 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
             f"{name}: {code} ({format_rgb(lit)})" for name, ([lit], [code]) in relit
         )
     if result.entry is None:
+        is_far = result.unlike_atlas and data.families is None
         fields["atlas entry"] = (
-            "none, and none is near: unlike the atlas"
-            if result.unlike_atlas
-            else "none"
+            "none, and none is near: unlike the atlas" if is_far else "none"
         )
     else:
         is_look = result.entry in atlas.names[atlas.measured_count :]
@@ -371,7 +374,8 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
         f"ΔE00 {error:.2g} under {name} (95 %: {bound:.2g})"
         for name, error, bound in _errors(cube, result)
     )
-    fields["expected error"] = ", ".join(errors) or NO_ERROR
+    stated = [*errors, *([FAMILIES] if data.families is not None else [])]
+    fields["expected error"] = ", ".join(stated) or NO_ERROR
     return fields
 
 

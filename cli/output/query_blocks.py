@@ -197,8 +197,9 @@ def _table_lines(
         columns.append(sparklines(block.reflectance, 16))
     names = {name: printable((name or "").rstrip()) for name in set(block.entry)}
     remarks = ("", "unlike the atlas")
+    is_stated = bool(errors) and cube.data.families is None
     columns.append(
-        names[name] or remarks[bool(errors) and unlike]
+        names[name] or remarks[is_stated and unlike]
         for name, unlike in zip(block.entry, block.unlike_atlas.tolist(), strict=True)
     )
     line += "  %s"

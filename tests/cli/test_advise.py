@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import uplift
+from tests.helpers import without_evidence
 from uplift.samples import sample_path
 
 
@@ -54,10 +55,14 @@ def test_textures_have_the_standard_errors_of_their_pixels(run, refuse, cubes, h
     expected = uplift.load(file).standard_error(rgb, "FL11")
     assert_allclose(channels["error.FL11"], expected, atol=1e-3)
     assert json.loads(texture.header()["uplift.texture"])["errors"] == ["FL11"]
+    without_evidence(uplift.load()).save(home / "old.uplift")
     masked = ("--mask", sample_path("mask.png"), "--cube", file, "--cube", file)
     assert (
         refuse("texture", source, "-o", "b.exr", *masked, *arguments).code == "option"
     )
     assert (
-        refuse("texture", source, "-o", "b.exr", *arguments).code == "too-few-entries"
+        refuse(
+            "texture", source, "-o", "b.exr", "--cube", home / "old.uplift", *arguments
+        ).code
+        == "too-few-entries"
     )

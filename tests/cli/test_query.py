@@ -388,7 +388,10 @@ def test_csv_has_a_row_per_colour(run, table):
     spectra = [list(map(float, row[7:])) for row in rows]
     assert_allclose(spectra, expected, atol=1e-12)
     assert list(map(float, rows[0][:3])) == [0.8, 0.2, 0.1]
-    assert rows[0][4:7] == ["", "", ""]
+    rgb = [float(number) for number in rows[0][:3]]
+    errors = uplift.load().standard_error(rgb), uplift.load().error_bound(rgb)
+    assert_allclose([float(number) for number in rows[0][4:6]], errors, rtol=1e-6)
+    assert rows[0][6] == ""
 
 
 def test_csv_has_the_numbers_of_json(run, ask, table, macbeth_cube):

@@ -14,6 +14,7 @@ from uplift_cli.main import main
 from uplift_cli.options import FIGURE_PAGE, PLOT
 
 from tests.extras.texture.conftest import planes, write_exr
+from tests.helpers import without_evidence
 
 from .conftest import commands
 
@@ -39,7 +40,7 @@ COMPUTES = {
 }
 """Functions that do the long work of commands, and must not be called."""
 INVALID = """
-too-few-entries advise wood.png --cube ACEScg
+too-few-entries advise wood.png --cube old.uplift
 file-not-found advise wood.png none.png --cube {}
 unknown-name advise wood.png --cube {} --light none
 unknown-name advise wood.png --cube {} --input-space none --plot x.png
@@ -203,7 +204,7 @@ output texture wood.png -o out.png
 output texture wood.png fire.exr -o out.exr
 output texture wood.png fire.exr -o mine/out
 file-not-found texture wood.png none.png -o out
-too-few-entries texture wood.png fire.exr -o out --errors A
+too-few-entries texture wood.png fire.exr -o out --errors A --cube old.uplift
 unknown-name texture wood.png fire.exr -o out --errors none
 unknown-name texture wood.png fire.exr -o out --input-space none
 file-not-found texture wood.png fire.exr -o out --cube none.uplift
@@ -284,12 +285,13 @@ PALETTE = (
 
 
 @pytest.fixture
-def files(home, repository):
+def files(home, repository, plain_cube):
     """Valid inputs in the working folder."""
     samples = repository / "uplift" / "samples" / "files"
     for name in ("wood.png", "paints.xlsx"):
         shutil.copy(samples / name, home)
     shutil.copy(repository / "cubes" / "moments-8-macbeth.uplift", home / CUBE)
+    without_evidence(plain_cube).save(home / "old.uplift")
     shutil.copy(repository / "atlases" / "macbeth.txt", home)
     write_exr(home / "fire.exr", planes(np.full((2, 2, 3), 0.5, np.float32)))
     for folder in ("copy", "taken"):

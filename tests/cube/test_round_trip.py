@@ -12,6 +12,7 @@ from numpy.testing import assert_array_equal
 
 from tests.cube.hand_made import hand_made, with_outside
 from uplift.cube import contents, digest, read, write
+from uplift.cube.file import PROVENANCE
 from uplift.lattice import PointTable
 
 TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)
@@ -26,6 +27,8 @@ JSON = st.recursive(
     ),
     max_leaves=8,
 )
+UNKNOWN = TEXT.filter(lambda key: f"{key}?" not in PROVENANCE)
+"""Keys of the provenance whose values may be anything."""
 DATA = hand_made(2)
 NUMBERS = st.floats(-1e30, 1e30)
 
@@ -64,7 +67,7 @@ def cubes(draw):
             ),
         ),
         error_illuminant=draw(TEXT),
-        provenance=draw(st.dictionaries(TEXT, JSON, max_size=3)),
+        provenance=draw(st.dictionaries(UNKNOWN, JSON, max_size=3)),
     )
 
 

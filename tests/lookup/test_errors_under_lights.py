@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 import uplift
 from tests.conftest import ATLASES
-from tests.helpers import raises
+from tests.helpers import raises, without_evidence
 from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry import delta_e_spectra, in_unit_cube, lab, observer
 from uplift.common.errors import OptionError, UnknownNameError
@@ -114,7 +114,11 @@ def test_colours_far_from_all_entries_are_unlike_the_atlas(small_cube, plain_cub
         True,
         False,
     ]
-    assert plain_cube.unlike_atlas([0.2, 0.2, 0.2])
+    assert plain_cube.unlike_atlas([[0, 1, 0], [0.2, 0.2, 0.2]]).tolist() == [
+        True,
+        False,
+    ]
+    assert without_evidence(plain_cube).unlike_atlas([0.2, 0.2, 0.2])
 
 
 def test_a_cube_of_an_earlier_version_has_errors_under_its_own_light_only(
@@ -140,5 +144,6 @@ def test_a_cube_of_an_earlier_version_has_errors_under_its_own_light_only(
 def test_bad_input(small_cube, plain_cube):
     with raises(UnknownNameError, "unknown-name"):
         small_cube.standard_error([0.2, 0.3, 0.4], "FL99")
-    assert plain_cube.standard_error([0.2, 0.3, 0.4], "FL11") is None
-    assert plain_cube.error_bound([0.2, 0.3, 0.4], "FL11") is None
+    earlier = without_evidence(plain_cube)
+    assert earlier.standard_error([0.2, 0.3, 0.4], "FL11") is None
+    assert earlier.error_bound([0.2, 0.3, 0.4], "FL11") is None

@@ -37,6 +37,22 @@ MAX_ROWS = 1000
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class LeftOut:
+    """Measured materials, and what is answered to their colours without their
+    families.
+    """
+
+    rgb: Array
+    """(M, 3) linear RGB in [0, 1]."""
+    family: Array
+    """(M,) number of the family of each material."""
+    measured: Array
+    """(M, N) reflectances as measured."""
+    predicted: Array
+    """(M, N) reflectances without the family."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class ExpectedError:
     """Expected squares of errors around left-out entries, and the radii that errors
     stay within.
@@ -58,6 +74,10 @@ class ExpectedError:
     """Radii in roots of the expected squares that 68 % and 95 % of materials stay
     within; normal errors: 1 and 2.
     """
+    likeness: float = 1.0
+    """Correlation of a material with an entry of its colour: 1 where that is answered
+    with the entry, 0 where it is not.
+    """
 
     @property
     def scale(self) -> float:
@@ -69,11 +89,12 @@ class ExpectedError:
         """Squares (n, K) less `floor` from weighted sums (n, K + 1) of `columns`, and
         the largest weights (n,).
         """
-        # v(x) (Σ k e² + n₀ mean e²) / (Σ k + n₀), with v = 1 − k² of the nearest entry
+        # v(x) (Σ k e² + n₀ mean e²) / (Σ k + n₀), with v = 1 − (c k)² of the nearest
+        # entry and its likeness c
         spread = (sums[:, :-1] + PRIOR_COUNT * self.columns[:, :-1].mean(axis=0)) / (
             sums[:, -1:] + PRIOR_COUNT
         )
-        return (1 - nearest[:, None] ** 2) * spread
+        return (1 - (self.likeness * nearest[:, None]) ** 2) * spread
 
     def __call__(self, lab: Array) -> Array:
         """Expected squares (n, K) less `floor` at L*a*b* (n, 3)."""
@@ -89,13 +110,18 @@ def expected_error(
     left_out: Array,
     kept: Array,
     products: tuple[Array, Array] | None = None,
+    family: Array | None = None,
 ) -> ExpectedError:
     """Learn from the ΔE00 (E,) of entries at L*a*b* (E, 3), when left out and when
     kept.
 
     What is learnt are the ``products`` (E, K) of errors, in both cases, by default
-    their squares.
+    their squares. Entries of a ``family`` (E,) are left out together, and colours are
+    not answered with them.
     """
+    likeness = 1.0
+    if family is not None:
+        likeness = 0.0
     left_out_products, kept_products = products or (
         left_out[:, None] ** 2,
         kept[:, None] ** 2,
@@ -104,13 +130,17 @@ def expected_error(
 
     def others(block: slice) -> Array:
         apart = distances(locations[block], locations)
-        np.fill_diagonal(apart[:, block], np.inf)
+        if family is None:
+            np.fill_diagonal(apart[:, block], np.inf)
+        else:
+            apart[family[block, None] == family] = np.inf
         return apart
 
-    # The variance v = 1 − k² that a left-out entry has, by the weight k = exp(−ΔE /
+    # The variance v = 1 − (c k)² that a left-out entry has, by the weight k = exp(−ΔE /
     # length) of the nearest other one
     nearest = np.concatenate([others(block).min(axis=1) for block in parts])
-    variance = np.maximum(1 - np.exp(nearest / -LENGTH) ** 2, MIN_VARIANCE)
+    near = likeness * np.exp(nearest / -LENGTH)
+    variance = np.maximum(1 - near**2, MIN_VARIANCE)
     floor = (kept**2).mean()
     products_floor = kept_products.mean(axis=0)
     # Part of each square that the other entries explain, per unit of variance: (e² − f)
@@ -134,6 +164,7 @@ def expected_error(
         products_floor,
         expected[:, :-1] + products_floor,
         (standard, bound),
+        likeness,
     )
 
 
@@ -196,4 +227,6 @@ def familiar_distance(locations: Array) -> float:
     rows = np.arange(0, len(locations), step)
     apart = distances(locations[rows], locations)
     apart[np.arange(len(rows)), rows] = np.inf
-    return float(np.quantile(apart.min(axis=1), FAMILIAR))
+    # The quantile by numpy imports its masked arrays, for which a query would wait.
+    nearest = np.sort(apart.min(axis=1))
+    return float(np.interp(FAMILIAR * (len(rows) - 1), np.arange(len(rows)), nearest))

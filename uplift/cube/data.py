@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry import Sensor, Solid, rgb_to_lab, solid
+from uplift.colorimetry.likely_errors import LeftOut, familiar_distance
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
@@ -140,6 +141,10 @@ class CubeData:
     """How the cube was built, such as its options and the names and digests of its
     atlas files. JSON values.
     """
+    families: LeftOut | None = None
+    """Families of measured materials, predicted without each of them: evidence for
+    errors where the atlas is too small. None in earlier files.
+    """
 
     def __repr__(self) -> str:
         sensor = self.sensor
@@ -167,13 +172,16 @@ class CubeData:
         return rgb_to_lab(self.sensor, self.atlas.rgb[: self.atlas.measured_count])
 
     @cached_property
-    def familiar_distance(self) -> float:
-        """ΔE*ab from the nearest entry up to which a colour is like those
-        of the atlas.
-        """
-        from uplift.colorimetry.likely_errors import familiar_distance
+    def evidence_lab(self) -> Array:
+        """(M, 3) CIE L*a*b* of the materials that errors are learnt from."""
+        if self.families is None:
+            return self.entry_lab
+        return rgb_to_lab(self.sensor, self.families.rgb)
 
-        return familiar_distance(self.entry_lab)
+    @cached_property
+    def familiar_distance(self) -> float:
+        """ΔE*ab from the nearest of these up to which a colour is like theirs."""
+        return familiar_distance(self.evidence_lab)
 
     @property
     def error_bound_factor(self) -> float:

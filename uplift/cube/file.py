@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry import Sensor
+from uplift.colorimetry.likely_errors import LeftOut
 from uplift.common.arrays import Array, Indices
 from uplift.common.text import pluralise
 from uplift.cube.container import (
@@ -36,6 +37,7 @@ FEATURES = (
     "sparse",
     "outside",
     "outside-measured",
+    "families",
 )
 """Optional parts of a file, in the order in which the metadata list them. Earlier
 readers refuse a new one.
@@ -92,6 +94,13 @@ OUTSIDE = {
     for name, stored in TABLE.items()
 }
 OUTSIDE["rgb"] = Stored("O 3", feature="outside")
+FAMILIES = {
+    "rgb": Stored("F 3", low=0, high=1, feature="families"),
+    "family": Stored("F", ("uint8",), feature="families"),
+    "measured": Stored("F N", SINGLE, 0, 1, feature="families"),
+    "predicted": Stored("F N", SINGLE, 0, 1, feature="families"),
+}
+"""Arrays of the `LeftOut` families."""
 ARRAYS = {
     "nodes": Stored("D", low=0, high=1),
     "points": Stored("n", ("uint32",), feature="sparse"),
@@ -102,6 +111,7 @@ ARRAYS = {
     "atlas.measured": Stored("M N", SINGLE, 0, 1, feature="left-out"),
     "atlas.left_out": Stored("M N", SINGLE, 0, 1, feature="left-out"),
     "outside.measured": Stored("O N", SINGLE, 0, 1, feature="outside-measured"),
+    **{f"families.{name}": stored for name, stored in FAMILIES.items()},
 }
 """All arrays of a file by name. Letters as in docs/cube-file.md, and D for the number
 of nodes along an axis.
@@ -240,6 +250,9 @@ def _arrays(data: CubeData) -> dict[str, Any]:
     arrays |= _table_arrays("atlas", data.atlas, data.model)
     if data.atlas.outside is not None:
         arrays |= _table_arrays("outside", data.atlas.outside, data.model)
+    if data.families is not None:
+        for name in FAMILIES:
+            arrays[f"families.{name}"] = getattr(data.families, name)
     return arrays
 
 
@@ -281,6 +294,7 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
         atlas=_atlas(arrays, metadata, entry_model),
         provenance=metadata["provenance"],
         points=PointTable(**{name: arrays[name] for name in POINTS if name in arrays}),
+        families=_families(arrays),
     )
     require(
         metadata["dim"] == data.lattice.dim,
@@ -332,6 +346,7 @@ def _sizes(
         "M": count - len(provenance.get("looks", ())),
         "O": len(provenance.get("left_out", ())),
         "D": tensors["nodes"].size,
+        "F": np.size(tensors.get("families.family", ())),
         "n": tensors["status"].size,
         "N": tensors["sensor.wavelengths"].size,
     }
@@ -358,6 +373,12 @@ def _atlas(
         looks=len(provenance.get("looks", ())),
         outside=outside,
     )
+
+
+def _families(arrays: dict[str, Any]) -> LeftOut | None:
+    if "families.family" not in arrays:
+        return None
+    return LeftOut(**{name: arrays[f"families.{name}"] for name in FAMILIES})
 
 
 def _table(

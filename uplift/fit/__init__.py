@@ -13,6 +13,7 @@ from uplift.fit.entries import (
 from uplift.fit.families import Family, families_with, shipped_library
 from uplift.fit.growth_outward import grow_outward, shells
 from uplift.fit.kriging import posterior
+from uplift.fit.left_out_families import family_errors, leave_out_families
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Nodes, Problem, nodes_of
 
@@ -24,11 +25,13 @@ __all__ = [
     "Prior",
     "Problem",
     "families_with",
+    "family_errors",
     "fit_entries",
     "fit_prior",
     "grow_outward",
     "join_entries",
     "learn_base",
+    "leave_out_families",
     "nodes_of",
     "posterior",
     "shells",

@@ -11,8 +11,9 @@ spectra (docs/prior.md). It is kriged relative to the brightening, so that dark 
 stay dark, at the nodes of the table.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache, partial
 from importlib.resources import files
 
 import numpy as np
@@ -91,8 +92,26 @@ class Base:
         )
 
     def brightness(self, rgb: Array) -> Array:
-        """Factor k = max(x)^½ (n, 1) between a colour and the brightened one."""
-        return np.asarray(np.maximum(largest(rgb), MIN_LEVEL)[:, None] ** BRIGHTENING)
+        """Factor (n, 1) between a colour and the brightened one."""
+        return brightness(rgb)
+
+
+def brightness(rgb: Array) -> Array:
+    """Factor k = max(x)^½ (n, 1) between a colour (n, 3) and the brightened one."""
+    return np.asarray(np.maximum(largest(rgb), MIN_LEVEL)[:, None] ** BRIGHTENING)
+
+
+@lru_cache(maxsize=1)
+def smooth_base(problem: Problem) -> tuple[Base, Array]:
+    """Return the base of smooth spectra, and the colours (17³, 3) of its nodes.
+
+    Unrealisable nodes of the table are solved for realisable colours of less chroma:
+    their own multipliers would be arbitrary, and would spoil the interpolation between
+    nodes.
+    """
+    table = nodes_of(TABLE, problem.sensor)
+    bright = table.goal(table.points)
+    return smooth_table(problem, bright), bright
 
 
 def smooth_table(problem: Problem, goal: Array) -> Base:
@@ -142,20 +161,15 @@ def learn_base(
     smooth spectra without families, and for models whose spectra the colour alone
     determines.
     """
-    # Unrealisable nodes of the table are solved for realisable colours of less chroma:
-    # their own multipliers would be arbitrary, and would spoil the interpolation
-    # between nodes.
-    table = nodes_of(TABLE, problem.sensor)
-    bright = table.goal(table.points)
-    plain = smooth_table(problem, bright)  # s(x′)
+    plain, bright = smooth_base(problem)  # s(x′)
     model = problem.model
     sensor = problem.sensor
     if not families or plain.nodes is None or not isinstance(model, Moments):
         return plain, (1.0,) * len(families)
-    kriging = krige_families(
-        families,
-        [_samples(plain, problem, family.measured, entries) for family in families],
-    )
+    samples = [
+        family_samples(plain, problem, family.measured, entries) for family in families
+    ]
+    kriging = krige_families(families, samples)
 
     relevance = np.ones(len(families))
     if entries is not None:
@@ -169,34 +183,42 @@ def learn_base(
             problem.lights, locations, expected, parts, entries.measured[order]
         )
 
-    # s(x′) + d(x) / k at the nodes x′ of the table, inside (0, 1), as coefficients,
-    # where x = x′ max(x′)
-    spectra = reflectance(model, plain.nodes, sensor.wavelengths)
-    colours = bright * bright.max(axis=1, keepdims=True) ** (
-        BRIGHTENING / (1 - BRIGHTENING)
-    )
-    deviations = kriging(rgb_to_lab(sensor, colours), relevance)
-    deviations = deviations * np.minimum(bright.max(axis=1, keepdims=True) / DIMMEST, 1)
+    expected_deviation = partial(kriging, relevance=relevance)
+    nodes = learnt_coefficients(problem, model, plain.nodes, expected_deviation, bright)
+    return replace(plain, nodes=nodes), tuple(relevance.tolist())
+
+
+def learnt_coefficients(
+    problem: Problem,
+    model: Moments,
+    smooth: Array,
+    expected_deviation: Callable[[Array], Array],
+    bright: Array,
+) -> Array:
+    """Coefficients (n, C) of brightened colours x′ (n, 3): those of ``smooth`` spectra
+    (n, C) that deviate as is expected at L*a*b*.
+    """
+    # s(x′) + d(x) / k inside (0, 1), as coefficients, where x = x′ max(x′)
+    sensor = problem.sensor
+    spectra = reflectance(model, smooth, sensor.wavelengths)
+    brightest = bright.max(axis=1, keepdims=True)
+    colours = bright * brightest ** (BRIGHTENING / (1 - BRIGHTENING))
+    deviations = expected_deviation(rgb_to_lab(sensor, colours))
+    deviations = deviations * np.minimum(brightest / DIMMEST, 1)
     goal = np.clip(spectra + deviations, BOUND * spectra, 1 - BOUND * (1 - spectra))
     # Spectra are matched at their actual brightness. Where the result cannot be
     # brightened, as no reflectance has such moments, the brightened spectrum is matched
     # instead.
-    factor = plain.brightness(colours)
-    nodes = (
-        to_storage(
-            model,
-            match_spectra(model, sensor.wavelengths, goal * factor, problem.lights),
-        )
-        / factor
-    )
-    _, valid = model.try_from_storage(nodes)
-    nodes[~valid] = to_storage(
-        model, match_spectra(model, sensor.wavelengths, goal[~valid], problem.lights)
-    )
-    return replace(plain, nodes=nodes), tuple(relevance.tolist())
+    factor = brightness(colours)
+    matched = match_spectra(model, sensor.wavelengths, goal * factor, problem.lights)
+    coefficients = to_storage(model, matched) / factor
+    _, valid = model.try_from_storage(coefficients)
+    again = match_spectra(model, sensor.wavelengths, goal[~valid], problem.lights)
+    coefficients[~valid] = to_storage(model, again)
+    return coefficients
 
 
-def _samples(
+def family_samples(
     plain: Base, problem: Problem, measured: Array, entries: FittedEntries | None
 ) -> Points:
     """Deviations of the spectra (E, N) from smooth ones, brightened, without those of

@@ -31,6 +31,8 @@ FILE = "library.npz"
 """Package data, written by tools/ship_library.py."""
 SAME_RMS = 1e-3
 """rms difference within which spectra are the same measurement."""
+STAND_IN = "otsu2018"
+"""Family that stands for measurements of the Munsell book, which cannot be shipped."""
 STEPS = 10_000
 """Steps of reflectance from 0 to 1 in the file."""
 LENGTH = 20.0

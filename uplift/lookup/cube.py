@@ -303,7 +303,8 @@ class Cube:
         left-out atlas entries.
 
         It holds for materials like those of the atlas, which colours alone do not
-        identify; see `unlike_atlas`.
+        identify; see `unlike_atlas`. Cubes with fewer than 8 entries learn it from
+        families of materials that are left out, for materials of unknown families.
 
         Parameters
         ----------
@@ -312,12 +313,12 @@ class Cube:
         light : str, Lamp or Light, optional
             Illuminant, by its name in colour-science, or measured.
             ``data.error_illuminant`` by default; others need a cube with left-out
-            entries, or raise `OptionError`.
+            materials, or raise `OptionError`.
 
         Returns
         -------
         ndarray, shape (...), or None
-            ΔE00; None if the atlas is too small to estimate it.
+            ΔE00; None if the cube has no left-out materials.
         """
         errors = expected_errors(self, rgb, light)
         return None if errors is None else errors[..., 0]
@@ -342,8 +343,8 @@ class Cube:
         return None if errors is None else errors[..., 1]
 
     def unlike_atlas(self, rgb: ArrayLike) -> Mask:
-        """Find colours that are far from all atlas entries, where standard errors rest
-        on no evidence.
+        """Find colours that are far from all materials that standard errors are learnt
+        from: the atlas entries, or families where these are too few.
 
         Parameters
         ----------
@@ -353,13 +354,13 @@ class Cube:
         Returns
         -------
         ndarray of bool, shape (...)
-            True for colours farther from every entry, in CIE L*a*b*, than 95 % of the
-            entries are from another one.
+            True for colours farther from every material, in CIE L*a*b*, than 95 % of
+            the materials are from another one.
         """
         from uplift.colorimetry.likely_errors import nearest_distances
 
         colours = rgb_to_lab(self.data.sensor, blocks.as_colours(rgb, self.data.sensor))
-        distances = nearest_distances(colours.reshape(-1, 3), self.data.entry_lab)
+        distances = nearest_distances(colours.reshape(-1, 3), self.data.evidence_lab)
         return (distances > self.data.familiar_distance).reshape(colours.shape[:-1])
 
     def decode(self, codes: ArrayLike) -> Array:

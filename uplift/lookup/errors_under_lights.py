@@ -50,23 +50,72 @@ class LightErrors:
         return np.asarray(np.sqrt(radii**2 * squares + remaining**2))
 
 
-def light_errors(data: CubeData, light: Light) -> LightErrors:
-    """Learn the standard errors under a light; `OptionError` without
-    left-out entries.
+@dataclass(frozen=True, eq=False, repr=False)
+class Evidence:
+    """Measured materials, and the answers of a cube that has and that has not learnt
+    from them.
     """
-    measured, left_out = evidence(data)
-    at = data.sensor.wavelengths
-    rows = np.arange(len(measured))
-    missed = delta_e_spectra(light, left_out, measured)
-    plain = delta_e_spectra(
-        light, reflectance(data.model, data.atlas.coefficients[rows], at), measured
+
+    lab: Array
+    """(M, 3) CIE L*a*b* under the build illuminant."""
+    measured: NDArray[Any]
+    """(M, N) reflectances at the wavelengths of the sensor."""
+    left_out: NDArray[Any]
+    """(M, N) answers without the material, or without its family."""
+    kept: NDArray[Any]
+    """(M, N) answers with it."""
+    family: Array | None
+    """(M,) number of the family; None for entries of the atlas."""
+
+    def expected_error(
+        self, light: Light, products: tuple[Array, Array] | None = None
+    ) -> ExpectedError:
+        """Learn the expected squares of ΔE00 under a light, or other ``products``."""
+        missed = delta_e_spectra(light, self.left_out, self.measured)
+        remaining = delta_e_spectra(light, self.kept, self.measured)
+        return expected_error(self.lab, missed, remaining, products, self.family)
+
+
+def has_evidence(data: CubeData) -> bool:
+    """Whether a cube has left-out materials."""
+    return data.atlas.left_out is not None or data.families is not None
+
+
+def evidence(data: CubeData) -> Evidence:
+    """Return the left-out entries of the atlas, or families where the atlas is too
+    small; `OptionError` without either.
+    """
+    atlas = data.atlas
+    if atlas.measured is not None and atlas.left_out is not None:
+        at = data.sensor.wavelengths
+        rows = np.arange(len(atlas.measured))
+        kept = reflectance(data.model, atlas.coefficients[rows], at)
+        return Evidence(data.evidence_lab, atlas.measured, atlas.left_out, kept, None)
+    if data.families is not None:
+        # No answer knows these materials: with all of them, nothing remains.
+        measured = data.families.measured
+        predicted = data.families.predicted
+        family = data.families.family
+        return Evidence(data.evidence_lab, measured, predicted, measured, family)
+    raise OptionError(
+        "standard errors under a light need a cube with left-out materials",
+        code="too-few-entries",
+        hint="build the cube again, with the library or an atlas of at least 8 entries",
     )
-    stored = delta_e_spectra(light, data.atlas.spectra.reflectance(rows, at), measured)
-    expected = expected_error(data.entry_lab, missed, plain)
+
+
+def light_errors(data: CubeData, light: Light) -> LightErrors:
+    """Learn the standard errors under a light; `OptionError` without `evidence`."""
+    known = evidence(data)
+    expected = known.expected_error(light)
     entries = np.tile(
         np.array(expected.radii) * np.sqrt(expected.floor), (len(data.atlas.names), 1)
     )
-    entries[rows] = stored[:, None]
+    if data.atlas.measured is not None:
+        at = data.sensor.wavelengths
+        rows = np.arange(len(data.atlas.measured))
+        spectra = data.atlas.spectra.reflectance(rows, at)
+        entries[rows] = delta_e_spectra(light, spectra, data.atlas.measured)[:, None]
     return LightErrors(data, expected, entries)
 
 
@@ -85,20 +134,3 @@ def outside_errors(data: CubeData, light: Light | None) -> Array:
         np.arange(len(table.names)), data.sensor.wavelengths
     )
     return delta_e_spectra(light, stored, table.measured)
-
-
-def evidence(data: CubeData) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Reflectances (M, N) of the entries as measured, and as answered without each of
-    them.
-    """
-    if data.atlas.measured is None or data.atlas.left_out is None:
-        raise OptionError(
-            (
-                "standard errors under a light need a cube with the left-out entries "
-                "of "
-                "its atlas"
-            ),
-            code="too-few-entries",
-            hint="build the cube again, with an atlas of at least 8 entries",
-        )
-    return data.atlas.measured, data.atlas.left_out

@@ -55,6 +55,8 @@ class Spectra:
     libraries: tuple[tuple[Source, Atlas], ...]
     """Libraries of the user, and their files."""
     families: tuple[Family, ...]
+    """Families that the prior learns from."""
+    known: tuple[Family, ...]
     """Families of the shipped library, and of the user's."""
     atlas: Atlas
     measured: MeasuredEntries
@@ -130,10 +132,11 @@ def read_spectra(
 ) -> Spectra:
     """Read the families of the library, and the entries of the atlas."""
     libraries = () if library is None else read_libraries(library)
-    families = families_of(options, libraries, sensor)
+    known = families_of(options, libraries, sensor)
+    families = known if options.learns_families else ()
     atlas = as_atlas(atlas)
     measured, outside = split_by_gamut(atlas, sensor)
-    return Spectra(libraries, families, atlas, measured, outside)
+    return Spectra(libraries, families, known, atlas, measured, outside)
 
 
 def as_atlas(atlas: AtlasLike) -> Atlas:
@@ -269,14 +272,13 @@ def read_libraries(
 def families_of(
     options: Options, libraries: Sequence[tuple[Source, Atlas]], sensor: Sensor
 ) -> tuple[Family, ...]:
-    """Return the families that shape the prior: the shipped library, then those of the
-    user; none for smooth spectra.
+    """Return the known families: the shipped library, then those of the user, which
+    only a learnt prior may have.
 
     Shipped families are constant outside 380–780 nm. Warns of each library that is not
     used as measured.
     """
-    learnt = options.prior == "learnt" and not options.spectrum_model().is_determined
-    if libraries and not learnt:
+    if libraries and not options.learns_families:
         raise OptionError(
             (
                 "a library shapes only the learnt prior of models with more than three "
@@ -288,8 +290,6 @@ def families_of(
             ),
         )
     shipped = shipped_library(options.leave_out)
-    if not learnt:
-        return ()
     if not np.array_equal(sensor.wavelengths, grid()):
         shipped = tuple(_at(family, sensor.wavelengths) for family in shipped)
     users = []

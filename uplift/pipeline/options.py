@@ -184,6 +184,11 @@ class Options:
         count = self.coefficients if coefficients is None else coefficients
         return Moments(count, self.shortest, self.longest, self.warp)
 
+    @property
+    def learns_families(self) -> bool:
+        """Whether the prior learns from families of measured materials."""
+        return self.prior == "learnt" and not self.spectrum_model().is_determined
+
 
 def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
     """Return options read from a cube under their present names."""

@@ -16,6 +16,7 @@ from uplift.colorimetry import Sensor
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.illuminants import ERROR_ILLUMINANT
+from uplift.colorimetry.likely_errors import LeftOut
 from uplift.common.arrays import Indices, Mask
 from uplift.common.errors import UpliftWarning, warn
 from uplift.common.extensions import extension
@@ -28,10 +29,12 @@ from uplift.fit import (
     Family,
     Prior,
     Problem,
+    family_errors,
     fit_prior,
     grow_outward,
     growth,
     learn_base,
+    leave_out_families,
     nodes_of,
     seeds,
 )
@@ -133,6 +136,8 @@ class Learnt:
     prior: Prior
     relevance: tuple[float, ...]
     """Relevance of each family."""
+    left_out: LeftOut | None
+    """Families, if the entries are too few to learn errors from."""
 
 
 def learn(
@@ -140,10 +145,13 @@ def learn(
     entry_model: Model,
     measured: MeasuredEntries,
     families: Sequence[Family],
+    known: Sequence[Family],
     trust: float | None,
 ) -> Learnt:
-    """Fit the entries and the prior, whose trust in them is learnt if it is not
-    given.
+    """Fit the entries and the prior, whose trust in them is learnt if it is not given.
+
+    The prior learns from ``families``; errors from the ``known`` ones, if the entries
+    are too few.
     """
     # Entries p_i: min ‖g − m‖² + Σ |w ΔL*a*b*|² subject to r(p) = t
     # (docs/mathematics.md, 6). Prior c(x) = s(x) + d(x): smooth spectra, what families
@@ -151,7 +159,12 @@ def learn(
     constraints = entries.fit_constraints(problem, entry_model, measured)
     base, relevance = learn_base(problem, families, constraints.at_nodes)
     prior = fit_prior(problem, constraints.at_nodes, base, trust)
-    return Learnt(constraints, prior, relevance)
+    left_out = None
+    if prior.errors is None:
+        left_out = leave_out_families(problem, known, relevance)
+    if left_out is not None:
+        prior = replace(prior, errors=family_errors(problem, left_out))
+    return Learnt(constraints, prior, relevance, left_out)
 
 
 @single_threaded_blas()
@@ -177,7 +190,14 @@ def build_stages(
         names = spectra.atlas.names
         targets = targets_of(looks, entry_model, sensor, names, spectra.measured)
     trust = 1.0 if options.trust_atlas else None
-    learnt = learn(problem, entry_model, spectra.measured, spectra.families, trust)
+    learnt = learn(
+        problem,
+        entry_model,
+        spectra.measured,
+        spectra.families,
+        spectra.known,
+        trust,
+    )
     constraints = learnt.constraints
     prior = learnt.prior
     if options.neutral == "flat":
@@ -220,6 +240,7 @@ def build_stages(
         points=points,
         error_illuminant=ERROR_ILLUMINANT,
         provenance=provenance,
+        families=learnt.left_out,
     )
     return Cube(data)
 

@@ -65,7 +65,10 @@ def export_lut(cube: Cube, path: Path, style: str, **settings: Any) -> str:
         )
     error = write_lut(cube, path=path, **settings)
     light = settings["light"]
-    return f"colours under {light}, {error}; {material_error(cube, light)}"
+    on_materials = material_error(cube, light)
+    if on_materials is None:
+        return f"colours under {light}, {error}"
+    return f"colours under {light}, {error}; {on_materials}"
 
 
 def export_fourier(cube: Cube, path: Path, style: str, **settings: Any) -> str:

@@ -4,17 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry import Light, delta_e_spectra, lab, rgb_to_lab
+from uplift.colorimetry import Light, lab, rgb_to_lab
 from uplift.colorimetry.likely_errors import (
     ExpectedError,
-    expected_error,
     learn_radii,
     mahalanobis,
 )
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lookup.errors_under_lights import evidence
-from uplift.models import reflectance
 
 LIKELY = 0.95
 """Share of the materials like the entries of the atlas whose a* and b* lie in the
@@ -56,28 +54,18 @@ def lab_errors(data: CubeData, light: Light) -> LabErrors:
     """Learn the covariances in CIE L*a*b* under a light; `OptionError` without left-out
     entries.
     """
-    measured, left_out = evidence(data)
-    spectra = (
-        left_out,
-        reflectance(
-            data.model,
-            data.atlas.coefficients[: len(measured)],
-            data.sensor.wavelengths,
-        ),
-    )
-    missed, kept = (delta_e_spectra(light, answer, measured) for answer in spectra)
-    measured_lab = lab(measured @ light.xyz.T, light.white)
+    known = evidence(data)
+    measured_lab = lab(known.measured @ light.xyz.T, light.white)
     differences = [
-        measured_lab - lab(answer @ light.xyz.T, light.white) for answer in spectra
+        measured_lab - lab(answer @ light.xyz.T, light.white)
+        for answer in (known.left_out, known.kept)
     ]
     # Products (E, 9) of the components
     left_out_products, kept_products = (
         (change[:, :, None] * change[:, None, :]).reshape(-1, 9)
         for change in differences
     )
-    expected = expected_error(
-        data.entry_lab, missed, kept, (left_out_products, kept_products)
-    )
+    expected = known.expected_error(light, (left_out_products, kept_products))
     # d² = eᵀ Σ⁻¹ e of each entry, by the covariance Σ that the other entries let expect
     covariance = expected.scale**2 * expected.left_out.reshape(-1, 3, 3)
     distances = mahalanobis(covariance[:, 1:, 1:], differences[0][:, 1:])
