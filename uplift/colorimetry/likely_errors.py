@@ -50,6 +50,8 @@ class LeftOut:
     """(M, N) reflectances as measured."""
     predicted: Array
     """(M, N) reflectances without the family."""
+    names: tuple[str, ...] = ()
+    """Names of the families, by number."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

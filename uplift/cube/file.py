@@ -140,6 +140,7 @@ PROVENANCE = {
         MAX_FILES,
     ],
     "left_out?": ENTRIES,
+    "left_out_families?": [str, 256],
     "skipped?": ENTRIES,
     "prior?": {
         "length?": POSITIVE,
@@ -294,7 +295,7 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
         atlas=_atlas(arrays, metadata, entry_model),
         provenance=metadata["provenance"],
         points=PointTable(**{name: arrays[name] for name in POINTS if name in arrays}),
-        families=_families(arrays),
+        families=_families(arrays, metadata["provenance"]),
     )
     require(
         metadata["dim"] == data.lattice.dim,
@@ -375,10 +376,11 @@ def _atlas(
     )
 
 
-def _families(arrays: dict[str, Any]) -> LeftOut | None:
+def _families(arrays: dict[str, Any], provenance: dict[str, Any]) -> LeftOut | None:
     if "families.family" not in arrays:
         return None
-    return LeftOut(**{name: arrays[f"families.{name}"] for name in FAMILIES})
+    columns = {name: arrays[f"families.{name}"] for name in FAMILIES}
+    return LeftOut(**columns, names=tuple(provenance.get("left_out_families", ())))
 
 
 def _table(

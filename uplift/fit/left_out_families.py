@@ -64,6 +64,7 @@ def leave_out_families(
         family.astype(np.uint8),
         np.concatenate(measured).astype(np.float32),
         predicted.astype(np.float32),
+        tuple(families[number].name for number in numbers),
     )
 
 

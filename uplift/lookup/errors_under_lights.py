@@ -106,7 +106,11 @@ def evidence(data: CubeData) -> Evidence:
 
 def light_errors(data: CubeData, light: Light) -> LightErrors:
     """Learn the standard errors under a light; `OptionError` without `evidence`."""
-    known = evidence(data)
+    return errors_from(data, light, evidence(data))
+
+
+def errors_from(data: CubeData, light: Light, known: Evidence) -> LightErrors:
+    """Learn the standard errors under a light from evidence."""
     expected = known.expected_error(light)
     entries = np.tile(
         np.array(expected.radii) * np.sqrt(expected.floor), (len(data.atlas.names), 1)

@@ -229,6 +229,7 @@ def build_stages(
         "improvements": improvements,
         **({} if scene is None else {"scene": scene.describe()}),
         **_describe_library(spectra, learnt.relevance),
+        **_describe_left_out(learnt.left_out),
         **({} if targets is None else targets.describe(table, problem.model, sensor)),
     }
     data = CubeData(
@@ -395,6 +396,11 @@ def _describe_prior(prior: Prior) -> dict[str, Any]:
         standard, bound = prior.errors.radii
         learnt["error_bound"] = bound / standard
     return learnt
+
+
+def _describe_left_out(left_out: LeftOut | None) -> dict[str, list[str]]:
+    """Return the names of the families that errors are learnt from, if they are."""
+    return {} if left_out is None else {"left_out_families": list(left_out.names)}
 
 
 def _describe_library(

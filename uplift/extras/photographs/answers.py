@@ -1,0 +1,254 @@
+"""Spectra of colours that are known under several lights: the answer of a cube, moved
+as little as the other photographs require (docs/mathematics.md, 10).
+
+The answer p has the colour x under the light of the cube. Materials of this colour
+differ from it by metameric blacks with the covariance C(x) of `Metamers`. With colours
+t under other lights, sensors M and noise R, the posterior mean is
+
+q = p + C Mᵀ (M C Mᵀ + R)⁻¹ (t − M p)
+
+(Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25). It
+keeps the colour x. Where it would leave [0, 1], it is moved less far, clipped, and
+moved back to x.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from uplift.common.arrays import Array, Mask
+from uplift.common.errors import OptionError
+from uplift.extras.photographs.metamers import Metamers, brightness, learn_metamers
+from uplift.extras.photographs.photograph import Noise, Photograph, check_different
+from uplift.lattice import Lattice, weighted_sum
+from uplift.lookup import Cube, as_colours, as_wavelengths
+from uplift.lookup.refine import with_colours
+
+TABLE = Lattice(np.linspace(0, 1, 17) ** 2)
+"""Nodes between which covariances are interpolated."""
+LEAST_NOISE = 1e-4
+"""Standard deviation of linear RGB that is always assumed: what the principal
+components leave out.
+"""
+UNKNOWN = 1e6
+"""Variance of a component that is not known."""
+OVERSHOOT = 0.2
+"""Reflectance by which a spectrum may leave [0, 1] before it is moved less far."""
+CONTRADICTION = 0.01
+"""Linear RGB that remains between a photograph and the answer where they contradict
+each other; `CONTRADICTION_SIGMAS` of its noise, if they are more.
+"""
+CONTRADICTION_SIGMAS = 4.0
+
+
+class Directions(NamedTuple):
+    """Where photographs move answers."""
+
+    scores: Array
+    """S Aᵀ (n, R, 3 L), with A = M Eᵀ."""
+    gram: Array
+    """A S Aᵀ (n, 3 L, 3 L)."""
+
+
+class Answers(NamedTuple):
+    """Spectra (n, N), and which colours (n,) contradict each other: their spectra are
+    those of the cube.
+    """
+
+    spectra: Array
+    contradicts: Mask
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Photographs:
+    """A cube, and L further photographs of what it answers, made by `prepare`."""
+
+    cube: Cube
+    metamers: Metamers
+    further: tuple[Photograph, ...]
+    noise: Noise
+
+    @cached_property
+    def matrix(self) -> Array:
+        """M (3 L, N), from spectra to the linear RGB of the further photographs."""
+        return np.concatenate([photograph.matrix for photograph in self.further])
+
+    @cached_property
+    def tables(self) -> Directions:
+        """Directions at the nodes of `TABLE`."""
+        return self.directions(self.metamers.covariance(TABLE.points))
+
+    def directions(self, covariance: Array) -> Directions:
+        """Return the directions for covariances S (n, R, R) of scores."""
+        to_rgb = self.matrix @ self.metamers.components.T
+        scores = covariance @ to_rgb.T
+        return Directions(scores, to_rgb @ scores)
+
+    def reflectance(
+        self, rgb: ArrayLike, others: ArrayLike, wavelengths: ArrayLike | None = None
+    ) -> NDArray[Any]:
+        """Compute the spectra of colours that are known under several lights.
+
+        Parameters
+        ----------
+        rgb : array_like, shape (..., 3)
+            Linear RGB in [0, 1] of the cube, which the spectra have exactly.
+        others : array_like, shape (..., 3 L)
+            Linear RGB of the further photographs, in their order; NaN where unknown.
+        wavelengths : array_like, shape (N,), optional
+            Wavelengths in nm, by default those of the sensor.
+
+        Returns
+        -------
+        ndarray, shape (..., N)
+            Reflectances in [0, 1].
+
+        Raises
+        ------
+        ColourError
+            ``rgb`` are outside [0, 1].
+        OptionError
+            ``others`` have another shape.
+        """
+        colours = as_colours(rgb, self.cube.data.sensor)
+        shape = (*colours.shape[:-1], len(self.matrix))
+        values = np.asarray(others, dtype=float)
+        if values.shape != shape:
+            raise OptionError(
+                f"others must have the shape {shape}, got {values.shape}",
+                hint="give three numbers for each further photograph",
+            )
+        at = None
+        if wavelengths is not None:
+            at = as_wavelengths(wavelengths, self.cube.wavelengths)
+        answers = self.answer(
+            colours.reshape(-1, 3), values.reshape(-1, len(self.matrix)), None, at
+        )
+        return answers.spectra.reshape(*shape[:-1], -1)
+
+    def answer(
+        self,
+        rgb: Array,
+        others: Array,
+        expected: Array | None = None,
+        wavelengths: Array | None = None,
+        directions: Directions | None = None,
+    ) -> Answers:
+        """Answer linear RGB (n, 3) in [0, 1] of the cube and those of the further
+        photographs (n, 3 L), NaN where unknown.
+
+        ``expected`` (n, N) are answers of the cube at the wavelengths of its sensor and
+        then at other ``wavelengths``, which are those of the result. ``directions`` are
+        by default those of `tables`.
+        """
+        at = self.cube.wavelengths
+        grid = at if wavelengths is None else np.append(at, wavelengths)
+        components = self.metamers.components
+        if wavelengths is not None:
+            more = [np.interp(wavelengths, at, row) for row in components]
+            components = np.concatenate([components, np.array(more)], axis=1)
+        if expected is None:
+            expected = self.cube.reflectance(rgb, grid)
+        at_sensor = slice(len(at))
+        ways = self._interpolated(rgb) if directions is None else directions
+        change = self._scores(rgb, others, expected[:, at_sensor], ways) @ components
+        spectra = expected + _scale_within(expected, change)[:, None] * change
+        rows = np.flatnonzero((spectra.min(axis=1) < 0) | (spectra.max(axis=1) > 1))
+        clipped = np.clip(spectra[rows], 0, 1)
+        spectra[rows] = with_colours(
+            self.cube.data, clipped, clipped[:, at_sensor], rgb[rows], grid
+        )
+        contradicts = self._contradicts(rgb, others, spectra[:, at_sensor])
+        spectra[contradicts] = expected[contradicts]
+        kept = slice(None) if wavelengths is None else slice(len(at), None)
+        return Answers(spectra[:, kept], contradicts)
+
+    def _interpolated(self, rgb: Array) -> Directions:
+        corners = TABLE.corners(rgb)
+        return Directions(
+            *(
+                weighted_sum(table.reshape(TABLE.size, -1), *corners).reshape(
+                    len(rgb), *table.shape[1:]
+                )
+                for table in self.tables
+            )
+        )
+
+    def _scores(
+        self, rgb: Array, others: Array, expected: Array, directions: Directions
+    ) -> Array:
+        """Scores (n, R) of the posterior mean of the difference from expected spectra
+        (n, N).
+        """
+        known = np.isfinite(others)
+        residual = np.where(known, others - expected @ self.matrix.T, 0)
+        variance = np.where(known, self._variance(rgb, others), UNKNOWN)
+        level = brightness(rgb)[:, None, None] ** 2
+        # y = (M C Mᵀ + R)⁻¹ (t − M p), and z = k² S Aᵀ y
+        gram = level * directions.gram
+        diagonal = np.arange(len(self.matrix))
+        gram[:, diagonal, diagonal] += variance
+        weights = np.linalg.solve(gram, residual[..., None])
+        return np.asarray((level * directions.scores @ weights)[..., 0])
+
+    def _variance(self, rgb: Array, others: Array) -> Array:
+        """R (n, 3 L): the noise of the photographs, and that of the first one in what
+        is expected of them.
+        """
+        first = np.tile(self.noise.variance(rgb), len(self.further))
+        return self.noise.variance(np.nan_to_num(others)) + first + LEAST_NOISE**2
+
+    def _contradicts(self, rgb: Array, others: Array, spectra: Array) -> Mask:
+        """Which colours (n,) the answers miss by more than noise explains."""
+        off = np.abs(np.nan_to_num(others - spectra @ self.matrix.T))
+        limit = CONTRADICTION_SIGMAS * np.sqrt(self._variance(rgb, others))
+        return np.asarray((off > np.maximum(limit, CONTRADICTION)).any(axis=1))
+
+
+def _scale_within(expected: Array, change: Array) -> Array:
+    """The largest scale (n,) up to 1 of changes (n, N) of spectra that stay within
+    `OVERSHOOT` of [0, 1].
+    """
+    room = np.where(change > 0, 1 + OVERSHOOT - expected, expected + OVERSHOOT)
+    steps = np.abs(change)
+    limit = np.divide(room, steps, out=np.ones_like(room), where=steps > room)
+    return np.asarray(limit.min(axis=1))
+
+
+def prepare(
+    cube: Cube, further: Sequence[Photograph], noise: tuple[float, float] = (0.0, 0.0)
+) -> Photographs:
+    """Prepare a cube for colours that are known under several lights.
+
+    Parameters
+    ----------
+    cube : Cube
+        A cube with left-out materials.
+    further : sequence of Photograph
+        The photographs apart from that under the light of the cube, by `photograph`.
+    noise : tuple of float
+        Standard deviation of linear RGB in all photographs: a share of each value, and
+        a floor.
+
+    Returns
+    -------
+    Photographs
+
+    Raises
+    ------
+    OptionError
+        No further photograph, or two that are of one light; a cube without left-out
+        materials; noise that is negative.
+    """
+    if not further:
+        raise OptionError(
+            "one photograph is what the cube answers", hint="give a further one"
+        )
+    check_different(further)
+    if not all(0 <= value < 1 for value in noise):
+        raise OptionError(f"noise must be two numbers in [0, 1), got {noise}")
+    return Photographs(cube, learn_metamers(cube), tuple(further), Noise(*noise))

@@ -1,0 +1,121 @@
+"""Photographs of one thing under several lights: which numbers a reflectance has in
+each of them.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from uplift.colorimetry import Sensor, observer
+from uplift.colorimetry.camera import CAMERA, Camera
+from uplift.colorimetry.illuminants import Illuminant
+from uplift.common.arrays import Array
+from uplift.common.errors import OptionError, unknown_name
+
+BALANCES = ("light", "none")
+"""Which white is (1, 1, 1): that of the light, or that of the cube's light, so that
+colours have the tint of the light.
+"""
+SAME = 1e-9
+"""Difference of matrices of the same photograph."""
+
+
+class Noise(NamedTuple):
+    """Standard deviation of linear RGB in photographs: a share of each value, and a
+    floor.
+    """
+
+    share: float = 0.0
+    floor: float = 0.0
+
+    def variance(self, values: Array) -> Array:
+        """Variance of values of linear RGB, of any shape."""
+        return np.asarray((self.share * values) ** 2 + self.floor**2)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Photograph:
+    """A further photograph: ``matrix`` (3, N) maps reflectances to its linear RGB."""
+
+    light: str
+    matrix: Array
+
+
+def photograph(
+    sensor: Sensor,
+    light: Illuminant,
+    camera: Camera | str | None = None,
+    balance: str = "light",
+) -> Photograph:
+    """Describe a photograph of what a cube with this sensor answers.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        That of the cube. The RGB of the photograph are of its space or, for a camera,
+        raw values of this camera.
+    light : str or Lamp
+        Light of the photograph, as for `uplift.colorimetry.observer.light`.
+    camera : str or Camera, optional
+        Camera whose raw values the photograph has, in place of RGB of the space.
+    balance : {"light", "none"}
+        Whether the white of the light is white, as `uplift relight` writes it (Bradford
+        for RGB, the response to white for a camera), or that of the cube's light.
+
+    Returns
+    -------
+    Photograph
+
+    Raises
+    ------
+    OptionError
+        The photograph is that of the cube: same light and same camera or space.
+    UnknownNameError
+        The light, the camera or the balance is unknown.
+    """
+    if balance not in BALANCES:
+        raise unknown_name(balance, BALANCES, "balance")
+    if camera is not None:
+        lit = observer.sensor(CAMERA, light, camera, sensor.range)
+        tint = _tint(lit, sensor)
+    elif sensor.sensitivities is not None:
+        power = observer.sensor("sRGB", light, wavelengths=sensor.range).power
+        name = observer.light(light, observer.DEFAULT_OBSERVER, *sensor.range).name
+        lit = replace(sensor, power=power, illuminant=name)
+        tint = _tint(lit, sensor)
+    else:
+        lit = observer.sensor(sensor.space, light, sensor.observer, sensor.range)
+        unbalanced = sensor.xyz_to_rgb @ lit.light.xyz
+        tint = unbalanced @ np.linalg.pinv(lit.matrix)
+    matrix = lit.matrix if balance == "light" else tint @ lit.matrix
+    if np.abs(matrix - sensor.matrix).max() <= SAME:
+        raise OptionError(
+            f"a further photograph under {lit.illuminant} adds nothing: this is the "
+            "light of the cube",
+            hint="give one under another light, or of another camera",
+        )
+    return Photograph(lit.illuminant, matrix)
+
+
+def _tint(lit: Sensor, sensor: Sensor) -> Array:
+    """Matrix (3, 3) from raw values, balanced to the light, to those that white under
+    the light of the cube would balance; green stays.
+    """
+    assert lit.sensitivities is not None
+    response = lit.sensitivities.T @ lit.power
+    balanced = lit.sensitivities.T @ sensor.power
+    gain = response / balanced
+    return np.diag(gain / gain[1])
+
+
+def check_different(photographs: Sequence[Photograph]) -> None:
+    """Raise `OptionError` for two photographs of one light."""
+    for number, first in enumerate(photographs):
+        for second in photographs[number + 1 :]:
+            if np.abs(first.matrix - second.matrix).max() <= SAME:
+                raise OptionError(
+                    f"two photographs have the light {first.light}",
+                    hint="average them first, or leave one out",
+                )
