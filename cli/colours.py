@@ -223,6 +223,11 @@ class ColourSource:
         return values if matrix is None else np.asarray(values @ matrix.T)
 
 
+def is_colour(text: str) -> bool:
+    """Whether a text is a colour."""
+    return HEX.fullmatch(text) is not None or _parse(text.split(",")) is not None
+
+
 def find_colours(
     colour: tuple[str, ...],
     input_path: str | None,

@@ -14,8 +14,9 @@ import click
 from uplift.common.errors import UpliftWarning
 from uplift.common.text import pluralise
 
+from .. import also as further
 from .. import options
-from ..colours import find_colours
+from ..colours import find_colours, is_colour
 from ..inputs import check_range
 from ..output.answers import (
     coordinates,
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
     from uplift.common.arrays import Array
     from uplift.extras.colour.query import QueryBlock, QueryResult
+    from uplift.extras.photographs import PhotographedColour
     from uplift.lookup import Cube
 
 PACKAGED = "packaged"
@@ -110,6 +112,7 @@ class Answers:
         file = cube_path or PACKAGED
         dim = data.lattice.dim
         self.origin = {"file": file, "dim": dim, "atlases": atlases}
+        self.further: PhotographedColour | None = None
         self.title = (
             f"{Path(file).name}: {dim}³ nodes, {', '.join(atlases) or 'no atlas'}"
         )
@@ -152,7 +155,15 @@ class Answers:
             if self.fill_missing:
                 filled += int((~self.cube.covers(rgb)).sum())
                 self.cube = self.cube.fill_missing(rgb)
-            for block in query_blocks(self.cube, rgb, *how, requested, self.lights):
+            blocks = query_blocks(
+                self.cube,
+                rgb,
+                *how,
+                requested,
+                self.lights,
+                answering=self.further,
+            )
+            for block in blocks:
                 yield block
                 sys.stdout.flush()
         if mapped:
@@ -213,7 +224,12 @@ class Answers:
       echo 0.5,0.5,0.5 | uplift query - --format json
       uplift query '#cc3319' --cube macbeth-32.uplift --light FL11 --light HP1
       uplift query '#cc3319' --light lamp.spd
+      uplift query '#8a2a20' --also A:'#9a3020'
       uplift query --check spectra.csv
+
+    With --also, the colour of the same thing under another light shows which of the
+    materials of one colour it is; white is white there, as in the pictures of 'uplift
+    relight', unless --balance is none.
 
     Standard errors are those of materials like the entries of the cube's atlas. RGB
     does not identify a material: others of the same colour may differ by more, at most
@@ -224,6 +240,9 @@ class Answers:
     """,
 )
 @colour_options
+@further.also("COLOUR", is_colour, "Colour of the same thing under another light")
+@further.noise
+@further.balance
 @options.light("Illuminant under which colour and standard error are shown", "none")
 @options.table_json_or_csv
 @options.plot("Plot the spectra")
@@ -241,6 +260,9 @@ class Answers:
 @options.force
 def command(
     lights: Sequence[Illuminant],
+    also: Sequence[further.Further],
+    noise: tuple[float, float] | None,
+    balance: str,
     style: str,
     plot_path: str | None,
     stored: str | None,
@@ -258,6 +280,10 @@ def command(
         return
     check_outputs(plot_path)
     answers = Answers(lights=lights, **colours)
+    if also:
+        answers.further = further.photographed_colour(
+            answers.cube, answers.source, also, noise, balance
+        )
     blocks: Iterable[QueryBlock] = answers
     if plot_path is not None:
         from uplift.extras.pages.plots import plot_spectra
@@ -351,6 +377,8 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
         f"({data.sensor.illuminant})"
     )
     fields["round trip"] = round_trip
+    if answers.further is not None:
+        fields["also under"] = _describe_further(answers.further, result.rgb)
     if data.sensor.sensitivities is not None:
         fields["XYZ"] = format_rgb(result.xyz)
     if not result.realisable:
@@ -377,6 +405,18 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
     stated = [*errors, *([FAMILIES] if data.families is not None else [])]
     fields["expected error"] = ", ".join(stated) or NO_ERROR
     return fields
+
+
+def _describe_further(further: PhotographedColour, rgb: Array) -> str:
+    """Describe a colour (3,) under other lights."""
+    names = [photograph.light for photograph in further.photographs.further]
+    if further.contradicts(rgb[None]):
+        return f"{', '.join(names)}: contradicts the colour, and is not used"
+    parts = [
+        f"{name}: {format_rgb(values)}"
+        for name, values in zip(names, further.others.reshape(-1, 3), strict=True)
+    ]
+    return ", ".join(parts)
 
 
 def _errors(cube: Cube, result: QueryResult) -> list[tuple[str, float, float]]:

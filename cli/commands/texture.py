@@ -19,6 +19,7 @@ from uplift.common.progress import Progress
 from uplift.common.text import pluralise
 from uplift.extras.files.outputs import check_outputs
 
+from .. import also as further
 from .. import options
 from ..inputs import UDIM, check_range, expand_patterns
 from ..output.console import say
@@ -85,6 +86,8 @@ image_options = options.stacked(
       uplift texture painting.exr -o ap1.exr --input-space ACEScg
       uplift texture shot.*.exr -o uplifted --scheduler tcp://10.0.0.5:8786
       uplift texture wood.png -o errors.exr --cube macbeth-32.uplift --errors FL11
+      uplift relight wood.png -o tungsten.exr --light A
+      uplift texture wood.png --also A:tungsten.exr -o two-lights.exr
 
     'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at
     --wavelengths. 'moments' can be filtered and mip-mapped. 'multipliers' can be
@@ -104,6 +107,12 @@ image_options = options.stacked(
     of the cubes, from 0 in the order of --cube; or, for two cubes, weights: black is
     the first, white the second, and grey mixes both. A coloured mask holds the weights
     of three cubes in R, G and B. Mixed spectra keep the colour of the pixel.
+
+    With --also, a picture of the same thing under another light, or several of them,
+    show which of the materials of one colour a pixel is. Their exposures and noise are
+    estimated and printed. They must be aligned, and of one size. Pixels whose pictures
+    contradict each other are answered by the first alone, and are 1 in the channel
+    'contradiction'.
 
     Pixels that are light, such as those of an environment map, need 'uplift lights
     texture'.
@@ -133,6 +142,30 @@ image_options = options.stacked(
 @options.depth
 @options.pixels()
 @options.fill
+@further.also("FILE", further.is_file, "Photograph of the same thing under a light")
+@options.repeatable(
+    "--exposure",
+    "exposures",
+    "How much brighter it is than the first",
+    metavar="FACTOR",
+    default="estimated",
+    type=options.NUMBER,
+)
+@further.noise
+@further.balance
+@options.repeatable(
+    "--also-space",
+    "spaces",
+    "RGB space of --also, as --input-space",
+    metavar="NAME",
+    type=options.INPUT_SPACE,
+)
+@options.repeatable(
+    "--also-camera",
+    "cameras",
+    "Camera whose raw values --also has",
+    metavar="NAME|FILE",
+)
 @options.repeatable(
     "--errors",
     "errors",
@@ -146,10 +179,31 @@ def command(
     mask: str | None,
     kind: str,
     wavelengths: Array | None,
+    also: Sequence[further.Further],
+    exposures: Sequence[float],
+    noise: tuple[float, float] | None,
+    balance: str,
+    spaces: Sequence[str],
+    cameras: Sequence[str],
     **settings: Any,
 ) -> None:
     from uplift.extras import texture
     from uplift.lookup import find_file, load
+
+    count = len(also)
+    pictures = tuple(
+        texture.FurtherPicture(photograph.light, space, camera, exposure)
+        for photograph, space, camera, exposure in zip(
+            also,
+            further.for_each(spaces, count, "--also-space"),
+            further.for_each(cameras, count, "--also-camera"),
+            further.for_each(exposures, count, "--exposure"),
+            strict=True,
+        )
+    )
+    if pictures:
+        settings["also"] = texture.FurtherPictures(pictures, balance, noise)
+        settings["further"] = [photograph.text for photograph in also]
 
     encode = texture.PIXEL_ENCODINGS[kind]
     if encode is not texture.Spectrum and wavelengths is not None:
@@ -181,6 +235,7 @@ def convert(
     resume: bool,
     force: bool,
     quiet: bool,
+    further: Sequence[str] = (),
     **given: Any,
 ) -> None:
     """Convert images, on as many threads as the processes leave; see `TextureSettings`
@@ -191,6 +246,7 @@ def convert(
     from uplift.extras.texture.sequence import converter_for
 
     pairs = _texture_paths(sources, target)
+    photographs = _photographs(further, len(pairs))
     inputs = click.get_current_context().meta.get(options.INPUTS, ())
     existing = [path for _, path in pairs if path.exists()]
     check_outputs(existing, inputs=inputs, force=True)
@@ -200,8 +256,8 @@ def convert(
         cubes, pixel_encoding, threads=max(cores // count, 1), **given
     )
     jobs = [
-        texture.Job(settings, source.absolute(), path.absolute(), force, resume)
-        for source, path in pairs
+        texture.Job(settings, source.absolute(), path.absolute(), force, resume, more)
+        for (source, path), more in zip(pairs, photographs, strict=True)
     ]
     pending = texture.pending(jobs)
     converter_for(settings)  # reports invalid options once, not once per image
@@ -222,6 +278,23 @@ def convert(
         is_spectrum = isinstance(pixel_encoding, texture.Spectrum)
         _print_summary(target, converted, skipped, begin, is_spectrum)
     _raise_first(failures)
+
+
+def _photographs(further: Sequence[str], count: int) -> list[tuple[Path, ...]]:
+    """Return the further photographs of each of ``count`` images: for several images,
+    patterns of as many.
+    """
+    columns = []
+    for text in further:
+        paths = expand_patterns([text])
+        if len(paths) != count:
+            raise OptionError(
+                f"--also must name a photograph for each of {pluralise(count, 'image')}"
+                f", got {len(paths)}",
+                hint="give a quoted pattern that matches as many",
+            )
+        columns.append([Path(path).absolute() for path in paths])
+    return list(zip(*columns, strict=True)) if columns else [()] * count
 
 
 def _raise_first(errors: Sequence[UpliftError]) -> None:
@@ -252,6 +325,10 @@ def _print_summary(
     if read_as:
         facts.append(f"read as {read_as}")
     say(f"{target}: {', '.join(facts)}")
+    for conversion in converted:
+        name = f"{conversion.source.name}: " if len(converted) > 1 else ""
+        for fact in conversion.facts:
+            say(f"{name}{fact}")
     if size > LARGE and is_spectrum:
         hint = "--representation moments --depth half takes a fraction of the size"
         say(f"hint: {hint}", err=True)

@@ -93,6 +93,12 @@ def json_objects(answers: Answers, block: QueryBlock) -> Iterator[str]:
         "unlike_atlas": _json_scalars(block.unlike_atlas.tolist()),
     }
     texts = list[Sequence[str]]()
+    if answers.further is not None:
+        photographed = answers.further.photographs.further
+        lit = [photo.light for photo in photographed]
+        colours = answers.further.others.reshape(-1, 3).tolist()
+        columns["also"] = json_output(dict(zip(lit, colours, strict=True)))
+        columns["contradicts"] = json_output(answers.further.contradicts(block.rgb))
     template = _template(columns, texts)
     return (template % cells for cells in zip(*texts, strict=True))
 

@@ -4,6 +4,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -153,6 +154,18 @@ class QueryResult:
     """
 
 
+class Answering(Protocol):
+    """What answers colours in place of a cube alone."""
+
+    def spectra(self, rgb: Array, wavelengths: Array) -> Array:
+        """Reflectance (n, N) at linear RGB (n, 3)."""
+        ...
+
+    def errors(self, rgb: Array, light: Light) -> Array:
+        """Standard errors and error bounds (n, 2) under a light."""
+        ...
+
+
 def query(
     cube: Cube,
     rgb: Array,
@@ -177,12 +190,14 @@ def query_blocks(
     requested_rgb: Array | None = None,
     lights: Sequence[Light] = (),
     outside: Mask | None = None,
+    answering: Answering | None = None,
 ) -> Iterator[QueryBlock]:
     """Answer linear RGB (n, 3) in [0, 1] in full detail, block by block.
 
     ``requested_rgb`` are the colours before gamut mapping, ``lights`` those of
     `QueryResult.standard_errors`. Colours that are ``outside`` (n,) are answered as
-    requested, not as mapped. Raises `UnknownNameError` for an unknown mode.
+    requested, not as mapped. ``answering`` takes the place of the cube for the others.
+    Raises `UnknownNameError` for an unknown mode.
     """
     if mode not in MODES:
         raise unknown_name(mode, MODES, "mode")
@@ -193,7 +208,14 @@ def query_blocks(
     for start in range(0, len(rgb), BLOCK):
         block = slice(start, start + BLOCK)
         yield _block(
-            cube, rgb[block], requested[block], beyond[block], at, mode, lights
+            cube,
+            rgb[block],
+            requested[block],
+            beyond[block],
+            at,
+            mode,
+            lights,
+            answering,
         )
 
 
@@ -243,6 +265,7 @@ def _block(
     at: Array,
     mode: str,
     lights: Sequence[Light],
+    answering: Answering | None,
 ) -> QueryBlock:
     data = cube.data
     sensor = data.sensor
@@ -253,6 +276,8 @@ def _block(
         from uplift.lookup.outside import reflectance_anywhere
 
         spectra = reflectance_anywhere(data, answered, grid, mode, outside)
+    elif answering is not None:
+        spectra = answering.spectra(rgb, grid)
     else:
         spectra = MODES[mode](data, rgb, grid)
     at_sensor = spectra[:, :count]
@@ -272,6 +297,12 @@ def _block(
             light.name: _errors(cube, rgb, outside, outside_entries, light)
             for light in lights
         }
+    if answering is not None:
+        from uplift.colorimetry.observer import light as find_light
+
+        reference = find_light(data.error_illuminant, sensor.observer, *sensor.range)
+        errors = answering.errors(rgb, reference)
+        light_errors = {light.name: answering.errors(rgb, light) for light in lights}
     low, fraction = data.lattice.cell(rgb)
     return QueryBlock(
         rgb=answered,

@@ -3,6 +3,7 @@ differ.
 """
 
 from uplift.extras.photographs.answers import Answers, Photographs, prepare
+from uplift.extras.photographs.colour import PhotographedColour
 from uplift.extras.photographs.errors import light_errors
 from uplift.extras.photographs.photograph import Noise, Photograph, photograph
 
@@ -10,6 +11,7 @@ __all__ = [
     "Answers",
     "Noise",
     "Photograph",
+    "PhotographedColour",
     "Photographs",
     "light_errors",
     "photograph",

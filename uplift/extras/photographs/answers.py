@@ -155,12 +155,15 @@ class Photographs:
             expected = self.cube.reflectance(rgb, grid)
         at_sensor = slice(len(at))
         ways = self._interpolated(rgb) if directions is None else directions
-        change = self._scores(rgb, others, expected[:, at_sensor], ways) @ components
-        spectra = expected + _scale_within(expected, change)[:, None] * change
-        rows = np.flatnonzero((spectra.min(axis=1) < 0) | (spectra.max(axis=1) > 1))
-        clipped = np.clip(spectra[rows], 0, 1)
+        scores = self._scores(rgb, others, expected[:, at_sensor], ways)
+        change = scores.astype(expected.dtype) @ components.astype(expected.dtype)
+        spectra = expected + change
+        outside = (spectra.min(axis=1) < 0) | (spectra.max(axis=1) > 1)
+        rows = np.flatnonzero(outside)
+        scale = _scale_within(expected[rows], change[rows])
+        moved = np.clip(expected[rows] + scale[:, None] * change[rows], 0, 1)
         spectra[rows] = with_colours(
-            self.cube.data, clipped, clipped[:, at_sensor], rgb[rows], grid
+            self.cube.data, moved, moved[:, at_sensor], rgb[rows], grid
         )
         contradicts = self._contradicts(rgb, others, spectra[:, at_sensor])
         spectra[contradicts] = expected[contradicts]

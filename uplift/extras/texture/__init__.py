@@ -16,6 +16,7 @@ from uplift.extras.texture.colours import Counts
 from uplift.extras.texture.conversion import Conversion, convert
 from uplift.extras.texture.emission import prepare_lights
 from uplift.extras.texture.mask import prepare_masked
+from uplift.extras.texture.photographs import FurtherPicture, FurtherPictures
 from uplift.extras.texture.sequence import (
     Failure,
     Job,
@@ -24,6 +25,7 @@ from uplift.extras.texture.sequence import (
     convert_all,
     pending,
 )
+from uplift.extras.texture.several_lights import prepare_several_lights
 from uplift.extras.texture.uplifter import (
     PIXEL_ENCODINGS,
     Moments,
@@ -37,6 +39,8 @@ __all__ = [
     "Conversion",
     "Counts",
     "Failure",
+    "FurtherPicture",
+    "FurtherPictures",
     "Job",
     "Moments",
     "Multipliers",
@@ -49,4 +53,5 @@ __all__ = [
     "prepare",
     "prepare_lights",
     "prepare_masked",
+    "prepare_several_lights",
 ]

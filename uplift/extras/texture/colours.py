@@ -62,6 +62,8 @@ class Counts:
         Pixels with NaN or infinity.
     unrealisable : int
         Pixels whose spectra miss their colour, as no reflectance in [0, 1] has it.
+    contradicting : int
+        Pixels whose photographs under several lights contradict each other.
     max_change : float
         Largest change of a component of linear RGB by gamut mapping.
     painted_outside : int
@@ -82,6 +84,10 @@ class Counts:
     )
     unrealisable: int = _counted(
         "pixels-unrealisable", "of unrealisable colours: their spectra have less chroma"
+    )
+    contradicting: int = _counted(
+        "photographs-contradict",
+        "whose photographs contradict each other: answered by the first alone",
     )
     max_change: float = 0.0
     painted_outside: int = _counted(

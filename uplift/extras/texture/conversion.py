@@ -44,6 +44,8 @@ class Conversion:
     spaces : tuple of str
         RGB spaces in which colours were read, ``linear sRGB`` for floats of the cube's
         space.
+    facts : tuple of str
+        What was found out about the image, such as its exposure.
     """
 
     source: Path
@@ -52,6 +54,7 @@ class Conversion:
     warnings: tuple[UpliftWarning, ...]
     seconds: float
     spaces: tuple[str, ...] = ()
+    facts: tuple[str, ...] = ()
 
 
 def convert(
@@ -102,8 +105,8 @@ def convert(
         built for a scene, lacks the nodes for it.
     """
     begin = time.perf_counter()
-    check_output(target, inputs=[source], force=force)
-    made_of = {SOURCE: source_stamp(source)}
+    check_output(target, inputs=[source, *converter.paths], force=force)
+    made_of = {SOURCE: source_stamp(source, *converter.paths)}
     with open_image(source) as image, converter.opened(image) as convert_rows:
         parts = colour_channels_by_part(image)
         layouts = [
@@ -123,6 +126,7 @@ def convert(
                     done += len(band)
                     progress(Progress("rows", done, total))
         notes = space_warnings(image, converter.sensor, converter.space)
+        facts = converter.facts(image)
     warnings = (*counts.warnings(converter.out_of_gamut, source), *notes)
     spaces = tuple(
         dict.fromkeys(
@@ -130,13 +134,19 @@ def convert(
         )
     )
     seconds = time.perf_counter() - begin
-    return Conversion(Path(source), Path(target), counts, warnings, seconds, spaces)
+    return Conversion(
+        Path(source), Path(target), counts, warnings, seconds, spaces, facts
+    )
 
 
-def source_stamp(source: StrPath) -> str:
-    """Return the attribute `SOURCE` of textures of an image. Raises `TextureError`."""
-    digest = file_digest(source, TextureError)
-    return f"{os.stat(source).st_size} {digest}"
+def source_stamp(*sources: StrPath) -> str:
+    """Return the attribute `SOURCE` of textures of an image, or of several photographs.
+    Raises `TextureError`.
+    """
+    digests = [file_digest(source, TextureError) for source in sources]
+    sizes = [os.stat(source).st_size for source in sources]
+    stamps = zip(sizes, digests, strict=True)
+    return ", ".join(f"{size} {digest}" for size, digest in stamps)
 
 
 def _space_name(converter: Converter, part: Part) -> str:

@@ -5,7 +5,7 @@ import logging
 import os
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, as_completed
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -30,6 +30,8 @@ from uplift.extras.texture.conversion import SOURCE, Conversion, convert, source
 from uplift.extras.texture.emission import prepare_lights
 from uplift.extras.texture.image import open_image
 from uplift.extras.texture.mask import prepare_masked
+from uplift.extras.texture.photographs import FurtherPictures
+from uplift.extras.texture.several_lights import prepare_several_lights
 from uplift.extras.texture.uplifter import Converter, PixelEncoding, Spectrum, prepare
 from uplift.lookup import load
 
@@ -69,6 +71,8 @@ class TextureSettings:
         (`Cube.fill_missing`).
     threads : int
         Threads per process.
+    also : FurtherPictures or None
+        Further photographs of each image, under other lights.
     """
 
     cubes: tuple[str | None, ...] = (None,)
@@ -82,6 +86,7 @@ class TextureSettings:
     emission: bool = False
     fill_missing: bool = False
     threads: int = 2
+    also: FurtherPictures | None = None
 
     def prepare(self) -> Converter:
         """Prepare the cubes or the emission table for textures.
@@ -103,6 +108,15 @@ class TextureSettings:
             cubes = [cube.fill_missing(threads=self.threads) for cube in cubes]
         shared |= {"out_of_gamut": self.out_of_gamut, "errors": self.errors}
         uplifters = [prepare(cube, self.pixel_encoding, **shared) for cube in cubes]
+        if self.also is not None:
+            return prepare_several_lights(
+                uplifters,
+                self.pixel_encoding,
+                self.also,
+                errors=self.errors,
+                mask=None if self.mask is None else Path(self.mask),
+                threads=self.threads,
+            )
         if self.mask is None:
             return uplifters[0]
         return prepare_masked(uplifters, Path(self.mask))
@@ -122,6 +136,8 @@ class Job:
         Whether to replace an existing file.
     resume : bool
         Whether to leave out an image whose texture is complete.
+    also : tuple of Path
+        Further photographs of the image, for ``settings.also``.
     """
 
     settings: TextureSettings
@@ -129,6 +145,12 @@ class Job:
     target: Path
     force: bool = False
     resume: bool = False
+    also: tuple[Path, ...] = ()
+
+    @property
+    def converter(self) -> Converter:
+        """The converter of the image."""
+        return replace(converter_for(self.settings), paths=self.also)
 
 
 @dataclass(frozen=True)
@@ -192,7 +214,7 @@ def _run(job: Job, progress: ProgressCallback) -> Outcome:
         return Skipped(job.source)
     try:
         return convert(
-            converter_for(job.settings),
+            job.converter,
             job.source,
             job.target,
             force=job.force,
@@ -337,7 +359,7 @@ def pending(jobs: Iterable[Job]) -> list[Job]:
     jobs = list(jobs)
     inputs = []
     for job in jobs:
-        inputs += [job.source, *job.settings.cubes, job.settings.mask]
+        inputs += [job.source, *job.also, *job.settings.cubes, job.settings.mask]
     _check_targets([job.target for job in jobs], inputs, force=True)
     remaining = [job for job in jobs if not (job.resume and is_complete(job))]
     _check_targets(
@@ -386,6 +408,6 @@ def _difference(job: Job) -> str:
         return "is a texture of another cube"
     if settings != header["uplift.texture"]:
         return "was written with other options"
-    if source != source_stamp(job.source):
+    if source != source_stamp(job.source, *job.also):
         return "is a texture of another image, or of one that has changed"
     return "" if exr_file.is_intact(job.target) else "is not a complete texture"

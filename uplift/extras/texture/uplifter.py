@@ -9,6 +9,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import partial
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -61,8 +62,9 @@ class Converter(ABC):
     """Conversion of linear RGB of a sensor to the channels of an OpenEXR file.
 
     ``depth`` is the type of the channels, ``channels`` (N,) the names of those after R,
-    G and B, ``header`` the attributes of every file, and ``space`` the RGB space of
-    images, None for the one that each file states.
+    G and B, ``header`` the attributes of every file, ``space`` the RGB space of
+    images, None for the one that each file states, and ``paths`` further images that
+    the conversion of an image reads.
     """
 
     sensor: Sensor
@@ -72,6 +74,7 @@ class Converter(ABC):
     channels: tuple[str, ...]
     header: Mapping[str, Any]
     space: ImageSpace | None = field(default=None, kw_only=True)
+    paths: tuple[Path, ...] = field(default=(), kw_only=True)
 
     @abstractmethod
     def convert(self, rgb: Floats) -> Converted:
@@ -117,6 +120,10 @@ class Converter(ABC):
     def part_header(self, part: Part) -> Mapping[str, Any]:
         """Attributes of one part in addition to ``header``, by default none."""
         return {}
+
+    def facts(self, image: Image) -> tuple[str, ...]:
+        """State what was found out about an image, by default nothing."""
+        return ()
 
     @contextlib.contextmanager
     def opened(self, image: Image) -> Iterator[ConvertRows]:

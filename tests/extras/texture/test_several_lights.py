@@ -1,0 +1,301 @@
+"""Textures from photographs under several lights."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import uplift
+from tests.conftest import ATLASES
+from tests.helpers import raises
+from uplift.atlas import resample
+from uplift.colorimetry import in_unit_cube, observer
+from uplift.common.errors import OptionError, TextureError
+from uplift.extras import texture
+from uplift.extras.photographs import Noise, photograph, prepare
+from uplift.extras.photographs.fit import estimate_noise, shift
+from uplift.extras.texture.sequence import Job, TextureSettings, is_complete, run
+from uplift.lookup.node_table import prepare_products
+
+from .conftest import channels, planes, read_channels, write_exr, write_image
+
+SIZE = 96
+PATCH = 8
+RANDOM = np.random.default_rng(11)
+WAVELENGTHS = tuple(observer.grid().tolist())
+
+
+@pytest.fixture(scope="module")
+def scene(plain_cube):
+    """Reflectances (SIZE, SIZE, 81) of patches of measured materials, shaded."""
+    sensor = plain_cube.data.sensor
+    atlas = uplift.read_atlas(ATLASES / "pmc.txt")
+    spectra = resample(atlas, sensor.wavelengths).values
+    spectra = spectra[in_unit_cube(sensor.rgb(spectra))]
+    count = SIZE // PATCH
+    patches = spectra[RANDOM.integers(len(spectra), size=(count, count))]
+    shade = 0.6 + 0.4 * RANDOM.random((count * 2, count * 2, 1))
+    large = np.kron(patches, np.ones((PATCH, PATCH, 1)))
+    return large * np.kron(shade, np.ones((PATCH // 2, PATCH // 2, 1)))
+
+
+def photograph_of(scene, sensor, *, exposure=1.0, noise=0.0):
+    rgb = scene @ sensor.matrix.T * exposure
+    return (rgb * (1 + noise * RANDOM.standard_normal(rgb.shape))).astype(np.float32)
+
+
+@pytest.fixture
+def day(scene, plain_cube, tmp_path):
+    rgb = np.clip(photograph_of(scene, plain_cube.data.sensor), 0, 1)
+    return write_exr(tmp_path / "day.exr", planes(rgb))
+
+
+def converter(cube, further, path, kind=None, **options):
+    kind = kind or texture.Spectrum()
+    uplifter = texture.prepare(cube, kind, depth="float", threads=1)
+    made = texture.prepare_several_lights(
+        [uplifter], kind, further, threads=1, **options
+    )
+    return replace(made, paths=(path,))
+
+
+def under(light, **settings):
+    return texture.FurtherPictures((texture.FurtherPicture(light),), **settings)
+
+
+def spectra_of(path):
+    return read_channels(
+        path, texture.uplifter.spectral_channels("T", np.array(WAVELENGTHS))
+    )
+
+
+def test_a_relit_picture_gives_the_spectra_back(plain_cube, day, tmp_path):
+    """Of the cube's own answers, under A, at another exposure that is not stated."""
+    planes_of_day = channels(day)
+    rgb = np.stack([planes_of_day[name] for name in "RGB"], axis=-1)
+    lit = observer.sensor("sRGB", "A")
+    relit = prepare_products(plain_cube.data, plain_cube.wavelengths, lit.matrix, 1)(
+        rgb
+    )
+    write_exr(tmp_path / "a.exr", planes(relit.astype(np.float32)))
+    made = converter(plain_cube, under("A"), tmp_path / "a.exr")
+    conversion = texture.convert(made, day, tmp_path / "two.exr")
+    assert "exposure × 1 " in conversion.facts[0]
+    plain = texture.prepare(plain_cube, texture.Spectrum(), depth="float", threads=1)
+    texture.convert(plain, day, tmp_path / "one.exr")
+    assert_allclose(
+        spectra_of(tmp_path / "two.exr"), spectra_of(tmp_path / "one.exr"), atol=2e-3
+    )
+    assert not channels(tmp_path / "two.exr")["contradiction"].any()
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.005])
+def test_textures_come_nearer_to_the_materials(scene, plain_cube, day, tmp_path, noise):
+    lit = observer.sensor("sRGB", "A")
+    picture = photograph_of(scene, lit, exposure=1.3, noise=noise)
+    write_exr(tmp_path / "a.exr", planes(picture))
+    made = converter(plain_cube, under("A"), tmp_path / "a.exr")
+    conversion = texture.convert(made, day, tmp_path / "two.exr")
+    factor = float(conversion.facts[0].split()[3])
+    assert factor == pytest.approx(1.3, rel=0.01)
+    assert "shift 0.0" in conversion.facts[0]
+    rgb = scene @ plain_cube.data.sensor.matrix.T
+    two = spectra_of(tmp_path / "two.exr")
+    one = plain_cube.reflectance(np.clip(rgb, 0, 1))
+    for name in ("A", "FL11", "HP1"):
+        light = observer.light(name)
+        errors = [
+            uplift.colorimetry.delta_e_spectra(
+                light, spectra.reshape(-1, 81), scene.reshape(-1, 81)
+            ).mean()
+            for spectra in (two, one)
+        ]
+        assert errors[0] < errors[1], name
+
+
+def test_texture_and_python_agree(scene, plain_cube, day, tmp_path):
+    lit = observer.sensor("sRGB", "A")
+    picture = photograph_of(scene, lit)
+    write_exr(tmp_path / "a.exr", planes(picture))
+    further = texture.FurtherPictures(
+        (texture.FurtherPicture("A", exposure=1.0),), noise=(0.002, 0.0002)
+    )
+    made = converter(plain_cube, further, tmp_path / "a.exr")
+    texture.convert(made, day, tmp_path / "two.exr")
+    prepared = prepare(
+        plain_cube, [photograph(plain_cube.data.sensor, "A")], (0.002, 0.0002)
+    )
+    rgb = read_channels(day, "RGB")
+    expected = prepared.reflectance(rgb, picture.astype(float))
+    assert_allclose(spectra_of(tmp_path / "two.exr"), expected, atol=1e-4)
+
+
+@pytest.mark.parametrize("kind", [texture.Moments(), texture.Multipliers()])
+def test_coefficients_have_the_exact_colours(scene, plain_cube, day, tmp_path, kind):
+    lit = observer.sensor("sRGB", "A")
+    write_exr(tmp_path / "a.exr", planes(photograph_of(scene, lit)))
+    made = converter(plain_cube, under("A"), tmp_path / "a.exr", kind)
+    texture.convert(made, day, tmp_path / "two.exr")
+    model = plain_cube.data.model
+    names = [name for name in made.channels if name != "contradiction"]
+    numbers = read_channels(tmp_path / "two.exr", names).reshape(-1, model.count)
+    if isinstance(kind, texture.Moments):
+        numbers = model.from_storage(numbers)
+    spectra = uplift.models.evaluate(model, numbers, plain_cube.wavelengths)
+    sensor = plain_cube.data.sensor
+    rgb = read_channels(day, "RGB").reshape(-1, 3)
+    assert_allclose(sensor.rgb(spectra), rgb, atol=2e-3)
+    others = scene.reshape(-1, 81) @ lit.matrix.T
+    off = np.abs(spectra @ lit.matrix.T - others).mean()
+    plain = plain_cube.reflectance(rgb) @ lit.matrix.T
+    assert off < np.abs(plain - others).mean()
+
+
+def test_masks_mix_cubes(scene, plain_cube, small_cube, day, tmp_path):
+    lit = observer.sensor("sRGB", "A")
+    write_exr(tmp_path / "a.exr", planes(photograph_of(scene, lit)))
+    mask = np.zeros((SIZE, SIZE, 1), dtype=np.uint8)
+    mask[:, SIZE // 2 :] = 1
+    write_image(tmp_path / "mask.png", mask)
+    kind = texture.Spectrum()
+    parts = {}
+    for name, cubes, options in (
+        ("mixed", [plain_cube, small_cube], {"mask": tmp_path / "mask.png"}),
+        ("plain", [plain_cube], {}),
+        ("small", [small_cube], {}),
+    ):
+        uplifters = [
+            texture.prepare(cube, kind, depth="float", threads=1) for cube in cubes
+        ]
+        further = under("A", noise=(0.001, 0.0))
+        made = texture.prepare_several_lights(
+            uplifters, kind, further, threads=1, **options
+        )
+        made = replace(made, paths=(tmp_path / "a.exr",))
+        texture.convert(made, day, tmp_path / f"{name}.exr")
+        parts[name] = spectra_of(tmp_path / f"{name}.exr")
+    half = SIZE // 2
+    assert_allclose(parts["mixed"][:, :half], parts["plain"][:, :half], atol=1e-6)
+    assert_allclose(parts["mixed"][:, half:], parts["small"][:, half:], atol=2e-3)
+
+
+def test_clipped_and_black_pixels_are_answered_by_the_first(
+    scene, plain_cube, tmp_path
+):
+    sensor = plain_cube.data.sensor
+    codes = np.rint(255 * np.clip(scene @ sensor.matrix.T, 0, 1) ** (1 / 2.2))
+    write_image(tmp_path / "day.png", codes.astype(np.uint8))
+    lit = np.rint(255 * np.clip(scene @ observer.sensor("sRGB", "A").matrix.T, 0, 1))
+    lit[:10] = 255
+    lit[10:20] = 0
+    write_image(tmp_path / "a.png", lit.astype(np.uint8))
+    further = texture.FurtherPictures((texture.FurtherPicture("A", exposure=1.0),))
+    made = converter(plain_cube, further, tmp_path / "a.png")
+    texture.convert(made, tmp_path / "day.png", tmp_path / "two.exr")
+    planes_of = channels(tmp_path / "two.exr")
+    rgb = np.stack([planes_of[name] for name in "RGB"], axis=-1)[:20]
+    expected = plain_cube.reflectance(rgb)
+    assert_allclose(spectra_of(tmp_path / "two.exr")[:20], expected, atol=1e-3)
+    assert not planes_of["contradiction"][:20].any()
+
+
+def test_pictures_that_contradict_each_other_are_counted(plain_cube, tmp_path):
+    grey = np.full((16, 16, 3), 0.2, np.float32)
+    other = grey.copy()
+    other[4:8, 4:8] = (0.9, 0.02, 0.02)
+    write_exr(tmp_path / "day.exr", planes(grey))
+    write_exr(tmp_path / "a.exr", planes(other))
+    further = texture.FurtherPictures((texture.FurtherPicture("A", exposure=1.0),))
+    made = converter(plain_cube, further, tmp_path / "a.exr")
+    conversion = texture.convert(made, tmp_path / "day.exr", tmp_path / "two.exr")
+    assert conversion.counts.contradicting == 16
+    assert "photographs-contradict" in [note.code for note in conversion.warnings]
+    flags = channels(tmp_path / "two.exr")["contradiction"]
+    assert flags.sum() == 16
+    assert flags[4:8, 4:8].all()
+
+
+def test_shifted_pictures_are_refused_with_the_shift(scene, plain_cube, day, tmp_path):
+    picture = photograph_of(scene, observer.sensor("sRGB", "A"))
+    write_exr(tmp_path / "a.exr", planes(np.roll(picture, (3, -2), axis=(0, 1))))
+    made = converter(plain_cube, under("A"), tmp_path / "a.exr")
+    with raises(TextureError, "photographs-not-aligned") as caught:
+        texture.convert(made, day, tmp_path / "two.exr")
+    assert "-2.0" in caught.value.problem
+    assert "+3.0" in caught.value.problem
+    assert not Path(tmp_path / "two.exr").exists()
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (2.0, -3.0), (0.5, 0.25)])
+def test_shifts_are_measured_below_a_pixel(place):
+    detail = RANDOM.standard_normal((64, 64))
+    spectrum = np.fft.fft2(detail) * np.exp(-8 * _frequencies(64, 64))
+    down, right = place
+    y, x = np.fft.fftfreq(64)[:, None], np.fft.fftfreq(64)
+    moved = np.fft.ifft2(spectrum * np.exp(-2j * np.pi * (y * down + x * right))).real
+    first = np.fft.ifft2(spectrum).real
+    assert_allclose(shift(first + 10, moved + 10), place, atol=0.3)
+    assert shift(np.ones((64, 64)), moved) is None
+
+
+def _frequencies(height, width):
+    return np.hypot(np.fft.fftfreq(height)[:, None], np.fft.fftfreq(width))
+
+
+@pytest.mark.parametrize(("share", "floor"), [(0.01, 0.0), (0.0, 0.003), (0.01, 0.002)])
+def test_noise_is_estimated_from_flat_areas(share, floor):
+    levels = np.repeat(np.linspace(0.02, 0.8, 24), 16)
+    band = np.tile(levels[:, None], (24, 1, 3))
+    band = band + RANDOM.standard_normal(band.shape) * np.sqrt(
+        (share * band) ** 2 + floor**2
+    )
+    noise = estimate_noise([band] * 4, 0)
+    for level in (0.05, 0.7):
+        expected = np.hypot(share * level, floor)
+        assert np.sqrt(noise.variance(np.array(level))) == pytest.approx(
+            expected, rel=0.35
+        )
+    assert estimate_noise([np.full((16, 16, 3), 0.5)], 255).share == 1 / 255
+    assert estimate_noise([], 0) == Noise()
+
+
+def test_sequences_resume_and_differ_by_their_photographs(
+    scene, plain_cube, day, tmp_path, repository
+):
+    lit = observer.sensor("sRGB", "A")
+    picture = write_exr(tmp_path / "a.exr", planes(photograph_of(scene, lit)))
+    settings = TextureSettings(
+        cubes=(str(repository / "cubes" / "moments-8.uplift"),),
+        also=under("A"),
+        threads=1,
+    )
+    job = Job(settings, day, tmp_path / "two.exr", also=(picture,))
+    assert run(job).facts
+    assert is_complete(replace(job, resume=True))
+    write_exr(picture, planes(photograph_of(scene, lit, exposure=0.9)))
+    assert not is_complete(replace(job, resume=True, force=True))
+
+
+def test_bad_input(plain_cube, day, tmp_path):
+    small = write_exr(
+        tmp_path / "small.exr", planes(np.full((8, 8, 3), 0.5, np.float32))
+    )
+    with raises(TextureError, "photographs-of-different-sizes"):
+        texture.convert(
+            converter(plain_cube, under("A"), small), day, tmp_path / "two.exr"
+        )
+    with raises(TextureError):
+        texture.convert(
+            converter(plain_cube, under("A"), tmp_path / "none.exr"),
+            day,
+            tmp_path / "two.exr",
+        )
+    with raises(OptionError):
+        converter(plain_cube, under("D65"), small)
+    with raises(OptionError):
+        converter(plain_cube, texture.FurtherPictures(()), small)
+    with raises(OptionError):
+        two = texture.FurtherPictures((texture.FurtherPicture("A"),) * 2)
+        converter(plain_cube, two, small)

@@ -1,0 +1,176 @@
+"""How photographs fit each other: their exposures, noise and alignment, from samples of
+their pixels.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from uplift.common.arrays import Array
+from uplift.common.errors import TextureError
+from uplift.extras.photographs.answers import Photographs
+from uplift.extras.photographs.metamers import brightness
+from uplift.extras.photographs.photograph import Noise
+
+BLOCK = 8
+"""Pixels along the sides of the blocks in which noise is estimated."""
+LEVELS = 8
+"""Ranges of brightness, of each of which the flattest blocks count."""
+FLATTEST = 0.1
+"""Share of the blocks of a range that are taken for flat."""
+DARKEST = 0.02
+"""Linear RGB below which pixels do not count for the exposure."""
+MAX_SHIFT = 1.0
+"""Pixels by which photographs may be shifted against each other."""
+MIN_PEAK = 0.1
+"""Least height of the peak of phase correlation, 1 for equal pictures, that counts."""
+MIN_DETAIL = 1e-3
+"""Least standard deviation of the brightness of a crop, relative to its mean."""
+
+
+def exposure(
+    photographs: Photographs, number: int, rgb: Array, others: Array, expected: Array
+) -> tuple[float, float]:
+    """Estimate how much brighter a further photograph is than the first lets expect,
+    and the standard deviation that one material would give this factor.
+
+    The photograph with this ``number`` has linear RGB (n, 3), NaN where unknown, where
+    the first has ``rgb`` (n, 3), which let the spectra ``expected`` (n, N) expect.
+    """
+    matrix = photographs.further[number].matrix
+    predicted = expected @ matrix.T
+    bright = (predicted.min(axis=1) > DARKEST) & np.isfinite(others).all(axis=1)
+    if not bright.any():
+        return 1.0, 0.0
+    total = predicted[bright].sum(axis=1)
+    factor = float(np.median(others[bright].sum(axis=1) / total))
+    # Materials of one colour differ in the sum by k √(1ᵀ A S Aᵀ 1).
+    directions = photographs.metamers.components @ matrix.sum(axis=0)
+    covariance = photographs.metamers.mean
+    spread = np.sqrt(directions @ covariance @ directions)
+    relative = brightness(rgb[bright]) * spread / total
+    return factor, float(np.median(relative))
+
+
+def estimate_noise(bands: Sequence[Array], steps: int) -> Noise:
+    """Estimate the noise of a photograph from its flat areas.
+
+    Parameters
+    ----------
+    bands : sequence of ndarray, shape (height, width, 3)
+        Some rows of linear RGB.
+    steps : int
+        Largest integer code of the file, whose rounding is noise; 0 for floats.
+
+    Returns
+    -------
+    Noise
+        Standard deviations.
+    """
+    means = []
+    variances = []
+    for band in bands:
+        height = band.shape[0] // BLOCK * BLOCK
+        width = band.shape[1] // BLOCK * BLOCK
+        if not (height and width):
+            continue
+        blocks = band[:height, :width].reshape(
+            height // BLOCK, BLOCK, width // BLOCK, BLOCK, 3
+        )
+        # x₋₁ − 2 x₀ + x₁ of independent noise has six times its variance, and none of
+        # a gradient.
+        second = blocks[:, :, :, :-2] - 2 * blocks[:, :, :, 1:-1] + blocks[:, :, :, 2:]
+        means.append(blocks.mean(axis=(1, 3)).reshape(-1, 3))
+        variances.append((second**2).mean(axis=(1, 3)).reshape(-1, 3) / 6)
+    rounding = Noise(1 / steps, 0.03 / steps) if steps else Noise()
+    if not means:
+        return rounding
+    level = np.concatenate(means).ravel()
+    variance = np.concatenate(variances).ravel()
+    usable = np.isfinite(level) & np.isfinite(variance) & (level > 0) & (level < 0.9)
+    level = level[usable]
+    variance = variance[usable]
+    if not len(level):
+        return rounding
+    edges = np.quantile(level, np.linspace(0, 1, LEVELS + 1))
+    rows = []
+    for low, high in pairwise(edges):
+        members = np.flatnonzero((level >= low) & (level <= high))
+        flat = members[variance[members] <= np.quantile(variance[members], FLATTEST)]
+        rows.append((level[flat].mean(), variance[flat].mean()))
+    at, observed = np.array(rows).T
+    # σ² = floor² + share² x², with relative weights
+    from scipy.optimize import nnls
+
+    weight = 1 / np.maximum(observed, np.finfo(float).tiny)
+    columns = np.stack([np.ones(len(at)), at**2], axis=1)
+    (floor, share), _ = nnls(columns * weight[:, None], observed * weight)
+    return Noise(
+        max(float(np.sqrt(share)), rounding.share),
+        max(float(np.sqrt(floor)), rounding.floor),
+    )
+
+
+def shift(first: Array, second: Array) -> tuple[float, float] | None:
+    """Measure how far a crop (height, width) is shifted against another, in pixels down
+    and to the right; None where the crops do not show it.
+
+    Phase correlation: C. D. Kuglin and D. C. Hines 1975, "The phase correlation image
+    alignment method". The peak is that of a parabola through three values.
+    """
+    if not all(_has_detail(crop) for crop in (first, second)):
+        return None
+    window = np.hanning(first.shape[0])[:, None] * np.hanning(first.shape[1])
+    spectra = [np.fft.rfft2((crop - crop.mean()) * window) for crop in (first, second)]
+    cross = np.conj(spectra[0]) * spectra[1]
+    magnitude = np.abs(cross)
+    phase = cross / np.maximum(magnitude, 1e-3 * magnitude.max())
+    surface = np.fft.irfft2(phase, first.shape)
+    peak = np.unravel_index(surface.argmax(), surface.shape)
+    around = [surface[(peak[0] + step) % len(surface), peak[1]] for step in (-1, 0, 1)]
+    across = [
+        surface[peak[0], (peak[1] + step) % surface.shape[1]] for step in (-1, 0, 1)
+    ]
+    height = sum(around) + sum(across) - surface[peak]
+    if height < MIN_PEAK:
+        return None
+    places = []
+    for place, size, values in zip(peak, surface.shape, (around, across), strict=True):
+        whole = (int(place) + size // 2) % size - size // 2
+        places.append(whole + _vertex(*values))
+    return places[0], places[1]
+
+
+def _has_detail(crop: Array) -> bool:
+    return bool(crop.std() > MIN_DETAIL * abs(crop.mean()))
+
+
+def _vertex(before: float, at: float, after: float) -> float:
+    """Place of the maximum of a parabola through three values, from the middle one."""
+    bend = before - 2 * at + after
+    return float(np.clip((before - after) / (2 * bend), -0.5, 0.5)) if bend < 0 else 0.0
+
+
+def check_aligned(crops: Sequence[tuple[Array, Array]], name: str) -> float | None:
+    """Check pairs of crops (height, width) of the brightness of two photographs, and
+    return the shift in pixels; None where nothing shows it.
+
+    Raises `TextureError` (``photographs-not-aligned``) for more than `MAX_SHIFT`.
+    """
+    shifts = [shift(*pair) for pair in crops]
+    known = np.array([place for place in shifts if place is not None])
+    if not len(known):
+        return None
+    down, right = np.median(known, axis=0)
+    distances = np.hypot(*known.T)
+    worst = float(np.median(distances))
+    if worst > MAX_SHIFT:
+        raise TextureError(
+            f"the photograph {name} is shifted against the first by {right:+.1f} "
+            f"pixels to the right and {down:+.1f} down",
+            code="photographs-not-aligned",
+            hint="align the photographs first, for example with align_image_stack of "
+            "Hugin",
+        )
+    return worst

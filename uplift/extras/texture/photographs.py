@@ -1,0 +1,249 @@
+"""Further photographs of an image, under other lights: how they are read, and how they
+fit the first.
+"""
+
+import contextlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from uplift.colorimetry import Sensor
+from uplift.colorimetry.illuminants import Illuminant
+from uplift.common.arrays import Array, Mask, Values
+from uplift.common.errors import TextureError
+from uplift.extras.colour.spaces import ImageSpace, find_space
+from uplift.extras.photographs import Noise, Photographs
+from uplift.extras.photographs.fit import check_aligned, estimate_noise, exposure
+from uplift.extras.texture.channels import ColourChannels, coloured_parts
+from uplift.extras.texture.colours import Decoder, make_decoder
+from uplift.extras.texture.image import Image, Part, open_image
+from uplift.extras.texture.uplifter import Sampler
+
+SAMPLED_ROWS = 24
+"""Rows of a band that is sampled for exposure and noise."""
+SAMPLED_BANDS = 12
+"""Bands that are sampled."""
+CROP = 256
+"""Pixels along the sides of a crop whose alignment is checked."""
+MAX_SAMPLE = 1 << 15
+"""Pixels from which the exposure is estimated."""
+CLIPPED = 0.995
+"""Share of the largest code from which a component is clipped."""
+
+
+@dataclass(frozen=True)
+class FurtherPicture:
+    """What a further photograph of a sequence is.
+
+    Parameters
+    ----------
+    light : str or Lamp
+        Its light.
+    space : str or None
+        RGB space of the image, None for the one that the file states.
+    camera : str or None
+        Camera whose raw values the image has.
+    exposure : float or None
+        How much brighter it is than the first, None to estimate it.
+    """
+
+    light: Illuminant
+    space: str | None = None
+    camera: str | None = None
+    exposure: float | None = None
+
+
+@dataclass(frozen=True)
+class FurtherPictures:
+    """The further photographs of each image.
+
+    Parameters
+    ----------
+    pictures : tuple of FurtherPicture
+        One for each light.
+    balance : {"light", "none"}
+        As for `uplift.extras.photographs.photograph`.
+    noise : tuple of float or None
+        Share and floor, None to estimate them.
+    """
+
+    pictures: tuple[FurtherPicture, ...]
+    balance: str = "light"
+    noise: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """Exposures (L,) and noise of the photographs of an image, and what to state about
+    them.
+    """
+
+    exposures: tuple[float, ...]
+    noise: Noise
+    facts: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """An open photograph, and how its numbers are read."""
+
+    image: Image
+    part: Part
+    channels: ColourChannels
+    decode: Decoder
+
+    def rows(self, first: int, count: int) -> Array:
+        """Linear RGB (count, width, 3) from row ``first``, counted from 0; NaN for what
+        is clipped or black.
+        """
+        band = self.image.rows(self.part, first, count)
+        numbers = self.channels.straight(band)
+        unknown = self._unknown(numbers)
+        with np.errstate(invalid="ignore"):
+            linear = np.asarray(self.decode.function(numbers), dtype=float)
+        linear = np.where(unknown, np.nan, linear)
+        if self.decode.matrix is not None:
+            linear = linear @ self.decode.matrix.T
+        return linear
+
+    def _unknown(self, numbers: Values) -> Mask:
+        if self.part.max_code:
+            return (numbers >= CLIPPED * self.part.max_code) | (numbers <= 0)
+        # Negative numbers are colours outside the space, which lights may cause.
+        return ~np.isfinite(numbers) | (numbers == 0)
+
+
+@contextlib.contextmanager
+def open_further(
+    further: FurtherPictures,
+    paths: Sequence[Path],
+    size: tuple[int, int],
+    sensor: Sensor,
+    encoding: str,
+) -> Iterator[list[Picture]]:
+    """Open the further photographs of an image of this width and height, whose colours
+    are read as linear RGB of a sensor. Raises `TextureError`.
+    """
+    with contextlib.ExitStack() as stack:
+        opened = []
+        for path, picture in zip(paths, further.pictures, strict=True):
+            space = None if picture.space is None else find_space(picture.space)
+            one = _open(path, size, sensor, encoding, space)
+            opened.append(stack.enter_context(one))
+        yield opened
+
+
+@contextlib.contextmanager
+def _open(
+    path: Path,
+    size: tuple[int, int],
+    sensor: Sensor,
+    encoding: str,
+    space: ImageSpace | None,
+) -> Iterator[Picture]:
+    """Open a further photograph of this width and height."""
+    with open_image(path) as image:
+        part, channels = coloured_parts(image)[0]
+        found = part.window.width, part.window.height
+        if found != size:
+            raise TextureError(
+                f"photographs of one thing must have one size, {size[0]} × {size[1]}, "
+                f"got {found[0]} × {found[1]}",
+                code="photographs-of-different-sizes",
+                hint="scale it to the size of the first",
+            )
+        decode = make_decoder(sensor, part, encoding, "clip", space)
+        yield Picture(image, part, channels, decode)
+
+
+def fit(
+    prepared: Photographs,
+    sample: Sampler,
+    further: FurtherPictures,
+    first: Picture,
+    pictures: Sequence[Picture],
+) -> Fitted:
+    """Estimate how photographs fit the first one, of which ``sample`` answers linear
+    RGB (n, 3) at the wavelengths of the sensor and perhaps at others.
+    """
+    names = [photograph.light for photograph in prepared.further]
+    bands = [_sampled(picture) for picture in (first, *pictures)]
+    noise, noise_fact = _noise(further, bands, (first, *pictures))
+    factors = []
+    facts = []
+    for number, (name, picture) in enumerate(zip(names, pictures, strict=True)):
+        shift = check_aligned(_crops(first, picture), name)
+        factor, reason = further.pictures[number].exposure, "as given"
+        if factor is None:
+            samples = bands[0], bands[1 + number]
+            factor, reason = _exposure(prepared, sample, number, *samples)
+        factors.append(factor)
+        place = "alignment not known" if shift is None else f"shift {shift:.2f} pixels"
+        facts.append(f"{name}: exposure × {factor:.4g} ({reason}), {place}")
+    return Fitted(tuple(factors), noise, (*facts, noise_fact))
+
+
+def _exposure(
+    prepared: Photographs,
+    sample: Sampler,
+    number: int,
+    first: list[Array],
+    other: list[Array],
+) -> tuple[float, str]:
+    """Return the exposure of the further photograph of this number, and a remark."""
+    rgb = np.concatenate([band.reshape(-1, 3) for band in first])
+    values = np.concatenate([band.reshape(-1, 3) for band in other])
+    known = np.flatnonzero(np.isfinite(rgb).all(axis=1))
+    rows = known[:: max(len(known) // MAX_SAMPLE, 1)]
+    colours = np.clip(rgb[rows], 0, 1)
+    count = len(prepared.cube.wavelengths)
+    expected = sample(colours.astype(np.float32))[:, :count].astype(float)
+    factor, spread = exposure(prepared, number, colours, values[rows], expected)
+    if abs(np.log(factor)) <= spread:
+        return 1.0, f"estimated {factor:.4g}, within what materials differ by"
+    return factor, "estimated"
+
+
+def _noise(
+    further: FurtherPictures, bands: list[list[Array]], pictures: Sequence[Picture]
+) -> tuple[Noise, str]:
+    """Return the noise of the noisiest photograph, and a statement."""
+    noise = Noise(*further.noise) if further.noise else None
+    if noise is None:
+        estimates = [
+            estimate_noise(band, picture.part.max_code)
+            for band, picture in zip(bands, pictures, strict=True)
+        ]
+        noise = Noise(
+            max(estimate.share for estimate in estimates),
+            max(estimate.floor for estimate in estimates),
+        )
+    source = "as given" if further.noise else "estimated from flat areas"
+    return noise, f"noise {noise.share:.2%} and {noise.floor:.2g} ({source})"
+
+
+def _sampled(picture: Picture) -> list[Array]:
+    """Return some bands of rows, evenly spread."""
+    height = picture.part.window.height
+    count = min(SAMPLED_ROWS, height)
+    starts = np.unique(np.linspace(0, height - count, SAMPLED_BANDS).astype(int))
+    return [picture.rows(int(start), count) for start in starts]
+
+
+def _crops(first: Picture, second: Picture) -> list[tuple[Array, Array]]:
+    """Return the brightness of crops of two photographs: the middle and the corners."""
+    window = first.part.window
+    rows = min(CROP, window.height)
+    columns = min(CROP, window.width)
+    crops = []
+    for start in sorted({0, (window.height - rows) // 2, window.height - rows}):
+        bands = [
+            np.nan_to_num(picture.rows(start, rows)).sum(axis=-1)
+            for picture in (first, second)
+        ]
+        for left in sorted({0, (window.width - columns) // 2, window.width - columns}):
+            place = slice(left, left + columns)
+            crops.append((bands[0][:, place], bands[1][:, place]))
+    return crops
