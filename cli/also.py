@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import glob
+import math
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -71,6 +72,20 @@ def parse_noise(text: str) -> tuple[float, float]:
             hint="write for example 0.5% or 0.005,0.0005",
         )
     return noise
+
+
+def parse_corners(text: str) -> tuple[float, ...]:
+    """Parse the corners X,Y,X,Y,X,Y,X,Y of a chart."""
+    try:
+        corners = tuple(parse_float(number) for number in text.split(","))
+    except ValueError:
+        corners = ()
+    if len(corners) != 8 or not all(map(math.isfinite, corners)):
+        raise OptionError(
+            f"a chart has four corners X,Y,X,Y,X,Y,X,Y, got {format_value(text)}",
+            hint="give them in pixels, clockwise from dark skin",
+        )
+    return corners
 
 
 def for_each(

@@ -112,7 +112,8 @@ image_options = options.stacked(
     show which of the materials of one colour a pixel is. Their exposures and noise are
     estimated and printed. They must be aligned, and of one size. Pixels whose pictures
     contradict each other are answered by the first alone, and are 1 in the channel
-    'contradiction'.
+    'contradiction'. A ColorChecker in all of them, see --chart, states more, and its
+    patches are compared with their measurements.
 
     Pixels that are light, such as those of an environment map, need 'uplift lights
     texture'.
@@ -153,6 +154,20 @@ image_options = options.stacked(
 )
 @further.noise
 @further.balance
+@click.option(
+    "--chart",
+    "corners",
+    metavar="X,Y,X,Y,X,Y,X,Y",
+    type=options.Parsed(further.parse_corners),
+    help="Corners of a ColorChecker in all photographs, in pixels, clockwise from dark "
+    "skin; exposure, balance and noise are taken from it.",
+)
+@click.option(
+    "--chart-atlas",
+    metavar="FILE",
+    default="macbeth",
+    help="Measured reflectances of its 24 patches, in their order.",
+)
 @options.repeatable(
     "--also-space",
     "spaces",
@@ -185,6 +200,8 @@ def command(
     balance: str,
     spaces: Sequence[str],
     cameras: Sequence[str],
+    corners: tuple[float, ...] | None,
+    chart_atlas: str,
     **settings: Any,
 ) -> None:
     from uplift.extras import texture
@@ -202,7 +219,10 @@ def command(
         )
     )
     if pictures:
-        settings["also"] = texture.FurtherPictures(pictures, balance, noise)
+        chart = None
+        if corners is not None:
+            chart = texture.ChartInPicture(corners, chart_atlas)
+        settings["also"] = texture.FurtherPictures(pictures, balance, noise, chart)
         settings["further"] = [photograph.text for photograph in also]
 
     encode = texture.PIXEL_ENCODINGS[kind]

@@ -15,6 +15,7 @@ from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.errors import OptionError, TextureError
 from uplift.extras import texture
 from uplift.extras.photographs import Noise, photograph, prepare
+from uplift.extras.photographs.chart import homography
 from uplift.extras.photographs.fit import estimate_noise, shift
 from uplift.extras.texture.sequence import Job, TextureSettings, is_complete, run
 from uplift.lookup.node_table import prepare_products
@@ -299,3 +300,61 @@ def test_bad_input(plain_cube, day, tmp_path):
     with raises(OptionError):
         two = texture.FurtherPictures((texture.FurtherPicture("A"),) * 2)
         converter(plain_cube, two, small)
+
+
+CORNERS = (8.0, 8.0, 90.0, 12.0, 86.0, 70.0, 5.0, 66.0)
+
+
+def chart_scene(plain_cube):
+    """A ColorChecker in perspective on grey, (SIZE, SIZE, 81)."""
+    atlas = uplift.read_atlas(ATLASES / "macbeth.txt")
+    measured = resample(atlas, plain_cube.wavelengths).values
+    inverse = np.linalg.inv(homography(np.reshape(CORNERS, (4, 2))))
+    y, x = np.mgrid[:SIZE, :SIZE] + 0.5
+    places = np.stack([x, y, np.ones_like(x)], axis=-1) @ inverse.T
+    u, v = places[..., 0] / places[..., 2], places[..., 1] / places[..., 2]
+    inside = (u >= 0) & (u < 1) & (v >= 0) & (v < 1)
+    column = np.clip((6 * u).astype(int), 0, 5)
+    row = np.clip((4 * v).astype(int), 0, 3)
+    scene = np.full((SIZE, SIZE, 81), 0.3)
+    scene[inside] = measured[(6 * row + column)[inside]]
+    return scene
+
+
+def test_a_chart_states_exposure_balance_and_noise(plain_cube, tmp_path):
+    scene = chart_scene(plain_cube)
+    sensor = plain_cube.data.sensor
+    lit = observer.sensor("sRGB", "A")
+    first = np.clip(photograph_of(scene, sensor, exposure=0.8, noise=0.01), 0, 1)
+    second = photograph_of(scene, lit, noise=0.01) * np.float32([1.3, 1.2, 1.0])
+    day = write_exr(tmp_path / "day.exr", planes(first))
+    write_exr(tmp_path / "a.exr", planes(second.astype(np.float32)))
+    further = under("A", chart=texture.ChartInPicture(CORNERS))
+    made = converter(plain_cube, further, tmp_path / "a.exr")
+    facts = texture.convert(made, day, tmp_path / "two.exr").facts
+    assert float(facts[0].split()[5]) == pytest.approx(0.8, rel=0.02)
+    gains = np.array(facts[1].split()[5:8], dtype=float)
+    assert_allclose(gains, np.array([1.3, 1.2, 1.0]) / 0.8, rtol=0.02)
+    assert float(facts[2].split()[1].rstrip("%")) == pytest.approx(1, abs=0.3)
+    mean = float(facts[3].split("A ")[1].split(",")[0])
+    assert mean < 0.5
+    assert facts[4].startswith("  dark skin: A ")
+    assert len(facts) == 4 + 24
+
+
+@pytest.mark.parametrize(
+    "chart",
+    [
+        texture.ChartInPicture((0.0, 0.0, 900.0, 0.0, 900.0, 900.0, 0.0, 900.0)),
+        texture.ChartInPicture((0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0)),
+        texture.ChartInPicture(CORNERS, str(ATLASES / "pmc.txt")),
+    ],
+    ids=["outside", "on a line", "30 entries"],
+)
+def test_charts_that_cannot_be_used_are_refused(plain_cube, day, tmp_path, chart):
+    picture = Path(tmp_path / "a.exr")
+    rgb = read_channels(day, "RGB") * np.float32([1.1, 1.0, 0.9])
+    write_exr(picture, planes(rgb))
+    made = converter(plain_cube, under("A", chart=chart), picture)
+    with raises(OptionError):
+        texture.convert(made, day, tmp_path / "two.exr")

@@ -21,6 +21,8 @@ FLATTEST = 0.1
 """Share of the blocks of a range that are taken for flat."""
 DARKEST = 0.02
 """Linear RGB below which pixels do not count for the exposure."""
+LEAST_VARIANCE = 1e-12
+"""Least variance of linear RGB that is told from none."""
 MAX_SHIFT = 1.0
 """Pixels by which photographs may be shifted against each other."""
 MIN_PEAK = 0.1
@@ -29,7 +31,7 @@ MIN_DETAIL = 1e-3
 """Least standard deviation of the brightness of a crop, relative to its mean."""
 
 
-def exposure(
+def estimate_exposure(
     photographs: Photographs, number: int, rgb: Array, others: Array, expected: Array
 ) -> tuple[float, float]:
     """Estimate how much brighter a further photograph is than the first lets expect,
@@ -100,16 +102,28 @@ def estimate_noise(bands: Sequence[Array], steps: int) -> Noise:
         flat = members[variance[members] <= np.quantile(variance[members], FLATTEST)]
         rows.append((level[flat].mean(), variance[flat].mean()))
     at, observed = np.array(rows).T
-    # σ² = floor² + share² x², with relative weights
+    noise = fit_noise(at, observed)
+    return Noise(
+        max(noise.share, rounding.share),
+        max(noise.floor, rounding.floor),
+    )
+
+
+def fit_noise(level: Array, variance: Array) -> Noise:
+    """Fit σ² = floor² + share² x² to variances (n,) at values x (n,) of linear RGB;
+    NaN does not count.
+    """
     from scipy.optimize import nnls
 
-    weight = 1 / np.maximum(observed, np.finfo(float).tiny)
-    columns = np.stack([np.ones(len(at)), at**2], axis=1)
-    (floor, share), _ = nnls(columns * weight[:, None], observed * weight)
-    return Noise(
-        max(float(np.sqrt(share)), rounding.share),
-        max(float(np.sqrt(floor)), rounding.floor),
-    )
+    known = np.isfinite(level) & np.isfinite(variance)
+    if not known.any():
+        return Noise()
+    # Variances are compared by their ratios.
+    weight = 1 / np.maximum(variance[known], LEAST_VARIANCE)
+    columns = np.stack([np.ones(known.sum()), level[known] ** 2], axis=1)
+    goal = variance[known] * weight
+    (floor, share), _ = nnls(columns * weight[:, None], goal)
+    return Noise(float(np.sqrt(share)), float(np.sqrt(floor)))
 
 
 def shift(first: Array, second: Array) -> tuple[float, float] | None:

@@ -16,7 +16,11 @@ from uplift.extras.texture.colours import Counts
 from uplift.extras.texture.conversion import Conversion, convert
 from uplift.extras.texture.emission import prepare_lights
 from uplift.extras.texture.mask import prepare_masked
-from uplift.extras.texture.photographs import FurtherPicture, FurtherPictures
+from uplift.extras.texture.photographs import (
+    ChartInPicture,
+    FurtherPicture,
+    FurtherPictures,
+)
 from uplift.extras.texture.sequence import (
     Failure,
     Job,
@@ -36,6 +40,7 @@ from uplift.extras.texture.uplifter import (
 
 __all__ = [
     "PIXEL_ENCODINGS",
+    "ChartInPicture",
     "Conversion",
     "Counts",
     "Failure",

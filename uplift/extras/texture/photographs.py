@@ -4,18 +4,33 @@ fit the first.
 
 import contextlib
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import Sensor
 from uplift.colorimetry.illuminants import Illuminant
+from uplift.colorimetry.observer import light as find_light
 from uplift.common.arrays import Array, Mask, Values
-from uplift.common.errors import TextureError
+from uplift.common.errors import OptionError, TextureError
 from uplift.extras.colour.spaces import ImageSpace, find_space
 from uplift.extras.photographs import Noise, Photographs
-from uplift.extras.photographs.fit import check_aligned, estimate_noise, exposure
+from uplift.extras.photographs.chart import (
+    COLUMNS,
+    REPORTED,
+    ROWS,
+    Patches,
+    calibrate,
+    compare_patches,
+    patch_points,
+)
+from uplift.extras.photographs.fit import (
+    check_aligned,
+    estimate_exposure,
+    estimate_noise,
+)
 from uplift.extras.texture.channels import ColourChannels, coloured_parts
 from uplift.extras.texture.colours import Decoder, make_decoder
 from uplift.extras.texture.image import Image, Part, open_image
@@ -56,6 +71,22 @@ class FurtherPicture:
 
 
 @dataclass(frozen=True)
+class ChartInPicture:
+    """A ColorChecker in photographs.
+
+    Parameters
+    ----------
+    corners : tuple of float
+        x and y in pixels of the outer corners of its patches, clockwise from dark skin.
+    atlas : str
+        File or name of its 24 measured reflectances, in this order.
+    """
+
+    corners: tuple[float, ...]
+    atlas: str = "macbeth"
+
+
+@dataclass(frozen=True)
 class FurtherPictures:
     """The further photographs of each image.
 
@@ -67,20 +98,24 @@ class FurtherPictures:
         As for `uplift.extras.photographs.photograph`.
     noise : tuple of float or None
         Share and floor, None to estimate them.
+    chart : ChartInPicture or None
+        A ColorChecker in all photographs, from which exposure, balance and noise are
+        taken.
     """
 
     pictures: tuple[FurtherPicture, ...]
     balance: str = "light"
     noise: tuple[float, float] | None = None
+    chart: ChartInPicture | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """Exposures (L,) and noise of the photographs of an image, and what to state about
-    them.
+    """Exposures (L, 3) by channel and noise of the photographs of an image, and what
+    to state about them.
     """
 
-    exposures: tuple[float, ...]
+    exposures: Array
     noise: Noise
     facts: tuple[str, ...]
 
@@ -169,12 +204,17 @@ def fit(
     RGB (n, 3) at the wavelengths of the sensor and perhaps at others.
     """
     names = [photograph.light for photograph in prepared.further]
+    shifts = [
+        check_aligned(_crops(first, picture), name)
+        for picture, name in zip(pictures, names, strict=True)
+    ]
+    if further.chart is not None:
+        return _fit_chart(prepared, further.chart, first, pictures)
     bands = [_sampled(picture) for picture in (first, *pictures)]
     noise, noise_fact = _noise(further, bands, (first, *pictures))
     factors = []
     facts = []
-    for number, (name, picture) in enumerate(zip(names, pictures, strict=True)):
-        shift = check_aligned(_crops(first, picture), name)
+    for number, (name, shift) in enumerate(zip(names, shifts, strict=True)):
         factor, reason = further.pictures[number].exposure, "as given"
         if factor is None:
             samples = bands[0], bands[1 + number]
@@ -182,7 +222,72 @@ def fit(
         factors.append(factor)
         place = "alignment not known" if shift is None else f"shift {shift:.2f} pixels"
         facts.append(f"{name}: exposure × {factor:.4g} ({reason}), {place}")
-    return Fitted(tuple(factors), noise, (*facts, noise_fact))
+    exposures = np.repeat(np.array(factors)[:, None], 3, axis=1)
+    return Fitted(exposures, noise, (*facts, noise_fact))
+
+
+def _fit_chart(
+    prepared: Photographs,
+    chart: ChartInPicture,
+    first: Picture,
+    pictures: Sequence[Picture],
+) -> Fitted:
+    """Take exposure, balance and noise from a chart, and compare its patches with
+    their measurements.
+    """
+    sensor = prepared.cube.data.sensor
+    atlas = read_atlas(chart.atlas)
+    if len(atlas) != COLUMNS * ROWS:
+        raise OptionError(
+            f"a chart has {COLUMNS * ROWS} patches, got {len(atlas)} entries in "
+            f"'{chart.atlas}'",
+            hint="measure all patches, row by row",
+        )
+    measured = resample(atlas, sensor.wavelengths).values
+    points = patch_points(np.reshape(chart.corners, (4, 2)))
+    own, *further = [_patches(picture, points) for picture in (first, *pictures)]
+    calibration = calibrate(prepared, own, further, measured)
+    exact = replace(prepared, noise=calibration.noise)
+    setting = sensor.observer, *sensor.range
+    lights = [find_light(name, *setting) for name in REPORTED]
+    errors = compare_patches(exact, calibration, own, further, measured, lights)
+    facts = [
+        f"chart: the first photograph has {calibration.exposure:.4g} × reflectance"
+    ]
+    for photograph, gain in zip(prepared.further, calibration.gains, strict=True):
+        channels = " ".join(f"{value:.4g}" for value in gain)
+        facts.append(f"{photograph.light}: R G B × {channels} (from the chart)")
+    noise = calibration.noise
+    facts.append(f"noise {noise.share:.2%} and {noise.floor:.2g} (from the chart)")
+    means = ", ".join(
+        f"{light.name} {mean:.2f}"
+        for light, mean in zip(lights, np.nanmean(errors, axis=0), strict=True)
+    )
+    facts.append(f"ΔE00 of the patches from their measurements, mean: {means}")
+    for name, row in zip(atlas.names, errors, strict=True):
+        columns = ", ".join(
+            f"{light.name} {value:.2f}"
+            for light, value in zip(lights, row, strict=True)
+        )
+        facts.append(f"  {name}: {'clipped' if np.isnan(row).any() else columns}")
+    return Fitted(calibration.gains, noise, tuple(facts))
+
+
+def _patches(picture: Picture, points: Array) -> Patches:
+    """Sample the patches of a chart at x, y (24, n, 2) in pixels."""
+    window = picture.part.window
+    x, y = np.floor(points).astype(int).transpose(2, 0, 1)
+    inside = (x >= 0) & (x < window.width) & (y >= 0) & (y < window.height)
+    if not inside.all():
+        raise OptionError(
+            "the chart must lie in the picture, which has "
+            f"{window.width} × {window.height} pixels",
+            hint="give the corners clockwise from dark skin: X,Y,X,Y,X,Y,X,Y in pixels",
+        )
+    first = int(y.min())
+    rows = picture.rows(first, int(y.max()) - first + 1)
+    values = rows[y - first, x]
+    return Patches(values.mean(axis=1), values.var(axis=1))
 
 
 def _exposure(
@@ -200,7 +305,9 @@ def _exposure(
     colours = np.clip(rgb[rows], 0, 1)
     count = len(prepared.cube.wavelengths)
     expected = sample(colours.astype(np.float32))[:, :count].astype(float)
-    factor, spread = exposure(prepared, number, colours, values[rows], expected)
+    factor, spread = estimate_exposure(
+        prepared, number, colours, values[rows], expected
+    )
     if abs(np.log(factor)) <= spread:
         return 1.0, f"estimated {factor:.4g}, within what materials differ by"
     return factor, "estimated"
