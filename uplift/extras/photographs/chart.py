@@ -1,4 +1,4 @@
-"""A ColorChecker in photographs: what they say of their exposure, balance and noise."""
+"""A ColorChecker in photographs: from which follow their exposure, balance and noise."""
 
 from dataclasses import dataclass
 

@@ -22,7 +22,7 @@ FLATTEST = 0.1
 DARKEST = 0.02
 """Linear RGB below which pixels do not count for the exposure."""
 LEAST_VARIANCE = 1e-12
-"""Least variance of linear RGB that is told from none."""
+"""Least variance of linear RGB that counts."""
 MAX_SHIFT = 1.0
 """Pixels by which photographs may be shifted against each other."""
 MIN_PEAK = 0.1
