@@ -1,4 +1,4 @@
-"""A ColorChecker in photographs: from which follow their exposure, balance and noise."""
+"""A ColorChecker in photographs, which states exposure, balance and noise."""
 
 from dataclasses import dataclass
 
