@@ -74,12 +74,6 @@ def found(checker):
     return compare(checker, representations, quick=True)
 
 
-def test_dense_data_have_no_error(checker):
-    dense = linear("dense", "dense", np.eye(401), xyz_weights())
-    for part in checker.sets:
-        assert max(error_statistics(dense, part)) < 1e-9
-
-
 def test_errors_match_explicit_loops(checker):
     part = checker.sets[1]
     samples = point_samples(16)

@@ -10,7 +10,6 @@ from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 
 from tests.helpers import raises
-from uplift.atlas import read_atlas, resample, shipped_atlases
 from uplift.colorimetry import delta_e_2000, lab, observer
 from uplift.common.errors import ColourError
 from uplift.extras.looks import extreme_spectra as extremes
@@ -108,23 +107,6 @@ def test_the_outline_of_a_mesh_is_that_of_its_projection():
     centre = skew.mean(axis=0)
     assert Path(centre + 1.01 * (limits - centre)).contains_points(skew).all()
     assert not Path(centre + 0.95 * (limits - centre)).contains_points(skew).all()
-
-
-@pytest.mark.parametrize("name", LIGHTS)
-def test_measured_metamers_lie_inside(sensor, name):
-    """Every measured reflectance is a metamer of the colour that it has; white is none
-    of grey.
-    """
-    light = observer.light(name)
-    parts = [
-        resample(read_atlas(each.path), sensor.wavelengths).values
-        for each in shipped_atlases()
-    ]
-    spectra = np.concatenate([part[:: max(len(part) // 25, 1)] for part in parts])
-    volumes = mismatch_volumes(sensor, light, sensor.rgb(spectra), divisions=1)
-    assert volumes.excess(spectra @ light.xyz.T).max() <= ROUNDING
-    grey = mismatch_volumes(sensor, light, np.full((1, 3), 0.5), divisions=1)
-    assert grey.excess(light.white[None])[0] > 0.05
 
 
 def test_volumes_that_are_points(sensor):
