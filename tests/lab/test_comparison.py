@@ -36,11 +36,8 @@ from uplift.extras.scene.representations.samples import (
     xyz_weights,
 )
 from uplift.lab.comparison.compare import (
-    COARSE_STRIDE,
-    NONE,
     Comparison,
     RepresentationResult,
-    candidates,
     cheapest,
     compare,
     compute_statistics,
@@ -48,7 +45,6 @@ from uplift.lab.comparison.compare import (
     make_scene,
     pareto,
     represent,
-    tune_filters,
 )
 from uplift.lab.comparison.fitted import scene_representations
 from uplift.lab.comparison.pictures import (
@@ -58,6 +54,7 @@ from uplift.lab.comparison.pictures import (
     write_boxes,
     write_costs,
 )
+from uplift.lab.comparison.tuning import COARSE_STRIDE, NONE, candidates, tune_filters
 from uplift.lab.timing import TimingStats
 
 

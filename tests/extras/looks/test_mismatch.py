@@ -12,18 +12,10 @@ from scipy.spatial import ConvexHull
 from tests.helpers import raises
 from uplift.colorimetry import delta_e_2000, lab, observer
 from uplift.common.errors import ColourError
-from uplift.extras.looks import extreme_spectra as extremes
 from uplift.extras.looks.extreme_spectra import extreme_spectra
-from uplift.extras.looks.mismatch import (
-    COUNTS,
-    largest_difference,
-    mesh_volume,
-    mismatch_volumes,
-    outline,
-    sphere,
-)
+from uplift.extras.looks.mesh import mesh_volume, outline, sphere
+from uplift.extras.looks.mismatch import COUNTS, largest_difference, mismatch_volumes
 
-LIGHTS = ("A", "FL11", "HP1", "LED-B3")
 ROUNDING = 1e-9
 
 
@@ -58,17 +50,6 @@ def test_extremes_are_those_of_a_linear_program(sensor, name):
         -linear_program(sensor, *each).fun for each in zip(rgb, response, strict=True)
     ]
     assert_allclose((response * found.reflectance).sum(axis=1), best, rtol=0, atol=1e-9)
-
-
-def test_extremes_do_not_depend_on_the_start_or_the_neighbours(sensor, monkeypatch):
-    rgb, response = problems(sensor, "A", 40)
-    found = extreme_spectra(sensor.matrix, rgb, response)
-    monkeypatch.setattr(extremes, "BLOCK_NUMBERS", 81 * 7)
-    warm = extreme_spectra(
-        sensor.matrix, rgb, response, np.roll(found.basis, 1, axis=0)
-    )
-    expected = (found.reflectance * response).sum(axis=1)
-    assert_allclose((warm.reflectance * response).sum(axis=1), expected, atol=1e-9)
 
 
 def test_colours_without_reflectance_are_not_solved(sensor):
