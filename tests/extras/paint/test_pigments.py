@@ -198,15 +198,6 @@ def test_duntley_s_differential_equations_are_satisfied(beam):
         )
 
 
-def test_strong_forward_scattering_gives_the_two_constant_theory():
-    """The beam becomes diffuse before anything else happens."""
-    beam = Flux(BEAMS[0].absorption, BEAMS[0].backward, np.full(2, 1e7))
-    two = Pigment(DIFFUSE.absorption, DIFFUSE.backward).layer(0.9)
-    found = duntley_layer(beam, DIFFUSE, 0.9)
-    assert_allclose(found.reflectance, two.reflectance, atol=1e-6)
-    assert_allclose(found.transmittance, two.transmittance, atol=1e-6)
-
-
 def test_constants_are_read_from_rows_and_columns(tmp_path):
     nm = [400.0, 500.0, 700.0]
     rows = np.arange(24.0).reshape(8, 3)
@@ -245,13 +236,6 @@ def test_invalid_constants_raise(tmp_path, old, new, problem):
     )
     with pytest.raises(AtlasError, match=problem):
         pigments.read_constants(tmp_path / "paint.csv", np.array([500.0]))
-
-
-@pytest.mark.parametrize("X", [0.01, 1.0, 30.0])
-def test_duntley_creates_no_energy(rng, X):
-    first = Flux(*10 ** rng.uniform(-3, 1, (3, 200)))
-    second = Flux(*10 ** rng.uniform(-3, 1, (3, 200)))
-    check_energy(duntley_layer(first, second, X))
 
 
 def test_isotropic_paint_in_a_beam_is_two_r_over_three_minus_r(rng):
