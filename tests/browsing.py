@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.browser import browser
+from tests.pages import external_links
 from tests.parts import CHROMIUM, need
 
 WIDTHS = (390, 1440)
@@ -70,9 +71,11 @@ def shared_tab():
 
 
 def check_page(html, folder):
-    """Fail if a page is too wide, has errors or violates rules; skip what the machine
-    lacks.
+    """Fail if a page loads a file, is too wide, has errors or violates rules; skip what
+    the machine lacks.
     """
+    assert all(link.startswith("data:image/") for link in external_links(html))
+    assert "@import" not in html
     tab = shared_tab()
     for width, scheme in zip(WIDTHS, SCHEMES, strict=True):
         open_page(tab, html, folder, width, scheme)

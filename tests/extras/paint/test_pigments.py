@@ -112,15 +112,6 @@ def test_opaque_reflectance_round_trip_alone_and_mixed(rule, spectra, parts):
     assert (found <= paints.max(axis=1) + 1e-12).all()
 
 
-def test_two_grounds_determine_k_and_s(paint):
-    layer = paint.layer(1.0)
-    known = layer.transmittance > 0.02
-    assert known.sum() > 30
-    found = from_black_and_white(layer.over(0.0)[known], layer.over(1.0)[known])
-    assert_allclose(found.absorption, paint.absorption[known], rtol=1e-6, atol=1e-8)
-    assert_allclose(found.scattering, paint.scattering[known], rtol=1e-6, atol=1e-8)
-
-
 @pytest.mark.parametrize(("on_black", "on_white"), [(0.3, 0.3), (0.5, 0.2), (0.6, 1.3)])
 def test_contradictory_reflectances_raise(on_black, on_white):
     with raises(ColourError):
