@@ -17,6 +17,7 @@ from benchmarks import CUBES, DOCS, Row, read_reference, record
 from uplift.colorimetry import Sensor, delta_e_rgb, rgb_to_lab
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import to_display_codes
+from uplift.extras.emission.lattice import chromaticity
 from uplift.extras.pages.plots import Strip, plot_strips
 from uplift.extras.paint import dispersive
 from uplift.extras.paint.coats import ramp
@@ -93,8 +94,7 @@ def evaluate(mixer: Mixer, sensor: Sensor, colours: Array) -> tuple[float, ...]:
     def chromaticities(rgb: Array) -> Array:
         """CIE 1976 u', v' (…, 2). Black, which has none, gets those of white."""
         is_lit = (rgb > 0).any(axis=-1, keepdims=True)
-        xyz = np.where(is_lit, sensor.xyz(rgb), sensor.light.white)
-        return xyz[..., :2] * [4, 9] / (xyz @ [1, 15, 3])[..., None]
+        return chromaticity(np.where(is_lit, sensor.xyz(rgb), sensor.light.white))
 
     def hues(rgb: Array) -> Array:
         u, v = np.moveaxis(chromaticities(rgb) - chromaticities(WHITE), -1, 0)

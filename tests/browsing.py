@@ -7,7 +7,6 @@ would.
 
 import atexit
 import json
-import time
 from contextlib import ExitStack
 from functools import cache
 from pathlib import Path
@@ -38,16 +37,8 @@ def open_page(tab, html, folder, width=WIDTHS[1], scheme=SCHEMES[0]):
     """Show a page in a window of a size and wait until it is ready."""
     path = folder / "page.html"
     path.write_text(html, encoding="utf-8")
-    tab.errors.clear()
     tab.window(width, HEIGHT, scheme)
-    tab.call("Page.navigate", url=path.as_uri())
-    end = time.monotonic() + 30
-    while not tab.evaluate(
-        "location.protocol === 'file:' && document.readyState === 'complete'"
-        " && document.querySelector('main')?.getAttribute('aria-busy') !== 'true'"
-    ):
-        assert time.monotonic() < end, tab.errors
-        time.sleep(0.02)
+    tab.open(path)
 
 
 def overflow(tab):
