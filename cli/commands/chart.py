@@ -118,13 +118,12 @@ def command(
 def _recommend(source: str | None, required: dict[str, Any]) -> None:
     """Print the cube that meets the requirement, or those of common situations."""
     from uplift.extras.pages.format import format_error, format_size, format_time
-    from uplift.lab.chart.results import (
+    from uplift.lab.chart.recommendation import (
         SITUATIONS,
         Requirement,
-        read_chart,
         recommend_cube,
-        shipped_chart,
     )
+    from uplift.lab.chart.results import read_chart, shipped_chart
 
     chart = read_chart(source) if source is not None else shipped_chart()
     situations = SITUATIONS
