@@ -50,13 +50,13 @@ class MethodResult(Description):
     """Result of a method. The fields are the columns of the CSV file.
 
     ``numbers``: ``bytes``; CPU seconds ``build_s``, ``load_s`` and ``setup_s``, their
-    sum; ``ns_N`` per RGB with N
-        colours per call, see `uplift.lab.chart.measure.call_times`; ``time_ns``, that
-        of the recommendation. Errors ``round_trip`` (judged at 1 nm),
-        ``coarse_round_trip`` (with the tables of cubes), of every light, ``lights``
-        (their mean) and ``rms``, and prefixed by ``own_`` those at entries that cubes
-        were built from, each with ``_mean``, ``_p99`` and ``_max``. Sizes
-        ``round_trip_colours``, ``unseen_spectra`` and ``own_spectra`` of the test set.
+    sum; ``ns_N`` per RGB with N colours per call, see
+    `uplift.lab.chart.call_times.call_times`; ``time_ns``, that of the recommendation.
+    Errors ``round_trip`` (judged at 1 nm), ``coarse_round_trip`` (with the tables of
+    cubes), of every light, ``lights`` (their mean) and ``rms``, and prefixed by
+    ``own_`` those at entries that cubes were built from, each with ``_mean``, ``_p99``
+    and ``_max``. Sizes ``round_trip_colours``, ``unseen_spectra`` and ``own_spectra``
+    of the test set.
     """
 
     state: State
