@@ -11,16 +11,18 @@ from scipy.integrate import solve_bvp
 
 from tests.helpers import raises
 from uplift.common.errors import AtlasError, ColourError
-from uplift.extras.paint import dispersive, pigments
-from uplift.extras.paint.pigments import (
-    CONSTANT,
-    SQUARE_ROOT,
+from uplift.extras.paint import dispersive, duntley, pigments
+from uplift.extras.paint.duntley import (
     Flux,
-    Pigment,
-    PowerOfReflectance,
     beam_to_diffuse,
     diffuse_to_beam,
     duntley_layer,
+)
+from uplift.extras.paint.pigments import (
+    CONSTANT,
+    SQUARE_ROOT,
+    Pigment,
+    PowerOfReflectance,
     from_black_and_white,
     from_opaque,
 )
@@ -192,7 +194,7 @@ def test_duntley_s_differential_equations_are_satisfied(beam):
 def test_constants_are_read_from_rows_and_columns(tmp_path):
     nm = [400.0, 500.0, 700.0]
     rows = np.arange(24.0).reshape(8, 3)
-    names = (*pigments.CONSTANTS, "S'", "S")
+    names = (*duntley.CONSTANTS, "S'", "S")
     rows[6:] = rows[1] + rows[2], rows[4] + rows[5]
     lines = [
         ["name", *nm],
@@ -203,7 +205,7 @@ def test_constants_are_read_from_rows_and_columns(tmp_path):
         path.write_text(
             "\n".join(",".join(map(str, row)) for row in cells), encoding="utf-8"
         )
-        found = pigments.read_constants(path, np.array([380, 450, 700]))
+        found = duntley.read_constants(path, np.array([380, 450, 700]))
         assert_allclose(
             found,
             np.stack([rows[:6, 0], rows[:6, :2].mean(axis=1), rows[:6, 2]], axis=1),
@@ -219,14 +221,14 @@ def test_constants_are_read_from_rows_and_columns(tmp_path):
     ],
 )
 def test_invalid_constants_raise(tmp_path, old, new, problem):
-    text = "".join(f"{name},1,1\n" for name in ("nm", *pigments.CONSTANTS)).replace(
+    text = "".join(f"{name},1,1\n" for name in ("nm", *duntley.CONSTANTS)).replace(
         "nm,1,1", "nm,380,780"
     )
     (tmp_path / "paint.csv").write_text(
         (text + "S,2,2\n").replace(old, new, 1), encoding="utf-8"
     )
     with pytest.raises(AtlasError, match=problem):
-        pigments.read_constants(tmp_path / "paint.csv", np.array([500.0]))
+        duntley.read_constants(tmp_path / "paint.csv", np.array([500.0]))
 
 
 def test_isotropic_paint_in_a_beam_is_two_r_over_three_minus_r(rng):

@@ -25,8 +25,9 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftWarning, warn
 from uplift.common.text import pluralise
 from uplift.extras.paint import optics, pigments
+from uplift.extras.paint.duntley import Flux, duntley_layer
 from uplift.extras.paint.optics import Layer, Surface
-from uplift.extras.paint.pigments import Flux, Pigment, Scattering
+from uplift.extras.paint.pigments import Pigment, Scattering
 
 COATS = ("pigment", "dye", "duntley")
 KINDS = (*COATS, "filter", "light")
@@ -167,7 +168,7 @@ def _duntley_coat(
         constants.reshape(len(constants), -1), optics.as_shares(parts)
     )
     fluxes = np.moveaxis(mixed.reshape(*mixed.shape[:-1], 6, -1), -2, 0)
-    layer = pigments.duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), thickness)
+    layer = duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), thickness)
     return Coat(layer, surface)
 
 
