@@ -42,6 +42,10 @@ os.execv(command[0], command)"""
 """Chromium reads from descriptor 3 and writes to 4."""
 SETTLE = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 """To evaluate: waits for the frame that is due."""
+READY = (
+    "location.protocol === 'file:' && document.readyState === 'complete'"
+    " && document.querySelector('main')?.getAttribute('aria-busy') !== 'true'"
+)
 CANVAS = """(async () => {
   await SETTLE;
   const canvas = document.getElementById("NAME");
@@ -114,9 +118,7 @@ class Browser:
         self.errors.clear()
         self.call("Page.navigate", url=path.resolve().as_uri())
         end = time.monotonic() + PATIENCE
-        while not self.evaluate(
-            "document.querySelector('main')?.getAttribute('aria-busy') === 'false'"
-        ):
+        while not self.evaluate(READY):
             if time.monotonic() > end:
                 raise TimeoutError(f"{path} stays busy: {self.errors}")
             time.sleep(0.02)

@@ -9,7 +9,7 @@ from benchmarks.choices import ALONE, OURS, mark
 from benchmarks.materials import SHIPPED, read_atlases
 from uplift.common.files import write_text
 from uplift.extras.colour.light_sets import CHART_LIGHTS
-from uplift.lab.chart.measure import measure_methods, select_methods
+from uplift.lab.chart.measure import measure_methods
 from uplift.lab.chart.method import Effort, make_task
 from uplift.lab.chart.picture import render_chart, write_picture
 from uplift.lab.chart.results import (
@@ -20,6 +20,7 @@ from uplift.lab.chart.results import (
     chart_csv,
     criteria,
 )
+from uplift.lab.chart.selection import select_methods
 from uplift.lab.study.held_out import LOCAL_LINEAR
 from uplift.lab.study.rivals import METAMER_MEAN
 

@@ -45,8 +45,8 @@ from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
 from uplift.extras.report.measures import check_calibration
 from uplift.fit import shipped_library
 from uplift.fit.families import LENGTH, NUGGET
-from uplift.lab.chart.measure import select_methods
 from uplift.lab.chart.method import Uplift, make_task
+from uplift.lab.chart.selection import select_methods
 from uplift.lab.study import held_out
 from uplift.lab.study.local_linear import local_linear
 from uplift.lookup import Cube

@@ -12,6 +12,7 @@ import json
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,7 @@ from scipy.special import ndtr
 import uplift
 from benchmarks import ROOT, Row, record
 from benchmarks.checker import BACKGROUND, Layout, chart
-from benchmarks.materials import Materials, materials
+from benchmarks.materials import materials
 from benchmarks.showcase import ATLAS, DIM, FOLDER, MEASURED, PLAIN
 from uplift.colorimetry import Sensor
 from uplift.colorimetry.observer import (
@@ -100,7 +101,6 @@ def expose_chart() -> None:
                 "stated": stated,
                 "mean": stops.mean(),
                 "largest": stops.max(),
-                "patches": stops,
             }
         )
     write_png(figure, FOLDER / "film.png", force=True)
@@ -155,15 +155,16 @@ def measure_stocks(stocks: Sequence[Stock]) -> list[Row]:
     for stock in stocks:
         truth = tested.measured * film_power() @ stock.plain
         row: Row = {"stock": stock.name, "cube": stops(lit @ stock.plain, truth)}
-        for name, spectra in tables.items():
-            row[name] = table_stops(spectra @ stock.plain, tested.rgb, truth)
-            row[f"{name}, balanced"] = balanced(stock, stock.plain, spectra, tested)
-            row[f"{name}, window"] = table_stops(
-                spectra @ stock.windowed, tested.rgb, truth
-            )
-            row[f"{name}, window, balanced"] = balanced(
-                stock, stock.windowed, spectra, tested
-            )
+        sensitivities = {"": stock.plain, ", window": stock.windowed}
+        for (name, spectra), (window, layers) in product(
+            tables.items(), sensitivities.items()
+        ):
+            exposed = spectra @ layers
+            row[f"{name}{window}"] = table_stops(exposed, tested.rgb, truth)
+            # white is exposed as it should be, as in a print that is balanced for white
+            white = exposures(exposed, sensor(), np.ones((1, 3)))
+            exposed *= film_power() @ stock.plain / white
+            row[f"{name}{window}, balanced"] = table_stops(exposed, tested.rgb, truth)
         rows.append(row)
     return rows
 
@@ -181,19 +182,6 @@ def measure_shares(stocks: Sequence[Stock], name: str) -> Row:
             by_stock.append(table_stops(table @ stock.plain, tested.rgb, truth))
         errors[str(share)] = float(np.mean(by_stock))
     return {"materials": name, "stops": errors}
-
-
-def balanced(
-    stock: Stock, sensitivity: Array, spectra: Array, tested: Materials
-) -> float:
-    """Error of a table (k, k, N) if white is exposed as it should be, as in a print
-    that is balanced for white.
-    """
-    table = spectra @ sensitivity
-    white = exposures(table, sensor(), np.ones((1, 3)))
-    table *= film_power() @ stock.plain / white
-    truth = tested.measured * film_power() @ stock.plain
-    return table_stops(table, tested.rgb, truth)
 
 
 def table_stops(table: Array, rgb: Array, truth: Array) -> float:

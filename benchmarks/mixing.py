@@ -1,20 +1,20 @@
-"""Mixing models: criteria, assumed scattering, times and pictures, for
+"""Mixing models: assumed scattering, times and pictures, and criteria, for
 docs/mixing.md.
 """
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 import uplift
 from benchmarks import CUBES, DOCS, Row, read_reference, record
-from uplift.colorimetry import Sensor, delta_e_rgb, rgb_to_lab
+from benchmarks.painters import SHARES, criteria
+from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.pages.plots import Strip, plot_strips
@@ -28,12 +28,10 @@ from uplift.extras.paint.pigments import (
     Scattering,
     from_opaque,
 )
-from uplift.extras.paint.theories import Mixer, mixers, spectral_models
+from uplift.extras.paint.theories import mixers, spectral_models
 from uplift.lab.timing import TimingStats, time_laps
 from uplift.lookup import Cube
 
-SHARES = np.array([(0.75, 0.25), (0.5, 0.5), (0.25, 0.75)])
-"""Proportions of shades, tints and greens."""
 BLUES = ("ultramarine", "cobalt", "cerulean", "phthalo blue")
 ARTISTS = ("#002185", "#fcd200")
 """Cobalt blue and Hansa yellow, as Mixbox's table has them."""
@@ -57,86 +55,6 @@ DRAWN = (
 )  # fmt: skip
 """Shares are the thickness of filters and products, so that a ramp ends at its colours.
 """
-
-# --- criteria ---
-
-BLACK = np.zeros(3)
-WHITE = np.ones(3)
-COMPLEMENTS = (((0, 0, 1), (1, 0.5, 0)), ((1, 0, 0), (0, 1, 0)), ((1, 1, 0), (1, 0, 1)))
-"""Blue and orange, red and green, yellow and purple, as saturated linear RGB."""
-BLUE_YELLOW = np.array([[0.0, 0, 1], [1.0, 1, 0]])
-
-
-CRITERIA = {
-    "mixed with itself: no change": 0.1,  # worst ΔE00
-    "with black: chromaticity kept": 0.005,  # worst Δu'v'
-    "with black: darker": 0.0,  # largest change of L*
-    "with white: hue kept": 3.0,  # worst turn, degrees
-    "with white: lighter": 0.0,  # largest fall of L*
-    "with its complement: grey": 10.0,  # worst C*ab
-    "blue and yellow: green": -0.01,  # max(R, B) − G at best
-}
-"""Criteria of painters (Fishkin 1983, 10.4), and the largest value of each that passes,
-in the order of `evaluate`.
-
-The thesis requires tints to maintain chromaticity, too. White, however, moves every
-chromaticity towards its own. A tint can only keep its hue, the direction from white in
-the CIE 1976 u'v' diagram. A shade can keep both.
-"""
-
-
-def evaluate(mixer: Mixer, sensor: Sensor, colours: Array) -> tuple[float, ...]:
-    """Measure a mixing model by every criterion, the first five with linear RGB (n, 3)
-    without greys.
-    """
-
-    def chromaticities(rgb: Array) -> Array:
-        """CIE 1976 u', v' (…, 2). Black, which has none, gets those of white."""
-        is_lit = (rgb > 0).any(axis=-1, keepdims=True)
-        xyz = np.where(is_lit, sensor.xyz(rgb), sensor.light.white)
-        return xyz[..., :2] * [4, 9] / (xyz @ [1, 15, 3])[..., None]
-
-    def hues(rgb: Array) -> Array:
-        u, v = np.moveaxis(chromaticities(rgb) - chromaticities(WHITE), -1, 0)
-        return np.degrees(np.arctan2(v, u))
-
-    def mix_all(pairs: Iterable[Sequence[ArrayLike]], parts: Array) -> Array:
-        return np.array([mixer.mix(np.array(pair, float), parts) for pair in pairs])
-
-    equal = np.ones(2)
-    itself = mix_all(zip(colours, colours, strict=True), equal)
-    shades = mix_all(((colour, BLACK) for colour in colours), 2 * SHARES)
-    tints = mix_all(((colour, WHITE) for colour in colours), 2 * SHARES)
-    greys = mix_all(COMPLEMENTS, equal)
-    greens = mixer.mix(BLUE_YELLOW, 2 * SHARES)
-    lightness = rgb_to_lab(sensor, colours)[:, None, 0]
-    moves = chromaticities(shades) - chromaticities(colours)[:, None]
-    turns = (hues(tints) - hues(colours)[:, None] + 180) % 360 - 180
-    chroma = [np.linalg.norm(rgb_to_lab(sensor, grey)[1:]) for grey in greys]
-    return (
-        delta_e_rgb(sensor, colours, itself).max(),
-        np.linalg.norm(moves, axis=-1).max(),
-        (rgb_to_lab(sensor, shades)[..., 0] - lightness).max(),
-        np.abs(turns).max(),
-        (lightness - rgb_to_lab(sensor, tints)[..., 0]).max(),
-        max(chroma),
-        (np.maximum(greens[:, 0], greens[:, 2]) - greens[:, 1]).min(),
-    )
-
-
-def criteria(cube: Cube) -> Row:
-    """Evaluate every mixer by every criterion on the coloured patches of an atlas."""
-    atlas = cube.data.atlas.rgb
-    coloured = atlas[np.ptp(atlas, axis=1) > 0.1 * atlas.max(axis=1)]
-    rows = []
-    for mixer in mixers(cube):
-        values = evaluate(mixer, cube.data.sensor, coloured)
-        verdicts = [
-            {"obeys": value <= limit, "value": value + 0.0}
-            for limit, value in zip(CRITERIA.values(), values, strict=True)
-        ]
-        rows.append({"mixer": mixer.title, "verdicts": verdicts})
-    return {"criteria_titles": list(CRITERIA), "criteria": rows}
 
 
 # --- rules for S on mixtures of known paints ---

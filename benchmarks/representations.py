@@ -21,8 +21,9 @@ from uplift.extras.scene.representations.composite import (
 )
 from uplift.extras.scene.representations.samples import Representation, linear
 from uplift.lab.comparison import compare
-from uplift.lab.comparison.compare import Comparison, Scene, TunedFilter
+from uplift.lab.comparison.compare import Comparison, Scene
 from uplift.lab.comparison.pictures import write_boxes, write_costs
+from uplift.lab.comparison.tuning import NONE, TunedFilter, tune_filters
 
 OTHER_LIGHTS = ("LED-B3", "LED-RGB1", "HP1")
 TARGETS = (2.0, 1.0, 0.5)
@@ -55,7 +56,7 @@ def main() -> None:
         advice=[*advice(ours), *advice(others)],
         ranking=[*ranking(ours, printed), *ranking(others, {})],
         riemann=riemann_rows(default, printed),
-        filters=filter_rows(compare.tune_filters(default), printed_filters()),
+        filters=filter_rows(tune_filters(default), printed_filters()),
     )
 
 
@@ -142,8 +143,8 @@ def filter_rows(
     for best in tuned:
         key = best.lights, best.count, best.kind
         lights, count, kind = key
-        bare = lights, count, compare.NONE
-        is_filtered = kind != compare.NONE
+        bare = lights, count, NONE
+        is_filtered = kind != NONE
         printed = thesis[key]
         rows.append(
             {

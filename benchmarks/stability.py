@@ -14,7 +14,7 @@ from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
 from uplift.extras.report.rebuild import recorded_atlas
-from uplift.lab.chart.measure import perturb_method, select_methods
+from uplift.lab.chart.selection import perturb_method, select_methods
 from uplift.lab.study.plots import plot_locality, plot_map
 from uplift.lab.study.sensitivity import (
     COLOURS,

@@ -34,6 +34,8 @@ SETS = (*ATLASES, MIXTURE)
 CODES = 14
 """Codes of a ramp to each side of an entry."""
 DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]])
+TRUSTS: dict[str, dict[str, Any]] = {"learnt": {}, "full": {"trust_atlas": True}}
+"""Options of builds by the trust in the atlas."""
 SPOT_LIGHT = "HP1"
 """Light of the strips."""
 STRIPS = 2
@@ -96,9 +98,8 @@ def of_own_kind(name: str) -> Row:
     the learnt trust and with full trust.
     """
     row: Row = {"set": name}
-    alone = uplift.build(dim=DIM, leave_out=shipped_families(name))
-    row["without"] = mean_errors(alone, materials(name)).mean()
-    for label, options in (("learnt", {}), ("full", {"trust_atlas": True})):
+    row["without"] = alone_at(name).mean()
+    for label, options in TRUSTS.items():
         halves = other_halves(name, dim=DIM, **options)
         unseen = [mean_errors(cube, queried) for cube, queried in halves]
         row[label] = np.mean(unseen)
@@ -132,14 +133,13 @@ def of_pair(atlas: str, queried: str) -> Row:
     """
     row: Row = {"atlas": atlas, "queried": queried}
     left_out = shipped_families(queried)
-    for label, options in (("learnt", {}), ("full", {"trust_atlas": True})):
-        settings: dict[str, Any] = {"dim": DIM, "leave_out": left_out, **options}
-        cube = materials(atlas).cube(**settings)
-        found = mean_errors(cube, materials(queried))
+    for label, options in TRUSTS.items():
+        cube = materials(atlas).cube(dim=DIM, leave_out=left_out, **options)
+        delta_e = mean_errors(cube, materials(queried))
         if label == "learnt":
             row["trust"] = cube.data.provenance["prior"]["trust"]
-        row[label] = found.mean() / alone_at(queried).mean()
-        row[f"{label}_worst"] = (found / alone_at(queried)).max()
+        row[label] = delta_e.mean() / alone_at(queried).mean()
+        row[f"{label}_worst"] = (delta_e / alone_at(queried)).max()
     return row
 
 
@@ -151,8 +151,11 @@ def of_ramps(name: str) -> Row:
     for label, options in (("smoothed", {}), ("exact", {"exact_entries": True})):
         cube = materials(name).cube(dim=DIM, **options)
         excess = steepest(cube)
-        row[label] = {"largest": excess.max(), "above": int((excess > 1).sum())}
-        row[label]["count"] = len(cube.data.provenance["smoothed"])
+        row[label] = {
+            "largest": excess.max(),
+            "above": (excess > 1).sum(),
+            "count": len(cube.data.provenance["smoothed"]),
+        }
     return row
 
 
@@ -160,17 +163,23 @@ def steepest(cube: Cube) -> Array:
     """The largest ΔE00 (E,) by which a light's step of an 8-bit code exceeds that of
     daylight, on ramps through each entry.
     """
-    codes = np.round(cube.encode(cube.data.atlas.rgb))
-    offsets = np.arange(-CODES, CODES + 1)[:, None] * DIRECTIONS[:, None]
-    ramps = np.clip(codes[:, None, None] + offsets, 0, 255)
-    spectra = cube.reflectance(cube.decode(ramps))
+    spectra = cube.reflectance(ramps(cube, cube.data.atlas.rgb, DIRECTIONS))
     before = spectra[:, :, :-1].reshape(-1, spectra.shape[-1])
     after = spectra[:, :, 1:].reshape(-1, spectra.shape[-1])
     daylight = delta_e_spectra(observer.light("D65"), before, after)
     lights = map(observer.light, RAMP_LIGHTS)
     steps = [delta_e_spectra(light, before, after) for light in lights]
     excess = np.max(steps, axis=0) - daylight
-    return excess.reshape(len(codes), -1).max(axis=1)
+    return excess.reshape(len(spectra), -1).max(axis=1)
+
+
+def ramps(cube: Cube, rgb: Array, directions: Array) -> Array:
+    """Linear RGB (n, D, 2 CODES + 1, 3) of ramps through colours (n, 3) in directions
+    (D, 3).
+    """
+    codes = np.round(cube.encode(rgb))
+    offsets = np.arange(-CODES, CODES + 1)[:, None] * directions[:, None]
+    return cube.decode(np.clip(codes[:, None, None] + offsets, 0, 255))
 
 
 def draw_strips() -> Any:
@@ -187,10 +196,8 @@ def draw_strips() -> Any:
     ]
     figure = new_figure(6.4, 0.5 * len(strips) * len(worst))
     panels = figure.subplots(len(strips) * len(worst), 1)
-    for row, entry in enumerate(worst):
-        centre = np.round(exact.encode(exact.data.atlas.rgb[entry]))
-        offsets = np.arange(-CODES, CODES + 1)[:, None] * DIRECTIONS[-1]
-        rgb = exact.decode(np.clip(centre + offsets, 0, 255))
+    greyward = ramps(exact, exact.data.atlas.rgb[worst], DIRECTIONS[-1:])[:, 0]
+    for row, rgb in enumerate(greyward):
         for number, (light, cube, title) in enumerate(strips):
             shown = observer.sensor(illuminant=light)
             linear = shown.rgb(cube.reflectance(rgb))

@@ -51,7 +51,7 @@ class SpectrumResolver:
         spectrum (6, N). Raises `ColourError` for unknown names, `OptionError` for parts
         that are not positive, `AtlasError` for files.
         """
-        from uplift.extras.paint.pigments import read_constants
+        from uplift.extras.paint.duntley import read_constants
 
         entries = (
             ()

@@ -7,7 +7,6 @@ would.
 
 import atexit
 import json
-import time
 from contextlib import ExitStack
 from functools import cache
 from pathlib import Path
@@ -15,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.browser import browser
+from tests.pages import external_links
 from tests.parts import CHROMIUM, need
 
 WIDTHS = (390, 1440)
@@ -37,16 +37,8 @@ def open_page(tab, html, folder, width=WIDTHS[1], scheme=SCHEMES[0]):
     """Show a page in a window of a size and wait until it is ready."""
     path = folder / "page.html"
     path.write_text(html, encoding="utf-8")
-    tab.errors.clear()
     tab.window(width, HEIGHT, scheme)
-    tab.call("Page.navigate", url=path.as_uri())
-    end = time.monotonic() + 30
-    while not tab.evaluate(
-        "location.protocol === 'file:' && document.readyState === 'complete'"
-        " && document.querySelector('main')?.getAttribute('aria-busy') !== 'true'"
-    ):
-        assert time.monotonic() < end, tab.errors
-        time.sleep(0.02)
+    tab.open(path)
 
 
 def overflow(tab):
@@ -70,9 +62,11 @@ def shared_tab():
 
 
 def check_page(html, folder):
-    """Fail if a page is too wide, has errors or violates rules; skip what the machine
-    lacks.
+    """Fail if a page loads a file, is too wide, has errors or violates rules; skip what
+    the machine lacks.
     """
+    assert all(link.startswith("data:image/") for link in external_links(html))
+    assert "@import" not in html
     tab = shared_tab()
     for width, scheme in zip(WIDTHS, SCHEMES, strict=True):
         open_page(tab, html, folder, width, scheme)

@@ -98,5 +98,5 @@ def external_links(html):
         if name in ("src", "srcset", "href", "xlink:href")
     ]
     return [link for link in links if not link.startswith("#")] + [
-        tag for tag in page.tags if tag in ("link", "img", "iframe", "object")
+        tag for tag in page.tags if tag in ("link", "iframe", "object")
     ]

@@ -31,7 +31,8 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, Undefined
 
 from uplift.extras.files.csv import csv_text
 from uplift.extras.pages import format as viz_format
-from uplift.lab.chart.results import SITUATIONS, recommend_cube, shipped_chart
+from uplift.lab.chart.recommendation import SITUATIONS, recommend_cube
+from uplift.lab.chart.results import shipped_chart
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"

@@ -118,13 +118,12 @@ def command(
 def _recommend(source: str | None, required: dict[str, Any]) -> None:
     """Print the cube that meets the requirement, or those of common situations."""
     from uplift.extras.pages.format import format_error, format_size, format_time
-    from uplift.lab.chart.results import (
+    from uplift.lab.chart.recommendation import (
         SITUATIONS,
         Requirement,
-        read_chart,
         recommend_cube,
-        shipped_chart,
     )
+    from uplift.lab.chart.results import read_chart, shipped_chart
 
     chart = read_chart(source) if source is not None else shipped_chart()
     situations = SITUATIONS
@@ -145,8 +144,9 @@ def _recommend(source: str | None, required: dict[str, Any]) -> None:
 def _measure(
     files: tuple[str, ...], patterns: tuple[str, ...], *, quick: bool
 ) -> Chart:
-    from uplift.lab.chart.measure import QUICK_METHODS, measure_methods, select_methods
+    from uplift.lab.chart.measure import measure_methods
     from uplift.lab.chart.method import QUICK, Effort, make_task
+    from uplift.lab.chart.selection import QUICK_METHODS, select_methods
 
     methods = select_methods(patterns or (QUICK_METHODS if quick else ()))
     task = make_task(read_atlases(files), COLOURS, QUICK if quick else Effort())

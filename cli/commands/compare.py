@@ -21,7 +21,8 @@ from ..startup import use_one_blas_thread
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.lab.comparison.compare import Comparison, TunedFilter
+    from uplift.lab.comparison.compare import Comparison
+    from uplift.lab.comparison.tuning import TunedFilter
 
 FILES = ("compare-boxes.png", "compare-cost.png", "compare.html")
 SPECTRA = ("surfaces.csv", "lights.csv")
@@ -162,14 +163,9 @@ def _measure(
     filters: bool,
     quick: bool,
 ) -> tuple[Comparison, tuple[TunedFilter, ...]]:
-    from uplift.lab.comparison.compare import (
-        COARSE_STRIDE,
-        FINE_STRIDE,
-        compare,
-        make_scene,
-        tune_filters,
-    )
+    from uplift.lab.comparison.compare import compare, make_scene
     from uplift.lab.comparison.fitted import scene_representations
+    from uplift.lab.comparison.tuning import COARSE_STRIDE, FINE_STRIDE, tune_filters
 
     scene = make_scene(read_atlases(files), lights)
     if quick:
@@ -239,7 +235,8 @@ def _print_table(
 def _print_records(
     comparison: Comparison, tuned: tuple[TunedFilter, ...], style: str
 ) -> None:
-    from uplift.lab.comparison.compare import filter_records, records
+    from uplift.lab.comparison.compare import records
+    from uplift.lab.comparison.tuning import filter_records
     from uplift.lab.timing import records_csv
 
     tables = {"representations": records(comparison), "filters": filter_records(tuned)}

@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.common.errors import OutputError, UpliftWarning
+from uplift.common.errors import OutputError
 from uplift.common.text import pluralise
 
 from .. import options
 from ..ingredients import SpectrumResolver
 from ..inputs import check_range, find_input_space
-from ..output.answers import (
-    as_lists,
-    coordinates,
-    describe_coordinates,
-    format_rgb,
-    hex_code,
-    patch,
-    print_spectrum,
+from ..mixtures import (
+    Recipe,
+    mix_ramp,
+    plot_ramp,
+    print_mixture_json,
+    print_mixture_table,
+    print_theories,
+    read_recipe,
 )
-from ..output.console import has_colours, make_table, print_json, say, show
+from ..output.console import say
 from ..output.diagnostics import warn
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
@@ -31,7 +31,7 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.extras.paint import Ingredients, Medium, Surface
+    from uplift.extras.paint import Medium, Surface
     from uplift.extras.paint.pigments import Scattering
     from uplift.lookup import Cube
 
@@ -208,9 +208,9 @@ def command(
         method,
         has_spectrum=not theories and over is None,
     )
-    recipe = _read_recipe(resolver, words, kind)
+    recipe = read_recipe(resolver, words, kind)
     if theories:
-        _print_theories(recipe, method, style)
+        print_theories(recipe, method, style)
         return
     law = _scattering_law(scattering, recipe.cube, further)
     medium = Medium(thickness, _surface(**surface), law, plate is not None)
@@ -221,13 +221,13 @@ def command(
     backing = None
     if plate != "transmitted":
         backing = resolver.spectrum(ground or "white")
-    mixture = _mix(recipe, medium, backing, steps, method)
+    mixture = mix_ramp(recipe, medium, backing, steps, method)
     if plot_path is not None:
-        _plot_ramp(recipe, mixture, plot_path, force=force)
+        plot_ramp(recipe, mixture, plot_path, force=force)
     if style == "json":
-        _print_json(recipe, mixture, further)
+        print_mixture_json(recipe, mixture, further)
     else:
-        _print_table(recipe, mixture, further, complete=wavelengths is not None)
+        print_mixture_table(recipe, mixture, further, complete=wavelengths is not None)
 
 
 def _check_coat(kind: str, plate: str | None) -> None:
@@ -304,35 +304,6 @@ def _prepare_resolver(
     return SpectrumResolver(cube, atlas, grid, space, method), further
 
 
-@dataclass(frozen=True, eq=False)
-class _Recipe:
-    """Ingredients with their names and parts."""
-
-    cube: Cube
-    kind: str
-    names: Sequence[str]
-    parts: tuple[float, ...]
-    ingredients: Ingredients
-
-    @property
-    def title(self) -> str:
-        pairs = zip(self.parts, self.names, strict=True)
-        return ", ".join(f"{amount:g} of {name}" for amount, name in pairs)
-
-
-def _read_recipe(
-    resolver: SpectrumResolver, words: Sequence[str], kind: str
-) -> _Recipe:
-    import numpy as np
-
-    from uplift.extras.paint import Ingredients
-
-    ingredients = [resolver.ingredient(word, kind) for word in words]
-    names, parts, spectra, on_black = zip(*ingredients, strict=True)
-    stacked = Ingredients(np.stack(spectra), on_black)
-    return _Recipe(resolver.cube, kind, names, parts, stacked)
-
-
 def _scattering_law(name: str, cube: Cube, further: Array) -> Scattering:
     from uplift.extras.paint.pigments import CONSTANT, SQUARE_ROOT, dispersive
 
@@ -355,7 +326,7 @@ def _surface(
 
 
 def _paint(
-    recipe: _Recipe,
+    recipe: Recipe,
     medium: Medium,
     scattering: str,
     over: str,
@@ -384,131 +355,3 @@ def _paint(
         painted = convert(painter, over, output, force=force, progress=progress)
     warn(painted.warnings)
     say(f"{output}: {pluralise(painted.counts.pixels, 'pixel')} painted over")
-
-
-@dataclass(frozen=True, eq=False)
-class _Mixture:
-    """The mixture, followed by the ramp from its first to its last ingredient."""
-
-    rgb: Array
-    colours: list[dict[str, Any]]
-    values: Array
-    """Spectrum of the mixture at the wavelengths of the output."""
-
-
-def _mix(
-    recipe: _Recipe, medium: Medium, backing: Array | None, steps: int, method: str
-) -> _Mixture:
-    """Mix on a backing; without, return the light that a plate transmits."""
-    import numpy as np
-
-    from uplift.colorimetry.gamut import map_to_gamut
-    from uplift.extras.paint import make_coat, mix
-    from uplift.extras.paint.coats import ramp
-
-    cube = recipe.cube
-    sensor = cube.data.sensor
-    parts = recipe.parts
-    amounts = np.concatenate([np.array(parts)[None], ramp(parts, steps)])
-    if backing is None:
-        coat = make_coat(recipe.kind, recipe.ingredients, amounts, medium)
-        mixed = coat.layer.transmittance
-    else:
-        mixed = mix(recipe.kind, recipe.ingredients, amounts, medium, backing)
-    count = len(sensor.wavelengths)
-    rgb = sensor.rgb(mixed[:, :count])
-    inside = np.clip(rgb, 0, 1)
-    rounded = np.abs(rgb - inside).max(axis=1, keepdims=True) <= cube.data.threshold
-    mapped = map_to_gamut(np.where(rounded, inside, rgb), sensor, method)
-    if mapped.outside[0]:
-        problem = f"the mixture lies outside [0, 1]: mapped into the gamut ({method})"
-        warn([UpliftWarning(problem)])
-    colours = [
-        {"parts": row.tolist(), **_colour(cube, colour)}
-        for row, colour in zip(amounts, mapped.rgb, strict=True)
-    ]
-    return _Mixture(mapped.rgb, colours, mixed[0, count:])
-
-
-def _plot_ramp(recipe: _Recipe, mixture: _Mixture, path: str, *, force: bool) -> None:
-    from uplift.extras.colour.srgb import to_display_codes
-    from uplift.extras.pages.plots import Strip, plot_strips
-
-    names = recipe.names
-    codes = to_display_codes(mixture.rgb, recipe.cube.data.sensor) / 255
-    strips = [
-        Strip(f"{recipe.kind}: {recipe.title}", codes[:1]),
-        Strip(f"from {names[0]} to {names[-1]}", codes[1:]),
-    ]
-    plot_strips(strips[: len(names)], path, force=force)
-
-
-def _print_json(recipe: _Recipe, mixture: _Mixture, wavelengths: Array) -> None:
-    answer = {
-        "kind": recipe.kind,
-        "names": recipe.names,
-        **mixture.colours[0],
-        "wavelengths": wavelengths.tolist(),
-        "spectrum": as_lists(mixture.values),
-        "ramp": mixture.colours[1:],
-    }
-    print_json(answer, indent=None)
-
-
-def _print_table(
-    recipe: _Recipe, mixture: _Mixture, wavelengths: Array, *, complete: bool
-) -> None:
-    cube = recipe.cube
-    colour = mixture.colours[0]
-    fields = {
-        recipe.kind: recipe.title,
-        "linear RGB": f"{format_rgb(mixture.rgb[0])}  {colour['hex']}",
-    }
-    fields |= describe_coordinates(colour)
-    if len(recipe.names) > 1:
-        fields["ramp"] = " ".join(step["hex"] for step in mixture.colours[1:])
-    print_spectrum(
-        fields,
-        wavelengths,
-        mixture.values,
-        complete=complete,
-        patches={
-            "linear RGB": patch(cube, mixture.rgb[0]),
-            "ramp": "".join(patch(cube, rgb, 4) for rgb in mixture.rgb[1:]),
-        },
-        highest=max(1, mixture.values.max()),
-    )
-
-
-def _print_theories(recipe: _Recipe, method: str, style: str) -> None:
-    import numpy as np
-    from rich.text import Text
-
-    from uplift.colorimetry.gamut import map_to_gamut
-    from uplift.extras.paint.theories import mixers
-
-    cube = recipe.cube
-    sensor = cube.data.sensor
-    rgb = np.clip(sensor.rgb(recipe.ingredients.spectra), 0, 1)
-    parts = np.array(recipe.parts)
-    mixed = {
-        mixer.title: map_to_gamut(mixer.mix(rgb, parts)[None], sensor, method).rgb[0]
-        for mixer in mixers(cube)
-    }
-    if style == "json":
-        rows = [{"theory": title, **_colour(cube, rgb)} for title, rgb in mixed.items()]
-        print_json({"names": recipe.names, "theories": rows}, indent=None)
-        return
-    table = make_table()
-    table.add_column("theory")
-    for heading in ("hex", "linear RGB"):
-        table.add_column(heading, no_wrap=True)
-    for title, rgb in mixed.items():
-        code = hex_code(cube, rgb)
-        cell = Text(code).append("        " * has_colours(), style=f"on {code}")
-        table.add_row(title, cell, format_rgb(rgb))
-    show(table)
-
-
-def _colour(cube: Cube, rgb: Array) -> dict[str, Any]:
-    return {"rgb": as_lists(rgb), "hex": hex_code(cube, rgb), **coordinates(cube, rgb)}

@@ -345,7 +345,7 @@ def sensitivity(
     from uplift.colorimetry import observer
     from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
     from uplift.extras.report.rebuild import recorded_atlas, recorded_files
-    from uplift.lab.chart.measure import perturb_method, select_methods
+    from uplift.lab.chart.selection import perturb_method, select_methods
     from uplift.lab.study.sensitivity import study_sensitivity
     from uplift.lookup import load
 

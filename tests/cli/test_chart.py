@@ -11,12 +11,12 @@ from uplift_cli.commands import chart
 from uplift_cli.main import main
 
 from tests.lab.chart import faulty
-from uplift.lab.chart import measure, method
+from uplift.lab.chart import method, selection
 from uplift.lab.chart.results import read_chart
 from uplift.lab.timing import ONE_THREAD
 
 FILES = ["chart.csv", "chart.html", "chart.png"]
-FOREIGN = {each.method for each in measure.METHODS if each.needs}
+FOREIGN = {each.method for each in selection.METHODS if each.needs}
 """Methods that a machine may lack."""
 
 
@@ -96,7 +96,7 @@ def test_methods_that_crash_hang_or_are_missing_have_rows(
     run, macbeth, monkeypatch, limit, reasons
 ):
     monkeypatch.setattr(method, "QUICK", replace(method.QUICK, limit=limit))
-    monkeypatch.setattr(measure, "METHODS", (*measure.METHODS, *faulty.METHODS))
+    monkeypatch.setattr(selection, "METHODS", (*selection.METHODS, *faulty.METHODS))
     names = [f"--method=faulty-{name}" for name in reasons]
     result = run(
         "chart --quick --atlas",

@@ -37,7 +37,8 @@ from uplift.extras.scene.plan import read_scene_file
 from uplift.extras.scene.plan.files import FORMAT, read_plan
 from uplift.extras.texture import Counts, convert
 from uplift.extras.texture.uplifter import Converter
-from uplift.lab.chart.results import Requirement, criteria, read_chart, recommend_cube
+from uplift.lab.chart.recommendation import Requirement, recommend_cube
+from uplift.lab.chart.results import criteria, read_chart
 from uplift.lattice import Lattice, PointTable
 from uplift.lookup import MODES, Cube, load
 from uplift.pipeline.options import Options

@@ -36,11 +36,8 @@ from uplift.extras.scene.representations.samples import (
     xyz_weights,
 )
 from uplift.lab.comparison.compare import (
-    COARSE_STRIDE,
-    NONE,
     Comparison,
     RepresentationResult,
-    candidates,
     cheapest,
     compare,
     compute_statistics,
@@ -48,7 +45,6 @@ from uplift.lab.comparison.compare import (
     make_scene,
     pareto,
     represent,
-    tune_filters,
 )
 from uplift.lab.comparison.fitted import scene_representations
 from uplift.lab.comparison.pictures import (
@@ -58,6 +54,7 @@ from uplift.lab.comparison.pictures import (
     write_boxes,
     write_costs,
 )
+from uplift.lab.comparison.tuning import COARSE_STRIDE, NONE, candidates, tune_filters
 from uplift.lab.timing import TimingStats
 
 
@@ -72,12 +69,6 @@ def found(checker):
     for make in (point_samples, riemann_sums, enhanced_riemann):
         representations += [make(16), make(32)]
     return compare(checker, representations, quick=True)
-
-
-def test_dense_data_have_no_error(checker):
-    dense = linear("dense", "dense", np.eye(401), xyz_weights())
-    for part in checker.sets:
-        assert max(error_statistics(dense, part)) < 1e-9
 
 
 def test_errors_match_explicit_loops(checker):

@@ -7,12 +7,6 @@ import pytest
 from uplift.lab import timing
 
 
-def test_spread_is_median_min_and_max():
-    stats = timing.timing_stats([3.0, 1.0, 2.0])
-    assert stats == timing.TimingStats(median=2, min=1, max=3, runs=3)
-    assert stats.scaled(10) == timing.TimingStats(20, 10, 30, 3)
-
-
 def test_laps_are_long_enough_and_runs_are_limited(monkeypatch):
     calls: list[float] = []
     # a clock that only the calls move

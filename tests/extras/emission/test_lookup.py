@@ -12,7 +12,7 @@ import uplift
 from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError
 from uplift.extras.emission.discs import LampEntries
-from uplift.extras.emission.lattice import DENOMINATOR, chromaticity, unit_xyz
+from uplift.extras.emission.lattice import DENOMINATOR, chromaticity
 
 TABLE = uplift.load_emission()
 RADIOMETRY = TABLE.data.cmfs / TABLE.data.cmfs[:, 1].sum()
@@ -118,19 +118,6 @@ def test_colours_beyond_the_bend_of_the_locus_are_lights_and_hardly_move():
         < np.linalg.norm(chromaticity(power @ RADIOMETRY) - chromaticity(mixture))
         < 1e-4
     )
-
-
-def test_answers_are_continuous_at_the_circles_of_lamps():
-    entries = TABLE.data.entries
-    angle = np.linspace(0, 6, 20)
-    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    for centre, radius in zip(entries.uv, entries.radius, strict=True):
-        inside, outside = (
-            unit_xyz(centre + radius * (1 + change) * circle)
-            for change in (-1e-9, 1e-9)
-        )
-        difference = TABLE.spectrum_of_xyz(inside) - TABLE.spectrum_of_xyz(outside)
-        assert np.abs(difference).max() < 1e-6
 
 
 @given(st.tuples(*[st.floats(-1, 1, allow_subnormal=False)] * 3))

@@ -153,29 +153,6 @@ def test_colour_science_and_mitsuba_read_it(table, sensor):
     assert_allclose(found, rgb[:2], rtol=0, atol=1e-4)
 
 
-def test_the_largest_reflectance_is_at_an_end_or_where_the_polynomial_turns(table):
-    """MaxValue of pbrt: a closed form, of which samples at every 0.01 nm come short by
-    little.
-    """
-    content = stored(table, RES).astype(float)
-    square, linear, _ = content.T
-    turn = np.divide(
-        -linear, 2 * square, out=np.full_like(linear, 360), where=square < 0
-    )
-    places = np.stack(
-        [np.full_like(turn, 360), np.full_like(turn, 830), np.clip(turn, 360, 830)],
-        axis=-1,
-    )
-    t = np.stack(
-        [(content * np.stack([x**2, x, x**0], axis=-1)).sum(axis=-1) for x in places.T]
-    )
-    largest = (0.5 + t / (2 * np.sqrt(1 + t**2))).max(axis=0)
-    samples = evaluate_unscaled(content, np.linspace(360, 830, 4701)).max(axis=1)
-    assert ((turn > 360) & (turn < 830)).sum() > RES**2
-    assert samples.max() <= 1
-    assert_allclose(samples, largest, rtol=0, atol=5e-3)
-
-
 WAVELENGTHS = np.arange(360.0, 831.0)
 
 

@@ -12,7 +12,7 @@ from tests.helpers import output_of
 from tests.parts import CXX, GLSLANG, need
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.extras.colour.srgb import decode
-from uplift.extras.export import lut, write_fourier
+from uplift.extras.export import fourier, write_fourier
 from uplift.models import reflectance
 
 WAVELENGTHS = np.arange(370.0, 800.0, 10)
@@ -55,7 +55,7 @@ def folder(three, tmp_path_factory):
     folder = tmp_path_factory.mktemp("fourier")
     write_fourier(three, folder / "table.cube", res=9)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(lut, "LEVEL", LEVEL)
+        patch.setattr(fourier, "LEVEL", LEVEL)
         write_fourier(three, folder / "hald.png")
     return folder
 
@@ -75,7 +75,7 @@ def test_codes_have_the_colours_of_srgb(three, folder):
     sensor = three.data.sensor
     nodes = np.linspace(0, 1, LEVEL**2)
     requested = np.array(list(product(nodes, repeat=3)))
-    moments = decode(codes / 255) @ lut._to_moments(three.data).T
+    moments = decode(codes / 255) @ fourier._to_moments(three.data).T
     found = sensor.rgb(reflectance(three.data.model, moments, sensor.wavelengths))
     errors = delta_e_rgb(
         sensor, found, sensor.rgb(three.reflectance(decode(requested), mode="moments"))
@@ -115,7 +115,7 @@ def test_the_shader_evaluates_the_spectra(three, folder):
     codes = hald(folder / "hald.png")
     pairs = decode(codes[1:-1, 1:-1, 1:-1].reshape(-1, 2, 3)[::40] / 255)
     filtered = pairs.mean(axis=1)
-    moments = filtered @ lut._to_moments(three.data).T
+    moments = filtered @ fourier._to_moments(three.data).T
     expected = reflectance(three.data.model, moments, WAVELENGTHS)
     assert_allclose(shader(filtered), expected, atol=2e-4)
     corners = shader(np.array(list(product((0.0, 1.0), repeat=3))))

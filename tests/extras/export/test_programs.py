@@ -304,9 +304,3 @@ def test_a_header_loads_only_the_table_of_its_cube(small_cube, tmp_path, damage)
     if damage == "missing":
         table.unlink()
     assert bool(run_c(LOADING, tmp_path)) == (damage is not None)
-
-
-def test_a_header_of_32_nodes_has_about_5_megabytes(tmp_path, macbeth_cube):
-    path = tmp_path / "cube.h"
-    write_program(macbeth_cube.data, path)
-    assert abs(path.stat().st_size / 1e6 - 5) < 0.5

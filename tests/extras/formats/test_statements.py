@@ -4,7 +4,6 @@ they do not.
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
 
 from uplift.extras.formats.statements import (
     WAVE_NUMBER,
@@ -16,7 +15,6 @@ from uplift.extras.formats.statements import (
     remark_quantity,
     remark_scale,
     remark_unit,
-    to_nm,
     unit_by_values,
 )
 
@@ -180,13 +178,6 @@ def test_units_of_remarks_are_about_wavelengths():
         == 1e3
     )
     assert remark_unit(["Slit: 10 µm"]) is None
-
-
-@pytest.mark.parametrize("unit", [1.0, 1e3, 0.1, 1e9, WAVE_NUMBER])
-def test_conversions(unit):
-    nm = np.array([380.0, 550.0, 780.0])
-    numbers = 1e7 / nm if unit == WAVE_NUMBER else nm / unit
-    assert_allclose(to_nm(numbers, unit), nm)
 
 
 def test_units_by_values_need_an_order():

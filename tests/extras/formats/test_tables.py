@@ -162,7 +162,11 @@ def test_columns_of_other_quantities_are_skipped_by_name(read):
         "{}[nm]",
         "{}nm",
         "nm{}",
+        "λ{}",
+        "R{}",
         "R_{}",
+        "SPECTRAL_NM{}",
+        "Refl ({} nm)",
         "X{}.0",
         "{}.0",
         "R% {}",
@@ -180,17 +184,12 @@ def test_labels_are_wavelengths_in_rows_and_columns(read, label):
 @pytest.mark.parametrize(
     ("head", "pattern", "numbers"),
     [
-        ("Wavelength (µm),a", "{:.4f},{:g}", NM / 1000),
-        ("Wavelength [Å],a", "{:g},{:g}", NM * 10),
-        ("Wavenumber (cm-1),a", "{:.6f},{:g}", 1e7 / NM),
-        ("wavelength (m),a", "{:.4e},{:g}", NM * 1e-9),
-        ("wavelength,a", "{:.4f},{:g}", NM / 1000),
         ("X Units: Wavelength (micrometers)", "{:.4f},{:g}", NM / 1000),
         ("Wavelength range: 0.35-2.5 µm\nnm,a", "{:g},{:g}", NM),
         ("Wavelength accuracy: 0.1 nm\nwavelength,a", "{:.4f},{:g}", NM / 1000),
     ],
 )
-def test_units_of_wavelengths(read, head, pattern, numbers):
+def test_units_in_remarks_are_those_of_wavelengths(read, head, pattern, numbers):
     check_values(read(f"{head}\n" + lines(pattern, nm=numbers)))
 
 
@@ -201,14 +200,6 @@ def test_units_that_nothing_states_are_refused_by_their_numbers(read, text):
     with raises(AtlasError, "atlas") as caught:
         read(text)
     assert "400–700 nm" in caught.value.problem
-
-
-def test_samples_in_any_order_are_sorted_with_a_note(read):
-    order = np.random.default_rng(0).permutation(len(NM))
-    shuffled = "nm,a\n" + "".join(f"{NM[at]},{VALUES[at]}\n" for at in order)
-    atlas = read(shuffled)
-    check_values(atlas)
-    assert any("sorted" in note for note in atlas.sources[0].notes)
 
 
 @pytest.mark.parametrize(
@@ -243,19 +234,6 @@ def test_missing_values_within_the_range(save, mark):
     assert kept.sources[0].missing == "skip"
     with raises(UnknownNameError, "unknown-name"):
         read_atlas(path, missing="zero")
-
-
-def test_values_in_percent_as_spreadsheets_write_them(read):
-    text = (
-        HEADER.replace(",", ";")
-        + row("a", 100)
-        .replace(",", " %;")
-        .replace(".", ",")
-        .replace("a %", "a")
-        .strip()
-        + " %\n"
-    )
-    check_values(read(text))
 
 
 @pytest.mark.parametrize("value", [10.0, 0.1])

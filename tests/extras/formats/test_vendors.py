@@ -36,31 +36,7 @@ def test_spectra_are_those_that_were_written(tmp_path, vendor):
         assert_allclose(entry.values, expected.values, rtol=0, atol=1e-6)
 
 
-@pytest.mark.parametrize(
-    "label",
-    ["nm{}", "R{}", "{}nm", "{} nm", "SPECTRAL_NM{}", "R_{}", "Refl ({} nm)", "λ{}"],
-)
-def test_labels_of_wavelengths(read, label):
-    heads = ",".join(label.format(nm) for nm in (400, 550, 700))
-    (entry,) = read(f"id,L*,a*,b*,{heads}\ngrey,50,0,0,0.1,0.2,0.3\n")
-    assert (entry.name, entry.wavelengths.tolist(), entry.values.tolist()) == (
-        "grey",
-        [400, 550, 700],
-        [0.1, 0.2, 0.3],
-    )
-
-
-def test_rows_of_single_samples(read):
-    rows = ["Sample,Wavelength (nm),Reflectance"]
-    for nm, value in ((700, 0.3), (400, 0.1), (550, 0.2)):
-        rows += [f"a,{nm},{value}", f"b,{nm},{value}"]
-    first, second = read("\n".join(rows))
-    assert (first.name, first.wavelengths.tolist(), first.values.tolist()) == (
-        "a",
-        [400, 550, 700],
-        [0.1, 0.2, 0.3],
-    )
-    assert (second.name, second.values.tolist()) == ("b", [0.1, 0.2, 0.3])
+def test_rows_of_single_samples_name_the_bad_row(read):
     with raises(AtlasError, "atlas") as caught:
         read("sample,wavelength,reflectance\na,400,0.1\na,red,0.2\n")
     assert (caught.value.line, caught.value.entry) == (3, "a")

@@ -11,15 +11,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.cube.hand_made import hand_made
 from uplift.extras.colour.srgb import encode
-from uplift.extras.pages.sheet import (
+from uplift.extras.pages.sheet import Layout, compose, write_sheet
+from uplift.extras.pages.sheet_panels import (
     BACKGROUND,
     HIGHLIGHT,
     RAMP,
     STATUS,
-    Layout,
-    compose,
     panels,
-    write_sheet,
 )
 
 COLOUR, DISTANCE, STATE, ERROR, ROUND = range(5)

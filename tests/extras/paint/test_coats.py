@@ -26,7 +26,7 @@ from uplift.extras.texture import convert
 WHITE = np.ones(5)
 PLAIN = Medium(scattering=SQUARE_ROOT)
 OIL = Surface.of_index(1.5)
-DIFFUSE = Surface.of_index(1.5, "diffuse")
+DIFFUSE = Surface(0.092, OIL.inside)
 SURFACES = [NO_SURFACE, OIL, DIFFUSE]
 T = np.array([0.0, 0.05, 0.5, 0.9, 1.0])
 

@@ -11,16 +11,18 @@ from scipy.integrate import solve_bvp
 
 from tests.helpers import raises
 from uplift.common.errors import AtlasError, ColourError
-from uplift.extras.paint import dispersive, pigments
-from uplift.extras.paint.pigments import (
-    CONSTANT,
-    SQUARE_ROOT,
+from uplift.extras.paint import dispersive, duntley, pigments
+from uplift.extras.paint.duntley import (
     Flux,
-    Pigment,
-    PowerOfReflectance,
     beam_to_diffuse,
     diffuse_to_beam,
     duntley_layer,
+)
+from uplift.extras.paint.pigments import (
+    CONSTANT,
+    SQUARE_ROOT,
+    Pigment,
+    PowerOfReflectance,
     from_black_and_white,
     from_opaque,
 )
@@ -112,15 +114,6 @@ def test_opaque_reflectance_round_trip_alone_and_mixed(rule, spectra, parts):
     assert (found <= paints.max(axis=1) + 1e-12).all()
 
 
-def test_two_grounds_determine_k_and_s(paint):
-    layer = paint.layer(1.0)
-    known = layer.transmittance > 0.02
-    assert known.sum() > 30
-    found = from_black_and_white(layer.over(0.0)[known], layer.over(1.0)[known])
-    assert_allclose(found.absorption, paint.absorption[known], rtol=1e-6, atol=1e-8)
-    assert_allclose(found.scattering, paint.scattering[known], rtol=1e-6, atol=1e-8)
-
-
 @pytest.mark.parametrize(("on_black", "on_white"), [(0.3, 0.3), (0.5, 0.2), (0.6, 1.3)])
 def test_contradictory_reflectances_raise(on_black, on_white):
     with raises(ColourError):
@@ -198,19 +191,10 @@ def test_duntley_s_differential_equations_are_satisfied(beam):
         )
 
 
-def test_strong_forward_scattering_gives_the_two_constant_theory():
-    """The beam becomes diffuse before anything else happens."""
-    beam = Flux(BEAMS[0].absorption, BEAMS[0].backward, np.full(2, 1e7))
-    two = Pigment(DIFFUSE.absorption, DIFFUSE.backward).layer(0.9)
-    found = duntley_layer(beam, DIFFUSE, 0.9)
-    assert_allclose(found.reflectance, two.reflectance, atol=1e-6)
-    assert_allclose(found.transmittance, two.transmittance, atol=1e-6)
-
-
 def test_constants_are_read_from_rows_and_columns(tmp_path):
     nm = [400.0, 500.0, 700.0]
     rows = np.arange(24.0).reshape(8, 3)
-    names = (*pigments.CONSTANTS, "S'", "S")
+    names = (*duntley.CONSTANTS, "S'", "S")
     rows[6:] = rows[1] + rows[2], rows[4] + rows[5]
     lines = [
         ["name", *nm],
@@ -221,7 +205,7 @@ def test_constants_are_read_from_rows_and_columns(tmp_path):
         path.write_text(
             "\n".join(",".join(map(str, row)) for row in cells), encoding="utf-8"
         )
-        found = pigments.read_constants(path, np.array([380, 450, 700]))
+        found = duntley.read_constants(path, np.array([380, 450, 700]))
         assert_allclose(
             found,
             np.stack([rows[:6, 0], rows[:6, :2].mean(axis=1), rows[:6, 2]], axis=1),
@@ -237,21 +221,14 @@ def test_constants_are_read_from_rows_and_columns(tmp_path):
     ],
 )
 def test_invalid_constants_raise(tmp_path, old, new, problem):
-    text = "".join(f"{name},1,1\n" for name in ("nm", *pigments.CONSTANTS)).replace(
+    text = "".join(f"{name},1,1\n" for name in ("nm", *duntley.CONSTANTS)).replace(
         "nm,1,1", "nm,380,780"
     )
     (tmp_path / "paint.csv").write_text(
         (text + "S,2,2\n").replace(old, new, 1), encoding="utf-8"
     )
     with pytest.raises(AtlasError, match=problem):
-        pigments.read_constants(tmp_path / "paint.csv", np.array([500.0]))
-
-
-@pytest.mark.parametrize("X", [0.01, 1.0, 30.0])
-def test_duntley_creates_no_energy(rng, X):
-    first = Flux(*10 ** rng.uniform(-3, 1, (3, 200)))
-    second = Flux(*10 ** rng.uniform(-3, 1, (3, 200)))
-    check_energy(duntley_layer(first, second, X))
+        duntley.read_constants(tmp_path / "paint.csv", np.array([500.0]))
 
 
 def test_isotropic_paint_in_a_beam_is_two_r_over_three_minus_r(rng):

@@ -9,7 +9,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import uplift
-from benchmarks.mixing import CRITERIA, acrylics, evaluate, published
+from benchmarks.mixing import acrylics, published
+from benchmarks.painters import CRITERIA, evaluate
 from uplift.colorimetry import delta_e_rgb
 from uplift.extras.paint.theories import (
     hsl_to_rgb,

@@ -41,14 +41,6 @@ def changed(small_cube):
     return Cube(with_points(small_cube.data, coefficients=coefficients))
 
 
-def test_a_cube_does_not_differ_from_itself(small_cube):
-    found = diff_cubes({"a": small_cube, "b": small_cube}, LIGHTS)
-    assert found.largest == 0
-    assert found.is_within(0)
-    assert not any(each.worst(5).size for each in found.sets)
-    assert found.pairs.names == small_cube.data.atlas.with_outside.names
-
-
 def test_the_node_that_changed_is_the_worst(small_cube, changed):
     found = diff_cubes({"a": small_cube, "b": changed}, LIGHTS)
     assert found.nodes.worst(3)[0] == 210

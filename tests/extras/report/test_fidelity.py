@@ -13,12 +13,12 @@ from tests.helpers import with_points, without_evidence
 from uplift.atlas import on_grid
 from uplift.colorimetry.observer import display_sensors, light
 from uplift.extras.report.assessment import assess
+from uplift.extras.report.crowding import find_crowding
 from uplift.extras.report.fidelity import (
     JAKOB_HANIKA,
     WITHOUT_ATLAS,
     entry_errors,
     find_alternatives,
-    find_crowding,
     from_stored_entries,
     take,
 )

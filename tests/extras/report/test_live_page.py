@@ -9,7 +9,6 @@ from numpy.testing import assert_allclose
 from benchmarks.browser import browser
 from tests.browsing import check_page
 from tests.helpers import raises
-from tests.pages import external_links
 from tests.parts import CHROMIUM, need
 from uplift.colorimetry.observer import light
 from uplift.common.errors import OptionError
@@ -33,10 +32,6 @@ def page(small_cube, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "page.html"
     path.write_text(live_page.page(small_cube.data), encoding="utf-8")
     return path
-
-
-def test_the_page_loads_nothing(page):
-    assert external_links(page.read_text("utf-8")) == []
 
 
 def test_the_page_fits_and_is_accessible(page, tmp_path):

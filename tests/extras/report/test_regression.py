@@ -36,13 +36,6 @@ def with_point(data, name, point, value):
     return with_points(data, **{name: array})
 
 
-def test_cube_equals_itself(data):
-    found = compare_rebuilt(PATH, data, data)
-    assert found.failures == ()
-    assert set(found.measures.values()) == {0.0}
-    assert found.stored_counts == found.rebuilt_counts == data.points.counts()
-
-
 def test_a_rounding_error_passes_and_a_changed_colour_or_status_fails(data):
     nudged = with_point(
         data, "coefficients", (300, 4), data.points.coefficients[300, 4] * (1 + 1e-14)

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from benchmarks import read_reference
-from benchmarks.wavelengths import CHANNELS, errors_by_total, mean_error, run_trials
+from benchmarks.meyer import CHANNELS, errors_by_total, mean_error, run_trials
 from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError, UnknownNameError

@@ -15,8 +15,8 @@ from uplift.common.errors import AtlasError, OptionError
 from uplift.extras.images.processes import call_in_child
 from uplift.lab.chart import mitsuba3
 from uplift.lab.chart.cubes import CubeOptions, built_cube
-from uplift.lab.chart.measure import METHODS, select_methods
 from uplift.lab.chart.method import NotInstalledError, edges, make_task
+from uplift.lab.chart.selection import METHODS, select_methods
 from uplift.lab.study.look_alikes import families_like
 
 

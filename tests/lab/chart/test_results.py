@@ -24,15 +24,14 @@ from tests.pages import Page, external_links
 from tests.parts import CHROMIUM, need
 from uplift.common.errors import ChartFileError, OptionError, UnknownNameError
 from uplift.lab.chart.picture import drawn_results, render_chart, write_picture
+from uplift.lab.chart.recommendation import Requirement, recommend_cube
 from uplift.lab.chart.results import (
     MIN_ERROR,
-    Requirement,
     State,
     chart_csv,
     criteria,
     parse_chart,
     read_chart,
-    recommend_cube,
     shipped_chart,
 )
 from uplift.lab.panels import CLEAR_RATIO

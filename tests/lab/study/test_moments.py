@@ -122,19 +122,6 @@ def study(repository):
         )
 
 
-@by_label(TECHNIQUES)
-def test_error_falls_with_moments(study, technique):
-    means = np.array(
-        [study.result(technique, count, "macbeth").mean for count in range(16)]
-    )
-    assert (means[15] < means[4]).all()
-    assert (means[8] < means[4]).all()
-    assert (means[4] < means[2]).all()
-    assert (np.diff(means[:9, 0]) < 0).all()
-    grey = study.errors[technique.warped ^ 1, 0]  # mirrored or not
-    assert_allclose(study.errors[TECHNIQUES.index(technique), 0], grey, rtol=1e-6)
-
-
 @pytest.mark.parametrize("group", ["macbeth", ALL_ATLASES])
 def test_mirrored_techniques_have_the_least_error(study, group):
     for floats in FLOATS:

@@ -7,7 +7,7 @@ from numpy.testing import assert_array_equal
 import uplift
 from uplift.atlas import read_atlas
 from uplift.colorimetry import delta_e_spectra, observer
-from uplift.lab.chart.measure import perturb_method, select_methods
+from uplift.lab.chart.selection import perturb_method, select_methods
 from uplift.lab.study.sensitivity import (
     CONTINUOUS_MODES,
     Change,

@@ -5,12 +5,14 @@ format.
 from uplift.extras.export.arrays import write_csv, write_npz
 from uplift.extras.export.coeff import write_coeff
 from uplift.extras.export.film import write_film
+from uplift.extras.export.fourier import write_fourier
 from uplift.extras.export.light_program import write_light_program
-from uplift.extras.export.lut import write_fourier, write_lut
+from uplift.extras.export.lut import write_lut
 from uplift.extras.export.material_error import MaterialError, material_error
 from uplift.extras.export.outputs import output_files
 from uplift.extras.export.program import LANGUAGES, check_form, write_program
-from uplift.extras.export.program_table import moved_cells, rounding_error
+from uplift.extras.export.program_table import moved_cells
+from uplift.extras.export.rounding import rounding_error
 from uplift.extras.export.table_error import TableError
 
 __all__ = [

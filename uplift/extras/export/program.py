@@ -35,8 +35,8 @@ from uplift.extras.export.program_table import (
     check_complete,
     make_table,
     moved_cells,
-    rounding_error,
 )
+from uplift.extras.export.rounding import rounding_error
 from uplift.extras.files.outputs import check_outputs
 from uplift.lookup import Cube
 

@@ -40,7 +40,7 @@ SOURCE = "the same as source in C++, for pbrt-v4 and LuisaRender"
 SIGMOIDS = f"{ROOM}.coeff:export"
 LUT = (
     "table of the colours under a light, for grading and compositing",
-    f"{ROOM}.lut:export_lut",
+    f"{ROOM}.lut:export",
     ("res", "light", "adapt"),
 )
 
@@ -62,7 +62,7 @@ EXPORTS = {
     "fourier": Export(
         ".png",
         "table from sRGB to three numbers for textures of 8 bits, and shader",
-        f"{ROOM}.lut:export_fourier",
+        f"{ROOM}.fourier:export",
         ("res",),
     ),
     "film": Export(

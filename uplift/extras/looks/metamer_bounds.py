@@ -8,7 +8,7 @@ import numpy as np
 
 from uplift.colorimetry import Light, in_unit_cube, lab, solid_volume
 from uplift.common.arrays import Array
-from uplift.extras.looks import mismatch
+from uplift.extras.looks import mesh, mismatch
 from uplift.extras.looks.lab_errors import lab_errors
 from uplift.lookup import Cube
 from uplift.lookup.outside import reflectance_anywhere
@@ -58,9 +58,7 @@ class Bounds:
         """Compute the outline (M, 2) in a* and b* of all colours that the reflectances
         of colour ``row`` can have.
         """
-        return mismatch.outline(
-            self.volumes.lab[row, :, 1:], self.volumes.directions.faces
-        )
+        return mesh.outline(self.volumes.lab[row, :, 1:], self.volumes.directions.faces)
 
     def likely(self, row: int) -> Array | None:
         """Compute the ellipse (M, 2) in a* and b* that holds `LIKELY` of the materials

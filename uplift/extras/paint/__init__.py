@@ -7,8 +7,9 @@ amounts (..., n), and the n spectra of a mixture (..., n, N). Leading axes broad
 docs/mixing.md has an example and results.
 """
 
-from uplift.extras.paint.coats import Ingredients, Medium, make_coat, mix, overpainter
+from uplift.extras.paint.coats import Ingredients, Medium, make_coat, mix
 from uplift.extras.paint.optics import Surface
+from uplift.extras.paint.overpaint import overpainter
 from uplift.extras.paint.pigments import dispersive
 
 __all__ = [

@@ -15,27 +15,19 @@ without scattering. The thesis prints, with ρ_i = ρ, (1 − ρ)² / (ρ (1 −
 sum starts at 1, but the term i = 0 was not subtracted.
 """
 
-import json
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.colorimetry.sensor import SLACK
-from uplift.common.arrays import Array, Floats
+from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftWarning, warn
 from uplift.common.text import pluralise
-from uplift.extras.colour.spaces import ImageSpace
-from uplift.extras.images import exr
 from uplift.extras.paint import optics, pigments
+from uplift.extras.paint.duntley import Flux, duntley_layer
 from uplift.extras.paint.optics import Layer, Surface
-from uplift.extras.paint.pigments import Flux, Pigment, Scattering
-from uplift.extras.texture.colours import Counts, check_encoding
-from uplift.extras.texture.uplifter import Converter
-from uplift.lookup import Cube, blockwise
+from uplift.extras.paint.pigments import Pigment, Scattering
 
 COATS = ("pigment", "dye", "duntley")
 KINDS = (*COATS, "filter", "light")
@@ -176,7 +168,7 @@ def _duntley_coat(
         constants.reshape(len(constants), -1), optics.as_shares(parts)
     )
     fluxes = np.moveaxis(mixed.reshape(*mixed.shape[:-1], 6, -1), -2, 0)
-    layer = pigments.duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), thickness)
+    layer = duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), thickness)
     return Coat(layer, surface)
 
 
@@ -326,83 +318,3 @@ def _pigment(spectrum: Array, on_black: Array | None, medium: Medium) -> Pigment
 
 def _beneath(surface: Surface, reflectance: ArrayLike) -> Array:
     return np.clip(surface.remove(reflectance), 0, 1)
-
-
-@dataclass(frozen=True, eq=False)
-class Overpainter(Converter):
-    """Converter that lays a coat over images, made by `overpainter`. The gamut is
-    mapped before and after painting.
-    """
-
-    coat: Coat  # at the wavelengths of the sensor
-    # from linear RGB (..., 3) to reflectances (..., N)
-    reflectance: Callable[[Floats], Floats]
-    threads: int  # that share a band
-
-    def paint(self, rgb: Floats) -> Floats:
-        """Lay the coat over linear RGB (..., 3) in [0, 1]; the result may
-        be outside.
-        """
-        return blockwise(
-            self._paint_block, rgb.astype(float), 3, np.float32, self.threads
-        )
-
-    def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
-        """Lay the coat over a block of colours (..., 3) and map the result to the
-        gamut, counting pixels outside.
-        """
-        mapped = map_to_gamut(self.paint(rgb), self.sensor, self.out_of_gamut)
-        return (mapped.rgb,), Counts(painted_outside=mapped.count)
-
-    def _paint_block(self, rgb: Array) -> Array:
-        return self.sensor.rgb(self.coat.over(self.reflectance(rgb.astype(np.float32))))
-
-
-def overpainter(
-    cube: Cube,
-    coat: Coat,
-    recipe: Mapping[str, Any] | None = None,
-    *,
-    encoding: str = "auto",
-    out_of_gamut: str = "scale",
-    threads: int = 2,
-    space: ImageSpace | None = None,
-) -> Overpainter:
-    """Prepare to paint over images.
-
-    Parameters
-    ----------
-    cube : Cube
-        The cube that uplifts.
-    coat : Coat
-        The coat, at the wavelengths of the cube's sensor.
-    recipe : mapping, optional
-        Description of the coat in JSON values, written to the header.
-    encoding : {"auto", "linear", "encoded"}
-        Interpretation of the numbers in images; ``auto`` takes integers as encoded,
-        floats as linear.
-    out_of_gamut : str
-        Gamut mapping for pixels outside [0, 1], one of
-        `uplift.colorimetry.gamut.METHODS`.
-    threads : int
-        Threads that share a band.
-    space : ImageSpace, optional
-        RGB space of images, by default the one that each file states.
-
-    Returns
-    -------
-    Overpainter
-        The converter to pass to `uplift.extras.texture.convert`.
-    """
-    from uplift.lookup import bulk
-
-    check_encoding(encoding)
-    check_method(out_of_gamut)
-    sensor = cube.data.sensor
-    header = {
-        "chromaticities": exr.chromaticities(sensor),
-        "uplift.mix": json.dumps(dict(recipe or {}), allow_nan=False),
-    }
-    sampler = bulk.spectra(cube, threads=1)
-    settings = (sensor, "float", encoding, out_of_gamut, (), header)
-    return Overpainter(*settings, coat, sampler, threads, space=space)

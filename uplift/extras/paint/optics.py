@@ -1,10 +1,10 @@
 """Amounts of components, lights and filters, layers on a ground, and the surface
 between air and a vehicle of paint.
 
-Incident light is a perpendicular beam (Fresnel; Fishkin 1983, eq. 9.3) or diffuse
-(Duntley 1942, eq. 10.9); light within is diffuse. Saunderson's correction (J. Opt. Soc.
-Am. 32, 1942, eq. 10.10) converts between the internal reflectance, as in Kubelka and
-Munk's theory, and the measured one. Also D. B. Judd, J. Res. NBS 29, 1942.
+Incident light is a perpendicular beam (Fresnel; Fishkin 1983, eq. 9.3), light within
+is diffuse (Duntley 1942, eq. 10.9; D. B. Judd, J. Res. NBS 29, 1942). Saunderson's
+correction (J. Opt. Soc. Am. 32, 1942, eq. 10.10) converts between the internal
+reflectance, as in Kubelka and Munk's theory, and the measured one.
 """
 
 from dataclasses import dataclass
@@ -165,10 +165,6 @@ def internal_reflectance(index: float) -> float:
     return 1 - (1 - diffuse_reflectance(index)) / index**2
 
 
-# Reflectance of a surface by the kind of incident light.
-INCIDENCES = {"perpendicular": fresnel_reflectance, "diffuse": diffuse_reflectance}
-
-
 @dataclass(frozen=True)
 class Surface:
     """Reflectances of a surface; the default is a vehicle with the refractive index of
@@ -192,16 +188,14 @@ class Surface:
                 raise OptionError(problem, hint="use 0 for a vehicle without a surface")
 
     @classmethod
-    def of_index(cls, index: float, incidence: str = "perpendicular") -> Self:
-        """Compute the reflectances of a surface from the refractive index of the
-        vehicle.
+    def of_index(cls, index: float) -> Self:
+        """Compute the reflectances of a surface, of a perpendicular beam and from
+        within.
 
         Parameters
         ----------
         index : float
-            Refractive index relative to air, at least 1.
-        incidence : {"perpendicular", "diffuse"}
-            Incident light.
+            Refractive index of the vehicle relative to air, at least 1.
 
         Returns
         -------
@@ -211,12 +205,7 @@ class Surface:
         if not (np.isfinite(index) and index >= 1):
             problem = f"refractive index must be finite and at least 1, got {index}"
             raise OptionError(problem, hint="linseed oil has 1.5")
-        if incidence not in INCIDENCES:
-            raise OptionError(
-                f"unknown incidence '{incidence}'",
-                hint=f"use {' or '.join(INCIDENCES)}",
-            )
-        return cls(INCIDENCES[incidence](index), internal_reflectance(index))
+        return cls(fresnel_reflectance(index), internal_reflectance(index))
 
     def apply(self, internal: ArrayLike, diffuse: ArrayLike | None = None) -> Array:
         """Return the reflectance measured through the surface (Saunderson's correction,

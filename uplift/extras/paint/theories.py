@@ -29,6 +29,7 @@ from uplift.colorimetry.tables import samples
 from uplift.common.arrays import Array
 from uplift.extras.paint import pigments
 from uplift.extras.paint.coats import dye_absorption, dye_transmittance
+from uplift.extras.paint.duntley import beam_to_diffuse, diffuse_to_beam
 from uplift.extras.paint.optics import (
     Surface,
     as_shares,
@@ -107,8 +108,8 @@ def spectral_models(sensor: Sensor) -> dict[str, tuple[str, Mix]]:
         ),
         "pigments, Duntley": (
             "Duntley, in directed light",
-            lambda spectra, parts: pigments.diffuse_to_beam(
-                paints(pigments.beam_to_diffuse(spectra), parts)
+            lambda spectra, parts: diffuse_to_beam(
+                paints(beam_to_diffuse(spectra), parts)
             ),
         ),
         "dyes": (

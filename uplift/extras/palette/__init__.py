@@ -6,9 +6,10 @@ Engine for Visualization*, 2004.
 """
 
 from uplift.extras.palette.colours import illuminant
-from uplift.extras.palette.design import design, matrix, unmet_goals, write_designed
+from uplift.extras.palette.design import design, matrix, write_designed
 from uplift.extras.palette.factor import standard_model
 from uplift.extras.palette.spec import read_palette
+from uplift.extras.palette.unmet import unmet_goals
 
 __all__ = [
     "design",

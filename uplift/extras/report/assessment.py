@@ -20,7 +20,8 @@ from uplift.extras.report.charts import (
     log_edges,
     make_histogram,
 )
-from uplift.extras.report.fidelity import Answers, Crowding, EntryErrors
+from uplift.extras.report.crowding import Crowding, find_crowding
+from uplift.extras.report.fidelity import Answers, EntryErrors
 from uplift.extras.report.measures import Calibration, check_calibration
 from uplift.lookup import Cube
 
@@ -194,7 +195,7 @@ def _crowding(
     stored = fidelity.from_stored_entries(cube.data).answerable_by(cube)
     if not stored.names:
         return None
-    return fidelity.find_crowding(
+    return find_crowding(
         cube.data, measured or fidelity.entry_errors(cube, stored, lights)
     )
 

@@ -1,28 +1,21 @@
-"""Selection and measurement of methods: their answers are checked first, and only
-correct ones are timed.
+"""Measurement of methods: their answers are checked first, and only correct ones are
+timed.
 """
 
 import time
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import fields
-from fnmatch import fnmatchcase
-from functools import partial
-from itertools import cycle
-from typing import Any
 
 import numpy as np
 
-from uplift.atlas import read_atlas
-from uplift.colorimetry import Light, delta_e_rgb
+from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array, Values
-from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import CHART_LIGHTS
-from uplift.extras.colour.srgb import decode
 from uplift.extras.images.processes import ChildError, call_in_child
-from uplift.lab.chart import cubes, mitsuba3, published, rivals
+from uplift.lab.chart.call_times import UpliftRgb, affordable, call_times
 from uplift.lab.chart.method import (
     Description,
     Effort,
@@ -30,139 +23,11 @@ from uplift.lab.chart.method import (
     NotInstalledError,
     PreparedMethod,
     Task,
-    make_task,
     stopwatch,
 )
 from uplift.lab.chart.results import REFERENCE, Chart, MethodResult, State
 from uplift.lab.study.held_out import spectrum_errors
-from uplift.lab.study.sensitivity import COLOURS, perturb_answers
-from uplift.lab.timing import TimingStats, environment, time_laps
-
-METHODS = (
-    *published.METHODS,
-    *rivals.METHODS,
-    *mitsuba3.METHODS,
-    *cubes.METHODS,
-)
-QUICK_METHODS = (
-    "jakob2019-*",
-    "mallett2019",
-    "otsu2018",
-    "smits1999",
-    "mitsuba3-llvm",
-    "c-sigmoid-32-moments",
-    "moments9-16*-spectra",
-    "moments9-16*-moments",
-    "moments9-64-spectra",
-    "moments9-64-moments",
-)
-"""Patterns of the methods of a quick run."""
-
-
-def select_methods(patterns: Sequence[str] = ()) -> list[Method]:
-    """Select methods by name, by default all. Raises `OptionError`."""
-    selected = set()
-    for pattern in patterns or "*":
-        matches = {
-            method.method for method in METHODS if fnmatchcase(method.method, pattern)
-        }
-        if not matches:
-            hint = (
-                "names are 'mallett2019', 'moments9-32-spectra' and others; '*' "
-                "matches any characters"
-            )
-            raise OptionError(f"no method matches '{pattern}'", hint=hint)
-        selected |= matches
-    return [method for method in METHODS if method.method in selected]
-
-
-def perturb_method(
-    method: Method, light: Light, count: int = COLOURS
-) -> list[dict[str, Any]]:
-    """Perturb queries of a method, in sRGB under D65, as
-    `uplift.lab.study.sensitivity`. Raises `OptionError`.
-    """
-    task = make_task({"macbeth": read_atlas("macbeth")})
-    lights = (light, task.sensor.light)
-    # colour-science warns how it aligns wavelengths.
-    with warnings.catch_warnings(action="ignore"):
-        try:
-            uplift = method.prepare(task).uplift
-        except NotInstalledError as error:
-            raise OptionError(
-                f"{method.method} {error}", code="extra-not-installed"
-            ) from error
-        return perturb_answers(
-            method.title,
-            lambda rgb: uplift(rgb, task.sensor.wavelengths),
-            lambda codes: decode(codes / 255),
-            lights,
-            count,
-        )
-
-
-GROWTH = 10
-"""Factor between the numbers of colours from which the duration of a call is estimated.
-"""
-INPUTS = 64
-"""Largest number of different inputs of repeated calls."""
-INPUT_COLOURS = 1 << 16
-"""Largest number of colours of all inputs."""
-UpliftRgb = Callable[[Array], Values]
-
-
-def call_times(uplift: UpliftRgb, dtype: str, effort: Effort) -> dict[str, float]:
-    """Time calls with each number of colours of an effort, in ns per colour.
-
-    A call of more than `Effort.longest` seconds takes fewer colours. All larger batches
-    then have its times.
-    """
-    numbers: dict[str, float] = {}
-    count = last = 0
-    for size in effort.batches:
-        if count == last:
-            count = affordable(uplift, dtype, size, effort.longest)
-            ns = _time_batch(uplift, dtype, count, effort)
-        last = size
-        values = {
-            "": ns.median,
-            "_least": ns.min,
-            "_most": ns.max,
-            "_runs": ns.runs,
-            "_colours": count,
-        }
-        numbers |= {f"ns_{size}{suffix}": value for suffix, value in values.items()}
-    known = [size for size in effort.batches if size <= REFERENCE]
-    reference = max(known, default=effort.batches[0])
-    return numbers | {"time_ns": numbers[f"ns_{reference}"]}
-
-
-def _time_batch(
-    uplift: UpliftRgb, dtype: str, count: int, effort: Effort
-) -> TimingStats:
-    inputs = cycle(_colours(max(1, min(INPUTS, INPUT_COLOURS // count)), count, dtype))
-    times = time_laps(lambda: uplift(next(inputs)), effort.lap, effort.runs)
-    return times.scaled(1e9 / count)
-
-
-def affordable(uplift: UpliftRgb, dtype: str, size: int, longest: float) -> int:
-    """Return the number of colours, at most ``size``, of a call of ``longest`` CPU
-    seconds.
-    """
-    count = 1
-    while True:
-        rgb = _colours(1, count, dtype)[0]
-        uplift(rgb)
-        _, seconds = stopwatch(partial(uplift, rgb))
-        if count == size or GROWTH * seconds > longest:
-            return max(1, min(size, int(count * longest / max(seconds, 1e-9))))
-        count = min(size, count * GROWTH)
-
-
-def _colours(inputs: int, count: int, dtype: str) -> Values:
-    """Random RGB (inputs, count, 3)."""
-    return np.random.default_rng(2).random((inputs, count, 3)).astype(dtype)
-
+from uplift.lab.timing import environment
 
 MAX_CLAIM_RATIO = 10
 """A method is broken if its mean round-trip error is larger than the claimed one by

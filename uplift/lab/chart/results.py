@@ -1,6 +1,4 @@
-"""A chart as rows of numbers and as CSV, its panels with Pareto fronts, and the
-recommendation of a cube.
-"""
+"""A chart as rows of numbers and as CSV, and its panels with Pareto fronts."""
 
 import re
 from collections.abc import Mapping
@@ -9,16 +7,15 @@ from enum import StrEnum
 from importlib.resources import files
 from itertools import product
 
-from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT
 from uplift.common.arrays import StrPath
-from uplift.common.errors import ChartFileError, OptionError, unknown_name
+from uplift.common.errors import ChartFileError
 from uplift.common.files import read_bytes
 from uplift.common.text import format_value, parse_float, pluralise, shorten
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.extras.files.csv import csv_text, parse_csv
 from uplift.extras.pages.format import format_error, format_time
 from uplift.lab.chart.method import Description
-from uplift.lab.panels import CLEAR_RATIO, pareto_front
+from uplift.lab.panels import pareto_front
 
 FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
 """Columns with the same text in all rows."""
@@ -53,13 +50,13 @@ class MethodResult(Description):
     """Result of a method. The fields are the columns of the CSV file.
 
     ``numbers``: ``bytes``; CPU seconds ``build_s``, ``load_s`` and ``setup_s``, their
-    sum; ``ns_N`` per RGB with N
-        colours per call, see `uplift.lab.chart.measure.call_times`; ``time_ns``, that
-        of the recommendation. Errors ``round_trip`` (judged at 1 nm),
-        ``coarse_round_trip`` (with the tables of cubes), of every light, ``lights``
-        (their mean) and ``rms``, and prefixed by ``own_`` those at entries that cubes
-        were built from, each with ``_mean``, ``_p99`` and ``_max``. Sizes
-        ``round_trip_colours``, ``unseen_spectra`` and ``own_spectra`` of the test set.
+    sum; ``ns_N`` per RGB with N colours per call, see
+    `uplift.lab.chart.call_times.call_times`; ``time_ns``, that of the recommendation.
+    Errors ``round_trip`` (judged at 1 nm), ``coarse_round_trip`` (with the tables of
+    cubes), of every light, ``lights`` (their mean) and ``rms``, and prefixed by
+    ``own_`` those at entries that cubes were built from, each with ``_mean``, ``_p99``
+    and ``_max``. Sizes ``round_trip_colours``, ``unseen_spectra`` and ``own_spectra``
+    of the test set.
     """
 
     state: State
@@ -249,114 +246,3 @@ def criteria(batch: int) -> tuple[Criterion, ...]:
             batch,
         ),
     )
-
-
-@dataclass(frozen=True)
-class Requirement:
-    """Limits for time and error; at least one is required. Raises `OptionError`,
-    `UnknownNameError`.
-
-    ``time_ns``: largest CPU time per RGB, in ns. ``delta_e``: largest mean ΔE00.
-    ``light``: light of the ΔE00, by default all lights of the chart; the illuminant D65
-    stands for round trips. ``own``: whether the ΔE00 is of materials of the atlas
-    itself, not of unseen ones. ``plain``: whether the cube must have no atlas.
-    ``smallest``: whether the smallest cube within the limits is chosen, instead of the
-    fastest.
-    """
-
-    time_ns: float | None = None
-    delta_e: float | None = None
-    light: str | None = None
-    own: bool = False
-    plain: bool = False
-    smallest: bool = False
-
-    def __post_init__(self) -> None:
-        limits = [limit for limit in (self.time_ns, self.delta_e) if limit is not None]
-        if not limits or not all(0 < limit < float("inf") for limit in limits):
-            got = ", ".join(f"{limit:g}" for limit in limits) or "neither"
-            raise OptionError(
-                f"time_ns, delta_e or both must be given as positive numbers, got {got}"
-            )
-        if self.light not in (None, DEFAULT_ILLUMINANT, *CHART_LIGHTS):
-            raise unknown_name(
-                str(self.light), (DEFAULT_ILLUMINANT, *CHART_LIGHTS), "light"
-            )
-
-    @property
-    def error(self) -> str:
-        """Return the name of the error in `MethodResult.numbers`."""
-        if self.light == DEFAULT_ILLUMINANT:
-            return "round_trip_mean"
-        return f"{'own_' if self.own else ''}{self.light or 'lights'}_mean"
-
-    @property
-    def description(self) -> str:
-        """Return the conditions of the error as text."""
-        if self.light == DEFAULT_ILLUMINANT:
-            return "of the round trip"
-        materials = "materials of the atlas" if self.own else "unseen materials"
-        return f"under {self.light or ', '.join(CHART_LIGHTS)}, for {materials}"
-
-
-SITUATIONS = {
-    "no measurements": Requirement(delta_e=1.0, plain=True),
-    "no measurements, little memory": Requirement(
-        delta_e=1.0, plain=True, smallest=True
-    ),
-    "an atlas whose materials must look right": Requirement(delta_e=0.05, own=True),
-    "such an atlas, little memory": Requirement(delta_e=0.05, own=True, smallest=True),
-}
-"""What is required in common situations."""
-
-
-def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
-    """Choose the fastest or smallest cube within the limits, or the most accurate in
-    time. Raises `OptionError`.
-    """
-    name = requirement.error
-    longest = requirement.time_ns
-    largest = requirement.delta_e
-    cubes = _eligible_cubes(chart, requirement)
-    if not cubes:
-        raise _unmet(f"the chart has no cube with {name}", "measure a chart with cubes")
-    times = {
-        cube: cube.numbers["time_ns"]
-        for cube in cubes
-        if longest is None or cube.numbers["time_ns"] <= longest
-    }
-    if not times:
-        fastest = min(cubes, key=lambda cube: cube.numbers["time_ns"])
-        took = format_time(fastest.numbers["time_ns"])
-        raise _unmet(
-            f"no cube takes at most {longest:g} ns per RGB",
-            f"the fastest, {fastest.method}, takes {took}",
-        )
-    best = min(times, key=lambda cube: cube.numbers[name])
-    smallest = best.numbers[name]
-    limit = smallest / CLEAR_RATIO if largest is None else largest
-    sufficient = [cube for cube in times if cube.numbers[name] <= limit]
-    if not sufficient:
-        problem = f"no cube has at most ΔE00 {largest:g} {requirement.description}"
-        raise _unmet(
-            problem, f"the most accurate, {best.method}, has {format_error(smallest)}"
-        )
-    return min(
-        sufficient,
-        key=lambda cube: (cube.numbers["bytes"] * requirement.smallest, times[cube]),
-    )
-
-
-def _eligible_cubes(chart: Chart, requirement: Requirement) -> list[MethodResult]:
-    """Return the cubes with the error of a requirement; none with an atlas if plain."""
-    cubes = []
-    for result in chart.measured:
-        has_error = bool(result.build) and requirement.error in result.numbers
-        is_excluded = requirement.plain and "--atlas" in result.build
-        if has_error and not is_excluded:
-            cubes.append(result)
-    return cubes
-
-
-def _unmet(problem: str, hint: str) -> OptionError:
-    return OptionError(problem, code="requirements-not-met", hint=hint)

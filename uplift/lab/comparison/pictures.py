@@ -25,8 +25,8 @@ from uplift.lab.comparison.compare import (
     HEADINGS,
     Comparison,
     RepresentationResult,
-    TunedFilter,
 )
+from uplift.lab.comparison.tuning import TunedFilter
 from uplift.lab.panels import Panel, Point, family_colours, page_panel, write_panels
 
 COLOURS = {

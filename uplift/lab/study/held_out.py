@@ -155,26 +155,18 @@ def split_records(splits: Sequence[HoldoutSplit]) -> list[dict[str, Any]]:
 
     Methods that know the library have no rms.
     """
+    first = splits[0]
+    means: dict[str, list[float | None]] = {}
+    for method in first.errors:
+        of_splits = [split.errors[method].means() for split in splits]
+        means[method] = np.mean(of_splits, axis=0).tolist()
+    for method in first.colours:
+        of_splits = [split.colours[method].mean(axis=0) for split in splits]
+        means[method] = [None, *np.mean(of_splits, axis=0).tolist()]
     records: list[dict[str, Any]] = []
-    for method in splits[0].errors:
-        means = np.mean([split.errors[method].means() for split in splits], axis=0)
-        named = zip(("rms", *HELD_OUT_LIGHTS), means.tolist(), strict=True)
-        records.append(
-            {"cube": method, "colours": len(splits[0].actual), **dict(named)}
-        )
-    for method in splits[0].colours:
-        means = np.mean(
-            [split.colours[method].mean(axis=0) for split in splits], axis=0
-        )
-        named = zip(HELD_OUT_LIGHTS, means.tolist(), strict=True)
-        records.append(
-            {
-                "cube": method,
-                "colours": len(splits[0].actual),
-                "rms": None,
-                **dict(named),
-            }
-        )
+    for method, values in means.items():
+        errors = dict(zip(("rms", *HELD_OUT_LIGHTS), values, strict=True))
+        records.append({"cube": method, "colours": len(first.actual), **errors})
     # Over all splits together; small atlases have no standard errors.
     triples = [
         (split.actual, split.predicted, split.bound)
