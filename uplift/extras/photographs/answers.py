@@ -65,7 +65,19 @@ class Answers(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Photographs:
-    """A cube, and L further photographs of what it answers, made by `prepare`."""
+    """A cube, and L further photographs of what it answers, made by `prepare`.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+    metamers : Metamers
+        How materials of one colour differ.
+    further : tuple of Photograph
+        The further photographs.
+    noise : Noise
+        Noise of all photographs.
+    """
 
     cube: Cube
     metamers: Metamers
@@ -78,12 +90,23 @@ class Photographs:
         return np.concatenate([photograph.matrix for photograph in self.further])
 
     @cached_property
-    def tables(self) -> Directions:
+    def _tables(self) -> Directions:
         """Directions at the nodes of `TABLE`."""
         return self.directions(self.metamers.covariance(TABLE.points))
 
     def directions(self, covariance: Array) -> Directions:
-        """Return the directions for covariances S (n, R, R) of scores."""
+        """Return where the photographs move answers.
+
+        Parameters
+        ----------
+        covariance : ndarray, shape (n, R, R)
+            Covariances of scores, as of `Metamers.covariance`.
+
+        Returns
+        -------
+        Directions
+            The directions of each.
+        """
         to_rgb = self.matrix @ self.metamers.components.T
         scores = covariance @ to_rgb.T
         return Directions(scores, to_rgb @ scores)
@@ -138,12 +161,27 @@ class Photographs:
         wavelengths: Array | None = None,
         directions: Directions | None = None,
     ) -> Answers:
-        """Answer linear RGB (n, 3) in [0, 1] of the cube and those of the further
-        photographs (n, 3 L), NaN where unknown.
+        """Answer colours that are known under several lights, and find those that
+        contradict each other.
 
-        ``expected`` (n, N) are answers of the cube at the wavelengths of its sensor and
-        then at other ``wavelengths``, which are those of the result. ``directions`` are
-        by default those of `tables`.
+        Parameters
+        ----------
+        rgb : ndarray, shape (n, 3)
+            Linear RGB in [0, 1] of the cube.
+        others : ndarray, shape (n, 3 L)
+            Linear RGB of the further photographs, NaN where unknown.
+        expected : ndarray, shape (n, N + M), optional
+            Answers of the cube at the N wavelengths of its sensor and then at the M
+            ``wavelengths``; computed by default.
+        wavelengths : ndarray, shape (M,), optional
+            Wavelengths of the result in nm, by default those of the sensor.
+        directions : Directions, optional
+            Where the photographs move the answers, by default those of the place.
+
+        Returns
+        -------
+        Answers
+            Spectra, and which colours contradict each other.
         """
         at = self.cube.wavelengths
         grid = at if wavelengths is None else np.append(at, wavelengths)
@@ -177,7 +215,7 @@ class Photographs:
                 weighted_sum(table.reshape(TABLE.size, -1), *corners).reshape(
                     len(rgb), *table.shape[1:]
                 )
-                for table in self.tables
+                for table in self._tables
             )
         )
 

@@ -23,21 +23,46 @@ SAME = 1e-9
 
 
 class Noise(NamedTuple):
-    """Standard deviation of linear RGB in photographs: a share of each value, and a
-    floor.
+    """Standard deviation of linear RGB in photographs.
+
+    Parameters
+    ----------
+    share : float
+        Share of each value, in [0, 1).
+    floor : float
+        What is added to it in squares, linear RGB in [0, 1).
     """
 
     share: float = 0.0
     floor: float = 0.0
 
     def variance(self, values: Array) -> Array:
-        """Variance of values of linear RGB, of any shape."""
+        """Compute the variance of values.
+
+        Parameters
+        ----------
+        values : ndarray
+            Linear RGB.
+
+        Returns
+        -------
+        ndarray
+            Variances, of the same shape.
+        """
         return np.asarray((self.share * values) ** 2 + self.floor**2)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Photograph:
-    """A further photograph: ``matrix`` (3, N) maps reflectances to its linear RGB."""
+    """A further photograph, by `photograph`.
+
+    Parameters
+    ----------
+    light : str
+        Name of its light.
+    matrix : ndarray, shape (3, N)
+        From reflectances at the wavelengths of the cube's sensor to linear RGB.
+    """
 
     light: str
     matrix: Array
