@@ -8,6 +8,7 @@ import os
 import re
 import time
 from collections.abc import Sequence
+from dataclasses import fields, replace
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -67,6 +68,12 @@ image_options = options.stacked(
     options.quiet,
 )
 """Images, their target, and how they are converted; for `convert`."""
+passes_option = click.option(
+    "--passes",
+    metavar="FILE",
+    type=click.Path(),
+    help="Passes by 'uplift passes choose': write an image for each of them.",
+)
 
 
 @click.command(
@@ -85,6 +92,8 @@ image_options = options.stacked(
       uplift texture painting.exr -o ap1.exr --input-space ACEScg
       uplift texture shot.*.exr -o uplifted --scheduler tcp://10.0.0.5:8786
       uplift texture wood.png -o errors.exr --cube macbeth-32.uplift --errors FL11
+      uplift passes choose
+      uplift texture wood.png -o wood --passes passes.toml
 
     'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at
     --wavelengths. 'moments' can be filtered and mip-mapped. 'multipliers' can be
@@ -104,6 +113,10 @@ image_options = options.stacked(
     of the cubes, from 0 in the order of --cube; or, for two cubes, weights: black is
     the first, white the second, and grey mixes both. A coloured mask holds the weights
     of three cubes in R, G and B. Mixed spectra keep the colour of the pixel.
+
+    With --passes, an RGB renderer takes the place of a spectral one: each pass has a
+    texture, such as wood.1.exr and wood.2.exr, with the numbers of three bands as R, G
+    and B ('uplift passes').
 
     Pixels that are light, such as those of an environment map, need 'uplift lights
     texture'.
@@ -141,16 +154,20 @@ image_options = options.stacked(
     type=options.LIGHT,
     shell_complete=options.complete_light,
 )
+@passes_option
 def command(
     cube_paths: Sequence[str],
     mask: str | None,
     kind: str,
     wavelengths: Array | None,
+    passes: str | None,
     **settings: Any,
 ) -> None:
     from uplift.extras import texture
     from uplift.lookup import find_file, load
 
+    if passes is not None:
+        _check_passes()
     encode = texture.PIXEL_ENCODINGS[kind]
     if encode is not texture.Spectrum and wavelengths is not None:
         hint = "leave out --wavelengths, or use --representation spectrum"
@@ -167,7 +184,15 @@ def command(
         pixels = texture.Spectrum(as_tuple(wavelengths))
     if mask is not None:
         mask = os.path.abspath(mask)
-    convert(cubes, pixels, mask=mask, **settings)
+    convert(cubes, pixels, mask=mask, passes=passes, **settings)
+
+
+def _check_passes() -> None:
+    """Raise a usage error for options that images of passes do not have."""
+    given = options.given()
+    for name in ("kind", "mask", "errors", "wavelengths"):
+        if name in given:
+            raise click.UsageError(f"--passes excludes {given[name]}.")
 
 
 def convert(
@@ -181,6 +206,7 @@ def convert(
     resume: bool,
     force: bool,
     quiet: bool,
+    passes: str | None = None,
     **given: Any,
 ) -> None:
     """Convert images, on as many threads as the processes leave; see `TextureSettings`
@@ -190,10 +216,9 @@ def convert(
     from uplift.extras import texture
     from uplift.extras.texture.sequence import converter_for
 
-    pairs = _texture_paths(sources, target)
+    named = target if passes is None else _with_suffix(sources, target)
+    pairs = _texture_paths(sources, named)
     inputs = click.get_current_context().meta.get(options.INPUTS, ())
-    existing = [path for _, path in pairs if path.exists()]
-    check_outputs(existing, inputs=inputs, force=True)
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
     settings = texture.TextureSettings(
@@ -203,8 +228,14 @@ def convert(
         texture.Job(settings, source.absolute(), path.absolute(), force, resume)
         for source, path in pairs
     ]
+    if passes is not None:
+        inputs = [*inputs, passes]
+        jobs = _jobs_of_passes(jobs, passes)
+    existing = [job.target for job in jobs if job.target.exists()]
+    check_outputs(existing, inputs=inputs, force=True)
     pending = texture.pending(jobs)
-    converter_for(settings)  # reports invalid options once, not once per image
+    # reports invalid options once, not once per image
+    converter_for(jobs[0].settings)
     begin = time.perf_counter()
     outcomes = _run_jobs(
         pending,
@@ -219,9 +250,39 @@ def convert(
         warn(conversion.warnings)
     if not quiet and len(failures) < len(jobs):
         skipped = len(jobs) - len(converted) - len(failures)
-        is_spectrum = isinstance(pixel_encoding, texture.Spectrum)
+        is_spectrum = passes is None and isinstance(pixel_encoding, texture.Spectrum)
         _print_summary(target, converted, skipped, begin, is_spectrum)
     _raise_first(failures)
+
+
+def _with_suffix(sources: Sequence[str], target: str) -> str:
+    """Return the name ``wood.exr`` for ``wood`` of a single image, unless it is a
+    folder.
+    """
+    is_single = len(sources) == 1 and expand_patterns(sources) == [sources[0]]
+    is_folder = os.path.isdir(target) or target.endswith(os.sep)
+    if not is_single or is_folder or Path(target).suffix.lower() == ".exr":
+        return target
+    return f"{target}.exr"
+
+
+def _jobs_of_passes(jobs: Sequence[Job], path: str) -> list[Job]:
+    """Return a job for each image and pass, the images of a pass in a row."""
+    from uplift.extras.scene.passes import PassSettings, pass_name, read_passes
+
+    path = os.path.abspath(path)
+    count = read_passes(path).count
+    shared = {
+        setting.name: getattr(jobs[0].settings, setting.name)
+        for setting in fields(jobs[0].settings)
+    }
+    result = []
+    for number in range(1, count + 1):
+        settings = PassSettings(**shared, passes=path, number=number)
+        for job in jobs:
+            target = job.target.with_name(pass_name(job.target.stem, number))
+            result.append(replace(job, settings=settings, target=target))
+    return result
 
 
 def _raise_first(errors: Sequence[UpliftError]) -> None:

@@ -13,6 +13,12 @@ Examples
 """
 
 from uplift.extras.scene.passes.bands import Bands
+from uplift.extras.scene.passes.decode import (
+    Decoded,
+    Decoder,
+    decode_pictures,
+    decoder,
+)
 from uplift.extras.scene.passes.file import (
     passes_digest,
     read_passes,
@@ -29,21 +35,51 @@ from uplift.extras.scene.passes.passes import (
     PassesLight,
     choose,
     fit_bands,
+    rgb_errors,
     scaled_power,
+)
+from uplift.extras.scene.passes.recipe import (
+    RECIPES,
+    blender_recipe,
+    nuke_recipe,
+    plain_recipe,
+)
+from uplift.extras.scene.passes.textures import (
+    PassSettings,
+    check_cube,
+    pass_name,
+    prepare_light_pass,
+    prepare_pass,
+    table_projection,
 )
 
 __all__ = [
+    "RECIPES",
     "Bands",
+    "Decoded",
+    "Decoder",
     "Materials",
+    "PassSettings",
     "Passes",
     "PassesLight",
+    "blender_recipe",
+    "check_cube",
     "choose",
+    "decode_pictures",
+    "decoder",
     "fit_bands",
     "library_materials",
+    "nuke_recipe",
+    "pass_name",
     "passes_digest",
+    "plain_recipe",
+    "prepare_light_pass",
+    "prepare_pass",
     "read_passes",
+    "rgb_errors",
     "scaled_power",
     "scene_materials",
+    "table_projection",
     "to_toml",
     "write_passes",
 ]

@@ -18,6 +18,7 @@ from uplift.extras.scene.passes.light_paths import MAX_BOUNCES
 from uplift.extras.scene.passes.passes import Passes, PassesLight
 
 FORMAT: Literal["uplift passes 1"] = "uplift passes 1"
+HINT = "choose the passes again"
 DIGITS = 9
 """Significant digits of numbers in the file."""
 MAX_BANDS = CHANNELS * MAX_PASSES
@@ -231,18 +232,18 @@ def read_passes(path: StrPath) -> Passes:
         The file cannot be read or a value does not fit; the error names the key.
     """
     file = read_toml(path, PassesError)
-    table = file.validate(_PassesTable)
+    table = file.validate(_PassesTable, hint=HINT)
     try:
         bands = Bands(tuple(table.centres), table.width)
     except OptionError as error:
-        file.fail((), error.problem, hint="choose the passes again")
+        file.fail((), error.problem, hint=HINT)
     first, last = table.other_lights.wavelengths
     if (first, last) != (observer.START, observer.END):
         known = f"[{observer.START:g}, {observer.END:g}]"
-        file.fail(("other-lights", "wavelengths"), f"must be {known}")
+        file.fail(("other-lights", "wavelengths"), f"must be {known}", hint=HINT)
     names = [light.name for light in table.lights]
     if len(set(names)) < len(names):
-        file.fail(("lights",), "must have different names")
+        file.fail(("lights",), "must have different names", hint=HINT)
     materials = table.materials.model_dump(by_alias=True)
     origin = {key: value for key, value in materials.items() if value != ""}
     return Passes(

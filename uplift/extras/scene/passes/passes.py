@@ -309,3 +309,30 @@ def _fit(
         "held-out": len(materials.held_out),
     }
     return Passes(bands, to_xyz, tuple(described), projection, origin)
+
+
+def rgb_errors(materials: Materials, lights: Sequence[Illuminant]) -> Array:
+    """Compute the errors of plain RGB rendering on the paths that judge passes.
+
+    Surfaces are linear sRGB under D65, limited to [0, 1], lights the linear sRGB of
+    their colour.
+
+    Parameters
+    ----------
+    materials : Materials
+        Materials of the scene, or those of the library.
+    lights : sequence of str or Lamp
+        L lights.
+
+    Returns
+    -------
+    ndarray, shape (L, 4)
+        Mean ΔE00 of one to four bounces.
+    """
+    powers = np.stack([scaled_power(light) for light in dict.fromkeys(lights)])
+    judged = draw_paths(materials.held_out, powers, JUDGING_PATHS, JUDGING_SEED)
+    screen = observer.sensor()
+    reflected = judged.numbers(screen.matrix)
+    light_rgb = judged.whites @ screen.xyz_to_rgb.T
+    lit = reflected * light_rgb
+    return judged.by_bounce(judged.errors(lit @ screen.rgb_to_xyz.T))
