@@ -69,9 +69,9 @@ decoding_options = options.stacked(
     help="""Render spectra with an RGB renderer, in one to four passes of three bands of
     wavelengths.
 
-    An RGB renderer multiplies three numbers, whatever they mean. Give it the numbers of
-    three bands in each pass, and a matrix turns the pictures of all passes into one
-    with the colours of spectra.
+    An RGB renderer multiplies three numbers and does not know what they mean. Give it
+    the numbers of three bands in each pass, and a matrix turns the pictures of all
+    passes into one with the colours of spectra.
 
     \b
     Examples:

@@ -12,7 +12,7 @@ Examples
     passes.write_passes(chosen, "passes.toml")
 """
 
-from uplift.extras.scene.passes.bands import Bands
+from uplift.extras.scene.passes.bands import CHANNELS, Bands
 from uplift.extras.scene.passes.decode import (
     Decoded,
     Decoder,
@@ -35,9 +35,11 @@ from uplift.extras.scene.passes.passes import (
     PassesLight,
     choose,
     fit_bands,
+    path_errors,
     rgb_errors,
     scaled_power,
 )
+from uplift.extras.scene.passes.presets import PRESETS
 from uplift.extras.scene.passes.recipe import (
     RECIPES,
     blender_recipe,
@@ -54,6 +56,8 @@ from uplift.extras.scene.passes.textures import (
 )
 
 __all__ = [
+    "CHANNELS",
+    "PRESETS",
     "RECIPES",
     "Bands",
     "Decoded",
@@ -72,6 +76,7 @@ __all__ = [
     "nuke_recipe",
     "pass_name",
     "passes_digest",
+    "path_errors",
     "plain_recipe",
     "prepare_light_pass",
     "prepare_pass",

@@ -40,9 +40,18 @@ NUMBER = re.compile(r"\.(\d{1,2})(?=\.)")
 
 @dataclass(frozen=True, eq=False)
 class Decoder:
-    """Matrix (3, K) from the numbers of a pixel to a space, made by `decoder`.
+    """Matrix from the numbers of a pixel to a space, made by `decoder`.
 
-    ``channels`` are the names of the results, ``header`` describes them.
+    Parameters
+    ----------
+    passes : Passes
+        The passes.
+    matrix : ndarray, shape (3, K)
+        Matrix to linear RGB or XYZ.
+    channels : tuple of str
+        Names of the three results.
+    header : dict
+        Attributes that describe them.
     """
 
     passes: Passes
@@ -51,7 +60,18 @@ class Decoder:
     header: dict[str, Any]
 
     def decode(self, numbers: Values) -> tuple[Floats, Counts]:
-        """Decode numbers (…, K); negative ones and NaN count, and become 0."""
+        """Decode the numbers of pixels.
+
+        Parameters
+        ----------
+        numbers : ndarray, shape (…, K)
+            Numbers of all passes. Negative ones and NaN count, and become 0.
+
+        Returns
+        -------
+        tuple of ndarray, shape (…, 3), and Counts
+            Decoded pixels, 32-bit floats, and how many were changed.
+        """
         values = np.asarray(numbers, dtype=np.float32)
         finite = np.isfinite(values)
         negative = (values < 0).any(axis=-1) & finite.all(axis=-1)

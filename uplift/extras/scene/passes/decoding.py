@@ -7,7 +7,8 @@ approximates ΔE00². Sums over paths enter by their Gram matrices alone:
     C_ab = Σ G_ab x xᵀ  (K, K),    r_a = Σ (G t)_a x  (K,).
 
 For given l the objective is quadratic in D, for given D in l; they are minimised in
-turn. Numbers of lights are not negative, as renderers need.
+turn. Numbers of lights are positive, as renderers need: one that reached 0 would stay
+there, as D then ignores its light.
 """
 
 from dataclasses import dataclass
@@ -71,28 +72,30 @@ class Grams:
             self.products[row : row + 1], self.targets[row : row + 1], 0.0, self.paths
         )
 
-    def light_numbers(self, decoding: Array) -> tuple[Array, float]:
-        """Return the numbers (L, K), at least 0, that suit a matrix D (3, K), and the
-        root mean square of ΔE00.
+    def light_numbers(self, decoding: Array, floor: Array) -> tuple[Array, float]:
+        """Return the numbers (L, K), at least ``floor``, that suit a matrix D (3, K),
+        and the root mean square of ΔE00.
         """
         normal = np.einsum("ak,bm,labkm->lkm", decoding, decoding, self.products)
         right = np.einsum("ak,lak->lk", decoding, self.targets)
-        lights = zip(normal, right, strict=True)
-        numbers = np.stack([_non_negative(*light) for light in lights])
+        lights = zip(normal, right, floor, strict=True)
+        numbers = np.stack([_bounded(*light) for light in lights])
         linear = (numbers * right).sum()
         quadratic = np.einsum("lk,lm,lkm->", numbers, numbers, normal)
         total = self.constant - 2 * linear + quadratic
         return numbers, float(np.sqrt(max(total, 0.0) / self.paths))
 
-    def alternate(self, numbers: Array, rounds: int) -> tuple[Array, Array, float]:
-        """Fit D (3, K) and the numbers of lights in turn, from numbers (L, K) on.
-        Return both, and the root mean square of ΔE00.
+    def alternate(
+        self, numbers: Array, floor: Array, rounds: int
+    ) -> tuple[Array, Array, float]:
+        """Fit D (3, K) and the numbers of lights in turn, from numbers (L, K) on, which
+        stay above ``floor``. Return both, and the root mean square of ΔE00.
         """
         error = np.inf
         decoding = np.zeros((3, numbers.shape[1]))
         for _ in range(rounds):
             decoding = self.decoding(numbers)
-            numbers, error = self.light_numbers(decoding)
+            numbers, error = self.light_numbers(decoding, floor)
         return decoding, numbers, error
 
 
@@ -101,16 +104,17 @@ def _solve(normal: Array, right: Array) -> Array:
     return np.asarray(np.linalg.solve(normal + ridge * np.eye(len(normal)), right))
 
 
-def _non_negative(normal: Array, right: Array) -> Array:
-    """Minimise xᵀ N x / 2 − rᵀ x over x ≥ 0, for N (K, K) and r (K,)."""
+def _bounded(normal: Array, right: Array, floor: Array) -> Array:
+    """Minimise xᵀ N x / 2 − rᵀ x over x ≥ floor, for N (K, K) and r (K,)."""
     free = _solve(normal, right)
-    if (free >= 0).all():
+    if (free >= floor).all():
         return free
     from scipy.optimize import nnls
 
     ridge = RIDGE * np.trace(normal) / len(normal)
     factor = np.linalg.cholesky(normal + ridge * np.eye(len(normal)))
-    return np.asarray(nnls(factor.T, np.linalg.solve(factor, right))[0])
+    above = nnls(factor.T, np.linalg.solve(factor, right - normal @ floor))[0]
+    return np.asarray(floor + above)
 
 
 def light_projection(paths: LightPaths, numbers: Array, decoding: Array) -> Array:

@@ -51,7 +51,12 @@ def halves(reflectances: Array) -> tuple[Array, Array]:
 
 
 def library_materials() -> Materials:
-    """Return the shipped families of measured materials, each in halves."""
+    """Return the shipped families of measured materials, each in halves.
+
+    Returns
+    -------
+    Materials
+    """
     families = shipped_library()
     pairs = [halves(family.measured) for family in families]
     names = [family.name for family in families]
@@ -67,8 +72,27 @@ def scene_materials(
     a cube has for the colours of images.
 
     A scene of few materials is trained on together with the library, half of the paths
-    over each. Raises `OptionError` for fewer than four materials, `TextureError` and
-    `ColourError` for images.
+    over each.
+
+    Parameters
+    ----------
+    atlases : mapping of str to Atlas
+        Atlases by name.
+    images : Images or None
+        Images of the scene.
+    cube : Cube
+        Cube in which the colours of images are looked up.
+
+    Returns
+    -------
+    Materials
+
+    Raises
+    ------
+    OptionError
+        There are fewer than four materials.
+    TextureError, ColourError
+        An image cannot be read.
     """
     grid = observer.grid()
     parts = [on_grid(atlas, grid) for atlas in atlases.values()]

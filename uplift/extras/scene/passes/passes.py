@@ -23,7 +23,7 @@ from uplift.extras.scene.passes.bands import CHANNELS, MAX_PASSES, MAX_WIDTH, Ba
 from uplift.extras.scene.passes.decoding import Grams, light_projection
 from uplift.extras.scene.passes.light_paths import LightPaths, draw_paths
 from uplift.extras.scene.passes.materials import Materials
-from uplift.extras.scene.passes.search import Search
+from uplift.extras.scene.passes.search import FLOOR, Search, band_powers
 from uplift.extras.scene.passes.spectra_digest import power_digest
 
 TRAINING_PATHS = 300
@@ -273,10 +273,11 @@ def _fit(
     lights: Sequence[Illuminant],
 ) -> Passes:
     """Fit matrices and numbers over paths, and judge them over held-out materials."""
+    floor = FLOOR * band_powers(bands, paths.powers)
     start = Search(paths).fit(bands).numbers
     numbers = paths.numbers(bands.weights)
     grams = Grams.of(paths, numbers)
-    to_xyz, light_numbers, _ = grams.alternate(start, FINAL_ROUNDS)
+    to_xyz, light_numbers, _ = grams.alternate(start, floor, FINAL_ROUNDS)
     projection = light_projection(paths, numbers, to_xyz)
     # D diag(c) and l / c decode alike: c makes the numbers of equal energy ones.
     luminance = observer.matching_functions()[:, 1]
@@ -309,6 +310,32 @@ def _fit(
         "held-out": len(materials.held_out),
     }
     return Passes(bands, to_xyz, tuple(described), projection, origin)
+
+
+def path_errors(
+    passes: Passes, materials: Materials, lights: Sequence[Illuminant]
+) -> Array:
+    """Compute the errors of the shared matrix on the paths that judge passes.
+
+    Parameters
+    ----------
+    passes : Passes
+        Passes that are fitted to the lights.
+    materials : Materials
+        Materials of the scene, or those of the library.
+    lights : sequence of str or Lamp
+        L lights of the passes, in their order.
+
+    Returns
+    -------
+    ndarray, shape (L, n)
+        ΔE00 of one to four bounces over held-out materials.
+    """
+    powers = np.stack([scaled_power(light) for light in dict.fromkeys(lights)])
+    judged = draw_paths(materials.held_out, powers, JUDGING_PATHS, JUDGING_SEED)
+    numbers = np.stack([light.numbers for light in passes.lights])
+    lit = judged.numbers(passes.bands.weights) * numbers[:, None]
+    return judged.errors(lit @ passes.to_xyz.T)
 
 
 def rgb_errors(materials: Materials, lights: Sequence[Illuminant]) -> Array:

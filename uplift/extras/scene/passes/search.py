@@ -32,6 +32,8 @@ RANGES = ((400.0, 700.0), (410.0, 660.0), (415.0, 685.0), (430.0, 670.0))
 """Ranges in nm of the starts: the search ends in the nearest local minimum."""
 START_WIDTHS = (4, 16)
 """Widths in nm of the starts."""
+FLOOR = 0.05
+"""Least numbers of a light, relative to its mean powers in the bands."""
 FIRST_ROUNDS = 20
 """Rounds of the first fit of a start."""
 ROUNDS = 6
@@ -64,10 +66,11 @@ class Search:
         self, bands: Bands, numbers: Array | None = None, rounds: int = FIRST_ROUNDS
     ) -> Candidate:
         """Fit bands, from the numbers (L, K) of similar ones if there are any."""
+        powers = band_powers(bands, self._paths.powers)
         if numbers is None:
-            numbers = band_powers(bands, self._paths.powers)
+            numbers = powers
         grams = Grams.of(self._paths, self._paths.numbers(bands.weights))
-        _, numbers, error = grams.alternate(numbers, rounds)
+        _, numbers, error = grams.alternate(numbers, FLOOR * powers, rounds)
         return Candidate(bands, numbers, error)
 
     def best(self, count: int, progress: ProgressCallback) -> Candidate:

@@ -36,7 +36,7 @@ from uplift.lookup import Cube, load
 from uplift.lookup.node_table import prepare_products
 
 ATTRIBUTE = "uplift.passes"
-"""Attribute of an image with the digest of the passes and the number of its own."""
+"""Attribute of an image: the digest of the passes, and the number of the pass."""
 LARGEST_HALF = float(np.finfo(np.float16).max)
 
 
@@ -46,8 +46,21 @@ def pass_mark(passes: Passes, number: int) -> str:
 
 
 def pass_name(stem: str, number: int) -> str:
-    """Return the name of the image of a pass, counted from 1.
+    """Return the name of the image of a pass.
 
+    Parameters
+    ----------
+    stem : str
+        Name of all images without suffix.
+    number : int
+        Number of the pass, from 1.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
     >>> pass_name("wood", 2)
     'wood.2.exr'
     """
@@ -267,8 +280,18 @@ def prepare_light_pass(
 
 
 def table_projection(passes: Passes) -> Array:
-    """Return the matrix (K, 81) to numbers from power in the units of emission tables,
-    where equal energy of luminance 1 has ones.
+    """Return the matrix from power in the units of emission tables to numbers.
+
+    Parameters
+    ----------
+    passes : Passes
+        The passes.
+
+    Returns
+    -------
+    ndarray, shape (K, 81)
+        Matrix for power at 380, 385, …, 780 nm, of which that of equal energy and
+        luminance 1 is 1.
     """
     luminance = observer.matching_functions()[:, 1]
     return passes.light_projection / luminance.sum()
