@@ -4,6 +4,7 @@ Mitsuba, for docs/guides/passes.md and its pictures.
 The room is rendered in child processes, as Mitsuba has one variant a process here.
 """
 
+import base64
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
@@ -14,13 +15,17 @@ import numpy as np
 
 import uplift
 from benchmarks import DOCS, Row, passes_room, record
+from benchmarks.browser import browser
+from benchmarks.checker import chart
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.common.files import write_text
 from uplift.extras.palette.factor import factor_model
 from uplift.extras.scene import passes as library
 from uplift.extras.scene import wavelengths
 from uplift.extras.scene.passes import Materials, Passes
+from uplift.extras.scene.passes.browser_page import page
 from uplift.extras.scene.passes.light_paths import draw_paths
 from uplift.extras.scene.passes.passes import (
     JUDGING_PATHS,
@@ -39,6 +44,10 @@ SMOOTH = ("D65", "A", "D50", "E")
 MATERIALS = 100
 """Materials that wavelengths are optimised for, which takes long for more."""
 IMAGE = "still-life.png"
+WINDOW = (1240, 830)
+"""Pixels of the window of the page."""
+FRAMES_SECONDS = 40
+"""Seconds until a picture of the page is taken."""
 BANDS = "bands"
 POINTS = "points"
 
@@ -206,6 +215,18 @@ def textures(chosen: dict[int, Passes]) -> list[Row]:
     return rows
 
 
+def write_page(passes: Passes) -> None:
+    """Write the page of the room, and a picture of it after some frames."""
+    path = DOCS / "passes" / "room.html"
+    write_text(page(passes, chart().measured), path, force=True)
+    with browser() as tab:
+        tab.window(*WINDOW)
+        tab.open(path)
+        time.sleep(FRAMES_SECONDS)
+        shot = tab.call("Page.captureScreenshot", format="jpeg", quality=85)
+    path.with_suffix(".jpg").write_bytes(base64.b64decode(shot["data"]))
+
+
 def main() -> None:
     """Measure, render, draw and store."""
     materials = library.library_materials()
@@ -213,6 +234,7 @@ def main() -> None:
     plain = library.rgb_errors(materials, LIGHTS)
     means = {str(count): plain.mean(axis=0)[count - 1] for count in range(1, 5)}
     room = passes_room.measure(DOCS / "passes")
+    write_page(chosen[2])
     record(
         "passes",
         lights=LIGHTS,

@@ -208,5 +208,11 @@ def test_recipe(run, passes, tool):
         compile(shown, "recipe", "exec")
 
 
+def test_page(run, refuse, passes, home):
+    run("passes page passes.toml -o room.html")
+    assert "WebGL" in (home / "room.html").read_text(encoding="utf-8")
+    assert refuse("passes page passes.toml -o room.html").code == "file-exists"
+
+
 def test_json_has_no_other_output(run, passes):
     json.loads(run("passes info passes.toml --format json").stdout)
