@@ -103,14 +103,21 @@ def command() -> None:
     """,
 )
 @click.argument("images", metavar="[IMAGE]...", nargs=-1)
-@options.whole("--count", default=2, metavar="N", help="Number of passes, 1 to 4.")
+@click.option(
+    "--count",
+    type=options.Whole(1, 4),
+    default=2,
+    metavar="N",
+    help="Number of passes, 1 to 4.",
+)
 @options.light("Light of the scene", "D65 A FL2 FL11 LED-B3")
 @options.atlas("Materials of the scene", "the library of measured materials")
 @options.cube(
     options.OF_PACKAGE.format(", which the colours of images are looked up in")
 )
-@options.whole(
+@click.option(
     "--width",
+    type=options.Whole(0, 60),
     metavar="NM",
     help="Standard deviation of the bands in nm; 0 for single wavelengths. "
     "[default: searched]",
