@@ -8,6 +8,7 @@ those of the representation alone.
 """
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -36,10 +37,6 @@ LAMPS = ("D65", "HP1")
 FAMILY = "checker"
 """Family of the library that holds the paints of the room, and is left out."""
 COUNTS = (1, 2, 3)
-SIZE = 160
-"""Rows and columns of pictures."""
-SPP = 144
-SPECTRAL_SPP = 576
 DEPTH = 7
 """Largest number of reflections and one."""
 SEED = 3
@@ -66,6 +63,17 @@ PAINTED = {
 }
 """Patches of the ColorChecker that parts of the room are painted in."""
 LAMP_NAMES = ("day", "sodium")
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Rows and columns of pictures, a multiple of 8, and samples per pixel of passes
+    and of the spectral variant.
+    """
+
+    size: int = 160
+    spp: int = 144
+    spectral_spp: int = 576
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,13 +155,13 @@ def room(paints: Paints, film: Row) -> Row:
     return scene
 
 
-def render_rgb(passes: list[Paints]) -> tuple[Array, float]:
+def render_rgb(passes: list[Paints], quality: Quality) -> tuple[Array, float]:
     """Return the pictures (height, width, 3 P) of passes, and the seconds of one."""
     import mitsuba as mi
 
     mi.set_variant("scalar_rgb")
     film = {
-        **xyz_film(SIZE, SIZE),
+        **xyz_film(quality.size, quality.size),
         "pixel_format": "rgb",
         "rfilter": {"type": "box"},
     }
@@ -169,12 +177,16 @@ def render_rgb(passes: list[Paints]) -> tuple[Array, float]:
         for name, lamp in zip(LAMP_NAMES, paints.lamps, strict=True):
             values[f"{name}.emitter.radiance.value"] = lamp["value"]
         values.update()
-        pictures.append(np.array(mi.render(scene, spp=SPP, seed=SEED), dtype=float))
+        pictures.append(
+            np.array(mi.render(scene, spp=quality.spp, seed=SEED), dtype=float)
+        )
     seconds = (time.perf_counter() - begin) / len(passes)
     return np.concatenate(pictures, axis=-1), seconds
 
 
-def render_spectral(spectra: Array, lamps: Array, seed: int) -> tuple[Array, float]:
+def render_spectral(
+    spectra: Array, lamps: Array, seed: int, quality: Quality
+) -> tuple[Array, float]:
     """Return the XYZ (height, width, 3) of measured spectra (24, 81) under lamps of
     power (2, 81), and the seconds.
     """
@@ -188,10 +200,12 @@ def render_spectral(spectra: Array, lamps: Array, seed: int) -> tuple[Array, flo
         [regular_spectrum(grid, row) for row in spectra],
         [regular_spectrum(grid, row) for row in radiance],
     )
-    film = {**xyz_film(SIZE, SIZE), "rfilter": {"type": "box"}}
+    film = {**xyz_film(quality.size, quality.size), "rfilter": {"type": "box"}}
     scene = mi.load_dict(room(paints, film))
     begin = time.perf_counter()
-    picture = np.array(mi.render(scene, spp=SPECTRAL_SPP, seed=seed), dtype=float)
+    picture = np.array(
+        mi.render(scene, spp=quality.spectral_spp, seed=seed), dtype=float
+    )
     return picture, time.perf_counter() - begin
 
 
@@ -216,8 +230,11 @@ def other_materials() -> Materials:
     return Materials(training, chart().measured, {"source": "library"})
 
 
-def measure(folder: Path) -> Row:
+def measure(
+    folder: Path, quality: Quality | None = None, counts: Sequence[int] = COUNTS
+) -> Row:
     """Render all, draw, and return figures."""
+    quality = quality or Quality()
     painted = chart()
     spectra = np.clip(painted.measured, 0, 1)
     powers = RADIANCE * np.stack([library.scaled_power(name) for name in LAMPS])
@@ -225,7 +242,7 @@ def measure(folder: Path) -> Row:
     screen = observer.sensor()
     rgb_lamps = powers @ observer.matching_functions() @ screen.xyz_to_rgb.T
     jobs[RGB] = (painted.painted, np.maximum(rgb_lamps, 0), screen.rgb_to_xyz)
-    for count in COUNTS:
+    for count in counts:
         chosen = library.choose(other_materials(), LAMPS, count)
         lamps = RADIANCE * np.stack([light.numbers for light in chosen.lights])
         surfaces = chosen.reflectance_numbers(spectra)
@@ -233,7 +250,7 @@ def measure(folder: Path) -> Row:
     every = []
     for surfaces, lamps, _ in jobs.values():
         every += numbers_in_passes(surfaces, lamps)
-    rendered, one = call_in_child(render_rgb, every, seconds=LIMIT)
+    rendered, one = call_in_child(render_rgb, every, quality, seconds=LIMIT)
     pictures = {}
     seconds = {}
     first = 0
@@ -244,9 +261,19 @@ def measure(folder: Path) -> Row:
         seconds[name] = one * count
         first += count
     truth, spectral_seconds = call_in_child(
-        render_spectral, spectra, powers, SEED, seconds=LIMIT
+        render_spectral, spectra, powers, SEED, quality, seconds=LIMIT
     )
-    return draw_and_compare(pictures, seconds, truth, spectral_seconds, folder)
+    figures = draw_and_compare(pictures, seconds, truth, folder)
+    figures["room_spectra"] |= {
+        "seconds": spectral_seconds,
+        "spp": quality.spectral_spp,
+    }
+    return figures | {
+        "room_size": quality.size,
+        "room_spp": quality.spp,
+        "room_lamps": LAMPS,
+        "room_depth": DEPTH - 1,
+    }
 
 
 def spectral_decoding() -> Array:
@@ -256,7 +283,7 @@ def spectral_decoding() -> Array:
 
 def blocks_of(picture: Array, size: int) -> Array:
     """Means of blocks of pixels, which have less noise."""
-    rows = SIZE // size
+    rows = len(picture) // size
     return picture.reshape(rows, size, rows, size, 3).mean(axis=(1, 3))
 
 
@@ -264,7 +291,6 @@ def draw_and_compare(
     pictures: dict[str, Array],
     seconds: dict[str, float],
     spectral: Array,
-    spectral_seconds: float,
     folder: Path,
 ) -> Row:
     """Draw pictures and maps of ΔE00, and return figures."""
@@ -277,7 +303,7 @@ def draw_and_compare(
         for name, picture in pictures.items()
     }
     rows = []
-    for name in (RGB, *map(str, COUNTS)):
+    for name in list(pictures)[1:]:
         errors = maps[name]
         blocks = delta_e_2000(
             lab(blocks_of(spectral, 8), white),
@@ -297,18 +323,7 @@ def draw_and_compare(
     )
     folder.mkdir(exist_ok=True)
     _draw({**pictures, VARIANT: spectral}, maps, level, folder / "room.png")
-    return {
-        "room": rows,
-        "room_spectra": {
-            "seconds": spectral_seconds,
-            "spp": SPECTRAL_SPP,
-            "noise": noise.mean(),
-        },
-        "room_size": SIZE,
-        "room_spp": SPP,
-        "room_lamps": LAMPS,
-        "room_depth": DEPTH - 1,
-    }
+    return {"room": rows, "room_spectra": {"noise": noise.mean()}}
 
 
 def _draw(
