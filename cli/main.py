@@ -50,6 +50,7 @@ GROUPS = {
     "Scenes and lights": {
         "plan": "Choose the cheapest spectra that a scene's tolerance allows.",
         "wavelengths": "Choose the wavelengths at which a renderer samples.",
+        "passes": "Render spectra with an RGB renderer, in two or three passes.",
         "compare": "Compare representations of spectra by error and cost.",
         "lights": "Give lights of any brightness spectral powers.",
     },

@@ -20,7 +20,8 @@ from ..inputs import check_range
 from ..output.answers import format_rgb, print_spectrum, sparkline
 from ..output.console import json_output, print_csv, print_json_answers, say
 from .info import print_facts
-from .texture import as_tuple, convert, image_options
+from .query import print_numbers
+from .texture import as_tuple, convert, image_options, passes_option
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -204,6 +205,8 @@ def export(table_path: str, output: str, table: str | None, force: bool) -> None
     Examples:
       uplift lights texture sky.exr -o sky-spectral.exr --wavelengths 400:700:10
       uplift lights texture sky.exr -o half.exr --depth half
+      uplift passes choose
+      uplift lights texture sky.exr -o sky --passes passes.toml
     """,
 )
 @image_options
@@ -212,16 +215,25 @@ def export(table_path: str, output: str, table: str | None, force: bool) -> None
 @options.depth
 @options.encoding
 @options.input_space("the images", name="space")
-def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) -> None:
+@passes_option
+def texture(
+    table_path: str | None,
+    wavelengths: Array | None,
+    passes: str | None,
+    **settings: Any,
+) -> None:
     from uplift.extras.emission.lookup import find_table, load_emission
     from uplift.extras.texture import Spectrum
 
+    if passes is not None and wavelengths is not None:
+        raise click.UsageError("--passes excludes --wavelengths.")
     table = None if table_path is None else os.path.abspath(find_table(table_path))
     # a table that cannot be read is reported before images are
     loaded = load_emission(table_path)
     if wavelengths is not None:
         check_range(wavelengths, loaded.wavelengths)
-    convert((table,), Spectrum(as_tuple(wavelengths)), emission=True, **settings)
+    encoding = Spectrum(as_tuple(wavelengths))
+    convert((table,), encoding, emission=True, passes=passes, **settings)
 
 
 @command.command(
@@ -239,6 +251,7 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
       uplift lights query 30 22 9
       uplift lights query 30 22 9 --wavelengths 400:700:10 --format json
       uplift lights query --xyz 0.95 1 1.09 --plot white.png
+      uplift lights query 30 22 9 --passes passes.toml
     """,
 )
 @options.colours("where white of the table's space has Y = 1", "that of the table")
@@ -252,6 +265,12 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
 )
 @options.table_json_or_csv
 @options.plot("Plot the spectra")
+@click.option(
+    "--passes",
+    metavar="FILE",
+    type=click.Path(),
+    help="Passes by 'uplift passes choose': print the numbers of the lights.",
+)
 @options.force
 def query(
     table_path: str | None,
@@ -259,6 +278,7 @@ def query(
     outside: str,
     style: str,
     plot_path: str | None,
+    passes: str | None,
     force: bool,
     **colours: Any,
 ) -> None:
@@ -276,6 +296,11 @@ def query(
         blocks: Iterable[Array] = [np.array([source.xyz])]
     else:
         blocks = map(table.xyz, source.blocks(sensor(table.space)))
+    if passes is not None:
+        if plot_path is not None or wavelengths is not None:
+            raise click.UsageError("--passes excludes --plot and --wavelengths.")
+        print_numbers(_pass_numbers(table, blocks, passes, outside), style)
+        return
     results: Iterable[dict[str, Any]] = _answers(table, blocks, at, outside)
     if plot_path is not None:
         from uplift.extras.pages.plots import plot_lights
@@ -302,6 +327,21 @@ def query(
             text = " ".join(map("{:.4g}".format, result["rgb"]))
             shape = sparkline(result["power"] / _peak(result["power"]), 32)
             say(f"{text:<34}{result['expected_error']:>6.2f}  {shape}")
+
+
+def _pass_numbers(
+    table: EmissionTable, blocks: Iterable[Array], path: str, outside: str
+) -> Iterator[tuple[list[float], list[float]]]:
+    """Yield linear RGB and the numbers (K,) of passes, at least 0, of each light."""
+    from uplift.colorimetry import observer
+    from uplift.extras.scene.passes import read_passes, table_projection
+
+    projection = table_projection(read_passes(path))
+    for xyz in blocks:
+        power = table.spectrum_of_xyz(xyz, observer.grid(), outside=outside)
+        numbers = (power @ projection.T).clip(min=0)
+        rgb = table.rgb_of_xyz(xyz)
+        yield from zip(rgb.tolist(), numbers.tolist(), strict=True)
 
 
 def _csv_row(result: dict[str, Any]) -> Sequence[float]:

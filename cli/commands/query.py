@@ -28,6 +28,7 @@ from ..output.answers import (
 )
 from ..output.console import (
     paragraph,
+    print_csv,
     print_json,
     print_json_answers,
     say,
@@ -226,6 +227,8 @@ class Answers:
       uplift query '#cc3319' --light lamp.spd
       uplift query '#8a2a20' --also A:'#9a3020'
       uplift query --check spectra.csv
+      uplift passes choose
+      uplift query '#cc3319' '#3366cc' --passes passes.toml
 
     With --also, the colour of the same thing under another light shows which of the
     materials of one colour it is; white is white there, as in the pictures of 'uplift
@@ -257,6 +260,12 @@ class Answers:
     default=1e-4,
     help="Largest difference in reflectance that --check accepts.",
 )
+@click.option(
+    "--passes",
+    metavar="FILE",
+    type=click.Path(),
+    help="Passes by 'uplift passes choose': print the numbers of the colours in each.",
+)
 @options.force
 def command(
     lights: Sequence[Illuminant],
@@ -267,9 +276,14 @@ def command(
     plot_path: str | None,
     stored: str | None,
     tolerance: float,
+    passes: str | None,
     force: bool,
     **colours: Any,
 ) -> None:
+    if passes is not None:
+        _check_passes()
+        print_numbers(_pass_numbers(passes, colours), style)
+        return
     if stored is not None:
         given = [colours[name] for name in ("colour", "input_path", "xyz", "xy")]
         if given != [(), None, None, None]:
@@ -313,6 +327,59 @@ def command(
         if len(cubes) == 1:
             hint = f"to use the cube of this folder, add --cube {cubes[0]}"
             paragraph(f"hint: {hint}", err=True)
+
+
+def _check_passes() -> None:
+    """Raise a usage error for options that numbers of passes do not have."""
+    given = options.given()
+    for name in ("lights", "plot_path", "wavelengths", "stored"):
+        if name in given:
+            raise click.UsageError(f"--passes excludes {given[name]}.")
+
+
+def _pass_numbers(
+    path: str, colours: dict[str, Any]
+) -> Iterator[tuple[list[float], list[float]]]:
+    """Yield linear RGB and the numbers (K,) of passes of each colour."""
+    from uplift.colorimetry import observer
+    from uplift.extras.scene.passes import check_cube, read_passes
+
+    passes = read_passes(path)
+    answers = Answers(lights=(), **colours | {"wavelengths": observer.grid()})
+    check_cube(passes, answers.cube)
+    for block in answers:
+        numbers = passes.reflectance_numbers(block.reflectance)
+        yield from zip(block.rgb.tolist(), numbers.tolist(), strict=True)
+
+
+def print_numbers(rows: Iterable[tuple[list[float], list[float]]], style: str) -> None:
+    """Print the numbers (K,) of passes of colours, three for each pass."""
+    if style == "csv":
+        print_csv(("r", "g", "b", "pass", "R", "G", "B"), _pass_rows(rows))
+        return
+    if style == "json":
+        values = [
+            {"rgb": rgb, "passes": [list(row) for row in _triples(numbers)]}
+            for rgb, numbers in rows
+        ]
+        print_json(values)
+        return
+    for rgb, numbers in rows:
+        say(f"linear RGB {format_rgb(rgb)}")
+        for number, triple in enumerate(_triples(numbers), 1):
+            say(f"  pass {number}: {' '.join(map('{:.6g}'.format, triple))}")
+
+
+def _triples(numbers: list[float]) -> list[list[float]]:
+    return [numbers[first : first + 3] for first in range(0, len(numbers), 3)]
+
+
+def _pass_rows(
+    rows: Iterable[tuple[list[float], list[float]]],
+) -> Iterator[list[float]]:
+    for rgb, numbers in rows:
+        for number, triple in enumerate(_triples(numbers), 1):
+            yield [*rgb, number, *triple]
 
 
 def _check(

@@ -8,6 +8,7 @@ import os
 import re
 import time
 from collections.abc import Sequence
+from dataclasses import fields, replace
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -68,6 +69,12 @@ image_options = options.stacked(
     options.quiet,
 )
 """Images, their target, and how they are converted; for `convert`."""
+passes_option = click.option(
+    "--passes",
+    metavar="FILE",
+    type=click.Path(),
+    help="Passes by 'uplift passes choose': write an image for each of them.",
+)
 
 
 @click.command(
@@ -88,6 +95,8 @@ image_options = options.stacked(
       uplift texture wood.png -o errors.exr --cube macbeth-32.uplift --errors FL11
       uplift relight wood.png -o tungsten.exr --light A
       uplift texture wood.png --also A:tungsten.exr -o two-lights.exr
+      uplift passes choose
+      uplift texture wood.png -o wood --passes passes.toml
 
     'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at
     --wavelengths. 'moments' can be filtered and mip-mapped. 'multipliers' can be
@@ -114,6 +123,10 @@ image_options = options.stacked(
     contradict each other are answered by the first alone, and are 1 in the channel
     'contradiction'. A ColorChecker in all of them, see --chart, states more, and its
     patches are compared with their measurements.
+
+    With --passes, an RGB renderer takes the place of a spectral one: each pass has a
+    texture, such as wood.1.exr and wood.2.exr, with the numbers of three bands as R, G
+    and B ('uplift passes').
 
     Pixels that are light, such as those of an environment map, need 'uplift lights
     texture'.
@@ -189,6 +202,7 @@ image_options = options.stacked(
     type=options.LIGHT,
     shell_complete=options.complete_light,
 )
+@passes_option
 def command(
     cube_paths: Sequence[str],
     mask: str | None,
@@ -202,11 +216,14 @@ def command(
     cameras: Sequence[str],
     corners: tuple[float, ...] | None,
     chart_atlas: str,
+    passes: str | None,
     **settings: Any,
 ) -> None:
     from uplift.extras import texture
     from uplift.lookup import find_file, load
 
+    if passes is not None:
+        _check_passes()
     count = len(also)
     pictures = tuple(
         texture.FurtherPicture(photograph.light, space, camera, exposure)
@@ -224,7 +241,6 @@ def command(
             chart = texture.ChartInPicture(corners, chart_atlas)
         settings["also"] = texture.FurtherPictures(pictures, balance, noise, chart)
         settings["further"] = [photograph.text for photograph in also]
-
     encode = texture.PIXEL_ENCODINGS[kind]
     if encode is not texture.Spectrum and wavelengths is not None:
         hint = "leave out --wavelengths, or use --representation spectrum"
@@ -241,7 +257,15 @@ def command(
         pixels = texture.Spectrum(as_tuple(wavelengths))
     if mask is not None:
         mask = os.path.abspath(mask)
-    convert(cubes, pixels, mask=mask, **settings)
+    convert(cubes, pixels, mask=mask, passes=passes, **settings)
+
+
+def _check_passes() -> None:
+    """Raise a usage error for options that images of passes do not have."""
+    given = options.given()
+    for name in ("kind", "mask", "errors", "wavelengths", "also"):
+        if name in given:
+            raise click.UsageError(f"--passes excludes {given[name]}.")
 
 
 def convert(
@@ -256,6 +280,7 @@ def convert(
     force: bool,
     quiet: bool,
     further: Sequence[str] = (),
+    passes: str | None = None,
     **given: Any,
 ) -> None:
     """Convert images, on as many threads as the processes leave; see `TextureSettings`
@@ -265,11 +290,10 @@ def convert(
     from uplift.extras import texture
     from uplift.extras.texture.sequence import converter_for
 
-    pairs = _texture_paths(sources, target)
+    named = target if passes is None else _with_suffix(sources, target)
+    pairs = _texture_paths(sources, named)
     photographs = _photographs(further, len(pairs))
     inputs = click.get_current_context().meta.get(options.INPUTS, ())
-    existing = [path for _, path in pairs if path.exists()]
-    check_outputs(existing, inputs=inputs, force=True)
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
     settings = texture.TextureSettings(
@@ -279,8 +303,14 @@ def convert(
         texture.Job(settings, source.absolute(), path.absolute(), force, resume, more)
         for (source, path), more in zip(pairs, photographs, strict=True)
     ]
+    if passes is not None:
+        inputs = [*inputs, passes]
+        jobs = _jobs_of_passes(jobs, passes)
+    existing = [job.target for job in jobs if job.target.exists()]
+    check_outputs(existing, inputs=inputs, force=True)
     pending = texture.pending(jobs)
-    converter_for(settings)  # reports invalid options once, not once per image
+    # reports invalid options once, not once per image
+    converter_for(jobs[0].settings)
     begin = time.perf_counter()
     outcomes = _run_jobs(
         pending,
@@ -295,7 +325,7 @@ def convert(
         warn(conversion.warnings)
     if not quiet and len(failures) < len(jobs):
         skipped = len(jobs) - len(converted) - len(failures)
-        is_spectrum = isinstance(pixel_encoding, texture.Spectrum)
+        is_spectrum = passes is None and isinstance(pixel_encoding, texture.Spectrum)
         _print_summary(target, converted, skipped, begin, is_spectrum)
     _raise_first(failures)
 
@@ -315,6 +345,36 @@ def _photographs(further: Sequence[str], count: int) -> list[tuple[Path, ...]]:
             )
         columns.append([Path(path).absolute() for path in paths])
     return list(zip(*columns, strict=True)) if columns else [()] * count
+
+
+def _with_suffix(sources: Sequence[str], target: str) -> str:
+    """Return the name ``wood.exr`` for ``wood`` of a single image, unless it is a
+    folder.
+    """
+    is_single = len(sources) == 1 and expand_patterns(sources) == [sources[0]]
+    is_folder = os.path.isdir(target) or target.endswith(os.sep)
+    if not is_single or is_folder or Path(target).suffix.lower() == ".exr":
+        return target
+    return f"{target}.exr"
+
+
+def _jobs_of_passes(jobs: Sequence[Job], path: str) -> list[Job]:
+    """Return a job for each image and pass, the images of a pass in a row."""
+    from uplift.extras.scene.passes import PassSettings, pass_name, read_passes
+
+    path = os.path.abspath(path)
+    count = read_passes(path).count
+    shared = {
+        setting.name: getattr(jobs[0].settings, setting.name)
+        for setting in fields(jobs[0].settings)
+    }
+    result = []
+    for number in range(1, count + 1):
+        settings = PassSettings(**shared, passes=path, number=number)
+        for job in jobs:
+            target = job.target.with_name(pass_name(job.target.stem, number))
+            result.append(replace(job, settings=settings, target=target))
+    return result
 
 
 def _raise_first(errors: Sequence[UpliftError]) -> None:

@@ -142,6 +142,17 @@ def warning_lines(result: Result) -> list[str]:
     ]
 
 
+@pytest.fixture(scope="session")
+def passes_text() -> str:
+    """The file of two passes."""
+    from uplift.extras.scene import passes
+
+    bands = passes.PRESETS[2]
+    return passes.to_toml(
+        passes.fit_bands(bands, passes.library_materials(), ("D65", "A"))
+    )
+
+
 @pytest.fixture
 def cubes(repository: Path) -> Path:
     """The folder of stored cubes."""

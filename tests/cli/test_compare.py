@@ -77,7 +77,7 @@ def test_lights_replace_the_default_sets(run, macbeth):
         if row["lights"] == "given"
     }
     assert {row["representation"] for row in rows} == names
-    assert len(rows) == len(fields["representations"]) == 46
+    assert len(rows) == len(fields["representations"]) == 50
     assert fields["facts"]["products"] == "24 surfaces under each light"
     assert fields["filters"] == []
 

@@ -82,6 +82,10 @@ palette palette.toml | -o x.txt | x.txt
 palette palette.toml | --plot x.png | x.png
 palette palette.toml | --plot-spectra x.png | x.png
 palette palette.toml --image image.exr | --html x.html | x.html
+passes choose image.exr --atlas atlas.txt --cube cube.uplift --light lamp.csv \
+| -o x.toml | x.toml
+passes decode wood.1.exr wood.2.exr --passes passes.toml | -o x.exr | x.exr
+passes page passes.toml | -o x.html | x.html
 plan scene.toml | -o x.json | x.json
 plan scene.toml | | scene.plan.json
 query --cube cube.uplift --input colours.csv | --plot x.png | x.png
@@ -98,6 +102,8 @@ study sensitivity recorded.uplift | -o out | out/sensitivity-locality.png
 texture image.exr --cube cube.uplift --cube cube2.uplift --mask mask.exr \
 | -o x.exr | x.exr
 texture image.exr wood.*.exr --errors lamp.csv | -o out | out/image.exr out/wood.2.exr
+texture image.exr --passes passes.toml | -o x | x.1.exr x.2.exr
+lights texture image.exr --passes passes.toml | -o x | x.1.exr x.2.exr
 wavelengths --count 4 --atlas atlas.txt --observer camera.csv --light lamp.csv \
 | --plot x.png | x.png
 """
@@ -112,7 +118,7 @@ WITHOUT_ROWS = {
 
 
 @pytest.fixture
-def inputs(home, cubes, macbeth, monkeypatch):
+def inputs(home, cubes, macbeth, passes_text, monkeypatch):
     """A file of each kind in the working folder, by name with its bytes."""
     for name in ("atlas.txt", "library.txt", "macbeth.txt"):
         shutil.copy(macbeth, home / name)
@@ -126,6 +132,7 @@ def inputs(home, cubes, macbeth, monkeypatch):
         write_exr(home / name, planes(np.full((2, 2, 3), 0.5, np.float32)))
     for name, text in CONTENT.items():
         (home / name).write_text(text)
+    (home / "passes.toml").write_text(passes_text, encoding="utf-8")
     images = SimpleNamespace(paths=("image.exr",))
     plan = SimpleNamespace(images=images, atlases=("atlas.txt",), build=print)
     monkeypatch.setattr("uplift.extras.scene.plan.files.read_plan", lambda path: plan)

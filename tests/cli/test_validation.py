@@ -28,6 +28,7 @@ COMPUTES = {
     "diff": "uplift.extras.report.diff.diff_cubes",
     "lights build": "uplift.extras.emission.build.EmissionTable",
     "palette": "uplift.extras.palette.design",
+    "passes choose": "uplift.extras.scene.passes.passes.draw_paths",
     "plan": "uplift.extras.scene.plan.space.sample_colours",
     "relight": "uplift.pipeline.entries.fit_constraints",
     "report": "uplift.extras.report.assessment.assess",
@@ -155,6 +156,21 @@ unknown-name query #fff --light none.spd
 atlas query #fff --light mine
 ambiguous-numbers query 0,2,0,3,0,4
 file-not-found query #fff --cube none.uplift
+file-not-found passes choose none.png -o x.toml
+file-not-found passes choose --atlas none.csv -o x.toml
+unknown-name passes choose --light none
+file-exists passes choose -o mine
+file-not-found passes decode fire.exr fire.exr --passes none.toml -o x.exr
+invalid-file passes decode fire.exr fire.exr --passes palette.toml -o x.exr
+file-not-found passes info none.toml
+file-not-found passes page none.toml -o x.html
+output passes page palette.toml -o x.txt
+file-not-found passes recipe none.toml
+invalid-file passes recipe palette.toml --for nuke
+file-not-found texture wood.png -o x --passes none.toml
+file-not-found query #888 --passes none.toml
+file-not-found lights query 1 1 1 --passes none.toml
+file-not-found lights texture fire.exr -o x --passes none.toml
 option query #fff --wavelengths red
 option query #fff --wavelengths 400:700
 option query #fff --wavelengths 400:700:0
@@ -270,7 +286,7 @@ wavelengths --count 4 --atlas paints.xlsx --plot x.png
 """,
 }
 """Commands by the optional package that they need."""
-GROUPS = ("lights", "study")
+GROUPS = ("lights", "passes", "study")
 WITHOUT_ROWS = {
     "check": "checks all cubes that it can read",
     "export": "writes one file as its last act",

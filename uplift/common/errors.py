@@ -149,6 +149,12 @@ class PaletteError(UpliftError, ValueError):
     code = "palette"
 
 
+class PassesError(UpliftError, ValueError):
+    """A file of passes, or one of their images, cannot be read or does not fit."""
+
+    code = "passes"
+
+
 class ColourError(UpliftError, ValueError):
     """A colour is outside [0, 1], not finite, unreadable, or one that a cube or a
     reflectance cannot have.

@@ -10,8 +10,10 @@ from hypothesis.extra.numpy import arrays
 from numpy.testing import assert_allclose
 
 from tests.conftest import MACBETH
+from tests.helpers import raises
 from uplift.atlas import read_atlas
-from uplift.colorimetry import observer
+from uplift.colorimetry import delta_e_2000, observer
+from uplift.common.errors import OptionError
 from uplift.extras.scene.representations import (
     FACTORIES,
     all_representations,
@@ -110,6 +112,22 @@ def test_colour_is_linear_in_the_light_and_products_can_be_multiplied_again(
         assert_allclose(
             again, (light_powers("A") * checker.surfaces**2) @ xyz_weights(), atol=0.01
         )
+
+
+@pytest.mark.parametrize(("count", "limit"), [(3, 6), (6, 1.5), (9, 0.5), (12, 0.3)])
+def test_passes_of_rgb_are_near_to_spectra(every, checker, count, limit):
+    passes = every[f"RP{count}"]
+    for lights in checker.sets:
+        xyz = passes.reflected(lights.powers, lights.reflectances)
+        errors = delta_e_2000(lights.to_lab(xyz), lights.lab)
+        assert errors.mean() < limit
+    assert passes.numbers(checker.powers, checker.surfaces) == (count, count)
+
+
+@pytest.mark.parametrize("count", [2, 4, 15])
+def test_a_pass_has_three_bands(count):
+    with raises(OptionError):
+        find_representation(f"RP{count}")
 
 
 RANDOM = np.random.default_rng(5).random((3, 401))

@@ -72,6 +72,8 @@ class Counts:
         Pixels whose colour no light has.
     too_bright : int
         Pixels with numbers above the largest of the channels' type.
+    negative : int
+        Pixels with numbers below 0, which are clamped.
     """
 
     pixels: int = 0
@@ -101,6 +103,7 @@ class Counts:
         "pixels-too-bright",
         "brighter than half floats can store: clamped; use 32-bit channels",
     )
+    negative: int = _counted("pixels-negative", "with negative numbers: clamped to 0")
 
     def __add__(self, other: "Counts") -> "Counts":
         """Counts of both."""

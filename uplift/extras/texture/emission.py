@@ -64,24 +64,37 @@ class LightUplifter(uplifter.Converter):
         return read
 
     def convert(self, rgb: Floats) -> uplifter.Converted:
-        lights = rgb.astype(float)
         limit = np.finfo(np.float16 if self.depth == "half" else np.float32).max
+        lights, wrong = self._of_lights(rgb)
+        power = self._power(lights)
+        stored = lights.astype(np.float32)
+        bright = (np.abs(stored) > limit).any(axis=-1) | (power > limit).any(axis=-1)
+        counts = colours.Counts(not_lights=wrong, too_bright=int(bright.sum()))
+        return (stored.clip(-limit, limit), power.clip(0, limit)), counts
+
+    def power(self, rgb: Floats) -> tuple[Floats, colours.Counts]:
+        """Return the power (…, N) of lights of linear RGB (…, 3), and counts of colours
+        that no light has.
+        """
+        lights, wrong = self._of_lights(rgb)
+        return self._power(lights), colours.Counts(not_lights=wrong)
+
+    def _of_lights(self, rgb: Floats) -> tuple[Array, int]:
+        """Return linear RGB (…, 3) that lights have, and the number of changed ones."""
+        lights = rgb.astype(float)
         wrong = ~self.table.contains(lights)
         clipped = self.table.spectrum(lights[wrong], outside="clip")
         lights[wrong] = self.table.rgb(clipped)
-        power = self.table.spectrum(
+        return lights, int(wrong.sum())
+
+    def _power(self, lights: Array) -> Floats:
+        return self.table.spectrum(
             lights,
             self.wavelengths,
             outside="clip",
             dtype=np.float32,
             threads=self.threads,
         )
-        stored = lights.astype(np.float32)
-        bright = (np.abs(stored) > limit).any(axis=-1) | (power > limit).any(axis=-1)
-        counts = colours.Counts(
-            not_lights=int(wrong.sum()), too_bright=int(bright.sum())
-        )
-        return (stored.clip(-limit, limit), power.clip(0, limit)), counts
 
 
 def prepare_lights(

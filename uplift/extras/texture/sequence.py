@@ -184,8 +184,12 @@ class Skipped:
 
 Outcome = Conversion | Failure | Skipped
 """What becomes of a job."""
-converter_for = lru_cache(maxsize=1)(TextureSettings.prepare)
-"""The converter of settings, which each process prepares once."""
+
+
+@lru_cache(maxsize=1)
+def converter_for(settings: TextureSettings) -> Converter:
+    """Prepare the converter of settings, which each process does once."""
+    return settings.prepare()
 
 
 def run(job: Job, progress: ProgressCallback = ignore_progress) -> Outcome:

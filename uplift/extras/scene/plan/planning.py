@@ -8,6 +8,7 @@ from operator import attrgetter
 
 import numpy as np
 
+from uplift.colorimetry.observer import DEFAULT_OBSERVER
 from uplift.common.arrays import Array
 from uplift.common.errors import PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
@@ -23,6 +24,7 @@ from uplift.extras.scene.plan.candidates import (
 )
 from uplift.extras.scene.plan.evaluation import ErrorSummary
 from uplift.extras.scene.plan.files import SceneFile
+from uplift.extras.scene.plan.passes_advice import PassesAdvice, advise_passes
 from uplift.extras.scene.plan.space import CandidateSpace
 
 FINALISTS = 6
@@ -59,6 +61,9 @@ class Plan:
         Mean standard error of the textures' colours under the worst light: the ΔE00 to
         expect between a measurement of such a colour and any answer. None if the cube
         does not store standard errors.
+    passes : PassesAdvice or None
+        Passes of an RGB renderer that the scene needs; None if it needs no spectra, or
+        has another observer than the passes.
     """
 
     scene: SceneFile
@@ -70,6 +75,7 @@ class Plan:
     without_spectra: ErrorSummary
     spectra: tuple[Array, Array] | None
     expected_error: float | None
+    passes: PassesAdvice | None = None
 
     @property
     def front(self) -> list[Candidate]:
@@ -158,7 +164,17 @@ def plan(
             (float(error @ textures.share) for error in errors if error is not None),
             default=None,
         ),
+        passes=_advise_passes(space, chosen),
     )
+
+
+def _advise_passes(space: CandidateSpace, chosen: Candidate) -> PassesAdvice | None:
+    """Return the passes that an RGB renderer would need in place of the choice."""
+    if chosen.rendering is None or space.sensor.observer != DEFAULT_OBSERVER:
+        return None
+    scene = space.scene
+    spectra = space.tests.setup.reflectances
+    return advise_passes(spectra, scene.lights, scene.tolerance, scene.quantile)
 
 
 def _confirm(

@@ -16,6 +16,7 @@ from uplift.common.version import version
 from uplift.extras.pages.format import format_error, format_size
 from uplift.extras.scene.plan.candidates import INDEX, Candidate, Cost, cheapest_first
 from uplift.extras.scene.plan.files import FORMAT, SUFFIX, SceneFile, cube_name
+from uplift.extras.scene.plan.passes_advice import PassesAdvice
 from uplift.extras.scene.plan.planning import Plan, cost_text
 from uplift.extras.texture import Spectrum
 
@@ -87,6 +88,8 @@ def notes(plan: Plan) -> list[str]:
             f"The textures have {pluralise(len(plan.spectra[0]), 'colour')}: a list "
             "of spectra suffices."
         )
+    if plan.passes is not None:
+        lines.append(_passes_note(plan.passes))
     known = plan.expected_error
     if known is not None:  # RGB alone does not identify a material
         lines.append(
@@ -97,6 +100,14 @@ def notes(plan: Plan) -> list[str]:
         if cheaper is not None and plan.confirmed.quantile <= SHARE * known:
             lines.append(f"With tolerance {known:.2g} it would need {_costs(cheaper)}.")
     return lines
+
+
+def _passes_note(advice: PassesAdvice) -> str:
+    count = "1 pass" if advice.count == 1 else f"{advice.count} passes"
+    error = f"ΔE00 {format_error(advice.error)} of one to four reflections"
+    if advice.within:
+        return f"Of an RGB renderer {count} suffice ('uplift passes'): {error}."
+    return f"Of an RGB renderer {count} do not suffice: {error}."
 
 
 def _costs(candidate: Candidate) -> str:
@@ -153,6 +164,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
         "rendering": _rendering_json(plan),
         "spectra": _spectra_json(plan),
         "error": _error_json(plan),
+        "passes": plan.passes and asdict(plan.passes),
         "cost": chosen.cost._asdict(),
         "search": {"considered": plan.considered, "measured": len(plan.measured)},
         "front": list(map(_candidate_json, plan.front)),

@@ -10,7 +10,13 @@ from collections.abc import Callable, Mapping
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.text import format_value, parse_float, parse_whole
-from uplift.extras.scene.representations import composite, filters, models, samples
+from uplift.extras.scene.representations import (
+    composite,
+    filters,
+    models,
+    passes,
+    samples,
+)
 from uplift.extras.scene.representations.samples import Representation
 
 __all__ = [
@@ -41,6 +47,8 @@ FACTORIES: Mapping[str, tuple[Callable[[int], Representation], tuple[int, ...]]]
     # moments that cubes may store
     "TM": (models.trigonometric_moments, (5, 9, 13, 17)),
     "SG": (models.sigmoid_coefficients, (3,)),
+    # bands of one to four passes
+    "RP": (passes.rgb_passes, passes.SIZES),
     "HW": (models.hero_wavelengths, (4, 16, 64, 256)),  # wavelengths per pixel
 }
 """Factory and sizes by abbreviation. The linear model (LM) is not included, as it

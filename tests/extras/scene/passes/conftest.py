@@ -1,0 +1,26 @@
+"""Passes for tests, chosen once."""
+
+import pytest
+
+from uplift.extras.scene.passes import (
+    Bands,
+    Materials,
+    Passes,
+    fit_bands,
+    library_materials,
+)
+
+LIGHTS = ("D65", "A", "FL11")
+SIX = Bands((448.0, 498.0, 543.0, 581.0, 610.0, 652.0), 10.0)
+
+
+@pytest.fixture(scope="session")
+def library() -> Materials:
+    """The shipped materials in halves."""
+    return library_materials()
+
+
+@pytest.fixture(scope="session")
+def two_passes(library: Materials) -> Passes:
+    """Two passes with three lights."""
+    return fit_bands(SIX, library, LIGHTS)

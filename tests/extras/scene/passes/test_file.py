@@ -1,0 +1,93 @@
+"""The file of passes: round trip, and values that it must not have."""
+
+import re
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from tests.helpers import raises
+from uplift.common.errors import OutputError, PassesError
+from uplift.extras.scene.passes import (
+    passes_digest,
+    read_passes,
+    to_toml,
+    write_passes,
+)
+
+
+def test_round_trip(two_passes, tmp_path):
+    path = tmp_path / "passes.toml"
+    write_passes(two_passes, path)
+    again = read_passes(path)
+    assert to_toml(again) == to_toml(two_passes)
+    assert again.bands == two_passes.bands
+    assert again.origin == dict(two_passes.origin)
+    assert_allclose(again.to_xyz, two_passes.to_xyz, rtol=1e-8)
+    assert_allclose(again.light_projection, two_passes.light_projection, rtol=1e-8)
+    for read, light in zip(again.lights, two_passes.lights, strict=True):
+        assert (read.name, read.digest) == (light.name, light.digest)
+        assert_allclose(read.numbers, light.numbers, rtol=1e-8)
+        assert_allclose(read.own_errors, light.own_errors, rtol=1e-8)
+    assert passes_digest(again) == passes_digest(two_passes)
+
+
+def test_names_are_escaped(two_passes, tmp_path):
+    from dataclasses import replace
+
+    name = 'lamp "3"\\\n\t🔆\x7f'
+    light = replace(two_passes.lights[0], name=name)
+    path = tmp_path / "passes.toml"
+    write_passes(replace(two_passes, lights=(light,)), path)
+    assert read_passes(path).lights[0].name == name
+
+
+def test_existing_files_stay(two_passes, tmp_path):
+    path = tmp_path / "passes.toml"
+    path.write_text("kept")
+    with raises(OutputError, "file-exists"):
+        write_passes(two_passes, path)
+    assert path.read_text() == "kept"
+
+
+@pytest.mark.parametrize(
+    ("pattern", "replacement"),
+    [
+        (r"^format = .*$", 'format = "uplift passes 2"'),
+        (r"^centres = .*$", ""),
+        (r"^centres = \[448.0, ", "centres = ["),
+        (r"^centres = \[448.0, 498.0", "centres = [498.0, 448.0"),
+        (r"^centres = \[448.0", "centres = [48.0"),
+        (r"^width = .*$", "width = nan"),
+        (r"^width = .*$", "width = 61"),
+        (r"^width = .*$", 'width = "wide"'),
+        (r"^numbers = \[", "numbers = [-1.0, "),
+        (r"^numbers = \[", "numbers = [1.0, "),
+        (r"^to-xyz = \[\n  \[", "to-xyz = [\n  [1.0, "),
+        (r"^projection = \[\n.*\n", "projection = [\n"),
+        (r"^wavelengths = .*$", "wavelengths = [400.0, 700.0]"),
+        (r'^name = "A"$', 'name = "D65"'),
+        (r'^source = "library"$', 'source = "elsewhere"'),
+        (r"^errors = .*$", "errors = [1.0]"),
+        (r"\Z", "unknown = 1"),
+        (r"\A", "= 1"),
+    ],
+)
+def test_bad_values_are_refused(two_passes, tmp_path, pattern, replacement):
+    text = to_toml(two_passes)
+    changed = re.sub(pattern, replacement, text, count=1, flags=re.MULTILINE)
+    assert changed != text
+    path = tmp_path / "passes.toml"
+    path.write_text(changed, encoding="utf-8")
+    with raises(PassesError, "invalid-file") as caught:
+        read_passes(path)
+    assert caught.value.path == path
+
+
+def test_missing_and_binary_files(tmp_path):
+    with raises(PassesError, "file-not-found"):
+        read_passes(tmp_path / "missing.toml")
+    path = tmp_path / "image.exr"
+    path.write_bytes(np.arange(100).tobytes() + b"\xff")
+    with raises(PassesError, "invalid-file"):
+        read_passes(path)

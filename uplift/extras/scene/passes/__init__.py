@@ -1,0 +1,90 @@
+"""Spectral pictures from an RGB renderer: three bands of wavelengths a pass, and a
+matrix that decodes the pictures of all passes (docs/guides/passes.md).
+
+Examples
+--------
+::
+
+    from uplift.extras.scene import passes
+
+    materials = passes.library_materials()
+    chosen = passes.choose(materials, ["D65", "A"], count=2)
+    passes.write_passes(chosen, "passes.toml")
+"""
+
+from uplift.extras.scene.passes.bands import CHANNELS, Bands
+from uplift.extras.scene.passes.decode import (
+    Decoded,
+    Decoder,
+    decode_pictures,
+    decoder,
+)
+from uplift.extras.scene.passes.file import (
+    passes_digest,
+    read_passes,
+    to_toml,
+    write_passes,
+)
+from uplift.extras.scene.passes.materials import (
+    Materials,
+    library_materials,
+    scene_materials,
+)
+from uplift.extras.scene.passes.passes import (
+    Passes,
+    PassesLight,
+    choose,
+    fit_bands,
+    path_errors,
+    rgb_errors,
+    scaled_power,
+)
+from uplift.extras.scene.passes.presets import PRESETS
+from uplift.extras.scene.passes.recipe import (
+    RECIPES,
+    blender_recipe,
+    nuke_recipe,
+    plain_recipe,
+)
+from uplift.extras.scene.passes.textures import (
+    PassSettings,
+    check_cube,
+    pass_name,
+    prepare_light_pass,
+    prepare_pass,
+    table_projection,
+)
+
+__all__ = [
+    "CHANNELS",
+    "PRESETS",
+    "RECIPES",
+    "Bands",
+    "Decoded",
+    "Decoder",
+    "Materials",
+    "PassSettings",
+    "Passes",
+    "PassesLight",
+    "blender_recipe",
+    "check_cube",
+    "choose",
+    "decode_pictures",
+    "decoder",
+    "fit_bands",
+    "library_materials",
+    "nuke_recipe",
+    "pass_name",
+    "passes_digest",
+    "path_errors",
+    "plain_recipe",
+    "prepare_light_pass",
+    "prepare_pass",
+    "read_passes",
+    "rgb_errors",
+    "scaled_power",
+    "scene_materials",
+    "table_projection",
+    "to_toml",
+    "write_passes",
+]
