@@ -199,7 +199,15 @@ class Answers:
 @click.command(
     "query",
     cls=options.Command,
-    everyday=("cube_path", "encoded", "wavelengths", "lights", "style", "plot_path"),
+    everyday=(
+        "cube_path",
+        "encoded",
+        "wavelengths",
+        "lights",
+        "also",
+        "style",
+        "plot_path",
+    ),
     help="""Query the spectra of colours: R G B, '#rrggbb', or '-' for lines on standard
     input.
 

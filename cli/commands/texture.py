@@ -80,7 +80,7 @@ passes_option = click.option(
 @click.command(
     "texture",
     cls=options.Command,
-    everyday=("target", "cube_paths", "mask", "kind", "depth", "force"),
+    everyday=("target", "cube_paths", "also", "mask", "kind", "depth", "force"),
     help="""Convert every pixel of an image (EXR, HDR, PNG, JPEG, TIFF) to a spectrum
     and write an OpenEXR texture.
 
