@@ -11,12 +11,12 @@ import numpy as np
 from uplift.common.arrays import Array, Indices, Mask
 
 WIDTH = 480
-HEIGHT = 300
+HEIGHT = 250
 SAMPLES = 2
 """Rays along each side of a pixel."""
 EYE = np.array([0.0, -9.0, 3.4])
-TARGET = np.array([0.0, 0.0, 0.72])
-FOCAL = 2.1
+TARGET = np.array([0.0, 0.0, 0.62])
+FOCAL = 2.4
 """Distance of an image that is 2 wide."""
 WALL = 2.6
 """Distance of the wall behind the middle of the table."""
@@ -32,7 +32,7 @@ BALLS = np.array(
 )  # fmt: skip
 """Places (x, y) on the table, and radii."""
 MATERIALS = len(BALLS) + 3
-"""Materials: of the balls, two of the cloth, and that of the wall."""
+"""Materials: of the balls, then two of the cloth, and that of the wall."""
 LAMP = np.array([-0.55, -0.55, 0.8])
 """Direction to the middle of the light."""
 LAMP_SIZE = 0.3

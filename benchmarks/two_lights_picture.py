@@ -10,12 +10,21 @@ import numpy as np
 
 from benchmarks import DOCS, Row
 from benchmarks.materials import SENSOR, Materials, other_halves
-from benchmarks.still_life import MATERIALS, still_life
+from benchmarks.still_life import BALLS, MATERIALS, still_life
 from uplift.colorimetry import delta_e_spectra, observer, rgb_to_lab
 from uplift.colorimetry.gamut import SRGB
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array, Indices, Mask
 from uplift.extras.colour.srgb import to_display_codes
-from uplift.extras.pages.figure import colour_map, new_figure, show_image, write_png
+from uplift.extras.pages.figure import (
+    ACCENT,
+    GREY,
+    INK,
+    colour_map,
+    new_figure,
+    show_image,
+    style_axes,
+    write_png,
+)
 from uplift.extras.photographs import Noise, photograph, prepare
 
 SET = "cie2017"
@@ -37,8 +46,11 @@ TITLE = 0.25
 @dataclass(frozen=True, eq=False)
 class Scene:
     """Reflectances (H, W, 81) of a picture, its photographs (H, W, 3) under two lights,
-    and the answers (H, W, 81) to one photograph and to both.
+    and the answers (H, W, 81) to one photograph and to both; the pixels (H, W) of each
+    ball.
     """
+
+    balls: list[Mask]
 
     measured: Array
     first: Array
@@ -66,7 +78,7 @@ def difference(light: str, first: Array, second: Array) -> Array:
 
 def choose(known: Materials, count: int) -> Indices:
     """Choose materials whose colours are far from each other: each is the farthest from
-    those before. Those of least chroma come last.
+    those before. The lightest greys come last.
     """
     lab = rgb_to_lab(SENSOR, known.rgb)
     chosen = [int(np.linalg.norm(lab - lab.mean(axis=0), axis=1).argmin())]
@@ -74,15 +86,17 @@ def choose(known: Materials, count: int) -> Indices:
     for _ in range(count - 1):
         apart = np.minimum(apart, np.linalg.norm(lab - lab[chosen[-1]], axis=1))
         chosen.append(int(apart.argmax()))
-    chroma = np.hypot(*lab[chosen, 1:].T)
-    return np.array(chosen)[np.argsort(-chroma)]
+    lightness, a, b = lab[chosen].T
+    return np.array(chosen)[np.argsort(lightness - np.hypot(a, b))]
 
 
 def take_photographs() -> Scene:
     """Photograph materials that a cube does not know, and answer the photographs."""
     cube, unseen = other_halves(SET, dim=DIM)[0]
     materials = unseen.take(choose(unseen, MATERIALS))
-    measured = still_life() @ materials.measured
+    weights = still_life()
+    balls = [weights[..., ball] > 0 for ball in range(len(BALLS))]
+    measured = weights @ materials.measured
     random = np.random.default_rng(0)
     further = photograph(SENSOR, SECOND)
     photographs = prepare(cube, [further], NOISE)
@@ -90,7 +104,7 @@ def take_photographs() -> Scene:
     second = with_noise(measured @ further.matrix.T, random)
     one = cube.reflectance(first)
     two = photographs.reflectance(first, second)
-    return Scene(measured, first, second, one, two)
+    return Scene(balls, measured, first, second, one, two)
 
 
 def with_noise(values: Array, random: np.random.Generator) -> Array:
@@ -104,7 +118,7 @@ def draw_pictures() -> Row:
     scene = take_photographs()
     FOLDER.mkdir(exist_ok=True)
     write_png(draw_page(scene), FOLDER / "scene.png", force=True)
-    write_png(draw_readme(scene), FOLDER / "tubes.png", force=True)
+    write_png(draw_readme(scene), FOLDER / "sodium.png", force=True)
     errors = {}
     for name, (one, two) in scene.errors.items():
         errors[name] = {"one": summary(one), "two": summary(two)}
@@ -128,18 +142,18 @@ def draw_page(scene: Scene) -> Any:
     figure, panels = grid(scene, 1 + 2 * len(RELIT))
     show(panels[0, 0], scene.first, "photograph in daylight (D65)")
     show(panels[0, 1], scene.second, f"photograph in tungsten light ({SECOND})")
-    show(panels[0, 2], SENSOR.rgb(scene.measured), "daylight, without noise")
+    draw_spectra(panels[0, 2], scene)
     for number, light in enumerate(RELIT):
         draw_light(panels[1 + 2 * number : 3 + 2 * number], scene, light)
-    draw_scale(figure, panels[:, 0])
+    draw_scale(figure, panels[2, 0])
     return figure
 
 
 def draw_readme(scene: Scene) -> Any:
     """Draw the picture under one further light with its errors."""
     figure, panels = grid(scene, 2)
-    draw_light(panels, scene, RELIT[0])
-    draw_scale(figure, panels[:, 0])
+    draw_light(panels, scene, RELIT[-1])
+    draw_scale(figure, panels[1, 0])
     return figure
 
 
@@ -176,13 +190,32 @@ def draw_light(panels: Any, scene: Scene, light: str) -> None:
         axes.set_title(title, fontsize=8, loc="left", pad=3)
 
 
+def draw_spectra(axes: Any, scene: Scene) -> None:
+    """Draw the spectra of the ball that one photograph misses most, the means of its
+    pixels.
+    """
+    one, _ = scene.errors[RELIT[-1]]
+    missed = [one[ball].mean() for ball in scene.balls]
+    ball = scene.balls[int(np.argmax(missed))]
+    at = SENSOR.wavelengths
+    axes.plot(at, scene.measured[ball].mean(axis=0), color=INK, label="measured")
+    axes.plot(at, scene.one[ball].mean(axis=0), color=GREY, ls=":", label="one")
+    axes.plot(at, scene.two[ball].mean(axis=0), color=ACCENT, ls="--", label="both")
+    axes.set_title("reflectance of a ball, over nm", fontsize=8, loc="left", pad=3)
+    axes.set_xticks([400, 500, 600, 700])
+    axes.tick_params(labelsize=7)
+    axes.set_ylim(bottom=0)
+    axes.legend(fontsize=7, frameon=False)
+    style_axes(axes)
+
+
 def draw_scale(figure: Any, axes: Any) -> None:
-    """Draw the scale of the maps of errors below the first picture of the last row."""
+    """Draw the scale of the maps of errors in an empty panel."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
     shades = ScalarMappable(Normalize(0, LARGEST), colour_map())
-    place = axes[-1].inset_axes((0.12, 0.45, 0.76, 0.08))
+    place = axes.inset_axes((0.12, 0.45, 0.76, 0.08))
     bar = figure.colorbar(shades, cax=place, orientation="horizontal", extend="max")
     bar.set_label("ΔE00", fontsize=8)
     bar.ax.tick_params(labelsize=8)
