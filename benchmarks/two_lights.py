@@ -37,6 +37,8 @@ FURTHER = (("A",), ("LED-B3",), ("A", "FL11"))
 """Lights of the photographs beside that under D65."""
 SHARES = (0.0, 0.002, 0.005, 0.01, 0.02)
 """Standard deviations of the noise, as shares of each value."""
+SHOWN_SHARES = (0.0, 0.005, 0.02)
+"""Shares of the first table."""
 FLOOR = 0.1
 """Floor of the noise, relative to its share."""
 CUBE = "one photograph"
@@ -71,6 +73,7 @@ def main() -> None:
         together=TOGETHER,
         sets=[{"set": name, "spectra": len(materials(name).rgb)} for name in SETS],
         rows=rows,
+        overview=overview(rows),
         claims=claims(rows),
         scene=draw_pictures(),
         speed=speed(),
@@ -235,28 +238,57 @@ def summary(case: Case, delta_e: Array) -> Row:
 
 
 def claims(rows: list[Row]) -> Row:
-    """Return how the photographs compare with the other methods, over all sets, cases
-    and unseen lights.
+    """Return how the photographs compare with the other methods: ratios of means over
+    all sets and cases, cases in which another method is ahead, and unseen lights under
+    which one photograph is.
     """
     by_place: dict[tuple[str, str, float], dict[str, Row]] = {}
     for row in rows:
-        if row["set"] != TOGETHER:
-            place = (row["set"], row["further"], row["share"])
-            by_place.setdefault(place, {})[row["method"]] = row
-    to_formula = []
-    to_cube = []
-    for methods in by_place.values():
-        to_formula.append(methods[OURS]["mean"] / methods[FORMULA]["mean"])
-        for name, mean in methods[OURS]["means"].items():
-            to_cube.append(mean / methods[CUBE]["means"][name])
+        place = (row["set"], row["further"], row["share"])
+        by_place.setdefault(place, {})[row["method"]] = row
+    ratios: dict[str, list[float]] = {method: [] for method in METHODS}
+    under_lights = []
+    ahead = []
+    for (name, further, share), methods in by_place.items():
+        mean = methods[OURS]["mean"]
+        for method, row in methods.items():
+            ratios[method].append(mean / row["mean"])
+            if row["mean"] < mean:
+                place = {"set": name, "further": further, "share": share}
+                ahead.append({**place, "method": method, "ratio": mean / row["mean"]})
+        of_cube = methods[CUBE]["means"]
+        under_lights += [
+            value / of_cube[light] for light, value in methods[OURS]["means"].items()
+        ]
     return {
         "cases": len(by_place),
-        "lights": len(to_cube),
-        "worst_to_formula": max(to_formula),
-        "mean_to_formula": float(np.mean(to_formula)),
-        "worst_to_cube": max(to_cube),
-        "mean_to_cube": float(np.mean(to_cube)),
+        "worst": {method: max(values) for method, values in ratios.items()},
+        "mean": {method: np.mean(values) for method, values in ratios.items()},
+        "ahead": ahead,
+        "lights": len(under_lights),
+        "lights_worse": sum(ratio > 1 for ratio in under_lights),
+        "light_worst": max(under_lights),
     }
+
+
+def overview(rows: list[Row]) -> list[Row]:
+    """Return the means of `TOGETHER` under each light, None where a photograph has it,
+    with one photograph and with more.
+    """
+    lines = []
+    for share in SHOWN_SHARES:
+        here = [row for row in rows if (row["set"], row["share"]) == (TOGETHER, share)]
+        one: Row = {}
+        for row in here:
+            if row["method"] == CUBE:
+                one |= row["means"]
+        lines.append({"share": share, "known": "D65", "means": one})
+        for row in here:
+            if row["method"] == OURS:
+                means = {name: row["means"].get(name) for name in LIGHTS}
+                known = f"D65, {row['further']}"
+                lines.append({"share": share, "known": known, "means": means})
+    return lines
 
 
 def speed() -> Row:

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import partial
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from uplift.common.errors import OptionError
 from uplift.common.files import write_text
+from uplift.common.text import format_value, parse_float
 
 from .. import options
+from ..inputs import find_light
 from ..output.answers import as_lists, format_rgb, hex_code, patch
 from ..output.console import (
     json_output,
@@ -27,10 +30,33 @@ from ..outputs import check_outputs
 from .query import Answers, colour_options
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from uplift.colorimetry.illuminants import Illuminant
+    from uplift.common.arrays import Array
     from uplift.extras.colour.query import QueryBlock
+    from uplift.extras.colour.srgb import WrittenColour
     from uplift.extras.looks.metamer_bounds import Bounds
     from uplift.lookup import Cube
+
+
+class Further(NamedTuple):
+    """A colour in a photograph under a further light."""
+
+    light: Illuminant
+    colour: WrittenColour
+
+
+class Cut(NamedTuple):
+    """Bounds of a colour that is also known under further lights, by their names."""
+
+    names: list[str]
+    others: Array
+    """(L, 3) linear RGB under them."""
+    by_light: Sequence[Bounds]
+    errors: list[list[float]]
+    """Standard error and error bound under each light."""
+
 
 Block = tuple["QueryBlock", Sequence["Bounds"]]
 """Answers, and their bounds under each light."""
@@ -46,10 +72,27 @@ COLUMNS = (
 """Columns of CSV."""
 
 
+def _find_further(text: str) -> Further:
+    """Parse 'A:#9a3020' or 'lamp.csv:0.3,0.2,0.1'."""
+    from uplift.extras.colour.srgb import parse_colour
+
+    light, _, colour = text.rpartition(":")
+    if not light:
+        raise OptionError(
+            f"a further colour must be LIGHT:COLOUR, got {format_value(text)}",
+            hint="write for example A:#9a3020",
+        )
+    try:
+        numbers = list(map(parse_float, colour.split(",")))
+    except ValueError:
+        return Further(find_light(light), parse_colour(colour))
+    return Further(find_light(light), parse_colour(numbers))
+
+
 @click.command(
     "bounds",
     cls=options.Command,
-    everyday=("cube_path", "encoded", "lights", "style", "plot_path", "html"),
+    everyday=("cube_path", "encoded", "also", "lights", "style", "plot_path", "html"),
     help="""Compute the bounds of all reflectances of a COLOUR: R G B, '#rrggbb', or '-'
     for lines on standard input.
 
@@ -65,13 +108,25 @@ COLUMNS = (
       uplift bounds '#8a2a20'
       uplift bounds '#8a2a20' --light A --light FL11 --plot bounds.png
       uplift bounds '#8a2a20' --light A --light FL11 --html red.html
+      uplift bounds '#8a2a20' --also A:'#9a3020' --light FL11
       uplift bounds --cube macbeth-32.uplift 0.8 0.2 0.1 --format json
+
+    With --also, the colour in a photograph under another light, they are bounds of the
+    reflectances that have both colours, beside those of the one.
 
     The page of --html shows the bounds of one colour and a spectrum for every choice in
     them; it writes the TOML for 'uplift build --look'.
     """,
 )
 @colour_options
+@options.repeatable(
+    "--also",
+    "also",
+    "Colour under a further light, '#rrggbb' or three linear numbers with commas; the "
+    "white of the light is white",
+    metavar="LIGHT:COLOUR",
+    type=options.Parsed(_find_further),
+)
 @options.light("Illuminant under which the bounds are shown", "A FL11 HP1")
 @options.table_json_or_csv
 @options.plot("Plot the bounds")
@@ -81,6 +136,7 @@ COLUMNS = (
 )
 @options.force
 def command(
+    also: Sequence[Further],
     lights: Sequence[Illuminant],
     style: str,
     plot_path: str | None,
@@ -94,6 +150,13 @@ def command(
     answers = Answers(lights=lights or RELIGHT_LIGHTS, **colours)
     if html is not None and not answers.single:
         raise click.UsageError("--html shows one colour: give it on the command line.")
+    if also:
+        if not answers.single:
+            raise click.UsageError("--also needs one colour on the command line.")
+        if html is not None or style == "csv":
+            raise click.UsageError("--also does not apply to --html and --format csv.")
+        _print_cut(answers, also, plot_path, style, force)
+        return
     blocks: Iterable[Block] = map(partial(_compute, answers), answers)
     if plot_path is not None:
         from uplift.extras.pages.plots import plot_bounds
@@ -128,31 +191,133 @@ def _compute(answers: Answers, results: QueryBlock) -> Block:
     ]
 
 
+def _print_cut(
+    answers: Answers,
+    also: Sequence[Further],
+    plot_path: str | None,
+    style: str,
+    force: bool,
+) -> None:
+    """Print and draw the bounds of a colour, with and without those under further
+    lights.
+    """
+    ((results, whole),) = [_compute(answers, block) for block in answers]
+    cut = _cut(answers, results, also)
+    if plot_path is not None:
+        from uplift.extras.pages.plots import plot_cut_bounds
+
+        plot_cut_bounds(answers.cube, whole, cut.by_light, plot_path, force=force)
+        say(f"{plot_path}: bounds", err=True)
+    if style == "json":
+        (text,) = _objects(answers, results, whole)
+        fields = json_output(_cut_fields(cut))
+        print_json_answers([[f"{text[:-1]}, {fields[1:]}"]], single=True)
+    else:
+        _print_cut_table(answers.cube, results, whole, cut)
+
+
+def _cut(answers: Answers, results: QueryBlock, also: Sequence[Further]) -> Cut:
+    """Compute the bounds of a colour that is known under further lights."""
+    import numpy as np
+
+    from uplift.extras.looks.photograph_bounds import bounds_of_photographs
+    from uplift.extras.photographs import light_errors, photograph, prepare
+
+    cube = answers.cube
+    further = [photograph(cube.data.sensor, light) for light, _ in also]
+    photographs = prepare(cube, further)
+    others = np.stack([_linear(cube, colour) for _, colour in also])
+    by_light = [
+        bounds_of_photographs(
+            photographs, results.rgb, others.reshape(1, -1), light, SINGLE_DIVISIONS
+        )
+        for light in answers.lights
+    ]
+    errors = [
+        light_errors(photographs, light)(results.rgb)[0].tolist()
+        for light in answers.lights
+    ]
+    return Cut([taken.light for taken in further], others, by_light, errors)
+
+
+def _cut_fields(cut: Cut) -> dict[str, Any]:
+    """Return the bounds of a colour that is known under further lights as JSON
+    values.
+    """
+    fields = {}
+    for bounds, (standard, bound) in zip(cut.by_light, cut.errors, strict=True):
+        errors = {"standard_error": standard, "error_bound": bound}
+        fields[bounds.light.name] = {**_fields(bounds, 0), **errors}
+    return {
+        "also": dict(zip(cut.names, cut.others.tolist(), strict=True)),
+        "also_reflectance": cut.by_light[0].reflectance[0].tolist(),
+        "also_bounds": fields,
+    }
+
+
+def _print_cut_table(
+    cube: Cube, results: QueryBlock, whole: Sequence[Bounds], cut: Cut
+) -> None:
+    """Print two rows for each light: those of the colour, and of all its colours."""
+    _print_colours(cube, results.rgb[0], cut.names, cut.others)
+    (result,) = results
+    first = cube.data.sensor.illuminant
+    every = ", ".join((first, *cut.names))
+    table = _bounds_table(("light", "known"))
+    for before, after, (_, bound) in zip(whole, cut.by_light, cut.errors, strict=True):
+        light = before.light.name
+        error = result.error_bounds.get(light)
+        table.add_row(light, first, *_bounds_cells(before, 0, error))
+        table.add_row("", every, *_bounds_cells(after, 0, bound))
+    show(table)
+
+
+def _linear(cube: Cube, colour: WrittenColour) -> Array:
+    """Linear RGB (3,) of the space of a cube."""
+    import numpy as np
+
+    if colour.codes:
+        return cube.decode(np.array(colour.codes, dtype=float))
+    return np.array(colour.linear)
+
+
+def _print_colours(cube: Cube, rgb: Array, names: Sequence[str], others: Array) -> None:
+    """Print the linear RGB under the light of the cube, and under further lights."""
+    fields = {"linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"}
+    for name, values in zip(names, others, strict=True):
+        fields[f"under {name}"] = f"{format_rgb(values)}  {hex_code(cube, values)}"
+    print_fields(fields, {"linear RGB": patch(cube, rgb)})
+    say()
+
+
 def _objects(
     answers: Answers, results: QueryBlock, by_light: Sequence[Bounds]
 ) -> Iterable[str]:
+    for row, text in enumerate(json_objects(answers, results)):
+        fields = {bounds.light.name: _fields(bounds, row) for bounds in by_light}
+        yield f"{text[:-1]}, {json_output({'bounds': fields})[1:]}"
+
+
+def _fields(bounds: Bounds, row: int) -> dict[str, Any]:
+    """Return the bounds of a colour as JSON values."""
     from uplift.colorimetry import lab
     from uplift.extras.looks.lab_errors import LIKELY
 
-    for row, text in enumerate(json_objects(answers, results)):
-        fields = {}
-        for bounds in by_light:
-            largest = bounds.largest
-            likely = bounds.likely(row)
-            covariance = bounds.covariance
-            fields[bounds.light.name] = {
-                "lab": bounds.lab[row].tolist(),
-                "largest_delta_e_2000": float(largest.delta_e_2000[row]),
-                "largest_lab": lab(largest.xyz[row], bounds.light.white).tolist(),
-                "outer_delta_e_2000": float(largest.outer[row]),
-                "lab_range": bounds.box[row].tolist(),
-                "share": float(bounds.share[row]),
-                "outline": bounds.outline(row).tolist(),
-                "covariance": None if covariance is None else covariance[row].tolist(),
-                "likely": None if likely is None else likely.tolist(),
-                "likely_share": LIKELY,
-            }
-        yield f"{text[:-1]}, {json_output({'bounds': fields})[1:]}"
+    largest = bounds.largest
+    likely = bounds.likely(row)
+    covariance = bounds.covariance
+    return {
+        "lab": bounds.lab[row].tolist(),
+        "largest_delta_e_2000": float(largest.delta_e_2000[row]),
+        "largest_lab": lab(largest.xyz[row], bounds.light.white).tolist(),
+        "outer_delta_e_2000": float(largest.outer[row]),
+        "lab_range": bounds.box[row].tolist(),
+        "share": float(bounds.share[row]),
+        "outline": bounds.outline(row).tolist(),
+        "covariance": None if covariance is None else covariance[row].tolist(),
+        "likely": None if likely is None else likely.tolist(),
+        "likely_share": LIKELY,
+    }
 
 
 def _rows(results: QueryBlock, by_light: Sequence[Bounds]) -> Iterable[list[Any]]:
@@ -174,36 +339,40 @@ def _rows(results: QueryBlock, by_light: Sequence[Bounds]) -> Iterable[list[Any]
 
 
 def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
-    from uplift.extras.looks.lab_errors import LIKELY
-
     for number, (results, by_light) in enumerate(blocks):
         if single:
-            rgb = results.rgb[0]
-            print_fields(
-                {"linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"},
-                {"linear RGB": patch(cube, rgb)},
-            )
-            say()
-        table = make_table(
-            ("hex",) * (not single) + ("light",),
-            ("L* a* b*", f"ΔE {LIKELY:.0%}", "ΔE max", "a* range", "b* range", "share"),
-            show_header=number == 0,
-        )
+            _print_colours(cube, results.rgb[0], (), results.rgb[:0])
+        headings = ("hex",) * (not single) + ("light",)
+        table = _bounds_table(headings, show_header=number == 0)
         for row, result in enumerate(results):
             code = hex_code(cube, result.rgb)
             for bounds in by_light:
                 light = bounds.light.name
                 error = result.error_bounds.get(light)
-                (_, least_a, least_b), (_, most_a, most_b) = bounds.box[row].tolist()
-                table.add_row(
-                    *(code,) * (not single),
-                    light,
-                    " ".join(map("{:.1f}".format, bounds.lab[row])),
-                    "–" if error is None else f"{error:.2f}",
-                    f"{bounds.largest.delta_e_2000[row]:.2f}",
-                    f"{round(least_a)}..{round(most_a)}",
-                    f"{round(least_b)}..{round(most_b)}",
-                    f"{100 * bounds.share[row]:.2g}%",
-                )
+                cells = _bounds_cells(bounds, row, error)
+                table.add_row(*(code,) * (not single), light, *cells)
                 code = ""  # once for all lights
         show(table)
+
+
+def _bounds_table(headings: Sequence[str], *, show_header: bool = True) -> Table:
+    from uplift.extras.looks.lab_errors import LIKELY
+
+    return make_table(
+        headings,
+        ("L* a* b*", f"ΔE {LIKELY:.0%}", "ΔE max", "a* range", "b* range", "share"),
+        show_header=show_header,
+    )
+
+
+def _bounds_cells(bounds: Bounds, row: int, error: float | None) -> tuple[str, ...]:
+    """Return the cells of a colour, with the ΔE00 of likely materials."""
+    (_, least_a, least_b), (_, most_a, most_b) = bounds.box[row].tolist()
+    return (
+        " ".join(map("{:.1f}".format, bounds.lab[row])),
+        "–" if error is None else f"{error:.2f}",
+        f"{bounds.largest.delta_e_2000[row]:.2f}",
+        f"{round(least_a)}..{round(most_a)}",
+        f"{round(least_b)}..{round(most_b)}",
+        f"{100 * bounds.share[row]:.2g}%",
+    )
