@@ -17,7 +17,7 @@ from benchmarks.materials import (
     other_halves,
 )
 from benchmarks.two_lights_picture import draw_pictures
-from uplift.colorimetry import observer
+from uplift.colorimetry import Light, observer
 from uplift.common.arrays import Array
 from uplift.extras.photographs import Noise, Photographs, photograph, prepare
 from uplift.extras.photographs.errors import photographed
@@ -34,7 +34,7 @@ CHART_LIKE = ("macbeth", "babelcolor")
 """Sets that are measurements of the chart: its matrix knows their patches."""
 LIGHTS = ("A", "FL2", "FL11", "LED-B3", "LED-RGB1", "HP1")
 FURTHER = (("A",), ("LED-B3",), ("A", "FL11"))
-"""Lights of the photographs beside that under D65."""
+"""Lights of the photographs next to that under D65."""
 SHARES = (0.0, 0.002, 0.005, 0.01, 0.02)
 """Standard deviations of the noise, as shares of each value."""
 SHOWN_SHARES = (0.0, 0.005, 0.02)
@@ -66,6 +66,7 @@ def main() -> None:
         dim=DIM,
         lights=list(LIGHTS),
         shares=list(SHARES),
+        shown_shares=list(SHOWN_SHARES),
         floor=FLOOR,
         chart=CHART,
         chart_like=list(CHART_LIKE),
@@ -74,6 +75,8 @@ def main() -> None:
         sets=[{"set": name, "spectra": len(materials(name).rgb)} for name in SETS],
         rows=rows,
         overview=overview(rows),
+        compared=compared(rows),
+        coverage=coverage(rows),
         claims=claims(rows),
         scene=draw_pictures(),
         speed=speed(),
@@ -115,7 +118,7 @@ Results = dict[Case, Result]
 
 
 @cache
-def light(name: str) -> observer.Light:
+def light(name: str) -> Light:
     """Return a light by its name."""
     return observer.light(name)
 
@@ -271,6 +274,38 @@ def claims(rows: list[Row]) -> Row:
     }
 
 
+def compared(rows: list[Row]) -> list[Row]:
+    """Return mean and 95 % of all methods for `TOGETHER`, a row for each case."""
+    lines = []
+    for case in CASES:
+        further = ", ".join(case.further)
+        here = {
+            row["method"]: {"mean": row["mean"], "p95": row["p95"]}
+            for row in rows
+            if (row["set"], row["further"]) == (TOGETHER, further)
+            and row["share"] == case.share
+        }
+        lines.append({"further": further, "share": case.share, "methods": here})
+    return lines
+
+
+def coverage(rows: list[Row]) -> list[Row]:
+    """Return the shares of materials within the stated errors by set, with the first of
+    `FURTHER` and each of `SHOWN_SHARES`.
+    """
+    lines = []
+    for name in (*SETS, TOGETHER):
+        within = [
+            {"standard": row["standard"], "bound": row["bound"]}
+            for row in rows
+            if (row["set"], row["method"]) == (name, OURS)
+            and row["further"] == FURTHER[0][0]
+            and row["share"] in SHOWN_SHARES
+        ]
+        lines.append({"set": name, "within": within})
+    return lines
+
+
 def overview(rows: list[Row]) -> list[Row]:
     """Return the means of `TOGETHER` under each light, None where a photograph has it,
     with one photograph and with more.
@@ -282,7 +317,8 @@ def overview(rows: list[Row]) -> list[Row]:
         for row in here:
             if row["method"] == CUBE:
                 one |= row["means"]
-        lines.append({"share": share, "known": "D65", "means": one})
+        means = {name: one[name] for name in LIGHTS}
+        lines.append({"share": share, "known": "D65", "means": means})
         for row in here:
             if row["method"] == OURS:
                 means = {name: row["means"].get(name) for name in LIGHTS}
@@ -292,17 +328,17 @@ def overview(rows: list[Row]) -> list[Row]:
 
 
 def speed() -> Row:
-    """Return the seconds of a million colours, with one photograph and with two."""
+    """Return the CPU seconds of a million colours, with one photograph and with two."""
     cube, _ = other_halves("rawtoaces", dim=DIM)[0]
     photographs = prepare(cube, [photograph(SENSOR, "A")])
     rgb = np.random.default_rng(0).random((SPEED_COLOURS, 3))
     others = cube.reflectance(rgb) @ photographs.matrix.T
     photographs.reflectance(rgb[:100], others[:100])
-    wall, _ = time_calls(lambda: cube.reflectance(rgb), RUNS)
-    with_second, _ = time_calls(lambda: photographs.reflectance(rgb, others), RUNS)
+    _, one = time_calls(lambda: cube.reflectance(rgb), RUNS)
+    _, two = time_calls(lambda: photographs.reflectance(rgb, others), RUNS)
     factor = MILLION / SPEED_COLOURS
     return {
         "colours": SPEED_COLOURS,
-        "one": wall.scaled(factor),
-        "two": with_second.scaled(factor),
+        "one": one.scaled(factor),
+        "two": two.scaled(factor),
     }

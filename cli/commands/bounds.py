@@ -30,14 +30,14 @@ from ..outputs import check_outputs
 from .query import Answers, colour_options
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from uplift.colorimetry.illuminants import Illuminant
     from uplift.common.arrays import Array
     from uplift.extras.colour.query import QueryBlock
     from uplift.extras.colour.srgb import WrittenColour
     from uplift.extras.looks.metamer_bounds import Bounds
     from uplift.lookup import Cube
+
+    from ..output.tables import SafeTable
 
 
 class Further(NamedTuple):
@@ -112,7 +112,7 @@ def _find_further(text: str) -> Further:
       uplift bounds --cube macbeth-32.uplift 0.8 0.2 0.1 --format json
 
     With --also, the colour in a photograph under another light, they are bounds of the
-    reflectances that have both colours, beside those of the one.
+    reflectances that have both colours, after those of the one.
 
     The page of --html shows the bounds of one colour and a spectrum for every choice in
     them; it writes the TOML for 'uplift build --look'.
@@ -355,7 +355,7 @@ def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
         show(table)
 
 
-def _bounds_table(headings: Sequence[str], *, show_header: bool = True) -> Table:
+def _bounds_table(headings: Sequence[str], *, show_header: bool = True) -> SafeTable:
     from uplift.extras.looks.lab_errors import LIKELY
 
     return make_table(

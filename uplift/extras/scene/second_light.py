@@ -3,7 +3,7 @@ expected to remain.
 
 With a photograph under each candidate, the left-out materials of a cube are answered
 again, with noise. The standard errors that follow (docs/mathematics.md, 10) are
-averaged over the colours of images and over the lights under which they are to be seen.
+averaged over the colours of images and over the target lights of relighting.
 """
 
 from collections.abc import Mapping, Sequence
@@ -32,7 +32,7 @@ NOISE = (0.005, 0.0005)
 @dataclass(frozen=True)
 class RemainingError:
     """Mean standard error of the colours of a scene with a photograph under a further
-    ``light``, by the light under which they are seen; None is no further photograph.
+    ``light``, by target light. The light is None without such a photograph.
     """
 
     light: str | None
@@ -48,7 +48,7 @@ def rank_second_lights(
     cube: Cube,
     colours: PixelSample,
     candidates: Sequence[Illuminant],
-    seen_under: Sequence[Light],
+    targets: Sequence[Light],
     noise: tuple[float, float] = NOISE,
 ) -> list[RemainingError]:
     """Rank lights for a further photograph by the error that is expected to remain.
@@ -61,7 +61,7 @@ def rank_second_lights(
         Colours of the scene, linear RGB of the cube, and their areas.
     candidates : sequence of str or Lamp
         Lights of a further photograph.
-    seen_under : sequence of Light
+    targets : sequence of Light
         Lights under which errors are averaged.
     noise : tuple of float
         Standard deviation of linear RGB in the photographs: a share of each value, and
@@ -75,30 +75,30 @@ def rank_second_lights(
     Raises
     ------
     OptionError
-        No candidate, or no light to see the scene under; a candidate is the light of
+        No candidate, or no target light; a candidate is the light of
         the cube; a cube without left-out materials; noise that is negative.
     UnknownNameError
         A light is unknown.
     """
-    if not candidates or not seen_under:
-        raise OptionError("give at least one candidate, and one light to see it under")
+    if not candidates or not targets:
+        raise OptionError("give at least one candidate, and one target light")
     sensor = cube.data.sensor
     photographs = [photograph(sensor, light) for light in candidates]
     remaining = [
-        _with_photograph(cube, colours, further, seen_under, noise)
+        _with_photograph(cube, colours, further, targets, noise)
         for further in photographs
     ]
     return sorted(remaining, key=lambda candidate: candidate.mean)
 
 
 def error_without(
-    cube: Cube, colours: PixelSample, seen_under: Sequence[Light]
+    cube: Cube, colours: PixelSample, targets: Sequence[Light]
 ) -> RemainingError:
     """Return the mean standard error of the colours of a scene with one photograph.
     `OptionError` for a cube without left-out materials.
     """
-    estimates = [errors_of_cube(cube.data, light) for light in seen_under]
-    return RemainingError(None, _means(estimates, colours, seen_under))
+    estimates = [errors_of_cube(cube.data, light) for light in targets]
+    return RemainingError(None, _means(estimates, colours, targets))
 
 
 def default_candidates(cube: Cube) -> tuple[str, ...]:
@@ -111,20 +111,20 @@ def _with_photograph(
     cube: Cube,
     colours: PixelSample,
     further: Photograph,
-    seen_under: Sequence[Light],
+    targets: Sequence[Light],
     noise: tuple[float, float],
 ) -> RemainingError:
     photographs = prepare(cube, [further], noise)
-    estimates = [light_errors(photographs, light) for light in seen_under]
-    return RemainingError(further.light, _means(estimates, colours, seen_under))
+    estimates = [light_errors(photographs, light) for light in targets]
+    return RemainingError(further.light, _means(estimates, colours, targets))
 
 
 def _means(
-    estimates: Sequence[LightErrors], colours: PixelSample, seen_under: Sequence[Light]
+    estimates: Sequence[LightErrors], colours: PixelSample, targets: Sequence[Light]
 ) -> dict[str, float]:
     """Mean standard errors over the areas of colours, by light."""
     means = {}
-    for light, estimate in zip(seen_under, estimates, strict=True):
+    for light, estimate in zip(targets, estimates, strict=True):
         standard: Array = estimate(colours.rgb)[:, 0]
         means[light.name] = float(standard @ colours.share)
     return means
