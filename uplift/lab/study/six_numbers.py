@@ -3,9 +3,9 @@ of `uplift.extras.photographs`.
 
 All are linear in the numbers t of the photographs, three of each, with the sensors M:
 
-- a matrix trained on a chart of K patches that is in the pictures, as in Beyond RGB
-  (Kuzio & Farnand 2022, "Beyond RGB: a spectral image processing software application
-  for cultural heritage studio photography", Heritage 5(4));
+- a matrix trained on a chart of K patches that is in the pictures, as in the program
+  Beyond RGB (Kuzio & Farnand 2022, Heritage 5(4), 4140-4160,
+  doi 10.3390/heritage5040214);
 - principal components of training spectra, whose scores are a linear function of t
   (Imai & Berns 1999, "Spectral estimation using trichromatic digital cameras", Proc.
   International Symposium on Multispectral Imaging and Color Reproduction for Digital
