@@ -15,12 +15,11 @@ from uplift.common.text import format_value, parse_float
 
 from .. import options
 from ..inputs import find_light
-from ..output.answers import as_lists, format_rgb, hex_code, patch
+from ..output.answers import as_lists, hex_code
+from ..output.bounds import bounds_cells, bounds_fields, bounds_table, print_colours
 from ..output.console import (
     json_output,
-    make_table,
     print_csv,
-    print_fields,
     print_json_answers,
     say,
     show,
@@ -36,8 +35,6 @@ if TYPE_CHECKING:
     from uplift.extras.colour.srgb import WrittenColour
     from uplift.extras.looks.metamer_bounds import Bounds
     from uplift.lookup import Cube
-
-    from ..output.tables import SafeTable
 
 
 class Further(NamedTuple):
@@ -247,7 +244,7 @@ def _cut_fields(cut: Cut) -> dict[str, Any]:
     fields = {}
     for bounds, (standard, bound) in zip(cut.by_light, cut.errors, strict=True):
         errors = {"standard_error": standard, "error_bound": bound}
-        fields[bounds.light.name] = {**_fields(bounds, 0), **errors}
+        fields[bounds.light.name] = {**bounds_fields(bounds, 0), **errors}
     return {
         "also": dict(zip(cut.names, cut.others.tolist(), strict=True)),
         "also_reflectance": cut.by_light[0].reflectance[0].tolist(),
@@ -259,16 +256,16 @@ def _print_cut_table(
     cube: Cube, results: QueryBlock, whole: Sequence[Bounds], cut: Cut
 ) -> None:
     """Print two rows for each light: those of the colour, and of all its colours."""
-    _print_colours(cube, results.rgb[0], cut.names, cut.others)
+    print_colours(cube, results.rgb[0], cut.names, cut.others)
     (result,) = results
     first = cube.data.sensor.illuminant
     every = ", ".join((first, *cut.names))
-    table = _bounds_table(("light", "known"))
+    table = bounds_table(("light", "known"))
     for before, after, (_, bound) in zip(whole, cut.by_light, cut.errors, strict=True):
         light = before.light.name
         error = result.error_bounds.get(light)
-        table.add_row(light, first, *_bounds_cells(before, 0, error))
-        table.add_row("", every, *_bounds_cells(after, 0, bound))
+        table.add_row(light, first, *bounds_cells(before, 0, error))
+        table.add_row("", every, *bounds_cells(after, 0, bound))
     show(table)
 
 
@@ -281,43 +278,12 @@ def _linear(cube: Cube, colour: WrittenColour) -> Array:
     return np.array(colour.linear)
 
 
-def _print_colours(cube: Cube, rgb: Array, names: Sequence[str], others: Array) -> None:
-    """Print the linear RGB under the light of the cube, and under further lights."""
-    fields = {"linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"}
-    for name, values in zip(names, others, strict=True):
-        fields[f"under {name}"] = f"{format_rgb(values)}  {hex_code(cube, values)}"
-    print_fields(fields, {"linear RGB": patch(cube, rgb)})
-    say()
-
-
 def _objects(
     answers: Answers, results: QueryBlock, by_light: Sequence[Bounds]
 ) -> Iterable[str]:
     for row, text in enumerate(json_objects(answers, results)):
-        fields = {bounds.light.name: _fields(bounds, row) for bounds in by_light}
+        fields = {bounds.light.name: bounds_fields(bounds, row) for bounds in by_light}
         yield f"{text[:-1]}, {json_output({'bounds': fields})[1:]}"
-
-
-def _fields(bounds: Bounds, row: int) -> dict[str, Any]:
-    """Return the bounds of a colour as JSON values."""
-    from uplift.colorimetry import lab
-    from uplift.extras.looks.lab_errors import LIKELY
-
-    largest = bounds.largest
-    likely = bounds.likely(row)
-    covariance = bounds.covariance
-    return {
-        "lab": bounds.lab[row].tolist(),
-        "largest_delta_e_2000": float(largest.delta_e_2000[row]),
-        "largest_lab": lab(largest.xyz[row], bounds.light.white).tolist(),
-        "outer_delta_e_2000": float(largest.outer[row]),
-        "lab_range": bounds.box[row].tolist(),
-        "share": float(bounds.share[row]),
-        "outline": bounds.outline(row).tolist(),
-        "covariance": None if covariance is None else covariance[row].tolist(),
-        "likely": None if likely is None else likely.tolist(),
-        "likely_share": LIKELY,
-    }
 
 
 def _rows(results: QueryBlock, by_light: Sequence[Bounds]) -> Iterable[list[Any]]:
@@ -341,38 +307,15 @@ def _rows(results: QueryBlock, by_light: Sequence[Bounds]) -> Iterable[list[Any]
 def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
     for number, (results, by_light) in enumerate(blocks):
         if single:
-            _print_colours(cube, results.rgb[0], (), results.rgb[:0])
+            print_colours(cube, results.rgb[0], (), results.rgb[:0])
         headings = ("hex",) * (not single) + ("light",)
-        table = _bounds_table(headings, show_header=number == 0)
+        table = bounds_table(headings, show_header=number == 0)
         for row, result in enumerate(results):
             code = hex_code(cube, result.rgb)
             for bounds in by_light:
                 light = bounds.light.name
                 error = result.error_bounds.get(light)
-                cells = _bounds_cells(bounds, row, error)
+                cells = bounds_cells(bounds, row, error)
                 table.add_row(*(code,) * (not single), light, *cells)
                 code = ""  # once for all lights
         show(table)
-
-
-def _bounds_table(headings: Sequence[str], *, show_header: bool = True) -> SafeTable:
-    from uplift.extras.looks.lab_errors import LIKELY
-
-    return make_table(
-        headings,
-        ("L* a* b*", f"ΔE {LIKELY:.0%}", "ΔE max", "a* range", "b* range", "share"),
-        show_header=show_header,
-    )
-
-
-def _bounds_cells(bounds: Bounds, row: int, error: float | None) -> tuple[str, ...]:
-    """Return the cells of a colour, with the ΔE00 of likely materials."""
-    (_, least_a, least_b), (_, most_a, most_b) = bounds.box[row].tolist()
-    return (
-        " ".join(map("{:.1f}".format, bounds.lab[row])),
-        "–" if error is None else f"{error:.2f}",
-        f"{bounds.largest.delta_e_2000[row]:.2f}",
-        f"{round(least_a)}..{round(most_a)}",
-        f"{round(least_b)}..{round(most_b)}",
-        f"{100 * bounds.share[row]:.2g}%",
-    )
