@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import click
 
-from uplift.common.errors import OptionError
+from uplift.common.errors import ColourError, OptionError
 from uplift.common.text import format_value, parse_float
 
 from . import options
@@ -151,6 +151,11 @@ def photographed_colour(
     for photo in further:
         stated = replace(source, words=(photo.text,), path=None, xyz=None)
         (rgb,) = stated.blocks(sensor)
+        if not np.isfinite(rgb).all():
+            raise ColourError(
+                f"a colour must be finite, got {format_value(photo.text)}",
+                hint="write for example A:#9a3020",
+            )
         colours.append(rgb[0])
     prepared = prepare(cube, photographs, noise)
     return PhotographedColour(prepared, np.concatenate(colours))

@@ -1,9 +1,13 @@
-"""``uplift advise``: the expected errors of a scene, and what to measure next."""
+"""``uplift advise``: the expected errors of a scene, and what to measure or photograph
+next.
+"""
+
+from __future__ import annotations
 
 from dataclasses import asdict
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -11,37 +15,64 @@ from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.text import pluralise
 
 from .. import options
+from ..also import noise
 from ..inputs import expand_patterns, read_pictures
 from ..output.console import make_table, print_json, say, show
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
 
+if TYPE_CHECKING:
+    from uplift.extras.scene.second_light import RemainingError
+
 SHOWN = 4
 """Images of a picture."""
+DEFAULT_NOISE = 0.005, 0.0005
+"""Noise of photographs that are not taken yet."""
 
 
 @click.command(
     "advise",
     help="""Estimate the errors of the colours of images, and name the swatches whose
-    measurement lowers them most.
+    measurement lowers them most, or the best light for a second photograph.
 
     \b
     Examples:
+      uplift advise wood.png
       uplift advise wood.png --cube macbeth-32.uplift
       uplift advise wood.png --cube macbeth-32.uplift --plot advice.png
       uplift advise wood.png --cube macbeth-32.uplift --count 12 --format json
+      uplift advise wood.png --second-light
+      uplift advise wood.png --second-light --candidate A --candidate led
 
     Errors are standard errors, ΔE00 under each --light, averaged over the area of the
     images. A swatch is a colour of the images: measure a material that has it, add it
     to the atlas, and build the cube again. Its gain is by how much the mean of the
     errors is expected to fall, after the swatches above it. It supposes that all of a
     colour is one material, and that colours close to it are like it as far as those of
-    the atlas are.
+    the atlas are. Without an atlas, errors are those of materials of unknown families.
+
+    With --second-light, candidates for the light of a second photograph are ranked by
+    the errors that are expected to remain, for photographs with --noise,
+    by default 0.5%,0.0005.
     """,
 )
 @click.argument("images", metavar="IMAGE...", nargs=-1, required=True)
-@options.cube(" with an atlas of at least 8 entries.", required=True)
-@options.light("Illuminant of the scene", "A FL11 HP1")
+@options.cube()
+@options.light(
+    "Illuminant of the scene",
+    "A FL11 HP1; with --second-light also FL2 FL7 LED-B3 LED-RGB1",
+)
+@options.flag(
+    "--second-light", "second_light", help="Rank lights in place of swatches."
+)
+@options.named_lights(
+    "--candidate",
+    "candidates",
+    "Light of a second photograph",
+    "common lights",
+    examples=options.LAMPS,
+)
+@noise
 @click.option(
     "--count",
     metavar="N",
@@ -55,14 +86,103 @@ SHOWN = 4
 @options.force
 def command(
     images: tuple[str, ...],
-    cube_path: str,
+    cube_path: str | None,
     lights: tuple[Illuminant, ...],
+    second_light: bool,
+    candidates: tuple[Illuminant, ...],
+    noise: tuple[float, float] | None,
     count: int,
     plot_path: str | None,
     style: str,
     force: bool,
     **pixels: Any,
 ) -> None:
+    given = options.given()
+    for_swatches = ("count", "plot_path")
+    for_photographs = ("candidates", "noise")
+    if unused := [name for name in for_swatches if second_light and name in given]:
+        problem = f"{given[unused[0]]} does not apply to --second-light."
+        raise click.UsageError(problem)
+    if unused := [
+        name for name in for_photographs if not second_light and name in given
+    ]:
+        raise click.UsageError(f"{given[unused[0]]} requires --second-light.")
+    if second_light:
+        assumed = noise or DEFAULT_NOISE
+        _advise_light(images, cube_path, lights, candidates, assumed, style, pixels)
+        return
+    _advise_swatches(images, cube_path, lights, count, plot_path, style, force, pixels)
+
+
+def _advise_light(
+    images: tuple[str, ...],
+    cube_path: str | None,
+    lights: tuple[Illuminant, ...],
+    candidates: tuple[Illuminant, ...],
+    noise: tuple[float, float],
+    style: str,
+    pixels: dict[str, Any],
+) -> None:
+    """Rank lights of a second photograph, and print them."""
+    from uplift.colorimetry.observer import check_distinct, light
+    from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
+    from uplift.extras.scene import second_light
+    from uplift.extras.scene.advice import colour_areas
+    from uplift.extras.texture.scene_colours import Images
+    from uplift.lookup import load
+
+    paths = expand_patterns(images)
+    cube = load(cube_path)
+    sensor = cube.data.sensor
+    check_distinct((*lights, *candidates))
+    compared = candidates or second_light.default_candidates(cube)
+    names = lights or HELD_OUT_LIGHTS
+    lit = [light(name, cube.observer, *sensor.range) for name in names]
+    with progress_bar("comparing lights"):
+        colours = colour_areas(Images(tuple(map(Path, paths)), **pixels), sensor)
+        without = second_light.error_without(cube, colours, lit)
+        ranked = second_light.rank_second_lights(cube, colours, compared, lit, noise)
+    if style == "json":
+        rows = [
+            {"light": row.light, "mean": row.mean, "errors": row.by_light}
+            for row in (without, *ranked)
+        ]
+        print_json(
+            {
+                "images": paths,
+                "cube": cube_path,
+                "noise": {"share": noise[0], "floor": noise[1]},
+                "without": rows[0],
+                "second_lights": rows[1:],
+            }
+        )
+        return
+    _print_ranking(without, ranked)
+
+
+def _print_ranking(without: RemainingError, ranked: list[RemainingError]) -> None:
+    from uplift.extras.colour.light_sets import DESCRIPTIONS
+
+    table = make_table(("second light", ""), ("expected ΔE00", "largest", "under"))
+    for row in (*ranked, without):
+        name = row.light or "none"
+        worst = max(row.by_light, key=row.by_light.__getitem__)
+        numbers = (f"{row.mean:.2f}", f"{row.by_light[worst]:.2f}")
+        table.add_row(name, DESCRIPTIONS.get(name, ""), *numbers, worst)
+    show(table)
+
+
+def _advise_swatches(
+    images: tuple[str, ...],
+    cube_path: str | None,
+    lights: tuple[Illuminant, ...],
+    count: int,
+    plot_path: str | None,
+    style: str,
+    force: bool,
+    pixels: dict[str, Any],
+) -> None:
+    """Choose swatches, and print and draw them."""
     from uplift.colorimetry.observer import check_distinct, light
     from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
     from uplift.extras.colour.srgb import hex_codes

@@ -66,3 +66,26 @@ def test_textures_have_the_standard_errors_of_their_pixels(run, refuse, cubes, h
         ).code
         == "too-few-entries"
     )
+
+
+def test_second_lights_are_ranked(run, ask, refuse, misuse, cubes, home):
+    wood = sample_path("wood.png")
+    names = ("--candidate", "A", "--candidate", "led", "--light", "FL11")
+    found = ask("advise", wood, "--second-light", *names)
+    assert found["noise"] == {"share": 0.005, "floor": 0.0005}
+    means = [row["mean"] for row in found["second_lights"]]
+    assert means == sorted(means)
+    assert found["without"]["mean"] > means[-1]
+    assert {row["light"] for row in found["second_lights"]} == {"A", "LED-B3"}
+    assert all(list(row["errors"]) == ["FL11"] for row in found["second_lights"])
+    noisier = ask("advise", wood, "--second-light", *names, "--noise", "0.02,0.002")
+    assert noisier["second_lights"][0]["mean"] > means[0]
+    table = run("advise", wood, "--second-light", "--cube", cubes / "moments-8.uplift")
+    assert "LED-RGB1" in table.stdout
+    second = ("advise", wood, "--second-light")
+    assert refuse(*second, "--candidate", "D65").code == "option"
+    assert refuse(*second, "--candidate", "none").code == "unknown-name"
+    assert refuse(*second, "--noise", "-1").code == "option"
+    assert "--count" in misuse(*second, "--count", 3)
+    assert ask("advise", wood)["swatches"]
+    assert "--candidate" in misuse("advise", wood, "--candidate", "A")

@@ -59,3 +59,45 @@ def test_bad_input_is_refused(refuse, misuse, home):
     assert "one colour" in misuse("bounds - --html p.html", input=COLOURS)
     (home / "look.html").write_text("mine")
     assert refuse("bounds #8a2a20 --html look.html").code == "file-exists"
+
+
+def test_a_further_colour_cuts_the_bounds(run, ask, cubes, home):
+    colour = f"bounds #8a2a20 --cube {cubes}/moments-16-macbeth.uplift --light FL11"
+    found = ask(f"{colour} --also A:#9a3020")
+    assert found["bounds"] == ask(colour)["bounds"]
+    whole = found["bounds"]["FL11"]
+    cut = found["also_bounds"]["FL11"]
+    assert cut["share"] < 0.1 * whole["share"]
+    assert cut["largest_delta_e_2000"] < whole["largest_delta_e_2000"]
+    assert cut["standard_error"] < found["standard_errors"]["FL11"]
+    (least, most), (lowest, highest) = np.array([cut["lab_range"], whole["lab_range"]])
+    assert (lowest < least).all()
+    assert (most < highest).all()
+    lit = light("FL11")
+    assert_allclose(
+        cut["lab"], lab(lit.xyz @ found["also_reflectance"], lit.white), atol=1e-9
+    )
+    linear = ",".join(map(str, found["also"]["A"]))
+    again = ask(f"{colour} --also A:{linear}")
+    assert again["also_bounds"] == found["also_bounds"]
+    text = run(f"{colour} --also A:#9a3020 --plot cut.png").stdout
+    *_, before, after = text.splitlines()
+    assert before.split()[:2] == ["FL11", "D65"]
+    assert after.split()[:2] == ["D65,", "A"]
+    assert matplotlib.image.imread(home / "cut.png").shape[2] == 4
+
+
+def test_further_colours_that_do_not_fit_are_refused(refuse, misuse, home):
+    colour = "bounds #8a2a20 --light FL11 --also"
+    assert refuse(f"{colour} A:#a03020").code == "colour-unrealisable"
+    assert refuse(f"{colour} A:red").code == "colour"
+    assert refuse(f"{colour} A:0.3,0.2").code == "colour"
+    assert refuse(f"{colour} A:nan,0.2,0.1").code == "colour"
+    assert refuse(f"{colour} #a03020").code == "option"
+    assert refuse(f"{colour} D65:#8a2a20").code == "option"
+    assert refuse(f"{colour} candle:#9a3020").code == "unknown-name"
+    assert refuse(f"{colour} A:#9a3020 --also A:#9a3020").code == "option"
+    assert refuse("bounds 1.2 0.1 0.1 --also A:#9a3020").code == "rgb-out-of-gamut"
+    assert "one colour" in misuse("bounds - --also A:#9a3020", input=COLOURS)
+    for words in ("--format csv", "--html p.html"):
+        assert "--also" in misuse(f"{colour} A:#9a3020 {words}")

@@ -17,6 +17,8 @@ LAMP = "\n".join(
 )
 COMMANDS = """
 advise wood.png --cube cube.uplift --light {}
+advise wood.png --second-light --light {} --candidate led
+advise wood.png --second-light --light FL11 --candidate {}
 atlas macbeth --illuminant {}
 bounds #888 --cube cube.uplift --light {}
 build --atlas macbeth --dim 3 --light {} -o x.uplift

@@ -44,6 +44,7 @@ INVALID = """
 too-few-entries advise wood.png --cube old.uplift
 file-not-found advise wood.png none.png --cube {}
 unknown-name advise wood.png --cube {} --light none
+unknown-name advise wood.png --second-light --candidate none
 unknown-name advise wood.png --cube {} --input-space none --plot x.png
 file-not-found atlas macbeth none.csv -o x.csv
 unknown-name atlas macbeth -o x.csv --space none

@@ -1,8 +1,9 @@
 """Extreme reflectances of a colour: of all reflectances in [0, 1] with given RGB, the
 one with the largest response.
 
-maximise c · g subject to W g = r, 0 ≤ g ≤ 1, for many problems at once. At the optimum
-g is 0 or 1 but at three wavelengths, the basis. The signs of the reduced responses u =
+maximise c · g subject to W g = r, 0 ≤ g ≤ 1, for many problems at once. With K numbers
+r, three for each light that a colour is known under, g is 0 or 1 at the optimum but at
+K wavelengths, the basis. The signs of the reduced responses u =
 c − λ W put the others at a bound. A step exchanges the wavelength of the basis whose
 reflectance violates [0, 1] most, and passes all changes of sign that still lower the
 dual objective λ · r + Σ max(u, 0).
@@ -42,7 +43,7 @@ class ExtremeSpectra(NamedTuple):
     reflectance: Array
     """(n, N), 0 or 1 but at the basis."""
     basis: Indices
-    """(n, 3) wavelengths whose reflectance may lie between 0 and 1."""
+    """(n, K) wavelengths whose reflectance may lie between 0 and 1."""
     solved: Mask
     """(n,) True unless no reflectance has the colour, or rounding prevents a decision.
     """
@@ -51,8 +52,8 @@ class ExtremeSpectra(NamedTuple):
 def extreme_spectra(
     matrix: Array, rgb: Array, response: Array, basis: Indices | None = None
 ) -> ExtremeSpectra:
-    """Find the reflectances of colours (n, 3) with the largest responses (n, N), from a
-    ``basis`` (n, 3).
+    """Find the reflectances of colours (n, K) with the largest responses (n, N), from a
+    ``basis`` (n, K).
     """
     start = np.tile(first_basis(matrix), (len(rgb), 1)) if basis is None else basis
     spectra = ExtremeSpectra(
@@ -67,12 +68,12 @@ def extreme_spectra(
 
 
 def first_basis(matrix: Array) -> Indices:
-    """Choose three wavelengths (3,) with independent colours: the largest part that
-    those before do not share.
+    """Choose wavelengths (K,) with independent colours: the largest part that those
+    before do not share.
     """
     remaining = matrix.copy()
     chosen = []
-    for _ in range(3):
+    for _ in range(len(matrix)):
         lengths = np.linalg.norm(remaining, axis=0)
         chosen.append(int(lengths.argmax()))
         axis = remaining[:, chosen[-1]] / lengths[chosen[-1]]
@@ -127,7 +128,7 @@ def _solve(matrix: Array, rgb: Array, response: Array, found: ExtremeSpectra) ->
 def _state(
     matrix: Array, rgb: Array, response: Array, basis: Indices
 ) -> tuple[Array, Array, Array, Array]:
-    """Reduced responses (n, N), reflectances (n, 3) of the basis, inverse (n, 3, 3),
+    """Reduced responses (n, N), reflectances (n, K) of the basis, inverse (n, K, K),
     reflectances (n, N) at bounds.
     """
     # λ = c_B W_B⁻¹ for the basis B, u = c − λ W, g = 1 where u > 0, and g_B = W_B⁻¹ (r

@@ -12,7 +12,7 @@ from uplift.colorimetry.likely_errors import (
 )
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
-from uplift.lookup.errors_under_lights import evidence
+from uplift.lookup.errors_under_lights import Evidence, evidence
 
 LIKELY = 0.95
 """Share of the materials like the entries of the atlas whose a* and b* lie in the
@@ -54,7 +54,11 @@ def lab_errors(data: CubeData, light: Light) -> LabErrors:
     """Learn the covariances in CIE L*a*b* under a light; `OptionError` without left-out
     entries.
     """
-    known = evidence(data)
+    return lab_errors_from(data, light, evidence(data))
+
+
+def lab_errors_from(data: CubeData, light: Light, known: Evidence) -> LabErrors:
+    """Learn the covariances in CIE L*a*b* under a light from evidence."""
     measured_lab = lab(known.measured @ light.xyz.T, light.white)
     differences = [
         measured_lab - lab(answer @ light.xyz.T, light.white)

@@ -4,7 +4,8 @@ light.
 Of all reflectances in [0, 1] with linear RGB r under the build illuminant, the XYZ
 under a second light fill a convex body: the object-colour solid of the six sensors, cut
 at r. In each direction its boundary is the XYZ of one extreme reflectance
-(`uplift.extras.looks.extreme_spectra`).
+(`uplift.extras.looks.extreme_spectra`). Colours that are known under further lights are
+further sensors, which cut the body.
 
 ΔE00 is not convex, so the search for the metamer that differs most from a given one
 starts in 20 parts of the volume: the triangles of directions within each triangle of
@@ -66,16 +67,27 @@ RING = np.concatenate([size * sphere(0).directions for size in (0.4, 0.15, 0.05)
 """
 
 
+class KnownColours(NamedTuple):
+    """Linear RGB of n colours under L lights, K = 3 L numbers each."""
+
+    matrix: Array
+    """(K, N) from reflectances to the numbers."""
+    values: Array
+    """(n, K)"""
+
+    def take(self, rows: Indices | slice) -> "KnownColours":
+        """Select some of the colours."""
+        return KnownColours(self.matrix, self.values[rows])
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class MismatchVolumes:
     """Mismatch volumes of n colours under a light."""
 
-    sensor: Sensor
-    """Sensor of the RGB."""
+    known: KnownColours
+    """The colours under the build illuminant, and under further lights."""
     light: Light
-    """The second light."""
-    rgb: Array
-    """(n, 3) Linear RGB."""
+    """The light of the volumes."""
     directions: Sphere
     """D directions in the scaled space, and the triangles between them."""
     scale: Array
@@ -83,7 +95,12 @@ class MismatchVolumes:
     xyz: Array
     """(n, D, 3) XYZ on the boundary, the extreme of each direction."""
     basis: Indices
-    """(n, D, 3) Wavelengths at which the extreme reflectances are neither 0 nor 1."""
+    """(n, D, K) Wavelengths at which the extreme reflectances are neither 0 nor 1."""
+
+    @property
+    def rgb(self) -> Array:
+        """Linear RGB under the build illuminant, shape (n, 3)."""
+        return self.known.values[:, :3]
 
     @cached_property
     def lab(self) -> Array:
@@ -129,27 +146,40 @@ class MismatchVolumes:
 
 
 def mismatch_volumes(
-    sensor: Sensor, light: Light, rgb: Array, divisions: int = DIVISIONS
+    sensor: Sensor,
+    light: Light,
+    rgb: Array,
+    divisions: int = DIVISIONS,
+    further: KnownColours | None = None,
 ) -> MismatchVolumes:
-    """Compute the mismatch volumes of colours under a light. Shapes: ``rgb`` (n, 3)."""
+    """Compute the mismatch volumes of colours under a light. Shapes: ``rgb`` (n, 3).
+
+    ``further`` are their colours under further lights. Raises `ColourError` if no
+    reflectance has a colour, or all colours of one row.
+    """
     outside = np.flatnonzero(~solid(sensor.matrix).contains(rgb))
     if outside.size:
         raise _unrealisable(
             f"no reflectance has the colour {format_rgb(rgb[outside[0]])} under "
             f"{sensor.illuminant}"
         )
+    known = KnownColours(sensor.matrix, rgb)
+    if further is not None:
+        matrix = np.concatenate([sensor.matrix, further.matrix])
+        values = np.concatenate([rgb, further.values], axis=1)
+        known = KnownColours(matrix, values)
     directions = sphere(divisions)
-    scale = _scale(sensor, light)
+    scale = _scale(known.matrix, light)
     # A direction d of the scaled space S⁻¹ x is maximised by the response dᵀ S⁻¹ X of
     # each wavelength.
     response = directions.directions @ np.linalg.solve(scale, light.xyz)
     xyz = np.empty((len(rgb), len(response), 3))
-    basis = np.empty(xyz.shape, dtype=np.intp)
+    basis = np.empty((len(rgb), len(response), len(known.matrix)), dtype=np.intp)
     parents = directions.parents
     for block in blocks(len(rgb), max(BLOCK_PROBLEMS // len(response), 1)):
-        colours = rgb[block]
-        _solve(sensor, light, colours, response, parents, xyz[block], basis[block])
-    return MismatchVolumes(sensor, light, rgb, directions, scale, xyz, basis)
+        colours = known.take(block)
+        _solve(colours, light, response, parents, xyz[block], basis[block])
+    return MismatchVolumes(known, light, directions, scale, xyz, basis)
 
 
 def _unrealisable(problem: str) -> ColourError:
@@ -158,22 +188,21 @@ def _unrealisable(problem: str) -> ColourError:
     )
 
 
-def _scale(sensor: Sensor, light: Light) -> Array:
-    """Square root of the products of the responses of the light that those of the
-    sensor do not explain.
+def _scale(matrix: Array, light: Light) -> Array:
+    """Square root of the products of the responses of the light that those of sensors
+    (K, N) do not explain.
     """
-    # With P the projection to the sensor's responses, S = ((X − P X)(X − P X)ᵀ)^½.
-    explained = np.linalg.lstsq(sensor.matrix.T, light.xyz.T, rcond=None)[0]
-    unexplained = light.xyz - explained.T @ sensor.matrix
+    # With P the projection to the sensors' responses, S = ((X − P X)(X − P X)ᵀ)^½.
+    explained = np.linalg.lstsq(matrix.T, light.xyz.T, rcond=None)[0]
+    unexplained = light.xyz - explained.T @ matrix
     squares, axes = np.linalg.eigh(unexplained @ unexplained.T)
     lengths = np.sqrt(np.maximum(squares, MIN_SCALE**2 * (light.xyz**2).sum()))
     return (axes * lengths) @ axes.T
 
 
 def _solve(
-    sensor: Sensor,
+    known: KnownColours,
     light: Light,
-    rgb: Array,
     response: Array,
     parents: Indices,
     xyz: Array,
@@ -182,24 +211,34 @@ def _solve(
     """Fill the boundary points (n, D, 3), from coarse to fine: each direction starts at
     its parent's optimum.
     """
-    basis[:] = first_basis(sensor.matrix)
+    matrix, values = known
+    basis[:] = first_basis(matrix)
     for first, last in pairwise((0, *COUNTS)):
         if first >= len(parents):
             break
         start = basis[:, parents[first:last]] if first else basis[:, :last]
-        colours = np.repeat(rgb, last - first, axis=0)
-        responses = np.tile(response[first:last], (len(rgb), 1))
+        colours = np.repeat(values, last - first, axis=0)
+        responses = np.tile(response[first:last], (len(values), 1))
         extremes = extreme_spectra(
-            sensor.matrix, colours, responses, start.reshape(-1, 3)
+            matrix, colours, responses, start.reshape(-1, len(matrix))
         )
         if not extremes.solved.all():
-            raise _unrealisable(
-                "rounding prevents a decision whether a reflectance has a colour"
-            )
-        xyz[:, first:last] = (extremes.reflectance @ light.xyz.T).reshape(
-            len(rgb), -1, 3
+            raise _unsolved(len(matrix))
+        points = extremes.reflectance @ light.xyz.T
+        xyz[:, first:last] = points.reshape(len(values), -1, 3)
+        basis[:, first:last] = extremes.basis.reshape(len(values), -1, len(matrix))
+
+
+def _unsolved(count: int) -> ColourError:
+    if count == 3:
+        return _unrealisable(
+            "rounding prevents a decision whether a reflectance has a colour"
         )
-        basis[:, first:last] = extremes.basis.reshape(len(rgb), -1, 3)
+    return ColourError(
+        "no reflectance has these colours under all lights",
+        code="colour-unrealisable",
+        hint="check the lights and the white balance of the colours",
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -252,7 +291,7 @@ class _Metamers(NamedTuple):
     direction: Array
     """(..., 3) of XYZ, in which the metamer is the extreme."""
     basis: Indices
-    """(..., 3)"""
+    """(..., K)"""
 
 
 def _most_different(count: int, *parts: _Metamers) -> _Metamers:
@@ -264,7 +303,10 @@ def _most_different(count: int, *parts: _Metamers) -> _Metamers:
     best = np.arange(count), differences.argmax(axis=1)
     chosen = []
     for other in others:
-        joined = np.concatenate([each.reshape(count, -1, 3) for each in other], axis=1)
+        width = other[0].shape[-1]
+        joined = np.concatenate(
+            [each.reshape(count, -1, width) for each in other], axis=1
+        )
         chosen.append(joined[best])
     return _Metamers(differences[best], *chosen)
 
@@ -278,9 +320,8 @@ class _Search:
     def extremes(self, row: Indices, direction: Array, basis: Indices) -> _Metamers:
         """Metamers (m,) of colours (m,) in directions (m, 3) of XYZ."""
         light = self.volumes.light
-        rgb = self.volumes.rgb[row]
-        matrix = self.volumes.sensor.matrix
-        extreme = extreme_spectra(matrix, rgb, direction @ light.xyz, basis)
+        matrix, values = self.volumes.known.take(row)
+        extreme = extreme_spectra(matrix, values, direction @ light.xyz, basis)
         xyz = extreme.reflectance @ light.xyz.T
         delta_e = delta_e_2000(self._lab(xyz), self.reference[row])
         return _Metamers(delta_e, xyz, direction, extreme.basis)

@@ -3,7 +3,7 @@ metamers in a* and b*.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -153,6 +153,39 @@ def plot_bounds(
     figure.legend(
         handles, labels, loc="outside lower center", ncols=len(labels), frameon=False
     )
+    write_figure(figure, path, force=force)
+
+
+def plot_cut_bounds(
+    cube: Cube,
+    whole: Sequence[Bounds],
+    cut: Sequence[Bounds],
+    path: StrPath,
+    *,
+    force: bool = False,
+) -> None:
+    """Plot the region of one colour under each light, and in it that of reflectances
+    which also have its colours in further photographs, as PNG, SVG or PDF.
+    """
+    names = [bounds.light.name for bounds in whole]
+    screens = display_sensors(names, cube.observer, *cube.data.sensor.range)
+    figure = new_figure(3.1 * len(names), 3.7)
+    axes = figure.subplots(1, len(names), squeeze=False)[0]
+    for cell, screen, before, after in zip(axes, screens, whole, cut, strict=True):
+        _plot_region(cell, screen, replace(after, volumes=before.volumes), 0)
+        cell.fill(
+            *after.outline(0).T,
+            facecolor="none",
+            edgecolor=INK,
+            linewidth=1.0,
+            linestyle="--",
+            label="with further photographs",
+        )
+        largest = after.largest.delta_e_2000[0]
+        title = f"{after.light.name}: ΔE00 up to {largest:.1f}"
+        cell.set_title(title, color=GREY, fontsize=9)
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
     write_figure(figure, path, force=force)
 
 
