@@ -8,8 +8,8 @@ t under other lights, sensors M and noise R, the posterior mean is
 q = p + C Mᵀ (M C Mᵀ + R)⁻¹ (t − M p)
 
 (Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25). It
-keeps the colour x. Where it would leave [0, 1], it is moved less far, clipped, and
-moved back to x.
+keeps the colour x. Where it would leave [0, 1], it is moved less far, clipped, moved
+back to x, and once more towards t.
 """
 
 from collections.abc import Sequence
@@ -38,6 +38,8 @@ UNKNOWN = 1e6
 """Variance of a component that is not known."""
 OVERSHOOT = 0.2
 """Reflectance by which a spectrum may leave [0, 1] before it is moved less far."""
+ROUNDS = 2
+"""Moves, of which the further ones are for spectra that were clipped."""
 CONTRADICTION = 0.01
 """Linear RGB that remains between a photograph and the answer where they contradict
 each other; `CONTRADICTION_SIGMAS` of its noise, if they are more.
@@ -191,18 +193,27 @@ class Photographs:
             components = np.concatenate([components, np.array(more)], axis=1)
         if expected is None:
             expected = self.cube.reflectance(rgb, grid)
-        at_sensor = slice(len(at))
         ways = self._interpolated(rgb) if directions is None else directions
-        scores = self._scores(rgb, others, expected[:, at_sensor], ways)
-        change = scores.astype(expected.dtype) @ components.astype(expected.dtype)
-        spectra = expected + change
-        outside = (spectra.min(axis=1) < 0) | (spectra.max(axis=1) > 1)
-        rows = np.flatnonzero(outside)
-        scale = _scale_within(expected[rows], change[rows])
-        moved = np.clip(expected[rows] + scale[:, None] * change[rows], 0, 1)
-        spectra[rows] = with_colours(
-            self.cube.data, moved, moved[:, at_sensor], rgb[rows], grid
-        )
+        at_sensor = slice(len(at))
+        spectra = np.array(expected)
+        rows = np.arange(len(rgb))
+        for _ in range(ROUNDS):
+            known = rgb[rows], others[rows], Directions(*(way[rows] for way in ways))
+            scores = self._scores(spectra[rows][:, at_sensor], *known)
+            change = (scores @ components).astype(spectra.dtype)
+            trial = spectra[rows] + change
+            clipped = (trial.min(axis=1) < 0) | (trial.max(axis=1) > 1)
+            scale = _scale_within(spectra[rows][clipped], change[clipped])
+            trial[clipped] -= (1 - scale[:, None]) * change[clipped]
+            spectra[rows] = np.clip(trial, 0, 1)
+            rows = rows[clipped]
+            spectra[rows] = with_colours(
+                self.cube.data,
+                spectra[rows],
+                spectra[rows][:, at_sensor],
+                rgb[rows],
+                grid,
+            )
         contradicts = self._contradicts(rgb, others, spectra[:, at_sensor])
         spectra[contradicts] = expected[contradicts]
         kept = slice(None) if wavelengths is None else slice(len(at), None)
@@ -220,7 +231,7 @@ class Photographs:
         )
 
     def _scores(
-        self, rgb: Array, others: Array, expected: Array, directions: Directions
+        self, expected: Array, rgb: Array, others: Array, directions: Directions
     ) -> Array:
         """Scores (n, R) of the posterior mean of the difference from expected spectra
         (n, N).
