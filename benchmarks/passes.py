@@ -26,12 +26,12 @@ from uplift.extras.scene import passes as library
 from uplift.extras.scene import wavelengths
 from uplift.extras.scene.passes import Materials, Passes
 from uplift.extras.scene.passes.browser_page import page
-from uplift.extras.scene.passes.light_paths import draw_paths
-from uplift.extras.scene.passes.passes import (
+from uplift.extras.scene.passes.choice import (
     JUDGING_PATHS,
     JUDGING_SEED,
     fit_bands,
 )
+from uplift.extras.scene.passes.light_paths import draw_paths
 from uplift.fit import shipped_library
 from uplift.samples import sample_path
 

@@ -28,7 +28,7 @@ COMPUTES = {
     "diff": "uplift.extras.report.diff.diff_cubes",
     "lights build": "uplift.extras.emission.build.EmissionTable",
     "palette": "uplift.extras.palette.design",
-    "passes choose": "uplift.extras.scene.passes.passes.draw_paths",
+    "passes choose": "uplift.extras.scene.passes.choice.draw_paths",
     "plan": "uplift.extras.scene.plan.space.sample_colours",
     "relight": "uplift.pipeline.entries.fit_constraints",
     "report": "uplift.extras.report.assessment.assess",

@@ -13,32 +13,30 @@ Examples
 """
 
 from uplift.extras.scene.passes.bands import CHANNELS, Bands
-from uplift.extras.scene.passes.decode import (
-    Decoded,
-    Decoder,
-    decode_pictures,
-    decoder,
+from uplift.extras.scene.passes.choice import (
+    choose,
+    fit_bands,
+    path_errors,
+    rgb_errors,
 )
+from uplift.extras.scene.passes.decode import Decoded, decode_pictures
+from uplift.extras.scene.passes.decoder import Decoder, decoder
 from uplift.extras.scene.passes.file import (
     passes_digest,
     read_passes,
     to_toml,
     write_passes,
 )
+from uplift.extras.scene.passes.light_images import (
+    prepare_light_pass,
+    table_projection,
+)
 from uplift.extras.scene.passes.materials import (
     Materials,
     library_materials,
     scene_materials,
 )
-from uplift.extras.scene.passes.passes import (
-    Passes,
-    PassesLight,
-    choose,
-    fit_bands,
-    path_errors,
-    rgb_errors,
-    scaled_power,
-)
+from uplift.extras.scene.passes.passes import Passes, PassesLight, scaled_power
 from uplift.extras.scene.passes.presets import PRESETS
 from uplift.extras.scene.passes.recipe import (
     RECIPES,
@@ -46,14 +44,8 @@ from uplift.extras.scene.passes.recipe import (
     nuke_recipe,
     plain_recipe,
 )
-from uplift.extras.scene.passes.textures import (
-    PassSettings,
-    check_cube,
-    pass_name,
-    prepare_light_pass,
-    prepare_pass,
-    table_projection,
-)
+from uplift.extras.scene.passes.settings import PassSettings
+from uplift.extras.scene.passes.textures import check_cube, pass_name, prepare_pass
 
 __all__ = [
     "CHANNELS",

@@ -8,7 +8,7 @@ from importlib.resources import files
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.extras.scene.passes.decode import Decoder
+from uplift.extras.scene.passes.decoder import Decoder
 
 DIGITS = 7
 

@@ -50,9 +50,12 @@ class Candidate:
 
 
 def band_powers(bands: Bands, powers: Array) -> Array:
-    """Mean powers (L, K) of lights in each band: a start for their numbers."""
-    means = powers @ bands.weights.T
-    return np.asarray(means / np.maximum(means.mean(axis=0), np.finfo(float).tiny))
+    """Mean powers (L, K) of lights in each band, whose mean over the lights is 1: a
+    start for their numbers.
+    """
+    means = np.maximum(powers @ bands.weights.T, 0)
+    scale = means.mean(axis=0)
+    return np.where(scale > 0, means / np.where(scale > 0, scale, 1), 1.0)
 
 
 class Search:
