@@ -43,7 +43,8 @@ decoding_options = options.stacked(
         "--space",
         default="sRGB",
         shell_complete=options.complete_space,
-        help="Linear RGB space of the result, such as ACEScg, or XYZ.",
+        help="Linear RGB space of the result, such as ACEScg, or XYZ, or camera for "
+        "the raw values of 'choose --camera'.",
     ),
     click.option(
         "--light",
@@ -122,6 +123,11 @@ def command() -> None:
     help="Standard deviation of the bands in nm; 0 for single wavelengths. "
     "[default: searched]",
 )
+@click.option(
+    "--camera",
+    metavar="NAME|FILE",
+    help="Camera to whose raw values pictures are decoded as well, by --space camera.",
+)
 @options.pixels()
 @options.output(help="File to write.", default=DEFAULT_FILE)
 @options.table_or_json
@@ -133,6 +139,7 @@ def choose(
     files: Sequence[str],
     cube_path: str | None,
     width: int | None,
+    camera: str | None,
     output: str,
     style: str,
     force: bool,
@@ -149,6 +156,8 @@ def choose(
         chosen = library.choose(
             materials, lights, count, width=width, progress=progress
         )
+    if camera is not None:
+        chosen = library.with_camera(chosen, materials, lights, camera)
     plain = library.rgb_errors(materials, lights)
     library.write_passes(chosen, output, force=force)
     if style == "json":
@@ -160,6 +169,9 @@ def choose(
         f"Plain RGB rendering is off by a mean ΔE00 of {plain.mean():.2f} on the same "
         f"paths, {_count_text(chosen)} by {chosen.error:.2f}."
     )
+    if chosen.camera is not None:
+        name = chosen.camera.name
+        paragraph(f"Raw values of {name} are off by {chosen.camera.error:.1%}.")
     say(f"{output}: {_count_text(chosen)}", err=True)
 
 
@@ -205,6 +217,13 @@ def _fields(passes: Passes) -> dict[str, Any]:
             "errors": light.errors.tolist(),
             "own_errors": light.own_errors.tolist(),
         }
+    camera = None
+    if passes.camera is not None:
+        camera = {
+            "name": passes.camera.name,
+            "matrix": passes.camera.matrix.tolist(),
+            "error": passes.camera.error,
+        }
     return {
         "count": passes.count,
         "digest": passes_digest(passes),
@@ -214,6 +233,7 @@ def _fields(passes: Passes) -> dict[str, Any]:
         "error": passes.error,
         "materials": dict(passes.origin),
         "lights": lights,
+        "camera": camera,
     }
 
 

@@ -13,6 +13,7 @@ Examples
 """
 
 from uplift.extras.scene.passes.bands import CHANNELS, Bands
+from uplift.extras.scene.passes.camera import with_camera
 from uplift.extras.scene.passes.choice import (
     choose,
     fit_bands,
@@ -36,7 +37,12 @@ from uplift.extras.scene.passes.materials import (
     library_materials,
     scene_materials,
 )
-from uplift.extras.scene.passes.passes import Passes, PassesLight, scaled_power
+from uplift.extras.scene.passes.passes import (
+    Passes,
+    PassesCamera,
+    PassesLight,
+    scaled_power,
+)
 from uplift.extras.scene.passes.presets import PRESETS
 from uplift.extras.scene.passes.recipe import (
     RECIPES,
@@ -57,6 +63,7 @@ __all__ = [
     "Materials",
     "PassSettings",
     "Passes",
+    "PassesCamera",
     "PassesLight",
     "blender_recipe",
     "check_cube",
@@ -78,5 +85,6 @@ __all__ = [
     "scene_materials",
     "table_projection",
     "to_toml",
+    "with_camera",
     "write_passes",
 ]

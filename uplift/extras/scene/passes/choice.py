@@ -72,7 +72,7 @@ def choose(
         raise OptionError(f"count must be in [1, {MAX_PASSES}], got {count}")
     if width is not None and not 0 <= width <= MAX_WIDTH:
         raise OptionError(f"width must be in [0, {MAX_WIDTH:g}], got {width}")
-    paths = _training_paths(materials, lights)
+    paths = training_paths(materials, lights)
     bands = Search(paths, width).best(CHANNELS * count, progress).bands
     return _fit(bands, paths, materials, lights)
 
@@ -103,10 +103,11 @@ def fit_bands(
     UnknownNameError
         A light is unknown.
     """
-    return _fit(bands, _training_paths(materials, lights), materials, lights)
+    return _fit(bands, training_paths(materials, lights), materials, lights)
 
 
-def _training_paths(materials: Materials, lights: Sequence[Illuminant]) -> LightPaths:
+def training_paths(materials: Materials, lights: Sequence[Illuminant]) -> LightPaths:
+    """Draw the paths that bands and matrices are fitted to."""
     if not lights:
         raise OptionError(
             "lights must not be empty", hint="name at least one, such as D65"
@@ -120,6 +121,12 @@ def _training_paths(materials: Materials, lights: Sequence[Illuminant]) -> Light
         TRAINING_SEED,
         direct=DIRECT_PATHS,
     )
+
+
+def judging_paths(materials: Materials, lights: Sequence[Illuminant]) -> LightPaths:
+    """Draw the paths over held-out materials that judge passes."""
+    powers = np.stack([scaled_power(light) for light in dict.fromkeys(lights)])
+    return draw_paths(materials.held_out, powers, JUDGING_PATHS, JUDGING_SEED)
 
 
 def _fit(
@@ -144,7 +151,7 @@ def _fit(
     light_numbers = light_numbers / scale
     projection = projection / scale[:, None]
     own = grams.decodings(light_numbers)
-    judged = draw_paths(materials.held_out, paths.powers, JUDGING_PATHS, JUDGING_SEED)
+    judged = judging_paths(materials, lights)
     lit = judged.numbers(bands.weights) * light_numbers[:, None]
     errors = judged.by_bounce(judged.errors(lit @ to_xyz.T))
     own_errors = judged.by_bounce(judged.errors(lit @ own.mT))
@@ -187,8 +194,7 @@ def path_errors(
     ndarray, shape (L, n)
         ΔE00 of one to four bounces over held-out materials.
     """
-    powers = np.stack([scaled_power(light) for light in dict.fromkeys(lights)])
-    judged = draw_paths(materials.held_out, powers, JUDGING_PATHS, JUDGING_SEED)
+    judged = judging_paths(materials, lights)
     numbers = np.stack([light.numbers for light in passes.lights])
     lit = judged.numbers(passes.bands.weights) * numbers[:, None]
     return judged.errors(lit @ passes.to_xyz.T)
@@ -212,8 +218,7 @@ def rgb_errors(materials: Materials, lights: Sequence[Illuminant]) -> Array:
     ndarray, shape (L, 4)
         Mean ΔE00 of one to four bounces.
     """
-    powers = np.stack([scaled_power(light) for light in dict.fromkeys(lights)])
-    judged = draw_paths(materials.held_out, powers, JUDGING_PATHS, JUDGING_SEED)
+    judged = judging_paths(materials, lights)
     screen = observer.sensor()
     reflected = judged.numbers(screen.matrix)
     light_rgb = judged.whites @ screen.xyz_to_rgb.T

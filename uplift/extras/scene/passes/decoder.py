@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry import observer
+from uplift.colorimetry.camera import CAMERA
 from uplift.colorimetry.gamut import conversion
 from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT, Illuminant
 from uplift.common.arrays import Array, Floats, Values
@@ -83,7 +84,8 @@ def decoder(
     passes : Passes
         The passes.
     space : str
-        Name of a linear RGB space, or ``"XYZ"``.
+        Name of a linear RGB space, ``"XYZ"``, or ``"camera"`` for the raw values of the
+        camera of the passes.
     light : str, optional
         The only light of the scene, whose matrix is used. By default that of all
         lights.
@@ -98,10 +100,12 @@ def decoder(
     Raises
     ------
     OptionError
-        The space is not linear RGB.
+        The space is not linear RGB, or the passes have no camera.
     UnknownNameError
         The space or a light is unknown.
     """
+    if space == CAMERA:
+        return _camera_decoder(passes)
     to_xyz = passes.to_xyz if light is None else passes.light(light).to_xyz
     settings = {"as": "decoded passes", "space": space}
     settings |= {} if light is None else {"light": light}
@@ -123,3 +127,17 @@ def decoder(
     to_space = conversion(observer.sensor(), target.gamut)
     matrix = to_space @ screen.xyz_to_rgb @ to_xyz
     return Decoder(passes, matrix, ("R", "G", "B"), header)
+
+
+def _camera_decoder(passes: Passes) -> Decoder:
+    if passes.camera is None:
+        raise OptionError(
+            "the passes have no camera",
+            hint="choose them with --camera",
+        )
+    settings = {"as": "decoded passes", "space": CAMERA, "camera": passes.camera.name}
+    header = {
+        ATTRIBUTE: pass_mark(passes, passes.count),
+        "uplift.texture": json.dumps(settings),
+    }
+    return Decoder(passes, passes.camera.matrix, ("R", "G", "B"), header)

@@ -15,7 +15,7 @@ from uplift.common.files import write_text
 from uplift.extras.files.spec import SpecModel, problem, read_toml
 from uplift.extras.scene.passes.bands import CHANNELS, MAX_PASSES, MAX_WIDTH, Bands
 from uplift.extras.scene.passes.light_paths import MAX_BOUNCES
-from uplift.extras.scene.passes.passes import Passes, PassesLight
+from uplift.extras.scene.passes.passes import Passes, PassesCamera, PassesLight
 
 FORMAT: Literal["uplift passes 1"] = "uplift passes 1"
 HINT = "choose the passes again"
@@ -63,6 +63,12 @@ def _lines(passes: Passes) -> Iterator[str]:
         yield f"to-xyz = {_matrix(light.to_xyz)}"
         yield f"errors = {_row(light.errors)}"
         yield f"own-errors = {_row(light.own_errors)}"
+    if passes.camera is not None:
+        yield ""
+        yield "[camera]"
+        yield f"name = {_text(passes.camera.name)}"
+        yield f"matrix = {_matrix(passes.camera.matrix)}"
+        yield f"error = {_number(passes.camera.error)}"
     yield ""
     yield "[other-lights]"
     yield f"wavelengths = {_row(observer.grid()[[0, -1]])}"
@@ -175,6 +181,16 @@ class _OtherLights(SpecModel):
     ]
 
 
+class _CameraTable(SpecModel):
+    name: Annotated[str, Field(min_length=1, max_length=200)]
+    matrix: _ToXyz
+    error: _Positive
+
+    def camera(self) -> PassesCamera:
+        """Return the camera."""
+        return PassesCamera(self.name, np.array(self.matrix), self.error)
+
+
 class _Materials(SpecModel, extra="allow"):
     source: Literal["library", "scene"]
     names: list[str]
@@ -189,6 +205,7 @@ class _PassesTable(SpecModel):
     materials: _Materials
     lights: Annotated[list[_LightTable], Field(min_length=1, max_length=MAX_LIGHTS)]
     other_lights: _OtherLights
+    camera: _CameraTable | None = None
 
     @model_validator(mode="after")
     def _sizes_agree(self) -> Self:
@@ -196,6 +213,8 @@ class _PassesTable(SpecModel):
         if bands % CHANNELS:
             raise problem(f"centres must be 3, 6, 9 or 12, got {bands}")
         rows = [("to-xyz", row) for row in self.to_xyz]
+        if self.camera is not None:
+            rows += [("matrix of the camera", row) for row in self.camera.matrix]
         for light in self.lights:
             rows.append((f"numbers of the light '{light.name}'", light.numbers))
             for row in light.to_xyz:
@@ -252,4 +271,5 @@ def read_passes(path: StrPath) -> Passes:
         tuple(light.light() for light in table.lights),
         np.array(table.other_lights.projection),
         origin,
+        None if table.camera is None else table.camera.camera(),
     )
