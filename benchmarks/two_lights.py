@@ -17,6 +17,7 @@ from benchmarks.materials import (
     other_halves,
 )
 from benchmarks.two_lights_picture import draw_pictures
+from benchmarks.two_lights_texture import texture_cost
 from uplift.colorimetry import Light, observer
 from uplift.common.arrays import Array
 from uplift.extras.photographs import Noise, Photographs, photograph, prepare
@@ -80,6 +81,7 @@ def main() -> None:
         claims=claims(rows),
         scene=draw_pictures(),
         speed=speed(),
+        texture=texture_cost(),
     )
 
 
