@@ -42,7 +42,9 @@ def test_samples_of_a_wide_gamut_have_the_colour_or_the_nearest_realisable_one()
     rgb = np.random.default_rng(2).random((60, 3))
     colours = cube.data.sensor.rgb(prepare_samples(cube)(rgb, 4, 1))
     nearest = cube.data.sensor.rgb(cube.reflectance(rgb))
-    assert_allclose(colours, np.broadcast_to(nearest[:, None], colours.shape), atol=1e-4)
+    assert_allclose(
+        colours, np.broadcast_to(nearest[:, None], colours.shape), atol=1e-4
+    )
 
 
 def test_one_seed_gives_the_same_samples_and_a_generator_goes_on(sampler, monkeypatch):
