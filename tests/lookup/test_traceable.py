@@ -1,7 +1,9 @@
 """Traced spectra agree with numpy, and their derivatives with finite differences."""
 
 from dataclasses import replace
+from functools import partial
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -198,6 +200,26 @@ def test_other_shapes_are_refused(traced, rgb):
         evaluate(traced, rgb)
     with raises(ColourError):
         jax.jit(evaluate)(traced, jnp.asarray(rgb))
+
+
+@pytest.mark.parametrize("rgb", ["red", None, [[0.1], [0.1, 0.2, 0.3]]])
+def test_what_is_not_an_array_is_refused(traced, rgb):
+    with raises(ColourError):
+        evaluate(traced, rgb)
+
+
+def test_single_precision_stays_where_doubles_are_enabled(traced, doubles):
+    rgb = np.array([0.5, 0.25, 0.125])
+    assert evaluate(traced, rgb).dtype == np.float32
+    assert jax.grad(lambda rgb: evaluate(traced, rgb).sum())(rgb).dtype == np.float64
+
+
+def test_other_programs_can_filter_and_batch_it(traced):
+    rgb = np.random.default_rng(1).random((100, 3)).astype(np.float32)
+    by_parts = jax.lax.map(partial(evaluate, traced), rgb, batch_size=32)
+    assert_allclose(by_parts, evaluate(traced, rgb), atol=1e-6)
+    loss = eqx.filter_grad(lambda cube: evaluate(cube, rgb).sum())
+    assert loss(traced).grid.lattice.sum() > 0
 
 
 def test_invalid_options_are_refused(small_cube):

@@ -149,7 +149,10 @@ def evaluate(traced: TraceableCube, rgb: ArrayLike) -> jax.Array:
     ColourError
         The last axis of ``rgb`` does not have three components.
     """
-    colours = jnp.asarray(rgb, traced.grid.nodes.dtype)
+    try:
+        colours = jnp.asarray(rgb, traced.grid.nodes.dtype)
+    except (TypeError, ValueError) as error:
+        raise ColourError(f"a colour is three numbers, got {rgb!r}") from error
     if colours.shape[-1:] != (3,):
         raise ColourError(f"a colour is three numbers, got the shape {colours.shape}")
     return _evaluate(traced.grid, colours)
