@@ -220,6 +220,8 @@ def test_other_programs_can_filter_and_batch_it(traced):
     assert_allclose(by_parts, evaluate(traced, rgb), atol=1e-6)
     loss = eqx.filter_grad(lambda cube: evaluate(cube, rgb).sum())
     assert loss(traced).grid.lattice.sum() > 0
+    assert repr(traced) == "TraceableCube(9 wavelengths)"
+    assert repr(jax.tree.map(lambda _: 0, traced))
 
 
 def test_invalid_options_are_refused(small_cube):

@@ -50,8 +50,8 @@ class TraceableCube:
     grid: Grid
 
     def __repr__(self) -> str:
-        count = pluralise(self.wavelengths.shape[0], "wavelength")
-        return f"TraceableCube({count}, {self.wavelengths.dtype})"
+        # Trees of other leaves have this type, too.
+        return f"TraceableCube({pluralise(np.size(self.wavelengths), 'wavelength')})"
 
 
 def traceable(
