@@ -12,6 +12,7 @@ import sys
 from types import ModuleType
 
 import click
+import numpy as np
 import pytest
 from uplift_cli.main import COMMANDS, main
 
@@ -33,6 +34,7 @@ REFERENCE = PAGES[ROOT / "docs" / "commands.md"]
 COVERAGE = PAGES[ROOT / "docs" / "coverage.md"]
 TUTORIAL = PAGES[ROOT / "docs" / "tutorial.md"]
 PYTHON = PAGES[ROOT / "docs" / "reference" / "python.md"]
+GRADIENTS = PAGES[ROOT / "docs" / "guides" / "gradients.md"]
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
 SKELETONS = re.findall(r"```python\n(.*?)```", CONTRIBUTING, re.DOTALL)
 CODE = ("uplift", "cli", "benchmarks", "tools")
@@ -95,6 +97,16 @@ def test_the_python_page_runs(tmp_path, monkeypatch):
     (code,) = re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL)
     with warns():
         exec(compile(code, "python.md", "exec"), {})
+
+
+def test_the_page_of_gradients_runs():
+    blocks = re.findall(r"```python\n(.*?)```", GRADIENTS, re.DOTALL)
+    names: dict[str, object] = {}
+    with warns():
+        for block in blocks:
+            exec(compile(block, "gradients.md", "exec"), names)
+    assert np.shape(names["spectra"]) == (24, 81)
+    assert np.shape(names["batch"]) == (1000, 1, 81)
 
 
 def test_a_look_into_a_build_prints_what_made_a_node(capsys):

@@ -1,5 +1,6 @@
 """Spectra of millions of colours: a cube is prepared once, then queried through JAX, on
-CPU or accelerator.
+CPU or accelerator. `spectra` and `coefficients` are for images in NumPy, `traceable`
+and `evaluate` for programs in JAX, which compile and differentiate them.
 
 Examples
 --------
@@ -9,8 +10,22 @@ Examples
 >>> image = np.full((2, 4, 3), 0.5)
 >>> sample(image).shape
 (2, 4, 3)
+
+>>> import jax
+>>> traced = uplift.bulk.traceable(uplift.load(), [450, 550, 650])
+>>> at_550 = lambda rgb: uplift.bulk.evaluate(traced, rgb)[1]
+>>> jax.grad(at_550)(jax.numpy.array([0.5, 0.5, 0.5])).shape
+(3,)
 """
 
 from uplift.lookup.bulk import Sampler, coefficients, spectra
+from uplift.lookup.traceable import TraceableCube, evaluate, traceable
 
-__all__ = ["Sampler", "coefficients", "spectra"]
+__all__ = [
+    "Sampler",
+    "TraceableCube",
+    "coefficients",
+    "evaluate",
+    "spectra",
+    "traceable",
+]

@@ -22,11 +22,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
+from uplift.extras.photographs.changes import changed_spectra
 from uplift.extras.photographs.metamers import Metamers, brightness, learn_metamers
 from uplift.extras.photographs.photograph import Noise, Photograph, check_different
 from uplift.lattice import Lattice, weighted_sum
 from uplift.lookup import Cube, as_colours, as_wavelengths
-from uplift.lookup.refine import with_colours
 
 TABLE = Lattice(np.linspace(0, 1, 17) ** 2)
 """Nodes between which covariances are interpolated."""
@@ -36,8 +36,6 @@ components leave out.
 """
 UNKNOWN = 1e6
 """Variance of a component that is not known."""
-OVERSHOOT = 0.2
-"""Reflectance by which a spectrum may leave [0, 1] before it is moved less far."""
 ROUNDS = 2
 """Moves, of which the further ones are for spectra that were clipped."""
 CONTRADICTION = 0.01
@@ -189,8 +187,7 @@ class Photographs:
         grid = at if wavelengths is None else np.append(at, wavelengths)
         components = self.metamers.components
         if wavelengths is not None:
-            more = [np.interp(wavelengths, at, row) for row in components]
-            components = np.concatenate([components, np.array(more)], axis=1)
+            components = self.metamers.components_at(grid)
         if expected is None:
             expected = self.cube.reflectance(rgb, grid)
         ways = self._interpolated(rgb) if directions is None else directions
@@ -201,19 +198,10 @@ class Photographs:
             known = rgb[rows], others[rows], Directions(*(way[rows] for way in ways))
             scores = self._scores(spectra[rows][:, at_sensor], *known)
             change = (scores @ components).astype(spectra.dtype)
-            trial = spectra[rows] + change
-            clipped = (trial.min(axis=1) < 0) | (trial.max(axis=1) > 1)
-            scale = _scale_within(spectra[rows][clipped], change[clipped])
-            trial[clipped] -= (1 - scale[:, None]) * change[clipped]
-            spectra[rows] = np.clip(trial, 0, 1)
-            rows = rows[clipped]
-            spectra[rows] = with_colours(
-                self.cube.data,
-                spectra[rows],
-                spectra[rows][:, at_sensor],
-                rgb[rows],
-                grid,
+            spectra[rows], clipped = changed_spectra(
+                self.cube.data, spectra[rows], change, rgb[rows], grid
             )
+            rows = rows[clipped]
         contradicts = self._contradicts(rgb, others, spectra[:, at_sensor])
         spectra[contradicts] = expected[contradicts]
         kept = slice(None) if wavelengths is None else slice(len(at), None)
@@ -259,16 +247,6 @@ class Photographs:
         off = np.abs(np.nan_to_num(others - spectra @ self.matrix.T))
         limit = CONTRADICTION_SIGMAS * np.sqrt(self._variance(rgb, others))
         return np.asarray((off > np.maximum(limit, CONTRADICTION)).any(axis=1))
-
-
-def _scale_within(expected: Array, change: Array) -> Array:
-    """The largest scale (n,) up to 1 of changes (n, N) of spectra that stay within
-    `OVERSHOOT` of [0, 1].
-    """
-    room = np.where(change > 0, 1 + OVERSHOOT - expected, expected + OVERSHOOT)
-    steps = np.abs(change)
-    limit = np.divide(room, steps, out=np.ones_like(room), where=steps > room)
-    return np.asarray(limit.min(axis=1))
 
 
 def prepare(

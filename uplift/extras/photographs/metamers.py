@@ -51,6 +51,12 @@ class Metamers:
     mean: Array
     """S₀ (R, R)."""
 
+    def components_at(self, wavelengths: Array) -> Array:
+        """E (R, N) at wavelengths (N,) in nm, linearly interpolated."""
+        at = self.sensor.wavelengths
+        rows = [np.interp(wavelengths, at, row) for row in self.components]
+        return np.array(rows)
+
     def covariance(self, rgb: Array) -> Array:
         """S (n, R, R) around linear RGB (n, 3) in [0, 1]."""
         lab = rgb_to_lab(self.sensor, rgb)
