@@ -246,8 +246,8 @@ def _print_passes(passes: Passes) -> None:
         bands.add_row(f"pass {number + 1}", *centres)
         for light in passes.lights:
             bands.add_row(light.name, *map("{:.5g}".format, light.numbers[rows]))
-    held_out = passes.origin.get("held-out", "?")
-    title = f"mean ΔE00 on {held_out} materials that the choice did not use"
+    held_out = pluralise(passes.origin.get("held-out", 0), "material")
+    title = f"mean ΔE00 on {held_out} that the choice did not use"
     table = make_table(("light",), BOUNCES, title=title)
     table.add_column("alone, mean")
     for light in passes.lights:
@@ -367,7 +367,8 @@ def decode(
     if style == "json":
         print_json({"output": [str(target) for target in targets], "pixels": pixels})
     elif not quiet:
-        paragraph(f"{output}: {pluralise(len(jobs), 'picture')}, {pixels:,} pixels")
+        counts = f"{pluralise(len(jobs), 'picture')}, {pluralise(pixels, 'pixel')}"
+        paragraph(f"{output}: {counts}")
 
 
 def _decoder(

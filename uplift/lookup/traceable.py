@@ -103,7 +103,7 @@ def traceable(
     if not (np.diff(grid.nodes) > 0).all():
         raise OptionError(
             "nodes of the cube are too close for float32",
-            hint="use dtype=numpy.float64",
+            hint="use numpy.float64",
         )
     if table.exact is not None:
         warn(

@@ -15,6 +15,7 @@ from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import light as find_light
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import OptionError, TextureError
+from uplift.common.text import pluralise
 from uplift.extras.colour.spaces import ImageSpace, find_space
 from uplift.extras.photographs import Noise, Photographs
 from uplift.extras.photographs.chart import (
@@ -239,8 +240,8 @@ def _fit_chart(
     atlas = read_atlas(chart.atlas)
     if len(atlas) != COLUMNS * ROWS:
         raise OptionError(
-            f"a chart has {COLUMNS * ROWS} patches, got {len(atlas)} entries in "
-            f"'{chart.atlas}'",
+            f"a chart has {COLUMNS * ROWS} patches, got "
+            f"{pluralise(len(atlas), 'entry')} in '{chart.atlas}'",
             hint="measure all patches, row by row",
         )
     measured = resample(atlas, sensor.wavelengths).values
@@ -280,8 +281,8 @@ def _patches(picture: Picture, points: Array) -> Patches:
     inside = (x >= 0) & (x < window.width) & (y >= 0) & (y < window.height)
     if not inside.all():
         raise OptionError(
-            "the chart must lie in the picture, which has "
-            f"{window.width} × {window.height} pixels",
+            "the chart must lie in the picture, whose width and height in pixels are "
+            f"{window.width} and {window.height}",
             hint="give the corners clockwise from dark skin: X,Y,X,Y,X,Y,X,Y in pixels",
         )
     first = int(y.min())

@@ -97,7 +97,8 @@ def picture(tab, light, mix):
 
 def test_both_sides_agree_by_day_and_differ_under_a_sodium_lamp(tab):
     end = time.monotonic() + 60
-    while int(tab.evaluate("document.getElementById('samples').textContent")[:2]) < 10:
+    samples = "document.getElementById('samples').textContent.split(': ')[1]"
+    while int(tab.evaluate(samples) or 0) < 10:
         assert time.monotonic() < end
         time.sleep(0.1)
     middle = np.s_[8:-8, 8:-8]

@@ -246,7 +246,7 @@ function start(gl) {
     gl.uniform1f(place(decode, "split"), Number(byId("split").value));
     gl.uniform1f(place(decode, "size"), canvas.width);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
-    byId("samples").textContent = `${samples} samples per pixel`;
+    byId("samples").textContent = `samples per pixel: ${samples}`;
   }
 
   function frame() {

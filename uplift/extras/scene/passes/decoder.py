@@ -133,7 +133,7 @@ def _camera_decoder(passes: Passes) -> Decoder:
     if passes.camera is None:
         raise OptionError(
             "the passes have no camera",
-            hint="choose them with --camera",
+            hint="choose them with a camera",
         )
     settings = {"as": "decoded passes", "space": CAMERA, "camera": passes.camera.name}
     header = {

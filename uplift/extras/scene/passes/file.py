@@ -228,7 +228,8 @@ class _PassesTable(SpecModel):
         count = len(self.other_lights.projection)
         if count != bands:
             raise problem(
-                f"other-lights.projection must have {bands} rows, got {count}"
+                f"other-lights.projection must have as many rows as there are centres, "
+                f"{bands}, got {count}"
             )
         return self
 
