@@ -8,32 +8,82 @@ file is part of the package: programs copy it.
 import re
 from collections.abc import Iterable, Iterator
 from importlib.resources import files
+from itertools import product
 from pathlib import Path
 from string import Template
-from typing import Any
+from typing import Any, NamedTuple
 
 from uplift.common.arrays import StrPath
 from uplift.common.files import write_text
 from uplift.cube.file import FEATURES, VERSION
 from uplift.extras.export.program import LANGUAGES, literal, read_source
-from uplift.extras.export.program_table import MOVES
+from uplift.extras.export.program_table import MOVES, TEXEL
 from uplift.models.moments import MAX_COUNT, WARPS
 
 HEADER = "uplift.h"
 SAMPLES = 512
 """Most wavelengths of a sensor for which colours are moved."""
-KERNELS = {
-    "sigmoid": (3, 1),
-    "moments_5": (5, 0),
-    "moments_9": (9, 0),
-    "moments_13": (13, 0),
-    "moments_17": (MAX_COUNT, 0),
-}
-"""Numbers of coefficients, and whether they are of sigmoids, of which the lookup is
-compiled. Spectra of fewer coefficients are filled up with zeros.
-"""
-STEPS = {"exact": (0, 4), "moved": (1, 9)}
-"""Whether answers may be moved to their colours, and the numbers of a place."""
+COUNTS = (5, 9, MAX_COUNT)
+"""Numbers of moments for which the lookup is compiled."""
+WARPED_COUNTS = (5, MAX_COUNT)
+"""The same for phases that are not linear, where the basis takes most of the time."""
+SPARSE_COUNTS = (3, 9, MAX_COUNT)
+
+
+class Kernel(NamedTuple):
+    """A lookup that is compiled, for spectra of up to ``count`` coefficients; fewer are
+    filled up with zeros.
+    """
+
+    count: int
+    is_sigmoid: bool
+    is_warped: bool
+    is_inexact: bool
+    """Whether answers may be moved to their colours."""
+    is_sparse: bool = False
+    """Whether nodes may be absent, so that their rows must be found."""
+
+    @property
+    def name(self) -> str:
+        words = ["uplift", "sigmoid" if self.is_sigmoid else f"moments_{self.count}"]
+        words += ["warped"] * self.is_warped
+        words += ["moved"] * self.is_inexact
+        words += ["sparse"] * self.is_sparse
+        return "_".join(words)
+
+    @property
+    def constants(self) -> dict[str, Any]:
+        """The constants of programs on which its code depends."""
+        return {
+            "KERNEL": self.name,
+            "COUNT": self.count,
+            "ENTRY_COUNT": self.count if self.is_sigmoid else MAX_COUNT,
+            "STRIDE": self.count // TEXEL * TEXEL + TEXEL,
+            "SIGMOIDS": int(self.is_sigmoid),
+            "WARPED": int(self.is_warped),
+            "INEXACT": int(self.is_inexact),
+            "PLACE": 9 if self.is_inexact else 4,
+            "ROW_OF(index)": "uplift_row(cube, index)" if self.is_sparse else "(index)",
+        }
+
+
+PLAIN = [(count, False) for count in COUNTS]
+WARPED = [(count, True) for count in WARPED_COUNTS]
+MOMENTS = [
+    Kernel(count, is_sigmoid=False, is_warped=is_warped, is_inexact=is_inexact)
+    for (count, is_warped), is_inexact in product(PLAIN + WARPED, (False, True))
+]
+SIGMOIDS = [
+    Kernel(3, is_sigmoid=True, is_warped=False, is_inexact=is_inexact)
+    for is_inexact in (False, True)
+]
+SPARSE = [
+    kernel._replace(is_sparse=True)
+    for kernel in SIGMOIDS + MOMENTS
+    if kernel.is_inexact and kernel.count in SPARSE_COUNTS
+]
+"""Those of cubes of a scene need not be as fast, and also answer exact cells."""
+KERNELS = SIGMOIDS + MOMENTS + SPARSE
 READER = ("file.c", "content.c", "table.c", "build.c")
 """Parts of the reader in reading order."""
 ROUNDS = 64
@@ -101,9 +151,16 @@ def _reader_words() -> dict[str, Any]:
 
 def _call_words() -> dict[str, Any]:
     kernels = []
-    for name, (count, _) in KERNELS.items():
-        functions = [f"&uplift_{name}_{step}_functions" for step in STEPS]
-        kernels.append(f"\n        {{{count}, {', '.join(functions)}}}")
+    for kernel in KERNELS:
+        kinds = (
+            kernel.is_sigmoid,
+            kernel.is_warped,
+            kernel.is_inexact,
+            kernel.is_sparse,
+        )
+        numbers = [kernel.count, *map(int, kinds)]
+        text = ", ".join(map(str, numbers))
+        kernels.append(f"\n        {{{text}, &{kernel.name}_functions}}")
     return {"kernels": ",".join(kernels), "samples": SAMPLES}
 
 
@@ -118,18 +175,9 @@ def _kernel_macros() -> str:
 
 def _inclusions() -> Iterator[str]:
     """Yield the lines by which the header includes itself for each kernel."""
-    for name, (count, is_sigmoid) in KERNELS.items():
-        for step, (is_inexact, place) in STEPS.items():
-            constants = {
-                "KERNEL": f"uplift_{name}_{step}",
-                "COUNT": count,
-                "STRIDE": count // 4 * 4 + 4,
-                "SIGMOIDS": is_sigmoid,
-                "INEXACT": is_inexact,
-                "PLACE": place,
-            }
-            lines = [f"#define UP_{key} {value}" for key, value in constants.items()]
-            yield "\n".join(["", *lines, "#include UPLIFT_FILE", ""])
+    for kernel in KERNELS:
+        lines = [f"#define UP_{key} {value}" for key, value in kernel.constants.items()]
+        yield "\n".join(["", *lines, "#include UPLIFT_FILE", ""])
 
 
 def _kernel() -> str:

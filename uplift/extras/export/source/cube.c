@@ -92,7 +92,6 @@ UP_FUNCTION float up_deviation(float weight, float x)
 UP_FUNCTION float up_warp(UP_READS_CUBE float wavelength)
 {
 #if UP_WARPED
-    UP_UNWARPED(wavelength);
     float low = UP_WARP_0 * UP_TANH(UP_WARP_1 * (wavelength - UP_WARP_2));
     return low + UP_WARP_3 * UP_TANH(UP_WARP_4 * (wavelength - UP_WARP_5));
 #else
@@ -576,7 +575,7 @@ UP_FUNCTION UP_FINE up_shorten(
 
 /* Set place[4] to place[6], by which arguments move along the curves of the sensor, so that the answer has its colour:
    the minimum of a convex function [uplift.lookup.refine]. place[7] is how far from 0 and 1 they start. */
-UP_FUNCTION void up_pull(UP_READS UP_IN float rgb[3], int entry, UP_OUT float place[UP_PLACE])
+UP_SELDOM void up_pull(UP_READS UP_IN float rgb[3], int entry, UP_OUT float place[UP_PLACE])
 {
     UP_ARRAY(colour, 3);
     UP_ARRAY(at, UP_WIDTH);

@@ -214,15 +214,15 @@ static int uplift_make_table(
     int *const sections[10] = {
         NULL, &cube->entries, &cube->nodes, &cube->bins, &cube->lists, &cube->boxes, &cube->pull, &cube->scales,
         &cube->luminance, &cube->facets};
+    const int count = UPLIFT_CAST(int, content->entry_count);
     double p[UPLIFT_MOST_COUNT];
     int result = points ? uplift_index_nodes(cube, points, touches, touch_count) : UPLIFT_OK;
     if (result != UPLIFT_OK) return result;
     if (content->entry_count != content->count)
         spectra = uplift_find_array(content, "atlas.entry_coefficients", UPLIFT_F64, UPLIFT_F64, entries, content->entry_count, -1e30, 1e30);
     if (!spectra) return UPLIFT_INVALID;
-    cube->entry_count = UPLIFT_CAST(int, content->entry_count);
     sizes[0] = UPLIFT_CAST(unsigned, points ? cube->absent_row + 1 : cube->present) * UPLIFT_CAST(unsigned long long, cube->stride);
-    sizes[1] = entries * content->entry_count;
+    sizes[1] = entries * UPLIFT_CAST(unsigned, cube->entry_count);
     sizes[2] = content->dim;
     sizes[3] = 1025;
     sizes[4] = 2 + 2 * touch_count;
@@ -248,8 +248,8 @@ static int uplift_make_table(
     uplift_fill_lists(cube, points, touches, touch_count);
     for (int entry = 0; entry < content->entries; ++entry) {
         float *row = cube->numbers + cube->entries + entry * cube->entry_count;
-        if (!uplift_multipliers(cube, spectra, UPLIFT_CAST(size_t, entry), cube->entry_count, p)) return UPLIFT_INVALID;
-        if (!uplift_store(cube, p, cube->entry_count, row)) return UPLIFT_INVALID;
+        if (!uplift_multipliers(cube, spectra, UPLIFT_CAST(size_t, entry), count, p)) return UPLIFT_INVALID;
+        if (!uplift_store(cube, p, count, row)) return UPLIFT_INVALID;
     }
     result = sensor ? uplift_fill_moves(cube, sensor) : UPLIFT_OK;
     return result == UPLIFT_OK ? uplift_fill_rows(cube) : result;
@@ -263,7 +263,6 @@ static int uplift_build(uplift_cube *cube)
     float *boxes;
     size_t touch_count = 0;
     int result = UPLIFT_OK;
-    if (!uplift_set_range(cube)) return UPLIFT_INVALID;
     boxes = UPLIFT_CAST(float *, uplift_allocate(12 * UPLIFT_CAST(size_t, cube->content.entries), sizeof *boxes));
     if (boxes) {
         touch_count = uplift_list_touches(cube, NULL, boxes);

@@ -3,15 +3,19 @@
 static void uplift_choose(uplift_cube *cube)
 {
     static const struct {
-        int count;
-        const uplift_kernel *exact, *moved;
+        int count, is_sigmoid, is_warped, is_inexact, is_sparse;
+        const uplift_kernel *functions;
     } kernels[] = {${kernels}};
+    const uplift_content *content = &cube->content;
+    const int is_sparse = uplift_has(content, UPLIFT_SPARSE), is_inexact = cube->is_inexact || is_sparse;
     int k = 0;
-    if (!cube->content.is_sigmoid)
-        for (k = 1; UPLIFT_CAST(unsigned, kernels[k].count) < cube->content.count;) k += 1;
+    while (UPLIFT_CAST(unsigned, kernels[k].count) < content->count || kernels[k].is_sigmoid != content->is_sigmoid
+        || kernels[k].is_warped != cube->is_warped || kernels[k].is_inexact != is_inexact
+        || kernels[k].is_sparse != is_sparse) k += 1;
+    cube->kernel = kernels[k].functions;
     cube->tag = kernels[k].count;
     cube->stride = kernels[k].count / 4 * 4 + 4;
-    cube->kernel = cube->is_inexact ? kernels[k].moved : kernels[k].exact;
+    cube->entry_count = content->is_sigmoid ? 3 : UPLIFT_MOST_COUNT;
 }
 
 uplift_cube *uplift_open(const char *path, int *error)
@@ -22,6 +26,7 @@ uplift_cube *uplift_open(const char *path, int *error)
     if (result == UPLIFT_OK) result = uplift_read_metadata(&cube->content);
     if (result == UPLIFT_OK) result = uplift_check_digest(&cube->content);
     if (result == UPLIFT_OK) result = uplift_check(cube);
+    if (result == UPLIFT_OK) result = uplift_set_range(cube) ? UPLIFT_OK : UPLIFT_INVALID;
     if (result == UPLIFT_OK) uplift_choose(cube);
     if (result == UPLIFT_OK) result = uplift_build(cube);
     if (error) *error = result;
@@ -87,30 +92,27 @@ static int uplift_find(const uplift_cube *cube, const float rgb[3], uplift_place
     return is_present;
 }
 
+int uplift_reflectances(
+    const uplift_cube *cube, const float rgb[3], const float *wavelengths, int count, float *reflectances)
+{
+    uplift_place place;
+    if (cube->points && !uplift_find(cube, rgb, &place)) {
+        for (int k = 0; k < count; ++k) reflectances[k] = 0;
+        return UPLIFT_NOT_IN_SCENE;
+    }
+    cube->kernel->reflectances(cube, rgb, wavelengths, count, reflectances);
+    return UPLIFT_OK;
+}
+
 int uplift_reflectances_n(
     const uplift_cube *cube, const float *rgb, int n, const float *wavelengths, int count, float *reflectances)
 {
     int result = UPLIFT_OK;
-    if (!cube->points) {
-        cube->kernel->reflectances(cube, rgb, n, wavelengths, count, reflectances);
-        return UPLIFT_OK;
-    }
     for (int i = 0; i < n; ++i, rgb += 3, reflectances += count) {
-        uplift_place place;
-        if (uplift_find(cube, rgb, &place)) {
-            cube->kernel->reflectances(cube, rgb, 1, wavelengths, count, reflectances);
-        } else {
-            memset(reflectances, 0, UPLIFT_CAST(size_t, count) * sizeof *reflectances);
-            result = UPLIFT_NOT_IN_SCENE;
-        }
+        int found = uplift_reflectances(cube, rgb, wavelengths, count, reflectances);
+        if (found != UPLIFT_OK) result = found;
     }
     return result;
-}
-
-int uplift_reflectances(
-    const uplift_cube *cube, const float rgb[3], const float *wavelengths, int count, float *reflectances)
-{
-    return uplift_reflectances_n(cube, rgb, 1, wavelengths, count, reflectances);
 }
 
 /* Weighted error of nodes, times a factor, and of the entry of a colour; that of a look is expected, as those of nodes. */

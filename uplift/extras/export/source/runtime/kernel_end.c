@@ -10,11 +10,20 @@ static int UP_NAME(place)(const uplift_cube *cube, const float *rgb, float *latt
     return entry;
 }
 
-static const uplift_kernel UP_NAME(functions) = {UP_NAME(reflectances_n), UP_NAME(place)};
+static void UP_NAME(answer_all)(
+    const uplift_cube *cube, const float *rgb, const float *wavelengths, int count, float *reflectances)
+{
+    UP_NAME(reflectances)(cube, rgb, wavelengths, count, reflectances);
+}
+
+static const uplift_kernel UP_NAME(functions) = {UP_NAME(answer_all), UP_NAME(place)};
 
 #undef UPLIFT_KERNEL
 #undef UP_COUNT
+#undef UP_ENTRY_COUNT
 #undef UP_STRIDE
 #undef UP_SIGMOIDS
+#undef UP_WARPED
 #undef UP_INEXACT
 #undef UP_PLACE
+#undef UP_ROW_OF

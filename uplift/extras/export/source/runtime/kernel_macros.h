@@ -4,26 +4,33 @@
 #define UP_JOIN(kernel, name) kernel##_##name
 #define UP_NAME_OF(kernel, name) UP_JOIN(kernel, name)
 #define UP_NAME(name) UP_NAME_OF(UP_KERNEL, name)
+#if defined(__GNUC__) && !defined(__clang__)
+#define UP_FUNCTION UP_EXPANDED /* gcc would not expand all in a file of so many; clang vectorises less if it has to */
+#else
 #define UP_FUNCTION static inline
+#endif
+#if defined(__GNUC__)
+#define UP_SELDOM static __attribute__((noinline))
+#define UP_UNUSED __attribute__((unused))
+#else
+#define UP_SELDOM static
+#define UP_UNUSED
+#endif
 #define UP_LANES 16
 #define UP_READS const uplift_cube *cube,
 #define UP_TABLE cube,
-#define UP_READS_CUBE UP_READS
+#define UP_READS_CUBE UP_UNUSED UP_READS
 #define UP_CUBE UP_TABLE
-#define UP_ROW_OF(index) uplift_row(cube, index)
-#define UP_ROW(name, index) const float *name = cube->numbers + uplift_row(cube, index) * UP_STRIDE
-static inline float uplift_number(const uplift_cube *cube, int index)
+#define UP_ROW(name, index) const float *name = cube->numbers + UP_ROW_OF(index) * UP_STRIDE
+UP_EXPANDED float uplift_number(const uplift_cube *cube, int index)
 {
     return cube->numbers[index];
 }
 
-#define UP_UNWARPED(x) if (!cube->is_warped) return x
 #define UP_SPECTRA 1
-#define UP_WARPED 1
 #define UP_BIN_COUNT 1024
 ${constants}
 #define UP_DIM cube->dim
-#define UP_ENTRY_COUNT cube->entry_count
 #define UP_ENTRIES cube->entries
 #define UP_NODES cube->nodes
 #define UP_BINS cube->bins

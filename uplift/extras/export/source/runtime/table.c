@@ -1,7 +1,7 @@
 
 /* Functions for a number of coefficients, see below. */
 typedef struct {
-    void (*reflectances)(const uplift_cube *, const float *, int, const float *, int, float *);
+    void (*reflectances)(const uplift_cube *, const float *, const float *, int, float *);
     int (*place)(const uplift_cube *, const float *, float *, float *, int *);
 } uplift_kernel;
 
@@ -11,7 +11,7 @@ struct uplift_cube {
     /* The table of exported programs, and the constants that locate its sections. */
     float *numbers;
     int entries, nodes, bins, lists, boxes, pull, scales, luminance, facets, facet_count, samples, dim, stride, tag;
-    int entry_count, is_warped, is_inexact;
+    int entry_count, is_warped, is_inexact; /* numbers of an entry in the table */
     float first, step, margin, start, end, low, scale, warp[6];
     /* A cube of a scene: numbers of nodes that have a row, ascending, their rows, and where the numbers of each line of
        nodes along blue begin. Rows from `present` on belong to nodes that are absent. */
