@@ -47,9 +47,10 @@ HELP = """Write a cube in a format that other tools read.
 
     Names in a program start with the file's. A C header, also valid C++, contains the
     table, or loads it from a file of numbers. Programs in other languages come with a
-    second file, which they explain. With --runtime and without a cube, write uplift.h, a
-    C header that reads cube files when a program runs. The tables of coeff, pbrt and luisa store sigmoid
-    spectra of the cube's colours: three coefficients cannot represent the atlas.
+    second file, which they explain. --runtime writes uplift.h instead, a C header that
+    reads cube files when a program runs. The tables of coeff, pbrt and luisa store
+    sigmoid spectra of the cube's colours: three coefficients cannot represent the
+    atlas.
 
     \b
     Examples:

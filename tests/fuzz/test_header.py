@@ -1,4 +1,4 @@
-"""A short campaign of malformed cube files for ``uplift.h``; `make nightly` runs more."""
+"""A short campaign of malformed cube files for ``uplift.h``."""
 
 from tests.fuzz import header
 from tests.parts import CC, SANITIZERS, need

@@ -68,7 +68,9 @@ class Answers:
 
 
 def answers(cube: Cube, rgb: np.ndarray, at: np.ndarray, *options: str) -> Answers:
-    """Save a cube and read it by the header, compiled with options."""
+    """Save a cube and read it by the header, compiled with options instead of the
+    sanitizers.
+    """
     path = Path(FOLDER.name, "cube.uplift")
     cube.save(path, force=True)
     given = np.concatenate([at, rgb.ravel()]).astype(np.float32).tobytes()
@@ -82,9 +84,7 @@ def answers(cube: Cube, rgb: np.ndarray, at: np.ndarray, *options: str) -> Answe
     ]
     rows = np.frombuffer(done.stdout, fields)
     coefficients = rows["coefficients"][:, : cube.coefficient_count]
-    return Answers(
-        rows["results"], rows["errors"], coefficients, rows["reflectances"]
-    )
+    return Answers(rows["results"], rows["errors"], coefficients, rows["reflectances"])
 
 
 def open_result(path: Path) -> int:
@@ -95,11 +95,12 @@ def open_result(path: Path) -> int:
 
 @cache
 def program(*options: str) -> Path:
-    """Compile the program with both sanitizers, once for a set of options."""
+    """Compile the program, once for a set of options, by default both sanitizers."""
     need(CC, SANITIZERS)
+    options = options or SANITIZED
     folder = Path(tempfile.mkdtemp(dir=FOLDER.name))
     write_header(folder / HEADER)
     (folder / "main.c").write_text(MAIN)
-    command = ["cc", "-O1", *SANITIZED, *options, "main.c", "-o", "main", "-lm"]
+    command = ["cc", "-O1", *options, "main.c", "-o", "main", "-lm"]
     subprocess.run(command, cwd=folder, check=True)
     return folder / "main"

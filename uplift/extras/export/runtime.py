@@ -7,11 +7,12 @@ file is part of the package: programs copy it.
 
 import re
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from itertools import product
 from pathlib import Path
 from string import Template
-from typing import Any, NamedTuple
+from typing import Any
 
 from uplift.common.arrays import StrPath
 from uplift.common.files import write_text
@@ -30,7 +31,8 @@ WARPED_COUNTS = (5, MAX_COUNT)
 SPARSE_COUNTS = (3, 9, MAX_COUNT)
 
 
-class Kernel(NamedTuple):
+@dataclass(frozen=True)
+class Kernel:
     """A lookup that is compiled, for spectra of up to ``count`` coefficients; fewer are
     filled up with zeros.
     """
@@ -78,7 +80,7 @@ SIGMOIDS = [
     for is_inexact in (False, True)
 ]
 SPARSE = [
-    kernel._replace(is_sparse=True)
+    replace(kernel, is_sparse=True)
     for kernel in SIGMOIDS + MOMENTS
     if kernel.is_inexact and kernel.count in SPARSE_COUNTS
 ]
@@ -92,6 +94,7 @@ PER_LINE = 8
 NUMBERS_OF_WARP = 6
 SKIPPED = "#ifdef UP_VEC4"
 """Begins a part of the source for shaders."""
+
 
 def write_header(path: StrPath, *, force: bool = False) -> None:
     """Write ``uplift.h``, the reader of cube files for programs in C and C++."""
@@ -198,9 +201,7 @@ def _kernel() -> str:
 def _words_of_hash(words: Iterable[int]) -> str:
     """Format the constants of SHA-256, a few on a line."""
     texts = [f"0x{word:08x}" for word in words]
-    rows = [
-        texts[first : first + PER_LINE] for first in range(0, len(texts), PER_LINE)
-    ]
+    rows = [texts[first : first + PER_LINE] for first in range(0, len(texts), PER_LINE)]
     return ",\n".join("    " + ", ".join(row) for row in rows)
 
 
