@@ -98,6 +98,7 @@ nightly: $(INSTALLED)
 	$(BIN)/python -m tests.fuzz.builds 0 2000
 	$(BIN)/python -m tests.fuzz.tables 0 10000
 	$(BIN)/python -m tests.fuzz.images 0 5000
+	$(BIN)/python -m tests.fuzz.header 0 100000
 
 # Packages with the example images of the pages plan, scenes and textures.
 pictures: $(INSTALLED)

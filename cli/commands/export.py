@@ -19,6 +19,10 @@ WIDTH = 6
 """Characters of names of formats before what they are."""
 
 
+SUFFIXES = (".h", ".hpp", ".hh")
+"""Suffixes of the header that reads cube files."""
+
+
 def _summary() -> str:
     """Describe the formats for the help; those of one kind on one line."""
     lines = []
@@ -43,8 +47,10 @@ HELP = """Write a cube in a format that other tools read.
 
     Names in a program start with the file's. A C header, also valid C++, contains the
     table, or loads it from a file of numbers. Programs in other languages come with a
-    second file, which they explain. The tables of coeff, pbrt and luisa store sigmoid
-    spectra of the cube's colours: three coefficients cannot represent the atlas.
+    second file, which they explain. --runtime writes uplift.h instead, a C header that
+    reads cube files when a program runs. The tables of coeff, pbrt and luisa store
+    sigmoid spectra of the cube's colours: three coefficients cannot represent the
+    atlas.
 
     \b
     Examples:
@@ -59,6 +65,7 @@ HELP = """Write a cube in a format that other tools read.
       uplift export three.uplift -o fourier.png
       uplift export macbeth-32.uplift -o film.npy
       uplift export macbeth-32.uplift --format csv
+      uplift export --runtime uplift.h
     """
 
 
@@ -66,7 +73,9 @@ HELP = """Write a cube in a format that other tools read.
     "export",
     help=HELP.replace("{formats}", _summary()),
 )
-@options.cube_argument
+@click.argument(
+    "cube", metavar="[CUBE]", required=False, shell_complete=options.complete_cube
+)
 @options.output(help="File to write. [default: CUBE's name in the current folder]")
 @click.option(
     "--format",
@@ -101,15 +110,29 @@ HELP = """Write a cube in a format that other tools read.
 )
 @options.table
 @options.fill
+@click.option(
+    "--runtime",
+    is_flag=True,
+    help="Write uplift.h, which reads cube files, instead of a cube.",
+)
 @options.force
 def command(
-    cube: str,
+    cube: str | None,
     output: str | None,
     style: str | None,
     fill_missing: bool,
+    runtime: bool,
     force: bool,
     **given: Any,
 ) -> None:
+    if runtime:
+        unused = (style, fill_missing or None, *given.values())
+        if any(value is not None for value in unused):
+            raise click.UsageError("--runtime goes with --output and --force only.")
+        _write_runtime(cube, output, force=force)
+        return
+    if cube is None:
+        raise click.UsageError("Give a cube, or --runtime.")
     style = style or _style_of(output)
     export = EXPORTS[style]
     settings = {name: value for name, value in given.items() if value is not None}
@@ -140,6 +163,22 @@ def command(
     with progress_bar(f"writing {path}"):
         written = write(loaded, path, style, force=force, **settings)
     say(f"{path}: {written}")
+
+
+def _write_runtime(name: str | None, output: str | None, *, force: bool) -> None:
+    """Write the header that reads cube files, to a name after the option or to the
+    output.
+    """
+    if name is not None and output is not None:
+        raise click.UsageError("--runtime writes one file: give it once.")
+    from uplift.common.files import check_output
+    from uplift.extras.export.runtime import HEADER, write_header
+
+    path = check_output(output or name or HEADER, force=force)
+    if path.suffix not in SUFFIXES:
+        raise click.UsageError(f"--runtime writes a header: end it in .h, not {path}.")
+    write_header(path, force=force)
+    say(f"{path}: reads cube files in C and C++, {path.stat().st_size / 1e3:.0f} kB")
 
 
 def _style_of(output: str | None) -> str:

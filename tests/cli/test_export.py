@@ -96,3 +96,16 @@ def test_format_follows_the_suffix_of_out(run, home, cube, monkeypatch):
 def test_wrong_usage(misuse, home, cube, arguments, option):
     assert option in misuse(f"export {cube} {arguments}")
     assert os.listdir(home) == [cube]
+
+
+def test_the_header_that_reads_cube_files(run, refuse, misuse, home, cube):
+    assert run("export --runtime uplift.h").stdout.startswith("uplift.h: ")
+    run("export --runtime -o other.h")
+    assert (home / "uplift.h").read_bytes() == (home / "other.h").read_bytes()
+    assert refuse("export --runtime").code == "file-exists"
+    misuse("export")
+    misuse("export --runtime --format c")
+    misuse("export --runtime a.h -o b.h")
+    before = (home / cube).read_bytes()
+    misuse("export --force --runtime", cube)
+    assert (home / cube).read_bytes() == before

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 from tests.helpers import output_of
 from tests.parts import CC, CXX, MITSUBA, SANITIZED, SANITIZERS, need
 from uplift.extras.export import write_program
+from uplift.extras.export.runtime import write_header
 
 PAGE = (Path(__file__).parents[3] / "docs" / "integrate.md").read_text("utf-8")
 STORED = "moments-8-macbeth.uplift"
@@ -57,6 +58,16 @@ def test_c_and_cpp(folder, small_cube, compiler, language, part):
     expected = small_cube.reflectance(
         [COLOURS[0], *COLOURS], wavelengths, mode="spectra"
     )
+    assert_allclose(found, expected, atol=2e-5)
+
+
+def test_cube_files_at_run_time(folder, small_cube):
+    need(CC, SANITIZERS)
+    write_header(folder / "uplift.h")
+    (folder / "main.c").write_text(code("Cube files at run time", "c"))
+    output_of("cc", "-O1", *SANITIZED, "main.c", "-o", "main", "-lm")
+    wavelengths, *found = np.loadtxt(output_of("./main").splitlines()).T
+    expected = small_cube.reflectance(COLOURS, wavelengths, mode="spectra")
     assert_allclose(found, expected, atol=2e-5)
 
 

@@ -2,7 +2,8 @@
 language.
 
 In ``source/``, ``UP_READS`` and ``UP_TABLE`` are the parameter and the argument by
-which CUDA passes the table.
+which CUDA passes the table, and the reader of cube files passes a cube. `RUNTIME_WORDS`
+are for that reader.
 """
 
 import re
@@ -71,12 +72,29 @@ class Language:
 
 
 LANGUAGES = {
-    "c": Language(".h", ("c.h", "host.c"), ".c", 16, ("header", "file")),
+    "c": Language(
+        ".h",
+        ("c.h", "loops.c", "numbers.c", "host.c"),
+        ".c",
+        16,
+        ("header", "file"),
+    ),
     "cuda": Language(".cuh", ("cuda.cuh", "host.c"), ".cuh"),
     "glsl": Language(".glsl", ("glsl.glsl", "shader.glsl"), ".glsl", vector="vec"),
     "hlsl": Language(".hlsl", ("hlsl.hlsl", "shader.glsl"), ".glsl", vector="float"),
 }
 """Languages of `write_program`."""
+RUNTIME_WORDS = {
+    "UP_READS_CUBE ": "",
+    "UP_CUBE ": "",
+    "UP_ROW_OF(index)": "index",
+    "UP_SELDOM ": "UP_FUNCTION ",
+    "UP_SAMPLE_ROOM": "UP_SAMPLES",
+    "UP_ALIASES\n": "#define up_find up_locate\n#define up_answer up_blend\n",
+}
+"""Words of the source that are macros in the reader of cube files, and what programs
+with the numbers of one cube have instead.
+"""
 
 
 def export(
@@ -197,6 +215,8 @@ def compose(
         "${overview}", overview.removeprefix("/* ").replace("UP_VEC", language.vector)
     )
     text = text.replace("${table}", read_source(f"table_{form}.c"))
+    for word, plain in RUNTIME_WORDS.items():
+        text = text.replace(word, plain)
     text = _unroll(text, {f"UP_{key}": value for key, value in table.constants.items()})
     text = re.sub(r"\bup_", f"{name}_", text)
     text = re.sub(r"\bUP_", f"{name.upper()}_", text)

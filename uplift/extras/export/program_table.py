@@ -27,6 +27,14 @@ program has textures of this width.
 """
 PROGRAM_MODES = ("spectra", "moments")
 """What programs interpolate."""
+MOVES = {
+    "LEAST": LEAST,
+    "SLOPE": SLOPE,
+    "MOST": MOST,
+    "STEEP": STEEP,
+    "REACH": REACH,
+}
+"""Constants of `uplift.lookup.refine`, in the words of programs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,15 +188,7 @@ def _moving(data: CubeData) -> tuple[dict[str, Values], dict[str, Any]]:
         "STEP": step,
         "FACET_COUNT": half,
     }
-    moves = {
-        "MARGIN": data.threshold / 2,
-        "LEAST": LEAST,
-        "SLOPE": SLOPE,
-        "MOST": MOST,
-        "STEEP": STEEP,
-        "REACH": REACH,
-    }
-    return sections, how | moves
+    return sections, how | {"MARGIN": data.threshold / 2} | MOVES
 
 
 def _boxes(boxes: EntryBoxes) -> Floats:

@@ -22,7 +22,7 @@ void up_load_row(int index, inout float row[UP_STRIDE])
    answers in the cell are moved. Its fraction is 1/2 at points where coefficients are moved, 0 at others. */
 UP_FUNCTION float up_tag(UP_READS int index)
 {
-    return up_number(UP_TABLE index * UP_STRIDE + UP_COUNT);
+    return up_number(UP_TABLE UP_ROW_OF(index) * UP_STRIDE + UP_COUNT);
 }
 
 /* Spectra are 1/2 + deviation(x), where x(lambda) is a polynomial with the multipliers as coefficients. */
@@ -35,7 +35,7 @@ UP_FUNCTION float up_deviation(float weight, float x)
 }
 
 /* Wavelength scaled from the range to [-1, 1]; differences of magnitudes clip it. */
-UP_FUNCTION float up_scaled(float wavelength)
+UP_FUNCTION float up_scaled(UP_READS_CUBE float wavelength)
 {
     float x = (2.0f * wavelength - (UP_START + UP_END)) / (UP_END - UP_START);
     return 0.5f * (UP_ABS(x + 1.0f) - UP_ABS(x - 1.0f));
@@ -44,17 +44,17 @@ UP_FUNCTION float up_scaled(float wavelength)
 /* x = c_0 s^2 + c_1 s + c_2 of the multipliers from an index in the table. */
 UP_FUNCTION float up_argument(UP_READS int first, float wavelength)
 {
-    float s = up_scaled(wavelength);
+    float s = up_scaled(UP_CUBE wavelength);
     return (up_number(UP_TABLE first) * s + up_number(UP_TABLE first + 1)) * s
         + up_number(UP_TABLE first + 2);
 }
 
 /* Tabulate s^2, s, 1 at wavelengths in nm. */
-UP_FUNCTION void up_tabulate(UP_IN float wavelengths[UP_WIDTH], UP_OUT float basis[UP_COUNT * UP_WIDTH])
+UP_FUNCTION void up_tabulate(UP_READS_CUBE UP_IN float wavelengths[UP_WIDTH], UP_OUT float basis[UP_COUNT * UP_WIDTH])
 {
     UP_VECTORISE
     for (int w = 0; w < UP_WIDTH; ++w) {
-        float s = up_scaled(wavelengths[w]);
+        float s = up_scaled(UP_CUBE wavelengths[w]);
         basis[w] = s * s;
         basis[UP_WIDTH + w] = s;
         basis[2 * UP_WIDTH + w] = 1.0f;
@@ -89,7 +89,7 @@ UP_FUNCTION float up_deviation(float weight, float x)
 }
 
 /* Wavelengths, evenly or as the eye distinguishes them. */
-UP_FUNCTION float up_warp(float wavelength)
+UP_FUNCTION float up_warp(UP_READS_CUBE float wavelength)
 {
 #if UP_WARPED
     float low = UP_WARP_0 * UP_TANH(UP_WARP_1 * (wavelength - UP_WARP_2));
@@ -100,9 +100,9 @@ UP_FUNCTION float up_warp(float wavelength)
 }
 
 /* Phase phi in turns, [-1/2, 1/2]; differences of magnitudes clip it to the range. */
-UP_FUNCTION float up_phase(float wavelength)
+UP_FUNCTION float up_phase(UP_READS_CUBE float wavelength)
 {
-    float turn = (up_warp(wavelength) - UP_LOW) * UP_SCALE - 0.5f;
+    float turn = (up_warp(UP_CUBE wavelength) - UP_LOW) * UP_SCALE - 0.5f;
     return 0.5f * (UP_ABS(turn + 0.5f) - UP_ABS(turn - 0.5f));
 }
 
@@ -110,7 +110,7 @@ UP_FUNCTION float up_phase(float wavelength)
    2 cos(k + 1)phi = 2 cos(phi) 2 cos(k phi) - 2 cos(k - 1)phi. */
 UP_FUNCTION float up_argument(UP_READS int first, float wavelength)
 {
-    float cosine = 2.0f * up_sine_of_turn(up_phase(wavelength)), before = 2.0f, now = cosine;
+    float cosine = 2.0f * up_sine_of_turn(up_phase(UP_CUBE wavelength)), before = 2.0f, now = cosine;
     float x = up_number(UP_TABLE first);
     for (int k = 1; k < UP_ENTRY_COUNT; ++k) {
         float held = now;
@@ -123,12 +123,12 @@ UP_FUNCTION float up_argument(UP_READS int first, float wavelength)
 
 /* Tabulate 1, 2 cos(phi), ..., 2 cos(m phi) at wavelengths in nm, order by order:
    2 cos(j phi) 2 cos(k phi) = 2 cos(j + k)phi + 2 cos(j - k)phi. */
-UP_FUNCTION void up_tabulate(UP_IN float wavelengths[UP_WIDTH], UP_OUT float basis[UP_COUNT * UP_WIDTH])
+UP_FUNCTION void up_tabulate(UP_READS_CUBE UP_IN float wavelengths[UP_WIDTH], UP_OUT float basis[UP_COUNT * UP_WIDTH])
 {
     UP_VECTORISE
     for (int w = 0; w < UP_WIDTH; ++w) {
         UP_ARRAY(cosine, UP_COUNT);
-        cosine[1] = 2.0f * up_sine_of_turn(up_phase(wavelengths[w]));
+        cosine[1] = 2.0f * up_sine_of_turn(up_phase(UP_CUBE wavelengths[w]));
         UP_UNROLL
         for (int k = 2; k < UP_COUNT; ++k) {
             cosine[k] = cosine[k / 2] * cosine[k - k / 2] - (k % 2 == 0 ? 2.0f : cosine[1]);
@@ -260,7 +260,7 @@ UP_FUNCTION void up_mix(
     UP_IN float wavelengths[UP_WIDTH], UP_OUT float total[UP_WIDTH])
 {
     UP_ARRAY(basis, UP_COUNT * UP_WIDTH);
-    up_tabulate(wavelengths, basis);
+    up_tabulate(UP_CUBE wavelengths, basis);
     up_evaluate_block(multipliers, basis, total);
     if (entry >= 0) up_add_entry(UP_TABLE lattice_weight, entry, wavelengths, total);
 }
@@ -298,7 +298,7 @@ UP_FUNCTION void up_blend(
     UP_ARRAY(basis, UP_COUNT * UP_WIDTH);
     UP_VECTORISE
     for (int w = 0; w < UP_WIDTH; ++w) total[w] = 0.5f;
-    up_tabulate(wavelengths, basis);
+    up_tabulate(UP_CUBE wavelengths, basis);
     up_add_nodes(UP_TABLE place, basis, total);
     if (entry >= 0) up_add_entry(UP_TABLE place[3], entry, wavelengths, total);
 }
@@ -511,7 +511,7 @@ UP_FUNCTION void up_realise(UP_READS UP_OUT float rgb[3])
 
 /* Set the residual, three numbers, and the derivative of the colour, six, of arguments that move by `change`. */
 UP_FUNCTION void up_residual(
-    UP_READS UP_IN float given[UP_SAMPLES], UP_IN UP_FINE goal[3], UP_IN UP_FINE change[3], UP_OUT UP_FINE found[9])
+    UP_READS UP_IN float given[UP_SAMPLE_ROOM], UP_IN UP_FINE goal[3], UP_IN UP_FINE change[3], UP_OUT UP_FINE found[9])
 {
     for (int k = 0; k < 9; ++k) found[k] = k < 3 ? goal[k] : UP_EXACT(0.0f);
     for (int row = 0; row < UP_SAMPLES; ++row) {
@@ -555,7 +555,7 @@ UP_FUNCTION void up_step(UP_IN UP_FINE found[9], UP_OUT UP_FINE change[3])
 
 /* Take a part of a step, less if arguments x, which have moved by `change`, would move farther than UP_REACH (1 + |x|). */
 UP_FUNCTION UP_FINE up_shorten(
-    UP_READS UP_IN float given[UP_SAMPLES], UP_IN UP_FINE change[3], UP_FINE part, UP_OUT UP_FINE move[3])
+    UP_READS UP_IN float given[UP_SAMPLE_ROOM], UP_IN UP_FINE change[3], UP_FINE part, UP_OUT UP_FINE move[3])
 {
     UP_FINE kept = part;
     for (int row = 0; row < UP_SAMPLES; ++row) {
@@ -575,12 +575,12 @@ UP_FUNCTION UP_FINE up_shorten(
 
 /* Set place[4] to place[6], by which arguments move along the curves of the sensor, so that the answer has its colour:
    the minimum of a convex function [uplift.lookup.refine]. place[7] is how far from 0 and 1 they start. */
-UP_FUNCTION void up_pull(UP_READS UP_IN float rgb[3], int entry, UP_OUT float place[UP_PLACE])
+UP_SELDOM void up_pull(UP_READS UP_IN float rgb[3], int entry, UP_OUT float place[UP_PLACE])
 {
     UP_ARRAY(colour, 3);
     UP_ARRAY(at, UP_WIDTH);
     UP_ARRAY(total, UP_WIDTH);
-    UP_ARRAY(given, UP_SAMPLES);
+    UP_ARRAY(given, UP_SAMPLE_ROOM);
     UP_FINES(goal, 3);
     UP_FINES(change, 3);
     UP_FINES(trial, 3);
@@ -684,8 +684,7 @@ UP_FUNCTION void up_answer(
 }
 
 #else
-#define up_find up_locate
-#define up_answer up_blend
+UP_ALIASES
 #endif
 
 ${calls}

@@ -18,22 +18,22 @@
    and up_load(path) before all others, if the numbers are in a file. */
 /* Reflectances of the multipliers of a place, mixed with those of an entry unless it is negative, at wavelengths in nm. */
 UP_FUNCTION void up_mix_all(
-    const float multipliers[UP_COUNT], const float place[UP_PLACE], int entry, const float *wavelengths, int count,
+    UP_READS_CUBE const float multipliers[UP_COUNT], const float place[UP_PLACE], int entry, const float *wavelengths, int count,
     float *reflectances)
 {
     int start;
     for (start = 0; start + UP_WIDTH <= count; start += UP_WIDTH) {
-        up_mix(multipliers, place[3], entry, wavelengths + start, reflectances + start);
+        up_mix(UP_CUBE multipliers, place[3], entry, wavelengths + start, reflectances + start);
 #if UP_INEXACT
-        up_move(place, wavelengths + start, reflectances + start);
+        up_move(UP_CUBE place, wavelengths + start, reflectances + start);
 #endif
     }
     if (start < count) {
         float block[UP_WIDTH] = {0}, found[UP_WIDTH];
         memcpy(block, wavelengths + start, UP_CAST(size_t, count - start) * sizeof *block);
-        up_mix(multipliers, place[3], entry, block, found);
+        up_mix(UP_CUBE multipliers, place[3], entry, block, found);
 #if UP_INEXACT
-        up_move(place, block, found);
+        up_move(UP_CUBE place, block, found);
 #endif
         memcpy(reflectances + start, found, UP_CAST(size_t, count - start) * sizeof *found);
     }
@@ -41,34 +41,34 @@ UP_FUNCTION void up_mix_all(
 
 /* Reflectances of stored multipliers at wavelengths in nm. */
 UP_FUNCTION void up_evaluate(
-    const float multipliers[UP_COUNT], const float *wavelengths, int count, float *reflectances)
+    UP_READS_CUBE const float multipliers[UP_COUNT], const float *wavelengths, int count, float *reflectances)
 {
     const float place[UP_PLACE] = {0, 0, 0, 1};
-    up_mix_all(multipliers, place, -1, wavelengths, count, reflectances);
+    up_mix_all(UP_CUBE multipliers, place, -1, wavelengths, count, reflectances);
 }
 
 #if UP_SPECTRA
 
 /* Reflectances of linear RGB at wavelengths in nm; their colour is exactly this RGB. Clips RGB to [0, 1]. */
-UP_FUNCTION void up_reflectances(const float rgb[3], const float *wavelengths, int count, float *reflectances)
+UP_FUNCTION void up_reflectances(UP_READS_CUBE const float rgb[3], const float *wavelengths, int count, float *reflectances)
 {
     float place[UP_PLACE];
-    int start, entry = up_find(rgb, place);
+    int start, entry = up_find(UP_CUBE rgb, place);
     for (start = 0; start + UP_WIDTH <= count; start += UP_WIDTH)
-        up_answer(place, entry, wavelengths + start, reflectances + start);
+        up_answer(UP_CUBE place, entry, wavelengths + start, reflectances + start);
     if (start < count) {
         float block[UP_WIDTH] = {0}, found[UP_WIDTH];
         memcpy(block, wavelengths + start, UP_CAST(size_t, count - start) * sizeof *block);
-        up_answer(place, entry, block, found);
+        up_answer(UP_CUBE place, entry, block, found);
         memcpy(reflectances + start, found, UP_CAST(size_t, count - start) * sizeof *found);
     }
 }
 
 /* The same of n colours at the same wavelengths. */
 UP_FUNCTION void up_reflectances_n(
-    const float *rgb, int n, const float *wavelengths, int count, float *reflectances)
+    UP_READS_CUBE const float *rgb, int n, const float *wavelengths, int count, float *reflectances)
 {
-    for (int i = 0; i < n; ++i, rgb += 3, reflectances += count) up_reflectances(rgb, wavelengths, count, reflectances);
+    for (int i = 0; i < n; ++i, rgb += 3, reflectances += count) up_reflectances(UP_CUBE rgb, wavelengths, count, reflectances);
 }
 
 #else
@@ -77,8 +77,8 @@ UP_FUNCTION void up_reflectances_n(
 UP_FUNCTION void up_coefficients(const float rgb[3], float coefficients[UP_COUNT])
 {
     float place[UP_PLACE];
-    int entry = up_locate(rgb, place);
-    up_sum_coefficients(place, entry, coefficients);
+    int entry = up_locate(UP_CUBE rgb, place);
+    up_sum_coefficients(UP_CUBE place, entry, coefficients);
 }
 
 /* Multipliers of coefficients, once per texel. Returns 0 for numbers that are the coefficients of no spectrum. */
@@ -131,30 +131,30 @@ UP_FUNCTION int up_multipliers_n(const float *coefficients, int n, float *multip
 }
 
 /* Reflectances of linear RGB at wavelengths in nm; their colour is this RGB, approximately. Clips RGB to [0, 1]. */
-UP_FUNCTION void up_reflectances(const float rgb[3], const float *wavelengths, int count, float *reflectances)
+UP_FUNCTION void up_reflectances(UP_READS_CUBE const float rgb[3], const float *wavelengths, int count, float *reflectances)
 {
     float place[UP_PLACE], coefficients[UP_COUNT], multipliers[UP_COUNT];
-    int entry = up_find(rgb, place);
-    up_sum_nodes(place, coefficients);
+    int entry = up_find(UP_CUBE rgb, place);
+    up_sum_nodes(UP_CUBE place, coefficients);
     up_multipliers_of(coefficients, multipliers);
-    up_mix_all(multipliers, place, entry, wavelengths, count, reflectances);
+    up_mix_all(UP_CUBE multipliers, place, entry, wavelengths, count, reflectances);
 }
 
 /* The same of n colours at the same wavelengths: faster than one by one. */
 UP_FUNCTION void up_reflectances_n(
-    const float *rgb, int n, const float *wavelengths, int count, float *reflectances)
+    UP_READS_CUBE const float *rgb, int n, const float *wavelengths, int count, float *reflectances)
 {
     for (; n > 0; n -= UP_LANES) {
         float places[UP_PLACE * UP_LANES], numbers[UP_COUNT * UP_LANES], multipliers[UP_COUNT * UP_LANES];
         int entries[UP_LANES], colours = n < UP_LANES ? n : UP_LANES;
         for (int lane = 0; lane < colours; ++lane, rgb += 3) {
-            entries[lane] = up_find(rgb, places + UP_PLACE * lane);
-            up_sum_nodes(places + UP_PLACE * lane, numbers + UP_COUNT * lane);
+            entries[lane] = up_find(UP_CUBE rgb, places + UP_PLACE * lane);
+            up_sum_nodes(UP_CUBE places + UP_PLACE * lane, numbers + UP_COUNT * lane);
         }
         up_multipliers_of_lanes(numbers, colours, multipliers);
         for (int lane = 0; lane < colours; ++lane, reflectances += count)
             up_mix_all(
-                multipliers + UP_COUNT * lane, places + UP_PLACE * lane, entries[lane], wavelengths, count, reflectances);
+                UP_CUBE multipliers + UP_COUNT * lane, places + UP_PLACE * lane, entries[lane], wavelengths, count, reflectances);
     }
 }
 

@@ -1,0 +1,106 @@
+"""Compile ``uplift.h``, and run it with cube files: one program per set of options."""
+
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from tests.parts import CC, SANITIZED, SANITIZERS, need
+from uplift.extras.export.runtime import HEADER, write_header
+from uplift.lookup import Cube
+
+OK = 0
+MAIN = r"""
+#include <stdio.h>
+#include <stdlib.h>
+#define UPLIFT_IMPLEMENTATION
+#include "uplift.h"
+
+int main(int count, char **words)
+{
+    int error, size = atoi(words[2]), n = atoi(words[3]), results[4];
+    uplift_cube *cube = uplift_open(words[1], &error);
+    if (!cube || count != 4) return error;
+    size_t width = (size_t)size, colours = (size_t)n;
+    float *at = (float *)malloc(width * sizeof(float));
+    float *rgb = (float *)malloc(3 * colours * sizeof(float));
+    float *found = (float *)malloc(colours * width * sizeof(float));
+    float coefficients[17] = {0}, errors[2];
+    if (fread(at, sizeof(float), width, stdin) != width) return 98;
+    if (fread(rgb, 3 * sizeof(float), colours, stdin) != colours) return 98;
+    uplift_reflectances_n(cube, rgb, n, at, size, found);
+    for (int i = 0; i < n; ++i) {
+        float *own = found + i * size;
+        results[0] = uplift_reflectances(cube, rgb + 3 * i, at, size, own);
+        results[1] = uplift_standard_error(cube, rgb + 3 * i, errors);
+        results[2] = uplift_error_bound(cube, rgb + 3 * i, errors + 1);
+        results[3] = uplift_coefficients(cube, rgb + 3 * i, coefficients);
+        fwrite(results, sizeof results, 1, stdout);
+        fwrite(errors, sizeof errors, 1, stdout);
+        fwrite(coefficients, sizeof coefficients, 1, stdout);
+        fwrite(own, sizeof(float), width, stdout);
+    }
+    free(at);
+    free(rgb);
+    free(found);
+    uplift_close(cube);
+    return 0;
+}
+"""
+FOLDER = tempfile.TemporaryDirectory(prefix="uplift-header-")
+
+
+@dataclass(frozen=True)
+class Answers:
+    """What the header returns for n colours at N wavelengths."""
+
+    results: np.ndarray
+    """(n, 4) of reflectances, standard errors, error bounds, coefficients."""
+    errors: np.ndarray
+    """(n, 2) standard errors and error bounds."""
+    coefficients: np.ndarray
+    """(n, C)"""
+    reflectances: np.ndarray
+    """(n, N)"""
+
+
+def answers(cube: Cube, rgb: np.ndarray, at: np.ndarray, *options: str) -> Answers:
+    """Save a cube and read it by the header, compiled with options instead of the
+    sanitizers.
+    """
+    path = Path(FOLDER.name, "cube.uplift")
+    cube.save(path, force=True)
+    given = np.concatenate([at, rgb.ravel()]).astype(np.float32).tobytes()
+    command = [program(*options), path, str(len(at)), str(len(rgb))]
+    done = subprocess.run(command, input=given, capture_output=True, check=True)
+    fields = [
+        ("results", np.int32, 4),
+        ("errors", np.float32, 2),
+        ("coefficients", np.float32, 17),
+        ("reflectances", np.float32, len(at)),
+    ]
+    rows = np.frombuffer(done.stdout, fields)
+    coefficients = rows["coefficients"][:, : cube.coefficient_count]
+    return Answers(rows["results"], rows["errors"], coefficients, rows["reflectances"])
+
+
+def open_result(path: Path) -> int:
+    """Return the result of opening a file."""
+    done = subprocess.run([program(), path, "0", "0"], stdin=subprocess.DEVNULL)
+    return done.returncode
+
+
+@cache
+def program(*options: str) -> Path:
+    """Compile the program, once for a set of options, by default both sanitizers."""
+    need(CC, SANITIZERS)
+    options = options or SANITIZED
+    folder = Path(tempfile.mkdtemp(dir=FOLDER.name))
+    write_header(folder / HEADER)
+    (folder / "main.c").write_text(MAIN)
+    command = ["cc", "-O1", *options, "main.c", "-o", "main", "-lm"]
+    subprocess.run(command, cwd=folder, check=True)
+    return folder / "main"

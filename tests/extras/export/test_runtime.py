@@ -1,0 +1,211 @@
+"""``uplift.h`` reads every cube as Python does, refuses other files, and is composed of
+the source of exported programs.
+"""
+
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import uplift
+from tests.cube.cube_files import forge
+from tests.extras.export.run_header import OK, answers, open_result
+from tests.extras.export.run_program import STRICT
+from tests.extras.export.test_programs import colours
+from tests.extras.looks.test_looks import LOOKS
+from tests.helpers import quiet_build, raises
+from tests.parts import CC, CLANG, CXX, need
+from uplift.common.errors import OutputError
+from uplift.extras.export.runtime import compose_header, shipped_header, write_header
+from uplift.lookup import Cube
+from uplift.lookup.interpolate import fading_share, is_inexact
+
+AT = np.arange(350.0, 831.0, 24)
+WITHIN = 1e-4
+"""Reflectance, in single precision, as of exported programs."""
+INSIDE = -2e-3
+"""Distance from the solid up to which moved answers are compared: at colours that no
+reflectance has, spectra are steps.
+"""
+DAMAGED = 6
+INVALID = 7
+NOT_IN_SCENE = 10
+NO_ERRORS = 11
+NO_COEFFICIENTS = 12
+
+
+@pytest.fixture(scope="module")
+def rare():
+    """Cubes that few tests build, by what is rare about them."""
+    wide = quiet_build(dim=4, space="ITU-R BT.2020", prior="smooth")
+    macbeth = quiet_build("macbeth", dim=5, coefficients=11, prior="smooth")
+    return {
+        "wide": wide,
+        "wide sigmoid": quiet_build(
+            dim=4, space="ITU-R BT.2020", model="sigmoid", prior="smooth"
+        ),
+        "entries of 17": macbeth,
+        "looks": quiet_build("macbeth", dim=4, prior="smooth", looks=LOOKS),
+        "vision": quiet_build(dim=4, coefficients=5, warp="vision", prior="smooth"),
+        "colour": quiet_build(dim=4, coefficients=7, warp="colour", prior="smooth"),
+        "wide scene": of_scene(wide, 3),
+        "scene": of_scene(macbeth, 9),
+    }
+
+
+def of_scene(cube: Cube, count: int) -> Cube:
+    """Keep the nodes that a few dark colours need."""
+    data = cube.data
+    rgb = np.random.default_rng(1).random((count, 3)) ** 2
+    cells = data.lattice.mask(data.lattice.index(data.lattice.cell(rgb)[0]))
+    points = np.flatnonzero(data.entry_boxes.required_points(cells))
+    return Cube(replace(data, points=data.points.restricted_to(points)))
+
+
+def check(cube: Cube, within: float = WITHIN, options: tuple[str, ...] = ()) -> None:
+    """Compare the answers to a thousand colours with those of Python."""
+    data = cube.data
+    rgb = colours(data)[::10]
+    found = answers(cube, rgb, AT, *options)
+    covered = cube.covers(rgb)
+    assert (found.results[~covered] == NOT_IN_SCENE).sum(axis=1).min(initial=4) >= 3
+    assert not found.reflectances[~covered].any()
+    assert (found.results[covered, 0] == OK).all()
+    rgb = rgb[covered]
+    inside = data.solid.signed_distance(rgb) < INSIDE
+    compared = inside | ~is_inexact(data, rgb)
+    expected = cube.reflectance(rgb[compared], AT)
+    reflectances = found.reflectances[covered][compared]
+    assert_allclose(reflectances, expected, rtol=0, atol=within)
+    # Coefficients that Python moves to exact colours are refused.
+    stays = fading_share(data, rgb) == 0
+    results = found.results[covered, 3]
+    assert (results[stays] == OK).all()
+    assert (results[fading_share(data, rgb) > 1e-6] == NO_COEFFICIENTS).all()
+    coefficients = found.coefficients[covered][stays]
+    expected = cube.coefficients(rgb[stays])
+    assert_allclose(coefficients, expected, rtol=1e-5, atol=2e-4)
+    if data.points.standard_error is None:
+        assert (found.results[covered, 1:3] == NO_ERRORS).all()
+        return
+    expected = np.stack([cube.standard_error(rgb), cube.error_bound(rgb)], axis=1)
+    assert_allclose(found.errors[covered], expected, rtol=1e-5, atol=1e-5)
+
+
+def test_the_file_in_the_package_is_composed_of_its_parts():
+    """`python -m tools.ship_header` writes it."""
+    assert shipped_header() == compose_header()
+    assert max(map(len, shipped_header().splitlines())) < 180
+
+
+def test_it_is_written_and_not_over_another_file(tmp_path):
+    path = tmp_path / "uplift.h"
+    write_header(path)
+    assert path.read_text() == shipped_header()
+    with raises(OutputError, "file-exists"):
+        write_header(path)
+
+
+def test_stored_cubes(small_cube, small_sigmoid_cube, sigmoid_cube):
+    for cube in (small_cube, small_sigmoid_cube, sigmoid_cube, uplift.load("acescg")):
+        check(cube)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "wide",
+        "wide sigmoid",
+        "entries of 17",
+        "looks",
+        "vision",
+        "colour",
+        "wide scene",
+        "scene",
+    ],
+)
+def test_rare_cubes(rare, kind):
+    check(rare[kind], within=2 * WITHIN)
+
+
+def test_files_that_are_not_mapped_and_few_wavelengths_at_a_time(small_cube):
+    check(small_cube, options=("-DUPLIFT_NO_MMAP", "-DUPLIFT_WIDTH=4"))
+
+
+@pytest.mark.parametrize(
+    "compiler",
+    [
+        ("cc", "-std=c99"),
+        ("c++", "-std=c++11", "-x", "c++", "-Wold-style-cast"),
+        ("clang", "-std=c99"),
+    ],
+    ids=lambda command: command[0],
+)
+def test_compilers_are_silent(tmp_path, compiler):
+    need({"cc": CC, "c++": CXX, "clang": CLANG}[compiler[0]])
+    write_header(tmp_path / "uplift.h")
+    main = '#define UPLIFT_IMPLEMENTATION\n#include "uplift.h"\n#include "uplift.h"\n'
+    (tmp_path / "main.c").write_text(main)
+    command = [*compiler, *STRICT, "-c", "main.c", "-o", "main.o"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+
+
+def digit(name):
+    """Change a digit of the metadata."""
+
+    def change(tensors, metadata):
+        metadata[name] = 9
+
+    return change
+
+
+def feature(tensors, metadata):
+    metadata["features"].append("later")
+
+
+def not_finite(tensors, metadata):
+    tensors["coefficients"] = tensors["coefficients"] * np.nan
+
+
+def descending(tensors, metadata):
+    tensors["nodes"] = tensors["nodes"][::-1]
+
+
+def no_spectrum(tensors, metadata):
+    tensors["coefficients"] = tensors["coefficients"] + 2
+
+
+@pytest.mark.parametrize(
+    ("change", "result"),
+    [
+        (digit("version"), 4),
+        (feature, 5),
+        (not_finite, INVALID),
+        (descending, INVALID),
+        (no_spectrum, INVALID),
+    ],
+)
+def test_forged_files_are_refused(small_cube, tmp_path, change, result):
+    path = forge(small_cube.data, tmp_path / "a.uplift", change)
+    assert open_result(path) == result
+
+
+def test_damaged_files_are_refused(repository, tmp_path):
+    content = (repository / "cubes" / "moments-8.uplift").read_bytes()
+    path = tmp_path / "a.uplift"
+    flipped = content[:-9] + bytes([content[-9] ^ 1]) + content[-8:]
+    for damaged, result in (
+        (content, OK),
+        (flipped, DAMAGED),
+        (content[:-1], 3),
+        (content[:5], 3),
+        (b"", 3),
+        (b"{}" * 100, 3),
+    ):
+        path.write_bytes(damaged)
+        assert open_result(path) == result
+    assert open_result(Path(tmp_path, "missing")) == 1
+    assert open_result(tmp_path) == 1

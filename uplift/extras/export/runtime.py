@@ -1,0 +1,226 @@
+"""``uplift.h``: a header in C that reads cube files when a program runs.
+
+It is composed of the source of exported programs (`program`), included once for each
+number of coefficients, and of the reader of files in ``source/runtime/``. The composed
+file is part of the package: programs copy it.
+"""
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from importlib.resources import files
+from itertools import product
+from pathlib import Path
+from string import Template
+from typing import Any
+
+from uplift.common.arrays import StrPath
+from uplift.common.files import write_text
+from uplift.cube.file import FEATURES, VERSION
+from uplift.extras.export.program import LANGUAGES, literal, read_source
+from uplift.extras.export.program_table import MOVES, TEXEL
+from uplift.models.moments import MAX_COUNT, WARPS
+
+HEADER = "uplift.h"
+SAMPLES = 512
+"""Most wavelengths of a sensor for which colours are moved."""
+COUNTS = (5, 9, MAX_COUNT)
+"""Numbers of moments for which the lookup is compiled."""
+WARPED_COUNTS = (5, MAX_COUNT)
+"""The same for phases that are not linear, where the basis takes most of the time."""
+SPARSE_COUNTS = (3, 9, MAX_COUNT)
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """A lookup that is compiled, for spectra of up to ``count`` coefficients; fewer are
+    filled up with zeros.
+    """
+
+    count: int
+    is_sigmoid: bool
+    is_warped: bool
+    is_inexact: bool
+    """Whether answers may be moved to their colours."""
+    is_sparse: bool = False
+    """Whether nodes may be absent, so that their rows must be found."""
+
+    @property
+    def name(self) -> str:
+        words = ["uplift", "sigmoid" if self.is_sigmoid else f"moments_{self.count}"]
+        words += ["warped"] * self.is_warped
+        words += ["moved"] * self.is_inexact
+        words += ["sparse"] * self.is_sparse
+        return "_".join(words)
+
+    @property
+    def constants(self) -> dict[str, Any]:
+        """The constants of programs on which its code depends."""
+        return {
+            "KERNEL": self.name,
+            "COUNT": self.count,
+            "ENTRY_COUNT": self.count if self.is_sigmoid else MAX_COUNT,
+            "STRIDE": self.count // TEXEL * TEXEL + TEXEL,
+            "SIGMOIDS": int(self.is_sigmoid),
+            "WARPED": int(self.is_warped),
+            "INEXACT": int(self.is_inexact),
+            "PLACE": 9 if self.is_inexact else 4,
+            "ROW_OF(index)": "uplift_row(cube, index)" if self.is_sparse else "(index)",
+        }
+
+
+PLAIN = [(count, False) for count in COUNTS]
+WARPED = [(count, True) for count in WARPED_COUNTS]
+MOMENTS = [
+    Kernel(count, is_sigmoid=False, is_warped=is_warped, is_inexact=is_inexact)
+    for (count, is_warped), is_inexact in product(PLAIN + WARPED, (False, True))
+]
+SIGMOIDS = [
+    Kernel(3, is_sigmoid=True, is_warped=False, is_inexact=is_inexact)
+    for is_inexact in (False, True)
+]
+SPARSE = [
+    replace(kernel, is_sparse=True)
+    for kernel in SIGMOIDS + MOMENTS
+    if kernel.is_inexact and kernel.count in SPARSE_COUNTS
+]
+"""Those of cubes of a scene need not be as fast, and also answer exact cells."""
+KERNELS = SIGMOIDS + MOMENTS + SPARSE
+READER = ("file.c", "content.c", "table.c", "build.c")
+"""Parts of the reader in reading order."""
+ROUNDS = 64
+"""Steps of SHA-256 for a block."""
+PER_LINE = 8
+NUMBERS_OF_WARP = 6
+SKIPPED = "#ifdef UP_VEC4"
+"""Begins a part of the source for shaders."""
+
+
+def write_header(path: StrPath, *, force: bool = False) -> None:
+    """Write ``uplift.h``, the reader of cube files for programs in C and C++."""
+    write_text(shipped_header(), Path(path), force=force)
+
+
+def shipped_header() -> str:
+    """Return the header that is in the package."""
+    file = files("uplift.extras.export") / HEADER
+    return file.read_text(encoding="ascii")
+
+
+def compose_header() -> str:
+    """Compose the header of its parts."""
+    reader = "".join(read_source(f"runtime/{name}") for name in READER)
+    text = (
+        read_source("runtime/head.h")
+        + Template(reader).substitute(_reader_words())
+        + "\n"
+        + read_source("loops.c")
+        + read_source("host.c")
+        + _kernel_macros()
+        + "".join(_inclusions())
+        + Template(read_source("runtime/calls.c")).substitute(_call_words())
+        + "\n#ifdef UP_KERNEL\n\n"
+        + _kernel()
+        + "#endif\n"
+    )
+    text = re.sub(r"\bUP_", "UPLIFT_", text)
+    return Template(text).substitute(_head_words())
+
+
+def _head_words() -> dict[str, Any]:
+    return {
+        "format": VERSION,
+        "samples": SAMPLES,
+        "count": MAX_COUNT,
+        "width": LANGUAGES["c"].width,
+    }
+
+
+def _reader_words() -> dict[str, Any]:
+    """Return the words of the reader that follow from the format and the models."""
+    primes = _primes(ROUNDS)
+    warps = []
+    for name, terms in WARPS.items():
+        numbers = [number for term in terms for number in term]
+        numbers += [0.0] * (NUMBERS_OF_WARP - len(numbers))
+        warps.append(f'{{"{name}", {{{", ".join(map(repr, numbers))}}}}}')
+    return {
+        "constants": _words_of_hash(_root_fraction(prime, 3) for prime in primes),
+        "start": _words_of_hash(_root_fraction(prime, 2) for prime in primes[:8]),
+        "features": ", ".join(f'"{feature}"' for feature in FEATURES),
+        "warps": ", ".join(warps),
+    }
+
+
+def _call_words() -> dict[str, Any]:
+    kernels = []
+    for kernel in KERNELS:
+        kinds = (
+            kernel.is_sigmoid,
+            kernel.is_warped,
+            kernel.is_inexact,
+            kernel.is_sparse,
+        )
+        numbers = [kernel.count, *map(int, kinds)]
+        text = ", ".join(map(str, numbers))
+        kernels.append(f"\n        {{{text}, &{kernel.name}_functions}}")
+    return {"kernels": ",".join(kernels), "samples": SAMPLES}
+
+
+def _kernel_macros() -> str:
+    constants = "\n".join(
+        f"#define UP_{name} {literal(value)}" for name, value in MOVES.items()
+    )
+    return Template(read_source("runtime/kernel_macros.h")).substitute(
+        constants=constants
+    )
+
+
+def _inclusions() -> Iterator[str]:
+    """Yield the lines by which the header includes itself for each kernel."""
+    for kernel in KERNELS:
+        lines = [f"#define UP_{key} {value}" for key, value in kernel.constants.items()]
+        yield "\n".join(["", *lines, "#include UPLIFT_FILE", ""])
+
+
+def _kernel() -> str:
+    """Return the lookup of exported programs, whose functions have the name of the
+    kernel.
+    """
+    lookup = read_source("cube.c").partition("${macros}\n")[2]
+    before, _, shaders = lookup.partition(SKIPPED)
+    after = shaders.partition("#endif\n")[2]
+    calls = read_source("cube_calls.c").partition(" */\n")[2]
+    calls = calls.rpartition("#if defined(__clang__)")[0]
+    text = (before + after).replace("${calls}", calls)
+    text = text.replace("up_number", "uplift_number")
+    text = re.sub(r"\bup_(\w+)", r"UP_NAME(\1)", text)
+    return text + read_source("runtime/kernel_end.c")
+
+
+def _words_of_hash(words: Iterable[int]) -> str:
+    """Format the constants of SHA-256, a few on a line."""
+    texts = [f"0x{word:08x}" for word in words]
+    rows = [texts[first : first + PER_LINE] for first in range(0, len(texts), PER_LINE)]
+    return ",\n".join("    " + ", ".join(row) for row in rows)
+
+
+def _primes(count: int) -> list[int]:
+    primes: list[int] = []
+    number = 2
+    while len(primes) < count:
+        if all(number % prime for prime in primes):
+            primes.append(number)
+        number += 1
+    return primes
+
+
+def _root_fraction(number: int, degree: int) -> int:
+    """Return the first 32 bits of the fraction of a root (FIPS 180-4, 4.2.2, 5.3.3)."""
+    scaled = number << 32 * degree
+    root = round(number ** (1 / degree) * 2**32)
+    while root**degree > scaled:
+        root -= 1
+    while (root + 1) ** degree <= scaled:
+        root += 1
+    return root % 2**32

@@ -1,0 +1,329 @@
+
+/* Functions for a number of coefficients, see below. */
+typedef struct {
+    void (*reflectances)(const uplift_cube *, const float *, const float *, int, float *);
+    int (*place)(const uplift_cube *, const float *, float *, float *, int *);
+} uplift_kernel;
+
+struct uplift_cube {
+    uplift_content content;
+    const uplift_kernel *kernel;
+    /* The table of exported programs, and the constants that locate its sections. */
+    float *numbers;
+    int entries, nodes, bins, lists, boxes, pull, scales, luminance, facets, facet_count, samples, dim, stride, tag;
+    int entry_count, is_warped, is_inexact; /* numbers of an entry in the table */
+    float first, step, margin, start, end, low, scale, warp[6];
+    /* A cube of a scene: numbers of nodes that have a row, ascending, their rows, and where the numbers of each line of
+       nodes along blue begin. Rows from `present` on belong to nodes that are absent. */
+    int *points, *rows, *lines, point_count, present, absent_row;
+    const uplift_array *coefficients, *distance, *standard_error, *atlas_coefficients, *atlas_error;
+};
+
+/* Row of a node in the table and in the arrays of the file; that of an absent node has no spectrum. */
+static int uplift_find_row(const uplift_cube *cube, int index)
+{
+    int low = cube->lines[index / cube->dim], high = cube->lines[index / cube->dim + 1];
+    while (low < high) {
+        int middle = low + (high - low) / 2;
+        if (cube->points[middle] < index) low = middle + 1;
+        else high = middle;
+    }
+    return low < cube->point_count && cube->points[low] == index ? cube->rows[low] : cube->absent_row;
+}
+
+static inline int uplift_row(const uplift_cube *cube, int index)
+{
+    return cube->points ? uplift_find_row(cube, index) : index;
+}
+
+/* Multipliers p of moments c, or 0: the bounded maximum-entropy spectrum (Peters et al. 2019), by Schur's algorithm (1917).
+   docs/cube-file.md, Spectra, has the steps. */
+static int uplift_try_multipliers(const double *c, int count, double *p)
+{
+    const double pi = 3.14159265358979323846;
+    double real[UPLIFT_MOST_COUNT], imaginary[UPLIFT_MOST_COUNT];
+    double u[UPLIFT_MOST_COUNT], v[UPLIFT_MOST_COUNT], a[UPLIFT_MOST_COUNT], b[UPLIFT_MOST_COUNT];
+    double tangent = tan(pi / 2 * c[0]), scale = 2, sine = sin(pi * c[0]), cosine = cos(pi * c[0]);
+    int is_valid = c[0] >= 0 && c[0] <= 1;
+    /* exp(iX), X = pi sum c_l z^l */
+    for (int order = 0; order < count; ++order) {
+        double sum_real = order == 0, sum_imaginary = 0;
+        for (int k = 0; k < order; ++k) {
+            double slope = pi * (order - k) * c[order - k];
+            sum_real -= slope * imaginary[k];
+            sum_imaginary += slope * real[k];
+        }
+        real[order] = sum_real / (order ? order : 1);
+        imaginary[order] = sum_imaginary / (order ? order : 1);
+    }
+    for (int k = 0; k < count; ++k) {
+        u[k] = k + 1 < count ? imaginary[k + 1] : 0;
+        v[k] = sine * real[k] + cosine * imaginary[k];
+        a[k] = b[k] = k == 0;
+    }
+    for (int order = 0; order < count - 1; ++order) {
+        double g = u[0] / v[0];
+        for (int k = 0; k < count - 2 - order; ++k) {
+            double held = u[k + 1] - g * v[k + 1];
+            v[k] -= g * u[k];
+            u[k] = held;
+        }
+        for (int k = 0; k <= (order + 1) / 2; ++k) {
+            int mirror = order + 1 - k;
+            double first = a[k], second = b[k];
+            a[k] += g * a[mirror];
+            b[k] -= g * b[mirror];
+            if (mirror != k) {
+                a[mirror] += g * first;
+                b[mirror] -= g * second;
+            }
+        }
+        scale *= 1 - g * g;
+        is_valid = is_valid && g * g < 1;
+    }
+    for (int lag = 0; lag < count; ++lag) {
+        double first = 0, second = 0;
+        for (int k = 0; k + lag < count; ++k) {
+            first += a[k] * a[k + lag];
+            second += b[k] * b[k + lag];
+        }
+        p[lag] = (tangent * first - second / tangent) / scale;
+        is_valid = is_valid && fabs(p[lag]) < 1e300; /* not NaN */
+    }
+    return is_valid;
+}
+
+/* Multipliers of the coefficients in a row of an array, with as little grey as necessary; 0 if no spectrum has them. */
+static int uplift_multipliers(const uplift_cube *cube, const uplift_array *array, size_t row, int count, double *p)
+{
+    static const double greys[] = {0, 1e-10, 1e-8, 1e-6, 1e-4};
+    double given[UPLIFT_MOST_COUNT], mixed[UPLIFT_MOST_COUNT];
+    for (int k = 0; k < count; ++k) given[k] = p[k] = uplift_number_at(array, row * UPLIFT_CAST(size_t, count) + UPLIFT_CAST(size_t, k));
+    if (cube->content.is_sigmoid) return 1;
+    for (int turn = 0; turn < 5; ++turn) {
+        for (int k = 0; k < count; ++k) mixed[k] = (1 - greys[turn]) * given[k];
+        mixed[0] += 0.5 * greys[turn];
+        if (uplift_try_multipliers(mixed, count, p)) return 1;
+    }
+    return 0;
+}
+
+/* Write multipliers in single precision; 0 for numbers with which spectra cannot be evaluated. */
+static int uplift_store(const uplift_cube *cube, const double *p, int count, float *row)
+{
+    double most = cube->content.is_sigmoid ? 1e18 : 1e30;
+    for (int k = 0; k < count; ++k) {
+        if (!(fabs(p[k]) <= most)) return 0;
+        row[k] = UPLIFT_CAST(float, p[k]);
+    }
+    return 1;
+}
+
+/* Index of the last node up to x, at most that before the last. */
+static int uplift_cell(const uplift_array *axis, double x)
+{
+    int low = 0, high = UPLIFT_CAST(int, axis->length) - 1;
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (uplift_number_at(axis, UPLIFT_CAST(size_t, middle)) <= x) low = middle;
+        else high = middle;
+    }
+    return low;
+}
+
+/* Set the lower and the upper face of the box of an entry along an axis. It has no face at the edge of the lattice where
+   the entry is there: rounding would decide. */
+static void uplift_set_faces(const uplift_array *axis, double centre, double reach, double faces[2])
+{
+    int last = UPLIFT_CAST(int, axis->length) - 1, cell = uplift_cell(axis, centre);
+    double first = uplift_number_at(axis, UPLIFT_CAST(size_t, cell));
+    double next = uplift_number_at(axis, UPLIFT_CAST(size_t, cell) + 1);
+    double position = cell + (centre - first) / (next - first);
+    for (int side = 0; side < 2; ++side) {
+        double at = position + (side ? reach : -reach);
+        int low = at < 0 ? 0 : UPLIFT_CAST(int, at);
+        low = low < last ? low : last - 1;
+        at = at < 0 ? 0 : at > last ? last : at;
+        first = uplift_number_at(axis, UPLIFT_CAST(size_t, low));
+        next = uplift_number_at(axis, UPLIFT_CAST(size_t, low) + 1);
+        faces[side] = first + (at - low) * (next - first);
+    }
+    if (centre < 1e-6) faces[0] = 2 * centre - faces[1];
+    else if (centre > 1 - 1e-6) faces[1] = 2 * centre - faces[0];
+}
+
+/* A cell that the box of an entry touches. */
+typedef struct {
+    int cell, entry;
+} uplift_touch;
+
+static int uplift_order_touches(const void *one, const void *other)
+{
+    const uplift_touch *a = UPLIFT_CAST(const uplift_touch *, one), *b = UPLIFT_CAST(const uplift_touch *, other);
+    return a->cell != b->cell ? (a->cell > b->cell) - (a->cell < b->cell) : (a->entry > b->entry) - (a->entry < b->entry);
+}
+
+/* List the cells that boxes touch, by cell and entry, and write the boxes: centres, what rounding left of them, and
+   reciprocals of the distances to the lower and upper faces. Count only, without `touches`. */
+static size_t uplift_list_touches(const uplift_cube *cube, uplift_touch *touches, float *boxes)
+{
+    const uplift_content *content = &cube->content;
+    const uplift_array *axis = uplift_find_array(content, "nodes", UPLIFT_F64, UPLIFT_F64, content->dim, 0, 0, 1);
+    const unsigned long long length = UPLIFT_CAST(unsigned long long, content->entries);
+    const uplift_array *rgb = uplift_find_array(content, "atlas.rgb", UPLIFT_F64, UPLIFT_F64, length, 3, 0, 1);
+    const uplift_array *reaches = uplift_find_array(content, "atlas.reach", UPLIFT_F64, UPLIFT_F64, length, 0, 0, 1);
+    size_t count = 0;
+    for (int entry = 0; entry < content->entries; ++entry) {
+        double reach = uplift_number_at(reaches, UPLIFT_CAST(size_t, entry));
+        int low[3], high[3];
+        for (int k = 0; k < 3; ++k) {
+            double centre = uplift_number_at(rgb, UPLIFT_CAST(size_t, 3 * entry + k)), faces[2];
+            int cell = uplift_cell(axis, centre);
+            float rounded = UPLIFT_CAST(float, centre), *box = boxes + 12 * entry + k;
+            uplift_set_faces(axis, centre, reach, faces);
+            low[k] = uplift_cell(axis, faces[0]);
+            high[k] = uplift_cell(axis, faces[1]);
+            low[k] = low[k] > cell - 1 ? low[k] : cell - 1;
+            high[k] = high[k] < cell + 1 ? high[k] : cell + 1;
+            box[0] = rounded;
+            box[3] = UPLIFT_CAST(float, centre - UPLIFT_CAST(double, rounded));
+            box[6] = UPLIFT_CAST(float, centre > faces[0] ? 1 / (centre - faces[0]) : 0);
+            box[9] = UPLIFT_CAST(float, faces[1] > centre ? 1 / (faces[1] - centre) : 0);
+        }
+        if (!(reach > 0)) continue;
+        for (int red = low[0]; red <= high[0]; ++red)
+            for (int green = low[1]; green <= high[1]; ++green)
+                for (int blue = low[2]; blue <= high[2]; ++blue, ++count)
+                    if (touches) {
+                        touches[count].cell = (red * cube->dim + green) * cube->dim + blue;
+                        touches[count].entry = entry;
+                    }
+    }
+    if (touches) qsort(touches, count, sizeof *touches, uplift_order_touches);
+    return count;
+}
+
+/* The sensor: curves without the light (3, N), weights from reflectance to RGB (3, N), and weights of the luminance. */
+typedef struct {
+    double shapes[3][UPLIFT_SAMPLE_ROOM], weights[3][UPLIFT_SAMPLE_ROOM], luminance[3];
+    double first, step;
+    int samples;
+} uplift_sensor;
+
+/* The inverse of a matrix; 0 if it has none. */
+static int uplift_invert(double m[3][3], double inverse[3][3])
+{
+    double determinant = 0;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) {
+            int a = (column + 1) % 3, b = (column + 2) % 3, c = (row + 1) % 3, d = (row + 2) % 3;
+            inverse[row][column] = m[a][c] * m[b][d] - m[a][d] * m[b][c];
+        }
+    for (int k = 0; k < 3; ++k) determinant += m[0][k] * inverse[k][0];
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) {
+            inverse[row][column] /= determinant;
+            if (!(fabs(inverse[row][column]) < 1e30)) return 0;
+        }
+    return 1;
+}
+
+static int uplift_read_sensor(const uplift_content *content, uplift_sensor *sensor)
+{
+    const double most = 1e30;
+    const uplift_array *wavelengths = NULL, *cmfs, *power, *to_rgb, *sensitivities = NULL;
+    double matrix[3][3], inverse[3][3], sums[3] = {0, 0, 0}, scale = 0;
+    unsigned long long length = 0;
+    int samples;
+    for (int k = 0; k < content->array_count; ++k)
+        if (uplift_is(content->arrays[k].name, "sensor.wavelengths")) length = content->arrays[k].length;
+    if (length < 2) return UPLIFT_INVALID;
+    if (length > UPLIFT_SAMPLE_ROOM) return UPLIFT_UNSUPPORTED;
+    samples = UPLIFT_CAST(int, length);
+    wavelengths = uplift_find_array(content, "sensor.wavelengths", UPLIFT_F64, UPLIFT_F64, length, 0, 0, most);
+    cmfs = uplift_find_array(content, "sensor.cmfs", UPLIFT_F64, UPLIFT_F64, length, 3, -most, most);
+    power = uplift_find_array(content, "sensor.power", UPLIFT_F64, UPLIFT_F64, length, 0, 0, most);
+    to_rgb = uplift_find_array(content, "sensor.xyz_to_rgb", UPLIFT_F64, UPLIFT_F64, 3, 3, -most, most);
+    if (uplift_has(content, UPLIFT_CAMERA)) {
+        sensitivities = uplift_find_array(content, "sensor.sensitivities", UPLIFT_F64, UPLIFT_F64, length, 3, 0, most);
+        if (!sensitivities) return UPLIFT_INVALID;
+    }
+    if (!wavelengths || !cmfs || !power || !to_rgb) return UPLIFT_INVALID;
+    sensor->samples = samples;
+    sensor->first = uplift_number_at(wavelengths, 0);
+    sensor->step = uplift_number_at(wavelengths, 1) - sensor->first;
+    if (!(sensor->step > 0)) return UPLIFT_INVALID;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) matrix[row][column] = uplift_number_at(to_rgb, UPLIFT_CAST(size_t, 3 * row + column));
+    if (!uplift_invert(matrix, inverse)) return UPLIFT_INVALID;
+    for (int k = 0; k < 3; ++k) sensor->luminance[k] = inverse[1][k];
+    for (int k = 0; k < samples; ++k) {
+        size_t at = UPLIFT_CAST(size_t, k);
+        double even = sensor->first + k * sensor->step;
+        if (!(fabs(uplift_number_at(wavelengths, at) - even) < 1e-6 * sensor->step)) return UPLIFT_UNSUPPORTED;
+        scale += uplift_number_at(power, at) * uplift_number_at(cmfs, 3 * at + 1);
+        for (int channel = 0; channel < 3; ++channel) {
+            double shape = 0;
+            if (sensitivities) shape = uplift_number_at(sensitivities, 3 * at + UPLIFT_CAST(size_t, channel));
+            else
+                for (int axis = 0; axis < 3; ++axis)
+                    shape += uplift_number_at(cmfs, 3 * at + UPLIFT_CAST(size_t, axis)) * matrix[channel][axis];
+            sensor->shapes[channel][k] = shape;
+            sums[channel] += shape * uplift_number_at(power, at);
+        }
+    }
+    for (int channel = 0; channel < 3; ++channel) {
+        double white = 0;
+        for (int k = 0; k < samples; ++k) {
+            double shape = sensor->shapes[channel][k];
+            if (sensitivities) shape = sensor->shapes[channel][k] /= sums[channel];
+            sensor->weights[channel][k] = shape * uplift_number_at(power, UPLIFT_CAST(size_t, k)) / (sensitivities ? 1 : scale);
+            white += sensor->weights[channel][k];
+        }
+        if (!(fabs(white - 1) <= 1e-6)) return UPLIFT_INVALID;
+    }
+    return UPLIFT_OK;
+}
+
+/* The inverse of L, where L L^T = W K^T; 0 if there is none. */
+static int uplift_scale_colours(const uplift_sensor *sensor, double inverse[3][3])
+{
+    double lower[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column <= row; ++column) {
+            double sum = 0;
+            for (int k = 0; k < sensor->samples; ++k) sum += sensor->weights[row][k] * sensor->shapes[column][k];
+            for (int k = 0; k < column; ++k) sum -= lower[row][k] * lower[column][k];
+            lower[row][column] = row == column ? sqrt(sum) : sum / lower[column][column];
+        }
+    return uplift_invert(lower, inverse);
+}
+
+/* Write the facets of the solid of all colours of reflectances, normals and half the width along them: each pair of
+   wavelengths spans two (MacAdam 1935). Return how many pairs do; count only, without `facets`. */
+static int uplift_list_facets(const uplift_sensor *sensor, float *facets)
+{
+    int count = 0;
+    for (int i = 0; i < sensor->samples; ++i)
+        for (int j = i + 1; j < sensor->samples; ++j) {
+            double cross[3], lengths[3] = {0, 0, 0}, width = 0;
+            for (int k = 0; k < 3; ++k) {
+                int a = (k + 1) % 3, b = (k + 2) % 3;
+                cross[k] = sensor->weights[a][i] * sensor->weights[b][j] - sensor->weights[b][i] * sensor->weights[a][j];
+                lengths[0] += cross[k] * cross[k];
+                lengths[1] += sensor->weights[k][i] * sensor->weights[k][i];
+                lengths[2] += sensor->weights[k][j] * sensor->weights[k][j];
+            }
+            if (!(sqrt(lengths[0]) > 1e-12 * sqrt(lengths[1]) * sqrt(lengths[2]))) continue;
+            if (facets) {
+                for (int k = 0; k < 3; ++k) cross[k] /= sqrt(lengths[0]);
+                for (int k = 0; k < sensor->samples; ++k)
+                    width += fabs(
+                        cross[0] * sensor->weights[0][k] + cross[1] * sensor->weights[1][k] + cross[2] * sensor->weights[2][k]);
+                for (int k = 0; k < 3; ++k) facets[4 * count + k] = UPLIFT_CAST(float, cross[k]);
+                facets[4 * count + 3] = UPLIFT_CAST(float, width / 2);
+            }
+            count += 1;
+        }
+    return count;
+}
