@@ -209,3 +209,49 @@ def test_damaged_files_are_refused(repository, tmp_path):
         assert open_result(path) == result
     assert open_result(Path(tmp_path, "missing")) == 1
     assert open_result(tmp_path) == 1
+
+
+THREADS = r"""
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#define UPLIFT_IMPLEMENTATION
+#include "uplift.h"
+enum { COLOURS = 4000, SIZE = 8, COUNT = 4 };
+static uplift_cube *cube;
+static float rgb[3 * COLOURS], at[SIZE], found[COUNT + 1][COLOURS * SIZE];
+
+static void *answer(void *place)
+{
+    for (int i = 0; i < COLOURS; ++i)
+        uplift_reflectances(cube, rgb + 3 * i, at, SIZE, (float *)place + i * SIZE);
+    return NULL;
+}
+
+int main(int count, char **words)
+{
+    int error;
+    pthread_t threads[COUNT];
+    if (count < 2 || !(cube = uplift_open(words[1], &error))) return 2;
+    for (int i = 0; i < 3 * COLOURS; ++i) rgb[i] = (float)(rand() % 1000) / 999.0f;
+    for (int k = 0; k < SIZE; ++k) at[k] = 400.0f + 40.0f * (float)k;
+    answer(found[COUNT]);
+    for (int i = 0; i < COUNT; ++i)
+        if (pthread_create(threads + i, NULL, answer, found[i])) return 3;
+    for (int i = 0; i < COUNT; ++i) pthread_join(threads[i], NULL);
+    for (int i = 0; i < COUNT; ++i)
+        if (memcmp(found[i], found[COUNT], sizeof found[i])) return 4;
+    uplift_close(cube);
+    return 0;
+}
+"""
+
+
+def test_threads_share_an_open_cube(repository, tmp_path):
+    need(CC)
+    write_header(tmp_path / "uplift.h")
+    (tmp_path / "threads.c").write_text(THREADS)
+    command = ["cc", "-O1", "-pthread", "threads.c", "-o", "threads", "-lm"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    cube = repository / "cubes" / "moments-8-macbeth.uplift"
+    subprocess.run([tmp_path / "threads", cube], check=True, timeout=60)
