@@ -5,13 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
 from tests.conftest import ATLASES
 from tests.helpers import raises
 from uplift.atlas import resample
-from uplift.colorimetry import in_unit_cube, observer
+from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
 from uplift.common.errors import OptionError, TextureError
 from uplift.extras import texture
 from uplift.extras.photographs import Noise, photograph, prepare
@@ -152,6 +152,32 @@ def test_coefficients_have_the_exact_colours(scene, plain_cube, day, tmp_path, k
     off = np.abs(spectra @ lit.matrix.T - others).mean()
     plain = plain_cube.reflectance(rgb) @ lit.matrix.T
     assert off < np.abs(plain - others).mean()
+
+
+def test_raw_values_of_a_camera_are_in_no_space(scene, plain_cube, day, tmp_path):
+    """Of a camera under the light of the cube, in files that state spaces or none."""
+    camera = "Nikon 5100 (NPL)"
+    raw = photograph(plain_cube.data.sensor, "D65", camera).matrix
+    values = (scene @ raw.T).astype(np.float32)
+    wide = (0.708, 0.292, 0.17, 0.797, 0.131, 0.046, 0.3127, 0.329)
+    write_exr(tmp_path / "plain.exr", planes(values))
+    write_exr(tmp_path / "wide.exr", planes(values), chromaticities=wide)
+    picture = texture.FurtherPicture("D65", camera=camera, exposure=1.0)
+    further = texture.FurtherPictures((picture,), noise=(0.001, 0.0))
+    answers = []
+    for name in ("plain", "wide"):
+        made = converter(plain_cube, further, tmp_path / f"{name}.exr")
+        texture.convert(made, day, tmp_path / f"{name}-two.exr")
+        answers.append(spectra_of(tmp_path / f"{name}-two.exr"))
+    assert_array_equal(*answers)
+    rgb = np.clip(scene @ plain_cube.data.sensor.matrix.T, 0, 1)
+    plain = plain_cube.reflectance(rgb)
+    light = observer.light("HP1")
+    errors = [
+        delta_e_spectra(light, spectra.reshape(-1, 81), scene.reshape(-1, 81)).mean()
+        for spectra in (answers[0], plain)
+    ]
+    assert errors[0] < errors[1]
 
 
 def test_masks_mix_cubes(scene, plain_cube, small_cube, day, tmp_path):

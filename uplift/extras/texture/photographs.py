@@ -16,7 +16,7 @@ from uplift.colorimetry.observer import light as find_light
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import OptionError, TextureError
 from uplift.common.text import pluralise
-from uplift.extras.colour.spaces import ImageSpace, find_space
+from uplift.extras.colour.spaces import find_space
 from uplift.extras.photographs import Noise, Photographs
 from uplift.extras.photographs.chart import (
     COLUMNS,
@@ -33,7 +33,7 @@ from uplift.extras.photographs.fit import (
     estimate_noise,
 )
 from uplift.extras.texture.channels import ColourChannels, coloured_parts
-from uplift.extras.texture.colours import Decoder, make_decoder
+from uplift.extras.texture.colours import Decoder, linear_reader, make_decoder
 from uplift.extras.texture.image import Image, Part, open_image
 from uplift.extras.texture.uplifter import Sampler
 
@@ -165,8 +165,7 @@ def open_further(
     with contextlib.ExitStack() as stack:
         opened = []
         for path, picture in zip(paths, further.pictures, strict=True):
-            space = None if picture.space is None else find_space(picture.space)
-            one = _open(path, size, sensor, encoding, space)
+            one = _open(path, size, sensor, encoding, picture)
             opened.append(stack.enter_context(one))
         yield opened
 
@@ -177,7 +176,7 @@ def _open(
     size: tuple[int, int],
     sensor: Sensor,
     encoding: str,
-    space: ImageSpace | None,
+    picture: FurtherPicture,
 ) -> Iterator[Picture]:
     """Open a further photograph of this width and height."""
     with open_image(path) as image:
@@ -190,7 +189,12 @@ def _open(
                 code="photographs-of-different-sizes",
                 hint="scale it to the size of the first",
             )
+        space = None if picture.space is None else find_space(picture.space)
         decode = make_decoder(sensor, part, encoding, "clip", space)
+        if picture.camera is not None:
+            # Raw values are in no space, whatever the file states.
+            raw = linear_reader(sensor, part, encoding, None)
+            decode = replace(decode, function=raw, matrix=None)
         yield Picture(image, part, channels, decode)
 
 
