@@ -206,6 +206,19 @@ def test_cameras_and_balances(macbeth_cube_16):
     assert tint[0] > tint[1] > tint[2]
 
 
+@pytest.mark.parametrize("balance", ["light", "none"])
+def test_cubes_of_a_camera_take_its_raw_values_under_other_lights(balance):
+    camera = "Nikon 5100 (NPL)"
+    cube = quiet_build("macbeth", space="camera", observer=camera, dim=4)
+    sensor = cube.data.sensor
+    raw = photograph(sensor, "A", balance=balance)
+    atlas = cube.data.atlas
+    others = np.asarray(atlas.measured, dtype=float) @ raw.matrix.T
+    spectra = prepare(cube, [raw]).reflectance(atlas.rgb, others)
+    assert_allclose(sensor.rgb(spectra), atlas.rgb, atol=1e-5)
+    assert np.median(np.abs(spectra @ raw.matrix.T - others)) < 1e-3
+
+
 def test_bad_input(macbeth_cube_16, tungsten):
     sensor = macbeth_cube_16.data.sensor
     with raises(OptionError):

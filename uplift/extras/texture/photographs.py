@@ -192,7 +192,7 @@ def _open(
         space = None if picture.space is None else find_space(picture.space)
         decode = make_decoder(sensor, part, encoding, "clip", space)
         if picture.camera is not None:
-            # Raw values are in no space, whatever the file states.
+            # Raw values are in no RGB space, also if the file states one.
             raw = linear_reader(sensor, part, encoding, None)
             decode = replace(decode, function=raw, matrix=None)
         yield Picture(image, part, channels, decode)
