@@ -25,8 +25,7 @@ if TYPE_CHECKING:
     from uplift.lookup import Cube
 
 Value = TypeVar("Value")
-CODES = 1 / 255, 0.03 / 255
-"""Noise of colours that are rounded to 8-bit codes."""
+LARGEST_CODE = 255
 
 
 @dataclass(frozen=True)
@@ -61,11 +60,13 @@ def parse_noise(text: str) -> tuple[float, float]:
     """Parse 'SHARE' or 'SHARE,FLOOR', of which the share may be in percent."""
     share, _, floor = text.partition(",")
     try:
-        is_percent = share.strip().endswith("%")
-        number = parse_float(share.strip().removesuffix("%"))
-        noise = number / 100 if is_percent else number, parse_float(floor or "0")
+        scale = 100 if share.strip().endswith("%") else 1
+        noise = (
+            parse_float(share.strip().removesuffix("%")) / scale,
+            parse_float(floor or "0"),
+        )
     except ValueError:
-        noise = -1.0, 0.0
+        noise = (-1.0, 0.0)
     if not all(0 <= value < 1 for value in noise):
         raise OptionError(
             f"noise must be SHARE or SHARE,FLOOR in [0, 1), got {format_value(text)}",
@@ -106,10 +107,9 @@ def for_each(
 
 balance = options.choice(
     "--balance",
-    "light",
-    "none",
+    *("light", "camera", "none"),
     help="White of further photographs: that of their light, as in the pictures of "
-    "'relight', or that of the cube's light.",
+    "'relight'; the same by a factor for each channel; or that of the cube's light.",
 )
 noise = click.option(
     "--noise",
@@ -134,6 +134,7 @@ def photographed_colour(
     import numpy as np
 
     from uplift.extras.photographs import PhotographedColour, photograph, prepare
+    from uplift.extras.photographs.photograph import rounding_noise
 
     if not source.single:
         raise OptionError(
@@ -142,7 +143,7 @@ def photographed_colour(
         )
     if noise is None:
         is_code = any(HEX.fullmatch(photo.text) for photo in further) or source.encoded
-        noise = CODES if is_code else (0.0, 0.0)
+        noise = rounding_noise(LARGEST_CODE) if is_code else (0.0, 0.0)
     sensor = cube.data.sensor
     photographs = [
         photograph(sensor, photo.light, balance=balance) for photo in further

@@ -198,6 +198,8 @@ def test_cameras_and_balances(macbeth_cube_16):
     assert_allclose(
         warm @ spectrum, sensor.xyz_to_rgb @ observer.light("A").xyz @ spectrum
     )
+    card = photograph(sensor, "A", balance="camera").matrix
+    assert_allclose(card * (warm @ white)[:, None], warm)
     camera = "Nikon 5100 (NPL)"
     raw = photograph(sensor, "A", camera)
     assert_allclose(raw.matrix @ white, 1)

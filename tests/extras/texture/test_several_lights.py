@@ -102,6 +102,8 @@ def test_textures_come_nearer_to_the_materials(scene, plain_cube, day, tmp_path,
     factor = float(conversion.facts[0].split()[3])
     assert factor == pytest.approx(1.3, rel=0.01)
     assert "shift 0.0" in conversion.facts[0]
+    ratio = np.array(conversion.facts[1].split()[7:10], dtype=float)
+    assert_allclose(ratio, 1, atol=0.03)
     rgb = scene @ plain_cube.data.sensor.matrix.T
     two = spectra_of(tmp_path / "two.exr")
     one = plain_cube.reflectance(np.clip(rgb, 0, 1))
@@ -152,6 +154,15 @@ def test_coefficients_have_the_exact_colours(scene, plain_cube, day, tmp_path, k
     off = np.abs(spectra @ lit.matrix.T - others).mean()
     plain = plain_cube.reflectance(rgb) @ lit.matrix.T
     assert off < np.abs(plain - others).mean()
+
+
+def test_a_wrong_balance_is_doubted_by_greys(scene, plain_cube, day, tmp_path):
+    lit = photograph(plain_cube.data.sensor, "A", balance="none").matrix
+    write_exr(tmp_path / "a.exr", planes((scene @ lit.T).astype(np.float32)))
+    for balance, is_doubted in (("light", True), ("none", False)):
+        made = converter(plain_cube, under("A", balance=balance), tmp_path / "a.exr")
+        facts = texture.convert(made, day, tmp_path / f"{balance}.exr").facts
+        assert ("check the balance" in facts[1]) == is_doubted
 
 
 def test_raw_values_of_a_camera_are_in_no_space(scene, plain_cube, day, tmp_path):

@@ -8,7 +8,7 @@ from uplift.colorimetry import Light, delta_e_spectra
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.extras.photographs.answers import Photographs
-from uplift.extras.photographs.fit import fit_noise
+from uplift.extras.photographs.fit import DARKEST, fit_noise
 from uplift.extras.photographs.photograph import Noise
 
 COLUMNS, ROWS = 6, 4
@@ -19,8 +19,6 @@ MIDDLE = 0.25
 """Half the width of the part of a patch that is sampled, in patches."""
 POINTS = 15
 """Points that are sampled along each side of it."""
-DARKEST = 0.02
-"""Linear RGB below which patches do not count for the exposure."""
 REPORTED = ("A", "FL11", "HP1")
 """Lights under which answers to patches are compared with their measurements."""
 

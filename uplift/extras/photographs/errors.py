@@ -3,6 +3,7 @@ that are photographed under the same lights with the same noise.
 """
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from uplift.lookup.errors_under_lights import (
 )
 
 SEED = 1
+"""Of the noise, which is the same in each call."""
 
 
 def light_errors(photographs: Photographs, light: Light) -> LightErrors:
@@ -38,6 +40,7 @@ def light_errors(photographs: Photographs, light: Light) -> LightErrors:
     return errors_from(photographs.cube.data, light, photographed(photographs))
 
 
+@lru_cache(maxsize=2)
 def photographed(photographs: Photographs) -> Evidence:
     """Return the left-out materials, each answered from photographs of it by a cube
     that does not know it.

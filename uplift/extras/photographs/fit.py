@@ -11,7 +11,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import TextureError
 from uplift.extras.photographs.answers import Photographs
 from uplift.extras.photographs.metamers import brightness
-from uplift.extras.photographs.photograph import Noise
+from uplift.extras.photographs.photograph import Noise, Photograph, rounding_noise
 
 BLOCK = 8
 """Pixels along the sides of the blocks in which noise is estimated."""
@@ -21,6 +21,8 @@ FLATTEST = 0.1
 """Share of the blocks of a range that are taken for flat."""
 DARKEST = 0.02
 """Linear RGB below which pixels do not count for the exposure."""
+GREY = 0.1
+"""Difference of the components of greys, relative to the largest."""
 LEAST_VARIANCE = 1e-12
 """Least variance of linear RGB that counts."""
 MAX_SHIFT = 1.0
@@ -55,6 +57,25 @@ def estimate_exposure(
     return factor, float(np.median(relative))
 
 
+def grey_balance(
+    photograph: Photograph, rgb: Array, others: Array, expected: Array
+) -> Array | None:
+    """Compare greys of a further photograph with what the first lets expect: their
+    ratios (3,), relative to green; None without greys.
+
+    The first has linear RGB (n, 3), the further one ``others`` (n, 3), NaN where
+    unknown, and the first lets spectra (n, N) expect.
+    """
+    spread = rgb.max(axis=1) - rgb.min(axis=1)
+    is_grey = (spread < GREY * rgb.max(axis=1)) & (rgb.min(axis=1) > DARKEST)
+    rows = is_grey & np.isfinite(others).all(axis=1)
+    if not rows.any():
+        return None
+    predicted = expected[rows] @ photograph.matrix.T
+    ratio = np.median(others[rows] / predicted, axis=0)
+    return np.asarray(ratio / ratio[1])
+
+
 def estimate_noise(bands: Sequence[Array], steps: int) -> Noise:
     """Estimate the noise of a photograph from its flat areas.
 
@@ -85,7 +106,7 @@ def estimate_noise(bands: Sequence[Array], steps: int) -> Noise:
         second = blocks[:, :, :, :-2] - 2 * blocks[:, :, :, 1:-1] + blocks[:, :, :, 2:]
         means.append(blocks.mean(axis=(1, 3)).reshape(-1, 3))
         variances.append((second**2).mean(axis=(1, 3)).reshape(-1, 3) / 6)
-    rounding = Noise(1 / steps, 0.03 / steps) if steps else Noise()
+    rounding = rounding_noise(steps) if steps else Noise()
     if not means:
         return rounding
     level = np.concatenate(means).ravel()

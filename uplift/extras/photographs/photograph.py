@@ -14,8 +14,9 @@ from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, unknown_name
 
-BALANCES = ("light", "none")
-"""Which white is (1, 1, 1): that of the light, or that of the cube's light, so that
+BALANCES = ("light", "camera", "none")
+"""Which white is (1, 1, 1): that of the light, by Bradford; the same by a factor for
+each channel, as cameras and grey cards do; or that of the cube's light, so that
 colours have the tint of the light.
 """
 SAME = 1e-9
@@ -52,6 +53,15 @@ class Noise(NamedTuple):
         return np.asarray((self.share * values) ** 2 + self.floor**2)
 
 
+def rounding_noise(steps: int) -> Noise:
+    """Return the noise of rounding encoded values to whole steps up to this one.
+
+    It is 1 / √12 of a step, which in sRGB is 2.3 / ``steps`` of a linear value of 1,
+    and more of a darker one.
+    """
+    return Noise(1 / steps, 0.03 / steps)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Photograph:
     """A further photograph, by `photograph`.
@@ -85,9 +95,10 @@ def photograph(
         Light of the photograph, as for `uplift.colorimetry.observer.light`.
     camera : str or Camera, optional
         Camera whose raw values the photograph has, in place of RGB of the space.
-    balance : {"light", "none"}
+    balance : {"light", "camera", "none"}
         Whether the white of the light is white, as `uplift relight` writes it (Bradford
-        for RGB, the response to white for a camera), or that of the cube's light.
+        for RGB, a factor for each channel of a camera); the same by a factor for each
+        channel of RGB; or whether that of the cube's light is white.
 
     Returns
     -------
@@ -114,7 +125,11 @@ def photograph(
         lit = observer.sensor(sensor.space, light, sensor.observer, sensor.range)
         unbalanced = sensor.xyz_to_rgb @ lit.light.xyz
         tint = unbalanced @ np.linalg.pinv(lit.matrix)
-    matrix = lit.matrix if balance == "light" else tint @ lit.matrix
+    matrix = lit.matrix
+    if balance != "light":
+        matrix = tint @ lit.matrix
+    if balance == "camera":
+        matrix = matrix / matrix.sum(axis=1, keepdims=True)
     if np.abs(matrix - sensor.matrix).max() <= SAME:
         raise OptionError(
             f"a further photograph under {lit.illuminant} adds nothing: this is the "

@@ -6,6 +6,7 @@ import contextlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import OptionError, TextureError
 from uplift.common.text import pluralise
 from uplift.extras.colour.spaces import find_space
-from uplift.extras.photographs import Noise, Photographs
+from uplift.extras.photographs import Noise, Photograph, Photographs
 from uplift.extras.photographs.chart import (
     COLUMNS,
     REPORTED,
@@ -31,11 +32,13 @@ from uplift.extras.photographs.fit import (
     check_aligned,
     estimate_exposure,
     estimate_noise,
+    grey_balance,
 )
 from uplift.extras.texture.channels import ColourChannels, coloured_parts
 from uplift.extras.texture.colours import Decoder, linear_reader, make_decoder
 from uplift.extras.texture.image import Image, Part, open_image
 from uplift.extras.texture.uplifter import Sampler
+from uplift.lookup import Cube
 
 SAMPLED_ROWS = 24
 """Rows of a band that is sampled for exposure and noise."""
@@ -45,6 +48,8 @@ CROP = 256
 """Pixels along the sides of a crop whose alignment is checked."""
 MAX_SAMPLE = 1 << 15
 """Pixels from which the exposure is estimated."""
+MAX_CAST = 0.05
+"""Relative difference of the channels of greys from which the balance is doubted."""
 CLIPPED = 0.995
 """Share of the largest code from which a component is clipped."""
 
@@ -95,7 +100,7 @@ class FurtherPictures:
     ----------
     pictures : tuple of FurtherPicture
         One for each light.
-    balance : {"light", "none"}
+    balance : {"light", "camera", "none"}
         As for `uplift.extras.photographs.photograph`.
     noise : tuple of float or None
         Share and floor, None to estimate them.
@@ -220,13 +225,13 @@ def fit(
     factors = []
     facts = []
     for number, (name, shift) in enumerate(zip(names, shifts, strict=True)):
-        factor, reason = further.pictures[number].exposure, "as given"
-        if factor is None:
-            samples = bands[0], bands[1 + number]
-            factor, reason = _exposure(prepared, sample, number, *samples)
+        pixels = _pixels(prepared.cube, sample, bands[0], bands[1 + number])
+        stated = further.pictures[number].exposure
+        factor, reason = _exposure(prepared, number, pixels, stated)
         factors.append(factor)
         place = "alignment not known" if shift is None else f"shift {shift:.2f} pixels"
         facts.append(f"{name}: exposure × {factor:.4g} ({reason}), {place}")
+        facts.append(f"{name}: {_balance(prepared.further[number], pixels)}")
     exposures = np.repeat(np.array(factors)[:, None], 3, axis=1)
     return Fitted(exposures, noise, (*facts, noise_fact))
 
@@ -295,27 +300,51 @@ def _patches(picture: Picture, points: Array) -> Patches:
     return Patches(values.mean(axis=1), values.var(axis=1))
 
 
-def _exposure(
-    prepared: Photographs,
-    sample: Sampler,
-    number: int,
-    first: list[Array],
-    other: list[Array],
-) -> tuple[float, str]:
-    """Return the exposure of the further photograph of this number, and a remark."""
+class _Pixels(NamedTuple):
+    """Linear RGB (n, 3) of pixels in the first photograph and in a further one, NaN
+    where unknown, and the spectra (n, N) that the first lets expect.
+    """
+
+    rgb: Array
+    others: Array
+    expected: Array
+
+
+def _pixels(
+    cube: Cube, sample: Sampler, first: list[Array], other: list[Array]
+) -> _Pixels:
+    """Take some of the pixels of bands of two photographs."""
     rgb = np.concatenate([band.reshape(-1, 3) for band in first])
     values = np.concatenate([band.reshape(-1, 3) for band in other])
     known = np.flatnonzero(np.isfinite(rgb).all(axis=1))
     rows = known[:: max(len(known) // MAX_SAMPLE, 1)]
     colours = np.clip(rgb[rows], 0, 1)
-    count = len(prepared.cube.wavelengths)
-    expected = sample(colours.astype(np.float32))[:, :count].astype(float)
-    factor, spread = estimate_exposure(
-        prepared, number, colours, values[rows], expected
-    )
+    expected = sample(colours.astype(np.float32))[:, : len(cube.wavelengths)]
+    return _Pixels(colours, values[rows], expected.astype(float))
+
+
+def _exposure(
+    prepared: Photographs, number: int, pixels: _Pixels, stated: float | None
+) -> tuple[float, str]:
+    """Return the exposure of the further photograph of this number, and a remark."""
+    if stated is not None:
+        return stated, "as given"
+    factor, spread = estimate_exposure(prepared, number, *pixels)
     if abs(np.log(factor)) <= spread:
         return 1.0, f"estimated {factor:.4g}, within what materials differ by"
     return factor, "estimated"
+
+
+def _balance(further: Photograph, pixels: _Pixels) -> str:
+    """State what greys show of the white balance of a further photograph."""
+    ratio = grey_balance(further, *pixels)
+    if ratio is None:
+        return "no greys to check the white balance by"
+    channels = " ".join(f"{value:.3f}" for value in ratio)
+    text = f"greys have R G B × {channels} of what is expected"
+    if np.abs(ratio - 1).max() > MAX_CAST:
+        text += "; check the balance"
+    return text
 
 
 def _noise(

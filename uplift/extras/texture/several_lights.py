@@ -62,11 +62,14 @@ class CubeAnswers:
     width: int
     threads: int
 
-    def __call__(self, noise: Noise, rgb: Array, others: Array) -> tuple[Floats, Mask]:
+    def with_noise(self, noise: Noise) -> "CubeAnswers":
+        """Return the same for photographs of another noise."""
+        return replace(self, photographs=replace(self.photographs, noise=noise))
+
+    def __call__(self, rgb: Array, others: Array) -> tuple[Floats, Mask]:
         """Numbers (n, N) at linear RGB (n, 3) and those of the further photographs (n,
         3 L), and which of these contradict each other.
         """
-        prepared = replace(self.photographs, noise=noise)
         expected = self.sample(rgb.astype(np.float32))
         stated = getattr(self.kind, "wavelengths", None)
         at = None if stated is None else np.array(stated)
@@ -75,7 +78,9 @@ class CubeAnswers:
 
         def answer(rows: Array) -> Array:
             block = rows[:, 0].astype(int)
-            answers = prepared.answer(rgb[block], others[block], expected[block], at)
+            answers = self.photographs.answer(
+                rgb[block], others[block], expected[block], at
+            )
             contradicts[block] = answers.contradicts
             return self._numbers(rgb[block], answers.spectra)
 
@@ -114,9 +119,9 @@ class SeveralLights(Converter):
     @contextlib.contextmanager
     def opened(self, image: Image) -> Iterator[ConvertRows]:
         fitted = _fit(self, image.path)
+        cubes = [cube.with_noise(fitted.noise) for cube in self.cubes]
         estimates = [
-            light_errors(replace(self.cubes[0].photographs, noise=fitted.noise), light)
-            for light in self.error_lights
+            light_errors(cubes[0].photographs, light) for light in self.error_lights
         ]
         size = _size(image)
         further = open_further(
@@ -137,8 +142,8 @@ class SeveralLights(Converter):
                     for picture, factor in zip(pictures, fitted.exposures, strict=True)
                 ]
                 mixture = None if weights is None else weights(row, len(rgb))
-                values, counts = self._answer(
-                    fitted.noise, rgb, np.concatenate(others, axis=-1), mixture
+                values, counts = _answer(
+                    cubes, rgb, np.concatenate(others, axis=-1), mixture
                 )
                 errors = [_standard_errors(estimate, rgb) for estimate in estimates]
                 numbers, contradicts = values
@@ -160,28 +165,29 @@ class SeveralLights(Converter):
             numbers = numbers * opacity
         return rgb * opacity, numbers, *more
 
-    def _answer(
-        self, noise: Noise, rgb: Floats, others: Array, mixture: Floats | None
-    ) -> tuple[tuple[Floats, Floats], Counts]:
-        """Answer rows (k, width, 3) and those of the other photographs (k, width, 3 L),
-        by one cube, or by several with weights (k, width, n).
-        """
-        colours = rgb.reshape(-1, 3).astype(float)
-        values = others.reshape(len(colours), -1)
-        shares = np.ones((len(colours), 1), dtype=np.float32)
-        if mixture is not None:
-            shares = mixture.reshape(len(colours), -1)
-        numbers = np.zeros((len(colours), self.cubes[0].width), dtype=np.float32)
-        contradicts = np.zeros(len(colours), dtype=bool)
-        for cube, share in zip(self.cubes, shares.T, strict=True):
-            rows = np.flatnonzero(share)
-            answered, unlike = cube(noise, colours[rows], values[rows])
-            numbers[rows] += share[rows, None] * answered
-            contradicts[rows] |= unlike
-        shape = rgb.shape[:-1]
-        flags = contradicts.reshape(*shape, 1).astype(np.float32)
-        counts = Counts(contradicting=int(contradicts.sum()))
-        return (numbers.reshape(*shape, -1), flags), counts
+
+def _answer(
+    cubes: Sequence[CubeAnswers], rgb: Floats, others: Array, mixture: Floats | None
+) -> tuple[tuple[Floats, Floats], Counts]:
+    """Answer rows (k, width, 3) and those of the other photographs (k, width, 3 L),
+    by one cube, or by several with weights (k, width, n).
+    """
+    colours = rgb.reshape(-1, 3).astype(float)
+    values = others.reshape(len(colours), -1)
+    shares = np.ones((len(colours), 1), dtype=np.float32)
+    if mixture is not None:
+        shares = mixture.reshape(len(colours), -1)
+    numbers = np.zeros((len(colours), cubes[0].width), dtype=np.float32)
+    contradicts = np.zeros(len(colours), dtype=bool)
+    for cube, share in zip(cubes, shares.T, strict=True):
+        rows = np.flatnonzero(share)
+        answered, unlike = cube(colours[rows], values[rows])
+        numbers[rows] += share[rows, None] * answered
+        contradicts[rows] |= unlike
+    shape = rgb.shape[:-1]
+    flags = contradicts.reshape(*shape, 1).astype(np.float32)
+    counts = Counts(contradicting=int(contradicts.sum()))
+    return (numbers.reshape(*shape, -1), flags), counts
 
 
 def _standard_errors(estimate: LightErrors, rgb: Floats) -> Floats:
