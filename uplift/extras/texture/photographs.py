@@ -48,7 +48,7 @@ CROP = 256
 """Pixels along the sides of a crop whose alignment is checked."""
 MAX_SAMPLE = 1 << 15
 """Pixels from which the exposure is estimated."""
-MAX_CAST = 0.05
+MAX_CAST = 0.1
 """Relative difference of the channels of greys from which the balance is doubted."""
 CLIPPED = 0.995
 """Share of the largest code from which a component is clipped."""
