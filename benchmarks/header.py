@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks import CUBES, ROOT, Row, record
 from uplift.common.arrays import Array
 from uplift.extras.export import write_program
-from uplift.extras.export.runtime import HEADER, shipped_header, write_header
+from uplift.extras.export.runtime import HEADER, compose_header, write_header
 from uplift.lab.timing import environment
 from uplift.lookup import Cube, load
 from uplift.lookup.cube import PACKAGED
@@ -30,7 +30,7 @@ def main() -> None:
     """Measure stored and packaged cubes, and write docs/data/header.json."""
     paths = [*sorted(CUBES.glob("*.uplift")), *PACKAGED.values()]
     rows = [measure_cube(path) for path in paths]
-    size = len(shipped_header())
+    size = len(compose_header())
     record("header", environment=environment(), size=size, cubes=rows)
 
 

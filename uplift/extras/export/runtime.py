@@ -1,14 +1,12 @@
 """``uplift.h``: a header in C that reads cube files when a program runs.
 
 It is composed of the source of exported programs (`program`), included once for each
-number of coefficients, and of the reader of files in ``source/runtime/``. The composed
-file is part of the package: programs copy it.
+number of coefficients, and of the reader of files in ``source/runtime/``.
 """
 
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from importlib.resources import files
 from itertools import product
 from pathlib import Path
 from string import Template
@@ -98,13 +96,7 @@ SKIPPED = "#ifdef UP_VEC4"
 
 def write_header(path: StrPath, *, force: bool = False) -> None:
     """Write ``uplift.h``, the reader of cube files for programs in C and C++."""
-    write_text(shipped_header(), Path(path), force=force)
-
-
-def shipped_header() -> str:
-    """Return the header that is in the package."""
-    file = files("uplift.extras.export") / HEADER
-    return file.read_text(encoding="ascii")
+    write_text(compose_header(), Path(path), force=force)
 
 
 def compose_header() -> str:
