@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.sensor import Light, Sensor
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, as_floats
 
 OPPONENTS = np.array([[0.0, 116, 0], [500, -500, 0], [0, 200, -200]])
 """Compressed X, Y, Z to L*a*b*, without the −16 of L*."""
@@ -24,7 +24,7 @@ def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
     Parameters
     ----------
     xyz : array_like, shape (..., 3)
-        XYZ, in the units of ``white``.
+        XYZ, in the units of ``white``. An array of JAX is returned as one.
     white : array_like, shape (3,)
         XYZ of the white.
 
@@ -41,11 +41,14 @@ def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
     >>> lab([0.95, 1.0, 1.09], [0.95, 1.0, 1.09]).tolist()
     [100.0, 0.0, 0.0]
     """
-    t = np.asarray(xyz, dtype=float) / np.asarray(white, dtype=float)
-    compressed = np.where(
-        t > (6 / 29) ** 3, np.cbrt(t), np.minimum(t, 1.0) * (29 / 6) ** 2 / 3 + 4 / 29
-    )
-    return np.asarray(compressed @ OPPONENTS.T - np.array([16.0, 0.0, 0.0]))
+    xyz = as_floats(xyz)
+    xp = xyz.__array_namespace__()
+    t = xyz / np.asarray(white, dtype=float)
+    threshold = (6 / 29) ** 3
+    root = xp.cbrt(xp.maximum(t, threshold))  # whose slope is finite
+    line = xp.minimum(t, 1.0) * (29 / 6) ** 2 / 3 + 4 / 29
+    compressed = xp.where(t > threshold, root, line)
+    return compressed @ OPPONENTS.T - np.array([16.0, 0.0, 0.0])
 
 
 def lab_to_xyz(lab: ArrayLike, white: ArrayLike) -> Array:

@@ -22,6 +22,13 @@ Values = NDArray[Any]
 """Array of numbers of any type, mostly float64 or float32."""
 
 
+def as_floats(values: Any) -> Any:
+    """Return an array of JAX as it is, and anything else as an array of numpy."""
+    if hasattr(values, "__array_namespace__") and not isinstance(values, np.ndarray):
+        return values
+    return np.asarray(values, dtype=float)
+
+
 def blocks(count: int, size: int) -> Iterator[slice]:
     """Yield the slices of blocks of at most ``size`` of ``count`` rows, in order."""
     for first in range(0, count, size):

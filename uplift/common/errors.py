@@ -155,6 +155,12 @@ class PassesError(UpliftError, ValueError):
     code = "passes"
 
 
+class PaintError(UpliftError, ValueError):
+    """A file of paints cannot be read, or samples do not determine paints."""
+
+    code = "paint"
+
+
 class ColourError(UpliftError, ValueError):
     """A colour is outside [0, 1], not finite, unreadable, or one that a cube or a
     reflectance cannot have.

@@ -135,9 +135,7 @@ def make_coat(
         raise OptionError(
             f"a coat cannot be of kind '{kind}'", hint=f"use {' or '.join(COATS)}"
         )
-    if medium.thickness is not None and not 0 <= medium.thickness <= MAX_THICKNESS:
-        problem = f"thickness must be in [0, {MAX_THICKNESS:g}], got {medium.thickness}"
-        raise OptionError(problem, hint="1 is the unit")
+    check_thickness(medium.thickness)
     if medium.plate and kind != "dye":
         raise OptionError(
             f"a plate must be of kind 'dye', got '{kind}'",
@@ -158,6 +156,13 @@ def make_coat(
     if kind == "dye":
         return _dye_coat(ingredients, parts, thickness, medium)
     return _pigment_coat(ingredients, parts, medium)
+
+
+def check_thickness(thickness: float | None) -> None:
+    """Raise `OptionError` for an impossible thickness; None is opaque."""
+    if thickness is not None and not 0 <= thickness <= MAX_THICKNESS:
+        problem = f"thickness must be in [0, {MAX_THICKNESS:g}], got {thickness}"
+        raise OptionError(problem, hint="1 is the unit")
 
 
 def _duntley_coat(
@@ -200,7 +205,13 @@ def _pigment_coat(ingredients: Ingredients, parts: ArrayLike, medium: Medium) ->
         np.stack([paint.absorption for paint in paints]),
         np.stack([paint.scattering for paint in paints]),
     )
-    mixture = stacked.mix(parts)
+    return coat_of_pigments(stacked, parts, medium)
+
+
+def coat_of_pigments(pigments: Pigment, parts: ArrayLike, medium: Medium) -> Coat:
+    """Make a coat of pigments with known K and S (n, N), mixed by parts (..., n)."""
+    check_thickness(medium.thickness)
+    mixture = pigments.mix(parts)
     if medium.thickness is not None:
         return Coat(mixture.layer(medium.thickness), medium.surface)
     reflectance = mixture.opaque_reflectance()

@@ -8,7 +8,7 @@ reflectance, as in Kubelka and Munk's theory, and the measured one.
 """
 
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -86,10 +86,11 @@ class Layer:
 
     def over(self, ground: ArrayLike) -> Array:
         """Return the reflectance (..., N) on a ground (..., N)."""
-        ground = np.asarray(ground, dtype=float)
+        xp = self.reflectance.__array_namespace__()
+        ground = xp.asarray(ground, dtype=float)
         # Light travels back and forth between both: R + T² g Σ (R g)^i. The sum
         # diverges only where no light gets.
-        escaping = np.maximum(1 - self.reflectance * ground, TINY)
+        escaping = xp.maximum(1 - self.reflectance * ground, TINY)
         return self.reflectance + self.transmittance**2 * ground / escaping
 
 
@@ -165,6 +166,22 @@ def internal_reflectance(index: float) -> float:
     return 1 - (1 - diffuse_reflectance(index)) / index**2
 
 
+def through_surface(internal: Any, again: Any, outside: Any, inside: Any) -> Any:
+    """Return the reflectance that is measured through a surface (eq. 10.10).
+
+    ``internal`` is the reflectance beneath it and ``again`` that for light that the
+    surface sends back. The arrays may be those of JAX.
+    """
+    transmitted = (1 - outside) * (1 - inside)
+    return outside + transmitted * internal / (1 - inside * again)
+
+
+def beneath_surface(measured: Any, outside: Any, inside: Any) -> Any:
+    """Return the reflectance beneath a surface: the inverse of `through_surface`."""
+    inner = measured - outside
+    return inner / ((1 - outside) * (1 - inside) + inside * inner)
+
+
 @dataclass(frozen=True)
 class Surface:
     """Reflectances of a surface; the default is a vehicle with the refractive index of
@@ -226,8 +243,7 @@ class Surface:
         """
         internal = np.asarray(internal, dtype=float)
         again = internal if diffuse is None else np.asarray(diffuse, dtype=float)
-        transmitted = (1 - self.outside) * (1 - self.inside)
-        return self.outside + transmitted * internal / (1 - self.inside * again)
+        return through_surface(internal, again, self.outside, self.inside)
 
     def remove(self, measured: ArrayLike) -> Array:
         """Return the reflectance beneath the surface (inverse of eq. 10.10).
@@ -243,8 +259,8 @@ class Surface:
             Internal reflectance, negative where the measured one is below that of the
             surface alone.
         """
-        inner = np.asarray(measured, dtype=float) - self.outside
-        return inner / ((1 - self.outside) * (1 - self.inside) + self.inside * inner)
+        measured = np.asarray(measured, dtype=float)
+        return beneath_surface(measured, self.outside, self.inside)
 
 
 NO_SURFACE = Surface()

@@ -20,7 +20,7 @@ Phys. Soc. 52, 1940; C. F. Bohren & D. R. Huffman,
 *Absorption and Scattering of Light by Small Particles*, 1983, chapter 9.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -111,7 +111,10 @@ def dispersive(sensor: Sensor, further: ArrayLike = ()) -> Dispersive:
 
 @dataclass(frozen=True, eq=False)
 class Pigment:
-    """Absorption and scattering of paint, in Kubelka and Munk's theory."""
+    """Absorption and scattering of paint, in Kubelka and Munk's theory.
+
+    Arrays of JAX are accepted as well, so that a fit can differentiate.
+    """
 
     absorption: Array  # (..., N) K per unit thickness, at least 0
     scattering: Array  # (..., N) S per unit thickness, at least 0
@@ -119,7 +122,12 @@ class Pigment:
     @property
     def gamma(self) -> Array:
         """γ = √(K (K + 2S)), shape (..., N)."""
-        return np.sqrt(self.absorption * (self.absorption + 2 * self.scattering))
+        xp = self.absorption.__array_namespace__()
+        return xp.sqrt(self.absorption * (self.absorption + 2 * self.scattering))
+
+    def select(self, rows: Sequence[int]) -> "Pigment":
+        """Return some of the pigments of the first axis."""
+        return Pigment(self.absorption[rows], self.scattering[rows])
 
     def mix(self, parts: ArrayLike) -> "Pigment":
         """Mix the pigments along the last axis but one by parts (..., n) (eq. 10.7)."""
@@ -135,7 +143,8 @@ class Pigment:
         """
         K = self.absorption
         S = self.scattering
-        return S / np.maximum(K + S + self.gamma, TINY)
+        xp = K.__array_namespace__()
+        return S / xp.maximum(K + S + self.gamma, TINY)
 
     def layer(self, thickness: ArrayLike) -> Layer:
         """Return the optical properties of a layer of a thickness X (...) in units of
@@ -144,13 +153,14 @@ class Pigment:
         Numerators and denominators are divided by γ e^γX, which prevents overflow and
         covers K → 0 and S → 0.
         """
+        xp = self.absorption.__array_namespace__()
         X = np.asarray(thickness, dtype=float)[..., None]
         gamma = self.gamma
         path = 2 * gamma * X
-        sinh = np.where(path > 0, -np.expm1(-path) / np.maximum(2 * gamma, TINY), X)
-        cosh = (1 + np.exp(-path)) / 2
+        sinh = xp.where(path > 0, -xp.expm1(-path) / xp.maximum(2 * gamma, TINY), X)
+        cosh = (1 + xp.exp(-path)) / 2
         delta = (self.absorption + self.scattering) * sinh + cosh
-        return Layer(self.scattering * sinh / delta, np.exp(-path / 2) / delta)
+        return Layer(self.scattering * sinh / delta, xp.exp(-path / 2) / delta)
 
     def amy_opaque_reflectance(self) -> Array:
         """Return the reflectance (..., N) of opaque paint in Amy's approximation for

@@ -1,11 +1,10 @@
 """The file of passes, passes.toml: written, and read with its values checked."""
 
 import hashlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Annotated, Literal, Self
 
 import numpy as np
-from numpy.typing import ArrayLike
 from pydantic import Field, model_validator
 
 from uplift.colorimetry import observer
@@ -13,14 +12,18 @@ from uplift.common.arrays import StrPath
 from uplift.common.errors import OptionError, PassesError
 from uplift.common.files import write_text
 from uplift.extras.files.spec import SpecModel, problem, read_toml
+from uplift.extras.files.toml import (
+    matrix_value,
+    number_value,
+    row_value,
+    text_value,
+)
 from uplift.extras.scene.passes.bands import CHANNELS, MAX_PASSES, MAX_WIDTH, Bands
 from uplift.extras.scene.passes.light_paths import MAX_BOUNCES
 from uplift.extras.scene.passes.passes import Passes, PassesCamera, PassesLight
 
 FORMAT: Literal["uplift passes 1"] = "uplift passes 1"
 HINT = "choose the passes again"
-DIGITS = 9
-"""Significant digits of numbers in the file."""
 MAX_BANDS = CHANNELS * MAX_PASSES
 MAX_LIGHTS = 100
 SAMPLES = len(observer.grid())
@@ -46,10 +49,10 @@ def to_toml(passes: Passes) -> str:
 
 
 def _lines(passes: Passes) -> Iterator[str]:
-    yield f"format = {_text(FORMAT)}"
-    yield f"centres = {_row(passes.bands.centres)}"
-    yield f"width = {_number(passes.bands.width)}"
-    yield f"to-xyz = {_matrix(passes.to_xyz)}"
+    yield f"format = {text_value(FORMAT)}"
+    yield f"centres = {row_value(passes.bands.centres)}"
+    yield f"width = {number_value(passes.bands.width)}"
+    yield f"to-xyz = {matrix_value(passes.to_xyz)}"
     yield ""
     yield "[materials]"
     for key, value in passes.origin.items():
@@ -57,52 +60,28 @@ def _lines(passes: Passes) -> Iterator[str]:
     for light in passes.lights:
         yield ""
         yield "[[lights]]"
-        yield f"name = {_text(light.name)}"
-        yield f"digest = {_text(light.digest)}"
-        yield f"numbers = {_row(light.numbers)}"
-        yield f"to-xyz = {_matrix(light.to_xyz)}"
-        yield f"errors = {_row(light.errors)}"
-        yield f"own-errors = {_row(light.own_errors)}"
+        yield f"name = {text_value(light.name)}"
+        yield f"digest = {text_value(light.digest)}"
+        yield f"numbers = {row_value(light.numbers)}"
+        yield f"to-xyz = {matrix_value(light.to_xyz)}"
+        yield f"errors = {row_value(light.errors)}"
+        yield f"own-errors = {row_value(light.own_errors)}"
     if passes.camera is not None:
         yield ""
         yield "[camera]"
-        yield f"name = {_text(passes.camera.name)}"
-        yield f"matrix = {_matrix(passes.camera.matrix)}"
-        yield f"error = {_number(passes.camera.error)}"
+        yield f"name = {text_value(passes.camera.name)}"
+        yield f"matrix = {matrix_value(passes.camera.matrix)}"
+        yield f"error = {number_value(passes.camera.error)}"
     yield ""
     yield "[other-lights]"
-    yield f"wavelengths = {_row(observer.grid()[[0, -1]])}"
-    yield f"projection = {_matrix(passes.light_projection)}"
+    yield f"wavelengths = {row_value(observer.grid()[[0, -1]])}"
+    yield f"projection = {matrix_value(passes.light_projection)}"
 
 
 def _value(value: object) -> str:
     if isinstance(value, list):
-        return f"[{', '.join(map(_text, value))}]"
-    return str(value) if isinstance(value, int) else _text(str(value))
-
-
-def _text(text: str) -> str:
-    """Write a basic string of TOML."""
-    return f'"{"".join(map(_escaped, text))}"'
-
-
-def _escaped(letter: str) -> str:
-    is_plain = letter.isprintable() and letter not in '"\\'
-    return letter if is_plain else f"\\U{ord(letter):08x}"
-
-
-def _number(value: float) -> str:
-    return repr(float(f"{value:.{DIGITS}g}"))
-
-
-def _row(values: Sequence[float] | ArrayLike) -> str:
-    numbers = np.asarray(values, dtype=float).tolist()
-    return f"[{', '.join(map(_number, numbers))}]"
-
-
-def _matrix(values: ArrayLike) -> str:
-    rows = [f"  {_row(row)}," for row in np.asarray(values)]
-    return "\n".join(["[", *rows, "]"])
+        return f"[{', '.join(map(text_value, value))}]"
+    return str(value) if isinstance(value, int) else text_value(str(value))
 
 
 def write_passes(passes: Passes, path: StrPath, *, force: bool = False) -> None:
@@ -138,7 +117,7 @@ def passes_digest(passes: Passes) -> str:
     str
         First 16 hexadecimal digits of the SHA-256 of centres and width.
     """
-    text = f"{_row(passes.bands.centres)} {_number(passes.bands.width)}"
+    text = f"{row_value(passes.bands.centres)} {number_value(passes.bands.width)}"
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 

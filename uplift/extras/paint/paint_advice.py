@@ -1,0 +1,166 @@
+"""Which samples to prepare and measure next, from the posterior of a fit of paints.
+
+The aim is to predict mixtures of any two paints in equal parts, on an opaque ground.
+Their expected error follows from the covariance of the fit, and what a sample would
+leave of it from one step of Kalman's update. The sample that leaves least comes first,
+then the best one beside it, and so on.
+"""
+
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from uplift.colorimetry import delta_e_2000_weights
+from uplift.common.arrays import Array
+from uplift.extras.paint.paint_fit import NOISE, PaintFit
+from uplift.extras.paint.paint_samples import PaintSamples
+
+TINT_PARTS = 4
+"""Parts of white to one of paint in a tint."""
+KNOWN = 0.02
+"""Difference of shares below which a sample is measured already."""
+
+
+@dataclass(frozen=True)
+class NextSample:
+    """A sample worth measuring.
+
+    Parameters
+    ----------
+    name : str
+        The sample, such as ``"1 cobalt blue : 4 titanium white"``.
+    error : float
+        Expected ΔE00 of mixtures after it and those before it are measured.
+    """
+
+    name: str
+    error: float
+
+
+@dataclass(frozen=True)
+class PaintAdvice:
+    """The expected error of mixtures as it is, and the samples that lower it most."""
+
+    error: float
+    samples: tuple[NextSample, ...]
+
+
+def advise_samples(fit: PaintFit, count: int = 5) -> PaintAdvice:
+    """Name the samples whose measurement lowers the errors of mixtures most.
+
+    Parameters
+    ----------
+    fit : PaintFit
+        Fitted paints.
+    count : int
+        Number of samples.
+
+    Returns
+    -------
+    PaintAdvice
+        Mean standard deviation in units of ΔE00 of the colours of mixtures of two
+        paints, now and after each sample.
+    """
+    pairs = _pairs(fit.samples)
+    names, candidates = _candidates(fit.samples)
+    weights = delta_e_2000_weights(np.asarray(fit.model.colours(fit.optimum, pairs)))
+    colours = _jacobian(fit, pairs, "colours").reshape(len(pairs), 3, -1)
+    aims = (weights @ colours).reshape(3 * len(pairs), -1)
+    spectra = _jacobian(fit, candidates, "reflectances")
+    predicted = np.asarray(fit.model.reflectances(fit.optimum, candidates))
+    noise = fit.noise * (NOISE[0] + NOISE[1] * predicted)
+    rows = spectra.reshape(*predicted.shape, -1) / noise[..., None]
+    covariance = fit.covariance
+    advice = list[NextSample]()
+    for _ in range(min(count, len(names))):
+        # C Hᵀ (H C Hᵀ + 1)⁻¹ H C is what a measurement with the Jacobian H takes off C.
+        updated = [_update(covariance, row) for row in rows]
+        errors = [_mean_error(aims, after) for after in updated]
+        best = int(np.argmin(errors))
+        advice.append(NextSample(names[best], errors[best]))
+        covariance = updated[best]
+    return PaintAdvice(_mean_error(aims, fit.covariance), tuple(advice))
+
+
+def _update(covariance: Array, row: Array) -> Array:
+    gain = covariance @ row.T
+    inner = row @ gain + np.eye(len(row))
+    return np.asarray(covariance - gain @ np.linalg.solve(inner, gain.T))
+
+
+def _mean_error(aims: Array, covariance: Array) -> float:
+    variances = np.einsum("ij,jk,ik->i", aims, covariance, aims).reshape(-1, 3)
+    return float(np.sqrt(np.maximum(variances.sum(axis=1), 0)).mean())
+
+
+def _jacobian(fit: PaintFit, samples: PaintSamples, name: str) -> Array:
+    import jax
+
+    function = getattr(fit.model, name)
+
+    def predict(z: Any) -> Any:
+        return function(z, samples)
+
+    with jax.enable_x64(True):
+        return np.asarray(jax.jit(jax.jacfwd(predict))(fit.optimum))
+
+
+def _pairs(samples: PaintSamples) -> PaintSamples:
+    """Return mixtures of any two paints in equal parts."""
+    count = len(samples.paints)
+    shares = np.array(
+        [(np.eye(count)[list(pair)]).mean(axis=0) for pair in combinations(range(count), 2)]
+    )
+    return _opaque(samples, shares.reshape(-1, count))
+
+
+def _opaque(samples: PaintSamples, shares: Array) -> PaintSamples:
+    size = len(shares)
+    return PaintSamples(
+        ("",) * size,
+        samples.paints,
+        shares,
+        np.full(size, np.inf),
+        np.ones((size, len(samples.wavelengths))),
+        samples.wavelengths,
+    )
+
+
+def _candidates(samples: PaintSamples) -> tuple[list[str], PaintSamples]:
+    """Return the opaque samples that are not measured: each paint alone, its tint with
+    the lightest paint, and mixtures of two in equal parts.
+    """
+    count = len(samples.paints)
+    lightest = _lightest(samples)
+    shares = dict[str, Array]()
+    for paint, name in enumerate(samples.paints):
+        shares[name] = np.eye(count)[paint]
+        if paint != lightest:
+            tint = f"1 {name} : {TINT_PARTS} {samples.paints[lightest]}"
+            row = np.zeros(count)
+            row[paint] = 1
+            row[lightest] = TINT_PARTS
+            shares[tint] = row / row.sum()
+    for first, second in combinations(range(count), 2):
+        name = f"1 {samples.paints[first]} : 1 {samples.paints[second]}"
+        shares[name] = np.eye(count)[[first, second]].mean(axis=0)
+    opaque = samples.shares[samples.is_opaque]
+    names = []
+    for name, row in shares.items():
+        distance = np.abs(opaque - row).max(axis=1).min(initial=1.0)
+        if distance > KNOWN:
+            names.append(name)
+    rows = np.array([shares[name] for name in names]).reshape(-1, count)
+    return names, _opaque(samples, rows)
+
+
+def _lightest(samples: PaintSamples) -> int:
+    """Return the paint of the sample of one paint that reflects most, usually white."""
+    measured = samples.reflectances
+    if measured is None:
+        measured = samples.colours
+    purity = samples.shares.max(axis=1)
+    light = np.where(purity > 1 - KNOWN, measured.min(axis=1), -1)
+    return int(samples.shares[light.argmax()].argmax())

@@ -1,0 +1,297 @@
+"""Absorption and scattering of paints by least squares on measured samples.
+
+The samples are predicted by the two constants of Kubelka and Munk, mixed by Duncan's
+rule and seen through a surface by Saunderson's correction (`optics`, `pigments`). What
+the samples do not determine stays as the prior has it (`paint_prior`): the fit is the
+maximum of the posterior, and its curvature gives standard errors. A paint that is known
+by one opaque sample only keeps the scattering of today's rule.
+
+The measured values weigh by their uncertainty. If the samples fit worse than that, it
+is raised until they fit as expected, since the theory or the parts are then the limit.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
+from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
+from uplift.extras.paint.optics import Surface, beneath_surface, through_surface
+from uplift.extras.paint.paint_prior import PaintPrior, paint_prior
+from uplift.extras.paint.paint_samples import PaintSamples
+from uplift.extras.paint.paints import Paints
+from uplift.extras.paint.pigments import Pigment
+
+NOISE = (0.002, 0.005)
+"""Standard deviation of reflectances: absolute, and relative to the value."""
+COLOUR_NOISE = 0.5
+"""Standard deviation of L*, a* and b* of colours."""
+INSIDE = 0.6
+"""Internal reflectance of the surface that is expected: an index of 1.5."""
+INSIDE_SPREAD = 0.5
+"""Standard deviation of its logit."""
+MAX_OUTSIDE = 0.05
+"""Largest reflectance of the surface that is fitted."""
+DARKEST = 0.02
+"""Fraction of the measured reflectances that may lie below that of the surface."""
+SURFACE_COUNT = 2
+"""Variables of the surface."""
+PRECISION = 1e-4
+"""Relative and absolute change of the variables at which a fit ends."""
+MAX_STEPS = 100
+ROUNDS = 3
+"""Fits with the noise of the one before."""
+MAX_VARIABLES = 6000
+"""Largest number of unknowns, whose square must fit in memory."""
+
+
+@dataclass(frozen=True, eq=False)
+class PaintFit:
+    """Fitted paints, and what they make of the samples.
+
+    Parameters
+    ----------
+    paints : Paints
+        The paints, with standard errors.
+    samples : PaintSamples
+        The samples that they were fitted to.
+    delta_e : ndarray, shape (n,)
+        ΔE00 under D65 between each sample and its prediction.
+    noise : float
+        Factor by which the samples differ more than measurements should.
+    optimum : ndarray, shape (d,)
+        Independent variables at the maximum of the posterior.
+    covariance : ndarray, shape (d, d)
+        Their covariance.
+    model : FitModel
+        Maps variables to predictions.
+    """
+
+    paints: Paints
+    samples: PaintSamples
+    delta_e: Array
+    noise: float
+    optimum: Array
+    covariance: Array
+    model: "FitModel"
+
+
+@dataclass(frozen=True, eq=False)
+class FitModel:
+    """Predictions as functions of independent standard normal variables: those of the
+    paints, then those of the surface if it is unknown.
+    """
+
+    prior: PaintPrior
+    surface: Surface | None
+    max_outside: float
+    sensor: Sensor
+
+    @property
+    def count(self) -> int:
+        """Number of variables."""
+        return self.prior.count + (SURFACE_COUNT if self.surface is None else 0)
+
+    def surface_of(self, z: Any) -> tuple[Any, Any]:
+        """Return the reflectances of the surface, from outside and from within."""
+        if self.surface is not None:
+            return self.surface.outside, self.surface.inside
+        xp = z.__array_namespace__()
+        outside = self.max_outside / (1 + xp.exp(-z[-2]))
+        logit = np.log(INSIDE / (1 - INSIDE)) + INSIDE_SPREAD * z[-1]
+        return outside, 1 / (1 + xp.exp(-logit))
+
+    def pigments(self, z: Any) -> Pigment:
+        """Return K and S of the paints."""
+        return self.prior.pigments(z[: self.prior.count])
+
+    def reflectances(self, z: Any, samples: PaintSamples) -> Any:
+        """Return the reflectances (n, N) of samples."""
+        paints = self.pigments(z)
+        mixed = Pigment(
+            samples.shares @ paints.absorption, samples.shares @ paints.scattering
+        )
+        outside, inside = self.surface_of(z)
+        internal = mixed.opaque_reflectance()
+        if not samples.is_opaque.all():
+            xp = z.__array_namespace__()
+            film = np.where(samples.is_opaque, 1.0, samples.thickness)
+            ground = beneath_surface(samples.grounds, outside, inside)
+            covered = mixed.layer(film).over(xp.clip(ground, 0, 1))
+            internal = xp.where(samples.is_opaque[:, None], internal, covered)
+        return through_surface(internal, internal, outside, inside)
+
+    def colours(self, z: Any, samples: PaintSamples) -> Any:
+        """Return CIE L*a*b* (n, 3) of samples, whose RGB is clipped as measured."""
+        xp = z.__array_namespace__()
+        rgb = self.reflectances(z, samples) @ self.sensor.matrix.T
+        return _lab(xp.clip(rgb, 0, 1), self.sensor)
+
+    def residuals(self, z: Any, samples: PaintSamples, noise: float) -> Any:
+        """Return the differences (m,) to the measured values in units of noise."""
+        if samples.reflectances is not None:
+            spread = NOISE[0] + NOISE[1] * samples.reflectances
+            difference = self.reflectances(z, samples) - samples.reflectances
+            return (difference / (noise * spread)).ravel()
+        difference = self.colours(z, samples) - _lab(samples.colours, self.sensor)
+        return (difference / (noise * COLOUR_NOISE)).ravel()
+
+
+def fit_paints(
+    samples: PaintSamples,
+    *,
+    surface: Surface | None = None,
+    guess: Callable[[Array, Array], Array] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> PaintFit:
+    """Fit the absorption and scattering of paints to measured samples.
+
+    Parameters
+    ----------
+    samples : PaintSamples
+        The samples.
+    surface : Surface, optional
+        Surface of the dry paint; by default it is fitted as well.
+    guess : callable, optional
+        Reflectances (n, N) of linear sRGB (n, 3) at wavelengths (N,), for samples of
+        which only colours are known. By default those of the packaged cube.
+    progress : callable, optional
+        Receives the rounds done and their number.
+
+    Returns
+    -------
+    PaintFit
+        The paints, how well they predict each sample, and the posterior.
+
+    Raises
+    ------
+    OptionError
+        There are more unknowns than memory allows (``too-many-paints``).
+
+    References
+    ----------
+    Walowit, McCarthy & Berns 1987, "An algorithm for the optimization of Kubelka-Munk
+    absorption and scattering coefficients", Color Research & Application 12.
+    """
+    nm = samples.wavelengths
+    sensor = observer.sensor(wavelengths=(nm[0], nm[-1], nm[1] - nm[0]))
+    spectra = samples.reflectances
+    if spectra is None:
+        spectra = (guess or _packaged_guess)(samples.colours, nm)
+    expected = surface or Surface(0.0, INSIDE)
+    prior = paint_prior(samples, spectra, expected, sensor)
+    darkest = float(np.clip(np.quantile(spectra, DARKEST), 0, MAX_OUTSIDE))
+    model = FitModel(prior, surface, darkest, sensor)
+    if model.count > MAX_VARIABLES:
+        raise OptionError(
+            f"{len(samples.paints)} paints at {len(nm)} wavelengths have "
+            f"{model.count} unknowns, more than {MAX_VARIABLES}",
+            code="too-many-paints",
+            hint="fit fewer paints at a time, or measure in steps of 10 nm",
+        )
+    return _fit(samples, model, progress)
+
+
+def _fit(
+    samples: PaintSamples,
+    model: FitModel,
+    progress: Callable[[int, int], None] | None,
+) -> PaintFit:
+    import jax
+
+    noise = 1.0
+    z = np.zeros(model.count)
+    solve = _solver(samples, model)
+    for done in range(ROUNDS):
+        with jax.enable_x64(True):
+            optimum, derivative = solve(z, noise)
+        z = np.asarray(optimum)
+        jacobian = np.asarray(derivative)
+        residuals = np.asarray(model.residuals(z, samples, noise))
+        covariance = np.linalg.inv(jacobian.T @ jacobian + np.eye(model.count))
+        if progress is not None:
+            progress(done + 1, ROUNDS)
+        # The trace counts the variables that the samples, not the prior, determine.
+        determined = model.count - np.trace(covariance)
+        freedom = max(len(residuals) - determined, 1.0)
+        excess = float(np.sqrt(residuals @ residuals / freedom))
+        if excess <= 1.1 or done + 1 == ROUNDS:
+            break
+        noise *= excess
+    paints = _paints(samples, model, z, covariance)
+    predicted = np.asarray(model.colours(z, samples))
+    delta_e = delta_e_2000(predicted, _measured_lab(samples, model))
+    return PaintFit(paints, samples, delta_e, noise, z, covariance, model)
+
+
+def _solver(
+    samples: PaintSamples, model: FitModel
+) -> Callable[[Array, float], tuple[Array, Array]]:
+    """Return a compiled function from the start and the noise to the variables (d,) of
+    the largest posterior, and the Jacobian (m, d) of the residuals there.
+    """
+    import jax
+    import lineax
+    import optimistix
+
+    solver = optimistix.LevenbergMarquardt(
+        PRECISION, PRECISION, linear_solver=lineax.Normal(lineax.Cholesky())
+    )
+
+    def residuals(z: Any, noise: Any) -> Any:
+        return model.residuals(z, samples, noise), z
+
+    @jax.jit
+    def solve(start: Any, noise: Any) -> Any:
+        solution = optimistix.least_squares(
+            residuals, solver, start, noise, max_steps=MAX_STEPS, throw=False
+        )
+        optimum = solution.value
+        return optimum, jax.jacfwd(lambda z: model.residuals(z, samples, noise))(optimum)
+
+    return solve
+
+
+def _paints(
+    samples: PaintSamples, model: FitModel, z: Array, covariance: Array
+) -> Paints:
+    prior = model.prior
+    paints, count = prior.log_scattering.shape
+    size = 2 * count + 1
+    root = np.linalg.cholesky(covariance)
+    errors = np.empty((2, paints, count))
+    for paint in range(paints):
+        rows = root[paint * size : (paint + 1) * size]
+        log_S = rows[0] + prior.scattering_root @ rows[1 : count + 1]
+        log_ratio = prior.ratio_root @ rows[count + 1 :]
+        errors[0, paint] = np.linalg.norm(log_S + log_ratio, axis=1)
+        errors[1, paint] = np.linalg.norm(log_S, axis=1)
+    outside, inside = model.surface_of(z)
+    return Paints(
+        samples.paints,
+        samples.wavelengths,
+        model.pigments(z),
+        Surface(float(outside), float(inside)),
+        Pigment(*errors),
+    )
+
+
+def _measured_lab(samples: PaintSamples, model: FitModel) -> Array:
+    rgb = samples.colours
+    if rgb is None:
+        rgb = np.clip(model.sensor.rgb(samples.reflectances), 0, 1)
+    return np.asarray(_lab(rgb, model.sensor))
+
+
+def _lab(rgb: Any, sensor: Sensor) -> Any:
+    """Return CIE L*a*b* (…, 3) of linear RGB, arrays of numpy or JAX."""
+    return lab(rgb @ sensor.rgb_to_xyz.T, sensor.light.white)
+
+
+def _packaged_guess(rgb: Array, wavelengths: Array) -> Array:
+    from uplift.lookup import load
+
+    return load().reflectance(np.clip(rgb, 0, 1), wavelengths)

@@ -1,0 +1,193 @@
+"""Measured samples of paint with known parts, from a table or with a table of recipes.
+
+A row of a table is a sample. Columns with the names of paints hold parts, the columns
+``thickness`` and ``ground`` describe films, and either columns of wavelengths hold
+reflectances or a column ``colour`` holds a code ``#rrggbb``. A row without parts is a
+ground that others name.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from uplift.atlas import Atlas, on_grid, read_atlas
+from uplift.common.arrays import Array, Mask, StrPath
+from uplift.common.errors import unknown_name
+from uplift.common.text import format_value
+from uplift.extras.colour.srgb import HEX, decode
+from uplift.extras.paint.recipe_table import Recipe, RecipeTable, read_recipes
+
+GROUNDS = {"white": 1.0, "black": 0.0}
+"""Reflectances of grounds that need no sample."""
+RANGE = (380.0, 780.0)
+"""Wavelengths in nm that are used."""
+STEP = 10.0
+"""Step in nm of the spectra of paints that are known by their colours."""
+
+
+@dataclass(frozen=True, eq=False)
+class PaintSamples:
+    """Samples of P paints, with their spectra or else their colours.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Names of the n samples.
+    paints : tuple of str
+        Names of the paints.
+    shares : ndarray, shape (n, P)
+        Shares of the paints, of sum 1.
+    thickness : ndarray, shape (n,)
+        Thickness of films, infinite for opaque samples.
+    grounds : ndarray, shape (n, N)
+        Reflectance of the ground below each film.
+    wavelengths : ndarray, shape (N,)
+        Wavelengths in nm.
+    reflectances : ndarray, shape (n, N), optional
+        Measured reflectances.
+    colours : ndarray, shape (n, 3), optional
+        Linear sRGB, where no reflectances are known.
+    """
+
+    names: tuple[str, ...]
+    paints: tuple[str, ...]
+    shares: Array
+    thickness: Array
+    grounds: Array
+    wavelengths: Array
+    reflectances: Array | None = None
+    colours: Array | None = None
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    @property
+    def is_opaque(self) -> Mask:
+        """Whether each sample (n,) hides its ground."""
+        return np.isinf(self.thickness)
+
+    def select(self, rows: Sequence[int]) -> "PaintSamples":
+        """Return some of the samples, of the same paints."""
+        rows = list(rows)
+        spectra = None if self.reflectances is None else self.reflectances[rows]
+        colours = None if self.colours is None else self.colours[rows]
+        return PaintSamples(
+            tuple(self.names[row] for row in rows),
+            self.paints,
+            self.shares[rows],
+            self.thickness[rows],
+            self.grounds[rows],
+            self.wavelengths,
+            spectra,
+            colours,
+        )
+
+
+def read_paint_samples(path: StrPath, recipes: StrPath | None = None) -> PaintSamples:
+    """Read measured samples of paint.
+
+    Parameters
+    ----------
+    path : path-like
+        Measured spectra in any format that atlases have, or a table with a column
+        ``colour``.
+    recipes : path-like, optional
+        Table of the parts, by the names of the samples; by default ``path``.
+
+    Returns
+    -------
+    PaintSamples
+        The samples, with spectra at the wavelengths of the file from 380 to 780 nm.
+
+    Raises
+    ------
+    AtlasError
+        A file cannot be read, names no paints, or a value in it is invalid.
+    """
+    table = read_recipes(path if recipes is None else recipes)
+    if any(recipe.colour for recipe in table.recipes):
+        return _coloured_samples(table)
+    atlas = read_atlas(path)
+    by_name = {recipe.name: recipe for recipe in table.recipes}
+    unknown = [entry.name for entry in atlas if entry.name not in by_name]
+    if len(unknown) == len(atlas):
+        raise table.location.error(
+            f"no recipe has the name of a measured sample, such as "
+            f"{format_value(unknown[0])}",
+            "give samples the same names in both files",
+            code="recipe-without-sample",
+        )
+    measured = [entry for entry in atlas if entry.name in by_name]
+    wavelengths = _common_grid(atlas)
+    spectra = on_grid(Atlas(tuple(measured)), wavelengths)
+    kept = [by_name[entry.name] for entry in measured]
+    backings = {
+        recipe.name: spectrum
+        for recipe, spectrum in zip(kept, spectra, strict=True)
+        if recipe.is_ground
+    }
+    rows = [row for row, recipe in enumerate(kept) if not recipe.is_ground]
+    painted = [kept[row] for row in rows]
+    return _samples(table, painted, wavelengths, backings, reflectances=spectra[rows])
+
+
+def _coloured_samples(table: RecipeTable) -> PaintSamples:
+    wavelengths = np.arange(400.0, 700 + STEP / 2, STEP)
+    painted = [recipe for recipe in table.recipes if not recipe.is_ground]
+    colours = []
+    for recipe in painted:
+        if not HEX.fullmatch(recipe.colour):
+            raise table.location.at(recipe.line, recipe.name).error(
+                f"colour must be '#rrggbb', got {format_value(recipe.colour)}",
+                "write '#cc3319'",
+            )
+        colours.append(list(bytes.fromhex(recipe.colour[1:])))
+    linear = decode(np.array(colours) / 255)
+    return _samples(table, painted, wavelengths, {}, colours=linear)
+
+
+def _samples(
+    table: RecipeTable,
+    recipes: Sequence[Recipe],
+    wavelengths: Array,
+    backings: dict[str, Array],
+    *,
+    reflectances: Array | None = None,
+    colours: Array | None = None,
+) -> PaintSamples:
+    if not recipes:
+        raise table.location.error(
+            "no sample has a paint", "write the parts in columns named as the paints"
+        )
+    parts = np.array([recipe.parts for recipe in recipes])
+    used = parts.any(axis=0)
+    known = {name: np.full_like(wavelengths, value) for name, value in GROUNDS.items()}
+    known |= backings
+    grounds = []
+    for recipe in recipes:
+        if recipe.ground not in known:
+            error = unknown_name(recipe.ground, known, "ground")
+            location = table.location.at(recipe.line, recipe.name)
+            raise location.error(error.problem, error.hint)
+        grounds.append(known[recipe.ground])
+    paints = np.array(table.paints)[used]
+    return PaintSamples(
+        tuple(recipe.name for recipe in recipes),
+        tuple(paints.tolist()),
+        parts[:, used] / parts.sum(axis=1, keepdims=True),
+        np.array([recipe.thickness for recipe in recipes]),
+        np.array(grounds),
+        wavelengths,
+        reflectances,
+        colours,
+    )
+
+
+def _common_grid(atlas: Atlas) -> Array:
+    """Return the wavelengths of the coarsest entry in the range that all have."""
+    first = max(RANGE[0], *(entry.wavelengths[0] for entry in atlas))
+    last = min(RANGE[1], *(entry.wavelengths[-1] for entry in atlas))
+    coarsest = min(atlas, key=lambda entry: len(entry.wavelengths))
+    nm = coarsest.wavelengths
+    return np.asarray(nm[(nm >= first) & (nm <= last)])

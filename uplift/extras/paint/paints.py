@@ -1,0 +1,140 @@
+"""Measured paints: absorption and scattering of each, at common wavelengths."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from uplift.common.arrays import Array
+from uplift.common.errors import OptionError, unknown_name
+from uplift.extras.paint.coats import Medium, coat_of_pigments
+from uplift.extras.paint.optics import NO_SURFACE, Surface
+from uplift.extras.paint.pigments import Pigment
+
+
+@dataclass(frozen=True, eq=False)
+class Paints:
+    """Paints by name, with what Kubelka and Munk's theory needs to mix them.
+
+    Parameters
+    ----------
+    names : tuple of str
+        Names of the P paints.
+    wavelengths : ndarray, shape (N,)
+        Wavelengths in nm, ascending.
+    pigments : Pigment
+        Absorption and scattering, (P, N) each, per unit of thickness.
+    surface : Surface
+        Surface of the dry paint.
+    errors : Pigment, optional
+        Relative standard errors of absorption and scattering, (P, N) each.
+    prices : tuple of float
+        Price of a part of each paint, NaN where it is not known; empty for none.
+    notes : tuple of str
+        Remarks on how the paints were determined.
+    """
+
+    names: tuple[str, ...]
+    wavelengths: Array
+    pigments: Pigment
+    surface: Surface = NO_SURFACE
+    errors: Pigment | None = None
+    prices: tuple[float, ...] = ()
+    notes: tuple[str, ...] = field(default=())
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def index(self, name: str) -> int:
+        """Return the position of a paint. Raises `UnknownNameError`."""
+        if name not in self.names:
+            raise unknown_name(name, self.names, "paint")
+        return self.names.index(name)
+
+    def select(self, names: Sequence[str]) -> "Paints":
+        """Return some of the paints, in the order of ``names``."""
+        rows = [self.index(name) for name in names]
+        errors = None
+        if self.errors is not None:
+            errors = self.errors.select(rows)
+        prices = tuple(self.prices[row] for row in rows) if self.prices else ()
+        return Paints(
+            tuple(names),
+            self.wavelengths,
+            self.pigments.select(rows),
+            self.surface,
+            errors,
+            prices,
+            self.notes,
+        )
+
+    def at(self, wavelengths: ArrayLike) -> "Paints":
+        """Return the paints at other wavelengths (M,) in nm, by linear interpolation;
+        beyond the range the values are constant.
+        """
+        nm = np.asarray(wavelengths, dtype=float)
+
+        def sample(pigment: Pigment) -> Pigment:
+            rows = (pigment.absorption, pigment.scattering)
+            sampled = [
+                np.stack([np.interp(nm, self.wavelengths, row) for row in values])
+                for values in rows
+            ]
+            return Pigment(*sampled)
+
+        errors = None if self.errors is None else sample(self.errors)
+        return Paints(
+            self.names,
+            nm,
+            sample(self.pigments),
+            self.surface,
+            errors,
+            self.prices,
+            self.notes,
+        )
+
+    def reflectance(
+        self,
+        parts: ArrayLike,
+        thickness: float | None = None,
+        ground: ArrayLike = 1.0,
+    ) -> Array:
+        """Compute the reflectance of mixtures.
+
+        Parameters
+        ----------
+        parts : array_like, shape (..., P)
+            Parts of the paints, of which some are greater than 0.
+        thickness : float, optional
+            Thickness of the layer in the unit of the paints, by default opaque.
+        ground : array_like, shape (N,) or ()
+            Reflectance of the ground, by default white.
+
+        Returns
+        -------
+        ndarray, shape (..., N)
+            Reflectance in [0, 1], as it is measured through the surface.
+
+        Raises
+        ------
+        OptionError
+            Parts or thickness are invalid.
+        """
+        parts = np.asarray(parts, dtype=float)
+        if parts.shape[-1:] != (len(self),):
+            raise OptionError(
+                f"parts must have one number for each of {len(self)} paints, "
+                f"got shape {parts.shape}",
+                hint="pass 0 for paints that are not in the mixture",
+            )
+        medium = Medium(thickness, self.surface)
+        backing = np.broadcast_to(ground, self.wavelengths.shape)
+        return coat_of_pigments(self.pigments, parts, medium).over(backing)
+
+    def cost(self, parts: ArrayLike) -> Array:
+        """Return the price (...) of one part of mixtures (..., P); NaN if unknown."""
+        parts = np.asarray(parts, dtype=float)
+        prices = np.array(self.prices or (np.nan,) * len(self))
+        used = np.where(parts > 0, parts * np.where(parts > 0, prices, 0), 0)
+        return np.asarray(used.sum(axis=-1) / parts.sum(axis=-1))
