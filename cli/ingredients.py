@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from uplift.atlas import Atlas
     from uplift.common.arrays import Array
     from uplift.extras.colour.spaces import ImageSpace
+    from uplift.extras.paint import Paints
     from uplift.lookup import Cube
 
 PARTS = re.compile(r"\s*([0-9.+-][0-9.,eE+-]*)\s*:(.*)", re.DOTALL)
@@ -40,6 +41,8 @@ class SpectrumResolver:
     wavelengths: Array
     space: ImageSpace | None = None
     method: str = "error"
+    paints: Paints | None = None
+    """Measured paints, at other wavelengths."""
 
     def ingredient(
         self, word: str, kind: str = "pigment"
@@ -48,16 +51,19 @@ class SpectrumResolver:
         given.
 
         Of the kind 'duntley' the name is a file of constants, which replace the
-        spectrum (6, N). Raises `ColourError` for unknown names, `OptionError` for parts
+        spectrum (6, N), and of the kind 'measured' that of a paint, with K and S
+        (2, N). Raises `ColourError` for unknown names, `OptionError` for parts
         that are not positive, `AtlasError` for files.
         """
+        import numpy as np
+
         from uplift.extras.paint.duntley import read_constants
 
-        entries = (
-            ()
-            if kind == "duntley"
-            else (*self.cube.data.atlas.names, *self.atlas.names)
-        )
+        entries: tuple[str, ...] = ()
+        if self.paints is not None:
+            entries = self.paints.names
+        elif kind != "duntley":
+            entries = (*self.cube.data.atlas.names, *self.atlas.names)
         parts = 1.0
         name = word.strip()
         match = None if name in entries else PARTS.match(name)
@@ -66,6 +72,10 @@ class SpectrumResolver:
             name = match[2].strip()
         if kind == "duntley":
             return name, parts, read_constants(name, self.wavelengths), None
+        if self.paints is not None:
+            paint = self.paints.select([name]).at(self.wavelengths).pigments
+            constants = np.concatenate([paint.absorption, paint.scattering])
+            return name, parts, constants, None
         if name in entries or "/" not in name:
             return name, parts, self.spectrum(name), None
         on_white, on_black = (

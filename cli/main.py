@@ -45,6 +45,7 @@ GROUPS = {
         "bounds": "Compute the bounds of all reflectances of a colour.",
         "advise": "Name the colours of images to measure next.",
         "mix": "Mix colours as spectra: paints, dyes, filters, lights.",
+        "paints": "Fit your own paints to measured samples, and find recipes.",
         "palette": "Design the unknown spectra of a palette.",
     },
     "Scenes and lights": {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     cls=options.Command,
     everyday=(
         "kind",
+        "paints_path",
         "thickness",
         "ground",
         "cube_path",
@@ -62,6 +63,7 @@ if TYPE_CHECKING:
       uplift mix --pigment 2:'#005fa0' 1:'#ffd200'
       uplift mix blue yellow --cube macbeth-32.uplift --plot ramp.png
       uplift mix '#c8342a' --thickness 0.5 --ground '#f0e8d8' --format json
+      uplift mix '3:lemon yellow' '1:deep blue' --paints paints.toml
     \f
 
     \b
@@ -101,6 +103,14 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--additive", "kind", flag_value="light", help="Add lights; PARTS is the intensity."
+)
+@click.option(
+    "--paints",
+    "paints_path",
+    metavar="FILE",
+    type=click.Path(),
+    help="Measured paints by 'uplift paints fit', whose names are the ingredients. The "
+    "surface is theirs unless options state another.",
 )
 @options.number(
     "--thickness",
@@ -174,6 +184,7 @@ if TYPE_CHECKING:
 def command(
     words: Sequence[str],
     kind: str,
+    paints_path: str | None,
     thickness: float | None,
     ground: str | None,
     plate: str | None,
@@ -193,9 +204,14 @@ def command(
     force: bool,
     **surface: Any,
 ) -> None:
-    from uplift.extras.paint import Medium
+    from uplift.extras.paint import Medium, Surface, read_paints
 
     _check_coat(kind, plate)
+    paints = None
+    if paints_path is not None:
+        _check_measured(kind)
+        kind = "measured"
+        paints = read_paints(paints_path)
     if theories:
         _check_theories(kind)
     _check_image(output)
@@ -208,12 +224,16 @@ def command(
         method,
         has_spectrum=not theories and over is None,
     )
+    resolver = replace(resolver, paints=paints)
     recipe = read_recipe(resolver, words, kind)
     if theories:
         print_theories(recipe, method, style)
         return
     law = _scattering_law(scattering, recipe.cube, further)
-    medium = Medium(thickness, _surface(**surface), law, plate is not None)
+    stated = _surface(**surface)
+    if paints is not None and stated == Surface():
+        stated = paints.surface
+    medium = Medium(thickness, stated, law, plate is not None)
     if over is not None and output is not None:
         looks = {"encoding": encoding, "out_of_gamut": method, "space": resolver.space}
         _paint(recipe, medium, scattering, over, output, force=force, **looks)
@@ -249,6 +269,20 @@ def _check_coat(kind: str, plate: str | None) -> None:
         )
     if given >= {"over", "plot_path"}:
         raise click.UsageError("--plot shows a mixture and does not apply to --over.")
+
+
+def _check_measured(kind: str) -> None:
+    excluded = {
+        "files",
+        "input_space",
+        "scattering",
+        "theories",
+    } & options.given().keys()
+    if kind != "pigment" or excluded:
+        raise click.UsageError(
+            "--paints mixes measured paints, without --dye, --duntley, --filter, "
+            "--additive, --theories, --scattering, --atlas and --input-space."
+        )
 
 
 def _check_theories(kind: str) -> None:

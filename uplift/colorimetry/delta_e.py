@@ -41,9 +41,9 @@ def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
     >>> lab([0.95, 1.0, 1.09], [0.95, 1.0, 1.09]).tolist()
     [100.0, 0.0, 0.0]
     """
-    xyz = as_floats(xyz)
-    xp = xyz.__array_namespace__()
-    t = xyz / np.asarray(white, dtype=float)
+    floats = as_floats(xyz)
+    xp = floats.__array_namespace__()
+    t = floats / np.asarray(white, dtype=float)
     threshold = (6 / 29) ** 3
     root = xp.cbrt(xp.maximum(t, threshold))  # whose slope is finite
     line = xp.minimum(t, 1.0) * (29 / 6) ** 2 / 3 + 4 / 29

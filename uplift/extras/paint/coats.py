@@ -29,7 +29,7 @@ from uplift.extras.paint.duntley import Flux, duntley_layer
 from uplift.extras.paint.optics import Layer, Surface
 from uplift.extras.paint.pigments import Pigment, Scattering
 
-COATS = ("pigment", "dye", "duntley")
+COATS = ("pigment", "measured", "dye", "duntley")
 KINDS = (*COATS, "filter", "light")
 # smallest transmittance that the absorption of a dye is derived from; it diverges at 0
 DARKEST = 1e-6
@@ -61,8 +61,8 @@ class Ingredients:
     ----------
     spectra : ndarray of shape (n, N)
         Reflectance of opaque pigments, reflectance of dyes one unit thick on white,
-        transmittance of filters, or power of lights. Of paints by Duntley's theory
-        their constants, (n, 6, N).
+        transmittance of filters, or power of lights. Of measured paints K and S,
+        (n, 2, N), and of paints by Duntley's theory their constants, (n, 6, N).
     on_black : tuple of ndarray of shape (N,) or None, one for each component, optional
         Reflectance on black of the pigments that ``spectra`` gives on white, one unit
         thick. None for the others.
@@ -108,7 +108,7 @@ def make_coat(
 
     Parameters
     ----------
-    kind : {"pigment", "dye", "duntley"}
+    kind : {"pigment", "measured", "dye", "duntley"}
         Kind of the components.
     ingredients : Ingredients
         The n components. A warning states how many are darker than the surface alone at
@@ -144,6 +144,9 @@ def make_coat(
     thickness = 1.0 if medium.thickness is None else medium.thickness
     if kind == "duntley":
         return _duntley_coat(ingredients, parts, thickness, medium.surface)
+    if kind == "measured":
+        pigments = Pigment(ingredients.spectra[:, 0], ingredients.spectra[:, 1])
+        return coat_of_pigments(pigments, parts, medium)
     surface = medium.surface
     spectra = [*ingredients.spectra, *ingredients.measured_on_black]
     dark = sum(bool((surface.remove(colour) < -SLACK).any()) for colour in spectra)
@@ -229,7 +232,7 @@ def mix(
 
     Parameters
     ----------
-    kind : {"pigment", "dye", "duntley", "filter", "light"}
+    kind : {"pigment", "measured", "dye", "duntley", "filter", "light"}
         Kind of the components.
     ingredients : Ingredients
         The n components.

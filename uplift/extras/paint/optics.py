@@ -87,11 +87,11 @@ class Layer:
     def over(self, ground: ArrayLike) -> Array:
         """Return the reflectance (..., N) on a ground (..., N)."""
         xp = self.reflectance.__array_namespace__()
-        ground = xp.asarray(ground, dtype=float)
+        below = xp.asarray(ground, dtype=float)
         # Light travels back and forth between both: R + T² g Σ (R g)^i. The sum
         # diverges only where no light gets.
-        escaping = xp.maximum(1 - self.reflectance * ground, TINY)
-        return self.reflectance + self.transmittance**2 * ground / escaping
+        escaping = xp.maximum(1 - self.reflectance * below, TINY)
+        return self.reflectance + self.transmittance**2 * below / escaping
 
 
 @dataclass(frozen=True, eq=False)

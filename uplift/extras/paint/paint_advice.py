@@ -15,7 +15,7 @@ import numpy as np
 from uplift.colorimetry import delta_e_2000_weights
 from uplift.common.arrays import Array
 from uplift.extras.paint.paint_fit import NOISE, PaintFit
-from uplift.extras.paint.paint_samples import PaintSamples
+from uplift.extras.paint.paint_samples import MeasuredSpectra, PaintSamples
 
 TINT_PARTS = 4
 """Parts of white to one of paint in a tint."""
@@ -74,13 +74,15 @@ def advise_samples(fit: PaintFit, count: int = 5) -> PaintAdvice:
     rows = spectra.reshape(*predicted.shape, -1) / noise[..., None]
     covariance = fit.covariance
     advice = list[NextSample]()
-    for _ in range(min(count, len(names))):
+    left = list(range(len(names)))
+    while left and len(advice) < count:
         # C Hᵀ (H C Hᵀ + 1)⁻¹ H C is what a measurement with the Jacobian H takes off C.
-        updated = [_update(covariance, row) for row in rows]
+        updated = [_update(covariance, rows[row]) for row in left]
         errors = [_mean_error(aims, after) for after in updated]
         best = int(np.argmin(errors))
-        advice.append(NextSample(names[best], errors[best]))
+        advice.append(NextSample(names[left[best]], errors[best]))
         covariance = updated[best]
+        del left[best]
     return PaintAdvice(_mean_error(aims, fit.covariance), tuple(advice))
 
 
@@ -111,7 +113,10 @@ def _pairs(samples: PaintSamples) -> PaintSamples:
     """Return mixtures of any two paints in equal parts."""
     count = len(samples.paints)
     shares = np.array(
-        [(np.eye(count)[list(pair)]).mean(axis=0) for pair in combinations(range(count), 2)]
+        [
+            (np.eye(count)[list(pair)]).mean(axis=0)
+            for pair in combinations(range(count), 2)
+        ]
     )
     return _opaque(samples, shares.reshape(-1, count))
 
@@ -125,6 +130,7 @@ def _opaque(samples: PaintSamples, shares: Array) -> PaintSamples:
         np.full(size, np.inf),
         np.ones((size, len(samples.wavelengths))),
         samples.wavelengths,
+        MeasuredSpectra(np.empty((size, 0))),
     )
 
 
@@ -158,9 +164,6 @@ def _candidates(samples: PaintSamples) -> tuple[list[str], PaintSamples]:
 
 def _lightest(samples: PaintSamples) -> int:
     """Return the paint of the sample of one paint that reflects most, usually white."""
-    measured = samples.reflectances
-    if measured is None:
-        measured = samples.colours
     purity = samples.shares.max(axis=1)
-    light = np.where(purity > 1 - KNOWN, measured.min(axis=1), -1)
+    light = np.where(purity > 1 - KNOWN, samples.measured.values.min(axis=1), -1)
     return int(samples.shares[light.argmax()].argmax())

@@ -11,7 +11,7 @@ is raised until they fit as expected, since the theory or the parts are then the
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,9 +19,14 @@ import numpy as np
 from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.extras.paint.optics import Surface, beneath_surface, through_surface
-from uplift.extras.paint.paint_prior import PaintPrior, paint_prior
-from uplift.extras.paint.paint_samples import PaintSamples
+from uplift.extras.paint.paint_prior import STRENGTH_SPREAD, PaintPrior, paint_prior
+from uplift.extras.paint.paint_samples import (
+    MeasuredColours,
+    MeasuredSpectra,
+    PaintSamples,
+)
 from uplift.extras.paint.paints import Paints
 from uplift.extras.paint.pigments import Pigment
 
@@ -132,12 +137,14 @@ class FitModel:
 
     def residuals(self, z: Any, samples: PaintSamples, noise: float) -> Any:
         """Return the differences (m,) to the measured values in units of noise."""
-        if samples.reflectances is not None:
-            spread = NOISE[0] + NOISE[1] * samples.reflectances
-            difference = self.reflectances(z, samples) - samples.reflectances
-            return (difference / (noise * spread)).ravel()
-        difference = self.colours(z, samples) - _lab(samples.colours, self.sensor)
-        return (difference / (noise * COLOUR_NOISE)).ravel()
+        values = samples.measured.values
+        if isinstance(samples.measured, MeasuredSpectra):
+            spread = NOISE[0] + NOISE[1] * values
+            difference = (self.reflectances(z, samples) - values) / spread
+        else:
+            target = _lab(values, self.sensor)
+            difference = (self.colours(z, samples) - target) / COLOUR_NOISE
+        return (difference / noise).ravel()
 
 
 def fit_paints(
@@ -145,7 +152,7 @@ def fit_paints(
     *,
     surface: Surface | None = None,
     guess: Callable[[Array, Array], Array] | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: ProgressCallback = ignore_progress,
 ) -> PaintFit:
     """Fit the absorption and scattering of paints to measured samples.
 
@@ -159,7 +166,7 @@ def fit_paints(
         Reflectances (n, N) of linear sRGB (n, 3) at wavelengths (N,), for samples of
         which only colours are known. By default those of the packaged cube.
     progress : callable, optional
-        Receives the rounds done and their number.
+        Receives a `Progress` of stage ``paints`` after each round.
 
     Returns
     -------
@@ -178,9 +185,9 @@ def fit_paints(
     """
     nm = samples.wavelengths
     sensor = observer.sensor(wavelengths=(nm[0], nm[-1], nm[1] - nm[0]))
-    spectra = samples.reflectances
-    if spectra is None:
-        spectra = (guess or _packaged_guess)(samples.colours, nm)
+    spectra = samples.measured.values
+    if isinstance(samples.measured, MeasuredColours):
+        spectra = (guess or _packaged_guess)(spectra, nm)
     expected = surface or Surface(0.0, INSIDE)
     prior = paint_prior(samples, spectra, expected, sensor)
     darkest = float(np.clip(np.quantile(spectra, DARKEST), 0, MAX_OUTSIDE))
@@ -198,7 +205,7 @@ def fit_paints(
 def _fit(
     samples: PaintSamples,
     model: FitModel,
-    progress: Callable[[int, int], None] | None,
+    progress: ProgressCallback,
 ) -> PaintFit:
     import jax
 
@@ -211,9 +218,9 @@ def _fit(
         z = np.asarray(optimum)
         jacobian = np.asarray(derivative)
         residuals = np.asarray(model.residuals(z, samples, noise))
-        covariance = np.linalg.inv(jacobian.T @ jacobian + np.eye(model.count))
-        if progress is not None:
-            progress(done + 1, ROUNDS)
+        precision = jacobian.T @ jacobian + np.eye(model.count)
+        covariance: Array = np.linalg.inv(precision).astype(float)
+        progress(Progress("paints", done + 1, ROUNDS))
         # The trace counts the variables that the samples, not the prior, determine.
         determined = model.count - np.trace(covariance)
         freedom = max(len(residuals) - determined, 1.0)
@@ -250,7 +257,9 @@ def _solver(
             residuals, solver, start, noise, max_steps=MAX_STEPS, throw=False
         )
         optimum = solution.value
-        return optimum, jax.jacfwd(lambda z: model.residuals(z, samples, noise))(optimum)
+        return optimum, jax.jacfwd(lambda z: model.residuals(z, samples, noise))(
+            optimum
+        )
 
     return solve
 
@@ -258,31 +267,43 @@ def _solver(
 def _paints(
     samples: PaintSamples, model: FitModel, z: Array, covariance: Array
 ) -> Paints:
-    prior = model.prior
-    paints, count = prior.log_scattering.shape
-    size = 2 * count + 1
-    root = np.linalg.cholesky(covariance)
-    errors = np.empty((2, paints, count))
-    for paint in range(paints):
-        rows = root[paint * size : (paint + 1) * size]
-        log_S = rows[0] + prior.scattering_root @ rows[1 : count + 1]
-        log_ratio = prior.ratio_root @ rows[count + 1 :]
-        errors[0, paint] = np.linalg.norm(log_S + log_ratio, axis=1)
-        errors[1, paint] = np.linalg.norm(log_S, axis=1)
     outside, inside = model.surface_of(z)
+    errors = _relative_errors(samples, model.prior, covariance)
     return Paints(
         samples.paints,
         samples.wavelengths,
         model.pigments(z),
         Surface(float(outside), float(inside)),
-        Pigment(*errors),
+        errors,
     )
 
 
+def _relative_errors(samples: PaintSamples, prior: PaintPrior, root: Array) -> Pigment:
+    """Return the standard errors of log K and log S, from a root (d, d) of the
+    covariance of the variables.
+
+    Opaque samples do not change if K and S of all paints have a common factor at some
+    wavelength, so that their errors are those beside it.
+    """
+    paints, count = prior.log_scattering.shape
+    size = 2 * count + 1
+    root = np.linalg.cholesky(covariance)
+    rows = root[: paints * size].reshape(paints, size, -1)
+    unit = prior.unit_spread * root[paints * size]
+    factor = STRENGTH_SPREAD * rows[:, :1] + unit
+    log_S = factor + prior.scattering_root @ rows[:, 1 : count + 1]
+    log_K = log_S + prior.ratio_root @ rows[:, count + 1 :]
+    if samples.is_opaque.all():
+        common = log_S.mean(axis=0)
+        log_S = log_S - common
+        log_K = log_K - common
+    return Pigment(np.linalg.norm(log_K, axis=-1), np.linalg.norm(log_S, axis=-1))
+
+
 def _measured_lab(samples: PaintSamples, model: FitModel) -> Array:
-    rgb = samples.colours
-    if rgb is None:
-        rgb = np.clip(model.sensor.rgb(samples.reflectances), 0, 1)
+    rgb = samples.measured.values
+    if isinstance(samples.measured, MeasuredSpectra):
+        rgb = np.clip(model.sensor.rgb(rgb), 0, 1)
     return np.asarray(_lab(rgb, model.sensor))
 
 

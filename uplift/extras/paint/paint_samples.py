@@ -23,7 +23,28 @@ GROUNDS = {"white": 1.0, "black": 0.0}
 RANGE = (380.0, 780.0)
 """Wavelengths in nm that are used."""
 STEP = 10.0
-"""Step in nm of the spectra of paints that are known by their colours."""
+"""Step in nm where the file has no even one, or only colours."""
+FINEST = 5.0
+"""Smallest step in nm that is kept."""
+EVEN = 1e-6
+"""Tolerance of even steps in nm."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredSpectra:
+    """Reflectances (n, N) of samples."""
+
+    values: Array
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredColours:
+    """Linear sRGB (n, 3) of samples whose reflectances are not known."""
+
+    values: Array
+
+
+Measured = MeasuredSpectra | MeasuredColours
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,10 +65,8 @@ class PaintSamples:
         Reflectance of the ground below each film.
     wavelengths : ndarray, shape (N,)
         Wavelengths in nm.
-    reflectances : ndarray, shape (n, N), optional
-        Measured reflectances.
-    colours : ndarray, shape (n, 3), optional
-        Linear sRGB, where no reflectances are known.
+    measured : MeasuredSpectra or MeasuredColours
+        What was measured of the n samples.
     """
 
     names: tuple[str, ...]
@@ -56,8 +75,7 @@ class PaintSamples:
     thickness: Array
     grounds: Array
     wavelengths: Array
-    reflectances: Array | None = None
-    colours: Array | None = None
+    measured: Measured
 
     def __len__(self) -> int:
         return len(self.names)
@@ -70,8 +88,6 @@ class PaintSamples:
     def select(self, rows: Sequence[int]) -> "PaintSamples":
         """Return some of the samples, of the same paints."""
         rows = list(rows)
-        spectra = None if self.reflectances is None else self.reflectances[rows]
-        colours = None if self.colours is None else self.colours[rows]
         return PaintSamples(
             tuple(self.names[row] for row in rows),
             self.paints,
@@ -79,8 +95,7 @@ class PaintSamples:
             self.thickness[rows],
             self.grounds[rows],
             self.wavelengths,
-            spectra,
-            colours,
+            type(self.measured)(self.measured.values[rows]),
         )
 
 
@@ -118,10 +133,10 @@ def read_paint_samples(path: StrPath, recipes: StrPath | None = None) -> PaintSa
             "give samples the same names in both files",
             code="recipe-without-sample",
         )
-    measured = [entry for entry in atlas if entry.name in by_name]
+    entries = [entry for entry in atlas if entry.name in by_name]
     wavelengths = _common_grid(atlas)
-    spectra = on_grid(Atlas(tuple(measured)), wavelengths)
-    kept = [by_name[entry.name] for entry in measured]
+    spectra = on_grid(Atlas(tuple(entries)), wavelengths)
+    kept = [by_name[entry.name] for entry in entries]
     backings = {
         recipe.name: spectrum
         for recipe, spectrum in zip(kept, spectra, strict=True)
@@ -129,7 +144,8 @@ def read_paint_samples(path: StrPath, recipes: StrPath | None = None) -> PaintSa
     }
     rows = [row for row, recipe in enumerate(kept) if not recipe.is_ground]
     painted = [kept[row] for row in rows]
-    return _samples(table, painted, wavelengths, backings, reflectances=spectra[rows])
+    measured = MeasuredSpectra(spectra[rows])
+    return _samples(table, painted, wavelengths, backings, measured)
 
 
 def _coloured_samples(table: RecipeTable) -> PaintSamples:
@@ -143,8 +159,8 @@ def _coloured_samples(table: RecipeTable) -> PaintSamples:
                 "write '#cc3319'",
             )
         colours.append(list(bytes.fromhex(recipe.colour[1:])))
-    linear = decode(np.array(colours) / 255)
-    return _samples(table, painted, wavelengths, {}, colours=linear)
+    measured = MeasuredColours(decode(np.array(colours).reshape(-1, 3) / 255))
+    return _samples(table, painted, wavelengths, {}, measured)
 
 
 def _samples(
@@ -152,9 +168,7 @@ def _samples(
     recipes: Sequence[Recipe],
     wavelengths: Array,
     backings: dict[str, Array],
-    *,
-    reflectances: Array | None = None,
-    colours: Array | None = None,
+    measured: Measured,
 ) -> PaintSamples:
     if not recipes:
         raise table.location.error(
@@ -179,15 +193,20 @@ def _samples(
         np.array([recipe.thickness for recipe in recipes]),
         np.array(grounds),
         wavelengths,
-        reflectances,
-        colours,
+        measured,
     )
 
 
 def _common_grid(atlas: Atlas) -> Array:
-    """Return the wavelengths of the coarsest entry in the range that all have."""
+    """Return evenly spaced wavelengths in the range that all entries have, in the step
+    of the coarsest one, or in `STEP` if it has none.
+    """
     first = max(RANGE[0], *(entry.wavelengths[0] for entry in atlas))
     last = min(RANGE[1], *(entry.wavelengths[-1] for entry in atlas))
     coarsest = min(atlas, key=lambda entry: len(entry.wavelengths))
-    nm = coarsest.wavelengths
-    return np.asarray(nm[(nm >= first) & (nm <= last)])
+    nm = np.asarray(coarsest.wavelengths)
+    inside = nm[(nm >= first) & (nm <= last)]
+    steps = np.diff(inside)
+    if np.ptp(steps) < EVEN and steps[0] >= FINEST:
+        return inside
+    return np.arange(np.ceil(first / STEP) * STEP, last + EVEN, STEP)

@@ -138,3 +138,15 @@ class Paints:
         prices = np.array(self.prices or (np.nan,) * len(self))
         used = np.where(parts > 0, parts * np.where(parts > 0, prices, 0), 0)
         return np.asarray(used.sum(axis=-1) / parts.sum(axis=-1))
+
+
+def strengths(paints: Paints, white: int) -> Array:
+    """Return how strongly each paint (P,) tints a white one: the parts of white to one
+    of paint at which the mixture absorbs as much as it scatters, where it absorbs most.
+    """
+    K = paints.pigments.absorption
+    S = paints.pigments.scattering
+    strongest = K.argmax(axis=1)
+    rows = np.arange(len(paints))
+    excess = K[rows, strongest] - S[rows, strongest]
+    return np.maximum(excess, 0) / (S[white, strongest] - K[white, strongest])

@@ -21,7 +21,7 @@ FORMAT: Literal["uplift paints 1"] = "uplift paints 1"
 HINT = "fit the paints again"
 MAX_PAINTS = 1000
 MAX_SAMPLES = 1000
-HEAD = """# Paints by uplift paints fit: absorption and scattering per unit of thickness.
+HEAD = """# Paints by uplift paints fit: absorption and scattering per unit thickness.
 # A price of a part may be added to each paint, such as: price = 0.35
 """
 
@@ -107,7 +107,7 @@ class _PaintTable(SpecModel):
 class _PaintsTable(SpecModel):
     format: Literal["uplift paints 1"]
     wavelengths: _Wavelengths
-    notes: list[str] = []
+    notes: tuple[str, ...] = ()
     surface: _SurfaceTable = _SurfaceTable()
     paints: Annotated[list[_PaintTable], Field(min_length=1, max_length=MAX_PAINTS)]
 
@@ -176,5 +176,5 @@ def read_paints(path: StrPath) -> Paints:
         Surface(table.surface.outside, table.surface.inside),
         errors,
         tuple(prices) if np.isfinite(prices).any() else (),
-        tuple(table.notes),
+        table.notes,
     )

@@ -17,9 +17,11 @@ from uplift.extras.paint.coats import MAX_THICKNESS
 
 COLOUR_LABELS = ("colour", "color", "hex", "srgb")
 OTHER_LABELS = frozenset(
-    ("l", "l*", "a*", "b*", "c*", "h", "h*", "x", "y", "z", "r", "g", "rgb", "date")
-    + ("time", "comment", "notes", "description", "instrument", "operator")
-)
+    (
+        "l", "l*", "a*", "b*", "c*", "h", "h*", "x", "y", "z", "r", "g", "rgb",
+        "date", "time", "comment", "notes", "description", "instrument", "operator",
+    )
+)  # fmt: skip
 """Columns that are not paints, in lower case."""
 
 
@@ -101,7 +103,9 @@ def _columns(
         is_wavelength = parse_label(head[column]) is not None
         if column == name or is_known or is_other or is_wavelength:
             continue
-        cells = [row[column] for _, row in rows if row is not head and column < len(row)]
+        cells = [
+            row[column] for _, row in rows if row is not head and column < len(row)
+        ]
         if not all(_is_amount(cell) for cell in cells):
             continue
         if head[column] in paints:
@@ -147,7 +151,8 @@ def _recipes(
         )
         if not np.isfinite(parts).all():
             raise location.at(line, name).error(
-                f"parts must be finite, got {listed(map(str, parts))}", "correct them"
+                f"parts must be finite, got {listed(list(map(str, parts)))}",
+                "correct them",
             )
         yield Recipe(
             name,

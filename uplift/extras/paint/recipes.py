@@ -8,7 +8,7 @@ parts are tried as well. Of up to two paints the grid is dense enough that no be
 shares exist; of more, the best of several starts is not proven to be the best.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 
@@ -35,6 +35,10 @@ STARTS = 3
 STEPS = 12
 LARGEST = 9.0
 """Largest logarithm of a ratio."""
+LONGEST = 2.0
+"""Largest change of a logarithm in a step."""
+DAMPING = (1e-9, 1e3)
+"""Limits of the damping, relative to the trace of the normal equations."""
 DIFFERENCE = 1e-5
 """Change of a logarithm by which derivatives are computed."""
 FIRST_DAMPING = 1e-3
@@ -45,6 +49,9 @@ KEPT = 200
 """Sets whose shares are rounded to parts."""
 NEARLY = 0.1
 """ΔE00 by which a recipe of fewer parts may be worse."""
+
+
+Residuals = Callable[[Array], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,7 +174,8 @@ def _check(paints: Paints, count: int, steps: int, alternatives: int) -> None:
         sets *= (len(paints) - taken) / (taken + 1)
     if sets > MAX_SETS:
         raise OptionError(
-            f"{len(paints)} paints have {sets:.0f} sets of {count}, more than {MAX_SETS}",
+            f"{len(paints)} paints have {sets:.0f} sets of {count}, more than "
+            f"{MAX_SETS}",
             code="too-many-recipes",
             hint="allow fewer paints in a mixture, or choose from fewer",
         )
@@ -175,7 +183,7 @@ def _check(paints: Paints, count: int, steps: int, alternatives: int) -> None:
 
 @dataclass(frozen=True, eq=False)
 class _Problem:
-    """Mixtures as colours under the lights of a target, (m, L, 3) each."""
+    """Mixtures (m, P) as colours (m, L, 3) under the lights of a target."""
 
     target: PaintTarget
     paints: Paints
@@ -226,49 +234,55 @@ def _solve(problem: _Problem, sets: Indices) -> tuple[Array, Array]:
     grid = np.array(list(product(levels, repeat=size - 1)), dtype=float)
     repeated = np.repeat(sets, len(grid), axis=0)
     starts = np.tile(grid, (len(sets), 1))
-    tried = problem.residuals(problem.spread(repeated, _shares(starts)))
+    tried = problem.residuals(problem.spread(repeated, shares_of(starts)))
     sums = (tried**2).sum(axis=1).reshape(len(sets), len(grid))
     best = np.argsort(sums, axis=1)[:, :STARTS]
     followed = np.repeat(sets, best.shape[1], axis=0)
-    ratios, squares = _descend(problem, followed, grid[best.ravel()])
+
+    def residuals(ratios: Array) -> Array:
+        return problem.residuals(problem.spread(followed, shares_of(ratios)))
+
+    ratios, squares = descend(residuals, grid[best.ravel()])
     squares = squares.reshape(best.shape)
     chosen = squares.argmin(axis=1)
     ratios = ratios.reshape(*best.shape, size - 1)[np.arange(len(sets)), chosen]
-    return _shares(ratios), squares.min(axis=1)
+    return shares_of(ratios), squares.min(axis=1)
 
 
-def _descend(problem: _Problem, sets: Indices, ratios: Array) -> tuple[Array, Array]:
+def descend(residuals: Residuals, ratios: Array) -> tuple[Array, Array]:
     """Follow Levenberg–Marquardt steps from logarithms of ratios (m, k − 1) to those
     of a smaller sum of squares, and return both.
+
+    ``residuals`` maps them to residuals (m, r), each row by itself.
     """
-    residuals = problem.residuals(problem.spread(sets, _shares(ratios)))
-    squares = (residuals**2).sum(axis=1)
-    damping = np.full(len(sets), FIRST_DAMPING)
+    values = residuals(ratios)
+    squares = (values**2).sum(axis=1)
+    damping = np.full(len(ratios), FIRST_DAMPING)
     count = ratios.shape[1]
     for _ in range(STEPS if count else 0):
         columns = []
         for column in range(count):
             moved = ratios + DIFFERENCE * np.eye(count)[column]
-            changed = problem.residuals(problem.spread(sets, _shares(moved)))
-            columns.append((changed - residuals) / DIFFERENCE)
+            columns.append((residuals(moved) - values) / DIFFERENCE)
         jacobian = np.stack(columns, axis=2)
         normal = jacobian.mT @ jacobian
         scale = np.trace(normal, axis1=1, axis2=2) + TINY
         damped = normal + (damping * scale)[:, None, None] * np.eye(count)
-        slope = (jacobian.mT @ residuals[..., None])[..., 0]
+        slope = (jacobian.mT @ values[..., None])[..., 0]
         step = np.linalg.solve(damped, -slope[..., None])[..., 0]
-        trial = np.clip(ratios + np.clip(step, -2, 2), -LARGEST, LARGEST)
-        changed = problem.residuals(problem.spread(sets, _shares(trial)))
+        limited = np.clip(step, -LONGEST, LONGEST)
+        trial = np.clip(ratios + limited, -LARGEST, LARGEST)
+        changed = residuals(trial)
         trial_squares = (changed**2).sum(axis=1)
         is_better = trial_squares < squares
         ratios = np.where(is_better[:, None], trial, ratios)
-        residuals = np.where(is_better[:, None], changed, residuals)
+        values = np.where(is_better[:, None], changed, values)
         squares = np.where(is_better, trial_squares, squares)
-        damping = np.clip(damping * np.where(is_better, 0.2, 8), 1e-9, 1e3)
+        damping = np.clip(damping * np.where(is_better, 0.2, 8), *DAMPING)
     return ratios, squares
 
 
-def _shares(ratios: Array) -> Array:
+def shares_of(ratios: Array) -> Array:
     """Return shares (m, k) of logarithms (m, k − 1) of their ratios to the first."""
     logarithms = np.concatenate([np.zeros((len(ratios), 1)), ratios], axis=1)
     weights = np.exp(logarithms - logarithms.max(axis=1, keepdims=True))
