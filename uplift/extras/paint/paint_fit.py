@@ -278,9 +278,11 @@ def _paints(
     )
 
 
-def _relative_errors(samples: PaintSamples, prior: PaintPrior, root: Array) -> Pigment:
-    """Return the standard errors of log K and log S, from a root (d, d) of the
-    covariance of the variables.
+def _relative_errors(
+    samples: PaintSamples, prior: PaintPrior, covariance: Array
+) -> Pigment:
+    """Return the standard errors of log K and log S, from the covariance (d, d)
+    of the variables.
 
     Opaque samples do not change if K and S of all paints have a common factor at some
     wavelength, so that their errors are those beside it.

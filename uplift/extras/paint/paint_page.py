@@ -1,0 +1,88 @@
+"""A page that mixes measured paints in the browser: tubes with sliders, the mixture
+opaque and as a film on white and black, under three lights, and recipes for a colour.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from uplift.colorimetry import observer
+from uplift.colorimetry.tables import bradford
+from uplift.common.arrays import Array
+from uplift.common.files import write_text
+from uplift.extras.colour.light_sets import DESCRIPTIONS
+from uplift.extras.colour.srgb import hex_codes
+from uplift.extras.pages.html import render, resource
+from uplift.extras.paint.paints import Paints
+
+LIGHTS = ("D65", "A", "FL11")
+WAVELENGTHS = (400.0, 700.0, 10.0)
+TINT_PARTS = 4
+SCRIPTS = (
+    "extras/pages/page.js",
+    "extras/pages/draw.js",
+    "extras/paint/colour_difference.js",
+    "extras/paint/paint_page.js",
+)
+
+
+def write_page(paints: Paints, path: Path, *, force: bool = False) -> None:
+    """Write the page of paints."""
+    write_text(page(paints), path, force=force)
+
+
+def page(paints: Paints) -> str:
+    """Render the page of paints.
+
+    Parameters
+    ----------
+    paints : Paints
+        The paints.
+
+    Returns
+    -------
+    str
+        A page that needs no other file.
+    """
+    screen = observer.sensor(wavelengths=WAVELENGTHS)
+    sampled = paints.at(screen.wavelengths)
+    own = sampled.reflectance(np.eye(len(paints)))
+    white = int(own.min(axis=1).argmax())
+    tint_parts = np.eye(len(paints)) + TINT_PARTS * np.eye(len(paints))[white]
+    masstones = hex_codes(screen.rgb(own))
+    tints = hex_codes(screen.rgb(sampled.reflectance(tint_parts)))
+    tubes = zip(paints.names, masstones, tints, strict=True)
+    lights = [_light(name, screen.light.white, screen.xyz_to_rgb) for name in LIGHTS]
+    numbers = {
+        "names": paints.names,
+        "wavelengths": screen.wavelengths.tolist(),
+        "absorption": sampled.pigments.absorption.tolist(),
+        "scattering": sampled.pigments.scattering.tolist(),
+        "outside": paints.surface.outside,
+        "inside": paints.surface.inside,
+        "lights": lights,
+    }
+    return render(
+        "extras/paint/templates/paint_page.html.j2",
+        title="Mix paints",
+        lead="Squeeze paints from their tubes, or ask for the recipe of a colour.",
+        tubes=list(tubes),
+        lights=[
+            (name, DESCRIPTIONS.get(name, "daylight" if name == "D65" else ""))
+            for name in LIGHTS
+        ],
+        numbers=numbers,
+        script=resource(*SCRIPTS),
+    )
+
+
+def _light(name: str, display: Array, xyz_to_rgb: Array) -> dict[str, object]:
+    """Return weights to XYZ and, with the white adapted, to linear sRGB."""
+    light = observer.light(name, observer.DEFAULT_OBSERVER, *WAVELENGTHS)
+    to_rgb = xyz_to_rgb @ bradford(light.white, display)
+    return {
+        "name": name,
+        "xyz": light.xyz.tolist(),
+        "white": light.white.tolist(),
+        "toRgb": to_rgb.tolist(),
+    }
