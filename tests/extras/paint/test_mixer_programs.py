@@ -1,12 +1,14 @@
 """Exported mixers: the same numbers as in Python, and defined ones for bad input."""
 
+import json
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.extras.paint import run_mixer
 from tests.helpers import near_black, output_of, raises, with_absent_points
-from tests.parts import GLSLANG, need
+from tests.parts import GLSLANG, NODE, need
 from uplift.common.errors import OptionError, OutputError, UnknownNameError
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.paint.mixer_programs import write_mixer
@@ -110,6 +112,19 @@ def test_what_is_not_a_number_is_0(folder):
     zero = np.array([[[0.0] * 3] * 2, [[1, 0.5, 0]] * 2])
     assert_array_equal(found[:, 0], run_mixer.c(path, zero, np.array([0, 0.5]))[:, 0])
     assert_array_equal(found[0, 1], 0)  # no positive part
+
+
+def test_what_is_not_a_number_is_0_in_javascript(folder):
+    need(NODE)
+    (folder / "nan.mjs").write_text(
+        "import { mix, mixAll } from './paint.mjs';\n"
+        "const bad = mix([NaN, Infinity, -Infinity], [undefined, 0.5, 1], NaN);\n"
+        "const clipped = mix([0, 1, 0], [0, 0.5, 1], 0);\n"
+        "console.log(JSON.stringify([bad, clipped, mixAll([bad], [NaN])]));\n"
+    )
+    bad, clipped, nothing = json.loads(output_of("node", folder / "nan.mjs"))
+    assert bad == clipped
+    assert nothing == [0, 0, 0]
 
 
 @pytest.mark.parametrize(

@@ -84,7 +84,18 @@ class RgbMixer:
         )
 
     def colour(self, latent: ArrayLike) -> Array:
-        """Return the linear RGB (..., 3) in [0, 1] of latent vectors (..., SIZE)."""
+        """Return the colours of latent vectors.
+
+        Parameters
+        ----------
+        latent : array_like of shape (..., SIZE)
+            Latent vectors, or sums of them.
+
+        Returns
+        -------
+        ndarray of shape (..., 3)
+            Linear RGB, clipped to [0, 1].
+        """
         K, S, R, rgb = np.split(
             np.asarray(latent, dtype=float), (BANDS, 2 * BANDS, 3 * BANDS), axis=-1
         )

@@ -33,7 +33,10 @@ export const SIZE = 3 * BANDS + 3;
 /* Latent numbers of linear RGB: absorption, scattering and reflectance in bands, and RGB. They mix as numbers do: a colour
    that is mixed often, such as that of a brush, has them computed once. */
 export function latent(rgb) {
-  const numbers = new Float64Array(SIZE);
+  return fill(rgb, new Float64Array(SIZE));
+}
+
+function fill(rgb, numbers) {
   const offset = [0, 0, 0];
   let node = 0;
   for (let c = 0; c < 3; ++c) {
@@ -44,20 +47,21 @@ export function latent(rgb) {
     node = node * DIM + cell;
     numbers[3 * BANDS + c] = inside;
   }
-  for (let corner = 0; corner < 8; ++corner) {
-    const r = corner >> 2, g = (corner >> 1) & 1, b = corner & 1;
-    const weight =
-      (r ? offset[0] : 1 - offset[0]) * (g ? offset[1] : 1 - offset[1]) * (b ? offset[2] : 1 - offset[2]);
-    const first = STRIDE * (node + (r * DIM + g) * DIM + b);
-    for (let k = 0; k < BANDS; ++k) {
-      numbers[2 * BANDS + k] += weight * TABLE[first + k];
-      numbers[BANDS + k] += weight * TABLE[first + BANDS + k];
-    }
+  const r1 = offset[0], g1 = offset[1], b1 = offset[2];
+  const r0 = 1 - r1, g0 = 1 - g1, b0 = 1 - b1;
+  const w00 = r0 * g0, w01 = r0 * g1, w10 = r1 * g0, w11 = r1 * g1;
+  const r0g0 = STRIDE * node, r0g1 = r0g0 + STRIDE * DIM;
+  const r1g0 = r0g0 + STRIDE * DIM * DIM, r1g1 = r1g0 + STRIDE * DIM;
+  for (let k = 0; k < STRIDE; ++k) {
+    const next = k + STRIDE;
+    numbers[BANDS + k] =
+      b0 * (w00 * TABLE[r0g0 + k] + w01 * TABLE[r0g1 + k] + w10 * TABLE[r1g0 + k] + w11 * TABLE[r1g1 + k]) +
+      b1 * (w00 * TABLE[r0g0 + next] + w01 * TABLE[r0g1 + next] + w10 * TABLE[r1g0 + next] + w11 * TABLE[r1g1 + next]);
   }
   for (let k = 0; k < BANDS; ++k) {
-    const R = (numbers[2 * BANDS + k] * UNITS[0]) ** 2;
-    const S = (numbers[BANDS + k] * UNITS[1]) ** 2;
-    numbers[k] = (S * (1 - R) ** 2) / (2 * R); /* Kubelka and Munk: R is that of K and S */
+    const root = numbers[BANDS + k] * UNITS[0], scatteringRoot = numbers[2 * BANDS + k] * UNITS[1];
+    const R = root * root, S = scatteringRoot * scatteringRoot;
+    numbers[k] = (S * (1 - R) * (1 - R)) / (2 * R); /* Kubelka and Munk: R is that of K and S */
     numbers[BANDS + k] = S;
     numbers[2 * BANDS + k] = R;
   }
@@ -72,7 +76,7 @@ export function colour(numbers) {
     const change = S / (K + S + Math.sqrt(K * (K + 2 * S)) + 1e-30) - numbers[2 * BANDS + k];
     for (let c = 0; c < 3; ++c) rgb[c] += change * TO_RGB[c][k];
   }
-  return rgb.map(clip);
+  return [clip(rgb[0]), clip(rgb[1]), clip(rgb[2])];
 }
 
 /* Sum of latents by parts, which need not have the sum 1; without a positive part, black. */
@@ -86,12 +90,15 @@ export function mixLatents(latents, parts) {
   return sum;
 }
 
+const ONE = new Float64Array(SIZE), OTHER = new Float64Array(SIZE);
+
 /* Mix two colours, linear RGB; the share is that of the second, in [0, 1]. */
 export function mix(first, second, share) {
   const t = clip(share);
-  const one = latent(first), other = latent(second);
-  for (let k = 0; k < SIZE; ++k) one[k] = (1 - t) * one[k] + t * other[k];
-  return colour(one);
+  fill(first, ONE);
+  fill(second, OTHER);
+  for (let k = 0; k < SIZE; ++k) ONE[k] = (1 - t) * ONE[k] + t * OTHER[k];
+  return colour(ONE);
 }
 
 /* Mix any number of colours, linear RGB, by their parts. */
