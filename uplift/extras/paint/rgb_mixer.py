@@ -125,9 +125,10 @@ class RgbMixer:
             A share is outside [0, 1].
         """
         t = np.asarray(share, dtype=float)
-        if not ((t >= 0) & (t <= 1)).all():
+        inside = (t >= 0) & (t <= 1)
+        if not inside.all():
             raise OptionError(
-                f"share must be in [0, 1], got {t.tolist()}",
+                f"share must be in [0, 1], got {t[~inside][0]:g}",
                 hint="0 is the first colour, 1 the second",
             )
         t = t[..., None]

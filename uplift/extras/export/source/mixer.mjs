@@ -36,21 +36,18 @@ export function latent(rgb) {
   return fill(rgb, new Float64Array(SIZE));
 }
 
+/* Place of a component between the nodes, and the node below it. */
+const position = component => Math.sqrt(component) * (DIM - 1);
+const cell = place => Math.min(place | 0, DIM - 2);
+
 function fill(rgb, numbers) {
-  const offset = [0, 0, 0];
-  let node = 0;
-  for (let c = 0; c < 3; ++c) {
-    const inside = clip(rgb[c]);
-    const position = Math.sqrt(inside) * (DIM - 1);
-    const cell = Math.min(Math.floor(position), DIM - 2);
-    offset[c] = position - cell;
-    node = node * DIM + cell;
-    numbers[3 * BANDS + c] = inside;
-  }
-  const r1 = offset[0], g1 = offset[1], b1 = offset[2];
+  const red = clip(rgb[0]), green = clip(rgb[1]), blue = clip(rgb[2]);
+  const r = position(red), g = position(green), b = position(blue);
+  const i = cell(r), j = cell(g), l = cell(b);
+  const r1 = r - i, g1 = g - j, b1 = b - l;
   const r0 = 1 - r1, g0 = 1 - g1, b0 = 1 - b1;
   const w00 = r0 * g0, w01 = r0 * g1, w10 = r1 * g0, w11 = r1 * g1;
-  const r0g0 = STRIDE * node, r0g1 = r0g0 + STRIDE * DIM;
+  const r0g0 = STRIDE * ((i * DIM + j) * DIM + l), r0g1 = r0g0 + STRIDE * DIM;
   const r1g0 = r0g0 + STRIDE * DIM * DIM, r1g1 = r1g0 + STRIDE * DIM;
   for (let k = 0; k < STRIDE; ++k) {
     const next = k + STRIDE;
@@ -65,6 +62,9 @@ function fill(rgb, numbers) {
     numbers[BANDS + k] = S;
     numbers[2 * BANDS + k] = R;
   }
+  numbers[3 * BANDS] = red;
+  numbers[3 * BANDS + 1] = green;
+  numbers[3 * BANDS + 2] = blue;
   return numbers;
 }
 
