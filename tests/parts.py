@@ -140,4 +140,7 @@ NVCC = Part(
     "the CUDA toolkit",
     partial(_compile, "a.cu", EMPTY_KERNEL, "nvcc -ptx a.cu"),
 )
+NODE = Part(
+    "Node.js", "apt install nodejs", partial(_compile, "a.mjs", "", "node a.mjs")
+)
 GLSLANG = Part("glslangValidator", "apt install glslang-tools", _glslang)

@@ -64,6 +64,7 @@ HELP = """Write a cube in a format that other tools read.
       uplift build --coefficients 3 --warp colour --dim 33 -o three.uplift
       uplift export three.uplift -o fourier.png
       uplift export macbeth-32.uplift -o film.npy
+      uplift export macbeth-32.uplift -o paint.h --format mixer-c
       uplift export macbeth-32.uplift --format csv
       uplift export --runtime uplift.h
     """
@@ -89,7 +90,7 @@ HELP = """Write a cube in a format that other tools read.
     type=options.WHOLE,
     help=(
         "Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier "
-        "33, film 192]"
+        "33, film 192, mixers 17]"
     ),
 )
 @click.option(

@@ -25,6 +25,8 @@ def cube(home, cubes):
         ("npz", "npz", b"PK"),
         ("csv", "csv", b"r,g,b"),
         ("html", "html", b"<!DOCTYPE"),
+        ("mixer-c", "h", b"/* Mixes RGB"),
+        ("mixer-js", "mjs", b"/* Mixes RGB"),
     ],
 )
 def test_formats_and_default_names(run, home, cube, style, suffix, first):
@@ -55,6 +57,7 @@ def test_the_table_of_a_program_is_a_choice(run, refuse, home, cube):
         ("c.uplift", "c.uplift --format csv", "output-is-input"),
         ("c.bin", "c.glsl", "output-is-input"),
         ("c.bin", "c.h --table file", "output-is-input"),
+        ("c.bin", "c.glsl --format mixer-glsl", "output-is-input"),
         ("c.toml", "c.npy", "output-is-input"),
         ("c.glsl", "c.png", "output-is-input"),
         ("c.uplift", "c.bin --format c --table file", "output"),

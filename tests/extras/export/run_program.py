@@ -69,7 +69,8 @@ void main() {{
 WEBGL = """(() => {
   const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
   const floats = text => new Float32Array(bytes(text).buffer);
-  const { code, table, rows, columns, colours, side } = DATA;
+  const data = DATA;
+  const { code, table, colours, side } = data;
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width: side, height: side });
   const gl = canvas.getContext("webgl2");
@@ -99,7 +100,7 @@ WEBGL = """(() => {
       gl.texParameteri(gl.TEXTURE_2D, side, gl.NEAREST);
     if (name) gl.uniform1i(gl.getUniformLocation(program, name), unit);
   };
-  upload(2, "cube_table", columns, rows, floats(table));
+  UPLOAD
   upload(0, "colours", side, side, floats(colours));
   upload(1, "", side, side, null);
   const target = gl.getParameter(gl.TEXTURE_BINDING_2D);
@@ -114,6 +115,8 @@ WEBGL = """(() => {
   for (const byte of new Uint8Array(found.buffer)) text += String.fromCharCode(byte);
   return btoa(text);
 })()"""
+
+TABLE_UPLOAD = 'upload(2, "cube_table", data.columns, data.rows, floats(table));'
 
 
 def c(path, rgb, wavelengths, form="header", compiler=("cc", "-std=c99")):
@@ -202,19 +205,27 @@ def _by_webgl(path, rgba, wavelengths):
         "table": base64.b64encode(table).decode(),
         "columns": 2048,
         "rows": len(table) // (2048 * 16),
+    }
+    return draw(path, rgba, data, TABLE_UPLOAD)
+
+
+def draw(path, rgba, data, upload):
+    """Return what a fragment shader makes of colours (side², 4), with other textures
+    uploaded; None without WebGL 2.
+    """
+    shared = {
         "colours": base64.b64encode(rgba.tobytes()).decode(),
         "side": int(np.sqrt(len(rgba))),
     }
     page = path.with_suffix(".html")
     page.write_text("<!doctype html><main aria-busy='false'></main>")
+    code = WEBGL.replace("UPLOAD", upload).replace("DATA", json.dumps(data | shared))
     with browser() as opened:
         opened.open(page)
-        found = opened.evaluate(WEBGL.replace("DATA", json.dumps(data)))
-    return (
-        None
-        if found is None
-        else np.frombuffer(base64.b64decode(found), np.float32).reshape(-1, 4)
-    )
+        found = opened.evaluate(code)
+    if found is None:
+        return None
+    return np.frombuffer(base64.b64decode(found), np.float32).reshape(-1, 4)
 
 
 def hlsl(path, rgb, wavelengths, form="file"):

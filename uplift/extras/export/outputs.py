@@ -4,7 +4,12 @@ from pathlib import Path
 
 from uplift.common.arrays import StrPath
 
-SECOND_SUFFIXES = {"film": ".toml", "fourier": ".glsl", "file": ".bin"}
+SECOND_SUFFIXES = {
+    "film": ".toml",
+    "fourier": ".glsl",
+    "mixer-glsl": ".bin",
+    "file": ".bin",
+}
 """Suffixes of second files by format; of programs, by the form of their table."""
 
 

@@ -43,6 +43,11 @@ LUT = (
     f"{ROOM}.lut:export",
     ("res", "light", "adapt"),
 )
+MIXER = (
+    "mixer of RGB colours as paints, for painting programs",
+    "uplift.extras.paint.mixer_programs:export",
+    ("res",),
+)
 
 EXPORTS = {
     "c": Export(".h", *PROGRAM),
@@ -72,6 +77,9 @@ EXPORTS = {
         f"{ROOM}.film:export",
         ("res", "light"),
     ),
+    "mixer-c": Export(".h", *MIXER),
+    "mixer-glsl": Export(".glsl", *MIXER),
+    "mixer-js": Export(".mjs", *MIXER),
     "html": Export(
         ".html",
         "page that relights images in a browser",

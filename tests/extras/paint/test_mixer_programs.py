@@ -1,0 +1,156 @@
+"""Exported mixers: the same numbers as in Python, and defined ones for bad input."""
+
+import json
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from tests.extras.paint import run_mixer
+from tests.helpers import near_black, output_of, raises, with_absent_points
+from tests.parts import GLSLANG, NODE, need
+from uplift.common.errors import OptionError, OutputError, UnknownNameError
+from uplift.extras.colour.srgb import decode, encode
+from uplift.extras.paint.mixer_programs import write_mixer
+from uplift.extras.paint.rgb_mixer import make_mixer
+from uplift.lookup import Cube
+
+SUFFIXES = {"mixer-c": ".h", "mixer-glsl": ".glsl", "mixer-js": ".mjs"}
+DIM = 9
+
+
+@pytest.fixture(scope="module")
+def mixer(small_cube):
+    return make_mixer(small_cube, DIM)
+
+
+@pytest.fixture(scope="module")
+def folder(small_cube, tmp_path_factory):
+    """Folder of a mixer in all languages."""
+    folder = tmp_path_factory.mktemp("mixer")
+    for style, suffix in SUFFIXES.items():
+        write_mixer(small_cube, folder / f"paint{suffix}", style=style, res=DIM)
+    return folder
+
+
+@pytest.fixture
+def pairs(rng):
+    """Pairs (500, 2, 3), with corners of the cube."""
+    colours = rng.random((500, 2, 3))
+    colours[:100] = colours[:100].round()
+    return colours.astype(np.float32).astype(float)
+
+
+@pytest.fixture
+def shares(rng):
+    shares = rng.random(500)
+    shares[::10] = 0
+    shares[1::10] = 1
+    return shares.astype(np.float32).astype(float)
+
+
+PROGRAMS = [
+    (run_mixer.c, ".h", 1e-6),
+    (run_mixer.cpp, ".h", 1e-6),
+    (run_mixer.sanitized, ".h", 1e-6),
+    (run_mixer.js, ".mjs", 1e-9),
+]
+
+
+@pytest.mark.parametrize(("run", "suffix", "tolerance"), PROGRAMS)
+def test_programs_mix_as_python(folder, mixer, pairs, shares, run, suffix, tolerance):
+    found = run(folder / f"paint{suffix}", pairs, shares)
+    expected = mixer.mix(pairs[:, 0], pairs[:, 1], shares)
+    assert_allclose(found[:, 0], expected, atol=5 * tolerance)
+    assert_allclose(found[:, 1], expected, atol=5 * tolerance)
+    codes = encode(mixer.mix(decode(pairs[:, 0]), decode(pairs[:, 1]), shares))
+    assert_allclose(found[:, 2], codes, atol=1e-4)
+    for share, end in ((0, 0), (1, 1)):
+        at_end = shares == share
+        assert_allclose(found[at_end, 0], pairs[at_end, end], atol=tolerance)
+        assert_allclose(found[at_end, 2], pairs[at_end, end], atol=1e-5)
+
+
+def test_the_shader_mixes_as_python(folder, mixer, pairs, shares):
+    """With a table of half floats; its ends are exact all the same."""
+    found = run_mixer.glsl(folder / "paint.glsl", pairs, shares, DIM)
+    expected = mixer.mix(pairs[:, 0], pairs[:, 1], shares)
+    assert_allclose(encode(found), encode(expected), atol=0.004)
+    for share, end in ((0, 0), (1, 1)):
+        at_end = shares == share
+        assert_allclose(found[at_end], pairs[at_end, end], atol=1e-5)
+
+
+def test_the_shader_compiles(folder):
+    need(GLSLANG)
+    main = "out vec4 o; void main() { o.rgb = paint_mix_srgb(vec3(0), vec3(1), 0.5); }"
+    text = (folder / "paint.glsl").read_text()
+    (folder / "a.frag").write_text(f"#version 330\n{text}{main}\n")
+    output_of("glslangValidator", "a.frag", cwd=folder)
+
+
+def test_bytes_end_at_their_colours(folder, rng):
+    codes = rng.integers(0, 256, (400, 2, 3))
+    codes[:256, 0] = np.arange(256)[:, None]
+    assert_array_equal(run_mixer.ends_of_bytes(folder / "paint.h", codes), codes)
+
+
+@pytest.mark.parametrize("run", [run_mixer.sanitized, run_mixer.js])
+def test_numbers_outside_are_clipped(folder, run):
+    path = folder / ("paint.mjs" if run is run_mixer.js else "paint.h")
+    pairs = np.array([[[-1, 2, 0.5], [0.2, 0.4, 0.6]]] * 4)
+    shares = np.array([0.5, -3, 7, 1e30])
+    clipped = run(path, np.clip(pairs, 0, 1), np.clip(shares, 0, 1))
+    assert_array_equal(run(path, pairs, shares)[:, [0, 2]], clipped[:, [0, 2]])
+
+
+def test_what_is_not_a_number_is_0(folder):
+    path = folder / "paint.h"
+    bad = np.full((2, 2, 3), np.nan)
+    bad[1] = np.inf, 0.5, -np.inf
+    found = run_mixer.sanitized(path, bad, np.array([np.nan, 0.5]))
+    zero = np.array([[[0.0] * 3] * 2, [[1, 0.5, 0]] * 2])
+    assert_array_equal(found[:, 0], run_mixer.c(path, zero, np.array([0, 0.5]))[:, 0])
+    assert_array_equal(found[0, 1], 0)  # no positive part
+
+
+def test_what_is_not_a_number_is_0_in_javascript(folder):
+    need(NODE)
+    (folder / "nan.mjs").write_text(
+        "import { mix, mixAll } from './paint.mjs';\n"
+        "const bad = mix([NaN, Infinity, -Infinity], [undefined, 0.5, 1], NaN);\n"
+        "const clipped = mix([0, 1, 0], [0, 0.5, 1], 0);\n"
+        "console.log(JSON.stringify([bad, clipped, mixAll([bad], [NaN])]));\n"
+    )
+    bad, clipped, nothing = json.loads(output_of("node", folder / "nan.mjs"))
+    assert bad == clipped
+    assert nothing == [0, 0, 0]
+
+
+@pytest.mark.parametrize(
+    ("options", "error"),
+    [
+        ({"style": "mixer-rust"}, UnknownNameError),
+        ({"res": 1}, OptionError),
+        ({"res": 66}, OptionError),
+    ],
+)
+def test_bad_options_write_nothing(small_cube, tmp_path, options, error):
+    with raises(error):
+        write_mixer(small_cube, tmp_path / "a.h", **options)
+    assert not list(tmp_path.iterdir())
+
+
+def test_sparse_cubes_have_no_mixer(small_cube, tmp_path):
+    sparse = Cube(with_absent_points(small_cube.data, near_black(small_cube.data)))
+    with raises(OptionError):
+        write_mixer(sparse, tmp_path / "a.h")
+
+
+def test_tables_of_others_stay(small_cube, tmp_path):
+    (tmp_path / "a.bin").write_text("of another program")
+    with raises(OutputError):
+        write_mixer(small_cube, tmp_path / "a.glsl", style="mixer-glsl", res=2)
+    assert [path.name for path in tmp_path.iterdir()] == ["a.bin"]
+    write_mixer(small_cube, tmp_path / "a.glsl", style="mixer-glsl", res=2, force=True)
+    assert (tmp_path / "a.bin").stat().st_size == 2**3 * 16 * 2
