@@ -1,5 +1,6 @@
 """``uplift export``: write a cube in formats of other tools."""
 
+from collections.abc import Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,8 @@ WIDTH = 6
 """Characters of names of formats before what they are."""
 
 
+PAINTS = ".toml"
+"""Suffix of files of paints."""
 SUFFIXES = (".h", ".hpp", ".hh")
 """Suffixes of the header that reads cube files."""
 
@@ -45,6 +48,9 @@ HELP = """Write a cube in a format that other tools read.
     \b
 {formats}
 
+    A file of paints (.toml) is written as a program that mixes them (.h, .glsl, .hlsl),
+    as a page (.html), or as a table of two of them (.cube).
+
     Names in a program start with the file's. A C header, also valid C++, contains the
     table, or loads it from a file of numbers. Programs in other languages come with a
     second file, which they explain. --runtime writes uplift.h instead, a C header that
@@ -67,6 +73,8 @@ HELP = """Write a cube in a format that other tools read.
       uplift export macbeth-32.uplift -o paint.h --format mixer-c
       uplift export macbeth-32.uplift --format csv
       uplift export --runtime uplift.h
+      uplift export paints.toml -o mixer.glsl
+      uplift export paints.toml --paint 'deep blue' --paint 'warm red' -o two.cube
     """
 
 
@@ -116,6 +124,9 @@ HELP = """Write a cube in a format that other tools read.
     is_flag=True,
     help="Write uplift.h, which reads cube files, instead of a cube.",
 )
+@options.repeatable(
+    "--paint", "names", "Paint of a file of paints", "all", metavar="NAME"
+)
 @options.force
 def command(
     cube: str | None,
@@ -123,17 +134,27 @@ def command(
     style: str | None,
     fill_missing: bool,
     runtime: bool,
+    names: Sequence[str],
     force: bool,
     **given: Any,
 ) -> None:
     if runtime:
-        unused = (style, fill_missing or None, *given.values())
+        unused = (style, fill_missing or None, names or None, *given.values())
         if any(value is not None for value in unused):
             raise click.UsageError("--runtime goes with --output and --force only.")
         _write_runtime(cube, output, force=force)
         return
     if cube is None:
         raise click.UsageError("Give a cube, or --runtime.")
+    if Path(cube).suffix.lower() == PAINTS:
+        if fill_missing or any(value is not None for value in given.values()):
+            raise click.UsageError(
+                "Paints take --output, --format, --paint and --force only."
+            )
+        _export_paints(cube, output, style, names, force=force)
+        return
+    if names:
+        raise click.UsageError("--paint applies to a file of paints.")
     style = style or _style_of(output)
     export = EXPORTS[style]
     settings = {name: value for name, value in given.items() if value is not None}
@@ -180,6 +201,38 @@ def _write_runtime(name: str | None, output: str | None, *, force: bool) -> None
         raise click.UsageError(f"--runtime writes a header: end it in .h, not {path}.")
     write_header(path, force=force)
     say(f"{path}: reads cube files in C and C++, {path.stat().st_size / 1e3:.0f} kB")
+
+
+def _export_paints(
+    path: str,
+    output: str | None,
+    style: str | None,
+    names: Sequence[str],
+    *,
+    force: bool,
+) -> None:
+    """Write paints as a program, a table or a page."""
+    from uplift.common.files import check_output
+    from uplift.extras.paint import read_paints
+    from uplift.extras.paint.paint_exports import PAINT_EXPORTS
+
+    by_suffix = {export.suffix: name for name, export in PAINT_EXPORTS.items()}
+    style = style or by_suffix.get(Path(output or "").suffix.lower())
+    if style not in PAINT_EXPORTS:
+        raise click.UsageError(
+            f"Give --output ending in {', '.join(by_suffix)}, or --format for paints: "
+            f"{', '.join(PAINT_EXPORTS)}."
+        )
+    export = PAINT_EXPORTS[style]
+    target = check_output(
+        output or Path(path).stem + export.suffix, inputs=[path], force=force
+    )
+    paints = read_paints(path)
+    if names:
+        paints = paints.select(names)
+    with progress_bar(f"writing {target}"):
+        written = export.write(paints, target, style, force=force)
+    say(f"{target}: {written}")
 
 
 def _style_of(output: str | None) -> str:

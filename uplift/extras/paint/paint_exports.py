@@ -32,8 +32,8 @@ def export_program(paints: Paints, path: Path, style: str, *, force: bool) -> st
 
 def export_lut(paints: Paints, path: Path, style: str, *, force: bool) -> str:
     """Write the colours of two paints as a 3-D table: red is the share of the second,
-    green the thickness up to the one that hides the ground, blue a grey ground, encoded
-    as sRGB.
+    green the root of the thickness, in the one that hides the ground, and blue a grey
+    ground, encoded as sRGB.
     """
     if len(paints) != 2:
         raise OptionError(
@@ -50,14 +50,13 @@ def export_lut(paints: Paints, path: Path, style: str, *, force: bool) -> str:
         for column, depth in enumerate(axis):
             for layer, code in enumerate(axis):
                 ground = float(decode(np.array(code)))
-                mixed = sampled.reflectance(
-                    [1 - share, share], depth * thickest, ground
-                )
+                thickness = thickest * depth**2
+                mixed = sampled.reflectance([1 - share, share], thickness, ground)
                 table[row, column, layer] = encode(sensor.rgb(mixed))
     first, second = paints.names
     title = (
-        f"red: share of {second} in {first}; green: thickness, 1 is {thickest:.3g}; "
-        "blue: grey ground"
+        f"red: share of {second} in {first}; green: root of the thickness, 1 is "
+        f"{thickest:.3g}; blue: grey ground"
     )
     write_text(cube_text(table, title, LUT_SIZE), path, force=force)
     return f"{first} and {second}, up to a thickness of {thickest:.3g}"
