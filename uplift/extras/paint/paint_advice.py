@@ -41,7 +41,15 @@ class NextSample:
 
 @dataclass(frozen=True)
 class PaintAdvice:
-    """The expected error of mixtures as it is, and the samples that lower it most."""
+    """The expected error of mixtures, and the samples that lower it most.
+
+    Parameters
+    ----------
+    error : float
+        Expected ΔE00 of mixtures of two paints in equal parts.
+    samples : tuple of NextSample
+        The best first; the others add to it.
+    """
 
     error: float
     samples: tuple[NextSample, ...]

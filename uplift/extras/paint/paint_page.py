@@ -65,7 +65,7 @@ def page(paints: Paints) -> str:
     return render(
         "extras/paint/templates/paint_page.html.j2",
         title="Mix paints",
-        lead="Squeeze paints from their tubes, or ask for the recipe of a colour.",
+        lead="Squeeze paints from their tubes, or find the recipe of a colour.",
         tubes=list(tubes),
         lights=[
             (name, DESCRIPTIONS.get(name, "daylight" if name == "D65" else ""))

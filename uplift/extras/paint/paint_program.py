@@ -129,7 +129,8 @@ def _mixtures(paints: Paints, sensor: Sensor, seed: int) -> _Mixtures:
     parts = rng.dirichlet(np.full(len(paints), CONCENTRATION), MIXTURES)
     mixed = paints.pigments.mix(parts)
     hiding = 1 / (mixed.absorption + mixed.scattering).mean(axis=1)
-    thickness = hiding * np.exp(rng.uniform(*np.log(THICKNESSES), MIXTURES))
+    low, high = np.log(THICKNESSES).tolist()
+    thickness = hiding * np.exp(rng.uniform(low, high, MIXTURES))
     return _spectra(paints, parts, thickness, rng.random(MIXTURES))
 
 

@@ -85,19 +85,6 @@ class PaintSamples:
         """Whether each sample (n,) hides its ground."""
         return np.isinf(self.thickness)
 
-    def select(self, rows: Sequence[int]) -> "PaintSamples":
-        """Return some of the samples, of the same paints."""
-        rows = list(rows)
-        return PaintSamples(
-            tuple(self.names[row] for row in rows),
-            self.paints,
-            self.shares[rows],
-            self.thickness[rows],
-            self.grounds[rows],
-            self.wavelengths,
-            type(self.measured)(self.measured.values[rows]),
-        )
-
 
 def read_paint_samples(path: StrPath, recipes: StrPath | None = None) -> PaintSamples:
     """Read measured samples of paint.

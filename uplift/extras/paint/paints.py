@@ -47,13 +47,45 @@ class Paints:
         return len(self.names)
 
     def index(self, name: str) -> int:
-        """Return the position of a paint. Raises `UnknownNameError`."""
+        """Find a paint.
+
+        Parameters
+        ----------
+        name : str
+            Name of the paint.
+
+        Returns
+        -------
+        int
+            Its position.
+
+        Raises
+        ------
+        UnknownNameError
+            No paint has the name.
+        """
         if name not in self.names:
             raise unknown_name(name, self.names, "paint")
         return self.names.index(name)
 
     def select(self, names: Sequence[str]) -> "Paints":
-        """Return some of the paints, in the order of ``names``."""
+        """Select some of the paints.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Names, in the order of the result.
+
+        Returns
+        -------
+        Paints
+            The paints of these names.
+
+        Raises
+        ------
+        UnknownNameError
+            No paint has a name.
+        """
         rows = [self.index(name) for name in names]
         errors = None
         if self.errors is not None:
@@ -70,8 +102,17 @@ class Paints:
         )
 
     def at(self, wavelengths: ArrayLike) -> "Paints":
-        """Return the paints at other wavelengths (M,) in nm, by linear interpolation;
-        beyond the range the values are constant.
+        """Interpolate absorption and scattering linearly.
+
+        Parameters
+        ----------
+        wavelengths : array_like, shape (M,)
+            Wavelengths in nm; beyond the range the values are constant.
+
+        Returns
+        -------
+        Paints
+            The paints at these wavelengths.
         """
         nm = np.asarray(wavelengths, dtype=float)
 
@@ -133,7 +174,18 @@ class Paints:
         return coat_of_pigments(self.pigments, parts, medium).over(backing)
 
     def cost(self, parts: ArrayLike) -> Array:
-        """Return the price (...) of one part of mixtures (..., P); NaN if unknown."""
+        """Compute the price of one part of mixtures.
+
+        Parameters
+        ----------
+        parts : array_like, shape (..., P)
+            Parts of the paints.
+
+        Returns
+        -------
+        ndarray, shape (...)
+            The price, NaN if that of a paint in the mixture is unknown.
+        """
         parts = np.asarray(parts, dtype=float)
         prices = np.array(self.prices or (np.nan,) * len(self))
         used = np.where(parts > 0, parts * np.where(parts > 0, prices, 0), 0)
@@ -141,8 +193,20 @@ class Paints:
 
 
 def strengths(paints: Paints, white: int) -> Array:
-    """Return how strongly each paint (P,) tints a white one: the parts of white to one
-    of paint at which the mixture absorbs as much as it scatters, where it absorbs most.
+    """Compute how strongly each paint tints a white one.
+
+    Parameters
+    ----------
+    paints : Paints
+        The paints.
+    white : int
+        Position of the white one.
+
+    Returns
+    -------
+    ndarray, shape (P,)
+        Parts of white to one of paint at which the mixture absorbs as much as it
+        scatters, at the wavelength where the paint absorbs most.
     """
     K = paints.pigments.absorption
     S = paints.pigments.scattering
