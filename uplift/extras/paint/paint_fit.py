@@ -1,7 +1,7 @@
 """Absorption and scattering of paints by least squares on measured samples.
 
 The samples are predicted by the two constants of Kubelka and Munk, mixed by Duncan's
-rule and seen through a surface by Saunderson's correction (`optics`, `pigments`). What
+rule and measured through a surface by Saunderson's correction (`optics`, `pigments`). What
 the samples do not determine stays as the prior has it (`paint_prior`): the fit is the
 maximum of the posterior, and its curvature gives standard errors. A paint that is known
 by one opaque sample only keeps the scattering of today's rule.
@@ -285,7 +285,7 @@ def _relative_errors(
     of the variables.
 
     Opaque samples do not change if K and S of all paints have a common factor at some
-    wavelength, so that their errors are those beside it.
+    wavelength, so that their errors are those without it.
     """
     paints, count = prior.log_scattering.shape
     size = 2 * count + 1

@@ -136,15 +136,15 @@ def _recipes(
     columns: _Columns,
     location: SourceLocation,
 ) -> Iterator[Recipe]:
-    seen = set[str]()
+    names = set[str]()
     for line, row in rows:
         cells = [*row, *[""] * (1 + max(columns.paints.values()) - len(row))]
         name = cells[columns.name]
-        if name in seen:
+        if name in names:
             raise location.at(line, name).error(
                 f"two samples have the name {format_value(name)}", "rename one of them"
             )
-        seen.add(name)
+        names.add(name)
         ground = _cell(cells, columns.ground)
         parts = tuple(
             parse_decimal(cells[column] or "0") for column in columns.paints.values()
