@@ -1,0 +1,295 @@
+"""Conformance of another lookup of a cube: its picture of the chart, or its spectra,
+compared with those of this package.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from uplift.colorimetry import Light, delta_e_2000, lab
+from uplift.colorimetry.illuminants import Illuminant
+from uplift.colorimetry.observer import light, sensor
+from uplift.common.arrays import Array, StrPath
+from uplift.common.errors import ColourError, TextureError
+from uplift.cube import CubeData
+from uplift.extras.colour.light_sets import REGRESSION_LIGHTS
+from uplift.extras.report.answers import read_answers
+from uplift.extras.report.conformance_chart import (
+    COLUMNS,
+    COUNT,
+    ROWS,
+    Chart,
+    make_chart,
+)
+from uplift.extras.texture.channels import coloured_parts
+from uplift.extras.texture.colours import source_space
+from uplift.extras.texture.image import open_image
+from uplift.lookup import Cube
+
+LIGHT = "A"
+"""Light of the scene: smooth, which keeps noise low, and far from that of the cube."""
+SPECTRA = (400.0, 700.0, 10.0)
+"""First and last wavelength and step of tables of spectra in nm."""
+MODES = ("spectra", "refined", "moments")
+"""Modes of lookup that conform."""
+MAX_PATCH = 64
+"""Largest number of pixels along a side of a patch."""
+ROUNDING = 1e-5
+"""Linear RGB by which rows of spectra may differ from the colours of the chart."""
+PICTURES = ".exr"
+
+
+@dataclass(frozen=True)
+class Differences:
+    """Mean, 95 % quantile and largest ΔE00 of patches."""
+
+    mean: float
+    p95: float
+    largest: float
+
+    def within(self, limits: "Differences") -> bool:
+        """Whether all are at most as large as limits."""
+        return (
+            self.mean <= limits.mean
+            and self.p95 <= limits.p95
+            and self.largest <= limits.largest
+        )
+
+
+PICTURE_LIMITS = Differences(0.2, 0.5, 1.0)
+"""Sampled wavelengths, and the renderer's own table of the observer, differ by less
+(docs/guides/conformance.md).
+"""
+SPECTRA_LIMITS = Differences(0.02, 0.05, 0.2)
+"""Half floats differ by less."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """What a lookup of a cube should return for the chart, as XYZ under a light."""
+
+    cube: Cube
+    chart: Chart
+    light: Light
+    wavelengths: Array
+
+    def xyz(self, mode: str) -> Array:
+        """Return XYZ (1000, 3) of the spectra in a mode of lookup."""
+        spectra = self.cube.reflectance(self.chart.rgb, self.wavelengths, mode)
+        return np.asarray(spectra @ self.light.xyz.T)
+
+    def product(self) -> Array:
+        """Return XYZ (1000, 3) of products of RGB with the RGB of the light."""
+        to_rgb = self.cube.data.sensor.xyz_to_rgb
+        light_rgb = to_rgb @ self.light.white
+        return np.asarray((self.chart.rgb * light_rgb) @ np.linalg.inv(to_rgb).T)
+
+
+@dataclass(frozen=True, eq=False)
+class Conformance:
+    """ΔE00 (1000,) of the patches, to the mode of lookup that is nearest.
+
+    ``brightness`` is the sum of Y relative to that of the reference. ``explanation``
+    names a mistake that gives these colours, and is empty if none is known.
+    """
+
+    light: str
+    mode: str
+    chart: Chart
+    delta_e: Array
+    brightness: float
+    limits: Differences
+    explanation: str = ""
+
+    @property
+    def differences(self) -> Differences:
+        """The figures that have limits."""
+        return summarise(self.delta_e)
+
+    @property
+    def passed(self) -> bool:
+        """Whether all figures are within the limits."""
+        return self.differences.within(self.limits)
+
+    def worst(self, count: int) -> list[int]:
+        """Return the numbers of the patches of the largest ΔE00."""
+        return [int(number) for number in np.argsort(-self.delta_e)[:count]]
+
+
+def summarise(delta_e: Array) -> Differences:
+    """Return the figures of ΔE00 (n,)."""
+    return Differences(
+        float(delta_e.mean()),
+        float(np.quantile(delta_e, 0.95)),
+        float(delta_e.max()),
+    )
+
+
+def check_renderer(
+    path: StrPath, cube: Cube, illuminant: Illuminant = LIGHT
+) -> Conformance:
+    """Compare what another program makes of the chart of a cube with its own answers.
+
+    Parameters
+    ----------
+    path : path-like
+        A picture of the chart under a light, if it ends in ``.exr``: linear sRGB, or
+        the RGB space that it states, or XYZ, where Y of a white diffuser is 1. Or else
+        reflectances as CSV: the colours of the chart in ``r``, ``g``, ``b``, and a
+        column for each of 400, 410, …, 700 nm.
+    cube : Cube
+        The cube that the program used.
+    illuminant : str or Lamp, default "A"
+        Light of the picture, or under which reflectances are compared.
+
+    Returns
+    -------
+    Conformance
+
+    Raises
+    ------
+    TextureError
+        The picture cannot be read, is of another size, or has codes or values that are
+        not finite.
+    ColourError
+        The table cannot be read, or has other colours or wavelengths; or the cube has
+        no XYZ (``camera-without-xyz``).
+    """
+    cube.data.sensor.require_xyz()
+    chart = make_chart(cube.data)
+    if Path(path).suffix.lower() == PICTURES:
+        reference = picture_reference(cube, chart, illuminant)
+        return compare(read_patches(path), reference, PICTURE_LIMITS)
+    shown = light(illuminant, cube.observer, *SPECTRA)
+    reference = Reference(cube, chart, shown, spectra_wavelengths())
+    xyz = read_spectra(path, chart) @ shown.xyz.T
+    return compare(xyz, reference, SPECTRA_LIMITS)
+
+
+def picture_reference(cube: Cube, chart: Chart, illuminant: Illuminant) -> Reference:
+    """Return the reference of pictures, on the wavelengths of the cube."""
+    shown = light(illuminant, cube.observer, *cube.data.sensor.range)
+    return Reference(cube, chart, shown, cube.wavelengths)
+
+
+def spectra_wavelengths() -> Array:
+    """Return the wavelengths (31,) of tables of spectra in nm."""
+    start, end, step = SPECTRA
+    return np.arange(start, end + step / 2, step)
+
+
+def read_patches(path: StrPath) -> Array:
+    """Read a picture of the chart. Returns mean XYZ (1000, 3) of the middles of the
+    patches. Raises `TextureError`.
+    """
+    display = sensor()
+    with open_image(path) as image:
+        part, channels = coloured_parts(image)[0]
+        if part.max_code:
+            raise TextureError(
+                f"a picture of the chart must have floats, got {part.types[0]}",
+                hint="write linear RGB as OpenEXR",
+            )
+        window = part.window
+        side = window.width // COLUMNS
+        size = (side * COLUMNS, side * ROWS)
+        if not 1 <= side <= MAX_PATCH or (window.width, window.height) != size:
+            raise TextureError(
+                f"the picture must have {COLUMNS} × {ROWS} patches of 1 to {MAX_PATCH} "
+                f"pixels, got {window.width} × {window.height} pixels",
+                hint="render the scene of the kit as it is",
+            )
+        bands = [band[..., channels.rgb] for _, band in image.bands(part)]
+        source = source_space(part, display)
+    pixels = np.concatenate(bands).astype(float)
+    if not np.isfinite(pixels).all():
+        count = np.count_nonzero(~np.isfinite(pixels).all(axis=-1))
+        raise TextureError(
+            f"pixels must be finite, got {count} that are not",
+            path=path,
+            hint="look for divisions by zero in the renderer",
+        )
+    # Filters blur the edges of patches.
+    middle = slice(side // 4, side - side // 4)
+    patches = pixels.reshape(ROWS, side, COLUMNS, side, 3)[:, middle, :, middle]
+    rgb = patches.mean(axis=(1, 3)).reshape(COUNT, 3)
+    matrix = None if source is None else source.matrix_to(display)
+    linear = rgb if matrix is None else rgb @ matrix.T
+    return np.asarray(linear @ display.rgb_to_xyz.T)
+
+
+def read_spectra(path: StrPath, chart: Chart) -> Array:
+    """Read reflectances (1000, 31) of the colours of a chart. Raises `ColourError`."""
+    answers = read_answers(path)
+    expected = spectra_wavelengths()
+    hint = "compute the rows of colours.csv, in their order"
+    if answers.rgb.shape != chart.rgb.shape:
+        problem = f"must have {COUNT:,} rows, got {len(answers.rgb):,}"
+        raise ColourError(problem, path=path, hint=hint)
+    moved = np.abs(answers.rgb - chart.rgb).max(axis=1) > ROUNDING
+    if moved.any():
+        raise ColourError(
+            "must have the colours of the chart of the cube",
+            path=path,
+            line=int(moved.argmax()) + 2,
+            hint=hint,
+        )
+    if not np.array_equal(answers.wavelengths, expected):
+        text = f"{expected[0]:g}, {expected[1]:g}, … {expected[-1]:g}"
+        problem = f"must have the wavelengths {text} nm"
+        raise ColourError(problem, path=path, hint="name a column by each")
+    return answers.reflectance
+
+
+def compare(xyz: Array, reference: Reference, limits: Differences) -> Conformance:
+    """Compare XYZ (1000, 3) with all modes, and explain a failure."""
+    white = reference.light.white
+    colours = lab(xyz, white)
+    by_mode = {}
+    for mode in MODES:
+        expected = lab(reference.xyz(mode), white)
+        by_mode[mode] = delta_e_2000(colours, expected)
+    nearest = min(by_mode, key=lambda mode: float(by_mode[mode].mean()))
+    conformance = Conformance(
+        reference.light.name,
+        nearest,
+        reference.chart,
+        by_mode[nearest],
+        float(xyz[:, 1].sum() / reference.xyz(nearest)[:, 1].sum()),
+        limits,
+    )
+    if conformance.passed:
+        return conformance
+    for mode in MODES:
+        for explanation, mistaken in _mistakes(reference, mode, conformance.brightness):
+            if summarise(delta_e_2000(colours, lab(mistaken, white))).within(limits):
+                return replace(conformance, explanation=explanation)
+    return conformance
+
+
+def _mistakes(
+    reference: Reference, mode: str, brightness: float
+) -> Iterator[tuple[str, Array]]:
+    """Yield mistakes and the XYZ (1000, 3) that they give in a mode of lookup."""
+    right = reference.xyz(mode)
+    rows = right.reshape(ROWS, COLUMNS, 3)
+    yield f"all is {brightness:.4g} times as bright", brightness * right
+    yield "the picture is upside down", rows[::-1].reshape(COUNT, 3)
+    yield "the picture is mirrored", rows[:, ::-1].reshape(COUNT, 3)
+    yield "the picture is turned by 180°", right[::-1]
+    if reference.wavelengths is reference.cube.wavelengths:
+        for name in REGRESSION_LIGHTS:
+            other = picture_reference(reference.cube, reference.chart, name)
+            yield f"the light is {name}", other.xyz(mode)
+    yield "RGB is multiplied by the RGB of the light", reference.product()
+    yield "nodes are not interpolated", reference.xyz("nearest")
+    bare = replace(reference, cube=Cube(_without_boxes(reference.cube.data)))
+    yield "the boxes of entries are ignored", bare.xyz(mode)
+
+
+def _without_boxes(data: CubeData) -> CubeData:
+    """Return a cube whose entries have no boxes."""
+    atlas = replace(data.atlas, half_width=np.zeros_like(data.atlas.half_width))
+    return replace(data, atlas=atlas)
