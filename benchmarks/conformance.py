@@ -146,7 +146,7 @@ def by_runtime(folder: Path) -> Path:
 def run_program(folder: Path, *options: str) -> Values:
     """Compile and run the program. Returns reflectances (1000, 31)."""
     (folder / "main.c").write_text(PROGRAM)
-    compiler = ["cc", "-O2", *options, "main.c", "-o", "main", "-lm"]
+    compiler = ["cc", "-O0", *options, "main.c", "-o", "main", "-lm"]
     subprocess.run(compiler, cwd=folder, check=True)
     done = subprocess.run(
         [folder / "main", CUBE],

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from uplift.colorimetry import Light, delta_e_2000, lab
+from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.illuminants import Illuminant
-from uplift.colorimetry.observer import light, sensor
+from uplift.colorimetry.observer import light
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError, TextureError
 from uplift.cube import CubeData
@@ -24,7 +25,6 @@ from uplift.extras.report.conformance_chart import (
     make_chart,
 )
 from uplift.extras.texture.channels import coloured_parts
-from uplift.extras.texture.colours import source_space
 from uplift.extras.texture.image import open_image
 from uplift.lookup import Cube
 
@@ -136,7 +136,8 @@ def check_renderer(
     ----------
     path : path-like
         A picture of the chart under a light, if it ends in ``.exr``: linear sRGB, or
-        the RGB space that it states, or XYZ, where Y of a white diffuser is 1. Or else
+        the RGB space that it states, or XYZ. None is adapted to the light, and Y of a
+        white diffuser is 1. Or else
         reflectances as CSV: the colours of the chart in ``r``, ``g``, ``b``, and a
         column for each of 400, 410, …, 700 nm.
     cube : Cube
@@ -184,7 +185,6 @@ def read_patches(path: StrPath) -> Array:
     """Read a picture of the chart. Returns mean XYZ (1000, 3) of the middles of the
     patches. Raises `TextureError`.
     """
-    display = sensor()
     with open_image(path) as image:
         part, channels = coloured_parts(image)[0]
         if part.max_code:
@@ -202,7 +202,6 @@ def read_patches(path: StrPath) -> Array:
                 hint="render the scene of the kit as it is",
             )
         bands = [band[..., channels.rgb] for _, band in image.bands(part)]
-        source = source_space(part, display)
     pixels = np.concatenate(bands).astype(float)
     if not np.isfinite(pixels).all():
         count = np.count_nonzero(~np.isfinite(pixels).all(axis=-1))
@@ -215,9 +214,11 @@ def read_patches(path: StrPath) -> Array:
     middle = slice(side // 4, side - side // 4)
     patches = pixels.reshape(ROWS, side, COLUMNS, side, 3)[:, middle, :, middle]
     rgb = patches.mean(axis=(1, 3)).reshape(COUNT, 3)
-    matrix = None if source is None else source.matrix_to(display)
-    linear = rgb if matrix is None else rgb @ matrix.T
-    return np.asarray(linear @ display.rgb_to_xyz.T)
+    if channels.is_xyz:
+        return rgb
+    stated = None if part.profile is None else part.profile.space
+    gamut = SRGB if stated is None else stated.gamut
+    return np.asarray(rgb @ gamut.rgb_to_xyz.T)
 
 
 def read_spectra(path: StrPath, chart: Chart) -> Array:

@@ -1,6 +1,6 @@
 """Chart of the conformance kit: 1,000 colours at which lookups of a cube go wrong."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +25,9 @@ POSITIONS = {
 }
 """Distances from the colour of an entry, where the face of its box is at 1."""
 DARK = 0.03
+"""Largest linear RGB of dark colours, of which half have a channel of 0: these are
+nearest to colours that no reflectance has.
+"""
 SEED = 1
 
 
@@ -49,7 +52,7 @@ def make_chart(cube: CubeData) -> Chart:
     for name, colour in _colours(cube):
         names.append(name)
         colours.append(colour)
-    rgb = np.clip(np.float32(colours[:COUNT]), 0, 1)
+    rgb = np.array(colours[:COUNT], dtype=np.float32).clip(0, 1)
     return Chart(tuple(names[:COUNT]), rgb.astype(float))
 
 
@@ -62,8 +65,10 @@ def _colours(cube: CubeData) -> Iterator[tuple[str, Array]]:
         yield f"corner {_digits(corner)}", np.array(corner, dtype=float)
     yield from _entry_colours(cube.atlas.names, cube.entry_boxes, rng)
     nodes = cube.lattice.nodes
-    for number in rng.integers(len(nodes), size=(FURTHER, 3)):
-        yield f"node {_digits(number)}", nodes[number]
+    size = cube.lattice.size
+    for point in rng.choice(size, min(FURTHER, size), replace=False):
+        place = np.array(np.unravel_index(point, (len(nodes),) * 3))
+        yield f"node {_digits(place)}", nodes[place]
     for number, colour in enumerate(rng.random((FURTHER, 3))):
         axis = number % 3
         colour[axis] = rng.choice(nodes)
@@ -72,6 +77,7 @@ def _colours(cube: CubeData) -> Iterator[tuple[str, Array]]:
         colour[number % 3] = number // 3 % 2
         yield f"edge of the gamut {number}", colour
     for number, colour in enumerate(rng.random((FURTHER, 3))):
+        colour[number % 3] *= number // 3 % 2
         yield f"dark colour {number}", DARK * colour
     for number, colour in enumerate(rng.random((COUNT, 3))):
         yield f"random colour {number}", colour
@@ -94,8 +100,8 @@ def _entry_colours(
                 if ray and not distance:
                     continue
                 colour = boxes.rgb[entry] + distance * np.abs(across) * reach
-                yield f"{names[entry]}, {position}", colour
+                yield f"{names[entry]}, {position} {ray + 1}", colour
 
 
-def _digits(numbers: Array | tuple[int, ...]) -> str:
+def _digits(numbers: Iterable[int]) -> str:
     return " ".join(str(int(number)) for number in numbers)

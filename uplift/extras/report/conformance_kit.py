@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from uplift.colorimetry import Light
-from uplift.colorimetry.observer import illuminant_spd, matching_functions, sensor
+from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.observer import illuminant_spd, matching_functions
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import UpliftWarning
 from uplift.common.files import write_text
@@ -71,7 +72,7 @@ def write_kit(cube: Cube, folder: StrPath, *, force: bool = False) -> tuple[Path
     _write_picture(chart.rgb, target / CHART, force=force)
     for name in REGRESSION_LIGHTS:
         reference = picture_reference(cube, chart, name)
-        rgb = reference.xyz("spectra") @ sensor().xyz_to_rgb.T
+        rgb = reference.xyz("spectra") @ np.linalg.inv(SRGB.rgb_to_xyz).T
         _write_picture(rgb, target / f"reference-{name}.exr", force=force)
         write_text(_power(cube, reference.light), target / f"{name}.spd", force=force)
     kit = files("uplift.extras.report") / "kit"
@@ -97,7 +98,7 @@ def _spectra(chart: Chart, at: Array, spectra: Array) -> str:
 
 def _shortest(value: float) -> float:
     """Return a number of single precision in the fewest digits."""
-    return float(str(np.float32(value)))
+    return float(np.format_float_positional(np.float32(value)))
 
 
 def _power(cube: Cube, shown: Light) -> str:
