@@ -11,7 +11,7 @@ from uplift.colorimetry.illuminants import Illuminant
 
 from .output.console import make_table, paragraph, print_json, say, show
 from .output.diagnostics import FAILED_CHECK
-from .outputs import check_folder
+from .outputs import check_folder, check_outputs
 
 if TYPE_CHECKING:
     from uplift.extras.report.conformance import Conformance
@@ -30,15 +30,32 @@ def write(cube: str | None, folder: str, *, force: bool) -> None:
     say(f"{folder}: {', '.join(path.name for path in paths)}")
 
 
-def judge(cube: str | None, path: str, light: Illuminant, style: str) -> None:
-    """Print the verdict on a picture or on spectra; exit with 1 if they differ."""
+def judge(
+    cube: str | None,
+    path: str,
+    light: Illuminant,
+    style: str,
+    plot_path: str | None,
+    *,
+    force: bool,
+) -> None:
+    """Print and draw the verdict on a picture or on spectra; exit with 1 if they
+    differ.
+    """
     from uplift.extras.report.conformance import check_renderer
 
+    check_outputs(plot_path)
     conformance = check_renderer(path, _load(cube), light)
     if style == "json":
         print_json(_record(conformance, path))
     else:
         _print(conformance, path)
+    if plot_path is not None:
+        from uplift.extras.pages.figure import write_figure
+        from uplift.extras.report.conformance_plot import plot_conformance
+
+        write_figure(plot_conformance(conformance), plot_path, force=force)
+        say(plot_path, err=True)
     if not conformance.passed:
         raise SystemExit(FAILED_CHECK)
 

@@ -30,10 +30,14 @@ REBUILDING = ("files", "folders", "update", "style", "quiet", "verbose")
 """Parameters that apply to cubes which are rebuilt."""
 APPLICABLE = {
     "kit": ("files", "force"),
-    "renderer": ("files", "light", "style"),
+    "renderer": ("files", "light", "style", "plot_path", "force"),
 }
 """Parameters that apply to other purposes."""
-NEEDS = {"light": "needs --renderer", "force": "needs --kit"}
+NEEDS = {
+    "light": "needs --renderer",
+    "plot_path": "needs --renderer",
+    "force": "needs --kit or --plot",
+}
 
 
 @click.command(
@@ -96,6 +100,7 @@ NEEDS = {"light": "needs --renderer", "force": "needs --kit"}
     help="Light of the picture, or for ΔE00 of spectra.",
     shell_complete=options.complete_light,
 )
+@options.plot("Draw the picture, the one expected, and ΔE00")
 @options.table_or_json
 @options.quiet
 @options.verbose
@@ -105,6 +110,7 @@ def command(
     kit: str | None,
     renderer: str | None,
     light: Illuminant,
+    plot_path: str | None,
     force: bool,
     **rebuilding: Any,
 ) -> None:
@@ -114,7 +120,8 @@ def command(
     if kit is not None:
         conformance.write(cube, kit, force=force)
     elif renderer is not None:
-        conformance.judge(cube, renderer, light, rebuilding["style"])
+        style = rebuilding["style"]
+        conformance.judge(cube, renderer, light, style, plot_path, force=force)
     else:
         _rebuild_all(files, **rebuilding)
 

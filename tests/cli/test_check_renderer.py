@@ -33,6 +33,17 @@ def test_failures_are_explained_and_exit_with_1(run, ask):
     assert ask("check --light FL11 --renderer", picture, CUBE)["passed"]
 
 
+def test_a_plot_is_drawn_and_replaces_no_input(run, refuse, home):
+    picture = KIT / "reference-FL11.exr"
+    run("check --plot a.png --renderer", picture, CUBE, code=1)
+    assert (home / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert refuse("check --plot a.png --renderer", picture, CUBE).code == "file-exists"
+    run("check --force --plot a.png --renderer", KIT / "spectra.csv", CUBE)
+    (home / "b.png").write_bytes(picture.read_bytes())
+    words = "check --force --plot b.png --renderer b.png"
+    assert refuse(words, CUBE).code == "output-is-input"
+
+
 def test_files_of_other_kinds_are_refused(refuse, home):
     assert refuse("check --renderer none.exr", CUBE).where == "none.exr"
     assert refuse("check --renderer none.csv", CUBE).code == "file-not-found"
@@ -47,6 +58,8 @@ def test_files_of_other_kinds_are_refused(refuse, home):
         "check",
         "check --light A cube.uplift",
         "check --force cube.uplift",
+        "check --plot a.png cube.uplift",
+        "check --kit kit --plot a.png",
         "check --kit kit --renderer out.exr",
         "check --kit kit --light A",
         "check --renderer out.exr --update",

@@ -89,19 +89,26 @@ class Reference:
 
 @dataclass(frozen=True, eq=False)
 class Conformance:
-    """ΔE00 (1000,) of the patches, to the mode of lookup that is nearest.
+    """ΔE00 (1000,) of the patches, to the mode of lookup that is nearest: between the
+    XYZ (1000, 3) that were found and those expected.
 
-    ``brightness`` is the sum of Y relative to that of the reference. ``explanation``
-    names a mistake that gives these colours, and is empty if none is known.
+    ``explanation`` names a mistake that gives these colours, and is empty if none is
+    known.
     """
 
     light: str
     mode: str
     chart: Chart
+    found: Array
+    expected: Array
     delta_e: Array
-    brightness: float
     limits: Differences
     explanation: str = ""
+
+    @property
+    def brightness(self) -> float:
+        """Sum of Y relative to the expected one."""
+        return float(self.found[:, 1].sum() / self.expected[:, 1].sum())
 
     @property
     def differences(self) -> Differences:
@@ -257,8 +264,9 @@ def compare(xyz: Array, reference: Reference, limits: Differences) -> Conformanc
         reference.light.name,
         nearest,
         reference.chart,
+        xyz,
+        reference.xyz(nearest),
         by_mode[nearest],
-        float(xyz[:, 1].sum() / reference.xyz(nearest)[:, 1].sum()),
         limits,
     )
     if conformance.passed:
