@@ -19,7 +19,7 @@ from uplift.colorimetry.gamut import SRGB
 from uplift.common.errors import ColourError, OutputError, TextureError
 from uplift.extras.colour.light_sets import REGRESSION_LIGHTS
 from uplift.extras.report.conformance import MODES, check_renderer
-from uplift.extras.report.conformance_chart import COUNT, make_chart
+from uplift.extras.report.conformance_chart import COLUMNS, COUNT, ROWS, make_chart
 from uplift.extras.report.conformance_kit import (
     CUBE,
     DIGITS,
@@ -272,3 +272,17 @@ def test_cubes_without_xyz_or_colours_raise(cube, tmp_path):
     with raises(ColourError, "camera-without-xyz"):
         check_renderer(A, Cube(replace(cube.data, sensor=camera)))
     assert not (tmp_path / "kit").exists()
+
+
+def test_scenes_have_the_size_and_the_files_of_the_kit():
+    width = COLUMNS * PATCH
+    height = ROWS * PATCH
+    pbrt = (KIT / "scene.pbrt").read_text()
+    assert f'"integer xresolution" {width} "integer yresolution" {height}' in pbrt
+    xml = (KIT / "scene.xml").read_text()
+    for name, value in (("width", width), ("height", height), ("light", "A")):
+        assert f'<default name="{name}" value="{value}"/>' in xml
+    for text in (pbrt, xml.replace("$light", "A")):
+        named = re.findall(r'"(\w+\.(?:exr|spd|uplift))"', text)
+        assert {"chart.exr", "A.spd"} <= set(named)
+        assert set(named) <= {*kit_names(), "out.exr"}

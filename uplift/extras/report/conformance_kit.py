@@ -3,8 +3,10 @@ renderers.
 """
 
 import warnings
+from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +19,7 @@ from uplift.common.files import write_text
 from uplift.extras.colour.light_sets import REGRESSION_LIGHTS
 from uplift.extras.files.csv import csv_text
 from uplift.extras.files.outputs import check_folder, make_folder
-from uplift.extras.images.exr import make_part, write_parts
+from uplift.extras.images.exr import chromaticities, make_part, write_parts
 from uplift.extras.report.conformance import picture_reference, spectra_wavelengths
 from uplift.extras.report.conformance_chart import COLUMNS, ROWS, Chart, make_chart
 from uplift.lookup import Cube
@@ -69,11 +71,12 @@ def write_kit(cube: Cube, folder: StrPath, *, force: bool = False) -> tuple[Path
     cube.save(target / CUBE, force=force)
     write_text(_colours(chart), target / COLOURS, force=force)
     write_text(_spectra(chart, at, spectra), target / SPECTRA, force=force)
-    _write_picture(chart.rgb, target / CHART, force=force)
+    space = {"chromaticities": chromaticities(cube.data.sensor)}
+    _write_picture(chart.rgb, target / CHART, space, force=force)
     for name in REGRESSION_LIGHTS:
         reference = picture_reference(cube, chart, name)
         rgb = reference.xyz("spectra") @ np.linalg.inv(SRGB.rgb_to_xyz).T
-        _write_picture(rgb, target / f"reference-{name}.exr", force=force)
+        _write_picture(rgb, target / f"reference-{name}.exr", {}, force=force)
         write_text(_power(cube, reference.light), target / f"{name}.spd", force=force)
     kit = files("uplift.extras.report") / "kit"
     for name in STATIC:
@@ -113,9 +116,11 @@ def _power(cube: Cube, shown: Light) -> str:
     return "".join(f"{nm:g} {value:.6g}\n" for nm, value in rows)
 
 
-def _write_picture(rgb: Array, path: Path, *, force: bool) -> None:
+def _write_picture(
+    rgb: Array, path: Path, header: Mapping[str, Any], *, force: bool
+) -> None:
     """Write a picture of patches (1000, 3) of linear RGB."""
     patches = rgb.reshape(ROWS, COLUMNS, 3)
     pixels = patches.repeat(PATCH, axis=0).repeat(PATCH, axis=1)
     channels = {name: pixels[..., index] for index, name in enumerate("RGB")}
-    write_parts([make_part("", {}, channels)], path, force=force)
+    write_parts([make_part("", header, channels)], path, force=force)
