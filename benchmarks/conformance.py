@@ -26,9 +26,9 @@ from uplift.extras.report.conformance import (
     check_renderer,
     compare,
     picture_reference,
-    spectra_wavelengths,
 )
 from uplift.extras.report.conformance_chart import make_chart
+from uplift.extras.report.conformance_results import spectra_wavelengths
 from uplift.lab.timing import environment
 from uplift.lookup import Cube, load
 from uplift.models import Moments

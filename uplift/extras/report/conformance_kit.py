@@ -20,8 +20,9 @@ from uplift.extras.colour.light_sets import REGRESSION_LIGHTS
 from uplift.extras.files.csv import csv_text
 from uplift.extras.files.outputs import check_folder, make_folder
 from uplift.extras.images.exr import chromaticities, make_part, write_parts
-from uplift.extras.report.conformance import picture_reference, spectra_wavelengths
+from uplift.extras.report.conformance import picture_reference
 from uplift.extras.report.conformance_chart import COLUMNS, ROWS, Chart, make_chart
+from uplift.extras.report.conformance_results import spectra_wavelengths
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
 
