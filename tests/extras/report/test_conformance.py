@@ -41,10 +41,7 @@ def cube():
 @pytest.fixture(scope="module")
 def spectra():
     """The right answers (1000, 31)."""
-    return np.loadtxt(KIT / "spectra.csv", delimiter=",", skiprows=1, usecols=READ)
-
-
-READ = range(-31, 0)
+    return table(KIT / "spectra.csv")[1]
 
 
 def pixels(path):
@@ -52,6 +49,14 @@ def pixels(path):
     with OpenEXR.File(str(path), separate_channels=True) as file:
         channels = file.channels()
         return np.stack([channels[name].pixels for name in "RGB"], axis=-1)
+
+
+def table(path):
+    """Header, names and colours as text, and reflectances (1000, 31)."""
+    header, *lines = path.read_text().splitlines()
+    rows = [line.rsplit(",", 31) for line in lines]
+    names = [row[0] for row in rows]
+    return (header, names), np.array([row[1:] for row in rows], dtype=float)
 
 
 def write(path, rgb, **header):
@@ -68,17 +73,11 @@ def test_the_stored_kit_is_what_its_cube_gives(cube, tmp_path):
         if path.suffix == ".exr":
             assert_allclose(pixels(again), pixels(path), rtol=0, atol=1e-5)
         elif path.name == "spectra.csv":
-            rows, stored = (
-                [line.rsplit(",", 31) for line in each.read_text().splitlines()]
-                for each in (again, path)
-            )
-            assert rows[0] == stored[0]
-            assert [row[0] for row in rows] == [row[0] for row in stored]
-            found, expected = (
-                np.array([row[1:] for row in table[1:]], dtype=float)
-                for table in (rows, stored)
-            )
-            assert_allclose(found, expected, rtol=0, atol=2 * 10**-DIGITS)
+            names, numbers = table(again)
+            stored_names, stored_numbers = table(path)
+            assert names == stored_names
+            within = 2 * 10**-DIGITS
+            assert_allclose(numbers, stored_numbers, rtol=0, atol=within)
         elif path.suffix != ".uplift":
             assert again.read_text() == path.read_text()
     assert sum(path.stat().st_size for path in KIT.iterdir()) < 1e6

@@ -87,7 +87,7 @@ def write_kit(cube: Cube, folder: StrPath, *, force: bool = False) -> tuple[Path
 
 
 def _colours(chart: Chart) -> str:
-    rows = [[_shortest(value) for value in colour] for colour in chart.rgb]
+    rows = [list(map(_shortest, colour)) for colour in chart.rgb]
     return csv_text("rgb", rows)
 
 
