@@ -1,4 +1,4 @@
-"""``uplift check``: compare stored cubes with rebuilt ones."""
+"""``uplift check``: compare cubes with rebuilt ones, and renderers with cubes."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.errors import UpliftError, UpliftWarning
 
-from .. import options
+from .. import conformance, options
 from ..output.console import make_table, paragraph, print_json, say, show
 from ..output.diagnostics import BAD_INPUT, FAILED_CHECK, CommandFailure, error_object
 from ..output.progress import progress_bar
@@ -25,16 +26,32 @@ if TYPE_CHECKING:
     from uplift.common.progress import ProgressCallback
     from uplift.lookup import Cube
 
+REBUILDING = ("files", "folders", "update", "style", "quiet", "verbose")
+"""Parameters that apply to cubes which are rebuilt."""
+APPLICABLE = {
+    "kit": ("files", "force"),
+    "renderer": ("files", "light", "style", "plot_path", "force"),
+}
+"""Parameters that apply to other purposes."""
+NEEDS = {
+    "light": "needs --renderer",
+    "plot_path": "needs --renderer",
+    "force": "needs --kit or --plot",
+}
+
 
 @click.command(
     "check",
-    help="""Rebuild stored cubes from their recorded options and compare the results.
+    help="""Rebuild stored cubes from their recorded options and compare the results, or
+    test a renderer with --kit and --renderer.
 
     \b
     Examples:
       uplift check macbeth-32.uplift
       uplift check macbeth-32.uplift --atlas-dir . --format json
       uplift check macbeth-32.uplift --update
+      uplift check --kit conformance
+      uplift check --renderer conformance/reference-A.exr
 
     The comparison covers lattice RGB, spectra (largest and rms difference), ΔE00 under
     D65, A and FL11, and the number of nodes by status. The exit code is 0 if all
@@ -49,21 +66,82 @@ if TYPE_CHECKING:
     and in 'atlases' in these. A shipped atlas replaces it only where there is none and
     the contents are equal. A note names the version that wrote a cube, if it is older
     than this one.
+
+    --kit writes a cube, a chart of 1,000 colours, their spectra, and scenes of Mitsuba
+    and pbrt. --renderer compares what a renderer makes of them, a picture (.exr) or
+    spectra (CSV), by ΔE00. CUBE is then the one of the kit, by default the ColorChecker
+    in few nodes.
     """,
 )
 @click.argument(
     "files",
-    metavar="CUBE...",
+    metavar="[CUBE]...",
     nargs=-1,
-    required=True,
     shell_complete=options.complete_cube,
 )
 @options.atlas_folders
 @options.flag("--update", help="Replace the cubes that differ by the rebuilt ones.")
+@click.option(
+    "--kit",
+    metavar="FOLDER",
+    type=options.OUTPUT,
+    help="Write the conformance kit of a cube to a folder.",
+)
+@click.option(
+    "--renderer",
+    metavar="FILE",
+    help="Picture (.exr) or spectra (CSV) of the kit by another program.",
+)
+@click.option(
+    "--light",
+    metavar="NAME|FILE",
+    type=options.LIGHT,
+    default="A",
+    help="Light of the picture, or for ΔE00 of spectra.",
+    shell_complete=options.complete_light,
+)
+@options.plot("Draw the picture, the one expected, and ΔE00")
 @options.table_or_json
 @options.quiet
 @options.verbose
+@options.force
 def command(
+    files: Sequence[str],
+    kit: str | None,
+    renderer: str | None,
+    light: Illuminant,
+    plot_path: str | None,
+    force: bool,
+    **rebuilding: Any,
+) -> None:
+    _check_combination(files)
+    enable_jit_cache()
+    cube = files[0] if files else None
+    if kit is not None:
+        conformance.write(cube, kit, force=force)
+    elif renderer is not None:
+        style = rebuilding["style"]
+        conformance.judge(cube, renderer, light, style, plot_path, force=force)
+    else:
+        _rebuild_all(files, **rebuilding)
+
+
+def _check_combination(files: Sequence[str]) -> None:
+    """Raise a usage error for arguments that do not go together."""
+    given = options.given()
+    purpose = next((name for name in APPLICABLE if name in given), "")
+    applicable = APPLICABLE.get(purpose, REBUILDING)
+    for name, option in given.items():
+        if name not in (purpose, *applicable):
+            apart = f"does not go with --{purpose}" if purpose else NEEDS[name]
+            raise click.UsageError(f"{option} {apart}.")
+    if purpose and len(files) > 1:
+        raise click.UsageError(f"--{purpose} takes one cube.")
+    if not purpose and not files:
+        raise click.UsageError("Give cubes, --kit or --renderer.")
+
+
+def _rebuild_all(
     files: Sequence[str],
     folders: Sequence[str],
     update: bool,
@@ -71,7 +149,6 @@ def command(
     quiet: bool,
     verbose: bool,
 ) -> None:
-    enable_jit_cache()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
         results = [
             _check(Path(file), folders, progress) for file in dict.fromkeys(files)

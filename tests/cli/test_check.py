@@ -18,6 +18,7 @@ ROOT = Path(__file__).parents[2]
 CUBES = [
     *sorted((ROOT / "cubes").glob("*.uplift")),
     ROOT / "uplift" / "lookup" / "default.uplift",
+    ROOT / "docs" / "conformance" / "conformance.uplift",
 ]
 
 

@@ -1,0 +1,230 @@
+"""Conformance of another lookup of a cube: its picture of the chart, or its spectra,
+compared with those of this package.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from uplift.colorimetry import Light, delta_e_2000, lab
+from uplift.colorimetry.illuminants import Illuminant
+from uplift.colorimetry.observer import light
+from uplift.common.arrays import Array, StrPath
+from uplift.cube import CubeData
+from uplift.extras.colour.light_sets import REGRESSION_LIGHTS
+from uplift.extras.report.conformance_chart import (
+    COLUMNS,
+    COUNT,
+    ROWS,
+    Chart,
+    make_chart,
+)
+from uplift.extras.report.conformance_results import (
+    SPECTRA,
+    read_patches,
+    read_spectra,
+    spectra_wavelengths,
+)
+from uplift.lookup import Cube
+
+LIGHT = "A"
+"""Light of the scene: smooth, which keeps noise low, and far from that of the cube."""
+MODES = ("spectra", "refined", "moments")
+"""Modes of lookup that conform."""
+PICTURES = ".exr"
+
+
+@dataclass(frozen=True)
+class Differences:
+    """Mean, 95 % quantile and largest ΔE00 of patches."""
+
+    mean: float
+    p95: float
+    largest: float
+
+    def within(self, limits: "Differences") -> bool:
+        """Whether all are at most as large as limits."""
+        return (
+            self.mean <= limits.mean
+            and self.p95 <= limits.p95
+            and self.largest <= limits.largest
+        )
+
+
+PICTURE_LIMITS = Differences(0.2, 0.5, 1.0)
+"""Sampled wavelengths, and the renderer's own table of the observer, differ by less
+(docs/guides/conformance.md).
+"""
+SPECTRA_LIMITS = Differences(0.02, 0.05, 0.2)
+"""Half floats differ by less."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """What a lookup of a cube should return for the chart, as XYZ under a light."""
+
+    cube: Cube
+    chart: Chart
+    light: Light
+    wavelengths: Array
+
+    def xyz(self, mode: str) -> Array:
+        """Return XYZ (1000, 3) of the spectra in a mode of lookup."""
+        spectra = self.cube.reflectance(self.chart.rgb, self.wavelengths, mode)
+        return np.asarray(spectra @ self.light.xyz.T)
+
+    def product(self) -> Array:
+        """Return XYZ (1000, 3) of products of RGB with the RGB of the light."""
+        to_rgb = self.cube.data.sensor.xyz_to_rgb
+        light_rgb = to_rgb @ self.light.white
+        return np.asarray((self.chart.rgb * light_rgb) @ np.linalg.inv(to_rgb).T)
+
+
+@dataclass(frozen=True, eq=False)
+class Conformance:
+    """ΔE00 (1000,) of the patches, to the mode of lookup that is nearest: between the
+    XYZ (1000, 3) that were found and those expected.
+
+    ``explanation`` names a mistake that gives these colours, and is empty if none is
+    known.
+    """
+
+    light: str
+    mode: str
+    chart: Chart
+    found: Array
+    expected: Array
+    delta_e: Array
+    limits: Differences
+    explanation: str = ""
+
+    @property
+    def brightness(self) -> float:
+        """Sum of Y relative to the expected one."""
+        return float(self.found[:, 1].sum() / self.expected[:, 1].sum())
+
+    @property
+    def differences(self) -> Differences:
+        """The figures that have limits."""
+        return summarise(self.delta_e)
+
+    @property
+    def passed(self) -> bool:
+        """Whether all figures are within the limits."""
+        return self.differences.within(self.limits)
+
+    def worst(self, count: int) -> list[int]:
+        """Return the numbers of the patches of the largest ΔE00."""
+        return [int(number) for number in np.argsort(-self.delta_e)[:count]]
+
+
+def summarise(delta_e: Array) -> Differences:
+    """Return the figures of ΔE00 (n,)."""
+    return Differences(
+        float(delta_e.mean()),
+        float(np.quantile(delta_e, 0.95)),
+        float(delta_e.max()),
+    )
+
+
+def check_renderer(
+    path: StrPath, cube: Cube, illuminant: Illuminant = LIGHT
+) -> Conformance:
+    """Compare what another program makes of the chart of a cube with its own answers.
+
+    Parameters
+    ----------
+    path : path-like
+        A picture of the chart under a light, if it ends in ``.exr``: linear sRGB, or
+        the RGB space that it states, or XYZ. None is adapted to the light, and Y of a
+        white diffuser is 1. Or else
+        reflectances as CSV: the colours of the chart in ``r``, ``g``, ``b``, and a
+        column for each of 400, 410, …, 700 nm.
+    cube : Cube
+        The cube that the program used.
+    illuminant : str or Lamp, default "A"
+        Light of the picture, or under which reflectances are compared.
+
+    Returns
+    -------
+    Conformance
+
+    Raises
+    ------
+    TextureError
+        The picture cannot be read, is of another size, or has codes or values that are
+        not finite.
+    ColourError
+        The table cannot be read, or has other colours or wavelengths; or the cube has
+        no XYZ (``camera-without-xyz``).
+    """
+    cube.data.sensor.require_xyz()
+    chart = make_chart(cube.data)
+    if Path(path).suffix.lower() == PICTURES:
+        reference = picture_reference(cube, chart, illuminant)
+        return compare(read_patches(path), reference, PICTURE_LIMITS)
+    shown = light(illuminant, cube.observer, *SPECTRA)
+    reference = Reference(cube, chart, shown, spectra_wavelengths())
+    xyz = read_spectra(path, chart) @ shown.xyz.T
+    return compare(xyz, reference, SPECTRA_LIMITS)
+
+
+def picture_reference(cube: Cube, chart: Chart, illuminant: Illuminant) -> Reference:
+    """Return the reference of pictures, on the wavelengths of the cube."""
+    shown = light(illuminant, cube.observer, *cube.data.sensor.range)
+    return Reference(cube, chart, shown, cube.wavelengths)
+
+
+def compare(xyz: Array, reference: Reference, limits: Differences) -> Conformance:
+    """Compare XYZ (1000, 3) with all modes, and explain a failure."""
+    white = reference.light.white
+    colours = lab(xyz, white)
+    by_mode = {}
+    for mode in MODES:
+        expected = lab(reference.xyz(mode), white)
+        by_mode[mode] = delta_e_2000(colours, expected)
+    nearest = min(by_mode, key=lambda mode: float(by_mode[mode].mean()))
+    conformance = Conformance(
+        reference.light.name,
+        nearest,
+        reference.chart,
+        xyz,
+        reference.xyz(nearest),
+        by_mode[nearest],
+        limits,
+    )
+    if conformance.passed:
+        return conformance
+    for mode in MODES:
+        for explanation, mistaken in _mistakes(reference, mode, conformance.brightness):
+            if summarise(delta_e_2000(colours, lab(mistaken, white))).within(limits):
+                return replace(conformance, explanation=explanation)
+    return conformance
+
+
+def _mistakes(
+    reference: Reference, mode: str, brightness: float
+) -> Iterator[tuple[str, Array]]:
+    """Yield mistakes and the XYZ (1000, 3) that they give in a mode of lookup."""
+    right = reference.xyz(mode)
+    rows = right.reshape(ROWS, COLUMNS, 3)
+    yield f"all is {brightness:.4g} times as bright", brightness * right
+    yield "the picture is upside down", rows[::-1].reshape(COUNT, 3)
+    yield "the picture is mirrored", rows[:, ::-1].reshape(COUNT, 3)
+    yield "the picture is turned by 180°", right[::-1]
+    if reference.wavelengths is reference.cube.wavelengths:
+        for name in REGRESSION_LIGHTS:
+            other = picture_reference(reference.cube, reference.chart, name)
+            yield f"the light is {name}", other.xyz(mode)
+    yield "RGB is multiplied by the RGB of the light", reference.product()
+    yield "nodes are not interpolated", reference.xyz("nearest")
+    bare = replace(reference, cube=Cube(_without_boxes(reference.cube.data)))
+    yield "the boxes of entries are ignored", bare.xyz(mode)
+
+
+def _without_boxes(data: CubeData) -> CubeData:
+    """Return a cube whose entries have no boxes."""
+    atlas = replace(data.atlas, half_width=np.zeros_like(data.atlas.half_width))
+    return replace(data, atlas=atlas)
