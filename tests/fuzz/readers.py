@@ -29,7 +29,7 @@ from uplift.common.colour_science import colour_science
 from uplift.common.errors import UpliftError
 from uplift.common.files import file_digest
 from uplift.cube import CubeData, read, summarise
-from uplift.cube.file import POINTS
+from uplift.cube.schema import POINTS
 from uplift.extras.colour.query import query
 from uplift.extras.palette import design, matrix, read_palette, standard_model
 from uplift.extras.report.rebuild import recorded_atlas
