@@ -10,8 +10,8 @@ import numpy as np
 from uplift.common.arrays import Array
 from uplift.common.errors import TextureError
 from uplift.extras.photographs.answers import Photographs
-from uplift.extras.photographs.metamers import brightness
 from uplift.extras.photographs.photograph import Noise, Photograph, rounding_noise
+from uplift.models.brightness import brightness
 
 BLOCK = 8
 """Pixels along the sides of the blocks in which noise is estimated."""
@@ -53,7 +53,7 @@ def estimate_exposure(
     directions = photographs.metamers.components @ matrix.sum(axis=0)
     covariance = photographs.metamers.mean
     spread = np.sqrt(directions @ covariance @ directions)
-    relative = brightness(rgb[bright]) * spread / total
+    relative = brightness(rgb[bright])[:, 0] * spread / total
     return factor, float(np.median(relative))
 
 

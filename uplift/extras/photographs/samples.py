@@ -19,8 +19,9 @@ from numpy.typing import ArrayLike, NDArray
 from uplift.common.arrays import Array, blocks
 from uplift.common.errors import OptionError
 from uplift.extras.photographs.changes import changed_spectra
-from uplift.extras.photographs.metamers import Metamers, brightness, learn_metamers
+from uplift.extras.photographs.metamers import Metamers, learn_metamers
 from uplift.lookup import Cube, as_colours, as_wavelengths
+from uplift.models.brightness import brightness
 
 TAIL = 8.0
 """Degrees of freedom ν, with which samples spread as left-out materials do."""
@@ -126,7 +127,7 @@ class SpectrumSampler:
         components_at = self.metamers.components_at(wavelengths)
         shape = (len(rgb), count, 1)
         scale = np.sqrt(TAIL / random.chisquare(TAIL, shape))
-        scale *= brightness(rgb)[:, None, None]
+        scale *= brightness(rgb)[..., None]
         roots = _symmetric_root(covariance)
         result = np.empty((len(rgb), count, len(wavelengths)))
         for block in blocks(len(rgb), max(BLOCK_SPECTRA // count, 1)):
