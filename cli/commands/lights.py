@@ -19,8 +19,8 @@ from ..colours import find_colours
 from ..inputs import check_range
 from ..output.answers import format_rgb, print_spectrum, sparkline
 from ..output.console import json_output, print_csv, print_json_answers, say
+from ..output.passes import print_numbers
 from .info import print_facts
-from .query import print_numbers
 from .texture import as_tuple, convert, image_options, passes_option
 
 if TYPE_CHECKING:

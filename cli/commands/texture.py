@@ -23,6 +23,7 @@ from uplift.extras.files.outputs import check_outputs
 from .. import also as further
 from .. import options
 from ..inputs import UDIM, check_range, expand_patterns
+from ..option_types import INPUTS
 from ..output.console import say
 from ..output.diagnostics import CommandFailure, warn
 from ..output.progress import progress_bar
@@ -293,7 +294,7 @@ def convert(
     named = target if passes is None else _with_suffix(sources, target)
     pairs = _texture_paths(sources, named)
     photographs = _photographs(further, len(pairs))
-    inputs = click.get_current_context().meta.get(options.INPUTS, ())
+    inputs = click.get_current_context().meta.get(INPUTS, ())
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
     settings = texture.TextureSettings(
