@@ -141,7 +141,7 @@ class Prior:
             + self.errors.floor
         )
         standard, _ = self.errors.radii
-        return np.asarray(standard * np.sqrt(squares))
+        return standard * np.sqrt(squares)
 
     def with_entries(self, entries: FittedEntries, looks: int) -> "Prior":
         """Return the prior of entries whose last ones are looks, with the same kernel

@@ -15,4 +15,4 @@ MIN_LEVEL = 1e-4
 
 def brightness(rgb: Array) -> Array:
     """Factor k = max(x)^½ (n, 1) between linear RGB (n, 3) and brightened ones."""
-    return np.asarray(np.maximum(largest(rgb), MIN_LEVEL)[:, None] ** BRIGHTENING)
+    return np.maximum(largest(rgb), MIN_LEVEL)[:, None] ** BRIGHTENING

@@ -109,10 +109,8 @@ def minimum_norm_step(
     for a, row in enumerate(jacobian):
         lower.append([np.einsum("cn,cn->n", row, other) for other in jacobian[: a + 1]])
     y = solve_damped(lower, damping, residual)
-    return np.asarray(
-        blocked_matmul_columns(
-            forward.root, np.einsum("an,acn->cn", np.stack(y), jacobian)
-        )
+    return blocked_matmul_columns(
+        forward.root, np.einsum("an,acn->cn", np.stack(y), jacobian)
     )
 
 

@@ -193,7 +193,7 @@ class Moments(Model):
     def is_float32_safe(self, multipliers: Array) -> Mask:
         # The linear part is at most |p₀| + 2 Σ |p_l|.
         largest = np.abs(multipliers[:, 0]) + 2 * np.abs(multipliers[:, 1:]).sum(axis=1)
-        return np.asarray(largest <= MAX_SAFE_LINEAR)
+        return largest <= MAX_SAFE_LINEAR
 
     def describe(self) -> dict[str, Any]:
         phase = {"start": self.start, "end": self.end, "warp": self.warp}
@@ -215,7 +215,7 @@ def moment_matrix(model: Moments, wavelengths: Array) -> Array:
     # c_j = (1/π) ∫ g(φ) cos jφ dφ by midpoints
     weights = duality.cosine_basis(phase, model.count) / MATCH_NODES
     weights[:, 1:] /= 2
-    return np.asarray(samples @ weights)
+    return samples @ weights
 
 
 def multipliers_of_rounded(model: Moments, moments: Array) -> tuple[Array, Mask]:

@@ -73,7 +73,7 @@ def grey_balance(
         return None
     predicted = expected[rows] @ photograph.matrix.T
     ratio = np.median(others[rows] / predicted, axis=0)
-    return np.asarray(ratio / ratio[1])
+    return ratio / ratio[1]
 
 
 def estimate_noise(bands: Sequence[Array], steps: int) -> Noise:

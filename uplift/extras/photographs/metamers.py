@@ -82,7 +82,7 @@ class Metamers:
         weights = np.exp(apart / -LENGTH)
         sums = (weights @ self._products).reshape(-1, *self.mean.shape)
         total = weights.sum(axis=1) + PRIOR_COUNT
-        return np.asarray((sums + PRIOR_COUNT * self.mean) / total[:, None, None])
+        return (sums + PRIOR_COUNT * self.mean) / total[:, None, None]
 
     @cached_property
     def _products(self) -> Array:
@@ -126,7 +126,7 @@ def _relative(sensor: Sensor, differences: Array, rgb: Array) -> Array:
     """
     colours = differences @ sensor.matrix.T
     blacks = differences - colours @ np.linalg.pinv(sensor.matrix).T
-    return np.asarray(blacks / brightness(rgb))
+    return blacks / brightness(rgb)
 
 
 def _families(data: CubeData) -> Array:

@@ -150,7 +150,7 @@ def _symmetric_root(covariance: Array) -> Array:
     """The symmetric roots (n, R, R) of covariances, which may be singular."""
     variances, axes = np.linalg.eigh(covariance)
     deviations = np.sqrt(np.maximum(variances, 0))
-    return np.asarray((axes * deviations[:, None, :]) @ axes.transpose(0, 2, 1))
+    return (axes * deviations[:, None, :]) @ axes.transpose(0, 2, 1)
 
 
 def _as_generator(seed: int | np.random.Generator) -> np.random.Generator:
