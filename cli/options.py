@@ -47,6 +47,14 @@ def given() -> dict[str, str]:
     return options
 
 
+def exclude(option: str, *names: str) -> None:
+    """Raise a usage error if an option is given with one of these parameters."""
+    others = given()
+    for name in names:
+        if name in others:
+            raise click.UsageError(f"{option} excludes {others[name]}.")
+
+
 flag = partial(click.option, is_flag=True)
 number = partial(click.option, type=NUMBER)
 whole = partial(click.option, type=WHOLE)

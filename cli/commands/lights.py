@@ -225,8 +225,8 @@ def texture(
     from uplift.extras.emission.lookup import find_table, load_emission
     from uplift.extras.texture import Spectrum
 
-    if passes is not None and wavelengths is not None:
-        raise click.UsageError("--passes excludes --wavelengths.")
+    if passes is not None:
+        options.exclude("--passes", "wavelengths")
     table = None if table_path is None else os.path.abspath(find_table(table_path))
     # a table that cannot be read is reported before images are
     loaded = load_emission(table_path)
@@ -297,8 +297,7 @@ def query(
     else:
         blocks = map(table.xyz, source.blocks(sensor(table.space)))
     if passes is not None:
-        if plot_path is not None or wavelengths is not None:
-            raise click.UsageError("--passes excludes --plot and --wavelengths.")
+        options.exclude("--passes", "plot_path", "wavelengths")
         print_numbers(_pass_numbers(table, blocks, passes, outside), style)
         return
     results: Iterable[dict[str, Any]] = _answers(table, blocks, at, outside)

@@ -130,7 +130,7 @@ def command(
     **colours: Any,
 ) -> None:
     if passes is not None:
-        _check_passes()
+        options.exclude("--passes", "lights", "plot_path", "wavelengths", "stored")
         print_numbers(_pass_numbers(passes, colours), style)
         return
     if stored is not None:
@@ -176,14 +176,6 @@ def command(
         if len(cubes) == 1:
             hint = f"to use the cube of this folder, add --cube {cubes[0]}"
             paragraph(f"hint: {hint}", err=True)
-
-
-def _check_passes() -> None:
-    """Raise a usage error for options that numbers of passes do not have."""
-    given = options.given()
-    for name in ("lights", "plot_path", "wavelengths", "stored"):
-        if name in given:
-            raise click.UsageError(f"--passes excludes {given[name]}.")
 
 
 def _pass_numbers(

@@ -224,7 +224,7 @@ def command(
     from uplift.lookup import find_file, load
 
     if passes is not None:
-        _check_passes()
+        options.exclude("--passes", "kind", "mask", "errors", "wavelengths", "also")
     count = len(also)
     pictures = tuple(
         texture.FurtherPicture(photograph.light, space, camera, exposure)
@@ -259,14 +259,6 @@ def command(
     if mask is not None:
         mask = os.path.abspath(mask)
     convert(cubes, pixels, mask=mask, passes=passes, **settings)
-
-
-def _check_passes() -> None:
-    """Raise a usage error for options that images of passes do not have."""
-    given = options.given()
-    for name in ("kind", "mask", "errors", "wavelengths", "also"):
-        if name in given:
-            raise click.UsageError(f"--passes excludes {given[name]}.")
 
 
 def convert(
