@@ -16,7 +16,6 @@ from .command import Group as Group
 from .completion import complete_atlas as complete_atlas
 from .completion import complete_cube as complete_cube
 from .completion import complete_light as complete_light
-from .completion import complete_observer
 from .completion import complete_space as complete_space
 from .option_types import FIGURE_PAGE as FIGURE_PAGE
 from .option_types import INPUT_SPACE as INPUT_SPACE
@@ -286,33 +285,6 @@ table = click.option(
 )
 
 
-def colours(xyz: str, space: str) -> Decorator:
-    """COLOUR and the other sources of colours, for
-    `uplift_cli.colours.find_colours`.
-    """
-    return stacked(
-        click.argument("colour", metavar="[COLOUR]...", nargs=-1),
-        click.option(
-            "--input",
-            "input_path",
-            metavar="FILE",
-            help="Table of colours, one per line; '-' is standard input.",
-        ),
-        number("--xyz", nargs=3, metavar="X Y Z", help=f"Colour by XYZ {xyz}."),
-        number(
-            "--xy",
-            nargs=2,
-            metavar="X Y",
-            help="Colour by chromaticity, with --luminance, as for --xyz.",
-        ),
-        number(
-            "--luminance", metavar="Y", help="Luminance of --xy, where white has 1."
-        ),
-        flag("--encoded", help="Numbers are encoded 8-bit codes from 0 to 255."),
-        input_space("the colours", default=space),
-    )
-
-
 fill = flag(
     "--fill-missing",
     help="Take colours that a cube built with --scene lacks from the packaged cube.",
@@ -329,48 +301,3 @@ quiet = flag("-q", "--quiet", help="Print only warnings and errors.")
 verbose = flag(
     "-v", "--verbose", help="Print a line for every round and improvement step."
 )
-
-
-def space(camera: str = "") -> Decorator:
-    """``--space``: the space of what is built or listed."""
-    text = (
-        "RGB space by its name in colour-science or OpenColorIO, such as "
-        f"ACEScg{camera}."
-    )
-    return click.option(
-        "--space", default="sRGB", help=text, shell_complete=complete_space
-    )
-
-
-def observer(camera: str = "") -> Decorator:
-    """``--observer``."""
-    default = "CIE 1931 2 Degree Standard Observer"
-    text = f"Standard observer{camera}."
-    metavar = "NAME|FILE" if camera else "NAME"
-    return click.option(
-        "--observer",
-        metavar=metavar,
-        default=default,
-        help=text,
-        shell_complete=complete_observer,
-    )
-
-
-sensor = stacked(
-    space("; or camera: raw values"),
-    click.option(
-        "--illuminant",
-        metavar="NAME|FILE",
-        type=LIGHT,
-        default="D65",
-        help="Illuminant under which RGB are defined; a cube needs a name, other "
-        "commands read the file of a lamp.",
-        shell_complete=complete_light,
-    ),
-    observer(
-        ", or with --space camera a camera: name or FILE of sensitivities (CSV, or "
-        "JSON of rawtoaces)"
-    ),
-)
-"""``space``, ``illuminant`` and ``observer``, for `uplift.colorimetry.observer.sensor`.
-"""

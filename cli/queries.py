@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import click
+
 from uplift.common.errors import UpliftWarning
 from uplift.common.text import pluralise
 
@@ -26,8 +28,37 @@ PACKAGED = "packaged"
 """Name of the cube that answers without --cube."""
 
 
+def colour_sources(xyz: str, space: str) -> options.Decorator:
+    """COLOUR and the other sources of colours, for
+    `find_colours`.
+    """
+    return options.stacked(
+        click.argument("colour", metavar="[COLOUR]...", nargs=-1),
+        click.option(
+            "--input",
+            "input_path",
+            metavar="FILE",
+            help="Table of colours, one per line; '-' is standard input.",
+        ),
+        options.number("--xyz", nargs=3, metavar="X Y Z", help=f"Colour by XYZ {xyz}."),
+        options.number(
+            "--xy",
+            nargs=2,
+            metavar="X Y",
+            help="Colour by chromaticity, with --luminance, as for --xyz.",
+        ),
+        options.number(
+            "--luminance", metavar="Y", help="Luminance of --xy, where white has 1."
+        ),
+        options.flag(
+            "--encoded", help="Numbers are encoded 8-bit codes from 0 to 255."
+        ),
+        options.input_space("the colours", default=space),
+    )
+
+
 colour_options = options.stacked(
-    options.colours(
+    colour_sources(
         "under the cube's illuminant, where white has Y = 1; also outside the cube's "
         "space",
         "that of the cube",

@@ -14,12 +14,13 @@ from uplift.common.files import check_output, write_text
 from uplift.common.text import pluralise
 from uplift.extras.files.outputs import check_outputs
 
-from .. import options
+from .. import options, sensor_options
 from ..colours import find_colours
 from ..inputs import check_range
 from ..output.answers import format_rgb, print_spectrum, sparkline
 from ..output.console import json_output, print_csv, print_json_answers, say
 from ..output.passes import print_numbers
+from ..queries import colour_sources
 from .info import print_facts
 from .texture import as_tuple, convert, image_options, passes_option
 
@@ -79,8 +80,8 @@ def command() -> None:
 )
 @options.atlas("Spectral powers of lamps")
 @options.output(help="Table to write. [default: ATLAS-emission.uplift]")
-@options.space()
-@options.observer()
+@sensor_options.space()
+@sensor_options.observer()
 @options.force
 @options.quiet
 def build(
@@ -254,7 +255,7 @@ def texture(
       uplift lights query 30 22 9 --passes passes.toml
     """,
 )
-@options.colours("where white of the table's space has Y = 1", "that of the table")
+@colour_sources("where white of the table's space has Y = 1", "that of the table")
 @table_option
 @options.output_wavelengths
 @options.choice(

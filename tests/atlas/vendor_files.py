@@ -42,9 +42,9 @@ def sample(atlas: Atlas, count: int = 6) -> Atlas:
     )
 
 
-def labels(pattern: str, separator: str) -> str:
-    """Return the labels of all wavelengths."""
-    return separator.join(pattern.format(f"{nm:g}") for nm in NM)
+def labels(pattern: str, separator: str, step: int = 1) -> str:
+    """Return the labels of all wavelengths, in descending order if ``step`` is -1."""
+    return separator.join(pattern.format(f"{nm:g}") for nm in NM[::step])
 
 
 def row(
