@@ -13,6 +13,7 @@ import uplift
 from benchmarks import Row, record
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer as observers
+from uplift.colorimetry.illuminants import black_body
 from uplift.common.arrays import Array, Mask
 from uplift.extras.emission.discs import Lamps
 from uplift.extras.emission.fit import nearest_lights
@@ -186,8 +187,6 @@ def sigmoid_times_d65(power: Array, table: EmissionTable, d65: Array) -> Array:
 
 MIREDS = np.linspace(20, 1000, 981)
 """Reciprocal temperatures in 1/MK of the Planckian radiators that are compared."""
-SECOND_RADIATION_CONSTANT = 1.438776877e-2
-"""c₂ in m K."""
 
 
 def planck(uv: Array, radiometry: Array, wavelengths: Array) -> Array:
@@ -197,10 +196,7 @@ def planck(uv: Array, radiometry: Array, wavelengths: Array) -> Array:
     CIE 015:2018, 9.5: the correlated colour temperature, by the distance in CIE 1960
     uv.
     """
-    metres = wavelengths * 1e-9
-    radiators = metres**-5 / np.expm1(
-        SECOND_RADIATION_CONSTANT / metres * MIREDS[:, None] * 1e-6
-    )
+    radiators = np.stack([black_body(1e6 / mired, wavelengths) for mired in MIREDS])
     apart = (uv[:, None] - chromaticity(radiators @ radiometry)) * (1.0, 2 / 3)
     nearest = radiators[np.linalg.norm(apart, axis=-1).argmin(axis=1)]
     return nearest_lights(nearest, uv, radiometry)

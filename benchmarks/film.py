@@ -111,7 +111,7 @@ def film_power() -> Array:
     """Return the light of the film with Y = 1."""
     spd = illuminant_spd(FILM_LIGHT)
     luminous = matching_functions(DEFAULT_OBSERVER)[:, 1]
-    return np.asarray(spd / (spd @ luminous / luminous.sum()))
+    return spd / (spd @ luminous / luminous.sum())
 
 
 def film_table(cube: uplift.Cube, share: float) -> tuple[float, Array]:

@@ -76,8 +76,10 @@ class Spread:
     def overall(self) -> Row:
         """Return the means over all lights."""
         rows = [self.under(name) for name in LIGHTS]
-        names = ("materials", "samples", "within_68", "within_95")
-        return {name: np.mean([row[name] for row in rows]) for name in names}
+        means = {}
+        for name in ("materials", "samples", "within_68", "within_95"):
+            means[name] = np.mean([row[name] for row in rows])
+        return means
 
 
 def left_out(cube: Cube) -> Spread:

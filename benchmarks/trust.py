@@ -3,6 +3,7 @@ docs/prior.md.
 """
 
 from functools import cache
+from itertools import permutations, starmap
 from typing import Any
 
 import numpy as np
@@ -51,12 +52,7 @@ NEIGHBOURS = 8
 
 def main() -> None:
     """Measure and store."""
-    pairs = [
-        of_pair(atlas, queried)
-        for atlas in ATLASES
-        for queried in ATLASES
-        if atlas != queried
-    ]
+    pairs = permutations(ATLASES, 2)
     write_png(draw_strips(), DOCS / "prior" / "spots.png", force=True)
     record(
         "trust",
@@ -64,7 +60,7 @@ def main() -> None:
         lights=list(LIGHTS),
         ramp_lights=list(RAMP_LIGHTS),
         own=map(of_own_kind, SETS),
-        others=pairs,
+        others=starmap(of_pair, pairs),
         ramps=map(of_ramps, SETS),
     )
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 
@@ -61,7 +61,7 @@ def main() -> None:
     """Measure and store."""
     results = {name: of_set(name) for name in SETS}
     results[TOGETHER] = together([results[name] for name in OTHERS])
-    rows = [row for name, result in results.items() for row in as_rows(name, result)]
+    rows = list(chain.from_iterable(map(as_rows, results, results.values())))
     record(
         "two-lights",
         dim=DIM,
@@ -203,16 +203,18 @@ def second_moment(known: Evidence) -> Array:
 
 def joined(parts: list[Result]) -> Result:
     """Join the results of several halves or sets."""
-    errors = {
-        method: np.concatenate([part.errors[method] for part in parts])
-        for method in parts[0].errors
-    }
+    errors = {}
+    for method in parts[0].errors:
+        errors[method] = np.concatenate([part.errors[method] for part in parts])
     return Result(errors, np.concatenate([part.within for part in parts]))
 
 
 def together(sets: list[Results]) -> Results:
     """Join the results of sets."""
-    return {case: joined([results[case] for results in sets]) for case in CASES}
+    together = {}
+    for case in CASES:
+        together[case] = joined([results[case] for results in sets])
+    return together
 
 
 def as_rows(name: str, results: Results) -> Iterator[Row]:

@@ -237,7 +237,7 @@ def find_colours(
     encoded: bool,
     input_space: str | None,
 ) -> ColourSource:
-    """Return the source that the values of `options.colours` name. Raises click's error
+    """Return the source that the values of `colour_sources` name. Raises click's error
     for none or several.
     """
     space = None if input_space is None else find_input_space(input_space)

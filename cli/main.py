@@ -13,7 +13,8 @@ from uplift.common.errors import UpliftWarning
 from uplift.common.extensions import installed
 from uplift.common.version import version
 
-from .options import OUTPUT_FORMAT, Group
+from .command import Group
+from .options import OUTPUT_FORMAT
 from .output.console import emit, flush_stdout
 from .output.diagnostics import (
     BAD_INPUT,

@@ -1,275 +1,38 @@
-"""Options that several commands share, the types of their values, and the names that a
-shell completes.
+"""Options that several commands share.
 
-Commands import this module and write ``@options.cube``.
+Commands import this module and write ``@options.cube``. The classes of commands, the
+types of values and the names that a shell completes are listed here, too.
 """
 
-import inspect
-import math
-import re
-import sys
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from functools import partial, reduce
-from importlib import import_module
 from typing import Any
 
 import click
 from click.core import ParameterSource
-from click.shell_completion import CompletionItem
 
-from uplift.common.text import format_value, parse_float, parse_whole
-
-from .inputs import (
-    check_figure_page,
-    check_page,
-    check_plot,
-    find_input_space,
-    find_light,
-    parse_wavelengths,
-)
+from .command import Command as Command
+from .command import Group as Group
+from .completion import complete_atlas as complete_atlas
+from .completion import complete_cube as complete_cube
+from .completion import complete_light as complete_light
+from .completion import complete_space as complete_space
+from .option_types import FIGURE_PAGE as FIGURE_PAGE
+from .option_types import INPUT_SPACE as INPUT_SPACE
+from .option_types import LIGHT as LIGHT
+from .option_types import NUMBER as NUMBER
+from .option_types import OUTPUT, PLOT, WAVELENGTHS
+from .option_types import PAGE as PAGE
+from .option_types import WHOLE as WHOLE
+from .option_types import WHOLE_OR_AUTO as WHOLE_OR_AUTO
+from .option_types import Checked as Checked
+from .option_types import OutputFile as OutputFile
+from .option_types import Parsed as Parsed
+from .option_types import Whole as Whole
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
-NEGATIVE_NUMBER = re.compile(r"-\.?\d")
-HELP_ALL = "uplift.help-all"
-"""Key of the context's ``meta`` while the whole help is printed."""
-INPUTS = "uplift.inputs"
-"""Key of the context's ``meta`` under which files of lamps are kept: those that name no
-file do no harm.
-"""
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
-
-
-class Command(click.Command):
-    """A command with many options, which reads '-0.1' as a number, not as an option.
-
-    ``--help`` shows the options of every day, by the names of their parameters, and the
-    text before a form feed. ``--help-all`` shows everything. ``no_arguments`` is stated
-    where a command without arguments is given some.
-    """
-
-    def __init__(
-        self,
-        *args: Any,
-        everyday: Collection[str],
-        no_arguments: str = "",
-        **settings: Any,
-    ) -> None:
-        super().__init__(*args, **settings)
-        self.everyday = everyday
-        self.no_arguments = no_arguments
-        self.params.append(
-            click.Option(
-                ["--help-all"],
-                is_flag=True,
-                expose_value=False,
-                help="Show all options.",
-            )
-        )
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Mark negative numbers by a leading space before parsing."""
-        if "--help-all" in args:
-            ctx.meta[HELP_ALL] = True
-            args = ["--help"]
-        try:
-            return super().parse_args(
-                ctx, [f" {arg}" if NEGATIVE_NUMBER.match(arg) else arg for arg in args]
-            )
-        except click.UsageError as error:
-            if self.no_arguments and "extra argument" in error.message:
-                raise click.UsageError(
-                    f"{error.message}. {self.no_arguments}", ctx
-                ) from error
-            raise
-
-    def format_help_text(
-        self, ctx: click.Context, formatter: click.HelpFormatter
-    ) -> None:
-        """Write the text, after the form feed for --help-all only."""
-        short, _, further = inspect.cleandoc(self.help or "").partition("\f")
-        formatter.write_paragraph()
-        with formatter.indentation():
-            formatter.write_text(short + further if HELP_ALL in ctx.meta else short)
-
-    def format_options(
-        self, ctx: click.Context, formatter: click.HelpFormatter
-    ) -> None:
-        """Write the options of every day, the last two of help, or all options."""
-        params = self.get_params(ctx)
-        shown = [option for option in params if isinstance(option, click.Option)]
-        if HELP_ALL not in ctx.meta:
-            names = (*self.everyday, *(option.name for option in shown[-2:]))
-            shown = [option for option in shown if option.name in names]
-        records = (option.get_help_record(ctx) for option in shown)
-        with formatter.section("Options"):
-            formatter.write_dl(list(filter(None, records)))
-
-
-class Group(click.Group):
-    """Commands under one name, which alone prints the help."""
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse ``--help`` in place of no arguments."""
-        return super().parse_args(ctx, args or ["--help"])
-
-    def format_commands(
-        self, ctx: click.Context, formatter: click.HelpFormatter
-    ) -> None:
-        """Write names and first sentences, which click would cut to one line."""
-        commands = (
-            (name, self.get_command(ctx, name)) for name in self.list_commands(ctx)
-        )
-        records = [
-            (name, command.get_short_help_str(limit=sys.maxsize))
-            for name, command in commands
-            if command
-        ]
-        with formatter.section("Commands"):
-            formatter.write_dl(records)
-
-
-class Number(click.ParamType):  # type: ignore[type-arg]
-    """A finite number; the library checks its range."""
-
-    name = "float"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> float:
-        """Return a finite number."""
-        try:
-            number = parse_float(value) if isinstance(value, str) else float(value)
-        except ValueError:
-            number = math.nan
-        if not math.isfinite(number):
-            self.fail(f"{format_value(value)} is not a finite number.", param, ctx)
-        return number
-
-
-class Whole(click.IntRange):
-    """A whole number in ASCII digits that fits into 64 bits, in a range, or a ``word``
-    in place of it.
-    """
-
-    def __init__(
-        self, min: int | None = None, max: int | None = None, *, word: str = ""
-    ) -> None:
-        super().__init__(min, max)
-        self.word = word
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> Any:
-        """Return a whole number, or the word."""
-        if self.word and value == self.word:
-            return value
-        try:
-            number = parse_whole(value) if isinstance(value, str) else value
-        except ValueError:
-            known = (
-                f"neither a whole number nor '{self.word}'"
-                if self.word
-                else "not a whole number"
-            )
-            self.fail(f"{format_value(value)} is {known}.", param, ctx)
-        return super().convert(number, param, ctx)
-
-    def _describe_range(self) -> str:
-        return "" if (self.min, self.max) == (None, None) else super()._describe_range()
-
-
-class Parsed(click.ParamType):  # type: ignore[type-arg]
-    """A text that a function parses, which may raise `UpliftError`."""
-
-    name = "text"
-
-    def __init__(self, function: Callable[[str], Any]) -> None:
-        self.function = function
-
-    def convert(self, value: Any, *_: Any) -> Any:
-        """Return what the function makes of the text."""
-        return self.function(value)
-
-
-class Checked(Parsed):
-    """A text that a function of `uplift_cli.inputs` checks."""
-
-    def convert(self, value: Any, *_: Any) -> Any:
-        """Return the text."""
-        self.function(value)
-        return value
-
-
-class Light(Parsed):
-    """The name of an illuminant, or a file of a lamp, which is kept among the inputs of
-    the command.
-    """
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> Any:
-        """Return the name, or the lamp."""
-        if ctx is not None:
-            ctx.meta.setdefault(INPUTS, []).extend((value, value.rpartition(":")[0]))
-        return super().convert(value, param, ctx)
-
-
-class OutputFile(Checked):
-    """The name of a file or folder that a command writes."""
-
-
-NUMBER = Number()
-WHOLE = Whole()
-WHOLE_OR_AUTO = Whole(word="auto")
-WAVELENGTHS = Parsed(parse_wavelengths)
-LIGHT = Light(find_light)
-INPUT_SPACE = Checked(find_input_space)
-OUTPUT = OutputFile(str)
-PAGE = OutputFile(check_page)
-PLOT = OutputFile(check_plot)
-FIGURE_PAGE = OutputFile(check_figure_page)
-
-
-def completion(
-    *sources: str, files: bool = False
-) -> Callable[..., list[CompletionItem]]:
-    """Complete names, and the names of ``files``.
-
-    Sources are tuples or functions of the library with their arguments: 'module:name',
-    'module:name:argument'.
-    """
-
-    def complete(
-        ctx: click.Context, param: click.Parameter, text: str
-    ) -> list[CompletionItem]:
-        # first: bash drops the items before it
-        items = [CompletionItem(text, type="file")] * files
-        for source in sources:
-            module, attribute, *arguments = source.split(":")
-            values = getattr(import_module(f"uplift.{module}"), attribute)
-            if callable(values):
-                values = values(*arguments)
-            for value in values:
-                name = getattr(value, "name", value)
-                if name.lower().startswith(text.lower()):
-                    items.append(CompletionItem(name))
-        return items
-
-    return complete
-
-
-complete_atlas = completion("atlas:shipped_atlases", files=True)
-complete_cube = completion("lookup.cube:PACKAGED", files=True)
-complete_light = completion(
-    "colorimetry.illuminants:COMMON_NAMES",
-    "colorimetry.tables:names:illuminant",
-    files=True,
-)
-complete_observer = completion(
-    "colorimetry.tables:names:observer", "colorimetry.tables:names:camera", files=True
-)
-complete_space = completion("colorimetry.tables:names:RGB space")
 
 
 def given() -> dict[str, str]:
@@ -281,6 +44,14 @@ def given() -> dict[str, str]:
         if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
             options[name] = parameter.opts[-1]
     return options
+
+
+def exclude(option: str, *names: str) -> None:
+    """Raise a usage error if an option is given with one of these parameters."""
+    others = given()
+    for name in names:
+        if name in others:
+            raise click.UsageError(f"{option} excludes {others[name]}.")
 
 
 flag = partial(click.option, is_flag=True)
@@ -514,33 +285,6 @@ table = click.option(
 )
 
 
-def colours(xyz: str, space: str) -> Decorator:
-    """COLOUR and the other sources of colours, for
-    `uplift_cli.colours.find_colours`.
-    """
-    return stacked(
-        click.argument("colour", metavar="[COLOUR]...", nargs=-1),
-        click.option(
-            "--input",
-            "input_path",
-            metavar="FILE",
-            help="Table of colours, one per line; '-' is standard input.",
-        ),
-        number("--xyz", nargs=3, metavar="X Y Z", help=f"Colour by XYZ {xyz}."),
-        number(
-            "--xy",
-            nargs=2,
-            metavar="X Y",
-            help="Colour by chromaticity, with --luminance, as for --xyz.",
-        ),
-        number(
-            "--luminance", metavar="Y", help="Luminance of --xy, where white has 1."
-        ),
-        flag("--encoded", help="Numbers are encoded 8-bit codes from 0 to 255."),
-        input_space("the colours", default=space),
-    )
-
-
 fill = flag(
     "--fill-missing",
     help="Take colours that a cube built with --scene lacks from the packaged cube.",
@@ -557,48 +301,3 @@ quiet = flag("-q", "--quiet", help="Print only warnings and errors.")
 verbose = flag(
     "-v", "--verbose", help="Print a line for every round and improvement step."
 )
-
-
-def space(camera: str = "") -> Decorator:
-    """``--space``: the space of what is built or listed."""
-    text = (
-        "RGB space by its name in colour-science or OpenColorIO, such as "
-        f"ACEScg{camera}."
-    )
-    return click.option(
-        "--space", default="sRGB", help=text, shell_complete=complete_space
-    )
-
-
-def observer(camera: str = "") -> Decorator:
-    """``--observer``."""
-    default = "CIE 1931 2 Degree Standard Observer"
-    text = f"Standard observer{camera}."
-    metavar = "NAME|FILE" if camera else "NAME"
-    return click.option(
-        "--observer",
-        metavar=metavar,
-        default=default,
-        help=text,
-        shell_complete=complete_observer,
-    )
-
-
-sensor = stacked(
-    space("; or camera: raw values"),
-    click.option(
-        "--illuminant",
-        metavar="NAME|FILE",
-        type=LIGHT,
-        default="D65",
-        help="Illuminant under which RGB are defined; a cube needs a name, other "
-        "commands read the file of a lamp.",
-        shell_complete=complete_light,
-    ),
-    observer(
-        ", or with --space camera a camera: name or FILE of sensitivities (CSV, or "
-        "JSON of rawtoaces)"
-    ),
-)
-"""``space``, ``illuminant`` and ``observer``, for `uplift.colorimetry.observer.sensor`.
-"""

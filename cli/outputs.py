@@ -7,7 +7,7 @@ import click
 from uplift.common.errors import StrPath
 from uplift.extras.files import outputs
 
-from .options import INPUTS, OutputFile
+from .option_types import INPUTS, OutputFile
 from .output.console import say
 
 Paths = Iterable[StrPath | None]

@@ -16,7 +16,7 @@ import pytest
 import uplift
 from uplift.common.errors import UpliftError, UpliftWarning
 from uplift.cube import CubeData
-from uplift.cube.file import POINTS
+from uplift.cube.schema import POINTS
 from uplift.lattice import ABSENT_VALUES
 from uplift.lookup import Cube
 

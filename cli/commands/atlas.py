@@ -11,7 +11,7 @@ import click
 
 from uplift.common.text import pluralise
 
-from .. import options
+from .. import options, sensor_options
 from ..output.answers import as_lists
 from ..output.console import (
     has_colours,
@@ -69,7 +69,7 @@ SOURCE = ("name", "digest", "format", "measured", "missing", "notes")
 )
 @options.scale
 @options.missing
-@options.sensor
+@sensor_options.sensor
 @options.table_json_or_csv
 @options.output(help="Write all entries to FILE instead of a list.")
 @options.force

@@ -25,7 +25,7 @@ from ..output.console import (
 )
 from ..output.query_blocks import json_objects
 from ..outputs import check_outputs
-from .query import Answers, colour_options
+from ..queries import Answers, colour_options
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant

@@ -15,7 +15,7 @@ import click
 from uplift.common.errors import OptionError, OutputError, UpliftWarning
 from uplift.common.text import format_value, parse_float, pluralise
 
-from .. import options
+from .. import options, sensor_options
 from ..inputs import expand_patterns
 from ..output.console import paragraph, say
 from ..output.diagnostics import warn
@@ -129,7 +129,7 @@ def parse_range(
     "--warp", default="none", help="Phase warp of the moments: none, vision or colour."
 )
 @click.option("--axis", default="srgb", help="Spacing of the nodes: srgb or linear.")
-@options.sensor
+@sensor_options.sensor
 @click.option(
     "--range",
     "limits",

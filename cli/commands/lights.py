@@ -14,13 +14,14 @@ from uplift.common.files import check_output, write_text
 from uplift.common.text import pluralise
 from uplift.extras.files.outputs import check_outputs
 
-from .. import options
+from .. import options, sensor_options
 from ..colours import find_colours
 from ..inputs import check_range
 from ..output.answers import format_rgb, print_spectrum, sparkline
 from ..output.console import json_output, print_csv, print_json_answers, say
+from ..output.passes import print_numbers
+from ..queries import colour_sources
 from .info import print_facts
-from .query import print_numbers
 from .texture import as_tuple, convert, image_options, passes_option
 
 if TYPE_CHECKING:
@@ -79,8 +80,8 @@ def command() -> None:
 )
 @options.atlas("Spectral powers of lamps")
 @options.output(help="Table to write. [default: ATLAS-emission.uplift]")
-@options.space()
-@options.observer()
+@sensor_options.space()
+@sensor_options.observer()
 @options.force
 @options.quiet
 def build(
@@ -225,8 +226,8 @@ def texture(
     from uplift.extras.emission.lookup import find_table, load_emission
     from uplift.extras.texture import Spectrum
 
-    if passes is not None and wavelengths is not None:
-        raise click.UsageError("--passes excludes --wavelengths.")
+    if passes is not None:
+        options.exclude("--passes", "wavelengths")
     table = None if table_path is None else os.path.abspath(find_table(table_path))
     # a table that cannot be read is reported before images are
     loaded = load_emission(table_path)
@@ -254,7 +255,7 @@ def texture(
       uplift lights query 30 22 9 --passes passes.toml
     """,
 )
-@options.colours("where white of the table's space has Y = 1", "that of the table")
+@colour_sources("where white of the table's space has Y = 1", "that of the table")
 @table_option
 @options.output_wavelengths
 @options.choice(
@@ -297,8 +298,7 @@ def query(
     else:
         blocks = map(table.xyz, source.blocks(sensor(table.space)))
     if passes is not None:
-        if plot_path is not None or wavelengths is not None:
-            raise click.UsageError("--passes excludes --plot and --wavelengths.")
+        options.exclude("--passes", "plot_path", "wavelengths")
         print_numbers(_pass_numbers(table, blocks, passes, outside), style)
         return
     results: Iterable[dict[str, Any]] = _answers(table, blocks, at, outside)

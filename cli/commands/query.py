@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from itertools import chain
@@ -11,189 +10,31 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.common.errors import UpliftWarning
 from uplift.common.text import pluralise
 
 from .. import also as further
 from .. import options
-from ..colours import find_colours, is_colour
-from ..inputs import check_range
+from ..colours import is_colour
 from ..output.answers import (
-    coordinates,
-    describe_coordinates,
     format_rgb,
-    hex_code,
     patch,
     print_spectrum,
 )
 from ..output.console import (
     paragraph,
-    print_csv,
     print_json,
     print_json_answers,
     say,
 )
-from ..output.diagnostics import warn
+from ..output.passes import print_numbers
 from ..output.query_blocks import json_objects, print_csv_answers, print_table
+from ..output.query_fields import answer_fields
 from ..outputs import check_outputs
+from ..queries import Answers, colour_options
 
 if TYPE_CHECKING:
-    from uplift.colorimetry import Light
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.common.arrays import Array
-    from uplift.extras.colour.query import QueryBlock, QueryResult
-    from uplift.extras.photographs import PhotographedColour
-    from uplift.lookup import Cube
-
-PACKAGED = "packaged"
-"""Name of the cube that answers without --cube."""
-NO_ERROR = "unknown; a cube that is built again states it"
-"""In place of an error, for cubes without left-out materials."""
-FAMILIES = "among materials of unknown families"
-"""What the errors of a cube hold for that are learnt from families, and not from an
-atlas.
-"""
-LARGEST = 1e30
-"""Limit of requested colours: ΔE00 of larger ones overflows."""
-
-
-colour_options = options.stacked(
-    options.colours(
-        "under the cube's illuminant, where white has Y = 1; also outside the cube's "
-        "space",
-        "that of the cube",
-    ),
-    options.cube(),
-    options.output_wavelengths,
-    options.choice(
-        "--mode",
-        *("spectra", "moments", "refined", "nearest"),
-        help="Interpolate spectra (exact), coefficients (fast), coefficients with "
-        "refinement, or use the nearest node.",
-    ),
-    options.out_of_gamut("error", "as such a number is often a mistake"),
-    options.fill,
-)
-"""Argument and options of the colours of a query, and of how they are answered; for
-`Answers`.
-"""
-
-
-class Answers:
-    """Answers to blocks of colours from the values of `colour_options`, each before the
-    next block is read.
-
-    ``cube`` is filled where colours need it. ``origin`` is its file, dim and atlases,
-    for JSON, and ``title`` for text.
-    """
-
-    def __init__(
-        self,
-        cube_path: str | None,
-        wavelengths: Array | None,
-        mode: str,
-        method: str,
-        fill_missing: bool,
-        lights: Sequence[Illuminant],
-        **colours: Any,
-    ) -> None:
-        from uplift.lookup import load
-
-        self.source = find_colours(**colours)
-        self.single = self.source.single
-        self.cube = load(cube_path)
-        if wavelengths is not None:
-            check_range(wavelengths, self.cube.wavelengths)
-        self.wavelengths = wavelengths
-        self.mode = mode
-        self.method = method
-        self.fill_missing = fill_missing
-        data = self.cube.data
-        atlases = [source["name"] for source in data.provenance.get("atlases", ())]
-        file = cube_path or PACKAGED
-        dim = data.lattice.dim
-        self.origin = {"file": file, "dim": dim, "atlases": atlases}
-        self.further: PhotographedColour | None = None
-        self.title = (
-            f"{Path(file).name}: {dim}³ nodes, {', '.join(atlases) or 'no atlas'}"
-        )
-        self.lights: list[Light] = []
-        # matrices from XYZ under a light to linear sRGB with the same white
-        self.to_srgb: dict[str, Array] = {}
-        if lights:
-            from uplift.colorimetry.observer import display_sensors, light
-
-            setting = self.cube.observer, *data.sensor.range
-            for display in display_sensors(lights, *setting):
-                self.to_srgb[display.illuminant] = display.xyz_to_rgb
-            lit = [light(illuminant, *setting) for illuminant in lights]
-            self.lights = list({light.name: light for light in lit}.values())
-
-    def __iter__(self) -> Iterator[QueryBlock]:
-        """Answer blocks, and warn at the end of colours that were mapped or filled."""
-        from uplift.extras.colour.query import locate_xyz, query_blocks
-
-        how = (self.wavelengths, self.mode)
-        if self.source.xyz is not None:
-            rgb, requested, outside = locate_xyz(self.cube, [self.source.xyz])
-            yield from query_blocks(
-                self.cube, rgb, *how, requested, self.lights, outside
-            )
-            return
-        count = mapped = filled = 0
-        change = 0.0
-        bounded = self.method == "error" and self.source.space is None
-        for requested in self.source.blocks(self.cube.data.sensor, bounded=bounded):
-            rgb = requested  # which the query refuses outside [0, 1]
-            if self.method != "error":
-                from uplift.colorimetry.gamut import map_to_gamut
-
-                inside = map_to_gamut(requested, self.cube.data.sensor, self.method)
-                rgb = inside.rgb
-                mapped += inside.count
-                change = max(change, inside.max_change)
-            count += len(rgb)
-            if self.fill_missing:
-                filled += int((~self.cube.covers(rgb)).sum())
-                self.cube = self.cube.fill_missing(rgb)
-            blocks = query_blocks(
-                self.cube,
-                rgb,
-                *how,
-                requested,
-                self.lights,
-                answering=self.further,
-            )
-            for block in blocks:
-                yield block
-                sys.stdout.flush()
-        if mapped:
-            by = (
-                f"mapped into the gamut ({self.method}), a component by up to "
-                f"{change:.3g}"
-            )
-            problem = f"{mapped} of {pluralise(count, 'colour')} outside [0, 1]: {by}"
-            warn([UpliftWarning(problem)])
-        if filled:
-            problem = (
-                f"{filled} of {pluralise(count, 'colour')} outside the cube's scene: "
-                "filled from the packaged cube"
-            )
-            warn([UpliftWarning(problem)])
-
-    def light_colours(
-        self, answers: QueryBlock | QueryResult
-    ) -> dict[str, tuple[Array, list[str]]]:
-        """Return linear sRGB (n, 3) and '#rrggbb' (n,) of n answers, or of one, by
-        light; its white is that of the screen.
-        """
-        from uplift.extras.colour.srgb import hex_codes
-
-        colours = {}
-        for light, xyz in answers.light_xyz.items():
-            rgb = (self.to_srgb[light] @ xyz.reshape(-1, 3, 1))[..., 0]
-            colours[light] = rgb, hex_codes(rgb)
-        return colours
+    from uplift.extras.colour.query import QueryBlock
 
 
 @click.command(
@@ -289,7 +130,7 @@ def command(
     **colours: Any,
 ) -> None:
     if passes is not None:
-        _check_passes()
+        options.exclude("--passes", "lights", "plot_path", "wavelengths", "stored")
         print_numbers(_pass_numbers(passes, colours), style)
         return
     if stored is not None:
@@ -322,7 +163,7 @@ def command(
     elif answers.single:
         (result,) = chain.from_iterable(blocks)
         print_spectrum(
-            _fields(answers, result),
+            answer_fields(answers, result),
             result.wavelengths,
             result.reflectance,
             complete=colours["wavelengths"] is not None,
@@ -335,14 +176,6 @@ def command(
         if len(cubes) == 1:
             hint = f"to use the cube of this folder, add --cube {cubes[0]}"
             paragraph(f"hint: {hint}", err=True)
-
-
-def _check_passes() -> None:
-    """Raise a usage error for options that numbers of passes do not have."""
-    given = options.given()
-    for name in ("lights", "plot_path", "wavelengths", "stored"):
-        if name in given:
-            raise click.UsageError(f"--passes excludes {given[name]}.")
 
 
 def _pass_numbers(
@@ -358,36 +191,6 @@ def _pass_numbers(
     for block in answers:
         numbers = passes.reflectance_numbers(block.reflectance)
         yield from zip(block.rgb.tolist(), numbers.tolist(), strict=True)
-
-
-def print_numbers(rows: Iterable[tuple[list[float], list[float]]], style: str) -> None:
-    """Print the numbers (K,) of passes of colours, three for each pass."""
-    if style == "csv":
-        print_csv(("r", "g", "b", "pass", "R", "G", "B"), _pass_rows(rows))
-        return
-    if style == "json":
-        values = [
-            {"rgb": rgb, "passes": [list(row) for row in _triples(numbers)]}
-            for rgb, numbers in rows
-        ]
-        print_json(values)
-        return
-    for rgb, numbers in rows:
-        say(f"linear RGB {format_rgb(rgb)}")
-        for number, triple in enumerate(_triples(numbers), 1):
-            say(f"  pass {number}: {' '.join(map('{:.6g}'.format, triple))}")
-
-
-def _triples(numbers: list[float]) -> list[list[float]]:
-    return [numbers[first : first + 3] for first in range(0, len(numbers), 3)]
-
-
-def _pass_rows(
-    rows: Iterable[tuple[list[float], list[float]]],
-) -> Iterator[list[float]]:
-    for rgb, numbers in rows:
-        for number, triple in enumerate(_triples(numbers), 1):
-            yield [*rgb, number, *triple]
 
 
 def _check(
@@ -421,89 +224,3 @@ def _check(
         )
     if not passed:
         raise SystemExit(1)
-
-
-def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
-    from uplift.colorimetry import delta_e_rgb
-    from uplift.colorimetry.sensor import SLACK
-
-    cube = answers.cube
-    data = cube.data
-    atlas = cube.data.atlas
-    rgb = result.rgb
-    fields = {}
-    if (abs(result.requested_rgb - rgb) > 2 * SLACK).any():
-        moved = float(
-            delta_e_rgb(data.sensor, result.requested_rgb.clip(-LARGEST, LARGEST), rgb)
-        )
-        fields["requested"] = (
-            f"{format_rgb(result.requested_rgb)}  outside [0, 1], mapped by ΔE00 "
-            f"{moved:.2g}"
-        )
-    fields["linear RGB"] = f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"
-    fields |= describe_coordinates(coordinates(cube, rgb))
-    fields["cube"] = answers.title
-    fields["cell"] = (
-        f"{result.cell} of {data.lattice.dim - 1}³, "
-        f"{', '.join(s.label for s in result.statuses)}"
-    )
-    round_trip = (
-        f"{format_rgb(result.round_trip)}  ΔE00 {result.delta_e_2000:.2g} "
-        f"({data.sensor.illuminant})"
-    )
-    fields["round trip"] = round_trip
-    if answers.further is not None:
-        fields["also under"] = _describe_further(answers.further, result.rgb)
-    if data.sensor.sensitivities is not None:
-        fields["XYZ"] = format_rgb(result.xyz)
-    if not result.realisable:
-        fields["realisable"] = (
-            "no: the spectrum has less chroma, because no reflectance has this colour"
-        )
-    if result.light_xyz:
-        relit = answers.light_colours(result).items()
-        fields["sRGB under"] = ", ".join(
-            f"{name}: {code} ({format_rgb(lit)})" for name, ([lit], [code]) in relit
-        )
-    if result.entry is None:
-        is_far = result.unlike_atlas and data.families is None
-        fields["atlas entry"] = (
-            "none, and none is near: unlike the atlas" if is_far else "none"
-        )
-    else:
-        is_look = result.entry in atlas.names[atlas.measured_count :]
-        fields["look" if is_look else "atlas entry"] = result.entry
-    errors = (
-        f"ΔE00 {error:.2g} under {name} (95 %: {bound:.2g})"
-        for name, error, bound in _errors(cube, result)
-    )
-    stated = [*errors, *([FAMILIES] if data.families is not None else [])]
-    fields["expected error"] = ", ".join(stated) or NO_ERROR
-    return fields
-
-
-def _describe_further(further: PhotographedColour, rgb: Array) -> str:
-    """Describe a colour (3,) under other lights."""
-    names = [photograph.light for photograph in further.photographs.further]
-    if further.contradicts(rgb[None]):
-        return f"{', '.join(names)}: contradicts the colour, and is not used"
-    parts = [
-        f"{name}: {format_rgb(values)}"
-        for name, values in zip(names, further.others.reshape(-1, 3), strict=True)
-    ]
-    return ", ".join(parts)
-
-
-def _errors(cube: Cube, result: QueryResult) -> list[tuple[str, float, float]]:
-    """Return light, standard error and error bound, that of the cube first; empty if
-    they are unknown.
-    """
-    if result.standard_error is None or result.error_bound is None:
-        return []
-    reference = cube.data.error_illuminant
-    others = [
-        (name, x, result.error_bounds[name])
-        for name, x in result.standard_errors.items()
-        if name != reference
-    ]
-    return [(reference, result.standard_error, result.error_bound), *others]

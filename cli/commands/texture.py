@@ -23,6 +23,7 @@ from uplift.extras.files.outputs import check_outputs
 from .. import also as further
 from .. import options
 from ..inputs import UDIM, check_range, expand_patterns
+from ..option_types import INPUTS
 from ..output.console import say
 from ..output.diagnostics import CommandFailure, warn
 from ..output.progress import progress_bar
@@ -223,7 +224,7 @@ def command(
     from uplift.lookup import find_file, load
 
     if passes is not None:
-        _check_passes()
+        options.exclude("--passes", "kind", "mask", "errors", "wavelengths", "also")
     count = len(also)
     pictures = tuple(
         texture.FurtherPicture(photograph.light, space, camera, exposure)
@@ -260,14 +261,6 @@ def command(
     convert(cubes, pixels, mask=mask, passes=passes, **settings)
 
 
-def _check_passes() -> None:
-    """Raise a usage error for options that images of passes do not have."""
-    given = options.given()
-    for name in ("kind", "mask", "errors", "wavelengths", "also"):
-        if name in given:
-            raise click.UsageError(f"--passes excludes {given[name]}.")
-
-
 def convert(
     cubes: tuple[str | None, ...],
     pixel_encoding: PixelEncoding,
@@ -293,7 +286,7 @@ def convert(
     named = target if passes is None else _with_suffix(sources, target)
     pairs = _texture_paths(sources, named)
     photographs = _photographs(further, len(pairs))
-    inputs = click.get_current_context().meta.get(options.INPUTS, ())
+    inputs = click.get_current_context().meta.get(INPUTS, ())
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
     settings = texture.TextureSettings(

@@ -9,7 +9,7 @@ import click
 
 from uplift.common.text import pluralise
 
-from .. import options
+from .. import options, sensor_options
 from ..inputs import DEFAULT_ATLASES, atlas_files, check_range, read_atlases
 from ..output.console import make_table, print_csv, print_json, say, show
 from ..output.progress import progress_bar
@@ -77,7 +77,7 @@ if TYPE_CHECKING:
 )
 @options.atlas("Materials", DEFAULT_ATLASES)
 @options.light("Illuminant of the scene", "D65")
-@options.sensor
+@sensor_options.sensor
 @options.table_json_or_csv
 @options.plot("Plot lights, wavelengths and weights")
 @options.force

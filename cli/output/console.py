@@ -157,11 +157,11 @@ class _Lines:
         return sys.stdout.write("\n".join(map(printable, text.split("\n"))))
 
 
-def swatch(codes: Iterable[int], text: str = "   ") -> Text:
+def swatch(codes: Iterable[int]) -> Text:
     """Return a cell with a background of 8-bit sRGB."""
     from rich.text import Text
 
-    return Text(text, style="on rgb({},{},{})".format(*codes))
+    return Text("   ", style="on rgb({},{},{})".format(*codes))
 
 
 def make_table(

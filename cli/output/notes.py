@@ -20,7 +20,6 @@ NOTES = (
     "entry-clipped",
     "entry-crowded",
     "entry-smoothed",
-    "shipped-atlas",
     "values-in-percent",
 )
 """Codes of warnings that state facts of an atlas, and no mistake."""

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from uplift.extras.colour.query import QueryBlock
     from uplift.lookup import Cube
 
-    from ..commands.query import Answers
+    from ..queries import Answers
 
 
 def json_objects(answers: Answers, block: QueryBlock) -> Iterator[str]:
@@ -44,29 +44,28 @@ def json_objects(answers: Answers, block: QueryBlock) -> Iterator[str]:
     import numpy as np
 
     cube = answers.cube
-    lights = {
-        light: {
+    lights = {}
+    for light, (rgb, codes) in answers.light_colours(block).items():
+        lights[light] = {
             "srgb": _json_rows(without_rounding(rgb)),
             "hex": [f'"{code}"' for code in codes],
             "xyz": _json_rows(without_rounding(block.light_xyz[light])),
         }
-        for light, (rgb, codes) in answers.light_colours(block).items()
-    }
-    errors = {
-        light: [_json_scalars(known(column)) for column in values.T]
-        for light, values in block.light_errors.items()
-        if not math.isnan(values[0, 0])
-    }
+    standard_errors = {}
+    error_bounds = {}
+    for light, values in block.light_errors.items():
+        if not math.isnan(values[0, 0]):
+            standard_errors[light] = _json_scalars(known(values[:, 0]))
+            error_bounds[light] = _json_scalars(known(values[:, 1]))
     coordinates: dict[str, Any] = {}
     for name, column in coordinate_columns(cube, block.rgb).items():
         if isinstance(column[0], list):
             coordinates[name] = _json_rows(np.array(column))
         else:
             coordinates[name] = _json_scalars(column)
-    labels = {
-        statuses: json_output([status.label for status in statuses])
-        for statuses in set(block.statuses)
-    }
+    labels = {}
+    for statuses in set(block.statuses):
+        labels[statuses] = json_output([status.label for status in statuses])
     names = {name: json_output(name) for name in set(block.entry)}
     columns = {
         "cube": json_output(answers.origin),
@@ -87,8 +86,8 @@ def json_objects(answers: Answers, block: QueryBlock) -> Iterator[str]:
         "standard_error": _json_scalars(known(block.errors[:, 0])),
         "error_bound": _json_scalars(known(block.errors[:, 1])),
         "reference": json_output(cube.data.error_illuminant),
-        "standard_errors": {light: standard for light, (standard, _) in errors.items()},
-        "error_bounds": {light: bound for light, (_, bound) in errors.items()},
+        "standard_errors": standard_errors,
+        "error_bounds": error_bounds,
         "lights": lights,
         "unlike_atlas": _json_scalars(block.unlike_atlas.tolist()),
     }

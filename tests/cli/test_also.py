@@ -102,6 +102,8 @@ def test_several_pictures_of_several_lights(run, home):
         ("query 0.2 0.2 0.2 --also 0.2,0.2,0.2", "option"),
         ("query 0.2 0.2 0.2 #888 --also A:#888", "option"),
         ("query 0.2 0.2 0.2 --also A:blue", "colour"),
+        ("query 0.2 0.2 0.2 --also A:0.3,0.2", "colour"),
+        ("query 0.2 0.2 0.2 --also A:nan,0.2,0.1", "colour"),
         ("query 0.2 0.2 0.2 --also A:#888 --noise 2", "option"),
         ("texture wood.png --also A:none.exr -o x.exr", "file-not-found"),
         ("texture wood.png wood.png --also A:wood.png -o out", "option"),

@@ -90,13 +90,6 @@ def test_a_further_colour_cuts_the_bounds(run, ask, cubes, home):
 def test_further_colours_that_do_not_fit_are_refused(refuse, misuse, home):
     colour = "bounds #8a2a20 --light FL11 --also"
     assert refuse(f"{colour} A:#a03020").code == "colour-unrealisable"
-    assert refuse(f"{colour} A:red").code == "colour"
-    assert refuse(f"{colour} A:0.3,0.2").code == "colour"
-    assert refuse(f"{colour} A:nan,0.2,0.1").code == "colour"
-    assert refuse(f"{colour} #a03020").code == "option"
-    assert refuse(f"{colour} D65:#8a2a20").code == "option"
-    assert refuse(f"{colour} candle:#9a3020").code == "unknown-name"
-    assert refuse(f"{colour} A:#9a3020 --also A:#9a3020").code == "option"
     assert refuse("bounds 1.2 0.1 0.1 --also A:#9a3020").code == "rgb-out-of-gamut"
     assert "one colour" in misuse("bounds - --also A:#9a3020", input=COLOURS)
     for words in ("--format csv", "--html p.html"):

@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from uplift_cli.main import main
-from uplift_cli.options import OutputFile
+from uplift_cli.option_types import OutputFile
 
 from tests.extras.texture.conftest import planes, write_exr
 

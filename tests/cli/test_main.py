@@ -16,9 +16,10 @@ import click
 import pytest
 from click.testing import CliRunner
 from rich.cells import cell_len
+from uplift_cli.command import HELP_ALL
 from uplift_cli.commands.help import GAMUT_MEANINGS, MODE_MEANINGS, TOPICS
 from uplift_cli.main import COMMANDS, main
-from uplift_cli.options import HELP_ALL, Number
+from uplift_cli.option_types import Number
 from uplift_cli.output import progress as progress_module
 from uplift_cli.output.console import make_table, show
 from uplift_cli.output.diagnostics import HINTS, hint_for

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from uplift_cli.commands.slices import SHEET
 from uplift_cli.main import main
-from uplift_cli.options import FIGURE_PAGE, PLOT
+from uplift_cli.option_types import FIGURE_PAGE, PLOT
 
 from tests.extras.texture.conftest import planes, write_exr
 from tests.helpers import without_evidence

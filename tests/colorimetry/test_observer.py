@@ -271,13 +271,6 @@ def test_black_bodies_are_those_of_colour_science(kelvin):
     assert_allclose(objects.values / objects.values[36], ours / ours[36], rtol=1e-9)
 
 
-def test_illuminant_a_is_a_black_body():
-    """Of 2848 K by the radiation constant 1.435e7 nm K (CIE 15:2004, 3.1)."""
-    ours = observer.illuminant_spd(f"{2848 * 1.4387768775 / 1.435:.3f}K")
-    standard = observer.illuminant_spd("A")
-    assert_allclose(ours / ours[36], standard / standard[36], rtol=1e-5)
-
-
 @pytest.mark.parametrize("nominal", [50, 55, 65, 75])
 def test_temperatures_from_4000_k_are_cie_daylight(nominal):
     found = observer.illuminant_spd(f"{nominal}00K")

@@ -8,7 +8,7 @@ from tests.helpers import with_points
 from uplift.colorimetry.observer import sensor
 from uplift.common.arrays import Array
 from uplift.cube import AtlasTable, CubeData, EntrySpectra
-from uplift.cube.file import POINTS
+from uplift.cube.schema import POINTS
 from uplift.lattice import Lattice, PointTable, Status, axis_nodes
 from uplift.models import Model, Moments
 

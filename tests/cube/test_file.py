@@ -14,7 +14,8 @@ from tests.helpers import raises
 from uplift.common.errors import CubeFileError, OutputError
 from uplift.cube import read, write
 from uplift.cube.container import KEY
-from uplift.cube.file import ARRAYS, MAX_LIGHTS, METADATA, VERSION
+from uplift.cube.file import VERSION
+from uplift.cube.schema import ARRAYS, MAX_LIGHTS, METADATA
 from uplift.lattice import Status
 from uplift.models import Moments
 

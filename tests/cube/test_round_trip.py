@@ -12,7 +12,7 @@ from numpy.testing import assert_array_equal
 
 from tests.cube.hand_made import hand_made, with_outside
 from uplift.cube import contents, digest, read, write
-from uplift.cube.file import PROVENANCE
+from uplift.cube.schema import PROVENANCE
 from uplift.lattice import PointTable
 
 TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)

@@ -8,8 +8,9 @@ from numpy.testing import assert_allclose
 
 from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
 from uplift.fit import Family, FittedEntries, Problem, learn_base, shipped_library
-from uplift.fit.base import match_spectra, moment_matrix
+from uplift.fit.base import match_spectra
 from uplift.models import Moments, evaluate, reflectance
+from uplift.models.moments import moment_matrix
 
 LIGHTS = tuple(observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3"))
 GRID = observer.grid()

@@ -39,11 +39,11 @@ def covariance(first, second, variances=1.0, kernel=KERNEL):
     return np.exp(-apart / kernel.length) + kernel.noise * (1 - WHITE) * own * variances
 
 
-def predicted(places, deviations, at, variances, at_variance=1.0, kernel=KERNEL):
+def predicted(places, deviations, at, variances, at_variance=1.0):
     """The conditional mean of a Gaussian process at L*a*b* (3)."""
-    within = covariance(places, places, np.sqrt(np.outer(variances, variances)), kernel)
-    within += WHITE * kernel.noise * np.diag(variances)
-    return covariance(at[None], places, np.sqrt(at_variance * variances), kernel)[
+    within = covariance(places, places, np.sqrt(np.outer(variances, variances)))
+    within += WHITE * KERNEL.noise * np.diag(variances)
+    return covariance(at[None], places, np.sqrt(at_variance * variances))[
         0
     ] @ np.linalg.solve(within, deviations)
 

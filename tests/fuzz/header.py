@@ -19,7 +19,7 @@ import uplift
 from tests.cube.cube_files import forge
 from tests.fuzz.commands import KEPT
 from tests.fuzz.fuzzing import Random, Seeds, choose, mutate
-from tests.fuzz.readers import CUBES, READERS, _change_array, _change_metadata
+from tests.fuzz.readers import CUBES, READERS, change_content
 from tests.parts import SANITIZED
 from uplift.cube import CubeData, write
 from uplift.extras.export.runtime import HEADER, write_header
@@ -93,16 +93,9 @@ def generate(random: Random, path: Path) -> None:
     else:
         data = choose(random, seeds())
         try:
-            forge(data, path, partial(_change, random))
+            forge(data, path, partial(change_content, random))
         except ValueError:  # a table that was put into itself
             write(data, path, force=True)
-
-
-def _change(random: Random, tensors: dict, metadata: dict) -> None:
-    with np.errstate(all="ignore"):
-        for _ in range(int(random.integers(1, 3))):
-            act = choose(random, (_change_array, _change_metadata))
-            act(tensors, metadata, random)
 
 
 def compile_reader(folder: Path) -> Path:

@@ -29,7 +29,7 @@ from uplift.common.colour_science import colour_science
 from uplift.common.errors import UpliftError
 from uplift.common.files import file_digest
 from uplift.cube import CubeData, read, summarise
-from uplift.cube.file import POINTS
+from uplift.cube.schema import POINTS
 from uplift.extras.colour.query import query
 from uplift.extras.palette import design, matrix, read_palette, standard_model
 from uplift.extras.report.rebuild import recorded_atlas
@@ -407,15 +407,18 @@ def _change_metadata(
 
 
 def _forged(random: Random, path: Path) -> None:
-    """Change one or two arrays or values under a valid digest."""
+    """Change a cube under a valid digest."""
+    forge(choose(random, CUBES), path, functools.partial(change_content, random))
 
-    def change(tensors: dict[str, Any], metadata: dict[str, Any]) -> None:
-        with np.errstate(all="ignore"):
-            for _ in range(int(random.integers(1, 3))):
-                act = choose(random, (_change_array, _change_metadata))
-                act(tensors, metadata, random)
 
-    forge(choose(random, CUBES), path, change)
+def change_content(
+    random: Random, tensors: dict[str, Any], metadata: dict[str, Any]
+) -> None:
+    """Change one or two arrays or values."""
+    with np.errstate(all="ignore"):
+        for _ in range(int(random.integers(1, 3))):
+            act = choose(random, (_change_array, _change_metadata))
+            act(tensors, metadata, random)
 
 
 # --- images ---

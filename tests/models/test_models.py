@@ -33,9 +33,9 @@ each = pytest.mark.parametrize(
 )
 
 
-def random_multipliers(model, rows, scale=2.0):
+def random_multipliers(model, rows):
     rng = np.random.default_rng(model.count)
-    return rng.normal(size=(rows, model.count)) * scale / (1 + np.arange(model.count))
+    return rng.normal(size=(rows, model.count)) * 2 / (1 + np.arange(model.count))
 
 
 @each
@@ -56,16 +56,6 @@ def test_from_reflectance_is_the_inverse(model, y):
     assert_allclose(
         model.to_reflectance(model.from_reflectance(limits)), limits, atol=1e-12
     )
-
-
-@each
-@given(data=st.data())
-def test_all_multipliers_give_reflectances(model, data):
-    multipliers = data.draw(
-        arrays(float, (3, model.count), elements=st.floats(-1e9, 1e9))
-    )
-    spectra = evaluate(model, multipliers, GRID)
-    assert ((spectra >= 0) & (spectra <= 1)).all()
 
 
 @each

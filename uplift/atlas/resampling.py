@@ -180,7 +180,7 @@ def _interpolate(nm: Array, values: Array, grid: Array) -> Array:
         return (
             _integral(curve, grid + step / 2) - _integral(curve, grid - step / 2)
         ) / step
-    return np.asarray(curve(np.clip(grid, nm[0], nm[-1])))
+    return curve(np.clip(grid, nm[0], nm[-1]))
 
 
 def _integral(curve: Any, ends: Array) -> Array:
@@ -190,4 +190,4 @@ def _integral(curve: Any, ends: Array) -> Array:
     first, last = curve.x[[0, -1]]
     inside = np.clip(ends, first, last)
     constant = np.where(ends < first, curve(first)[:, None], curve(last)[:, None])
-    return np.asarray(curve.antiderivative()(inside) + constant * (ends - inside))
+    return curve.antiderivative()(inside) + constant * (ends - inside)

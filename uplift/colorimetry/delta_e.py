@@ -16,6 +16,8 @@ HUE_TERMS = ((-0.17, 1, -30), (0.24, 2, 0), (0.32, 3, 6), (-0.20, 4, -63))
 """Weights, multiples and phases in degrees of the cosines of the hue in T (Sharma et
 al. 2005, eq. 15).
 """
+STEP = 1e-3
+"""Length of finite differences, in units of L*a*b*."""
 
 
 def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
@@ -197,6 +199,23 @@ def delta_e_2000_weights(lab: ArrayLike) -> Array:
     weights[..., 2, 1] = -hue_weight * np.sin(hue)
     weights[..., 2, 2] = hue_weight * np.cos(hue)
     return weights
+
+
+def delta_e_2000_form(lab: Array) -> Array:
+    """Forms G (…, 3, 3) around L*a*b* (…, 3): dᵀ G d ≈ ΔE00² for small differences."""
+    base = lab[..., None, :]
+    steps = np.eye(3) * STEP
+
+    def squared(difference: Array) -> Array:
+        return (delta_e_2000(base, base + difference) / STEP) ** 2
+
+    diagonal = squared(steps)
+    i, j = np.tril_indices(3, -1)
+    mixed = squared(steps[i] + steps[j]) - diagonal[..., i] - diagonal[..., j]
+    form = diagonal[..., None] * np.eye(3)
+    form[..., i, j] = mixed / 2
+    form[..., j, i] = mixed / 2
+    return form
 
 
 def delta_e_spectra(light: Light, first: ArrayLike, second: ArrayLike) -> Array:

@@ -181,7 +181,7 @@ def conversion(source: Gamut, target: Gamut) -> Array:
     )
     adapt = np.linalg.solve(BRADFORD, (after / before)[:, None] * BRADFORD)
     matrix = np.linalg.solve(target.rgb_to_xyz, adapt @ source.rgb_to_xyz)
-    return np.asarray(matrix / matrix.sum(axis=1, keepdims=True))
+    return matrix / matrix.sum(axis=1, keepdims=True)
 
 
 def cone_responses(gamut: Gamut) -> Array:
@@ -189,7 +189,7 @@ def cone_responses(gamut: Gamut) -> Array:
     gamut gives (1, 1, 1).
     """
     matrix = CONES @ gamut.rgb_to_xyz
-    return np.asarray(matrix / matrix.sum(axis=1, keepdims=True))
+    return matrix / matrix.sum(axis=1, keepdims=True)
 
 
 def oklab(rgb: Array, gamut: Gamut) -> Array:

@@ -115,7 +115,7 @@ class Lamp:
         offsets = step / count * np.arange(1 - count, count)
         weights = count - np.abs(np.arange(1 - count, count))
         shifted = np.interp(nm[:, None] + offsets, self.wavelengths, self.power)
-        return np.asarray(shifted @ weights / weights.sum())
+        return shifted @ weights / weights.sum()
 
 
 Illuminant = str | Lamp

@@ -176,7 +176,7 @@ def mahalanobis(covariance: Array, difference: Array) -> Array:
     """
     values, axes = np.linalg.eigh(covariance)
     along = np.einsum("nij,ni->nj", axes, difference)
-    return np.asarray(np.sqrt((along**2 / np.maximum(values, TINY)).sum(axis=1)))
+    return np.sqrt((along**2 / np.maximum(values, TINY)).sum(axis=1))
 
 
 def learn_radii(

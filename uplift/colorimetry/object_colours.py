@@ -46,7 +46,7 @@ class Solid:
 
     def contains(self, rgb: Array) -> Mask:
         """Test whether (n,) a reflectance with each linear RGB (n, 3) exists."""
-        return np.asarray(self.signed_distance(rgb) <= SLACK)
+        return self.signed_distance(rgb) <= SLACK
 
     def ray_fraction(self, origin: Array, target: Array) -> Array:
         """Compute the fraction (n,) that is inside the solid of segments from an origin

@@ -19,7 +19,7 @@ from importlib.resources import files
 import numpy as np
 
 from uplift.colorimetry import Light, in_unit_cube, rgb_to_lab
-from uplift.common.arrays import Array, blocks, distances, largest
+from uplift.common.arrays import Array, blocks, distances
 from uplift.fit.batch import to_storage
 from uplift.fit.entries import FittedEntries, objective
 from uplift.fit.families import FILE, Family, krige_families, learn_relevance
@@ -29,16 +29,14 @@ from uplift.fit.solver import solve
 from uplift.lattice import Lattice, weighted_sum
 from uplift.models import ForwardMap, Model, Moments, reflectance
 from uplift.models.arithmetic import blocked_matmul
-from uplift.models.duality import cosine_basis
+from uplift.models.brightness import BRIGHTENING, MIN_LEVEL, brightness
 
-BRIGHTENING = 0.5
-"""Power of max(x) that a colour is divided by: 0 leaves it unchanged, 1 makes it as
-bright as possible.
-"""
+# also imported from here
+from uplift.models.moments import moment_matrix as moment_matrix
+
 GREY = 2 / 3
 """Power of the mean of x' that gives the reflectance of the grey to start from."""
 TABLE = Lattice(np.linspace(0, 1, 17) ** 2)
-MIN_LEVEL = 1e-4
 MAX_LEVEL = 0.98
 SAME_SENSOR = 1e-14
 """Difference of elements of W up to which a stored table is that of a sensor: they
@@ -56,8 +54,6 @@ COLOUR_WEIGHT = 0.06
 """Weight of a unit of CIE L*a*b* under a light: twice that of atlas entries, as the
 spectra are uncertain.
 """
-MATCH_NODES = 1024
-"""Nodes of the integrals from reflectances to moments."""
 DAMPING = 1e-4
 """Damping of the step, relative to the mean diagonal of its matrix."""
 MATCH_ROWS = 1 << 9
@@ -86,19 +82,10 @@ class Base:
         if self.nodes is None:
             return self.model.to_storage(_grey(self.model, rgb))
         # s(x) = k s(x / k), as moments are linear in the spectrum
-        factor = self.brightness(rgb)
+        factor = brightness(rgb)
         return factor * weighted_sum(
             self.nodes, *TABLE.corners(np.minimum(rgb / factor, 1))
         )
-
-    def brightness(self, rgb: Array) -> Array:
-        """Factor (n, 1) between a colour and the brightened one."""
-        return brightness(rgb)
-
-
-def brightness(rgb: Array) -> Array:
-    """Factor k = max(x)^½ (n, 1) between a colour (n, 3) and the brightened one."""
-    return np.asarray(np.maximum(largest(rgb), MIN_LEVEL)[:, None] ** BRIGHTENING)
 
 
 @lru_cache(maxsize=1)
@@ -178,7 +165,7 @@ def learn_base(
         rgb = entries.rgb[order]
         locations = rgb_to_lab(sensor, rgb)
         expected = reflectance(model, plain.coefficients(rgb), sensor.wavelengths)
-        parts = kriging.contributions(locations) * plain.brightness(rgb)
+        parts = kriging.contributions(locations) * brightness(rgb)
         relevance = learn_relevance(
             problem.lights, locations, expected, parts, entries.measured[order]
         )
@@ -245,7 +232,7 @@ def family_samples(
         measured = measured[new]
         locations = locations[new]
     expected = reflectance(plain.model, plain.coefficients(rgb), sensor.wavelengths)
-    deviations = (measured - expected) / plain.brightness(rgb)
+    deviations = (measured - expected) / brightness(rgb)
     return average_close(locations, deviations)
 
 
@@ -281,21 +268,3 @@ def match_spectra(
         ).sum(axis=1)
         p[better] = trial[better]
     return multipliers
-
-
-def moment_matrix(model: Moments, wavelengths: Array) -> Array:
-    """Weights (N, C) that turn reflectances (n, N), linear between the wavelengths,
-    into moments.
-    """
-    phase = -np.pi * (np.arange(MATCH_NODES) + 0.5) / MATCH_NODES
-    at = np.interp(phase, model.phase(wavelengths), np.arange(len(wavelengths)))
-    samples = np.stack(
-        [
-            np.interp(at, np.arange(len(wavelengths)), row)
-            for row in np.eye(len(wavelengths))
-        ]
-    )
-    # c_j = (1/π) ∫ g(φ) cos jφ dφ by midpoints
-    weights = cosine_basis(phase, model.count) / MATCH_NODES
-    weights[:, 1:] /= 2
-    return np.asarray(samples @ weights)

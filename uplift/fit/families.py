@@ -227,7 +227,7 @@ def learn_relevance(
         xyz = (change @ matrices.mT).swapaxes(0, 1)
         colours = (to_lab @ xyz[..., None])[..., 0].reshape(len(change), -1)
         features = np.concatenate([change / np.sqrt(change.shape[1]), colours], axis=1)
-        return np.asarray(np.linalg.solve(root, features))
+        return np.linalg.solve(root, features)
 
     columns = np.stack([independent(part).ravel() for part in parts], axis=1)
     unexplained = independent(measured - plain)
@@ -249,6 +249,4 @@ def learn_relevance(
         return unbounded
     from scipy.optimize import lsq_linear
 
-    return np.asarray(
-        lsq_linear(r, q.T @ goal, bounds=(0, MAX_RELEVANCE), method="bvls").x
-    )
+    return lsq_linear(r, q.T @ goal, bounds=(0, MAX_RELEVANCE), method="bvls").x

@@ -166,9 +166,8 @@ def posterior(kernel: Kernel, known: Array, lab: Array) -> Array:
 
     def covariance(first: Array, second: Array) -> Array:
         distance = distances(first, second)
-        return np.asarray(
-            _shared(distance, kernel.length)
-            + kernel.noise * _own(distance, kernel.reach)
+        return _shared(distance, kernel.length) + kernel.noise * _own(
+            distance, kernel.reach
         )
 
     white = WHITE * kernel.noise

@@ -11,7 +11,6 @@ from uplift.colorimetry import delta_e_spectra, in_unit_cube, rgb_to_lab
 from uplift.colorimetry.likely_errors import ExpectedError, LeftOut, expected_error
 from uplift.common.arrays import Array
 from uplift.fit.base import (
-    brightness,
     family_samples,
     learnt_coefficients,
     smooth_base,
@@ -19,6 +18,7 @@ from uplift.fit.base import (
 from uplift.fit.families import STAND_IN, Family, krige_families
 from uplift.fit.problem import Problem
 from uplift.models import Moments, evaluate
+from uplift.models.brightness import brightness
 
 MIN_FAMILIES = 3
 """Families without which nothing is known of the next one."""

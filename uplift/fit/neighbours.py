@@ -17,7 +17,7 @@ def nearest_other(points: Array, order: float = 2) -> Array:
         from scipy.spatial import KDTree
 
         found, _ = KDTree(points).query(points, k=2, p=order)
-        return np.asarray(found[:, 1])
+        return found[:, 1]
     apart = np.linalg.norm(points[:, None] - points, ord=order, axis=-1)
     np.fill_diagonal(apart, np.inf)
-    return np.asarray(apart.min(axis=1, initial=np.inf))
+    return apart.min(axis=1, initial=np.inf)

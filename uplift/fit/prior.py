@@ -13,14 +13,16 @@ import numpy as np
 from uplift.colorimetry import Sensor, delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.likely_errors import LENGTH, ExpectedError, expected_error
 from uplift.common.arrays import Array, Mask, largest
-from uplift.fit.base import Base, learn_base, moment_matrix
+from uplift.fit.base import Base, learn_base
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kernel_learning import MIN_ENTRIES, learn_kriging, visible_change
 from uplift.fit.kriging import DEFAULT, Kernel, Kriging, kernel_sums, krige
 from uplift.fit.problem import Problem
 from uplift.lattice import Lattice
 from uplift.models import Model, Moments, evaluate, reflectance
+from uplift.models.brightness import brightness
 from uplift.models.duality import MAX_MULTIPLIER
+from uplift.models.moments import moment_matrix
 
 MAX_PASSES = 32
 DETERMINED = Kernel(length=6.0, noise=1e-3)
@@ -73,9 +75,7 @@ class Prior:
         if self.kriging is None:
             return self.model.from_storage(coefficients)
         # c = s(x) + k d(x), as multipliers
-        deviation = self.base.brightness(rgb) * self.kriging(
-            rgb_to_lab(self.sensor, rgb)
-        )
+        deviation = brightness(rgb) * self.kriging(rgb_to_lab(self.sensor, rgb))
         return _bounded(self.model, coefficients, deviation)
 
     def at_nodes(self, lattice: Lattice, rgb: Array) -> Array:
@@ -141,7 +141,7 @@ class Prior:
             + self.errors.floor
         )
         standard, _ = self.errors.radii
-        return np.asarray(standard * np.sqrt(squares))
+        return standard * np.sqrt(squares)
 
     def with_entries(self, entries: FittedEntries, looks: int) -> "Prior":
         """Return the prior of entries whose last ones are looks, with the same kernel
@@ -194,16 +194,14 @@ def fit_prior(
     if model.is_determined:
         kriging, errors = krige(locations, deviations, DETERMINED)
     else:
-        brightness = base.brightness(entries.rgb)
-        visible = visible_change(problem, entries.measured) * brightness[:, None, None]
+        factor = brightness(entries.rgb)[:, None, None]
+        visible = visible_change(problem, entries.measured) * factor
         kriging, errors = learn_kriging(locations, deviations, visible, trust)
     if len(entries.rgb) < MIN_ENTRIES:
         return Prior(model, sensor, base, kriging)
     # Each entry as the others predict it: its deviation less its leave-one-out error,
     # moved to its exact colour.
-    start = _bounded(
-        model, expected, base.brightness(entries.rgb) * (deviations - errors)
-    )
+    start = _bounded(model, expected, brightness(entries.rgb) * (deviations - errors))
     left_out = problem.solve(entries.rgb, start, MAX_PASSES).multipliers
     spectra = evaluate(model, left_out, sensor.wavelengths)
     missed = delta_e_spectra(
@@ -232,9 +230,8 @@ def _deviations(
     those of families, and s(x_i).
     """
     expected = base.coefficients(entries.rgb)
-    return (model.to_storage(entries.multipliers) - expected) / base.brightness(
-        entries.rgb
-    ), expected
+    deviations = model.to_storage(entries.multipliers) - expected
+    return deviations / brightness(entries.rgb), expected
 
 
 def blended(model: Model, own: Array, expected: Array, weight: Array) -> Array:

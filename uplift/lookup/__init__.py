@@ -9,6 +9,7 @@ from uplift.lookup.blocks import (
     as_float_type,
     as_thread_count,
     as_wavelengths,
+    as_whole_number,
     blockwise,
     decode_codes,
 )
@@ -31,6 +32,7 @@ __all__ = [
     "as_float_type",
     "as_thread_count",
     "as_wavelengths",
+    "as_whole_number",
     "blockwise",
     "decode_codes",
     "expected_errors",

@@ -88,15 +88,17 @@ def as_float_type(dtype: DTypeLike) -> np.dtype[Any]:
     raise OptionError(f"dtype must be float64 or float32, got {dtype!r}")
 
 
+def as_whole_number(value: int, name: str, least: int = 1) -> int:
+    """Convert to a whole number from ``least``; `OptionError` for anything else."""
+    is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not is_whole or value < least:
+        raise OptionError(f"{name} must be a whole number from {least}, got {value!r}")
+    return int(value)
+
+
 def as_thread_count(threads: int) -> int:
-    """Convert to a whole number from 1; `OptionError` for anything else."""
-    if (
-        isinstance(threads, bool)
-        or not isinstance(threads, int | np.integer)
-        or threads < 1
-    ):
-        raise OptionError(f"threads must be a whole number from 1, got {threads!r}")
-    return int(threads)
+    """Convert to a number of threads; `OptionError` for anything else."""
+    return as_whole_number(threads, "threads")
 
 
 def as_coefficient_count(count: int | None, data: CubeData) -> int:

@@ -209,7 +209,7 @@ def _descend(forward: ForwardMap, multipliers: Array, target: Array) -> Array:
             columns = pending[first : first + BLOCK_COLUMNS]
             linear = blocked_matmul_columns(forward.basis, multipliers[:, columns])
             _move(forward, multipliers, residual, damping, columns, linear)
-    return np.asarray(np.abs(residual).max(axis=0))
+    return np.abs(residual).max(axis=0)
 
 
 def _move(

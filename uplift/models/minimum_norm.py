@@ -82,7 +82,9 @@ def anchored_step(
     )
     # y = (A Aᵀ + μ tr I)⁻¹ (t − r + A d), Δx = Aᵀ y − d
     gram = jacobian @ jacobian.mT
-    lower = [[gram[:, a, b] for b in range(a + 1)] for a in range(3)]
+    lower = []
+    for a in range(3):
+        lower.append([gram[:, a, b] for b in range(a + 1)])
     goal = residual + (jacobian @ displacement[:, :, None])[:, :, 0]
     y = solve_damped(lower, damping, goal.T)
     y = jacobian.__array_namespace__().stack(y, axis=-1)
@@ -103,15 +105,12 @@ def minimum_norm_step(
         forward.jacobian_basis.T, forward.model.derivative(linear)
     )
     jacobian = jacobian.reshape(3, len(forward.root), -1)
-    lower = [
-        [np.einsum("cn,cn->n", jacobian[a], jacobian[b]) for b in range(a + 1)]
-        for a in range(3)
-    ]
+    lower = []
+    for a, row in enumerate(jacobian):
+        lower.append([np.einsum("cn,cn->n", row, other) for other in jacobian[: a + 1]])
     y = solve_damped(lower, damping, residual)
-    return np.asarray(
-        blocked_matmul_columns(
-            forward.root, np.einsum("an,acn->cn", np.stack(y), jacobian)
-        )
+    return blocked_matmul_columns(
+        forward.root, np.einsum("an,acn->cn", np.stack(y), jacobian)
     )
 
 

@@ -77,7 +77,7 @@ class Model(ABC):
         """Evaluate S(x + change) − S(x), for columns (N, n) of linear parts and their
         changes.
         """
-        return np.asarray(self.to_reflectance(x + change) - self.to_reflectance(x))
+        return self.to_reflectance(x + change) - self.to_reflectance(x)
 
     @abstractmethod
     def constant(self) -> Array:

@@ -36,6 +36,8 @@ GREY_SHARES = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
 """Weights of grey that rounded moments are mixed with, in turn, until they are those of
 a reflectance.
 """
+MATCH_NODES = 1024
+"""Nodes of the integrals from reflectances to moments."""
 
 WARPS: dict[str, tuple[tuple[float, float, float], ...]] = {
     "none": (),
@@ -191,11 +193,29 @@ class Moments(Model):
     def is_float32_safe(self, multipliers: Array) -> Mask:
         # The linear part is at most |p₀| + 2 Σ |p_l|.
         largest = np.abs(multipliers[:, 0]) + 2 * np.abs(multipliers[:, 1:]).sum(axis=1)
-        return np.asarray(largest <= MAX_SAFE_LINEAR)
+        return largest <= MAX_SAFE_LINEAR
 
     def describe(self) -> dict[str, Any]:
         phase = {"start": self.start, "end": self.end, "warp": self.warp}
         return {"name": self.name, "count": self.count, "phase": phase}
+
+
+def moment_matrix(model: Moments, wavelengths: Array) -> Array:
+    """Weights (N, C) that turn reflectances (n, N), linear between the wavelengths,
+    into moments.
+    """
+    phase = -np.pi * (np.arange(MATCH_NODES) + 0.5) / MATCH_NODES
+    at = np.interp(phase, model.phase(wavelengths), np.arange(len(wavelengths)))
+    samples = np.stack(
+        [
+            np.interp(at, np.arange(len(wavelengths)), row)
+            for row in np.eye(len(wavelengths))
+        ]
+    )
+    # c_j = (1/π) ∫ g(φ) cos jφ dφ by midpoints
+    weights = duality.cosine_basis(phase, model.count) / MATCH_NODES
+    weights[:, 1:] /= 2
+    return samples @ weights
 
 
 def multipliers_of_rounded(model: Moments, moments: Array) -> tuple[Array, Mask]:

@@ -75,7 +75,7 @@ class Sigmoid(Model):
         return np.ones(self.count)
 
     def is_float32_safe(self, multipliers: Array) -> Mask:
-        return np.asarray(np.abs(multipliers).sum(axis=1) <= MAX_SAFE_LINEAR)
+        return np.abs(multipliers).sum(axis=1) <= MAX_SAFE_LINEAR
 
 
 def evaluate_unscaled(coefficients: Array, wavelengths: Array) -> Array:

@@ -81,13 +81,6 @@ def test_bad_numbers_of_nodes_are_refused(options):
         build_emission(**options)
 
 
-def test_a_lamp_without_power_is_refused(tmp_path):
-    path = tmp_path / "lamps.csv"
-    path.write_text("# spectral irradiance\nname,400,500,600,700\nbulb,0,0,0,0\n")
-    with raises(AtlasError, "atlas"):
-        read_lamps(path)
-
-
 TM27 = (
     "<IESTM2714 "
     'xmlns="iestm2714"><SpectralDistribution><SpectralQuantity>{}</SpectralQuantity>'

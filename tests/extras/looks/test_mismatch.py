@@ -15,41 +15,44 @@ from uplift.common.errors import ColourError
 from uplift.extras.looks.extreme_spectra import extreme_spectra
 from uplift.extras.looks.mesh import mesh_volume, outline, sphere
 from uplift.extras.looks.mismatch import COUNTS, largest_difference, mismatch_volumes
+from uplift.extras.photographs import photograph
 
 ROUNDING = 1e-9
 
 
-def problems(sensor, name, count):
-    """RGB of random smooth reflectances, and responses in random directions of XYZ
-    under a light.
+def problems(matrix, name, count):
+    """Numbers of random smooth reflectances by a matrix (K, 81), and responses in
+    random directions of XYZ under a light.
     """
     rng = np.random.default_rng(7)
-    smooth = np.cumsum(
-        rng.normal(scale=0.3, size=(count, len(sensor.wavelengths))), axis=1
-    )
-    rgb = sensor.rgb(1 / (1 + np.exp(-smooth)))
-    return rgb, rng.normal(size=(count, 3)) @ observer.light(name).xyz
+    smooth = np.cumsum(rng.normal(scale=0.3, size=(count, matrix.shape[1])), axis=1)
+    values = 1 / (1 + np.exp(-smooth)) @ matrix.T
+    return values, rng.normal(size=(count, 3)) @ observer.light(name).xyz
 
 
-def linear_program(sensor, rgb, response):
-    return linprog(
-        -response, A_eq=sensor.matrix, b_eq=rgb, bounds=(0, 1), method="highs"
-    )
+def linear_program(matrix, values, response):
+    return linprog(-response, A_eq=matrix, b_eq=values, bounds=(0, 1), method="highs")
 
 
-@pytest.mark.parametrize("name", ["A", "FL11", "HP1", "D65"])
-def test_extremes_are_those_of_a_linear_program(sensor, name):
-    """They have the colour, and at most three values other than 0 and 1."""
-    rgb, response = problems(sensor, name, 12)
-    found = extreme_spectra(sensor.matrix, rgb, response)
+@pytest.mark.parametrize("second", [None, "A", "LED-B3", "D50"])
+@pytest.mark.parametrize("name", ["FL11", "HP1", "D65"])
+def test_extremes_are_those_of_a_linear_program(sensor, name, second):
+    """They have the colours, and as many values other than 0 and 1 as numbers."""
+    matrix = sensor.matrix
+    if second is not None:
+        matrix = np.concatenate([matrix, photograph(sensor, second).matrix])
+    values, response = problems(matrix, name, 8)
+    found = extreme_spectra(matrix, values, response)
     assert found.solved.all()
-    assert_allclose(sensor.rgb(found.reflectance), rgb, atol=1e-9)
+    assert_allclose(found.reflectance @ matrix.T, values, atol=1e-8)
     assert ((found.reflectance >= 0) & (found.reflectance <= 1)).all()
-    assert (((found.reflectance > 0) & (found.reflectance < 1)).sum(axis=1) <= 3).all()
+    between = (found.reflectance > 0) & (found.reflectance < 1)
+    assert (between.sum(axis=1) <= len(matrix)).all()
     best = [
-        -linear_program(sensor, *each).fun for each in zip(rgb, response, strict=True)
+        -linear_program(matrix, *each).fun
+        for each in zip(values, response, strict=True)
     ]
-    assert_allclose((response * found.reflectance).sum(axis=1), best, rtol=0, atol=1e-9)
+    assert_allclose((response * found.reflectance).sum(axis=1), best, atol=1e-8)
 
 
 def test_colours_without_reflectance_are_not_solved(sensor):
@@ -111,12 +114,11 @@ def test_the_volume_is_that_of_the_hull_of_linear_programs(sensor):
     light = observer.light("FL11")
     rgb = np.array([0.2, 0.4, 0.1])
     directions = np.random.default_rng(3).normal(size=(250, 3))
-    hull = ConvexHull(
-        np.array(
-            [linear_program(sensor, rgb, each @ light.xyz).x for each in directions]
-        )
-        @ light.xyz.T
-    )
+    extremes = [
+        linear_program(sensor.matrix, rgb, direction @ light.xyz).x
+        for direction in directions
+    ]
+    hull = ConvexHull(extremes @ light.xyz.T)
     coarse, volumes = (
         mismatch_volumes(sensor, light, rgb[None], divisions) for divisions in (2, 3)
     )

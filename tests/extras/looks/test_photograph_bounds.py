@@ -3,15 +3,13 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.optimize import linprog
 
 import uplift
 from tests.conftest import ATLASES, ROOT
 from tests.helpers import raises
 from uplift.atlas import read_atlas, resample
-from uplift.colorimetry import delta_e_2000, in_unit_cube, lab, observer
+from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.errors import ColourError, OptionError
-from uplift.extras.looks.extreme_spectra import extreme_spectra
 from uplift.extras.looks.metamer_bounds import bounds
 from uplift.extras.looks.photograph_bounds import bounds_of_photographs
 from uplift.extras.photographs import photograph, prepare
@@ -35,24 +33,6 @@ def pigments(tungsten):
     return sensor.rgb(inside), inside @ tungsten.matrix.T, inside
 
 
-@pytest.mark.parametrize("second", ["A", "LED-B3", "D50", "FL11"])
-def test_extremes_with_six_numbers_are_those_of_linear_programs(sensor, second):
-    random = np.random.default_rng(4)
-    matrix = np.concatenate([sensor.matrix, photograph(sensor, second).matrix])
-    smooth = np.cumsum(random.normal(scale=0.3, size=(8, 81)), axis=1)
-    values = 1 / (1 + np.exp(-smooth)) @ matrix.T
-    response = random.normal(size=(8, 3)) @ observer.light("HP1").xyz
-    extremes = extreme_spectra(matrix, values, response)
-    assert extremes.solved.all()
-    assert_allclose(extremes.reflectance @ matrix.T, values, atol=1e-8)
-    for row in range(8):
-        best = linprog(
-            -response[row], A_eq=matrix, b_eq=values[row], bounds=(0, 1), method="highs"
-        )
-        largest = response[row] @ extremes.reflectance[row]
-        assert largest == pytest.approx(-best.fun, abs=1e-8)
-
-
 @pytest.mark.parametrize("name", ["FL11", "HP1"])
 def test_a_second_colour_cuts_the_body_and_keeps_the_material(tungsten, pigments, name):
     rgb, others, measured = pigments
@@ -73,25 +53,6 @@ def test_the_body_is_a_point_under_a_light_that_is_known(tungsten, pigments):
     cut = bounds_of_photographs(tungsten, rgb, others, light, divisions=1)
     expected = np.repeat((measured @ light.xyz.T)[:, None], 42, axis=1)
     assert_allclose(cut.volumes.xyz, expected, atol=1e-6)
-
-
-def test_the_largest_difference_is_one_that_linear_programs_reach(tungsten, pigments):
-    """No extreme in a random direction differs by more."""
-    rgb, others, _ = pigments
-    light = observer.light("FL11")
-    matrix = np.concatenate([tungsten.cube.data.sensor.matrix, tungsten.matrix])
-    cut = bounds_of_photographs(tungsten, rgb[:2], others[:2], light)
-    random = np.random.default_rng(0)
-    for row in range(2):
-        values = np.concatenate([rgb[row], others[row]])
-        reference = lab(cut.xyz[row], light.white)
-        for direction in random.normal(size=(40, 3)):
-            response = direction @ light.xyz
-            best = linprog(
-                -response, A_eq=matrix, b_eq=values, bounds=(0, 1), method="highs"
-            )
-            away = delta_e_2000(lab(light.xyz @ best.x, light.white), reference)
-            assert away <= cut.largest.delta_e_2000[row] + 1e-3
 
 
 def test_likely_regions_shrink(tungsten, pigments):

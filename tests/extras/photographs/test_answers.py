@@ -14,7 +14,8 @@ from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
 from uplift.common.errors import ColourError, OptionError, UnknownNameError
 from uplift.extras.photographs import light_errors, photograph, prepare
 from uplift.extras.photographs.answers import LEAST_NOISE, Photographs
-from uplift.extras.photographs.metamers import RANK, brightness, learn_metamers
+from uplift.extras.photographs.metamers import RANK, learn_metamers
+from uplift.models.brightness import brightness
 
 RGB = np.random.default_rng(5).random((200, 3)) ** 2
 

@@ -13,9 +13,9 @@ from uplift.atlas import resample
 from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
 from uplift.common.errors import ColourError, OptionError
 from uplift.extras.photographs import prepare_samples
-from uplift.extras.photographs.metamers import brightness
 from uplift.extras.photographs.samples import TAIL
 from uplift.lookup.errors_under_lights import evidence
+from uplift.models.brightness import brightness
 
 LIGHTS = ("A", "FL2", "FL11", "LED-B3", "HP1")
 COUNT = 100

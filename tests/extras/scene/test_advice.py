@@ -25,12 +25,12 @@ def cube():
     return uplift.load(ROOT / "cubes" / "moments-16-macbeth.uplift")
 
 
-def scene(cube, seed, count=12):
+def scene(cube, seed):
     rng = np.random.default_rng(seed)
-    areas = rng.exponential(size=count)
+    areas = rng.exponential(size=12)
     return uncertainty(
         cube,
-        PixelSample(rng.random((count, 3)), areas / areas.sum()),
+        PixelSample(rng.random((12, 3)), areas / areas.sum()),
         [light(each) for each in LIGHTS],
     )
 

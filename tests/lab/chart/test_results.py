@@ -103,24 +103,6 @@ def test_front_is_clearly_more_accurate_than_all_faster_methods(points):
         )
 
 
-@pytest.mark.parametrize(
-    ("points", "front"),
-    [
-        (
-            [(20, 0.5), (10, 0.501), (10, 0.9)],
-            [1],
-        ),  # 1 % is noise, ties go to the more accurate
-        ([(20, 1e-9), (10, 5e-5)], [1]),  # invisible errors are equal
-        ([], []),
-    ],
-)
-def test_fronts_leave_out_small_gains(points, front):
-    rows = [row_of(str(number), *point) for number, point in enumerate(points)]
-    assert [row.method for row in ROUND_TRIP.front(chart_of(*rows))] == [
-        str(number) for number in front
-    ]
-
-
 def test_set_up_is_part_of_the_time_of_a_call():
     row = row_of("one", 1000, 1.0)
     assert LIGHTS.point(row) == (1000, 1)

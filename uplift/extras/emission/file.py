@@ -26,7 +26,8 @@ from uplift.cube.container import (
     require,
     save,
 )
-from uplift.cube.file import ENTRIES, MAX_CONDITION, PROVENANCE
+from uplift.cube.decode import MAX_CONDITION
+from uplift.cube.schema import ENTRIES, PROVENANCE
 from uplift.extras.emission.discs import LampEntries
 from uplift.extras.emission.lattice import ChromaticityLattice, chromaticity
 

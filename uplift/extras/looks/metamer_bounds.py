@@ -9,7 +9,7 @@ import numpy as np
 from uplift.colorimetry import Light, in_unit_cube, lab, solid_volume
 from uplift.common.arrays import Array
 from uplift.extras.looks import mesh, mismatch
-from uplift.extras.looks.lab_errors import lab_errors
+from uplift.extras.looks.lab_errors import LabErrors, lab_errors
 from uplift.lookup import Cube
 from uplift.lookup.outside import reflectance_anywhere
 
@@ -95,12 +95,20 @@ def bounds(
     spectra = reflectance_anywhere(
         data, rgb, data.sensor.wavelengths, mode, ~in_unit_cube(rgb)
     )
+    errors = None if data.atlas.left_out is None else lab_errors(data, light)
+    return bounds_around(light, spectra, volumes, rgb, errors)
+
+
+def bounds_around(
+    light: Light,
+    spectra: Array,
+    volumes: mismatch.MismatchVolumes,
+    rgb: Array,
+    errors: LabErrors | None,
+) -> Bounds:
+    """Return the bounds around answers (n, N) to linear RGB (n, 3)."""
     xyz = spectra @ light.xyz.T
     largest = mismatch.largest_difference(volumes, xyz)
-    covariance = None
-    radius = None
-    if data.atlas.left_out is not None:
-        errors = lab_errors(data, light)
-        covariance = errors.covariance(rgb)
-        radius = errors.likely_radius
+    covariance = None if errors is None else errors.covariance(rgb)
+    radius = None if errors is None else errors.likely_radius
     return Bounds(light, spectra, xyz, volumes, largest, covariance, radius)

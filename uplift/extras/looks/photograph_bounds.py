@@ -6,7 +6,7 @@ from uplift.colorimetry import Light
 from uplift.common.arrays import Array
 from uplift.extras.looks import mismatch
 from uplift.extras.looks.lab_errors import lab_errors_from
-from uplift.extras.looks.metamer_bounds import Bounds
+from uplift.extras.looks.metamer_bounds import Bounds, bounds_around
 from uplift.extras.photographs import Photographs
 from uplift.extras.photographs.errors import photographed
 
@@ -51,12 +51,7 @@ def bounds_of_photographs(
     spectra = photographs.reflectance(rgb, others)
     further = mismatch.KnownColours(photographs.matrix, others)
     volumes = mismatch.mismatch_volumes(data.sensor, light, rgb, divisions, further)
-    xyz = spectra @ light.xyz.T
-    largest = mismatch.largest_difference(volumes, xyz)
-    covariance = None
-    radius = None
+    errors = None
     if data.atlas.left_out is not None:
         errors = lab_errors_from(data, light, photographed(photographs))
-        covariance = errors.covariance(rgb)
-        radius = errors.likely_radius
-    return Bounds(light, spectra, xyz, volumes, largest, covariance, radius)
+    return bounds_around(light, spectra, volumes, rgb, errors)

@@ -23,10 +23,11 @@ from numpy.typing import ArrayLike, NDArray
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
 from uplift.extras.photographs.changes import changed_spectra
-from uplift.extras.photographs.metamers import Metamers, brightness, learn_metamers
+from uplift.extras.photographs.metamers import Metamers, learn_metamers
 from uplift.extras.photographs.photograph import Noise, Photograph, check_different
 from uplift.lattice import Lattice, weighted_sum
 from uplift.lookup import Cube, as_colours, as_wavelengths
+from uplift.models.brightness import brightness
 
 TABLE = Lattice(np.linspace(0, 1, 17) ** 2)
 """Nodes between which covariances are interpolated."""
@@ -227,7 +228,7 @@ class Photographs:
         known = np.isfinite(others)
         residual = np.where(known, others - expected @ self.matrix.T, 0)
         variance = np.where(known, self._variance(rgb, others), UNKNOWN)
-        level = brightness(rgb)[:, None, None] ** 2
+        level = brightness(rgb)[..., None] ** 2
         # y = (M C Mᵀ + R)⁻¹ (t − M p), and z = k² S Aᵀ y
         gram = level * directions.gram
         diagonal = np.arange(len(self.matrix))

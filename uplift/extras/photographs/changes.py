@@ -39,4 +39,4 @@ def _scale_within(expected: Values, change: Values) -> Array:
     room = np.where(change > 0, 1 + OVERSHOOT - expected, expected + OVERSHOOT)
     steps = np.abs(change)
     limit = np.divide(room, steps, out=np.ones_like(room), where=steps > room)
-    return np.asarray(limit.min(axis=1))
+    return limit.min(axis=1)

@@ -58,7 +58,7 @@ def patch_points(corners: Array) -> Array:
     places = (centres + offsets) / (COLUMNS, ROWS)
     homogeneous = np.append(places, np.ones((*places.shape[:-1], 1)), axis=-1)
     projected = homogeneous @ homography(corners).T
-    return np.asarray(projected[..., :2] / projected[..., 2:])
+    return projected[..., :2] / projected[..., 2:]
 
 
 def homography(corners: Array) -> Array:
@@ -108,7 +108,7 @@ def _gains(patches: Patches, expected: Array) -> Array:
             hint="check the corners and the exposure",
         )
     ratio = np.where(usable, patches.mean / expected, np.nan)
-    return np.asarray(np.nanmedian(ratio, axis=0))
+    return np.nanmedian(ratio, axis=0)
 
 
 def compare_patches(

@@ -53,7 +53,7 @@ def photographed(photographs: Photographs) -> Evidence:
 
     def noisy(values: Array) -> Array:
         normal = random.standard_normal(values.shape)
-        return np.asarray(values + np.sqrt(noise.variance(values)) * normal)
+        return values + np.sqrt(noise.variance(values)) * normal
 
     rgb = data.sensor.rgb(measured)
     observed = np.clip(noisy(rgb), 0, 1)

@@ -10,8 +10,8 @@ import numpy as np
 from uplift.common.arrays import Array
 from uplift.common.errors import TextureError
 from uplift.extras.photographs.answers import Photographs
-from uplift.extras.photographs.metamers import brightness
 from uplift.extras.photographs.photograph import Noise, Photograph, rounding_noise
+from uplift.models.brightness import brightness
 
 BLOCK = 8
 """Pixels along the sides of the blocks in which noise is estimated."""
@@ -53,7 +53,7 @@ def estimate_exposure(
     directions = photographs.metamers.components @ matrix.sum(axis=0)
     covariance = photographs.metamers.mean
     spread = np.sqrt(directions @ covariance @ directions)
-    relative = brightness(rgb[bright]) * spread / total
+    relative = brightness(rgb[bright])[:, 0] * spread / total
     return factor, float(np.median(relative))
 
 
@@ -73,7 +73,7 @@ def grey_balance(
         return None
     predicted = expected[rows] @ photograph.matrix.T
     ratio = np.median(others[rows] / predicted, axis=0)
-    return np.asarray(ratio / ratio[1])
+    return ratio / ratio[1]
 
 
 def estimate_noise(bands: Sequence[Array], steps: int) -> Noise:

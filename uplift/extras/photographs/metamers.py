@@ -17,10 +17,11 @@ from functools import cached_property
 import numpy as np
 
 from uplift.colorimetry import Sensor, rgb_to_lab
-from uplift.common.arrays import Array, blocks, distances, largest
+from uplift.common.arrays import Array, blocks, distances
 from uplift.cube import CubeData
 from uplift.lookup import Cube, load
 from uplift.lookup.errors_under_lights import evidence
+from uplift.models.brightness import brightness
 
 RANK = 16
 """Principal components; the rest of the variance is below a thousandth."""
@@ -32,7 +33,6 @@ FAMILIES_COUNT = 20.0
 """Weight of the known families in the mean, in materials of the atlas: a few entries do
 not span how materials differ.
 """
-MIN_LEVEL = 1e-4
 BLOCK_NUMBERS = 1 << 20
 """Numbers of the matrix of weights held at a time."""
 
@@ -82,7 +82,7 @@ class Metamers:
         weights = np.exp(apart / -LENGTH)
         sums = (weights @ self._products).reshape(-1, *self.mean.shape)
         total = weights.sum(axis=1) + PRIOR_COUNT
-        return np.asarray((sums + PRIOR_COUNT * self.mean) / total[:, None, None])
+        return (sums + PRIOR_COUNT * self.mean) / total[:, None, None]
 
     @cached_property
     def _products(self) -> Array:
@@ -90,11 +90,6 @@ class Metamers:
         return (self.scores[:, :, None] * self.scores[:, None, :]).reshape(
             len(self.scores), -1
         )
-
-
-def brightness(rgb: Array) -> Array:
-    """k(x) (n,) of linear RGB (n, 3), by which differences of spectra grow."""
-    return np.asarray(np.sqrt(np.maximum(largest(rgb), MIN_LEVEL)))
 
 
 def learn_metamers(cube: Cube) -> Metamers:
@@ -131,7 +126,7 @@ def _relative(sensor: Sensor, differences: Array, rgb: Array) -> Array:
     """
     colours = differences @ sensor.matrix.T
     blacks = differences - colours @ np.linalg.pinv(sensor.matrix).T
-    return np.asarray(blacks / brightness(rgb)[:, None])
+    return blacks / brightness(rgb)
 
 
 def _families(data: CubeData) -> Array:

@@ -50,7 +50,7 @@ class Noise(NamedTuple):
         ndarray
             Variances, of the same shape.
         """
-        return np.asarray((self.share * values) ** 2 + self.floor**2)
+        return (self.share * values) ** 2 + self.floor**2
 
 
 def rounding_noise(steps: int) -> Noise:

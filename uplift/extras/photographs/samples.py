@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from uplift.common.arrays import Array, blocks
-from uplift.common.errors import OptionError
 from uplift.extras.photographs.changes import changed_spectra
-from uplift.extras.photographs.metamers import Metamers, brightness, learn_metamers
-from uplift.lookup import Cube, as_colours, as_wavelengths
+from uplift.extras.photographs.metamers import Metamers, learn_metamers
+from uplift.lookup import Cube, as_colours, as_wavelengths, as_whole_number
+from uplift.models.brightness import brightness
 
 TAIL = 8.0
 """Degrees of freedom ν, with which samples spread as left-out materials do."""
@@ -78,7 +78,7 @@ class SpectrumSampler:
         """
         colours = as_colours(rgb, self.cube.data.sensor)
         random = _as_generator(seed)
-        per_colour = _as_count(count)
+        per_colour = as_whole_number(count, "count")
         at_sensor = self.cube.wavelengths
         grid = at_sensor
         if wavelengths is not None:
@@ -126,7 +126,7 @@ class SpectrumSampler:
         components_at = self.metamers.components_at(wavelengths)
         shape = (len(rgb), count, 1)
         scale = np.sqrt(TAIL / random.chisquare(TAIL, shape))
-        scale *= brightness(rgb)[:, None, None]
+        scale *= brightness(rgb)[..., None]
         roots = _symmetric_root(covariance)
         result = np.empty((len(rgb), count, len(wavelengths)))
         for block in blocks(len(rgb), max(BLOCK_SPECTRA // count, 1)):
@@ -149,23 +149,14 @@ def _symmetric_root(covariance: Array) -> Array:
     """The symmetric roots (n, R, R) of covariances, which may be singular."""
     variances, axes = np.linalg.eigh(covariance)
     deviations = np.sqrt(np.maximum(variances, 0))
-    return np.asarray((axes * deviations[:, None, :]) @ axes.transpose(0, 2, 1))
+    return (axes * deviations[:, None, :]) @ axes.transpose(0, 2, 1)
 
 
 def _as_generator(seed: int | np.random.Generator) -> np.random.Generator:
     """Make a generator of a seed; `OptionError` for anything else."""
     if isinstance(seed, np.random.Generator):
         return seed
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise OptionError(f"seed must be a whole number from 0, got {seed!r}")
-    return np.random.default_rng(seed)
-
-
-def _as_count(count: int) -> int:
-    """Convert to a whole number from 1; `OptionError` for anything else."""
-    if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
-        raise OptionError(f"count must be a whole number from 1, got {count!r}")
-    return int(count)
+    return np.random.default_rng(as_whole_number(seed, "seed", least=0))
 
 
 def prepare_samples(cube: Cube) -> SpectrumSampler:

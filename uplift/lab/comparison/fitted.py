@@ -35,7 +35,7 @@ def _known_rows(known: Array, codes: Array, spectra: Array) -> Array:
     that they are.
     """
     difference = spectra[:, None, ::STRIDE] - known[:, ::STRIDE]
-    return np.asarray(codes[(difference**2).sum(axis=-1).argmin(axis=1)])
+    return codes[(difference**2).sum(axis=-1).argmin(axis=1)]
 
 
 def scene_representations(scene: Scene) -> tuple[Representation, ...]:

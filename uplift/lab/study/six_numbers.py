@@ -63,4 +63,4 @@ def posterior_mean(
     gram[:, diagonal, diagonal] += variance
     residual = numbers - expected @ matrix.T
     weights = np.linalg.solve(gram, residual[..., None])[..., 0]
-    return np.asarray(expected + weights @ to_spectra.T)
+    return expected + weights @ to_spectra.T

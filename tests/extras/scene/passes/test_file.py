@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.helpers import raises
-from uplift.common.errors import OutputError, PassesError
+from uplift.common.errors import PassesError
 from uplift.extras.scene.passes import (
     passes_digest,
     read_passes,
@@ -40,14 +40,6 @@ def test_names_are_escaped(two_passes, tmp_path):
     path = tmp_path / "passes.toml"
     write_passes(replace(two_passes, lights=(light,)), path)
     assert read_passes(path).lights[0].name == name
-
-
-def test_existing_files_stay(two_passes, tmp_path):
-    path = tmp_path / "passes.toml"
-    path.write_text("kept")
-    with raises(OutputError, "file-exists"):
-        write_passes(two_passes, path)
-    assert path.read_text() == "kept"
 
 
 @pytest.mark.parametrize(

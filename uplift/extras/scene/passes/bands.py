@@ -86,7 +86,7 @@ class Bands:
         distance = (_fine_grid() - centres[:, None]) / self.width
         gaussian = np.exp(-(distance**2) / 2)
         gaussian /= gaussian.sum(axis=1, keepdims=True)
-        return np.asarray(gaussian @ _hat_functions().T)
+        return gaussian @ _hat_functions().T
 
 
 def _fine_grid() -> Array:

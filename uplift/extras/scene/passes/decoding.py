@@ -101,7 +101,7 @@ class Grams:
 
 def _solve(normal: Array, right: Array) -> Array:
     ridge = RIDGE * np.trace(normal) / len(normal)
-    return np.asarray(np.linalg.solve(normal + ridge * np.eye(len(normal)), right))
+    return np.linalg.solve(normal + ridge * np.eye(len(normal)), right)
 
 
 def _bounded(normal: Array, right: Array, floor: Array) -> Array:
@@ -114,7 +114,7 @@ def _bounded(normal: Array, right: Array, floor: Array) -> Array:
     ridge = RIDGE * np.trace(normal) / len(normal)
     factor = np.linalg.cholesky(normal + ridge * np.eye(len(normal)))
     above = nnls(factor.T, np.linalg.solve(factor, right - normal @ floor))[0]
-    return np.asarray(floor + above)
+    return floor + above
 
 
 def light_projection(paths: LightPaths, numbers: Array, decoding: Array) -> Array:

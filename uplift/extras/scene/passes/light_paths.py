@@ -11,12 +11,16 @@ from functools import cached_property
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_2000, lab, lab_jacobian, observer
+from uplift.colorimetry import (
+    delta_e_2000,
+    delta_e_2000_form,
+    lab,
+    lab_jacobian,
+    observer,
+)
 from uplift.common.arrays import Array, Indices
 
 MAX_BOUNCES = 4
-STEP = 1e-3
-"""Length of finite differences, in units of L*a*b*."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,20 +80,8 @@ class LightPaths:
     @cached_property
     def metric(self) -> Array:
         """Forms G (L, n, 3, 3): dᵀ G d ≈ ΔE00² for a small difference d of XYZ."""
-        steps = np.eye(3) * STEP
-        base = self.lab[..., None, :]
-
-        def squared(difference: Array) -> Array:
-            return (delta_e_2000(base, base + difference) / STEP) ** 2
-
-        diagonal = squared(steps)
-        i, j = np.tril_indices(3, -1)
-        mixed = squared(steps[i] + steps[j]) - diagonal[..., i] - diagonal[..., j]
-        form = diagonal[..., None] * np.eye(3)
-        form[..., i, j] = mixed / 2
-        form[..., j, i] = mixed / 2
         slopes = lab_jacobian(self.xyz, self.whites)
-        return slopes.mT @ form @ slopes
+        return slopes.mT @ delta_e_2000_form(self.lab) @ slopes
 
 
 def draw_paths(

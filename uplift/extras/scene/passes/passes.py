@@ -134,7 +134,7 @@ class Passes:
         ndarray, shape (…, K)
             Numbers. Those of lights of nearly one wavelength may be negative.
         """
-        return np.asarray(power @ self.light_projection.T)
+        return power @ self.light_projection.T
 
     def light(self, name: str) -> PassesLight:
         """Find a light by its name.
@@ -179,4 +179,4 @@ def scaled_power(illuminant: Illuminant) -> Array:
     """
     power = observer.illuminant_spd(illuminant)
     luminance = observer.matching_functions()[:, 1]
-    return np.asarray(power / (power @ luminance))
+    return power / (power @ luminance)

@@ -20,7 +20,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.cube import contents
-from uplift.cube.file import POINTS
+from uplift.cube.schema import POINTS
 from uplift.extras import texture
 from uplift.extras.scene.plan.candidates import (
     INDEX,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
-from uplift.colorimetry import delta_e_2000, lab_jacobian
+from uplift.colorimetry import delta_e_2000_form, lab_jacobian
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
@@ -22,8 +22,6 @@ from uplift.extras.scene.wavelengths.sampling import (
     prefiltered,
 )
 
-STEP = 1e-3
-"""Length of the finite differences, in units of L*a*b*."""
 MIN_EIGENVALUE = 1e-3
 """Lower bound of the eigenvalues of the form; rounding may make them negative."""
 MAX_EVALUATIONS = 60
@@ -53,20 +51,7 @@ class FitProblem:
         """Factors T (K, M, 3, 3) at every material and light: |T (XYZ' − XYZ)| ≈ ΔE00
         of close colours.
         """
-        lab = self.setup.lab[..., None, :]
-        steps = np.eye(3) * STEP
-
-        def squared(difference: Array) -> Array:
-            return (delta_e_2000(lab, lab + difference) / STEP) ** 2
-
-        # G with dᵀ G d ≈ ΔE00² for small differences d of L*a*b*
-        diagonal = squared(steps)
-        i, j = np.tril_indices(3, -1)
-        form = diagonal[..., None] * np.eye(3)
-        form[..., i, j] = (
-            squared(steps[i] + steps[j]) - diagonal[..., i] - diagonal[..., j]
-        ) / 2
-        values, vectors = np.linalg.eigh(form)  # of the lower triangle
+        values, vectors = np.linalg.eigh(delta_e_2000_form(self.setup.lab))
         root = np.sqrt(np.maximum(values, MIN_EIGENVALUE))[..., None] * vectors.mT
         return root @ lab_jacobian(self.setup.xyz, self.setup.whites[:, None])
 

@@ -1,0 +1,196 @@
+"""Colours that are looked up in a cube, and their answers, block by block."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from uplift.common.errors import UpliftWarning
+from uplift.common.text import pluralise
+
+from . import options
+from .colours import find_colours
+from .inputs import check_range
+from .output.diagnostics import warn
+
+if TYPE_CHECKING:
+    from uplift.colorimetry import Light
+    from uplift.colorimetry.illuminants import Illuminant
+    from uplift.common.arrays import Array
+    from uplift.extras.colour.query import QueryBlock, QueryResult
+    from uplift.extras.photographs import PhotographedColour
+
+PACKAGED = "packaged"
+"""Name of the cube that answers without --cube."""
+
+
+def colour_sources(xyz: str, space: str) -> options.Decorator:
+    """COLOUR and the other sources of colours, for
+    `find_colours`.
+    """
+    return options.stacked(
+        click.argument("colour", metavar="[COLOUR]...", nargs=-1),
+        click.option(
+            "--input",
+            "input_path",
+            metavar="FILE",
+            help="Table of colours, one per line; '-' is standard input.",
+        ),
+        options.number("--xyz", nargs=3, metavar="X Y Z", help=f"Colour by XYZ {xyz}."),
+        options.number(
+            "--xy",
+            nargs=2,
+            metavar="X Y",
+            help="Colour by chromaticity, with --luminance, as for --xyz.",
+        ),
+        options.number(
+            "--luminance", metavar="Y", help="Luminance of --xy, where white has 1."
+        ),
+        options.flag(
+            "--encoded", help="Numbers are encoded 8-bit codes from 0 to 255."
+        ),
+        options.input_space("the colours", default=space),
+    )
+
+
+colour_options = options.stacked(
+    colour_sources(
+        "under the cube's illuminant, where white has Y = 1; also outside the cube's "
+        "space",
+        "that of the cube",
+    ),
+    options.cube(),
+    options.output_wavelengths,
+    options.choice(
+        "--mode",
+        *("spectra", "moments", "refined", "nearest"),
+        help="Interpolate spectra (exact), coefficients (fast), coefficients with "
+        "refinement, or use the nearest node.",
+    ),
+    options.out_of_gamut("error", "as such a number is often a mistake"),
+    options.fill,
+)
+"""Argument and options of the colours of a query, and of how they are answered; for
+`Answers`.
+"""
+
+
+class Answers:
+    """Answers to blocks of colours from the values of `colour_options`, each before the
+    next block is read.
+
+    ``cube`` is filled where colours need it. ``origin`` is its file, dim and atlases,
+    for JSON, and ``title`` for text.
+    """
+
+    def __init__(
+        self,
+        cube_path: str | None,
+        wavelengths: Array | None,
+        mode: str,
+        method: str,
+        fill_missing: bool,
+        lights: Sequence[Illuminant],
+        **colours: Any,
+    ) -> None:
+        from uplift.lookup import load
+
+        self.source = find_colours(**colours)
+        self.single = self.source.single
+        self.cube = load(cube_path)
+        if wavelengths is not None:
+            check_range(wavelengths, self.cube.wavelengths)
+        self.wavelengths = wavelengths
+        self.mode = mode
+        self.method = method
+        self.fill_missing = fill_missing
+        data = self.cube.data
+        atlases = [source["name"] for source in data.provenance.get("atlases", ())]
+        file = cube_path or PACKAGED
+        dim = data.lattice.dim
+        self.origin = {"file": file, "dim": dim, "atlases": atlases}
+        self.further: PhotographedColour | None = None
+        self.title = (
+            f"{Path(file).name}: {dim}³ nodes, {', '.join(atlases) or 'no atlas'}"
+        )
+        self.lights: list[Light] = []
+        # matrices from XYZ under a light to linear sRGB with the same white
+        self.to_srgb: dict[str, Array] = {}
+        if lights:
+            from uplift.colorimetry.observer import display_sensors, light
+
+            setting = self.cube.observer, *data.sensor.range
+            for display in display_sensors(lights, *setting):
+                self.to_srgb[display.illuminant] = display.xyz_to_rgb
+            lit = [light(illuminant, *setting) for illuminant in lights]
+            self.lights = list({light.name: light for light in lit}.values())
+
+    def __iter__(self) -> Iterator[QueryBlock]:
+        """Answer blocks, and warn at the end of colours that were mapped or filled."""
+        from uplift.extras.colour.query import locate_xyz, query_blocks
+
+        how = (self.wavelengths, self.mode)
+        if self.source.xyz is not None:
+            rgb, requested, outside = locate_xyz(self.cube, [self.source.xyz])
+            yield from query_blocks(
+                self.cube, rgb, *how, requested, self.lights, outside
+            )
+            return
+        count = mapped = filled = 0
+        change = 0.0
+        bounded = self.method == "error" and self.source.space is None
+        for requested in self.source.blocks(self.cube.data.sensor, bounded=bounded):
+            rgb = requested  # which the query refuses outside [0, 1]
+            if self.method != "error":
+                from uplift.colorimetry.gamut import map_to_gamut
+
+                inside = map_to_gamut(requested, self.cube.data.sensor, self.method)
+                rgb = inside.rgb
+                mapped += inside.count
+                change = max(change, inside.max_change)
+            count += len(rgb)
+            if self.fill_missing:
+                filled += int((~self.cube.covers(rgb)).sum())
+                self.cube = self.cube.fill_missing(rgb)
+            blocks = query_blocks(
+                self.cube,
+                rgb,
+                *how,
+                requested,
+                self.lights,
+                answering=self.further,
+            )
+            for block in blocks:
+                yield block
+                sys.stdout.flush()
+        if mapped:
+            by = (
+                f"mapped into the gamut ({self.method}), a component by up to "
+                f"{change:.3g}"
+            )
+            problem = f"{mapped} of {pluralise(count, 'colour')} outside [0, 1]: {by}"
+            warn([UpliftWarning(problem)])
+        if filled:
+            problem = (
+                f"{filled} of {pluralise(count, 'colour')} outside the cube's scene: "
+                "filled from the packaged cube"
+            )
+            warn([UpliftWarning(problem)])
+
+    def light_colours(
+        self, answers: QueryBlock | QueryResult
+    ) -> dict[str, tuple[Array, list[str]]]:
+        """Return linear sRGB (n, 3) and '#rrggbb' (n,) of n answers, or of one, by
+        light; its white is that of the screen.
+        """
+        from uplift.extras.colour.srgb import hex_codes
+
+        colours = {}
+        for light, xyz in answers.light_xyz.items():
+            rgb = (self.to_srgb[light] @ xyz.reshape(-1, 3, 1))[..., 0]
+            colours[light] = rgb, hex_codes(rgb)
+        return colours
