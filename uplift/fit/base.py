@@ -32,7 +32,7 @@ from uplift.models.arithmetic import blocked_matmul
 from uplift.models.brightness import BRIGHTENING, MIN_LEVEL, brightness
 
 # also imported from here
-from uplift.models.moments import moment_matrix as moment_matrix
+from uplift.models.moments import moment_matrix
 
 GREY = 2 / 3
 """Power of the mean of x' that gives the reflectance of the grey to start from."""

@@ -39,9 +39,9 @@ from uplift.extras.texture.uplifter import (
     Spectrum,
     Uplifter,
 )
-from uplift.fit.base import moment_matrix
 from uplift.lookup import blockwise, refine_to_rgb
 from uplift.lookup.errors_under_lights import LightErrors
+from uplift.models.moments import moment_matrix
 
 NO_NOISE = (0.0, 0.0)
 CONTRADICTION = "contradiction"
