@@ -2,7 +2,7 @@
 
 The samples are predicted by the two constants of Kubelka and Munk, mixed by Duncan's
 rule and measured through a surface by Saunderson's correction (`optics`, `pigments`).
-Whatever the samples do not determine stays as the prior has it (`paint_prior`): the fit
+All that the samples do not determine stays as the prior has it (`paint_prior`): the fit
 is the maximum of the posterior, and its curvature gives standard errors. A paint that
 is known by one opaque sample only keeps the scattering that a rule assumes.
 
