@@ -14,7 +14,7 @@ import click
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.errors import UpliftError, UpliftWarning
 
-from .. import conformance, options
+from .. import conformance, option_types, options
 from ..output.console import make_table, paragraph, print_json, say, show
 from ..output.diagnostics import BAD_INPUT, FAILED_CHECK, CommandFailure, error_object
 from ..output.progress import progress_bar
@@ -84,7 +84,7 @@ NEEDS = {
 @click.option(
     "--kit",
     metavar="FOLDER",
-    type=options.OUTPUT,
+    type=option_types.OUTPUT,
     help="Write the conformance kit of a cube to a folder.",
 )
 @click.option(
