@@ -10,7 +10,7 @@ PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 RGB2SPEC := $(OUT)/rgb2spec
 
-.PHONY: build lint test bare basic site notebooks demo measure peers library nightly munsell docs atlases cubes lock release clean pictures axe examples
+.PHONY: build lint test bare basic site notebooks demo measure peers library nightly munsell docs atlases cubes lock names release clean pictures axe examples
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -130,6 +130,10 @@ lock:
 	$(PIP) uv
 	$(BIN)/uv pip compile --quiet --universal --fork-strategy fewest --python-version 3.11 --upgrade \
 	  --all-extras --no-header --no-annotate pyproject.toml -o constraints.txt
+
+# Add new public names to those that stay, tests/reference/public_names.txt.
+names: $(INSTALLED)
+	$(BIN)/python -m tools.public_names
 
 # The source distribution and the wheel of the last commit, in out/dist, checked and installed into empty environments with the
 # newest and the oldest dependencies.
