@@ -4,6 +4,7 @@ import contextlib
 import multiprocessing
 import os
 import signal
+import sys
 import time
 
 import pytest
@@ -71,3 +72,9 @@ def test_only_own_processes_end_with_an_exception_and_the_environment_stays(fore
     assert all(answer.done() for answer in answers)
     assert not any(child.is_alive() for child in pool.children)
     assert foreign.is_alive()
+
+
+def test_more_processes_than_windows_can_wait_for_are_fewer(monkeypatch):
+    monkeypatch.setattr(sys, "platform", "win32")
+    with TiedProcesses(200) as pool:
+        assert pool.children == []

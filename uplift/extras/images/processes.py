@@ -5,6 +5,7 @@ may crash or hang.
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 import warnings
 from collections.abc import Callable
@@ -15,6 +16,8 @@ from typing import Any, Literal, TypeVar
 from uplift.common.files import remove_temporaries
 
 Result = TypeVar("Result")
+MOST_ON_WINDOWS = 61
+"""Processes that one call of Windows can wait for."""
 
 
 class ChildError(Exception):
@@ -76,6 +79,8 @@ class TiedProcesses(ProcessPoolExecutor):
     def __init__(self, count: int) -> None:
         context = _Recorder()
         self.children = context.children
+        if sys.platform == "win32":
+            count = min(count, MOST_ON_WINDOWS)
         super().__init__(count, mp_context=context, initializer=_tie)
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> Literal[False]:
