@@ -10,7 +10,7 @@ PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 RGB2SPEC := $(OUT)/rgb2spec
 
-.PHONY: build lint test bare basic site notebooks demo measure peers library nightly munsell docs atlases cubes lock clean pictures axe examples
+.PHONY: build lint test bare basic site notebooks demo measure peers library nightly munsell docs atlases cubes lock names release clean pictures axe examples
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -130,6 +130,20 @@ lock:
 	$(PIP) uv
 	$(BIN)/uv pip compile --quiet --universal --fork-strategy fewest --python-version 3.11 --upgrade \
 	  --all-extras --no-header --no-annotate pyproject.toml -o constraints.txt
+
+# Add new public names to those that stay, tests/reference/public_names.txt.
+names: $(INSTALLED)
+	$(BIN)/python -m tools.public_names
+
+# The source distribution and the wheel of the last commit, in out/dist, checked and installed into empty environments with the
+# newest and the oldest dependencies.
+release: $(INSTALLED)
+	$(PIP) -c constraints.txt --no-build-isolation -e '.[release]'
+	rm -rf $(OUT)/dist $(OUT)/source
+	git clone --quiet . $(OUT)/source
+	$(BIN)/python -m build --no-isolation --outdir $(OUT)/dist $(OUT)/source > $(OUT)/build.log 2>&1 || (cat $(OUT)/build.log; false)
+	$(BIN)/twine check --strict $(OUT)/dist/*
+	$(BIN)/python -m tools.release $(OUT)/dist
 
 $(INSTALLED): pyproject.toml constraints.txt Makefile
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "uplift needs Python 3.11 or later: make PYTHON=python3.12")'

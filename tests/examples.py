@@ -104,19 +104,26 @@ def source_files(repository: Path) -> list[str]:
     ]
 
 
-def build_wheel(folder: Path) -> Path:
-    """Build a wheel of a copy of the source, without leftovers of earlier builds."""
+def build_distributions(folder: Path) -> Path:
+    """Build a source distribution, and a wheel of it, of a copy of the source without
+    leftovers of earlier builds; return their folder.
+    """
     copy = folder / "copy"
     for name in source_files(ROOT):
         (copy / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, copy / name)
-    args = ["-m", "build", "--wheel", "--no-isolation", "--outdir", "dist", copy]
+    args = ["-m", "build", "--no-isolation", "--outdir", "dist", copy]
     done = subprocess.run(
         [sys.executable, *args], cwd=folder, capture_output=True, text=True
     )
     assert done.returncode == 0, done.stdout + done.stderr
-    (path,) = (folder / "dist").iterdir()
-    return path
+    return folder / "dist"
+
+
+def build_wheel(folder: Path) -> Path:
+    """Build a wheel as `build_distributions`, and return its path."""
+    (wheel,) = build_distributions(folder).glob("*.whl")
+    return wheel
 
 
 def unpack(wheel: Path, folder: Path) -> Path:

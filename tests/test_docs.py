@@ -20,7 +20,7 @@ import uplift
 from benchmarks.__main__ import pages
 from tests.conftest import ROOT
 from tests.examples import BLOCKS, CUBE, examples, examples_by_page, page_examples
-from tests.helpers import warns
+from tests.helpers import output_of, warns
 from tests.parts import MITSUBA, need
 from uplift.atlas import Format
 from uplift.extras import formats
@@ -94,9 +94,12 @@ def test_a_page_makes_the_cubes_and_plans_that_it_uses(name, lines):
 
 def test_the_python_page_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (code,) = re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL)
+    code, processes = re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL)
     with warns():
         exec(compile(code, "python.md", "exec"), {})
+    (tmp_path / "processes.py").write_text(processes)
+    printed = output_of(sys.executable, "processes.py", timeout=100)
+    assert printed.count(",") == 2
 
 
 def test_the_page_of_gradients_runs():

@@ -1,7 +1,8 @@
-"""The wheel has the library, the command line and the atlases, and nothing else;
-examples run from it.
+"""Distributions have the library, the command line and the atlases, and nothing else;
+examples run from the wheel.
 """
 
+import re
 import zipfile
 from pathlib import Path
 
@@ -9,17 +10,17 @@ import pytest
 
 from tests.examples import (
     ELSEWHERE,
-    build_wheel,
+    build_distributions,
     examples,
     run_lines,
     source_files,
     unpack,
 )
-from uplift.common.version import UNKNOWN, VERSION
+from tools.release import source_problems, wheel_problems
+from uplift.common.version import UNKNOWN, VERSION, is_older
 
-FOLDERS = {"uplift": "uplift", "cli": "uplift_cli", "atlases": "uplift_atlases"}
-INFO = f"spectral_uplift-{VERSION}{UNKNOWN}.dist-info"
-"""The wheel is built from a copy, which is not a clone."""
+BUILT = VERSION + UNKNOWN if VERSION.endswith(".dev") else VERSION
+"""Distributions are built from a copy, which is not a clone."""
 FEW = (
     "uplift samples",
     "cd uplift-samples",
@@ -43,59 +44,75 @@ runs all.
 
 
 @pytest.fixture(scope="module")
-def path(tmp_path_factory):
-    """Built from a copy that holds no leftovers of earlier builds."""
-    return build_wheel(tmp_path_factory.mktemp("package"))
+def folder(tmp_path_factory):
+    """A source distribution and a wheel, built from a copy that holds no leftovers of
+    earlier builds.
+    """
+    return build_distributions(tmp_path_factory.mktemp("package"))
 
 
-@pytest.fixture
-def wheel(path):
-    with zipfile.ZipFile(path) as archive:
-        yield archive
+@pytest.fixture(scope="module")
+def wheel(folder):
+    return folder / f"spectral_uplift-{BUILT}-py3-none-any.whl"
 
 
-def test_every_module_is_in_it(wheel, repository):
-    for here, there in FOLDERS.items():
-        modules = [
-            path.relative_to(repository / here).as_posix()
-            for path in (repository / here).rglob("*.py")
-        ]
-        assert len(modules) > 10 or here == "atlases"
-        assert {f"{there}/{module}" for module in modules} <= set(wheel.namelist())
+@pytest.fixture(scope="module")
+def tracked(repository):
+    return source_files(repository)
 
 
-def is_data(path):
-    return path.suffix != ".py" and path.parts[0] != INFO
-
-
-def test_data_and_licence_are_in_it_and_nothing_else(wheel, repository):
-    licence = wheel.read(f"{INFO}/licenses/LICENSE")
+def test_the_wheel_has_the_packages_their_data_and_the_licence_alone(
+    wheel, tracked, repository
+):
+    assert wheel_problems(wheel, tracked) == []
+    with zipfile.ZipFile(wheel) as archive:
+        licence = archive.read(f"spectral_uplift-{BUILT}.dist-info/licenses/LICENSE")
     assert licence == (repository / "LICENSE").read_bytes()
-    names = set(map(Path, wheel.namelist()))
-    assert {name.parts[0] for name in names} == {*FOLDERS.values(), INFO}
-    tracked = source_files(repository)
-    library = {Path(name) for name in tracked if name.startswith("uplift/")}
-    atlases = {
-        Path(f"uplift_{name}") for name in tracked if name.startswith("atlases/")
-    }
-    assert set(filter(is_data, names)) == set(filter(is_data, library | atlases))
+
+
+def test_the_source_distribution_has_what_the_wheel_is_built_from(folder, tracked):
+    assert source_problems(folder / f"spectral_uplift-{BUILT}.tar.gz", tracked) == []
+
+
+def test_packages_have_files_of_these_kinds(tracked):
+    library = {Path(name).suffix for name in tracked if name.startswith("uplift/")}
+    atlases = {Path(name).suffix for name in tracked if name.startswith("atlases/")}
     suffixes = (
         ".c .cpp .css .csv .cxf .cuh .exr .glsl .h .hlsl .j2 .js .mjs .npz .pbrt .png "
         ".spd .ti3 .toml .txt .typed .uplift .xlsx .xml"
     )
-    assert {name.suffix for name in library} == {".py", *suffixes.split()}
-    assert {name.suffix for name in atlases} == {".md", ".py", ".txt"}
+    assert library == {".py", *suffixes.split()}
+    assert atlases == {".md", ".py", ".txt"}
 
 
-def test_examples_run_as_written_in_an_empty_folder(path, tmp_path):
+def test_files_too_many_and_too_few_are_named(wheel, tracked):
+    extra = wheel_problems(wheel, set(tracked) - {"uplift/py.typed"})
+    assert extra == [f"{wheel.name}: has uplift/py.typed as well"]
+    missing = wheel_problems(wheel, [*tracked, "uplift/absent.npz"])
+    assert missing == [f"{wheel.name}: lacks uplift/absent.npz"]
+
+
+def test_a_release_has_its_version_in_all_files(repository):
+    """`make release` builds it from any commit, a commit on the way to it included."""
+    citation = (repository / "CITATION.cff").read_text("utf-8")
+    cited = re.search(r"^version: (.+)$", citation, re.MULTILINE)[1]
+    date = re.search(r"^date-released: (.+)$", citation, re.MULTILINE)[1]
+    assert f"## {cited} ({date})" in (repository / "CHANGELOG.md").read_text("utf-8")
+    if VERSION.endswith(".dev"):
+        assert is_older(cited, f"{VERSION}1")
+    else:
+        assert cited == VERSION
+
+
+def test_examples_run_as_written_in_an_empty_folder(wheel, tmp_path):
     assert set(FEW) | ELSEWHERE <= set(examples())
     (tmp_path / "empty").mkdir()
     outcomes = run_lines(
         [*FEW, "uplift --version"],
-        unpack(path, tmp_path / "package"),
+        unpack(wheel, tmp_path / "package"),
         tmp_path / "empty",
     )
     for outcome in outcomes:
         assert outcome["code"] == 0, outcome["line"] + outcome["stderr"]
         assert "error: " not in outcome["stderr"]
-    assert outcomes[-1]["stdout"] == f"uplift {VERSION}{UNKNOWN}\n"
+    assert outcomes[-1]["stdout"] == f"uplift {BUILT}\n"

@@ -27,6 +27,7 @@ from ..option_types import INPUTS
 from ..output.console import say
 from ..output.diagnostics import CommandFailure, warn
 from ..output.progress import progress_bar
+from ..outputs import is_folder
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -345,8 +346,7 @@ def _with_suffix(sources: Sequence[str], target: str) -> str:
     folder.
     """
     is_single = len(sources) == 1 and expand_patterns(sources) == [sources[0]]
-    is_folder = os.path.isdir(target) or target.endswith(os.sep)
-    if not is_single or is_folder or Path(target).suffix.lower() == ".exr":
+    if not is_single or is_folder(target) or Path(target).suffix.lower() == ".exr":
         return target
     return f"{target}.exr"
 
@@ -419,12 +419,7 @@ def _texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path
         return _tiles(sources, images, target)
     folder = Path(target)
     is_single = len(sources) == 1 and images == [sources[0]]
-    if (
-        is_single
-        and folder.suffix
-        and not folder.is_dir()
-        and not target.endswith(os.sep)
-    ):
+    if is_single and folder.suffix and not is_folder(target):
         if folder.suffix.lower() != ".exr":
             hint = "give a file name ending in .exr, or a folder"
             raise OutputError("textures are OpenEXR files", path=target, hint=hint)
@@ -447,10 +442,11 @@ def _tiles(
         raise OutputError(
             f"{UDIM} in the output needs one input with {UDIM}", path=target, hint=hint
         )
-    before, after = map(re.escape, sources[0].split(UDIM))
+    # the separators of a pattern and of the paths that it matches may differ
+    before, after = map(re.escape, os.path.normpath(sources[0]).split(UDIM))
     pairs = []
     for image in images:
-        if tile := re.fullmatch(f"{before}(\\d{{4}}){after}", image):
+        if tile := re.fullmatch(f"{before}(\\d{{4}}){after}", os.path.normpath(image)):
             pairs.append((Path(image), Path(target.replace(UDIM, tile[1]))))
     return pairs
 

@@ -227,12 +227,23 @@ def error_object(error: UpliftError) -> dict[str, Any]:
 
 def show_usage_error(error: click.ClickException) -> None:
     """Print an error of the command line, with the command that shows the help."""
-    message = " ".join(error.format_message().split())
+    message = " ".join((_renaming(error) or error.format_message()).split())
     context = getattr(error, "ctx", None)
     _print_error(
         printable(message)
         + (f" See '{context.command_path} --help'." if context else "")
     )
+
+
+def _renaming(error: click.ClickException) -> str:
+    """Return what replaces an unknown option, if it is one of version 0.2."""
+    if not isinstance(error, click.NoSuchOption) or error.ctx is None:
+        return ""
+    from ..replaced import REPLACEMENTS
+
+    command = error.ctx.command_path.partition(" ")[2]
+    new = REPLACEMENTS.get(command, {}).get(error.option_name, "")
+    return new and f"No such option '{error.option_name}': {new} replaces it."
 
 
 def warn(notes: Iterable[UpliftWarning]) -> None:

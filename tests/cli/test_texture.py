@@ -80,3 +80,22 @@ def test_masks_choose_among_cubes(run, refuse, misuse, frames, cubes):
         in refuse("texture shot.0.exr -o one.exr", *options[:4]).problem
     )
     assert "--mask" in misuse("texture shot.0.exr -o one.exr", *two)
+
+
+def test_folders_end_with_any_separator_of_the_system(run, frames, cubes, monkeypatch):
+    monkeypatch.setattr(os, "altsep", "\\")
+    options = ("--representation", "moments", "--cube", cubes / "moments-8.uplift")
+    for separator in "/\\":
+        run("texture shot.0.exr -o", f"made.v2{separator}", *options)
+    folders = [path for path in frames.iterdir() if path.is_dir()]
+    assert len(folders) == 2
+    assert [os.listdir(folder) for folder in folders] == [["shot.0.exr"]] * 2
+
+
+def test_tiles_are_found_with_other_separators_than_those_of_the_pattern(
+    run, frames, cubes
+):
+    (frames / "shot.1001.exr").write_bytes((frames / "shot.0.exr").read_bytes())
+    options = ("--representation", "moments", "--cube", cubes / "moments-8.uplift")
+    run("texture", f"{frames}//shot.<UDIM>.exr", "-o", "tile.<UDIM>.exr", *options)
+    assert (frames / "tile.1001.exr").is_file()

@@ -111,9 +111,24 @@ def check_memory(
         raise error(problem, code="out-of-memory", hint=hint)
 
 
+def require_xla() -> None:
+    """Raise an error where XLA would end the process or hang: `OptionError` without
+    memory for its threads, `UpliftError` (``forked-process``) after a fork.
+
+    A fork copies no threads: the child would wait for those of the parent for ever.
+    """
+    if _process_of_xla() != os.getpid():
+        raise UpliftError(
+            "JAX must not run in a process that was forked after JAX had run",
+            code="forked-process",
+            hint='start processes by multiprocessing.get_context("spawn")',
+        )
+
+
 @cache
-def require_memory_of_xla() -> None:
-    """Raise `OptionError` if XLA, which ends the process without memory for its
-    threads, would not have it.
+def _process_of_xla() -> int:
+    """Return the number of the process that is the first to use XLA, the parent's
+    after a fork.
     """
     check_memory(PROCESS_BYTES, "a fit", OptionError, "use a machine with more memory")
+    return os.getpid()

@@ -6,7 +6,7 @@ import functools
 import re
 from pathlib import Path
 
-VERSION = "0.3.0.dev"
+VERSION = "0.3.0rc1.dev"
 """Version of this source. After ``.dev`` follows the number of commits; a release has
 no such suffix.
 """
@@ -67,21 +67,25 @@ def _count_commits() -> str:
 def is_older(first: str, second: str) -> bool:
     """Return whether a version comes before another; False where that is unknown.
 
-    >>> known = ("0.2.0", "0.3.0.dev7", "0.3.0.dev0")
-    >>> [is_older(version, "0.3.0.dev12") for version in known]
-    [True, True, False]
+    >>> known = ("0.2.0", "0.3.0.dev7", "0.3.0rc1", "0.3.0rc2.dev0")
+    >>> [is_older(version, "0.3.0rc2.dev12") for version in known]
+    [True, True, True, False]
     """
     return _order(first) < _order(second)
 
 
 def _order(version: str) -> tuple[float, ...]:
-    """Return numbers in the order of versions: a release follows its commits, and NaN
-    is neither below nor above.
+    """Return numbers in the order of versions: commits before candidates, and both
+    before their release. NaN is neither below nor above.
     """
     match = re.fullmatch(
-        r"([0-9]{1,9})\.([0-9]{1,9})\.([0-9]{1,9})(?:\.dev([0-9]{1,9}))?", version
+        r"([0-9]{1,9})\.([0-9]{1,9})\.([0-9]{1,9})"
+        r"(?:rc([0-9]{1,9}))?(?:\.dev([0-9]{1,9}))?",
+        version,
     )
     if match is None:
         return (float("nan"),)
-    *release, commits = match.groups(default="inf")
-    return *map(float, release), float("nan" if commits == UNKNOWN else commits)
+    *release, candidate, commits = match.groups()
+    first = "0" if commits else "inf"
+    last = "nan" if commits == UNKNOWN else commits or "inf"
+    return *map(float, release), float(candidate or first), float(last)

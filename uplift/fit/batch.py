@@ -13,7 +13,7 @@ from jax import lax
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from uplift.common.arrays import Array, blocks
-from uplift.common.machine import require_memory_of_xla
+from uplift.common.machine import require_xla
 from uplift.models import ForwardMap, Model, Moments
 from uplift.models.arithmetic import arctan
 from uplift.models.duality import integrate, moments_from_multipliers
@@ -47,7 +47,7 @@ def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any) -> A
     It is compiled for a chunk of rows, once if it is the same object in each call.
     Batches run side by side.
     """
-    require_memory_of_xla()
+    require_xla()
     devices = len(jax.devices())
     parts = []
     width, chunk = CPU_ROWS if jax.default_backend() == "cpu" else ACCELERATOR_ROWS

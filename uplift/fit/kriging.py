@@ -13,6 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from uplift.common.arrays import Array, Indices, blocks, distances
+from uplift.common.machine import require_xla
 
 METRIC = np.array([0.5, 1.0, 1.0])
 """Weights of differences of L*, a* and b*: materials of one hue are more alike than
@@ -192,6 +193,7 @@ def kernel_sums(
 
     ``own`` (P,) weigh the part of the noise that is not white.
     """
+    require_xla()
     rows = max(min(BLOCK_NUMBERS // max(len(locations), 1), BLOCK_ROWS), 1)
     sums = np.empty((len(at), columns.shape[1]))
     nearest = np.empty(len(at))

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from uplift.colorimetry import Sensor, as_rgb
 from uplift.common.arrays import Floats
-from uplift.common.machine import require_memory_of_xla
+from uplift.common.machine import require_xla
 from uplift.common.text import pluralise
 from uplift.lookup.blocks import (
     as_coefficient_count,
@@ -96,6 +96,7 @@ class Sampler:
         return sum(array.nbytes for array in self.grid)
 
     def _chunk(self, rgb: NDArray[Any]) -> Floats:
+        require_xla()
         colours = as_colours(rgb, self.sensor)
         size = min(size for size in CHUNKS if size >= len(colours))
         missing = size - len(colours)
@@ -175,6 +176,6 @@ def _sampler(table: NodeTable, threads: int) -> Sampler:
 def _on_device(
     sensor: Sensor, grid: Grid, threads: int, exact: Exact | None
 ) -> Sampler:
-    require_memory_of_xla()
+    require_xla()
     with jax.enable_x64(True):
         return Sampler(sensor, jax.device_put(grid), threads, exact)

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike as NumpyArrayLike
 from numpy.typing import DTypeLike
 
 from uplift.common.errors import ColourError, OptionError, UpliftWarning, warn
-from uplift.common.machine import require_memory_of_xla
+from uplift.common.machine import require_xla
 from uplift.common.text import pluralise
 from uplift.lookup.blocks import as_float_type, as_wavelengths
 from uplift.lookup.cube import Cube
@@ -114,7 +114,7 @@ def traceable(
                 hint="compare with Cube.reflectance, which moves them to their colours",
             )
         )
-    require_memory_of_xla()
+    require_xla()
     return TraceableCube(*jax.device_put((at.astype(kind), grid)))
 
 

@@ -1,13 +1,16 @@
 """A child process may crash or hang."""
 
+import contextlib
+import multiprocessing
 import os
 import signal
+import sys
 import time
 
 import pytest
 
 from uplift.common.errors import OptionError
-from uplift.extras.images.processes import ChildError, call_in_child
+from uplift.extras.images.processes import ChildError, TiedProcesses, call_in_child
 
 
 def raise_error(text):
@@ -46,3 +49,32 @@ def test_an_exit_is_an_error():
 def test_a_hang_ends():
     with pytest.raises(ChildError, match=r"no answer within 0\.2 s"):
         call_in_child(time.sleep, 600, seconds=0.2)
+
+
+@pytest.fixture
+def foreign():
+    """A process that another part of the program starts."""
+    spawn = multiprocessing.get_context("spawn")
+    process = spawn.Process(target=time.sleep, args=(600,))
+    yield process
+    process.kill()
+    process.join()
+
+
+def test_only_own_processes_end_with_an_exception_and_the_environment_stays(foreign):
+    before = dict(os.environ)
+    with contextlib.suppress(KeyError), TiedProcesses(2) as pool:
+        answers = [pool.submit(time.sleep, 600) for _ in range(2)]
+        foreign.start()
+        assert dict(os.environ) == before
+        assert len(pool.children) == 2
+        raise KeyError
+    assert all(answer.done() for answer in answers)
+    assert not any(child.is_alive() for child in pool.children)
+    assert foreign.is_alive()
+
+
+def test_more_processes_than_windows_can_wait_for_are_fewer(monkeypatch):
+    monkeypatch.setattr(sys, "platform", "win32")
+    with TiedProcesses(200) as pool:
+        assert pool.children == []

@@ -1,6 +1,8 @@
 """Checks of all outputs of a program before it reads and writes anything."""
 
 import os
+import tempfile
+import unicodedata
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -27,14 +29,41 @@ def check_outputs(
 
 
 def _check_distinct(paths: Iterable[StrPath]) -> None:
-    """Raise `OutputError` if two paths are the same file."""
+    """Raise `OutputError` if two paths are the same file, also by the rules of the file
+    system for upper and lower case.
+    """
     checked: dict[str, StrPath] = {}
+    spellings: dict[str, str] = {}
     for path in paths:
-        place = os.path.realpath(path)
+        place = os.path.normcase(os.path.realpath(path))
+        spelling = unicodedata.normalize("NFC", place).casefold()
+        similar = spellings.setdefault(spelling, place)
+        if place not in checked and is_same_name(Path(place), Path(similar)):
+            place = similar
         if place in checked:
             problem = f"is the same file as {os.fspath(checked[place])}"
             raise OutputError(problem, path=path, hint="give each output its own name")
         checked[place] = path
+
+
+def is_same_name(path: Path, other: Path) -> bool:
+    """Return whether the file system takes two paths for one that differ at most in
+    case or in the form of accents. A temporary file tries it.
+    """
+    pairs = zip(path.parts, other.parts, strict=True)
+    different = [place for place, (name, like) in enumerate(pairs) if name != like]
+    if not different:
+        return True
+    depth = different[0]
+    folder = Path(*path.parts[:depth])
+    while not folder.is_dir():
+        folder = folder.parent
+    try:
+        with tempfile.TemporaryDirectory(prefix=".uplift-", dir=folder) as trial:
+            Path(trial, path.parts[depth]).touch()
+            return Path(trial, other.parts[depth]).exists()
+    except OSError:
+        return False
 
 
 def check_folder(

@@ -2,19 +2,22 @@
 may crash or hang.
 """
 
-import contextlib
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
-from typing import Any, TypeVar
+from multiprocessing.context import SpawnContext, SpawnProcess
+from typing import Any, Literal, TypeVar
 
 from uplift.common.files import remove_temporaries
 
 Result = TypeVar("Result")
+MOST_ON_WINDOWS = 61
+"""Processes that one call of Windows can wait for."""
 
 
 class ChildError(Exception):
@@ -30,11 +33,10 @@ def call_in_child(
     The function and its arguments are pickled. Its exceptions are raised here; a child
     that crashes, or has no answer after ``seconds`` and is killed, raises `ChildError`.
     """
-    others = set(multiprocessing.active_children())
     try:
-        with tied_processes(1) as pool:
+        with TiedProcesses(1) as pool:
             answer = pool.submit(_call_silently, function, arguments)
-            (child,) = set(multiprocessing.active_children()) - others
+            (child,) = pool.children
             try:
                 return answer.result(seconds)
             finally:
@@ -60,31 +62,53 @@ def _call_silently(
     return function(*arguments)
 
 
-@contextlib.contextmanager
-def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
-    """Start processes that end, and remove their temporary files, when the block raises
-    or this process ends.
+class TiedProcesses(ProcessPoolExecutor):
+    """Processes that end, and remove their temporary files, when the block raises or
+    this process ends.
 
-    They are new ones, as JAX cannot be forked, and load no module from the working
-    folder in place of one of Python's.
+    They are new ones, as JAX cannot be forked. With ``python -P`` or PYTHONSAFEPATH
+    they load no module from the working folder in place of one of Python's, as this
+    process does not: the command line sets it.
+
+    Parameters
+    ----------
+    count : int
+        Number of processes.
     """
-    others = set(multiprocessing.active_children())
-    before = os.environ.get("PYTHONSAFEPATH", "")
-    os.environ["PYTHONSAFEPATH"] = "1"
-    pool = ProcessPoolExecutor(
-        count, mp_context=multiprocessing.get_context("spawn"), initializer=_tie
-    )
-    try:
-        yield pool
-    # Work that is not finished is not waited for: a signal ends the workers, which
-    # remove their temporary files.
-    except BaseException:
-        for child in set(multiprocessing.active_children()) - others:
-            child.terminate()
-        raise
-    finally:
-        os.environ["PYTHONSAFEPATH"] = before
-        pool.shutdown(cancel_futures=True)
+
+    def __init__(self, count: int) -> None:
+        context = _Recorder()
+        self.children = context.children
+        if sys.platform == "win32":
+            count = min(count, MOST_ON_WINDOWS)
+        super().__init__(count, mp_context=context, initializer=_tie)
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> Literal[False]:
+        """End the processes. Work that is not finished after an exception is not waited
+        for: a signal ends the workers, which remove their temporary files.
+        """
+        if kind is not None:
+            for child in self.children:
+                if child.pid is not None:  # it may not have started
+                    child.terminate()
+        self.shutdown(cancel_futures=True)
+        return False
+
+
+class _Recorder(SpawnContext):
+    """Start of new processes, which are kept in ``children``: those of other threads
+    are not among them.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.children = list[SpawnProcess]()
+
+    def Process(self, *args: Any, **options: Any) -> SpawnProcess:  # type: ignore[override] # noqa: N802
+        """Make a process."""
+        child = SpawnProcess(*args, **options)
+        self.children.append(child)
+        return child
 
 
 def _tie() -> None:

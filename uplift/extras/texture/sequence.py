@@ -24,7 +24,7 @@ from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.emission.lookup import load_emission
 from uplift.extras.files.outputs import check_folder, make_folder
-from uplift.extras.images.processes import tied_processes
+from uplift.extras.images.processes import TiedProcesses
 from uplift.extras.texture import exr_file
 from uplift.extras.texture.conversion import SOURCE, Conversion, convert, source_stamp
 from uplift.extras.texture.emission import prepare_lights
@@ -274,7 +274,7 @@ def convert_all(
     finished = list[Path]()
     try:
         with (
-            tied_processes(processes)
+            TiedProcesses(processes)
             if scheduler is None
             else _dask_executor(scheduler) as executor
         ):
