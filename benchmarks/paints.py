@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+import uplift
 from benchmarks import DOCS, ROOT, Row, record
 from benchmarks.invented_paints import NM, invented_paints
 from benchmarks.mixing import acrylics
@@ -190,12 +191,14 @@ def recipes(fit: PaintFit, others: Indices) -> Row:
     parts = np.zeros((len(mixtures.pairs), len(paints)))
     np.put_along_axis(parts, mixtures.pairs, mixtures.shares, axis=1)
     chosen = others[:RECIPES]
+    cube = uplift.load()
     errors = []
     right = []
     ratios = []
     seconds = []
     for row in chosen:
-        goal = PaintTarget(paints.reflectance(parts[row]), (sensor.light,))
+        spectrum = cube.reflectance(mixtures.expected[row], NM)
+        goal = PaintTarget(spectrum, (sensor.light,))
         begin = time.perf_counter()
         found = match(goal, paints, count=2, alternatives=1)[0]
         seconds.append(time.perf_counter() - begin)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from uplift.common.text import pluralise
@@ -87,7 +88,7 @@ def fit_fields(fitted: PaintFit, advice: PaintAdvice) -> dict[str, Any]:
     samples = zip(fitted.samples.names, fitted.delta_e.tolist(), strict=True)
     return {
         **paint_fields(fitted.paints),
-        "noise": fitted.noise,
+        "noise": asdict(fitted.noise),
         "samples": [{"name": name, "delta_e": error} for name, error in samples],
         "mixtures_error": advice.error,
         "next": [

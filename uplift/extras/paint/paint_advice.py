@@ -14,7 +14,7 @@ import numpy as np
 
 from uplift.colorimetry import delta_e_2000_weights
 from uplift.common.arrays import Array
-from uplift.extras.paint.paint_fit import NOISE, PaintFit
+from uplift.extras.paint.paint_fit import PaintFit
 from uplift.extras.paint.paint_samples import MeasuredSpectra, PaintSamples
 
 TINT_PARTS = 4
@@ -76,10 +76,7 @@ def advise_samples(fit: PaintFit, count: int = 5) -> PaintAdvice:
     weights = delta_e_2000_weights(np.asarray(fit.model.colours(fit.optimum, pairs)))
     colours = _jacobian(fit, pairs, "colours").reshape(len(pairs), 3, -1)
     aims = (weights @ colours).reshape(3 * len(pairs), -1)
-    spectra = _jacobian(fit, candidates, "reflectances")
-    predicted = np.asarray(fit.model.reflectances(fit.optimum, candidates))
-    noise = fit.noise * (NOISE[0] + NOISE[1] * predicted)
-    rows = spectra.reshape(*predicted.shape, -1) / noise[..., None]
+    rows = _measurements(fit, candidates)
     covariance = fit.covariance
     advice = list[NextSample]()
     left = list(range(len(names)))
@@ -92,6 +89,18 @@ def advise_samples(fit: PaintFit, count: int = 5) -> PaintAdvice:
         covariance = updated[best]
         del left[best]
     return PaintAdvice(_mean_error(aims, fit.covariance), tuple(advice))
+
+
+def _measurements(fit: PaintFit, candidates: PaintSamples) -> Array:
+    """Return the Jacobians (n, r, d) of candidates, in units of the noise, measured as
+    the samples are.
+    """
+    name = "colours"
+    if isinstance(fit.samples.measured, MeasuredSpectra):
+        name = "reflectances"
+    predicted = np.asarray(getattr(fit.model, name)(fit.optimum, candidates))
+    spread = fit.noise.spread(predicted)
+    return _jacobian(fit, candidates, name) / spread[..., None]
 
 
 def _update(covariance: Array, row: Array) -> Array:

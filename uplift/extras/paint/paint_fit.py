@@ -30,10 +30,6 @@ from uplift.extras.paint.paint_samples import (
 from uplift.extras.paint.paints import Paints
 from uplift.extras.paint.pigments import Pigment
 
-NOISE = (0.002, 0.005)
-"""Standard deviation of reflectances: absolute, and relative to the value."""
-COLOUR_NOISE = 0.5
-"""Standard deviation of L*, a* and b* of colours."""
 INSIDE = 0.6
 """Internal reflectance of the surface that is expected: an index of 1.5."""
 INSIDE_SPREAD = 0.5
@@ -47,10 +43,32 @@ SURFACE_COUNT = 2
 PRECISION = 1e-4
 """Relative and absolute change of the variables at which a fit ends."""
 MAX_STEPS = 100
-ROUNDS = 3
+ROUNDS = 4
 """Fits with the noise of the one before."""
+STEADY = 1.1
+"""Increase of the noise up to which no further round follows."""
+LEAST_FREEDOM = 0.05
+"""Smallest fraction of the measured values that the unknowns leave free."""
 MAX_VARIABLES = 6000
 """Largest number of unknowns, whose square must fit in memory."""
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Standard deviation of measured values: of all, and relative to the value."""
+
+    absolute: float
+    relative: float
+
+    def spread(self, values: Array) -> Array:
+        """Return the standard deviation of values."""
+        return np.hypot(self.absolute, self.relative * values)
+
+
+SPECTRA_NOISE = Noise(0.002, 0.005)
+"""Smallest noise of reflectances."""
+COLOUR_NOISE = Noise(0.5, 0.0)
+"""Smallest noise of L*, a* and b* of colours."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,8 +83,9 @@ class PaintFit:
         The samples that they were fitted to.
     delta_e : ndarray, shape (n,)
         ΔE00 under D65 between each sample and its prediction.
-    noise : float
-        Factor by which the samples differ more than measurements should.
+    noise : Noise
+        How far the samples differ from the predictions, at least the noise of
+        measurements.
     optimum : ndarray, shape (d,)
         Independent variables at the maximum of the posterior.
     covariance : ndarray, shape (d, d)
@@ -78,7 +97,7 @@ class PaintFit:
     paints: Paints
     samples: PaintSamples
     delta_e: Array
-    noise: float
+    noise: Noise
     optimum: Array
     covariance: Array
     model: "FitModel"
@@ -135,16 +154,12 @@ class FitModel:
         rgb = self.reflectances(z, samples) @ self.sensor.matrix.T
         return _lab(xp.clip(rgb, 0, 1), self.sensor)
 
-    def residuals(self, z: Any, samples: PaintSamples, noise: float) -> Any:
-        """Return the differences (m,) to the measured values in units of noise."""
+    def differences(self, z: Any, samples: PaintSamples) -> Any:
+        """Return predicted less measured reflectances, or L*, a* and b*."""
         values = samples.measured.values
         if isinstance(samples.measured, MeasuredSpectra):
-            spread = NOISE[0] + NOISE[1] * values
-            difference = (self.reflectances(z, samples) - values) / spread
-        else:
-            target = _lab(values, self.sensor)
-            difference = (self.colours(z, samples) - target) / COLOUR_NOISE
-        return (difference / noise).ravel()
+            return self.reflectances(z, samples) - values
+        return self.colours(z, samples) - _lab(values, self.sensor)
 
 
 def fit_paints(
@@ -209,36 +224,62 @@ def _fit(
 ) -> PaintFit:
     import jax
 
-    noise = 1.0
+    values = samples.measured.values
+    noise = _smallest_noise(samples)
     z = np.zeros(model.count)
     solve = _solver(samples, model)
     for done in range(ROUNDS):
+        spread = noise.spread(values)
         with jax.enable_x64(True):
-            optimum, derivative = solve(z, noise)
+            optimum, derivative = solve(z, spread)
         z = np.asarray(optimum)
         jacobian = np.asarray(derivative)
-        residuals = np.asarray(model.residuals(z, samples, noise))
+        differences = np.asarray(model.differences(z, samples))
         precision = jacobian.T @ jacobian + np.eye(model.count)
         covariance: Array = np.linalg.inv(precision).astype(float)
         progress(Progress("paints", done + 1, ROUNDS))
-        # The trace counts the variables that the samples, not the prior, determine.
+        # The trace counts the variables that the prior, not the samples, determines.
         determined = model.count - np.trace(covariance)
-        freedom = max(len(residuals) - determined, 1.0)
-        excess = float(np.sqrt(residuals @ residuals / freedom))
-        if excess <= 1.1 or done + 1 == ROUNDS:
+        freedom = max(1 - determined / differences.size, LEAST_FREEDOM)
+        squares = differences**2 / freedom
+        last, noise = noise, _estimate_noise(samples, squares)
+        excess = np.median(noise.spread(values) / last.spread(values))
+        if excess <= STEADY:
             break
-        noise *= excess
     paints = _paints(samples, model, z, covariance)
     predicted = np.asarray(model.colours(z, samples))
     delta_e = delta_e_2000(predicted, _measured_lab(samples, model))
     return PaintFit(paints, samples, delta_e, noise, z, covariance, model)
 
 
+def _smallest_noise(samples: PaintSamples) -> Noise:
+    if isinstance(samples.measured, MeasuredSpectra):
+        return SPECTRA_NOISE
+    return COLOUR_NOISE
+
+
+def _estimate_noise(samples: PaintSamples, squares: Array) -> Noise:
+    """Return the noise whose variances, a constant and a part relative to the value,
+    fit the squares of the differences best.
+    """
+    from scipy.optimize import nnls
+
+    smallest = _smallest_noise(samples)
+    values = samples.measured.values
+    columns = [np.ones(squares.size)]
+    if smallest.relative:
+        columns.append(values.ravel() ** 2)
+    variances, _ = nnls(np.stack(columns, axis=1), squares.ravel())
+    absolute, relative, *_ = (*np.sqrt(variances).tolist(), 0.0)
+    return Noise(max(absolute, smallest.absolute), max(relative, smallest.relative))
+
+
 def _solver(
     samples: PaintSamples, model: FitModel
-) -> Callable[[Array, float], tuple[Array, Array]]:
-    """Return a compiled function from the start and the noise to the variables (d,) of
-    the largest posterior, and the Jacobian (m, d) of the residuals there.
+) -> Callable[[Array, Array], tuple[Array, Array]]:
+    """Return a compiled function from the start and the spread of the measured values
+    to the variables (d,) of the largest posterior, and the Jacobian (m, d) of the
+    residuals there.
     """
     import jax
     import lineax
@@ -248,18 +289,19 @@ def _solver(
         PRECISION, PRECISION, linear_solver=lineax.Normal(lineax.Cholesky())
     )
 
-    def residuals(z: Any, noise: Any) -> Any:
-        return model.residuals(z, samples, noise), z
+    def residuals(z: Any, spread: Any) -> Any:
+        return (model.differences(z, samples) / spread).ravel()
+
+    def with_prior(z: Any, spread: Any) -> Any:
+        return residuals(z, spread), z
 
     @jax.jit
-    def solve(start: Any, noise: Any) -> Any:
+    def solve(start: Any, spread: Any) -> Any:
         solution = optimistix.least_squares(
-            residuals, solver, start, noise, max_steps=MAX_STEPS, throw=False
+            with_prior, solver, start, spread, max_steps=MAX_STEPS, throw=False
         )
         optimum = solution.value
-        return optimum, jax.jacfwd(lambda z: model.residuals(z, samples, noise))(
-            optimum
-        )
+        return optimum, jax.jacfwd(residuals)(optimum, spread)
 
     return solve
 

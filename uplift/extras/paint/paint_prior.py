@@ -25,7 +25,7 @@ SCATTERING_SPREAD = 0.7
 """Standard deviation of the smooth difference of log S."""
 RATIO_SPREAD = 1.5
 """The same of log K/S."""
-ROUGHNESS = 0.2
+ROUGHNESS = 0.5
 """Standard deviation of differences that are independent at each wavelength."""
 STRENGTH_SPREAD = 1.0
 """Standard deviation of the logarithm of the factor of S of a paint."""
