@@ -66,6 +66,7 @@ demo: $(INSTALLED)
 	cp docs/demo.html $(OUT)/demo/index.html
 	cp docs/chart/chart.html $(OUT)/demo/chart.html
 	cp docs/passes/room.html $(OUT)/demo/passes.html
+	cp docs/mixing/paints.html $(OUT)/demo/paints.html
 	$(BIN)/uplift build --atlas macbeth -o $(OUT)/demo/macbeth-32.uplift --force
 	$(BIN)/uplift relight -o $(OUT)/demo/relight.html --force
 	$(BIN)/uplift export $(OUT)/demo/macbeth-32.uplift -o $(OUT)/demo/live.html --force

@@ -28,6 +28,7 @@ from uplift.extras.paint import (
     fit_paints,
     match,
 )
+from uplift.extras.paint.paint_page import write_page
 from uplift.extras.paint.paint_program import few_samples, write_program
 from uplift.extras.paint.paint_samples import MeasuredColours, MeasuredSpectra
 
@@ -264,7 +265,8 @@ def _c_rate(paints: Paints) -> Row:
 
 
 def draw(paints: Paints) -> None:
-    """Draw ramps of paints, and films over a card of white and black."""
+    """Draw ramps of paints, and films on white and on black; write their page."""
+    write_page(paints, DOCS / "mixing" / "paints.html", force=True)
     sensor = observer.sensor(wavelengths=RANGE)
     ramp = np.linspace(0, 1, STEPS)[:, None]
     own = np.eye(len(paints))

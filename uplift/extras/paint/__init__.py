@@ -1,7 +1,7 @@
 """Mixtures of paints, dyes, filters and lights in the spectral domain, measured paints
 with their recipes, and RGB heuristics for comparison.
 
-Measured paints are fitted by `fit_paints` (docs/guides/paint.md). The theories are
+Measured paints are fitted by `fit_paints` (docs/guides/paints.md). The theories are
 those of K. Fishkin, *Applying Color Science to Computer Graphics*, Berkeley 1983, whose
 equation numbers the docstrings quote. Spectra have shape (..., N), amounts (..., n),
 and the n spectra of a mixture (..., n, N). Leading axes broadcast. docs/mixing.md has
