@@ -15,7 +15,7 @@ import uplift
 from benchmarks import DOCS, ROOT, Row, record
 from benchmarks.invented_paints import NM, invented_paints
 from benchmarks.mixing import acrylics
-from uplift.colorimetry import delta_e_rgb, observer
+from uplift.colorimetry import Sensor, delta_e_rgb, observer
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.pages.plots import Strip, plot_strips
@@ -108,7 +108,7 @@ def recovery() -> Iterator[Row]:
             }
 
 
-def _differences(paints: Paints, truth: Paints, parts: Array, sensor: object) -> Array:
+def _differences(paints: Paints, truth: Paints, parts: Array, sensor: Sensor) -> Array:
     colours = [
         np.clip(sensor.rgb(known.reflectance(parts)), 0, 1) for known in (paints, truth)
     ]

@@ -265,13 +265,11 @@ def _estimate_noise(samples: PaintSamples, squares: Array) -> Noise:
     from scipy.optimize import nnls
 
     smallest = _smallest_noise(samples)
-    values = samples.measured.values
-    columns = [np.ones(squares.size)]
-    if smallest.relative:
-        columns.append(values.ravel() ** 2)
-    variances, _ = nnls(np.stack(columns, axis=1), squares.ravel())
-    absolute, relative, *_ = (*np.sqrt(variances).tolist(), 0.0)
-    return Noise(max(absolute, smallest.absolute), max(relative, smallest.relative))
+    constant = np.ones(squares.size)
+    relative = samples.measured.values.ravel() ** 2 * (smallest.relative > 0)
+    variances, _ = nnls(np.stack([constant, relative], axis=1), squares.ravel())
+    absolute, proportional = np.sqrt(variances).tolist()
+    return Noise(max(absolute, smallest.absolute), max(proportional, smallest.relative))
 
 
 def _solver(
