@@ -18,10 +18,9 @@ static void uplift_choose(uplift_cube *cube)
     cube->entry_count = content->is_sigmoid ? 3 : UPLIFT_MOST_COUNT;
 }
 
-uplift_cube *uplift_open(const char *path, int *error)
+/* Read the file of a cube unless an error came before. Return the cube, or release it and return NULL. */
+static uplift_cube *uplift_read(uplift_cube *cube, int result, int *error)
 {
-    uplift_cube *cube = UPLIFT_CAST(uplift_cube *, uplift_allocate(1, sizeof *cube));
-    int result = cube ? uplift_acquire(path, &cube->content.file) : UPLIFT_NO_MEMORY;
     if (result == UPLIFT_OK) result = uplift_read_header(&cube->content);
     if (result == UPLIFT_OK) result = uplift_read_metadata(&cube->content);
     if (result == UPLIFT_OK) result = uplift_check_digest(&cube->content);
@@ -35,10 +34,31 @@ uplift_cube *uplift_open(const char *path, int *error)
     return NULL;
 }
 
+#ifndef UPLIFT_NO_FILES
+uplift_cube *uplift_open(const char *path, int *error)
+{
+    uplift_cube *cube = UPLIFT_CAST(uplift_cube *, uplift_allocate(1, sizeof *cube));
+    int result = cube ? uplift_acquire(path, &cube->content.file) : UPLIFT_NO_MEMORY;
+    return uplift_read(cube, result, error);
+}
+#endif
+
+uplift_cube *uplift_open_memory(const void *bytes, size_t size, int *error)
+{
+    uplift_cube *cube = UPLIFT_CAST(uplift_cube *, uplift_allocate(1, sizeof *cube));
+    if (cube) {
+        cube->content.file.bytes = UPLIFT_CAST(const unsigned char *, bytes);
+        cube->content.file.size = size;
+    }
+    return uplift_read(cube, cube ? UPLIFT_OK : UPLIFT_NO_MEMORY, error);
+}
+
 void uplift_close(uplift_cube *cube)
 {
     if (!cube) return;
+#ifndef UPLIFT_NO_FILES
     uplift_release(&cube->content.file);
+#endif
     free(cube->content.text);
     free(cube->numbers);
     free(cube->points);
