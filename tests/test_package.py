@@ -81,7 +81,7 @@ def test_data_and_licence_are_in_it_and_nothing_else(wheel, repository):
     assert set(filter(is_data, names)) == set(filter(is_data, library | atlases))
     suffixes = (
         ".c .cpp .css .csv .cxf .cuh .exr .glsl .h .hlsl .j2 .js .npz .png .spd .ti3 "
-        ".toml .typed .uplift .xlsx"
+        ".toml .typed .uplift .wasm .xlsx"
     )
     assert {name.suffix for name in library} == {".py", *suffixes.split()}
     assert {name.suffix for name in atlases} == {".md", ".py", ".txt"}

@@ -1,5 +1,5 @@
 
-/* Use the functions for the number of coefficients of a cube. */
+/* Use the first functions that can evaluate a cube: others would be slower. */
 static void uplift_choose(uplift_cube *cube)
 {
     static const struct {
@@ -7,11 +7,11 @@ static void uplift_choose(uplift_cube *cube)
         const uplift_kernel *functions;
     } kernels[] = {${kernels}};
     const uplift_content *content = &cube->content;
-    const int is_sparse = uplift_has(content, UPLIFT_SPARSE), is_inexact = cube->is_inexact || is_sparse;
+    const int is_sparse = uplift_has(content, UPLIFT_SPARSE);
     int k = 0;
     while (UPLIFT_CAST(unsigned, kernels[k].count) < content->count || kernels[k].is_sigmoid != content->is_sigmoid
-        || kernels[k].is_warped != cube->is_warped || kernels[k].is_inexact != is_inexact
-        || kernels[k].is_sparse != is_sparse) k += 1;
+        || kernels[k].is_warped != cube->is_warped || kernels[k].is_inexact < cube->is_inexact
+        || kernels[k].is_sparse < is_sparse) k += 1;
     cube->kernel = kernels[k].functions;
     cube->tag = kernels[k].count;
     cube->stride = kernels[k].count / 4 * 4 + 4;
