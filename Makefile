@@ -10,7 +10,7 @@ PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 RGB2SPEC := $(OUT)/rgb2spec
 
-.PHONY: build lint test bare basic site notebooks demo measure peers library nightly munsell docs atlases cubes lock names release clean pictures axe examples
+.PHONY: build lint test bare basic site notebooks demo measure peers library module nightly munsell docs atlases cubes lock names release clean pictures axe examples
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -92,6 +92,10 @@ $(RGB2SPEC):
 # The library of the learnt prior, uplift/fit/library.npz, from atlases/ and colour-science.
 library: $(INSTALLED)
 	$(BIN)/python -m tools.ship_library
+
+# The code of uplift.js, for which clang and wasm-ld (apt install clang lld) compile uplift.h; commit the result.
+module: $(INSTALLED)
+	$(BIN)/python -m tools.compile_module
 
 # Malformed input, ten thousand of each kind, and a thousand commands of each class, odd builds, and images: takes minutes.
 nightly: $(INSTALLED)

@@ -1,7 +1,9 @@
-"""Rates and differences of uplift.h, which reads cube files at run time, for
-docs/integrate.md.
+"""Rates, sizes and differences of uplift.h and uplift.js, which read cube files at run
+time, for docs/integrate.md.
 """
 
+import base64
+import shutil
 import subprocess
 import tempfile
 from pathlib import Path
@@ -11,7 +13,9 @@ import numpy as np
 from benchmarks import CUBES, ROOT, Row, record
 from uplift.common.arrays import Array
 from uplift.extras.export import write_program
+from uplift.extras.export.module import compose_module, write_module
 from uplift.extras.export.runtime import HEADER, compose_header, write_header
+from uplift.extras.report import live_page
 from uplift.lab.timing import environment
 from uplift.lookup import Cube, load
 from uplift.lookup.cube import PACKAGED
@@ -28,27 +32,45 @@ WIDTHS = {"spectrum": 16, "ray": 4}
 
 def main() -> None:
     """Measure stored and packaged cubes, and write docs/data/header.json."""
+    sizes = {
+        "header": len(compose_header()),
+        "module": len(compose_module()),
+        "page": measure_page(PACKAGED["srgb"]),
+    }
     paths = [*sorted(CUBES.glob("*.uplift")), *PACKAGED.values()]
     rows = [measure_cube(path) for path in paths]
-    size = len(compose_header())
-    record("header", environment=environment(), size=size, cubes=rows)
+    record("header", environment=environment(), sizes=sizes, cubes=rows)
+
+
+def measure_page(path: Path) -> Row:
+    """Return the bytes of the live page of a cube, and of uplift.js and the file of the
+    cube, which it could contain.
+    """
+    page = live_page.page(load(path).data)
+    file = base64.b64encode(path.read_bytes())
+    added = len(compose_module()) + len(file)
+    return {"cube": path.stem, "size": len(page.encode()), "added": added}
 
 
 def measure_cube(path: Path) -> Row:
-    """Return the nanoseconds of a lookup by both headers, their ratio, and the largest
-    difference of uplift.h from Python.
+    """Return the nanoseconds of a lookup by both headers and by uplift.js, and the
+    largest differences of uplift.h and uplift.js from Python.
     """
     cube = load(path)
     rgb = np.random.default_rng(1).random((COLOURS, 3)).astype(np.float32)
     row: Row = {"cube": path.stem}
     for kind, at in (("spectrum", cube.wavelengths), ("ray", RAY)):
         found, compiled, runtime = run(path, cube, rgb, at, WIDTHS[kind])
+        module_found, module = run_module(path, rgb, at)
+        exact = rgb.astype(float)
         row[kind] = {
             "compiled": compiled,
             "runtime": runtime,
             "ratio": runtime / compiled,
+            "difference": largest_difference(cube, exact, at, found),
+            "module": module,
+            "module_difference": largest_difference(cube, exact, at, module_found),
         }
-        row[kind]["difference"] = largest_difference(cube, rgb.astype(float), at, found)
     return row
 
 
@@ -74,13 +96,33 @@ def run(
         folder = Path(name)
         write_program(cube.data, folder / "cube.h")
         write_header(folder / HEADER)
-        rgb.tofile(folder / "rgb")
-        at.astype(np.float32).tofile(folder / "at")
         widths = (f"-DUPLIFT_WIDTH={width}", f"-DCUBE_WIDTH={width}")
         compiler = ["cc", *FLAGS, *widths, "-I.", str(source), "-o", "rates", "-lm"]
         subprocess.run(compiler, cwd=folder, check=True)
-        command = ["./rates", str(path), "rgb", "at", str(RUNS), "spectra"]
-        printed = subprocess.check_output(command, cwd=folder, text=True)
-        spectra = np.fromfile(folder / "spectra", np.float32).astype(float)
-    compiled, runtime = (float(word) / len(rgb) * 1e9 for word in printed.split())
-    return spectra.reshape(len(rgb), -1), compiled, runtime
+        found, (compiled, runtime) = answer(["./rates"], folder, path, rgb, at)
+    return found, compiled, runtime
+
+
+def run_module(path: Path, rgb: Array, at: Array) -> tuple[Array, float]:
+    """Return reflectances (n, N) by uplift.js in node, and nanoseconds of a lookup."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        write_module(folder / "uplift.mjs")
+        shutil.copy(ROOT / "benchmarks" / "header.mjs", folder)
+        found, (module,) = answer(["node", "header.mjs"], folder, path, rgb, at)
+    return found, module
+
+
+def answer(
+    command: list[str], folder: Path, path: Path, rgb: Array, at: Array
+) -> tuple[Array, list[float]]:
+    """Run a program in a folder: return the reflectances (n, N) that it writes, and the
+    nanoseconds of a lookup of the seconds that it prints.
+    """
+    rgb.tofile(folder / "rgb")
+    at.astype(np.float32).tofile(folder / "at")
+    words = [*command, str(path), "rgb", "at", str(RUNS), "spectra"]
+    printed = subprocess.check_output(words, cwd=folder, text=True)
+    spectra = np.fromfile(folder / "spectra", np.float32).astype(float)
+    rates = [float(word) / len(rgb) * 1e9 for word in printed.split()]
+    return spectra.reshape(len(rgb), -1), rates

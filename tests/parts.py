@@ -22,6 +22,7 @@ PATIENCE = 60.0
 EMPTY_KERNEL = "__global__ void nothing() {}\n"
 EMPTY_PROGRAM = "int main(void) { return 0; }\n"
 SANITIZED = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+STREAMS = "process.exitCode = globalThis.DecompressionStream ? 0 : 1;"
 EMPTY_SHADER = "#version 430\nlayout(local_size_x = 1) in;\nvoid main() {}\n"
 
 
@@ -129,6 +130,21 @@ _sanitized = partial(
     "./main",
 )
 SANITIZERS = Part("AddressSanitizer and UBSan", "apt install gcc", _sanitized)
+NODE = Part(
+    "node 18 or later",
+    "apt install nodejs",
+    partial(_compile, "main.mjs", STREAMS, "node main.mjs"),
+)
+WASM = Part(
+    "clang and lld for WebAssembly",
+    "apt install clang lld",
+    partial(
+        _compile,
+        "main.c",
+        EMPTY_PROGRAM,
+        "clang --target=wasm32 -nostdlib -Wl,--no-entry main.c -o main.wasm",
+    ),
+)
 CHROMIUM = Part("Chromium", "apt install chromium", _open_tab)
 VULKAN = Part(
     "a Vulkan driver",

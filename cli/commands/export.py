@@ -22,8 +22,17 @@ WIDTH = 6
 
 PAINTS = ".toml"
 """Suffix of files of paints."""
-SUFFIXES = (".h", ".hpp", ".hh")
-"""Suffixes of the header that reads cube files."""
+HEADER = ("C and C++", "uplift.extras.export.runtime:write_header")
+MODULE = ("JavaScript", "uplift.extras.export.module:write_module")
+READERS = {
+    ".h": HEADER,
+    ".hpp": HEADER,
+    ".hh": HEADER,
+    ".js": MODULE,
+    ".mjs": MODULE,
+}
+"""Languages of the files that read cubes, and the functions that write them, by suffix.
+"""
 
 
 def _summary() -> str:
@@ -53,10 +62,10 @@ HELP = """Write a cube in a format that other tools read.
 
     Names in a program start with the file's. A C header, also valid C++, contains the
     table, or loads it from a file of numbers. Programs in other languages come with a
-    second file, which they explain. --runtime writes uplift.h instead, a C header that
-    reads cube files when a program runs. The tables of coeff, pbrt and luisa store
-    sigmoid spectra of the cube's colours: three coefficients cannot represent the
-    atlas.
+    second file, which they explain. --runtime writes what reads cube files when a
+    program runs instead: uplift.h, a C header, or uplift.js, a module for browsers and
+    node. The tables of coeff, pbrt and luisa store sigmoid spectra of the cube's
+    colours: three coefficients cannot represent the atlas.
 
     \b
     Examples:
@@ -73,6 +82,7 @@ HELP = """Write a cube in a format that other tools read.
       uplift export macbeth-32.uplift -o paint.h --format mixer-c
       uplift export macbeth-32.uplift --format csv
       uplift export --runtime uplift.h
+      uplift export --runtime uplift.js
       uplift export paints.toml -o mixer.glsl
       uplift export paints.toml --paint 'deep blue' --paint 'warm red' -o two.cube
     """
@@ -122,7 +132,7 @@ HELP = """Write a cube in a format that other tools read.
 @click.option(
     "--runtime",
     is_flag=True,
-    help="Write uplift.h, which reads cube files, instead of a cube.",
+    help="Write uplift.h or uplift.js, which read cube files, instead of a cube.",
 )
 @options.repeatable(
     "--paint", "names", "Paint of a file of paints", "all", metavar="NAME"
@@ -188,19 +198,20 @@ def command(
 
 
 def _write_runtime(name: str | None, output: str | None, *, force: bool) -> None:
-    """Write the header that reads cube files, to a name after the option or to the
-    output.
-    """
+    """Write what reads cube files, to a name after the option or to the output."""
     if name is not None and output is not None:
         raise click.UsageError("--runtime writes one file: give it once.")
     from uplift.common.files import check_output
-    from uplift.extras.export.runtime import HEADER, write_header
 
-    path = check_output(output or name or HEADER, force=force)
-    if path.suffix not in SUFFIXES:
-        raise click.UsageError(f"--runtime writes a header: end it in .h, not {path}.")
-    write_header(path, force=force)
-    say(f"{path}: reads cube files in C and C++, {path.stat().st_size / 1e3:.0f} kB")
+    path = check_output(output or name or "uplift.h", force=force)
+    if path.suffix not in READERS:
+        raise click.UsageError(
+            f"--runtime writes C or JavaScript: end the file in .h or .js, not {path}."
+        )
+    language, writer = READERS[path.suffix]
+    import_part(writer)(path, force=force)
+    size = path.stat().st_size / 1e3
+    say(f"{path}: reads cube files in {language}, {size:.0f} kB")
 
 
 def _export_paints(

@@ -101,8 +101,10 @@ def test_wrong_usage(misuse, home, cube, arguments, option):
     assert os.listdir(home) == [cube]
 
 
-def test_the_header_that_reads_cube_files(run, refuse, misuse, home, cube):
+def test_what_reads_cube_files(run, refuse, misuse, home, cube):
     assert run("export --runtime uplift.h").stdout.startswith("uplift.h: ")
+    assert run("export --runtime uplift.js").stdout.startswith("uplift.js: ")
+    assert "export async function open" in (home / "uplift.js").read_text()
     run("export --runtime -o other.h")
     assert (home / "uplift.h").read_bytes() == (home / "other.h").read_bytes()
     assert refuse("export --runtime").code == "file-exists"

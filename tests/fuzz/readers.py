@@ -2,6 +2,7 @@
 is accepted.
 """
 
+import copy
 import csv
 import dataclasses
 import functools
@@ -395,7 +396,7 @@ def _change_metadata(
     nested one.
     """
     place, key = choose(random, list(_places(metadata)))
-    value = choose(random, VALUES)
+    value = copy.deepcopy(choose(random, VALUES))
     draw = random.random()
     depth = choose(random, (1, 2, 3, 20, 33, 300)) if random.random() < 0.2 else 0
     for _ in range(depth):

@@ -1,14 +1,24 @@
-"""A short campaign of malformed cube files for ``uplift.h``."""
+"""Short campaigns of malformed cube files for ``uplift.h`` and ``uplift.js``."""
 
 from tests.fuzz import header
-from tests.parts import CC, SANITIZERS, need
+from tests.parts import CC, NODE, SANITIZERS, need
 
 
-def test_malformed_files_are_refused_or_answered(tmp_path, monkeypatch):
-    need(CC, SANITIZERS)
-    monkeypatch.setattr(header, "KEPT", tmp_path / "kept")
-    tally = header.run(header.compile_reader(tmp_path), range(300), tmp_path)
+def check(program, folder, monkeypatch):
+    """Read mutants: files are refused or answered."""
+    monkeypatch.setattr(header, "KEPT", folder / "kept")
+    tally = header.run(program, range(300), folder)
     assert not tally["crash"]
     assert not tally[header.NOT_A_REFLECTANCE]
     assert tally["0"] > 30
     assert len(tally) > 3
+
+
+def test_the_header_reads_malformed_files(tmp_path, monkeypatch):
+    need(CC, SANITIZERS)
+    check(header.compile_reader(tmp_path), tmp_path, monkeypatch)
+
+
+def test_the_module_reads_malformed_files(tmp_path, monkeypatch):
+    need(NODE)
+    check(header.write_reader(tmp_path), tmp_path, monkeypatch)

@@ -2,6 +2,7 @@
 
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from tests.parts import CC, SANITIZED, SANITIZERS, need
+from uplift.common.arrays import StrPath
 from uplift.extras.export.runtime import HEADER, write_header
 from uplift.lookup import Cube
 
@@ -19,10 +21,23 @@ MAIN = r"""
 #define UPLIFT_IMPLEMENTATION
 #include "uplift.h"
 
+static uplift_cube *open_file(const char *path, int *error)
+{
+#ifdef UPLIFT_NO_FILES
+    static unsigned char bytes[1 << 22];
+    FILE *file = fopen(path, "rb");
+    size_t length = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+    if (file) fclose(file);
+    return uplift_open_memory(bytes, length, error);
+#else
+    return uplift_open(path, error);
+#endif
+}
+
 int main(int count, char **words)
 {
     int error, size = atoi(words[2]), n = atoi(words[3]), results[4];
-    uplift_cube *cube = uplift_open(words[1], &error);
+    uplift_cube *cube = open_file(words[1], &error);
     if (!cube || count != 4) return error;
     size_t width = (size_t)size, colours = (size_t)n;
     float *at = (float *)malloc(width * sizeof(float));
@@ -55,7 +70,7 @@ FOLDER = tempfile.TemporaryDirectory(prefix="uplift-header-")
 
 @dataclass(frozen=True)
 class Answers:
-    """What the header returns for n colours at N wavelengths."""
+    """What a reader returns for n colours at N wavelengths."""
 
     results: np.ndarray
     """(n, 4) of reflectances, standard errors, error bounds, coefficients."""
@@ -71,11 +86,21 @@ def answers(cube: Cube, rgb: np.ndarray, at: np.ndarray, *options: str) -> Answe
     """Save a cube and read it by the header, compiled with options instead of the
     sanitizers.
     """
+    return run([program(*options)], cube, rgb, at)
+
+
+def run(
+    command: Sequence[StrPath], cube: Cube, rgb: np.ndarray, at: np.ndarray
+) -> Answers:
+    """Return the answers of a program: its arguments are a file and the numbers of
+    wavelengths and of colours, which it reads.
+    """
     path = Path(FOLDER.name, "cube.uplift")
     cube.save(path, force=True)
     given = np.concatenate([at, rgb.ravel()]).astype(np.float32).tobytes()
-    command = [program(*options), path, str(len(at)), str(len(rgb))]
-    done = subprocess.run(command, input=given, capture_output=True, check=True)
+    sizes = (str(len(at)), str(len(rgb)))
+    words = [*command, path, *sizes]
+    done = subprocess.run(words, input=given, capture_output=True, check=True)
     fields = [
         ("results", np.int32, 4),
         ("errors", np.float32, 2),

@@ -9,8 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.helpers import output_of
-from tests.parts import CC, CXX, MITSUBA, SANITIZED, SANITIZERS, need
+from tests.parts import CC, CXX, MITSUBA, NODE, SANITIZED, SANITIZERS, need
 from uplift.extras.export import write_program
+from uplift.extras.export.module import write_module
 from uplift.extras.export.runtime import write_header
 
 PAGE = (Path(__file__).parents[3] / "docs" / "integrate.md").read_text("utf-8")
@@ -67,6 +68,16 @@ def test_cube_files_at_run_time(folder, small_cube):
     (folder / "main.c").write_text(code("Cube files at run time", "c"))
     output_of("cc", "-O1", *SANITIZED, "main.c", "-o", "main", "-lm")
     wavelengths, *found = np.loadtxt(output_of("./main").splitlines()).T
+    expected = small_cube.reflectance(COLOURS, wavelengths, mode="spectra")
+    assert_allclose(found, expected, atol=2e-5)
+
+
+def test_javascript(folder, small_cube):
+    need(NODE)
+    write_module(folder / "uplift.js")
+    (folder / "package.json").write_text('{"type": "module"}')
+    (folder / "main.js").write_text(code("JavaScript", "js"))
+    wavelengths, *found = np.loadtxt(output_of("node", "main.js").splitlines()).T
     expected = small_cube.reflectance(COLOURS, wavelengths, mode="spectra")
     assert_allclose(found, expected, atol=2e-5)
 

@@ -1,8 +1,9 @@
-"""``uplift.h`` reads every cube as Python does, refuses other files, and is composed of
-the source of exported programs.
+"""``uplift.h`` and ``uplift.js`` read every cube as Python does and refuse other files;
+the header is composed of the source of exported programs.
 """
 
 import subprocess
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +13,8 @@ from numpy.testing import assert_allclose
 
 import uplift
 from tests.cube.cube_files import forge
-from tests.extras.export.run_header import OK, answers, open_result
+from tests.extras.export.run_header import OK, Answers, answers, open_result
+from tests.extras.export.run_module import module_answers, module_result
 from tests.extras.export.run_program import STRICT
 from tests.extras.export.test_programs import colours
 from tests.extras.looks.test_looks import LOOKS
@@ -65,11 +67,16 @@ def of_scene(cube: Cube, count: int) -> Cube:
     return Cube(replace(data, points=data.points.restricted_to(points)))
 
 
-def check(cube: Cube, within: float = WITHIN, options: tuple[str, ...] = ()) -> None:
+def check(
+    cube: Cube,
+    read: Callable[..., Answers] = answers,
+    options: tuple[str, ...] = (),
+    within: float = WITHIN,
+) -> None:
     """Compare the answers to a thousand colours with those of Python."""
     data = cube.data
     rgb = colours(data)[::10]
-    found = answers(cube, rgb, AT, *options)
+    found = read(cube, rgb, AT, *options)
     covered = cube.covers(rgb)
     assert (found.results[~covered] == NOT_IN_SCENE).sum(axis=1).min(initial=4) >= 3
     assert not found.reflectances[~covered].any()
@@ -110,11 +117,22 @@ def test_it_is_written_and_not_over_another_file(tmp_path):
         write_header(path)
 
 
-def test_stored_cubes(small_cube, small_sigmoid_cube, sigmoid_cube):
-    for cube in (small_cube, small_sigmoid_cube, sigmoid_cube, uplift.load("acescg")):
-        check(cube)
+both_read = pytest.mark.parametrize(
+    "read", [answers, module_answers], ids=["uplift.h", "uplift.js"]
+)
+both_open = pytest.mark.parametrize(
+    "open_file", [open_result, module_result], ids=["uplift.h", "uplift.js"]
+)
 
 
+@both_read
+def test_stored_cubes(small_cube, small_sigmoid_cube, sigmoid_cube, read):
+    packaged = [uplift.load(), uplift.load("acescg")]
+    for cube in (small_cube, small_sigmoid_cube, sigmoid_cube, *packaged):
+        check(cube, read)
+
+
+@both_read
 @pytest.mark.parametrize(
     "kind",
     [
@@ -128,12 +146,17 @@ def test_stored_cubes(small_cube, small_sigmoid_cube, sigmoid_cube):
         "scene",
     ],
 )
-def test_rare_cubes(rare, kind):
-    check(rare[kind], within=2 * WITHIN)
+def test_rare_cubes(rare, kind, read):
+    check(rare[kind], read, within=2 * WITHIN)
 
 
-def test_files_that_are_not_mapped_and_few_wavelengths_at_a_time(small_cube):
-    check(small_cube, options=("-DUPLIFT_NO_MMAP", "-DUPLIFT_WIDTH=4"))
+@pytest.mark.parametrize(
+    "options",
+    [("-DUPLIFT_NO_MMAP", "-DUPLIFT_WIDTH=4"), ("-DUPLIFT_NO_FILES",)],
+    ids=["read", "in memory"],
+)
+def test_files_that_are_not_mapped(small_cube, options):
+    check(small_cube, options=options)
 
 
 @pytest.mark.parametrize(
@@ -189,12 +212,14 @@ def no_spectrum(tensors, metadata):
         (no_spectrum, INVALID),
     ],
 )
-def test_forged_files_are_refused(small_cube, tmp_path, change, result):
+@both_open
+def test_forged_files_are_refused(small_cube, tmp_path, change, result, open_file):
     path = forge(small_cube.data, tmp_path / "a.uplift", change)
-    assert open_result(path) == result
+    assert open_file(path) == result
 
 
-def test_damaged_files_are_refused(repository, tmp_path):
+@both_open
+def test_damaged_files_are_refused(repository, tmp_path, open_file):
     content = (repository / "cubes" / "moments-8.uplift").read_bytes()
     path = tmp_path / "a.uplift"
     flipped = content[:-9] + bytes([content[-9] ^ 1]) + content[-8:]
@@ -207,7 +232,10 @@ def test_damaged_files_are_refused(repository, tmp_path):
         (b"{}" * 100, 3),
     ):
         path.write_bytes(damaged)
-        assert open_result(path) == result
+        assert open_file(path) == result
+
+
+def test_what_is_no_file_is_refused(tmp_path):
     assert open_result(Path(tmp_path, "missing")) == 1
     assert open_result(tmp_path) == 1
 

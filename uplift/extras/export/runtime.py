@@ -5,7 +5,7 @@ number of coefficients, and of the reader of files in ``source/runtime/``.
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
@@ -82,7 +82,9 @@ SPARSE = [
     for kernel in SIGMOIDS + MOMENTS
     if kernel.is_inexact and kernel.count in SPARSE_COUNTS
 ]
-"""Those of cubes of a scene need not be as fast, and also answer exact cells."""
+"""Those of cubes of a scene need not be as fast, and also answer exact cells: they are
+enough for every cube.
+"""
 KERNELS = SIGMOIDS + MOMENTS + SPARSE
 READER = ("file.c", "content.c", "table.c", "build.c")
 """Parts of the reader in reading order."""
@@ -99,8 +101,8 @@ def write_header(path: StrPath, *, force: bool = False) -> None:
     write_text(compose_header(), Path(path), force=force)
 
 
-def compose_header() -> str:
-    """Compose the header of its parts."""
+def compose_header(kernels: Sequence[Kernel] = KERNELS) -> str:
+    """Compose the header of its parts, with the lookups of some kernels."""
     reader = "".join(read_source(f"runtime/{name}") for name in READER)
     text = (
         read_source("runtime/head.h")
@@ -109,8 +111,8 @@ def compose_header() -> str:
         + read_source("loops.c")
         + read_source("host.c")
         + _kernel_macros()
-        + "".join(_inclusions())
-        + Template(read_source("runtime/calls.c")).substitute(_call_words())
+        + "".join(_inclusions(kernels))
+        + Template(read_source("runtime/calls.c")).substitute(_call_words(kernels))
         + "\n#ifdef UP_KERNEL\n\n"
         + _kernel()
         + "#endif\n"
@@ -144,9 +146,9 @@ def _reader_words() -> dict[str, Any]:
     }
 
 
-def _call_words() -> dict[str, Any]:
-    kernels = []
-    for kernel in KERNELS:
+def _call_words(kernels: Sequence[Kernel]) -> dict[str, Any]:
+    rows = []
+    for kernel in kernels:
         kinds = (
             kernel.is_sigmoid,
             kernel.is_warped,
@@ -155,8 +157,8 @@ def _call_words() -> dict[str, Any]:
         )
         numbers = [kernel.count, *map(int, kinds)]
         text = ", ".join(map(str, numbers))
-        kernels.append(f"\n        {{{text}, &{kernel.name}_functions}}")
-    return {"kernels": ",".join(kernels), "samples": SAMPLES}
+        rows.append(f"\n        {{{text}, &{kernel.name}_functions}}")
+    return {"kernels": ",".join(rows), "samples": SAMPLES}
 
 
 def _kernel_macros() -> str:
@@ -168,9 +170,9 @@ def _kernel_macros() -> str:
     )
 
 
-def _inclusions() -> Iterator[str]:
+def _inclusions(kernels: Sequence[Kernel]) -> Iterator[str]:
     """Yield the lines by which the header includes itself for each kernel."""
-    for kernel in KERNELS:
+    for kernel in kernels:
         lines = [f"#define UP_{key} {value}" for key, value in kernel.constants.items()]
         yield "\n".join(["", *lines, "#include UPLIFT_FILE", ""])
 

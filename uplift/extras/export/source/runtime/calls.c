@@ -1,5 +1,5 @@
 
-/* Use the functions for the number of coefficients of a cube. */
+/* Use the first functions that can evaluate a cube: others would be slower. */
 static void uplift_choose(uplift_cube *cube)
 {
     static const struct {
@@ -7,21 +7,20 @@ static void uplift_choose(uplift_cube *cube)
         const uplift_kernel *functions;
     } kernels[] = {${kernels}};
     const uplift_content *content = &cube->content;
-    const int is_sparse = uplift_has(content, UPLIFT_SPARSE), is_inexact = cube->is_inexact || is_sparse;
+    const int is_sparse = uplift_has(content, UPLIFT_SPARSE);
     int k = 0;
     while (UPLIFT_CAST(unsigned, kernels[k].count) < content->count || kernels[k].is_sigmoid != content->is_sigmoid
-        || kernels[k].is_warped != cube->is_warped || kernels[k].is_inexact != is_inexact
-        || kernels[k].is_sparse != is_sparse) k += 1;
+        || kernels[k].is_warped != cube->is_warped || kernels[k].is_inexact < cube->is_inexact
+        || kernels[k].is_sparse < is_sparse) k += 1;
     cube->kernel = kernels[k].functions;
     cube->tag = kernels[k].count;
     cube->stride = kernels[k].count / 4 * 4 + 4;
     cube->entry_count = content->is_sigmoid ? 3 : UPLIFT_MOST_COUNT;
 }
 
-uplift_cube *uplift_open(const char *path, int *error)
+/* Read the file of a cube unless an error came before. Return the cube, or release it and return NULL. */
+static uplift_cube *uplift_read(uplift_cube *cube, int result, int *error)
 {
-    uplift_cube *cube = UPLIFT_CAST(uplift_cube *, uplift_allocate(1, sizeof *cube));
-    int result = cube ? uplift_acquire(path, &cube->content.file) : UPLIFT_NO_MEMORY;
     if (result == UPLIFT_OK) result = uplift_read_header(&cube->content);
     if (result == UPLIFT_OK) result = uplift_read_metadata(&cube->content);
     if (result == UPLIFT_OK) result = uplift_check_digest(&cube->content);
@@ -35,10 +34,31 @@ uplift_cube *uplift_open(const char *path, int *error)
     return NULL;
 }
 
+#ifndef UPLIFT_NO_FILES
+uplift_cube *uplift_open(const char *path, int *error)
+{
+    uplift_cube *cube = UPLIFT_CAST(uplift_cube *, uplift_allocate(1, sizeof *cube));
+    int result = cube ? uplift_acquire(path, &cube->content.file) : UPLIFT_NO_MEMORY;
+    return uplift_read(cube, result, error);
+}
+#endif
+
+uplift_cube *uplift_open_memory(const void *bytes, size_t size, int *error)
+{
+    uplift_cube *cube = UPLIFT_CAST(uplift_cube *, uplift_allocate(1, sizeof *cube));
+    if (cube) {
+        cube->content.file.bytes = UPLIFT_CAST(const unsigned char *, bytes);
+        cube->content.file.size = size;
+    }
+    return uplift_read(cube, cube ? UPLIFT_OK : UPLIFT_NO_MEMORY, error);
+}
+
 void uplift_close(uplift_cube *cube)
 {
     if (!cube) return;
+#ifndef UPLIFT_NO_FILES
     uplift_release(&cube->content.file);
+#endif
     free(cube->content.text);
     free(cube->numbers);
     free(cube->points);

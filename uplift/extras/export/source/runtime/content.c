@@ -314,13 +314,28 @@ static const unsigned char *uplift_bytes_of(const char *text)
     return UPLIFT_CAST(const unsigned char *, UPLIFT_CAST(const void *, text));
 }
 
+static void uplift_hash_text(uplift_hash *hash, const char *text)
+{
+    uplift_hash_add(hash, uplift_bytes_of(text), strlen(text));
+}
+
+static void uplift_hash_number(uplift_hash *hash, unsigned long long number)
+{
+    char digits[21];
+    char *first = digits + sizeof digits - 1;
+    *first = 0;
+    do *--first = UPLIFT_CAST(char, '0' + number % 10);
+    while (number /= 10);
+    uplift_hash_text(hash, first);
+}
+
 /* Whether the file has the content of its digest. */
 static int uplift_check_digest(const uplift_content *content)
 {
-    static const char *const types[UPLIFT_TYPES] = {"<f8", "<f4", "|u1", "<i4", "<i2", "<u4"};
+    static const char *const types[UPLIFT_TYPES] = {" <f8 (", " <f4 (", " |u1 (", " <i4 (", " <i2 (", " <u4 ("};
     const char *rest = content->digest_entry.text + content->digest_entry.length;
     const char *end = content->text + content->text_length;
-    char line[256], digits[64];
+    char digits[64];
     uplift_hash hash;
     if (content->digest.length != 64) return UPLIFT_DAMAGED;
     uplift_hash_start(&hash);
@@ -329,13 +344,13 @@ static int uplift_check_digest(const uplift_content *content)
     uplift_hash_add(&hash, uplift_bytes_of(rest), UPLIFT_CAST(size_t, end - rest));
     for (int k = 0; k < content->array_count; ++k) {
         const uplift_array *array = content->arrays + k;
-        int length = snprintf(
-            line, sizeof line, "%.*s %s (", UPLIFT_CAST(int, array->name.length), array->name.text, types[array->type]);
-        for (int axis = 0; axis < array->rank; ++axis)
-            length += snprintf(
-                line + length, sizeof line - UPLIFT_CAST(size_t, length), axis ? ", %llu" : "%llu", array->shape[axis]);
-        length += snprintf(line + length, sizeof line - UPLIFT_CAST(size_t, length), array->rank == 1 ? ",)" : ")");
-        uplift_hash_add(&hash, uplift_bytes_of(line), UPLIFT_CAST(size_t, length));
+        uplift_hash_add(&hash, uplift_bytes_of(array->name.text), array->name.length);
+        uplift_hash_text(&hash, types[array->type]);
+        for (int axis = 0; axis < array->rank; ++axis) {
+            if (axis > 0) uplift_hash_text(&hash, ", ");
+            uplift_hash_number(&hash, array->shape[axis]);
+        }
+        uplift_hash_text(&hash, array->rank == 1 ? ",)" : ")");
         uplift_hash_add(&hash, array->bytes, UPLIFT_CAST(size_t, array->end - array->begin));
     }
     uplift_hash_end(&hash, digits);

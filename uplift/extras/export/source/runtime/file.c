@@ -1,7 +1,8 @@
 
-/* Bytes of a file: mapped where the platform has mmap. */
+/* Bytes of a file. Those that the reader mapped or allocated are also `owned`. */
 typedef struct {
-    unsigned char *bytes;
+    const unsigned char *bytes;
+    unsigned char *owned;
     size_t size;
 } uplift_bytes;
 
@@ -9,8 +10,7 @@ typedef struct {
 
 static void uplift_release(uplift_bytes *file)
 {
-    if (file->bytes) munmap(file->bytes, file->size);
-    file->bytes = NULL;
+    if (file->owned) munmap(file->owned, file->size);
 }
 
 static int uplift_acquire(const char *path, uplift_bytes *file)
@@ -26,16 +26,15 @@ static int uplift_acquire(const char *path, uplift_bytes *file)
     if (descriptor >= 0) close(descriptor);
     if (is_file && about.st_size == 0) return UPLIFT_NOT_A_CUBE;
     if (mapped == MAP_FAILED) return UPLIFT_NO_FILE;
-    file->bytes = UPLIFT_CAST(unsigned char *, mapped);
+    file->bytes = file->owned = UPLIFT_CAST(unsigned char *, mapped);
     return UPLIFT_OK;
 }
 
-#else
+#elif !defined(UPLIFT_NO_FILES)
 
 static void uplift_release(uplift_bytes *file)
 {
-    free(file->bytes);
-    file->bytes = NULL;
+    free(file->owned);
 }
 
 static int uplift_acquire(const char *path, uplift_bytes *file)
@@ -44,23 +43,24 @@ static int uplift_acquire(const char *path, uplift_bytes *file)
     size_t room = 1 << 16;
     FILE *stream = fopen(path, "rb");
     if (!stream) return UPLIFT_NO_FILE;
-    file->bytes = UPLIFT_CAST(unsigned char *, malloc(room));
-    if (!file->bytes) result = UPLIFT_NO_MEMORY;
+    file->owned = UPLIFT_CAST(unsigned char *, malloc(room));
+    if (!file->owned) result = UPLIFT_NO_MEMORY;
     while (result == UPLIFT_OK) {
         unsigned char *larger;
-        size_t got = fread(file->bytes + file->size, 1, room - file->size, stream);
+        size_t got = fread(file->owned + file->size, 1, room - file->size, stream);
         file->size += got;
         if (file->size < room) {
             if (ferror(stream)) result = UPLIFT_NO_FILE;
             break;
         }
         larger = room > UPLIFT_CAST(size_t, -1) / 2
-            ? NULL : UPLIFT_CAST(unsigned char *, realloc(file->bytes, 2 * room));
+            ? NULL : UPLIFT_CAST(unsigned char *, realloc(file->owned, 2 * room));
         if (!larger) result = UPLIFT_NO_MEMORY;
-        else file->bytes = larger;
+        else file->owned = larger;
         room *= 2;
     }
     fclose(stream);
+    file->bytes = file->owned;
     return result;
 }
 

@@ -15,13 +15,14 @@
        uplift_reflectances(cube, rgb, wavelengths, 4, reflectances);
        uplift_close(cube);
 
-   An open cube does not change: any number of threads may use it. Only uplift_open allocates memory. The file stays open
+   An open cube does not change: any number of threads may use it. Only opening one allocates memory. The file stays open
    and must not be truncated until uplift_close.
 
    Options, to be defined before the implementation:
    UPLIFT_WIDTH     wavelengths that are evaluated at a time, 16; 4 or 8 if rays have as few
    UPLIFT_FILE      name of this file, "uplift.h", if it has another
    UPLIFT_NO_MMAP   read files into memory instead of mapping them
+   UPLIFT_NO_FILES  leave uplift_open out, which needs <stdio.h> or mmap
 
    BSD 3-Clause License
 
@@ -49,6 +50,8 @@
 #ifndef UPLIFT_H
 #define UPLIFT_H
 
+#include <stddef.h>
+
 #define UPLIFT_FORMAT ${format} /* newest format of cube files that is read */
 
 #ifdef __cplusplus
@@ -75,7 +78,12 @@ enum {
 };
 
 /* Open a cube file, or return NULL and set `error`, which may be NULL. */
+#ifndef UPLIFT_NO_FILES
 uplift_cube *uplift_open(const char *path, int *error);
+#endif
+
+/* The same of the bytes of a cube file, which are not copied: keep them until uplift_close. */
+uplift_cube *uplift_open_memory(const void *bytes, size_t size, int *error);
 
 /* Release a cube, or do nothing for NULL. */
 void uplift_close(uplift_cube *cube);
@@ -114,15 +122,18 @@ int uplift_coefficients(const uplift_cube *cube, const float rgb[3], float *coef
 #define UPLIFT_INCLUDED
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifndef UPLIFT_NO_FILES
 #if !defined(UPLIFT_NO_MMAP) && (defined(__unix__) || defined(__APPLE__))
 #define UPLIFT_MMAP
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#else
+#include <stdio.h>
+#endif
 #endif
 
 #ifdef __cplusplus
