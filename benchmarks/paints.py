@@ -1,5 +1,5 @@
 """Measured paints: recovery of K and S, mixtures of acrylics, recipes, programs and a
-picture, for docs/guides/paint.md.
+picture, for docs/guides/paints.md.
 """
 
 import shutil
