@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.atlas import Atlas, on_grid, read_atlas
+from uplift.atlas import VISIBLE, Atlas, on_grid, read_atlas
 from uplift.common.arrays import Array, Mask, StrPath
 from uplift.common.errors import unknown_name
 from uplift.common.text import format_value
@@ -195,6 +195,9 @@ def _common_grid(atlas: Atlas) -> Array:
     nm = np.asarray(coarsest.wavelengths)
     inside = nm[(nm >= first) & (nm <= last)]
     steps = np.diff(inside)
-    if np.ptp(steps) < EVEN and STEPS[0] <= steps[0] <= STEPS[1]:
+    is_even = np.ptp(steps) < EVEN and STEPS[0] <= steps[0] <= STEPS[1]
+    if is_even and inside[0] <= VISIBLE[0] and inside[-1] >= VISIBLE[1]:
         return inside
-    return np.arange(np.ceil(first / STEP) * STEP, last + EVEN, STEP)
+    # Entries cover the visible range but for rounding.
+    start = np.ceil(min(first, VISIBLE[0]) / STEP) * STEP
+    return np.arange(start, max(last, VISIBLE[1]) + EVEN, STEP)
