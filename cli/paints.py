@@ -189,7 +189,7 @@ def print_fit(fitted: PaintFit, advice: PaintAdvice) -> None:
     opaque = [name for name in alone if _is_masstone(fitted, name)]
     if opaque:
         paragraph(
-            "Known by one opaque sample, which does not tell the strength, a rule "
+            "Known by one opaque sample, which does not show the strength; a rule "
             f"stands in for it: {', '.join(opaque)}."
         )
     if advice.samples:
@@ -288,7 +288,7 @@ def print_recipes(
 def plot_recipes(
     target: PaintTarget, recipes: Sequence[PaintRecipe], path: str, *, force: bool
 ) -> None:
-    """Draw the target beside each recipe."""
+    """Draw the target next to each recipe."""
     import numpy as np
 
     from uplift.extras.colour.srgb import encode

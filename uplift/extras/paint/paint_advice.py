@@ -3,7 +3,7 @@
 The aim is to predict mixtures of any two paints in equal parts, on an opaque ground.
 Their expected error follows from the covariance of the fit, and what a sample would
 leave of it from one step of Kalman's update. The sample that leaves least comes first,
-then the best one beside it, and so on.
+then the best one in addition to it, and so on.
 """
 
 from dataclasses import dataclass

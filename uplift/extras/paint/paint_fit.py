@@ -1,10 +1,10 @@
 """Absorption and scattering of paints by least squares on measured samples.
 
 The samples are predicted by the two constants of Kubelka and Munk, mixed by Duncan's
-rule and seen through a surface by Saunderson's correction (`optics`, `pigments`). What
-the samples do not determine stays as the prior has it (`paint_prior`): the fit is the
-maximum of the posterior, and its curvature gives standard errors. A paint that is known
-by one opaque sample only keeps the scattering of today's rule.
+rule and measured through a surface by Saunderson's correction (`optics`, `pigments`).
+All that the samples do not determine stays as the prior has it (`paint_prior`): the fit
+is the maximum of the posterior, and its curvature gives standard errors. A paint that
+is known by one opaque sample only keeps the scattering that a rule assumes.
 
 The measured values weigh by their uncertainty. If the samples fit worse than that, it
 is raised until they fit as expected, since the theory or the parts are then the limit.
@@ -285,7 +285,7 @@ def _relative_errors(
     of the variables.
 
     Opaque samples do not change if K and S of all paints have a common factor at some
-    wavelength, so that their errors are those beside it.
+    wavelength, so that their errors are those without it.
     """
     paints, count = prior.log_scattering.shape
     size = 2 * count + 1

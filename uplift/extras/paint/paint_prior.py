@@ -1,5 +1,5 @@
-"""What is known of a paint before it is fitted: K and S that its purest sample
-suggests, and how far they may be off.
+"""The prior of a paint before it is fitted: K and S that its purest sample suggests,
+and how far they may be off.
 
 The ratio K/S is that of the purest sample, taken as opaque. Its scattering is the rule
 of `uplift.extras.paint.pigments.dispersive`, lower for coloured paints than for white.

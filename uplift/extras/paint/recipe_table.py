@@ -142,15 +142,15 @@ def _recipes(
     columns: _Columns,
     location: SourceLocation,
 ) -> Iterator[Recipe]:
-    seen = set[str]()
+    names = set[str]()
     for line, row in rows:
         cells = [*row, *[""] * (columns.count - len(row))]
         name = cells[columns.name]
-        if name in seen:
+        if name in names:
             raise location.at(line, name).error(
                 f"two samples have the name {format_value(name)}", "rename one of them"
             )
-        seen.add(name)
+        names.add(name)
         ground = _cell(cells, columns.ground)
         here = location.at(line, name)
         yield Recipe(

@@ -56,7 +56,7 @@ Residuals = Callable[[Array], Array]
 
 @dataclass(frozen=True, eq=False)
 class PaintTarget:
-    """What a recipe should match, and where it is seen.
+    """The reflectance that a recipe should match, and the lights that count.
 
     Parameters
     ----------
@@ -253,7 +253,7 @@ def descend(residuals: Residuals, ratios: Array) -> tuple[Array, Array]:
     """Follow Levenberg–Marquardt steps from logarithms of ratios (m, k − 1) to those
     of a smaller sum of squares, and return both.
 
-    ``residuals`` maps them to residuals (m, r), each row by itself.
+    ``residuals`` maps them to residuals (m, r), each row independently.
     """
     values = residuals(ratios)
     squares = (values**2).sum(axis=1)
