@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from uplift.colorimetry import delta_e_spectra, observer
 from uplift.extras.paint import Paints, PaintSamples, Surface
 from uplift.extras.paint.paint_samples import MeasuredSpectra
 from uplift.extras.paint.pigments import Pigment
@@ -13,6 +14,8 @@ NAMES = ("white", "yellow", "red", "blue")
 OIL = Surface(0.04, 0.6)
 SPREAD = (0.002, 0.005)
 """Standard deviation of a careful measurement: of all values, and relative to them."""
+FILMS = tuple((paint, 0.5, ground) for paint in range(3) for ground in (0.0, 0.9))
+"""Films of the first three samples of `plan`, on a black and a light ground."""
 
 
 def invented(wavelengths=WAVELENGTHS, names=NAMES, surface=OIL):
@@ -37,7 +40,7 @@ def invented(wavelengths=WAVELENGTHS, names=NAMES, surface=OIL):
     return Paints(tuple(names), nm, pigments, surface)
 
 
-def plan(paints, pairs=True):
+def plan(paints):
     """Return shares (n, P): each paint alone, tints 1:4 and 1:20 with the first, and
     mixtures of two of the others.
     """
@@ -49,10 +52,9 @@ def plan(paints, pairs=True):
             row[[0, paint]] = parts, 1
             rows.append(row / row.sum())
     for paint in range(1, count - 1):
-        if pairs:
-            row = np.zeros(count)
-            row[[paint, paint + 1]] = 0.75, 0.25
-            rows.append(row)
+        row = np.zeros(count)
+        row[[paint, paint + 1]] = 0.75, 0.25
+        rows.append(row)
     return np.array(rows)
 
 
@@ -94,3 +96,12 @@ def chosen(samples, rows):
         grounds=samples.grounds[rows],
         measured=type(samples.measured)(samples.measured.values[rows]),
     )
+
+
+def mixture_errors(fitted, paints, count=200):
+    """ΔE00 (count,) of random opaque mixtures between fitted paints and true ones."""
+    nm = paints.wavelengths
+    light = observer.light("D65", observer.DEFAULT_OBSERVER, nm[0], nm[-1], nm[1] - nm[0])
+    shares = np.full(len(paints), 0.5)
+    parts = np.random.default_rng(6).dirichlet(shares, count)
+    return delta_e_spectra(light, fitted.reflectance(parts), paints.reflectance(parts))
