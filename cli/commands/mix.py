@@ -204,7 +204,7 @@ def command(
     force: bool,
     **surface: Any,
 ) -> None:
-    from uplift.extras.paint import Medium, Surface, read_paints
+    from uplift.extras.paint import Medium, read_paints
 
     _check_coat(kind, plate)
     paints = None
@@ -230,9 +230,10 @@ def command(
         print_theories(recipe, method, style)
         return
     law = _scattering_law(scattering, recipe.cube, further)
-    stated = _surface(**surface)
-    if paints is not None and stated == Surface():
+    if paints is not None and not surface.keys() & options.given().keys():
         stated = paints.surface
+    else:
+        stated = _surface(**surface)
     medium = Medium(thickness, stated, law, plate is not None)
     if over is not None and output is not None:
         looks = {"encoding": encoding, "out_of_gamut": method, "space": resolver.space}

@@ -1,8 +1,10 @@
-"""Fixtures: random spectra, pigments and colours."""
+"""Fixtures: random spectra, pigments and colours; fits of invented paints."""
 
 import numpy as np
 import pytest
 
+from tests.extras.paint.invented import FILMS, NAMES, invented, measured, plan
+from uplift.extras.paint import fit_paints
 from uplift.extras.paint.pigments import Pigment
 
 
@@ -43,3 +45,21 @@ def paints(small_cube):
         for name, rgb in zip(atlas.names, atlas.rgb, strict=True)
         if np.ptp(rgb) > 0.1 * rgb.max()
     }
+
+
+@pytest.fixture(scope="session")
+def three_paints():
+    """White, yellow and red, with known K and S."""
+    return invented(names=NAMES[:3])
+
+
+@pytest.fixture(scope="session")
+def fitted(three_paints):
+    """A fit of three paints to samples with noise, of which some are films."""
+    return fit_paints(measured(three_paints, plan(three_paints), 1.0, FILMS))
+
+
+@pytest.fixture(scope="session")
+def opaque_fit(three_paints):
+    """A fit of three paints to exact samples that hide their ground."""
+    return fit_paints(measured(three_paints, plan(three_paints)))

@@ -69,7 +69,7 @@ def advise_samples(fit: PaintFit, count: int = 5) -> PaintAdvice:
     -------
     PaintAdvice
         Mean standard deviation in units of ΔE00 of the colours of mixtures of two
-        paints, now and after each sample.
+        paints, or of the only one, now and after each sample.
     """
     pairs = _pairs(fit.samples)
     names, candidates = _candidates(fit.samples)
@@ -127,8 +127,10 @@ def _jacobian(fit: PaintFit, samples: PaintSamples, name: str) -> Array:
 
 
 def _pairs(samples: PaintSamples) -> PaintSamples:
-    """Return mixtures of any two paints in equal parts."""
+    """Return mixtures of any two paints in equal parts, or the only paint."""
     count = len(samples.paints)
+    if count == 1:
+        return _opaque(samples, np.eye(1))
     shares = np.array(
         [
             (np.eye(count)[list(pair)]).mean(axis=0)

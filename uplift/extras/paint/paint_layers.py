@@ -22,6 +22,7 @@ from uplift.colorimetry import (
 from uplift.colorimetry.gamut import check_method
 from uplift.common.arrays import Array, Floats
 from uplift.common.errors import OptionError
+from uplift.common.text import listed
 from uplift.extras.colour.spaces import ImageSpace
 from uplift.extras.images import exr
 from uplift.extras.paint.paints import Paints
@@ -99,7 +100,7 @@ def paint_layers(
     Raises
     ------
     OptionError
-        There are more paints than layers.
+        There are more paints than layers, or two layers have the same name.
     """
     check_encoding(encoding)
     check_method(out_of_gamut)
@@ -133,7 +134,13 @@ def paint_layers(
 
 def layer_names(names: Sequence[str]) -> tuple[str, ...]:
     """Return the names of channels; a full stop would begin a layer in a layer."""
-    return tuple(f"{name.replace('.', '_')}.Y" for name in names)
+    layers = tuple(f"{name.replace('.', '_')}.Y" for name in names)
+    if len(set(layers)) < len(layers):
+        raise OptionError(
+            f"each layer must have its own name, got {listed(layers)}",
+            hint="rename a paint in its file",
+        )
+    return layers
 
 
 def _solve(paints: Paints, sensor: Sensor, rgb: Array) -> tuple[Array, Array]:

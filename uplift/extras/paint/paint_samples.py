@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.atlas import Atlas, on_grid, read_atlas
+from uplift.atlas import VISIBLE, Atlas, on_grid, read_atlas
 from uplift.common.arrays import Array, Mask, StrPath
 from uplift.common.errors import unknown_name
 from uplift.common.text import format_value
@@ -24,8 +24,8 @@ RANGE = (380.0, 780.0)
 """Wavelengths in nm that are used."""
 STEP = 10.0
 """Step in nm where the file has no even one, or only colours."""
-FINEST = 5.0
-"""Smallest step in nm that is kept."""
+STEPS = (5.0, 20.0)
+"""Smallest and largest step in nm that are kept."""
 EVEN = 1e-6
 """Tolerance of even steps in nm."""
 
@@ -108,7 +108,8 @@ def read_paint_samples(path: StrPath, recipes: StrPath | None = None) -> PaintSa
         A file cannot be read, names no paints, or a value in it is invalid.
     """
     table = read_recipes(path if recipes is None else recipes)
-    if any(recipe.colour for recipe in table.recipes):
+    has_colours = any(recipe.colour for recipe in table.recipes)
+    if has_colours and recipes is None and not table.has_spectra:
         return _coloured_samples(table)
     atlas = read_atlas(path)
     by_name = {recipe.name: recipe for recipe in table.recipes}
@@ -186,7 +187,7 @@ def _samples(
 
 def _common_grid(atlas: Atlas) -> Array:
     """Return evenly spaced wavelengths in the range that all entries have, in the step
-    of the coarsest one, or in `STEP` if it has none.
+    of the coarsest one, or in `STEP` if it has none of `STEPS`.
     """
     first = max(RANGE[0], *(entry.wavelengths[0] for entry in atlas))
     last = min(RANGE[1], *(entry.wavelengths[-1] for entry in atlas))
@@ -194,6 +195,9 @@ def _common_grid(atlas: Atlas) -> Array:
     nm = np.asarray(coarsest.wavelengths)
     inside = nm[(nm >= first) & (nm <= last)]
     steps = np.diff(inside)
-    if np.ptp(steps) < EVEN and steps[0] >= FINEST:
+    is_even = np.ptp(steps) < EVEN and STEPS[0] <= steps[0] <= STEPS[1]
+    if is_even and inside[0] <= VISIBLE[0] and inside[-1] >= VISIBLE[1]:
         return inside
-    return np.arange(np.ceil(first / STEP) * STEP, last + EVEN, STEP)
+    # Entries cover the visible range but for rounding.
+    start = np.ceil(min(first, VISIBLE[0]) / STEP) * STEP
+    return np.arange(start, max(last, VISIBLE[1]) + EVEN, STEP)

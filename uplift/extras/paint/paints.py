@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, unknown_name
+from uplift.common.text import listed
 from uplift.extras.paint.coats import Medium, coat_of_pigments
 from uplift.extras.paint.optics import NO_SURFACE, Surface
 from uplift.extras.paint.pigments import Pigment
@@ -85,7 +86,14 @@ class Paints:
         ------
         UnknownNameError
             No paint has a name.
+        OptionError
+            A name is there twice.
         """
+        if len(set(names)) < len(names):
+            raise OptionError(
+                f"each paint must be selected once, got {listed(list(names))}",
+                hint="leave out the second one",
+            )
         rows = [self.index(name) for name in names]
         errors = None
         if self.errors is not None:
@@ -206,11 +214,14 @@ def strengths(paints: Paints, white: int) -> Array:
     -------
     ndarray, shape (P,)
         Parts of white to one of paint at which the mixture absorbs as much as it
-        scatters, at the wavelength where the paint absorbs most.
+        scatters, at the wavelength where the paint absorbs most. Infinite if white
+        itself absorbs more there.
     """
     K = paints.pigments.absorption
     S = paints.pigments.scattering
     strongest = K.argmax(axis=1)
     rows = np.arange(len(paints))
-    excess = K[rows, strongest] - S[rows, strongest]
-    return np.maximum(excess, 0) / (S[white, strongest] - K[white, strongest])
+    excess = np.maximum(K[rows, strongest] - S[rows, strongest], 0)
+    margin = S[white, strongest] - K[white, strongest]
+    never = np.where(excess > 0, np.inf, 0.0)
+    return np.divide(excess, margin, out=never, where=margin > 0)

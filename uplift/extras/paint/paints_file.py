@@ -8,9 +8,11 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from uplift.atlas import VISIBLE
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PaintError
 from uplift.common.files import write_text
+from uplift.common.text import format_value
 from uplift.extras.files.spec import SpecModel, problem, read_toml
 from uplift.extras.files.toml import number_value, row_value, text_value
 from uplift.extras.paint.optics import Surface
@@ -21,6 +23,10 @@ FORMAT: Literal["uplift paints 1"] = "uplift paints 1"
 HINT = "fit the paints again"
 MAX_PAINTS = 1000
 MAX_SAMPLES = 1000
+LARGEST_STEP = 20.0
+"""Largest step in nm."""
+EVEN = 1e-6
+"""Tolerance of even steps in nm."""
 HEAD = """# Paints by uplift paints fit: absorption and scattering per unit thickness.
 # A price of a part may be added to each paint, such as: price = 0.35
 """
@@ -84,7 +90,7 @@ def write_paints(paints: Paints, path: StrPath, *, force: bool = False) -> None:
 
 
 _Positive = Annotated[float, Field(allow_inf_nan=False, ge=0, le=1e12)]
-_Wavelength = Annotated[float, Field(allow_inf_nan=False, ge=100, le=10_000)]
+_Wavelength = Annotated[float, Field(allow_inf_nan=False, ge=300, le=900)]
 _Fraction = Annotated[float, Field(ge=0, lt=1)]
 _Row = Annotated[list[_Positive], Field(min_length=2, max_length=MAX_SAMPLES)]
 _Wavelengths = Annotated[list[_Wavelength], Field(min_length=2, max_length=MAX_SAMPLES)]
@@ -113,10 +119,23 @@ class _PaintsTable(SpecModel):
 
     @model_validator(mode="after")
     def _sizes_agree(self) -> Self:
-        if not (np.diff(self.wavelengths) > 0).all():
-            raise problem("wavelengths must ascend")
+        steps = np.diff(self.wavelengths)
+        if not (0 < steps[0] <= LARGEST_STEP and np.ptp(steps) < EVEN):
+            raise problem(
+                f"wavelengths must ascend in even steps of at most {LARGEST_STEP:g} nm"
+            )
+        first, last = self.wavelengths[0], self.wavelengths[-1]
+        if first > VISIBLE[0] or last < VISIBLE[1]:
+            raise problem(
+                f"wavelengths must cover {VISIBLE[0]:g} to {VISIBLE[1]:g} nm, got "
+                f"{first:g} to {last:g} nm"
+            )
         names = [paint.name for paint in self.paints]
         for name in names:
+            if len(name.splitlines()) != 1 or "\0" in name:
+                raise problem(
+                    f"name must be one line of text, got {format_value(name)}"
+                )
             if names.count(name) > 1:
                 raise problem(f"two paints have the name '{name}'", "rename one")
         for paint in self.paints:

@@ -9,7 +9,7 @@ import numpy as np
 
 from uplift.atlas import SourceLocation, read_document
 from uplift.common.arrays import StrPath
-from uplift.common.text import format_value, listed
+from uplift.common.text import format_value
 from uplift.extras.files.csv import find_delimiter, parse_decimal, split_line
 from uplift.extras.formats.tables.cells import parse_label
 from uplift.extras.formats.tables.grid import NAME_LABELS, plain_label
@@ -50,6 +50,8 @@ class RecipeTable:
     paints: tuple[str, ...]
     recipes: tuple[Recipe, ...]
     location: SourceLocation
+    has_spectra: bool
+    """Whether it has columns of wavelengths as well."""
 
 
 def read_recipes(path: StrPath) -> RecipeTable:
@@ -74,13 +76,15 @@ def read_recipes(path: StrPath) -> RecipeTable:
         )
     start = next(at for at, (_, row) in enumerate(rows) if row is head) + 1
     recipes = tuple(_recipes(rows[start:], columns, location))
-    return RecipeTable(tuple(columns.paints), recipes, location)
+    has_spectra = any(parse_label(text) is not None for text in head)
+    return RecipeTable(tuple(columns.paints), recipes, location, has_spectra)
 
 
 @dataclass(frozen=True)
 class _Columns:
     """Positions of columns."""
 
+    count: int
     name: int
     thickness: int | None
     ground: int | None
@@ -106,7 +110,7 @@ def _columns(
         cells = [
             row[column] for _, row in rows if row is not head and column < len(row)
         ]
-        if not all(_is_amount(cell) for cell in cells):
+        if any(cells) and not any(map(_is_number, cells)):
             continue
         if head[column] in paints:
             raise location.error(
@@ -116,6 +120,7 @@ def _columns(
         paints[head[column]] = column
     colours = [labels.index(label) for label in COLOUR_LABELS if label in labels]
     return _Columns(
+        len(head),
         name,
         labels.index("thickness") if "thickness" in labels else None,
         labels.index("ground") if "ground" in labels else None,
@@ -124,11 +129,12 @@ def _columns(
     )
 
 
-def _is_amount(cell: str) -> bool:
+def _is_number(cell: str) -> bool:
     try:
-        return not cell or parse_decimal(cell) >= 0
+        parse_decimal(cell)
     except ValueError:
         return False
+    return True
 
 
 def _recipes(
@@ -138,7 +144,7 @@ def _recipes(
 ) -> Iterator[Recipe]:
     names = set[str]()
     for line, row in rows:
-        cells = [*row, *[""] * (1 + max(columns.paints.values()) - len(row))]
+        cells = [*row, *[""] * (columns.count - len(row))]
         name = cells[columns.name]
         if name in names:
             raise location.at(line, name).error(
@@ -146,18 +152,14 @@ def _recipes(
             )
         names.add(name)
         ground = _cell(cells, columns.ground)
-        parts = tuple(
-            parse_decimal(cells[column] or "0") for column in columns.paints.values()
-        )
-        if not np.isfinite(parts).all():
-            raise location.at(line, name).error(
-                f"parts must be finite, got {listed(list(map(str, parts)))}",
-                "correct them",
-            )
+        here = location.at(line, name)
         yield Recipe(
             name,
-            parts,
-            _thickness(cells, columns, ground, location.at(line, name)),
+            tuple(
+                _parts(paint, cells[column], here)
+                for paint, column in columns.paints.items()
+            ),
+            _thickness(cells, columns, ground, here),
             ground or "white",
             _cell(cells, columns.colour),
             line,
@@ -165,7 +167,19 @@ def _recipes(
 
 
 def _cell(cells: Sequence[str], column: int | None) -> str:
-    return "" if column is None or column >= len(cells) else cells[column]
+    return "" if column is None else cells[column]
+
+
+def _parts(paint: str, text: str, location: SourceLocation) -> float:
+    parts = parse_decimal(text or "0") if _is_number(text or "0") else np.nan
+    if not 0 <= parts < np.inf:
+        raise location.error(
+            f"parts of {format_value(paint)} must be finite and at least 0, got "
+            f"{format_value(text)}",
+            "correct them, or delete the column if it is not a paint",
+            code="invalid-parts",
+        )
+    return parts
 
 
 def _thickness(

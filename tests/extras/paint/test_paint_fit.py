@@ -1,0 +1,163 @@
+"""Invented paints are recovered from samples of them, with and without noise."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from tests.extras.paint.invented import (
+    FILMS,
+    WAVELENGTHS,
+    chosen,
+    measured,
+    mixture_errors,
+    plan,
+)
+from tests.helpers import raises
+from uplift.colorimetry import observer
+from uplift.common.errors import OptionError
+from uplift.extras.paint import PaintSamples, Surface, fit_paints
+from uplift.extras.paint.paint_samples import MeasuredColours, MeasuredSpectra
+
+
+def log_errors(fitted, paints):
+    """Differences (2, P, N) of log K and log S to the true ones."""
+    pairs = (
+        (fitted.pigments.absorption, paints.pigments.absorption),
+        (fitted.pigments.scattering, paints.pigments.scattering),
+    )
+    return np.stack([np.log(ours / theirs) for ours, theirs in pairs])
+
+
+def test_exact_films_determine_the_paints_and_their_surface(three_paints):
+    """Also the unit of thickness, which opaque samples do not have."""
+    samples = measured(three_paints, plan(three_paints), films=FILMS)
+    reported = []
+    fitted = fit_paints(samples, progress=reported.append)
+    assert np.abs(log_errors(fitted.paints, three_paints)).max() < 0.03
+    surface = fitted.paints.surface
+    assert surface.outside == pytest.approx(three_paints.surface.outside, abs=1e-3)
+    assert surface.inside == pytest.approx(three_paints.surface.inside, abs=5e-3)
+    assert mixture_errors(fitted.paints, three_paints).mean() < 0.03
+    assert fitted.delta_e.max() < 0.1
+    assert {progress.stage for progress in reported} == {"paints"}
+
+
+def test_exact_opaque_samples_determine_mixtures(three_paints, opaque_fit):
+    """Though K and S only up to a factor at each wavelength, and the surface roughly."""
+    assert mixture_errors(opaque_fit.paints, three_paints).max() < 0.05
+    assert opaque_fit.delta_e.max() < 0.05
+    assert opaque_fit.paints.surface.outside == pytest.approx(0.04, abs=0.03)
+
+
+def test_noise_is_within_the_stated_errors(three_paints, fitted):
+    assert mixture_errors(fitted.paints, three_paints).mean() < 0.2
+    stated = fitted.paints.errors
+    errors = np.abs(log_errors(fitted.paints, three_paints))
+    within = errors < 2 * np.stack([stated.absorption, stated.scattering])
+    assert within.mean() > 0.85
+    assert np.median(stated.scattering) < 0.1
+
+
+def test_more_noise_gives_larger_errors(three_paints, fitted):
+    samples = measured(three_paints, plan(three_paints), 5.0, FILMS)
+    noisy = fit_paints(samples)
+    assert mixture_errors(noisy.paints, three_paints).mean() < 1
+    for name in ("absorption", "scattering"):
+        more = getattr(noisy.paints.errors, name)
+        less = getattr(fitted.paints.errors, name)
+        assert np.median(more) > 2 * np.median(less)
+
+
+def test_the_order_of_samples_and_paints_does_not_matter(three_paints, opaque_fit):
+    order = [2, 0, 1]
+    samples = chosen(opaque_fit.samples, [7, 3, 0, 2, 6, 1, 5, 4])
+    names = tuple(three_paints.names[at] for at in order)
+    samples = replace(samples, paints=names, shares=samples.shares[:, order])
+    other = fit_paints(samples)
+    assert other.paints.names == names
+    parts = np.random.default_rng(7).random((20, 3))
+    assert_allclose(
+        other.paints.reflectance(parts[:, order]),
+        opaque_fit.paints.reflectance(parts),
+        atol=1e-3,
+    )
+    for name in ("absorption", "scattering"):
+        ours = getattr(other.paints.errors, name)
+        theirs = getattr(opaque_fit.paints.errors, name)
+        assert_allclose(ours, theirs[order], rtol=0.05)
+
+
+def test_a_wrong_recipe_has_the_largest_residual(three_paints):
+    samples = measured(three_paints, plan(three_paints), 1.0)
+    wrong = 6  # red in white, taken for yellow
+    shares = samples.shares.copy()
+    shares[wrong] = shares[wrong, [0, 2, 1]]
+    found = fit_paints(replace(samples, shares=shares))
+    assert found.delta_e.argmax() == wrong
+    assert found.delta_e.max() > 1.5 * np.sort(found.delta_e)[-2]
+
+
+def test_one_mass_tone_leaves_the_scattering_to_the_rule(three_paints, opaque_fit):
+    """Yellow alone: its colour is fitted, and its S is that of the prior."""
+    found = fit_paints(chosen(opaque_fit.samples, [0, 1, 2, 5, 6]))
+    errors = np.median(found.paints.errors.scattering, axis=1)
+    assert errors[1] > 1.5 * errors[[0, 2]].max()
+    assert errors[1] > 0.5
+    ratio = np.log(found.paints.pigments.scattering[1])
+    assert_allclose(ratio, found.model.prior.log_scattering[1], atol=0.3)
+    assert found.delta_e.max() < 0.2
+
+
+def test_colours_alone_predict_mixtures(three_paints, opaque_fit):
+    sensor = observer.sensor(wavelengths=(400, 700, 20))
+    rgb = np.clip(sensor.rgb(opaque_fit.samples.measured.values), 0, 1)
+    samples = replace(opaque_fit.samples, measured=MeasuredColours(rgb))
+    exact = opaque_fit.samples.measured.values
+
+    def guess(colours, wavelengths):
+        assert_allclose(colours, rgb)
+        assert_allclose(wavelengths, WAVELENGTHS)
+        return exact.mean(axis=1, keepdims=True) * np.ones(len(WAVELENGTHS))
+
+    found = fit_paints(samples, guess=guess)
+    assert found.delta_e.max() < 1
+    assert mixture_errors(found.paints, three_paints).mean() < 1
+    known = opaque_fit.paints.errors.absorption
+    assert np.median(found.paints.errors.absorption) > np.median(known)
+
+
+def test_paints_without_light_and_films_that_hide_are_fitted():
+    """A black of reflectance 0, and a grey film whose ground does not matter."""
+    samples = PaintSamples(
+        ("black", "on white", "on black"),
+        ("black", "grey"),
+        np.array([[1.0, 0], [0, 1], [0, 1]]),
+        np.array([np.inf, 1, 1]),
+        np.array([1.0, 1, 0])[:, None] * np.ones(16),
+        WAVELENGTHS,
+        MeasuredSpectra(np.array([0.0, 0.5, 0.5])[:, None] * np.ones(16)),
+    )
+    found = fit_paints(samples, surface=Surface())
+    black, grey = found.paints.reflectance(np.eye(2))
+    assert black.max() < 0.01
+    assert_allclose(grey, 0.5, atol=0.01)
+    assert np.isfinite(found.paints.pigments.absorption).all()
+    assert (found.paints.pigments.scattering > 0).all()
+    assert found.paints.surface == Surface()
+
+
+def test_too_many_unknowns_raise():
+    count = 200
+    samples = PaintSamples(
+        tuple(f"{paint}" for paint in range(count)),
+        tuple(f"{paint}" for paint in range(count)),
+        np.eye(count),
+        np.full(count, np.inf),
+        np.ones((count, 16)),
+        WAVELENGTHS,
+        MeasuredSpectra(np.full((count, 16), 0.5)),
+    )
+    with raises(OptionError, "too-many-paints"):
+        fit_paints(samples)
