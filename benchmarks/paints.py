@@ -2,6 +2,7 @@
 picture, for docs/guides/paints.md.
 """
 
+import json
 import shutil
 import subprocess
 import tempfile
@@ -18,6 +19,7 @@ from benchmarks.mixing import acrylics
 from uplift.colorimetry import Sensor, delta_e_rgb, observer
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.srgb import decode, encode
+from uplift.extras.pages.html import resource
 from uplift.extras.pages.plots import Strip, plot_strips
 from uplift.extras.paint import (
     PaintFit,
@@ -28,7 +30,7 @@ from uplift.extras.paint import (
     fit_paints,
     match,
 )
-from uplift.extras.paint.paint_page import write_page
+from uplift.extras.paint.paint_page import SCRIPTS, page_numbers, write_page
 from uplift.extras.paint.paint_program import few_samples, write_program
 from uplift.extras.paint.paint_samples import MeasuredColours, MeasuredSpectra
 
@@ -261,6 +263,35 @@ def _c_rate(paints: Paints) -> Row:
     }
 
 
+PAGE_TIMES = """
+const goalOf = i => [30 + 5 * i, 40 * Math.cos(i), 40 * Math.sin(i)];
+const goals = Array.from({ length: 8 }, (_, i) => goalOf(i));
+recipesFor(goals[0], 3);
+let begin = performance.now();
+for (const goal of goals) recipesFor(goal, 3);
+const recipe = (performance.now() - begin) / goals.length;
+begin = performance.now();
+for (let i = 0; i < 20000; ++i) opaque([0, 1, 2], [1, i % 7, 2]);
+console.log(recipe / 1e3, (performance.now() - begin) / 20000 / 1e3);
+"""
+
+
+def page_times(paints: Paints) -> Row:
+    """Return seconds of a recipe of three paints and of a mixture in Node.js, by the
+    scripts of the page.
+    """
+    numbers = json.dumps(json.dumps(page_numbers(paints)))
+    stub = f"{{ getElementById: () => ({{ textContent: {numbers} }}) }}"
+    kernels = [name for name in SCRIPTS if not name.endswith("page.js")]
+    text = f"globalThis.document = {stub};\n{resource(*kernels)}\n{PAGE_TIMES}"
+    with tempfile.TemporaryDirectory() as name:
+        path = Path(name) / "times.mjs"
+        path.write_text(text, encoding="utf-8")
+        printed = subprocess.check_output(["node", path], text=True).split()
+    recipe, mixture = map(float, printed)
+    return {"paints": len(paints), "recipe": recipe, "mixture": mixture}
+
+
 # --- pictures ---
 
 
@@ -304,4 +335,6 @@ def main() -> None:
         recipes=recipes(*fitted[0]),
         programs=program_rates(invented_paints()),
         acrylic_program=program_rates(fitted[0][0].paints),
+        page=page_times(invented_paints()),
+        acrylic_page=page_times(fitted[0][0].paints),
     )

@@ -11,7 +11,6 @@ from uplift.common.text import pluralise
 from .output.console import make_table, paragraph, print_fields, say, show, swatch
 
 if TYPE_CHECKING:
-    from uplift.colorimetry import Sensor
     from uplift.colorimetry.illuminants import Illuminant
     from uplift.common.arrays import Array
     from uplift.extras.paint import (
@@ -46,7 +45,6 @@ def read_target(
 ) -> PaintTarget:
     """Return what a recipe should match, at the wavelengths of the paints."""
     from uplift.atlas import Atlas, on_grid, read_atlas
-    from uplift.colorimetry import observer
     from uplift.extras.paint import PaintTarget
     from uplift.lookup import load
 
@@ -60,27 +58,16 @@ def read_target(
         reflectance = on_grid(Atlas((entry,)), nm)[0]
     else:
         reflectance = resolver.spectrum(str(colour))
-    spacing = (nm[0], nm[-1], nm[1] - nm[0])
-    names = lights or ("D65",)
-    lit = tuple(
-        observer.light(name, observer.DEFAULT_OBSERVER, *spacing) for name in names
-    )
+    lit = tuple(paints.light(name) for name in lights or ("D65",))
     backing: Array | float = 1.0 if ground is None else resolver.spectrum(ground)
     return PaintTarget(reflectance, lit, thickness, backing)
-
-
-def _sensor(paints: Paints) -> Sensor:
-    from uplift.colorimetry import observer
-
-    nm = paints.wavelengths
-    return observer.sensor(wavelengths=(nm[0], nm[-1], nm[1] - nm[0]))
 
 
 def _hex(paints: Paints, reflectance: Array) -> list[str]:
     """Return '#rrggbb' of reflectances (n, N) at the wavelengths of paints."""
     from uplift.extras.colour.srgb import hex_codes
 
-    return hex_codes(_sensor(paints).rgb(reflectance))
+    return hex_codes(paints.sensor.rgb(reflectance))
 
 
 def fit_fields(fitted: PaintFit, advice: PaintAdvice) -> dict[str, Any]:
@@ -238,15 +225,13 @@ def elsewhere(
     """Return ΔE00 between a recipe and its target under further lights, the index of
     metamerism.
     """
-    from uplift.colorimetry import delta_e_spectra, observer
+    from uplift.colorimetry import delta_e_spectra
     from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
 
-    nm = paints.wavelengths
-    spacing = (nm[0], nm[-1], nm[1] - nm[0])
     known = {light.name for light in target.lights}
     errors = {}
     for name in RELIGHT_LIGHTS:
-        light = observer.light(name, observer.DEFAULT_OBSERVER, *spacing)
+        light = paints.light(name)
         if light.name not in known:
             error = delta_e_spectra(light, recipe.reflectance, target.reflectance)
             errors[light.name] = float(error)

@@ -205,6 +205,7 @@ def command(
     **surface: Any,
 ) -> None:
     from uplift.extras.paint import Medium, read_paints
+    from uplift.extras.paint.paints import check_unit
 
     _check_coat(kind, plate)
     paints = None
@@ -212,6 +213,7 @@ def command(
         _check_measured(kind)
         kind = "measured"
         paints = read_paints(paints_path)
+        check_unit(paints, thickness)
     if theories:
         _check_theories(kind)
     _check_image(output)

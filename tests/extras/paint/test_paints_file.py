@@ -45,7 +45,7 @@ def paints():
         names=('5" \\brush', "Kobältblau", "[[paints]]", "a = 1 # \t\x85"),
         errors=Pigment(*errors),
         prices=(0.35, np.nan, 12.0, np.nan),
-        notes=("by invention",),
+        is_to_scale=False,
     )
 
 
@@ -53,7 +53,8 @@ def test_paints_round_trip(paints, path):
     write_paints(paints, path)
     stored = read_paints(path)
     assert stored.names == paints.names
-    assert (stored.notes, stored.surface) == (paints.notes, paints.surface)
+    assert stored.surface == paints.surface
+    assert stored.is_to_scale == paints.is_to_scale
     assert_array_equal(stored.wavelengths, paints.wavelengths)
     assert_array_equal(stored.prices, paints.prices)
     for ours, theirs in (
@@ -70,7 +71,7 @@ def test_a_file_by_hand_needs_little(path):
     stored = read_paints(path)
     assert stored.names == ("grey",)
     assert (stored.surface.outside, stored.surface.inside) == (0, 0)
-    assert (stored.errors, stored.prices, stored.notes) == (None, (), ())
+    assert (stored.errors, stored.prices, stored.is_to_scale) == (None, (), True)
 
 
 def test_errors_of_some_paints_are_left_out(paints, path):

@@ -131,13 +131,8 @@ def _pairs(samples: PaintSamples) -> PaintSamples:
     count = len(samples.paints)
     if count == 1:
         return _opaque(samples, np.eye(1))
-    shares = np.array(
-        [
-            (np.eye(count)[list(pair)]).mean(axis=0)
-            for pair in combinations(range(count), 2)
-        ]
-    )
-    return _opaque(samples, shares.reshape(-1, count))
+    pairs = np.array(list(combinations(range(count), 2)))
+    return _opaque(samples, np.eye(count)[pairs].mean(axis=1))
 
 
 def _opaque(samples: PaintSamples, shares: Array) -> PaintSamples:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_rgb, observer
+from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.files import write_text
@@ -41,9 +41,7 @@ def export_lut(paints: Paints, path: Path, style: str, *, force: bool) -> str:
             code="two-paints",
             hint="select two of the paints",
         )
-    sensor = observer.sensor(wavelengths=(400, 700, 10))
-    sampled = paints.at(sensor.wavelengths)
-    thickest = max(hiding_thickness(sampled, row) for row in np.eye(2))
+    thickest = max(hiding_thickness(paints, row) for row in np.eye(2))
     axis = np.linspace(0, 1, LUT_SIZE)
     table = np.empty((LUT_SIZE,) * 3 + (3,))
     for row, share in enumerate(axis):
@@ -51,8 +49,8 @@ def export_lut(paints: Paints, path: Path, style: str, *, force: bool) -> str:
             for layer, code in enumerate(axis):
                 ground = float(decode(np.array(code)))
                 thickness = thickest * depth**2
-                mixed = sampled.reflectance([1 - share, share], thickness, ground)
-                table[row, column, layer] = encode(sensor.rgb(mixed))
+                mixed = paints.reflectance([1 - share, share], thickness, ground)
+                table[row, column, layer] = encode(paints.sensor.rgb(mixed))
     first, second = paints.names
     title = (
         f"red: share of {second} in {first}; green: root of the thickness, 1 is "
@@ -66,8 +64,7 @@ def hiding_thickness(paints: Paints, parts: Array) -> float:
     """Return the thickness at which a mixture on white and on black differs by ΔE00
     `HIDDEN`.
     """
-    nm = paints.wavelengths
-    sensor = observer.sensor(wavelengths=(nm[0], nm[-1], nm[1] - nm[0]))
+    sensor = paints.sensor
 
     def difference(thickness: float) -> float:
         grounds = [

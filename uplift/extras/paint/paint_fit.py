@@ -315,6 +315,7 @@ def _paints(
         model.pigments(z),
         Surface(float(outside), float(inside)),
         errors,
+        is_to_scale=not samples.is_opaque.all(),
     )
 
 

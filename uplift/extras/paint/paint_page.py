@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.colorimetry import observer
+from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.tables import bradford
-from uplift.common.arrays import Array
 from uplift.common.files import write_text
 from uplift.extras.colour.light_sets import DESCRIPTIONS
 from uplift.extras.colour.srgb import hex_codes
@@ -22,6 +21,8 @@ SCRIPTS = (
     "extras/pages/page.js",
     "extras/pages/draw.js",
     "extras/paint/colour_difference.js",
+    "extras/paint/paint_mixture.js",
+    "extras/paint/paint_recipes.js",
     "extras/paint/paint_page.js",
 )
 
@@ -52,16 +53,6 @@ def page(paints: Paints) -> str:
     masstones = hex_codes(screen.rgb(own))
     tints = hex_codes(screen.rgb(sampled.reflectance(tint_parts)))
     tubes = zip(paints.names, masstones, tints, strict=True)
-    lights = [_light(name, screen.light.white, screen.xyz_to_rgb) for name in LIGHTS]
-    numbers = {
-        "names": paints.names,
-        "wavelengths": screen.wavelengths.tolist(),
-        "absorption": sampled.pigments.absorption.tolist(),
-        "scattering": sampled.pigments.scattering.tolist(),
-        "outside": paints.surface.outside,
-        "inside": paints.surface.inside,
-        "lights": lights,
-    }
     return render(
         "extras/paint/templates/paint_page.html.j2",
         title="Mix paints",
@@ -71,15 +62,30 @@ def page(paints: Paints) -> str:
             (name, DESCRIPTIONS.get(name, "daylight" if name == "D65" else ""))
             for name in LIGHTS
         ],
-        numbers=numbers,
+        numbers=page_numbers(paints),
         script=resource(*SCRIPTS),
     )
 
 
-def _light(name: str, display: Array, xyz_to_rgb: Array) -> dict[str, object]:
+def page_numbers(paints: Paints) -> dict[str, object]:
+    """Return what the scripts of the page need of paints and lights."""
+    screen = observer.sensor(wavelengths=WAVELENGTHS)
+    sampled = paints.at(screen.wavelengths)
+    return {
+        "names": paints.names,
+        "wavelengths": screen.wavelengths.tolist(),
+        "absorption": sampled.pigments.absorption.tolist(),
+        "scattering": sampled.pigments.scattering.tolist(),
+        "outside": paints.surface.outside,
+        "inside": paints.surface.inside,
+        "lights": [_light(name, screen) for name in LIGHTS],
+    }
+
+
+def _light(name: str, screen: Sensor) -> dict[str, object]:
     """Return weights to XYZ and, with the white adapted, to linear sRGB."""
     light = observer.light(name, observer.DEFAULT_OBSERVER, *WAVELENGTHS)
-    to_rgb = xyz_to_rgb @ bradford(light.white, display)
+    to_rgb = screen.xyz_to_rgb @ bradford(light.white, screen.light.white)
     return {
         "name": name,
         "xyz": light.xyz.tolist(),

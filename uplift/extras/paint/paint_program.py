@@ -14,7 +14,7 @@ from string import Template
 
 import numpy as np
 
-from uplift.colorimetry import Sensor, delta_e_rgb, observer
+from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
 from uplift.common.files import write_text
@@ -87,8 +87,8 @@ class FewSamples:
 def few_samples(paints: Paints, count: int = COUNT) -> FewSamples:
     """Choose wavelengths for mixtures of paints, and fit weights there."""
     nm = paints.wavelengths
-    sensor = observer.sensor(wavelengths=(nm[0], nm[-1], nm[1] - nm[0]))
-    fitted, judged = _mixtures(paints, sensor, 0), _mixtures(paints, sensor, 1)
+    sensor = paints.sensor
+    fitted, judged = _mixtures(paints, 0), _mixtures(paints, 1)
     setup = make_setup(fitted.opaque, ["D65"], wavelengths=nm)
     chosen = np.sort(choose(setup, count=count).sampling.wavelengths)
     few = paints.at(chosen)
@@ -124,7 +124,7 @@ class _Mixtures:
         return _spectra(paints, self.parts, self.thickness, self.grounds)
 
 
-def _mixtures(paints: Paints, sensor: Sensor, seed: int) -> _Mixtures:
+def _mixtures(paints: Paints, seed: int) -> _Mixtures:
     rng = np.random.default_rng(seed)
     parts = rng.dirichlet(np.full(len(paints), CONCENTRATION), MIXTURES)
     mixed = paints.pigments.mix(parts)

@@ -1,13 +1,16 @@
 """Measured paints: absorption and scattering of each, at common wavelengths."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.colorimetry import Light, Sensor, observer
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError, unknown_name
+from uplift.common.errors import OptionError, UpliftWarning, unknown_name, warn
 from uplift.common.text import listed
 from uplift.extras.paint.coats import Medium, coat_of_pigments
 from uplift.extras.paint.optics import NO_SURFACE, Surface
@@ -32,8 +35,8 @@ class Paints:
         Relative standard errors of absorption and scattering, (P, N) each.
     prices : tuple of float
         Price of a part of each paint, NaN where it is not known; empty for none.
-    notes : tuple of str
-        Remarks on how the paints were determined.
+    is_to_scale : bool
+        Whether the unit of thickness is known, from measured films.
     """
 
     names: tuple[str, ...]
@@ -42,10 +45,41 @@ class Paints:
     surface: Surface = NO_SURFACE
     errors: Pigment | None = None
     prices: tuple[float, ...] = ()
-    notes: tuple[str, ...] = field(default=())
+    is_to_scale: bool = True
 
     def __len__(self) -> int:
         return len(self.names)
+
+    @property
+    def spacing(self) -> tuple[float, float, float]:
+        """First and last wavelength and step in nm."""
+        nm = self.wavelengths
+        return float(nm[0]), float(nm[-1]), float(nm[1] - nm[0])
+
+    @cached_property
+    def sensor(self) -> Sensor:
+        """Sensor of sRGB under D65 at the wavelengths."""
+        return observer.sensor(wavelengths=self.spacing)
+
+    def light(self, illuminant: Illuminant) -> Light:
+        """Create a light at the wavelengths.
+
+        Parameters
+        ----------
+        illuminant : str or Lamp
+            Illuminant.
+
+        Returns
+        -------
+        Light
+            The light, for the standard observer.
+
+        Raises
+        ------
+        UnknownNameError
+            The name is unknown.
+        """
+        return observer.light(illuminant, observer.DEFAULT_OBSERVER, *self.spacing)
 
     def index(self, name: str) -> int:
         """Find a paint.
@@ -95,18 +129,12 @@ class Paints:
                 hint="leave out the second one",
             )
         rows = [self.index(name) for name in names]
-        errors = None
-        if self.errors is not None:
-            errors = self.errors.select(rows)
-        prices = tuple(self.prices[row] for row in rows) if self.prices else ()
-        return Paints(
-            tuple(names),
-            self.wavelengths,
-            self.pigments.select(rows),
-            self.surface,
-            errors,
-            prices,
-            self.notes,
+        return replace(
+            self,
+            names=tuple(names),
+            pigments=self.pigments.select(rows),
+            errors=None if self.errors is None else self.errors.select(rows),
+            prices=tuple(self.prices[row] for row in rows) if self.prices else (),
         )
 
     def at(self, wavelengths: ArrayLike) -> "Paints":
@@ -133,15 +161,8 @@ class Paints:
             return Pigment(*sampled)
 
         errors = None if self.errors is None else sample(self.errors)
-        return Paints(
-            self.names,
-            nm,
-            sample(self.pigments),
-            self.surface,
-            errors,
-            self.prices,
-            self.notes,
-        )
+        pigments = sample(self.pigments)
+        return replace(self, wavelengths=nm, pigments=pigments, errors=errors)
 
     def reflectance(
         self,
@@ -225,3 +246,13 @@ def strengths(paints: Paints, white: int) -> Array:
     margin = S[white, strongest] - K[white, strongest]
     never = np.where(excess > 0, np.inf, 0.0)
     return np.divide(excess, margin, out=never, where=margin > 0)
+
+
+def check_unit(paints: Paints, thickness: float | None) -> None:
+    """Warn of a thickness of paints that were fitted to opaque samples only."""
+    if thickness is not None and not paints.is_to_scale:
+        problem = (
+            "the paints were fitted to opaque samples: the unit of thickness is unknown"
+        )
+        hint = "measure films on a ground as well"
+        warn(UpliftWarning(problem, code="thickness-without-unit", hint=hint))

@@ -51,7 +51,7 @@ def to_toml(paints: Paints) -> str:
 def _lines(paints: Paints) -> Iterator[str]:
     yield f"format = {text_value(FORMAT)}"
     yield f"wavelengths = {row_value(paints.wavelengths)}"
-    yield f"notes = [{', '.join(map(text_value, paints.notes))}]"
+    yield f"to-scale = {str(paints.is_to_scale).lower()}"
     yield ""
     yield "[surface]"
     yield f"outside = {number_value(paints.surface.outside)}"
@@ -113,7 +113,7 @@ class _PaintTable(SpecModel):
 class _PaintsTable(SpecModel):
     format: Literal["uplift paints 1"]
     wavelengths: _Wavelengths
-    notes: tuple[str, ...] = ()
+    to_scale: bool = True
     surface: _SurfaceTable = _SurfaceTable()
     paints: Annotated[list[_PaintTable], Field(min_length=1, max_length=MAX_PAINTS)]
 
@@ -195,5 +195,5 @@ def read_paints(path: StrPath) -> Paints:
         Surface(table.surface.outside, table.surface.inside),
         errors,
         tuple(prices) if np.isfinite(prices).any() else (),
-        table.notes,
+        table.to_scale,
     )

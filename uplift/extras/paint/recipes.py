@@ -18,7 +18,7 @@ from uplift.colorimetry import Light, delta_e_2000, delta_e_2000_weights, lab
 from uplift.common.arrays import Array, Indices, blocks
 from uplift.common.errors import OptionError
 from uplift.extras.paint.optics import TINY
-from uplift.extras.paint.paints import Paints
+from uplift.extras.paint.paints import Paints, check_unit
 
 MAX_COUNT = 5
 """Largest number of paints of a recipe."""
@@ -138,8 +138,15 @@ def match(
     ------
     OptionError
         An argument is out of range, or there are too many sets of paints.
+
+    Warns
+    -----
+    UpliftWarning
+        The thickness has no unit (``thickness-without-unit``): the paints were fitted
+        to opaque samples.
     """
     _check(paints, count, steps, alternatives)
+    check_unit(paints, target.thickness)
     problem = _Problem.of(target, paints)
     solved = list[tuple[float, Indices, Array]]()
     for size in range(1, min(count, len(paints)) + 1):
