@@ -264,7 +264,7 @@ def print_recipes(
             f"No mixture of {pluralise(min(count, len(paints)), 'paint')} reaches the "
             f"colour: the nearest differs by ΔE00 {recipes[0].error:.1f}."
         )
-    if count > PROVEN:
+    if min(count, len(paints)) > PROVEN:
         paragraph(
             f"Recipes of more than {PROVEN} paints are the best of several solutions, "
             "not proven to be the best of all."
