@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..output.console import paragraph, print_json, say
 from ..output.diagnostics import warn
@@ -79,7 +81,7 @@ def command() -> None:
     \b
     Examples:
       uplift paints fit swatches.csv -o paints.toml
-      uplift paints fit swatches.csv --refractive-index 1.5 --format json -o oil.toml
+      uplift paints fit swatches.csv --refractive-index 1.5 -o oil.toml
       uplift paints fit chart.ti3 --recipes parts.csv -o chart.toml
     """,
 )
@@ -133,7 +135,7 @@ def fit(
         print_json({"output": output, **fit_fields(fitted, advice)})
         return
     print_fit(fitted, advice)
-    say(f"{output}: {len(fitted.paints)} paints", err=True)
+    say(f"{output}: {pluralise(len(fitted.paints), 'paint')}", err=True)
 
 
 def _surface(

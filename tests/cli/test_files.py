@@ -29,7 +29,24 @@ day = {illuminant = "D65"}
 card = {atlas = "atlas.txt", entry = "blue"}
 paint = {rgb = [0.5, 0.5, 0.5], cube = "cube.uplift"}
 """
+SWATCHES = """
+name,white,blue,colour
+white,1,,#f5f5f0
+blue,,1,#101040
+tint,4,1,#5070b0
+"""
+VALUES = ", ".join(["0.5"] * 16)
+PAINT = f"absorption = [{VALUES}]\nscattering = [{VALUES}]\n"
+PAINTS = f"""
+format = "uplift paints 1"
+wavelengths = [{", ".join(str(nm) for nm in range(400, 701, 20))}]
+[[paints]]
+name = "blue"
+{PAINT}
+"""
 CONTENT = {
+    "swatches.csv": SWATCHES,
+    "paints.toml": PAINTS,
     "colours.csv": "0.5,0.5,0.5\n",
     "camera.csv": "380,1,0,0\n550,0,1,0\n780,0,0,1\n",
     "looks.toml": "",
@@ -78,6 +95,12 @@ lights texture image.exr --lights lights.uplift | -o x.exr | x.exr
 mix #c8342a --atlas atlas.txt --cube cube.uplift | --plot x.png | x.png
 mix --duntley 2:paint.csv --cube cube.uplift | --plot x.png | x.png
 mix #c8342a --over image.exr --cube cube.uplift | -o x.exr | x.exr
+paints fit swatches.csv | -o x.toml | x.toml
+paints match #888 --paints paints.toml --cube cube.uplift --atlas atlas.txt \
+| --plot x.png | x.png
+paints match --input image.exr --paints paints.toml | -o x.exr | x.exr
+mix blue --paints paints.toml --cube cube.uplift | --plot x.png | x.png
+export paints.toml | -o x.h | x.h
 palette palette.toml | -o x.txt | x.txt
 palette palette.toml | --plot x.png | x.png
 palette palette.toml | --plot-spectra x.png | x.png

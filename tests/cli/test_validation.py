@@ -157,6 +157,13 @@ unknown-name query #fff --light none.spd
 atlas query #fff --light mine
 ambiguous-numbers query 0,2,0,3,0,4
 file-not-found query #fff --cube none.uplift
+file-not-found paints fit none.csv -o x.toml
+file-exists paints fit colours.csv -o mine
+file-not-found paints info none.toml
+file-not-found paints match #888 --paints none.toml
+invalid-file paints match #888 --paints palette.toml
+file-not-found mix blue --paints none.toml
+file-not-found export none.toml -o x.h
 file-not-found passes choose none.png -o x.toml
 file-not-found passes choose --atlas none.csv -o x.toml
 unknown-name passes choose --light none
@@ -246,6 +253,7 @@ invalid; {} is a cube.
 UNPLOTTED = """
 advise wood.png --cube {} --plot x.png
 bounds #888 --plot x.svg
+check --renderer colours.csv --plot x.png
 chart --atlas macbeth --quick
 compare --atlas macbeth --quick -o out
 diff {} {} -o x.html
@@ -253,6 +261,7 @@ lights info --plot x.png
 lights info --html x.html
 lights query 1 1 1 --plot x.png
 mix #888 --plot x.png
+paints match #888 --paints palette.toml --plot x.png
 palette palette.toml --plot x.png
 palette palette.toml --plot-spectra x.pdf
 query #888 --plot x.png
@@ -287,7 +296,7 @@ wavelengths --count 4 --atlas paints.xlsx --plot x.png
 """,
 }
 """Commands by the optional package that they need."""
-GROUPS = ("lights", "passes", "study")
+GROUPS = ("lights", "paints", "passes", "study")
 WITHOUT_ROWS = {
     "check": "checks all cubes that it can read",
     "export": "writes one file as its last act",

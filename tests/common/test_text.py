@@ -137,7 +137,7 @@ NOUNS = (
 )
 COUNT_BY_HAND = re.compile(rf"\{{([^{{}}:]+)(?::,)?\}}+ (?:[a-z]+ )?(?:{NOUNS})\b")
 NEVER_ONE = re.compile(
-    r"[A-Z_]+|.*\b(name|limit|dim|size|height|rings|coefficients|model.count)|len\(images\)|'.*|.*pluralise.*"
+    r"[A-Z_]+|.*\b(name|limit|dim|size|height|rings|coefficients|model.count)|Float32Array|len\(images\)|'.*|.*pluralise.*"
 )
 """Limits, names, sizes and values that are at least 2."""
 

@@ -10,6 +10,7 @@ from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.files import write_text
+from uplift.common.text import pluralise
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.export.lut import cube_text
 from uplift.extras.paint.coats import Medium, coat_of_pigments
@@ -27,8 +28,9 @@ THINNEST = 1e-4
 def export_program(paints: Paints, path: Path, style: str, *, force: bool) -> str:
     """Write a program, and return a line about it."""
     samples = write_program(paints, path, style=style, force=force)
-    count = len(samples.paints.wavelengths)
-    return f"{len(paints)} paints at {count} wavelengths; {describe_errors(samples)}"
+    wavelengths = pluralise(len(samples.paints.wavelengths), "wavelength")
+    count = pluralise(len(paints), "paint")
+    return f"{count} at {wavelengths}; {describe_errors(samples)}"
 
 
 def export_lut(paints: Paints, path: Path, style: str, *, force: bool) -> str:
@@ -106,7 +108,7 @@ def hiding_thickness(paints: Paints, parts: Array) -> float:
 def export_page(paints: Paints, path: Path, style: str, *, force: bool) -> str:
     """Write a page with the paints as tubes, which mixes them and finds recipes."""
     write_page(paints, path, force=force)
-    return f"page of {len(paints)} paints"
+    return f"page of {pluralise(len(paints), 'paint')}"
 
 
 @dataclass(frozen=True)

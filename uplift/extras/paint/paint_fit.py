@@ -20,6 +20,7 @@ from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.common.text import pluralise
 from uplift.extras.paint.optics import Surface, beneath_surface, through_surface
 from uplift.extras.paint.paint_prior import STRENGTH_SPREAD, PaintPrior, paint_prior
 from uplift.extras.paint.paint_samples import (
@@ -209,8 +210,9 @@ def fit_paints(
     model = FitModel(prior, surface, darkest, sensor)
     if model.count > MAX_VARIABLES:
         raise OptionError(
-            f"{len(samples.paints)} paints at {len(nm)} wavelengths have "
-            f"{model.count} unknowns, more than {MAX_VARIABLES}",
+            f"{pluralise(len(samples.paints), 'paint')} at "
+            f"{pluralise(len(nm), 'wavelength')} have {model.count} unknowns, more "
+            f"than {MAX_VARIABLES}",
             code="too-many-paints",
             hint="fit fewer paints at a time, or measure in steps of 10 nm",
         )
