@@ -9,7 +9,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from uplift.colorimetry import delta_e_2000, lab, lab_to_xyz, observer
+from uplift.colorimetry import (
+    delta_e_2000,
+    delta_e_2000_terms,
+    lab,
+    lab_to_xyz,
+    observer,
+)
 from uplift.extras.colour.dominant import GREY, dominant_wavelength
 
 PAIRS = np.loadtxt(
@@ -31,6 +37,14 @@ def test_delta_e_2000_agrees_with_colour_science():
     second = first + rng.normal(scale=10, size=first.shape)
     expected = colour.difference.delta_E_CIE2000(first, second)
     assert_allclose(delta_e_2000(first, second), expected, rtol=1e-9)
+
+
+def test_the_norm_of_three_terms_is_delta_e_2000():
+    rng = np.random.default_rng(5)
+    pairs = rng.uniform([0, -100, -100], [100, 100, 100], (2, 2000, 3))
+    pairs[:, :9, 1:] = 0
+    terms = delta_e_2000_terms(*pairs)
+    assert_allclose(np.linalg.norm(terms, axis=-1), delta_e_2000(*pairs), rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["D65", "A"])

@@ -5,6 +5,7 @@
 from uplift.colorimetry.delta_e import (
     delta_e_1976,
     delta_e_2000,
+    delta_e_2000_terms,
     delta_e_2000_weights,
     delta_e_rgb,
     delta_e_spectra,
@@ -32,6 +33,7 @@ __all__ = [
     "as_rgb",
     "delta_e_1976",
     "delta_e_2000",
+    "delta_e_2000_terms",
     "delta_e_2000_weights",
     "delta_e_rgb",
     "delta_e_spectra",

@@ -101,7 +101,9 @@ def chosen(samples, rows):
 def mixture_errors(fitted, paints, count=200):
     """ΔE00 (count,) of random opaque mixtures between fitted paints and true ones."""
     nm = paints.wavelengths
-    light = observer.light("D65", observer.DEFAULT_OBSERVER, nm[0], nm[-1], nm[1] - nm[0])
+    light = observer.light(
+        "D65", observer.DEFAULT_OBSERVER, nm[0], nm[-1], nm[1] - nm[0]
+    )
     shares = np.full(len(paints), 0.5)
     parts = np.random.default_rng(6).dirichlet(shares, count)
     return delta_e_spectra(light, fitted.reflectance(parts), paints.reflectance(parts))

@@ -12,7 +12,11 @@ from uplift.extras.paint import advise_samples, fit_paints
 def test_samples_are_new_and_each_lowers_the_error(opaque_fit):
     advice = advise_samples(opaque_fit, 10)
     names = [sample.name for sample in advice.samples]
-    assert sorted(names) == ["1 white : 1 red", "1 white : 1 yellow", "1 yellow : 1 red"]
+    assert sorted(names) == [
+        "1 white : 1 red",
+        "1 white : 1 yellow",
+        "1 yellow : 1 red",
+    ]
     errors = [advice.error, *(sample.error for sample in advice.samples)]
     assert (np.diff(errors) < 0).all()
     first = advise_samples(opaque_fit, 1)
