@@ -16,7 +16,9 @@ import pytest
 from uplift_cli.main import main
 from uplift_cli.options import OutputFile
 
+from tests.extras.paint.invented import invented
 from tests.extras.texture.conftest import planes, write_exr
+from uplift.extras.paint.paints_file import to_toml
 
 from .conftest import commands
 
@@ -36,6 +38,9 @@ CONTENT = {
     "chart.csv": "",
     "lamp.csv": "400,1\n550,2\n700,3\n",
     "paint.csv": "",
+    "recipes.csv": "",
+    "samples.csv": "",
+    "paints.toml": to_toml(invented()),
     "answers.csv": "",
     "plan.json": "",
     "palette.toml": PALETTE,
@@ -69,6 +74,8 @@ compare --atlas atlas.txt --write PF16 | -o out | out/surfaces.csv out/lights.cs
 diff cube.uplift cube2.uplift image.exr wood.*.exr | -o x.html | x.html
 export cube.uplift | -o x.npz | x.npz
 export cube.uplift --light lamp.csv | -o x.cube | x.cube
+export paints.toml | -o x.h | x.h
+export paints.toml | -o x.html | x.html
 lights build --atlas atlas.txt | -o x.uplift | x.uplift
 lights export lights.uplift | -o x.h | x.h
 lights info lights.uplift | --plot x.svg | x.svg
@@ -78,6 +85,13 @@ lights texture image.exr --lights lights.uplift | -o x.exr | x.exr
 mix #c8342a --atlas atlas.txt --cube cube.uplift | --plot x.png | x.png
 mix --duntley 2:paint.csv --cube cube.uplift | --plot x.png | x.png
 mix #c8342a --over image.exr --cube cube.uplift | -o x.exr | x.exr
+mix white --paints paints.toml --cube cube.uplift | --plot x.png | x.png
+mix white --paints paints.toml --over image.exr --cube cube.uplift | -o x.exr | x.exr
+paints fit samples.csv --recipes recipes.csv | -o x.toml | x.toml
+paints match #c8342a --paints paints.toml --atlas atlas.txt --cube cube.uplift \
+| --plot x.png | x.png
+paints match --spectrum atlas.txt --paints paints.toml | --plot x.png | x.png
+paints match --input image.exr --paints paints.toml | -o x.exr | x.exr
 palette palette.toml | -o x.txt | x.txt
 palette palette.toml | --plot x.png | x.png
 palette palette.toml | --plot-spectra x.png | x.png
