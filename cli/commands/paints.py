@@ -124,8 +124,8 @@ def fit(
     enable_jit_cache()
     from uplift.extras import paint
 
-    check_outputs(output, inputs=[samples_path, recipes or samples_path])
     surface = _surface(refractive_index, surface_reflectance, internal_reflectance)
+    check_outputs(output)
     samples = paint.read_paint_samples(samples_path, recipes)
     with progress_bar("fitting paints", quiet=style == "json") as progress:
         fitted = paint.fit_paints(samples, surface=surface, progress=progress)

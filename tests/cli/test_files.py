@@ -16,7 +16,9 @@ import pytest
 from uplift_cli.main import main
 from uplift_cli.option_types import OutputFile
 
+from tests.extras.paint.invented import invented
 from tests.extras.texture.conftest import planes, write_exr
+from uplift.extras.paint.paints_file import to_toml
 
 from .conftest import commands
 
@@ -29,30 +31,16 @@ day = {illuminant = "D65"}
 card = {atlas = "atlas.txt", entry = "blue"}
 paint = {rgb = [0.5, 0.5, 0.5], cube = "cube.uplift"}
 """
-SWATCHES = """
-name,white,blue,colour
-white,1,,#f5f5f0
-blue,,1,#101040
-tint,4,1,#5070b0
-"""
-VALUES = ", ".join(["0.5"] * 16)
-PAINT = f"absorption = [{VALUES}]\nscattering = [{VALUES}]\n"
-PAINTS = f"""
-format = "uplift paints 1"
-wavelengths = [{", ".join(str(nm) for nm in range(400, 701, 20))}]
-[[paints]]
-name = "blue"
-{PAINT}
-"""
 CONTENT = {
-    "swatches.csv": SWATCHES,
-    "paints.toml": PAINTS,
     "colours.csv": "0.5,0.5,0.5\n",
     "camera.csv": "380,1,0,0\n550,0,1,0\n780,0,0,1\n",
     "looks.toml": "",
     "chart.csv": "",
     "lamp.csv": "400,1\n550,2\n700,3\n",
     "paint.csv": "",
+    "recipes.csv": "",
+    "samples.csv": "",
+    "paints.toml": to_toml(invented()),
     "answers.csv": "",
     "plan.json": "",
     "palette.toml": PALETTE,
@@ -86,6 +74,8 @@ compare --atlas atlas.txt --write PF16 | -o out | out/surfaces.csv out/lights.cs
 diff cube.uplift cube2.uplift image.exr wood.*.exr | -o x.html | x.html
 export cube.uplift | -o x.npz | x.npz
 export cube.uplift --light lamp.csv | -o x.cube | x.cube
+export paints.toml | -o x.h | x.h
+export paints.toml | -o x.html | x.html
 lights build --atlas atlas.txt | -o x.uplift | x.uplift
 lights export lights.uplift | -o x.h | x.h
 lights info lights.uplift | --plot x.svg | x.svg
@@ -95,11 +85,13 @@ lights texture image.exr --lights lights.uplift | -o x.exr | x.exr
 mix #c8342a --atlas atlas.txt --cube cube.uplift | --plot x.png | x.png
 mix --duntley 2:paint.csv --cube cube.uplift | --plot x.png | x.png
 mix #c8342a --over image.exr --cube cube.uplift | -o x.exr | x.exr
-paints fit swatches.csv | -o x.toml | x.toml
-paints match #888 --paints paints.toml --cube cube.uplift --atlas atlas.txt \
+mix white --paints paints.toml --cube cube.uplift | --plot x.png | x.png
+mix white --paints paints.toml --over image.exr --cube cube.uplift | -o x.exr | x.exr
+paints fit samples.csv --recipes recipes.csv | -o x.toml | x.toml
+paints match #c8342a --paints paints.toml --atlas atlas.txt --cube cube.uplift \
 | --plot x.png | x.png
+paints match --spectrum atlas.txt --paints paints.toml | --plot x.png | x.png
 paints match --input image.exr --paints paints.toml | -o x.exr | x.exr
-mix blue --paints paints.toml --cube cube.uplift | --plot x.png | x.png
 export paints.toml | -o x.h | x.h
 palette palette.toml | -o x.txt | x.txt
 palette palette.toml | --plot x.png | x.png

@@ -13,8 +13,10 @@ from uplift_cli.commands.slices import SHEET
 from uplift_cli.main import main
 from uplift_cli.option_types import FIGURE_PAGE, PLOT
 
+from tests.extras.paint.invented import invented
 from tests.extras.texture.conftest import planes, write_exr
 from tests.helpers import without_evidence
+from uplift.extras.paint.paints_file import to_toml
 
 from .conftest import commands
 
@@ -27,6 +29,8 @@ COMPUTES = {
     "compare": "uplift.lab.comparison.compare.error_statistics",
     "diff": "uplift.extras.report.diff.diff_cubes",
     "lights build": "uplift.extras.emission.build.EmissionTable",
+    "paints fit": "uplift.extras.paint.fit_paints",
+    "paints match": "uplift.extras.paint.match",
     "palette": "uplift.extras.palette.design",
     "passes choose": "uplift.extras.scene.passes.choice.draw_paths",
     "plan": "uplift.extras.scene.plan.space.sample_colours",
@@ -129,6 +133,19 @@ file-not-found mix #888 --over none.png -o x.exr
 unknown-name mix #888 --over wood.png -o x.exr --input-space none
 option mix #888 --wavelengths 1:2:1 --plot x.png
 file-not-found mix #888 --atlas none.csv --plot x.png
+file-not-found mix white --paints none.toml --plot x.png
+unknown-name mix white green --paints paints.toml --plot x.png
+file-not-found paints fit two.csv --recipes none.csv -o x.toml
+option paints fit two.csv --refractive-index 0.5 -o x.toml
+file-exists paints fit two.csv -o mine
+no-paints paints fit two.csv -o x.toml
+file-not-found paints info none.toml
+unknown-name paints match #888 --paints paints.toml --paint green --plot x.png
+unknown-name paints match #888 --paints paints.toml --light none --plot x.png
+colour paints match #888 --paints paints.toml --ground none --plot x.png
+file-not-found paints match #888 --paints paints.toml --atlas none.csv --plot x.png
+file-not-found paints match --input none.png --paints paints.toml -o x.exr
+file-exists paints match --input wood.png --paints paints.toml -o mine
 file-not-found palette palette.toml --image none.png --html x.html --plot x.png
 file-not-found palette none.toml -o x.csv
 unknown-name palette palette.toml --label none=#888 --image wood.png --html x.html
@@ -157,12 +174,6 @@ unknown-name query #fff --light none.spd
 atlas query #fff --light mine
 ambiguous-numbers query 0,2,0,3,0,4
 file-not-found query #fff --cube none.uplift
-file-not-found paints fit none.csv -o x.toml
-file-exists paints fit colours.csv -o mine
-file-not-found paints info none.toml
-file-not-found paints match #888 --paints none.toml
-invalid-file paints match #888 --paints palette.toml
-file-not-found mix blue --paints none.toml
 file-not-found export none.toml -o x.h
 file-not-found passes choose none.png -o x.toml
 file-not-found passes choose --atlas none.csv -o x.toml
@@ -261,7 +272,7 @@ lights info --plot x.png
 lights info --html x.html
 lights query 1 1 1 --plot x.png
 mix #888 --plot x.png
-paints match #888 --paints palette.toml --plot x.png
+paints match #888 --paints paints.toml --plot x.png
 palette palette.toml --plot x.png
 palette palette.toml --plot-spectra x.pdf
 query #888 --plot x.png
@@ -329,6 +340,7 @@ def files(home, repository, plain_cube):
         "name,400,550,700\none,0.5,0.5,0.5\nother,0.4,0.4,0.4\n"
     )
     (home / "palette.toml").write_text(PALETTE)
+    (home / "paints.toml").write_text(to_toml(invented()))
     (home / "scene.toml").write_text('textures = ["wood.png", "none.png"]\n')
     measured = 'atlas = "paints.xlsx", entry = "x"'
     (home / "spreadsheet.toml").write_text(

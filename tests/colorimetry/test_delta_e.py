@@ -9,7 +9,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from uplift.colorimetry import delta_e_2000, lab, lab_to_xyz, observer
+from uplift.colorimetry import (
+    delta_e_2000,
+    delta_e_2000_terms,
+    lab,
+    lab_to_xyz,
+    observer,
+)
 from uplift.extras.colour.dominant import GREY, dominant_wavelength
 
 PAIRS = np.loadtxt(
@@ -23,6 +29,14 @@ def test_published_pairs_of_sharma_2005():
     assert len(PAIRS) == 34
     for first, second in ((PAIRS[:, :3], PAIRS[:, 3:6]), (PAIRS[:, 3:6], PAIRS[:, :3])):
         assert_allclose(delta_e_2000(first, second), PAIRS[:, 6], atol=5.1e-5)
+
+
+def test_the_norm_of_three_terms_is_delta_e_2000():
+    rng = np.random.default_rng(5)
+    pairs = rng.uniform([0, -100, -100], [100, 100, 100], (2, 2000, 3))
+    pairs[:, :9, 1:] = 0
+    terms = delta_e_2000_terms(*pairs)
+    assert_allclose(np.linalg.norm(terms, axis=-1), delta_e_2000(*pairs), rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["D65", "A"])

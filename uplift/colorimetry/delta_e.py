@@ -126,6 +126,27 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     >>> round(float(delta_e_2000([50, 2.6772, -79.7751], [50, 0, -82.7485])), 4)
     2.0425
     """
+    delta_l, delta_c, delta_h, rotation = _differences(lab_1, lab_2)
+    return np.sqrt(
+        np.maximum(
+            delta_l**2 + delta_c**2 + delta_h**2 + rotation * delta_c * delta_h, 0
+        )
+    )
+
+
+def delta_e_2000_terms(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
+    """Compute three numbers whose norm is CIEDE2000, for least squares. Shapes:
+    ``lab_1``, ``lab_2`` (…, 3) → (…, 3).
+    """
+    delta_l, delta_c, delta_h, rotation = _differences(lab_1, lab_2)
+    # C² + H² + R C H = (C + R H / 2)² + (1 − R² / 4) H²
+    turned = delta_c + rotation / 2 * delta_h
+    other = np.sqrt(np.maximum(1 - rotation**2 / 4, 0)) * delta_h
+    return np.stack([delta_l, turned, other], axis=-1)
+
+
+def _differences(lab_1: ArrayLike, lab_2: ArrayLike) -> tuple[Array, ...]:
+    """Return the weighted differences of lightness, chroma and hue, and R_T."""
     (l1, a1, b1), (l2, a2, b2) = (
         np.moveaxis(np.asarray(x, dtype=float), -1, 0) for x in (lab_1, lab_2)
     )
@@ -170,11 +191,7 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
         * _weight_7(chroma)
         * np.sin(np.radians(60 * np.exp(-(((hue - 275) / 25) ** 2))))
     )
-    return np.sqrt(
-        np.maximum(
-            delta_l**2 + delta_c**2 + delta_h**2 + rotation * delta_c * delta_h, 0
-        )
-    )
+    return delta_l, delta_c, delta_h, rotation
 
 
 def delta_e_2000_weights(lab: ArrayLike) -> Array:

@@ -45,7 +45,7 @@ def test_exact_films_determine_the_paints_and_their_surface(three_paints):
 
 
 def test_exact_opaque_samples_determine_mixtures(three_paints, opaque_fit):
-    """K and S only up to a factor at each wavelength, and the surface roughly."""
+    """Though K and S only up to a factor, and the surface roughly."""
     assert mixture_errors(opaque_fit.paints, three_paints).max() < 0.05
     assert opaque_fit.delta_e.max() < 0.05
     assert opaque_fit.paints.surface.outside == pytest.approx(0.04, abs=0.03)

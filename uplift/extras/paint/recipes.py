@@ -1,8 +1,8 @@
 """Recipes: the parts of paints whose mixture comes nearest to a colour.
 
 Every set of up to ``count`` paints is tried. The shares of a set start from a grid over
-their simplex and follow damped Gauss–Newton steps, all sets at once; colours under
-several lights, weighted as CIEDE2000 weighs them near the target, are the residuals.
+their simplex and follow damped Gauss–Newton steps, all sets at once; the three terms of
+CIEDE2000 under each light are the residuals.
 The best shares are then rounded to parts that one can weigh, and the neighbours in
 parts are tried as well. Of up to two paints the grid is dense enough that no better
 shares exist; of more, the best of several starts is not proven to be the best.
@@ -14,7 +14,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from uplift.colorimetry import Light, delta_e_2000, delta_e_2000_weights, lab
+from uplift.colorimetry import Light, delta_e_2000, delta_e_2000_terms, lab
 from uplift.common.arrays import Array, Indices, blocks
 from uplift.common.errors import OptionError
 from uplift.extras.paint.optics import TINY
@@ -195,12 +195,11 @@ class _Problem:
     target: PaintTarget
     paints: Paints
     goals: Array  # (L, 3)
-    weights: Array  # (L, 3, 3), of a difference in L*a*b* to about ΔE00
 
     @classmethod
     def of(cls, target: PaintTarget, paints: Paints) -> "_Problem":
         goals = _colours(target.reflectance, target.lights)
-        return cls(target, paints, goals, delta_e_2000_weights(goals))
+        return cls(target, paints, goals)
 
     def reflectance(self, parts: Array) -> Array:
         """Return the reflectances (m, N) of mixtures by parts (m, P)."""
@@ -208,11 +207,11 @@ class _Problem:
         return self.paints.reflectance(parts, target.thickness, target.ground)
 
     def residuals(self, parts: Array) -> Array:
-        """Return the weighted differences (m, 3 L) of mixtures to the target."""
+        """Return the differences (m, 3 L) of mixtures to the target: terms of ΔE00."""
         pieces = []
         for rows in blocks(len(parts), BLOCK):
             colours = _colours(self.reflectance(parts[rows]), self.target.lights)
-            differences = (self.weights @ (colours - self.goals)[..., None])[..., 0]
+            differences = delta_e_2000_terms(colours, self.goals)
             pieces.append(differences.reshape(len(colours), -1))
         return np.concatenate(pieces)
 

@@ -1,0 +1,123 @@
+"""Run exported paints: each function takes a program and rows (n, P + 2) of parts,
+thickness and grey ground, and returns rows (n, 2 S + 3): opaque reflectances, those of
+the layer, and linear RGB.
+
+It skips the test if the compiler or the browser is lacking.
+"""
+
+import base64
+import subprocess
+
+import numpy as np
+import pytest
+
+from tests.extras.export.run_program import STRICT, draw
+from tests.helpers import output_of
+from tests.parts import CC, CHROMIUM, CXX, GLSLANG, SANITIZED, SANITIZERS, need
+
+HOST = """
+#include <stdio.h>
+#include "tubes.h"
+
+int main(void)
+{
+    float given[TUBES_PAINTS + 2], ground[TUBES_SAMPLES];
+    float result[2 * TUBES_SAMPLES + 3];
+    while (fread(given, sizeof given, 1, stdin) == 1) {
+        for (int at = 0; at < TUBES_SAMPLES; ++at) ground[at] = given[TUBES_PAINTS + 1];
+        tubes_opaque(given, result);
+        tubes_layer(given, given[TUBES_PAINTS], ground, result + TUBES_SAMPLES);
+        tubes_mix(given, result + 2 * TUBES_SAMPLES);
+        fwrite(result, sizeof result, 1, stdout);
+    }
+    return 0;
+}
+"""
+FRAGMENT = """#version 300 es
+{code}
+uniform sampler2D colours;
+out vec4 found;
+void main() {{
+    vec4 given = texelFetch(colours, ivec2(gl_FragCoord.xy), 0);
+    float parts[TUBES_PAINTS] = float[TUBES_PAINTS]({parts});
+    float ground[TUBES_SAMPLES], layer[TUBES_SAMPLES], rgb[3];
+    for (int at = 0; at < TUBES_SAMPLES; ++at) ground[at] = given.b;
+    tubes_layer(parts, given.a, ground, layer);
+    tubes_rgb(layer, rgb);
+    found = vec4(rgb[0], rgb[1], rgb[2], layer[3]);
+}}
+"""
+PIXEL = """
+{code}
+StructuredBuffer<float4> colours : register(t1);
+RWStructuredBuffer<float4> found : register(u2);
+[numthreads(64, 1, 1)]
+void main(uint3 id : SV_DispatchThreadID) {{
+    float parts[TUBES_PAINTS] = {{{parts}}};
+    float rgb[3];
+    parts[0] = colours[id.x].x;
+    tubes_mix(parts, rgb);
+    found[id.x] = float4(rgb[0], rgb[1], rgb[2], 1);
+}}
+"""
+
+
+def c(path, rows, compiler=("cc", "-std=c99")):
+    need({"cc": CC, "c++": CXX}[compiler[0]])
+    folder = path.parent
+    (folder / "main.c").write_text(HOST)
+    command = [*compiler, *STRICT, "main.c", "-o", "main", "-lm"]
+    subprocess.run(command, cwd=folder, check=True)
+    given = rows.astype(np.float32).tobytes()
+    done = subprocess.run(
+        [folder / "main"], input=given, capture_output=True, check=True
+    )
+    return np.frombuffer(done.stdout, np.float32).reshape(len(rows), -1)
+
+
+def cpp(path, rows):
+    compiler = ("c++", "-std=c++11", "-x", "c++", "-Wold-style-cast")
+    return c(path, rows, compiler)
+
+
+def sanitized(path, rows):
+    need(SANITIZERS)
+    return c(path, rows, ("cc", *SANITIZED))
+
+
+def glsl(path, parts, films):
+    """Return linear RGB and the fourth reflectance (n, 4) of films (n, 2) of one
+    mixture, of a thickness and on a grey ground, by WebGL 2 in Chromium.
+    """
+    need(CHROMIUM)
+    side = int(np.ceil(np.sqrt(len(films))))
+    pixels = np.zeros((side * side, 4), np.float32)
+    pixels[: len(films), 3] = films[:, 0]
+    pixels[: len(films), 2] = films[:, 1]
+    listed = ", ".join(str(float(part)) for part in parts)
+    code = FRAGMENT.format(code=path.read_text(), parts=listed)
+    data = {"code": code, "table": base64.b64encode(b"").decode()}
+    found = draw(path, pixels, data, "")
+    if found is None:
+        pytest.skip("the browser has no WebGL 2")
+    return found[: len(films)]
+
+
+def compile_hlsl(path, count):
+    """Compile a shader to SPIR-V."""
+    need(GLSLANG)
+    listed = ", ".join(["1.0"] * count)
+    main = path.with_name("main.hlsl")
+    main.write_text(PIXEL.format(code=path.read_text(), parts=listed))
+    command = "glslangValidator -D -V -S comp -e main main.hlsl -o main.spv"
+    output_of(*command.split(), cwd=path.parent)
+    return path.with_name("main.spv")
+
+
+def compile_glsl(path):
+    """Compile a fragment shader."""
+    need(GLSLANG)
+    call = "float p[TUBES_PAINTS]; p[0] = 1.0; float c[3]; tubes_mix(p, c); o.r = c[0];"
+    text = f"#version 330\n{path.read_text()}out vec4 o;\nvoid main() {{ {call} }}\n"
+    path.with_name("a.frag").write_text(text)
+    output_of("glslangValidator", "a.frag", cwd=path.parent)

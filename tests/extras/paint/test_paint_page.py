@@ -1,0 +1,196 @@
+"""The page of paints: its numbers, and in Chromium mixtures and recipes."""
+
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from tests.browsing import WIDTHS, check_page, open_page, overflow, shared_tab
+from tests.extras.paint.invented import invented
+from tests.helpers import output_of, raises
+from tests.parts import NODE, need
+from uplift.colorimetry import delta_e_rgb, observer
+from uplift.common.errors import OutputError
+from uplift.extras.colour.srgb import decode, hex_codes
+from uplift.extras.paint import PaintTarget, match
+from uplift.extras.paint.paint_page import page, write_page
+
+SENSOR = observer.sensor(wavelengths=(400, 700, 10))
+DIFFERENCES = """
+import { readFileSync } from "node:fs";
+const code = readFileSync(process.argv[2], "utf8");
+const { toLab, deltaE } = new Function(`${code}; return { toLab, deltaE };`)();
+const { pairs, colours, white } = JSON.parse(readFileSync(0, "utf8"));
+const errors = pairs.map(row => deltaE(row.slice(0, 3), row.slice(3, 6)));
+const back = pairs.map(row => deltaE(row.slice(3, 6), row.slice(0, 3)));
+const labs = colours.map(xyz => toLab(xyz, white));
+console.log(JSON.stringify({ errors, back, labs }));
+"""
+
+
+@pytest.fixture(scope="module")
+def paints():
+    return invented(np.arange(400.0, 701, 10))
+
+
+@pytest.fixture
+def opened(paints, tmp_path):
+    """A tab that shows the page of all paints on a desk."""
+    tab = shared_tab()
+    open_page(tab, page(paints), tmp_path)
+    return tab
+
+
+def code_of(reflectance):
+    return hex_codes(SENSOR.rgb(reflectance[None]))[0]
+
+
+def text(tab, name):
+    return tab.evaluate(f"document.getElementById('{name}').textContent")
+
+
+def put(tab, name, value, event="input"):
+    """Set a control as its reader does."""
+    control = f"document.getElementById('{name}')"
+    tab.evaluate(
+        f"{control}.value = {json.dumps(str(value))};"
+        f"{control}.dispatchEvent(new Event('{event}')); 0"
+    )
+
+
+def recipes(tab):
+    """Parts by paint and the stated ΔE00 of each recipe."""
+    items = tab.evaluate(
+        "[...document.querySelectorAll('#recipes button')].map(item => "
+        "[...item.querySelectorAll('span')].map(span => span.textContent))"
+    )
+    found = []
+    for recipe, error in items:
+        pairs = [part.split(" ", 1) for part in recipe.split(" + ")]
+        parts = {name: int(amount) for amount, name in pairs}
+        found.append((parts, float(error.removeprefix("ΔE "))))
+    return found
+
+
+def test_the_page_is_complete_narrow_and_accessible(paints, tmp_path):
+    check_page(page(paints), tmp_path)
+
+
+def test_numbers_are_those_of_the_paints(paints):
+    content = re.search(r'id="numbers">(.*?)</script>', page(paints), re.DOTALL)
+    numbers = json.loads(content[1])
+    assert numbers["names"] == list(paints.names)
+    assert_allclose(numbers["absorption"], paints.pigments.absorption)
+    assert_allclose(numbers["scattering"], paints.pigments.scattering)
+    assert (numbers["outside"], numbers["inside"]) == (0.04, 0.6)
+    assert len(numbers["lights"]) == 3
+
+
+def test_mixtures_have_the_colours_of_python(paints, opened):
+    assert text(opened, "code") == code_of(paints.reflectance([4, 2, 1, 0]))
+    assert text(opened, "recipe") == "4 white + 2 yellow + 1 red"
+    for paint, parts in enumerate([0, 6, 0, 2]):
+        put(opened, f"parts-{paint}", parts)
+    assert text(opened, "code") == code_of(paints.reflectance([0, 6, 0, 2]))
+    opened.evaluate("document.getElementById('clear').click(); 0")
+    assert text(opened, "code") == code_of(paints.reflectance([1, 0, 0, 0]))
+    put(opened, "parts-0", 0)
+    assert text(opened, "recipe") == "1 white"
+    assert opened.errors == []
+
+
+def test_films_hide_their_ground_from_thin_to_thick(opened):
+    colours = []
+    for slider in (-3, 3):
+        put(opened, "thickness", slider)
+        pair = [
+            opened.evaluate(f"document.getElementById('{name}').style.background")
+            for name in ("on-white", "on-black")
+        ]
+        codes = [list(map(int, re.findall(r"\d+", colour)))[:3] for colour in pair]
+        colours.append(np.abs(np.subtract(*codes)).max())
+    thin, thick = colours
+    assert thin > 100
+    assert thick < 30
+
+
+def test_recipes_are_as_good_as_those_of_python(paints, opened):
+    light = observer.light("D65", observer.DEFAULT_OBSERVER, 400, 700, 10)
+    for parts in ([3, 0, 0, 1], [0, 5, 0, 2], [4, 2, 1, 0]):
+        reflectance = paints.reflectance(parts)
+        code = code_of(reflectance)
+        put(opened, "target", code)
+        found = recipes(opened)
+        errors = [error for _, error in found]
+        assert errors == sorted(errors)
+        best = match(PaintTarget(reflectance, (light,)), paints, steps=40)[0]
+        assert errors[0] < best.error + 1
+        wanted = decode(np.array(list(bytes.fromhex(code[1:]))) / 255)
+        for mixture, error in found:
+            amounts = [mixture.get(name, 0) for name in paints.names]
+            mixed = SENSOR.rgb(paints.reflectance(amounts))
+            assert float(delta_e_rgb(SENSOR, mixed, wanted)) == pytest.approx(
+                error, abs=0.02
+            )
+    opened.evaluate("document.querySelector('#recipes button').click(); 0")
+    mixture, _ = found[0]
+    amounts = [mixture.get(name, 0) for name in paints.names]
+    assert text(opened, "code") == code_of(paints.reflectance(amounts))
+
+
+def test_colours_out_of_reach_are_stated(opened):
+    put(opened, "target", "#00ff00")
+    put(opened, "count", 2, "change")
+    found = recipes(opened)
+    assert all(len(mixture) <= 2 for mixture, _ in found)
+    assert found[0][1] > 5
+    assert f"{found[0][1]:.1f}" in text(opened, "reach")
+    put(opened, "count", 1, "change")
+    assert all(len(mixture) == 1 for mixture, _ in recipes(opened))
+
+
+def test_one_paint_and_names_of_markup(paints, tmp_path):
+    name = '<b>&"</script><script>throw 1</script>' + "very long " * 15
+    odd = replace(paints.select(["blue"]), names=(name.strip(),))
+    tab = shared_tab()
+    open_page(tab, page(odd), tmp_path, WIDTHS[0])
+    assert overflow(tab) <= 0
+    assert tab.errors == []
+    assert text(tab, "recipe") == f"1 {name.strip()}"
+
+
+def test_files_that_exist_stay(paints, tmp_path):
+    path = tmp_path / "paints.html"
+    path.write_text("mine")
+    with raises(OutputError, "file-exists"):
+        write_page(paints, path)
+    write_page(paints, path, force=True)
+    assert path.read_text("utf-8") == page(paints)
+
+
+def test_differences_in_javascript_are_ciede2000(repository, tmp_path):
+    """By the published pairs, and CIE L*a*b* as in Python."""
+    need(NODE)
+    reference = repository / "tests" / "reference" / "ciede2000_sharma2005.csv"
+    pairs = np.loadtxt(reference, delimiter=",", comments=("#", "L1"))
+    colours = np.random.default_rng(4).uniform(0, 1, (50, 3))
+    colours[:3] = np.array([0, 0.001, 0.0088])[:, None]
+    white = SENSOR.light.white
+    given = {"pairs": pairs, "colours": colours, "white": white}
+    (tmp_path / "differences.mjs").write_text(DIFFERENCES)
+    script = repository / "uplift" / "extras" / "paint" / "colour_difference.js"
+    answer = output_of(
+        "node",
+        tmp_path / "differences.mjs",
+        script,
+        input=json.dumps({name: values.tolist() for name, values in given.items()}),
+    )
+    found = json.loads(answer)
+    assert_allclose(found["errors"], pairs[:, 6], atol=5.1e-5)
+    assert_allclose(found["back"], pairs[:, 6], atol=5.1e-5)
+    from uplift.colorimetry import lab
+
+    assert_allclose(found["labs"], lab(colours, white), atol=1e-9)
