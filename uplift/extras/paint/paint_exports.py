@@ -45,12 +45,14 @@ def export_lut(paints: Paints, path: Path, style: str, *, force: bool) -> str:
     sampled = paints.at(sensor.wavelengths)
     thickest = max(hiding_thickness(sampled, row) for row in np.eye(2))
     axis = np.linspace(0, 1, LUT_SIZE)
-    parts = np.stack([1 - axis, axis], axis=-1)[:, None]
-    grounds = decode(axis)[:, None]
     table = np.empty((LUT_SIZE,) * 3 + (3,))
-    for column, depth in enumerate(axis):
-        mixed = sampled.reflectance(parts, thickest * depth**2, grounds)
-        table[:, column] = encode(sensor.rgb(mixed))
+    for row, share in enumerate(axis):
+        for column, depth in enumerate(axis):
+            for layer, code in enumerate(axis):
+                ground = float(decode(np.array(code)))
+                thickness = thickest * depth**2
+                mixed = sampled.reflectance([1 - share, share], thickness, ground)
+                table[row, column, layer] = encode(sensor.rgb(mixed))
     first, second = paints.names
     title = (
         f"red: share of {second} in {first}; green: root of the thickness, 1 is "

@@ -157,7 +157,7 @@ class Paints:
             Parts of the paints, of which some are greater than 0.
         thickness : float, optional
             Thickness of the layer in the unit of the paints, by default opaque.
-        ground : array_like, shape (..., N) or ()
+        ground : array_like, shape (N,) or ()
             Reflectance of the ground, by default white.
 
         Returns
@@ -178,7 +178,8 @@ class Paints:
                 hint="pass 0 for paints that are not in the mixture",
             )
         medium = Medium(thickness, self.surface)
-        return coat_of_pigments(self.pigments, parts, medium).over(ground)
+        backing = np.broadcast_to(ground, self.wavelengths.shape)
+        return coat_of_pigments(self.pigments, parts, medium).over(backing)
 
     def cost(self, parts: ArrayLike) -> Array:
         """Compute the price of one part of mixtures.
