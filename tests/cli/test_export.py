@@ -58,7 +58,6 @@ def test_the_table_of_a_program_is_a_choice(run, refuse, home, cube):
         ("c.bin", "c.glsl", "output-is-input"),
         ("c.bin", "c.h --table file", "output-is-input"),
         ("c.bin", "c.glsl --format mixer-glsl", "output-is-input"),
-        ("c.toml", "c.npy", "output-is-input"),
         ("c.glsl", "c.png", "output-is-input"),
         ("c.uplift", "c.bin --format c --table file", "output"),
         ("c.uplift", "c.toml --format film", "output"),
