@@ -68,7 +68,7 @@ def test_a_picture_of_mixtures_is_painted_again(layers, painted):
 
 
 def test_colours_out_of_reach_get_near_ones(layers):
-    """Red is no mixture of these paints, and white is as near as the white paint."""
+    """Red is not a mixture of these paints; white is as near as the white paint."""
     errors = layers.delta_e.reshape(17, 17, 17)
     assert errors[16, 0, 0] > 20
     white = np.clip(layers.sensor.rgb(layers.paints.reflectance([1, 0, 0])), 0, 1)

@@ -159,20 +159,19 @@ def test_every_language_is_an_export():
 NODES = np.random.default_rng(1).integers(0, LUT_SIZE, (60, 3)) / (LUT_SIZE - 1)
 
 
-def test_a_table_of_two_paints_as_opencolorio_reads_it(paints, tmp_path):
+def test_a_table_of_two_paints_as_opencolorio_reads_it(tmp_path):
     """At its nodes: share, root of the thickness and grey ground."""
-    two = paints.select(["yellow", "blue"])
+    two = invented(np.arange(400.0, 701, 10), ["yellow", "blue"])
     line = export_lut(two, tmp_path / "two.cube", "cube", force=False)
     sensor = observer.sensor(wavelengths=(400, 700, 10))
-    sampled = two.at(sensor.wavelengths)
-    thickest = max(hiding_thickness(sampled, row) for row in np.eye(2))
+    thickest = max(hiding_thickness(two, row) for row in np.eye(2))
     assert f"{thickest:.3g}" in line
     transform = PyOpenColorIO.FileTransform(str(tmp_path / "two.cube"))
     processor = PyOpenColorIO.Config.CreateRaw().getProcessor(transform)
     pixels = NODES.astype(np.float32)
     processor.getDefaultCPUProcessor().applyRGB(pixels)
     films = [
-        sampled.reflectance([1 - share, share], thickest * depth**2, decode(code))
+        two.reflectance([1 - share, share], thickest * depth**2, decode(code))
         for share, depth, code in NODES
     ]
     assert_allclose(pixels, encode(sensor.rgb(np.array(films))), atol=1e-5)

@@ -61,6 +61,11 @@ def test_columns_are_paints_by_name(read):
     assert_allclose(samples.measured.values, [[0.8] * 16, [0.2] * 16])
 
 
+def test_parts_of_any_unit_are_shares(read):
+    doubled = TWO.replace("a,1,,", "a,2,,").replace("b,1,3,", "b,2,6,")
+    assert_allclose(read(doubled).shares, read(TWO).shares, rtol=1e-12)
+
+
 def test_the_packaged_samples():
     samples = read_paint_samples(sample_path("swatches.csv"))
     assert len(samples.paints) == 6

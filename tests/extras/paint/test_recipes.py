@@ -142,7 +142,7 @@ def test_metamers_agree_under_all_lights_that_count(paints):
     assert both.error <= np.mean(errors) + NEARLY
 
 
-def test_few_parts_suffice_if_asked(paints):
+def test_few_parts_suffice(paints):
     goal = target(paints.reflectance([13, 7, 0, 3]))
     errors = [match(goal, paints, steps=steps)[0].error for steps in (1, 5, 23, 100)]
     assert (np.diff(errors) <= NEARLY).all()
