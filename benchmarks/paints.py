@@ -335,6 +335,6 @@ def main() -> None:
         recipes=recipes(*fitted[0]),
         programs=program_rates(invented_paints()),
         acrylic_program=program_rates(fitted[0][0].paints),
-        page=page_times(invented_paints()),
-        acrylic_page=page_times(fitted[0][0].paints),
+        browser=page_times(invented_paints()),
+        acrylic_browser=page_times(fitted[0][0].paints),
     )
