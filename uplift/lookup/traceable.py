@@ -20,15 +20,17 @@ from uplift.common.machine import require_memory_of_xla
 from uplift.common.text import pluralise
 from uplift.lookup.blocks import as_float_type, as_wavelengths
 from uplift.lookup.cube import Cube
-from uplift.lookup.interpolate_jax import Grid, interpolate, make_grid
+from uplift.lookup.interpolate_jax import Grid, evaluated_cells, interpolate, make_grid
 from uplift.lookup.node_table import tabulate
+from uplift.lookup.refine_jax import Moves, make_moves, move
+from uplift.models import evaluate as evaluate_model
 
 __all__ = ["TraceableCube", "evaluate", "traceable"]
 
 
 @partial(
     jax.tree_util.register_dataclass,
-    data_fields=["wavelengths", "grid"],
+    data_fields=["wavelengths", "grid", "moves"],
     meta_fields=[],
 )
 @dataclass(frozen=True, eq=False, repr=False)
@@ -48,6 +50,7 @@ class TraceableCube:
 
     wavelengths: jax.Array
     grid: Grid
+    moves: Moves | None
 
     def __repr__(self) -> str:
         # Trees of other leaves have this type, too.
@@ -98,24 +101,27 @@ def traceable(
             hint='call jax.config.update("jax_enable_x64", True) first',
         )
     at = as_wavelengths(wavelengths, cube.wavelengths)
-    table = tabulate(cube.data, at, kind)
+    data = cube.data
+    cells = data.inexact_cells
+    columns = at
+    moves = None
+    if cells is not None:
+        sensor = data.sensor.wavelengths
+        if not np.array_equal(at, sensor):
+            columns = np.append(at, sensor)
+        moves = make_moves(data, cells, at, len(columns) - len(sensor), kind)
+    table = tabulate(data, columns, kind)
+    if cells is not None:
+        rows = np.flatnonzero(data.points.distance > data.threshold)
+        table.lattice[rows] = evaluate_model(data.model, data.smoothed_multipliers(rows), columns)
     grid = make_grid(table, kind)
     if not (np.diff(grid.nodes) > 0).all():
         raise OptionError(
             "nodes of the cube are too close for float32",
             hint="use numpy.float64",
         )
-    if table.exact is not None:
-        warn(
-            UpliftWarning(
-                "spectra of colours next to unrealisable ones miss their colours "
-                "while they are traced",
-                code="traced-colours-inexact",
-                hint="compare with Cube.reflectance, which moves them to their colours",
-            )
-        )
     require_memory_of_xla()
-    return TraceableCube(*jax.device_put((at.astype(kind), grid)))
+    return TraceableCube(*jax.device_put((at.astype(kind), grid, moves)))
 
 
 def evaluate(traced: TraceableCube, rgb: ArrayLike) -> jax.Array:
@@ -156,17 +162,22 @@ def evaluate(traced: TraceableCube, rgb: ArrayLike) -> jax.Array:
         raise ColourError(f"a colour is three numbers, got {rgb!r}") from error
     if colours.shape[-1:] != (3,):
         raise ColourError(f"a colour is three numbers, got the shape {colours.shape}")
-    return _evaluate(traced.grid, colours)
+    return _evaluate(traced, colours)
 
 
 @jax.jit
-def _evaluate(grid: Grid, rgb: jax.Array) -> jax.Array:
+def _evaluate(traced: TraceableCube, rgb: jax.Array) -> jax.Array:
+    grid, moves = traced.grid, traced.moves
     rows = rgb.reshape(-1, 3)
-    known = ~jnp.isnan(rows).any(axis=1, keepdims=True)
+    known = ~jnp.isnan(rows).any(axis=1)
     # jnp.clip would halve gradients at exactly 0 and 1.
     clamped = jnp.where(rows < 0, 0, jnp.where(rows > 1, 1, rows))
-    mixed = interpolate(grid, jnp.where(known, clamped, 0))
+    inside = jnp.where(known[:, None], clamped, 0)
+    mixed = interpolate(grid, inside)
     # Rounding alone leaves [0, 1]: gradients are those of the mixture.
-    rounding = jax.lax.stop_gradient(jnp.clip(mixed, 0, 1) - mixed)
-    spectra = jnp.where(known, mixed + rounding, jnp.nan)
+    spectra = mixed + jax.lax.stop_gradient(jnp.clip(mixed, 0, 1) - mixed)
+    if moves is not None:
+        inexact = moves.cells[evaluated_cells(grid, inside)] & known
+        spectra = move(moves, spectra, inside, inexact & ~jnp.isnan(mixed[:, 0]))
+    spectra = jnp.where(known[:, None], spectra, jnp.nan)
     return spectra.reshape(*rgb.shape[:-1], spectra.shape[1])
