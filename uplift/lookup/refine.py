@@ -216,7 +216,9 @@ def with_colours(
 
 def shapes_between(problem: Pull, sensor: Sensor, wavelengths: Array) -> Array:
     """Return K (3, N) at wavelengths (N,) in nm, linear between those of the sensor."""
-    between = [np.interp(wavelengths, sensor.wavelengths, row) for row in problem.shapes]
+    between = [
+        np.interp(wavelengths, sensor.wavelengths, row) for row in problem.shapes
+    ]
     return np.array(between)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from jax import lax
 from numpy.typing import DTypeLike
 
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lookup.refine import (
     MAX_PULLS,
@@ -23,14 +23,18 @@ from uplift.lookup.refine import (
     pull,
     shapes_between,
 )
-from uplift.models import solve_damped
+from uplift.models import Model, solve_damped
 
-CHUNK = 1024
+CHUNK = 512
 """Colours that are moved together. Chunks without any that need it are skipped."""
 FACETS = 128
 """Facets of the object-colour solid that are tested at a time."""
+LEAST_ROOM = 1e-9
+"""Room, in linear RGB, between a grey and a facet that is rounding."""
 ROUNDING = 16
 """Residual, in units of rounding, that counts as solved in single precision."""
+SHORTEST = 0.05
+"""Share of Newton's step below which rounding alone is left."""
 
 jax.tree_util.register_dataclass(
     Pull, ["weights", "shapes", "scale"], meta_fields=["model"]
@@ -66,19 +70,19 @@ class Moves:
 
 
 def make_moves(
-    data: CubeData, cells: Mask, wavelengths: Array, first: int, dtype: DTypeLike
+    data: CubeData, wavelengths: Array, first: int, dtype: DTypeLike
 ) -> Moves:
-    """Make the arrays, in numpy, for wavelengths (N,) in nm; ``cells`` are the inexact
-    ones.
+    """Make the arrays, in numpy, of a cube with inexact cells, for wavelengths (N,) in
+    nm.
     """
     solid = data.solid
     half = len(solid.normals) // 2  # the others are opposite ones
     width = (solid.offsets[:half] + solid.offsets[half:]) / 2
     facets = np.column_stack([solid.normals[:half], width])
-    facets = np.pad(facets, ((0, -half % FACETS), (0, 0)))
+    facets = np.pad(facets, ((0, -half % FACETS), (0, 0)), mode="edge")
     problem = pull(data.model, data.sensor)
     moves = Moves(
-        cells,
+        data.inexact_cells,
         problem,
         shapes_between(problem, data.sensor, wavelengths),
         facets.reshape(-1, FACETS, 4),
@@ -93,57 +97,73 @@ def _as_type(dtype: DTypeLike, array: Any) -> Any:
     return array if array.dtype == bool else array.astype(dtype)
 
 
-def move(moves: Moves, values: jax.Array, rgb: jax.Array, rows: jax.Array) -> jax.Array:
-    """Move the spectra (n, N) of some ``rows`` (n,) to their colours (n, 3), or to
-    realisable ones of less chroma.
+def move(
+    moves: Moves, values: jax.Array, rgb: jax.Array, cells: jax.Array
+) -> jax.Array:
+    """Return spectra (n, N) that in some of the ``cells`` (n,) are moved to their
+    colours (n, 3), or to realisable ones of less chroma.
 
-    ``values`` (n, K) are mixtures at the wavelengths of the cube of arrays and at those
-    of the sensor.
+    ``values`` (n, K) are mixtures at the wavelengths of the spectra and at those of the
+    sensor. NaN stays.
     """
     width = moves.shapes.shape[1]
+    inexact = moves.cells[cells] & ~jnp.isnan(values[:, 0])
 
-    def chunk(values: jax.Array, rgb: jax.Array, rows: jax.Array) -> jax.Array:
-        spectra = values[:, :width]
-        moved = lax.cond(
-            rows.any(), partial(_moved, moves), lambda *_: spectra, values, rgb, rows
+    def chunk(arrays: tuple[jax.Array, jax.Array, jax.Array]) -> jax.Array:
+        values, _, rows = arrays
+        return lax.cond(
+            rows.any(), lambda: _moved(moves, *arrays), lambda: values[:, :width]
         )
-        return jnp.where(rows[:, None], moved, spectra)
 
-    if len(rows) <= CHUNK:
-        return chunk(values, rgb, rows)
-    # Those that are moved come first, so that the other chunks are skipped.
-    order = jnp.argsort(~rows, stable=True)
-    order = jnp.pad(order, (0, -len(rows) % CHUNK)).reshape(-1, CHUNK)
-    moved = lax.map(lambda at: chunk(values[at], rgb[at], rows[at]), order)
-    place = jnp.argsort(order.ravel()[: len(rows)])
-    return moved.reshape(-1, width)[place]
+    count = len(values)
+    if count <= CHUNK:
+        return chunk((values, rgb, inexact))
+    # Those that are moved come first, so that other chunks are skipped.
+    order = jnp.argsort(~inexact, stable=True)
+    padded = jnp.pad(order, (0, -count % CHUNK)).reshape(-1, CHUNK)
+    chunks = jax.tree.map(lambda array: array[padded], (values, rgb, inexact))
+    return lax.map(chunk, chunks).reshape(-1, width)[jnp.argsort(order)]
 
 
 def _moved(
     moves: Moves, values: jax.Array, rgb: jax.Array, rows: jax.Array
 ) -> jax.Array:
-    """Move all spectra; those of other than ``rows`` are any."""
-    # Grey is where it should be, so that no derivative of other rows is infinite.
-    values, rgb = (jnp.where(rows[:, None], array, 0.5) for array in (values, rgb))
+    """Return the spectra (n, N) of a chunk, some ``rows`` (n,) of which are moved."""
+    mixed = values[:, : moves.shapes.shape[1]]
+    # Grey has its colour: of rows that stay, no derivative is infinite.
+    values = jnp.where(rows[:, None], values, 0.5).T
+    rgb = jnp.where(rows[:, None], rgb, 0.5)
     problem = moves.problem
     model = problem.model
-    first = moves.first
-    spectra = values[:, : moves.shapes.shape[1]].T
-    at_sensor = values[:, first : first + problem.shapes.shape[1]].T
+    at_sensor = values[moves.first :]
     goal = problem.scale @ _within_solid(moves, rgb).T
     least = clearance(goal - problem.weights @ at_sensor)
     least = jnp.maximum(least, 4 * jnp.finfo(least.dtype).eps)
     linear = model.from_reflectance(jnp.clip(at_sensor, least, 1 - least))
     change = lax.custom_root(
         lambda y: (
-            goal - problem.weights @ model.to_reflectance(linear + problem.shapes.T @ y)
+            goal - problem.weights @ _reflectance(model, linear + problem.shapes.T @ y)
         ),
         jnp.zeros_like(goal),
         lambda _, __: _solve(problem, linear, goal),
         _solve_tangent,
     )
-    start = model.from_reflectance(jnp.clip(spectra, least, 1 - least))
-    return model.to_reflectance(start + moves.shapes.T @ change).T
+    start = jnp.clip(values[: len(mixed.T)], least, 1 - least)
+    start = model.from_reflectance(start)
+    moved = _reflectance(model, start + moves.shapes.T @ change)
+    return jnp.where(rows[:, None], moved.T, mixed)
+
+
+@partial(jax.custom_jvp, nondiff_argnums=(0,))
+def _reflectance(model: Model, linear: jax.Array) -> jax.Array:
+    # Derivatives by the model take less memory than those of each operation.
+    return model.to_reflectance(linear)
+
+
+@_reflectance.defjvp
+def _(model: Model, primals: Any, tangents: Any) -> tuple[jax.Array, jax.Array]:
+    (linear,), (change,) = primals, tangents
+    return _reflectance(model, linear), model.derivative(linear) * change
 
 
 def _solve(problem: Pull, linear: jax.Array, goal: jax.Array) -> jax.Array:
@@ -151,7 +171,9 @@ def _solve(problem: Pull, linear: jax.Array, goal: jax.Array) -> jax.Array:
     tolerance = max(PULLED, ROUNDING * float(jnp.finfo(goal.dtype).eps))
 
     def pending(state: PullState) -> jax.Array:
-        return jnp.abs(state.residual).max(axis=0) > tolerance
+        return (jnp.abs(state.residual).max(axis=0) > tolerance) & (
+            state.length > SHORTEST
+        )
 
     def is_unsolved(carry: tuple[jax.Array, PullState]) -> jax.Array:
         count, state = carry
@@ -173,7 +195,8 @@ def _solve_tangent(derivative: Any, right: jax.Array) -> jax.Array:
     columns = [derivative(jnp.broadcast_to(e[:, None], right.shape)) for e in unit]
     # The matrix is −W diag(S') Kᵀ.
     lower = [[-columns[b][a] for b in range(a + 1)] for a in range(3)]
-    return -jnp.stack(solve_damped(lower, 0, right))
+    rounding = float(jnp.finfo(right.dtype).eps)
+    return -jnp.stack(solve_damped(lower, 0, right, rounding / 8))
 
 
 def _within_solid(moves: Moves, rgb: jax.Array) -> jax.Array:
@@ -181,45 +204,48 @@ def _within_solid(moves: Moves, rgb: jax.Array) -> jax.Array:
     margin = moves.margin
     grey = jnp.clip(rgb @ moves.luminance, margin, 1 - margin)[:, None]
     chroma = rgb - grey
-    # The nearest facet is found among all; the fraction is differentiated by it alone.
-    facet = lax.stop_gradient(_nearest_facet(moves.facets, grey, chroma))
-    normal, half_width = facet[:, :3], facet[:, 3]
-    fraction = _ray_fraction(
-        ((grey - 0.5) * normal).sum(axis=1), (2 * chroma * normal).sum(axis=1), half_width
-    )
+    # The facet is found among all. The fraction is differentiated by it alone.
+    facet = lax.stop_gradient(_nearest_facet(moves.facets, grey, 2 * chroma))
+    normal = facet[:, :3]
+    along = ((grey - 0.5) * normal).sum(axis=1)
+    speed = (2 * chroma * normal).sum(axis=1)
+    fraction = 1 / jnp.maximum(_ratio(along, speed, facet[:, 3]), 1)
     inward = margin / jnp.maximum(jnp.abs(chroma).max(axis=1), margin)
     reach = (2 * fraction - inward)[:, None]
     return jnp.where(reach < 1, grey + jnp.maximum(reach, 0) * chroma, rgb)
 
 
-def _nearest_facet(facets: jax.Array, grey: jax.Array, chroma: jax.Array) -> jax.Array:
-    """Return the facets (n, 4) at which the rays from grey (n, 1) along twice the
-    chroma (n, 3) leave the solid.
+def _nearest_facet(facets: jax.Array, grey: jax.Array, ray: jax.Array) -> jax.Array:
+    """Return the facets (n, 4) at which rays (n, 3) from grey (n, 1) leave the
+    solid.
     """
 
-    def nearer(
-        best: tuple[jax.Array, jax.Array], block: jax.Array
+    def compare(
+        best: tuple[jax.Array, jax.Array], turn: tuple[jax.Array, jax.Array]
     ) -> tuple[tuple[jax.Array, jax.Array], None]:
+        number, block = turn
         normals = block[:, :3].T
         along = (grey - 0.5) * normals.sum(axis=0)
-        fraction = _ray_fraction(along, 2 * chroma @ normals, block[:, 3])
-        least = fraction.min(axis=1)
-        closer = least < best[0]
-        facet = jnp.where(closer[:, None], block[fraction.argmin(axis=1)], best[1])
-        return (jnp.where(closer, least, best[0]), facet), None
+        ratio = _ratio(along, ray @ normals, block[:, 3]).max(axis=1)
+        closer = ratio > best[0]
+        numbers = jnp.where(closer, number, best[1])
+        return (jnp.where(closer, ratio, best[0]), numbers), None
 
-    none = jnp.ones(len(grey), grey.dtype)
-    start = (none, jnp.zeros((len(grey), 4), grey.dtype))
-    return lax.scan(nearer, start, facets)[0][1]
+    turns = (jnp.arange(len(facets), dtype=jnp.int32), facets)
+    none = (0 * ray[:, 0], jnp.zeros(len(ray), jnp.int32))
+    (_, number), _ = lax.scan(compare, none, turns)
+    # Only in the block of each ray is the facet itself looked for, which is slow.
+    block = facets[number]
+    normals = block[:, :, :3]
+    along = (grey - 0.5) * normals.sum(axis=2)
+    speed = (normals @ ray[:, :, None])[:, :, 0]
+    nearest = _ratio(along, speed, block[:, :, 3]).argmax(axis=1)
+    return jnp.take_along_axis(block, nearest[:, None, None], axis=1)[:, 0]
 
 
-def _ray_fraction(
-    along: jax.Array, speed: jax.Array, half_width: jax.Array
-) -> jax.Array:
-    """Return the fraction of a ray up to facets, at most 1, by its start and its length
+def _ratio(along: jax.Array, speed: jax.Array, width: jax.Array) -> jax.Array:
+    """Return speed over room of facets and their opposites, by the places of greys
     along their normals.
     """
-    room = jnp.maximum(half_width - jnp.where(speed > 0, along, -along), 0)
-    speed = jnp.abs(speed)
-    reached = speed > room
-    return jnp.where(reached, room / jnp.where(reached, speed, 1), 1)
+    room = width - jnp.where(speed > 0, along, -along)
+    return jnp.abs(speed) / jnp.maximum(room, LEAST_ROOM)

@@ -23,7 +23,8 @@ class Model(ABC):
     """A family of reflectance spectra: all real multipliers p give values in (0, 1).
 
     `to_reflectance`, its inverse and `derivative` use the array API, so that numpy and
-    JAX run the same code. The multipliers are stored unless a model has better coefficients.
+    JAX run the same code. The multipliers are stored unless a model has better
+    coefficients.
     """
 
     name: ClassVar[str]
