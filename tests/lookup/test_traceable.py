@@ -65,7 +65,8 @@ def test_coefficients_are_those_of_numpy(cube, kind):
             traced = traceable_coefficients(cube, count, dtype=kind)
             found = np.asarray(evaluate(traced, rgb))
         assert found.dtype == kind
-        tolerance = 2e-5 if kind == np.float32 else 1e-9
+        # numpy sums stored coefficients in their type, which may be float32.
+        tolerance = 2e-5 if kind == np.float32 else 1e-6
         size = np.abs(expected).max()
         assert_allclose(found, expected, rtol=0, atol=tolerance * max(size, 1))
         assert repr(traced) == "TraceableCube(coefficients)"
@@ -73,12 +74,12 @@ def test_coefficients_are_those_of_numpy(cube, kind):
 
 def test_derivatives_of_coefficients_are_finite_differences(small_cube, doubles):
     rgb = random_colours(small_cube)
-    traced = traceable_coefficients(small_cube, dtype=np.float64)
-    jacobian = jax.vmap(jax.jacrev(partial(evaluate, traced)))(rgb)
-    for axis, step in enumerate(STEP * np.eye(3)):
-        rise = small_cube.coefficients(rgb + step) - small_cube.coefficients(rgb - step)
-        off = np.abs(jacobian[:, :, axis] - rise / (2 * STEP))
-        assert np.quantile(off, 0.99) < 1e-4
+    coefficients = partial(evaluate, traceable_coefficients(small_cube, dtype=float))
+    for step in STEP * np.eye(3):
+        rise = coefficients(rgb + step) - coefficients(rgb - step)
+        direction = np.broadcast_to(step / STEP, rgb.shape)
+        found = jax.jvp(coefficients, (rgb,), (direction,))[1]
+        assert np.quantile(np.abs(found - rise / (2 * STEP)), 0.99) < 1e-6
 
 
 def test_images_single_colours_and_batches_have_the_same_spectra(traced):
