@@ -138,7 +138,7 @@ def _moved(
     at_sensor = values[moves.first :]
     goal = problem.scale @ _within_solid(moves, rgb).T
     least = clearance(goal - problem.weights @ at_sensor)
-    least = jnp.maximum(least, 4 * jnp.finfo(least.dtype).eps)
+    least = jnp.maximum(least, 4 * _rounding(least))
     linear = model.from_reflectance(jnp.clip(at_sensor, least, 1 - least))
     change = lax.custom_root(
         lambda y: (
@@ -152,6 +152,10 @@ def _moved(
     start = model.from_reflectance(start)
     moved = _reflectance(model, start + moves.shapes.T @ change)
     return jnp.where(rows[:, None], moved.T, mixed)
+
+
+def _rounding(array: jax.Array) -> float:
+    return float(np.finfo(array.dtype).eps)
 
 
 @partial(jax.custom_jvp, nondiff_argnums=(0,))
@@ -168,7 +172,7 @@ def _(model: Model, primals: Any, tangents: Any) -> tuple[jax.Array, jax.Array]:
 
 def _solve(problem: Pull, linear: jax.Array, goal: jax.Array) -> jax.Array:
     """Find y (3, n) from linear parts x (N, n)."""
-    tolerance = max(PULLED, ROUNDING * float(jnp.finfo(goal.dtype).eps))
+    tolerance = max(PULLED, ROUNDING * _rounding(goal))
 
     def pending(state: PullState) -> jax.Array:
         return (jnp.abs(state.residual).max(axis=0) > tolerance) & (
@@ -195,8 +199,7 @@ def _solve_tangent(derivative: Any, right: jax.Array) -> jax.Array:
     columns = [derivative(jnp.broadcast_to(e[:, None], right.shape)) for e in unit]
     # The matrix is −W diag(S') Kᵀ.
     lower = [[-columns[b][a] for b in range(a + 1)] for a in range(3)]
-    rounding = float(jnp.finfo(right.dtype).eps)
-    return -jnp.stack(solve_damped(lower, 0, right, rounding / 8))
+    return -jnp.stack(solve_damped(lower, 0, right, _rounding(right) / 8))
 
 
 def _within_solid(moves: Moves, rgb: jax.Array) -> jax.Array:
