@@ -33,8 +33,6 @@ LEAST_ROOM = 1e-9
 """Room, in linear RGB, between a grey and a facet that is rounding."""
 ROUNDING = 16
 """Residual, in units of rounding, that counts as solved in single precision."""
-SHORTEST = 0.05
-"""Share of Newton's step below which rounding alone is left."""
 
 jax.tree_util.register_dataclass(
     Pull, ["weights", "shapes", "scale"], meta_fields=["model"]
@@ -175,9 +173,9 @@ def _solve(problem: Pull, linear: jax.Array, goal: jax.Array) -> jax.Array:
     tolerance = max(PULLED, ROUNDING * _rounding(goal))
 
     def pending(state: PullState) -> jax.Array:
-        return (jnp.abs(state.residual).max(axis=0) > tolerance) & (
-            state.length > SHORTEST
-        )
+        # Next to the solution, rounding refuses steps: what it hides is tolerated.
+        off = jnp.abs(state.residual).max(axis=0)
+        return off * state.length > tolerance
 
     def is_unsolved(carry: tuple[jax.Array, PullState]) -> jax.Array:
         count, state = carry
