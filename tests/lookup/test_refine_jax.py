@@ -1,7 +1,7 @@
 """Traced spectra next to unrealisable colours are those of numpy, with their
 derivatives.
 
-Compiling takes most of the time: all tests of a cube ask for as many colours.
+Compiling takes most of the time: all tests of a cube use as many colours.
 """
 
 from dataclasses import replace
