@@ -39,6 +39,8 @@ SHOWN = (0, 2, 5, 10)
 """Steps whose colours are drawn."""
 COLOURS = 1_000_000
 """Colours of the rates."""
+WIDE_COLOURS = 20_000
+"""Colours of those of a wide-gamut cube, which take longer."""
 RUNS = 5
 CHECKED = 100_000
 """Colours of the precision."""
@@ -139,23 +141,33 @@ def colours(cube: Cube, count: int) -> Array:
 
 
 def precision(name: str, cube: Cube) -> Iterator[Row]:
-    """Yield differences from `Cube.reflectance` of single and double precision, and
-    those of derivatives from finite differences.
+    """Yield largest differences from `Cube.reflectance` of single and double precision:
+    of mixtures, and of spectra that are moved to their colours.
     """
     rgb = colours(cube, CHECKED)
-    exact = ~is_inexact(cube.data, rgb)
+    inexact = is_inexact(cube.data, rgb)
+    realisable = np.ones(len(rgb), dtype=bool)
+    realisable[inexact] = cube.data.solid.contains(rgb[inexact])
+    groups = {
+        "mixed": ~inexact,
+        "moved": inexact & realisable,
+        "unrealisable": inexact & ~realisable,
+    }
     expected = cube.reflectance(rgb)
     for kind in (np.float32, np.float64):
         with jax.enable_x64(kind == np.float64):
             found = np.asarray(evaluate(traceable(cube, dtype=kind), rgb))
         off = np.abs(found - expected).max(axis=1)
-        row = {"cube": name, "dtype": np.dtype(kind).name, "largest": off[exact].max()}
-        if not exact.all():
-            missed = np.abs(cube.data.sensor.rgb(found) - rgb).max(axis=1)
-            realisable = cube.data.solid.contains(rgb)
-            row["inexact"] = 100 * np.mean(~exact)
-            row["missed"] = np.percentile(missed[~exact & realisable], (50, 95))
-        yield row
+        for group, rows in groups.items():
+            if rows.any():
+                yield {
+                    "cube": name,
+                    "colours": group,
+                    "dtype": np.dtype(kind).name,
+                    "percent": 100 * rows.mean(),
+                    "largest": off[rows].max(),
+                    "percentile": np.percentile(off[rows], 99),
+                }
 
 
 def mean(rgb: jax.Array, traced: TraceableCube) -> jax.Array:
@@ -163,11 +175,11 @@ def mean(rgb: jax.Array, traced: TraceableCube) -> jax.Array:
     return evaluate(traced, rgb).mean()
 
 
-def rates(cube: Cube) -> Iterator[Row]:
+def rates(name: str, cube: Cube, widths: tuple[int, ...], count: int) -> Iterator[Row]:
     """Yield seconds per million colours in float32, compiled before."""
-    rgb = jnp.asarray(np.random.default_rng(2).random((COLOURS, 3)), jnp.float32)
+    rgb = jnp.asarray(np.random.default_rng(2).random((count, 3)), jnp.float32)
     images = np.asarray(rgb)
-    for width in WIDTHS:
+    for width in widths:
         at = cube.wavelengths
         if width < len(at):
             at = np.linspace(400, 700, width)
@@ -179,11 +191,11 @@ def rates(cube: Cube) -> Iterator[Row]:
             "gradient": partial(gradient, rgb, traced),
             "bulk": partial(sample, images),
         }
-        row: Row = {"wavelengths": width}
-        for name, call in calls.items():
+        row: Row = {"cube": name, "wavelengths": width}
+        for method, call in calls.items():
             jax.block_until_ready(call())
             wall, _ = time_calls(lambda call=call: jax.block_until_ready(call()), RUNS)
-            row[name] = wall
+            row[method] = wall.scaled(COLOURS / count)
         yield row
 
 
@@ -191,11 +203,8 @@ def main() -> None:
     """Recover, measure and store."""
     cube = uplift.load()
     macbeth = uplift.build("macbeth", dim=32)
-    cubes = {
-        "packaged": cube,
-        "macbeth, 32³": macbeth,
-        "packaged ACEScg": uplift.load("acescg"),
-    }
+    wide = uplift.load("acescg")
+    cubes = {"packaged": cube, "macbeth, 32³": macbeth, "packaged ACEScg": wide}
     rows = []
     for name, checked in cubes.items():
         rows += precision(name, checked)
@@ -206,5 +215,8 @@ def main() -> None:
         checked=CHECKED,
         device=jax.devices()[0].platform,
         precision=rows,
-        rates=list(rates(macbeth)),
+        rates=[
+            *rates("macbeth, 32³", macbeth, WIDTHS, COLOURS),
+            *rates("packaged ACEScg", wide, WIDTHS[::3], WIDE_COLOURS),
+        ],
     )

@@ -1,6 +1,7 @@
 """Spectra of millions of colours: a cube is prepared once, then queried through JAX, on
-CPU or accelerator. `spectra` and `coefficients` are for images in NumPy, `traceable`
-and `evaluate` for programs in JAX, which compile and differentiate them.
+CPU or accelerator. `spectra` and `coefficients` are for images in NumPy, `traceable`,
+`traceable_coefficients` and `evaluate` for programs in JAX, which compile and
+differentiate them.
 
 Examples
 --------
@@ -19,7 +20,12 @@ Examples
 """
 
 from uplift.lookup.bulk import Sampler, coefficients, spectra
-from uplift.lookup.traceable import TraceableCube, evaluate, traceable
+from uplift.lookup.traceable import (
+    TraceableCube,
+    evaluate,
+    traceable,
+    traceable_coefficients,
+)
 
 __all__ = [
     "Sampler",
@@ -28,4 +34,5 @@ __all__ = [
     "evaluate",
     "spectra",
     "traceable",
+    "traceable_coefficients",
 ]

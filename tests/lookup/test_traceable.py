@@ -10,15 +10,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-import uplift
-from tests.helpers import near_black, raises, warns, with_absent_points
+from tests.helpers import near_black, raises, with_absent_points
 from tests.lookup.test_bulk import CUBES, colours
 from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import Lattice
 from uplift.lookup import Cube
-from uplift.lookup.interpolate import around, is_inexact
-from uplift.lookup.node_table import tabulate
-from uplift.lookup.traceable import evaluate, traceable
+from uplift.lookup.traceable import evaluate, traceable, traceable_coefficients
 
 AT = np.linspace(380, 780, 9)
 STEP = 1e-6
@@ -57,6 +54,32 @@ def test_spectra_in_float64_are_those_of_numpy(cube, doubles):
     found = evaluate(traceable(cube, AT, dtype=np.float64), rgb)
     assert found.dtype == np.float64
     assert_allclose(found, cube.reflectance(rgb, AT), rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+def test_coefficients_are_those_of_numpy(cube, kind):
+    rgb = colours(cube.data).astype(np.float32)
+    for count in {cube.coefficient_count, cube.entry_coefficient_count}:
+        expected = cube.coefficients(rgb, count)
+        with jax.enable_x64(kind == np.float64):
+            traced = traceable_coefficients(cube, count, dtype=kind)
+            found = np.asarray(evaluate(traced, rgb))
+        assert found.dtype == kind
+        # numpy sums stored coefficients in their type, which may be float32.
+        tolerance = 2e-5 if kind == np.float32 else 1e-6
+        size = np.abs(expected).max()
+        assert_allclose(found, expected, rtol=0, atol=tolerance * max(size, 1))
+        assert repr(traced) == "TraceableCube(coefficients)"
+
+
+def test_derivatives_of_coefficients_are_finite_differences(small_cube, doubles):
+    rgb = random_colours(small_cube)
+    coefficients = partial(evaluate, traceable_coefficients(small_cube, dtype=float))
+    for step in STEP * np.eye(3):
+        rise = coefficients(rgb + step) - coefficients(rgb - step)
+        direction = np.broadcast_to(step / STEP, rgb.shape)
+        found = jax.jvp(coefficients, (rgb,), (direction,))[1]
+        assert np.quantile(np.abs(found - rise / (2 * STEP)), 0.99) < 1e-6
 
 
 def test_images_single_colours_and_batches_have_the_same_spectra(traced):
@@ -174,19 +197,6 @@ def test_gradients_outside_are_zero_and_at_the_ends_those_of_the_inside(traced):
     assert_allclose(rows[1], gradient(jnp.array([0.3, 0.4, 0.5])), rtol=1e-5)
 
 
-def test_wide_gamut_cubes_warn_and_are_mixed_around_unrealisable_nodes():
-    cube = uplift.load("acescg")
-    with warns("traced-colours-inexact"):
-        traced = traceable(cube)
-    rgb = np.random.default_rng(4).random((300, 3)).astype(np.float32)
-    found = evaluate(traced, rgb)
-    table = tabulate(cube.data, cube.wavelengths)
-    mixed = around(cube.data, rgb).weighted_sum(table.lattice, table.atlas)
-    assert_allclose(found, mixed, atol=1e-6)
-    exact = ~is_inexact(cube.data, rgb)
-    assert_allclose(found[exact], cube.reflectance(rgb[exact]), atol=1e-6)
-
-
 def test_colours_that_a_sparse_cube_lacks_have_nan(plain_cube):
     sparse = Cube(with_absent_points(plain_cube.data, near_black(plain_cube.data)))
     dark, light = evaluate(traceable(sparse, AT), [[0.01] * 3, [0.9] * 3])
@@ -229,16 +239,20 @@ def test_invalid_options_are_refused(small_cube):
         traceable(small_cube, [0])
     with raises(OptionError):
         traceable(small_cube, dtype=np.float16)
+    for prepare in (traceable, traceable_coefficients):
+        with raises(OptionError):
+            prepare(small_cube, dtype=np.float64)  # not enabled
     with raises(OptionError):
-        traceable(small_cube, dtype=np.float64)  # not enabled
+        traceable_coefficients(small_cube, 5)
 
 
 def test_nodes_too_close_for_float32_are_refused(plain_cube):
     nodes = plain_cube.data.lattice.nodes.copy()
     nodes[4] = nodes[3] + 1e-9
     close = Cube(replace(plain_cube.data, lattice=Lattice(nodes)))
-    with raises(OptionError):
-        traceable(close)
+    for prepare in (traceable, traceable_coefficients):
+        with raises(OptionError):
+            prepare(close)
     with jax.enable_x64(True):
         spectra = evaluate(traceable(close, AT, dtype=np.float64), nodes[[3, 3, 3]])
     assert_allclose(spectra, close.reflectance(nodes[[3, 3, 3]], AT), atol=1e-9)

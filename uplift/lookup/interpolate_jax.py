@@ -108,6 +108,14 @@ def interpolate(grid: Grid, rgb: jax.Array) -> jax.Array:
     return _with_entries(grid, rgb) if len(grid.candidates) else _trilinear(grid, rgb)
 
 
+def evaluated_cells(grid: Grid, rgb: jax.Array) -> jax.Array:
+    """Return the numbers (n,) of the cells in which the lattice is evaluated for linear
+    RGB (n, 3).
+    """
+    exit_rgb = _box_hits(grid, rgb)[0] if len(grid.candidates) else rgb
+    return _number(grid, _cell(grid, exit_rgb))
+
+
 def _rows(array: jax.Array, index: jax.Array) -> jax.Array:
     """``array[index]`` without bounds checks."""
     return array.at[index].get(mode="promise_in_bounds", wrap_negative_indices=False)

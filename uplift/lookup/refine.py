@@ -6,6 +6,9 @@ minimum-norm steps (`uplift.models.minimum_norm`) a spectrum is evaluated once; 
 steps add its changes, which need no arc tangents of large numbers.
 """
 
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from uplift.colorimetry import Sensor, toward_grey
@@ -34,8 +37,6 @@ not depend on the steps.
 """
 MAX_PULLS = 100
 """Steps of the convex problem; most colours need four, few more than 20."""
-TRACE = [0, 2, 5]
-"""Diagonal elements of a lower triangle, row by row."""
 MIN_CURVATURE = 0.01
 """Least ratio of the curvatures after and before a step."""
 REACH = 2.0
@@ -85,19 +86,104 @@ def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Arr
     return multipliers.T
 
 
-def pull(sensor: Sensor) -> tuple[Array, Array, Array]:
-    """Return the directions in which mixtures move to their colours, with W Kᵀ = I.
-
-    W (3, N) maps reflectances to scaled RGB, K (3, N) are the curves of the sensor
-    without the power of the light, so that W = K diag(power), and the scale (3, 3) is
-    that from linear to scaled RGB.
+class PullState(NamedTuple):
+    """Where the convex problem stands for n mixtures, which are columns; a pytree for
+    JAX.
     """
+
+    solution: Any
+    """(3, n) y."""
+    residual: Any
+    """(3, n) of scaled RGB."""
+    gram: Any
+    """(6, n) W diag(S') Kᵀ, the lower triangle."""
+    length: Any
+    """(n,) share of Newton's step that is tried next."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pull:
+    """The convex problem that moves mixtures to their colours; a pytree for JAX.
+
+    For y (3, n) with W S(x + Kᵀ y) = goal (3, n), from linear parts x (N, n).
+
+    As S increases, this is the minimum of a convex function Φ, whose gradient is the
+    negative residual, and Newton's steps (W diag(S') Kᵀ)⁻¹ r, shortened if need be,
+    reach it for every colour inside the solid. Arrays are those of numpy or of JAX.
+    """
+
+    model: Model
+    weights: Any
+    """W (3, N) from reflectances to scaled RGB."""
+    shapes: Any
+    """K (3, N), the curves of the sensor without the power of the light, so that W = K
+    diag(power) and W Kᵀ = I.
+    """
+    scale: Any
+    """(3, 3) from linear to scaled RGB."""
+
+    def begin(self, linear: Any, goal: Any) -> PullState:
+        """Return the state at y = 0."""
+        residual, gram = self._evaluate(linear, goal)
+        return PullState(0 * goal, residual, gram, 0 * goal[0] + 1)
+
+    def step(self, linear: Any, goal: Any, state: PullState) -> PullState:
+        """Try a step: it is taken unless it goes too far, to where Φ rises more than
+        half as steeply as it fell, or where it is much flatter.
+
+        It changes no x by more than `REACH` (1 + |x|).
+        """
+        solution, residual, gram, length = state
+        xp = solution.__array_namespace__()
+        g00, g10, g11, g20, g21, g22 = gram
+        lower = [[g00], [g10, g11], [g20, g21, g22]]
+        step = xp.stack(solve_damped(lower, 0, residual))
+        at = linear + self.shapes.T @ solution
+        reach = (xp.abs(self.shapes.T @ step) / (1 + xp.abs(at))).max(axis=0)
+        share = length / xp.maximum(1, length * reach / REACH)
+        step = share * step
+        trial = solution + step
+        trial_residual, trial_gram = self._evaluate(
+            linear + self.shapes.T @ trial, goal
+        )
+        rise = (trial_residual * step).sum(axis=0)
+        good = rise >= -0.5 * (residual * step).sum(axis=0)
+        t00, _, t11, _, _, t22 = trial_gram
+        good &= t00 + t11 + t22 >= MIN_CURVATURE * (g00 + g11 + g22)
+        return PullState(
+            xp.where(good, trial, solution),
+            xp.where(good, trial_residual, residual),
+            xp.where(good, trial_gram, gram),
+            xp.where(good, xp.minimum(4 * share, 1), share / 4),
+        )
+
+    def _evaluate(self, linear: Any, goal: Any) -> tuple[Any, Any]:
+        """Return residual and Gram matrix of linear parts (N, n)."""
+        rows, columns = np.tril_indices(3)
+        products = self.weights[rows] * self.shapes[columns]
+        residual = goal - self.weights @ self.model.to_reflectance(linear)
+        return residual, products @ self.model.derivative(linear)
+
+
+def pull(model: Model, sensor: Sensor) -> Pull:
+    """Return the problem of a model and a sensor."""
     if sensor.sensitivities is None:
         shapes = sensor.cmfs @ sensor.xyz_to_rgb.T
     else:
         shapes = sensor.sensitivities / (sensor.sensitivities.T @ sensor.power)
     scale = np.linalg.inv(np.linalg.cholesky(sensor.matrix @ shapes))
-    return scale @ sensor.matrix, scale @ shapes.T, scale
+    return Pull(model, scale @ sensor.matrix, scale @ shapes.T, scale)
+
+
+def clearance(residual: Any) -> Any:
+    """Return the distance (n,) from 0 and 1 to which mixtures with residuals (3, n) of
+    scaled RGB are clipped before they are moved.
+    """
+    # Near 0 and 1 the linear part is large: the farther it moves, the farther it starts
+    # from there.
+    xp = residual.__array_namespace__()
+    off = xp.abs(residual).max(axis=0)
+    return xp.minimum(xp.minimum(LEAST + SLOPE * off, STEEP * off), MOST)
 
 
 def with_colours(
@@ -111,67 +197,45 @@ def with_colours(
     Those that have their colour stay to the last bit.
     """
     model = data.model
-    weights, shapes, scale = pull(data.sensor)
+    problem = pull(model, data.sensor)
     moved = spectra.copy()
-    shapes_at = np.array(
-        [np.interp(wavelengths, data.sensor.wavelengths, shape) for shape in shapes]
-    )
+    shapes_at = shapes_between(problem, data.sensor, wavelengths)
     pending = np.flatnonzero(
         np.abs(data.sensor.rgb(at_sensor) - rgb).max(axis=1) > TOLERANCE
     )
     for first in range(0, pending.size, BLOCK_COLUMNS):
         rows = pending[first : first + BLOCK_COLUMNS]
-        goal = scale @ within_solid(data, rgb[rows]).T
-        # Near 0 and 1 the linear part is large: the farther it moves, the farther it
-        # starts from there.
-        off = np.abs(goal - weights @ at_sensor[rows].T).max(axis=0)
-        least = np.minimum(np.minimum(LEAST + SLOPE * off, STEEP * off), MOST)
+        goal = problem.scale @ within_solid(data, rgb[rows]).T
+        least = clearance(goal - problem.weights @ at_sensor[rows].T)
         linear = model.from_reflectance(np.clip(at_sensor[rows].T, least, 1 - least))
-        change = _pull(model, weights, shapes, linear, goal)
+        change = _solve(problem, linear, goal)
         start = model.from_reflectance(np.clip(spectra[rows].T, least, 1 - least))
         moved[rows] = model.to_reflectance(start + shapes_at.T @ change).T
     return moved
 
 
-def _pull(
-    model: Model, weights: Array, shapes: Array, linear: Array, goal: Array
-) -> Array:
-    """Find y (3, n) with W S(x + Kᵀ y) = goal (3, n), from linear parts x (N, n).
+def shapes_between(problem: Pull, sensor: Sensor, wavelengths: Array) -> Array:
+    """Return K (3, N) at wavelengths (N,) in nm, linear between those of the sensor."""
+    between = [
+        np.interp(wavelengths, sensor.wavelengths, row) for row in problem.shapes
+    ]
+    return np.array(between)
 
-    As S increases, this is the minimum of a convex function Φ, whose gradient is the
-    negative residual, and Newton's steps (W diag(S') Kᵀ)⁻¹ r, shortened if need be,
-    reach it for every colour inside the solid. A step is accepted unless it goes too
-    far: to where Φ rises more than half as steeply as it fell, or where it is much
-    flatter. It changes no x by more than `REACH` (1 + |x|).
+
+def _solve(problem: Pull, linear: Array, goal: Array) -> Array:
+    """Find y (3, n) from linear parts x (N, n), by steps of the mixtures that need
+    them.
     """
-    rows, columns = np.tril_indices(3)
-    products = weights[rows] * shapes[columns]
-    solution = np.zeros_like(goal)
-    length = np.ones(goal.shape[1])
-    gram = products @ model.derivative(linear)
-    residual = goal - weights @ model.to_reflectance(linear)
+    state = problem.begin(linear, goal)
     for _ in range(MAX_PULLS):
-        pending = np.flatnonzero(np.abs(residual).max(axis=0) > PULLED)
+        pending = np.flatnonzero(np.abs(state.residual).max(axis=0) > PULLED)
         if not pending.size:
             break
-        off = residual[:, pending]
-        g00, g10, g11, g20, g21, g22 = gram[:, pending]
-        step = np.array(solve_damped([[g00], [g10, g11], [g20, g21, g22]], 0, off))
-        at = linear[:, pending] + shapes.T @ solution[:, pending]
-        reach = (np.abs(shapes.T @ step) / (1 + np.abs(at))).max(axis=0)
-        share = length[pending] / np.maximum(1, length[pending] * reach / REACH)
-        step = share * step
-        trial = linear[:, pending] + shapes.T @ (solution[:, pending] + step)
-        trial_off = goal[:, pending] - weights @ model.to_reflectance(trial)
-        trial_gram = products @ model.derivative(trial)
-        good = (trial_off * step).sum(axis=0) >= -0.5 * (off * step).sum(axis=0)
-        good &= trial_gram[TRACE].sum(axis=0) >= MIN_CURVATURE * (g00 + g11 + g22)
-        taken = pending[good]
-        solution[:, taken] += step[:, good]
-        gram[:, taken] = trial_gram[:, good]
-        residual[:, taken] = trial_off[:, good]
-        length[pending] = np.where(good, np.minimum(4 * share, 1), share / 4)
-    return solution
+        before = PullState(*(array[..., pending] for array in state))
+        after = problem.step(linear[:, pending], goal[:, pending], before)
+        for array, values in zip(state, after, strict=True):
+            array[..., pending] = values
+    return state.solution
 
 
 def within_solid(data: CubeData, rgb: Array) -> Array:

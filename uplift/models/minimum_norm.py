@@ -115,20 +115,23 @@ def minimum_norm_step(
 
 
 def solve_damped(
-    gram: Sequence[Sequence[Any]], damping: Any, right: Any
+    gram: Sequence[Sequence[Any]],
+    damping: Any,
+    right: Any,
+    least_pivot: float = 1e-22,
 ) -> tuple[Any, Any, Any]:
     """Solve (G + μ tr(G) I) y = b for n symmetric positive G by L D Lᵀ; all elements
     are arrays (n,).
 
     ``gram`` is the lower half of G, row by row. A pivot that rounding made zero or
-    negative is replaced by a millionth of an ulp of the trace. The step is then long,
-    never NaN, and the caller's check of the residual rejects it.
+    negative is replaced by ``least_pivot`` of the trace, a millionth of an ulp. The
+    step is then long, never NaN, and the caller's check of the residual rejects it.
     """
     (a00,), (a10, a11), (a20, a21, a22) = gram
     xp = a00.__array_namespace__()
     trace = a00 + a11 + a22
     shift = damping * trace
-    floor = 1e-22 * trace + 1e-300
+    floor = least_pivot * trace + 1e-300
     # G + μ tr(G) I = L D Lᵀ
     d0 = xp.maximum(a00 + shift, floor)
     l10 = a10 / d0

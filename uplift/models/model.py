@@ -22,8 +22,9 @@ COMPONENTS = 3
 class Model(ABC):
     """A family of reflectance spectra: all real multipliers p give values in (0, 1).
 
-    `to_reflectance` and `derivative` use the array API, so that numpy and JAX run the
-    same code. The multipliers are stored unless a model has better coefficients.
+    `to_reflectance`, its inverse and `derivative` use the array API, so that numpy and
+    JAX run the same code. The multipliers are stored unless a model has better
+    coefficients.
     """
 
     name: ClassVar[str]
@@ -68,7 +69,7 @@ class Model(ABC):
         """Evaluate S′(x)."""
 
     @abstractmethod
-    def from_reflectance(self, reflectance: Array) -> Array:
+    def from_reflectance(self, reflectance: Any) -> Any:
         """Return the linear part of reflectances in (0, 1): the inverse of
         `to_reflectance`.
         """

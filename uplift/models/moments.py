@@ -161,8 +161,8 @@ class Moments(Model):
         # S′(x) = 1 / (π (1 + x²))
         return 1 / (np.pi * (1 + x * x))
 
-    def from_reflectance(self, reflectance: Array) -> Array:
-        return np.tan(np.pi * (reflectance - 0.5))
+    def from_reflectance(self, reflectance: Any) -> Any:
+        return reflectance.__array_namespace__().tan(np.pi * (reflectance - 0.5))
 
     def reflectance_change(self, x: Array, change: Array) -> Array:
         return arctan_difference(x, change) / np.pi

@@ -64,9 +64,10 @@ class Sigmoid(Model):
         square = 1 + x * x
         return 0.5 / (square * square**0.5)  # powers other than roots are slow
 
-    def from_reflectance(self, reflectance: Array) -> Array:
+    def from_reflectance(self, reflectance: Any) -> Any:
         half = reflectance - 0.5
-        return np.asarray(2 * half / np.sqrt(np.maximum(1 - 4 * half * half, LEAST)))
+        xp = reflectance.__array_namespace__()
+        return 2 * half / xp.sqrt(xp.maximum(1 - 4 * half * half, LEAST))
 
     def constant(self) -> Array:
         return np.eye(self.count)[-1]

@@ -172,12 +172,12 @@ def _moving(data: CubeData) -> tuple[dict[str, Values], dict[str, Any]]:
     each, around a grey of 1/2.
     """
     sensor = data.sensor
-    weights, shapes, scale = pull(sensor)
+    problem = pull(data.model, sensor)
     half = len(data.solid.normals) // 2  # the others are opposite ones
     width = (data.solid.offsets[:half] + data.solid.offsets[half:]) / 2
     sections = {
-        "PULL": np.concatenate([weights, shapes]).T,
-        "SCALES": scale,
+        "PULL": np.concatenate([problem.weights, problem.shapes]).T,
+        "SCALES": problem.scale,
         "LUMINANCE": sensor.rgb_to_xyz[1],
         "FACETS": np.column_stack([data.solid.normals[:half], width]),
     }
