@@ -33,8 +33,10 @@ SLIGHT_EXCESS = 0.6
 ROUNDS = 8
 """Shipped sets need up to four in sRGB."""
 MAX_PASSES = 32
+SLAB = 1 << 15
+"""Cells whose corners are evaluated at a time."""
 BLOCK = 1 << 10
-"""Nodes or cells processed at a time."""
+"""Cells that fit the cache."""
 AXIAL = np.flatnonzero(np.abs(NEIGHBOURS).sum(axis=1) == 1)
 """Columns of `NEIGHBOURS` along the axes."""
 
@@ -147,27 +149,29 @@ def soften(growth: Growth, rgb: Array, lights: Sequence[Light]) -> Indices:
     exact = growth.distance <= growth.problem.threshold
     exact[growth.nodes.unrealisable] = False
     near = cells_near(lattice, sensor, rgb) & lattice.complete_cells(exact)
-    cells = np.flatnonzero(near)
-    points = np.flatnonzero(lattice.corner_points(near))
-    before = growth.multipliers[points], growth.distance[points], growth.rgb[points]
+    changed = np.zeros(lattice.size, dtype=bool)
+    history = []
+    steep = _steep_cells(growth, steps, np.flatnonzero(near))
     for _ in range(ROUNDS):
-        steep = _steep_cells(growth, steps, cells, points)
         if not steep.size:
             break
         corners = np.unique(steep[:, None] + lattice.index(CORNERS))
+        changed[corners] = True
+        columns = growth.multipliers, growth.distance, growth.rgb
+        history.append((corners, [column[corners] for column in columns]))
         _relax(growth, corners, exact)
-    else:
-        steep = _steep_cells(growth, steps, cells, points)
-    changed = (growth.multipliers[points] != before[0]).any(axis=1)
-    if steep.size:
-        # Where nodes have little choice, near the limits of reflectances, they stay.
-        stays = _joined(lattice, lattice.mask(points[changed]), steep)[points]
-        for column, kept in zip(
-            (growth.multipliers, growth.distance, growth.rgb), before, strict=True
-        ):
-            column[points[stays]] = kept[stays]
-        changed &= ~stays
-    return points[changed]
+        around = near & lattice.cells_around(lattice.mask(corners))
+        steep = _steep_cells(growth, steps, np.flatnonzero(around))
+    if not steep.size:
+        return np.flatnonzero(changed)
+    # Where nodes have little choice, near the limits of reflectances, they stay.
+    stays = _joined(lattice, changed, steep)
+    for corners, before in reversed(history):
+        kept = stays[corners]
+        columns = growth.multipliers, growth.distance, growth.rgb
+        for column, values in zip(columns, before, strict=True):
+            column[corners[kept]] = values[kept]
+    return np.flatnonzero(changed & ~stays)
 
 
 def _joined(lattice: Lattice, changed: Mask, steep: Indices) -> Mask:
@@ -183,23 +187,27 @@ def _joined(lattice: Lattice, changed: Mask, steep: Indices) -> Mask:
     return changed & lattice.corner_points(joined)
 
 
-def _steep_cells(
-    growth: Growth, steps: Steps, cells: Indices, points: Indices
-) -> Indices:
-    """Cells that break the law, of ``cells`` (k,) with the corners ``points`` (n,)."""
-    colours = np.empty((len(points), len(steps.lights), 3))
-    wavelengths = growth.problem.sensor.wavelengths
-    for block in blocks(len(points), BLOCK):
-        multipliers = growth.multipliers[points[block]]
-        spectra = evaluate(growth.problem.model, multipliers, wavelengths)
-        colours[block] = steps.colours(spectra)
-    observed = np.ascontiguousarray(lab(colours, np.ones(3)).T)
-    row = np.searchsorted(points, cells[:, None] + steps.lattice.index(CORNERS))
-    may = np.zeros(len(cells), dtype=bool)
-    for block in blocks(len(cells), BLOCK):
-        may[block] = steps.may_exceed(cells[block], observed[:, :, row[block].T])
-    excess = steps.excess(cells[may], colours[row[may]])
-    return cells[may][excess > LARGEST_EXCESS]
+def _steep_cells(growth: Growth, steps: Steps, cells: Indices) -> Indices:
+    """Those of ``cells`` (k,) that break the law."""
+    lattice = steps.lattice
+    problem = growth.problem
+    steep = [cells[:0]]
+    for slab in blocks(len(cells), SLAB):
+        corners = cells[slab, None] + lattice.index(CORNERS)
+        points = np.flatnonzero(lattice.mask(corners.ravel()))
+        row = np.searchsorted(points, corners)
+        multipliers = growth.multipliers[points]
+        spectra = evaluate(problem.model, multipliers, problem.sensor.wavelengths)
+        colours = steps.colours(spectra)
+        observed = np.ascontiguousarray(lab(colours, np.ones(3)).T)
+        may = np.zeros(len(row), dtype=bool)
+        for block in blocks(len(row), BLOCK):
+            some = cells[slab][block]
+            may[block] = steps.may_exceed(some, observed[:, :, row[block].T])
+        some = cells[slab][may]
+        excess = steps.excess(some, colours[row[may]])
+        steep.append(some[excess > LARGEST_EXCESS])
+    return np.concatenate(steep)
 
 
 def _relax(growth: Growth, points: Indices, exact: Mask) -> None:
