@@ -373,7 +373,7 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
             f"{pluralise(unrealisable, 'node')} whose colour no reflectance has: "
             "stored with less chroma"
         )
-    if softened := data.provenance["softened"]:
+    if softened := data.provenance.get("softened"):
         paragraph(
             f"{pluralise(softened, 'node')} moved towards neighbours: gradients near "
             "entries would be steep under other lights"
