@@ -1,6 +1,4 @@
-"""Nodes near entries keep gradients gentle: fast steps beside plain ones, and what
-`soften` changes.
-"""
+"""Nodes near entries keep gradients gentle: fast steps, compared with plain ones."""
 
 import numpy as np
 import pytest
