@@ -5,8 +5,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from tests.helpers import quiet_build
-from uplift.colorimetry import delta_e_spectra, observer
-from uplift.colorimetry.delta_e import lab
+from uplift.colorimetry import delta_e_spectra, lab, observer
 from uplift.fit.gradients import DIRECTIONS, LARGEST_EXCESS, Steps, cells_near
 from uplift.lattice import CORNERS
 from uplift.lookup import Cube

@@ -10,12 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry import Light, Sensor, delta_e_2000
-from uplift.colorimetry.delta_e import lab
+from uplift.colorimetry import Light, Sensor, delta_e_2000, lab
 from uplift.common.arrays import Array, Indices, Mask, blocks
 from uplift.fit.growth import Growth
-from uplift.lattice import CORNERS, Lattice
-from uplift.lattice.lattice import NEIGHBOURS
+from uplift.lattice import CORNERS, NEIGHBOURS, Lattice
 from uplift.models import evaluate
 
 LARGEST_EXCESS = 1.0
