@@ -373,6 +373,11 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
             f"{pluralise(unrealisable, 'node')} whose colour no reflectance has: "
             "stored with less chroma"
         )
+    if softened := data.provenance.get("softened"):
+        paragraph(
+            f"{pluralise(softened, 'node')} moved towards neighbours: gradients near "
+            "entries would be steep under other lights"
+        )
     if unfitted := counts["unfitted"]:
         paragraph(
             f"{pluralise(unfitted, 'node')} EXCEED the threshold {data.threshold:g}: "

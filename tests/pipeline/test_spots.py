@@ -5,6 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import uplift
+from benchmarks.materials import MIXTURE, SHIPPED, materials
 from benchmarks.trust import steepest
 from tests.conftest import MACBETH
 from tests.helpers import quiet_build, warns
@@ -12,14 +13,22 @@ from uplift.colorimetry import delta_e_spectra, observer
 from uplift.extras.texture.scene_colours import ColourSet
 from uplift.lookup import Cube
 
+STEEP = (152, 78, 119)
+"""Codes in a cell of the mixed atlas that would be steep."""
+
 
 @pytest.fixture(scope="module")
 def mixed() -> Cube:
     return quiet_build("cie2017", dim=32)
 
 
-def test_no_light_steps_by_one_more_than_daylight(mixed):
-    assert steepest(mixed).max() <= 1
+@pytest.mark.filterwarnings("ignore::uplift.common.errors.UpliftWarning")
+@pytest.mark.parametrize("name", [*SHIPPED, MIXTURE])
+def test_no_light_steps_by_one_more_than_daylight(name):
+    assert steepest(materials(name).cube(dim=32)).max() <= 1
+
+
+def test_exact_entries_show_as_spots():
     assert steepest(quiet_build("cie2017", dim=32, exact_entries=True)).max() > 1
 
 
@@ -50,8 +59,9 @@ def test_entries_that_agree_are_exact(macbeth_cube):
 
 
 def test_sparse_cubes_answer_as_whole_ones(mixed):
+    """Also in a cell whose nodes have moved towards neighbours."""
     table = mixed.data.atlas
     smoothed = np.isin(table.names, list(mixed.data.provenance["smoothed"]))
-    rgb = table.rgb[smoothed][:3]
+    rgb = np.concatenate([table.rgb[smoothed][:3], mixed.decode([STEEP])])
     sparse = quiet_build("cie2017", dim=32, scene=ColourSet(rgb))
     assert_allclose(sparse.reflectance(rgb), mixed.reflectance(rgb), atol=1e-6)

@@ -10,7 +10,14 @@ from uplift.lattice.entry_boxes import (
     Nodes,
     OutsideBoxes,
 )
-from uplift.lattice.lattice import AXES, CORNERS, Lattice, axis_nodes, weighted_sum
+from uplift.lattice.lattice import (
+    AXES,
+    CORNERS,
+    NEIGHBOURS,
+    Lattice,
+    axis_nodes,
+    weighted_sum,
+)
 from uplift.lattice.point_table import (
     ABSENT_VALUES,
     NO_ENTRY,
@@ -24,6 +31,7 @@ __all__ = [
     "AXES",
     "CORNERS",
     "MARGIN",
+    "NEIGHBOURS",
     "NOT_FITTED",
     "NO_ENTRY",
     "NO_ROWS",

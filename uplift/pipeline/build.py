@@ -135,7 +135,8 @@ def build(
         does not mislead about other materials (docs/prior.md).
     exact_entries : bool, default False
         Keep the exact spectra of entries that contradict their surroundings. By default
-        they are smoothed where they would show as spots under other lights.
+        they are smoothed where they would show as spots under other lights, and nodes
+        near entries are moved towards their neighbours where gradients would be steep.
     growth : {"outward", "coarse-to-fine", "neighbours"}, default "outward"
         Order in which nodes are fitted: outward from the atlas entries, in shells, or
         from a coarse lattice to finer ones. Both start from the spectrum that the atlas

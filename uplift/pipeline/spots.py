@@ -4,7 +4,7 @@ spots under other lights, and are smoothed (docs/mathematics.md, 8).
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_spectra, observer
+from uplift.colorimetry import Light, delta_e_spectra, observer
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import UpliftWarning, warn
 from uplift.common.text import pluralise
@@ -53,6 +53,13 @@ def smooth_spots(
     smoothed = fit_constraints(problem, constraints.entry_model, goals)
     shares = dict(zip(names, share.tolist(), strict=True))
     return replaced(problem, constraints, rows, smoothed), shares
+
+
+def scene_lights(problem: Problem) -> tuple[Light, ...]:
+    """Return the lights of the build but its own, and `SPIKY`."""
+    sensor = problem.sensor
+    others = [light for light in problem.lights if light.name != sensor.light.name]
+    return (*others, observer.light(SPIKY, sensor.observer, *sensor.range))
 
 
 def warn_of_spots(shares: dict[str, float]) -> None:
@@ -104,18 +111,17 @@ def _steepest(
     the light of the build.
     """
     sensor = problem.sensor
-    spiky = observer.light(SPIKY, sensor.observer, *sensor.range)
     own = constraints.reflectance(problem, rows)
     codes = np.arange(len(sensor.decoding))
     centre = np.interp(boxes.rgb[rows], sensor.decoding, codes)
     steepest = np.zeros(len(rows))
-    lights = [light for light in problem.lights if light.name != sensor.light.name]
+    lights = scene_lights(problem)
     for exit_rgb in _exits(boxes, rows):
         passed = np.abs(np.interp(exit_rgb, sensor.decoding, codes) - centre)
         count = np.maximum(passed.max(axis=1), 1)
         answers = _lattice_spectra(problem, boxes, points, exit_rgb)
         expected = delta_e_spectra(sensor.light, own, answers)
-        for light in (*lights, spiky):
+        for light in lights:
             excess = delta_e_spectra(light, own, answers) - expected
             steepest = np.maximum(steepest, excess / count)
     return steepest

@@ -38,6 +38,7 @@ from uplift.fit import (
     nodes_of,
     seeds,
 )
+from uplift.fit.gradients import nodes_around, soften
 from uplift.fit.store import store
 from uplift.lattice import EntryBoxes, Lattice, PointTable, axis_nodes
 from uplift.lookup import Cube
@@ -51,7 +52,7 @@ from uplift.pipeline.options import (
     Options,
     check_memory,
 )
-from uplift.pipeline.spots import smooth_spots, warn_of_spots
+from uplift.pipeline.spots import scene_lights, smooth_spots, warn_of_spots
 
 
 class SceneLike(Protocol):
@@ -226,7 +227,7 @@ def build_stages(
         **_describe_atlas(spectra),
         "prior": _describe_prior(prior),
         "smoothed": smoothed,
-        "improvements": improvements,
+        **improvements,
         **({} if scene is None else {"scene": scene.describe()}),
         **_describe_library(spectra, learnt.relevance),
         **_describe_left_out(learnt.left_out),
@@ -274,6 +275,18 @@ def _blend(options: Options) -> seeds.Blend:
     return seeds.near_entry
 
 
+def _softens(options: Options, problem: Problem) -> bool:
+    """Whether nodes may be moved towards their neighbours: not if they are wanted as in
+    the thesis, flat, or as exact as the entries, or if codes are not for display.
+    """
+    if options.exact_entries or options.neutral == "flat":
+        return False
+    decoding = problem.sensor.decoding
+    if problem.model.is_determined or np.allclose(np.diff(decoding, 2), 0):
+        return False
+    return _blend(options) is seeds.near_entry
+
+
 def _fit_nodes(
     options: Options,
     problem: Problem,
@@ -282,11 +295,14 @@ def _fit_nodes(
     seeded: seeds.Seeds,
     kept: Indices | None,
     progress: ProgressCallback,
-) -> tuple[PointTable, list[dict[str, Any]]]:
-    """Fit the nodes ``kept``, or all, and describe the steps that improved them."""
+) -> tuple[PointTable, dict[str, Any]]:
+    """Fit the nodes ``kept``, or all, and describe how they were improved."""
     # They grow from the seeds: min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7), where t
     # is the nearest colour that some reflectance has (9).
-    nodes = nodes_of(seeded.lattice, problem.sensor, kept)
+    fitted = kept
+    if kept is not None and _softens(options, problem):
+        fitted = nodes_around(seeded.lattice, problem.sensor, seeded.rgb, kept)
+    nodes = nodes_of(seeded.lattice, problem.sensor, fitted)
     steps: Sequence[str] = growth.STEPS
     multipliers = constraints.at_nodes.multipliers
     if options.growth == "neighbours":
@@ -308,11 +324,15 @@ def _fit_nodes(
         {"step": step, "tried": tried, "mended": fixed}
         for step, tried, fixed in growth.improve(grown, steps)
     ]
+    softened = 0
+    if _softens(options, problem):
+        softened = len(soften(grown, seeded.rgb, scene_lights(problem)))
     points = store(grown, seeded, prior)
     _warn_of_unfitted(options, points)
     if kept is not None:
         points = points.restricted_to(kept)
-    return points if options.debug else replace(points, round=None), improvements
+    done = {"improvements": improvements, "softened": softened}
+    return points if options.debug else replace(points, round=None), done
 
 
 def _warn_of_unfitted(options: Options, points: PointTable) -> None:

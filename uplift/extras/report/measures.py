@@ -41,6 +41,7 @@ def collect_failures(data: CubeData) -> dict[str, Any]:
 
     Entries are ``left_out`` by earlier versions only, and ``skipped`` where the atlas
     reader could not use them. ``smoothed`` ones keep a share of their spectra.
+    ``softened`` counts the nodes that were moved towards their neighbours.
     """
     points = data.points
     recorded = data.provenance
@@ -65,6 +66,7 @@ def collect_failures(data: CubeData) -> dict[str, Any]:
         else (),
         "skipped": tuple(recorded.get("skipped", ())),
         "smoothed": tuple(recorded.get("smoothed", ())),
+        "softened": recorded.get("softened", 0),
     }
 
 
