@@ -148,14 +148,14 @@ def soften(growth: Growth, rgb: Array, lights: Sequence[Light]) -> Indices:
     exact[growth.nodes.unrealisable] = False
     near = cells_near(lattice, sensor, rgb) & lattice.complete_cells(exact)
     changed = np.zeros(lattice.size, dtype=bool)
-    history = []
+    columns: tuple[Array, ...] = (growth.multipliers, growth.distance, growth.rgb)
+    history = list[tuple[Indices, list[Array]]]()
     steep = _steep_cells(growth, steps, np.flatnonzero(near))
     for _ in range(ROUNDS):
         if not steep.size:
             break
         corners = np.unique(steep[:, None] + lattice.index(CORNERS))
         changed[corners] = True
-        columns = growth.multipliers, growth.distance, growth.rgb
         history.append((corners, [column[corners] for column in columns]))
         _relax(growth, corners, exact)
         around = near & lattice.cells_around(lattice.mask(corners))
@@ -166,7 +166,6 @@ def soften(growth: Growth, rgb: Array, lights: Sequence[Light]) -> Indices:
     stays = _joined(lattice, changed, steep)
     for corners, before in reversed(history):
         kept = stays[corners]
-        columns = growth.multipliers, growth.distance, growth.rgb
         for column, values in zip(columns, before, strict=True):
             column[corners[kept]] = values[kept]
     return np.flatnonzero(changed & ~stays)
