@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.colorimetry import Light, Sensor, delta_e_2000, lab
-from uplift.common.arrays import Array, Indices, Mask, blocks
+from uplift.common.arrays import Array, Indices, Mask, Values, blocks
 from uplift.fit.growth import Growth
 from uplift.lattice import CORNERS, NEIGHBOURS, Lattice
 from uplift.models import evaluate
@@ -148,8 +148,8 @@ def soften(growth: Growth, rgb: Array, lights: Sequence[Light]) -> Indices:
     exact[growth.nodes.unrealisable] = False
     near = cells_near(lattice, sensor, rgb) & lattice.complete_cells(exact)
     changed = np.zeros(lattice.size, dtype=bool)
-    columns: tuple[Array, ...] = (growth.multipliers, growth.distance, growth.rgb)
-    history = list[tuple[Indices, list[Array]]]()
+    columns: tuple[Values, ...] = (growth.multipliers, growth.distance, growth.rgb)
+    history = list[tuple[Indices, list[Values]]]()
     steep = _steep_cells(growth, steps, np.flatnonzero(near))
     for _ in range(ROUNDS):
         if not steep.size:
