@@ -100,14 +100,14 @@ def test_spectra_in_float64_are_those_of_numpy(cube, doubles):
     assert missed[inside].max() < 1e-4
 
 
-def test_spectra_in_float32_are_those_of_numpy(cube):
-    rgb = colours(cube).astype(np.float32)
-    found = np.asarray(evaluate(traceable(cube, AT), rgb))
+def test_spectra_in_float32_are_those_of_numpy(packaged):
+    rgb = colours(packaged).astype(np.float32)
+    found = np.asarray(evaluate(traceable(packaged, AT), rgb))
     assert found.dtype == np.float32
     assert found.min() >= 0
     assert found.max() <= 1
-    off = np.abs(found - cube.reflectance(rgb, AT)).max(axis=1)
-    assert off[realisable(cube, rgb, depth=1e-3)].max() < 1e-3
+    off = np.abs(found - packaged.reflectance(rgb, AT)).max(axis=1)
+    assert off[realisable(packaged, rgb, depth=1e-3)].max() < 1e-3
     assert np.median(off) < 1e-5
 
 

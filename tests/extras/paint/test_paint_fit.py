@@ -60,16 +60,6 @@ def test_noise_is_within_the_stated_errors(three_paints, fitted):
     assert np.median(stated.scattering) < 0.1
 
 
-def test_more_noise_gives_larger_errors(three_paints, fitted):
-    samples = measured(three_paints, plan(three_paints), 5.0, FILMS)
-    noisy = fit_paints(samples)
-    assert mixture_errors(noisy.paints, three_paints).mean() < 1
-    for name in ("absorption", "scattering"):
-        more = getattr(noisy.paints.errors, name)
-        less = getattr(fitted.paints.errors, name)
-        assert np.median(more) > 2 * np.median(less)
-
-
 def test_the_order_of_samples_and_paints_does_not_matter(three_paints, opaque_fit):
     order = [2, 0, 1]
     samples = chosen(opaque_fit.samples, [7, 3, 0, 2, 6, 1, 5, 4])
