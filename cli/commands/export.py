@@ -83,6 +83,7 @@ HELP = """Write a cube in a format that other tools read.
       uplift export macbeth-32.uplift --format csv
       uplift export --runtime uplift.h
       uplift export --runtime uplift.js
+      uplift paints fit swatches.csv -o paints.toml
       uplift export paints.toml -o mixer.glsl
       uplift export paints.toml --paint 'deep blue' --paint 'warm red' -o two.cube
     """

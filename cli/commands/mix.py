@@ -63,6 +63,7 @@ if TYPE_CHECKING:
       uplift mix --pigment 2:'#005fa0' 1:'#ffd200'
       uplift mix blue yellow --cube macbeth-32.uplift --plot ramp.png
       uplift mix '#c8342a' --thickness 0.5 --ground '#f0e8d8' --format json
+      uplift paints fit swatches.csv -o paints.toml
       uplift mix '3:lemon yellow' '1:deep blue' --paints paints.toml
     \f
 

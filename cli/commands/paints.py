@@ -57,7 +57,7 @@ paint_names = options.repeatable(
       uplift paints fit swatches.csv -o paints.toml
       uplift paints match '#3e7d4b' --paints paints.toml
       uplift paints match --input wood.png --paints paints.toml -o layers.exr
-      uplift mix 2:blue 1:yellow --paints paints.toml
+      uplift mix '3:lemon yellow' '1:deep blue' --paints paints.toml
       uplift export paints.toml -o paints.html
     """,
 )
@@ -82,7 +82,6 @@ def command() -> None:
     Examples:
       uplift paints fit swatches.csv -o paints.toml
       uplift paints fit swatches.csv --refractive-index 1.5 -o oil.toml
-      uplift paints fit chart.ti3 --recipes parts.csv -o chart.toml
     """,
 )
 @click.argument("samples_path", metavar="SAMPLES", type=click.Path())
