@@ -196,7 +196,12 @@ def _solve_tangent(derivative: Any, right: jax.Array) -> jax.Array:
     unit = jnp.eye(3, dtype=right.dtype)
     columns = [derivative(jnp.broadcast_to(e[:, None], right.shape)) for e in unit]
     # The matrix is −W diag(S') Kᵀ.
-    lower = [[-columns[b][a] for b in range(a + 1)] for a in range(3)]
+    first, second, third = (-column for column in columns)
+    lower = [
+        [first[0]],
+        [first[1], second[1]],
+        [first[2], second[2], third[2]],
+    ]
     return -jnp.stack(solve_damped(lower, 0, right, _rounding(right) / 8))
 
 

@@ -163,7 +163,7 @@ def _js_words(mixer: RgbMixer) -> Words:
 
 def _glsl_words(mixer: RgbMixer) -> Words:
     quarters = mixer.to_rgb.reshape(-1, QUARTER).tolist()
-    texels = [", ".join(f"{number:.9f}" for number in quarter) for quarter in quarters]
+    texels = [", ".join(map("{:.9f}".format, quarter)) for quarter in quarters]
     return {
         "to_rgb": ",\n".join(f"    vec4({texel})" for texel in texels),
         "depth": len(mixer.table) * 2 * BANDS // QUARTER,

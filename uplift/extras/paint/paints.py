@@ -152,16 +152,14 @@ class Paints:
         """
         nm = np.asarray(wavelengths, dtype=float)
 
-        def sample(pigment: Pigment) -> Pigment:
-            rows = (pigment.absorption, pigment.scattering)
-            sampled = [
-                np.stack([np.interp(nm, self.wavelengths, row) for row in values])
-                for values in rows
-            ]
-            return Pigment(*sampled)
+        def sample(values: Array) -> Array:
+            return np.stack([np.interp(nm, self.wavelengths, row) for row in values])
 
-        errors = None if self.errors is None else sample(self.errors)
-        pigments = sample(self.pigments)
+        def sampled(pigment: Pigment) -> Pigment:
+            return Pigment(sample(pigment.absorption), sample(pigment.scattering))
+
+        errors = None if self.errors is None else sampled(self.errors)
+        pigments = sampled(self.pigments)
         return replace(self, wavelengths=nm, pigments=pigments, errors=errors)
 
     def reflectance(
