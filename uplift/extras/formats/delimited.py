@@ -14,7 +14,7 @@ from uplift.common.errors import OutputError
 from uplift.common.text import pluralise
 from uplift.extras.files.csv import csv_text, find_delimiter, plain_cell
 from uplift.extras.formats.measurements import Measurements
-from uplift.extras.formats.statements import remark_scale
+from uplift.extras.formats.statements import name_quantity, remark_scale
 from uplift.extras.formats.tables.cells import Cell, Row, is_value, line_texts, trimmed
 from uplift.extras.formats.tables.grid import LAYOUT, Grid
 from uplift.extras.formats.tables.read import read_grid
@@ -96,9 +96,10 @@ def text(atlas: Atlas, _: Header) -> str:
                 problem,
                 hint="write atlas text, which keeps each sampling, or separate tables",
             )
-        if remark_scale(entry.name) is not None:
+        if remark_scale(entry.name) or name_quantity(entry.name):
             raise OutputError(
-                f"the name '{entry.name}' states a scale, which a table is read by",
+                f"the name '{entry.name}' states a scale or a quantity, which a table "
+                "is read by",
                 hint="rename the entry, or write atlas text",
             )
     rows = ([entry.name, *entry.values.tolist()] for entry in atlas)
