@@ -7,7 +7,7 @@ are the colours that these shares have.
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -15,7 +15,7 @@ import numpy as np
 from uplift.colorimetry import (
     Sensor,
     delta_e_2000,
-    delta_e_2000_weights,
+    delta_e_2000_terms,
     observer,
     rgb_to_lab,
 )
@@ -26,7 +26,7 @@ from uplift.common.text import listed
 from uplift.extras.colour.spaces import ImageSpace
 from uplift.extras.images import exr
 from uplift.extras.paint.paints import Paints
-from uplift.extras.paint.recipes import Residuals, descend, shares_of
+from uplift.extras.paint.recipes import descend, shares_of
 from uplift.extras.texture.colours import Counts, check_encoding
 from uplift.extras.texture.uplifter import Converter
 
@@ -47,7 +47,7 @@ class PaintLayers(Converter):
 
     paints: Paints  # at the wavelengths of the sensor
     table: Array  # (DIM, DIM, DIM, P) shares of encoded RGB
-    delta_e: Array = field(default_factory=lambda: np.empty(0))
+    delta_e: Array
     """ΔE00 (DIM³,) between the colours of the lattice and those of their shares."""
 
     def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
@@ -146,14 +146,13 @@ def layer_names(names: Sequence[str]) -> tuple[str, ...]:
 def _solve(paints: Paints, sensor: Sensor, rgb: Array) -> tuple[Array, Array]:
     """Return the shares (n, P) that come nearest to linear RGB (n, 3), and ΔE00."""
     goals = rgb_to_lab(sensor, rgb)
-    weights = delta_e_2000_weights(goals)
     count = len(paints)
 
-    def residuals(shares: Array) -> Array:
+    def residuals(ratios: Array) -> Array:
+        shares = shares_of(ratios)
         mixed = rgb_to_lab(sensor, sensor.rgb(paints.reflectance(shares)))
-        difference = (weights @ (mixed - goals)[..., None])[..., 0]
         spread = SPARSENESS * np.sqrt(shares)
-        return np.concatenate([difference, spread], axis=1)
+        return np.concatenate([delta_e_2000_terms(mixed, goals), spread], axis=1)
 
     starts = [np.zeros(count - 1)]
     for paint in range(count - 1):
@@ -161,13 +160,9 @@ def _solve(paints: Paints, sensor: Sensor, rgb: Array) -> tuple[Array, Array]:
     best = np.full(len(rgb), np.inf)
     shares = np.zeros((len(rgb), count))
     for start in starts:
-        ratios, squares = _follow(residuals, np.tile(start, (len(rgb), 1)))
+        ratios, squares = descend(residuals, np.tile(start, (len(rgb), 1)))
         is_better = squares < best
         shares = np.where(is_better[:, None], shares_of(ratios), shares)
         best = np.minimum(best, squares)
     mixed = sensor.rgb(paints.reflectance(shares))
     return shares, delta_e_2000(rgb_to_lab(sensor, mixed), goals)
-
-
-def _follow(residuals: Residuals, ratios: Array) -> tuple[Array, Array]:
-    return descend(lambda moved: residuals(shares_of(moved)), ratios)
