@@ -18,7 +18,7 @@ import numpy as np
 
 from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError
+from uplift.common.errors import OptionError, UpliftWarning, warn
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.paint.optics import Surface, beneath_surface, through_surface
@@ -43,7 +43,7 @@ SURFACE_COUNT = 2
 """Variables of the surface."""
 PRECISION = 1e-4
 """Relative and absolute change of the variables at which a fit ends."""
-MAX_STEPS = 100
+MAX_STEPS = 1000
 ROUNDS = 4
 """Fits with the noise of the one before."""
 STEADY = 1.1
@@ -194,6 +194,11 @@ def fit_paints(
     OptionError
         There are more unknowns than memory allows (``too-many-paints``).
 
+    Warns
+    -----
+    UpliftWarning
+        The solver has not converged (``paints-not-converged``).
+
     References
     ----------
     Walowit, McCarthy & Berns 1987, "An algorithm for the optimization of Kubelka-Munk
@@ -233,7 +238,7 @@ def _fit(
     for done in range(ROUNDS):
         spread = noise.spread(values)
         with jax.enable_x64(True):
-            optimum, derivative = solve(z, spread)
+            optimum, derivative, is_solved = solve(z, spread)
         z = np.asarray(optimum)
         jacobian = np.asarray(derivative)
         differences = np.asarray(model.differences(z, samples))
@@ -248,6 +253,10 @@ def _fit(
         excess = np.median(noise.spread(values) / last.spread(values))
         if excess <= STEADY:
             break
+    if not is_solved:
+        problem = f"the fit stopped after {MAX_STEPS} steps: errors may be larger"
+        hint = "check the parts of the samples that fit worst"
+        warn(UpliftWarning(problem, code="paints-not-converged", hint=hint))
     paints = _paints(samples, model, z, covariance)
     predicted = np.asarray(model.colours(z, samples))
     delta_e = delta_e_2000(predicted, _measured_lab(samples, model))
@@ -276,10 +285,10 @@ def _estimate_noise(samples: PaintSamples, squares: Array) -> Noise:
 
 def _solver(
     samples: PaintSamples, model: FitModel
-) -> Callable[[Array, Array], tuple[Array, Array]]:
+) -> Callable[[Array, Array], tuple[Array, Array, bool]]:
     """Return a compiled function from the start and the spread of the measured values
-    to the variables (d,) of the largest posterior, and the Jacobian (m, d) of the
-    residuals there.
+    to the variables (d,) of the largest posterior, the Jacobian (m, d) of the
+    residuals there, and whether the solver has converged.
     """
     import jax
     import lineax
@@ -301,7 +310,8 @@ def _solver(
             with_prior, solver, start, spread, max_steps=MAX_STEPS, throw=False
         )
         optimum = solution.value
-        return optimum, jax.jacfwd(residuals)(optimum, spread)
+        is_solved = solution.result == optimistix.RESULTS.successful
+        return optimum, jax.jacfwd(residuals)(optimum, spread), is_solved
 
     return solve
 
