@@ -14,10 +14,10 @@ from tests.extras.paint.invented import (
     mixture_errors,
     plan,
 )
-from tests.helpers import raises
+from tests.helpers import raises, warns
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
-from uplift.extras.paint import PaintSamples, Surface, fit_paints
+from uplift.extras.paint import PaintSamples, Surface, fit_paints, paint_fit
 from uplift.extras.paint.paint_samples import MeasuredColours, MeasuredSpectra
 
 
@@ -136,6 +136,12 @@ def test_paints_without_light_and_films_that_hide_are_fitted():
     assert np.isfinite(found.paints.pigments.absorption).all()
     assert (found.paints.pigments.scattering > 0).all()
     assert found.paints.surface == Surface()
+
+
+def test_a_fit_that_stops_early_warns(opaque_fit, monkeypatch):
+    monkeypatch.setattr(paint_fit, "MAX_STEPS", 2)
+    with warns("paints-not-converged"):
+        fit_paints(opaque_fit.samples)
 
 
 def test_too_many_unknowns_raise():
