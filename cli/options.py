@@ -231,9 +231,9 @@ def plot(help: str, option: str = "--plot", name: str = "plot_path") -> Decorato
     )
 
 
-def page(help: str, type: OutputFile = PAGE) -> Decorator:
+def page(help: str) -> Decorator:
     """``--html``. A suffix other than .html is an error at once."""
-    return click.option("--html", metavar="FILE", type=type, help=help)
+    return click.option("--html", metavar="FILE", type=PAGE, help=help)
 
 
 def wavelengths(help: str) -> Decorator:

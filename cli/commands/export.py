@@ -76,11 +76,8 @@ HELP = """Write a cube in a format that other tools read.
       uplift export macbeth-32.uplift -o filed.h --table file
       uplift export macbeth-32.uplift -o moments.glsl --mode moments
       uplift export macbeth-32.uplift -o sodium.cube --light HP1
-      uplift build --coefficients 3 --warp colour --dim 33 -o three.uplift
-      uplift export three.uplift -o fourier.png
       uplift export macbeth-32.uplift -o film.npy
       uplift export macbeth-32.uplift -o paint.h --format mixer-c
-      uplift export macbeth-32.uplift --format csv
       uplift export --runtime uplift.h
       uplift export --runtime uplift.js
       uplift paints fit swatches.csv -o paints.toml
@@ -108,8 +105,8 @@ HELP = """Write a cube in a format that other tools read.
     "--res",
     type=options.WHOLE,
     help=(
-        "Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier "
-        "33, film 192, mixers 17]"
+        "Nodes of a table along each axis. [default: coeff 64, cube and clf 33, film "
+        "192, mixers 17]"
     ),
 )
 @click.option(

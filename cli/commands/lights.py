@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.common.files import check_output, write_text
+from uplift.common.files import check_output
 from uplift.common.text import pluralise
 from uplift.extras.files.outputs import check_outputs
 
@@ -112,48 +112,33 @@ def build(
 
 @command.command(
     "info",
-    help="""Show the contents of an emission table, in words, as a picture or as a page.
+    help="""Show the contents of an emission table, in words or as a picture.
 
     \b
     Examples:
       uplift lights info
-      uplift lights info --plot lights.png --html lights.html
+      uplift lights info --plot lights.png
       uplift lights info lights.uplift --format json
 
     Expected errors are ΔE00 of the ColorChecker under the light, over the nodes of the
-    table; the page has those of random lights, which differ.
+    table.
     """,
 )
 @table_argument
 @options.table_or_json
 @options.plot("Plot colours, expected errors and lamps over u′v′")
-@options.page(
-    "Write a page with the plots, answers to random lights, and all lamps.",
-    options.FIGURE_PAGE,
-)
 @options.force
-def info(
-    table_path: str, style: str, plot_path: str | None, html: str | None, force: bool
-) -> None:
+def info(table_path: str, style: str, plot_path: str | None, force: bool) -> None:
     from uplift.extras.emission.file import summarise
-    from uplift.extras.emission.lookup import find_table, load_emission
+    from uplift.extras.emission.lookup import load_emission
 
-    check_outputs((plot_path, html), inputs=[table_path], force=force)
+    check_outputs((plot_path,), inputs=[table_path], force=force)
     table = load_emission(table_path)
     if plot_path is not None:
         from uplift.extras.pages.chromaticity import light_figure
         from uplift.extras.pages.figure import write_figure
 
         write_figure(light_figure(table), plot_path, force=force)
-    if html is not None:
-        from uplift.extras.report.emission_page import render_light_report
-
-        file = Path(find_table(table_path))
-        write_text(
-            render_light_report(table, file.name, file.stat().st_size),
-            html,
-            force=force,
-        )
     print_facts(table_path, summarise(table.data), style)
 
 

@@ -65,7 +65,7 @@ def test_a_table_of_measured_lamps_is_built_and_queried(ask, run, home, monkeypa
     assert ask("lights info x.uplift")["lamps"][0] == "bulb"
 
 
-def test_facts_picture_and_page(ask, run, home):
+def test_facts_and_picture(ask, run, home):
     table = uplift.load_emission()
     table.save(home / "lights.uplift")
     facts = ask("lights info lights.uplift")
@@ -74,9 +74,8 @@ def test_facts_picture_and_page(ask, run, home):
         list(table.lamp_names),
         emission_digest(table.data),
     )
-    words = "--plot lights.png --html lights.html"
+    words = "--plot lights.png"
     assert "LED-B3" in run(f"lights info lights.uplift {words}").stdout
-    assert "Chromaticity diagrams" in (home / "lights.html").read_text("utf-8")
     assert (home / "lights.png").read_bytes().startswith(b"\x89PNG")
     assert "lights.png" in run(f"lights info {words}", code=2).stderr
 

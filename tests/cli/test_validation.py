@@ -112,7 +112,7 @@ file-not-found lights build --atlas none.csv
 unknown-name lights build --space none
 unknown-name lights build --observer none
 option lights build --observer none.csv
-file-not-found lights info none.uplift --plot x.png --html x.html
+file-not-found lights info none.uplift --plot x.png
 file-not-found lights query 1 1 1 --lights none.uplift --plot x.png
 unknown-name lights query 1 1 1 --input-space none --plot x.png
 option lights query 1 1 1 --wavelengths 1:2:1 --plot x.png
@@ -269,7 +269,6 @@ chart --atlas macbeth --quick
 compare --atlas macbeth --quick -o out
 diff {} {} -o x.html
 lights info --plot x.png
-lights info --html x.html
 lights query 1 1 1 --plot x.png
 mix #888 --plot x.png
 paints match #888 --paints paints.toml --plot x.png

@@ -1,26 +1,16 @@
-"""Cubes as npz and CSV, and cubes that were built for a scene."""
+"""Cubes as npz, and cubes that were built for a scene."""
 
-import csv
 import json
-import operator
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from tests.cube.hand_made import hand_made
 from tests.helpers import near_black, raises, with_absent_points
 from uplift.common.errors import ColourError, OptionError
 from uplift.cube import contents
-from uplift.extras.export import (
-    arrays,
-    write_coeff,
-    write_csv,
-    write_npz,
-    write_program,
-)
+from uplift.extras.export import write_coeff, write_npz, write_program
 from uplift.lab.study.sensitivity import study_sensitivity
-from uplift.lattice import Status
 from uplift.lookup import Cube
 from uplift.models import evaluate, reflectance
 
@@ -71,50 +61,8 @@ def test_npz_has_the_entries_outside_the_space(cyan_cube, tmp_path):
     )
 
 
-def read(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def column(rows, *names):
-    cells = [operator.itemgetter(*names)(row) for row in rows]
-    return np.array(cells, dtype=float)
-
-
-def test_csv_has_a_line_per_node_in_full_precision(tmp_path, monkeypatch):
-    monkeypatch.setattr(arrays, "BLOCK", 5)
-    data = hand_made()
-    assert write_csv(data, tmp_path / "points.csv") == data.lattice.size
-    rows = read(tmp_path / "points.csv")
-    for names, expected in {
-        ("r", "g", "b"): data.lattice.points,
-        ("lattice_r", "lattice_g", "lattice_b"): data.points.rgb,
-        ("distance",): data.points.distance,
-        ("round",): data.points.round,
-        ("standard_error",): data.points.standard_error,
-        ("c0", "c1", "c2"): data.points.coefficients,
-    }.items():
-        assert_array_equal(column(rows, *names), expected)
-    assert [row["status"] for row in rows] == [
-        Status(status).label for status in data.points.status
-    ]
-    names = [*data.atlas.names, ""]
-    assert [row["entry"] for row in rows] == [
-        names[entry] for entry in data.points.entry
-    ]
-    write_csv(hand_made(round=None, standard_error=None), tmp_path / "fewer.csv")
-    assert not {"round", "standard_error"} & set(read(tmp_path / "fewer.csv")[0])
-
-
 def test_present_nodes_of_a_sparse_cube(sparse, tmp_path):
     present = np.flatnonzero(sparse.points.present)
-    assert write_csv(sparse, tmp_path / "cube.csv") == len(present)
-    expected = np.column_stack(
-        [sparse.lattice.points, sparse.points.coefficients[:, 0]]
-    )[present]
-    assert_allclose(
-        column(read(tmp_path / "cube.csv"), "r", "g", "b", "c0"), expected, rtol=1e-6
-    )
     write_npz(sparse, tmp_path / "cube.npz")
     arrays = np.load(tmp_path / "cube.npz")
     assert_array_equal(arrays["points"], present)

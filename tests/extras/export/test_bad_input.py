@@ -8,21 +8,16 @@ from uplift.colorimetry.observer import sensor
 from uplift.common.errors import OptionError, OutputError, UnknownNameError
 from uplift.extras import export
 from uplift.extras.emission.lookup import load_emission
-from uplift.lookup import Cube
-from uplift.models import Moments
 
 
 @pytest.fixture(scope="module")
-def cubes(small_cube, plain_cube):
+def cubes(small_cube):
     """Cubes, data and tables by name."""
     wide = replace(small_cube.data, sensor=sensor("ACEScg", "D60"))
-    three = replace(plain_cube.data, model=Moments(3))
     return {
         "cube": small_cube,
         "data": small_cube.data,
         "wide": wide,
-        "three": Cube(three),
-        "curve": Cube(replace(three, sensor=sensor("ProPhoto RGB"))),
         "lights": load_emission().data,
     }
 
@@ -51,12 +46,6 @@ def cubes(small_cube, plain_cube):
         ),
         (export.write_film, "cube", "a.npy", {"light": "moonlight"}, UnknownNameError),
         (export.write_film, "cube", "a.npy", {"res": 4}, OutputError),
-        *(
-            (export.write_fourier, each, "a.cube", {"res": 2}, OptionError)
-            for each in ("cube", "curve")
-        ),
-        (export.write_fourier, "three", "a.cube", {"res": 1}, OptionError),
-        (export.write_fourier, "three", "a.png", {"res": 33}, OptionError),
         (export.write_light_program, "lights", "a.h", {"style": "hlsl"}, OptionError),
         (
             export.write_light_program,

@@ -2,10 +2,9 @@
 format.
 """
 
-from uplift.extras.export.arrays import write_csv, write_npz
+from uplift.extras.export.arrays import write_npz
 from uplift.extras.export.coeff import write_coeff
 from uplift.extras.export.film import write_film
-from uplift.extras.export.fourier import write_fourier
 from uplift.extras.export.light_program import write_light_program
 from uplift.extras.export.lut import write_lut
 from uplift.extras.export.material_error import MaterialError, material_error
@@ -25,9 +24,7 @@ __all__ = [
     "output_files",
     "rounding_error",
     "write_coeff",
-    "write_csv",
     "write_film",
-    "write_fourier",
     "write_light_program",
     "write_lut",
     "write_npz",

@@ -6,7 +6,6 @@ from uplift.common.arrays import StrPath
 
 SECOND_SUFFIXES = {
     "film": ".toml",
-    "fourier": ".glsl",
     "mixer-glsl": ".bin",
     "file": ".bin",
 }

@@ -64,12 +64,6 @@ EXPORTS = {
     "luisa": Export(".cpp", SOURCE, SIGMOIDS),
     "cube": Export(".cube", *LUT),
     "clf": Export(".clf", *LUT),
-    "fourier": Export(
-        ".png",
-        "table from sRGB to three numbers for textures of 8 bits, and shader",
-        f"{ROOM}.fourier:export",
-        ("res",),
-    ),
     "film": Export(
         ".npy",
         "table of a spectrum per chromaticity, for film simulation; "
@@ -88,7 +82,6 @@ EXPORTS = {
     "npz": Export(
         ".npz", "all arrays of the cube, for numpy", f"{ROOM}.arrays:export_npz"
     ),
-    "csv": Export(".csv", "one line per node", f"{ROOM}.arrays:export_csv"),
 }
 """The formats of this package by name."""
 
