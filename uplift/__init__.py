@@ -103,8 +103,6 @@ register("solver", "stock", "uplift.extras.thesis:as_method")
 register("looks", "targets", "uplift.extras.looks.targets:targets_of")
 register("spaces", "of OpenColorIO", "uplift.extras.colour.spaces:look_up_space")
 register("scene", "images", "uplift.extras.texture.scene_colours:as_images")
-register("notebook", "atlas", "uplift.extras.pages.notebook:atlas_html")
-register("notebook", "cube", "uplift.extras.pages.notebook:cube_html")
 
 
 def __getattr__(name: str) -> Any:

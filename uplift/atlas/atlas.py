@@ -12,7 +12,6 @@ import numpy as np
 from uplift.atlas.document import SourceLocation
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning, unknown_name
-from uplift.common.extensions import extension
 from uplift.common.text import listed, pluralise
 
 VISIBLE = (400.0, 700.0)
@@ -108,9 +107,6 @@ class Entry:
             f"Entry({self.name!r}, {pluralise(len(self.values), 'sample')}, "
             f"{first:g}–{last:g} nm)"
         )
-
-    def _repr_html_(self) -> str:
-        return Atlas((self,))._repr_html_()
 
     @property
     def step(self) -> float | None:
@@ -315,9 +311,6 @@ class Atlas:
         if self.sources:
             parts.append("from " + listed([source.name for source in self.sources]))
         return f"Atlas({', '.join(parts)})"
-
-    def _repr_html_(self) -> str:
-        return str(extension("notebook", "atlas")(self))
 
     @property
     def names(self) -> tuple[str, ...]:

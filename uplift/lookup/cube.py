@@ -17,7 +17,6 @@ from uplift.colorimetry import rgb_to_lab
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import unknown_name
-from uplift.common.extensions import extension
 from uplift.cube import CubeData, read, write
 from uplift.lookup import blocks
 from uplift.lookup.interpolate import (
@@ -70,10 +69,6 @@ class Cube:
 
     def __repr__(self) -> str:
         return f"Cube{repr(self.data).removeprefix('CubeData')}"
-
-    def _repr_html_(self) -> str:
-        """HTML for notebooks: facts, swatches of the atlas entries, and spectra."""
-        return str(extension("notebook", "cube")(self))
 
     @property
     def dim(self) -> int:
