@@ -10,7 +10,7 @@ import OpenEXR
 import OpenImageIO
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from PIL import Image
+from PIL import ExifTags, Image, ImageOps
 
 from tests.extras.texture.conftest import (
     WAVELENGTHS,
@@ -29,6 +29,7 @@ from uplift.cube import EntrySpectra
 from uplift.extras import texture
 from uplift.extras.colour.spaces import find_space
 from uplift.extras.mitsuba.texels import read_colours
+from uplift.extras.texture.image import open_image
 from uplift.extras.texture.picture import read_picture
 from uplift.extras.texture.scene_colours import Images
 from uplift.models import evaluate
@@ -74,6 +75,46 @@ def test_floats_are_linear_unless_the_encoding_is_given(
     )
     result = to_texture(tmp_path / "linear.png", linear)
     assert_allclose(rgb_of(result), codes / 255, rtol=0, atol=1e-7)
+
+
+UPRIGHT = np.arange(24, dtype=np.uint8).reshape(4, 6) * 10
+HDR_AXES = ("-Y +X", "-Y -X", "+Y -X", "+Y +X", "+X -Y", "-X -Y", "-X +Y", "+X +Y")
+"""Axes of the rows and columns of HDR files, by orientation."""
+
+
+def write_turned(path, orientation):
+    """Write `UPRIGHT` as a file of an orientation: its rows and columns are turned."""
+    name = ExifTags.Base.Orientation
+    exif = Image.Exif()
+    exif[name] = orientation
+    inverse = {6: 8, 8: 6}.get(orientation, orientation)
+    marked = Image.fromarray(np.repeat(UPRIGHT[..., None], 3, axis=2))
+    marked.getexif()[name] = inverse
+    stored = ImageOps.exif_transpose(marked)
+    if path.suffix == ".hdr":
+        rows, columns = HDR_AXES[orientation - 1].split()
+        size = f"{rows} {stored.height} {columns} {stored.width}"
+        head = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n"
+        pixels = np.insert(np.asarray(stored), 3, 136, axis=2)
+        path.write_bytes(head.encode() + pixels.tobytes())
+    elif path.suffix == ".tif":
+        stored.save(path, tiffinfo={name: orientation})
+    else:
+        stored.save(path, exif=exif, quality=100, subsampling=0)
+
+
+@pytest.mark.parametrize("orientation", range(1, 9))
+@pytest.mark.parametrize("suffix", ["jpg", "png", "tif", "hdr"])
+def test_images_are_upright(suffix, orientation, tmp_path):
+    path = tmp_path / f"photo.{suffix}"
+    write_turned(path, orientation)
+    with open_image(path) as image:
+        (part,) = image.parts
+        rows = np.concatenate([band for _, band in image.bands(part)])
+        middle = image.rows(part, 1, 2)
+    assert (part.window.height, part.window.width) == UPRIGHT.shape
+    assert_allclose(rows[..., 0], UPRIGHT, atol=6)
+    assert_allclose(middle, rows[1:3])
 
 
 @pytest.mark.parametrize("method", ["clip", "scale", "desaturate", "desaturate-oklab"])

@@ -1,14 +1,16 @@
 """Image files as they are: parts, channels, and rows a band at a time (OpenEXR,
 Radiance HDR, PNG, JPEG, TIFF).
 
-OpenImageIO reads all formats. Bands hold the numbers of the file, unconverted.
+OpenImageIO reads all formats. Bands hold the numbers of the file, unconverted. Images
+are upright: the orientation that EXIF, TIFF or HDR states is applied.
 """
 
 import contextlib
 import itertools
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -76,6 +78,10 @@ SUBSAMPLED = "ubsampled"
 chroma of luminance and chroma.
 """
 SUBSAMPLED_HINT = "write R, G and B at full resolution"
+TRANSPOSED = range(5, 9)
+"""Orientations of EXIF whose rows are columns of the file."""
+MIRRORED_ROWS = {3, 4, 7, 8}
+MIRRORED_COLUMNS = {2, 3, 6, 7}
 MEMORY_HINT = "write the image with smaller tiles or strips, or without interlacing"
 
 
@@ -91,6 +97,14 @@ class Window:
     height: int
     display: tuple[int, int, int, int]
     aspect: float
+
+    def turned(self, orientation: int) -> "Window":
+        """Return the window of an image of an orientation, or of its file."""
+        if orientation not in TRANSPOSED:
+            return self
+        left, top, width, height = self.display
+        display = (top, left, height, width)
+        return Window(self.y, self.x, self.height, self.width, display, 1 / self.aspect)
 
 
 @dataclass(frozen=True)
@@ -124,6 +138,8 @@ class Part:
     """Whether colours next to an alpha are multiplied by it."""
     xyz: ImageSpace | None = None
     """Space of channels of CIE XYZ."""
+    orientation: int = 1
+    """Orientation of the rows of the file, by EXIF; ``window`` is upright."""
 
     @property
     def max_code(self) -> int:
@@ -157,6 +173,8 @@ class Image:
         """Read rows (count, width, channels) from row ``first`` of the window, as
         `bands` does.
         """
+        if part.orientation > 1:
+            return self._upright[first : first + count]
         self.handle.seek_subimage(part.number, 0)
         first += part.window.y
         end = first + count
@@ -178,6 +196,23 @@ class Image:
     def header_text(self, name: str) -> str:
         """Return a text attribute of the first part, empty if it is missing."""
         return str(self.handle.spec(0).get_string_attribute(name))
+
+    @cached_property
+    def _upright(self) -> Values:
+        """All rows of the only part, whose orientation is not that of its file."""
+        (part,) = self.parts
+        orientation = part.orientation
+        window = part.window.turned(orientation)
+        values = self.rows(
+            replace(part, orientation=1, window=window), 0, window.height
+        )
+        if orientation in TRANSPOSED:
+            values = values.swapaxes(0, 1)
+        if orientation in MIRRORED_ROWS:
+            values = values[::-1]
+        if orientation in MIRRORED_COLUMNS:
+            values = values[:, ::-1]
+        return values
 
     def _read(
         self, part: Part, first: int, end: int, dtype: str, channel: int | None = None
@@ -226,7 +261,7 @@ def open_image(path: StrPath) -> Iterator[Image]:
         is_interlaced = is_png and start[PNG_INTERLACE:] == b"\1"
         for part in parts:
             _check_names(part)
-            _check_block(part, is_interlaced=is_interlaced)
+            _check_block(part, is_whole=is_interlaced or part.orientation > 1)
         yield Image(path, parts, handle)
     except (TextureError, ColourError) as error:
         error.path = path if error.path is None else error.path
@@ -273,10 +308,10 @@ def _check_names(part: Part) -> None:
             )
 
 
-def _check_block(part: Part, *, is_interlaced: bool) -> None:
+def _check_block(part: Part, *, is_whole: bool) -> None:
     """Check that the rows that are decoded together fit into memory."""
     height = part.window.height
-    rows = height if is_interlaced else min(part.rows_per_block, height)
+    rows = height if is_whole else min(part.rows_per_block, height)
     check_memory(
         rows * part.window.width * len(part.channels) * 4,
         f"a block of {pluralise(rows, 'row')}, decoded together,",
@@ -309,10 +344,17 @@ def _parts(handle: Any, header: Mapping[str, Any]) -> Iterator[Part]:
         )
     number = 0
     while handle.seek_subimage(number, 0):
-        yield _part(handle.spec(), number, header)
+        part = _part(handle.spec(), number, header)
         number += 1
-        if handle.format_name() != "openexr":  # pages of a TIFF are separate images
-            return
+        if handle.format_name() == "openexr":
+            yield part
+            continue
+        orientation = handle.spec().get_int_attribute("Orientation", 1)
+        if handle.format_name() == "hdr" and orientation in (6, 8):
+            orientation = 14 - orientation  # OpenImageIO takes one for the other
+        window = part.window.turned(orientation)
+        yield replace(part, orientation=orientation, window=window)
+        return  # pages of a TIFF are separate images
 
 
 def _part(spec: Any, number: int, header: Mapping[str, Any]) -> Part:
