@@ -29,7 +29,7 @@ def pair_frames(sequences: Sequence[Sequence[str]]) -> list[tuple[str, ...]]:
     columns = [expand_patterns(sources) for sources in sequences]
     frames = list(map(_frames, sequences, columns))
     is_single = max(map(len, columns)) == 1
-    is_named = columns == [[*sources] for sources in sequences]
+    is_named = columns == list(map(list, sequences))
     is_one = len({*chain(*frames)} - {()}) <= 1
     if len(columns) == 1 or (is_single and (is_named or is_one)):
         return list(zip(*columns, strict=True))

@@ -285,24 +285,19 @@ def convert(
     from uplift.extras.texture.sequence import converter_for
 
     named = target if passes is None else _with_suffix(sources, target)
-    rows = pair_frames([sources, *([text] for text in further)])
-    images = [image for image, *_ in rows]
+    pairs = pair_frames([sources, *([text] for text in further)])
+    rows = [map(Path.absolute, map(Path, pictures)) for pictures in pairs]
+    images = [image for image, *_ in pairs]
     targets = _texture_paths(sources, images, named)
     inputs = click.get_current_context().meta.get(INPUTS, ())
     cores = os.cpu_count() or 1
-    count = processes or min(cores, len(rows))
+    count = processes or min(cores, len(pairs))
     settings = texture.TextureSettings(
         cubes, pixel_encoding, threads=max(cores // count, 1), **given
     )
     jobs = [
-        texture.Job(
-            settings,
-            *(Path(image).absolute(), path.absolute()),
-            force,
-            resume,
-            tuple(Path(photograph).absolute() for photograph in photographs),
-        )
-        for (image, *photographs), path in zip(rows, targets, strict=True)
+        texture.Job(settings, source, path.absolute(), force, resume, tuple(more))
+        for (source, *more), path in zip(rows, targets, strict=True)
     ]
     if passes is not None:
         inputs = [*inputs, passes]
