@@ -1,6 +1,8 @@
 """Textures and lights of passes, and pictures that are decoded."""
 
 import json
+from functools import partial
+from shutil import copyfile
 
 import numpy as np
 import OpenEXR
@@ -23,6 +25,7 @@ from uplift.extras import texture
 from uplift.extras.scene import passes as library
 from uplift.extras.scene.passes.textures import ATTRIBUTE, pass_mark
 
+SRGB = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)
 SIZE = (40, 30)
 """Width and height of pictures, which are several tiles."""
 
@@ -39,7 +42,7 @@ def write(tmp_path):
         spec = OpenImageIO.ImageSpec(width, height, len(channels), kind)
         spec.channelnames = tuple(channels)
         for key, value in (header or {}).items():
-            spec.attribute(key, value)
+            spec.attribute(key, *(value if isinstance(value, tuple) else (value,)))
         if tile:
             spec.tile_width = tile
             spec.tile_height = tile
@@ -141,6 +144,75 @@ def test_negative_numbers_are_counted(two_passes, write, tmp_path):
     assert codes == ["pixels-negative", "pixels-not-finite"]
     channels, _ = read(target)
     assert all(np.isfinite(channel).all() for channel in channels.values())
+
+
+def test_half_floats_hold_finite_numbers(two_passes, write, tmp_path):
+    values = np.full((4, 5, 3), 0.5, np.float32)
+    values[0, 0] = np.inf
+    values[1, 1] = 3e5
+    channels = dict(zip("RGB", np.moveaxis(values, -1, 0), strict=True))
+    far = {"Z": np.full((4, 5), 1e9, np.float32), "A": np.full((4, 5), np.inf, np.half)}
+    first = write("a.1.exr", channels | far)
+    second = write("a.2.exr", channels)
+    decoder = library.decoder(two_passes, space="XYZ")
+    sources = [first, second]
+    decoded = library.decode_pictures(
+        decoder, sources, tmp_path / "a.exr", depth="half"
+    )
+    found, _ = read(tmp_path / "a.exr")
+    assert decoded.counts.too_bright == 2
+    assert found["Y"].dtype == np.float16
+    assert found["Y"].max() == 65504
+    assert_allclose(found["first.Z"], 1e9)
+    assert np.isinf(found["A"]).all()
+
+
+@pytest.mark.parametrize(
+    ("second", "code"),
+    [
+        ("a.1.exr", "passes-repeated"),
+        ("link", "passes-repeated"),
+        ("copy", "passes-repeated"),
+        ("black", "passes-black"),
+        ({"colorInteropID": "srgb_rec709_scene"}, "passes-not-linear"),
+        ({"colorInteropID": "lin_rec709_scene"}, None),
+        ({"chromaticities": ("float[8]", SRGB)}, None),
+    ],
+)
+def test_pictures_are_of_different_passes_and_linear(
+    two_passes, pictures, write, tmp_path, second, code
+):
+    sources = pictures(others=False, names=("a.1.exr", "b.exr"))
+    if isinstance(second, dict):
+        sources = pictures(second, others=False, names=("a.1.exr", "b.exr"))
+    elif second == "black":
+        write("b.exr", dict.fromkeys("RGB", np.zeros(SIZE[::-1], np.float32)))
+    elif second == "a.1.exr":
+        sources = sources[:1] * 2
+    else:
+        sources[1].unlink()
+        copy = {
+            "link": sources[1].symlink_to,
+            "copy": partial(copyfile, dst=sources[1]),
+        }
+        copy[second](sources[0])
+    target = tmp_path / "out.exr"
+    decoder = library.decoder(two_passes)
+    if code is None:
+        library.decode_pictures(decoder, sources, target)
+        return
+    with raises(PassesError, code) as caught:
+        library.decode_pictures(decoder, sources, target)
+    assert caught.value.path in sources
+    assert not target.exists()
+
+
+@pytest.mark.parametrize("grey", [0.0, 0.5])
+def test_grey_and_black_frames_may_be_equal(two_passes, write, tmp_path, grey):
+    planes = dict.fromkeys("RGB", np.full((4, 5), grey, np.float32))
+    sources = [write(name, planes) for name in ("a.1.exr", "a.2.exr")]
+    decoder = library.decoder(two_passes)
+    assert library.decode_pictures(decoder, sources, tmp_path / "a.exr").counts.pixels
 
 
 def test_number_of_pictures(two_passes, pictures, tmp_path):
