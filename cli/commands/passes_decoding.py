@@ -66,8 +66,8 @@ decoding_options = options.stacked(
 
     Pictures are OpenEXR of R, G and B, rendered without a display transform, in the
     order of the passes. A quoted pattern for each pass decodes a sequence into the
-    folder of --output, frame by frame. Alpha and other channels of the first picture are copied.
-    Negative numbers, which denoisers leave, become 0, and are counted.
+    folder of --output, frame by frame. Alpha and other channels of the first picture
+    are copied. Negative numbers, which denoisers leave, become 0, and are counted.
 
     \b
     Examples:
