@@ -117,6 +117,16 @@ def test_images_are_upright(suffix, orientation, tmp_path):
     assert_allclose(middle, rows[1:3])
 
 
+@pytest.mark.parametrize("name", ["T.550,000000nm", "S0.550,5nm", "moment.03", "T.x"])
+def test_spectra_that_are_not_used_are_stated(name, sensor, tmp_path):
+    content = planes(np.full((2, 2, 3), 0.5, np.float32))
+    path = write_exr(tmp_path / "a.exr", content | {name: content["R"]})
+    codes = [
+        warning.code for warning in read_picture(path, sensor, max_side=9).warnings
+    ]
+    assert codes == ["spectra-not-used"] * (name != "T.x")
+
+
 @pytest.mark.parametrize("method", ["clip", "scale", "desaturate", "desaturate-oklab"])
 def test_only_invalid_pixels_are_mapped_and_counted(
     method, colours, to_texture, spectral, tmp_path

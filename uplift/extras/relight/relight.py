@@ -24,6 +24,7 @@ from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array, Floats, StrPath
 from uplift.common.errors import OutputError
+from uplift.common.files import atomic_write
 from uplift.cube import common_sensor
 from uplift.extras.colour.light_sets import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.extras.colour.srgb import to_display_codes
@@ -56,6 +57,7 @@ MAP_EXPONENT = 0.5
 # below.
 MIN_WHITE = 0.05
 JPEG_QUALITY = 92
+HEADER_BYTES = 1 << 12  # more than the header of an encoded image
 
 
 @dataclass(frozen=True, eq=False)
@@ -397,8 +399,12 @@ def _encoded(codes: NDArray[np.uint8], kind: str) -> str:
     spec = OpenImageIO.ImageSpec(width, height, channels, "uint8")
     spec.attribute("Compression", f"jpeg:{JPEG_QUALITY}")
     spec.attribute("jpeg:subsampling", "4:4:4")
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"image.{kind}"
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        atomic_write(Path(folder) / f"image.{kind}") as path,
+    ):
+        # libjpeg ends the process if the file does not fit on the disk
+        path.write_bytes(bytes(2 * codes.nbytes + HEADER_BYTES))
         image: Any = OpenImageIO.ImageOutput.create(kind)
         is_open = image and image.open(utf8_name(path, OutputError), spec)
         if not is_open or not image.write_image(codes):

@@ -25,6 +25,8 @@ VECTORS = re.compile(
     re.I,
 )
 """Names of layers of renderers whose X, Y and Z are vectors, not CIE XYZ."""
+SPECTRAL = re.compile(r"(T|S[0-3])\.\d+,\d+nm|(moment|multiplier)\.\d+")
+"""Names of channels of spectral images and textures."""
 XYZ = {"X", "Y", "Z"}
 CHROMA = {"RY", "BY"}
 
