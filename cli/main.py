@@ -82,6 +82,17 @@ class LazyGroup(Group):
             hide_drawing_notes()
         return importlib.import_module(f"uplift_cli.commands.{name}").command
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Refuse empty values, which an empty variable of a shell leaves: as the name
+        of a folder they would be the current one.
+        """
+        for option, value in zip(["", *args], args, strict=False):
+            name, is_joined, joined = value.partition("=")
+            if not value or (is_joined and not joined and name.startswith("--")):
+                name = name or option
+                raise click.UsageError(f"The value after '{name}' must not be empty.")
+        return super().parse_args(ctx, args)
+
     def format_commands(
         self, ctx: click.Context, formatter: click.HelpFormatter
     ) -> None:
