@@ -38,10 +38,10 @@ class Picture:
         from PIL import Image
 
         codes = np.asarray(Image.open(self.path).convert("RGB"))
-        adaptation = {"chromatic_adaptation_transform": None}
-        return colour.RGB_to_RGB(
-            codes / 255, self.space, "sRGB", apply_cctf_decoding=True, **adaptation
-        )
+        linear = colour.RGB_COLOURSPACES[self.space].cctf_decoding(codes / 255)
+        if self.space == "sRGB":
+            return linear
+        return colour.RGB_to_RGB(linear, self.space, "sRGB", None)
 
 
 def pictures() -> Iterator[Picture]:

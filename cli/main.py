@@ -86,11 +86,9 @@ class LazyGroup(Group):
         """Refuse empty values, which an empty variable of a shell leaves: as the name
         of a folder they would be the current one.
         """
-        for option, value in zip(["", *args], args, strict=False):
-            name, is_joined, joined = value.partition("=")
-            if not value or (is_joined and not joined and name.startswith("--")):
-                name = name or option
-                raise click.UsageError(f"The value after '{name}' must not be empty.")
+        joined = (arg for arg in args if arg.startswith("--"))
+        if "" in args or any(arg.endswith("=") for arg in joined):
+            raise click.UsageError("Values must not be empty.")
         return super().parse_args(ctx, args)
 
     def format_commands(

@@ -10,7 +10,6 @@ import itertools
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -78,10 +77,9 @@ SUBSAMPLED = "ubsampled"
 chroma of luminance and chroma.
 """
 SUBSAMPLED_HINT = "write R, G and B at full resolution"
-TRANSPOSED = range(5, 9)
-"""Orientations of EXIF whose rows are columns of the file."""
-MIRRORED_ROWS = {3, 4, 7, 8}
-MIRRORED_COLUMNS = {2, 3, 6, 7}
+MIRRORED = (2, 4, 5, 7)
+QUARTERS = {3: 2, 4: 2, 5: 1, 6: 3, 7: 3, 8: 1}
+"""Turns to the left that make images of an orientation upright, by 90°."""
 MEMORY_HINT = "write the image with smaller tiles or strips, or without interlacing"
 
 
@@ -97,14 +95,6 @@ class Window:
     height: int
     display: tuple[int, int, int, int]
     aspect: float
-
-    def turned(self, orientation: int) -> "Window":
-        """Return the window of an image of an orientation, or of its file."""
-        if orientation not in TRANSPOSED:
-            return self
-        left, top, width, height = self.display
-        display = (top, left, height, width)
-        return Window(self.y, self.x, self.height, self.width, display, 1 / self.aspect)
 
 
 @dataclass(frozen=True)
@@ -138,8 +128,6 @@ class Part:
     """Whether colours next to an alpha are multiplied by it."""
     xyz: ImageSpace | None = None
     """Space of channels of CIE XYZ."""
-    orientation: int = 1
-    """Orientation of the rows of the file, by EXIF; ``window`` is upright."""
 
     @property
     def max_code(self) -> int:
@@ -152,11 +140,12 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Image:
-    """An open image file."""
+    """An open image file. ``pixels`` are all rows of one that is not stored upright."""
 
     path: Path
     parts: tuple[Part, ...]
     handle: Any
+    pixels: Values | None = None
 
     def bands(self, part: Part) -> Iterator[tuple[int, Values]]:
         """Yield row numbers and rows (k, width, channels): integers if all channels
@@ -173,8 +162,8 @@ class Image:
         """Read rows (count, width, channels) from row ``first`` of the window, as
         `bands` does.
         """
-        if part.orientation > 1:
-            return self._upright[first : first + count]
+        if self.pixels is not None:
+            return self.pixels[first : first + count]
         self.handle.seek_subimage(part.number, 0)
         first += part.window.y
         end = first + count
@@ -196,23 +185,6 @@ class Image:
     def header_text(self, name: str) -> str:
         """Return a text attribute of the first part, empty if it is missing."""
         return str(self.handle.spec(0).get_string_attribute(name))
-
-    @cached_property
-    def _upright(self) -> Values:
-        """All rows of the only part, whose orientation is not that of its file."""
-        (part,) = self.parts
-        orientation = part.orientation
-        window = part.window.turned(orientation)
-        values = self.rows(
-            replace(part, orientation=1, window=window), 0, window.height
-        )
-        if orientation in TRANSPOSED:
-            values = values.swapaxes(0, 1)
-        if orientation in MIRRORED_ROWS:
-            values = values[::-1]
-        if orientation in MIRRORED_COLUMNS:
-            values = values[:, ::-1]
-        return values
 
     def _read(
         self, part: Part, first: int, end: int, dtype: str, channel: int | None = None
@@ -259,10 +231,12 @@ def open_image(path: StrPath) -> Iterator[Image]:
         parts = tuple(_parts(handle, header))
         is_png = start.startswith(png_file.SIGNATURE)
         is_interlaced = is_png and start[PNG_INTERLACE:] == b"\1"
+        orientation = _orientation(handle)
         for part in parts:
             _check_names(part)
-            _check_block(part, is_whole=is_interlaced or part.orientation > 1)
-        yield Image(path, parts, handle)
+            _check_block(part, is_whole=is_interlaced or orientation > 1)
+        image = Image(path, parts, handle)
+        yield _upright(image, orientation) if orientation > 1 else image
     except (TextureError, ColourError) as error:
         error.path = path if error.path is None else error.path
         raise
@@ -344,17 +318,35 @@ def _parts(handle: Any, header: Mapping[str, Any]) -> Iterator[Part]:
         )
     number = 0
     while handle.seek_subimage(number, 0):
-        part = _part(handle.spec(), number, header)
+        yield _part(handle.spec(), number, header)
         number += 1
-        if handle.format_name() == "openexr":
-            yield part
-            continue
-        orientation = handle.spec().get_int_attribute("Orientation", 1)
-        if handle.format_name() == "hdr" and orientation in (6, 8):
-            orientation = 14 - orientation  # OpenImageIO takes one for the other
-        window = part.window.turned(orientation)
-        yield replace(part, orientation=orientation, window=window)
-        return  # pages of a TIFF are separate images
+        if handle.format_name() != "openexr":  # pages of a TIFF are separate images
+            return
+
+
+def _orientation(handle: Any) -> int:
+    """Return the orientation of an image by the numbers of EXIF, which are also those
+    of OpenImageIO for the axes of HDR files, but for two that it takes for each other.
+    """
+    if handle.format_name() == "openexr":
+        return 1
+    orientation: int = handle.spec().get_int_attribute("Orientation", 1)
+    is_swapped = handle.format_name() == "hdr" and orientation in (6, 8)
+    return 14 - orientation if is_swapped else orientation
+
+
+def _upright(image: Image, orientation: int) -> Image:
+    """Turn an image of one part."""
+    (part,) = image.parts
+    pixels = image.rows(part, 0, part.window.height)
+    if orientation in MIRRORED:
+        pixels = pixels[:, ::-1]
+    quarters = QUARTERS.get(orientation, 0)
+    pixels = np.rot90(pixels, quarters)
+    aspect = part.window.aspect ** (-1 if quarters % 2 else 1)
+    height, width, _ = pixels.shape
+    window = Window(0, 0, width, height, (0, 0, width, height), aspect)
+    return Image(image.path, (replace(part, window=window),), image.handle, pixels)
 
 
 def _part(spec: Any, number: int, header: Mapping[str, Any]) -> Part:

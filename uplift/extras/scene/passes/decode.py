@@ -130,10 +130,8 @@ def check_sources(passes: Passes, sources: Sequence[StrPath]) -> None:
             code="passes-missing",
             hint="name the pictures of all passes in their order",
         )
-    files = [os.path.realpath(source) for source in sources]
-    for number, file in enumerate(files):
-        if file in files[:number]:
-            raise _repeated(sources[number])
+    if len({os.path.realpath(source) for source in sources}) < len(sources):
+        raise _repeated()
     names = [Path(source).name for source in sources]
     numbers = [NUMBER.findall(name) for name in names]
     expected = list(range(1, passes.count + 1))
@@ -250,25 +248,23 @@ def _check_different(pictures: Sequence[Picture], totals: Array) -> None:
     black, and those of grey surfaces equal.
     """
     sums = totals.reshape(len(pictures), CHANNELS)
-    for number, picture in enumerate(pictures):
-        path = picture.image.path
-        if sums.any() and not sums[number].any():
-            raise PassesError(
-                "is black, unlike the pictures of other passes",
-                code="passes-black",
-                path=path,
-                hint="render this pass again, with its textures and lights",
-            )
-        is_like = (sums[:number] == sums[number]).all(axis=1)
-        if is_like.any() and np.ptp(sums[number]):
-            raise _repeated(path)
+    coloured = [tuple(row) for row in sums if np.ptp(row)]
+    if len({*coloured}) < len(coloured):
+        raise _repeated()
+    is_black = ~sums.any(axis=1)
+    if is_black.any() and not is_black.all():
+        raise PassesError(
+            "is black, unlike the pictures of other passes",
+            code="passes-black",
+            path=pictures[int(is_black.argmax())].image.path,
+            hint="render this pass again, with its textures and lights",
+        )
 
 
-def _repeated(path: StrPath) -> PassesError:
+def _repeated() -> PassesError:
     return PassesError(
-        "is the same picture as that of an earlier pass",
+        "pictures must be of different passes, got the same picture twice",
         code="passes-repeated",
-        path=path,
         hint="name the picture of each pass once, in their order",
     )
 
