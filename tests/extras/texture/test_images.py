@@ -78,38 +78,30 @@ def test_floats_are_linear_unless_the_encoding_is_given(
 
 
 UPRIGHT = np.arange(24, dtype=np.uint8).reshape(4, 6) * 10
-STORED = {
-    1: UPRIGHT,
-    2: UPRIGHT[:, ::-1],
-    3: UPRIGHT[::-1, ::-1],
-    4: UPRIGHT[::-1],
-    5: UPRIGHT.T,
-    6: UPRIGHT.T[::-1],
-    7: UPRIGHT.T[::-1, ::-1],
-    8: UPRIGHT.T[:, ::-1],
-}
-"""Rows of files by their orientation (EXIF 2.32, 4.6.4)."""
+STORED = [
+    *(UPRIGHT, UPRIGHT[:, ::-1], UPRIGHT[::-1, ::-1], UPRIGHT[::-1]),
+    *(UPRIGHT.T, UPRIGHT.T[::-1], UPRIGHT.T[::-1, ::-1], UPRIGHT.T[:, ::-1]),
+]
+"""Rows of files by orientation, from 1 (EXIF 2.32, 4.6.4)."""
 HDR_AXES = ("-Y +X", "-Y -X", "+Y -X", "+Y +X", "+X -Y", "-X -Y", "-X +Y", "+X +Y")
 
 
-@pytest.mark.parametrize("orientation", STORED)
+@pytest.mark.parametrize("number", range(8))
 @pytest.mark.parametrize("suffix", ["jpg", "png", "tif", "hdr"])
-def test_images_are_upright(suffix, orientation, tmp_path):
+def test_images_are_upright(suffix, number, tmp_path):
     path = tmp_path / f"photo.{suffix}"
-    stored = np.repeat(STORED[orientation][..., None], 3, axis=2)
-    write_image(path, stored, Orientation=orientation)
+    stored = np.repeat(STORED[number][..., None], 3, axis=2)
+    write_image(path, stored, Orientation=1 + number)
     if suffix == "hdr":
-        rows, columns = HDR_AXES[orientation - 1].split()
-        size = f"{rows} {len(stored)} {columns} {stored.shape[1]}"
-        pixels = np.insert(stored, 3, 136, axis=2).tobytes()
+        size = "{0} {2} {1} {3}".format(*HDR_AXES[number].split(), *stored.shape)
         head = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n"
-        path.write_bytes(head.encode() + pixels)
+        pixels = np.insert(stored, 3, 136, axis=2)
+        path.write_bytes(head.encode() + pixels.tobytes())
     with open_image(path) as image:
         (part,) = image.parts
         rows = np.concatenate([band for _, band in image.bands(part)])
-        assert_allclose(image.rows(part, 1, 2), rows[1:3])
-    assert (part.window.height, part.window.width) == UPRIGHT.shape
     assert_allclose(rows[..., 0], UPRIGHT, atol=8)
+    assert (part.window.height, part.window.width) == UPRIGHT.shape
 
 
 @pytest.mark.parametrize("name", ["T.550,000000nm", "S0.550,5nm", "moment.03", "T.x"])
