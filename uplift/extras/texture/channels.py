@@ -44,14 +44,14 @@ class ColourChannels:
     is_xyz: bool = False
     coverage: int | None = None
 
-    def visible(self, values: Values) -> Values:
-        """Return the pixels (k, channels) that are not transparent, of (n, channels).
-        Light of alpha 0 is visible.
+    def visible(self, values: Values) -> Mask:
+        """Return which pixels (…) of values (…, channels) are not transparent. Light of
+        alpha 0 is visible.
         """
         if self.coverage is None:
-            return values
+            return np.ones(values.shape[:-1], dtype=bool)
         channels = [self.coverage] if self.alpha is None else [*self.rgb, self.alpha]
-        return values[values[:, channels].any(axis=1)]
+        return np.asarray(values[..., channels].any(axis=-1))
 
     def straight(self, values: Values) -> Values:
         """Return the colours (…, 3) of values (…, channels), divided by alpha if they

@@ -119,7 +119,7 @@ class Images:
                     for first in range(0, len(pixels), BLOCK_PIXELS * step):
                         chosen = pixels[first : first + BLOCK_PIXELS * step : step]
                         if not is_whole:
-                            chosen = channels.visible(chosen)
+                            chosen = chosen[channels.visible(chosen)]
                         rgb, counts = decode(channels.straight(chosen))
                         yield rgb.astype(float), counts
 
