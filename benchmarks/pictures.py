@@ -20,10 +20,13 @@ INSTALLED = ROOT / "out" / "pictures"
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """An image file, its package, and its linear sRGB as read by other software."""
+    """An image file, its package, the RGB space that it states, and its linear sRGB as
+    read by other software.
+    """
 
     path: Path
     package: str
+    space: str = "sRGB"
 
     def linear(self) -> Array:
         """Return linear sRGB (h, w, 3), by OpenEXR, or by Pillow and colour-science."""
@@ -35,15 +38,20 @@ class Picture:
         from PIL import Image
 
         codes = np.asarray(Image.open(self.path).convert("RGB"))
-        return colour.models.eotf_sRGB(codes / 255)
+        linear = colour.RGB_COLOURSPACES[self.space].cctf_decoding(codes / 255)
+        if self.space == "sRGB":
+            return linear
+        return colour.RGB_to_RGB(linear, self.space, "sRGB", None)
 
 
 def pictures() -> Iterator[Picture]:
     """Yield the images. Raises `FileNotFoundError` before `make pictures`."""
     if not INSTALLED.is_dir():
         raise FileNotFoundError(f"{INSTALLED}: run 'make pictures'")
-    for name in ("astronaut.png", "coffee.png", "chelsea.png", "ihc.png", "rocket.jpg"):
-        yield Picture(INSTALLED / "skimage" / "data" / name, "scikit-image")
+    folder = INSTALLED / "skimage" / "data"
+    for name in ("astronaut.png", "coffee.png", "chelsea.png", "ihc.png"):
+        yield Picture(folder / name, "scikit-image")
+    yield Picture(folder / "rocket.jpg", "scikit-image", "Adobe RGB (1998)")
     for name in ("china.jpg", "flower.jpg"):
         yield Picture(INSTALLED / "sklearn/datasets/images" / name, "scikit-learn")
     resources = Path(colour.__file__).parent / "io" / "tests" / "resources"

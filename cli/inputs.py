@@ -75,7 +75,7 @@ def expand_patterns(sources: Sequence[str]) -> list[str]:
     """
     paths = list(chain.from_iterable(_expand(source) for source in sources))
     for path in paths:
-        check_regular(path, TextureError, hint="name an image")
+        check_regular(path, TextureError, hint="name images, or a pattern")
     return paths
 
 

@@ -82,6 +82,15 @@ class LazyGroup(Group):
             hide_drawing_notes()
         return importlib.import_module(f"uplift_cli.commands.{name}").command
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Refuse empty values, which an empty variable of a shell leaves: as the name
+        of a folder they would be the current one.
+        """
+        joined = (arg for arg in args if arg.startswith("--"))
+        if "" in args or any(arg.endswith("=") for arg in joined):
+            raise click.UsageError("Values must not be empty.")
+        return super().parse_args(ctx, args)
+
     def format_commands(
         self, ctx: click.Context, formatter: click.HelpFormatter
     ) -> None:

@@ -156,6 +156,8 @@ def test_a_block_has_one_way_to_install():
 
 def test_pages_whose_examples_use_a_sample_file_say_where_it_comes_from():
     samples = {path.name for path in sample_path(".").iterdir()}
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"uplift-samples: {len(samples)} sample files" in readme
     for page, text in PAGES.items():
         words = re.split(r"[\s='\":]+", " ".join(page_examples(text)))
         if any(fnmatch.filter(samples, word) for word in words):

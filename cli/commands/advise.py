@@ -47,9 +47,11 @@ DEFAULT_NOISE = 0.005, 0.0005
     Errors are standard errors, ΔE00 under each --light, averaged over the area of the
     images. A swatch is a colour of the images: measure a material that has it, add it
     to the atlas, and build the cube again. Its gain is by how much the mean of the
-    errors is expected to fall, after the swatches above it. It supposes that all of a
-    colour is one material, and that colours close to it are like it as far as those of
-    the atlas are. Without an atlas, errors are those of materials of unknown families.
+    errors is expected to fall, after the swatches above it: that of a small object
+    lowers the mean of all pixels little. Pixels like it are those of whose spectra it
+    halves what is unknown, or more. It supposes that all of a colour is one material,
+    and that colours close to it are like it as far as those of the atlas are. Without
+    an atlas, errors are those of materials of unknown families.
 
     With --second-light, candidates for the light of a second photograph are ranked by
     the errors that are expected to remain, for photographs with --noise,
@@ -240,7 +242,7 @@ def _print_tables(
 ) -> None:
     headings = (
         "expected ΔE00",
-        "95 % of the area",
+        "95 % of the pixels",
         f"after {pluralise(len(swatches), 'swatch')}",
         "95 %",
     )
@@ -249,10 +251,11 @@ def _print_tables(
         numbers = chain.from_iterable(stage.values() for stage in stages.values())
         summary.add_row(name, *map("{:.2f}".format, numbers))
     table = make_table(
-        ("swatch",), ("area", "expected ΔE00", "gain in ΔE00", "mean ΔE00 after")
+        ("swatch",),
+        ("pixels like it", "expected ΔE00", "gain in the mean", "mean ΔE00 after"),
     )
     for row in swatches:
-        area = f"{row['area']:.1%}"
+        share = f"{row['share']:.1%}"
         reduced = (row["error"], row["gain"], row["mean_after"])
-        table.add_row(row["hex"], area, *map("{:.2f}".format, reduced))
+        table.add_row(row["hex"], share, *map("{:.2f}".format, reduced))
     show(summary, table)

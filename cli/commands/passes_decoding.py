@@ -13,11 +13,11 @@ from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
 
 from .. import options
-from ..inputs import expand_patterns
 from ..output.console import emit, paragraph, print_json
 from ..output.diagnostics import warn
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
+from ..sequences import pair_frames
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
@@ -66,8 +66,8 @@ decoding_options = options.stacked(
 
     Pictures are OpenEXR of R, G and B, rendered without a display transform, in the
     order of the passes. A quoted pattern for each pass decodes a sequence into the
-    folder of --output. Alpha and other channels of the first picture are copied.
-    Negative numbers, which denoisers leave, become 0, and are counted.
+    folder of --output, frame by frame. Alpha and other channels of the first picture
+    are copied. Negative numbers, which denoisers leave, become 0, and are counted.
 
     \b
     Examples:
@@ -99,7 +99,7 @@ def decode(
     from uplift.extras.scene.passes import decode_pictures
 
     decoder = _decoder(passes_path, **decoding)
-    jobs = _jobs(sources, output, decoder.passes.count)
+    jobs = _jobs(sources, output)
     targets = [target for _, target in jobs]
     if len(jobs) > 1 or targets[0] != Path(output):
         make_folder(output)
@@ -128,22 +128,10 @@ def _decoder(
     return decoder(read_passes(passes_path), space=space, light=light, white=white)
 
 
-def _jobs(
-    sources: Sequence[str], output: str, count: int
-) -> list[tuple[list[str], Path]]:
+def _jobs(sources: Sequence[str], output: str) -> list[tuple[tuple[str, ...], Path]]:
     """Return the pictures of all passes of each frame, and the file they become."""
-    from uplift.common.errors import PassesError
-
-    columns = [expand_patterns([source]) for source in sources]
-    frames = {len(column) for column in columns}
-    if len(frames) > 1:
-        found = ", ".join(str(len(column)) for column in columns)
-        raise PassesError(
-            f"all passes must have as many pictures, got {found}",
-            code="passes-missing",
-            hint="render the missing pictures, or name one pattern per pass",
-        )
-    is_sequence = [[source] for source in sources] != columns
+    rows = pair_frames([[source] for source in sources])
+    is_sequence = rows != [tuple(sources)]
     target = Path(output)
     if not is_sequence and target.suffix and not target.is_dir():
         if target.suffix.lower() != ".exr":
@@ -151,8 +139,7 @@ def _jobs(
                 f"the name of a decoded picture must end in .exr, got '{output}'",
                 hint="give a file name ending in .exr, or a folder",
             )
-        return [(list(sources), target)]
-    rows = [list(row) for row in zip(*columns, strict=True)]
+        return [(rows[0], target)]
     return [(row, target / _frame_name(row[0])) for row in rows]
 
 

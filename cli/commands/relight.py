@@ -220,6 +220,7 @@ def _write_pictures(
                 cubes,
                 lights,
                 opacity=picture.opacity,
+                visible=picture.visible,
                 reduction=picture.reduction,
             )
             for path, picture in zip(paths, pictures, strict=True)
@@ -241,18 +242,16 @@ def _setting(cube: Cube) -> tuple[str, str, str]:
 def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:
     """Print ΔE00 of every method from the products of RGB."""
     from uplift.extras.relight.relight import RGB_PRODUCT
-    from uplift.extras.report.measures import mean_p95_max
 
     rows = []
     for image in relit:
         for rendering in image.renderings:
             for spectra in image.methods[1:]:
-                differences = rendering.differences[RGB_PRODUCT, spectra]
                 row = {
                     "image": image.name,
                     "light": rendering.light,
                     "spectra": spectra,
-                    **mean_p95_max(differences),
+                    **rendering.errors((RGB_PRODUCT, spectra)),
                 }
                 rows.append(row)
     if style == "json":

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import glob
 import os
-import re
 import time
 from collections.abc import Sequence
 from dataclasses import fields, replace
@@ -28,6 +27,7 @@ from ..output.console import say
 from ..output.diagnostics import CommandFailure, warn
 from ..output.progress import progress_bar
 from ..outputs import is_folder
+from ..sequences import matched, pair_frames
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -285,8 +285,10 @@ def convert(
     from uplift.extras.texture.sequence import converter_for
 
     named = target if passes is None else _with_suffix(sources, target)
-    pairs = _texture_paths(sources, named)
-    photographs = _photographs(further, len(pairs))
+    pairs = pair_frames([sources, *([text] for text in further)])
+    rows = [map(Path.absolute, map(Path, pictures)) for pictures in pairs]
+    images = [image for image, *_ in pairs]
+    targets = _texture_paths(sources, images, named)
     inputs = click.get_current_context().meta.get(INPUTS, ())
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
@@ -294,8 +296,8 @@ def convert(
         cubes, pixel_encoding, threads=max(cores // count, 1), **given
     )
     jobs = [
-        texture.Job(settings, source.absolute(), path.absolute(), force, resume, more)
-        for (source, path), more in zip(pairs, photographs, strict=True)
+        texture.Job(settings, source, path.absolute(), force, resume, tuple(more))
+        for (source, *more), path in zip(rows, targets, strict=True)
     ]
     if passes is not None:
         inputs = [*inputs, passes]
@@ -322,23 +324,6 @@ def convert(
         is_spectrum = passes is None and isinstance(pixel_encoding, texture.Spectrum)
         _print_summary(target, converted, skipped, begin, is_spectrum)
     _raise_first(failures)
-
-
-def _photographs(further: Sequence[str], count: int) -> list[tuple[Path, ...]]:
-    """Return the further photographs of each of ``count`` images: for several images,
-    patterns of as many.
-    """
-    columns = []
-    for text in further:
-        paths = expand_patterns([text])
-        if len(paths) != count:
-            raise OptionError(
-                f"--also must name a photograph for each of {pluralise(count, 'image')}"
-                f", got {len(paths)}",
-                hint="give a quoted pattern that matches as many",
-            )
-        columns.append([Path(path).absolute() for path in paths])
-    return list(zip(*columns, strict=True)) if columns else [()] * count
 
 
 def _with_suffix(sources: Sequence[str], target: str) -> str:
@@ -407,34 +392,32 @@ def _print_summary(
         say(f"hint: {hint}", err=True)
 
 
-def _texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path]]:
-    """Return pairs of an image and its texture. Several images, and patterns, go into
-    the folder ``target``.
+def _texture_paths(
+    sources: Sequence[str], images: Sequence[str], target: str
+) -> list[Path]:
+    """Return the textures of images. Those of several, and of patterns, go into the
+    folder ``target``.
 
-    Raises `TextureError` for images that are not there, `OutputError` for a file in
-    place of the folder.
+    Raises `OutputError` for a file in place of the folder.
     """
-    images = expand_patterns(sources)
     if UDIM in target:
         return _tiles(sources, images, target)
     folder = Path(target)
-    is_single = len(sources) == 1 and images == [sources[0]]
+    is_single = [*sources] == images and len(images) == 1
     if is_single and folder.suffix and not is_folder(target):
         if folder.suffix.lower() != ".exr":
             hint = "give a file name ending in .exr, or a folder"
             raise OutputError("textures are OpenEXR files", path=target, hint=hint)
-        return [(Path(images[0]), folder)]
+        return [folder]
     if folder.suffix.lower() == ".exr" and not folder.is_dir():
         problem = f"is not a folder, but there are {len(images):,} images"
         raise OutputError(problem, path=target, hint="give a folder for the textures")
-    return [(Path(path), folder / f"{Path(path).stem}.exr") for path in images]
+    return [folder / f"{Path(path).stem}.exr" for path in images]
 
 
-def _tiles(
-    sources: Sequence[str], images: list[str], target: str
-) -> list[tuple[Path, Path]]:
-    """Return pairs of the tiles of one UDIM pattern and their textures, whose names
-    have the same numbers.
+def _tiles(sources: Sequence[str], images: Sequence[str], target: str) -> list[Path]:
+    """Return the textures of the tiles of one UDIM pattern, whose names have the same
+    numbers.
     """
     is_plain = len(sources) == 1 and not glob.has_magic(sources[0])
     if not is_plain or sources[0].count(UDIM) != 1 or target.count(UDIM) != 1:
@@ -442,13 +425,8 @@ def _tiles(
         raise OutputError(
             f"{UDIM} in the output needs one input with {UDIM}", path=target, hint=hint
         )
-    # the separators of a pattern and of the paths that it matches may differ
-    before, after = map(re.escape, os.path.normpath(sources[0]).split(UDIM))
-    pairs = []
-    for image in images:
-        if tile := re.fullmatch(f"{before}(\\d{{4}}){after}", os.path.normpath(image)):
-            pairs.append((Path(image), Path(target.replace(UDIM, tile[1]))))
-    return pairs
+    tiles = [matched(sources[0], image) for image in images]
+    return [Path(target.replace(UDIM, tile)) for (tile,) in tiles]
 
 
 def as_tuple(wavelengths: Array | None) -> tuple[float, ...] | None:

@@ -235,7 +235,7 @@ def full_disk():
         "export cube.uplift -o x.npz",
         "export cube.uplift -o x.csv",
         "export cube.uplift -o x.h",
-        "relight image.exr --cube cube.uplift -o x.html",
+        "relight --cube cube.uplift -o x.html",
         "texture image.exr --wavelengths 400:700:1 -o x.exr",
         "atlas atlas.txt -o x.csv",
         "lights export lights.uplift -o x.glsl",

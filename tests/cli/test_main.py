@@ -71,6 +71,14 @@ def test_wrong_usage_is_one_line_with_exit_code_2(misuse, args, words):
     assert words in misuse(args)
 
 
+@pytest.mark.parametrize(
+    "line", ["samples ''", "texture a.png -o ''", "query 1 1 1 --plot=", "help ''"]
+)
+def test_empty_values_are_refused(misuse, home, line):
+    assert "must not be empty" in misuse(line)
+    assert not list(home.iterdir())
+
+
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 @pytest.mark.parametrize(
     ("words", "expected"),

@@ -147,7 +147,7 @@ def test_sequences(run, refuse, passes, home):
     assert_allclose(ratio, 2, rtol=1e-5)
     (home / "a.0002.2.exr").unlink()
     error = refuse("passes decode 'a.*.1.exr' 'a.*.2.exr' --passes passes.toml -o b")
-    assert error.code == "passes-missing"
+    assert error.code == "frames-differ"
 
 
 @pytest.mark.parametrize(

@@ -113,6 +113,7 @@ def check_output(
     (``output-is-input``). Names of inputs without a file, such as those of shipped
     atlases, are ignored.
     """
+    check_named(path)
     if os.fspath(path) == "-":
         hint = "give a file name, or ./- for a file of this name"
         raise OutputError(
@@ -145,6 +146,14 @@ def check_output(
             f"no permission to write in {folder}", hint="choose another folder"
         )
     return path
+
+
+def check_named(path: StrPath) -> None:
+    """Raise `OutputError` for an empty name, which would be the current folder."""
+    if not os.fspath(path):
+        raise OutputError(
+            "a name must not be empty", hint="name a file, or . for the current folder"
+        )
 
 
 def _is_one_of(status: os.stat_result, paths: Iterable[StrPath | None]) -> bool:

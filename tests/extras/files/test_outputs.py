@@ -1,13 +1,21 @@
 """Outputs that are one file: by path, by links, and by upper and lower case."""
 
 import os
+from functools import partial
 
 import pytest
 
 from tests.helpers import raises
 from uplift.common.errors import OutputError
+from uplift.common.files import write_text
 from uplift.extras.files import outputs
-from uplift.extras.files.outputs import check_folder, check_outputs, is_same_name
+from uplift.extras.files.outputs import (
+    check_folder,
+    check_outputs,
+    is_same_name,
+    make_folder,
+)
+from uplift.samples import copy_samples
 
 DECOMPOSED = "e\u0301.exr"
 COMPOSED = "\u00e9.exr"
@@ -44,3 +52,11 @@ def test_a_repeated_name_is_refused_also_after_one_of_other_case(tmp_path):
     for names in (("a.exr", "a.exr"), ("A.exr", "a.exr", "a.exr")):
         with raises(OutputError, "output"):
             check_folder(tmp_path, names)
+
+
+def test_an_empty_name_is_not_the_current_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for write in (copy_samples, make_folder, partial(write_text, "text")):
+        with raises(OutputError, "output"):
+            write("")
+    assert not list(tmp_path.iterdir())

@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from tests.extras.texture.conftest import write_image
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import delta_e_rgb, in_unit_cube
 from uplift.colorimetry.observer import light, sensor
 from uplift.common.errors import OptionError
 from uplift.extras.relight.relight import RGB_PRODUCT, relight, write_relit_sheet
+from uplift.extras.texture.picture import read_picture
 
 LIGHTS = ("D65", "A", "FL11", "HP1")
 
@@ -99,6 +101,21 @@ def test_lamps_look_white_but_sodium_and_candles_do_not(small_cube):
         rendering.light for rendering in relit.renderings if rendering.is_balanced(None)
     }
     assert looks == set(white)
+
+
+def test_differences_of_transparent_pixels_do_not_count(picture, small_cube, tmp_path):
+    alpha = np.zeros_like(picture[..., :1])
+    alpha[:30] = 1
+    path = write_image(
+        tmp_path / "a.exr", np.concatenate([picture * alpha, alpha], axis=-1)
+    )
+    read = read_picture(path, sensor("sRGB"), max_side=999)
+    cubes = {"atlas": small_cube}
+    whole = relight("a", read.rgb, cubes, ("A",), visible=read.visible)
+    part = relight("a", read.rgb[:30], cubes, ("A",))
+    expected = part.renderings[0].errors((RGB_PRODUCT, "atlas"))
+    found = whole.renderings[0].errors((RGB_PRODUCT, "atlas"))
+    assert found == pytest.approx(expected, rel=1e-5)
 
 
 def test_a_sheet_shows_lights_as_requested(picture, small_cube, tmp_path):

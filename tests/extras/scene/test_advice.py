@@ -9,11 +9,12 @@ from numpy.testing import assert_allclose
 
 import uplift
 from tests.conftest import ROOT
+from tests.extras.texture.conftest import write_image
 from tests.helpers import raises
 from uplift.colorimetry.observer import light
-from uplift.common.errors import OptionError
+from uplift.common.errors import OptionError, TextureError
 from uplift.extras.scene.advice import advise, colour_areas, uncertainty
-from uplift.extras.texture.scene_colours import Images, PixelSample
+from uplift.extras.texture.scene_colours import Images, PixelSample, sample_colours
 from uplift.fit import posterior
 from uplift.fit.kriging import Kernel
 
@@ -54,6 +55,7 @@ def test_no_measurement_raises_a_variance_and_each_swatch_has_the_largest_gain(
         before = remaining[swatch.colour]
         assert np.diag(before.covariance)[swatch.colour] == pytest.approx(0, abs=1e-12)
         assert before.mean == pytest.approx(swatch.mean_after, rel=1e-12)
+        assert swatch.area <= swatch.share <= 1 + 1e-12
 
 
 def test_posterior_is_that_of_the_joint_covariance(cube):
@@ -100,6 +102,22 @@ def test_areas_are_those_of_the_pixels(cube, tmp_path):
     chosen, after = advise(uncertainty(cube, found, [light("A")]), 100)
     assert len(chosen) <= 2
     assert after.mean < chosen[0].mean_after + 1e-12
+
+
+@pytest.mark.parametrize("suffix", ["png", "exr"])
+def test_transparent_pixels_have_no_area(cube, tmp_path, suffix):
+    rgba = np.zeros((4, 6, 4), np.float32)
+    rgba[2:] = (0.5, 0.25, 0.125, 0.5)
+    rgba[0, 0] = (0.6, 0.3, 0.2, 0)  # light without opacity in OpenEXR
+    values = rgba if suffix == "exr" else (rgba * 255).astype(np.uint8)
+    images = Images((write_image(tmp_path / f"a.{suffix}", values),))
+    found = colour_areas(images, cube.data.sensor)
+    assert found.share.max() == pytest.approx(12 / 13 if suffix == "exr" else 1)
+    samples = sample_colours(images, cube.data.sensor, (99, 99), lambda progress: None)
+    assert samples.predicting.rgb.min() > 0
+    clear = write_image(tmp_path / "clear.png", np.zeros((2, 2, 4), np.uint8))
+    with raises(TextureError):
+        colour_areas(Images((clear,)), cube.data.sensor)
 
 
 @pytest.mark.parametrize("count", [0, 101])

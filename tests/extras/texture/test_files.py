@@ -132,6 +132,19 @@ def test_a_missing_chunk_is_an_incomplete_file(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_too_many_channels_are_refused_before_the_work(tmp_path, small_cube):
+    source = write_exr(tmp_path / "in.exr", planes(np.full((4, 4, 3), 0.2, np.float32)))
+    target = tmp_path / "out.exr"
+    for count in (1021, 1022):
+        wavelengths = tuple(np.linspace(400, 700, count))
+        made = texture.prepare(small_cube, texture.Spectrum(wavelengths))
+        if count == 1021:
+            texture.convert(made, source, target)
+            continue
+        with raises(OutputError, "too-many-channels"):
+            texture.convert(made, source, target, force=True, progress=pytest.fail)
+
+
 def many(count):
     return [b"c%06d" % number for number in range(count)]
 

@@ -29,6 +29,7 @@ from uplift.cube import EntrySpectra
 from uplift.extras import texture
 from uplift.extras.colour.spaces import find_space
 from uplift.extras.mitsuba.texels import read_colours
+from uplift.extras.texture.image import open_image
 from uplift.extras.texture.picture import read_picture
 from uplift.extras.texture.scene_colours import Images
 from uplift.models import evaluate
@@ -74,6 +75,43 @@ def test_floats_are_linear_unless_the_encoding_is_given(
     )
     result = to_texture(tmp_path / "linear.png", linear)
     assert_allclose(rgb_of(result), codes / 255, rtol=0, atol=1e-7)
+
+
+UPRIGHT = np.arange(24, dtype=np.uint8).reshape(4, 6) * 10
+STORED = [
+    *(UPRIGHT, UPRIGHT[:, ::-1], UPRIGHT[::-1, ::-1], UPRIGHT[::-1]),
+    *(UPRIGHT.T, UPRIGHT.T[::-1], UPRIGHT.T[::-1, ::-1], UPRIGHT.T[:, ::-1]),
+]
+"""Rows of files by orientation, from 1 (EXIF 2.32, 4.6.4)."""
+HDR_AXES = ("-Y +X", "-Y -X", "+Y -X", "+Y +X", "+X -Y", "-X -Y", "-X +Y", "+X +Y")
+
+
+@pytest.mark.parametrize("number", range(8))
+@pytest.mark.parametrize("suffix", ["jpg", "png", "tif", "hdr"])
+def test_images_are_upright(suffix, number, tmp_path):
+    path = tmp_path / f"photo.{suffix}"
+    stored = np.repeat(STORED[number][..., None], 3, axis=2)
+    write_image(path, stored, Orientation=1 + number)
+    if suffix == "hdr":
+        size = "{0} {2} {1} {3}".format(*HDR_AXES[number].split(), *stored.shape)
+        head = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n"
+        pixels = np.insert(stored, 3, 136, axis=2)
+        path.write_bytes(head.encode() + pixels.tobytes())
+    with open_image(path) as image:
+        (part,) = image.parts
+        rows = np.concatenate([band for _, band in image.bands(part)])
+    assert_allclose(rows[..., 0], UPRIGHT, atol=8)
+    assert (part.window.height, part.window.width) == UPRIGHT.shape
+
+
+@pytest.mark.parametrize("name", ["T.550,000000nm", "S0.550,5nm", "moment.03", "T.x"])
+def test_spectra_that_are_not_used_are_stated(name, sensor, tmp_path):
+    content = planes(np.full((2, 2, 3), 0.5, np.float32))
+    path = write_exr(tmp_path / "a.exr", content | {name: content["R"]})
+    codes = [
+        warning.code for warning in read_picture(path, sensor, max_side=9).warnings
+    ]
+    assert codes == ["spectra-not-used"] * (name != "T.x")
 
 
 @pytest.mark.parametrize("method", ["clip", "scale", "desaturate", "desaturate-oklab"])

@@ -379,6 +379,23 @@ def test_a_chart_states_exposure_balance_and_noise(plain_cube, tmp_path):
     assert len(facts) == 4 + 24
 
 
+@pytest.mark.parametrize("order", ["1230", "2301", "3012", "0321", "1032", "0132"])
+def test_corners_that_are_turned_or_mirrored_are_refused(plain_cube, tmp_path, order):
+    scene = chart_scene(plain_cube)
+    lights = {"day": "D65", "a": "A"}
+    for name, light in lights.items():
+        rgb = photograph_of(scene, observer.sensor("sRGB", light), noise=0.02)
+        write_exr(tmp_path / f"{name}.exr", planes(rgb.astype(np.float32)))
+    corners = np.reshape(CORNERS, (4, 2))[list(map(int, order))]
+    chart = texture.ChartInPicture(tuple(corners.ravel()))
+    made = converter(plain_cube, under("A", chart=chart), tmp_path / "a.exr")
+    with raises(OptionError) as caught:
+        texture.convert(made, tmp_path / "day.exr", tmp_path / "two.exr")
+    if order != "0132":  # its sides cross
+        assert caught.value.code == "chart-differs"
+        assert ",".join(f"{number:g}" for number in CORNERS) in caught.value.hint
+
+
 @pytest.mark.parametrize(
     "chart",
     [

@@ -64,6 +64,12 @@ class ImageSpace:
     to_gamut: Array | None = None
     """Matrix (3, 3) from decoded values, such as CIE XYZ, to linear RGB of `gamut`."""
 
+    @property
+    def is_encoded(self) -> bool:
+        """Whether `decode` is a curve."""
+        grey = np.full((1, 3), 0.5)
+        return self.decode is not None and not np.allclose(self.decode(grey), grey)
+
     def matrix(self, target: Gamut) -> Array:
         """Compute the matrix (3, 3) from decoded values to linear RGB of a gamut."""
         matrix = conversion(self.gamut, target)

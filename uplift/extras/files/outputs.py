@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from uplift.common.errors import OutputError, StrPath
-from uplift.common.files import check_output
+from uplift.common.files import check_named, check_output
 
 FOLDER_HINT = "name a folder to write to"
 
@@ -76,6 +76,7 @@ def check_folder(
     """Check that files with these names can be written to a folder, which `make_folder`
     creates if necessary.
     """
+    check_named(path)
     folder = Path(path)
     outputs = [folder / name for name in names]
     if os.path.isdir(folder):
@@ -93,6 +94,7 @@ def check_folder(
 
 def make_folder(path: StrPath) -> Path:
     """Create a folder, and those above it, if they do not exist."""
+    check_named(path)
     folder = Path(path)
     try:
         folder.mkdir(parents=True, exist_ok=True)

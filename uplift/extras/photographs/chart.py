@@ -1,10 +1,17 @@
 """A ColorChecker in photographs, which states exposure, balance and noise."""
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
-from uplift.colorimetry import Light, delta_e_spectra
+from uplift.colorimetry import (
+    Light,
+    Sensor,
+    delta_e_2000,
+    delta_e_spectra,
+    rgb_to_lab,
+)
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.extras.photographs.answers import Photographs
@@ -19,6 +26,12 @@ MIDDLE = 0.25
 """Half the width of the part of a patch that is sampled, in patches."""
 POINTS = 15
 """Points that are sampled along each side of it."""
+MAX_MISMATCH = 16.0
+"""Mean ΔE00 of patches, at their exposure and balance, up to which corners are those of
+the chart. Right ones of cameras that mix channels strongly have 10, and the most alike
+of turned and mirrored ones 22.
+"""
+CORNERS_HINT = "give the corners clockwise from dark skin: X,Y,X,Y,X,Y,X,Y in pixels"
 REPORTED = ("A", "FL11", "HP1")
 """Lights under which answers to patches are compared with their measurements."""
 
@@ -61,6 +74,13 @@ def patch_points(corners: Array) -> Array:
     return projected[..., :2] / projected[..., 2:]
 
 
+def corner_orders(corners: Array) -> list[Array]:
+    """Return corners (4, 2) in all orders: as given, turned, and mirrored."""
+    mirrored = corners[::-1]
+    pairs = product((corners, mirrored), range(4))
+    return [np.roll(order, -first, axis=0) for order, first in pairs]
+
+
 def homography(corners: Array) -> Array:
     """Matrix (3, 3) of the perspective that takes the unit square to corners (4, 2),
     clockwise from (0, 0).
@@ -76,7 +96,7 @@ def homography(corners: Array) -> Array:
     if np.linalg.cond(matrix) > 1e12:
         raise OptionError(
             "the corners of a chart must not lie on a line",
-            hint="give them clockwise from dark skin: X,Y,X,Y,X,Y,X,Y in pixels",
+            hint=CORNERS_HINT,
         )
     values = np.linalg.solve(matrix, np.asarray(corners).ravel())
     return np.append(values, 1.0).reshape(3, 3)
@@ -109,6 +129,37 @@ def _gains(patches: Patches, expected: Array) -> Array:
         )
     ratio = np.where(usable, patches.mean / expected, np.nan)
     return np.nanmedian(ratio, axis=0)
+
+
+def check_corners(
+    sensor: Sensor, orders: list[Array], patches: list[Patches], measured: Array
+) -> None:
+    """Raise `OptionError` unless the patches by the first order of corners are those of
+    the chart, whose reflectances are measured (24, N).
+    """
+    expected = measured @ sensor.matrix.T
+    error, *others = (_mismatch(sensor, sampled, expected) for sampled in patches)
+    if error <= MAX_MISMATCH:
+        return
+    best = int(np.argmin(others))
+    hint = CORNERS_HINT
+    if others[best] <= MAX_MISMATCH:
+        numbers = ",".join(f"{number:g}" for number in orders[1 + best].ravel())
+        hint = f"clockwise from dark skin they are {numbers}"
+    raise OptionError(
+        f"patches between the corners must be those of the chart, got a mean ΔE00 of "
+        f"{error:.0f}",
+        code="chart-differs",
+        hint=hint,
+    )
+
+
+def _mismatch(sensor: Sensor, patches: Patches, expected: Array) -> float:
+    """Mean ΔE00 of patches, at their exposure and balance, to linear RGB (24, 3)."""
+    known = np.isfinite(patches.mean).all(axis=1)
+    colours = patches.mean[known] / _gains(patches, expected)
+    pair = (rgb_to_lab(sensor, rgb) for rgb in (colours, expected[known]))
+    return float(delta_e_2000(*pair).mean())
 
 
 def compare_patches(

@@ -22,8 +22,9 @@ from uplift.colorimetry import Sensor, delta_e_2000, rgb_to_lab
 from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import display_sensors
-from uplift.common.arrays import Array, Floats, StrPath
+from uplift.common.arrays import Array, Floats, Mask, StrPath
 from uplift.common.errors import OutputError
+from uplift.common.files import atomic_write
 from uplift.cube import common_sensor
 from uplift.extras.colour.light_sets import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.extras.colour.srgb import to_display_codes
@@ -56,6 +57,7 @@ MAP_EXPONENT = 0.5
 # below.
 MIN_WHITE = 0.05
 JPEG_QUALITY = 92
+HEADER_BYTES = 1 << 12  # more than the header of an encoded image
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +71,7 @@ class Rendering:
     # (3, 3): from these colours, white-balanced, to linear sRGB that keeps the tint of
     # the light
     tint: Array
+    visible: Mask  # Pixels (height, width) whose differences count
 
     @property
     def light(self) -> str:
@@ -94,6 +97,10 @@ class Rendering:
             pair: delta_e_2000(*map(lab.__getitem__, pair))
             for pair in combinations(lab, 2)
         }
+
+    def errors(self, pair: tuple[str, str]) -> dict[str, float]:
+        """Mean, 95 % and largest ΔE00 between two methods."""
+        return mean_p95_max(self.differences[pair][self.visible])
 
     @property
     def looks_white(self) -> bool:
@@ -163,14 +170,16 @@ def relight(
     lights: Sequence[Illuminant] = RELIGHT_LIGHTS,
     *,
     opacity: Floats | None = None,
+    visible: Mask | None = None,
     reduction: int = 1,
     threads: int = 2,
 ) -> Relit:
     """Compute the colours of an image, linear RGB (height, width, 3), under lights, by
     each of the cubes.
 
-    ``opacity`` (height, width, 1) multiplies them; ``reduction`` is that of the image,
-    along each side.
+    ``opacity`` (height, width, 1) multiplies them; of differences those of ``visible``
+    pixels (height, width) count, unless there are none; ``reduction`` is that of the
+    image, along each side.
     """
     sensor = common_sensor(cube.data for cube in cubes.values())
     screens = display_sensors(lights, sensor.observer, *sensor.range)
@@ -179,6 +188,8 @@ def relight(
         for method, cube in cubes.items()
     }
     weight = np.float32(1) if opacity is None else opacity
+    if visible is None or not visible.any():
+        visible = np.ones(rgb.shape[:2], dtype=bool)
     original = to_display_codes(rgb * weight, sensor).astype(np.uint8)
     to_srgb = conversion(sensor, SRGB) @ sensor.xyz_to_rgb
     renderings = []
@@ -187,7 +198,7 @@ def relight(
         for method, of_lights in by_spectra.items():
             colours[method] = of_lights[number] * weight
         tint = to_srgb @ screen.rgb_to_xyz
-        renderings.append(Rendering(screen, colours, tint=tint))
+        renderings.append(Rendering(screen, colours, tint, visible))
     return Relit(name, reduction, original, tuple(renderings))
 
 
@@ -283,7 +294,7 @@ def _draw_row(
         codes = rendering.screen_codes(method, balanced=balanced)
         show_image(panel, codes, interpolation="antialiased")
         if method != RGB_PRODUCT:
-            errors = mean_p95_max(rendering.differences[RGB_PRODUCT, method])
+            errors = rendering.errors((RGB_PRODUCT, method))
             text = (
                 f"ΔE00 from RGB × light: mean {errors['mean']:.1f}, 95 % "
                 f"{errors['p95']:.1f}"
@@ -310,10 +321,8 @@ def relit_page(relit: Sequence[Relit], *, adapt: bool | None = None) -> str:
     first = relit[0]
     changes = []
     for number in range(len(first.renderings)):
-        differences = [
-            image.renderings[number].differences[image.shown_pair] for image in relit
-        ]
-        changes.append(np.mean([difference.mean() for difference in differences]))
+        errors = [image.renderings[number].errors(image.shown_pair) for image in relit]
+        changes.append(np.mean([error["mean"] for error in errors]))
     limit = map_limit(relit)
     return render(
         "extras/relight/templates/relight_page.html.j2",
@@ -362,7 +371,9 @@ def _section(image: Relit, limit: float) -> dict[str, Any]:
             layers.append(
                 _layer(label, codes, light=number, shows=f"{left}-{right}", kind="png")
             )
-            errors = (f"{value:.2f}" for value in mean_p95_max(difference).values())
+            errors = (
+                f"{value:.2f}" for value in rendering.errors((first, second)).values()
+            )
             rows.append((rendering.light, first, second, *errors))
     height, width, _ = image.original.shape
     size = {"width": width, "height": height, "reduction": image.reduction}
@@ -397,8 +408,12 @@ def _encoded(codes: NDArray[np.uint8], kind: str) -> str:
     spec = OpenImageIO.ImageSpec(width, height, channels, "uint8")
     spec.attribute("Compression", f"jpeg:{JPEG_QUALITY}")
     spec.attribute("jpeg:subsampling", "4:4:4")
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"image.{kind}"
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        atomic_write(Path(folder) / f"image.{kind}") as path,
+    ):
+        # libjpeg ends the process if the file does not fit on the disk
+        path.write_bytes(bytes(2 * codes.nbytes + HEADER_BYTES))
         image: Any = OpenImageIO.ImageOutput.create(kind)
         is_open = image and image.open(utf8_name(path, OutputError), spec)
         if not is_open or not image.write_image(codes):

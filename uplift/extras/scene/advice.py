@@ -25,7 +25,13 @@ from uplift.extras.pages.figure import (
     new_figure,
     show_image,
 )
-from uplift.extras.texture.scene_colours import BINS, Images, PixelSample, bin_index
+from uplift.extras.texture.scene_colours import (
+    BINS,
+    Images,
+    PixelSample,
+    bin_index,
+    no_pixels,
+)
 from uplift.fit import posterior
 from uplift.fit.kriging import DEFAULT, Kernel
 from uplift.lookup import Cube
@@ -49,18 +55,16 @@ measure.
 
 
 def colour_areas(images: Images, sensor: Sensor) -> PixelSample:
-    """Average the pixels of images in bins of encoded RGB. Raises `TextureError`,
-    `ColourError` and `OptionError`.
+    """Average the visible pixels of images in bins of encoded RGB. Raises
+    `TextureError`, `ColourError` and `OptionError`.
     """
     sums = np.zeros((4, BINS**3))
     for path in images.paths:
-        for rgb in images.colours(path, sensor):
+        for rgb, _ in images.blocks(path, sensor):
             index = bin_index(sensor, rgb)
             sums += [np.bincount(index, values, BINS**3) for values in (*rgb.T, None)]
     if not sums.any():
-        raise OptionError(
-            "images must have pixels, got none", hint="name an image with pixels"
-        )
+        raise no_pixels()
     for step in STEPS:
         size = BINS // step
         totals = (
@@ -169,13 +173,15 @@ def uncertainty(
 class Swatch:
     """A colour to measure, by its number in the scene.
 
-    ``error`` is the mean standard error of the colour before anything is measured,
-    ``gain`` the amount by which the mean error of the scene falls, and ``mean_after``
-    what remains.
+    ``area`` is the share of the pixels that have the colour, and ``share`` of those
+    that are like it: the measurement halves what is unknown of them, or more. ``error``
+    is the mean standard error of the colour before anything is measured, ``gain`` the
+    amount by which the mean error of the scene falls, and ``mean_after`` what remains.
     """
 
     colour: int
     area: float
+    share: float
     error: float
     gain: float
     mean_after: float
@@ -195,11 +201,14 @@ def advise(scene: Uncertainty, count: int) -> tuple[list[Swatch], Uncertainty]:
         best = int(gains.argmax())
         if not gains[best] > 0:
             break
+        unknown = np.diag(scene.covariance)
         scene = scene.measured(best)
+        is_like = np.diag(scene.covariance) <= unknown / 2
         chosen.append(
             Swatch(
                 best,
                 float(scene.area[best]),
+                float(scene.area[is_like].sum()),
                 float(errors[best]),
                 float(gains[best]),
                 scene.mean,

@@ -25,6 +25,8 @@ VECTORS = re.compile(
     re.I,
 )
 """Names of layers of renderers whose X, Y and Z are vectors, not CIE XYZ."""
+SPECTRAL = re.compile(r"(T|S[0-3])\.\d+,\d+nm|(moment|multiplier)\.\d+")
+"""Names of channels of spectral images and textures."""
 XYZ = {"X", "Y", "Z"}
 CHROMA = {"RY", "BY"}
 
@@ -34,12 +36,22 @@ class ColourChannels:
     """Indices of the colour channels, and of the alpha that multiplies them, if any.
 
     ``rgb`` are red, green and blue, all the same for a grey image, or CIE XYZ if
-    ``is_xyz``.
+    ``is_xyz``. ``coverage`` is the alpha, whether or not it multiplies colours.
     """
 
     rgb: tuple[int, int, int]
     alpha: int | None = None
     is_xyz: bool = False
+    coverage: int | None = None
+
+    def visible(self, values: Values) -> Mask:
+        """Return which pixels (…) of values (…, channels) are not transparent. Light of
+        alpha 0 is visible.
+        """
+        if self.coverage is None:
+            return np.ones(values.shape[:-1], dtype=bool)
+        channels = [self.coverage] if self.alpha is None else [*self.rgb, self.alpha]
+        return np.asarray(values[..., channels].any(axis=-1))
 
     def straight(self, values: Values) -> Values:
         """Return the colours (…, 3) of values (…, channels), divided by alpha if they
@@ -123,10 +135,12 @@ def colour_channels(part: Part) -> ColourChannels | None:
             f"colour channels must be 8-bit, 16-bit, half or float, got {min(types)}",
             hint="convert them",
         )
-    is_multiplied = part.has_associated_alpha and alpha in part.channels
-    multiplier = part.channels.index(alpha) if is_multiplied else None
+    coverage = part.channels.index(alpha) if alpha in part.channels else None
     return ColourChannels(
-        (first, second, third), multiplier, is_xyz=names[0].endswith("X")
+        (first, second, third),
+        coverage if part.has_associated_alpha else None,
+        is_xyz=names[0].endswith("X"),
+        coverage=coverage,
     )
 
 

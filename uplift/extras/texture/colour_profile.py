@@ -16,6 +16,7 @@ import numpy as np
 
 from uplift.colorimetry.gamut import SRGB, Primaries
 from uplift.common.errors import OptionError
+from uplift.common.files import atomic_write
 from uplift.extras.colour.spaces import ImageSpace, find_ocio_space
 from uplift.extras.colour.srgb import decode
 from uplift.extras.texture import code_points
@@ -246,7 +247,8 @@ def _icc_space(name: str, data: bytes) -> ImageSpace | None:
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "image.icc"
-        path.write_bytes(data)
+        with atomic_write(path) as temporary:
+            temporary.write_bytes(data)
         transform = ocio.FileTransform(str(path), direction=ocio.TRANSFORM_DIR_INVERSE)
         try:
             to_xyz = code_points.ocio_space(name, transform)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from uplift.common.text import pluralise
 from uplift.extras.colour.spaces import ImageSpace
 from uplift.extras.texture.channels import (
     HALF_ROUNDING,
+    SPECTRAL,
     all_inside,
     colour_channels,
     without_rounding,
@@ -181,8 +183,8 @@ def source_space(
 def space_warnings(
     image: Image, sensor: Sensor, chosen: ImageSpace | None = None
 ) -> tuple[UpliftWarning, ...]:
-    """Return warnings about parts whose space is not known: unusable statements, and
-    assumptions.
+    """Return warnings about parts whose space is not known, by unusable statements and
+    assumptions, and about spectra, in place of which R, G and B are read.
     """
     problems = dict[str, UpliftWarning]()
     for part in image.parts if chosen is None else ():
@@ -190,6 +192,12 @@ def space_warnings(
             problems[problem] = UpliftWarning(
                 problem, code="colour-space-assumed", path=image.path
             )
+    names = chain.from_iterable(part.channels for part in image.parts)
+    if any(map(SPECTRAL.fullmatch, names)):
+        problem = "the spectra of the image are not used: its R, G and B are"
+        problems[problem] = UpliftWarning(
+            problem, code="spectra-not-used", path=image.path
+        )
     return tuple(problems.values())
 
 

@@ -240,8 +240,6 @@ def _write_band(
         if (opacity := layout.colours.opacity(band)) is not None:
             values = converter.multiply(values, opacity)
         counts = decoded + converted
-    # OpenImageIO would convert floats to half floats in another array.
-    is_half = set(layout.output.types) == {"half"}
-    dtype = np.float16 if is_half else np.result_type(np.float32, others)
-    writer.write_rows(first, np.concatenate([*values, others], axis=-1, dtype=dtype))
-    return counts
+    dtype = np.result_type(np.float32, others)
+    rows = np.concatenate([*values, others], axis=-1, dtype=dtype)
+    return counts + Counts(too_bright=writer.write_rows(first, rows))

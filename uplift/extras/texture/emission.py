@@ -64,13 +64,9 @@ class LightUplifter(uplifter.Converter):
         return read
 
     def convert(self, rgb: Floats) -> uplifter.Converted:
-        limit = np.finfo(np.float16 if self.depth == "half" else np.float32).max
         lights, wrong = self._of_lights(rgb)
-        power = self._power(lights)
-        stored = lights.astype(np.float32)
-        bright = (np.abs(stored) > limit).any(axis=-1) | (power > limit).any(axis=-1)
-        counts = colours.Counts(not_lights=wrong, too_bright=int(bright.sum()))
-        return (stored.clip(-limit, limit), power.clip(0, limit)), counts
+        counts = colours.Counts(not_lights=wrong)
+        return (lights.astype(np.float32), self._power(lights)), counts
 
     def power(self, rgb: Floats) -> tuple[Floats, colours.Counts]:
         """Return the power (…, N) of lights of linear RGB (…, 3), and counts of colours

@@ -1,14 +1,15 @@
 """Image files as they are: parts, channels, and rows a band at a time (OpenEXR,
 Radiance HDR, PNG, JPEG, TIFF).
 
-OpenImageIO reads all formats. Bands hold the numbers of the file, unconverted.
+OpenImageIO reads all formats. Bands hold the numbers of the file, unconverted. Images
+are upright: the orientation that EXIF, TIFF or HDR states is applied.
 """
 
 import contextlib
 import itertools
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -76,6 +77,9 @@ SUBSAMPLED = "ubsampled"
 chroma of luminance and chroma.
 """
 SUBSAMPLED_HINT = "write R, G and B at full resolution"
+MIRRORED = (2, 4, 5, 7)
+QUARTERS = {3: 2, 4: 2, 5: 1, 6: 3, 7: 3, 8: 1}
+"""Turns to the left that make images of an orientation upright, by 90°."""
 MEMORY_HINT = "write the image with smaller tiles or strips, or without interlacing"
 
 
@@ -136,11 +140,12 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Image:
-    """An open image file."""
+    """An open image file. ``pixels`` are all rows of one that is not stored upright."""
 
     path: Path
     parts: tuple[Part, ...]
     handle: Any
+    pixels: Values | None = None
 
     def bands(self, part: Part) -> Iterator[tuple[int, Values]]:
         """Yield row numbers and rows (k, width, channels): integers if all channels
@@ -157,6 +162,8 @@ class Image:
         """Read rows (count, width, channels) from row ``first`` of the window, as
         `bands` does.
         """
+        if self.pixels is not None:
+            return self.pixels[first : first + count]
         self.handle.seek_subimage(part.number, 0)
         first += part.window.y
         end = first + count
@@ -224,10 +231,12 @@ def open_image(path: StrPath) -> Iterator[Image]:
         parts = tuple(_parts(handle, header))
         is_png = start.startswith(png_file.SIGNATURE)
         is_interlaced = is_png and start[PNG_INTERLACE:] == b"\1"
+        orientation = _orientation(handle)
         for part in parts:
             _check_names(part)
-            _check_block(part, is_interlaced=is_interlaced)
-        yield Image(path, parts, handle)
+            _check_block(part, is_whole=is_interlaced or orientation > 1)
+        image = Image(path, parts, handle)
+        yield _upright(image, orientation) if orientation > 1 else image
     except (TextureError, ColourError) as error:
         error.path = path if error.path is None else error.path
         raise
@@ -273,10 +282,10 @@ def _check_names(part: Part) -> None:
             )
 
 
-def _check_block(part: Part, *, is_interlaced: bool) -> None:
+def _check_block(part: Part, *, is_whole: bool) -> None:
     """Check that the rows that are decoded together fit into memory."""
     height = part.window.height
-    rows = height if is_interlaced else min(part.rows_per_block, height)
+    rows = height if is_whole else min(part.rows_per_block, height)
     check_memory(
         rows * part.window.width * len(part.channels) * 4,
         f"a block of {pluralise(rows, 'row')}, decoded together,",
@@ -313,6 +322,31 @@ def _parts(handle: Any, header: Mapping[str, Any]) -> Iterator[Part]:
         number += 1
         if handle.format_name() != "openexr":  # pages of a TIFF are separate images
             return
+
+
+def _orientation(handle: Any) -> int:
+    """Return the orientation of an image by the numbers of EXIF, which are also those
+    of OpenImageIO for the axes of HDR files, but for two that it takes for each other.
+    """
+    if handle.format_name() == "openexr":
+        return 1
+    orientation: int = handle.spec().get_int_attribute("Orientation", 1)
+    is_swapped = handle.format_name() == "hdr" and orientation in (6, 8)
+    return 14 - orientation if is_swapped else orientation
+
+
+def _upright(image: Image, orientation: int) -> Image:
+    """Turn an image of one part."""
+    (part,) = image.parts
+    pixels = image.rows(part, 0, part.window.height)
+    if orientation in MIRRORED:
+        pixels = pixels[:, ::-1]
+    quarters = QUARTERS.get(orientation, 0)
+    pixels = np.rot90(pixels, quarters)
+    aspect = part.window.aspect ** (-1 if quarters % 2 else 1)
+    height, width, _ = pixels.shape
+    window = Window(0, 0, width, height, (0, 0, width, height), aspect)
+    return Image(image.path, (replace(part, window=window),), image.handle, pixels)
 
 
 def _part(spec: Any, number: int, header: Mapping[str, Any]) -> Part:

@@ -21,11 +21,14 @@ from uplift.extras.colour.spaces import find_space
 from uplift.extras.photographs import Noise, Photograph, Photographs
 from uplift.extras.photographs.chart import (
     COLUMNS,
+    CORNERS_HINT,
     REPORTED,
     ROWS,
     Patches,
     calibrate,
+    check_corners,
     compare_patches,
+    corner_orders,
     patch_points,
 )
 from uplift.extras.photographs.fit import (
@@ -254,8 +257,11 @@ def _fit_chart(
             hint="measure all patches, row by row",
         )
     measured = resample(atlas, sensor.wavelengths).values
-    points = patch_points(np.reshape(chart.corners, (4, 2)))
-    own, *further = [_patches(picture, points) for picture in (first, *pictures)]
+    orders = corner_orders(np.reshape(chart.corners, (4, 2)))
+    places = [patch_points(corners) for corners in orders]
+    own, *others = [_patches(first, points) for points in places]
+    check_corners(sensor, orders, [own, *others], measured)
+    further = [_patches(picture, places[0]) for picture in pictures]
     calibration = calibrate(prepared, own, further, measured)
     exact = replace(prepared, noise=calibration.noise)
     setting = sensor.observer, *sensor.range
@@ -292,7 +298,7 @@ def _patches(picture: Picture, points: Array) -> Patches:
         raise OptionError(
             "the chart must lie in the picture, whose width and height in pixels are "
             f"{window.width} and {window.height}",
-            hint="give the corners clockwise from dark skin: X,Y,X,Y,X,Y,X,Y in pixels",
+            hint=CORNERS_HINT,
         )
     first = int(y.min())
     rows = picture.rows(first, int(y.max()) - first + 1)

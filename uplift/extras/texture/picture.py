@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.colorimetry import Sensor
-from uplift.common.arrays import Floats, StrPath, Values
+from uplift.common.arrays import Floats, Mask, StrPath, Values
 from uplift.common.errors import UpliftWarning
 from uplift.extras.colour.spaces import ImageSpace
 from uplift.extras.texture.channels import coloured_parts
@@ -23,13 +23,15 @@ class Picture:
     """Linear RGB (height, width, 3) in [0, 1], divided by alpha, and the alpha (height,
     width, 1) of divided colours.
 
-    ``reduction`` pixels of the image make one of the picture, along each side.
+    ``reduction`` pixels of the image make one of the picture, along each side, which is
+    ``visible`` (height, width) unless all are transparent.
     """
 
     rgb: Floats
     opacity: Floats | None
     reduction: int
     warnings: tuple[UpliftWarning, ...]
+    visible: Mask
 
 
 def read_picture(
@@ -54,9 +56,11 @@ def read_picture(
         decode = make_decoder(sensor, part, encoding, out_of_gamut, space)
         mean = _Reducer(part, max_side, 3)
         opacities = _Reducer(part, max_side, 1)
+        shown = _Reducer(part, max_side, 1)
         counts = Counts()
         for first, band in image.bands(part):
             rgb, decoded = decode(channels.straight(band))
+            shown.add(first - part.window.y, channels.visible(band)[..., None])
             opacity = channels.opacity(band)
             if opacity is not None:
                 opacities.add(first - part.window.y, opacity)
@@ -66,11 +70,12 @@ def read_picture(
             *counts.warnings(out_of_gamut, path),
             *space_warnings(image, sensor, space),
         )
+    visible = shown.result()[..., 0] > 0
     if channels.alpha is None:
-        return Picture(mean.result(), None, mean.step, warnings)
+        return Picture(mean.result(), None, mean.step, warnings, visible)
     weights = opacities.result()
     colours = np.minimum(mean.result() / np.where(weights > 0, weights, 1), 1)
-    return Picture(colours.astype(np.float32), weights, mean.step, warnings)
+    return Picture(colours.astype(np.float32), weights, mean.step, warnings, visible)
 
 
 class _Reducer:

@@ -96,15 +96,15 @@ class Images:
 
     def colours(self, path: Path, sensor: Sensor) -> Iterator[Array]:
         """Yield the colours of an image, linear RGB (n, 3) in [0, 1] of a sensor, block
-        by block.
+        by block, also those of transparent pixels.
         """
-        return (rgb for rgb, _ in self.blocks(path, sensor))
+        return (rgb for rgb, _ in self.blocks(path, sensor, is_whole=True))
 
     def blocks(
-        self, path: Path, sensor: Sensor, step: int = 1
+        self, path: Path, sensor: Sensor, step: int = 1, *, is_whole: bool = False
     ) -> Iterator[tuple[Array, Counts]]:
         """Yield the colours of every pixel of this ``step``, as `colours`, and counts
-        of those that had to change.
+        of those that had to change. Transparent ones are left out unless ``is_whole``.
         """
         space = None if self.space is None else find_space(self.space)
         with open_image(path) as image:
@@ -117,11 +117,10 @@ class Images:
                 for _, band in image.bands(part):
                     pixels = band.reshape(-1, band.shape[-1])
                     for first in range(0, len(pixels), BLOCK_PIXELS * step):
-                        rgb, counts = decode(
-                            channels.straight(
-                                pixels[first : first + BLOCK_PIXELS * step : step]
-                            )
-                        )
+                        chosen = pixels[first : first + BLOCK_PIXELS * step : step]
+                        if not is_whole:
+                            chosen = chosen[channels.visible(chosen)]
+                        rgb, counts = decode(channels.straight(chosen))
                         yield rgb.astype(float), counts
 
 
@@ -199,9 +198,7 @@ def sample_colours(
     counts = [_pixel_count(path) for path in images.paths]
     total, size = map(sum, zip(*counts, strict=True))
     if not total:
-        raise TextureError(
-            "images must have pixels, got none", hint="name an image with pixels"
-        )
+        raise no_pixels()
     step = -(-total // MAX_PIXELS)
     first = sizes[0] * step / total
     last = first + sizes[1] * step / total
@@ -223,12 +220,21 @@ def sample_colours(
         for warning in changed.warnings(path=path):
             warn(warning)
     occupied = bins[~np.isnan(bins[:, 0])]
+    if not len(occupied):
+        raise no_pixels()
     predicting, confirming = (
         _distinct(np.concatenate(sample), occupied) for sample in samples
     )
     is_few = step == 1 and len(few) <= MAX_LIST
     return SampledColours(
         predicting, confirming, occupied, total, size, few if is_few else None
+    )
+
+
+def no_pixels() -> TextureError:
+    """The error for images that show nothing."""
+    return TextureError(
+        "images must have visible pixels, got none", hint="name an image with pixels"
     )
 
 

@@ -32,6 +32,7 @@ COMPRESSION = "zip:1"
 """ZIP at its lowest level: the same pixels in files a few per cent larger, compressed
 in 2/3 of the time.
 """
+LARGEST_HALF = np.float32(65504)
 SPACE_MARGIN = 2
 """Factor by which the rest of an image may compress better than the rows written so
 far.
@@ -106,6 +107,8 @@ class Writer:
             for part in parts
         )
         self._written = 0
+        self._parts = parts
+        self._types = parts[0].types
         specs = tuple(self._specs) if len(self._specs) > 1 else self._specs[0]
         rows = max(part.rows_per_band for part in parts)
         with _compression_threads(rows // ROWS_PER_CHUNK):
@@ -117,19 +120,29 @@ class Writer:
 
     def start_part(self, number: int) -> None:
         """Start a part."""
+        self._types = self._parts[number].types
         if number:
             path = os.fspath(self._path)
             spec = self._specs[number]
             self._check(self._handle.open(path, spec, "AppendSubimage"))
 
-    def write_rows(self, first: int, values: Values) -> None:
-        """Write rows (k, width, channels) from row ``first``. Raises `OSError`, and
-        `OutputError` as `_check_space`.
+    def write_rows(self, first: int, values: Values) -> int:
+        """Write rows (k, width, channels) from row ``first``, and return how many
+        pixels have numbers that half floats cannot hold, in place of which the largest
+        ones are written; infinity stays. Raises `OSError`, and `OutputError` as
+        `_check_space`.
         """
-        rows = np.ascontiguousarray(values)
+        is_half = np.array(self._types) == "half"
+        is_over = np.zeros(values.shape, dtype=bool)
+        if not np.abs(values).max() <= LARGEST_HALF:
+            is_over = is_half & np.isfinite(values) & (np.abs(values) > LARGEST_HALF)
+            values = np.where(is_over, np.copysign(LARGEST_HALF, values), values)
+        # OpenImageIO would convert floats to half floats in another array.
+        rows = values.astype(np.float16) if is_half.all() else values
         self._check(self._handle.write_scanlines(first, first + len(rows), 0, rows))
         self._written += values.size
         self._check_space()
+        return int(is_over.any(axis=-1).sum())
 
     def close(self) -> None:
         """Finish the file, check that all of it is there, and add its checksum. Raises
@@ -204,8 +217,17 @@ def open_writer(
     path: StrPath, parts: Sequence[OutputPart], *, force: bool = False
 ) -> Iterator[Writer]:
     """Open a writer. The file appears under its name once all rows are written. Raises
-    `OutputError`.
+    `OutputError`, also before anything is written for more channels than OpenImageIO
+    reads.
     """
+    count = sum(len(part.channels) for part in parts)
+    if count > exr_file.MAX_CHANNELS:
+        raise OutputError(
+            f"an image must have at most {exr_file.MAX_CHANNELS} channels, got {count}",
+            code="too-many-channels",
+            path=path,
+            hint="write fewer wavelengths",
+        )
     with atomic_write(path, force=force) as temporary:
         writer = Writer(temporary, parts)
         try:

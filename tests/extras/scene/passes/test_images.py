@@ -1,6 +1,7 @@
 """Textures and lights of passes, and pictures that are decoded."""
 
 import json
+from shutil import copyfile
 
 import numpy as np
 import OpenEXR
@@ -141,6 +142,52 @@ def test_negative_numbers_are_counted(two_passes, write, tmp_path):
     assert codes == ["pixels-negative", "pixels-not-finite"]
     channels, _ = read(target)
     assert all(np.isfinite(channel).all() for channel in channels.values())
+
+
+def test_half_floats_hold_finite_numbers(two_passes, write, tmp_path):
+    plane = np.full((4, 5), 0.5, np.float32)
+    plane[0, :2] = (np.inf, 3e5)
+    far = {"Z": np.full((4, 5), 1e9, np.float32), "A": np.full((4, 5), np.inf, np.half)}
+    sources = [write("a.1.exr", dict.fromkeys("RGB", plane) | far)]
+    sources.append(write("a.2.exr", dict.fromkeys("RGB", plane)))
+    decoder = library.decoder(two_passes, space="XYZ")
+    target = tmp_path / "a.exr"
+    decoded = library.decode_pictures(decoder, sources, target, depth="half")
+    found, _ = read(target)
+    assert decoded.counts.too_bright == 2
+    assert found["Y"].max() == np.half(65504)
+    assert_allclose(found["first.Z"], 1e9)
+    assert np.isinf(found["A"]).all()
+
+
+@pytest.mark.parametrize(
+    ("second", "code"),
+    [
+        ("same", "passes-repeated"),
+        ("link", "passes-repeated"),
+        ("copy", "passes-repeated"),
+        ("black", "passes-black"),
+        ("srgb_rec709_scene", "passes-not-linear"),
+    ],
+)
+def test_pictures_are_of_different_passes(
+    two_passes, pictures, write, tmp_path, second, code
+):
+    header = {"colorInteropID": second if "_" in second else "lin_ap1_scene"}
+    sources = pictures(header, others=False, names=("a.1.exr", "b.exr"))
+    target = tmp_path / "out.exr"
+    decoder = library.decoder(two_passes)
+    if second == "same":
+        sources[1] = sources[0]
+    elif second == "link":
+        sources[1] = tmp_path / "c.exr"
+        sources[1].symlink_to(sources[0])
+    elif second == "copy":
+        copyfile(*sources)
+    elif second == "black":
+        write("b.exr", dict.fromkeys("RGB", np.zeros(SIZE[::-1], np.float32)))
+    with raises(PassesError, code):
+        library.decode_pictures(decoder, sources, target, force=True)
 
 
 def test_number_of_pictures(two_passes, pictures, tmp_path):

@@ -4,6 +4,7 @@ time.
 
 import contextlib
 import math
+import os
 import re
 import time
 from collections.abc import Iterator, Sequence
@@ -12,12 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.common.arrays import StrPath, Values
+from uplift.common.arrays import Array, StrPath, Values
 from uplift.common.errors import PassesError, UpliftWarning
 from uplift.common.files import check_output
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.extras.scene.passes.bands import CHANNELS
-from uplift.extras.scene.passes.decoder import Decoder
+from uplift.extras.scene.passes.decoder import LARGEST, Decoder
 from uplift.extras.scene.passes.passes import Passes
 from uplift.extras.scene.passes.textures import ATTRIBUTE, pass_mark
 from uplift.extras.texture.channels import coloured_parts
@@ -99,8 +100,9 @@ def decode_pictures(
     PassesError
         There are too few or too many pictures (``passes-missing``), they are in
         another order or of other passes (``passes-out-of-order``, ``passes-differ``),
-        differ in size (``passes-sizes-differ``), or are not linear floats of R, G and B
-        (``passes-not-linear``).
+        one is named twice or copied (``passes-repeated``) or black
+        (``passes-black``), they differ in size (``passes-sizes-differ``), or are not
+        linear floats of R, G and B (``passes-not-linear``).
     TextureError
         A picture cannot be read.
     OutputError
@@ -128,6 +130,8 @@ def check_sources(passes: Passes, sources: Sequence[StrPath]) -> None:
             code="passes-missing",
             hint="name the pictures of all passes in their order",
         )
+    if len({os.path.realpath(source) for source in sources}) < len(sources):
+        raise _repeated()
     names = [Path(source).name for source in sources]
     numbers = [NUMBER.findall(name) for name in names]
     expected = list(range(1, passes.count + 1))
@@ -156,8 +160,11 @@ def _picture(passes: Passes, image: Image, number: int) -> Picture:
     part, channels = parts[0]
     types = {part.types[index] for index in channels.rgb}
     letters = [part.channels[index].rpartition(".")[2] for index in channels.rgb]
-    if types - FLOATS or letters != ["R", "G", "B"]:
-        got = ", ".join(sorted(types)) if types - FLOATS else ", ".join(letters)
+    space = None if part.profile is None else part.profile.space
+    is_encoded = space is not None and space.is_encoded
+    if types - FLOATS or letters != ["R", "G", "B"] or is_encoded:
+        got = ", ".join(sorted(types) if types - FLOATS else letters)
+        got += f" of {space.name}" if space is not None else ""
         raise PassesError(
             f"pictures of passes must have channels R, G and B of linear floats, got "
             f"{got}",
@@ -222,15 +229,44 @@ def _write(
     output = _output(decoder, first, depth)
     height = first.part.window.height
     counts = Counts()
+    totals = np.zeros(CHANNELS * len(pictures))
     with open_writer(target, [output], force=force) as writer:
         writer.start_part(0)
         for row, numbers, others in _bands(pictures, output.rows_per_band):
             colours, counted = decoder.decode(numbers)
-            counts += counted
             rows = np.concatenate([colours, others], axis=-1, dtype=np.float32)
-            writer.write_rows(row + first.part.window.y, rows)
+            bright = writer.write_rows(row + first.part.window.y, rows)
+            counts += counted + Counts(too_bright=bright)
+            totals += np.nansum(np.clip(numbers, 0, LARGEST), axis=(0, 1), dtype=float)
             progress(Progress("rows", row + len(rows), height))
+        _check_different(pictures, totals)
     return counts
+
+
+def _check_different(pictures: Sequence[Picture], totals: Array) -> None:
+    """Check the sums (K,) of the numbers of pictures. Those of a black frame alone are
+    black, and those of grey surfaces equal.
+    """
+    sums = totals.reshape(len(pictures), CHANNELS)
+    coloured = [tuple(row) for row in sums if np.ptp(row)]
+    if len({*coloured}) < len(coloured):
+        raise _repeated()
+    is_black = ~sums.any(axis=1)
+    if is_black.any() and not is_black.all():
+        raise PassesError(
+            "is black, unlike the pictures of other passes",
+            code="passes-black",
+            path=pictures[int(is_black.argmax())].image.path,
+            hint="render this pass again, with its textures and lights",
+        )
+
+
+def _repeated() -> PassesError:
+    return PassesError(
+        "pictures must be of different passes, got the same picture twice",
+        code="passes-repeated",
+        hint="name the picture of each pass once, in their order",
+    )
 
 
 def _output(decoder: Decoder, first: Picture, depth: str) -> OutputPart:

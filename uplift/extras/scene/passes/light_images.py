@@ -17,8 +17,6 @@ from uplift.extras.texture.emission import LightUplifter, prepare_lights
 from uplift.extras.texture.image import Part
 from uplift.extras.texture.uplifter import Converted, Converter, ReadColours
 
-LARGEST_HALF = float(np.finfo(np.float16).max)
-
 
 @dataclass(frozen=True, eq=False)
 class PassLightUplifter(Converter):
@@ -40,11 +38,9 @@ class PassLightUplifter(Converter):
     def convert(self, rgb: Floats) -> Converted:
         power, counts = self.lights.power(rgb)
         numbers = power @ self.projection.T
-        limit = LARGEST_HALF if self.depth == "half" else np.finfo(np.float32).max
         negative = (numbers < 0).any(axis=-1)
-        bright = (numbers > limit).any(axis=-1)
-        counts += Counts(negative=int(negative.sum()), too_bright=int(bright.sum()))
-        return (np.clip(numbers, 0, limit).astype(np.float32),), counts
+        counts += Counts(negative=int(negative.sum()))
+        return (np.maximum(numbers, 0).astype(np.float32),), counts
 
 
 def prepare_light_pass(
