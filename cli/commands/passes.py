@@ -201,16 +201,19 @@ def _light_numbers(passes: Passes, light: Illuminant) -> list[float]:
     import numpy as np
 
     from uplift.colorimetry.tables import stated_name
+    from uplift.common.errors import UpliftWarning
     from uplift.extras.scene.passes import scaled_power
 
+    found = passes.find(light)
+    if found is not None:
+        return found.numbers.tolist()
     name = stated_name("illuminant", light)
-    for known in passes.lights:
-        if known.name == name:
-            return known.numbers.tolist()
+    if name in [known.name for known in passes.lights]:
+        problem = f"{name} has another spectrum than {name} of the passes"
+        hint = "its numbers come from its spectrum; choose the passes with this light"
+        warn([UpliftWarning(problem, code="light-changed", hint=hint)])
     numbers = passes.light_numbers(scaled_power(light))
     if (numbers < 0).any():
-        from uplift.common.errors import UpliftWarning
-
         problem = f"{name} has negative numbers: they are shown as 0"
         hint = "choose the passes with this light"
         warn([UpliftWarning(problem, code="numbers-negative", hint=hint)])

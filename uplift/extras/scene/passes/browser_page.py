@@ -6,16 +6,15 @@ three times with other numbers. All lamps of the room have one spectrum, so that
 numbers may multiply the picture last, and a change of the light needs no rendering.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.extras.colour.light_sets import DESCRIPTIONS
+from uplift.extras.emission.lamps import is_illuminant
 from uplift.extras.pages.html import render, resource
-from uplift.extras.scene.passes.passes import Passes
+from uplift.extras.scene.passes.passes import Passes, PassesLight
 
 PATCHES = 24
 """Materials of the room: those of a ColorChecker, in its order."""
@@ -70,7 +69,7 @@ def page(passes: Passes, reflectances: Array, size: int = SIZE) -> str:
         size=size,
         first=_described(names[0]),
         lamps=[(name, _described(name)) for name in names[1:]],
-        numbers=_numbers(passes, reflectances, names),
+        numbers=_numbers(passes, reflectances),
         script=resource(*SCRIPTS),
     )
 
@@ -79,14 +78,22 @@ def _described(name: str) -> str:
     return f"{name}, {DESCRIPTIONS[name]}" if name in DESCRIPTIONS else name
 
 
-def _numbers(
-    passes: Passes, reflectances: Array, names: Sequence[str]
-) -> dict[str, object]:
+def _white(passes: Passes, light: PassesLight) -> Array:
+    """Return XYZ (3,) of a light. Passes do not have the spectrum of a lamp: its XYZ
+    are decoded.
+    """
+    if is_illuminant(light.name):
+        return observer.light(light.name).white
+    white = passes.reflectance_numbers(np.ones(len(observer.grid())))
+    return light.to_xyz @ (light.numbers * white)
+
+
+def _numbers(passes: Passes, reflectances: Array) -> dict[str, object]:
     """Numbers of surfaces and lights in both passes and as RGB, and matrices."""
     screen = observer.sensor()
     bands = passes.reflectance_numbers(reflectances)
     rgb = np.clip(reflectances @ screen.matrix.T, 0, 1)
-    whites = np.stack([observer.light(name).white for name in names])
+    whites = np.stack([_white(passes, light) for light in passes.lights])
     decoding = screen.xyz_to_rgb @ passes.to_xyz
     return {
         "surfaces": [bands[:, :3].tolist(), bands[:, 3:].tolist(), rgb.tolist()],

@@ -74,7 +74,7 @@ def decoder(
     passes: Passes,
     *,
     space: str = "sRGB",
-    light: str | None = None,
+    light: Illuminant | None = None,
     white: Illuminant | None = None,
 ) -> Decoder:
     """Make the decoder of passes.
@@ -86,7 +86,7 @@ def decoder(
     space : str
         Name of a linear RGB space, ``"XYZ"``, or ``"camera"`` for the raw values of the
         camera of the passes.
-    light : str, optional
+    light : str or Lamp, optional
         The only light of the scene, whose matrix is used. By default that of all
         lights.
     white : str or Lamp, optional
@@ -106,9 +106,10 @@ def decoder(
     """
     if space == CAMERA:
         return _camera_decoder(passes)
-    to_xyz = passes.to_xyz if light is None else passes.light(light).to_xyz
+    lit = None if light is None else passes.light(light)
+    to_xyz = passes.to_xyz if lit is None else lit.to_xyz
     settings = {"as": "decoded passes", "space": space}
-    settings |= {} if light is None else {"light": light}
+    settings |= {} if lit is None else {"light": lit.name}
     header: dict[str, Any] = {ATTRIBUTE: pass_mark(passes, passes.count)}
     if space == XYZ:
         header["uplift.texture"] = json.dumps(settings)

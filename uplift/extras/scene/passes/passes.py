@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry import observer
-from uplift.colorimetry.illuminants import Illuminant
+from uplift.colorimetry.illuminants import Illuminant, Lamp
 from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
 from uplift.extras.scene.passes.bands import Bands
+from uplift.extras.scene.passes.spectra_digest import power_digest
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,13 +137,37 @@ class Passes:
         """
         return power @ self.light_projection.T
 
-    def light(self, name: str) -> PassesLight:
-        """Find a light by its name.
+    def find(self, illuminant: Illuminant) -> PassesLight | None:
+        """Find a light by its name in the passes, or by its spectrum.
 
         Parameters
         ----------
-        name : str
-            Name of the illuminant, or of the lamp.
+        illuminant : str or Lamp
+            Name of a light of the passes, or any illuminant.
+
+        Returns
+        -------
+        PassesLight or None
+            None if no light of the passes has the spectrum.
+
+        Raises
+        ------
+        UnknownNameError
+            The illuminant is unknown.
+        """
+        named = {light.name: light for light in self.lights}
+        if isinstance(illuminant, str) and illuminant in named:
+            return named[illuminant]
+        digest = power_digest(scaled_power(illuminant))
+        return {light.digest: light for light in self.lights}.get(digest)
+
+    def light(self, illuminant: Illuminant) -> PassesLight:
+        """Find a light of the passes.
+
+        Parameters
+        ----------
+        illuminant : str or Lamp
+            As for `find`.
 
         Returns
         -------
@@ -151,12 +176,16 @@ class Passes:
         Raises
         ------
         UnknownNameError
-            The passes have no light of this name.
+            The passes have no such light.
         """
-        named = {light.name: light for light in self.lights}
-        if name not in named:
-            raise unknown_name(name, named, "light of the passes")
-        return named[name]
+        found = self.find(illuminant)
+        if found is None:
+            names = [light.name for light in self.lights]
+            error = unknown_name(str(illuminant), names, "light of the passes")
+            if isinstance(illuminant, Lamp):
+                error.problem = f"no light of the passes has the spectrum of {illuminant}"
+            raise error
+        return found
 
 
 def scaled_power(illuminant: Illuminant) -> Array:
