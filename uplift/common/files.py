@@ -77,6 +77,22 @@ def recognise(data: bytes) -> str:
     return "" if b"\0" in data else "text"
 
 
+def decode_text(data: bytes) -> str:
+    """Decode UTF-8, or UTF-16 with a byte-order mark; `ValueError` names what other
+    bytes are.
+
+    >>> decode_text("ΔE".encode("utf-16"))
+    'ΔE'
+    """
+    encoding = "utf-16" if data.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig"
+    try:
+        return data.decode(encoding)
+    except UnicodeDecodeError:
+        kinds = {"": "binary data", "text": "another encoding"}
+        kind = recognise(data)
+        raise ValueError(f"must be UTF-8 text, got {kinds.get(kind, kind)}") from None
+
+
 def file_digest(path: StrPath, error: type[UpliftError] = UpliftError) -> str:
     """Return the SHA-256 digest of a regular file in hexadecimal; raise ``error`` for
     others.

@@ -183,7 +183,9 @@ class Passes:
             names = [light.name for light in self.lights]
             error = unknown_name(str(illuminant), names, "light of the passes")
             if isinstance(illuminant, Lamp):
-                error.problem = f"no light of the passes has the spectrum of {illuminant}"
+                error.problem = (
+                    f"no light of the passes has the spectrum of {illuminant}"
+                )
             raise error
         return found
 
