@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -201,13 +202,12 @@ def _light_numbers(passes: Passes, light: Illuminant) -> list[float]:
     import numpy as np
 
     from uplift.colorimetry.tables import stated_name
-    from uplift.common.errors import UpliftWarning
+    from uplift.common.errors import UnknownNameError, UpliftWarning
     from uplift.extras.scene.passes import scaled_power
 
-    found = passes.find(light)
-    if found is not None:
-        return found.numbers.tolist()
     name = stated_name("illuminant", light)
+    with contextlib.suppress(UnknownNameError):
+        return passes.light(name if isinstance(light, str) else light).numbers.tolist()
     if name in [known.name for known in passes.lights]:
         problem = f"{name} has another spectrum than {name} of the passes"
         hint = "its numbers come from its spectrum; choose the passes with this light"

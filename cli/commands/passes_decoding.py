@@ -13,7 +13,7 @@ from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
 
 from .. import options
-from ..inputs import expand_patterns, find_light
+from ..inputs import expand_patterns
 from ..output.console import emit, paragraph, print_json
 from ..output.diagnostics import warn
 from ..output.progress import progress_bar
@@ -44,7 +44,7 @@ decoding_options = options.stacked(
     ),
     click.option(
         "--light",
-        metavar="NAME|FILE",
+        metavar="NAME",
         help="The only light of the scene, one of those of the passes: its own matrix "
         "is a little more accurate. [default: the matrix of all lights]",
     ),
@@ -125,11 +125,7 @@ def _decoder(
 ) -> Decoder:
     from uplift.extras.scene.passes import decoder, read_passes
 
-    passes = read_passes(passes_path)
-    lit: Illuminant | None = light
-    if light is not None and light not in [known.name for known in passes.lights]:
-        lit = find_light(light)
-    return decoder(passes, space=space, light=lit, white=white)
+    return decoder(read_passes(passes_path), space=space, light=light, white=white)
 
 
 def _jobs(

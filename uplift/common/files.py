@@ -88,9 +88,8 @@ def decode_text(data: bytes) -> str:
     try:
         return data.decode(encoding)
     except UnicodeDecodeError:
-        kinds = {"": "binary data", "text": "another encoding"}
-        kind = recognise(data)
-        raise ValueError(f"must be UTF-8 text, got {kinds.get(kind, kind)}") from None
+        kind = recognise(data) or "binary data"
+        raise ValueError(f"not UTF-8, but {kind}") from None
 
 
 def file_digest(path: StrPath, error: type[UpliftError] = UpliftError) -> str:

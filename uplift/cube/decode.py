@@ -8,6 +8,7 @@ import numpy as np
 
 from uplift.colorimetry import Sensor
 from uplift.colorimetry.likely_errors import LeftOut
+from uplift.colorimetry.observer import END, START
 from uplift.common.arrays import Array, Indices
 from uplift.common.text import pluralise
 from uplift.cube.container import (
@@ -33,6 +34,8 @@ MAX_POINTS = 1 << 27
 """Nodes of the largest lattice of a sparse file, as a small file must not claim all
 memory.
 """
+MAX_UNEVENNESS = 1e-6
+"""Difference in nm between the steps of wavelengths that is rounding."""
 MAX_CONDITION = 1e6
 """Limit of the condition number of the matrix from XYZ to RGB."""
 
@@ -167,6 +170,7 @@ def _check(data: CubeData) -> None:
     atlas = data.atlas
     sensor = data.sensor
     nodes = data.lattice.nodes
+    nm = sensor.wavelengths
     names = (*atlas.names, *(() if atlas.outside is None else atlas.outside.names))
     looks = tuple(look["name"] for look in data.provenance.get("looks", ()))
     with np.errstate(all="ignore"):
@@ -206,8 +210,8 @@ def _check(data: CubeData) -> None:
             "observer, RGB space and camera must have three independent channels",
         ),
         (
-            (np.diff(sensor.wavelengths) > 0).all(),
-            "the wavelengths of the sensor must ascend",
+            nm[0] <= START < END <= nm[-1] and np.ptp(np.diff(nm)) < MAX_UNEVENNESS,
+            f"the wavelengths must ascend evenly and hold {START:g} to {END:g} nm",
         ),
         (
             (np.diff(sensor.decoding) >= 0).all(),

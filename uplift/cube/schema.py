@@ -2,7 +2,7 @@
 (docs/cube-file.md).
 """
 
-from uplift.cube.container import Stored
+from uplift.cube.container import Either, Stored
 from uplift.lattice import Status
 
 MIN_THRESHOLD = 1e-12
@@ -11,6 +11,11 @@ MAX_THRESHOLD = 0.1
 """Linear RGB."""
 MAX_LIGHTS = 64
 MAX_FILES = 10_000
+
+RANGE = 300.0, 1000.0
+"""Limits of wavelengths in nm: illuminants and observers have no shorter ones, atlases
+hardly longer ones.
+"""
 
 SINGLE = ("float32",)
 POINTS = {
@@ -24,7 +29,7 @@ POINTS = {
 }
 """Arrays of the `PointTable`. Sparse files have rows of the present nodes only."""
 SENSOR = {
-    "wavelengths": Stored("N", low=0),
+    "wavelengths": Stored("N", low=RANGE[0], high=RANGE[1]),
     "cmfs": Stored("N 3"),
     "power": Stored("N", low=0),
     "xyz_to_rgb": Stored("3 3"),
@@ -75,6 +80,14 @@ POSITIVE = (0, 1e30)
 ENTRIES = [str, 1_000_000]
 RGB = [NUMBER, 3]
 FILE = {"name": str, "digest": str}
+LAMP = {"name": str, "wavelengths": [NUMBER, 1_000_000], "power": [NUMBER, 1_000_000]}
+OPTIONS = {
+    "shortest?": NUMBER,
+    "longest?": NUMBER,
+    "lights?": Either((str, [Either((str, LAMP)), MAX_LIGHTS])),
+    "*": Either((str, bool, NUMBER, [str, MAX_FILES])),
+}
+"""Options of a build, whose names and ranges are checked where it is repeated."""
 LIGHT = {
     "light": str,
     "wish": RGB,
@@ -84,7 +97,7 @@ LIGHT = {
 }
 PROVENANCE = {
     "uplift?": str,
-    "options?": {"*": None},  # which are checked where a build is repeated
+    "options?": OPTIONS,
     "atlases?": [{**FILE, "measured?": str, "missing?": str}, MAX_FILES],
     "libraries?": [FILE, MAX_FILES],
     "families?": [{"name": str, "relevance": NUMBER}, MAX_FILES],

@@ -24,7 +24,6 @@ from uplift.lookup.interpolate import (
     MODES,
     coefficients,
     extended_coefficients,
-    node_errors,
 )
 
 if TYPE_CHECKING:
@@ -440,15 +439,14 @@ def expected_errors(
     data = cube.data
     if data.points.standard_error is None:
         return None
-    lit: Light | None = light if not isinstance(light, Illuminant) else None
-    if isinstance(light, Illuminant):
-        from uplift.colorimetry import observer  # reads tables of illuminants
+    from uplift.colorimetry import observer  # reads tables of illuminants
+    from uplift.lookup.errors_under_lights import light_errors, node_errors_within
 
-        lit = observer.light(light, cube.observer, *data.sensor.range)
-    function: blocks.Function = partial(node_errors, data)
-    if lit is not None and lit.name != data.error_illuminant:
-        from uplift.lookup.errors_under_lights import light_errors
-
+    lit = light or data.error_illuminant
+    if isinstance(lit, Illuminant):
+        lit = observer.light(lit, cube.observer, *data.sensor.range)
+    function: blocks.Function = partial(node_errors_within, data, lit)
+    if lit.name != data.error_illuminant:
         function = light_errors(data, lit)
     return blocks.blockwise(function, blocks.as_colours(rgb, data.sensor), 2)
 

@@ -16,8 +16,9 @@ from uplift.colorimetry import Light, delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.likely_errors import ExpectedError, expected_error
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.common.extensions import extension
 from uplift.cube import CubeData
-from uplift.lookup.interpolate import around
+from uplift.lookup.interpolate import around, node_errors
 from uplift.models import reflectance
 
 
@@ -26,6 +27,7 @@ class LightErrors:
     """Standard errors and error bounds under a light."""
 
     data: CubeData
+    light: Light
     expected: ExpectedError
     """Squares of ΔE00, without entry boxes."""
     entries: Array
@@ -47,7 +49,8 @@ class LightErrors:
         # themselves
         remaining = np.tile(radii * np.sqrt(self.expected.floor), (len(rgb), 1))
         remaining = nodes.hits.mix(remaining, self.entries[nodes.hits.entry])
-        return np.asarray(np.sqrt(radii**2 * squares + remaining**2))
+        errors = np.sqrt(radii**2 * squares + remaining**2)
+        return within_possible(self.data, self.light, rgb, errors)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -104,6 +107,19 @@ def evidence(data: CubeData) -> Evidence:
     )
 
 
+def node_errors_within(data: CubeData, light: Light, rgb: Array) -> Array:
+    """Standard errors and error bounds (n, 2) from those of the nodes, under their
+    ``light``, where they are possible.
+    """
+    return within_possible(data, light, rgb, node_errors(data, rgb))
+
+
+def within_possible(data: CubeData, light: Light, rgb: Array, errors: Array) -> Array:
+    """Limit expected errors (n, k) at linear RGB (n, 3) by those that are possible."""
+    possible = extension("errors", "possible")(data, light, rgb)
+    return np.asarray(np.fmin(errors, possible[:, None]))
+
+
 def light_errors(data: CubeData, light: Light) -> LightErrors:
     """Learn the standard errors under a light; `OptionError` without `evidence`."""
     return errors_from(data, light, evidence(data))
@@ -120,7 +136,7 @@ def errors_from(data: CubeData, light: Light, known: Evidence) -> LightErrors:
         rows = np.arange(len(data.atlas.measured))
         spectra = data.atlas.spectra.reflectance(rows, at)
         entries[rows] = delta_e_spectra(light, spectra, data.atlas.measured)[:, None]
-    return LightErrors(data, expected, entries)
+    return LightErrors(data, light, expected, entries)
 
 
 def outside_errors(data: CubeData, light: Light | None) -> Array:

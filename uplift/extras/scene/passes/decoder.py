@@ -74,7 +74,7 @@ def decoder(
     passes: Passes,
     *,
     space: str = "sRGB",
-    light: Illuminant | None = None,
+    light: str | None = None,
     white: Illuminant | None = None,
 ) -> Decoder:
     """Make the decoder of passes.
@@ -86,7 +86,7 @@ def decoder(
     space : str
         Name of a linear RGB space, ``"XYZ"``, or ``"camera"`` for the raw values of the
         camera of the passes.
-    light : str or Lamp, optional
+    light : str, optional
         The only light of the scene, whose matrix is used. By default that of all
         lights.
     white : str or Lamp, optional
@@ -106,10 +106,9 @@ def decoder(
     """
     if space == CAMERA:
         return _camera_decoder(passes)
-    lit = None if light is None else passes.light(light)
-    to_xyz = passes.to_xyz if lit is None else lit.to_xyz
+    to_xyz = passes.to_xyz if light is None else passes.light(light).to_xyz
     settings = {"as": "decoded passes", "space": space}
-    settings |= {} if lit is None else {"light": lit.name}
+    settings |= {} if light is None else {"light": light}
     header: dict[str, Any] = {ATTRIBUTE: pass_mark(passes, passes.count)}
     if space == XYZ:
         header["uplift.texture"] = json.dumps(settings)

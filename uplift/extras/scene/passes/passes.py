@@ -137,37 +137,13 @@ class Passes:
         """
         return power @ self.light_projection.T
 
-    def find(self, illuminant: Illuminant) -> PassesLight | None:
-        """Find a light by its name in the passes, or by its spectrum.
-
-        Parameters
-        ----------
-        illuminant : str or Lamp
-            Name of a light of the passes, or any illuminant.
-
-        Returns
-        -------
-        PassesLight or None
-            None if no light of the passes has the spectrum.
-
-        Raises
-        ------
-        UnknownNameError
-            The illuminant is unknown.
-        """
-        named = {light.name: light for light in self.lights}
-        if isinstance(illuminant, str) and illuminant in named:
-            return named[illuminant]
-        digest = power_digest(scaled_power(illuminant))
-        return {light.digest: light for light in self.lights}.get(digest)
-
     def light(self, illuminant: Illuminant) -> PassesLight:
-        """Find a light of the passes.
+        """Find a light by its name, or a lamp by its spectrum.
 
         Parameters
         ----------
         illuminant : str or Lamp
-            As for `find`.
+            Name in the passes, or a lamp.
 
         Returns
         -------
@@ -176,18 +152,17 @@ class Passes:
         Raises
         ------
         UnknownNameError
-            The passes have no such light.
+            The passes have no light of this name or spectrum.
         """
-        found = self.find(illuminant)
-        if found is None:
+        keys = {light.name: light for light in self.lights}
+        key = illuminant
+        if isinstance(illuminant, Lamp):
+            keys = {light.digest: light for light in self.lights}
+            key = power_digest(scaled_power(illuminant))
+        if key not in keys:
             names = [light.name for light in self.lights]
-            error = unknown_name(str(illuminant), names, "light of the passes")
-            if isinstance(illuminant, Lamp):
-                error.problem = (
-                    f"no light of the passes has the spectrum of {illuminant}"
-                )
-            raise error
-        return found
+            raise unknown_name(str(illuminant), names, "light of the passes")
+        return keys[key]
 
 
 def scaled_power(illuminant: Illuminant) -> Array:
