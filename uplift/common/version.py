@@ -4,6 +4,7 @@ commit.
 
 import functools
 import re
+import sys
 from pathlib import Path
 
 VERSION = "0.3.0rc1.dev"
@@ -89,3 +90,23 @@ def _order(version: str) -> tuple[float, ...]:
     first = "0" if commits else "inf"
     last = "nan" if commits == UNKNOWN else commits or "inf"
     return *map(float, release), float(candidate or first), float(last)
+
+
+def outdated_package() -> str:
+    """State which of the packages that are used is older than required; empty if none
+    is.
+    """
+    from importlib import metadata
+
+    for requirement in metadata.requires(DISTRIBUTION) or ():
+        name, _, least = requirement.partition(";")[0].partition(">=")
+        if ";" in requirement and name.replace("-", "_") not in sys.modules:
+            continue
+        installed = metadata.version(name)
+        if _numbers(installed) < _numbers(least):
+            return f"{name} must be {least} or later, got {installed}"
+    return ""
+
+
+def _numbers(version: str) -> list[int]:
+    return list(map(int, re.findall(r"\d+", version)))
