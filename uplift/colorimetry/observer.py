@@ -5,6 +5,7 @@ lights keep their last value, and observers are 0. Names that are unknown raise
 `UnknownNameError`, whose hint gives the nearest ones.
 """
 
+import functools
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
@@ -226,6 +227,7 @@ def check_distinct(illuminants: Iterable[Illuminant]) -> None:
             )
 
 
+@functools.cache
 def light(
     illuminant: Illuminant,
     observer: str = DEFAULT_OBSERVER,

@@ -4,7 +4,6 @@ commit.
 
 import functools
 import re
-import sys
 from pathlib import Path
 
 VERSION = "0.3.0rc1.dev"
@@ -93,18 +92,14 @@ def _order(version: str) -> tuple[float, ...]:
 
 
 def outdated_package() -> str:
-    """State which of the packages that are used is older than required; empty if none
-    is.
-    """
+    """State which of the required packages is older than required; empty if none is."""
     from importlib import metadata
 
     for requirement in metadata.requires(DISTRIBUTION) or ():
-        name, _, least = requirement.partition(";")[0].partition(">=")
-        if ";" in requirement and name.replace("-", "_") not in sys.modules:
-            continue
-        installed = metadata.version(name)
-        if _numbers(installed) < _numbers(least):
-            return f"{name} must be {least} or later, got {installed}"
+        name, _, least = requirement.partition(">=")
+        is_optional = ";" in requirement
+        if not is_optional and _numbers(metadata.version(name)) < _numbers(least):
+            return f"{name} must be {least} or later, got {metadata.version(name)}"
     return ""
 
 

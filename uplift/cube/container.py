@@ -9,7 +9,6 @@ import hashlib
 import json
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
@@ -18,7 +17,7 @@ from numpy.typing import NDArray
 
 from uplift.common.errors import CubeFileError, OutputError, UpliftError
 from uplift.common.files import atomic_write, check_regular, recognise
-from uplift.common.text import format_value, parse_json, printable, shorten
+from uplift.common.text import format_value, parse_json, printable
 
 KEY = "uplift"
 """The only metadata entry: safetensors does not keep the order of several."""
@@ -47,13 +46,6 @@ class Kind(NamedTuple):
     noun: str
     foreign: str
     features: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Either:
-    """Values of one of several schemas of metadata."""
-
-    schemas: tuple[Any, ...]
 
 
 class Stored(NamedTuple):
@@ -263,8 +255,7 @@ def check_metadata(value: Any, schema: Any, path: str = "metadata") -> None:
 
     A schema is `str` for text, `int` for a whole number from 0, a range (low, high) of
     numbers, a list [schema, limit] of at most so many items, or a table of schemas by
-    key, with ``?`` after optional keys and ``*`` for all others. `Either` is for values
-    of one of several schemas, None for any value.
+    key, with ``?`` after optional keys and ``*`` for all others. None is for any value.
     Every query reads metadata, and pydantic takes long to import.
     """
     if schema is None:
@@ -276,19 +267,13 @@ def check_metadata(value: Any, schema: Any, path: str = "metadata") -> None:
         for number, item in enumerate(value):
             check_metadata(item, schema[0], f"{path}[{number}]")
     elif isinstance(schema, dict):
-        fields = _fields(schema)
-        for key, item in value.items():
-            item_schema = fields.get(key, schema.get("*"))
-            check_metadata(item, item_schema, f"{path}.{shorten(key)}")
+        for key, item_schema in _fields(schema).items():
+            if key in value:
+                check_metadata(value[key], item_schema, f"{path}.{key}")
 
 
 def _fits(value: Any, schema: Any) -> tuple[bool, str]:
     """Whether a value, apart from its items, fits a schema, and the values that do."""
-    if isinstance(schema, Either):
-        expected = " or ".join(_fits(None, each)[1] for each in schema.schemas)
-        return any(_is_valid(value, each) for each in schema.schemas), expected
-    if schema is bool:
-        return isinstance(value, bool), "true or false"
     if schema is str:
         fits = isinstance(value, str) and len(value) <= MAX_TEXT
         return fits, f"text of at most {MAX_TEXT} characters"
@@ -305,14 +290,6 @@ def _fits(value: Any, schema: Any) -> tuple[bool, str]:
         return fits, f"a list of at most {limit:,} items"
     fits = isinstance(value, dict) and _has_fields(value, schema)
     return fits, f"a table of {', '.join(schema)}"
-
-
-def _is_valid(value: Any, schema: Any) -> bool:
-    try:
-        check_metadata(value, schema)
-    except CubeFileError:
-        return False
-    return True
 
 
 def _has_fields(value: dict[str, Any], schema: dict[str, Any]) -> bool:

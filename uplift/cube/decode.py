@@ -185,6 +185,7 @@ def _check(data: CubeData) -> None:
     has_basis = basis.shape == (len(sensor.wavelengths), data.model.count) and bool(
         np.isfinite(basis).all()
     )
+    options = data.provenance.get("options", {})
     for condition_met, problem in (
         (len(set(names)) == len(names), "the names of entries must be unique"),
         (
@@ -194,6 +195,10 @@ def _check(data: CubeData) -> None:
         (
             atlas.left_out is None or atlas.looks < len(atlas.names),
             "left-out spectra need entries",
+        ),
+        (
+            all(map(_is_option, options.values())),
+            "recorded options must be text, numbers, or names",
         ),
         (has_basis, "the model must have a range of wavelengths"),
         ((nodes[0], nodes[-1]) == (0, 1), "the nodes must run from 0 to 1"),
@@ -219,6 +224,13 @@ def _check(data: CubeData) -> None:
         ),
     ):
         require(bool(condition_met), problem)
+
+
+def _is_option(value: Any) -> bool:
+    """Return whether a value has the type of an option: lamps have a name."""
+    items = value if isinstance(value, list) else [value]
+    names = [item.get("name") if isinstance(item, dict) else item for item in items]
+    return all(isinstance(name, str | int | float) for name in names)
 
 
 def _has_three_channels(matrix: Array) -> bool:

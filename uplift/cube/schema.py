@@ -2,7 +2,7 @@
 (docs/cube-file.md).
 """
 
-from uplift.cube.container import Either, Stored
+from uplift.cube.container import Stored
 from uplift.lattice import Status
 
 MIN_THRESHOLD = 1e-12
@@ -80,14 +80,6 @@ POSITIVE = (0, 1e30)
 ENTRIES = [str, 1_000_000]
 RGB = [NUMBER, 3]
 FILE = {"name": str, "digest": str}
-LAMP = {"name": str, "wavelengths": [NUMBER, 1_000_000], "power": [NUMBER, 1_000_000]}
-OPTIONS = {
-    "shortest?": NUMBER,
-    "longest?": NUMBER,
-    "lights?": Either((str, [Either((str, LAMP)), MAX_LIGHTS])),
-    "*": Either((str, bool, NUMBER, [str, MAX_FILES])),
-}
-"""Options of a build, whose names and ranges are checked where it is repeated."""
 LIGHT = {
     "light": str,
     "wish": RGB,
@@ -97,7 +89,8 @@ LIGHT = {
 }
 PROVENANCE = {
     "uplift?": str,
-    "options?": OPTIONS,
+    # Others are checked where a build is repeated.
+    "options?": {"shortest?": NUMBER, "longest?": NUMBER, "*": None},
     "atlases?": [{**FILE, "measured?": str, "missing?": str}, MAX_FILES],
     "libraries?": [FILE, MAX_FILES],
     "families?": [{"name": str, "relevance": NUMBER}, MAX_FILES],

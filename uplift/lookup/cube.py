@@ -24,6 +24,7 @@ from uplift.lookup.interpolate import (
     MODES,
     coefficients,
     extended_coefficients,
+    node_errors,
 )
 
 if TYPE_CHECKING:
@@ -440,12 +441,13 @@ def expected_errors(
     if data.points.standard_error is None:
         return None
     from uplift.colorimetry import observer  # reads tables of illuminants
-    from uplift.lookup.errors_under_lights import light_errors, node_errors_within
+    from uplift.lookup.errors_under_lights import light_errors, within_possible
 
     lit = light or data.error_illuminant
     if isinstance(lit, Illuminant):
         lit = observer.light(lit, cube.observer, *data.sensor.range)
-    function: blocks.Function = partial(node_errors_within, data, lit)
+    unlimited = partial(node_errors, data)
+    function: blocks.Function = partial(within_possible, unlimited, data, lit)
     if lit.name != data.error_illuminant:
         function = light_errors(data, lit)
     return blocks.blockwise(function, blocks.as_colours(rgb, data.sensor), 2)

@@ -6,6 +6,7 @@ the atlas. `Cube.unlike_atlas` finds colours that no entry is near to; of a mate
 another family with the colour of an entry nothing is known.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +19,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.extensions import extension
 from uplift.cube import CubeData
-from uplift.lookup.interpolate import around, node_errors
+from uplift.lookup.interpolate import around
 from uplift.models import reflectance
 
 
@@ -38,6 +39,11 @@ class LightErrors:
     def __call__(self, rgb: Array) -> Array:
         """ΔE00 (n, 2) that 68 % and 95 % of measurements stay within, at linear RGB (n,
         3) in [0, 1].
+        """
+        return within_possible(self._unlimited, self.data, self.light, rgb)
+
+    def _unlimited(self, rgb: Array) -> Array:
+        """Errors of materials like the entries.
 
         In an entry box, the error that remains at entries is mixed with that of the
         entry, as spectra are.
@@ -49,8 +55,7 @@ class LightErrors:
         # themselves
         remaining = np.tile(radii * np.sqrt(self.expected.floor), (len(rgb), 1))
         remaining = nodes.hits.mix(remaining, self.entries[nodes.hits.entry])
-        errors = np.sqrt(radii**2 * squares + remaining**2)
-        return within_possible(self.data, self.light, rgb, errors)
+        return np.asarray(np.sqrt(radii**2 * squares + remaining**2))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -107,17 +112,12 @@ def evidence(data: CubeData) -> Evidence:
     )
 
 
-def node_errors_within(data: CubeData, light: Light, rgb: Array) -> Array:
-    """Standard errors and error bounds (n, 2) from those of the nodes, under their
-    ``light``, where they are possible.
-    """
-    return within_possible(data, light, rgb, node_errors(data, rgb))
-
-
-def within_possible(data: CubeData, light: Light, rgb: Array, errors: Array) -> Array:
+def within_possible(
+    errors: Callable[[Array], Array], data: CubeData, light: Light, rgb: Array
+) -> Array:
     """Limit expected errors (n, k) at linear RGB (n, 3) by those that are possible."""
     possible = extension("errors", "possible")(data, light, rgb)
-    return np.asarray(np.fmin(errors, possible[:, None]))
+    return np.asarray(np.fmin(errors(rgb), possible[:, None]))
 
 
 def light_errors(data: CubeData, light: Light) -> LightErrors:

@@ -12,9 +12,8 @@ from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.extras.colour.light_sets import DESCRIPTIONS
-from uplift.extras.emission.lamps import is_illuminant
 from uplift.extras.pages.html import render, resource
-from uplift.extras.scene.passes.passes import Passes, PassesLight
+from uplift.extras.scene.passes.passes import Passes
 
 PATCHES = 24
 """Materials of the room: those of a ColorChecker, in its order."""
@@ -78,26 +77,18 @@ def _described(name: str) -> str:
     return f"{name}, {DESCRIPTIONS[name]}" if name in DESCRIPTIONS else name
 
 
-def _white(passes: Passes, light: PassesLight) -> Array:
-    """Return XYZ (3,) of a light. Passes do not have the spectrum of a lamp: its XYZ
-    are decoded.
-    """
-    if is_illuminant(light.name):
-        return observer.light(light.name).white
-    white = passes.reflectance_numbers(np.ones(len(observer.grid())))
-    return light.to_xyz @ (light.numbers * white)
-
-
 def _numbers(passes: Passes, reflectances: Array) -> dict[str, object]:
     """Numbers of surfaces and lights in both passes and as RGB, and matrices."""
     screen = observer.sensor()
     bands = passes.reflectance_numbers(reflectances)
     rgb = np.clip(reflectances @ screen.matrix.T, 0, 1)
-    whites = np.stack([_white(passes, light) for light in passes.lights])
+    # Passes do not have the spectra of lamps: XYZ of lights are decoded.
+    white = passes.bands.weights.sum(axis=1)
+    whites = [light.to_xyz @ (light.numbers * white) for light in passes.lights]
     decoding = screen.xyz_to_rgb @ passes.to_xyz
     return {
         "surfaces": [bands[:, :3].tolist(), bands[:, 3:].tolist(), rgb.tolist()],
         "lights": [light.numbers.tolist() for light in passes.lights],
-        "lightRgb": (whites @ screen.xyz_to_rgb.T).tolist(),
+        "lightRgb": (np.stack(whites) @ screen.xyz_to_rgb.T).tolist(),
         "decoding": [decoding[:, :3].tolist(), decoding[:, 3:].tolist()],
     }
