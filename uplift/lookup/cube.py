@@ -346,6 +346,10 @@ class Cube:
         """Find colours that are far from all materials that standard errors are learnt
         from: the atlas entries, or families where these are too few.
 
+        It is a statement on colours: standard errors are extrapolated there. It does
+        not find materials on which the cube errs. Those are of another kind than the
+        entries, and nearly all have colours like theirs.
+
         Parameters
         ----------
         rgb : array_like, shape (..., 3)
