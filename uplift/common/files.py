@@ -78,15 +78,13 @@ def recognise(data: bytes) -> str:
 
 
 def decode_text(data: bytes) -> str:
-    """Decode UTF-8, or UTF-16 with a byte-order mark; `ValueError` names what other
-    bytes are.
+    """Decode UTF-8; `ValueError` names what other bytes are.
 
-    >>> decode_text("ΔE".encode("utf-16"))
+    >>> decode_text("ΔE".encode("utf-8-sig"))
     'ΔE'
     """
-    encoding = "utf-16" if data.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig"
     try:
-        return data.decode(encoding)
+        return data.decode("utf-8-sig")
     except UnicodeDecodeError:
         kind = recognise(data) or "binary data"
         raise ValueError(f"not UTF-8, but {kind}") from None

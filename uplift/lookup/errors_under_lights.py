@@ -6,7 +6,6 @@ the atlas. `Cube.unlike_atlas` finds colours that no entry is near to; of a mate
 another family with the colour of an entry nothing is known.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -39,11 +38,6 @@ class LightErrors:
     def __call__(self, rgb: Array) -> Array:
         """ΔE00 (n, 2) that 68 % and 95 % of measurements stay within, at linear RGB (n,
         3) in [0, 1].
-        """
-        return within_possible(self._unlimited, self.data, self.light, rgb)
-
-    def _unlimited(self, rgb: Array) -> Array:
-        """Errors of materials like the entries.
 
         In an entry box, the error that remains at entries is mixed with that of the
         entry, as spectra are.
@@ -55,7 +49,8 @@ class LightErrors:
         # themselves
         remaining = np.tile(radii * np.sqrt(self.expected.floor), (len(rgb), 1))
         remaining = nodes.hits.mix(remaining, self.entries[nodes.hits.entry])
-        return np.asarray(np.sqrt(radii**2 * squares + remaining**2))
+        errors = np.sqrt(radii**2 * squares + remaining**2)
+        return limit_errors(self.data, self.light, rgb, errors)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,6 +79,12 @@ class Evidence:
         return expected_error(self.lab, missed, remaining, products, self.family)
 
 
+def limit_errors(data: CubeData, light: Light, rgb: Array, errors: Array) -> Array:
+    """Limit expected errors (n, k) at linear RGB (n, 3) by possible ones."""
+    limited: Array = extension("errors", "limits")(data, light, rgb, errors)
+    return limited
+
+
 def has_evidence(data: CubeData) -> bool:
     """Whether a cube has left-out materials."""
     return data.atlas.left_out is not None or data.families is not None
@@ -110,14 +111,6 @@ def evidence(data: CubeData) -> Evidence:
         code="too-few-entries",
         hint="build the cube again, with the library or an atlas of at least 8 entries",
     )
-
-
-def within_possible(
-    errors: Callable[[Array], Array], data: CubeData, light: Light, rgb: Array
-) -> Array:
-    """Limit expected errors (n, k) at linear RGB (n, 3) by those that are possible."""
-    possible = extension("errors", "possible")(data, light, rgb)
-    return np.asarray(np.fmin(errors(rgb), possible[:, None]))
 
 
 def light_errors(data: CubeData, light: Light) -> LightErrors:

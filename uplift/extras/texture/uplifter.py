@@ -485,12 +485,9 @@ def channel_names(lights: Sequence[str]) -> list[str]:
     ['FL3_1', 'my_lamp']
     """
     names = [re.sub(r"[^\w-]", "_", light) for light in lights]
-    for name, light in zip(names, lights, strict=True):
-        if names.count(name) > 1:
-            raise OptionError(
-                f"two lights have the channel '{name}', one of them {light}",
-                hint="rename one of the lamps",
-            )
+    if len(set(names)) < len(names):
+        problem = f"two lights have one name of a channel, got {', '.join(names)}"
+        raise OptionError(problem, hint="rename one of the lamps")
     return names
 
 

@@ -154,15 +154,15 @@ class Passes:
         UnknownNameError
             The passes have no light of this name or spectrum.
         """
-        keys = {light.name: light for light in self.lights}
-        key = illuminant
+        named = {light.name: light for light in self.lights}
+        known = named
+        key = str(illuminant)
         if isinstance(illuminant, Lamp):
-            keys = {light.digest: light for light in self.lights}
+            known = {light.digest: light for light in self.lights}
             key = power_digest(scaled_power(illuminant))
-        if key not in keys:
-            names = [light.name for light in self.lights]
-            raise unknown_name(str(illuminant), names, "light of the passes")
-        return keys[key]
+        if key not in known:
+            raise unknown_name(str(illuminant), named, "light of the passes")
+        return known[key]
 
 
 def scaled_power(illuminant: Illuminant) -> Array:
