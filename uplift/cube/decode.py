@@ -198,7 +198,7 @@ def _check(data: CubeData) -> None:
         ),
         (
             all(map(_is_option, options.values())),
-            "recorded options must be text, numbers, or names",
+            "metadata.provenance.options must be text, numbers and names",
         ),
         (has_basis, "the model must have a range of wavelengths"),
         ((nodes[0], nodes[-1]) == (0, 1), "the nodes must run from 0 to 1"),
