@@ -104,7 +104,8 @@ def distinct_light(text: str) -> Any:
     """
     from uplift.colorimetry.observer import check_distinct
 
-    lights = click.get_current_context().meta.setdefault(LIGHTS, [])
+    context = click.get_current_context(silent=True)
+    lights = [] if context is None else context.meta.setdefault(LIGHTS, [])
     lights.append(find_light(text))
     check_distinct(lights)
     return lights[-1]

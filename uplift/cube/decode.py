@@ -8,7 +8,6 @@ import numpy as np
 
 from uplift.colorimetry import Sensor
 from uplift.colorimetry.likely_errors import LeftOut
-from uplift.colorimetry.observer import END, START
 from uplift.common.arrays import Array, Indices
 from uplift.common.text import pluralise
 from uplift.cube.container import (
@@ -26,6 +25,7 @@ from uplift.cube.schema import (
     METADATA,
     POINTS,
     SENSOR,
+    VISIBLE,
 )
 from uplift.lattice import CORNERS, Lattice, PointTable
 from uplift.models import Model, from_description
@@ -171,6 +171,7 @@ def _check(data: CubeData) -> None:
     sensor = data.sensor
     nodes = data.lattice.nodes
     nm = sensor.wavelengths
+    first, last = VISIBLE
     names = (*atlas.names, *(() if atlas.outside is None else atlas.outside.names))
     looks = tuple(look["name"] for look in data.provenance.get("looks", ()))
     with np.errstate(all="ignore"):
@@ -215,8 +216,8 @@ def _check(data: CubeData) -> None:
             "observer, RGB space and camera must have three independent channels",
         ),
         (
-            nm[0] <= START < END <= nm[-1] and np.ptp(np.diff(nm)) < MAX_UNEVENNESS,
-            f"the wavelengths must ascend evenly and hold {START:g} to {END:g} nm",
+            nm[0] <= first < last <= nm[-1] and np.ptp(np.diff(nm)) < MAX_UNEVENNESS,
+            f"the wavelengths must ascend evenly and hold {first:g} to {last:g} nm",
         ),
         (
             (np.diff(sensor.decoding) >= 0).all(),

@@ -16,6 +16,8 @@ RANGE = 300.0, 1000.0
 """Limits of wavelengths in nm: illuminants and observers have no shorter ones, atlases
 hardly longer ones.
 """
+VISIBLE = 380.0, 780.0
+"""Wavelengths in nm between which every cube has values."""
 
 SINGLE = ("float32",)
 POINTS = {
