@@ -17,7 +17,8 @@ from uplift.common.text import format_value, parse_float
 
 from . import options
 from .colours import HEX, ColourSource
-from .inputs import UDIM, find_light
+from .inputs import UDIM
+from .option_types import distinct_light
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
@@ -48,7 +49,7 @@ def parse_further(text: str, what: str, is_what: Callable[[str], bool]) -> Furth
         )
     fitting = [place for place in places if is_what(text[place + 1 :])]
     place = (fitting or places)[0]
-    return Further(find_light(text[:place]), text[place + 1 :])
+    return Further(distinct_light(text[:place]), text[place + 1 :])
 
 
 def is_file(text: str) -> bool:

@@ -22,6 +22,9 @@ INPUTS = "uplift.inputs"
 file do no harm.
 """
 
+LIGHTS = "uplift.lights"
+"""Key under which the lights of the command are kept."""
+
 
 class Number(click.ParamType):  # type: ignore[type-arg]
     """A finite number; the library checks its range."""
@@ -95,6 +98,19 @@ class Checked(Parsed):
         return value
 
 
+def distinct_light(text: str) -> Any:
+    """Return the name of an illuminant, or the lamp of a file. Two lamps of a command
+    must not have one name.
+    """
+    from uplift.colorimetry.observer import check_distinct
+
+    context = click.get_current_context(silent=True)
+    lights = [] if context is None else context.meta.setdefault(LIGHTS, [])
+    lights.append(find_light(text))
+    check_distinct(lights)
+    return lights[-1]
+
+
 class Light(Parsed):
     """The name of an illuminant, or a file of a lamp, which is kept among the inputs of
     the command.
@@ -117,7 +133,7 @@ NUMBER = Number()
 WHOLE = Whole()
 WHOLE_OR_AUTO = Whole(word="auto")
 WAVELENGTHS = Parsed(parse_wavelengths)
-LIGHT = Light(find_light)
+LIGHT = Light(distinct_light)
 INPUT_SPACE = Checked(find_input_space)
 OUTPUT = OutputFile(str)
 PAGE = OutputFile(check_page)

@@ -121,13 +121,13 @@ class Answers:
         # matrices from XYZ under a light to linear sRGB with the same white
         self.to_srgb: dict[str, Array] = {}
         if lights:
-            from uplift.colorimetry.observer import display_sensors, light
+            from uplift.colorimetry.observer import display_sensors
+            from uplift.colorimetry.observer import lights as find_lights
 
-            setting = self.cube.observer, *data.sensor.range
-            for display in display_sensors(lights, *setting):
+            setting = self.cube.observer, data.sensor.range
+            self.lights = find_lights(lights, *setting)
+            for display in display_sensors(lights, setting[0], *setting[1]):
                 self.to_srgb[display.illuminant] = display.xyz_to_rgb
-            lit = [light(illuminant, *setting) for illuminant in lights]
-            self.lights = list({light.name: light for light in lit}.values())
 
     def __iter__(self) -> Iterator[QueryBlock]:
         """Answer blocks, and warn at the end of colours that were mapped or filled."""

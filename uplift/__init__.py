@@ -96,6 +96,7 @@ for _module, _names in _EXPORTS.items():
     _HOMES |= dict.fromkeys(_names, _module)
 
 register("cameras", "files", "uplift.extras.colour.camera_file:read_camera")
+register("errors", "limits", "uplift.extras.looks.metamer_bounds:limit_errors")
 register("formats", "measurements", "uplift.extras.formats:FORMATS")
 register("growth", "coarse-to-fine", "uplift.extras.thesis:grow_coarse_to_fine")
 register("growth", "neighbours", "uplift.extras.thesis:grow_from_neighbours")

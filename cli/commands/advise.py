@@ -126,7 +126,7 @@ def _advise_light(
     pixels: dict[str, Any],
 ) -> None:
     """Rank lights of a second photograph, and print them."""
-    from uplift.colorimetry.observer import check_distinct, light
+    from uplift.colorimetry.observer import lights as find_lights
     from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
     from uplift.extras.scene import second_light
     from uplift.extras.scene.advice import colour_areas
@@ -136,10 +136,8 @@ def _advise_light(
     paths = expand_patterns(images)
     cube = load(cube_path)
     sensor = cube.data.sensor
-    check_distinct((*lights, *candidates))
     compared = candidates or second_light.default_candidates(cube)
-    names = lights or HELD_OUT_LIGHTS
-    lit = [light(name, cube.observer, *sensor.range) for name in names]
+    lit = find_lights(lights or HELD_OUT_LIGHTS, cube.observer, sensor.range)
     with progress_bar("comparing lights"):
         colours = colour_areas(Images(tuple(map(Path, paths)), **pixels), sensor)
         without = second_light.error_without(cube, colours, lit)
@@ -185,7 +183,7 @@ def _advise_swatches(
     pixels: dict[str, Any],
 ) -> None:
     """Choose swatches, and print and draw them."""
-    from uplift.colorimetry.observer import check_distinct, light
+    from uplift.colorimetry.observer import lights as find_lights
     from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
     from uplift.extras.colour.srgb import hex_codes
     from uplift.extras.scene import advice
@@ -196,9 +194,7 @@ def _advise_swatches(
     check_outputs(plot_path, inputs=paths)
     cube = load(cube_path)
     sensor = cube.data.sensor
-    check_distinct(lights)
-    names = lights or RELIGHT_LIGHTS
-    lit = [light(name, cube.observer, *sensor.range) for name in names]
+    lit = find_lights(lights or RELIGHT_LIGHTS, cube.observer, sensor.range)
     with progress_bar("choosing swatches"):
         colours = advice.colour_areas(Images(tuple(map(Path, paths)), **pixels), sensor)
         before = advice.uncertainty(cube, colours, lit)

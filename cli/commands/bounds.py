@@ -196,10 +196,11 @@ def _cut(answers: Answers, results: QueryBlock, also: Sequence[further.Further])
         )
         for light in answers.lights
     ]
-    errors = [
-        light_errors(photographs, light)(results.rgb)[0].tolist()
-        for light in answers.lights
-    ]
+    errors = []
+    for bounds in by_light:
+        expected = light_errors(photographs, bounds.light)(results.rgb)[0]
+        possible = bounds.largest.delta_e_2000[0]
+        errors.append(expected.clip(max=possible).tolist())
     names = [photograph.light for photograph in photographs.further]
     return Cut(names, others, by_light, errors)
 

@@ -58,9 +58,9 @@ NEEDS = {
     differences are within their limits and 1 otherwise.
 
     A cube that cannot be read or rebuilt, or that has another lattice, has failed; the
-    others are still checked. If an atlas has changed, its cube has failed: the entries
-    that were added, removed or moved are listed, by ΔE00. --update replaces every
-    failed cube that can be rebuilt.
+    others are still checked. If the spectra of an atlas have changed, its cube has
+    failed: the entries that were added, removed or moved are listed, by ΔE00. --update
+    replaces every failed cube that can be rebuilt.
 
     The first atlas of the recorded name counts, in --atlas-dir, in the cube's folder,
     and in 'atlases' in these. A shipped atlas replaces it only where there is none and
@@ -212,9 +212,13 @@ def _check(
     problems = defaultdict(list)
     for note in notes:
         problems[note.code == "atlas-changed"].append(note.problem)
+    changed = problems[True]
+    if comparison and not failures:
+        problems[False] += [f"{text}: same spectra, other bytes" for text in changed]
+        changed = []
     if error:
         failures.append(error.code)
-    elif problems[True]:
+    elif changed:
         failures.append("atlas-changed")
     record = {
         "cube": str(path),
@@ -222,7 +226,7 @@ def _check(
         "failures": failures,
         "measures": {},
         "status": {},
-        "atlas_changed": problems[True],
+        "atlas_changed": changed,
         "notes": problems[False],
         "entries": [],
         "error": error_object(error) if error else None,

@@ -88,6 +88,8 @@ HELP = """Write a cube in a format that other tools read.
 
 @click.command(
     "export",
+    cls=options.Command,
+    everyday=("output", "style", "light", "table", "runtime", "force"),
     help=HELP.replace("{formats}", _summary()),
 )
 @click.argument(

@@ -128,7 +128,7 @@ def _illuminants() -> list[Part]:
     )
     return [
         DESCRIPTIONS,
-        f"Names in words: {words}. {TEMPERATURES}",
+        f"Other names: {words}. {TEMPERATURES}",
         LAMP_FILES,
         DEFAULT_LIGHTS,
         *_names("illuminant"),

@@ -91,7 +91,7 @@ def _as_options(settings: dict[str, Any]) -> str:
     last = settings.pop("longest", 780)
     words = []
     for key, value in (settings | {"range": f"{first:g}:{last:g}"}).items():
-        option = "--" + OPTIONS.get(key, key).replace("_", "-")
+        option = shlex.quote("--" + OPTIONS.get(key, key).replace("_", "-"))
         if isinstance(value, bool):
             words += [option] * value
         else:

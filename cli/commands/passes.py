@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -201,16 +202,18 @@ def _light_numbers(passes: Passes, light: Illuminant) -> list[float]:
     import numpy as np
 
     from uplift.colorimetry.tables import stated_name
+    from uplift.common.errors import UnknownNameError, UpliftWarning
     from uplift.extras.scene.passes import scaled_power
 
     name = stated_name("illuminant", light)
-    for known in passes.lights:
-        if known.name == name:
-            return known.numbers.tolist()
+    with contextlib.suppress(UnknownNameError):
+        return passes.light(name if isinstance(light, str) else light).numbers.tolist()
+    if name in [known.name for known in passes.lights]:
+        problem = f"{name} has another spectrum than {name} of the passes"
+        hint = "its numbers come from its spectrum; choose the passes with this light"
+        warn([UpliftWarning(problem, code="light-changed", hint=hint)])
     numbers = passes.light_numbers(scaled_power(light))
     if (numbers < 0).any():
-        from uplift.common.errors import UpliftWarning
-
         problem = f"{name} has negative numbers: they are shown as 0"
         hint = "choose the passes with this light"
         warn([UpliftWarning(problem, code="numbers-negative", hint=hint)])

@@ -21,6 +21,7 @@ from uplift.common.errors import (
     UpliftWarning,
 )
 from uplift.common.text import printable
+from uplift.common.version import outdated_package
 
 from ..startup import remove_compiled_code
 from .console import emit, json_text
@@ -204,6 +205,10 @@ def _internal_error(cause: BaseException) -> UpliftError:
         return OptionError(
             problem, hint="unset JAX_PLATFORMS, or install JAX for this device"
         )
+    with contextlib.suppress(ImportError):  # of the metadata of uplift
+        if outdated := outdated_package():
+            hint = "upgrade it: pip install --upgrade spectral-uplift"
+            return UpliftError(outdated, code="package-too-old", hint=hint)
     where = "".join(
         f" in {Path(frame.filename).name}:{frame.lineno}" for frame in place
     )

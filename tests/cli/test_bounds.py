@@ -43,6 +43,27 @@ def test_the_likely_difference_is_the_error_bound_in_all_formats(run, ask, cubes
     assert float(row["error_bound"]) == pytest.approx(bound)
 
 
+@pytest.mark.parametrize("cube", ["srgb", "acescg"])
+def test_expected_errors_are_possible(ask, cube):
+    """Few reflectances have the colours of the ends of the space."""
+    colours = "#000000 #ffffff #00ffff #ffff00 #ff00ff #fefefe #010203 #f0ffff #888888"
+    words = f"--cube {cube} --input-space sRGB --out-of-gamut clip"
+    found = ask("bounds", *colours.split(), *words.split(), *LIGHTS)
+    asked = ask("query", *colours.split(), *words.split(), *LIGHTS)
+    for answer, query in zip(found, asked, strict=True):
+        for name, bounds in answer["bounds"].items():
+            largest = bounds["largest_delta_e_2000"] + 1e-9
+            assert answer["error_bounds"][name] <= largest
+            assert query["standard_errors"][name] <= query["error_bounds"][name]
+            assert query["error_bounds"][name] <= largest
+        assert query["error_bound"] <= largest_of(answer, "A")
+    assert found[-1]["error_bounds"]["A"] > 1
+
+
+def largest_of(answer, light):
+    return answer["bounds"][light]["largest_delta_e_2000"] + 1e-9
+
+
 def test_table_plot_and_page(run, home):
     # A light counts once.
     words = "--light D65 --light d65 --plot bounds.png --html page.html"

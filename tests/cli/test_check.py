@@ -179,6 +179,11 @@ def test_a_changed_atlas_is_explained_and_the_cube_updated(run, ask, home):
     write(red=red, grey=grey, dark=dark)
     uplift.build(home / "mine.csv", dim=9, coefficients=4).save(home / "cube.uplift")
     assert ask("check cube.uplift")[0]["passed"]
+    text = (home / "mine.csv").read_bytes()
+    (home / "mine.csv").write_bytes(text.replace(b"\n", b"\r\n"))
+    (answer,) = ask("check cube.uplift")
+    assert (answer["passed"], answer["atlas_changed"]) == (True, [])
+    assert len(answer["notes"]) == 1
     write(red=red, grey=grey + 0.02, new=dark)
     (answer,) = ask("check cube.uplift", code=1)
     assert {"atlas-changed", "entries", "delta_e_A"} <= set(answer["failures"])

@@ -5,6 +5,7 @@ import shlex
 from uplift_cli.commands.build import command as build
 
 import uplift
+from tests.cube.cube_files import forge
 from uplift.cube import digest
 
 
@@ -41,6 +42,17 @@ def test_options_are_those_of_the_command_line(run, cubes, monkeypatch):
             (380, 780),
             data.model.name,
         )
+
+
+def test_keys_of_options_are_quoted(run, home, cubes, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "2000")
+    data = uplift.load(cubes / "moments-8.uplift").data
+
+    def name(_, metadata):
+        metadata["provenance"]["options"]["a; $(id)"] = 1
+
+    shown = run("info", forge(data, home / "forged.uplift", name)).stdout
+    assert "'--a; $(id)' 1" in shown
 
 
 def test_default_is_the_packaged_cube(run, ask):

@@ -2,12 +2,15 @@
 
 import json
 import os
+import shlex
 import shutil
 
 import numpy as np
 import OpenEXR
 import pytest
 from numpy.testing import assert_allclose
+
+from uplift.colorimetry.observer import illuminant_spd
 
 from .conftest import warning_lines
 
@@ -21,6 +24,9 @@ advise wood.png --second-light --light {} --candidate led
 advise wood.png --second-light --light FL11 --candidate {}
 atlas macbeth --illuminant {}
 bounds #888 --cube cube.uplift --light {}
+bounds #888 --cube cube.uplift --light {} --html x.html --plot x.png
+query #888 --cube cube.uplift --also {}:#998877
+passes info passes.toml --light {}
 build --atlas macbeth --dim 3 --light {} -o x.uplift
 compare --atlas macbeth --write PS16 --light {} -o out
 diff cube.uplift cube.uplift --light {}
@@ -38,9 +44,10 @@ WITHOUT_JSON = ("build", "compare", "export", "report", "texture")
 
 
 @pytest.fixture
-def files(home, repository, cubes):
+def files(home, repository, cubes, passes_text):
     shutil.copy(repository / "uplift" / "samples" / "files" / "wood.png", home)
     shutil.copy(cubes / "moments-8-macbeth.uplift", home / "cube.uplift")
+    (home / "passes.toml").write_text(passes_text)
     (home / "lamp.spd").write_text(LAMP)
     (home / "card.csv").write_text(
         "wavelength,reflectance\n400,0.1\n500,0.2\n700,0.3\n"
@@ -103,9 +110,46 @@ def test_a_cube_is_not_built_under_a_lamp(refuse, files):
 def test_two_lights_of_one_name(refuse, home, files):
     (home / "folder" / "lamp.spd").write_text(LAMP.replace("780\t5", "780\t4"))
     for line in COMMANDS.strip().splitlines():
-        if "--light" in line and "export" not in line:
+        if "export" in line:
+            continue
+        option = "--also" if "--also" in line else "--light"
+        if option in line:
             words = line.replace("{}", "lamp.spd", 1).replace("{}", "A").split()
-            assert refuse(*words, "--light", "folder/lamp.spd").code == "option", line
+            other = f"folder/lamp.spd{':#997788' * (option == '--also')}"
+            assert refuse(*words, option, other).code == "option", line
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "texture wood.png --errors {} --errors {}",
+        "relight wood.png --light A --light {} --light {}",
+    ],
+)
+def test_two_lamps_of_one_channel(refuse, home, files, words):
+    for name in ("a b", "a_b"):
+        shutil.copy(home / "lamp.spd", home / f"{name}.spd")
+    words = shlex.split(words.format("'a b.spd'", "a_b.spd"))
+    assert refuse(*words, "-o", "x.exr", "--cube", "cube.uplift").code == "option"
+
+
+def test_passes_know_a_lamp_by_its_spectrum(run, ask, home, files):
+    """The lamp of the passes has the spectrum of A."""
+    passes = home / "passes.toml"
+    passes.write_text(passes.read_text().replace('name = "A"', 'name = "lamp"'))
+    nm = np.arange(300, 831, 5)
+    rows = zip(nm, illuminant_spd("A", 300, 830, 5), strict=True)
+    text = "".join(f"{at} {power!r}\n" for at, power in rows)
+    (home / "folder" / "lamp.spd").write_text(text)
+    shown = ask("passes info passes.toml --light folder/lamp.spd")
+    numbers = shown["lights"]["lamp"]["numbers"]
+    assert shown["other_lights"]["lamp"] == numbers
+    result = run("passes info passes.toml --light lamp.spd --format json")
+    (warning,) = warning_lines(result)
+    assert "another spectrum" in warning
+    others = json.loads(result.stdout)["other_lights"]["lamp"]
+    assert np.abs(np.subtract(others, numbers)).max() > 0.1
+    run("passes page passes.toml -o room.html")
 
 
 def test_scenes_name_lamps(ask, run, refuse, home, files):

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 import warnings
+from importlib import metadata
 from itertools import chain
 
 import click
@@ -45,14 +46,16 @@ def test_help_lists_every_command_under_a_heading(run):
     assert run("--version").stdout == f"uplift {uplift.__version__}\n"
 
 
-def test_help_shows_the_options_of_every_day_and_help_all_shows_all(run):
-    short = run("build --help").stdout
-    full = run("build --help-all").stdout
+@pytest.mark.parametrize("command", ["build", "export"])
+def test_help_shows_the_options_of_every_day_and_help_all_shows_all(run, command):
+    short = run(f"{command} --help").stdout
+    full = run(f"{command} --help-all").stdout
     shown = set(re.findall(r"(?<!\S)--\S+", short))
-    assert {"--atlas", "--dim", "--help", "--help-all"} <= shown
+    assert {"--output", "--force", "--help", "--help-all"} <= shown
     assert shown < set(re.findall(r"(?<!\S)--\S+", full))
-    for param in COMMANDS_BY_PATH["build"].params:
-        assert param.opts[-1] in full
+    for param in COMMANDS_BY_PATH[command].params:
+        if isinstance(param, click.Option):
+            assert param.opts[-1] in full
 
 
 @pytest.mark.parametrize(
@@ -159,6 +162,18 @@ def test_internal_errors_are_one_line_with_exit_code_70(failing, run, monkeypatc
     result = run("info x --format json", code=70)
     assert json.loads(result.stderr)["error"]["code"] == "internal-error"
     assert CliRunner().invoke(main, ["--traceback", "info", "x"]).exception is bug
+
+
+@pytest.mark.parametrize("name", ["jax", "numpy"])
+def test_packages_that_are_too_old_are_named(failing, refuse, monkeypatch, name):
+    version = metadata.version
+    monkeypatch.setattr(
+        metadata, "version", lambda other: "0.9.9" if other == name else version(other)
+    )
+    failing(AttributeError("a name of later versions"))
+    error = refuse("info x")
+    assert error.code == "package-too-old"
+    assert error.problem.startswith(f"{name} must be ")
 
 
 @pytest.mark.parametrize(
@@ -433,6 +448,9 @@ def test_progress_off_terminals_is_a_line_now_and_then(monkeypatch, capsys):
         ("build --atlas wood.png", "must be a file of spectra, got an image"),
         ("build --atlas {}", "must be a file of spectra, got a cube"),
         ("build --space nosuch", "; 'uplift help spaces' lists all"),
+        ("query 0.1 0.1 0.1 --light 2700", "did you mean '2700K'?"),
+        ("plan wood.png", "not UTF-8, but an image"),
+        ("query --check wood.png", "not UTF-8, but an image"),
         ("build --illuminant nosuch", "; 'uplift help illuminants' lists all"),
         ("build --observer nosuch", "; 'uplift help observers' lists all"),
         ("build --observer paints.csv", "use --space camera"),

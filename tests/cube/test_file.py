@@ -227,6 +227,11 @@ def test_numbers_out_of_range_are_refused(forged, name):
         ("sensor.cmfs", lambda array: 2 * array[::-1]),
         ("sensor.xyz_to_rgb", lambda array: array[[0, 0, 0]]),
         ("sensor.decoding", lambda array: array[::-1]),
+        ("sensor.wavelengths", lambda array: 1e3 * array),
+        ("sensor.wavelengths", lambda array: 1e-6 * array),
+        ("sensor.wavelengths", lambda array: 1.5 * array),
+        ("sensor.wavelengths", lambda array: array + 1),
+        ("sensor.wavelengths", with_value(421, 8)),
     ],
 )
 def test_arrays_that_break_lookups_are_refused(data, forged, name, change):
@@ -292,6 +297,8 @@ def test_metadata_that_are_missing_or_of_another_type_are_named(refused_metadata
             ]
         },
         {"scene": "photo.png"},
+        *({"options": {"shortest": value}} for value in ("380", None, [380], {})),
+        *({"options": {"lights": value}} for value in ({}, [{}], [None])),
     ],
 )
 def test_provenance_of_another_type_is_refused(refused_metadata, provenance):

@@ -21,8 +21,14 @@ COMMON_NAMES = {
     "fluorescent": "FL2",
     "led": "LED-B3",
     "sodium": "HP1",
+    "cwf": "FL2",
+    "tl83": "FL12",
+    "tl84": "FL11",
+    "tl85": "FL10",
 }
-"""Names of illuminants for readers who do not know those of the CIE."""
+"""Names of illuminants for readers who do not know those of the CIE, and trade names
+of lamps in light booths, whose types they are.
+"""
 TEMPERATURES = (1000.0, 25000.0)
 """Range of colour temperatures in K."""
 DAYLIGHT_FROM = 4000.0
@@ -128,12 +134,12 @@ def standard_name(name: str) -> tuple[str, float | None]:
 
     Other names stay, and have none. `OptionError` for a temperature out of range.
 
-    >>> standard_name("Tungsten"), standard_name("3200 k"), standard_name("FL11")
+    >>> standard_name("Tungsten"), standard_name("3200 k"), standard_name("TL-84")
     (('A', None), ('3200K', 3200.0), ('FL11', None))
     """
     match = re.fullmatch(r"(\d{1,6}(?:\.\d{1,3})?) ?K", name, re.IGNORECASE)
     if match is None:
-        return COMMON_NAMES.get(name.casefold(), name), None
+        return COMMON_NAMES.get(re.sub("[- ]", "", name.casefold()), name), None
     kelvin = float(match[1])
     if not TEMPERATURES[0] <= kelvin <= TEMPERATURES[1]:
         raise OptionError(

@@ -5,6 +5,7 @@ lights keep their last value, and observers are 0. Names that are unknown raise
 `UnknownNameError`, whose hint gives the nearest ones.
 """
 
+import functools
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
@@ -226,6 +227,7 @@ def check_distinct(illuminants: Iterable[Illuminant]) -> None:
             )
 
 
+@functools.cache
 def light(
     illuminant: Illuminant,
     observer: str = DEFAULT_OBSERVER,
@@ -258,8 +260,24 @@ def light(
     power = samples("illuminant", illuminant, start, end, step)
     weights = samples("observer", observer, start, end, step) * power[:, None]
     return Light(
-        tables.stated_name("illuminant", illuminant), (weights / weights[:, 1].sum()).T
+        tables.stated_name("illuminant", illuminant),
+        (weights / weights[:, 1].sum()).T,
+        illuminant if isinstance(illuminant, Lamp) else None,
     )
+
+
+def lights(
+    illuminants: Iterable[Illuminant],
+    observer: str = DEFAULT_OBSERVER,
+    wavelengths: tuple[float, float, float] = WAVELENGTHS,
+) -> list[Light]:
+    """Create a light for each illuminant, without duplicates.
+
+    Raises `OptionError` for two lamps of one name.
+    """
+    check_distinct(illuminants := tuple(illuminants))
+    made = [light(illuminant, observer, *wavelengths) for illuminant in illuminants]
+    return list({light.name: light for light in made}.values())
 
 
 def matching_functions(

@@ -9,6 +9,7 @@ from typing import NoReturn
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.colorimetry.illuminants import Illuminant, Lamp
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError
 from uplift.common.text import format_value
@@ -84,10 +85,18 @@ class Light:
         Name of the illuminant.
     xyz : ndarray, shape (3, N)
         Weights; ``xyz @ reflectance`` is XYZ, with Y = 1 for the perfect reflector.
+    lamp : Lamp, optional
+        The measured lamp, whose name alone does not identify it.
     """
 
     name: str
     xyz: Array
+    lamp: Lamp | None = None
+
+    @property
+    def illuminant(self) -> Illuminant:
+        """The lamp, or the name of the illuminant."""
+        return self.lamp or self.name
 
     @cached_property
     def white(self) -> Array:

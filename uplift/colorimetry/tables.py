@@ -203,10 +203,9 @@ def look_up(kind: str, name: str) -> Any:
             hint=hint,
         )
     if kind == "illuminant":
-        (name, kelvin), known = (
-            lights.standard_name(name),
-            [*known, *lights.COMMON_NAMES, "3200K"],
-        )
+        temperature = f"{name}K" if name.isdecimal() else "3200K"
+        known = [*known, *lights.COMMON_NAMES, temperature]
+        name, kelvin = lights.standard_name(name)
         if kelvin is not None:
             return _of_temperature(kelvin, name)
     try:

@@ -77,6 +77,19 @@ def recognise(data: bytes) -> str:
     return "" if b"\0" in data else "text"
 
 
+def decode_text(data: bytes) -> str:
+    """Decode UTF-8; `ValueError` names what other bytes are.
+
+    >>> decode_text("ΔE".encode("utf-8-sig"))
+    'ΔE'
+    """
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        kind = recognise(data) or "binary data"
+        raise ValueError(f"not UTF-8, but {kind}") from None
+
+
 def file_digest(path: StrPath, error: type[UpliftError] = UpliftError) -> str:
     """Return the SHA-256 digest of a regular file in hexadecimal; raise ``error`` for
     others.

@@ -96,12 +96,14 @@ def round_up(value: float) -> float:
 def pluralise(count: int, noun: str) -> str:
     """Format a count with its noun.
 
-    >>> pluralise(1, "atlas entry"), pluralise(1500, "atlas entry"), pluralise(2, "box")
-    ('1 atlas entry', '1,500 atlas entries', '2 boxes')
+    >>> pluralise(1, "entry"), pluralise(1500, "entry"), pluralise(2, "box")
+    ('1 entry', '1,500 entries', '2 boxes')
+    >>> pluralise(24, "array")
+    '24 arrays'
     """
     if count == 1:
         return f"1 {noun}"
-    stem = re.sub("y$", "ie", noun)
+    stem = re.sub("(?<![aeo])y$", "ie", noun)
     return f"{count:,} {stem}{'es' if noun.endswith(('ch', 'x')) else 's'}"
 
 

@@ -89,3 +89,19 @@ def _order(version: str) -> tuple[float, ...]:
     first = "0" if commits else "inf"
     last = "nan" if commits == UNKNOWN else commits or "inf"
     return *map(float, release), float(candidate or first), float(last)
+
+
+def outdated_package() -> str:
+    """State which of the required packages is older than required; empty if none is."""
+    from importlib import metadata
+
+    for requirement in metadata.requires(DISTRIBUTION) or ():
+        name, _, least = requirement.partition(">=")
+        is_optional = ";" in requirement
+        if not is_optional and _numbers(metadata.version(name)) < _numbers(least):
+            return f"{name} must be {least} or later, got {metadata.version(name)}"
+    return ""
+
+
+def _numbers(version: str) -> list[int]:
+    return list(map(int, re.findall(r"\d+", version)))

@@ -25,6 +25,7 @@ from uplift.cube.schema import (
     METADATA,
     POINTS,
     SENSOR,
+    VISIBLE,
 )
 from uplift.lattice import CORNERS, Lattice, PointTable
 from uplift.models import Model, from_description
@@ -33,6 +34,8 @@ MAX_POINTS = 1 << 27
 """Nodes of the largest lattice of a sparse file, as a small file must not claim all
 memory.
 """
+MAX_UNEVENNESS = 1e-6
+"""Difference in nm between the steps of wavelengths that is rounding."""
 MAX_CONDITION = 1e6
 """Limit of the condition number of the matrix from XYZ to RGB."""
 
@@ -167,6 +170,8 @@ def _check(data: CubeData) -> None:
     atlas = data.atlas
     sensor = data.sensor
     nodes = data.lattice.nodes
+    nm = sensor.wavelengths
+    first, last = VISIBLE
     names = (*atlas.names, *(() if atlas.outside is None else atlas.outside.names))
     looks = tuple(look["name"] for look in data.provenance.get("looks", ()))
     with np.errstate(all="ignore"):
@@ -181,6 +186,7 @@ def _check(data: CubeData) -> None:
     has_basis = basis.shape == (len(sensor.wavelengths), data.model.count) and bool(
         np.isfinite(basis).all()
     )
+    options = data.provenance.get("options", {})
     for condition_met, problem in (
         (len(set(names)) == len(names), "the names of entries must be unique"),
         (
@@ -190,6 +196,10 @@ def _check(data: CubeData) -> None:
         (
             atlas.left_out is None or atlas.looks < len(atlas.names),
             "left-out spectra need entries",
+        ),
+        (
+            all(map(_is_option, options.values())),
+            "metadata.provenance.options must be text, numbers and names",
         ),
         (has_basis, "the model must have a range of wavelengths"),
         ((nodes[0], nodes[-1]) == (0, 1), "the nodes must run from 0 to 1"),
@@ -206,8 +216,8 @@ def _check(data: CubeData) -> None:
             "observer, RGB space and camera must have three independent channels",
         ),
         (
-            (np.diff(sensor.wavelengths) > 0).all(),
-            "the wavelengths of the sensor must ascend",
+            nm[0] <= first < last <= nm[-1] and np.ptp(np.diff(nm)) < MAX_UNEVENNESS,
+            f"the wavelengths must ascend evenly and hold {first:g} to {last:g} nm",
         ),
         (
             (np.diff(sensor.decoding) >= 0).all(),
@@ -215,6 +225,13 @@ def _check(data: CubeData) -> None:
         ),
     ):
         require(bool(condition_met), problem)
+
+
+def _is_option(value: Any) -> bool:
+    """Return whether a value has the type of an option: lamps have a name."""
+    items = value if isinstance(value, list) else [value]
+    names = [item.get("name") if isinstance(item, dict) else item for item in items]
+    return all(isinstance(name, str | int | float) for name in names)
 
 
 def _has_three_channels(matrix: Array) -> bool:

@@ -12,6 +12,13 @@ MAX_THRESHOLD = 0.1
 MAX_LIGHTS = 64
 MAX_FILES = 10_000
 
+RANGE = 300.0, 1000.0
+"""Limits of wavelengths in nm: illuminants and observers have no shorter ones, atlases
+hardly longer ones.
+"""
+VISIBLE = 380.0, 780.0
+"""Wavelengths in nm between which every cube has values."""
+
 SINGLE = ("float32",)
 POINTS = {
     "coefficients": Stored("n C", ("float32", "float64")),
@@ -24,7 +31,7 @@ POINTS = {
 }
 """Arrays of the `PointTable`. Sparse files have rows of the present nodes only."""
 SENSOR = {
-    "wavelengths": Stored("N", low=0),
+    "wavelengths": Stored("N", low=RANGE[0], high=RANGE[1]),
     "cmfs": Stored("N 3"),
     "power": Stored("N", low=0),
     "xyz_to_rgb": Stored("3 3"),
@@ -84,7 +91,8 @@ LIGHT = {
 }
 PROVENANCE = {
     "uplift?": str,
-    "options?": {"*": None},  # which are checked where a build is repeated
+    # Others are checked where a build is repeated.
+    "options?": {"shortest?": NUMBER, "longest?": NUMBER, "*": None},
     "atlases?": [{**FILE, "measured?": str, "missing?": str}, MAX_FILES],
     "libraries?": [FILE, MAX_FILES],
     "families?": [{"name": str, "relevance": NUMBER}, MAX_FILES],

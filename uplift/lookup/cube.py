@@ -341,6 +341,10 @@ class Cube:
         """Find colours that are far from all materials that standard errors are learnt
         from: the atlas entries, or families where these are too few.
 
+        It is a statement on colours: standard errors are extrapolated there. It does
+        not find materials on which the cube errs. Those are of another kind than the
+        entries, and nearly all have colours like theirs.
+
         Parameters
         ----------
         rgb : array_like, shape (..., 3)
@@ -435,16 +439,18 @@ def expected_errors(
     data = cube.data
     if data.points.standard_error is None:
         return None
-    lit: Light | None = light if not isinstance(light, Illuminant) else None
-    if isinstance(light, Illuminant):
-        from uplift.colorimetry import observer  # reads tables of illuminants
+    from uplift.colorimetry import observer  # reads tables of illuminants
+    from uplift.lookup.errors_under_lights import light_errors, limit_errors
 
-        lit = observer.light(light, cube.observer, *data.sensor.range)
-    function: blocks.Function = partial(node_errors, data)
-    if lit is not None and lit.name != data.error_illuminant:
-        from uplift.lookup.errors_under_lights import light_errors
+    lit = light or data.error_illuminant
+    if isinstance(lit, Illuminant):
+        lit = observer.light(lit, cube.observer, *data.sensor.range)
 
-        function = light_errors(data, lit)
+    def of_nodes(rgb: Array) -> Array:
+        return limit_errors(data, lit, rgb, node_errors(data, rgb))
+
+    is_stored = lit.name == data.error_illuminant
+    function = of_nodes if is_stored else light_errors(data, lit)
     return blocks.blockwise(function, blocks.as_colours(rgb, data.sensor), 2)
 
 

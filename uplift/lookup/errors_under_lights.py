@@ -16,6 +16,7 @@ from uplift.colorimetry import Light, delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.likely_errors import ExpectedError, expected_error
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.common.extensions import extension
 from uplift.cube import CubeData
 from uplift.lookup.interpolate import around
 from uplift.models import reflectance
@@ -26,6 +27,7 @@ class LightErrors:
     """Standard errors and error bounds under a light."""
 
     data: CubeData
+    light: Light
     expected: ExpectedError
     """Squares of ΔE00, without entry boxes."""
     entries: Array
@@ -47,7 +49,8 @@ class LightErrors:
         # themselves
         remaining = np.tile(radii * np.sqrt(self.expected.floor), (len(rgb), 1))
         remaining = nodes.hits.mix(remaining, self.entries[nodes.hits.entry])
-        return np.asarray(np.sqrt(radii**2 * squares + remaining**2))
+        errors = np.sqrt(radii**2 * squares + remaining**2)
+        return limit_errors(self.data, self.light, rgb, errors)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -74,6 +77,12 @@ class Evidence:
         missed = delta_e_spectra(light, self.left_out, self.measured)
         remaining = delta_e_spectra(light, self.kept, self.measured)
         return expected_error(self.lab, missed, remaining, products, self.family)
+
+
+def limit_errors(data: CubeData, light: Light, rgb: Array, errors: Array) -> Array:
+    """Limit expected errors (n, k) at linear RGB (n, 3) by possible ones."""
+    limited: Array = extension("errors", "limits")(data, light, rgb, errors)
+    return limited
 
 
 def has_evidence(data: CubeData) -> bool:
@@ -120,7 +129,7 @@ def errors_from(data: CubeData, light: Light, known: Evidence) -> LightErrors:
         rows = np.arange(len(data.atlas.measured))
         spectra = data.atlas.spectra.reflectance(rows, at)
         entries[rows] = delta_e_spectra(light, spectra, data.atlas.measured)[:, None]
-    return LightErrors(data, expected, entries)
+    return LightErrors(data, light, expected, entries)
 
 
 def outside_errors(data: CubeData, light: Light | None) -> Array:

@@ -18,7 +18,7 @@ from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP
 from uplift.common import machine
 from uplift.common.errors import OptionError, unknown_name
 from uplift.common.text import format_value
-from uplift.cube.schema import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
+from uplift.cube.schema import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD, RANGE
 from uplift.lattice import AXES
 from uplift.models import Model, Moments, Sigmoid
 from uplift.models.moments import MAX_COUNT
@@ -45,10 +45,6 @@ CHOICES: dict[str, tuple[str, ...]] = {
 """Names of options that have a choice."""
 MAX_AUTO_TOLERANCE = 100.0
 """ΔE00 between black and white."""
-MAX_RANGE = 300.0, 1000.0
-"""Limits of the range in nm: illuminants and observers have no shorter wavelengths,
-atlases hardly longer ones.
-"""
 STEPS = (1.0, 5.0, 10.0)
 """Steps of the sensor's wavelengths in nm."""
 Dim = int | Literal["auto"]
@@ -120,7 +116,7 @@ class Options:
 
     def _range_faults(self) -> Iterator[tuple[str, str]]:
         """Yield problems of the wavelengths, with hints. The first one counts."""
-        low, high = MAX_RANGE
+        low, high = RANGE
         if not low <= self.shortest <= START < END <= self.longest <= high:
             limits = (
                 f"the range must hold {START:g} to {END:g} nm and lie within {low:g} "

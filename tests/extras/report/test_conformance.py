@@ -234,6 +234,13 @@ def test_files_that_are_no_pictures_raise(cube, tmp_path, repository):
         check_renderer(tmp_path / "none.exr", cube)
 
 
+def test_other_columns_of_spectra_are_ignored(cube, tmp_path):
+    header, *rows = (KIT / "spectra.csv").read_text().splitlines()
+    lines = [f"{header},405,1e3,note", *(f"{row},0.5,,x" for row in rows)]
+    (tmp_path / "a.csv").write_text("\n".join(lines))
+    assert check_renderer(tmp_path / "a.csv", cube).passed
+
+
 def test_unusable_spectra_raise(cube, tmp_path):
     text = (KIT / "spectra.csv").read_text()
     lines = text.splitlines()

@@ -219,9 +219,9 @@ def test_own_entries_give_no_calibration(judged, plain_cube, macbeth):
         0,
     )
     assert judged.standard_error.counts.sum() == 512
-    assert judged.standard_error.mean == pytest.approx(
-        judged.facts["mean_standard_error"]
-    )
+    # Stored errors are not limited by possible ones.
+    mean = judged.standard_error.mean
+    assert 0.9 < mean / judged.facts["mean_standard_error"] < 1
     earlier = without_evidence(plain_cube)
     unknowing = assess(earlier, "plain.uplift", 1, macbeth, ("A",))
     assert (unknowing.standard_error, unknowing.facts["mean_standard_error"]) == (

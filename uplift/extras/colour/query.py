@@ -146,7 +146,8 @@ class QueryResult:
     `Light.white`.
     """
     unlike_atlas: bool
-    """Whether no atlas entry has a colour near this one; see `Cube.unlike_atlas`. False
+    """Whether no atlas entry has a colour near this one, not whether the material is of
+    another kind; see `Cube.unlike_atlas`. False
     without standard errors.
     """
     realisable: bool

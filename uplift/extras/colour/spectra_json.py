@@ -12,7 +12,7 @@ import numpy as np
 
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import UpliftError
-from uplift.common.files import read_bytes
+from uplift.common.files import decode_text, read_bytes
 from uplift.common.text import parse_float, parse_json
 
 MAX_BYTES = 1_000_000
@@ -45,7 +45,7 @@ def read_spectra(
     """
     data = read_bytes(path, error, limit=MAX_BYTES, hint=HINT)
     try:
-        table = parse_json(data.decode("utf-8-sig"))
+        table = parse_json(decode_text(data))
     except ValueError as cause:
         raise error("is not a valid JSON file", path=path, hint=HINT) from cause
     try:

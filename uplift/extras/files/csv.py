@@ -14,6 +14,7 @@ from collections.abc import Iterable, Sequence
 from itertools import chain
 from typing import Any
 
+from uplift.common.files import decode_text
 from uplift.common.text import parse_float
 
 DELIMITERS = (";", "\t", ",", " ")
@@ -63,10 +64,10 @@ def csv_text(
 def parse_csv(data: bytes) -> list[dict[str, str]]:
     """Parse a table with a line of column names, a dictionary for each row.
 
-    `ValueError` for bytes that are not UTF-8 or CSV, and for rows that have not a cell
+    `ValueError` for bytes that are not text or CSV, and for rows that have not a cell
     for each name.
     """
-    reader = csv.DictReader(io.StringIO(data.decode("utf-8-sig"), newline=""))
+    reader = csv.DictReader(io.StringIO(decode_text(data), newline=""))
     try:
         rows = list(reader)
     except csv.Error as error:

@@ -18,8 +18,15 @@ from pydantic_core import PydanticCustomError
 
 from uplift.common.arrays import StrPath
 from uplift.common.errors import UpliftError
-from uplift.common.files import read_bytes
-from uplift.common.text import TOO_DEEP, check_values, format_value, parse_json, shorten
+from uplift.common.files import decode_text, read_bytes
+from uplift.common.text import (
+    MAX_DEPTH,
+    TOO_DEEP,
+    check_values,
+    format_value,
+    parse_json,
+    shorten,
+)
 
 MAX_BYTES = 16 << 20
 """Largest file that is read."""
@@ -33,6 +40,13 @@ TEXTS = {
     **dict.fromkeys(UNKNOWN_KEY, "unknown key"),
 } | dict.fromkeys(("dict_type", "dataclass_type", "model_type"), "must be a table")
 """Problems by the type of an error of pydantic, in place of its message."""
+STRING_OR_COMMENT = re.compile(
+    r'''"""(?:\\.|[^\\])*?"""|\'{3}.*?\'{3}|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#[^\n]*''',
+    re.DOTALL,
+)
+"""Parts of TOML in which points separate nothing."""
+DEEP_KEY = re.compile(rf"(?<![\w-])(?:[\w-]+[ \t]*\.[ \t]*){{{MAX_DEPTH}}}")
+"""Dotted keys of more than `MAX_DEPTH` parts."""
 TAG = "~"
 """First character of the tags of discriminated unions, which are not keys of a file."""
 
@@ -141,7 +155,16 @@ class SpecFile:
 
 def read_toml(path: StrPath, error: type[UpliftError]) -> SpecFile:
     """Read a TOML file, without validating its values."""
-    return _read(path, error, "TOML", tomllib.loads)
+    return _read(path, error, "TOML", _parse_toml)
+
+
+def _parse_toml(text: str) -> dict[str, Any]:
+    """Parse TOML without long dotted keys, for which tomllib takes memory in the square
+    of their length.
+    """
+    if DEEP_KEY.search(STRING_OR_COMMENT.sub("_", text)):
+        raise ValueError(TOO_DEEP)
+    return tomllib.loads(text)
 
 
 def read_json(path: StrPath, error: type[UpliftError]) -> SpecFile:
@@ -154,7 +177,7 @@ def _read(
 ) -> SpecFile:
     data = read_bytes(path, error, limit=MAX_BYTES, hint="check the path")
     try:
-        values = parse(data.decode("utf-8"))
+        values = parse(decode_text(data))
         check_values(values)
     except (
         RecursionError,

@@ -1,17 +1,39 @@
 """Bounds of answers: how far the colour of any reflectance of an RGB can be from the
 answer's under another light.
+
+No expected error exceeds them. For many colours, metamers are mixtures of those of the
+nodes around a colour. At the ends of the RGB space, where few reflectances are
+possible, they differ little.
 """
 
+import contextlib
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
-from uplift.colorimetry import Light, in_unit_cube, lab, solid_volume
+from uplift.colorimetry import (
+    Light,
+    Sensor,
+    delta_e_2000,
+    in_unit_cube,
+    lab,
+    solid,
+    solid_volume,
+)
+from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.common.arrays import Array
+from uplift.common.errors import ColourError
+from uplift.cube import CubeData
 from uplift.extras.looks import mesh, mismatch
 from uplift.extras.looks.lab_errors import LabErrors, lab_errors
+from uplift.lattice import Lattice
 from uplift.lookup import Cube
+from uplift.lookup.interpolate import spectra
 from uplift.lookup.outside import reflectance_anywhere
+
+NODES = Lattice(np.linspace(0, 1, 5) ** 2)
+"""Nodes of linear sRGB, also for wide gamuts, whose ends no reflectance has."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -112,3 +134,36 @@ def bounds_around(
     covariance = None if errors is None else errors.covariance(rgb)
     radius = None if errors is None else errors.likely_radius
     return Bounds(light, spectra, xyz, volumes, largest, covariance, radius)
+
+
+def limit_errors(data: CubeData, light: Light, rgb: Array, errors: Array) -> Array:
+    """Limit expected errors (n, k) of the answers to linear RGB (n, 3) by the ΔE00 to
+    metamers under a light.
+    """
+    srgb = rgb @ conversion(data.sensor, SRGB).T
+    corners, weights = NODES.cell_corners(*NODES.cell(srgb.clip(0, 1)))
+    nodes = _nodes(data.sensor, light)[corners]
+    metamers = np.einsum("nc,ncdk->ndk", weights, nodes)
+    unknown = ~in_unit_cube(srgb) | np.isnan(metamers).any(axis=(1, 2))
+    metamers[unknown] = _extremes(data.sensor, light, rgb[unknown])
+    answers = spectra(data, rgb, data.sensor.wavelengths) @ light.xyz.T
+    reference = lab(answers, light.white)[:, None]
+    possible = delta_e_2000(lab(metamers, light.white), reference)
+    return np.fmin(errors, possible.max(axis=1, keepdims=True))
+
+
+@lru_cache(maxsize=16)
+def _nodes(sensor: Sensor, light: Light) -> Array:
+    rgb = NODES.points @ np.linalg.inv(conversion(sensor, SRGB)).T
+    return _extremes(sensor, light, rgb)
+
+
+def _extremes(sensor: Sensor, light: Light, rgb: Array) -> Array:
+    """XYZ (n, d, 3) of the metamers that differ most; NaN for colours that no
+    reflectance has.
+    """
+    xyz = np.full((len(rgb), mismatch.COUNTS[0], 3), np.nan)
+    real = solid(sensor.matrix).contains(rgb)
+    with contextlib.suppress(ColourError):
+        xyz[real] = mismatch.mismatch_volumes(sensor, light, rgb[real], 0).xyz
+    return xyz

@@ -142,10 +142,9 @@ def plot_bounds(
     for block in blocks:
         panels += [(block, row) for row in range(len(block[0].xyz))]
     panels = panels[:MAX_COLOURS]
-    names = [bounds.light.name for bounds in panels[0][0]]
-    screens = display_sensors(names, cube.observer, *cube.data.sensor.range)
-    figure = new_figure(3.1 * len(names), 3.1 * len(panels))
-    axes = figure.subplots(len(panels), len(names), squeeze=False)
+    screens = _screens(cube, panels[0][0])
+    figure = new_figure(3.1 * len(screens), 3.1 * len(panels))
+    axes = figure.subplots(len(panels), len(screens), squeeze=False)
     for line, (block, row) in zip(axes, panels, strict=True):
         for cell, screen, bounds in zip(line, screens, block, strict=True):
             _plot_region(cell, screen, bounds, row)
@@ -167,10 +166,9 @@ def plot_cut_bounds(
     """Plot the region of one colour under each light, and in it that of reflectances
     which also have its colours in further photographs, as PNG, SVG or PDF.
     """
-    names = [bounds.light.name for bounds in whole]
-    screens = display_sensors(names, cube.observer, *cube.data.sensor.range)
-    figure = new_figure(3.1 * len(names), 3.7)
-    axes = figure.subplots(1, len(names), squeeze=False)[0]
+    screens = _screens(cube, whole)
+    figure = new_figure(3.1 * len(screens), 3.7)
+    axes = figure.subplots(1, len(screens), squeeze=False)[0]
     for cell, screen, before, after in zip(axes, screens, whole, cut, strict=True):
         _plot_region(cell, screen, replace(after, volumes=before.volumes), 0)
         cell.fill(
@@ -187,6 +185,11 @@ def plot_cut_bounds(
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=2, frameon=False)
     write_figure(figure, path, force=force)
+
+
+def _screens(cube: Cube, by_light: Sequence[Bounds]) -> tuple[Sensor, ...]:
+    lights = [bounds.light.illuminant for bounds in by_light]
+    return display_sensors(lights, cube.observer, *cube.data.sensor.range)
 
 
 def _plot_region(axes: Any, screen: Sensor, bounds: Bounds, row: int) -> None:

@@ -23,7 +23,7 @@ from uplift.extras.texture.uplifter import (
     Converter,
     ConvertRows,
     Sampler,
-    channel_name,
+    channel_names,
 )
 from uplift.lookup import Cube
 from uplift.lookup.node_table import prepare_products
@@ -110,7 +110,7 @@ def prepare_relighter(
         screens = tuple(
             replace(screen, xyz_to_rgb=sensor.xyz_to_rgb) for screen in screens
         )
-    layers = map(channel_name, names[1:])
+    layers = channel_names(names[1:])
     settings: dict[str, object] = {
         "as": "relit",
         "lights": names,

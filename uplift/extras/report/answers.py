@@ -35,9 +35,9 @@ class StoredAnswers:
         return np.abs(answers - self.reflectance).max(axis=-1)
 
 
-def read_answers(path: StrPath) -> StoredAnswers:
+def read_answers(path: StrPath, wavelengths: Array | None = None) -> StoredAnswers:
     """Read stored answers: columns ``r``, ``g``, ``b``, and one of reflectance for each
-    wavelength. Others are ignored.
+    wavelength, or for each of some ``wavelengths`` in nm. Others are ignored.
 
     Raises `ColourError` for a file that cannot be read, or that has no such table.
     """
@@ -49,6 +49,8 @@ def read_answers(path: StrPath) -> StoredAnswers:
         raise ColourError(f"is not CSV: {error}", path=path, hint=hint) from error
     names = rows[0].keys() if rows else set()
     at = {value: name for name in names if math.isfinite(value := _number(name))}
+    if wavelengths is not None:
+        at = {nm: at[nm] for nm in wavelengths.tolist() if nm in at}
     if not {"r", "g", "b"} <= names or not at:
         raise ColourError(
             "must have columns r, g and b, columns of wavelengths, and rows",

@@ -103,7 +103,7 @@ def assess(
             measures.round_trip_errors(cube),
             lambda values: log_edges(values, MIN_ERROR),
         ),
-        standard_error=_standard_errors(data),
+        standard_error=_standard_errors(cube),
         smoothness=make_histogram(differences, log_edges(differences, MIN_STEP)),
         steepest=steepest,
         lights=sensors,
@@ -148,11 +148,10 @@ def _calibration(cube: Cube, unseen: EntryErrors | None) -> Calibration | None:
     return check_calibration(unseen.actual, unseen.predicted, bound)
 
 
-def _standard_errors(data: CubeData) -> Histogram | None:
-    if data.points.standard_error is None:
-        return None
-    errors = data.points.standard_error[data.points.present]
-    return make_histogram(errors, linear_edges(errors))
+def _standard_errors(cube: Cube) -> Histogram | None:
+    data = cube.data
+    errors = cube.standard_error(data.lattice.points[data.points.present])
+    return None if errors is None else make_histogram(errors, linear_edges(errors))
 
 
 def _missing(names: Sequence[str], present: Sequence[str]) -> tuple[str, ...]:

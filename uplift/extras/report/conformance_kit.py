@@ -110,7 +110,7 @@ def _power(cube: Cube, shown: Light) -> str:
     in Mitsuba.
     """
     start, end, step = cube.data.sensor.range
-    power = illuminant_spd(shown.name, start, end, step)
+    power = illuminant_spd(shown.illuminant, start, end, step)
     luminance = matching_functions(cube.observer, start, end, step)[:, 1]
     radiance = power * EQUAL_Y / (power @ luminance * step)
     rows = zip(cube.wavelengths, radiance, strict=True)

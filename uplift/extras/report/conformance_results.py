@@ -68,8 +68,8 @@ def read_patches(path: StrPath) -> Array:
 
 def read_spectra(path: StrPath, chart: Chart) -> Array:
     """Read reflectances (1000, 31) of the colours of a chart. Raises `ColourError`."""
-    answers = read_answers(path)
     expected = spectra_wavelengths()
+    answers = read_answers(path, expected)
     hint = "compute the rows of colours.csv, in their order"
     if answers.rgb.shape != chart.rgb.shape:
         problem = f"must have {COUNT:,} rows, got {len(answers.rgb):,}"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.illuminants import Illuminant
-from uplift.colorimetry.observer import check_distinct, light
+from uplift.colorimetry.observer import lights as find_lights
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError
 from uplift.common.machine import check_memory
@@ -167,8 +167,7 @@ def diff_cubes(
     """
     sensor = common_sensor(cube.data for cube in cubes.values())
     first, second = cubes.values()
-    check_distinct(lights)
-    under = [light(name, sensor.observer, *sensor.range) for name in lights]
+    under = find_lights(lights, sensor.observer, sensor.range)
 
     size = sum(cube.data.lattice.size for cube in cubes.values())
     check_memory(

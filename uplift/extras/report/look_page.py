@@ -48,7 +48,7 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
     rgb = found[0].volumes.rgb[0]
     written = _written(cube, rgb)
     screens = display_sensors(
-        [bounds.light.name for bounds in found], cube.observer, *sensor.range
+        [bounds.light.illuminant for bounds in found], cube.observer, *sensor.range
     )
     lights = [
         _light(bounds, screen) for bounds, screen in zip(found, screens, strict=True)

@@ -12,7 +12,7 @@ import numpy as np
 from uplift import models
 from uplift.colorimetry import Light
 from uplift.colorimetry.illuminants import Illuminant
-from uplift.colorimetry.observer import light as find_light
+from uplift.colorimetry.observer import lights as find_lights
 from uplift.common.arrays import Array, Floats, Mask
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
@@ -283,10 +283,7 @@ def prepare_several_lights(
             uplifter.cube, photographs, further.noise or NO_NOISE
         )
         cubes.append(_cube_answers(prepared, kind, threads))
-    lights = [
-        find_light(name, first.sensor.observer, *first.sensor.range)
-        for name in dict.fromkeys(errors)
-    ]
+    lights = find_lights(errors, first.sensor.observer, first.sensor.range)
     settings = {each.name: getattr(first, each.name) for each in fields(Converter)}
     description = json.loads(first.header["uplift.texture"])
     description["also"] = asdict(further)

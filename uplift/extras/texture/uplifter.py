@@ -18,7 +18,7 @@ from uplift import models
 from uplift.colorimetry import Sensor
 from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.colorimetry.illuminants import Illuminant, Lamp
-from uplift.colorimetry.observer import check_distinct, light
+from uplift.colorimetry.observer import lights as find_lights
 from uplift.common.arrays import Array, Floats, Indices, Values
 from uplift.common.errors import OptionError
 from uplift.extras.colour.spaces import ImageSpace, find_space
@@ -452,11 +452,7 @@ def prepare(
         "out_of_gamut": out_of_gamut,
     }
     settings |= {} if space is None else {"space": space}
-    check_distinct(errors)
-    lights = [
-        light(name, cube.observer, *cube.data.sensor.range)
-        for name in dict.fromkeys(errors)
-    ]
+    lights = find_lights(errors, cube.observer, cube.data.sensor.range)
     names = [light.name for light in lights]
     settings |= {"errors": names} if names else {}
     lamps = [asdict(lamp) for lamp in errors if isinstance(lamp, Lamp)]
@@ -470,7 +466,7 @@ def prepare(
         depth,
         encoding,
         out_of_gamut,
-        (*pixels.channels, *(f"error.{channel_name(name)}" for name in names)),
+        (*pixels.channels, *map("error.{}".format, channel_names(names))),
         header,
         cube,
         sample=pixels.sample,
@@ -481,9 +477,18 @@ def prepare(
     )
 
 
-def channel_name(light: str) -> str:
-    """Return the name of a light as a part of the name of a channel."""
-    return re.sub(r"[^\w-]", "_", light)
+def channel_names(lights: Sequence[str]) -> list[str]:
+    """Return the names of lights as parts of the names of channels. Raises
+    `OptionError` for two that become one name.
+
+    >>> channel_names(["FL3.1", "my lamp"])
+    ['FL3_1', 'my_lamp']
+    """
+    names = [re.sub(r"[^\w-]", "_", light) for light in lights]
+    if len(set(names)) < len(names):
+        problem = f"two lights have one name of a channel, got {', '.join(names)}"
+        raise OptionError(problem, hint="rename one of the lamps")
+    return names
 
 
 def resolve_depth(depth: str | None, depths: tuple[str, ...], name: str) -> str:

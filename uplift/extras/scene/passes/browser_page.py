@@ -6,8 +6,6 @@ three times with other numbers. All lamps of the room have one spectrum, so that
 numbers may multiply the picture last, and a change of the light needs no rendering.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from uplift.colorimetry import observer
@@ -70,7 +68,7 @@ def page(passes: Passes, reflectances: Array, size: int = SIZE) -> str:
         size=size,
         first=_described(names[0]),
         lamps=[(name, _described(name)) for name in names[1:]],
-        numbers=_numbers(passes, reflectances, names),
+        numbers=_numbers(passes, reflectances),
         script=resource(*SCRIPTS),
     )
 
@@ -79,18 +77,18 @@ def _described(name: str) -> str:
     return f"{name}, {DESCRIPTIONS[name]}" if name in DESCRIPTIONS else name
 
 
-def _numbers(
-    passes: Passes, reflectances: Array, names: Sequence[str]
-) -> dict[str, object]:
+def _numbers(passes: Passes, reflectances: Array) -> dict[str, object]:
     """Numbers of surfaces and lights in both passes and as RGB, and matrices."""
     screen = observer.sensor()
     bands = passes.reflectance_numbers(reflectances)
     rgb = np.clip(reflectances @ screen.matrix.T, 0, 1)
-    whites = np.stack([observer.light(name).white for name in names])
+    # Passes do not have the spectra of lamps: XYZ of lights are decoded.
+    white = passes.bands.weights.sum(axis=1)
+    whites = [light.to_xyz @ (light.numbers * white) for light in passes.lights]
     decoding = screen.xyz_to_rgb @ passes.to_xyz
     return {
         "surfaces": [bands[:, :3].tolist(), bands[:, 3:].tolist(), rgb.tolist()],
         "lights": [light.numbers.tolist() for light in passes.lights],
-        "lightRgb": (whites @ screen.xyz_to_rgb.T).tolist(),
+        "lightRgb": (np.stack(whites) @ screen.xyz_to_rgb.T).tolist(),
         "decoding": [decoding[:, :3].tolist(), decoding[:, 3:].tolist()],
     }

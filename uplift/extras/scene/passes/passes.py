@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry import observer
-from uplift.colorimetry.illuminants import Illuminant
+from uplift.colorimetry.illuminants import Illuminant, Lamp
 from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
 from uplift.extras.scene.passes.bands import Bands
+from uplift.extras.scene.passes.spectra_digest import power_digest
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,13 +137,13 @@ class Passes:
         """
         return power @ self.light_projection.T
 
-    def light(self, name: str) -> PassesLight:
-        """Find a light by its name.
+    def light(self, illuminant: Illuminant) -> PassesLight:
+        """Find a light by its name, or a lamp by its spectrum.
 
         Parameters
         ----------
-        name : str
-            Name of the illuminant, or of the lamp.
+        illuminant : str or Lamp
+            Name in the passes, or a lamp.
 
         Returns
         -------
@@ -151,12 +152,17 @@ class Passes:
         Raises
         ------
         UnknownNameError
-            The passes have no light of this name.
+            The passes have no light of this name or spectrum.
         """
         named = {light.name: light for light in self.lights}
-        if name not in named:
-            raise unknown_name(name, named, "light of the passes")
-        return named[name]
+        known = named
+        key = str(illuminant)
+        if isinstance(illuminant, Lamp):
+            known = {light.digest: light for light in self.lights}
+            key = power_digest(scaled_power(illuminant))
+        if key not in known:
+            raise unknown_name(str(illuminant), named, "light of the passes")
+        return known[key]
 
 
 def scaled_power(illuminant: Illuminant) -> Array:
