@@ -18,7 +18,7 @@ from numpy.typing import DTypeLike
 
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, OptionError, UpliftWarning, warn
-from uplift.common.machine import require_xla
+from uplift.common.machine import compiled, require_xla
 from uplift.common.text import pluralise
 from uplift.cube import CubeData
 from uplift.lookup.blocks import as_coefficient_count, as_float_type, as_wavelengths
@@ -240,7 +240,7 @@ def evaluate(traced: TraceableCube, rgb: ArrayLike) -> jax.Array:
     return _evaluate(traced, colours)
 
 
-@jax.jit
+@compiled
 def _evaluate(traced: TraceableCube, rgb: jax.Array) -> jax.Array:
     rows = rgb.reshape(-1, 3)
     known = ~jnp.isnan(rows).any(axis=1, keepdims=True)
