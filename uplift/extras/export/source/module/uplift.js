@@ -149,6 +149,8 @@ class Cube {
   // `width` numbers for each colour, block by block, by a function of pointers that returns a result.
   #answer(rgb, width, at, evaluate) {
     expectNumbers("rgb", rgb, 3);
+    if (rgb instanceof Uint8Array || rgb instanceof Uint8ClampedArray)
+      throw new RangeError("linear RGB must be floats, got an array of 8-bit codes: decode them before");
     expectInside("linear RGB", rgb, 0, 1, SLACK, "decode 8-bit codes, and map colours into the gamut, before");
     const total = rgb.length / 3;
     const found = new Float32Array(total * width);
