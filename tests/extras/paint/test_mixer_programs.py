@@ -104,13 +104,14 @@ def test_numbers_outside_are_clipped(folder):
     assert_array_equal(run(path, pairs, shares)[:, [0, 2]], clipped[:, [0, 2]])
 
 
-def test_what_is_not_a_number_is_0(folder):
+@pytest.mark.parametrize("run", [run_mixer.sanitized, run_mixer.fast])
+def test_what_is_not_a_number_is_0(folder, run):
     path = folder / "paint.h"
     bad = np.full((2, 2, 3), np.nan)
     bad[1] = np.inf, 0.5, -np.inf
-    found = run_mixer.sanitized(path, bad, np.array([np.nan, 0.5]))
+    found = run(path, bad, np.array([np.nan, 0.5]))
     zero = np.array([[[0.0] * 3] * 2, [[1, 0.5, 0]] * 2])
-    assert_array_equal(found[:, 0], run_mixer.c(path, zero, np.array([0, 0.5]))[:, 0])
+    assert_array_equal(found[:, 0], run(path, zero, np.array([0, 0.5]))[:, 0])
     assert_array_equal(found[0, 1], 0)  # no positive part
 
 
