@@ -132,7 +132,7 @@ def cpp(path, rgb, wavelengths, form="header"):
 
 def fast(path, rgb, wavelengths, form="header"):
     """Told that nothing is NaN."""
-    return c(path, rgb, wavelengths, form, ("cc", "-std=c99", "-ffast-math"))
+    return c(path, rgb, wavelengths, form, ("cc", "-std=c99", "-O2", "-ffast-math"))
 
 
 def cuda(path, rgb, wavelengths, form="file"):
@@ -165,7 +165,7 @@ def _compiled(path, rgb, wavelengths, compiler, call, load):
     (folder / "main.c").write_text(text)
     casts = ["-Wold-style-cast"] if compiler[0] == "c++" else []
     subprocess.run(
-        [*compiler, *STRICT, *casts, "main.c", "-o", "main", "-lm"],
+        [compiler[0], *STRICT, *compiler[1:], *casts, "main.c", "-o", "main", "-lm"],
         cwd=folder,
         check=True,
     )

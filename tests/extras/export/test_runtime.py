@@ -221,12 +221,12 @@ def test_forged_files_are_refused(small_cube, tmp_path, change, result, open_fil
 def test_numbers_are_checked_where_nothing_is_said_to_be_nan(small_cube, tmp_path):
     """Of colours, and of files."""
     rgb = np.clip(np.nan_to_num(OUTSIDE, posinf=1), 0, 1)
-    found = answers(small_cube, OUTSIDE, AT, "-ffast-math")
+    found = answers(small_cube, OUTSIDE, AT, "-O2", "-ffast-math")
     expected = small_cube.reflectance(rgb, AT)
     assert_allclose(found.reflectances, expected, rtol=0, atol=WITHIN)
     assert_allclose(found.errors[:, 0], small_cube.standard_error(rgb), atol=1e-5)
     path = forge(small_cube.data, tmp_path / "a.uplift", not_finite)
-    assert open_result(path, "-ffast-math") == INVALID
+    assert open_result(path, "-O2", "-ffast-math") == INVALID
 
 
 @both_open
