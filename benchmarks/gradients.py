@@ -15,6 +15,7 @@ from benchmarks import DOCS, Row, record
 from benchmarks.checker import Layout, chart, show_srgb
 from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
+from uplift.common.machine import compiled
 from uplift.extras.pages.figure import (
     INK,
     new_figure,
@@ -56,7 +57,7 @@ def loss(
     return ((evaluate(traced, rgb) @ matrix.T - observed) ** 2).sum()
 
 
-@jax.jit
+@compiled
 def descend(traced: TraceableCube, matrix: Any, observed: Any) -> jax.Array:
     """Colours (STEPS + 1, 3) of a descent from grey."""
 
@@ -185,7 +186,7 @@ def rates(name: str, cube: Cube, widths: tuple[int, ...], count: int) -> Iterato
             at = np.linspace(400, 700, width)
         traced = traceable(cube, at)
         sample = bulk.spectra(cube, at)
-        gradient = jax.jit(jax.grad(mean))
+        gradient = compiled(jax.grad(mean))
         calls: dict[str, Callable[[], Any]] = {
             "evaluate": partial(evaluate, traced, rgb),
             "gradient": partial(gradient, rgb, traced),

@@ -23,6 +23,8 @@ from uplift.lookup.interpolate import is_inexact
 
 FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-w")
 COLOURS = 20_000
+COMPARED = 100_000
+"""Colours anywhere, and as many on the faces of RGB, whose reflectances are compared."""
 RUNS = 9
 RAY = np.array([450.0, 510.0, 570.0, 630.0])
 INSIDE = -2e-3
@@ -57,32 +59,41 @@ def measure_cube(path: Path) -> Row:
     largest differences of uplift.h and uplift.js from Python.
     """
     cube = load(path)
-    rgb = np.random.default_rng(1).random((COLOURS, 3)).astype(np.float32)
+    rgb = compared_colours(cube)
+    exact = rgb.astype(float)
     row: Row = {"cube": path.stem}
     for kind, at in (("spectrum", cube.wavelengths), ("ray", RAY)):
+        expected = cube.reflectance(exact, at)
         found, compiled, runtime = run(path, cube, rgb, at, WIDTHS[kind])
         module_found, module = run_module(path, rgb, at)
-        exact = rgb.astype(float)
         row[kind] = {
             "compiled": compiled,
             "runtime": runtime,
             "ratio": runtime / compiled,
-            "difference": largest_difference(cube, exact, at, found),
+            "difference": float(np.abs(found - expected).max()),
             "module": module,
-            "module_difference": largest_difference(cube, exact, at, module_found),
+            "module_difference": float(np.abs(module_found - expected).max()),
         }
     return row
 
 
-def largest_difference(cube: Cube, rgb: Array, at: Array, found: Array) -> float:
-    """Return the largest difference of reflectances from those of Python, except next
+def compared_colours(cube: Cube) -> Array:
+    """Return linear RGB (n, 3), float32, anywhere and on the faces of RGB, except next
     to colours that no reflectance has.
     """
-    data = cube.data
-    inside = data.solid.signed_distance(rgb) < INSIDE
-    compared = inside | ~is_inexact(data, rgb)
-    expected = cube.reflectance(rgb[compared], at)
-    return float(np.abs(found[compared] - expected).max())
+    random = np.random.default_rng(1)
+    anywhere, faces = random.random((2, COMPARED, 3))
+    axes = random.integers(3, size=COMPARED)
+    faces[np.arange(COMPARED), axes] = random.integers(2, size=COMPARED)
+    rgb = np.concatenate([anywhere, faces]).astype(np.float32)
+    exact = rgb.astype(float)
+    inside = cube.data.solid.signed_distance(exact) < INSIDE
+    return rgb[inside | ~is_inexact(cube.data, exact)]
+
+
+def timed_colours() -> Array:
+    """Return linear RGB (n, 3), float32, of which lookups are timed."""
+    return np.random.default_rng(1).random((COLOURS, 3)).astype(np.float32)
 
 
 def run(
@@ -99,7 +110,9 @@ def run(
         widths = (f"-DUPLIFT_WIDTH={width}", f"-DCUBE_WIDTH={width}")
         compiler = ["cc", *FLAGS, *widths, "-I.", str(source), "-o", "rates", "-lm"]
         subprocess.run(compiler, cwd=folder, check=True)
-        found, (compiled, runtime) = answer(["./rates"], folder, path, rgb, at)
+        rates = ["./rates"]
+        _, (compiled, runtime) = answer(rates, folder, path, timed_colours(), at)
+        found, _ = answer(rates, folder, path, rgb, at)
     return found, compiled, runtime
 
 
@@ -109,7 +122,9 @@ def run_module(path: Path, rgb: Array, at: Array) -> tuple[Array, float]:
         folder = Path(name)
         write_module(folder / "uplift.mjs")
         shutil.copy(ROOT / "benchmarks" / "header.mjs", folder)
-        found, (module,) = answer(["node", "header.mjs"], folder, path, rgb, at)
+        node = ["node", "header.mjs"]
+        _, (module,) = answer(node, folder, path, timed_colours(), at)
+        found, _ = answer(node, folder, path, rgb, at)
     return found, module
 
 

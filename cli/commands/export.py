@@ -204,11 +204,13 @@ def _write_runtime(name: str | None, output: str | None, *, force: bool) -> None
     from uplift.common.files import check_output
 
     path = check_output(output or name or "uplift.h", force=force)
-    if path.suffix not in READERS:
+    suffix = path.suffix.lower()
+    if suffix not in READERS:
         raise click.UsageError(
-            f"--runtime writes C or JavaScript: end the file in .h or .js, not {path}."
+            f"--runtime writes files that end in {', '.join(READERS)}, got {path}: C "
+            "and C++, or an ES module, which CommonJS loads by await import()."
         )
-    language, writer = READERS[path.suffix]
+    language, writer = READERS[suffix]
     import_part(writer)(path, force=force)
     size = path.stat().st_size / 1e3
     say(f"{path}: reads cube files in {language}, {size:.0f} kB")

@@ -107,6 +107,8 @@ def test_what_reads_cube_files(run, refuse, misuse, home, cube):
     misuse("export")
     misuse("export --runtime --format c")
     misuse("export --runtime a.h -o b.h")
+    misuse("export --runtime uplift.cjs")
+    assert run("export --runtime upper.MJS").stdout.startswith("upper.MJS: ")
     before = (home / cube).read_bytes()
     misuse("export --force --runtime", cube)
     assert (home / cube).read_bytes() == before

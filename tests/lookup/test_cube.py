@@ -3,15 +3,31 @@ name, and invalid arguments.
 """
 
 import os
+from dataclasses import replace
+from functools import partial
 
 import colour
+import jax
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import uplift
+from tests.extras.paint.invented import invented
 from tests.helpers import raises
-from uplift.common.errors import ColourError, OptionError, UnknownNameError
+from uplift import bulk, load, load_emission, read_atlas
+from uplift.atlas import on_grid
+from uplift.colorimetry import delta_e_2000, observer
+from uplift.colorimetry.illuminants import Lamp
+from uplift.common.errors import (
+    ColourError,
+    OptionError,
+    UnknownNameError,
+    UpliftError,
+)
+from uplift.extras.photographs import prepare_samples
+from uplift.extras.scene.wavelengths.sampling import make_setup
+from uplift.extras.texture import prepare_lights
 from uplift.lookup import BLOCK, MODES, find_file
 from uplift.lookup.cube import DEFAULT, PACKAGED, TABULATED
 
@@ -37,16 +53,17 @@ def test_reflectance_keeps_the_shape_of_the_input(small_cube, mode, shape):
 
 
 def test_rounding_moves_no_colour_out_of_gamut_and_no_input(small_cube, mode):
-    for bit in (1e-12, -1e-12):
+    for bit in (1e-12, -1e-12, 9e-7, -9e-7):
         rgb = np.array([(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), (1.0, 0.5, 0.0)]) + bit
         before = rgb.copy()
         near = small_cube.reflectance(rgb, mode=mode)
         assert_array_equal(rgb, before)
-        assert_allclose(
-            near, small_cube.reflectance(rgb - bit, mode=mode), rtol=0, atol=1e-8
-        )
-    with pytest.raises(ColourError):
-        small_cube.reflectance([1 + 1e-8, 0, 0], mode=mode)
+        inside = small_cube.reflectance(np.clip(rgb, 0, 1), mode=mode)
+        assert_array_equal(near, inside)
+    for value in (1.0000011, -1.1e-6):
+        with raises(ColourError, "rgb-out-of-gamut") as caught:
+            small_cube.reflectance([value, 0, 0], mode=mode)
+        assert f"{value:.7g}" in caught.value.problem
 
 
 def test_reflectances_do_not_depend_on_threads(small_cube, mode):
@@ -111,6 +128,10 @@ WAVELENGTHS = [
     [0],
     [-500],
     [500, NAN],
+    [0.45, 0.55],
+    550e-9,
+    [99.9],
+    [5001],
     [np.inf],
     "red",
     ["a"],
@@ -137,6 +158,74 @@ def test_invalid_arguments_are_refused(small_cube, name, value, code):
     function = small_cube.coefficients if name == "count" else small_cube.reflectance
     with raises(UnknownNameError if name == "mode" else OptionError, code):
         function(RED, **{name: value})
+
+
+MASKED = np.ma.array([0.2, 0.3, 0.4], mask=[0, 1, 0])
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda cube: cube.reflectance(MASKED),
+        lambda cube: cube.coefficients([MASKED, MASKED]),
+        lambda cube: cube.reflectance(RED, 1000 * MASKED),
+        lambda cube: cube.decode(MASKED),
+        lambda cube: cube.encode(MASKED),
+        lambda cube: bulk.spectra(cube)(MASKED),
+        lambda cube: bulk.evaluate(bulk.traceable(cube), MASKED),
+        lambda cube: cube.data.sensor.rgb(np.ma.masked_less(np.arange(81), 9)),
+        lambda cube: delta_e_2000(MASKED, MASKED),
+        lambda cube: load_emission().spectrum(MASKED),
+    ],
+)
+def test_masked_values_are_refused(small_cube, use):
+    with raises(UpliftError, "masked-values"):
+        use(small_cube)
+    assert small_cube.reflectance(np.ma.array([0.2, 0.3, 0.4])).shape == (81,)
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda cube, rgb: cube.reflectance(rgb),
+        lambda cube, rgb: cube.reflectance([rgb[0], 0, 0]),
+        lambda cube, rgb: cube.reflectance(RED, 1000 * rgb),
+        lambda cube, rgb: bulk.spectra(cube)(rgb),
+    ],
+)
+def test_what_jax_traces_is_refused_with_what_it_can_trace(small_cube, use):
+    for transform in (jax.jit, jax.jacfwd):
+        with raises(UpliftError, "traced-values") as caught:
+            transform(partial(use, small_cube))(np.float32(RED))
+        assert "bulk.traceable" in caught.value.hint
+
+
+def test_arrays_of_codes_are_refused(small_cube):
+    """Also those that would lie in [0, 1]."""
+    for codes in ([255, 3, 0], [1, 0, 1]):
+        with raises(ColourError, "rgb-like-codes"):
+            small_cube.reflectance(np.uint8(codes))
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda nm: observer.light("D65", start=nm[0], end=nm[-1], step=nm[1] - nm[0]),
+        lambda nm: replace(observer.sensor(), wavelengths=nm),
+        lambda nm: Lamp("lamp", nm, np.ones(len(nm))),
+        lambda nm: on_grid(read_atlas("macbeth"), nm),
+        lambda nm: bulk.traceable(load(), nm),
+        lambda nm: load_emission().spectrum(RED, nm),
+        lambda nm: prepare_samples(load())(RED, 1, seed=1, wavelengths=nm),
+        lambda nm: prepare_lights(load_emission(), nm),
+        lambda nm: invented().at(nm),
+        lambda nm: make_setup(np.ones((1, len(nm))), ["A"], wavelengths=nm),
+    ],
+)
+def test_wavelengths_in_other_units_are_refused_everywhere(use):
+    for unit in (1e-3, 1e-9, 10):
+        with raises(OptionError, "option"):
+            use(unit * np.linspace(550, 750, 41))
 
 
 def test_codes_decode_as_srgb_and_encoding_is_inverse(small_cube):

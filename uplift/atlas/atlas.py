@@ -10,7 +10,7 @@ from typing import overload
 import numpy as np
 
 from uplift.atlas.document import SourceLocation
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, as_array
 from uplift.common.errors import UpliftWarning, unknown_name
 from uplift.common.text import listed, pluralise
 
@@ -89,7 +89,7 @@ class Entry:
         location = SourceLocation(self.path, self.line, self.name)
         for key in ("wavelengths", "values"):
             try:
-                samples = np.array(getattr(self, key), dtype=float)
+                samples = as_array(getattr(self, key)).copy()
             except (TypeError, ValueError):
                 raise location.error(
                     f"the {key} are not all numbers", "give an array of numbers"

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.atlas.atlas import SLACK, Atlas, Entry
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, as_nm
 from uplift.common.errors import UpliftWarning, warn
 from uplift.common.text import listed, pluralise
 
@@ -123,7 +123,7 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
     -------
     Resampled
     """
-    grid = np.asarray(wavelengths, dtype=np.float64)
+    grid = as_nm(wavelengths)
     entries = atlas.entries
     alike = defaultdict[bytes, list[int]](list)
     raw = np.empty((len(entries), len(grid)))

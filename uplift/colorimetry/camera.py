@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, as_nm
 from uplift.common.errors import OptionError
 
 CAMERA = "camera"
@@ -81,7 +81,7 @@ class Camera:
         """Interpolate the sensitivities (M, 3) linearly at wavelengths (M,) in nm;
         outside their range they are 0.
         """
-        at = np.asarray(wavelengths, dtype=float)
+        at = as_nm(wavelengths)
         channels = (
             np.interp(at, self.wavelengths, channel, left=0, right=0)
             for channel in self.sensitivities.T

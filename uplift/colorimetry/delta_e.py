@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.sensor import Light, Sensor
-from uplift.common.arrays import Array, as_floats
+from uplift.common.arrays import Array, as_array, as_floats
 
 OPPONENTS = np.array([[0.0, 116, 0], [500, -500, 0], [0, 200, -200]])
 """Compressed X, Y, Z to L*a*b*, without the −16 of L*."""
@@ -45,7 +45,7 @@ def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
     """
     floats = as_floats(xyz)
     xp = floats.__array_namespace__()
-    t = floats / np.asarray(white, dtype=float)
+    t = floats / as_array(white)
     threshold = (6 / 29) ** 3
     root = xp.cbrt(xp.maximum(t, threshold))  # whose slope is finite
     line = xp.minimum(t, 1.0) * (29 / 6) ** 2 / 3 + 4 / 29
@@ -57,13 +57,10 @@ def lab_to_xyz(lab: ArrayLike, white: ArrayLike) -> Array:
     """Convert CIE 1976 L*a*b* to XYZ, the inverse of `lab`. Shapes: ``lab`` (…, 3),
     ``white`` (3,) → (…, 3).
     """
-    compressed = (
-        np.asarray(lab, dtype=float) + np.array([16.0, 0, 0])
-    ) @ np.linalg.inv(OPPONENTS.T)
+    compressed = (as_array(lab) + np.array([16.0, 0, 0])) @ np.linalg.inv(OPPONENTS.T)
     linear = (compressed - 4 / 29) * 3 * (6 / 29) ** 2
     return np.asarray(
-        np.where(compressed > 6 / 29, compressed**3, linear)
-        * np.asarray(white, dtype=float)
+        np.where(compressed > 6 / 29, compressed**3, linear) * as_array(white)
     )
 
 
@@ -71,8 +68,8 @@ def lab_jacobian(xyz: ArrayLike, white: ArrayLike) -> Array:
     """Compute the derivative of L*a*b* with respect to XYZ. Shapes: ``xyz`` (…, 3),
     ``white`` (3,) → (…, 3, 3).
     """
-    white = np.asarray(white, dtype=float)
-    t = np.asarray(xyz, dtype=float) / white
+    white = as_array(white)
+    t = as_array(xyz) / white
     root = np.cbrt(
         np.maximum(t, (6 / 29) ** 3)
     )  # the linear part has the slope of its upper end
@@ -148,7 +145,7 @@ def delta_e_2000_terms(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
 def _differences(lab_1: ArrayLike, lab_2: ArrayLike) -> tuple[Array, ...]:
     """Return the weighted differences of lightness, chroma and hue, and R_T."""
     (l1, a1, b1), (l2, a2, b2) = (
-        np.moveaxis(np.asarray(x, dtype=float), -1, 0) for x in (lab_1, lab_2)
+        np.moveaxis(as_array(x), -1, 0) for x in (lab_1, lab_2)
     )
     # a′ = (1 + G) a, and from it C′ and h′ (eq. 2–7).
     g = 1.5 - 0.5 * _weight_7((np.hypot(a1, b1) + np.hypot(a2, b2)) / 2)
@@ -202,7 +199,7 @@ def delta_e_2000_weights(lab: ArrayLike) -> Array:
     blue colours (Sharma, Wu & Dalal 2005, eq. 15–17, 19 and 20, with G and T of a
     neutral colour). Shapes: ``lab`` (…, 3) → (…, 3, 3).
     """
-    light, a, b = np.moveaxis(np.asarray(lab, dtype=float), -1, 0)
+    light, a, b = np.moveaxis(as_array(lab), -1, 0)
     chroma = np.hypot(a, b)
     hue = np.arctan2(b, a)
     chroma_weight = 1 / (1 + 0.045 * chroma)
@@ -249,9 +246,7 @@ def delta_e_spectra(light: Light, first: ArrayLike, second: ArrayLike) -> Array:
     -------
     ndarray, shape (...)
     """
-    xyz = (
-        np.asarray(spectra, dtype=float) @ light.xyz.T for spectra in (first, second)
-    )
+    xyz = (as_array(spectra) @ light.xyz.T for spectra in (first, second))
     return delta_e_2000(*(lab(colours, light.white) for colours in xyz))
 
 

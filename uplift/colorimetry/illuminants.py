@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, as_nm
 from uplift.common.errors import OptionError
 
 COMMON_NAMES = {
@@ -29,6 +29,8 @@ COMMON_NAMES = {
 """Names of illuminants for readers who do not know those of the CIE, and trade names
 of lamps in light booths, whose types they are.
 """
+VISIBLE = (380.0, 780.0)
+"""Wavelengths in nm, some of which a lamp must have."""
 TEMPERATURES = (1000.0, 25000.0)
 """Range of colour temperatures in K."""
 DAYLIGHT_FROM = 4000.0
@@ -95,6 +97,11 @@ class Lamp:
             problem = "must have finite wavelengths and powers"
         elif (np.diff(wavelengths) <= 0).any():
             problem = "must have ascending wavelengths"
+        elif wavelengths[-1] < VISIBLE[0] or wavelengths[0] > VISIBLE[1]:
+            problem = (
+                f"must have wavelengths within {VISIBLE[0]:g}–{VISIBLE[1]:g} nm, got "
+                f"{wavelengths[0]:g}–{wavelengths[-1]:g} nm"
+            )
         elif min(power) < 0 or max(power) == 0:
             problem = (
                 "must have powers of at least 0, one of them above, got "
@@ -114,7 +121,7 @@ class Lamp:
         Powers that are measured at a smaller step are averaged with triangular weights,
         so that no narrow line is lost. Others are interpolated linearly.
         """
-        nm = np.asarray(wavelengths, dtype=float)
+        nm = as_nm(wavelengths)
         step = np.diff(nm[:2]).sum()
         measured_step = float(np.median(np.diff(self.wavelengths)))
         count = math.ceil(step / measured_step - 1e-6) if step > measured_step else 1

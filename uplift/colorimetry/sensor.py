@@ -10,16 +10,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.illuminants import Illuminant, Lamp
-from uplift.common.arrays import Array, Mask, Values
+from uplift.common.arrays import Array, Mask, Values, as_array, as_nm
 from uplift.common.errors import ColourError
-from uplift.common.text import format_value
 
-SLACK = 1e-9
-"""Distance from [0, 1] that counts as rounding."""
+SLACK = 1e-6
+"""Distance from [0, 1] that counts as rounding, of conversions in single precision."""
 ROUNDING = 1e-12
 """Size of a number that is printed as 0."""
 MIN_CODE = 10
 """Largest of three whole numbers from which they are taken for 8-bit codes."""
+
+DECODE = "convert 8-bit codes with Cube.decode"
 
 
 def in_unit_cube(rgb: Values) -> Mask:
@@ -32,13 +33,10 @@ def in_unit_cube(rgb: Values) -> Mask:
 def as_rgb(rgb: ArrayLike) -> Values:
     """Convert to an array of RGB triples. Shapes: ``rgb`` (…, 3) → (…, 3)."""
     is_single = isinstance(rgb, np.ndarray) and rgb.dtype == np.float32
-    try:
-        array: Values = np.asarray(rgb) if is_single else np.asarray(rgb, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise ColourError(
-            f"a colour is three numbers, got {format_value(rgb)}",
-            hint="pass R, G and B",
-        ) from error
+    if getattr(rgb, "dtype", None) == np.uint8:
+        problem = "linear RGB must be floats, got an array of 8-bit codes"
+        raise ColourError(problem, code="rgb-like-codes", hint=DECODE)
+    array: Values = as_array(rgb, ColourError, np.float32 if is_single else float)
     if array.ndim == 0 or array.shape[-1] != 3:
         hint = "pass [R, G, B], or colours of shape (…, 3), without alpha"
         raise ColourError(
@@ -51,6 +49,8 @@ def raise_out_of_gamut(outside: Array) -> NoReturn:
     """Raise the error for colours outside [0, 1]. Shapes: ``outside`` (n, 3)."""
     colour = outside[0]
     text = f"linear RGB {format_rgb(colour)}"
+    if in_unit_cube(np.round(colour, 5)):
+        text = f"linear RGB {format_rgb(colour, '.9g')}"  # the digits that are outside
     if not np.isfinite(colour).all():
         raise ColourError(f"{text} is not finite", hint="pass numbers in [0, 1]")
     problem = f"{text} lies outside [0, 1]"
@@ -59,18 +59,18 @@ def raise_out_of_gamut(outside: Array) -> NoReturn:
         and colour.min() >= 0
         and MIN_CODE <= colour.max() <= 255
     ):
-        raise ColourError(
-            problem, code="rgb-like-codes", hint="convert 8-bit codes with Cube.decode"
-        )
+        raise ColourError(problem, code="rgb-like-codes", hint=DECODE)
     hint = "map it with uplift.colorimetry.gamut.map_to_gamut"
     raise ColourError(problem, code="rgb-out-of-gamut", hint=hint)
 
 
-def format_rgb(rgb: Array) -> str:
+def format_rgb(rgb: Array, digits: str = "g") -> str:
     """Format a colour (3,) for a message. Rounding errors of 0 are 0."""
     return (
         "("
-        + ", ".join("0" if abs(value) < ROUNDING else f"{value:g}" for value in rgb)
+        + ", ".join(
+            "0" if abs(value) < ROUNDING else f"{value:{digits}}" for value in rgb
+        )
         + ")"
     )
 
@@ -139,6 +139,9 @@ class Sensor:
     decoding: Array
     sensitivities: Array | None = None
 
+    def __post_init__(self) -> None:
+        as_nm(self.wavelengths)
+
     @property
     def range(self) -> tuple[float, float, float]:
         """First and last wavelength and step in nm."""
@@ -201,7 +204,7 @@ class Sensor:
         -------
         ndarray, shape (..., 3)
         """
-        return np.asarray(reflectance, dtype=float) @ self.matrix.T
+        return as_array(reflectance) @ self.matrix.T
 
     def xyz(self, rgb: ArrayLike) -> Array:
         """Convert linear RGB to XYZ under the build illuminant; approximately for a
@@ -216,7 +219,7 @@ class Sensor:
         -------
         ndarray, shape (..., 3)
         """
-        return np.asarray(rgb, dtype=float) @ self.rgb_to_xyz.T
+        return as_array(rgb) @ self.rgb_to_xyz.T
 
     def grey(self, rgb: ArrayLike) -> Array:
         """Return the greys of the luminances of colours.
@@ -246,4 +249,4 @@ class Sensor:
         ndarray
             Linear values, of the same shape.
         """
-        return np.interp(np.asarray(codes, dtype=float), np.arange(256), self.decoding)
+        return np.interp(as_array(codes), np.arange(256), self.decoding)

@@ -20,7 +20,7 @@ import numpy as np
 
 from uplift.colorimetry import illuminants as lights
 from uplift.colorimetry.illuminants import Illuminant, Lamp
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, as_nm
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import OptionError, UnknownNameError, unknown_name
 
@@ -135,6 +135,7 @@ def samples(
     one of `RESPONSES` is 0. ``kind`` is one of the keys of `TABLES`, such as
     ``"display"`` for the power of the primaries of a display.
     """
+    as_nm([start, end])
     if isinstance(name, Lamp):
         values = name.at(np.arange(start, end + step / 2, step))
         values.setflags(write=False)

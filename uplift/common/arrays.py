@@ -2,16 +2,22 @@
 points.
 """
 
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
 from functools import reduce
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from uplift.common.errors import (
+    OptionError,
+    UpliftError,
+)
 from uplift.common.errors import (
     StrPath as StrPath,
 )  # defined without numpy, which takes long to import
+from uplift.common.text import format_value
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -20,13 +26,61 @@ Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 Values = NDArray[Any]
 """Array of numbers of any type, mostly float64 or float32."""
+SHORTEST = 100.0
+"""Shortest wavelength in nm: smaller numbers are in micrometres or metres."""
+LONGEST = 5000.0
+"""Longest wavelength in nm at which a spectrum is asked for."""
+
+
+def as_array(
+    values: Any,
+    error: Callable[..., UpliftError] = OptionError,
+    dtype: DTypeLike = float,
+) -> Any:
+    """Convert to an array of numpy; ``error`` for anything but numbers, masked values
+    (``masked-values``) and numbers that JAX traces (``traced-values``).
+    """
+    # An array has a mask only if the module is loaded, which takes time.
+    masked = sys.modules.get("numpy.ma")
+    if masked is not None:
+        rows = values if isinstance(values, list | tuple) else [values]
+        if any(map(masked.is_masked, rows)):
+            problem = "masked values are not numbers"
+            hint = "fill them, or leave them out"
+            raise error(problem, code="masked-values", hint=hint)
+    try:
+        return np.asarray(values, dtype=dtype)
+    except (TypeError, ValueError) as cause:
+        if type(cause).__module__.startswith("jax"):
+            problem = "numbers that JAX traces have no values"
+            hint = (
+                "prepare the cube by uplift.bulk.traceable, and call "
+                "uplift.bulk.evaluate in the function that is traced"
+            )
+            raise error(problem, code="traced-values", hint=hint) from cause
+        raise error(f"numbers are required, got {format_value(values)}") from cause
+
+
+def as_nm(wavelengths: ArrayLike) -> Array:
+    """Convert to wavelengths (N,) in nm; `OptionError` outside `SHORTEST` to
+    `LONGEST`.
+    """
+    array: Array = np.atleast_1d(as_array(wavelengths))
+    limits = f"wavelengths must be a list of numbers in [{SHORTEST:g}, {LONGEST:g}] nm"
+    if array.ndim != 1 or not array.size:
+        raise OptionError(f"{limits}, got the shape {array.shape}")
+    outside = array[~((array >= SHORTEST) & (array <= LONGEST))]
+    if outside.size:
+        hint = "multiply micrometres by 1000, divide ångströms by 10"
+        raise OptionError(f"{limits}, got {outside[0]:g}", hint=hint)
+    return array
 
 
 def as_floats(values: Any) -> Any:
     """Return an array of JAX as it is, and anything else as an array of numpy."""
     if hasattr(values, "__array_namespace__") and not isinstance(values, np.ndarray):
         return values
-    return np.asarray(values, dtype=float)
+    return as_array(values)
 
 
 def blocks(count: int, size: int) -> Iterator[slice]:

@@ -13,7 +13,7 @@ from jax import lax
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from uplift.common.arrays import Array, blocks
-from uplift.common.machine import require_xla
+from uplift.common.machine import compiled, require_xla
 from uplift.models import ForwardMap, Model, Moments
 from uplift.models.arithmetic import arctan
 from uplift.models.duality import integrate, moments_from_multipliers
@@ -80,7 +80,7 @@ def _program(
     function: Callable[..., Any], chunk: int, devices: int
 ) -> Callable[..., Any]:
     """Compile the loop over the chunks of a batch on each device."""
-    traced_once = jax.jit(function)
+    traced_once = compiled(function)
 
     def run(constants: Any, counts: jax.Array, arrays: Any) -> Any:
         def compute(first: Any) -> Any:
@@ -112,11 +112,12 @@ def _program(
         )[1]
 
     if devices == 1:
-        return jax.jit(run)
+        return compiled(run)
     mesh = Mesh(np.array(jax.devices()), ("rows",))
     given = (EVERYWHERE, ROWS, ROWS)
     run = jax.shard_map(run, mesh=mesh, in_specs=given, out_specs=ROWS, check_vma=False)
-    return jax.jit(run, in_shardings=tuple(NamedSharding(mesh, spec) for spec in given))
+    shardings = tuple(NamedSharding(mesh, spec) for spec in given)
+    return compiled(run, in_shardings=shardings)
 
 
 def to_storage(model: Model, multipliers: Array) -> Array:

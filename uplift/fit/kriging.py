@@ -13,7 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from uplift.common.arrays import Array, Indices, blocks, distances
-from uplift.common.machine import require_xla
+from uplift.common.machine import compiled, require_xla
 
 METRIC = np.array([0.5, 1.0, 1.0])
 """Weights of differences of L*, a* and b*: materials of one hue are more alike than
@@ -212,7 +212,7 @@ def kernel_sums(
     return sums, nearest
 
 
-@jax.jit
+@compiled
 def _kernel_block(
     length: float,
     reach: float,

@@ -21,6 +21,7 @@ import optimistix
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, Indices, blocks, largest
+from uplift.common.machine import compiled
 from uplift.fit.batch import map_batches
 from uplift.models import ForwardMap, anchored_step
 from uplift.models.arithmetic import blocked_matmul
@@ -289,7 +290,7 @@ def _advance(method: Method) -> Callable[..., Any]:
     ) -> Any:
         forward, tolerance, max_steps = constants
         solver = method(forward, tolerance)
-        residual = jax.jit(ForwardMap.residual)
+        residual = compiled(ForwardMap.residual)
         y, state, steps = iterate(
             solver,
             lambda p, goal: (residual(forward, p, goal), None),

@@ -5,6 +5,7 @@ bounded memory.
 import contextlib
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.colorimetry import Sensor, as_rgb, in_unit_cube, raise_out_of_gamut
 from uplift.colorimetry.sensor import SLACK
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, as_array, as_nm
 from uplift.common.errors import ColourError, OptionError
 from uplift.cube import CubeData
 
@@ -68,16 +69,10 @@ def as_colours(rgb: ArrayLike, sensor: Sensor) -> Array:
 
 
 def as_wavelengths(wavelengths: ArrayLike | None, default: Array) -> Array:
-    """Convert to wavelengths (N,) in nm, None to the default; `OptionError` if they are
-    not positive numbers.
+    """Convert to wavelengths (N,) as `uplift.common.arrays.as_nm`, None to the
+    default.
     """
-    if wavelengths is None:
-        return default
-    with contextlib.suppress(TypeError, ValueError):
-        array = np.atleast_1d(np.asarray(wavelengths, dtype=float))
-        if array.ndim == 1 and array.size and (np.isfinite(array) & (array > 0)).all():
-            return array
-    raise OptionError("wavelengths must be a list of positive numbers in nm")
+    return default if wavelengths is None else as_nm(wavelengths)
 
 
 def as_float_type(dtype: DTypeLike) -> np.dtype[Any]:
@@ -118,17 +113,10 @@ def decode_codes(sensor: Sensor, codes: ArrayLike) -> Array:
     """Convert 8-bit codes (…) to linear values by the encoding of a sensor;
     `ColourError` outside 0 to 255.
     """
-    try:
-        array = np.asarray(codes, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise ColourError(
-            "8-bit codes must be numbers", code="invalid-codes"
-        ) from error
+    error = partial(ColourError, code="invalid-codes")
+    array = as_array(codes, error)
     outside = array[~((array >= 0) & (array <= 255))]
     if outside.size:
-        raise ColourError(
-            f"8-bit codes must be in [0, 255], got {outside[0]:g}",
-            code="invalid-codes",
-            hint="pass linear RGB to the query without decoding it",
-        )
+        problem = f"8-bit codes must be in [0, 255], got {outside[0]:g}"
+        raise error(problem, hint="pass linear RGB to the query without decoding it")
     return sensor.decode(array)

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from uplift.colorimetry import Sensor, as_rgb
 from uplift.common.arrays import Floats
-from uplift.common.machine import require_xla
+from uplift.common.machine import compiled, require_xla
 from uplift.common.text import pluralise
 from uplift.lookup.blocks import (
     as_coefficient_count,
@@ -38,7 +38,7 @@ inputs.
 """
 
 
-@jax.jit
+@compiled
 def _clipped(grid: Grid, rgb: jax.Array) -> jax.Array:
     """Interpolate values (n, N), float32, at linear RGB (n, 3), float64 in [0, 1]."""
     return jnp.clip(interpolate(grid, rgb), grid.limits[0], grid.limits[1])

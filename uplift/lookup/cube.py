@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.colorimetry import rgb_to_lab
 from uplift.colorimetry.illuminants import Illuminant
-from uplift.common.arrays import Array, Mask
-from uplift.common.errors import unknown_name
+from uplift.common.arrays import Array, Mask, as_array
+from uplift.common.errors import ColourError, unknown_name
 from uplift.cube import CubeData, read, write
 from uplift.lookup import blocks
 from uplift.lookup.interpolate import (
@@ -179,8 +179,8 @@ class Cube:
         rgb : array_like, shape (..., 3)
             Linear RGB in [0, 1], in the RGB space of the cube.
         wavelengths : array_like, shape (N,), optional
-            Wavelengths in nm, by default those of the sensor. Spectra are constant
-            outside the range of the model.
+            Wavelengths in nm from 100 to 5000, by default those of the sensor. Spectra
+            are constant outside the range of the model.
         mode : {"spectra", "moments", "refined", "nearest"}, default "spectra"
             ``"spectra"`` interpolates spectra, with exact colours. ``"moments"``
             interpolates coefficients, with nearly exact colours. ``"refined"`` moves
@@ -391,7 +391,7 @@ class Cube:
             Codes from 0 to 255, with fractions.
         """
         return np.interp(
-            np.asarray(rgb, dtype=float), self.data.sensor.decoding, np.arange(256)
+            as_array(rgb, ColourError), self.data.sensor.decoding, np.arange(256)
         )
 
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:

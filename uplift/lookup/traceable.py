@@ -16,9 +16,9 @@ from jax.typing import ArrayLike
 from numpy.typing import ArrayLike as NumpyArrayLike
 from numpy.typing import DTypeLike
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, as_array
 from uplift.common.errors import ColourError, OptionError, UpliftWarning, warn
-from uplift.common.machine import require_xla
+from uplift.common.machine import compiled, require_xla
 from uplift.common.text import pluralise
 from uplift.cube import CubeData
 from uplift.lookup.blocks import as_coefficient_count, as_float_type, as_wavelengths
@@ -231,16 +231,15 @@ def evaluate(traced: TraceableCube, rgb: ArrayLike) -> jax.Array:
     ColourError
         The last axis of ``rgb`` does not have three components.
     """
-    try:
-        colours = jnp.asarray(rgb, traced.grid.nodes.dtype)
-    except (TypeError, ValueError) as error:
-        raise ColourError(f"a colour is three numbers, got {rgb!r}") from error
+    if not isinstance(rgb, jax.Array):
+        rgb = as_array(rgb, ColourError)
+    colours = jnp.asarray(rgb, traced.grid.nodes.dtype)
     if colours.shape[-1:] != (3,):
         raise ColourError(f"a colour is three numbers, got the shape {colours.shape}")
     return _evaluate(traced, colours)
 
 
-@jax.jit
+@compiled
 def _evaluate(traced: TraceableCube, rgb: jax.Array) -> jax.Array:
     rows = rgb.reshape(-1, 3)
     known = ~jnp.isnan(rows).any(axis=1, keepdims=True)

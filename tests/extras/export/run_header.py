@@ -112,9 +112,10 @@ def run(
     return Answers(rows["results"], rows["errors"], coefficients, rows["reflectances"])
 
 
-def open_result(path: Path) -> int:
+def open_result(path: Path, *options: str) -> int:
     """Return the result of opening a file."""
-    done = subprocess.run([program(), path, "0", "0"], stdin=subprocess.DEVNULL)
+    words = [program(*options), path, "0", "0"]
+    done = subprocess.run(words, stdin=subprocess.DEVNULL)
     return done.returncode
 
 

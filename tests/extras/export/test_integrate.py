@@ -5,11 +5,14 @@ import shutil
 from pathlib import Path
 
 import numpy as np
+import OpenEXR
+import OpenImageIO
 import pytest
 from numpy.testing import assert_allclose
 
 from tests.helpers import output_of
 from tests.parts import CC, CXX, MITSUBA, NODE, SANITIZED, SANITIZERS, need
+from uplift.extras import texture
 from uplift.extras.export import write_program
 from uplift.extras.export.module import write_module
 from uplift.extras.export.runtime import write_header
@@ -70,6 +73,25 @@ def test_cube_files_at_run_time(folder, small_cube):
     wavelengths, *found = np.loadtxt(output_of("./main").splitlines()).T
     expected = small_cube.reflectance(COLOURS, wavelengths, mode="spectra")
     assert_allclose(found, expected, atol=2e-5)
+
+
+@pytest.mark.parametrize("channels", ["RGB", "RGBA"])
+def test_the_shader_of_osl_begins_with_the_first_multiplier(
+    folder, small_cube, channels
+):
+    """As OpenImageIO, by which OSL reads, counts the channels of a texture."""
+    shader = code("Blender, OSL", "osl")
+    default = re.search(r"int first_channel = (\d)", shader)
+    with_alpha = re.search(r"set `first_channel` to (\d)", PAGE)
+    pixels = np.full((2, 2, len(channels)), 0.5, np.float32)
+    image = {"type": OpenEXR.scanlineimage}
+    OpenEXR.File(image, {channels: pixels}).write("wood.exr")
+    texture.convert(
+        texture.prepare(small_cube, texture.Multipliers()), "wood.exr", "a.exr"
+    )
+    spec = OpenImageIO.ImageInput.open("a.exr").spec()
+    stated = with_alpha if "A" in channels else default
+    assert spec.channelnames.index("multiplier.00") == int(stated[1])
 
 
 def test_javascript(folder, small_cube):

@@ -68,6 +68,6 @@ def test_nan_and_infinity_are_0(table, tmp_path):
     write_light_program(table.data, path)
     path.write_text(path.read_text() + ALIAS)
     odd = np.array([[np.nan, 1.0, 0.5], [1.0, np.inf, -np.inf]])
-    found = run_program.c(path, odd, WAVELENGTHS)
+    found = run_program.fast(path, odd, WAVELENGTHS)
     expected = table.spectrum([[0, 1, 0.5], [1, 0, 0]], np.clip(WAVELENGTHS, 380, 780))
     assert_allclose(found, expected, rtol=1e-4, atol=1e-6)

@@ -71,7 +71,8 @@ def evaluate(tmp_path, repository):
         (tmp_path / "main.mjs").write_text(
             f"""import {{ readFileSync }} from "node:fs";
             import * as uplift from "./uplift.mjs";
-            const file = readFileSync({json.dumps(str(path))});
+            const path = {json.dumps(path.as_posix())};
+            const file = readFileSync(path);
             const cube = await uplift.open(file);
             console.log(JSON.stringify(await ({expression})));"""
         )
@@ -108,6 +109,12 @@ def test_many_colours_have_the_answers_of_each(evaluate):
         "cube.reflectances([1, 1, 1], 550)",
         "cube.reflectances([1, 1, 1])",
         "cube.standardError()",
+        "cube.reflectances(new Uint8ClampedArray([1, 0, 1]), [550])",
+        "cube.coefficients([1.00001, 0, 0])",
+        "cube.errorBound([-0.1, NaN, 0])",
+        "cube.reflectances([1, 1, null], [550])",
+        "cube.reflectances([1, 1, 1], [0.45, 0.55])",
+        "cube.reflectances([1, 1, 1], [550e-9])",
     ],
 )
 def test_other_arguments_are_refused(evaluate, call):
@@ -116,13 +123,15 @@ def test_other_arguments_are_refused(evaluate, call):
 
 
 def test_what_a_cube_is_opened_from(evaluate):
-    """Bytes, a view of some of them, or an address."""
+    """Bytes, what has them, an address or, in node, a file."""
     rows = evaluate(
         """Promise.all([
         file,
         new Uint8Array([0, ...file, 0]).subarray(1, file.length + 1),
         Uint8Array.from(file).buffer,
         "data:;base64," + file.toString("base64"),
+        new Blob([file]), new Response(file), Promise.resolve(file),
+        path, new URL("file:" + path), "file:" + path,
         ].map(async source => (await uplift.open(source)).standardError([0, 1, 0])[0]))
         """
     )
@@ -130,11 +139,25 @@ def test_what_a_cube_is_opened_from(evaluate):
     results = evaluate(
         """Promise.all([
         new ArrayBuffer(0), file.subarray(0, 99), file.map(byte => byte ^ 1),
-        "data:;base64,AAAA"
+        "data:;base64,AAAA", "absent.uplift", "file:///absent.uplift",
+        new Response("", { status: 404 }), "http://127.0.0.1:1", undefined, {}
         ].map(source => uplift.open(source).catch(error => error)))
         .then(errors => errors.map(error => [error.name, error.result]))"""
     )
-    assert results == [["CubeError", 3]] * 4
+    damaged, unread, other = (
+        [["CubeError", 3]],
+        [["CubeError", 1]],
+        [["TypeError", None]],
+    )
+    assert results == damaged * 4 + unread * 4 + other * 2
+
+
+def test_numbers_that_rounding_moved_are_those_at_the_ends(evaluate):
+    found = evaluate(
+        """[[1.0000001, -1e-7, 0.5], [1, 0, 0.5]].map(rgb =>
+        [...cube.reflectances(rgb, [450, 550])])"""
+    )
+    assert found[0] == found[1]
 
 
 def test_in_a_browser(repository, small_cube):

@@ -21,7 +21,7 @@ EVERY = np.arange(380.0, 781.0)
 # tolerance of reflectance in single precision: multipliers of spectra near a box reach
 # 4e6
 WITHIN = 1e-4
-LANGUAGE = {"cpp": "c"}
+LANGUAGE = {"cpp": "c", "fast": "c"}
 
 
 def colours(data):
@@ -167,9 +167,15 @@ def test_cuda_compiles_for_graphics_processors(small_cube, tmp_path, mode):
     assert ".entry lookup" in run_program.ptx(tmp_path / "cube.cuh")
 
 
-@pytest.mark.parametrize("style", ["c", "cpp", "cuda"])
-def test_colours_outside_are_clipped_and_nan_is_0(small_cube, check, style):
-    check(small_cube, style, "spectra", np.array([[2, -1, 0.5], [np.nan, 0.2, np.inf]]))
+OUTSIDE = np.array(
+    [[2, -1, 0.5], [np.nan, 0.2, np.inf], [-np.nan, np.nan, 0.9], [-np.inf, 1, -0.0]]
+)
+
+
+@pytest.mark.parametrize("mode", ["spectra", "moments"])
+@pytest.mark.parametrize("style", ["fast", "cpp", "cuda", "glsl", "hlsl"])
+def test_colours_outside_are_clipped_and_nan_is_0(small_cube, check, style, mode):
+    check(small_cube, style, mode, OUTSIDE)
 
 
 @pytest.mark.parametrize("mode", ["spectra", "moments"])

@@ -16,7 +16,7 @@ from tests.cube.cube_files import forge
 from tests.extras.export.run_header import OK, Answers, answers, open_result
 from tests.extras.export.run_module import module_answers, module_result
 from tests.extras.export.run_program import STRICT
-from tests.extras.export.test_programs import colours
+from tests.extras.export.test_programs import OUTSIDE, colours
 from tests.extras.looks.test_looks import LOOKS
 from tests.helpers import quiet_build, raises
 from tests.parts import CC, CLANG, CXX, need
@@ -163,7 +163,7 @@ def test_files_that_are_not_mapped(small_cube, options):
 @pytest.mark.parametrize(
     "compiler",
     [
-        ("cc", "-std=c99"),
+        ("cc", "-std=c99", "-O3"),
         ("c++", "-std=c++11", "-x", "c++", "-Wold-style-cast"),
         ("clang", "-std=c99"),
     ],
@@ -174,7 +174,7 @@ def test_compilers_are_silent(tmp_path, compiler):
     write_header(tmp_path / "uplift.h")
     main = '#define UPLIFT_IMPLEMENTATION\n#include "uplift.h"\n#include "uplift.h"\n'
     (tmp_path / "main.c").write_text(main)
-    command = [*compiler, *STRICT, "-c", "main.c", "-o", "main.o"]
+    command = [compiler[0], *STRICT, *compiler[1:], "-c", "main.c", "-o", "main.o"]
     subprocess.run(command, cwd=tmp_path, check=True)
 
 
@@ -217,6 +217,17 @@ def no_spectrum(tensors, metadata):
 def test_forged_files_are_refused(small_cube, tmp_path, change, result, open_file):
     path = forge(small_cube.data, tmp_path / "a.uplift", change)
     assert open_file(path) == result
+
+
+def test_numbers_are_checked_where_nothing_is_said_to_be_nan(small_cube, tmp_path):
+    """Of colours, and of files."""
+    rgb = np.clip(np.nan_to_num(OUTSIDE, posinf=1), 0, 1)
+    found = answers(small_cube, OUTSIDE, AT, "-O2", "-ffast-math")
+    expected = small_cube.reflectance(rgb, AT)
+    assert_allclose(found.reflectances, expected, rtol=0, atol=WITHIN)
+    assert_allclose(found.errors[:, 0], small_cube.standard_error(rgb), atol=1e-5)
+    path = forge(small_cube.data, tmp_path / "a.uplift", not_finite)
+    assert open_result(path, "-O2", "-ffast-math") == INVALID
 
 
 @both_open

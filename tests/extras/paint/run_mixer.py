@@ -99,6 +99,11 @@ def sanitized(path, pairs, shares):
     return c(path, pairs, shares, ("cc", *SANITIZED))
 
 
+def fast(path, pairs, shares):
+    """Told that nothing is NaN."""
+    return c(path, pairs, shares, ("cc", "-O2", "-ffast-math"))
+
+
 def ends_of_bytes(path, pairs):
     """Return codes (n, 2, 3) at both ends of mixtures of codes (n, 2, 3)."""
     need(CC)

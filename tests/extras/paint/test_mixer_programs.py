@@ -95,36 +95,45 @@ def test_bytes_end_at_their_colours(folder, rng):
     assert_array_equal(run_mixer.ends_of_bytes(folder / "paint.h", codes), codes)
 
 
-@pytest.mark.parametrize("run", [run_mixer.sanitized, run_mixer.js])
-def test_numbers_outside_are_clipped(folder, run):
-    path = folder / ("paint.mjs" if run is run_mixer.js else "paint.h")
+def test_numbers_outside_are_clipped(folder):
+    run = run_mixer.sanitized
+    path = folder / "paint.h"
     pairs = np.array([[[-1, 2, 0.5], [0.2, 0.4, 0.6]]] * 4)
     shares = np.array([0.5, -3, 7, 1e30])
     clipped = run(path, np.clip(pairs, 0, 1), np.clip(shares, 0, 1))
     assert_array_equal(run(path, pairs, shares)[:, [0, 2]], clipped[:, [0, 2]])
 
 
-def test_what_is_not_a_number_is_0(folder):
+@pytest.mark.parametrize("run", [run_mixer.sanitized, run_mixer.fast])
+def test_what_is_not_a_number_is_0(folder, run):
     path = folder / "paint.h"
     bad = np.full((2, 2, 3), np.nan)
     bad[1] = np.inf, 0.5, -np.inf
-    found = run_mixer.sanitized(path, bad, np.array([np.nan, 0.5]))
+    found = run(path, bad, np.array([np.nan, 0.5]))
     zero = np.array([[[0.0] * 3] * 2, [[1, 0.5, 0]] * 2])
-    assert_array_equal(found[:, 0], run_mixer.c(path, zero, np.array([0, 0.5]))[:, 0])
+    assert_array_equal(found[:, 0], run(path, zero, np.array([0, 0.5]))[:, 0])
     assert_array_equal(found[0, 1], 0)  # no positive part
 
 
-def test_what_is_not_a_number_is_0_in_javascript(folder):
+@pytest.mark.parametrize(
+    ("call", "error"),
+    [
+        ("mix([NaN, 0, 0], [0, 0, 0], 0)", "RangeError"),
+        ("mix([0, 0, 0], [204, 51, 25], 0)", "RangeError"),
+        ("mix([0, 0, 0], [1, 1, 1], 50)", "RangeError"),
+        ("mixSrgb([0, 33, 133], [252, 211, 0], 0.5)", "RangeError"),
+        ("mixAll([[1, 1]], [1])", "RangeError"),
+        ("mix([1.0000001, 0, -1e-7], [0, 0, 0], 0)", None),
+    ],
+)
+def test_numbers_outside_are_refused_in_javascript(folder, call, error):
     need(NODE)
-    (folder / "nan.mjs").write_text(
-        "import { mix, mixAll } from './paint.mjs';\n"
-        "const bad = mix([NaN, Infinity, -Infinity], [undefined, 0.5, 1], NaN);\n"
-        "const clipped = mix([0, 1, 0], [0, 0.5, 1], 0);\n"
-        "console.log(JSON.stringify([bad, clipped, mixAll([bad], [NaN])]));\n"
+    (folder / "outside.mjs").write_text(
+        "import { mix, mixAll, mixSrgb } from './paint.mjs';\n"
+        f"let name = null;\ntry {{ {call}; }} catch (error) {{ name = error.name; }}\n"
+        "console.log(JSON.stringify(name));\n"
     )
-    bad, clipped, nothing = json.loads(output_of("node", folder / "nan.mjs"))
-    assert bad == clipped
-    assert nothing == [0, 0, 0]
+    assert json.loads(output_of("node", folder / "outside.mjs")) == error
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.colorimetry import as_rgb
-from uplift.common.arrays import Array, Mask, Values
+from uplift.common.arrays import Array, Mask, Values, as_array
 from uplift.common.errors import ColourError, OptionError
 from uplift.extras.emission.chromaticities import (
     chromaticities,
@@ -250,7 +250,7 @@ class EmissionTable:
         ndarray, shape (..., 3)
             Linear RGB.
         """
-        return self.rgb_of_xyz(np.asarray(power, dtype=float) @ self.data.radiometry)
+        return self.rgb_of_xyz(as_array(power) @ self.data.radiometry)
 
     def rgb_of_xyz(self, xyz: ArrayLike) -> Array:
         """Convert XYZ to linear RGB, the inverse of `xyz`.
@@ -265,7 +265,7 @@ class EmissionTable:
         ndarray, shape (..., 3)
             Linear RGB.
         """
-        return np.asarray(xyz, dtype=float) @ np.linalg.inv(self.data.rgb_to_xyz).T
+        return as_array(xyz) @ np.linalg.inv(self.data.rgb_to_xyz).T
 
     def contains(self, rgb: ArrayLike) -> Mask:
         """Test whether a light can have the colours: black, or a chromaticity within

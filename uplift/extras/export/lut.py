@@ -32,6 +32,8 @@ MAX_SIZE = 129
 CLF = "Academy/ASC Common LUT Format"
 CURVE = {"gamma": [2.4, 2.4, 2.4, 1.0], "offset": [0.055, 0.055, 0.055, 0.0]}
 """The sRGB curve, as OpenColorIO states it."""
+SLOPE = 12.92
+"""Slope of its line, which goes on below 0."""
 
 
 def export(cube: Cube, path: Path, style: str, **settings: Any) -> str:
@@ -43,10 +45,13 @@ def export(cube: Cube, path: Path, style: str, **settings: Any) -> str:
         )
     error = write_lut(cube, path=path, **settings)
     light = settings["light"]
+    facts = [f"colours under {light}, {error}"]
     on_materials = material_error(cube, light)
-    if on_materials is None:
-        return f"colours under {light}, {error}"
-    return f"colours under {light}, {error}; {on_materials}"
+    if on_materials is not None:
+        facts.append(str(on_materials))
+    if path.suffix.lower() != ".clf":
+        facts.append(f"a component x below 0 is coded as {SLOPE:g} x")
+    return "; ".join(facts)
 
 
 def write_lut(
@@ -106,7 +111,7 @@ def _encode(linear: Array) -> Array:
     """Encode by the sRGB curve: below 0 its line goes on, above 1 its power."""
     return np.where(
         linear <= 0.0031308,
-        12.92 * linear,
+        SLOPE * linear,
         1.055 * np.maximum(linear, 0.0031308) ** (1 / 2.4) - 0.055,
     )
 

@@ -116,6 +116,7 @@ def compose_header(kernels: Sequence[Kernel] = KERNELS) -> str:
         + "\n#ifdef UP_KERNEL\n\n"
         + _kernel()
         + "#endif\n"
+        + read_source("runtime/end.c")
     )
     text = re.sub(r"\bUP_", "UPLIFT_", text)
     return Template(text).substitute(_head_words())

@@ -13,7 +13,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, as_array
 from uplift.common.errors import OptionError
 
 TINY = np.finfo(float).tiny
@@ -23,7 +23,7 @@ def as_amounts(parts: ArrayLike) -> Array:
     """Return parts (…, n) as floats. Raises `OptionError` unless they are finite and
     not negative.
     """
-    array = np.asarray(parts, dtype=float)
+    array = as_array(parts)
     if array.ndim == 0 or not (np.isfinite(array) & (array >= 0)).all():
         raise OptionError(
             "parts of a mixture must be a sequence of finite numbers of at least 0, "

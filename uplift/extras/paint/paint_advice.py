@@ -14,6 +14,7 @@ import numpy as np
 
 from uplift.colorimetry import delta_e_2000_weights
 from uplift.common.arrays import Array
+from uplift.common.machine import compiled
 from uplift.extras.paint.paint_fit import PaintFit
 from uplift.extras.paint.paint_samples import MeasuredSpectra, PaintSamples
 
@@ -123,7 +124,7 @@ def _jacobian(fit: PaintFit, samples: PaintSamples, name: str) -> Array:
         return function(z, samples)
 
     with jax.enable_x64(True):
-        return np.asarray(jax.jit(jax.jacfwd(predict))(fit.optimum))
+        return np.asarray(compiled(jax.jacfwd(predict))(fit.optimum))
 
 
 def _pairs(samples: PaintSamples) -> PaintSamples:

@@ -19,6 +19,7 @@ import numpy as np
 from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftWarning, warn
+from uplift.common.machine import compiled
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.paint.optics import Surface, beneath_surface, through_surface
@@ -304,7 +305,7 @@ def _solver(
     def with_prior(z: Any, spread: Any) -> Any:
         return residuals(z, spread), z
 
-    @jax.jit
+    @compiled
     def solve(start: Any, spread: Any) -> Any:
         solution = optimistix.least_squares(
             with_prior, solver, start, spread, max_steps=MAX_STEPS, throw=False

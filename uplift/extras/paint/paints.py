@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from uplift.colorimetry import Light, Sensor, observer
 from uplift.colorimetry.illuminants import Illuminant
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, as_array, as_nm
 from uplift.common.errors import OptionError, UpliftWarning, unknown_name, warn
 from uplift.common.text import listed
 from uplift.extras.paint.coats import Medium, coat_of_pigments
@@ -150,7 +150,7 @@ class Paints:
         Paints
             The paints at these wavelengths.
         """
-        nm = np.asarray(wavelengths, dtype=float)
+        nm = as_nm(wavelengths)
 
         def sample(values: Array) -> Array:
             return np.stack([np.interp(nm, self.wavelengths, row) for row in values])
@@ -189,7 +189,7 @@ class Paints:
         OptionError
             Parts or thickness are invalid.
         """
-        parts = np.asarray(parts, dtype=float)
+        parts = as_array(parts)
         if parts.shape[-1:] != (len(self),):
             raise OptionError(
                 f"parts must have one number for each of {len(self)} paints, "
@@ -213,7 +213,7 @@ class Paints:
         ndarray, shape (...)
             The price, NaN if that of a paint in the mixture is unknown.
         """
-        parts = np.asarray(parts, dtype=float)
+        parts = as_array(parts)
         prices = np.array(self.prices or (np.nan,) * len(self))
         used = np.where(parts > 0, parts * np.where(parts > 0, prices, 0), 0)
         return np.asarray(used.sum(axis=-1) / parts.sum(axis=-1))

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.sensor import as_rgb, in_unit_cube, raise_out_of_gamut
-from uplift.common.arrays import Array, Values
+from uplift.common.arrays import Array, Values, as_array
 from uplift.common.errors import OptionError
 from uplift.extras.export.program_table import check_complete
 from uplift.extras.paint.bands import BANDS, choose_bands, opaque
@@ -97,7 +97,7 @@ class RgbMixer:
             Linear RGB, clipped to [0, 1].
         """
         K, S, R, rgb = np.split(
-            np.asarray(latent, dtype=float), (BANDS, 2 * BANDS, 3 * BANDS), axis=-1
+            as_array(latent), (BANDS, 2 * BANDS, 3 * BANDS), axis=-1
         )
         change = Pigment(K, S).opaque_reflectance() - R
         return np.clip(rgb + change @ self.to_rgb.T, 0, 1)
@@ -124,7 +124,7 @@ class RgbMixer:
         OptionError
             A share is outside [0, 1].
         """
-        t = np.asarray(share, dtype=float)
+        t = as_array(share)
         inside = (t >= 0) & (t <= 1)
         if not inside.all():
             raise OptionError(

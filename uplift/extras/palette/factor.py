@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from uplift import lookup
 from uplift.colorimetry import Sensor
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, as_array
 from uplift.common.errors import OptionError
 from uplift.extras.colour.light_sets import PALETTE_LIGHTS
 from uplift.extras.palette.colours import illuminant, lab_per_rgb, screen_matrix
@@ -51,28 +51,28 @@ class FactorModel:
 
     def reflectance(self, spectra: ArrayLike) -> Array:
         """Convert reflectances (..., N) to coefficients (..., m) (eq. 3)."""
-        return np.asarray(spectra, dtype=float) @ self.projection.T
+        return as_array(spectra) @ self.projection.T
 
     def light(self, power: ArrayLike) -> Array:
         """Convert powers (..., N) to coefficients (..., m). The map is linear: lights
         mix as their coefficients do.
         """
-        return np.asarray(power, dtype=float) @ self.light_projection.T
+        return as_array(power) @ self.light_projection.T
 
     def product(self, *coefficients: ArrayLike) -> Array:
         """Multiply spectra by their coefficients (..., m) (eq. 15)."""
         product = np.asarray(1.0)
         for factor in coefficients:
-            product = product * np.asarray(factor, dtype=float)
+            product = product * as_array(factor)
         return product
 
     def rgb(self, coefficients: ArrayLike) -> Array:
         """Return the linear RGB (..., 3) of coefficients (..., m), not clipped."""
-        return np.asarray(coefficients, dtype=float) @ self.matrix.T
+        return as_array(coefficients) @ self.matrix.T
 
     def spectra(self, coefficients: ArrayLike) -> Array:
         """Reconstruct spectra (..., N) from coefficients (..., m) (eq. 2)."""
-        return np.asarray(coefficients, dtype=float) @ self.basis.T
+        return as_array(coefficients) @ self.basis.T
 
 
 def standard_model(sensor: Sensor, count: int = 7) -> FactorModel:
@@ -133,9 +133,9 @@ def linear_product(model: FactorModel, first: ArrayLike, *others: ArrayLike) -> 
     # Products of basis functions, B⁺_i (B_j * B_k).
     basis = model.basis
     tensor = np.einsum("in,nj,nk->ijk", model.projection, basis, basis, optimize=True)
-    product = np.asarray(first, dtype=float)
+    product = as_array(first)
     for factor in others:
-        matrix = np.einsum("ijk,...k->...ij", tensor, np.asarray(factor, dtype=float))
+        matrix = np.einsum("ijk,...k->...ij", tensor, as_array(factor))
         product = np.einsum("...ij,...j->...i", matrix, product)
     return product
 

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array, Mask, as_array
 from uplift.common.errors import OptionError
 from uplift.extras.photographs.changes import changed_spectra
 from uplift.extras.photographs.metamers import Metamers, learn_metamers
@@ -140,7 +140,7 @@ class Photographs:
         """
         colours = as_colours(rgb, self.cube.data.sensor)
         shape = (*colours.shape[:-1], len(self.matrix))
-        values = np.asarray(others, dtype=float)
+        values = as_array(others)
         if values.shape != shape:
             raise OptionError(
                 f"others must have the shape {shape}, got {values.shape}",

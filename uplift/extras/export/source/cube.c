@@ -181,10 +181,18 @@ UP_FUNCTION int up_first_corner(UP_READS UP_IN float rgb[3])
     return (red * UP_DIM + green) * UP_DIM + blue;
 }
 
-/* Clip to [0, 1]; NaN becomes 0. */
+/* Clip to [0, 1]. */
 UP_FUNCTION float up_clip(float x)
 {
     return x > 0.0f ? (x > 1.0f ? 1.0f : x) : 0.0f;
+}
+
+/* Clip a component of a colour to [0, 1]; NaN becomes 0. It is judged by its bits, as compilers may be told that nothing is
+   NaN. */
+UP_FUNCTION float up_component(UP_IN float rgb[3], int axis)
+{
+    UP_BITS(bits, rgb[axis]);
+    return bits <= 0x3f800000u ? rgb[axis] : bits <= 0x7f800000u ? 1.0f : 0.0f;
 }
 
 /* Find the entry in whose box a colour lies, or -1; set the colour and the weight of the lattice.
@@ -194,7 +202,7 @@ UP_FUNCTION float up_clip(float x)
 UP_FUNCTION int up_locate(UP_READS UP_IN float rgb[3], UP_OUT float place[UP_PLACE])
 {
     UP_ARRAY(query, 3);
-    for (int axis = 0; axis < 3; ++axis) place[axis] = up_clip(rgb[axis]);
+    for (int axis = 0; axis < 3; ++axis) place[axis] = up_component(rgb, axis);
     for (int axis = 0; axis < 3; ++axis) query[axis] = place[axis];
     int entry = -1;
     int listed = UP_INT(UP_ABS(up_tag(UP_TABLE up_first_corner(UP_TABLE query))));
@@ -593,7 +601,7 @@ UP_SELDOM void up_pull(UP_READS UP_IN float rgb[3], int entry, UP_OUT float plac
         up_blend(UP_TABLE place, entry, at, total);
         for (int w = 0; w < UP_WIDTH && start + w < UP_SAMPLES; ++w) given[start + w] = total[w];
     }
-    for (int axis = 0; axis < 3; ++axis) colour[axis] = up_clip(rgb[axis]);
+    for (int axis = 0; axis < 3; ++axis) colour[axis] = up_component(rgb, axis);
     up_realise(UP_TABLE colour);
     for (int axis = 0; axis < 3; ++axis) {
         goal[axis] = change[axis] = UP_EXACT(0.0f);

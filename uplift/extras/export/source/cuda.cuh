@@ -4,6 +4,7 @@
 #define UP_UPLIFT_H
 
 #include <math.h>
+#include <string.h>
 
 #define UP_CAST(type, x) static_cast<type>(x)
 #ifndef UP_WIDTH

@@ -4,6 +4,7 @@
 precision highp float;
 precision highp int;
 #endif
+#define UP_BITS_OF floatBitsToUint
 #define UP_VEC3 vec3
 #define UP_VEC4 vec4
 #define UP_ROW(name, index) float name[UP_STRIDE]; up_load_row(index, name)

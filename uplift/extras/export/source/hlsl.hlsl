@@ -1,4 +1,5 @@
 /* HLSL, shader model 5. ${stem}.bin: ${rows} rows of ${columns} float4 (little-endian). Load it as a structured buffer. */
+#define UP_BITS_OF asuint
 #define UP_VEC3 float3
 #define UP_VEC4 float4
 #define UP_ROW(name, index) UP_ARRAY(name, UP_STRIDE); up_load_row(index, name)

@@ -2,6 +2,9 @@
 #define UP_IN const
 #define UP_OUT
 #define UP_ARRAY(name, size) float name[size]
+#define UP_BITS(name, x) \
+    unsigned name; \
+    memcpy(&name, &(x), sizeof name)
 #define UP_BOOL int
 #define UP_INT(x) UP_CAST(int, x)
 #define UP_REAL(x) UP_CAST(float, x)

@@ -42,7 +42,8 @@ UP_FUNCTION void up_clip(UP_IN float rgb[3], UP_OUT float offset[4])
     for (int row = 0; row < 4; ++row) {
         offset[row] = 0.0f;
         for (int column = 0; column < 3; ++column) {
-            float finite = UP_ABS(rgb[column]) < 1e30f ? rgb[column] : 0.0f;
+            UP_BITS(bits, rgb[column]); /* compilers may be told that nothing is NaN */
+            float finite = (bits & 0x7fffffffu) < 0x7149f2cau ? rgb[column] : 0.0f; /* 1e30 */
             offset[row] += up_number(UP_MATRIX + 3 * row + column) * finite;
         }
     }

@@ -1,7 +1,7 @@
 /* Mixes RGB colours as paints: blue and yellow are green. GLSL 3.30 and GLSL ES 3.00.
 
    Written by uplift ${version} from the cube ${digest}. BSD-3-Clause.
-   RGB is linear ${space} under ${illuminant} for the ${observer}, in [0, 1]: numbers outside are clipped.
+   RGB is linear ${space} under ${illuminant} for the ${observer}, in [0, 1]: numbers outside are clipped, NaN is 0.
 
    vec3 up_mix(vec3 first, vec3 second, float share)        the share is that of the second colour, in [0, 1]
    vec3 up_mix_srgb(vec3 first, vec3 second, float share)   codes in [0, 1] with the curve of sRGB
@@ -31,7 +31,8 @@ ${to_rgb});
 
 vec3 up_clip(vec3 x)
 {
-    return clamp(x, 0.0, 1.0);
+    uvec3 size = floatBitsToUint(x) & uvec3(0x7fffffffu);
+    return clamp(mix(x, vec3(0.0), greaterThan(size, uvec3(0x7f800000u))), 0.0, 1.0); /* NaN is 0 */
 }
 
 /* Numbers 4 * quarter to 4 * quarter + 3 of a node: square roots of reflectances, then of scattering. */

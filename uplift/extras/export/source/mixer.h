@@ -24,6 +24,7 @@
 #define UP_MIXER_H
 
 #include <math.h>
+#include <string.h>
 
 #ifdef __cplusplus
 #define UP_CAST(type, x) static_cast<type>(x)
@@ -46,9 +47,17 @@ static const float up_units[2] = {${units}};
 static const float up_to_rgb[3][UP_BANDS] = {
 ${to_rgb}};
 
-UP_FUNCTION float up_clip(float x)
+/* 0 of a number that is not positive, or NaN. It is judged by its bits, as compilers may be told that nothing is NaN. */
+UP_FUNCTION float up_positive(const float *x)
 {
-    float positive = x > 0 ? x : 0; /* NaN is not */
+    unsigned bits;
+    memcpy(&bits, x, sizeof bits);
+    return bits <= 0x7f800000u ? *x : 0;
+}
+
+UP_FUNCTION float up_clip(const float *x)
+{
+    float positive = up_positive(x);
     return positive < 1 ? positive : 1;
 }
 
@@ -58,7 +67,7 @@ UP_FUNCTION void up_latent(const float rgb[3], float latent[UP_SIZE])
     float offset[3], roots[2 * UP_BANDS];
     int node = 0;
     for (int c = 0; c < 3; ++c) {
-        float inside = up_clip(rgb[c]);
+        float inside = up_clip(rgb + c);
         float position = sqrtf(inside) * (UP_DIM - 1);
         int cell = UP_CAST(int, position);
         cell = cell < UP_DIM - 2 ? cell : UP_DIM - 2;
@@ -107,7 +116,8 @@ UP_FUNCTION void up_colour(const float latent[UP_SIZE], float rgb[3])
         float products[UP_BANDS], sum = 0;
         for (int k = 0; k < UP_BANDS; ++k) products[k] = change[k] * up_to_rgb[c][k];
         for (int k = 0; k < UP_BANDS / 2; ++k) sum += products[k] + products[k + UP_BANDS / 2];
-        rgb[c] = up_clip(latent[3 * UP_BANDS + c] + sum);
+        sum += latent[3 * UP_BANDS + c];
+        rgb[c] = up_clip(&sum);
     }
 }
 
@@ -115,7 +125,7 @@ UP_FUNCTION void up_colour(const float latent[UP_SIZE], float rgb[3])
 UP_FUNCTION void up_mix(const float first[3], const float second[3], float share, float mixed[3])
 {
     float one[UP_SIZE], other[UP_SIZE];
-    const float t = up_clip(share);
+    const float t = up_clip(&share);
     up_latent(first, one);
     up_latent(second, other);
     UP_VECTORISE
@@ -127,11 +137,12 @@ UP_FUNCTION void up_mix(const float first[3], const float second[3], float share
 UP_FUNCTION void up_mix_n(const float *rgb, const float *parts, int n, float mixed[3])
 {
     float latent[UP_SIZE], sum[UP_SIZE] = {0}, total = 0;
-    for (int i = 0; i < n; ++i) total += parts[i] > 0 ? parts[i] : 0;
+    for (int i = 0; i < n; ++i) total += up_positive(parts + i);
     for (int i = 0; i < n; ++i) {
-        if (!(parts[i] > 0)) continue;
+        const float part = up_positive(parts + i);
+        if (part == 0) continue;
         up_latent(rgb + 3 * i, latent);
-        up_add(latent, parts[i] / total, sum);
+        up_add(latent, part / total, sum);
     }
     up_colour(sum, mixed);
 }
@@ -151,8 +162,8 @@ UP_FUNCTION void up_mix_srgb(const float first[3], const float second[3], float 
 {
     float one[3], other[3];
     for (int c = 0; c < 3; ++c) {
-        one[c] = up_decode(up_clip(first[c]));
-        other[c] = up_decode(up_clip(second[c]));
+        one[c] = up_decode(up_clip(first + c));
+        other[c] = up_decode(up_clip(second + c));
     }
     up_mix(one, other, share, mixed);
     for (int c = 0; c < 3; ++c) mixed[c] = up_encode(mixed[c]);

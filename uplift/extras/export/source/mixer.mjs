@@ -1,7 +1,7 @@
 /* Mixes RGB colours as paints: blue and yellow are green. An ES module.
 
    Written by uplift ${version} from the cube ${digest}. BSD-3-Clause.
-   RGB is linear ${space} under ${illuminant} for the ${observer}, in [0, 1]: numbers outside are clipped, NaN is 0.
+   RGB is linear ${space} under ${illuminant} for the ${observer}, in [0, 1]: other numbers are a RangeError.
 
    import { mixSrgb } from "./${file}";
    mixSrgb([0, 0.13, 0.52], [0.99, 0.82, 0], 0.5); */
@@ -26,6 +26,12 @@ function decodeTable(text) {
 }
 
 const clip = x => (x > 0 ? Math.min(x, 1) : 0);
+const SLACK = 1e-6; /* distance from [0, 1] that is rounding */
+
+function inside(name, x) {
+  if (Number.isFinite(x) && x >= -SLACK && x <= 1 + SLACK) return clip(x);
+  throw new RangeError(`$${name} must be a number in [0, 1], got $${x}`);
+}
 
 /* Length of a latent. */
 export const SIZE = 3 * BANDS + 3;
@@ -41,7 +47,7 @@ const position = component => Math.sqrt(component) * (DIM - 1);
 const cell = place => Math.min(place | 0, DIM - 2);
 
 function fill(rgb, numbers) {
-  const red = clip(rgb[0]), green = clip(rgb[1]), blue = clip(rgb[2]);
+  const red = inside("red", rgb[0]), green = inside("green", rgb[1]), blue = inside("blue", rgb[2]);
   const r = position(red), g = position(green), b = position(blue);
   const i = cell(r), j = cell(g), l = cell(b);
   const r1 = r - i, g1 = g - j, b1 = b - l;
@@ -94,7 +100,7 @@ const ONE = new Float64Array(SIZE), OTHER = new Float64Array(SIZE);
 
 /* Mix two colours, linear RGB; the share is that of the second, in [0, 1]. */
 export function mix(first, second, share) {
-  const t = clip(share);
+  const t = inside("share", share);
   fill(first, ONE);
   fill(second, OTHER);
   for (let k = 0; k < SIZE; ++k) ONE[k] = (1 - t) * ONE[k] + t * OTHER[k];
@@ -112,8 +118,8 @@ export function mixSrgb(first, second, share) {
 }
 
 export function decode(code) {
-  const inside = clip(code);
-  return inside <= 0.04045 ? inside / 12.92 : ((inside + 0.055) / 1.055) ** 2.4;
+  const x = inside("code", code);
+  return x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
 }
 
 export function encode(linear) {

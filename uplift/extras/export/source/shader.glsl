@@ -7,6 +7,7 @@
 #define UP_IN in
 #define UP_OUT inout
 #define UP_ARRAY(name, size) float name[size]; for (int fill = 0; fill < size; ++fill) name[fill] = 0.0f
+#define UP_BITS(name, x) uint name = UP_BITS_OF(x)
 #define UP_BOOL bool
 #define UP_INT(x) int(x)
 #define UP_REAL(x) float(x)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
 from uplift.colorimetry import delta_e_2000_form, lab_jacobian
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, as_nm
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
 from uplift.extras.scene.wavelengths.sampling import (
@@ -147,14 +147,9 @@ def optimise(setup: RenderSetup, count: int) -> Sampling:
 
 def fit_at(setup: RenderSetup, wavelengths: ArrayLike) -> Sampling:
     """Fit weights and powers at given wavelengths (n,) nm. Raises `OptionError`."""
-    nm = np.sort(np.asarray(wavelengths, dtype=float))
+    nm = np.sort(as_nm(wavelengths))
     first, last = setup.wavelengths[[0, -1]]
-    if (
-        nm.ndim != 1
-        or not len(nm)
-        or np.any(np.diff(nm) <= 0)
-        or not first <= nm[0] <= nm[-1] <= last
-    ):
+    if np.any(np.diff(nm) <= 0) or not first <= nm[0] <= nm[-1] <= last:
         text = f"wavelengths must be distinct and within [{first:g}, {last:g}] nm"
         raise OptionError(text, hint="give each wavelength once")
     problem = FitProblem(_thinned(setup))

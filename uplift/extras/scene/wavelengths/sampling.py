@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.observer import DEFAULT_OBSERVER
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, as_array, as_nm
 from uplift.common.errors import OptionError
 
 START = 380.0
@@ -131,8 +131,8 @@ def make_setup(
         No lights, an uneven grid, reflectances of another shape, or values that are not
         reflectances.
     """
-    nm = grid() if wavelengths is None else np.asarray(wavelengths, dtype=float)
-    materials = np.asarray(reflectances, dtype=float)
+    nm = grid() if wavelengths is None else as_nm(wavelengths)
+    materials = as_array(reflectances)
     _check_grid(nm)
     _check_materials(materials, len(nm))
     lights = tuple(dict.fromkeys(lights))
@@ -163,8 +163,7 @@ def make_setup(
 def _check_grid(nm: Array) -> None:
     steps = np.diff(nm)
     if (
-        nm.ndim != 1
-        or len(nm) < MIN_SAMPLES
+        len(nm) < MIN_SAMPLES
         or not np.allclose(steps, steps[0], rtol=1e-6)
         or steps[0] <= 0
     ):

@@ -13,6 +13,9 @@ const CODE = "${code}";
 const BLOCK = 1 << 16; // numbers in and out of a block of colours
 const NO_FILE = 1; // results of uplift.h
 const NO_MEMORY = 2;
+const SLACK = 1e-6; // distance from [0, 1] that is rounding
+const RANGE = [100, 5000]; // wavelengths in nm
+const FILES = "node:fs/promises";
 let compiled;
 
 /** A cube that cannot be opened, or a colour that it has no answer for. `result` is the number of the reason in uplift.h. */
@@ -26,12 +29,13 @@ export class CubeError extends Error {
 
 /**
  * Open a cube.
- * @param {ArrayBuffer|ArrayBufferView|string|URL} source the bytes of a cube file, or an address to fetch them from
+ * @param {ArrayBuffer|ArrayBufferView|Blob|Response|Request|string|URL} source the bytes of a cube file, a Blob or Response that has
+ * them, or an address to fetch them from; in node also the path or `file:` URL of a file
  * @returns {Promise<Cube>}
- * @throws {CubeError} if they cannot be fetched, or are no cube, damaged or of a later format
+ * @throws {CubeError} if they cannot be read, or are no cube, damaged or of a later format
  */
 export async function open(source) {
-  const bytes = await read(source);
+  const bytes = await read(await source);
   compiled ??= compile();
   const { exports } = await WebAssembly.instantiate(await compiled, { env: Math });
   return new Cube(exports, bytes);
@@ -40,9 +44,28 @@ export async function open(source) {
 async function read(source) {
   if (source instanceof ArrayBuffer) return new Uint8Array(source);
   if (ArrayBuffer.isView(source)) return new Uint8Array(source.buffer, source.byteOffset, source.byteLength);
-  const response = await fetch(source);
-  if (!response.ok) throw new CubeError(`${source} cannot be fetched: ${response.status}`, NO_FILE);
-  return new Uint8Array(await response.arrayBuffer());
+  const isAddress = typeof source === "string" || source instanceof URL || source instanceof Request;
+  if (!isAddress && typeof source?.arrayBuffer !== "function")
+    throw new TypeError(`open takes bytes, a Blob, a Response or an address, got ${source}`);
+  const name = source.url || String(source);
+  try {
+    if (isAddress && isFile(name)) return await readFile(name);
+    const body = isAddress ? await fetch(source) : source;
+    if (body.ok === false) throw new Error(body.status);
+    return new Uint8Array(await body.arrayBuffer());
+  } catch (error) {
+    throw new CubeError(`${name} cannot be read: ${error.cause?.message ?? error.message}`, NO_FILE);
+  }
+}
+
+// Only node reads files; a page fetches what stands next to it. One letter and a colon are a drive.
+function isFile(address) {
+  return Boolean(globalThis.process?.versions?.node) && /^file:|^(?![a-z][a-z\d+.-]+:)/i.test(address);
+}
+
+async function readFile(address) {
+  const files = await import(/* webpackIgnore: true */ FILES);
+  return files.readFile(/^file:/i.test(address) ? new URL(address) : address);
 }
 
 async function compile() {
@@ -56,7 +79,13 @@ function expectNumbers(name, values, group) {
   throw new RangeError(`${name} must be an array whose length is a multiple of ${group}, got ${values?.length ?? values}`);
 }
 
-/** A cube, in a memory of its own. Methods take linear RGB of n colours, three numbers each; answers have the same order. */
+function expectInside(name, values, low, high, slack, hint) {
+  for (const value of values)
+    if (!(Number.isFinite(value) && value >= low - slack && value <= high + slack))
+      throw new RangeError(`${name} must be in [${low}, ${high}], got ${typeof value === "number" ? value : typeof value}: ${hint}`);
+}
+
+/** A cube, in a memory of its own. Methods take linear RGB of n colours, three numbers in [0, 1] each; answers have the same order. */
 class Cube {
   #exports;
   #pointer;
@@ -76,12 +105,13 @@ class Cube {
   }
 
   /**
-   * Reflectances at N wavelengths in nm; their colours are exactly these RGB, clipped to [0, 1].
+   * Reflectances at N wavelengths in nm; their colours are exactly these RGB.
    * @returns {Float32Array} n rows of N
    * @throws {CubeError} for a colour that is not in the scene of the cube
    */
   reflectances(rgb, wavelengths) {
     expectNumbers("wavelengths", wavelengths, 1);
+    expectInside("wavelengths", wavelengths, ...RANGE, 0, "give nm");
     const evaluate = this.#exports.uplift_reflectances_n;
     const size = wavelengths.length;
     return this.#answer(rgb, size, wavelengths, (colours, count, at, answers) =>
@@ -119,6 +149,9 @@ class Cube {
   // `width` numbers for each colour, block by block, by a function of pointers that returns a result.
   #answer(rgb, width, at, evaluate) {
     expectNumbers("rgb", rgb, 3);
+    if (rgb instanceof Uint8Array || rgb instanceof Uint8ClampedArray)
+      throw new RangeError("linear RGB must be floats, got an array of 8-bit codes: decode them before");
+    expectInside("linear RGB", rgb, 0, 1, SLACK, "decode 8-bit codes, and map colours into the gamut, before");
     const total = rgb.length / 3;
     const found = new Float32Array(total * width);
     const most = Math.min(total, Math.ceil(BLOCK / (3 + width)));

@@ -215,8 +215,6 @@ int uplift_coefficients(const uplift_cube *cube, const float rgb[3], float *coef
     return result;
 }
 
-#if defined(__clang__)
-#pragma clang diagnostic pop
-#endif
+#define UP_POP
 #endif
 #endif

@@ -357,6 +357,15 @@ static int uplift_check_digest(const uplift_content *content)
     return memcmp(digits, content->digest.text, 64) == 0 ? UPLIFT_OK : UPLIFT_DAMAGED;
 }
 
+/* Whether a number is neither NaN nor infinite, by its bits: compilers may be told that none is. */
+static int uplift_is_finite(const double *x)
+{
+    const unsigned long long exponent = 0x7ff0000000000000;
+    unsigned long long bits;
+    memcpy(&bits, x, sizeof bits);
+    return (bits & exponent) != exponent;
+}
+
 /* The array of a name with numbers from `low` to `high`, of one of two types; NULL if there is none, or it is not valid.
    It has one axis if `width` is 0. */
 static const uplift_array *uplift_find_array(
@@ -370,7 +379,7 @@ static const uplift_array *uplift_find_array(
         if (array->rank != (width ? 2 : 1) || array->shape[0] != length || (width && array->shape[1] != width)) return NULL;
         for (size_t i = 0; i < array->length; ++i) {
             double value = uplift_number_at(array, i);
-            if (!(value >= low && value <= high)) return NULL;
+            if (!uplift_is_finite(&value) || value < low || value > high) return NULL;
         }
         return array;
     }

@@ -88,7 +88,7 @@ static int uplift_try_multipliers(const double *c, int count, double *p)
             second += b[k] * b[k + lag];
         }
         p[lag] = (tangent * first - second / tangent) / scale;
-        is_valid = is_valid && fabs(p[lag]) < 1e300; /* not NaN */
+        is_valid = is_valid && uplift_is_finite(p + lag);
     }
     return is_valid;
 }
@@ -97,7 +97,7 @@ static int uplift_try_multipliers(const double *c, int count, double *p)
 static int uplift_multipliers(const uplift_cube *cube, const uplift_array *array, size_t row, int count, double *p)
 {
     static const double greys[] = {0, 1e-10, 1e-8, 1e-6, 1e-4};
-    double given[UPLIFT_MOST_COUNT], mixed[UPLIFT_MOST_COUNT];
+    double given[UPLIFT_MOST_COUNT] = {0}, mixed[UPLIFT_MOST_COUNT];
     for (int k = 0; k < count; ++k) given[k] = p[k] = uplift_number_at(array, row * UPLIFT_CAST(size_t, count) + UPLIFT_CAST(size_t, k));
     if (cube->content.is_sigmoid) return 1;
     for (int turn = 0; turn < 5; ++turn) {
@@ -113,7 +113,7 @@ static int uplift_store(const uplift_cube *cube, const double *p, int count, flo
 {
     double most = cube->content.is_sigmoid ? 1e18 : 1e30;
     for (int k = 0; k < count; ++k) {
-        if (!(fabs(p[k]) <= most)) return 0;
+        if (!uplift_is_finite(p + k) || fabs(p[k]) > most) return 0;
         row[k] = UPLIFT_CAST(float, p[k]);
     }
     return 1;
@@ -223,7 +223,7 @@ static int uplift_invert(double m[3][3], double inverse[3][3])
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) {
             inverse[row][column] /= determinant;
-            if (!(fabs(inverse[row][column]) < 1e30)) return 0;
+            if (!uplift_is_finite(inverse[row] + column) || fabs(inverse[row][column]) > 1e30) return 0;
         }
     return 1;
 }
@@ -280,7 +280,7 @@ static int uplift_read_sensor(const uplift_content *content, uplift_sensor *sens
             sensor->weights[channel][k] = shape * uplift_number_at(power, UPLIFT_CAST(size_t, k)) / (sensitivities ? 1 : scale);
             white += sensor->weights[channel][k];
         }
-        if (!(fabs(white - 1) <= 1e-6)) return UPLIFT_INVALID;
+        if (!uplift_is_finite(&white) || fabs(white - 1) > 1e-6) return UPLIFT_INVALID;
     }
     return UPLIFT_OK;
 }

@@ -1,0 +1,115 @@
+"""Matrix products of compiled functions state their precision: on an accelerator JAX
+would multiply matrices of float32 in TF32, with 10 bits.
+"""
+
+import json
+import re
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from tests.conftest import ROOT
+from tests.helpers import run_python
+from uplift.common.machine import compiled
+
+MACHINE = "uplift/common/machine.py"
+PRODUCT = re.compile(r"stablehlo\.dot_general.*")
+USE = re.compile(r"@compiled\b|(?<!\w)compiled\(")
+FULL = "precision = [HIGHEST, HIGHEST]"
+USES = """
+import json, sys
+import jax, numpy as np
+from uplift.common import machine
+
+jax.config.update("jax_dump_ir_to", sys.argv[1])
+callers = set()
+compiled = machine.compiled
+
+def record(function, **options):
+    caller = sys._getframe(1).f_code.co_filename
+    def traced(*arguments):
+        callers.add(caller)
+        return function(*arguments)
+    return compiled(traced, **options)
+
+machine.compiled = record
+
+import uplift
+from tests.extras.paint.invented import invented, measured, plan
+from tests.helpers import quiet_build
+from uplift.extras.paint import fit_paints
+from uplift.extras.paint.paint_advice import advise_samples
+
+cube = quiet_build("macbeth", dim=3, space="ITU-R BT.2020")
+rgb = np.full((4, 3), 0.5, np.float32)
+uplift.bulk.spectra(cube, [500])(rgb)
+traced = uplift.bulk.traceable(cube, [500])
+sums = lambda rgb, traced: uplift.bulk.evaluate(traced, rgb).sum()
+for transform in (jax.grad, jax.jacfwd):
+    jax.jit(transform(sums))(rgb, traced)
+paints = invented()
+advise_samples(fit_paints(measured(paints, plan(paints))))
+print(json.dumps(sorted(callers)))
+"""
+
+
+def products(text):
+    return PRODUCT.findall(text)
+
+
+@pytest.fixture(scope="module")
+def lowered(tmp_path_factory):
+    """The programs of a build, of queries and of a fit of paints, and the files that
+    compiled them.
+    """
+    folder = tmp_path_factory.mktemp("programs")
+    output = run_python(USES, folder, cwd=ROOT)
+    return json.loads(output), [path.read_text() for path in folder.iterdir()]
+
+
+def test_products_of_all_compiled_functions_are_in_full_precision(lowered):
+    callers, programs = lowered
+    source = {
+        str(path)
+        for folder in ("uplift", "cli")
+        for path in ROOT.glob(f"{folder}/**/*.py")
+        if USE.search(path.read_text())
+    }
+    assert set(callers) == source - {str(ROOT / MACHINE)}
+    found = products("\n".join(programs))
+    assert len(found) > 50
+    assert [line for line in found if FULL not in line] == []
+
+
+def test_nothing_else_compiles():
+    """A plain ``jax.jit`` would leave the precision to the machine."""
+    plain = re.compile(r"\b(p?jit|pmap|xmap)\b(?!`)")
+    for folder in ("uplift", "cli", "benchmarks"):
+        for path in Path(ROOT, folder).rglob("*.py"):
+            text = re.sub(r'"""[\s\S]*?"""|#.*', "", path.read_text())
+            if str(path) != str(ROOT / MACHINE):
+                assert not plain.search(text), path
+
+
+@pytest.mark.parametrize(
+    "product",
+    [
+        lambda a, b: a @ b,
+        lambda a, b: jnp.einsum("ij,kj->ik", a, b),
+        lambda a, b: jnp.tensordot(a, b, 1),
+        lambda a, b: jax.lax.map(lambda row: row @ b, a),
+    ],
+)
+def test_products_however_written_and_derived_are_in_full_precision(product):
+    matrix = np.ones((4, 4), np.float32)
+    total = lambda f: lambda a, b: (f(a, b) ** 2).sum()  # noqa: E731
+    plain = jax.jit(product).lower(matrix, matrix).as_text()
+    assert any(FULL not in line for line in products(plain))  # the pattern finds them
+    full = compiled(product)
+    for transformed in (full, jax.grad(total(full)), jax.hessian(total(full))):
+        found = products(jax.jit(transformed).lower(matrix, matrix).as_text())
+        assert found
+        assert all(FULL in line for line in found)
