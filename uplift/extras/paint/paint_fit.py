@@ -10,7 +10,7 @@ The measured values weigh by their uncertainty. If the samples fit worse than th
 is raised until they fit as expected, since the theory or the parts are then the limit.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,9 +41,9 @@ DARKEST = 0.02
 """Fraction of the measured reflectances that may lie below that of the surface."""
 SURFACE_COUNT = 2
 """Variables of the surface."""
-PRECISION = 1e-4
-"""Relative and absolute change of the variables at which a fit ends."""
-MAX_STEPS = 1000
+PRECISION = 1e-3
+"""Relative change of the objective, or of the variables, at which a fit ends."""
+MAX_STEPS = 200
 ROUNDS = 4
 """Fits with the noise of the one before."""
 STEADY = 1.1
@@ -52,6 +52,9 @@ LEAST_FREEDOM = 0.05
 """Smallest fraction of the measured values that the unknowns leave free."""
 MAX_VARIABLES = 6000
 """Largest number of unknowns, whose square must fit in memory."""
+
+Function = Callable[[Array], Array]
+"""A function of the variables (d,)."""
 
 
 @dataclass(frozen=True)
@@ -149,18 +152,26 @@ class FitModel:
             internal = xp.where(samples.is_opaque[:, None], internal, covered)
         return through_surface(internal, internal, outside, inside)
 
-    def colours(self, z: Any, samples: PaintSamples) -> Any:
-        """Return CIE L*a*b* (n, 3) of samples, whose RGB is clipped as measured."""
+    def colours(
+        self, z: Any, samples: PaintSamples, low: Any = 0.0, high: Any = 1.0
+    ) -> Any:
+        """Return CIE L*a*b* (n, 3) of samples, whose linear sRGB is clipped to [low,
+        high].
+        """
         xp = z.__array_namespace__()
         rgb = self.reflectances(z, samples) @ self.sensor.matrix.T
-        return _lab(xp.clip(rgb, 0, 1), self.sensor)
+        return _lab(xp.clip(rgb, low, high), self.sensor)
 
     def differences(self, z: Any, samples: PaintSamples) -> Any:
         """Return predicted less measured reflectances, or L*, a* and b*."""
         values = samples.measured.values
         if isinstance(samples.measured, MeasuredSpectra):
             return self.reflectances(z, samples) - values
-        return self.colours(z, samples) - _lab(values, self.sensor)
+        # A channel inside [0, 1] was not clipped. To clip its prediction, too, would
+        # leave the fit without a derivative where the prediction is outside.
+        low = np.where(values <= 0, 0.0, -np.inf)
+        high = np.where(values >= 1, 1.0, np.inf)
+        return self.colours(z, samples, low, high) - _lab(values, self.sensor)
 
 
 def fit_paints(
@@ -182,7 +193,7 @@ def fit_paints(
         Reflectances (n, N) of linear sRGB (n, 3) at wavelengths (N,), for samples of
         which only colours are known. By default those of the packaged cube.
     progress : callable, optional
-        Receives a `Progress` of stage ``paints`` after each round.
+        Receives a `Progress` of stage ``paints`` after each step and each round.
 
     Returns
     -------
@@ -229,24 +240,23 @@ def _fit(
     model: FitModel,
     progress: ProgressCallback,
 ) -> PaintFit:
-    import jax
-
     values = samples.measured.values
     noise = _smallest_noise(samples)
     z = np.zeros(model.count)
-    solve = _solver(samples, model)
+    evaluate, differentiate = _compiled(samples, model)
     for done in range(ROUNDS):
-        spread = noise.spread(values)
-        with jax.enable_x64(True):
-            optimum, derivative, is_solved = solve(z, spread)
-        z = np.asarray(optimum)
-        jacobian = np.asarray(derivative)
-        differences = np.asarray(model.differences(z, samples))
+        spread = noise.spread(values).ravel()
+        is_solved = False
+        for step, best, is_solved in _ascend(evaluate, differentiate, spread, z):
+            z = best
+            progress(Progress("paints", done, ROUNDS, step, f"step {step}"))
+        jacobian = differentiate(z) / spread[:, None]
         precision = jacobian.T @ jacobian + np.eye(model.count)
         covariance: Array = np.linalg.inv(precision).astype(float)
         progress(Progress("paints", done + 1, ROUNDS))
         # The trace counts the variables that the prior, not the samples, determines.
         determined = model.count - np.trace(covariance)
+        differences = evaluate(z).reshape(values.shape)
         freedom = max(1 - determined / differences.size, LEAST_FREEDOM)
         squares = differences**2 / freedom
         last, noise = noise, _estimate_noise(samples, squares)
@@ -283,37 +293,56 @@ def _estimate_noise(samples: PaintSamples, squares: Array) -> Noise:
     return Noise(max(absolute, smallest.absolute), max(proportional, smallest.relative))
 
 
-def _solver(
-    samples: PaintSamples, model: FitModel
-) -> Callable[[Array, Array], tuple[Array, Array, bool]]:
-    """Return a compiled function from the start and the spread of the measured values
-    to the variables (d,) of the largest posterior, the Jacobian (m, d) of the
-    residuals there, and whether the solver has converged.
+def _ascend(
+    evaluate: Function, differentiate: Function, spread: Array, start: Array
+) -> Iterator[tuple[int, Array, bool]]:
+    """Yield the number of each step towards the largest posterior, the variables (d,)
+    that it reaches, and whether the steps have converged.
+
+    ``evaluate`` and ``differentiate`` are those of `_compiled`, and ``spread`` (m,) is
+    that of the measured values.
+    """
+    from uplift.fit import Marquardt
+
+    def residuals(y: Array, _: None) -> tuple[Array, None]:
+        return np.append(evaluate(y[0]) / spread, y[0])[None], None
+
+    def normal_equations(y: Array, values: Array) -> tuple[Array, Array]:
+        jacobian = differentiate(y[0]) / spread[:, None]
+        gram = jacobian.T @ jacobian + np.eye(y.size)
+        return gram[None], values[:, : -y.size] @ jacobian + y
+
+    solver = Marquardt(rtol=PRECISION)
+    options = {"normal_equations": normal_equations}
+    y = start[None]
+    state = solver.init(residuals, y, None, options)
+    for step in range(1, MAX_STEPS + 1):
+        y, state, _ = solver.step(residuals, y, None, options, state)
+        is_done = bool(solver.done(state).all())
+        yield step, y[0], is_done
+        if is_done:
+            break
+
+
+def _compiled(samples: PaintSamples, model: FitModel) -> tuple[Function, Function]:
+    """Return compiled functions from variables (d,) to the differences (m,) to the
+    measured values, and to their Jacobian (m, d).
     """
     import jax
-    import lineax
-    import optimistix
 
-    solver = optimistix.LevenbergMarquardt(
-        PRECISION, PRECISION, linear_solver=lineax.Normal(lineax.Cholesky())
-    )
+    def differences(z: Any) -> Any:
+        return model.differences(z, samples).ravel()
 
-    def residuals(z: Any, spread: Any) -> Any:
-        return (model.differences(z, samples) / spread).ravel()
+    def in_double(function: Any) -> Function:
+        compiled = jax.jit(function)
 
-    def with_prior(z: Any, spread: Any) -> Any:
-        return residuals(z, spread), z
+        def evaluate(z: Array) -> Array:
+            with jax.enable_x64(True):
+                return np.asarray(compiled(z))
 
-    @jax.jit
-    def solve(start: Any, spread: Any) -> Any:
-        solution = optimistix.least_squares(
-            with_prior, solver, start, spread, max_steps=MAX_STEPS, throw=False
-        )
-        optimum = solution.value
-        is_solved = solution.result == optimistix.RESULTS.successful
-        return optimum, jax.jacfwd(residuals)(optimum, spread), is_solved
+        return evaluate
 
-    return solve
+    return in_double(differences), in_double(jax.jacfwd(differences))
 
 
 def _paints(
