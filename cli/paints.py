@@ -75,6 +75,7 @@ def fit_fields(fitted: PaintFit, advice: PaintAdvice) -> dict[str, Any]:
     samples = zip(fitted.samples.names, fitted.delta_e.tolist(), strict=True)
     return {
         **paint_fields(fitted.paints),
+        "notes": fitted.samples.notes,
         "noise": asdict(fitted.noise),
         "samples": [{"name": name, "delta_e": error} for name, error in samples],
         "mixtures_error": advice.error,

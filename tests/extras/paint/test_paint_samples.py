@@ -28,7 +28,7 @@ TWO = f"{HEAD}a,1,,{spectrum(0.8)}\nb,1,3,{spectrum(0.2)}\n"
 FILMS = f"""name,white,thickness (mm),ground,{cells(*NM)}
 card,,,,{spectrum(0.85)}
 thin,1,0.25,card,{spectrum(0.8)}
-on black,1,,black,{spectrum(0.4)}
+on black,1,1,black,{spectrum(0.4)}
 thick,1,,,{spectrum(0.9)}
 """
 COLOURS = "name,white,blue,colour\na,1,,#ffffff\nb,,1,#0000ff\nc,1,1,#8080c0\n"
@@ -183,7 +183,7 @@ INVALID = {
     "parts not a number": (TWO.replace(",3,", ",nan,"), "invalid-parts", 3),
     "negative parts": (TWO.replace(",3,", ",-3,"), "invalid-parts", 3),
     "a letter for a digit": (TWO.replace("a,1,,", "a,1,1o,"), "invalid-parts", 2),
-    "no part": (TWO.replace("1,,", ",,").replace("1,3,", ",,"), "atlas", 0),
+    "no part": (TWO.replace("1,,", ",,").replace("1,3,", ",,"), "no-paints", 0),
     "negative thickness": (FILMS.replace("0.25", "-1"), "atlas", 3),
     "thickness 0": (FILMS.replace("0.25", "0"), "atlas", 3),
     "infinite thickness": (FILMS.replace("0.25", "inf"), "atlas", 3),

@@ -10,14 +10,15 @@ The measured values weigh by their uncertainty. If the samples fit worse than th
 is raised until they fit as expected, since the theory or the parts are then the limit.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import count
 from typing import Any
 
 import numpy as np
 
 from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError, UpliftWarning, warn
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
@@ -246,10 +247,11 @@ def _fit(
     evaluate, differentiate = _compiled(samples, model)
     for done in range(ROUNDS):
         spread = noise.spread(values).ravel()
-        is_solved = False
-        for step, best, is_solved in _ascend(evaluate, differentiate, spread, z):
-            z = best
+
+        def report(step: int, done: int = done) -> None:
             progress(Progress("paints", done, ROUNDS, step, f"step {step}"))
+
+        z, is_solved = _ascend(evaluate, differentiate, spread, z, report)
         jacobian = differentiate(z) / spread[:, None]
         precision = jacobian.T @ jacobian + np.eye(model.count)
         covariance: Array = np.linalg.inv(precision).astype(float)
@@ -294,17 +296,25 @@ def _estimate_noise(samples: PaintSamples, squares: Array) -> Noise:
 
 
 def _ascend(
-    evaluate: Function, differentiate: Function, spread: Array, start: Array
-) -> Iterator[tuple[int, Array, bool]]:
-    """Yield the number of each step towards the largest posterior, the variables (d,)
-    that it reaches, and whether the steps have converged.
+    evaluate: Function,
+    differentiate: Function,
+    spread: Array,
+    start: Array,
+    report: Callable[[int], None],
+) -> tuple[Array, bool]:
+    """Return the variables (d,) of the largest posterior, and whether the steps to them
+    have converged.
 
     ``evaluate`` and ``differentiate`` are those of `_compiled`, and ``spread`` (m,) is
     that of the measured values.
     """
     from uplift.fit import Marquardt
+    from uplift.fit.solver import iterate_rows
 
-    def residuals(y: Array, _: None) -> tuple[Array, None]:
+    steps = count()
+
+    def residuals(y: Array, _: Indices) -> tuple[Array, None]:
+        report(next(steps))
         return np.append(evaluate(y[0]) / spread, y[0])[None], None
 
     def normal_equations(y: Array, values: Array) -> tuple[Array, Array]:
@@ -314,14 +324,8 @@ def _ascend(
 
     solver = Marquardt(rtol=PRECISION)
     options = {"normal_equations": normal_equations}
-    y = start[None]
-    state = solver.init(residuals, y, None, options)
-    for step in range(1, MAX_STEPS + 1):
-        y, state, _ = solver.step(residuals, y, None, options, state)
-        is_done = bool(solver.done(state).all())
-        yield step, y[0], is_done
-        if is_done:
-            break
+    found = iterate_rows(solver, residuals, start[None], lambda _: options, MAX_STEPS)
+    return found[0], next(steps) <= MAX_STEPS
 
 
 def _compiled(samples: PaintSamples, model: FitModel) -> tuple[Function, Function]:

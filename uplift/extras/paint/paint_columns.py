@@ -1,0 +1,198 @@
+"""Columns of a table of recipes: which are paints, by their labels and their parts.
+
+A column whose label names another quantity is not a paint. Of the others all are, if
+their parts make up the same whole in each row, or else those that do so without a few.
+Parts in other units, such as 1 to 4, have no whole. There, a column that has a number
+in each row next to paints that have not cannot be told from another quantity.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from uplift.atlas import SourceLocation
+from uplift.common.arrays import Array
+from uplift.common.errors import AtlasError
+from uplift.common.text import format_value
+from uplift.extras.files.csv import is_decimal, parse_decimal
+from uplift.extras.formats.tables.cells import parse_label
+from uplift.extras.formats.tables.grid import NAME_LABELS, plain_label
+
+COLOUR_LABELS = ("colour", "color", "hex", "srgb")
+MICROMETRES = {
+    "nm": 1e-3,
+    "um": 1.0,
+    "µm": 1.0,  # the micro sign
+    "μm": 1.0,  # the Greek letter, its lower case
+    "micron": 1.0,
+    "mil": 25.4,
+    "mm": 1e3,
+    "cm": 1e4,
+}
+"""Units of thickness."""
+LENGTH = "|".join(f"{unit}s?" for unit in MICROMETRES)
+THICKNESS = re.compile(
+    rf"(\w+ )?(\w+ )?(thickness|dft|wft|(film|layer|coat) (height|depth|build))"
+    rf"( ({LENGTH}))?"
+)
+GROUND = re.compile(r"(ground|substrate|backing|background)( (name|colour|color))?")
+OTHER = re.compile(
+    r"total|sum|weight|mass|amount|quantity|qty|volume|density|viscosity|solids|ph|"
+    r"batch|lot|no|nr|num|number|id|uid|index|row|line|page|panel|sheet|card|position|"
+    r"run|rep|replicate|test|series|sample|patch|date|time|day|month|year|age|operator|"
+    r"instrument|observer|angle|geometry|aperture|description|comments?|remarks?|"
+    r"gloss|haze|opacity|hiding|contrast|ratio|coverage|price|cost|count|layers?|coats?|"
+    r"temp|temperature|humidity|rh|delta|δ?[eabhlc]|d[eabhlc]|hue|chroma|lightness|"
+    r"luminance|whiteness|yellowness|thickness|film|dry|drying|wet|paint|mix|mixture|"
+    r"mixing|mean|average|avg|std|sd|stdev|deviation|error|min|max|[rgbxyzlhsvu]|"
+    rf"{LENGTH}|m?g|kg|ml|f|gu|deg|percent"
+)
+"""Words of labels that name other quantities, with their units."""
+SPACES = ("rgb", "xyz", "xy", "lab", "lch", "luv", "hsv", "hsl")
+"""Letters that name colours if all of them are labels. One alone may be a paint."""
+STATED = re.compile(
+    r"\(parts\)|\b(white|base|medium|binder|vehicle|extender|PW ?\d+)\b", re.IGNORECASE
+)
+"""Paints that samples may all have."""
+WHOLES = (1, 100)
+ROUNDING = 0.02
+"""Tolerance of a whole, relative."""
+MAX_OTHERS = 2
+"""Most columns without which the others may make up a whole."""
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Positions of columns."""
+
+    name: int
+    thickness: int | None
+    ground: int | None
+    colour: int | None
+    paints: dict[str, int]
+    unused: tuple[str, ...]
+    """Labels of columns that are not used."""
+
+
+def find_columns(
+    head: Sequence[str], rows: Sequence[Sequence[str]], location: SourceLocation
+) -> Columns:
+    """Tell columns apart by the header and the rows below, which are as long. Raise
+    `AtlasError` for one that cannot be told.
+    """
+    labels = [plain_label(text) for text in head]
+    words = [_words(text) for text in head]
+    cells = list(zip(*rows, strict=True)) or [("",)] * len(head)
+    names = [labels.index(label) for label in NAME_LABELS if label in labels] or [0]
+    colours = [at for at, label in enumerate(labels) if label in COLOUR_LABELS]
+    films = [at for at, text in enumerate(words) if THICKNESS.fullmatch(text)]
+    grounds = [at for at, text in enumerate(words) if GROUND.fullmatch(text)]
+    for repeated in (*films[1:], *grounds[1:]):
+        raise _ambiguous(head[repeated], "a second thickness or ground", location)
+    known = {names[0], *colours, *films, *grounds}
+    columns = [
+        at
+        for at, text in enumerate(head)
+        if at not in known and parse_label(text) is None and any(cells[at])
+    ]
+    below = cells[grounds[0]] if grounds else ()
+    painted = [name not in below for name in cells[names[0]]]
+    letters = "".join(filter(set(words).issuperset, SPACES))
+    candidates = {
+        at: np.array(list(map(parse_parts, cells[at])))[painted]
+        for at in columns
+        if any(map(_is_number, cells[at]))
+        and not _is_other(head[at], words[at], letters)
+    }
+    paints = dict[str, int]()
+    for at in _paints(candidates, head, location):
+        label = head[at].replace("(parts)", "").strip()
+        if label in paints:
+            raise location.error(
+                f"two columns have the name {format_value(label)}",
+                "rename one of the paints",
+            )
+        paints[label] = at
+    unused = [head[at] for at in columns if at not in paints.values()]
+    return Columns(
+        names[0],
+        next(iter(films), None),
+        next(iter(grounds), None),
+        next(iter(colours), None),
+        paints,
+        tuple(unused),
+    )
+
+
+def parse_parts(cell: str) -> float:
+    """Parse the parts in a cell, perhaps in percent; NaN for other text."""
+    if not cell:
+        return 0.0
+    if not _is_number(cell):
+        return np.nan
+    return parse_decimal(cell.rstrip("% ")) / (100 if "%" in cell else 1)
+
+
+def _is_number(cell: str) -> bool:
+    return is_decimal(cell.rstrip("% "))
+
+
+def _words(label: str) -> str:
+    """Return the words of a label in lower case, without what is in brackets."""
+    plain = re.sub(r"[(\[].*", "", label)
+    spaced = re.sub(r"(?<=[a-z]{2})(?=[A-Z])", " ", plain)
+    return " ".join(re.findall(r"[^\W\d_]+", spaced.casefold()))
+
+
+def _is_other(label: str, words: str, letters: str) -> bool:
+    """Whether a label names another quantity than the parts of a paint. ``letters`` are
+    those of colours.
+    """
+    if STATED.search(label):
+        return False
+    if "*" in label or not words or "note" in words.split():
+        return True
+    if len(words) == 1:
+        return words in letters
+    return all(map(OTHER.fullmatch, words.split()))
+
+
+def _paints(
+    candidates: dict[int, Array], head: Sequence[str], location: SourceLocation
+) -> list[int]:
+    """Return the columns (n,) that make up a whole without few others, or else all."""
+    for count in range(MAX_OTHERS + 1):
+        for others in combinations(candidates, count):
+            rest = [at for at in candidates if at not in others]
+            if _is_whole(candidates, rest):
+                return rest
+    present = np.array([values > 0 for values in candidates.values()])
+    counts = present.sum(axis=0)
+    is_mixed = counts[counts > 0] > 1
+    for at, values in candidates.items():
+        is_everywhere = is_mixed.all() and values[counts > 0].all()
+        if is_everywhere and not STATED.search(head[at]):
+            raise _ambiguous(head[at], "another quantity, in each sample", location)
+    return list(candidates)
+
+
+def _is_whole(candidates: dict[int, Array], columns: Sequence[int]) -> bool:
+    """Whether columns make up one of `WHOLES` in all rows with numbers, and some rows
+    mix them.
+    """
+    parts = np.array([candidates[at] for at in columns])
+    if not (parts > 0).sum(axis=0).max(initial=0) > 1:
+        return False
+    sums = parts.sum(axis=0)[np.any(list(candidates.values()), axis=0)]
+    return any((abs(sums / whole - 1) <= ROUNDING).all() for whole in WHOLES)
+
+
+def _ambiguous(label: str, other: str, location: SourceLocation) -> AtlasError:
+    return location.error(
+        f"column {format_value(label)} may be the parts of a paint, or {other}",
+        f"rename it '{label} (parts)' or 'note {label}'",
+        code="ambiguous-column",
+    )
