@@ -35,10 +35,13 @@ MICROMETRES = {
 """Units of thickness."""
 LENGTH = "|".join(f"{unit}s?" for unit in MICROMETRES)
 THICKNESS = re.compile(
-    rf"(\w+ )?(\w+ )?(thickness|dft|wft|(film|layer|coat) (height|depth|build))"
+    r"(?!.*\b(std|sd|stdev|deviation|error)\b)"
+    r"(\w+ )*(thickness|dft|wft|(film|layer|coat) (height|depth|build))"
     rf"( ({LENGTH}))?"
 )
-GROUND = re.compile(r"(ground|substrate|backing|background)( (name|colour|color))?")
+GROUND = re.compile(
+    r"(ground|substrate|backing|background|support)( (name|colour|color))?"
+)
 OTHER = re.compile(
     r"total|sum|weight|mass|amount|quantity|qty|volume|density|viscosity|solids|ph|"
     r"batch|lot|no|nr|num|number|id|uid|index|row|line|page|panel|sheet|card|position|"
@@ -88,16 +91,14 @@ def find_columns(
     cells = list(zip(*rows, strict=True)) or [("",)] * len(head)
     names = [labels.index(label) for label in NAME_LABELS if label in labels] or [0]
     colours = [at for at, label in enumerate(labels) if label in COLOUR_LABELS]
-    films = [at for at, text in enumerate(words) if THICKNESS.fullmatch(text)]
-    grounds = [at for at, text in enumerate(words) if GROUND.fullmatch(text)]
+    filled = [at for at, column in enumerate(cells) if any(column)]
+    films = [at for at in filled if THICKNESS.fullmatch(words[at])]
+    grounds = [at for at in filled if GROUND.fullmatch(words[at])]
     for repeated in (*films[1:], *grounds[1:]):
-        raise _ambiguous(head[repeated], "a second thickness or ground", location)
+        problem = "states a thickness or ground, as another one does"
+        raise _ambiguous(head[repeated], problem, location)
     known = {names[0], *colours, *films, *grounds}
-    columns = [
-        at
-        for at, text in enumerate(head)
-        if at not in known and parse_label(text) is None and any(cells[at])
-    ]
+    columns = [at for at in filled if at not in known and parse_label(head[at]) is None]
     below = cells[grounds[0]] if grounds else ()
     painted = [name not in below for name in cells[names[0]]]
     letters = "".join(filter(set(words).issuperset, SPACES))
@@ -175,7 +176,8 @@ def _paints(
     for at, values in candidates.items():
         is_everywhere = is_mixed.all() and values[counts > 0].all()
         if is_everywhere and not STATED.search(head[at]):
-            raise _ambiguous(head[at], "another quantity, in each sample", location)
+            problem = "may be a paint of all samples, or another quantity"
+            raise _ambiguous(head[at], problem, location)
     return list(candidates)
 
 
@@ -190,9 +192,10 @@ def _is_whole(candidates: dict[int, Array], columns: Sequence[int]) -> bool:
     return any((abs(sums / whole - 1) <= ROUNDING).all() for whole in WHOLES)
 
 
-def _ambiguous(label: str, other: str, location: SourceLocation) -> AtlasError:
+def _ambiguous(label: str, problem: str, location: SourceLocation) -> AtlasError:
     return location.error(
-        f"column {format_value(label)} may be the parts of a paint, or {other}",
-        f"rename it '{label} (parts)' or 'note {label}'",
+        f"column {format_value(label)} {problem}",
+        f"rename it 'note {label}' if it is not to be used, '{label} (parts)' if it is "
+        "a paint",
         code="ambiguous-column",
     )

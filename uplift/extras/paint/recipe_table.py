@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.atlas import SourceLocation, read_document
+from uplift.atlas import SourceLocation, read_document, truncate
 from uplift.common.arrays import StrPath
 from uplift.common.text import format_value
 from uplift.extras.files.csv import (
@@ -17,7 +17,6 @@ from uplift.extras.files.csv import (
     parse_decimal,
     split_line,
 )
-from uplift.extras.formats.measurements import not_used_note
 from uplift.extras.formats.tables.cells import parse_label
 from uplift.extras.paint.coats import MAX_THICKNESS
 from uplift.extras.paint.paint_columns import (
@@ -29,6 +28,7 @@ from uplift.extras.paint.paint_columns import (
 )
 
 UNIT = re.compile(rf"(?<![^\W\d_])({LENGTH})(?![^\W_])", re.IGNORECASE)
+THOUSANDS = re.compile(r"[1-9]\d{0,2},\d{3}")
 
 
 @dataclass(frozen=True)
@@ -75,10 +75,12 @@ def read_recipes(path: StrPath) -> RecipeTable:
     rows = [(number, split_line(line, delimiter)) for number, line in content]
     location = document.location
     start, head = next(
-        ((at, row) for at, (_, row) in enumerate(rows) if len(row) > 1), (0, [""])
+        ((at, row) for at, (_, row) in enumerate(rows) if len(row) > 1), (0, [])
     )
+    width = max((len(row) for _, row in rows), default=1)
+    head = [*head, *[""] * (width - len(head))]
     padded = [
-        (number, [*row, *[""] * (len(head) - len(row))])
+        (number, [*row, *[""] * (width - len(row))])
         for number, row in rows[start + 1 :]
         if any(row)
     ]
@@ -89,23 +91,36 @@ def read_recipes(path: StrPath) -> RecipeTable:
             "name columns after the paints, and write their parts in each row",
             code="no-paints",
         )
+    if delimiter == ",":
+        _check_thousands(padded, columns, location)
+    films = [_cell(cells, columns.thickness) for _, cells in padded]
     label = _cell(head, columns.thickness)
-    recipes = tuple(_recipes(padded, columns, label, location))
+    unit = next(filter(None, map(_unit, (label, *films))), "")
+    recipes = tuple(_recipes(padded, columns, unit, location))
     has_spectra = any(parse_label(text) is not None for text in head)
-    notes = not_used_note(columns.unused)
-    return RecipeTable(tuple(columns.paints), recipes, location, has_spectra, notes)
+    notes = list[str]()
+    if columns.unused:
+        labels = [truncate(label) or "(no label)" for label in columns.unused]
+        notes.append(f"not used: {', '.join(labels)}")
+    if unit:
+        notes.append(f"thickness in {unit}")
+    if columns.thickness is None and any(
+        np.isfinite(recipe.thickness) for recipe in recipes
+    ):
+        notes.append("no thickness is stated: that of all films is 1")
+    return RecipeTable(
+        tuple(columns.paints), recipes, location, has_spectra, tuple(notes)
+    )
 
 
 def _recipes(
     rows: Sequence[tuple[int, Sequence[str]]],
     columns: Columns,
-    label: str,
+    unit: str,
     location: SourceLocation,
 ) -> Iterator[Recipe]:
-    """Yield the recipes of rows. ``label`` is that of the thickness."""
+    """Yield the recipes of rows, with thicknesses in a unit."""
     names = set[str]()
-    films = [text for _, cells in rows if (text := _cell(cells, columns.thickness))]
-    unit = next(filter(None, map(_unit, (label, *films))), "")
     for line, cells in rows:
         name = cells[columns.name]
         here = location.at(line, name)
@@ -121,7 +136,8 @@ def _recipes(
         )
         ground = _cell(cells, columns.ground)
         text = _cell(cells, columns.thickness)
-        if films and any(parts) and bool(text) != bool(ground):
+        is_stated = columns.thickness is not None and any(parts)
+        if is_stated and bool(text) != bool(ground):
             raise here.error(
                 "a film must have a thickness and a ground, got "
                 f"{format_value(text)} and {format_value(ground)}",
@@ -139,6 +155,24 @@ def _recipes(
             _cell(cells, columns.colour),
             line,
         )
+
+
+def _check_thousands(
+    rows: Sequence[tuple[int, Sequence[str]]],
+    columns: Columns,
+    location: SourceLocation,
+) -> None:
+    """Raise for parts with a comma that may be that of decimals or of thousands."""
+    for line, cells in rows:
+        for column in columns.paints.values():
+            if THOUSANDS.fullmatch(cells[column]):
+                raise location.at(line).error(
+                    f"parts {format_value(cells[column])} may be "
+                    f"{cells[column].replace(',', '')} or "
+                    f"{cells[column].replace(',', '.')}",
+                    "write them without a comma",
+                    code="invalid-parts",
+                )
 
 
 def _cell(cells: Sequence[str], column: int | None) -> str:
