@@ -172,9 +172,9 @@ def _paints(
                 return rest
     present = np.array([values > 0 for values in candidates.values()])
     counts = present.sum(axis=0)
-    is_mixed = counts[counts > 0] > 1
+    is_mixed = counts.any() and (counts != 1).all()
     for at, values in candidates.items():
-        is_everywhere = is_mixed.all() and values[counts > 0].all()
+        is_everywhere = is_mixed and values[counts > 0].all()
         if is_everywhere and not STATED.search(head[at]):
             problem = "may be a paint of all samples, or another quantity"
             raise _ambiguous(head[at], problem, location)
