@@ -17,8 +17,7 @@ from uplift.atlas import SourceLocation
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
 from uplift.common.text import format_value
-from uplift.extras.files.csv import is_decimal, parse_decimal
-from uplift.extras.formats.tables.cells import parse_label
+from uplift.extras.formats.tables.cells import is_value, parse_cell, parse_label
 from uplift.extras.formats.tables.grid import NAME_LABELS, plain_label
 
 COLOUR_LABELS = ("colour", "color", "hex", "srgb")
@@ -103,10 +102,9 @@ def find_columns(
     painted = [name not in below for name in cells[names[0]]]
     letters = "".join(filter(set(words).issuperset, SPACES))
     candidates = {
-        at: np.array(list(map(parse_parts, cells[at])))[painted]
+        at: _amounts(cells[at])[painted]
         for at in columns
-        if any(map(_is_number, cells[at]))
-        and not _is_other(head[at], words[at], letters)
+        if any(map(is_value, cells[at])) and not _is_other(head[at], words[at], letters)
     }
     paints = dict[str, int]()
     for at in _paints(candidates, head, location):
@@ -128,17 +126,9 @@ def find_columns(
     )
 
 
-def parse_parts(cell: str) -> float:
-    """Parse the parts in a cell, perhaps in percent; NaN for other text."""
-    if not cell:
-        return 0.0
-    if not _is_number(cell):
-        return np.nan
-    return parse_decimal(cell.rstrip("% ")) / (100 if "%" in cell else 1)
-
-
-def _is_number(cell: str) -> bool:
-    return is_decimal(cell.rstrip("% "))
+def _amounts(cells: Sequence[str]) -> Array:
+    """Return the numbers of cells, 0 for others."""
+    return np.nan_to_num([parse_cell(cell) or 0.0 for cell in cells])
 
 
 def _words(label: str) -> str:

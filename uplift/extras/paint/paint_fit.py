@@ -54,8 +54,8 @@ LEAST_FREEDOM = 0.05
 MAX_VARIABLES = 6000
 """Largest number of unknowns, whose square must fit in memory."""
 
-Function = Callable[[Array], Array]
-"""A function of the variables (d,)."""
+Function = Callable[[Array], Any]
+"""A compiled function of the variables (d,)."""
 
 
 @dataclass(frozen=True)
@@ -216,6 +216,8 @@ def fit_paints(
     Walowit, McCarthy & Berns 1987, "An algorithm for the optimization of Kubelka-Munk
     absorption and scattering coefficients", Color Research & Application 12.
     """
+    import jax
+
     nm = samples.wavelengths
     sensor = observer.sensor(wavelengths=(nm[0], nm[-1], nm[1] - nm[0]))
     spectra = samples.measured.values
@@ -233,7 +235,8 @@ def fit_paints(
             code="too-many-paints",
             hint="fit fewer paints at a time, or measure in steps of 10 nm",
         )
-    return _fit(samples, model, progress)
+    with jax.enable_x64(True):
+        return _fit(samples, model, progress)
 
 
 def _fit(
@@ -241,10 +244,18 @@ def _fit(
     model: FitModel,
     progress: ProgressCallback,
 ) -> PaintFit:
+    import jax
+
     values = samples.measured.values
     noise = _smallest_noise(samples)
     z = np.zeros(model.count)
-    evaluate, differentiate = _compiled(samples, model)
+
+    @jax.jit
+    def evaluate(z: Any) -> Any:
+        """Return the differences (m,) to the measured values."""
+        return model.differences(z, samples).ravel()
+
+    differentiate = jax.jit(jax.jacfwd(evaluate))
     for done in range(ROUNDS):
         spread = noise.spread(values).ravel()
 
@@ -252,13 +263,13 @@ def _fit(
             progress(Progress("paints", done, ROUNDS, step, f"step {step}"))
 
         z, is_solved = _ascend(evaluate, differentiate, spread, z, report)
-        jacobian = differentiate(z) / spread[:, None]
+        jacobian = np.asarray(differentiate(z)) / spread[:, None]
         precision = jacobian.T @ jacobian + np.eye(model.count)
         covariance: Array = np.linalg.inv(precision).astype(float)
         progress(Progress("paints", done + 1, ROUNDS))
         # The trace counts the variables that the prior, not the samples, determines.
         determined = model.count - np.trace(covariance)
-        differences = evaluate(z).reshape(values.shape)
+        differences = np.asarray(evaluate(z)).reshape(values.shape)
         freedom = max(1 - determined / differences.size, LEAST_FREEDOM)
         squares = differences**2 / freedom
         last, noise = noise, _estimate_noise(samples, squares)
@@ -305,8 +316,8 @@ def _ascend(
     """Return the variables (d,) of the largest posterior, and whether the steps to them
     have converged.
 
-    ``evaluate`` and ``differentiate`` are those of `_compiled`, and ``spread`` (m,) is
-    that of the measured values.
+    ``evaluate`` maps variables to the differences (m,) to the measured values, and
+    ``differentiate`` to their Jacobian (m, d). ``spread`` (m,) is that of the values.
     """
     from uplift.fit import Marquardt
     from uplift.fit.solver import iterate_rows
@@ -318,7 +329,7 @@ def _ascend(
         return np.append(evaluate(y[0]) / spread, y[0])[None], None
 
     def normal_equations(y: Array, values: Array) -> tuple[Array, Array]:
-        jacobian = differentiate(y[0]) / spread[:, None]
+        jacobian = np.asarray(differentiate(y[0])) / spread[:, None]
         gram = jacobian.T @ jacobian + np.eye(y.size)
         return gram[None], values[:, : -y.size] @ jacobian + y
 
@@ -326,27 +337,6 @@ def _ascend(
     options = {"normal_equations": normal_equations}
     found = iterate_rows(solver, residuals, start[None], lambda _: options, MAX_STEPS)
     return found[0], next(steps) <= MAX_STEPS
-
-
-def _compiled(samples: PaintSamples, model: FitModel) -> tuple[Function, Function]:
-    """Return compiled functions from variables (d,) to the differences (m,) to the
-    measured values, and to their Jacobian (m, d).
-    """
-    import jax
-
-    def differences(z: Any) -> Any:
-        return model.differences(z, samples).ravel()
-
-    def in_double(function: Any) -> Function:
-        compiled = jax.jit(function)
-
-        def evaluate(z: Array) -> Array:
-            with jax.enable_x64(True):
-                return np.asarray(compiled(z))
-
-        return evaluate
-
-    return in_double(differences), in_double(jax.jacfwd(differences))
 
 
 def _paints(

@@ -17,14 +17,13 @@ from uplift.extras.files.csv import (
     parse_decimal,
     split_line,
 )
-from uplift.extras.formats.tables.cells import parse_label
+from uplift.extras.formats.tables.cells import parse_cell, parse_label
 from uplift.extras.paint.coats import MAX_THICKNESS
 from uplift.extras.paint.paint_columns import (
     LENGTH,
     MICROMETRES,
     Columns,
     find_columns,
-    parse_parts,
 )
 
 UNIT = re.compile(rf"(?<![^\W\d_])({LENGTH})(?![^\W_])", re.IGNORECASE)
@@ -91,12 +90,10 @@ def read_recipes(path: StrPath) -> RecipeTable:
             "name columns after the paints, and write their parts in each row",
             code="no-paints",
         )
-    if delimiter == ",":
-        _check_thousands(padded, columns, location)
     films = [_cell(cells, columns.thickness) for _, cells in padded]
     label = _cell(head, columns.thickness)
     unit = next(filter(None, map(_unit, (label, *films))), "")
-    recipes = tuple(_recipes(padded, columns, unit, location))
+    recipes = tuple(_recipes(padded, columns, unit, delimiter, location))
     has_spectra = any(parse_label(text) is not None for text in head)
     notes = list[str]()
     if columns.unused:
@@ -117,6 +114,7 @@ def _recipes(
     rows: Sequence[tuple[int, Sequence[str]]],
     columns: Columns,
     unit: str,
+    delimiter: str,
     location: SourceLocation,
 ) -> Iterator[Recipe]:
     """Yield the recipes of rows, with thicknesses in a unit."""
@@ -131,7 +129,7 @@ def _recipes(
             )
         names.add(name)
         parts = tuple(
-            _parts(paint, cells[column], here)
+            _parts(paint, cells[column], delimiter, here)
             for paint, column in columns.paints.items()
         )
         ground = _cell(cells, columns.ground)
@@ -157,35 +155,19 @@ def _recipes(
         )
 
 
-def _check_thousands(
-    rows: Sequence[tuple[int, Sequence[str]]],
-    columns: Columns,
-    location: SourceLocation,
-) -> None:
-    """Raise for parts with a comma that may be that of decimals or of thousands."""
-    for line, cells in rows:
-        for column in columns.paints.values():
-            if THOUSANDS.fullmatch(cells[column]):
-                raise location.at(line).error(
-                    f"parts {format_value(cells[column])} may be "
-                    f"{cells[column].replace(',', '')} or "
-                    f"{cells[column].replace(',', '.')}",
-                    "write them without a comma",
-                    code="invalid-parts",
-                )
-
-
 def _cell(cells: Sequence[str], column: int | None) -> str:
     return "" if column is None else cells[column]
 
 
-def _parts(paint: str, text: str, location: SourceLocation) -> float:
-    parts = parse_parts(text)
-    if not 0 <= parts < np.inf:
+def _parts(paint: str, text: str, delimiter: str, location: SourceLocation) -> float:
+    parts = parse_cell(text) if text else 0.0
+    # Next to commas between cells, that of "1,250" may be of thousands or of decimals.
+    is_ambiguous = delimiter == "," and THOUSANDS.fullmatch(text)
+    if is_ambiguous or parts is None or not 0 <= parts < np.inf:
         raise location.error(
             f"parts of {format_value(paint)} must be finite and at least 0, got "
             f"{format_value(text)}",
-            "correct them, or delete the column if it is not a paint",
+            "write 1250 or 1.25, or delete the column if it is not a paint",
             code="invalid-parts",
         )
     return parts
