@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 
 from uplift.common.errors import ColourError, OptionError, UpliftWarning
 from uplift.common.text import format_value
-from uplift.extras.files.csv import parse_decimal
+from uplift.extras.files.csv import is_decimal, parse_decimal
 
 from .colours import ColourSource
 from .output.diagnostics import warn
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
+    from uplift.colorimetry import Sensor
     from uplift.common.arrays import Array
     from uplift.extras.colour.spaces import ImageSpace
     from uplift.extras.paint import Paints
@@ -43,6 +44,8 @@ class SpectrumResolver:
     method: str = "error"
     paints: Paints | None = None
     """Measured paints, at other wavelengths."""
+    sensor: Sensor | None = None
+    """Sensor of the mixture, by default that of the cube."""
 
     def ingredient(
         self, word: str, kind: str = "pigment"
@@ -53,7 +56,7 @@ class SpectrumResolver:
         Of the kind 'duntley' the name is a file of constants, which replace the
         spectrum (6, N), and of the kind 'measured' that of a paint, with K and S
         (2, N). Raises `ColourError` for unknown names, `OptionError` for parts
-        that are not positive, `AtlasError` for files.
+        below 0, `AtlasError` for files.
         """
         import numpy as np
 
@@ -68,7 +71,7 @@ class SpectrumResolver:
         name = word.strip()
         match = None if name in entries else PARTS.match(name)
         if match:
-            parts = _positive(match[1], word)
+            parts = _parse_parts(match[1], word)
             name = match[2].strip()
         if kind == "duntley":
             return name, parts, read_constants(name, self.wavelengths), None
@@ -124,12 +127,9 @@ class SpectrumResolver:
         return self.cube.reflectance(mapped.rgb, self.wavelengths)
 
 
-def _positive(text: str, word: str) -> float:
-    try:
-        parts = parse_decimal(text)
-    except ValueError:
-        parts = 0.0
-    if not 0 < parts < float("inf"):
-        problem = f"parts must be a number above 0, got {format_value(word)}"
+def _parse_parts(text: str, word: str) -> float:
+    parts = parse_decimal(text) if is_decimal(text) else -1.0
+    if not 0 <= parts < float("inf"):
+        problem = f"parts must be a number of at least 0, got {format_value(word)}"
         raise OptionError(problem, hint="write for example '2:#1f3a93'")
     return parts

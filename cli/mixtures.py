@@ -22,9 +22,13 @@ from .output.console import has_colours, make_table, print_json, show
 from .output.diagnostics import warn
 
 if TYPE_CHECKING:
+    from uplift.colorimetry import Sensor
     from uplift.common.arrays import Array
     from uplift.extras.paint import Ingredients, Medium
     from uplift.lookup import Cube
+
+MIXTURE_MAPPING = "scale"
+"""How mixtures are mapped into the gamut: it keeps the hue of bright ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +36,7 @@ class Recipe:
     """Ingredients with their names and parts."""
 
     cube: Cube
+    sensor: Sensor
     kind: str
     names: Sequence[str]
     parts: tuple[float, ...]
@@ -49,9 +54,12 @@ def read_recipe(resolver: SpectrumResolver, words: Sequence[str], kind: str) -> 
     from uplift.extras.paint import Ingredients
 
     ingredients = [resolver.ingredient(word, kind) for word in words]
+    # What is not in a mixture has no place on its ramp either.
+    ingredients = [row for row in ingredients if row[1] > 0] or ingredients
     names, parts, spectra, on_black = zip(*ingredients, strict=True)
     stacked = Ingredients(np.stack(spectra), on_black)
-    return Recipe(resolver.cube, kind, names, parts, stacked)
+    sensor = resolver.sensor or resolver.cube.data.sensor
+    return Recipe(resolver.cube, sensor, kind, names, parts, stacked)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +83,7 @@ def mix_ramp(
     from uplift.extras.paint.coats import ramp
 
     cube = recipe.cube
-    sensor = cube.data.sensor
+    sensor = recipe.sensor
     parts = recipe.parts
     amounts = np.concatenate([np.array(parts)[None], ramp(parts, steps)])
     if backing is None:

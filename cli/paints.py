@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from uplift.common.text import pluralise
 
+from .mixtures import MIXTURE_MAPPING
 from .output.console import make_table, paragraph, print_fields, say, show, swatch
 
 if TYPE_CHECKING:
@@ -64,10 +65,14 @@ def read_target(
 
 
 def _hex(paints: Paints, reflectance: Array) -> list[str]:
-    """Return '#rrggbb' of reflectances (n, N) at the wavelengths of paints."""
+    """Return '#rrggbb' of reflectances (n, N) at the wavelengths of paints, as `uplift
+    mix` does.
+    """
+    from uplift.colorimetry.gamut import map_to_gamut
     from uplift.extras.colour.srgb import hex_codes
 
-    return hex_codes(paints.sensor.rgb(reflectance))
+    rgb = paints.sensor.rgb(reflectance)
+    return hex_codes(map_to_gamut(rgb, paints.sensor, MIXTURE_MAPPING).rgb)
 
 
 def fit_fields(fitted: PaintFit, advice: PaintAdvice) -> dict[str, Any]:
@@ -75,6 +80,7 @@ def fit_fields(fitted: PaintFit, advice: PaintAdvice) -> dict[str, Any]:
     samples = zip(fitted.samples.names, fitted.delta_e.tolist(), strict=True)
     return {
         **paint_fields(fitted.paints),
+        "notes": fitted.samples.notes,
         "noise": asdict(fitted.noise),
         "samples": [{"name": name, "delta_e": error} for name, error in samples],
         "mixtures_error": advice.error,

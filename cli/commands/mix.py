@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -15,6 +15,7 @@ from .. import options
 from ..ingredients import SpectrumResolver
 from ..inputs import check_range, find_input_space
 from ..mixtures import (
+    MIXTURE_MAPPING,
     Recipe,
     mix_ramp,
     plot_ramp,
@@ -30,8 +31,9 @@ from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
+    from uplift.colorimetry import Sensor
     from uplift.common.arrays import Array
-    from uplift.extras.paint import Medium, Surface
+    from uplift.extras.paint import Medium, Paints, Surface
     from uplift.extras.paint.pigments import Scattering
     from uplift.lookup import Cube
 
@@ -161,7 +163,7 @@ if TYPE_CHECKING:
 @options.atlas("Measured spectra whose entries are ingredients")
 @options.output_wavelengths
 @options.out_of_gamut(
-    "scale",
+    MIXTURE_MAPPING,
     "which keeps the hue of bright mixtures; ingredients: error",
     "mixtures and pixels",
 )
@@ -225,9 +227,9 @@ def command(
         input_space,
         wavelengths,
         method,
+        paints,
         has_spectrum=not theories and over is None,
     )
-    resolver = replace(resolver, paints=paints)
     recipe = read_recipe(resolver, words, kind)
     if theories:
         print_theories(recipe, method, style)
@@ -313,13 +315,15 @@ def _prepare_resolver(
     input_space: str | None,
     wavelengths: Array | None,
     method: str,
+    paints: Paints | None,
     *,
     has_spectrum: bool,
 ) -> tuple[SpectrumResolver, Array]:
     """Return the resolver of ingredients, and the wavelengths of the output.
 
     The resolver's are those of the sensor, for colours, followed by those of the
-    output.
+    output. Paints have the colours of their own sensor, if the cube has its space and
+    light.
     """
     import numpy as np
 
@@ -333,13 +337,24 @@ def _prepare_resolver(
     further = np.array([])
     if has_spectrum:
         further = as_wavelengths(wavelengths, cube.wavelengths)
-    grid = np.concatenate([cube.data.sensor.wavelengths, further])
+    sensor = cube.data.sensor
+    if (
+        paints is not None
+        and has_spectrum
+        and _setting(sensor) == _setting(paints.sensor)
+    ):
+        sensor = paints.sensor
+    grid = np.concatenate([sensor.wavelengths, further])
     # The default is for mixtures: an ingredient outside [0, 1] is a mistake, unless the
     # option is given.
     if "method" not in options.given():
         method = "error"
     atlas = read_atlas(*files) if files else Atlas()
-    return SpectrumResolver(cube, atlas, grid, space, method), further
+    return SpectrumResolver(cube, atlas, grid, space, method, paints, sensor), further
+
+
+def _setting(sensor: Sensor) -> tuple[str, str, str]:
+    return sensor.space, sensor.illuminant, sensor.observer
 
 
 def _scattering_law(name: str, cube: Cube, further: Array) -> Scattering:

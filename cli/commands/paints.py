@@ -134,6 +134,8 @@ def fit(
         print_json({"output": output, **fit_fields(fitted, advice)})
         return
     print_fit(fitted, advice)
+    for note in samples.notes:
+        paragraph(f"{samples_path if recipes is None else recipes}: {note}")
     say(f"{output}: {pluralise(len(fitted.paints), 'paint')}", err=True)
 
 

@@ -25,6 +25,8 @@ def test_blue_and_yellow_are_green(ask):
     assert found["ramp"][4]["hex"] == found["hex"]
     assert ask("mix", BLUE, YELLOW) == found
     assert ask("mix", f"2:{BLUE}", f"1:{YELLOW}")["hex"] == "#538a51"
+    alone = ask("mix", f"0:{BLUE}", f"2:{YELLOW}")
+    assert (alone["names"], alone["hex"], alone["ramp"]) == ([YELLOW], YELLOW, [])
 
 
 def test_entries_by_name_have_their_measured_spectra(ask, cubes, macbeth):

@@ -1,6 +1,7 @@
 """Invented paints are recovered from samples of them, with and without noise."""
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from tests.extras.paint.invented import (
     FILMS,
     WAVELENGTHS,
     chosen,
+    invented,
     measured,
     mixture_errors,
     plan,
@@ -17,6 +19,7 @@ from tests.extras.paint.invented import (
 from tests.helpers import raises, warns
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
+from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.paint import PaintSamples, Surface, fit_paints, paint_fit
 from uplift.extras.paint.paint_samples import MeasuredColours, MeasuredSpectra
 
@@ -116,6 +119,22 @@ def test_colours_alone_predict_mixtures(three_paints, opaque_fit):
     assert mixture_errors(found.paints, three_paints).mean() < 1
     known = opaque_fit.paints.errors.absorption
     assert np.median(found.paints.errors.absorption) > np.median(known)
+
+
+def test_clipped_codes_are_fitted_in_few_steps():
+    """Though the clipped channels have no derivative."""
+    paints = invented()
+    pairs = np.eye(len(paints))[list(combinations(range(len(paints)), 2))]
+    samples = measured(paints, np.concatenate([np.eye(len(paints)), pairs.sum(axis=1)]))
+    sensor = observer.sensor(wavelengths=(400, 700, 20))
+    rgb = np.clip(1.5 * sensor.rgb(samples.measured.values) - 0.2, 0, 1)
+    codes = decode(np.rint(255 * encode(rgb)) / 255)
+    reported = []
+    fit_paints(
+        replace(samples, measured=MeasuredColours(codes)), progress=reported.append
+    )
+    assert 1 < max(progress.step for progress in reported) < 50
+    assert reported[-1].done > reported[0].done == 0
 
 
 def test_paints_without_light_and_films_that_hide_are_fitted():

@@ -28,7 +28,7 @@ TWO = f"{HEAD}a,1,,{spectrum(0.8)}\nb,1,3,{spectrum(0.2)}\n"
 FILMS = f"""name,white,thickness (mm),ground,{cells(*NM)}
 card,,,,{spectrum(0.85)}
 thin,1,0.25,card,{spectrum(0.8)}
-on black,1,,black,{spectrum(0.4)}
+on black,1,1,black,{spectrum(0.4)}
 thick,1,,,{spectrum(0.9)}
 """
 COLOURS = "name,white,blue,colour\na,1,,#ffffff\nb,,1,#0000ff\nc,1,1,#8080c0\n"
@@ -98,6 +98,13 @@ OTHERS = {
     "a date": ("date,", "2026,", "2025,"),
     "an unused paint": ("red,", ",", ","),
     "a colour": ("colour,", "#ffffff,", "#0000ff,"),
+    "quantities": (
+        "Total (g),BatchNo,Gloss 60°,Temp (°C),Film weight,ΔE00,#,thickness SD,",
+        "1,2,80,21.5,3,1,1,.1,",
+        "4,3,81,21.5,3,1,2,.1,",
+    ),
+    "colours": ("R,G,B,", "250,251,252,", "10,20,200,"),
+    "a note": ("note Glanz,", "80,", "81,"),
 }
 
 
@@ -109,6 +116,82 @@ def test_other_columns_are_not_paints(read, head, first, second):
     assert samples.paints == ("white", "blue")
     assert_array_equal(samples.shares, read(TWO).shares)
     assert isinstance(samples.measured, MeasuredSpectra)
+    unused = [label for label in head.split(",") if label not in ("", "colour", "red")]
+    assert [note for note in samples.notes if "not used" in note] == [
+        f"not used: {', '.join(unused)}"
+    ] * bool(unused)
+
+
+WHOLE = f"""name,zinc,ochre,Glanz,{cells(*NM)}
+a,100,,80,{spectrum(0.8)}
+b,20,80,81,{spectrum(0.2)}
+c,66.6,33.3,82,{spectrum(0.3)}
+"""
+RATIOS = WHOLE.replace("20,80,", "1,4,").replace("66.6,33.3,", "2,1,")
+DECIDED = {
+    "percent": (WHOLE, ("zinc", "ochre"), "Glanz"),
+    "cells with a sign": (
+        WHOLE.replace("100,", "100%,")
+        .replace("20,80,", "20%,80 %,")
+        .replace("66.6,33.3", "66.6%,33.3%"),
+        ("zinc", "ochre"),
+        "Glanz",
+    ),
+    "a sum": (
+        WHOLE.replace(",Glanz", ",Summe,Glanz")
+        .replace(",80,0", ",100,80,0")
+        .replace(",81,", ",100,81,")
+        .replace(",82,", ",99.9,82,"),
+        ("zinc", "ochre"),
+        "Summe, Glanz",
+    ),
+    "stated": (
+        RATIOS.replace("Glanz", "Glanz (parts)").replace("zinc", "zinc white"),
+        ("zinc white", "ochre", "Glanz"),
+        "",
+    ),
+    "letters": (TWO.replace("white,blue", "W,B"), ("W", "B"), ""),
+}
+
+
+@pytest.mark.parametrize(("text", "paints", "unused"), DECIDED.values(), ids=DECIDED)
+def test_a_whole_decides_where_labels_do_not(read, text, paints, unused):
+    samples = read(text)
+    assert samples.paints == paints
+    assert samples.notes == ((f"not used: {unused}",) if unused else ())
+
+
+LENGTHS = {
+    "header": ("film thickness (µm)", "0.25", "0.5", (0.25, 0.5)),
+    "abbreviation": ("DFT mil", "0.25", "0.5 mils", (0.25, 0.5)),
+    "cells": ("Dry_Film_Thickness", "25 µm", "1 mil", (25, 25.4)),
+    "camel case": ("FilmThickness [um]", "1", "0.001mm", (1, 1)),
+}
+
+
+@pytest.mark.parametrize(
+    ("label", "first", "second", "values"), LENGTHS.values(), ids=LENGTHS
+)
+def test_thickness_has_a_unit(read, label, first, second, values):
+    text = FILMS.replace("thickness (mm),ground", f"{label},Substrate")
+    samples = read(
+        text.replace("0.25,card", f"{first},card").replace("1,1,", f"1,{second},")
+    )
+    assert samples.paints == ("white",)
+    assert_allclose(samples.thickness[:2], values)
+    assert any("thickness in" in note for note in samples.notes)
+
+
+def test_blank_rows_are_none(read):
+    blank = TWO.replace("\nb", f"\n,,,{cells(*[''] * len(NM))}\n,\n\nb")
+    assert_array_equal(read(blank).shares, read(TWO).shares)
+
+
+def test_films_without_a_thickness_are_alike(read):
+    text = FILMS.replace("thickness (mm)", "note").replace("0.25,card", ",card")
+    samples = read(text.replace("1,1,black", "1,,black"))
+    assert_array_equal(samples.thickness, [1, 1, np.inf])
+    assert any("thickness" in note for note in samples.notes)
 
 
 def test_codes_of_pigments_are_paints_and_wavelengths_are_not(read):
@@ -183,7 +266,15 @@ INVALID = {
     "parts not a number": (TWO.replace(",3,", ",nan,"), "invalid-parts", 3),
     "negative parts": (TWO.replace(",3,", ",-3,"), "invalid-parts", 3),
     "a letter for a digit": (TWO.replace("a,1,,", "a,1,1o,"), "invalid-parts", 2),
-    "no part": (TWO.replace("1,,", ",,").replace("1,3,", ",,"), "atlas", 0),
+    "an unknown quantity": (RATIOS, "ambiguous-column", 0),
+    "two thicknesses": (
+        FILMS.replace("white,thick", "WFT,thick").replace(",,,,0.85", ",,1,card,0.85"),
+        "ambiguous-column",
+        0,
+    ),
+    "thousands": (TWO.replace(",3,", ',"3,000",'), "invalid-parts", 3),
+    "film without thickness": (FILMS.replace("1,1,black", "1,,black"), "atlas", 4),
+    "no part": (TWO.replace("1,,", ",,").replace("1,3,", ",,"), "no-paints", 0),
     "negative thickness": (FILMS.replace("0.25", "-1"), "atlas", 3),
     "thickness 0": (FILMS.replace("0.25", "0"), "atlas", 3),
     "infinite thickness": (FILMS.replace("0.25", "inf"), "atlas", 3),

@@ -83,13 +83,18 @@ def advise_samples(fit: PaintFit, count: int = 5) -> PaintAdvice:
     left = list(range(len(names)))
     while left and len(advice) < count:
         # C Hᵀ (H C Hᵀ + 1)⁻¹ H C is what a measurement with the Jacobian H takes off C.
-        updated = [_update(covariance, rows[row]) for row in left]
-        errors = [_mean_error(aims, after) for after in updated]
+        seen = covariance @ aims.T
+        variances = (aims.T * seen).sum(axis=0)
+        roots = [_gain_root(covariance, rows[row]) @ rows[row] for row in left]
+        taken = [((root @ seen) ** 2).sum(axis=0) for root in roots]
+        errors = [_mean_error(variances - reduction) for reduction in taken]
         best = int(np.argmin(errors))
         advice.append(NextSample(names[left[best]], errors[best]))
-        covariance = updated[best]
+        gain = roots[best] @ covariance
+        covariance = covariance - gain.T @ gain
         del left[best]
-    return PaintAdvice(_mean_error(aims, fit.covariance), tuple(advice))
+    variances = (aims.T * (fit.covariance @ aims.T)).sum(axis=0)
+    return PaintAdvice(_mean_error(variances), tuple(advice))
 
 
 def _measurements(fit: PaintFit, candidates: PaintSamples) -> Array:
@@ -104,15 +109,16 @@ def _measurements(fit: PaintFit, candidates: PaintSamples) -> Array:
     return _jacobian(fit, candidates, name) / spread[..., None]
 
 
-def _update(covariance: Array, row: Array) -> Array:
-    gain = covariance @ row.T
-    inner = row @ gain + np.eye(len(row))
-    return np.asarray(covariance - gain @ np.linalg.solve(inner, gain.T))
+def _gain_root(covariance: Array, row: Array) -> Array:
+    """Return W with Wᵀ W = (H C Hᵀ + 1)⁻¹ for a Jacobian H (r, d)."""
+    inner = row @ covariance @ row.T + np.eye(len(row))
+    return np.linalg.inv(np.linalg.cholesky(inner))
 
 
-def _mean_error(aims: Array, covariance: Array) -> float:
-    variances = np.einsum("ij,jk,ik->i", aims, covariance, aims).reshape(-1, 3)
-    return float(np.sqrt(np.maximum(variances.sum(axis=1), 0)).mean())
+def _mean_error(variances: Array) -> float:
+    """Return the mean distance of colours with variances (3 n,)."""
+    sums = np.maximum(variances, 0).reshape(-1, 3).sum(axis=1)
+    return float(np.sqrt(sums).mean())
 
 
 def _jacobian(fit: PaintFit, samples: PaintSamples, name: str) -> Array:

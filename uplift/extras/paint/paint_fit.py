@@ -12,12 +12,13 @@ is raised until they fit as expected, since the theory or the parts are then the
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import count
 from typing import Any
 
 import numpy as np
 
 from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError, UpliftWarning, warn
 from uplift.common.machine import compiled
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
@@ -42,9 +43,9 @@ DARKEST = 0.02
 """Fraction of the measured reflectances that may lie below that of the surface."""
 SURFACE_COUNT = 2
 """Variables of the surface."""
-PRECISION = 1e-4
-"""Relative and absolute change of the variables at which a fit ends."""
-MAX_STEPS = 1000
+PRECISION = 1e-3
+"""Relative change of the objective, or of the variables, at which a fit ends."""
+MAX_STEPS = 200
 ROUNDS = 4
 """Fits with the noise of the one before."""
 STEADY = 1.1
@@ -53,6 +54,9 @@ LEAST_FREEDOM = 0.05
 """Smallest fraction of the measured values that the unknowns leave free."""
 MAX_VARIABLES = 6000
 """Largest number of unknowns, whose square must fit in memory."""
+
+Function = Callable[[Array], Any]
+"""A compiled function of the variables (d,)."""
 
 
 @dataclass(frozen=True)
@@ -150,18 +154,26 @@ class FitModel:
             internal = xp.where(samples.is_opaque[:, None], internal, covered)
         return through_surface(internal, internal, outside, inside)
 
-    def colours(self, z: Any, samples: PaintSamples) -> Any:
-        """Return CIE L*a*b* (n, 3) of samples, whose RGB is clipped as measured."""
+    def colours(
+        self, z: Any, samples: PaintSamples, low: Any = 0.0, high: Any = 1.0
+    ) -> Any:
+        """Return CIE L*a*b* (n, 3) of samples, whose linear sRGB is clipped to [low,
+        high].
+        """
         xp = z.__array_namespace__()
         rgb = self.reflectances(z, samples) @ self.sensor.matrix.T
-        return _lab(xp.clip(rgb, 0, 1), self.sensor)
+        return _lab(xp.clip(rgb, low, high), self.sensor)
 
     def differences(self, z: Any, samples: PaintSamples) -> Any:
         """Return predicted less measured reflectances, or L*, a* and b*."""
         values = samples.measured.values
         if isinstance(samples.measured, MeasuredSpectra):
             return self.reflectances(z, samples) - values
-        return self.colours(z, samples) - _lab(values, self.sensor)
+        # A channel inside [0, 1] was not clipped. To clip its prediction, too, would
+        # leave the fit without a derivative where the prediction is outside.
+        low = np.where(values <= 0, 0.0, -np.inf)
+        high = np.where(values >= 1, 1.0, np.inf)
+        return self.colours(z, samples, low, high) - _lab(values, self.sensor)
 
 
 def fit_paints(
@@ -183,7 +195,7 @@ def fit_paints(
         Reflectances (n, N) of linear sRGB (n, 3) at wavelengths (N,), for samples of
         which only colours are known. By default those of the packaged cube.
     progress : callable, optional
-        Receives a `Progress` of stage ``paints`` after each round.
+        Receives a `Progress` of stage ``paints`` after each step and each round.
 
     Returns
     -------
@@ -205,6 +217,8 @@ def fit_paints(
     Walowit, McCarthy & Berns 1987, "An algorithm for the optimization of Kubelka-Munk
     absorption and scattering coefficients", Color Research & Application 12.
     """
+    import jax
+
     nm = samples.wavelengths
     sensor = observer.sensor(wavelengths=(nm[0], nm[-1], nm[1] - nm[0]))
     spectra = samples.measured.values
@@ -222,7 +236,8 @@ def fit_paints(
             code="too-many-paints",
             hint="fit fewer paints at a time, or measure in steps of 10 nm",
         )
-    return _fit(samples, model, progress)
+    with jax.enable_x64(True):
+        return _fit(samples, model, progress)
 
 
 def _fit(
@@ -235,19 +250,27 @@ def _fit(
     values = samples.measured.values
     noise = _smallest_noise(samples)
     z = np.zeros(model.count)
-    solve = _solver(samples, model)
+
+    @compiled
+    def evaluate(z: Any) -> Any:
+        """Return the differences (m,) to the measured values."""
+        return model.differences(z, samples).ravel()
+
+    differentiate = compiled(jax.jacfwd(evaluate))
     for done in range(ROUNDS):
-        spread = noise.spread(values)
-        with jax.enable_x64(True):
-            optimum, derivative, is_solved = solve(z, spread)
-        z = np.asarray(optimum)
-        jacobian = np.asarray(derivative)
-        differences = np.asarray(model.differences(z, samples))
+        spread = noise.spread(values).ravel()
+
+        def report(step: int, done: int = done) -> None:
+            progress(Progress("paints", done, ROUNDS, step, f"step {step}"))
+
+        z, is_solved = _ascend(evaluate, differentiate, spread, z, report)
+        jacobian = np.asarray(differentiate(z)) / spread[:, None]
         precision = jacobian.T @ jacobian + np.eye(model.count)
         covariance: Array = np.linalg.inv(precision).astype(float)
         progress(Progress("paints", done + 1, ROUNDS))
         # The trace counts the variables that the prior, not the samples, determines.
         determined = model.count - np.trace(covariance)
+        differences = np.asarray(evaluate(z)).reshape(values.shape)
         freedom = max(1 - determined / differences.size, LEAST_FREEDOM)
         squares = differences**2 / freedom
         last, noise = noise, _estimate_noise(samples, squares)
@@ -284,37 +307,37 @@ def _estimate_noise(samples: PaintSamples, squares: Array) -> Noise:
     return Noise(max(absolute, smallest.absolute), max(proportional, smallest.relative))
 
 
-def _solver(
-    samples: PaintSamples, model: FitModel
-) -> Callable[[Array, Array], tuple[Array, Array, bool]]:
-    """Return a compiled function from the start and the spread of the measured values
-    to the variables (d,) of the largest posterior, the Jacobian (m, d) of the
-    residuals there, and whether the solver has converged.
+def _ascend(
+    evaluate: Function,
+    differentiate: Function,
+    spread: Array,
+    start: Array,
+    report: Callable[[int], None],
+) -> tuple[Array, bool]:
+    """Return the variables (d,) of the largest posterior, and whether the steps to them
+    have converged.
+
+    ``evaluate`` maps variables to the differences (m,) to the measured values, and
+    ``differentiate`` to their Jacobian (m, d). ``spread`` (m,) is that of the values.
     """
-    import jax
-    import lineax
-    import optimistix
+    from uplift.fit import Marquardt
+    from uplift.fit.solver import iterate_rows
 
-    solver = optimistix.LevenbergMarquardt(
-        PRECISION, PRECISION, linear_solver=lineax.Normal(lineax.Cholesky())
-    )
+    steps = count()
 
-    def residuals(z: Any, spread: Any) -> Any:
-        return (model.differences(z, samples) / spread).ravel()
+    def residuals(y: Array, _: Indices) -> tuple[Array, None]:
+        report(next(steps))
+        return np.append(evaluate(y[0]) / spread, y[0])[None], None
 
-    def with_prior(z: Any, spread: Any) -> Any:
-        return residuals(z, spread), z
+    def normal_equations(y: Array, values: Array) -> tuple[Array, Array]:
+        jacobian = np.asarray(differentiate(y[0])) / spread[:, None]
+        gram = jacobian.T @ jacobian + np.eye(y.size)
+        return gram[None], values[:, : -y.size] @ jacobian + y
 
-    @compiled
-    def solve(start: Any, spread: Any) -> Any:
-        solution = optimistix.least_squares(
-            with_prior, solver, start, spread, max_steps=MAX_STEPS, throw=False
-        )
-        optimum = solution.value
-        is_solved = solution.result == optimistix.RESULTS.successful
-        return optimum, jax.jacfwd(residuals)(optimum, spread), is_solved
-
-    return solve
+    solver = Marquardt(rtol=PRECISION)
+    options = {"normal_equations": normal_equations}
+    found = iterate_rows(solver, residuals, start[None], lambda _: options, MAX_STEPS)
+    return found[0], next(steps) <= MAX_STEPS
 
 
 def _paints(

@@ -67,6 +67,8 @@ class PaintSamples:
         Wavelengths in nm.
     measured : MeasuredSpectra or MeasuredColours
         What was measured of the n samples.
+    notes : tuple of str
+        How the table was understood: which columns are not used.
     """
 
     names: tuple[str, ...]
@@ -76,6 +78,7 @@ class PaintSamples:
     grounds: Array
     wavelengths: Array
     measured: Measured
+    notes: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.names)
@@ -182,6 +185,7 @@ def _samples(
         np.array(grounds),
         wavelengths,
         measured,
+        table.notes,
     )
 
 

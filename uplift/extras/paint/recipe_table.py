@@ -2,27 +2,32 @@
 ground.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.atlas import SourceLocation, read_document
+from uplift.atlas import SourceLocation, read_document, truncate
 from uplift.common.arrays import StrPath
 from uplift.common.text import format_value
-from uplift.extras.files.csv import find_delimiter, parse_decimal, split_line
-from uplift.extras.formats.tables.cells import parse_label
-from uplift.extras.formats.tables.grid import NAME_LABELS, plain_label
+from uplift.extras.files.csv import (
+    find_delimiter,
+    is_decimal,
+    parse_decimal,
+    split_line,
+)
+from uplift.extras.formats.tables.cells import parse_cell, parse_label
 from uplift.extras.paint.coats import MAX_THICKNESS
+from uplift.extras.paint.paint_columns import (
+    LENGTH,
+    MICROMETRES,
+    Columns,
+    find_columns,
+)
 
-COLOUR_LABELS = ("colour", "color", "hex", "srgb")
-OTHER_LABELS = frozenset(
-    (
-        "l", "l*", "a*", "b*", "c*", "h", "h*", "x", "y", "z", "r", "g", "rgb",
-        "date", "time", "comment", "notes", "description", "instrument", "operator",
-    )
-)  # fmt: skip
-"""Columns that are not paints, in lower case."""
+UNIT = re.compile(rf"(?<![^\W\d_])({LENGTH})(?![^\W_])", re.IGNORECASE)
+THOUSANDS = re.compile(r"[1-9]\d{0,2},\d{3}")
 
 
 @dataclass(frozen=True)
@@ -52,6 +57,8 @@ class RecipeTable:
     location: SourceLocation
     has_spectra: bool
     """Whether it has columns of wavelengths as well."""
+    notes: tuple[str, ...]
+    """How the content was understood."""
 
 
 def read_recipes(path: StrPath) -> RecipeTable:
@@ -66,100 +73,82 @@ def read_recipes(path: StrPath) -> RecipeTable:
     delimiter = find_delimiter(line for _, line in content)
     rows = [(number, split_line(line, delimiter)) for number, line in content]
     location = document.location
-    head = next((row for _, row in rows if len(row) > 1), [])
-    columns = _columns(head, rows, location)
+    start, head = next(
+        ((at, row) for at, (_, row) in enumerate(rows) if len(row) > 1), (0, [])
+    )
+    width = max((len(row) for _, row in rows), default=1)
+    head = [*head, *[""] * (width - len(head))]
+    padded = [
+        (number, [*row, *[""] * (width - len(row))])
+        for number, row in rows[start + 1 :]
+        if any(row)
+    ]
+    columns = find_columns(head, [row for _, row in padded], location)
     if not columns.paints:
         raise location.error(
             "no column has the parts of a paint",
             "name columns after the paints, and write their parts in each row",
             code="no-paints",
         )
-    start = next(at for at, (_, row) in enumerate(rows) if row is head) + 1
-    recipes = tuple(_recipes(rows[start:], columns, location))
+    films = [_cell(cells, columns.thickness) for _, cells in padded]
+    label = _cell(head, columns.thickness)
+    unit = next(filter(None, map(_unit, (label, *films))), "")
+    recipes = tuple(_recipes(padded, columns, unit, delimiter, location))
     has_spectra = any(parse_label(text) is not None for text in head)
-    return RecipeTable(tuple(columns.paints), recipes, location, has_spectra)
-
-
-@dataclass(frozen=True)
-class _Columns:
-    """Positions of columns."""
-
-    count: int
-    name: int
-    thickness: int | None
-    ground: int | None
-    colour: int | None
-    paints: dict[str, int]
-
-
-def _columns(
-    head: Sequence[str],
-    rows: Sequence[tuple[int, Sequence[str]]],
-    location: SourceLocation,
-) -> _Columns:
-    labels = [plain_label(text) for text in head]
-    names = [labels.index(label) for label in NAME_LABELS if label in labels]
-    name = names[0] if names else 0
-    paints: dict[str, int] = {}
-    for column, label in enumerate(labels):
-        is_known = label in ("thickness", "ground", *NAME_LABELS, *COLOUR_LABELS)
-        is_other = head[column].strip().casefold() in OTHER_LABELS or not label
-        is_wavelength = parse_label(head[column]) is not None
-        if column == name or is_known or is_other or is_wavelength:
-            continue
-        cells = [
-            row[column] for _, row in rows if row is not head and column < len(row)
-        ]
-        if any(cells) and not any(map(_is_number, cells)):
-            continue
-        if head[column] in paints:
-            raise location.error(
-                f"two columns have the name {format_value(head[column])}",
-                "rename one of the paints",
-            )
-        paints[head[column]] = column
-    colours = [labels.index(label) for label in COLOUR_LABELS if label in labels]
-    return _Columns(
-        len(head),
-        name,
-        labels.index("thickness") if "thickness" in labels else None,
-        labels.index("ground") if "ground" in labels else None,
-        colours[0] if colours else None,
-        paints,
+    notes = list[str]()
+    if columns.unused:
+        labels = [truncate(label) or "(no label)" for label in columns.unused]
+        notes.append(f"not used: {', '.join(labels)}")
+    if unit:
+        notes.append(f"thickness in {unit}")
+    if columns.thickness is None and any(
+        np.isfinite(recipe.thickness) for recipe in recipes
+    ):
+        notes.append("no thickness is stated: that of all films is 1")
+    return RecipeTable(
+        tuple(columns.paints), recipes, location, has_spectra, tuple(notes)
     )
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        parse_decimal(cell)
-    except ValueError:
-        return False
-    return True
 
 
 def _recipes(
     rows: Sequence[tuple[int, Sequence[str]]],
-    columns: _Columns,
+    columns: Columns,
+    unit: str,
+    delimiter: str,
     location: SourceLocation,
 ) -> Iterator[Recipe]:
+    """Yield the recipes of rows, with thicknesses in a unit."""
     names = set[str]()
-    for line, row in rows:
-        cells = [*row, *[""] * (columns.count - len(row))]
+    for line, cells in rows:
         name = cells[columns.name]
+        here = location.at(line, name)
         if name in names:
-            raise location.at(line, name).error(
-                f"two samples have the name {format_value(name)}", "rename one of them"
+            raise here.error(
+                f"two samples have the name {format_value(name)}",
+                "name each measurement, such as 'a 1' and 'a 2'",
             )
         names.add(name)
+        parts = tuple(
+            _parts(paint, cells[column], delimiter, here)
+            for paint, column in columns.paints.items()
+        )
         ground = _cell(cells, columns.ground)
-        here = location.at(line, name)
+        text = _cell(cells, columns.thickness)
+        is_stated = columns.thickness is not None and any(parts)
+        if is_stated and bool(text) != bool(ground):
+            raise here.error(
+                "a film must have a thickness and a ground, got "
+                f"{format_value(text)} and {format_value(ground)}",
+                "name its ground (white, black, or a sample without paint); leave both "
+                "empty for opaque samples",
+            )
+        thickness = 1.0 if ground else np.inf
+        if text:
+            thickness = _thickness(text, unit, here)
         yield Recipe(
             name,
-            tuple(
-                _parts(paint, cells[column], here)
-                for paint, column in columns.paints.items()
-            ),
-            _thickness(cells, columns, ground, here),
+            parts,
+            thickness,
             ground or "white",
             _cell(cells, columns.colour),
             line,
@@ -170,36 +159,39 @@ def _cell(cells: Sequence[str], column: int | None) -> str:
     return "" if column is None else cells[column]
 
 
-def _parts(paint: str, text: str, location: SourceLocation) -> float:
-    parts = parse_decimal(text or "0") if _is_number(text or "0") else np.nan
-    if not 0 <= parts < np.inf:
+def _parts(paint: str, text: str, delimiter: str, location: SourceLocation) -> float:
+    parts = parse_cell(text) if text else 0.0
+    # Next to commas between cells, that of "1,250" may be of thousands or of decimals.
+    is_ambiguous = delimiter == "," and THOUSANDS.fullmatch(text)
+    if is_ambiguous or parts is None or not 0 <= parts < np.inf:
         raise location.error(
             f"parts of {format_value(paint)} must be finite and at least 0, got "
             f"{format_value(text)}",
-            "correct them, or delete the column if it is not a paint",
+            "write 1250 or 1.25, or delete the column if it is not a paint",
             code="invalid-parts",
         )
     return parts
 
 
-def _thickness(
-    cells: Sequence[str], columns: _Columns, ground: str, location: SourceLocation
-) -> float:
-    """Return the thickness of a film: that of the others of an unknown one is 1."""
-    text = _cell(cells, columns.thickness)
-    if not text:
-        return 1.0 if ground else np.inf
-    problem = f"thickness must be in (0, {MAX_THICKNESS:g}], got {format_value(text)}"
-    error = location.error(problem, "leave it empty for opaque samples")
-    try:
-        thickness = parse_decimal(text)
-    except ValueError:
-        raise error from None
+def _unit(text: str) -> str:
+    """Return the unit of length in a text, empty without one."""
+    match = UNIT.search(text)
+    return match[0].casefold() if match else ""
+
+
+def _thickness(text: str, unit: str, location: SourceLocation) -> float:
+    """Return a thickness in a unit, which its cell may replace by another one."""
+    number = UNIT.sub("", text).strip()
+    thickness = parse_decimal(number) if is_decimal(number) else np.nan
+    if stated := _unit(text):
+        thickness *= _micrometres(stated) / _micrometres(unit)
     if not 0 < thickness <= MAX_THICKNESS:
-        raise error
-    if not ground:
         raise location.error(
-            f"a film of thickness {thickness:g} has no ground",
-            "name its ground: white, black, or a sample without paint",
+            f"thickness must be in (0, {MAX_THICKNESS:g}], got {format_value(text)}",
+            "leave it empty for opaque samples",
         )
     return thickness
+
+
+def _micrometres(unit: str) -> float:
+    return MICROMETRES[unit.removesuffix("s")]

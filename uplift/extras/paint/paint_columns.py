@@ -1,0 +1,191 @@
+"""Columns of a table of recipes: which are paints, by their labels and their parts.
+
+A column whose label names another quantity is not a paint. Of the others all are, if
+their parts make up the same whole in each row, or else those that do so without a few.
+Parts in other units, such as 1 to 4, have no whole. There, a column that has a number
+in each row next to paints that have not cannot be told from another quantity.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from uplift.atlas import SourceLocation
+from uplift.common.arrays import Array
+from uplift.common.errors import AtlasError
+from uplift.common.text import format_value
+from uplift.extras.formats.tables.cells import is_value, parse_cell, parse_label
+from uplift.extras.formats.tables.grid import NAME_LABELS, plain_label
+
+COLOUR_LABELS = ("colour", "color", "hex", "srgb")
+MICROMETRES = {
+    "nm": 1e-3,
+    "um": 1.0,
+    "µm": 1.0,  # the micro sign
+    "μm": 1.0,  # the Greek letter, its lower case
+    "micron": 1.0,
+    "mil": 25.4,
+    "mm": 1e3,
+    "cm": 1e4,
+}
+"""Units of thickness."""
+LENGTH = "|".join(f"{unit}s?" for unit in MICROMETRES)
+THICKNESS = re.compile(
+    r"(?!.*\b(std|sd|stdev|deviation|error)\b)"
+    r"(\w+ )*(thickness|dft|wft|(film|layer|coat) (height|depth|build))"
+    rf"( ({LENGTH}))?"
+)
+GROUND = re.compile(
+    r"(ground|substrate|backing|background|support)( (name|colour|color))?"
+)
+OTHER = re.compile(
+    r"total|sum|weight|mass|amount|quantity|qty|volume|density|viscosity|solids|ph|"
+    r"batch|lot|no|nr|num|number|id|uid|index|row|line|page|panel|sheet|card|position|"
+    r"run|rep|replicate|test|series|sample|patch|date|time|day|month|year|age|operator|"
+    r"instrument|observer|angle|geometry|aperture|description|comments?|remarks?|"
+    r"gloss|haze|opacity|hiding|contrast|ratio|coverage|price|cost|count|layers?|coats?|"
+    r"temp|temperature|humidity|rh|delta|δ?[eabhlc]|d[eabhlc]|hue|chroma|lightness|"
+    r"luminance|whiteness|yellowness|thickness|film|dry|drying|wet|paint|mix|mixture|"
+    r"mixing|mean|average|avg|std|sd|stdev|deviation|error|min|max|[rgbxyzlhsvu]|"
+    rf"{LENGTH}|m?g|kg|ml|f|gu|deg|percent"
+)
+"""Words of labels that name other quantities, with their units."""
+SPACES = ("rgb", "xyz", "xy", "lab", "lch", "luv", "hsv", "hsl")
+"""Letters that name colours if all of them are labels. One alone may be a paint."""
+STATED = re.compile(
+    r"\(parts\)|\b(white|base|medium|binder|vehicle|extender|PW ?\d+)\b", re.IGNORECASE
+)
+"""Paints that samples may all have."""
+WHOLES = (1, 100)
+ROUNDING = 0.02
+"""Tolerance of a whole, relative."""
+MAX_OTHERS = 2
+"""Most columns without which the others may make up a whole."""
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Positions of columns."""
+
+    name: int
+    thickness: int | None
+    ground: int | None
+    colour: int | None
+    paints: dict[str, int]
+    unused: tuple[str, ...]
+    """Labels of columns that are not used."""
+
+
+def find_columns(
+    head: Sequence[str], rows: Sequence[Sequence[str]], location: SourceLocation
+) -> Columns:
+    """Tell columns apart by the header and the rows below, which are as long. Raise
+    `AtlasError` for one that cannot be told.
+    """
+    labels = [plain_label(text) for text in head]
+    words = [_words(text) for text in head]
+    cells = list(zip(*rows, strict=True)) or [("",)] * len(head)
+    names = [labels.index(label) for label in NAME_LABELS if label in labels] or [0]
+    colours = [at for at, label in enumerate(labels) if label in COLOUR_LABELS]
+    filled = [at for at, column in enumerate(cells) if any(column)]
+    films = [at for at in filled if THICKNESS.fullmatch(words[at])]
+    grounds = [at for at in filled if GROUND.fullmatch(words[at])]
+    for repeated in (*films[1:], *grounds[1:]):
+        problem = "states a thickness or ground, as another one does"
+        raise _ambiguous(head[repeated], problem, location)
+    known = {names[0], *colours, *films, *grounds}
+    columns = [at for at in filled if at not in known and parse_label(head[at]) is None]
+    below = cells[grounds[0]] if grounds else ()
+    painted = [name not in below for name in cells[names[0]]]
+    letters = "".join(filter(set(words).issuperset, SPACES))
+    candidates = {
+        at: _amounts(cells[at])[painted]
+        for at in columns
+        if any(map(is_value, cells[at])) and not _is_other(head[at], words[at], letters)
+    }
+    paints = dict[str, int]()
+    for at in _paints(candidates, head, location):
+        label = head[at].replace("(parts)", "").strip()
+        if label in paints:
+            raise location.error(
+                f"two columns have the name {format_value(label)}",
+                "rename one of the paints",
+            )
+        paints[label] = at
+    unused = [head[at] for at in columns if at not in paints.values()]
+    return Columns(
+        names[0],
+        next(iter(films), None),
+        next(iter(grounds), None),
+        next(iter(colours), None),
+        paints,
+        tuple(unused),
+    )
+
+
+def _amounts(cells: Sequence[str]) -> Array:
+    """Return the numbers of cells, 0 for others."""
+    return np.nan_to_num([parse_cell(cell) or 0.0 for cell in cells])
+
+
+def _words(label: str) -> str:
+    """Return the words of a label in lower case, without what is in brackets."""
+    plain = re.sub(r"[(\[].*", "", label)
+    spaced = re.sub(r"(?<=[a-z]{2})(?=[A-Z])", " ", plain)
+    return " ".join(re.findall(r"[^\W\d_]+", spaced.casefold()))
+
+
+def _is_other(label: str, words: str, letters: str) -> bool:
+    """Whether a label names another quantity than the parts of a paint. ``letters`` are
+    those of colours.
+    """
+    if STATED.search(label):
+        return False
+    if "*" in label or not words or "note" in words.split():
+        return True
+    if len(words) == 1:
+        return words in letters
+    return all(map(OTHER.fullmatch, words.split()))
+
+
+def _paints(
+    candidates: dict[int, Array], head: Sequence[str], location: SourceLocation
+) -> list[int]:
+    """Return the columns (n,) that make up a whole without few others, or else all."""
+    for count in range(MAX_OTHERS + 1):
+        for others in combinations(candidates, count):
+            rest = [at for at in candidates if at not in others]
+            if _is_whole(candidates, rest):
+                return rest
+    present = np.array([values > 0 for values in candidates.values()])
+    counts = present.sum(axis=0)
+    is_mixed = counts.any() and (counts != 1).all()
+    for at, values in candidates.items():
+        is_everywhere = is_mixed and values[counts > 0].all()
+        if is_everywhere and not STATED.search(head[at]):
+            problem = "may be a paint of all samples, or another quantity"
+            raise _ambiguous(head[at], problem, location)
+    return list(candidates)
+
+
+def _is_whole(candidates: dict[int, Array], columns: Sequence[int]) -> bool:
+    """Whether columns make up one of `WHOLES` in all rows with numbers, and some rows
+    mix them.
+    """
+    parts = np.array([candidates[at] for at in columns])
+    if not (parts > 0).sum(axis=0).max(initial=0) > 1:
+        return False
+    sums = parts.sum(axis=0)[np.any(list(candidates.values()), axis=0)]
+    return any((abs(sums / whole - 1) <= ROUNDING).all() for whole in WHOLES)
+
+
+def _ambiguous(label: str, problem: str, location: SourceLocation) -> AtlasError:
+    return location.error(
+        f"column {format_value(label)} {problem}",
+        f"rename it 'note {label}' if it is not to be used, '{label} (parts)' if it is "
+        "a paint",
+        code="ambiguous-column",
+    )
