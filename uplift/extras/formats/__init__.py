@@ -19,10 +19,8 @@ FORMATS = (
     Format(
         name="ENVI spectral library",
         suffixes=(".sli", ".hdr"),
-        pattern=rb"\A\s*ENVI",
+        pattern=rb"\A(?:\xef\xbb\xbf)?\s*ENVI\s*[\r\n]",
         module="uplift.extras.formats.envi",
-        library="spectral",
-        extra="io",
         unmarked=".sli",  # numbers, whose header is another file
     ),
     Format(

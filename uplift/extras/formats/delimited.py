@@ -25,6 +25,10 @@ SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
 """First line of a table that states its delimiter to spreadsheets."""
 SAMPLE_ROWS = 200
 """Rows by which the delimiter is chosen."""
+COUNTED = ("Wavelength", "Reflectance", "standard deviation")
+"""Columns below a line with their number of lines, as RELAB has them."""
+SIGNATURE = ("nm", "reference (radiance)", "target (radiance)", "Reflectance [%]")
+"""Columns below a line ``data=``, as spectrometers of Spectra Vista write them."""
 WAVELENGTHS = "*[Ww]avelength*.txt"
 """Names of files of wavelengths, one a line below a title."""
 
@@ -35,7 +39,7 @@ def read(document: Document) -> Measurements:
         line.strip("# \t") for line in document.lines if line.lstrip().startswith("#")
     ]
     try:
-        rows = list(_split(document, _delimiter(document)))
+        rows = _labelled(list(_split(document, _delimiter(document))))
     except (csv.Error, ValueError) as error:
         raise document.location.error(
             f"not a readable table: {error}", LAYOUT
@@ -49,6 +53,20 @@ def read(document: Document) -> Measurements:
     name, rows = _with_wavelengths(document, title, numbers)
     found = read_grid(Grid(rows, document.location, comments), document.stem)
     return replace(found, notes=(*found.notes, f"wavelengths: those of {name}"))
+
+
+def _labelled(rows: list[Row]) -> list[Row]:
+    """Return rows with labels in place of the line above columns that a layout has
+    without labels.
+    """
+    for at, (cell, *others) in enumerate(rows[:SAMPLE_ROWS]):
+        body = rows[at + 1 :]
+        known = {"data=": SIGNATURE, str(len(body)): COUNTED}
+        labels = known.get(cell.text)
+        if labels and body and not others and 1 < len(body[0]) <= len(labels):
+            cells = [Cell(label, cell.line) for label in labels[: len(body[0])]]
+            return [*rows[:at], tuple(cells), *body]
+    return rows
 
 
 def _with_wavelengths(
@@ -130,7 +148,7 @@ def _split(document: Document, delimiter: str) -> Iterator[Row]:
         ):
             texts = [plain_cell(cell.strip()) for cell in cells]
             if delimiter == BLANKS:
-                texts = list(filter(None, texts))
+                texts = [text.rstrip(",;:") for text in texts if text]
                 words = re.split(r"\s{2,}", lines[line - 1].strip())
                 if len(words) > 1 and not any(
                     map(is_value, texts)

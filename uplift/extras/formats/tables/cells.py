@@ -185,3 +185,14 @@ def is_visible(nm: Array) -> bool:
     wavelengths next to their values.
     """
     return bool(nm.min() >= SHORTEST) and covers_visible(nm)
+
+
+def are_wavelengths(nm: Array) -> bool:
+    """Whether numbers, NaN where a cell is empty, are wavelengths in nm by their range
+    and their steps, which differ less than those of values.
+    """
+    known = nm[np.isfinite(nm)]
+    if len(known) < 3 or not is_visible(known):
+        return False
+    steps = np.diff(known)
+    return bool(np.ptp(steps) < abs(steps.mean()) and steps.min() * steps.max() > 0)

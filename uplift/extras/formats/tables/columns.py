@@ -25,18 +25,21 @@ from uplift.extras.formats.tables.cells import (
     Cell,
     Row,
     Run,
+    are_wavelengths,
     is_value,
     is_visible,
     parse_cell,
-    parse_label,
     runs,
 )
-from uplift.extras.formats.tables.grid import MAX_AXIS, Grid, Series, Table, cell_at
-
-MAX_HEADS = 4
-"""Rows of labels above columns."""
-EQUAL = 1e-6
-"""Tolerance in nm of equal steps."""
+from uplift.extras.formats.tables.grid import (
+    MAX_AXIS,
+    MAX_HEADS,
+    Grid,
+    Series,
+    Table,
+    cell_at,
+)
+from uplift.extras.formats.tables.pairs import pairs_of_rows
 
 
 @dataclass(frozen=True)
@@ -140,15 +143,30 @@ def blocks(grid: Grid) -> Iterator[Block]:
     for column in range(MAX_AXIS):
         for run in runs(grid.column(column)):
             block = Block(grid, run, column)
+            if not is_visible(block.nm):  # numbers of the preamble, a line each
+                block = Block(grid, _without_preamble(grid, run, column), column)
             if is_visible(block.nm) and block.width > column + 1:
                 yield block
+
+
+def _without_preamble(grid: Grid, run: Run, column: int) -> Run:
+    """Return a run without the rows at its beginning that end with its column."""
+    last = run.last - 1
+    rows = range(run.first, last)
+    first = next((at for at in rows if len(grid.rows[at]) > column + 1), last)
+    return run._replace(first=first, numbers=run.numbers[first - run.first :])
 
 
 def spectra_of(block: Block, others: Sequence[Block]) -> Table:
     """Return a spectrum for each column of values of a block; the ``others`` of the
     file are skipped.
     """
-    if pairs := _pairs(block):
+    heads = chain.from_iterable(block.heads)
+    has_names = not all(
+        is_plain(cell.text) or names_wavelengths(cell.text) for cell in heads
+    )
+    pairs = None if has_names else pairs_of_rows(block.rows, block.unit)
+    if pairs is not None:
         return Table([pairs], block.remarks, ("layout: several pairs a line",))
     series = list[Series]()
     unused = list[str]()
@@ -160,7 +178,7 @@ def spectra_of(block: Block, others: Sequence[Block]) -> Table:
             # it in other units.
             axis = axis if column - 1 in axes else column
         elif column > block.column and block.has_values(column):
-            series.append(_series(block, column, axis, axes[axis]))
+            series.append(_series(block, column, axis, axes))
         else:
             unused.append(block.label(column))
     layout = (
@@ -176,13 +194,14 @@ def spectra_of(block: Block, others: Sequence[Block]) -> Table:
     )
 
 
-def _series(block: Block, column: int, axis: int, nm: Array) -> Series:
-    """Return the spectrum of a column, at the wavelengths in nm of the column ``axis``,
-    NaN where a cell is empty.
+def _series(block: Block, column: int, axis: int, axes: dict[int, Array]) -> Series:
+    """Return the spectrum of a column, at the wavelengths of the column ``axis``, one
+    of the ``axes``.
     """
+    nm = axes[axis]
     cells = block.cells(column)
     labels = block.labels(column)
-    if axis != block.column:  # the name may stand above the wavelengths
+    if len(axes) > 1:  # the name may stand above the wavelengths
         above = block.labels(axis)
         labels = [cell for cell in above if not names_wavelengths(cell.text)] + labels
     if block.heads and not labels:
@@ -210,35 +229,16 @@ def _skipped(block: Block) -> SkippedEntry:
 
 
 def _axes(block: Block) -> dict[int, Array]:
-    """Return the wavelengths in nm of each column that has them, NaN where a cell is
-    empty.
+    """Return the wavelengths in nm of each column that has them, by its label or its
+    numbers, NaN where a cell is empty.
     """
     axes = {block.column: block.nm}
     own_labels = [cell.text for cell in block.labels(block.column)]
     for column in range(block.column + 1, block.width):
         labels = [cell.text for cell in block.labels(column)]
-        if labels and (labels == own_labels or any(map(names_wavelengths, labels))):
-            numbers = np.array(
-                [parse_cell(cell.text) for cell in block.cells(column)], dtype=float
-            )
-            nm = to_nm(numbers, find_unit(" ".join(labels)) or block.unit)
-            if (nm >= SHORTEST).any():
-                axes[column] = nm
+        cells = [parse_cell(cell.text) for cell in block.cells(column)]
+        nm = to_nm(np.array(cells, float), find_unit(" ".join(labels)) or block.unit)
+        is_named = labels == own_labels or any(map(names_wavelengths, labels))
+        if (labels and is_named and (nm >= SHORTEST).any()) or are_wavelengths(nm):
+            axes[column] = nm
     return axes
-
-
-def _pairs(block: Block) -> Series | None:
-    """Return the spectrum whose wavelengths go on from pair to pair in equal steps, and
-    then to the next line.
-    """
-    for cell in chain.from_iterable(block.heads):
-        if not (is_plain(cell.text) or names_wavelengths(cell.text)):
-            return None
-    odd = chain.from_iterable(row[::2] for row in block.rows)
-    wavelengths = [parse_label(cell.text) for cell in odd]
-    cells = tuple(chain.from_iterable(row[1::2] for row in block.rows))
-    numbers = [label.number for label in wavelengths if label is not None]
-    if block.width < 4 or not len(numbers) == len(wavelengths) == len(cells):
-        return None
-    nm = to_nm(numbers, block.unit)
-    return None if np.ptp(np.diff(nm)) > EQUAL else Series("", nm.tolist(), cells, None)

@@ -5,6 +5,9 @@ spectrum; or in a column before each spectrum. All else is text: preamble, comme
 lines below. It states scale, quantity and unit.
 """
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 from uplift.atlas import SourceLocation, truncate
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
@@ -41,6 +44,7 @@ from uplift.extras.formats.tables.grid import (
     Table,
     plain_label,
 )
+from uplift.extras.formats.tables.pairs import pairs_of_lines
 from uplift.extras.formats.tables.rows import find_samples, headers, spectra_below
 
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
@@ -48,7 +52,13 @@ NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
 
 def read_grid(grid: Grid, stem: str) -> Measurements:
     """Read the spectra of a grid. One without a name has that of the file, ``stem``."""
-    table = find_samples(grid) or _rows_or_columns(grid)
+    try:
+        table = _find_table(grid)
+    except AtlasError:
+        rows = _without_repeats(grid.rows)
+        if len(rows) == len(grid.rows):
+            raise
+        table = _find_table(replace(grid, rows=rows))
     if not table.series:
         raise _no_table(grid)
     scales = [remark_scale(text) for text in table.remarks]
@@ -103,6 +113,22 @@ def _values(cells: Row, location: SourceLocation) -> tuple[list[float], Scale | 
             problem, "give all or none in percent", code="mixed-scales"
         )
     return values, Scale(PERCENT, percents[0])
+
+
+def _find_table(grid: Grid) -> Table:
+    return find_samples(grid) or pairs_of_lines(grid) or _rows_or_columns(grid)
+
+
+def _without_repeats(rows: Sequence[Row]) -> list[Row]:
+    """Leave out rows of labels that are repeated, as on a new page."""
+    kept = list[Row]()
+    labels = set[str]()
+    for row in rows:
+        text = line_texts([row])[0]
+        if _has_number(row) or text not in labels:
+            kept.append(row)
+            labels.add(text)
+    return kept
 
 
 def _rows_or_columns(grid: Grid) -> Table:
