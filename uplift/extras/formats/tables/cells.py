@@ -187,12 +187,17 @@ def is_visible(nm: Array) -> bool:
     return bool(nm.min() >= SHORTEST) and covers_visible(nm)
 
 
-def are_wavelengths(nm: Array) -> bool:
-    """Whether numbers, NaN where a cell is empty, are wavelengths in nm by their range
-    and their steps, which differ less than those of values.
+def are_wavelengths(nm: Array, *, is_named: bool = False) -> bool:
+    """Whether numbers, NaN where a cell is empty, are wavelengths in nm: by their range
+    and order if a label names them so, else also by their steps, which differ less than
+    those of values.
     """
     known = nm[np.isfinite(nm)]
-    if len(known) < 3 or not is_visible(known):
-        return False
     steps = np.diff(known)
-    return bool(np.ptp(steps) < abs(steps.mean()) and steps.min() * steps.max() > 0)
+    if len(steps) < 2:
+        return False
+    is_sorted = bool(steps.min() * steps.max() > 0)
+    if is_named:
+        return is_visible(known) or (is_sorted and known.max() >= SHORTEST)
+    has_even_steps = bool(np.ptp(steps) < abs(steps.mean()))
+    return is_visible(known) and is_sorted and has_even_steps

@@ -21,7 +21,6 @@ from uplift.extras.formats.statements import (
     unit_by_values,
 )
 from uplift.extras.formats.tables.cells import (
-    SHORTEST,
     Cell,
     Row,
     Run,
@@ -217,8 +216,9 @@ def _name(labels: Sequence[Cell]) -> Cell | None:
     """Return the label that names a sample: the lowest one, as it stands above quantity
     and unit; None for none.
     """
-    names = [cell for cell in reversed(labels) if not is_plain(cell.text)]
-    return next((cell for cell in names if len(cell.text) > 1), next(iter(names), None))
+    names = [cell for cell in labels if not is_plain(cell.text)]
+    long = [cell for cell in names if len(cell.text) > 1]
+    return next(iter(long[-1:] or names), None)
 
 
 def _skipped(block: Block) -> SkippedEntry:
@@ -239,6 +239,6 @@ def _axes(block: Block) -> dict[int, Array]:
         cells = [parse_cell(cell.text) for cell in block.cells(column)]
         nm = to_nm(np.array(cells, float), find_unit(" ".join(labels)) or block.unit)
         is_named = labels == own_labels or any(map(names_wavelengths, labels))
-        if (labels and is_named and (nm >= SHORTEST).any()) or are_wavelengths(nm):
+        if are_wavelengths(nm, is_named=bool(labels) and is_named):
             axes[column] = nm
     return axes

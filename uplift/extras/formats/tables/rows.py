@@ -231,7 +231,7 @@ def _samples_by_name(
         for at, row in enumerate(rows):
             name = cell_at(row, column).text or name  # merged cells of spreadsheets
             groups[name].append(at)
-        are_measured = any(is_value(name) and not name.isdigit() for name in groups)
+        are_measured = any(is_value(name) and {".", ","} & {*name} for name in groups)
         if are_measured or min(map(len, groups.values()), default=0) < 2:
             continue
         have_each_once = all(
