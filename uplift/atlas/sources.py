@@ -17,12 +17,12 @@ import numpy as np
 
 from uplift.atlas import art
 from uplift.atlas.atlas import Atlas, Entry, Header, Source, merge, skipped_warning
-from uplift.atlas.document import Document, SourceLocation, read_document
+from uplift.atlas.document import EXPORT, Document, SourceLocation, read_document
 from uplift.atlas.formats import ART, known_formats, read_any
 from uplift.common.arrays import StrPath
 from uplift.common.errors import OutputError, UpliftWarning, unknown_name, warn
 from uplift.common.files import write_text
-from uplift.common.text import pluralise
+from uplift.common.text import listed, pluralise
 
 Measured = Literal["auto", "percent", "fraction"]
 Missing = Literal["refuse", "interpolate", "skip"]
@@ -107,6 +107,15 @@ def read_atlas(
             content = content.to_atlas(document, chosen.name, measured, missing)
         atlases.append(content)
     atlas = merge(atlases)
+    if atlas.skipped and not atlas.entries:
+        first = atlas.skipped[0]
+        reasons = list(dict.fromkeys(entry.reason for entry in atlas.skipped))
+        raise SourceLocation(first.path, first.line).error(
+            f"none of {pluralise(len(atlas.skipped), 'entry')} is a reflectance: "
+            f"{listed(reasons)}",
+            EXPORT,
+            code="not-reflectance",
+        )
     for entry in atlas:
         _warn_of_odd(entry)
     if atlas.skipped:

@@ -184,11 +184,11 @@ def split_by_gamut(
     first = np.zeros(len(names), dtype=bool)
     first[np.unique(colours, axis=0, return_index=True)[1]] = True
     if not first.all():
+        listing = _listed(names[~first].tolist())
         problem = (
-            f"{_listed(names[~first].tolist())} left out: an earlier entry has the same colour, "
-            "which has only one answer"
+            "left out: an earlier entry has the same colour, which has only one answer"
         )
-        warn(UpliftWarning(problem, code="entry-duplicate"))
+        warn(UpliftWarning(f"{listing} {problem}", code="entry-duplicate"))
     within, outside = [
         MeasuredEntries(tuple(names[rows]), rgb[rows], measured[rows])
         for rows in (inside & first, ~inside & first)
