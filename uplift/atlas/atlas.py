@@ -89,8 +89,10 @@ class Entry:
     def __post_init__(self) -> None:
         location = SourceLocation(self.path, self.line, self.name)
         for key in ("wavelengths", "values"):
+            samples = getattr(self, key)
             try:
-                samples = np.array(getattr(self, key), dtype=float)
+                if not _is_frozen(samples):
+                    samples = np.array(samples, dtype=float)
             except (TypeError, ValueError):
                 raise location.error(
                     f"the {key} are not all numbers", "give an array of numbers"
@@ -352,6 +354,18 @@ def merge(atlases: Iterable[Atlas]) -> Atlas:
     return Atlas(tuple(entries), tuple(skipped), tuple(sources))
 
 
+def _is_frozen(samples: object) -> bool:
+    """Whether samples are an array that does not change, as entries of a table share
+    their wavelengths.
+    """
+    return (
+        isinstance(samples, np.ndarray)
+        and samples.dtype == float
+        and samples.base is None
+        and not samples.flags.writeable
+    )
+
+
 def _name_faults(name: str) -> Iterator[tuple[str, str]]:
     """Yield problems of a name, with hints. The first one counts."""
     if name != name.strip() or len(name.splitlines()) != 1 or "\0" in name:
@@ -382,7 +396,7 @@ def _sample_faults(wavelengths: Array, values: Array) -> Iterator[tuple[str, str
             f"an entry needs at least 2 samples, got {len(wavelengths)}",
             "add the missing samples",
         )
-    for i in np.flatnonzero(~(np.isfinite(wavelengths) & np.isfinite(values))):
+    for i in (~(np.isfinite(wavelengths) & np.isfinite(values))).nonzero()[0]:
         problem = (
             f"sample {i + 1} is not finite: {values[i]:g} at {wavelengths[i]:g} nm"
         )
@@ -393,7 +407,7 @@ def _sample_faults(wavelengths: Array, values: Array) -> Iterator[tuple[str, str
         invalid = first if first <= 0 else last
         problem = f"wavelengths must be in (0, {LONGEST:g}] nm, got {invalid:g}"
         yield problem, "give wavelengths in nm"
-    for i in np.flatnonzero(np.diff(wavelengths) < SLACK):
+    for i in (wavelengths[1:] - wavelengths[:-1] < SLACK).nonzero()[0]:
         problem = (
             f"wavelengths must ascend, got {wavelengths[i]:g} nm, then "
             f"{wavelengths[i + 1]:g} nm"
@@ -405,7 +419,7 @@ def _sample_faults(wavelengths: Array, values: Array) -> Iterator[tuple[str, str
             f"{first:g}–{last:g} nm"
         )
         yield problem, "add the missing samples and give wavelengths in nm"
-    for i in np.flatnonzero((values > HIGHEST) | (values < LOWEST)):
+    for i in ((values > HIGHEST) | (values < LOWEST)).nonzero()[0]:
         problem = (
             f"reflectance must be in [{LOWEST:g}, {HIGHEST:g}], got {values[i]:g} at "
             f"{wavelengths[i]:g} nm"

@@ -2,7 +2,7 @@
 
 import hashlib
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 from uplift.common.arrays import StrPath
@@ -33,7 +33,7 @@ class SourceLocation:
 
     def at(self, line: int | None = None, entry: str | None = None) -> "SourceLocation":
         """Return the location of another line or entry of the same file."""
-        return replace(self, line=line or self.line, entry=entry or self.entry)
+        return SourceLocation(self.path, line or self.line, entry or self.entry)
 
     def error(self, problem: str, hint: str, *, code: str | None = None) -> AtlasError:
         """Create an error at this location."""

@@ -131,6 +131,8 @@ def _warn_of_odd(entry: Entry) -> None:
     after = values[2:]
     above = value > ODD * np.maximum(before, after)
     below = value * ODD < np.minimum(before, after)
+    if not (above | below).any():
+        return
     is_near = entry.wavelengths[2:] - entry.wavelengths[:-2] <= 2 * COARSE
     is_bright = np.maximum(value, before) > VISIBLY
     odd = np.flatnonzero((above | below) & is_near & is_bright) + 1

@@ -1,7 +1,6 @@
 """Delimited text: rows of cells, whose spectra `read_grid` finds."""
 
 import csv
-import io
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -15,7 +14,14 @@ from uplift.common.text import pluralise
 from uplift.extras.files.csv import csv_text, find_delimiter, plain_cell
 from uplift.extras.formats.measurements import Measurements
 from uplift.extras.formats.statements import name_quantity, remark_scale
-from uplift.extras.formats.tables.cells import Cell, Row, is_value, line_texts, trimmed
+from uplift.extras.formats.tables.cells import (
+    Cell,
+    Line,
+    Row,
+    is_value,
+    line_texts,
+    trimmed,
+)
 from uplift.extras.formats.tables.grid import LAYOUT, Grid
 from uplift.extras.formats.tables.read import read_grid
 
@@ -59,13 +65,12 @@ def _labelled(rows: list[Row]) -> list[Row]:
     """Return rows with labels in place of the line above columns that a layout has
     without labels.
     """
-    for at, (cell, *others) in enumerate(rows[:SAMPLE_ROWS]):
-        body = rows[at + 1 :]
-        known = {"data=": SIGNATURE, str(len(body)): COUNTED}
-        labels = known.get(cell.text)
-        if labels and body and not others and 1 < len(body[0]) <= len(labels):
-            cells = [Cell(label, cell.line) for label in labels[: len(body[0])]]
-            return [*rows[:at], tuple(cells), *body]
+    for at, row in enumerate(rows[:SAMPLE_ROWS]):
+        count = len(rows) - at - 1
+        labels = {"data=": SIGNATURE, str(count): COUNTED}.get(row[0].text, ())
+        if count and len(row) == 1 < len(rows[at + 1]) <= len(labels):
+            heads = Line(labels[: len(rows[at + 1])], row[0].line)
+            return [*rows[:at], heads, *rows[at + 1 :]]
     return rows
 
 
@@ -134,9 +139,11 @@ def _delimiter(document: Document) -> str:
 def _split(document: Document, delimiter: str) -> Iterator[Row]:
     """Yield the rows that are neither blank nor comments."""
     line = 1
-    lines = list(io.StringIO(document.text, newline=""))
+    lines = document.lines
     reader = csv.reader(
-        lines, delimiter=delimiter, skipinitialspace=delimiter == BLANKS
+        (f"{text}\n" for text in lines),
+        delimiter=delimiter,
+        skipinitialspace=delimiter == BLANKS,
     )
     for cells in reader:
         # A row of csv may span several lines; `line` is its first one.
@@ -146,7 +153,9 @@ def _split(document: Document, delimiter: str) -> Iterator[Row]:
             and not is_comment
             and not (line == 1 and SEPARATOR.match(cells[0].lstrip()))
         ):
-            texts = [plain_cell(cell.strip()) for cell in cells]
+            texts = list(map(str.strip, cells))
+            if "'" in "".join(texts):
+                texts = list(map(plain_cell, texts))
             if delimiter == BLANKS:
                 texts = [text.rstrip(",;:") for text in texts if text]
                 words = re.split(r"\s{2,}", lines[line - 1].strip())
@@ -154,6 +163,6 @@ def _split(document: Document, delimiter: str) -> Iterator[Row]:
                     map(is_value, texts)
                 ):  # labels of several words, in columns
                     texts = words
-            if row := trimmed(Cell(text, line) for text in texts):
-                yield row
+            if texts := trimmed(texts):
+                yield Line(texts, line)
         line = reader.line_num + 1

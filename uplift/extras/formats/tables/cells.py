@@ -1,10 +1,9 @@
 """Cells of tables: numbers, missing values, and labels of wavelengths."""
 
 import itertools
-import operator
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, overload
 
 import numpy as np
 
@@ -64,20 +63,56 @@ class Cell(NamedTuple):
     line: int
 
 
-Row = tuple[Cell, ...]
+Row = Sequence[Cell]
 
 
-def trimmed(cells: Iterable[Cell]) -> Row:
-    """Return a row without the empty cells at its end, which spreadsheets add."""
-    kept = list(cells)
-    while kept and not kept[-1].text.strip():
-        kept.pop()
-    return tuple(kept)
+class Line(Row):
+    """Cells of a line, made when they are used: large tables have millions."""
+
+    __slots__ = ("line", "texts")
+
+    def __init__(self, texts: Sequence[str], line: int) -> None:
+        self.texts = tuple(texts)
+        self.line = line
+
+    def __len__(self) -> int:
+        return len(self.texts)
+
+    @overload
+    def __getitem__(self, key: int) -> Cell: ...
+    @overload
+    def __getitem__(self, key: slice) -> Row: ...
+    def __getitem__(self, key: int | slice) -> Cell | Row:
+        part = self.texts[key]
+        return Cell(part, self.line) if isinstance(part, str) else Line(part, self.line)
+
+
+def trimmed(texts: list[str]) -> list[str]:
+    """Leave out the empty cells at the end of a line, which spreadsheets add."""
+    while texts and not texts[-1].strip():
+        texts.pop()
+    return texts
+
+
+def texts_of(row: Row) -> Sequence[str]:
+    """Return the texts of cells."""
+    return row.texts if isinstance(row, Line) else [cell.text for cell in row]
 
 
 def line_texts(rows: Iterable[Row]) -> list[str]:
     """Return the text of each row."""
-    return [" ".join(map(operator.attrgetter("text"), row)) for row in rows]
+    return [" ".join(texts_of(row)) for row in rows]
+
+
+def plain_numbers(texts: Sequence[str]) -> Array | None:
+    """Parse numbers that are written as programs write them; None if one is not."""
+    joined = "".join(texts)
+    if "_" in joined or not joined.isascii():  # which Python accepts
+        return None
+    try:
+        return np.array(list(map(float, texts)))
+    except ValueError:
+        return None
 
 
 def parse_cell(text: str) -> float | None:

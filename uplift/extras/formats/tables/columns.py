@@ -209,7 +209,7 @@ def _series(block: Block, column: int, axis: int, axes: dict[int, Array]) -> Ser
         raise block.grid.location.at(cells[0].line).error(problem, hint)
     known = np.flatnonzero(np.isfinite(nm)).tolist()
     values = tuple(cells[row] for row in known)
-    return Series(block.label(column), nm[known].tolist(), values, _name(labels))
+    return Series(block.label(column), nm[known], values, _name(labels))
 
 
 def _name(labels: Sequence[Cell]) -> Cell | None:

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from uplift.atlas import SkippedEntry, SourceLocation
+from uplift.common.arrays import Array
 from uplift.extras.formats.statements import remark_unit
 from uplift.extras.formats.tables.cells import Cell, Row, line_texts
 
@@ -34,7 +35,7 @@ class Series(NamedTuple):
     """
 
     label: str
-    nm: Sequence[float]
+    nm: Sequence[float] | Array
     cells: Row
     name: Cell | None
 

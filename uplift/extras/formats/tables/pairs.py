@@ -14,6 +14,7 @@ from uplift.extras.formats.tables.cells import (
     is_value,
     line_texts,
     parse_cell,
+    texts_of,
 )
 from uplift.extras.formats.tables.grid import Grid, Series, Table
 
@@ -34,7 +35,7 @@ def pairs_of_lines(grid: Grid) -> Table | None:
         nm = _wavelengths(cells, grid.unit or NANOMETRE)
         if nm is None or not (np.isfinite(nm).all() and are_wavelengths(nm)):
             return None
-        series.append(Series(str(len(series) + 1), nm.tolist(), cells[1::2], name))
+        series.append(Series(str(len(series) + 1), nm, cells[1::2], name))
     return Table(series, remarks, ("layout: pairs, a line per spectrum",))
 
 
@@ -46,12 +47,12 @@ def pairs_of_rows(rows: Sequence[Row], unit: float) -> Series | None:
     nm = _wavelengths(cells, unit)
     if max(map(len, rows)) < 4 or nm is None or np.ptp(np.diff(nm)) > EQUAL:
         return None
-    return Series("", nm.tolist(), cells[1::2], None)
+    return Series("", nm, cells[1::2], None)
 
 
 def _wavelengths(cells: Row, unit: float) -> Array | None:
     """Return the first numbers of pairs in nm; None for cells that are not pairs."""
-    numbers = np.array([parse_cell(cell.text) for cell in cells], float)
+    numbers = np.array(list(map(parse_cell, texts_of(cells))), float)
     first = numbers[::2]
     second = numbers[1::2]
     if len(first) != len(second) or not (second < SHORTEST).any():

@@ -32,7 +32,9 @@ from uplift.extras.formats.tables.cells import (
     is_value,
     line_texts,
     parse_cell,
+    plain_numbers,
     runs,
+    texts_of,
 )
 from uplift.extras.formats.tables.columns import blocks, spectra_of
 from uplift.extras.formats.tables.grid import (
@@ -88,10 +90,15 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
     )
 
 
-def _values(cells: Row, location: SourceLocation) -> tuple[list[float], Scale | None]:
+def _values(
+    cells: Row, location: SourceLocation
+) -> tuple[Sequence[float] | Array, Scale | None]:
     """Parse the values of a spectrum, NaN where one is missing, and the scale that
     percent signs in cells state.
     """
+    plain = plain_numbers(texts_of(cells))
+    if plain is not None:
+        return plain, None
     values = list[float]()
     percents = [cell.text for cell in cells if cell.text.endswith("%")]
     for cell in cells:

@@ -24,6 +24,7 @@ from uplift.extras.formats.statements import (
 )
 from uplift.extras.formats.tables.cells import (
     Cell,
+    Line,
     Row,
     Run,
     covers_visible,
@@ -33,6 +34,7 @@ from uplift.extras.formats.tables.cells import (
     parse_cell,
     parse_label,
     runs,
+    texts_of,
 )
 from uplift.extras.formats.tables.grid import (
     MAX_HEADS,
@@ -103,7 +105,7 @@ def spectra_below(grid: Grid, wavelengths: Header) -> Table:
     body = list[Row]()
     for row in grid.rows[index + 1 :]:
         line = row[0].line
-        if line_texts([row]) == line_texts([header]):  # repeated on a new page
+        if texts_of(row) == texts_of(header):  # repeated on a new page
             continue
         if not any(is_value(cell.text) for cell in row[run.first : run.last]):
             remarks += line_texts([row])
@@ -118,14 +120,16 @@ def spectra_below(grid: Grid, wavelengths: Header) -> Table:
                 "other cells"
             )
             raise grid.location.at(line).error(problem, hint)
-        body.append((*row, *[Cell("", line)] * (len(header) - len(row))))
+        missing = len(header) - len(row)
+        body.append(Line([*texts_of(row), *[""] * missing], line) if missing else row)
     others = [*range(run.first), *range(run.last, len(header))]
     column = _name_column(header, body, others)
     label = header[run.first].text if run.prefix else ""
+    nm.setflags(write=False)
     series = list[Series]()
     for number, row in enumerate(body, 1):
         name = Cell(f"sample {number}", row[0].line) if column is None else row[column]
-        series.append(Series(label, nm.tolist(), row[run.first : run.last], name))
+        series.append(Series(label, nm, row[run.first : run.last], name))
     unused = [header[other].text for other in others if other != column]
     remarks += filter(is_photometric, unused)
     if column is not None:
