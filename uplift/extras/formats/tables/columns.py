@@ -29,6 +29,7 @@ from uplift.extras.formats.tables.cells import (
     is_visible,
     parse_cell,
     runs,
+    texts_of,
 )
 from uplift.extras.formats.tables.grid import (
     MAX_AXIS,
@@ -127,10 +128,9 @@ class Block:
             ":"
         ):
             return False
-        corner = row[self.column].text
-        labels = [
-            cell.text for cell in row if cell.text and cell is not row[self.column]
-        ]
+        texts = list(texts_of(row))
+        corner = texts.pop(self.column)
+        labels = list(filter(None, texts))
         has_numbers = any(map(is_value, labels))
         if names_wavelengths(corner):
             return bool(labels) or len(corner.split()) == 1
