@@ -125,11 +125,11 @@ def parse_cell(text: str) -> float | None:
     try:
         return parse_float(text)
     except ValueError:
-        plain = text.strip().removesuffix("%").rstrip()
+        plain = text.strip()
     if plain.casefold() in MISSING:
         return np.nan
     try:
-        return parse_decimal(plain)
+        return parse_decimal(plain.removesuffix("%").rstrip())
     except ValueError:
         return None
 
