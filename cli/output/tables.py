@@ -51,13 +51,7 @@ class SafeTable(Table):
 
     def add_row(self, *cells: Any, **options: Any) -> None:
         """Add a row of texts."""
-        super().add_row(
-            *[
-                printable(cell) if isinstance(cell, str) else plain(cell)
-                for cell in cells
-            ],
-            **options,
-        )
+        super().add_row(*map(plain, cells), **options)
 
     def parts(self, width: int) -> Iterator["SafeTable"]:
         """Divide the columns of a table that is wider than a window; the first ones are
@@ -82,15 +76,14 @@ class SafeTable(Table):
         """Take the rows out of a long table of plain texts, and yield their lines: rich
         needs a third of a millisecond for each.
         """
-        columns = self.columns
-        rows = list(zip(*(column.cells for column in columns), strict=True))
-        is_plain = all(column.no_wrap for column in columns)
-        if len(rows) < LONG or not is_plain or any(map(_has_style, rows)):
-            return
-        for column in columns:
-            column._cells = []
-        for row in rows:
-            yield (" " * GAP).join(map(_aligned, row, columns)).rstrip()
+        rows = list(zip(*(column.cells for column in self.columns), strict=True))
+        has_styles = any(isinstance(cell, Text) for cell in chain.from_iterable(rows))
+        are_lines = all(column.no_wrap for column in self.columns)
+        if len(rows) >= LONG and are_lines and not has_styles:
+            for column in self.columns:
+                column._cells = []
+            for row in rows:
+                yield (" " * GAP).join(map(_aligned, row, self.columns)).rstrip()
 
     def _keys(self, width: int) -> Sequence[Column]:
         count = 1
@@ -108,10 +101,6 @@ class SafeTable(Table):
             replace(column, _index=index) for index, column in enumerate(columns)
         ]
         return table
-
-
-def _has_style(row: Sequence[str | Text]) -> bool:
-    return any(isinstance(cell, Text) for cell in row)
 
 
 def _aligned(text: str, column: Column) -> str:
@@ -136,9 +125,9 @@ def table_width(columns: Sequence[Column]) -> int:
     return sum(map(narrowest, columns)) + GAP * (len(columns) - 1)
 
 
-def plain(text: str | Text) -> Text:
-    """Return text that rich shows as it is; the style of a `Text` stays."""
+def plain(text: str | Text) -> str | Text:
+    """Return text without control characters; the style of a `Text` stays."""
     if isinstance(text, str):
-        return Text(printable(text))
+        return printable(text)
     safe = "\n".join(map(printable, text.plain.split("\n")))
     return text if safe == text.plain else Text(safe, style=text.style)

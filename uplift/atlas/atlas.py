@@ -89,10 +89,8 @@ class Entry:
     def __post_init__(self) -> None:
         location = SourceLocation(self.path, self.line, self.name)
         for key in ("wavelengths", "values"):
-            samples = getattr(self, key)
             try:
-                if not _is_frozen(samples):
-                    samples = np.array(samples, dtype=float)
+                samples = np.array(getattr(self, key), dtype=float)
             except (TypeError, ValueError):
                 raise location.error(
                     f"the {key} are not all numbers", "give an array of numbers"
@@ -352,18 +350,6 @@ def merge(atlases: Iterable[Atlas]) -> Atlas:
         skipped += atlas.skipped
         sources += atlas.sources
     return Atlas(tuple(entries), tuple(skipped), tuple(sources))
-
-
-def _is_frozen(samples: object) -> bool:
-    """Whether samples are an array that does not change, as entries of a table share
-    their wavelengths.
-    """
-    return (
-        isinstance(samples, np.ndarray)
-        and samples.dtype == float
-        and samples.base is None
-        and not samples.flags.writeable
-    )
 
 
 def _name_faults(name: str) -> Iterator[tuple[str, str]]:

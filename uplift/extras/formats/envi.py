@@ -7,14 +7,13 @@ import numpy as np
 
 from uplift.atlas import (
     Document,
-    SourceLocation,
     check_scale,
     one_line,
     parse_number,
     read_document,
 )
 from uplift.common.arrays import Array
-from uplift.common.text import parse_whole, pluralise
+from uplift.common.text import parse_whole
 from uplift.extras.formats.measurements import Measurements
 from uplift.extras.formats.samples import Spectrum
 from uplift.extras.formats.statements import (
@@ -28,7 +27,7 @@ from uplift.extras.formats.statements import (
 )
 
 HEADER = ".hdr"
-SUFFIXES = ("", ".sli", ".SLI", ".img", ".dat", ".bin", ".lib", ".esl")
+SUFFIXES = (".sli", ".SLI", "", ".img", ".dat", ".bin", ".lib", ".esl")
 """Suffixes of files of numbers."""
 MAGIC = b"ENVI"
 FILE_TYPE = "envi spectral library"
@@ -61,37 +60,34 @@ def read(document: Document) -> Measurements:
         parse_number(text, location, "a wavelength")
         for text in _items(fields, "wavelength")
     ]
-    values = _values(fields, location, data)
-    numbers = range(1, len(values) + 1)
-    names = _items(fields, "spectra names") or list(map(str, numbers))
-    if values.shape != (len(names), len(centers)):
-        problem = (
-            f"the header has {pluralise(len(names), 'name')} and "
-            f"{pluralise(len(centers), 'wavelength')} for {values.shape} values"
-        )
-        raise location.error(problem, HINT)
+    unit = one_line(fields.get("wavelength units"))
+    is_stated = unit.lower() not in UNSPECIFIED
+    nm = to_nm(
+        centers, stated_unit(unit, location) if is_stated else unit_by_values(centers)
+    )
+    try:
+        values = _values(fields, data)
+        names = _items(fields, "spectra names") or map(str, range(1, len(values) + 1))
+        rows = list(zip(names, values, strict=True))
+    except (KeyError, ValueError) as error:
+        problem = f"the header does not describe the file {data.name}: {error}"
+        raise location.error(problem, HINT) from None
     if IGNORED in fields:
         ignored = parse_number(fields[IGNORED], location, IGNORED)
         values[np.isclose(values, ignored, rtol=1e-6, atol=0)] = np.nan
-    unit = one_line(fields.get("wavelength units"))
-    nm = to_nm(
-        centers,
-        stated_unit(unit, location)
-        if unit.lower() not in UNSPECIFIED
-        else unit_by_values(centers),
-    )
-    spectra = tuple(
-        Spectrum(name, nm, row) for name, row in zip(names, values, strict=True)
-    )
     texts = [", ".join(_items(fields, key)) for key in TEXTS]
+    scales = tuple(filter(None, map(remark_scale, texts)))
+    quantity = remark_quantity(texts)
+    if FACTOR in fields:
+        factor = parse_number(fields[FACTOR], location, FACTOR)
+        check_scale(factor, FACTOR, location)
+        scales = (Scale(factor, f"{FACTOR} = {fields[FACTOR]}"),)
+        quantity = Quantity("reflectance", FACTOR)
     return Measurements(
-        spectra,
-        scales=_scales(fields, location)
-        or tuple(filter(None, map(remark_scale, texts))),
+        tuple(Spectrum(name, nm, row) for name, row in rows),
+        scales=scales,
         notes=(f"layout: {data.name} with its header",),
-        quantity=Quantity("reflectance", FACTOR)
-        if FACTOR in fields
-        else remark_quantity(texts),
+        quantity=quantity,
     )
 
 
@@ -116,36 +112,18 @@ def _items(fields: dict[str, str], key: str) -> list[str]:
     return list(map(one_line, text.split(","))) if text else []
 
 
-def _values(fields: dict[str, str], location: SourceLocation, data: Document) -> Array:
-    """Return the values, a row per spectrum. Raise `AtlasError` for numbers that are
-    not as the header states them.
+def _values(fields: dict[str, str], data: Document) -> Array:
+    """Return the values, a row per spectrum. Raise `KeyError` or `ValueError` for
+    numbers that are not as the header states them.
     """
-    kind = TYPES.get(fields.get("data type", ""))
-    order = BYTE_ORDERS.get(fields.get("byte order", "0"))
-    if not (kind and order) or fields.get("bands", "1") != "1":
-        problem = (
-            f"data type must be one of {', '.join(TYPES)}, byte order 0 or 1, and the "
-            "number of bands 1"
-        )
-        raise location.error(problem, HINT)
-    try:
-        # Samples are wavelengths, lines are spectra.
-        shape = [parse_whole(fields[key]) for key in ("lines", "samples")]
-        offset = parse_whole(fields.get("header offset", "0"))
-        values = np.frombuffer(data.data, order + kind, math.prod(shape), offset)
-        return values.reshape(shape).astype(float)
-    except (KeyError, ValueError) as error:
-        problem = f"the header does not describe the file {data.name}: {error}"
-        raise location.error(problem, HINT) from None
-
-
-def _scales(fields: dict[str, str], location: SourceLocation) -> tuple[Scale, ...]:
-    """Return the scale that a header states."""
-    if FACTOR not in fields:
-        return ()
-    number = parse_number(fields[FACTOR], location, FACTOR)
-    factor = check_scale(number, FACTOR, location)
-    return (Scale(factor, f"{FACTOR} = {fields[FACTOR]}"),)
+    # Samples are wavelengths, lines are spectra.
+    shape = [parse_whole(fields[key]) for key in ("lines", "samples")]
+    if fields.get("bands", "1") != "1":
+        raise ValueError(f"bands must be 1, got {fields['bands']}")
+    dtype = BYTE_ORDERS[fields.get("byte order", "0")] + TYPES[fields["data type"]]
+    offset = parse_whole(fields.get("header offset", "0"))
+    values = np.frombuffer(data.data, dtype, math.prod(shape), offset)
+    return values.reshape(shape).astype(float)
 
 
 def _pair(document: Document) -> tuple[Document, Document]:
@@ -154,22 +132,23 @@ def _pair(document: Document) -> tuple[Document, Document]:
     """
     path = Path(document.path)
     is_header = _is_header(document)
-    others = SUFFIXES if is_header else (HEADER, HEADER.upper(), path.suffix + HEADER)
-    candidates = [path.with_suffix(suffix) for suffix in others]
-    existing = [file for file in candidates if file.is_file() and file != path]
-    if not existing:
-        name = path.with_suffix(".sli" if is_header else HEADER).name
-        raise document.location.error(
-            f"an ENVI library has two files, and {name} is missing",
-            f"put {name} next to it",
-            code="file-not-found",
-        )
-    paired = read_document(existing[0])
-    if is_header:
-        return document, paired
-    if not _is_header(paired):
-        raise paired.location.error("is not an ENVI header", HINT, code="not-an-atlas")
-    return paired, document
+    suffixes = SUFFIXES if is_header else (HEADER, HEADER.upper(), path.suffix + HEADER)
+    candidates = [path.with_suffix(suffix) for suffix in suffixes]
+    for candidate in candidates:
+        if candidate.is_file() and candidate != path:
+            other = read_document(candidate)
+            if is_header:
+                return document, other
+            if _is_header(other):
+                return other, document
+            raise other.location.error(
+                "is not an ENVI header", HINT, code="not-an-atlas"
+            )
+    raise document.location.error(
+        f"an ENVI library has two files, and {candidates[0].name} is missing",
+        f"put {candidates[0].name} next to it",
+        code="file-not-found",
+    )
 
 
 def _is_header(document: Document) -> bool:

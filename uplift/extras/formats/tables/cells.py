@@ -3,7 +3,7 @@
 import itertools
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple, overload
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -78,13 +78,10 @@ class Line(Row):
     def __len__(self) -> int:
         return len(self.texts)
 
-    @overload
-    def __getitem__(self, key: int) -> Cell: ...
-    @overload
-    def __getitem__(self, key: slice) -> Row: ...
-    def __getitem__(self, key: int | slice) -> Cell | Row:
+    def __getitem__(self, key: Any) -> Any:
         part = self.texts[key]
-        return Cell(part, self.line) if isinstance(part, str) else Line(part, self.line)
+        kind = Cell if isinstance(part, str) else Line
+        return kind(part, self.line)
 
 
 def trimmed(texts: list[str]) -> list[str]:

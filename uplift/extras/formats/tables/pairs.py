@@ -45,9 +45,10 @@ def pairs_of_rows(rows: Sequence[Row], unit: float) -> Series | None:
     """
     cells = tuple(chain.from_iterable(rows))
     nm = _wavelengths(cells, unit)
-    if max(map(len, rows)) < 4 or nm is None or np.ptp(np.diff(nm)) > EQUAL:
+    if nm is None or max(map(len, rows)) < 4:
         return None
-    return Series("", nm, cells[1::2], None)
+    have_equal_steps = np.ptp(np.diff(nm)) <= EQUAL  # not with NaN
+    return Series("", nm, cells[1::2], None) if have_equal_steps else None
 
 
 def _wavelengths(cells: Row, unit: float) -> Array | None:

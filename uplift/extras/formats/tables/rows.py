@@ -125,7 +125,6 @@ def spectra_below(grid: Grid, wavelengths: Header) -> Table:
     others = [*range(run.first), *range(run.last, len(header))]
     column = _name_column(header, body, others)
     label = header[run.first].text if run.prefix else ""
-    nm.setflags(write=False)
     series = list[Series]()
     for number, row in enumerate(body, 1):
         name = Cell(f"sample {number}", row[0].line) if column is None else row[column]
@@ -228,7 +227,6 @@ def _samples_by_name(
     """
     usual = [at for at in others if plain_label(header[at].text) in NAME_LABELS]
     are_repeated = len(set(numbers)) < len(numbers)
-    possible = list[dict[str, list[int]]]()
     for column in (*usual, *others) if are_repeated else usual:
         groups = defaultdict[str, list[int]](list)
         name = ""
@@ -236,14 +234,10 @@ def _samples_by_name(
             name = cell_at(row, column).text or name  # merged cells of spreadsheets
             groups[name].append(at)
         are_measured = any(is_value(name) and {".", ","} & {*name} for name in groups)
-        if are_measured or min(map(len, groups.values()), default=0) < 2:
-            continue
-        have_each_once = all(
-            len({numbers[at] for at in members}) == len(members)
+        counts = [
+            (len(members), len({numbers[at] for at in members}))
             for members in groups.values()
-        )
-        if have_each_once:
+        ]
+        if not are_measured and all(1 < count == each for count, each in counts):
             return groups
-        if column in usual:
-            possible.append(groups)
-    return next(iter(possible), None)
+    return None
