@@ -66,11 +66,12 @@ def _labelled(rows: list[Row]) -> list[Row]:
     without labels.
     """
     for at, row in enumerate(rows[:SAMPLE_ROWS]):
-        count = len(rows) - at - 1
-        labels = {"data=": SIGNATURE, str(count): COUNTED}.get(row[0].text, ())
-        if count and len(row) == 1 < len(rows[at + 1]) <= len(labels):
-            heads = Line(labels[: len(rows[at + 1])], row[0].line)
-            return [*rows[:at], heads, *rows[at + 1 :]]
+        body = rows[at + 1 :]
+        labels = {"data=": SIGNATURE, str(len(body)): COUNTED}.get(row[0].text)
+        if labels and body and is_value(body[0][0].text):
+            width = len(body[0])
+            if len(row) == 1 < width <= len(labels):
+                return [*rows[:at], Line(labels[:width], row[0].line), *body]
     return rows
 
 

@@ -1,6 +1,5 @@
 """Reader of ENVI spectral libraries: a header (``.hdr``) and numbers (``.sli``)."""
 
-import math
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,7 @@ from uplift.atlas import (
     read_document,
 )
 from uplift.common.arrays import Array
-from uplift.common.text import parse_whole
+from uplift.common.text import parse_float, parse_whole
 from uplift.extras.formats.measurements import Measurements
 from uplift.extras.formats.samples import Spectrum
 from uplift.extras.formats.statements import (
@@ -37,6 +36,12 @@ TYPES = {
 }  # fmt: skip
 """Types of numbers by the field ``data type``."""
 BYTE_ORDERS = {"0": "<", "1": ">"}
+CHOICES = {"bands": ("1",), "byte order": BYTE_ORDERS, "data type": TYPES}
+"""Fields whose values are limited."""
+DEFAULTS = {
+    "bands": "1", "byte order": "0", "data type": "", "header offset": "0",
+    "lines": "", "samples": "",
+}  # fmt: skip
 FACTOR = "reflectance scale factor"
 """Field of the divisor of the values."""
 IGNORED = "data ignore value"
@@ -56,22 +61,23 @@ def read(document: Document) -> Measurements:
         raise location.error(
             "is an ENVI image, not a spectral library", HINT, code="not-an-atlas"
         )
-    centers = [
-        parse_number(text, location, "a wavelength")
-        for text in _items(fields, "wavelength")
-    ]
+    try:
+        values = _values(fields, data)
+        names = _items(fields, "spectra names") or [
+            str(number) for number in range(1, len(values) + 1)
+        ]
+        centers = list(map(parse_float, _items(fields, "wavelength")))
+        if values.shape != (len(names), len(centers)):
+            counts = f"names: {len(names)}, wavelengths: {len(centers)}"
+            raise ValueError(f"values of {values.shape}, {counts}")
+    except ValueError as error:
+        problem = f"the header does not describe the file {data.name}: {error}"
+        raise location.error(problem, HINT) from None
     unit = one_line(fields.get("wavelength units"))
     is_stated = unit.lower() not in UNSPECIFIED
     nm = to_nm(
         centers, stated_unit(unit, location) if is_stated else unit_by_values(centers)
     )
-    try:
-        values = _values(fields, data)
-        names = _items(fields, "spectra names") or map(str, range(1, len(values) + 1))
-        rows = list(zip(names, values, strict=True))
-    except (KeyError, ValueError) as error:
-        problem = f"the header does not describe the file {data.name}: {error}"
-        raise location.error(problem, HINT) from None
     if IGNORED in fields:
         ignored = parse_number(fields[IGNORED], location, IGNORED)
         values[np.isclose(values, ignored, rtol=1e-6, atol=0)] = np.nan
@@ -84,7 +90,7 @@ def read(document: Document) -> Measurements:
         scales = (Scale(factor, f"{FACTOR} = {fields[FACTOR]}"),)
         quantity = Quantity("reflectance", FACTOR)
     return Measurements(
-        tuple(Spectrum(name, nm, row) for name, row in rows),
+        tuple(Spectrum(name, nm, row) for name, row in zip(names, values, strict=True)),
         scales=scales,
         notes=(f"layout: {data.name} with its header",),
         quantity=quantity,
@@ -95,7 +101,7 @@ def _fields(header: Document) -> dict[str, str]:
     """Return the fields of a header by their names in lower case. A value in braces may
     have several lines.
     """
-    fields = dict[str, str]()
+    fields = dict(DEFAULTS)
     lines = iter([line for line in header.lines if not line.startswith(";")])
     for line in lines:
         key, _, value = line.partition("=")
@@ -113,17 +119,22 @@ def _items(fields: dict[str, str], key: str) -> list[str]:
 
 
 def _values(fields: dict[str, str], data: Document) -> Array:
-    """Return the values, a row per spectrum. Raise `KeyError` or `ValueError` for
-    numbers that are not as the header states them.
+    """Return the values, a row per spectrum. Raise `ValueError` for numbers that are
+    not as the header states them.
     """
+    for key, known in CHOICES.items():
+        if fields[key] not in known:
+            listing = ", ".join(known)
+            raise ValueError(f"{key} must be one of {listing}, got '{fields[key]}'")
+    dtype = np.dtype(BYTE_ORDERS[fields["byte order"]] + TYPES[fields["data type"]])
     # Samples are wavelengths, lines are spectra.
-    shape = [parse_whole(fields[key]) for key in ("lines", "samples")]
-    if fields.get("bands", "1") != "1":
-        raise ValueError(f"bands must be 1, got {fields['bands']}")
-    dtype = BYTE_ORDERS[fields.get("byte order", "0")] + TYPES[fields["data type"]]
-    offset = parse_whole(fields.get("header offset", "0"))
-    values = np.frombuffer(data.data, dtype, math.prod(shape), offset)
-    return values.reshape(shape).astype(float)
+    keys = ("header offset", "lines", "samples")
+    offset, lines, samples = [parse_whole(fields[key]) for key in keys]
+    size = lines * samples * dtype.itemsize
+    if offset < 0 or lines < 1 or samples < 1 or offset + size > len(data.data):
+        raise ValueError(f"{lines} × {samples} values from byte {offset} on")
+    content = data.data[offset : offset + size]
+    return np.frombuffer(content, dtype).reshape(lines, samples).astype(float)
 
 
 def _pair(document: Document) -> tuple[Document, Document]:
