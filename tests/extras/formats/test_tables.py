@@ -266,6 +266,7 @@ def test_a_value_ten_times_its_neighbours_is_warned_of(read, value):
             for at, value in zip(NM, VALUES, strict=True)
         ),
         "nm,a,,\n" + lines("{:g},{:g},,"),
+        "nm,a,nm,b\n" + lines("{0:g},{1:g},{0:g},{1:g}") + ",,900,\n,,920,\n",
         "nm,a\n" + lines().replace("600", "nm,a\n600"),
         HEADER + row("a") + HEADER + row("b"),
         HEADER + "".join(",%" for _ in NM) + "\n" + row("a", 100),
@@ -274,7 +275,8 @@ def test_a_value_ten_times_its_neighbours_is_warned_of(read, value):
         "a,,b,\nnm,R,nm,R\n" + lines("{0:g},{1:g},{0:g},{1:g}"),
         lines("{:g},{:g},").replace("\n", ""),
         lines("{:g} {:g}, ").replace("\n", ""),
-        "Paint,wave,R\n" + "".join(lines(f"{name},{{:g}},{{:g}}") for name in ("NA", 1)),
+        "Paint,wave,R\n"
+        + "".join(lines(f"{name},{{:g}},{{:g}}") for name in ("NA", 1)),
         "Sample No,"
         + HEADER[5:]
         + "".join(row(str(number)) for number in range(101, 801, 100)),

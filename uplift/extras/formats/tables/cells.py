@@ -36,7 +36,7 @@ MISSING = frozenset(
 )
 """Texts for a value that is missing, in lower case."""
 LABEL = re.compile(
-    r"([^\d.,+-]{0,40}?)[\s_([]*(\d{1,5}(?:[.,]\d{1,8})?)\s*[([]?\s*(nm|[µμu]m|microns?|å|1/cm)?\s*[)\]]?",
+    r"([^\d.,+-]{0,40}?)[\s_([]*(\d{1,5}(?:[.,]\d{1,8})?)\s*[([]?\s*(nm|[µμu]m|microns?|å|1/cm)?\s*[)\]]?(?:\s*[([]?%[)\]]?)?",
     re.IGNORECASE,
 )
 """A prefix, a wavelength, and perhaps its unit: ``nm400``, ``R_400``, ``380[nm]``,
@@ -225,11 +225,14 @@ def are_wavelengths(nm: Array, *, is_named: bool = False) -> bool:
     those of values.
     """
     known = nm[np.isfinite(nm)]
-    steps = np.diff(known)
-    if len(steps) < 2:
+    if len(known) < 3:
         return False
-    is_sorted = bool(steps.min() * steps.max() > 0)
+    before = known[:-1]
+    after = known[1:]
+    is_sorted = (before < after).all() or (before > after).all()
     if is_named:
-        return is_visible(known) or (is_sorted and known.max() >= SHORTEST)
-    has_even_steps = bool(np.ptp(steps) < abs(steps.mean()))
-    return is_visible(known) and is_sorted and has_even_steps
+        return is_visible(known) or bool(is_sorted and known.max() >= SHORTEST)
+    if not (is_sorted and is_visible(known)):
+        return False
+    steps = np.diff(known)
+    return bool(np.ptp(steps) < abs(steps.mean()))

@@ -36,7 +36,7 @@ from uplift.extras.formats.tables.cells import (
     runs,
     texts_of,
 )
-from uplift.extras.formats.tables.columns import blocks, spectra_of
+from uplift.extras.formats.tables.columns import blocks, longest, spectra_of
 from uplift.extras.formats.tables.grid import (
     LAYOUT,
     MAX_AXIS,
@@ -144,16 +144,17 @@ def _rows_or_columns(grid: Grid) -> Table:
     """
     header = max(headers(grid), key=lambda header: len(header.nm), default=None)
     found = list(blocks(grid))
-    block = max(found, key=lambda block: len(block.rows), default=None)
+    block = longest(found)
     if block is None:
         if header is None:
             raise _no_table(grid)
         return spectra_below(grid, header)
     if header is None or header.at != block.run.first - 1:
+        rows = range(block.run.first, block.run.last)
         others = [
             other
             for other in found
-            if other.column == block.column and other is not block
+            if other.column == block.column and other.run.first not in rows
         ]
         return spectra_of(block, others)
     corner = grid.rows[header.at][block.column]

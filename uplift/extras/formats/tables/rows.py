@@ -124,7 +124,7 @@ def spectra_below(grid: Grid, wavelengths: Header) -> Table:
         body.append(Line([*texts_of(row), *[""] * missing], line) if missing else row)
     others = [*range(run.first), *range(run.last, len(header))]
     column = _name_column(header, body, others)
-    label = header[run.first].text if run.prefix else ""
+    label = header[run.first].text
     series = list[Series]()
     for number, row in enumerate(body, 1):
         name = Cell(f"sample {number}", row[0].line) if column is None else row[column]
