@@ -101,17 +101,6 @@ def line_texts(rows: Iterable[Row]) -> list[str]:
     return [" ".join(texts_of(row)) for row in rows]
 
 
-def plain_numbers(texts: Sequence[str]) -> Array | None:
-    """Parse numbers that are written as programs write them; None if one is not."""
-    joined = "".join(texts)
-    if "_" in joined or not joined.isascii():  # which Python accepts
-        return None
-    try:
-        return np.array(list(map(float, texts)))
-    except ValueError:
-        return None
-
-
 def parse_cell(text: str) -> float | None:
     """Parse a number with a decimal point or comma, perhaps in percent; NaN for a
     missing one, None for other text.

@@ -21,12 +21,14 @@ from uplift.extras.formats.statements import (
     unit_by_values,
 )
 from uplift.extras.formats.tables.cells import (
+    SHORTEST,
     Cell,
     Row,
     Run,
     are_wavelengths,
     is_value,
     is_visible,
+    line_texts,
     parse_cell,
     runs,
     texts_of,
@@ -39,7 +41,9 @@ from uplift.extras.formats.tables.grid import (
     Table,
     cell_at,
 )
-from uplift.extras.formats.tables.pairs import pairs_of_rows
+
+EQUAL = 1e-6
+"""Tolerance in nm of equal steps."""
 
 
 @dataclass(frozen=True)
@@ -179,12 +183,7 @@ def spectra_of(block: Block, others: Sequence[Block]) -> Table:
     """Return a spectrum for each column of values of a block; the ``others`` of the
     file are skipped.
     """
-    heads = chain.from_iterable(block.heads)
-    has_names = not all(
-        is_plain(cell.text) or names_wavelengths(cell.text) for cell in heads
-    )
-    pairs = None if has_names else pairs_of_rows(block.rows, block.unit)
-    if pairs is not None:
+    if pairs := _pairs(block):
         return Table([pairs], block.remarks, ("layout: several pairs a line",))
     series = list[Series]()
     unused = list[str]()
@@ -252,12 +251,52 @@ def _axes(block: Block) -> dict[int, Array]:
     numbers, NaN where a cell is empty.
     """
     axes = {block.column: block.nm}
-    own_labels = [cell.text for cell in block.labels(block.column)]
     for column in range(block.column + 1, block.width):
         labels = [cell.text for cell in block.labels(column)]
         cells = [parse_cell(cell.text) for cell in block.cells(column)]
         nm = to_nm(np.array(cells, float), find_unit(" ".join(labels)) or block.unit)
-        is_named = labels == own_labels or any(map(names_wavelengths, labels))
-        if are_wavelengths(nm, is_named=bool(labels) and is_named):
+        if are_wavelengths(nm, is_named=any(map(names_wavelengths, labels))):
             axes[column] = nm
     return axes
+
+
+def pairs_of_lines(grid: Grid) -> Table | None:
+    """Read a table with a spectrum on each line, perhaps behind its name."""
+    series = list[Series]()
+    remarks = list[str]()
+    for row in grid.rows:
+        if not any(is_value(cell.text) for cell in row):
+            remarks += line_texts([row])
+            continue
+        name = None if is_value(row[0].text) else row[0]
+        cells = row if name is None else row[1:]
+        nm = _wavelengths(cells, grid.unit or NANOMETRE)
+        if nm is None or not (np.isfinite(nm).all() and are_wavelengths(nm)):
+            return None
+        series.append(Series(str(len(series) + 1), nm, cells[1::2], name))
+    return Table(series, remarks, ("layout: pairs, a line per spectrum",))
+
+
+def _pairs(block: Block) -> Series | None:
+    """Return the spectrum whose wavelengths go on from pair to pair in equal steps, and
+    then to the next line.
+    """
+    for cell in chain.from_iterable(block.heads):
+        if not (is_plain(cell.text) or names_wavelengths(cell.text)):
+            return None
+    cells = tuple(chain.from_iterable(block.rows))
+    nm = _wavelengths(cells, block.unit)
+    if nm is None or block.width < 4:
+        return None
+    have_equal_steps = np.ptp(np.diff(nm)) <= EQUAL  # not with NaN
+    return Series("", nm, cells[1::2], None) if have_equal_steps else None
+
+
+def _wavelengths(cells: Row, unit: float) -> Array | None:
+    """Return the first numbers of pairs in nm; None for cells that are not pairs."""
+    numbers = np.array(list(map(parse_cell, texts_of(cells))), float)
+    first = numbers[::2]
+    second = numbers[1::2]
+    if len(first) != len(second) or not (second < SHORTEST).any():
+        return None
+    return to_nm(first, unit)

@@ -5,8 +5,11 @@ spectrum; or in a column before each spectrum. All else is text: preamble, comme
 lines below. It states scale, quantity and unit.
 """
 
+import contextlib
 from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from uplift.atlas import SourceLocation, truncate
 from uplift.common.arrays import Array
@@ -32,11 +35,15 @@ from uplift.extras.formats.tables.cells import (
     is_value,
     line_texts,
     parse_cell,
-    plain_numbers,
     runs,
     texts_of,
 )
-from uplift.extras.formats.tables.columns import blocks, longest, spectra_of
+from uplift.extras.formats.tables.columns import (
+    blocks,
+    longest,
+    pairs_of_lines,
+    spectra_of,
+)
 from uplift.extras.formats.tables.grid import (
     LAYOUT,
     MAX_AXIS,
@@ -46,7 +53,6 @@ from uplift.extras.formats.tables.grid import (
     Table,
     plain_label,
 )
-from uplift.extras.formats.tables.pairs import pairs_of_lines
 from uplift.extras.formats.tables.rows import find_samples, headers, spectra_below
 
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
@@ -96,9 +102,11 @@ def _values(
     """Parse the values of a spectrum, NaN where one is missing, and the scale that
     percent signs in cells state.
     """
-    plain = plain_numbers(texts_of(cells))
-    if plain is not None:
-        return plain, None
+    texts = texts_of(cells)
+    joined = "".join(texts)
+    if joined.isascii() and "_" not in joined:  # which Python accepts in numbers
+        with contextlib.suppress(ValueError):
+            return np.array(list(map(float, texts))), None
     values = list[float]()
     percents = [cell.text for cell in cells if cell.text.endswith("%")]
     for cell in cells:
