@@ -7,19 +7,22 @@ from functools import cached_property
 from typing import NamedTuple
 
 from uplift.atlas import SkippedEntry, SourceLocation
+from uplift.common.arrays import Array
 from uplift.extras.formats.statements import remark_unit
 from uplift.extras.formats.tables.cells import Cell, Row, line_texts
 
 LAYOUT = "write a header row of wavelengths in nm and a row per entry, or the transpose"
 MAX_PREAMBLE = 1000
 """Rows among which the row of wavelengths is searched."""
+MAX_HEADS = 4
+"""Rows of labels above columns."""
 MAX_AXIS = 3
 """Columns among which that of the wavelengths is searched."""
 NAME_LABELS = (
     "samplename", "name", "colorname", "colourname", "patchname", "patch", "label",
     "title", "sample", "material",
-    "spectrum", "sampleid", "patchid", "id", "sampleloc", "sampleno", "no", "number",
-    "index",
+    "target", "spectrum", "sampleid", "patchid", "id", "sampleloc", "sampleno", "no",
+    "number", "index",
 )  # fmt: skip
 """Labels of names, in lower case without blanks and punctuation, the preferred ones
 first.
@@ -32,7 +35,7 @@ class Series(NamedTuple):
     """
 
     label: str
-    nm: Sequence[float]
+    nm: Sequence[float] | Array
     cells: Row
     name: Cell | None
 
