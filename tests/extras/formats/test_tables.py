@@ -97,11 +97,14 @@ def test_names_with_percentages_are_names(read):
 
 
 LIGHTS = (
+    "Wavelength,SPD\n" + lines(),
+    "Wavelength (nm),Irradiance (µW/cm²/nm)\n" + lines(),
+    "wavelength,A,D65\n" + lines("{0:g},{1:g},{1:g}"),
+)
+LIGHTS_WITHOUT_A_UNIT = (
     "LUX\t250.5\nCCT\t3050\nCRI\t92.1\nx\t0.43\n" + lines("{:g}nm\t{:g}"),
     "Illuminance [lx],344\n" + lines("Spectral Data {:g}[nm],{:g}"),
     "Name,LUX,CCT," + HEADER[5:] + row("a,300,3000"),
-    "Wavelength,SPD\n" + lines(),
-    "Wavelength (nm),Irradiance (µW/cm²/nm)\n" + lines(),
     "nm,Counts\n" + lines(factor=1000),
 )
 MATERIALS = (
@@ -112,13 +115,21 @@ MATERIALS = (
 )
 
 
-@pytest.mark.parametrize("text", LIGHTS)
+@pytest.mark.parametrize("text", [*LIGHTS, *LIGHTS_WITHOUT_A_UNIT])
 def test_lights_are_no_reflectances(save, text):
     path = save(text)
     with raises(AtlasError, "not-reflectance") as caught:
         read_atlas(path)
     assert "read_lamps" in caught.value.hint
-    check_values(read_lamps(path), VALUES / VALUES.max())
+    with warns(*["lamp-unit"] * (text in LIGHTS_WITHOUT_A_UNIT)):
+        lamps = read_lamps(path)
+    check_values(lamps, VALUES / VALUES.max())
+
+
+def test_photons_are_divided_by_the_wavelength(save):
+    text = "Wavelength (nm),Photon flux (µmol m-2 s-1 nm-1)\n"
+    lamps = read_lamps(save(text + lines("{:g},{:g}", nm=NM)))
+    check_values(lamps, VALUES / NM / (VALUES / NM).max())
 
 
 @pytest.mark.parametrize("text", MATERIALS)

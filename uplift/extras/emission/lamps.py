@@ -16,7 +16,6 @@ from uplift.atlas import (
     read_any,
     read_named,
     skipped_warning,
-    truncate,
 )
 from uplift.colorimetry import tables
 from uplift.colorimetry.illuminants import Illuminant, Lamp
@@ -32,14 +31,21 @@ from uplift.common.errors import (
     AtlasError,
     UnknownNameError,
     UpliftError,
+    UpliftWarning,
     unknown_name,
     warn,
 )
 from uplift.common.text import listed, printable
 from uplift.extras.colour.spectra_json import POWER, is_json, read_spectra
 from uplift.extras.emission.discs import Lamps
-from uplift.extras.formats.measurements import Measurements
-from uplift.extras.formats.samples import is_missing
+from uplift.extras.formats.measurements import Measurements, wrong_quantity
+from uplift.extras.formats.quantities import (
+    ASSUMED_POWER,
+    PHOTONS,
+    REFLECTANCE,
+    Quantity,
+)
+from uplift.extras.formats.samples import Spectrum, is_missing
 
 SAME_LAMP = 1e-3
 """Difference, as a fraction of the largest power, below which two lamps are one."""
@@ -186,36 +192,39 @@ def is_illuminant(name: str) -> bool:
 def _read(document: Document) -> Atlas:
     chosen, content = read_any(document)
     if not isinstance(content, Measurements):
-        raise _not_a_lamp("reflectance spectrum", document)
-    stated = [spectrum.quantity or content.quantity for spectrum in content.spectra]
-    of_material = [
-        quantity for quantity in stated if quantity and not quantity.of_light
-    ]
-    if of_material and len(of_material) == len(stated):
-        raise _not_a_lamp(of_material[0].text, document)
-    return _scaled(document, content).to_atlas(document, chosen.name, "fraction")
+        stated = Quantity(REFLECTANCE, "reflectance spectrum")
+        raise wrong_quantity(stated, document.location, lamps=True)
+    content = content.select(document, lamps=True)
+    powers = tuple(_power(spectrum, document) for spectrum in content.spectra)
+    atlas = replace(content, spectra=powers).entries(document, chosen.name, "fraction")
+    if not all(map(_has_unit, content.spectra)) and not _is_spd(document):
+        problem = "no unit of power is stated: values are read as power, not as photons"
+        hint = "state it in a label, such as 'W/m²/nm' or 'µmol/m²/s/nm'"
+        warn(UpliftWarning(problem, code="lamp-unit", path=document.path, hint=hint))
+    return atlas
 
 
-def _not_a_lamp(stated: str, document: Document) -> AtlasError:
-    problem = f"the file states '{truncate(stated)}', not the power of a lamp"
-    return document.location.error(
-        problem, "give spectral powers, such as a CSV table", code="not-a-lamp"
-    )
+def _has_unit(spectrum: Spectrum) -> bool:
+    quantity = spectrum.quantity
+    return quantity is not None and quantity.kind.as_lamp != ASSUMED_POWER
 
 
-def _scaled(document: Document, measurements: Measurements) -> Measurements:
-    """Divide each lamp by its largest power."""
-    spectra = []
-    for spectrum in measurements.spectra:
-        quantity = spectrum.quantity or measurements.quantity
-        if quantity and not quantity.of_light:
-            continue
-        values = np.array(spectrum.values, dtype=float)
-        values[is_missing(values)] = np.nan
-        highest = float(np.nan_to_num(values).max(initial=0))
-        if highest <= 0:
-            raise document.location.at(spectrum.line, spectrum.name).error(
-                "a lamp must have power, got none above 0", "remove the lamp"
-            )
-        spectra.append(replace(spectrum, values=values / highest, quantity=None))
-    return replace(measurements, spectra=tuple(spectra), quantity=None)
+def _is_spd(document: Document) -> bool:
+    """Whether the suffix of a file states a spectral power distribution."""
+    return document.path.lower().endswith((".spd", ".spdx"))
+
+
+def _power(spectrum: Spectrum, document: Document) -> Spectrum:
+    """Return the power of a lamp, divided by its largest one. Photons have an energy of
+    h c / λ.
+    """
+    values = np.array(spectrum.values, dtype=float)
+    values[is_missing(values)] = np.nan
+    if spectrum.quantity and spectrum.quantity.kind is PHOTONS:
+        values /= np.asarray(spectrum.wavelengths)
+    highest = float(np.nan_to_num(values).max(initial=0))
+    if highest <= 0:
+        raise document.location.at(spectrum.line, spectrum.name).error(
+            "a lamp must have power, got none above 0", "remove the lamp"
+        )
+    return replace(spectrum, values=values / highest)

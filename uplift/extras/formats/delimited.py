@@ -14,7 +14,8 @@ from uplift.common.errors import OutputError
 from uplift.common.text import pluralise
 from uplift.extras.files.csv import csv_text, find_delimiter, plain_cell
 from uplift.extras.formats.measurements import Measurements
-from uplift.extras.formats.statements import name_quantity, remark_scale
+from uplift.extras.formats.quantities import name_quantities
+from uplift.extras.formats.statements import remark_scale
 from uplift.extras.formats.tables.cells import Cell, Row, is_value, line_texts, trimmed
 from uplift.extras.formats.tables.grid import LAYOUT, Grid
 from uplift.extras.formats.tables.read import read_grid
@@ -35,14 +36,18 @@ def read(document: Document) -> Measurements:
         line.strip("# \t") for line in document.lines if line.lstrip().startswith("#")
     ]
     try:
-        rows = list(_split(document, _delimiter(document)))
+        delimiter = _delimiter(document)
+        rows = list(_split(document, delimiter))
     except (csv.Error, ValueError) as error:
         raise document.location.error(
             f"not a readable table: {error}", LAYOUT
         ) from None
     numbers = [row for row in rows if is_value(row[0].text)]
     if len(numbers) < 2 or max(map(len, numbers)) > 1:
-        return read_grid(Grid(rows, document.location, comments), document.stem)
+        is_quoted = delimiter == "," or '"' in document.text
+        may_group = delimiter in (",", "\t") and is_quoted
+        grid = Grid(rows, document.location, comments, may_group)
+        return read_grid(grid, document.stem)
     title = next(
         (text for text in line_texts(rows) if not is_value(text)), document.stem
     )
@@ -96,10 +101,13 @@ def text(atlas: Atlas, _: Header) -> str:
                 problem,
                 hint="write atlas text, which keeps each sampling, or separate tables",
             )
-        if remark_scale(entry.name) or name_quantity(entry.name):
+    stated = name_quantities(atlas.names)
+    for name, quantity in zip(atlas.names, stated, strict=True):
+        is_lamp = quantity is None or quantity.kind.is_used(lamps=True)
+        if not is_lamp or remark_scale(name):
             raise OutputError(
-                f"the name '{entry.name}' states a scale or a quantity, which a table "
-                "is read by",
+                f"the name '{name}' states a scale or a quantity, which a table is "
+                "read by",
                 hint="rename the entry, or write atlas text",
             )
     rows = ([entry.name, *entry.values.tolist()] for entry in atlas)

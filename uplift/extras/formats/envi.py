@@ -12,11 +12,10 @@ from uplift.common.errors import AtlasError
 from uplift.common.files import read_bytes
 from uplift.common.text import pluralise
 from uplift.extras.formats.measurements import Measurements, parsed_by
+from uplift.extras.formats.quantities import REFLECTANCE, Quantity, remark_quantity
 from uplift.extras.formats.samples import Spectrum
 from uplift.extras.formats.statements import (
-    Quantity,
     Scale,
-    remark_quantity,
     remark_scale,
     stated_unit,
     to_nm,
@@ -87,7 +86,7 @@ def read(document: Document) -> Measurements:
         spectra,
         scales=scales or tuple(filter(None, map(remark_scale, texts))),
         notes=(f"layout: {data.name} with its header",),
-        quantity=Quantity("reflectance", FACTOR)
+        quantity=Quantity(REFLECTANCE, FACTOR)
         if FACTOR in fields
         else remark_quantity(texts),
     )

@@ -6,7 +6,7 @@ import contextlib
 import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
 from itertools import chain
 
 import numpy as np
@@ -28,9 +28,15 @@ from uplift.atlas import (
 )
 from uplift.common.errors import AtlasError, needs_package
 from uplift.common.text import listed, pluralise, printable
+from uplift.extras.formats.quantities import (
+    DEVIATION,
+    Quantity,
+    name_quantities,
+    value_quantity,
+)
 from uplift.extras.formats.samples import Samples, Spectrum, in_order
 from uplift.extras.formats.scales import find_scale
-from uplift.extras.formats.statements import Quantity, Scale
+from uplift.extras.formats.statements import Scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +56,39 @@ class Measurements:
     """How the content was understood."""
     quantity: Quantity | None = None
     """Quantity that the file states of all spectra that state none."""
+    labelled: bool = True
+    """Whether the values have a label."""
+
+    def select(self, document: Document, *, lamps: bool = False) -> "Measurements":
+        """Return the reflectances, or the powers of lamps; others are skipped.
+
+        A spectrum has the quantity that its label states, or else that which the names,
+        the file or the values do. Raises `AtlasError` if all are of other quantities.
+        """
+        kept = list[Spectrum]()
+        others = list[tuple[Spectrum, Quantity]]()
+        names = name_quantities([spectrum.name for spectrum in self.spectra])
+        for spectrum, by_name in zip(self.spectra, names, strict=True):
+            quantity = spectrum.quantity or by_name or self.quantity
+            quantity = quantity or value_quantity(spectrum.wavelengths, spectrum.values)
+            if quantity is None or quantity.kind.is_used(lamps=lamps):
+                kept.append(replace(spectrum, quantity=quantity))
+            else:
+                others.append((spectrum, quantity))
+        if others and not kept:
+            spectrum, quantity = min(others, key=lambda other: _is_deviation(other[1]))
+            location = document.location.at(spectrum.line)
+            raise wrong_quantity(quantity, location, lamps=lamps)
+        skipped = [
+            SkippedEntry(
+                spectrum.name,
+                f"it is {quantity.kind.name}, not {_wanted(lamps)}",
+                document.path,
+                spectrum.line,
+            )
+            for spectrum, quantity in others
+        ]
+        return replace(self, spectra=tuple(kept), skipped=(*self.skipped, *skipped))
 
     def to_atlas(
         self,
@@ -58,20 +97,31 @@ class Measurements:
         measured: str = "auto",
         missing: str = "refuse",
     ) -> Atlas:
-        """Make entries of the reflectances: in order of wavelength, without missing
-        values, in units of 1.
+        """Make entries of the reflectances, see `entries`."""
+        return self.select(document).entries(document, format_name, measured, missing)
+
+    def entries(
+        self,
+        document: Document,
+        format_name: str,
+        measured: str = "auto",
+        missing: str = "refuse",
+    ) -> Atlas:
+        """Make entries of all spectra: in order of wavelength, in units of 1, and
+        without missing values.
         """
-        reflectances, skipped = _reflectances(document, self)
         location = document.location
-        samples = [in_order(spectrum, location, missing) for spectrum in reflectances]
+        samples = [in_order(spectrum, location, missing) for spectrum in self.spectra]
         kept = [spectrum for spectrum in samples if not spectrum.skipped]
-        if kept:
-            skipped += [_skipped(left, document) for left in samples if left.skipped]
-        else:  # the error of an entry states what is wrong
+        skipped = [_skipped(left, document) for left in samples if left.skipped]
+        if not kept:  # the error of an entry states what is wrong
             kept = samples
+            skipped = []
         # One scale for all spectra: a dark one alone does not show whether it is in
         # percent.
-        scale, scale_note = find_scale(location, self.scales, kept, measured)
+        scale, scale_note = find_scale(
+            location, self.scales, kept, measured, labelled=self.labelled
+        )
         entries = tuple(_entry(spectrum, scale, document) for spectrum in kept)
         notes = (*self.notes, *_changes(kept), scale_note) if entries else ()
         source = Source(
@@ -98,30 +148,12 @@ def _changes(samples: Sequence[Samples]) -> list[str]:
     return [f"{count} of {total}: {note}" for note, count in counts.items()]
 
 
-def _reflectances(
-    document: Document, measurements: Measurements
-) -> tuple[list[Spectrum], list[SkippedEntry]]:
-    """Separate reflectances from other spectra. Raise `AtlasError` if none may be a
-    reflectance.
-    """
-    kept = list[Spectrum]()
-    skipped = list[SkippedEntry]()
-    refusals = list[AtlasError]()
-    for spectrum in measurements.spectra:
-        quantity = spectrum.quantity or measurements.quantity
-        if quantity is None or quantity.is_reflectance:
-            kept.append(spectrum)
-        else:
-            reason = f"it is {quantity.name}, not reflectance"
-            skipped.append(
-                SkippedEntry(spectrum.name, reason, document.path, spectrum.line)
-            )
-            refusals.append(
-                wrong_quantity(quantity, document.location.at(spectrum.line))
-            )
-    if refusals and not kept:
-        raise refusals[0]
-    return kept, skipped
+def _is_deviation(quantity: Quantity) -> bool:
+    return quantity.kind is DEVIATION
+
+
+def _wanted(lamps: bool) -> str:
+    return "the power of a lamp" if lamps else "reflectance"
 
 
 def _entry(samples: Samples, scale: float, document: Document) -> Entry:
@@ -160,19 +192,18 @@ def not_used_note(labels: Iterable[str]) -> tuple[str, ...]:
     return (f"not used: {listed(names)}",) if names else ()
 
 
-def wrong_quantity(quantity: Quantity, location: SourceLocation) -> AtlasError:
-    """Create the error for values that are not reflectances."""
-    hint = (
-        "measure the reflectance, or correct the statement if it is wrong: a cube "
-        "holds reflectances"
-    )
-    if quantity.of_light:
-        hint = "it is read by read_lamps(): an atlas holds reflectances"
+def wrong_quantity(
+    quantity: Quantity, location: SourceLocation, *, lamps: bool = False
+) -> AtlasError:
+    """Create the error for values that are not reflectances, or not powers of lamps."""
     problem = (
-        f"the file states {quantity.name} ('{truncate(quantity.text)}'), not "
-        "reflectance"
+        f"the file states {quantity.kind.name} ('{truncate(quantity.text)}'), not "
+        f"{_wanted(lamps)}"
     )
-    return location.error(problem, hint, code="not-reflectance")
+    if lamps:
+        hint = "give spectral powers, such as a CSV table"
+        return location.error(problem, hint, code="not-a-lamp")
+    return location.error(problem, quantity.kind.hint, code="not-reflectance")
 
 
 @contextlib.contextmanager

@@ -1,5 +1,5 @@
-"""What a text of a file states about its numbers: their scale, their quantity, and the
-unit of wavelengths.
+"""What a text of a file states about its numbers: their scale, and the unit of
+wavelengths.
 """
 
 import re
@@ -11,9 +11,12 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas import SourceLocation, truncate
 from uplift.common.arrays import Array
+from uplift.extras.formats.quantities import REFLECTANCE, plain_text
 
 PERCENT = 100.0
 """Divisor of values in percent."""
+TEN_THOUSAND = 1e4
+"""Divisor of reflectances that remote sensing stores as whole numbers."""
 
 
 def _any(*patterns: str) -> re.Pattern[str]:
@@ -28,12 +31,21 @@ _PERCENT = _any(
     r"\bpct\b",
     rf"\b0{_TO}100\b",
 )
+_TEN_THOUSANDTHS = _any(
+    r"(?:[x×*]|\bby|\btimes) ?(?:10[,' ]?000|10 ?\^ ?4|10⁴|1e4)(?!\d)",
+    r"\bscale[ _-]?factor\W*(?:10[,' ]?000|0\.0001|1e-0?4)(?!\d)",
+)
 _FRACTION = _any(
     r"\bfractions?\b(?! ?\d)",
     r"\b(?:reflectance|reflectivity|r)[- ]?factor\b",
     rf"(?<![\d.,-])0(?:\.0)?{_TO}1(?:\.0)?(?![\d.,-])",
     r"[\[(]0, ?1[\])]",
     r"\bunits? of 1\b",
+)
+_SCALES = (
+    (_TEN_THOUSANDTHS, TEN_THOUSAND),
+    (_PERCENT, PERCENT),
+    (_FRACTION, 1.0),
 )
 _SCALED = _any(
     "r[eé]fl", r"\br\b", "remission", "remittance", "albedo", r"\bunits?\b", "scale",
@@ -47,49 +59,6 @@ _UNSCALED = _any(
 )  # fmt: skip
 """What another percentage is about."""
 _ONLY_SCALE = _any(r"\W*(?:in |as )?(?:%|percent(?:age)?|per cent|pct|fractions?)\W*")
-
-_REFLECTANCE = _any(
-    "r[eé]fl",
-    "remission",
-    "remittance",
-    "albedo",
-    r"\br-factor",
-    r"\brefl\b",
-    r"\brfl\b",
-    r"%r\b",
-    r"\br ?[\[(]?%",
-)
-_MATERIAL = _any(
-    "transmi(?:ttance|ssion|ssive|ssivity)", "absor(?:bance|ptance|ption|ptivity)",
-    "extinction", "optical density",
-    r"\bk/s\b", "emissivity", "t-factor", "fluorescence", r"\bst(?:d|andard)?[ .]*dev",
-    r"r[eé]fl.*\bstd\b",
-    "uncertaint", r"log ?\(? ?1/r",
-)  # fmt: skip
-_LIGHT = _any(
-    "irradiance", "radiance", "radiant", r"\brad\b", "exitance", "emissi(?:on|ve)",
-    "emittance", "illuminance",
-    "luminance(?! factor)", "luminous (?:flux|intensity)", r"\bspd\b",
-    "(?:spectral|relative) power",
-    "(?:spectral|photon) flux", r"\bcounts?\b(?!\W*\d)",
-    r"[µμumn]?w ?[/·* ] ?\(?[cm]?m ?\^?(?:[²2]|-2|⁻²)", r"\bcd/m",
-)  # fmt: skip
-_TRANSMITTANCE = _any(
-    r"\W*(?:%?\W*t\W*%\W*|%\W*t|t ?\d{3,4}(?:\D.*)?|trans|t ?nm.*|τ.*)\W*"
-)
-_ABSORBANCE = _any(r"\W*(?:abs|od)\W*\d*\W*")
-"""Short labels of other quantities."""
-_KEYS = (
-    "lux|lx|fc|foot-?candles?|cct|tcp|duv|cri|ra|ppfd|tlci|lumens?|lm|colou?r "
-    "temperature"
-)
-_PHOTOMETRIC = _any(
-    rf"\W*(?:{_KEYS}) ?(?:[([][^)\]]*[)\]])? ?[:=,;]? ?(?:[+-]?[\d.,]+ ?\w*)?\W*"
-)
-"""A key of light meters, perhaps with its value."""
-_UNCERTAINTY = _any(
-    r"\W*(?:standard deviation|st(?:d|andard)?\.? ?dev(?:iation|\.)?|σ|uncertainty)\W*"
-)
 
 _PLAIN = frozenset(
     (
@@ -123,27 +92,13 @@ _WAVES = _any(
 
 
 @dataclass(frozen=True)
-class Quantity:
-    """A quantity that a file states, in the words of ``text``; of a light, or of a
-    material.
-    """
-
-    name: str
-    text: str
-    of_light: bool = False
-
-    @property
-    def is_reflectance(self) -> bool:
-        """Whether a cube can hold it."""
-        return self.name == "reflectance"
-
-
-@dataclass(frozen=True)
 class Scale:
     """The divisor of values that a file states, in the words of ``text``."""
 
     divisor: float
     text: str
+    is_assumed: bool = False
+    """Whether it is a likely reading of the numbers, and no statement."""
 
 
 def label_scale(text: str) -> Scale | None:
@@ -153,9 +108,10 @@ def label_scale(text: str) -> Scale | None:
     >>> [label_scale(text) for text in ("R% 400", "grey 50%")]
     [Scale(divisor=100.0, text='R% 400'), None]
     """
-    if _PERCENT.search(text):
-        return Scale(PERCENT, text)
-    return Scale(1.0, text) if _FRACTION.search(text) else None
+    for pattern, divisor in _SCALES:
+        if pattern.search(text):
+            return Scale(divisor, text)
+    return None
 
 
 def remark_scale(text: str) -> Scale | None:
@@ -166,64 +122,14 @@ def remark_scale(text: str) -> Scale | None:
     return label_scale(text) if is_about else None
 
 
-def label_quantity(text: str) -> Quantity | None:
-    """Return the quantity that the label of values states; that of a material wins over
-    that of a light.
-
-    >>> quantities = map(label_quantity, ("%T", "R [%]", "SPD", "ochre"))
-    >>> [quantity and quantity.name for quantity in quantities]
-    ['transmittance', 'reflectance', 'spd', None]
-    """
-    if found := _MATERIAL.search(text):
-        return Quantity(found[0].lower(), text)
-    if _REFLECTANCE.search(text):
-        return Quantity("reflectance", text)
-    if found := _LIGHT.search(text):
-        return Quantity(found[0].lower(), text, of_light=True)
-    if _TRANSMITTANCE.fullmatch(text):
-        return Quantity("transmittance", text)
-    return Quantity("absorbance", text) if _ABSORBANCE.fullmatch(text) else None
-
-
-def is_photometric(text: str) -> bool:
-    """Whether a label is a key of light meters, such as 'CCT (K)'."""
-    return bool(_PHOTOMETRIC.fullmatch(text))
-
-
-def name_quantity(text: str) -> Quantity | None:
-    """Return the quantity of a row of deviations of the others, which is
-    not a sample.
-    """
-    return (
-        Quantity("standard deviation", text) if _UNCERTAINTY.fullmatch(text) else None
-    )
-
-
-def remark_quantity(texts: Iterable[str]) -> Quantity | None:
-    """Return reflectance if a line of text states it, else the first other quantity
-    that one states.
-    """
-    others = list[Quantity]()
-    for text in texts:
-        if _REFLECTANCE.search(text):
-            return Quantity("reflectance", text)
-        if _PHOTOMETRIC.fullmatch(text):
-            others.append(Quantity("the measurement of a light", text, of_light=True))
-        elif found := _LIGHT.search(text):
-            others.append(Quantity(found[0].lower(), text, of_light=True))
-        elif found := _MATERIAL.search(text):
-            others.append(Quantity(found[0].lower(), text))
-    return others[0] if others else None
-
-
 def is_plain(text: str) -> bool:
     """Whether a label of values names no sample, only what is measured: 'R [%]',
     'Reflectance', '[counts]'.
     """
     if re.fullmatch(r"[\[(].*[\])]", text):
         return True
-    words = [word for word in re.split(r"[\W_]+", text.casefold()) if word]
-    has_only = all(word in _PLAIN or _REFLECTANCE.match(word) for word in words)
+    words = list(filter(None, re.split(r"\W+", plain_text(text))))
+    has_only = all(word in _PLAIN or REFLECTANCE.words.match(word) for word in words)
     return bool(words or text) and has_only and not (len(text) == 1 and text.isalpha())
 
 

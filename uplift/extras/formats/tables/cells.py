@@ -12,7 +12,8 @@ from uplift.atlas import SLACK, VISIBLE
 from uplift.common.arrays import Array
 from uplift.common.text import parse_float
 from uplift.extras.files.csv import parse_decimal
-from uplift.extras.formats.statements import NANOMETRE, find_unit, label_quantity
+from uplift.extras.formats.quantities import label_quantity
+from uplift.extras.formats.statements import NANOMETRE, find_unit
 
 SHORTEST = 100.0
 """Wavelength in nm that distinguishes a row of wavelengths from a wavelength and its

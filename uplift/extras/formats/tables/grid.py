@@ -54,6 +54,8 @@ class Grid:
     rows: Sequence[Row]
     location: SourceLocation
     comments: Sequence[str] = ()
+    may_group: bool = False
+    """Whether commas in numbers may be those of thousands."""
 
     @cached_property
     def unit(self) -> float | None:

@@ -9,16 +9,18 @@ from uplift.atlas import SourceLocation, truncate
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
 from uplift.common.text import pluralise
-from uplift.extras.formats.measurements import Measurements
+from uplift.extras.formats.measurements import Measurements, wrong_quantity
+from uplift.extras.formats.quantities import (
+    REFLECTANCE,
+    label_quantity,
+    remark_quantity,
+)
 from uplift.extras.formats.samples import Spectrum, is_missing
 from uplift.extras.formats.statements import (
     NANOMETRE,
     PERCENT,
     Scale,
-    label_quantity,
     label_scale,
-    name_quantity,
-    remark_quantity,
     remark_scale,
     to_nm,
 )
@@ -42,6 +44,7 @@ from uplift.extras.formats.tables.grid import (
     plain_label,
 )
 from uplift.extras.formats.tables.rows import find_samples, headers, spectra_below
+from uplift.extras.formats.tables.thousands import read_commas
 
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
 
@@ -52,19 +55,23 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
     if not table.series:
         raise _no_table(grid)
     scales = [remark_scale(text) for text in table.remarks]
-    nameless = sum(series.name is None for series in table.series)
+    found, commas = read_commas(table.series) if grid.may_group else (table.series, [])
+    nameless = sum(series.name is None for series in found)
     spectra = list[Spectrum]()
-    for series in table.series:
+    for series in found:
         name = series.name
+        quantity = label_quantity(series.label)
         if name is None:
             first = series.cells[0]
             name = Cell(stem if nameless == 1 else series.label, first.line)
+            quantity = quantity or label_quantity(stem)
             if not name.text:
                 location = grid.location.at(first.line)
+                if quantity:
+                    raise wrong_quantity(quantity, location)
                 raise location.error("the header row is missing", LAYOUT)
-        quantity = label_quantity(series.label) or name_quantity(name.text)
         values, percent = _values(series.cells, grid.location.at(entry=name.text))
-        if quantity is None or quantity.is_reflectance:
+        if quantity is None or quantity.kind is REFLECTANCE:
             scales += [label_scale(series.label), remark_scale(name.text), percent]
         spectra.append(
             Spectrum(name.text, series.nm, values, line=name.line, quantity=quantity)
@@ -72,9 +79,10 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
     return Measurements(
         tuple(spectra),
         skipped=table.skipped,
-        scales=tuple(filter(None, scales)),
+        scales=tuple(filter(None, [*scales, *commas])),
         notes=table.notes,
         quantity=remark_quantity(table.remarks),
+        labelled=not nameless or any(series.label for series in found),
     )
 
 

@@ -12,11 +12,11 @@ from uplift.atlas import truncate
 from uplift.common.arrays import Array
 from uplift.common.text import pluralise
 from uplift.extras.formats.measurements import not_used_note
+from uplift.extras.formats.quantities import is_photometric
 from uplift.extras.formats.statements import (
     METRE,
     NANOMETRE,
     find_unit,
-    is_photometric,
     is_plain,
     names_wavelengths,
     to_nm,
