@@ -40,7 +40,6 @@ from uplift.extras.colour.spectra_json import POWER, is_json, read_spectra
 from uplift.extras.emission.discs import Lamps
 from uplift.extras.formats.measurements import Measurements, wrong_quantity
 from uplift.extras.formats.quantities import (
-    ASSUMED_POWER,
     PHOTONS,
     REFLECTANCE,
     Quantity,
@@ -196,7 +195,8 @@ def _read(document: Document) -> Atlas:
         raise wrong_quantity(stated, document.location, lamps=True)
     content = content.select(document, lamps=True)
     powers = tuple(_power(spectrum, document) for spectrum in content.spectra)
-    atlas = replace(content, spectra=powers).entries(document, chosen.name, "fraction")
+    lamps = replace(content, spectra=powers)
+    atlas = lamps.to_atlas(document, chosen.name, "fraction", lamps=True)
     if not all(map(_has_unit, content.spectra)) and not _is_spd(document):
         problem = "no unit of power is stated: values are read as power, not as photons"
         hint = "state it in a label, such as 'W/m²/nm' or 'µmol/m²/s/nm'"
@@ -206,7 +206,7 @@ def _read(document: Document) -> Atlas:
 
 def _has_unit(spectrum: Spectrum) -> bool:
     quantity = spectrum.quantity
-    return quantity is not None and quantity.kind.as_lamp != ASSUMED_POWER
+    return quantity is not None and "warning" not in quantity.kind.lamp
 
 
 def _is_spd(document: Document) -> bool:

@@ -132,9 +132,8 @@ def _scales(spectra: Sequence[Spectrum]) -> tuple[Scale, ...]:
 
 def _difference(choices: Sequence[Any]) -> float:
     """Return the largest difference of the spectra of an object."""
-    rows = [np.array(choice.value, dtype=float) for choice in choices]
-    alike = [row for row in rows if row.shape == rows[0].shape]
-    return float(np.ptp(alike, axis=0).max(initial=0)) if alike else 0.0
+    samples = zip(*(choice.value for choice in choices), strict=False)
+    return max((float(max(values) - min(values)) for values in samples), default=0.0)
 
 
 def _condition_note(conditions: Set[str], difference: float) -> tuple[str, ...]:

@@ -66,29 +66,23 @@ class Measurements:
         the file or the values do. Raises `AtlasError` if all are of other quantities.
         """
         kept = list[Spectrum]()
-        others = list[tuple[Spectrum, Quantity]]()
+        skipped = list(self.skipped)
+        refusals = list[AtlasError]()
         names = name_quantities([spectrum.name for spectrum in self.spectra])
         for spectrum, by_name in zip(self.spectra, names, strict=True):
             quantity = spectrum.quantity or by_name or self.quantity
             quantity = quantity or value_quantity(spectrum.wavelengths, spectrum.values)
             if quantity is None or quantity.kind.is_used(lamps=lamps):
                 kept.append(replace(spectrum, quantity=quantity))
-            else:
-                others.append((spectrum, quantity))
-        if others and not kept:
-            spectrum, quantity = min(others, key=lambda other: _is_deviation(other[1]))
-            location = document.location.at(spectrum.line)
-            raise wrong_quantity(quantity, location, lamps=lamps)
-        skipped = [
-            SkippedEntry(
-                spectrum.name,
-                f"it is {quantity.kind.name}, not {_wanted(lamps)}",
-                document.path,
-                spectrum.line,
+                continue
+            error = wrong_quantity(
+                quantity, document.location.at(spectrum.line), lamps=lamps
             )
-            for spectrum, quantity in others
-        ]
-        return replace(self, spectra=tuple(kept), skipped=(*self.skipped, *skipped))
+            refusals.insert(len(refusals) * (quantity.kind is DEVIATION), error)
+            skipped.append(_skip(spectrum, error.problem, document))
+        if refusals and not kept:
+            raise refusals[0]
+        return replace(self, spectra=tuple(kept), skipped=tuple(skipped))
 
     def to_atlas(
         self,
@@ -96,27 +90,24 @@ class Measurements:
         format_name: str,
         measured: str = "auto",
         missing: str = "refuse",
+        *,
+        lamps: bool = False,
     ) -> Atlas:
-        """Make entries of the reflectances, see `entries`."""
-        return self.select(document).entries(document, format_name, measured, missing)
-
-    def entries(
-        self,
-        document: Document,
-        format_name: str,
-        measured: str = "auto",
-        missing: str = "refuse",
-    ) -> Atlas:
-        """Make entries of all spectra: in order of wavelength, in units of 1, and
-        without missing values.
+        """Make entries of the reflectances, or of the powers of lamps: in order of
+        wavelength, without missing values, in units of 1.
         """
+        selected = self.select(document, lamps=lamps)
         location = document.location
-        samples = [in_order(spectrum, location, missing) for spectrum in self.spectra]
+        samples = [
+            in_order(spectrum, location, missing) for spectrum in selected.spectra
+        ]
         kept = [spectrum for spectrum in samples if not spectrum.skipped]
-        skipped = [_skipped(left, document) for left in samples if left.skipped]
-        if not kept:  # the error of an entry states what is wrong
-            kept = samples
-            skipped = []
+        skipped = [
+            _skip(left.spectrum, left.skipped, document)
+            for left in samples
+            if left.skipped and kept
+        ]
+        kept = kept or samples  # the error of an entry states what is wrong
         # One scale for all spectra: a dark one alone does not show whether it is in
         # percent.
         scale, scale_note = find_scale(
@@ -133,12 +124,11 @@ class Measurements:
             tuple(map(printable, notes)),
             missing,
         )
-        return Atlas(entries, (*self.skipped, *skipped), (source,))
+        return Atlas(entries, (*selected.skipped, *skipped), (source,))
 
 
-def _skipped(samples: Samples, document: Document) -> SkippedEntry:
-    spectrum = samples.spectrum
-    return SkippedEntry(spectrum.name, samples.skipped, document.path, spectrum.line)
+def _skip(spectrum: Spectrum, reason: str, document: Document) -> SkippedEntry:
+    return SkippedEntry(spectrum.name, reason, document.path, spectrum.line)
 
 
 def _changes(samples: Sequence[Samples]) -> list[str]:
@@ -146,14 +136,6 @@ def _changes(samples: Sequence[Samples]) -> list[str]:
     counts = Counter(chain.from_iterable(spectrum.notes for spectrum in samples))
     total = pluralise(len(samples), "entry")
     return [f"{count} of {total}: {note}" for note, count in counts.items()]
-
-
-def _is_deviation(quantity: Quantity) -> bool:
-    return quantity.kind is DEVIATION
-
-
-def _wanted(lamps: bool) -> str:
-    return "the power of a lamp" if lamps else "reflectance"
 
 
 def _entry(samples: Samples, scale: float, document: Document) -> Entry:
@@ -196,13 +178,12 @@ def wrong_quantity(
     quantity: Quantity, location: SourceLocation, *, lamps: bool = False
 ) -> AtlasError:
     """Create the error for values that are not reflectances, or not powers of lamps."""
-    problem = (
-        f"the file states {quantity.kind.name} ('{truncate(quantity.text)}'), not "
-        f"{_wanted(lamps)}"
-    )
+    stated = f"the file states {quantity.kind.name} ('{truncate(quantity.text)}')"
     if lamps:
+        problem = f"{stated}, not the power of a lamp"
         hint = "give spectral powers, such as a CSV table"
         return location.error(problem, hint, code="not-a-lamp")
+    problem = f"{stated}, not reflectance"
     return location.error(problem, quantity.kind.hint, code="not-reflectance")
 
 

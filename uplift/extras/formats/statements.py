@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas import SourceLocation, truncate
 from uplift.common.arrays import Array
-from uplift.extras.formats.quantities import REFLECTANCE, plain_text
+from uplift.extras.formats.quantities import TABLE, any_of, plain_text
 
 PERCENT = 100.0
 """Divisor of values in percent."""
@@ -19,76 +19,20 @@ TEN_THOUSAND = 1e4
 """Divisor of reflectances that remote sensing stores as whole numbers."""
 
 
-def _any(*patterns: str) -> re.Pattern[str]:
-    return re.compile("|".join(patterns), re.IGNORECASE)
-
-
-_TO = r" ?(?:-|–|\.\.\.?|…|to) ?"
-_PERCENT = _any(
-    r"(?<!\d)(?<!\d )%",
-    r"\bpercent(?:age)?\b",
-    r"\bper cent\b",
-    r"\bpct\b",
-    rf"\b0{_TO}100\b",
+_SCALES = {row["divisor"]: any_of(row["patterns"]) for row in TABLE["scale"]}
+_SCALED = any_of(TABLE["words"]["scaled"])
+_UNSCALED = any_of(TABLE["words"]["not-scaled"])
+_ONLY_SCALE = any_of(
+    [r"\W*(?:in |as )?(?:%|percent(?:age)?|per cent|pct|fractions?)\W*"]
 )
-_TEN_THOUSANDTHS = _any(
-    r"(?:[x×*]|\bby|\btimes) ?(?:10[,' ]?000|10 ?\^ ?4|10⁴|1e4)(?!\d)",
-    r"\bscale[ _-]?factor\W*(?:10[,' ]?000|0\.0001|1e-0?4)(?!\d)",
-)
-_FRACTION = _any(
-    r"\bfractions?\b(?! ?\d)",
-    r"\b(?:reflectance|reflectivity|r)[- ]?factor\b",
-    rf"(?<![\d.,-])0(?:\.0)?{_TO}1(?:\.0)?(?![\d.,-])",
-    r"[\[(]0, ?1[\])]",
-    r"\bunits? of 1\b",
-)
-_SCALES = (
-    (_TEN_THOUSANDTHS, TEN_THOUSAND),
-    (_PERCENT, PERCENT),
-    (_FRACTION, 1.0),
-)
-_SCALED = _any(
-    "r[eé]fl", r"\br\b", "remission", "remittance", "albedo", r"\bunits?\b", "scale",
-    r"\bvalues?\b", r"\bdata\b", r"spectr", r"\by\b", r"measured in",
-)  # fmt: skip
-"""What a remark on the scale is about."""
-_UNSCALED = _any(
-    "humid", "moist", "gloss", "opacity", "haze", "cover", "batter", "confiden",
-    "uncertain", "error", "accura",
-    "precis", "toleran", "noise", "deviat", r"\bink", "dot",
-)  # fmt: skip
-"""What another percentage is about."""
-_ONLY_SCALE = _any(r"\W*(?:in |as )?(?:%|percent(?:age)?|per cent|pct|fractions?)\W*")
-
-_PLAIN = frozenset(
-    (
-        "r", "y", "refl", "rfl", "remission", "albedo", "value", "values", "intensity",
-        "percent", "pct", "fraction",
-        "factor", "spectral", "data",
-    )
-)  # fmt: skip
-"""Words of labels without a name of a sample, next to those that begin with 'reflect'.
-"""
-NANOMETRE, MICROMETRE, ANGSTROM, METRE = 1.0, 1e3, 0.1, 1e9
+NANOMETRE, MICROMETRE, METRE = 1.0, 1e3, 1e9
 """Lengths in nm."""
 WAVE_NUMBER = -1e7
 """Unit 1/cm, below 0: the wavelength in nm is 1e7 divided by the wave number."""
 FEW = 10
 """Numbers that may be wavelengths in micrometres without a statement."""
-_UNITS = (
-    (_any(r"(?<![a-z])nm(?![a-z])", "wavelengthnm", "nanomet(?:er|re)s?"), NANOMETRE),
-    (
-        _any(r"(?<![a-zµμ])[µμu]m(?![a-z])", "micromet(?:er|re)s?", r"microns?\b"),
-        MICROMETRE,
-    ),
-    (_any(r"å(?![a-z])", "[aå]ngstr[oö]ms?", r"[(\[]a[)\]]"), ANGSTROM),
-    (_any("1 ?/ ?cm", r"cm ?\^?\(?(?:[-−]1|⁻¹)", "wave ?numbers?"), WAVE_NUMBER),
-    (_any(r"[(\[]m[)\]]", r"(?<![a-z])met(?:er|re)s?\b", r"\A\s*m\s*\Z"), METRE),
-)
-_WAVES = _any(
-    "wave", r"\bwl\b", r"\bwvl\b", "lambda", "λ", r"\bx ?units?", "abscissa", "wellenl"
-)
-"""What a remark on the unit of wavelengths is about."""
+_UNITS = {row["nm"]: any_of(row["patterns"]) for row in TABLE["unit"]}
+_WAVES = any_of(TABLE["words"]["waves"])
 
 
 @dataclass(frozen=True)
@@ -108,7 +52,7 @@ def label_scale(text: str) -> Scale | None:
     >>> [label_scale(text) for text in ("R% 400", "grey 50%")]
     [Scale(divisor=100.0, text='R% 400'), None]
     """
-    for pattern, divisor in _SCALES:
+    for divisor, pattern in _SCALES.items():
         if pattern.search(text):
             return Scale(divisor, text)
     return None
@@ -128,8 +72,10 @@ def is_plain(text: str) -> bool:
     """
     if re.fullmatch(r"[\[(].*[\])]", text):
         return True
-    words = list(filter(None, re.split(r"\W+", plain_text(text))))
-    has_only = all(word in _PLAIN or REFLECTANCE.words.match(word) for word in words)
+    words = list(filter(None, re.split(r"\W+", plain_text(text).casefold())))
+    has_only = all(
+        word in TABLE["words"]["plain"] or word.startswith("refl") for word in words
+    )
     return bool(words or text) and has_only and not (len(text) == 1 and text.isalpha())
 
 
@@ -140,7 +86,9 @@ def find_unit(text: str) -> float | None:
     >>> [find_unit(text) for text in ("Wavelength_um", "[nm]", "cm-1", "lambda")]
     [1000.0, 1.0, -10000000.0, None]
     """
-    return next((unit for pattern, unit in _UNITS if pattern.search(text)), None)
+    return next(
+        (unit for unit, pattern in _UNITS.items() if pattern.search(text)), None
+    )
 
 
 def stated_unit(text: str, location: SourceLocation) -> float:

@@ -12,49 +12,19 @@ from uplift.atlas import SLACK, VISIBLE
 from uplift.common.arrays import Array
 from uplift.common.text import parse_float
 from uplift.extras.files.csv import parse_decimal
-from uplift.extras.formats.quantities import label_quantity
+from uplift.extras.formats.quantities import TABLE, label_quantity
 from uplift.extras.formats.statements import NANOMETRE, find_unit
 
 SHORTEST = 100.0
 """Wavelength in nm that distinguishes a row of wavelengths from a wavelength and its
 values.
 """
-MISSING = frozenset(
-    (
-        "",
-        "-",
-        "--",
-        "---",
-        "n/a",
-        "#n/a",
-        "na",
-        "n.a.",
-        "nan",
-        "null",
-        "none",
-        "#div/0!",
-        "#value!",
-    )
-)
-"""Texts for a value that is missing, in lower case."""
 LABEL = re.compile(
     r"([^\d.,+-]{0,40}?)[\s_([]*(\d{1,5}(?:[.,]\d{1,8})?)\s*[([]?\s*(nm|[µμu]m|microns?|å|1/cm)?\s*[)\]]?",
     re.IGNORECASE,
 )
 """A prefix, a wavelength, and perhaps its unit: ``nm400``, ``R_400``, ``380[nm]``,
 ``Refl (400 nm)``.
-"""
-PREFIXES = frozenset(
-    (
-        "", "nm", "r", "%r", "r%", "%", "rnm", "ρ", "refl", "refl%", "rfl", "spec",
-        "spectral", "spectrum",
-        "spectralnm", "spectrumnm", "spectraldata", "wl", "wavelength", "lambda", "λ",
-        "w", "x", "sci", "sce", "specin",
-        "specex", "reflsci", "reflsce", "t", "%t", "t%", "tnm", "τ",
-    )
-)  # fmt: skip
-"""What labels of wavelengths begin with, in lower case and without blanks, next to the
-names of quantities.
 """
 
 
@@ -92,7 +62,7 @@ def parse_cell(text: str) -> float | None:
         return parse_float(text)
     except ValueError:
         plain = text.strip().removesuffix("%").rstrip()
-    if plain.casefold() in MISSING:
+    if plain.casefold() in TABLE["words"]["missing"]:
         return np.nan
     try:
         return parse_decimal(plain)
@@ -136,7 +106,9 @@ def parse_label(text: str) -> Label | None:
     # Without a unit, R9 is a colour and R400 a wavelength.
     if unit is None and len(re.split("[.,]", match[2])[0]) not in (3, 4):
         return None
-    if prefix not in PREFIXES and not label_quantity(match[1].strip(" _([")):
+    if prefix not in TABLE["words"]["prefixes"] and not label_quantity(
+        match[1].strip(" _([")
+    ):
         return None
     return Label(prefix, float(match[2].replace(",", ".")), unit)
 

@@ -25,18 +25,19 @@ def read_commas(series: Sequence[Series]) -> tuple[Sequence[Series], list[Scale]
     digits, and either there are whole numbers without one, or the numbers are
     reflectances × 10,000 up to white.
     """
-    cells = list(chain.from_iterable(one.cells for one in series))
-    texts = [cell.text for cell in cells if "," in cell.text]
-    if not texts or not all(map(GROUPED.fullmatch, texts)):
+    cells = chain.from_iterable(one.cells for one in series)
+    texts = [cell.text for cell in cells]
+    grouped = [text for text in texts if "," in text]
+    if not grouped or not all(map(GROUPED.fullmatch, grouped)):
         return series, []
-    first = texts[0]
+    first = grouped[0]
     whole = first.replace(",", "")
-    top = max(float(text.replace(",", "")) for text in texts) / TEN_THOUSAND
-    has_others = any(cell.text.strip("0") and cell.text.isdigit() for cell in cells)
-    if has_others or 1 <= top <= WHITE:
+    top = max(float(text.replace(",", "")) for text in grouped) / TEN_THOUSAND
+    if 1 <= top <= WHITE or any(text.isdigit() and int(text) for text in texts):
         scale = Scale(TEN_THOUSAND, f"{first} is {whole}", is_assumed=True)
-        plain = [one._replace(cells=_without_commas(one.cells)) for one in series]
-        return plain, [scale] if top <= HIGHEST else []
+        return [one._replace(cells=_without_commas(one.cells)) for one in series], [
+            scale
+        ]
     if top > HIGHEST:
         return series, []
     decimal = Scale(PERCENT, f"{first} is {first.replace(',', '.')} percent")
