@@ -23,12 +23,12 @@ def kind(quantity):
     [
         ("Reflectance|%R|Réflectance (%)|Reflexionsgrad [%]|BRF reflectance", "reflec"),
         ("%T|T (%)|T400|T-factor|Transmission", "transmittance"),
-        ("Abs 400|Absorbance|log(1/R)|LOG10(1/R)", "absorbance"),
+        ("Abs 400|Absorbance|log(1/R)|-log10(R)|LOG10(1/R)", "absorbance"),
         ("Density|ochre density|D: optical density|OD 400", "optical density"),
         ("K/S|k / s|ochre K/S|KS|K_S|F(R)|KUBELKA-MUNK", "K/S"),
         ("absorption|mu_a|µs'|Scattering coefficient (1/mm)", "absorption or"),
         ("refractive index|index of refraction|permittivity", "refractive index"),
-        ("x_bar|x-bar|ȳ (λ) zbar|CIE_xyz_1931_2deg|CMF|V(λ)", "sensitivity"),
+        ("x_bar|x-bar|xbar10|ȳ (λ) zbar|CIE_xyz_1931_2deg|CMF|V(λ)", "sensitivity"),
         ("Std. Dev.|stdev|Standard deviation|Reflectance std|R uncertainty|σ", "stand"),
         ("Rad. (Ref.)|SPD|Irradiance|µW/cm²/nm|W·m-2·nm-1|mW m^-2 nm^-1", "spectral"),
         ("power (W)|CIE_std_illum_A_1nm|Illuminant D50|relative power", "spectral"),
@@ -72,6 +72,7 @@ def test_keys_of_light_meters(text):
 def test_remarks():
     about = {
         "K/S = (1 - R)² / 2R of the reflectance": "K/S",
+        "Reflection density, status T": "optical density",
         "Reflectance and transmittance accessory": "reflectance",
         'DEVICE_CLASS "DISPLAY"': "spectral power",
     }
@@ -93,13 +94,15 @@ def test_remarks():
         ("K S", "aa"), ("S k", "  "), ("K_ochre S_ochre K_red S_red", "aaaa"),
         ("ochre_k ochre_s umber", "aa "), ("K1 S1 K2 S2", "aaaa"), ("R K S", " aa"),
         ("C M Y K", "    "), ("C M Y K S", "     "), ("K", " "), ("A1 K1 S1", "   "),
-        ("R_K R_S", "  "), ("n", "r"), ("n k", "rr"), ("k", " "), ("N K", "  "),
+        ("R_K R_S", "  "), ("R T", " s"), ("D", "s"), ("D red", "  "), ("n", "r"),
+        ("n k", "rr"), ("k", " "), ("N K", "  "),
         ("X Y Z", "sss"), ("x̄ ȳ z̄", "sss"), ("x y", "  "), ("X Y Z W", "    "),
         ("A D65", "pp"), ("A B C", "   "), ("D50 white", "  "), ("D50 D51", "  "),
         ("FL2 LED-B3", "pp"), ("F1 F2", "  "), ("W", "p"), ("W R G B", "    "),
         ("R std", " d"), ("mean SD", " d"), ("ochre ochre_std umber", " d "),
         ("ochre SD_ochre", " d"), ("std batch", "  "), ("STD_red STD_blue", "  "),
-        ("std", " "), ("stdev", "d"), ("ochre1 std1", "  "), ("R1 std1", " d"),
+        ("std", " "), ("stdev", "d"), ("ochre ±", " d"), ("ochre1 std1", "  "),
+        ("R1 std1", " d"),
     ],
 )  # fmt: skip
 def test_names_state_a_quantity_as_a_set(names, expected):

@@ -3,6 +3,7 @@ order, scale and quantity.
 """
 
 import contextlib
+import operator
 import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -67,7 +68,7 @@ class Measurements:
         """
         kept = list[Spectrum]()
         skipped = list(self.skipped)
-        refusals = list[AtlasError]()
+        refusals = list[tuple[bool, AtlasError]]()
         names = name_quantities([spectrum.name for spectrum in self.spectra])
         for spectrum, by_name in zip(self.spectra, names, strict=True):
             quantity = spectrum.quantity or by_name or self.quantity
@@ -78,10 +79,10 @@ class Measurements:
             error = wrong_quantity(
                 quantity, document.location.at(spectrum.line), lamps=lamps
             )
-            refusals.insert(len(refusals) * (quantity.kind is DEVIATION), error)
+            refusals.append((quantity.kind is DEVIATION, error))
             skipped.append(_skip(spectrum, error.problem, document))
         if refusals and not kept:
-            raise refusals[0]
+            raise min(refusals, key=operator.itemgetter(0))[1]
         return replace(self, spectra=tuple(kept), skipped=tuple(skipped))
 
     def to_atlas(

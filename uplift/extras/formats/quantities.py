@@ -62,12 +62,12 @@ POWER = QUANTITIES["spectral power"]
 OF_LIGHT = QUANTITIES["measurement of a light"]
 OTHER = QUANTITIES["another quantity"]
 
+_OF_REFLECTANCE = ("K/S", "optical density")
+"""What lines with the word reflectance may be about."""
 _IN_TEXTS = {kind: any_of(kind.words) for kind in QUANTITIES.values()}
 _IN_LABELS = {kind: any_of([*kind.words, *kind.labels]) for kind in QUANTITIES.values()}
 _LETTERS = {letters: QUANTITIES[name] for letters, name in TABLE["letters"].items()}
 _LETTER = re.compile(r"(?<![^\W\d])[^\W\d](?![^\W\d])")
-_BESIDE = frozenset("RTrt")
-"""Letters of reflectance and transmittance."""
 _SPREADS = _any_word(TABLE["words"]["spreads"])
 _MEANS = _any_word(TABLE["words"]["means"])
 _BATCHES = _any_word(TABLE["words"]["batches"])
@@ -105,13 +105,13 @@ def is_photometric(text: str) -> bool:
 
 def remark_quantity(texts: Iterable[str]) -> Quantity | None:
     """Return reflectance if a line of text states it, else the first other quantity
-    that one states. A line about K/S may name the reflectance that it comes from.
+    that one states. A line about K/S or density may name what it comes from.
     """
     others = list[Quantity]()
     for text in texts:
         plain = plain_text(text)
         kinds = [kind for kind, pattern in _IN_TEXTS.items() if pattern.search(plain)]
-        if REFLECTANCE in kinds and kinds[0].name != "K/S":
+        if REFLECTANCE in kinds and kinds[0].name not in _OF_REFLECTANCE:
             return Quantity(REFLECTANCE, text)
         others += [Quantity(kind, text) for kind in kinds[:1]]
     return others[0] if others else None
@@ -148,8 +148,8 @@ def _by_letters(texts: Sequence[str]) -> list[Kind | None]:
         together[place].add(letter)
     return [
         None
-        if letter in _BESIDE
-        else _LETTERS.get("".join(sorted(together[place] - _BESIDE)))
+        if letter in "Rr" or (len(together[place]) == 1 and texts != [letter])
+        else _LETTERS.get("".join(sorted(together[place])))
         for place, letter in zip(places, letters, strict=True)
     ]
 
