@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from uplift.extras.formats.quantities import TABLE
 from uplift.extras.formats.statements import (
     WAVE_NUMBER,
     find_unit,
@@ -111,6 +112,12 @@ def test_scales_of_remarks(text, expected):
 )  # fmt: skip
 def test_units(text, expected):
     assert find_unit(text) == expected
+
+
+def test_examples_of_units_are_found():
+    for row in TABLE["unit"]:
+        found = set(map(find_unit, row["examples"].split(", ")))
+        assert found == {row["nm"]}, row
 
 
 def test_units_of_remarks_are_about_wavelengths():

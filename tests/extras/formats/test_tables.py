@@ -89,6 +89,46 @@ def test_percent_signs_in_some_cells_are_refused(read):
         read(HEADER + row("a").replace("\n", "%\n"))
 
 
+@pytest.mark.parametrize(
+    ("factor", "pattern", "divisor"),
+    [
+        (10000, '{:g},"{:,.0f}"', 10000),
+        (18000, '{:g},"{:,.0f}"', 10000),
+        (100, '{:g},"{:.3f}"', 100),
+        (1, '{:g},"{:.3f}"', 1),
+        (100, "{:g};{:.3f}", 100),
+        (15000, '{:g}\t"{:,.0f}"', None),
+        (15, '{:g},"{:.3f}"', None),
+        (10000, "{:g},{:.0f}", None),
+    ],
+)
+def test_commas_of_thousands(read, factor, pattern, divisor):
+    """Those of 8 % × 10,000 have no comma, those of 8 % × 18,000 reach that of a white;
+    the others may be decimal.
+    """
+    text = lines(pattern, factor)
+    if "," not in pattern.format(400, 1000.0)[3:]:
+        text = text.replace(".", ",")
+    if divisor is None:
+        with raises(AtlasError):
+            read("nm,a\n".replace(",", pattern[4]) + text)
+        return
+    with warns(*["values-in-percent"] * (divisor == 100)):
+        atlas = read("nm,a\n".replace(",", pattern[4]) + text)
+    check_values(atlas, np.round(VALUES * factor, 3) / divisor)
+
+
+@pytest.mark.parametrize(("top", "code"), [(1.05, ""), (1.3, "x"), (9, "x"), (20, "")])
+def test_values_without_any_label_may_be_of_another_quantity(read, top, code):
+    text = lines("{:g} {:g}", top / VALUES.max())
+    with warns(*["values-in-percent"] * (top == 20)):
+        if code:
+            with raises(AtlasError, "scale-not-stated"):
+                read(text)
+        else:
+            check_values(read(text), VALUES / VALUES.max() * top / (100 ** (top == 20)))
+
+
 def test_names_with_percentages_are_names(read):
     atlas = read(HEADER + row("grey 50%") + row("100 % black"))
     assert atlas.names == ("grey 50%", "100 % black")

@@ -117,6 +117,19 @@ def test_conditions_of_cxf_are_kept_in_names(tmp_path):
     atlas = read_atlas(path)
     assert atlas.names == ("dark skin M0", "dark skin M1", "dark skin U", "light skin")
     assert any("M0, M1" in note for note in atlas.sources[0].notes)
+    (other,) = re.findall(r'"M1">(.*?)</', path.read_text())
+    path.write_text(path.read_text().replace(other, "0.75 " * len(other.split()), 1))
+    first = next(note for note in read_atlas(path).sources[0].notes if "M0" in note)
+    least = min(read_atlas(path)["dark skin M0"].values)
+    assert f"differ by up to {0.75 - least:.2g}" in first
+
+
+def test_two_objects_of_a_name_are_refused_with_the_place_of_the_first(tmp_path):
+    path = LAYOUTS["cxf3"].save(MACBETH[:2], tmp_path)
+    path.write_text(path.read_text().replace("light skin", "dark skin"))
+    with raises(AtlasError, "atlas") as caught:
+        read_atlas(path)
+    assert caught.value.problem.endswith(str(path))
 
 
 def test_ignored_values_of_libraries_are_missing(tmp_path):

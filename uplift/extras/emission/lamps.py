@@ -79,7 +79,7 @@ def read_lamps(*paths: StrPath) -> Atlas:
     `uplift.atlas.read_atlas`.
 
     Powers have no common scale: the largest one of each lamp is 1. `AtlasError` for
-    files of reflectances and lamps without power.
+    files of other quantities and lamps without power.
     """
     atlas = merge(map(_read, map(read_named, map(find_atlas_file, paths))))
     if atlas.skipped:
@@ -95,7 +95,8 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
     path : path-like
         File of spectral powers, in a format of `uplift.read_atlas`: such as CSV or SPD
         with lines of a wavelength in nm and a power, CGATS, IES TM-27 (.spdx) or a
-        spreadsheet, or JSON of rawtoaces. The powers have any one unit.
+        spreadsheet, or JSON of rawtoaces. The powers have any one unit. Photons, such
+        as µmol/m²/s/nm, are divided by the wavelength.
     name : str, optional
         Name of a lamp in a file of several.
 
@@ -113,6 +114,12 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
         ``name`` is given.
     UnknownNameError
         No lamp of the file has the name.
+
+    Warns
+    -----
+    UpliftWarning
+        No unit is stated (``lamp-unit``), or spectra of other quantities were left out
+        (``lamp-skipped``).
 
     Examples
     --------

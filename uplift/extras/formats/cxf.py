@@ -30,13 +30,10 @@ CONDITION = re.compile(r"(?<![A-Za-z])M[0-3](?![0-9A-Za-z])")
 """Measurement conditions of ISO 13655: with incandescent light, daylight, without UV,
 with a polariser.
 """
-SPECTRA = (
-    "ReflectanceSpectrum",
-    "TransmittanceSpectrum",
-    "EmissiveSpectrum",
-    "CustomSpectrum",
-)
+SPECTRA = ("ReflectanceSpectrum", "TransmittanceSpectrum", "EmissiveSpectrum")
 """Types of values of an object."""
+CUSTOM = "CustomSpectrum"
+"""Type of values of any quantity."""
 
 
 def read(document: Document) -> Measurements:
@@ -69,12 +66,15 @@ def _content(cxf: Any) -> Measurements:
         name = (sample.name or sample.id or "").strip()
         by_type = _by_type(sample)
         for kind in SPECTRA:
-            quantity = label_quantity(kind) or Quantity(OTHER, kind)
+            quantity = label_quantity(kind)
             labels = _labels(name, by_type[kind], specifications)
             for label, choice in zip(labels, by_type[kind], strict=True):
                 spectrum = _spectrum(label, choice, specifications)
                 spectra.append(replace(spectrum, quantity=quantity))
                 conditions.add(_condition(choice, specifications))
+        if by_type[CUSTOM]:
+            custom = Quantity(OTHER, CUSTOM)
+            spectra.append(Spectrum(name, (), (), quantity=custom))
         difference = max(difference, _difference(by_type[SPECTRA[0]]))
         colours.update(kind for kind in by_type if kind.startswith("Color"))
     description = cxf.file_information and cxf.file_information.description

@@ -89,9 +89,8 @@ def _with_points(text: str) -> str:
         chain.from_iterable(COMMA.finditer(data) for data in DATA.findall(text))
     )
     wavelengths = [float(match[1]) for match in pairs]
-    are_pairs = wavelengths == sorted(wavelengths) or wavelengths == sorted(
-        wavelengths, reverse=True
-    )
+    ascending = sorted(set(wavelengths))
+    are_pairs = wavelengths in (ascending, ascending[::-1])
     if not FIRST.search(text) and (are_pairs or not pairs):
         return text
     return COMMA.sub(r"\1.\2", text)
