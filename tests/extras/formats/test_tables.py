@@ -137,22 +137,12 @@ def test_names_with_percentages_are_names(read):
     check_values(atlas)
 
 
-LIGHTS = (
-    "Wavelength,SPD\n" + lines(),
-    "Wavelength (nm),Irradiance (µW/cm²/nm)\n" + lines(),
-    "wavelength,A,D65\n" + lines("{0:g},{1:g},{1:g}"),
-)
+LIGHTS = ("wavelength,A,D65\n" + lines("{0:g},{1:g},{1:g}"),)
 LIGHTS_WITHOUT_A_UNIT = (
     "LUX\t250.5\nCCT\t3050\nCRI\t92.1\nx\t0.43\n" + lines("{:g}nm\t{:g}"),
     "Illuminance [lx],344\n" + lines("Spectral Data {:g}[nm],{:g}"),
     "Name,LUX,CCT," + HEADER[5:] + row("a,300,3000"),
     "nm,Counts\n" + lines(factor=1000),
-)
-MATERIALS = (
-    "nm,Transmittance\n" + lines(),
-    "nm,%T\n" + lines(factor=100),
-    "nm,Absorbance\n" + lines(),
-    "name," + ",".join(f"Abs {at}" for at in NM) + "\n" + row("a"),
 )
 
 
@@ -165,36 +155,6 @@ def test_lights_are_no_reflectances(save, text):
     with warns(*["lamp-unit"] * (text in LIGHTS_WITHOUT_A_UNIT)):
         lamps = read_lamps(path)
     check_values(lamps, VALUES / VALUES.max())
-
-
-def test_photons_are_divided_by_the_wavelength(save):
-    text = "Wavelength (nm),Photon flux (µmol m-2 s-1 nm-1)\n"
-    lamps = read_lamps(save(text + lines("{:g},{:g}", nm=NM)))
-    check_values(lamps, VALUES / NM / (VALUES / NM).max())
-
-
-@pytest.mark.parametrize("text", MATERIALS)
-def test_other_quantities_of_materials_are_neither(save, read, text):
-    with raises(AtlasError, "not-reflectance"):
-        read(text)
-    with raises(AtlasError, "not-a-lamp"):
-        read_lamps(save(text))
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "nm,R%\n" + lines(factor=100),
-        "# Reflectance\n" + HEADER + row("a"),
-        HEADER + row("%R a"),
-    ],
-)
-def test_reflectances_are_no_lamps(save, text):
-    path = save(text)
-    if "%R a" in text:
-        path = save(text.replace("name", "Reflectance"))
-    with raises(AtlasError, "not-a-lamp"):
-        read_lamps(path)
 
 
 def test_columns_of_other_quantities_are_skipped_by_name(read):

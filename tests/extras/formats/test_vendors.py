@@ -79,29 +79,6 @@ def test_scale_given_by_the_caller(save):
             read_atlas(dark, measured=scale)
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "# Transmittance of filters\n" + ROW + "a,0.2,0.3,0.4,0.5\n",
-        "Mode,Transmission\n" + ROW + "a,0.2,0.3,0.4,0.5\n",
-        "name,T400,T500,T600,T700\na,0.2,0.3,0.4,0.5\n",
-        'CTI3\nDEVICE_CLASS "DISPLAY"' + SETS,
-        (
-            "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS=ABSORBANCE\n"
-            "##XYPOINTS=(XY..XY)\n400, 1\n700, 1\n##END=\n"
-        ),
-        "<IESTM2714 "
-        'xmlns="iestm2714"><SpectralDistribution><SpectralQuantity>flux</SpectralQuantity>'
-        '<SpectralData wavelength="400">1</SpectralData><SpectralData '
-        'wavelength="700">1</SpectralData>'
-        "</SpectralDistribution></IESTM2714>",
-    ],
-)
-def test_other_quantities_are_refused(read, text):
-    with raises(AtlasError, "not-reflectance"):
-        read(text)
-
-
 def test_conditions_of_cxf_are_kept_in_names(tmp_path):
     path = LAYOUTS["cxf3"].save(MACBETH[:2], tmp_path)
     spectrum = re.compile(r'<cc:ReflectanceSpectrum ColorSpecification="[^"]*"')

@@ -92,10 +92,9 @@ def label_quantity(text: str) -> Quantity | None:
     ['transmittance', 'reflectance', 'spectral power', None]
     """
     plain = plain_text(text)
-    for kind, pattern in _IN_LABELS.items():
-        if pattern.search(plain):
-            return Quantity(kind, text)
-    return None
+    found = (kind for kind, pattern in _IN_LABELS.items() if pattern.search(plain))
+    kind = next(found, None)
+    return Quantity(kind, text) if kind else None
 
 
 def is_photometric(text: str) -> bool:

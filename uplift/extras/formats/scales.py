@@ -53,21 +53,19 @@ def find_scale(
             warn(UpliftWarning(problem, code=code, path=location.path, hint=hint))
         how = ASSUMED if stated[0].is_assumed else ", as stated: "
         return divisor, f"scale: 0 to {divisor:g}{how}'{text}'"
+    everything = np.concatenate([np.empty(0), *(spectrum.values for spectrum in used)])
     low, high = (HIGHEST, DIM) if labelled else UNLABELLED
-    if low < top <= high:
+    are_above = (everything > 1).sum() * 2 > len(everything)
+    if low < top <= high or (top <= HIGHEST and are_above):
         problem = (
             f"values up to {top:g} may be dark samples in percent, or another "
             "quantity, such as K/S, and no scale is stated"
         )
         raise location.error(problem, WHICH_SCALE, code="scale-not-stated")
-    everything = np.concatenate([np.empty(0), *(spectrum.values for spectrum in used)])
     if top > HIGHEST and np.median(everything) > HIGHEST * PERCENT:
-        problem = (
-            f"values up to {top:g} may be counts, or reflectances × 10,000, and no "
-            "scale is stated"
-        )
+        problem = f"values up to {top:g} may be counts, or reflectances × 10,000"
         hint = "divide counts by those of a white, or write 'reflectance × 10000' above"
-        raise location.error(problem, hint, code="scale-not-stated")
+        raise location.error(problem, hint, code="not-reflectance")
     if top > HIGHEST:
         _check_one_scale(location, used, highest)
         problem = f"values up to {top:g} are read as percent and divided by 100"
@@ -78,9 +76,6 @@ def find_scale(
             )
         )
         return PERCENT, f"scale: percent, by values up to {top:g}"
-    if (everything > 1).sum() * 2 > len(everything):
-        problem = f"most values exceed 1, up to {top:g}, and no scale is stated"
-        raise location.error(problem, WHICH_SCALE, code="scale-not-stated")
     return (
         1.0,
         f"scale: 0 to 1{ASSUMED}none is stated, and the largest value is {top:g}",

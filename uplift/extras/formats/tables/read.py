@@ -5,6 +5,8 @@ spectrum; or in a column before each spectrum. All else is text: preamble, comme
 lines below. It states scale, quantity and unit.
 """
 
+from itertools import chain
+
 from uplift.atlas import SourceLocation, truncate
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
@@ -44,7 +46,7 @@ from uplift.extras.formats.tables.grid import (
     plain_label,
 )
 from uplift.extras.formats.tables.rows import find_samples, headers, spectra_below
-from uplift.extras.formats.tables.thousands import read_commas
+from uplift.extras.formats.tables.thousands import comma_scales
 
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
 
@@ -55,10 +57,12 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
     if not table.series:
         raise _no_table(grid)
     scales = [remark_scale(text) for text in table.remarks]
-    found, commas = read_commas(table.series) if grid.may_group else (table.series, [])
-    nameless = sum(series.name is None for series in found)
+    cells = chain.from_iterable(series.cells for series in table.series)
+    commas = comma_scales([cell.text for cell in cells]) if grid.may_group else []
+    mark = "," if len(commas) == 1 else ""
+    nameless = sum(series.name is None for series in table.series)
     spectra = list[Spectrum]()
-    for series in found:
+    for series in table.series:
         name = series.name
         quantity = label_quantity(series.label)
         if name is None:
@@ -70,7 +74,7 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
                 if quantity:
                     raise wrong_quantity(quantity, location)
                 raise location.error("the header row is missing", LAYOUT)
-        values, percent = _values(series.cells, grid.location.at(entry=name.text))
+        values, percent = _values(series.cells, mark, grid.location.at(entry=name.text))
         if quantity is None or quantity.kind is REFLECTANCE:
             scales += [label_scale(series.label), remark_scale(name.text), percent]
         spectra.append(
@@ -82,18 +86,20 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
         scales=tuple(filter(None, [*scales, *commas])),
         notes=table.notes,
         quantity=remark_quantity(table.remarks),
-        labelled=not nameless or any(series.label for series in found),
+        labelled=not nameless or any(series.label for series in table.series),
     )
 
 
-def _values(cells: Row, location: SourceLocation) -> tuple[list[float], Scale | None]:
-    """Parse the values of a spectrum, NaN where one is missing, and the scale that
-    percent signs in cells state.
+def _values(
+    cells: Row, mark: str, location: SourceLocation
+) -> tuple[list[float], Scale | None]:
+    """Parse the values of a spectrum without the ``mark`` of thousands, NaN where one
+    is missing, and the scale that percent signs in cells state.
     """
     values = list[float]()
     percents = [cell.text for cell in cells if cell.text.endswith("%")]
     for cell in cells:
-        value = parse_cell(cell.text)
+        value = parse_cell(cell.text.replace(mark, ""))
         if value is None:
             problem = f"value '{truncate(cell.text)}' is not a number"
             raise location.at(cell.line).error(
