@@ -24,8 +24,8 @@ def kind(quantity):
         ("Reflectance|%R|Réflectance (%)|Reflexionsgrad [%]|BRF reflectance", "reflec"),
         ("%T|T (%)|T400|T-factor|Transmission", "transmittance"),
         ("Abs 400|Absorbance|log(1/R)|-log10(R)|LOG10(1/R)", "absorbance"),
-        ("Density|ochre density|D: optical density|OD 400", "optical density"),
-        ("K/S|k / s|ochre K/S|KS|K_S|F(R)|KUBELKA-MUNK", "K/S"),
+        ("Density|ochre density|Density400|OD 400", "optical density"),
+        ("K/S|k / s|ochre K/S|KS|KS400|K_S|F(R)|KUBELKA-MUNK", "K/S"),
         ("absorption|mu_a|µs'|Scattering coefficient (1/mm)", "absorption or"),
         ("refractive index|index of refraction|permittivity", "refractive index"),
         ("x_bar|x-bar|xbar10|ȳ (λ) zbar|CIE_xyz_1931_2deg|CMF|V(λ)", "sensitivity"),
@@ -37,7 +37,7 @@ def kind(quantity):
         ("Illuminance|cd/m²|Luminance", "measurement of a light"),
         (
             "ochre|Std|T1|T12 blue|STD Blue|a|R|K|S|n|Low density polyethylene|DN5"
-            "|powder blue|Samples",
+            "|powder blue|Samples|Radiant Turquoise|F (Red)|Raw umber",
             "None",
         ),
     ],
@@ -84,6 +84,8 @@ def test_remarks():
         "Scan counts: 3",
         "power: 9 V",
     ]
+    others += ["Integration time: 500 µs", "Detector: photon counting", "5 mmol/mL"]
+    others += ["Color matching functions: CIE 1931", "Fluorescence: none"]
     others += ["Uncertainty: 0.5 %", "Density: 1.2 g/cm3", "Observer: 2 deg"]
     assert remark_quantity(others) is None
 
@@ -101,7 +103,8 @@ def test_remarks():
         ("FL2 LED-B3", "pp"), ("F1 F2", "  "), ("W", "p"), ("W R G B", "    "),
         ("R std", " d"), ("mean SD", " d"), ("ochre ochre_std umber", " d "),
         ("ochre SD_ochre", " d"), ("std batch", "  "), ("STD_red STD_blue", "  "),
-        ("std", " "), ("stdev", "d"), ("ochre ±", " d"), ("ochre1 std1", "  "),
+        ("std", " "), ("stdev", " "),
+        ("ochre stdev", " d"), ("ochre ±", " d"), ("ochre1 std1", "  "),
         ("R1 std1", " d"),
     ],
 )  # fmt: skip

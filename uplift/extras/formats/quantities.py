@@ -91,7 +91,7 @@ def label_quantity(text: str) -> Quantity | None:
     >>> [quantity and quantity.kind.name for quantity in quantities]
     ['transmittance', 'reflectance', 'spectral power', None]
     """
-    plain = plain_text(text)
+    plain = re.sub(r"(?<=[^\W\d])(?=\d)", " ", plain_text(text))
     found = (kind for kind, pattern in _IN_LABELS.items() if pattern.search(plain))
     kind = next(found, None)
     return Quantity(kind, text) if kind else None
@@ -158,13 +158,14 @@ def _deviations(texts: Sequence[str]) -> Iterator[int]:
     batch, and 'ochre std' next to 'ochre'.
     """
     spreads = [bool(_SPREADS.search(text)) for text in texts]
+    if not any(spreads):
+        return
     rests = list(map(_rest, texts))
     others = {rest for rest, spread in zip(rests, spreads, strict=True) if not spread}
     if others and not _BATCHES.search(" ".join(texts)):
         others.add("")
-    for index, text in enumerate(texts):
-        is_beside = spreads[index] and rests[index] in others
-        if is_beside or _IN_LABELS[DEVIATION].search(text):
+    for index, rest in enumerate(rests):
+        if spreads[index] and rest in others:
             yield index
 
 
