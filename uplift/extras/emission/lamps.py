@@ -204,7 +204,8 @@ def _read(document: Document) -> Atlas:
     powers = tuple(_power(spectrum, document) for spectrum in content.spectra)
     lamps = replace(content, spectra=powers)
     atlas = lamps.to_atlas(document, chosen.name, "fraction", lamps=True)
-    if not all(map(_has_unit, content.spectra)) and not _is_spd(document):
+    is_spd = document.path.lower().endswith(".spd")
+    if not is_spd and not all(map(_has_unit, content.spectra)):
         problem = "no unit of power is stated: values are read as power, not as photons"
         hint = "state it in a label, such as 'W/m²/nm' or 'µmol/m²/s/nm'"
         warn(UpliftWarning(problem, code="lamp-unit", path=document.path, hint=hint))
@@ -214,11 +215,6 @@ def _read(document: Document) -> Atlas:
 def _has_unit(spectrum: Spectrum) -> bool:
     quantity = spectrum.quantity
     return quantity is not None and "warning" not in quantity.kind.lamp
-
-
-def _is_spd(document: Document) -> bool:
-    """Whether the suffix of a file states a spectral power distribution."""
-    return document.path.lower().endswith((".spd", ".spdx"))
 
 
 def _power(spectrum: Spectrum, document: Document) -> Spectrum:

@@ -15,7 +15,6 @@ from uplift.common.text import listed
 from uplift.extras.formats.measurements import Measurements, not_used_note, parsed_by
 from uplift.extras.formats.quantities import (
     OTHER,
-    REFLECTANCE,
     Quantity,
     label_quantity,
 )
@@ -120,12 +119,7 @@ def _scales(spectra: Sequence[Spectrum]) -> tuple[Scale, ...]:
     """Return the scale of the schema, whose values are in (−0.1, 3); none if they are
     not: some programs write percent.
     """
-    reflectances = [
-        spectrum.values
-        for spectrum in spectra
-        if spectrum.quantity and spectrum.quantity.kind is REFLECTANCE
-    ]
-    values = np.concatenate([np.zeros(0), *reflectances])
+    values = np.concatenate([np.zeros(0), *(spectrum.values for spectrum in spectra)])
     is_of_schema = ((values > -0.1) & (values < 3)).all()
     return (Scale(1.0, "the schema of CxF3"),) if is_of_schema else ()
 

@@ -14,7 +14,7 @@ from uplift.common.errors import OutputError
 from uplift.common.text import pluralise
 from uplift.extras.files.csv import csv_text, find_delimiter, plain_cell
 from uplift.extras.formats.measurements import Measurements
-from uplift.extras.formats.quantities import name_quantities
+from uplift.extras.formats.quantities import POWER, name_quantities
 from uplift.extras.formats.statements import remark_scale
 from uplift.extras.formats.tables.cells import Cell, Row, is_value, line_texts, trimmed
 from uplift.extras.formats.tables.grid import LAYOUT, Grid
@@ -44,8 +44,7 @@ def read(document: Document) -> Measurements:
         ) from None
     numbers = [row for row in rows if is_value(row[0].text)]
     if len(numbers) < 2 or max(map(len, numbers)) > 1:
-        is_quoted = delimiter == "," or '"' in document.text
-        may_group = delimiter in (",", "\t") and is_quoted
+        may_group = delimiter in ",\t" and '"' in document.text
         grid = Grid(rows, document.location, comments, may_group)
         return read_grid(grid, document.stem)
     title = next(
@@ -103,8 +102,7 @@ def text(atlas: Atlas, _: Header) -> str:
             )
     stated = name_quantities(atlas.names)
     for name, quantity in zip(atlas.names, stated, strict=True):
-        is_lamp = quantity is None or quantity.kind.is_used(lamps=True)
-        if not is_lamp or remark_scale(name):
+        if remark_scale(name) or (quantity and quantity.kind is not POWER):
             raise OutputError(
                 f"the name '{name}' states a scale or a quantity, which a table is "
                 "read by",
