@@ -96,21 +96,22 @@ def test_remarks():
         ("K S", "aa"), ("S k", "  "), ("K_ochre S_ochre K_red S_red", "aaaa"),
         ("ochre_k ochre_s umber", "aa "), ("K1 S1 K2 S2", "aaaa"), ("R K S", " aa"),
         ("C M Y K", "    "), ("C M Y K S", "     "), ("K", " "), ("A1 K1 S1", "   "),
-        ("R_K R_S", "  "), ("R T", " s"), ("D", "s"), ("D red", "  "), ("n", "r"),
+        ("R_K R_S", "  "), ("R T", " s"), ("D", "b"), ("D red", "  "), ("n", "r"),
         ("n k", "rr"), ("k", " "), ("N K", "  "),
         ("X Y Z", "sss"), ("x̄ ȳ z̄", "sss"), ("x y", "  "), ("X Y Z W", "    "),
         ("A D65", "pp"), ("A B C", "   "), ("D50 white", "  "), ("D50 D51", "  "),
         ("FL2 LED-B3", "pp"), ("F1 F2", "  "), ("W", "p"), ("W R G B", "    "),
         ("R std", " d"), ("mean SD", " d"), ("ochre ochre_std umber", " d "),
         ("ochre SD_ochre", " d"), ("std batch", "  "), ("STD_red STD_blue", "  "),
-        ("std", " "), ("stdev", " "),
+        ("std", " "), ("stdev", "d"),
         ("ochre stdev", " d"), ("ochre ±", " d"), ("ochre1 std1", "  "),
-        ("R1 std1", " d"),
+        ("R1 std1", " d"), ("ochre_K/S umber", "k "), ("Absorbance OD", "bb"),
     ],
 )  # fmt: skip
 def test_names_state_a_quantity_as_a_set(names, expected):
     letters = {"absorption or scattering": "a", "refractive index": "r"}
     letters |= {"standard deviation": "d", "spectral power": "p", None: " "}
+    letters |= {"K/S": "k", "absorbance": "b", "optical density": "b"}
     found = map(kind, name_quantities(names.split(" ")))
     assert "".join(letters.get(name, "s") for name in found) == expected
 

@@ -14,7 +14,7 @@ from uplift.common.errors import OutputError
 from uplift.common.text import pluralise
 from uplift.extras.files.csv import csv_text, find_delimiter, plain_cell
 from uplift.extras.formats.measurements import Measurements
-from uplift.extras.formats.quantities import POWER, name_quantities
+from uplift.extras.formats.quantities import POWER, REFLECTANCE, name_quantities
 from uplift.extras.formats.statements import remark_scale
 from uplift.extras.formats.tables.cells import Cell, Row, is_value, line_texts, trimmed
 from uplift.extras.formats.tables.grid import LAYOUT, Grid
@@ -102,7 +102,9 @@ def text(atlas: Atlas, _: Header) -> str:
             )
     stated = name_quantities(atlas.names)
     for name, quantity in zip(atlas.names, stated, strict=True):
-        if remark_scale(name) or (quantity and quantity.kind is not POWER):
+        if remark_scale(name) or (
+            quantity and quantity.kind not in (POWER, REFLECTANCE)
+        ):
             raise OutputError(
                 f"the name '{name}' states a scale or a quantity, which a table is "
                 "read by",

@@ -61,8 +61,8 @@ REFLECTANCE = QUANTITIES["reflectance"]
 POWER = QUANTITIES["spectral power"]
 OF_LIGHT = QUANTITIES["measurement of a light"]
 OTHER = QUANTITIES["another quantity"]
-
-_OF_REFLECTANCE = ("K/S", "optical density")
+K_OVER_S = QUANTITIES["K/S"]
+_OF_REFLECTANCE = (K_OVER_S, QUANTITIES["optical density"])
 """What lines with the word reflectance may be about."""
 _IN_TEXTS = {kind: any_of(kind.words) for kind in QUANTITIES.values()}
 _IN_LABELS = {kind: any_of([*kind.words, *kind.labels]) for kind in QUANTITIES.values()}
@@ -110,7 +110,7 @@ def remark_quantity(texts: Iterable[str]) -> Quantity | None:
     for text in texts:
         plain = plain_text(text)
         kinds = [kind for kind, pattern in _IN_TEXTS.items() if pattern.search(plain)]
-        if REFLECTANCE in kinds and kinds[0].name not in _OF_REFLECTANCE:
+        if REFLECTANCE in kinds and kinds[0] not in _OF_REFLECTANCE:
             return Quantity(REFLECTANCE, text)
         others += [Quantity(kind, text) for kind in kinds[:1]]
     return others[0] if others else None
@@ -118,18 +118,23 @@ def remark_quantity(texts: Iterable[str]) -> Quantity | None:
 
 def name_quantities(names: Sequence[str]) -> list[Quantity | None]:
     """Return the quantities that the names of a file state as a set: K and S, n and k,
-    A and D65, a name and its deviation.
+    A and D65, a name and its deviation, or all names the quantities of labels.
 
     >>> quantities = name_quantities(["ochre", "ochre std", "umber", "K"])
     >>> [quantity and quantity.kind.name for quantity in quantities]
     [None, 'standard deviation', None, None]
     """
+    if all(map(label_quantity, names)):
+        return list(map(label_quantity, names))
     texts = list(map(plain_text, names))
     kinds = _by_letters(texts)
     if _LIGHTS.fullmatch("".join(f"{text} " for text in texts)):
         kinds = [POWER] * len(texts)
     for index in _deviations(texts):
         kinds[index] = DEVIATION
+    for index, text in enumerate(texts):
+        if _IN_TEXTS[K_OVER_S].search(text):
+            kinds[index] = K_OVER_S
     return [
         Quantity(kind, name) if kind else None
         for name, kind in zip(names, kinds, strict=True)
