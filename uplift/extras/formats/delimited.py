@@ -24,6 +24,8 @@ BLANKS = " "
 """Delimiter that stands for any number of blanks."""
 SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
 """First line of a table that states its delimiter to spreadsheets."""
+QUOTED = re.compile(r'"\s*[+-]?\d{1,3},\d{3}')
+"""A number in quotes that may have commas of thousands."""
 SAMPLE_ROWS = 200
 """Rows by which the delimiter is chosen."""
 WAVELENGTHS = "*[Ww]avelength*.txt"
@@ -44,7 +46,7 @@ def read(document: Document) -> Measurements:
         ) from None
     numbers = [row for row in rows if is_value(row[0].text)]
     if len(numbers) < 2 or max(map(len, numbers)) > 1:
-        may_group = delimiter in ",\t" and '"' in document.text
+        may_group = delimiter in ",\t" and bool(QUOTED.search(document.text))
         grid = Grid(rows, document.location, comments, may_group)
         return read_grid(grid, document.stem)
     title = next(
