@@ -2,6 +2,7 @@
 convert, leave out or refuse them, and the quantity that a text, names or values state.
 """
 
+import functools
 import re
 import tomllib
 import unicodedata
@@ -51,7 +52,7 @@ def any_of(patterns: Iterable[str]) -> re.Pattern[str]:
 
 
 def _any_word(words: Iterable[str]) -> re.Pattern[str]:
-    return any_of(rf"(?<![^\W\d]){word}(?![^\W\d])" for word in words)
+    return any_of([rf"(?<![^\W\d])(?:{'|'.join(words)})(?![^\W\d])"])
 
 
 QUANTITIES = {row["name"]: Kind(**row) for row in TABLE["quantity"]}
@@ -84,6 +85,7 @@ def plain_text(text: str) -> str:
     return re.sub("[\u0300-\u036f]", "", decomposed)
 
 
+@functools.lru_cache
 def label_quantity(text: str) -> Quantity | None:
     """Return the quantity that the label of values states, None if it states none.
 

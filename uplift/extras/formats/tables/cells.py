@@ -19,6 +19,8 @@ SHORTEST = 100.0
 """Wavelength in nm that distinguishes a row of wavelengths from a wavelength and its
 values.
 """
+MISSING = frozenset(TABLE["words"]["missing"])
+PREFIXES = frozenset(TABLE["words"]["prefixes"])
 LABEL = re.compile(
     r"([^\d.,+-]{0,40}?)[\s_([]*(\d{1,5}(?:[.,]\d{1,8})?)\s*[([]?\s*(nm|[µμu]m|microns?|å|1/cm)?\s*[)\]]?",
     re.IGNORECASE,
@@ -62,7 +64,7 @@ def parse_cell(text: str) -> float | None:
         return parse_float(text)
     except ValueError:
         plain = text.strip().removesuffix("%").rstrip()
-    if plain.casefold() in TABLE["words"]["missing"]:
+    if plain.casefold() in MISSING:
         return np.nan
     try:
         return parse_decimal(plain)
@@ -106,9 +108,7 @@ def parse_label(text: str) -> Label | None:
     # Without a unit, R9 is a colour and R400 a wavelength.
     if unit is None and len(re.split("[.,]", match[2])[0]) not in (3, 4):
         return None
-    if prefix not in TABLE["words"]["prefixes"] and not label_quantity(
-        match[1].strip(" _([")
-    ):
+    if prefix not in PREFIXES and not label_quantity(match[1].strip(" _([")):
         return None
     return Label(prefix, float(match[2].replace(",", ".")), unit)
 

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from uplift.atlas import SkippedEntry, SourceLocation
+from uplift.extras.formats.quantities import TABLE
 from uplift.extras.formats.statements import remark_unit
 from uplift.extras.formats.tables.cells import Cell, Row, line_texts
 
@@ -15,15 +16,7 @@ MAX_PREAMBLE = 1000
 """Rows among which the row of wavelengths is searched."""
 MAX_AXIS = 3
 """Columns among which that of the wavelengths is searched."""
-NAME_LABELS = (
-    "samplename", "name", "colorname", "colourname", "patchname", "patch", "label",
-    "title", "sample", "material",
-    "spectrum", "sampleid", "patchid", "id", "sampleloc", "sampleno", "no", "number",
-    "index",
-)  # fmt: skip
-"""Labels of names, in lower case without blanks and punctuation, the preferred ones
-first.
-"""
+NAME_LABELS = tuple(TABLE["words"]["names"])
 
 
 class Series(NamedTuple):
