@@ -49,8 +49,9 @@ def label_scale(text: str) -> Scale | None:
     """Return the scale that the label of values states; None if it states none. '50 %'
     is a part of a name.
 
-    >>> [label_scale(text) for text in ("R% 400", "grey 50%")]
-    [Scale(divisor=100.0, text='R% 400'), None]
+    >>> scales = map(label_scale, ("R% 400", "grey 50%", "R × 10000"))
+    >>> [scale and scale.divisor for scale in scales]
+    [100.0, None, 10000.0]
     """
     for divisor, pattern in _SCALES.items():
         if pattern.search(text):
