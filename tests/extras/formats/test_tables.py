@@ -163,6 +163,10 @@ def test_columns_of_other_quantities_are_skipped_by_name(read):
         atlas = read(text)
     assert atlas.names == ("ochre",)
     assert [entry.name for entry in atlas.skipped] == ["Transmittance", "Std Dev"]
+    two = "Sample,ochre,ochre,red,red\nnm,Mean,SD,K,S\n"
+    with warns("entry-skipped"):
+        heads = read(two + lines("{:g},{:g},0.01,0.2,0.3"))
+    assert heads.names == ("ochre",)
     with warns("entry-skipped"):
         rows = read(HEADER + row("ochre") + row("Std Dev", 0.01))
     assert rows.names == ("ochre",)

@@ -15,6 +15,7 @@ from uplift.extras.formats.measurements import Measurements, wrong_quantity
 from uplift.extras.formats.quantities import (
     REFLECTANCE,
     label_quantity,
+    name_quantities,
     remark_quantity,
 )
 from uplift.extras.formats.samples import Spectrum, is_missing
@@ -57,14 +58,19 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
     if not table.series:
         raise _no_table(grid)
     scales = [remark_scale(text) for text in table.remarks]
-    cells = chain.from_iterable(series.cells for series in table.series)
-    commas = comma_scales([cell.text for cell in cells]) if grid.may_group else []
+    labels = [series.label for series in table.series]
+    commas = list[Scale]()
+    if grid.may_group:
+        cells = chain.from_iterable(series.cells for series in table.series)
+        stated = filter(None, [*scales, *map(label_scale, labels)])
+        divisors = [scale.divisor for scale in stated]
+        commas = comma_scales([cell.text for cell in cells], divisors)
     mark = "," if len(commas) == 1 else ""
     nameless = sum(series.name is None for series in table.series)
     spectra = list[Spectrum]()
-    for series in table.series:
+    for series, by_set in zip(table.series, name_quantities(labels), strict=True):
         name = series.name
-        quantity = label_quantity(series.label)
+        quantity = label_quantity(series.label) or by_set
         if name is None:
             first = series.cells[0]
             name = Cell(stem if nameless == 1 else series.label, first.line)
@@ -86,7 +92,7 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
         scales=tuple(filter(None, [*scales, *commas])),
         notes=table.notes,
         quantity=remark_quantity(table.remarks),
-        labelled=not nameless or any(series.label for series in table.series),
+        labelled=not nameless or any(labels),
     )
 
 
