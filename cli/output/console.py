@@ -193,6 +193,9 @@ def show(*tables: SafeTable) -> None:
         if number:
             say()
         width = max(columns(), table_width(table.columns))
+        body = list(table.take_body())
         Console(
             file=sys.stdout, width=width, highlight=False, markup=False, emoji=False
         ).print(table)
+        if body:
+            emit("\n".join(body))

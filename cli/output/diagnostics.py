@@ -68,8 +68,9 @@ HINTS = {
         "for a cube"
     ),
     "not-spectra": (
-        "name an atlas; a cube is used with --cube, an image with 'uplift texture' "
-        "and 'uplift relight'"
+        "an atlas is a table (CSV, text, spreadsheet), CGATS, CxF3, TM-27, JCAMP-DX, "
+        "an ENVI library or an ART archive; a cube is used with --cube, an image with "
+        "'uplift texture' and 'uplift relight'"
     ),
     "rgb-like-codes": (
         "write 8-bit codes as '#rrggbb', or use --encoded where the command has it"

@@ -23,6 +23,8 @@ LAYOUT: dict[str, Any] = {
 """Options of every table."""
 WRAPPED = 16
 """Characters that a column of wrapped text has at least, if its text is that long."""
+LONG = 1000
+"""Rows from which a table of plain texts is printed without rich."""
 GAP = 2
 """Characters between columns."""
 MAX_KEYS = 3
@@ -70,6 +72,19 @@ class SafeTable(Table):
         self.caption = caption
         yield self._with_columns(columns)
 
+    def take_body(self) -> Iterator[str]:
+        """Take the rows out of a long table of plain texts, and yield their lines: rich
+        needs a third of a millisecond for each.
+        """
+        rows = list(zip(*(column.cells for column in self.columns), strict=True))
+        has_styles = any(isinstance(cell, Text) for cell in chain.from_iterable(rows))
+        are_lines = all(column.no_wrap for column in self.columns)
+        if len(rows) >= LONG and are_lines and not has_styles:
+            for column in self.columns:
+                column._cells = []
+            for row in rows:
+                yield (" " * GAP).join(map(_aligned, row, self.columns)).rstrip()
+
     def _keys(self, width: int) -> Sequence[Column]:
         count = 1
         while (
@@ -88,6 +103,12 @@ class SafeTable(Table):
         return table
 
 
+def _aligned(text: str, column: Column) -> str:
+    """Return a cell as wide as its column."""
+    missing = " " * ((column.min_width or 0) - cell_len(text))
+    return missing + text if column.justify == "right" else text + missing
+
+
 def narrowest(column: Column) -> int:
     """Return the characters of a column whose texts are wrapped between words."""
     texts = [str(cell) for cell in (column.header, *column.cells)]
@@ -104,9 +125,9 @@ def table_width(columns: Sequence[Column]) -> int:
     return sum(map(narrowest, columns)) + GAP * (len(columns) - 1)
 
 
-def plain(text: str | Text) -> Text:
-    """Return text that rich shows as it is; the style of a `Text` stays."""
+def plain(text: str | Text) -> str | Text:
+    """Return text without control characters; the style of a `Text` stays."""
     if isinstance(text, str):
-        return Text(printable(text))
+        return printable(text)
     safe = "\n".join(map(printable, text.plain.split("\n")))
     return text if safe == text.plain else Text(safe, style=text.style)

@@ -62,8 +62,8 @@ class Vendor:
 
     ``count`` spectra fit into it, ``percent`` is not stated, ``skipped`` columns are of
     other quantities. Samples of libraries of ENVI are numbers of a type, each eighth
-    decimal a unit, in a file of their own. Those of the USGS are next to a file of
-    ``wavelengths``.
+    decimal a unit, in a file of their own behind ``offset`` bytes. Those of the USGS
+    are next to a file of ``wavelengths``.
     """
 
     format: str
@@ -76,6 +76,7 @@ class Vendor:
     encoding: str = "utf-8"
     newline: str = "\n"
     samples: tuple[str, float] | None = None
+    offset: int = 0
 
     @property
     def name(self) -> str:
@@ -111,12 +112,9 @@ class Vendor:
         if self.samples is None:
             return files
         kind, unit = self.samples
-        return {
-            f"{atlas[0].name}.sli": np.round(np.rint(1e8 * values) * unit, 8)
-            .astype(kind)
-            .tobytes(),
-            **files,
-        }
+        numbers = np.round(np.rint(1e8 * values) * unit, 8).astype(kind)
+        content = bytes(self.offset) + numbers.tobytes()
+        return {f"{atlas[0].name}.sli": content, **files}
 
     def save(self, atlas: Atlas, folder: Path) -> Path:
         """Write the files of an atlas and return the path to read."""
@@ -194,7 +192,21 @@ VENDORS = (
         count=1,
         skipped=True,
     ),
+    Vendor(TABLE, "relab.asc", "RELAB library", count=1, skipped=True),
+    Vendor(
+        TABLE,
+        "spectra_vista.sig",
+        "Spectra Vista",
+        count=1,
+        skipped=True,
+        newline="\r\n",
+    ),
+    Vendor(TABLE, "asd.txt", "ASD ViewSpec", newline="\r\n"),
+    Vendor(TABLE, "perkin_elmer.asc", "PerkinElmer UV WinLab", count=1),
     Vendor(TABLE, "cary.csv", "Agilent Cary WinUV"),
+    Vendor(TABLE, "pairs_of_columns.csv", "plots in spreadsheets"),
+    Vendor(TABLE, "pairs_on_a_line.csv", "scripts, a line per spectrum"),
+    Vendor(TABLE, "long_table.csv", "programs for statistics"),
     Vendor(TABLE, "uvprobe.txt", "Shimadzu UVProbe", count=1),
     Vendor(CGATS, "cgats.txt", "programs with CGATS", percent=True),
     Vendor(
@@ -210,6 +222,9 @@ VENDORS = (
     Vendor("JCAMP-DX", "jcamp_comma.jdx", "programs with decimal commas", count=1),
     Vendor(ENVI, "envi.hdr", "ENVI, integers", samples=("<i4", 1.0)),
     Vendor(ENVI, "envi_floats.hdr", "ENVI, floats", samples=(">f8", 1e-8)),
+    Vendor(
+        ENVI, "envi_offset.hdr", "ENVI, with a header", samples=(">u4", 1.0), offset=128
+    ),
     Vendor(SHEET, "xlsx.xlsx", "Excel", percent=True),
     Vendor(SHEET, "ods.ods", "LibreOffice", percent=True),
 )

@@ -63,17 +63,17 @@ def test_json_has_the_colours_under_the_sensor(ask):
     assert (answer["sources"][0]["name"], answer["skipped"]) == ("macbeth.txt", [])
 
 
-def test_skipped_entries_are_listed(run, home):
+def test_skipped_entries_are_listed(run, refuse, home):
     text = Path(MACBETH).read_text("utf-8")
-    (home / "lamps.txt").write_text(
-        text.replace("reflectance spectrum", "emission spectrum"), encoding="utf-8"
-    )
+    lamps = text.replace("reflectance spectrum", "emission spectrum")
+    (home / "lamps.txt").write_text(lamps, encoding="utf-8")
+    assert refuse("atlas lamps.txt").code == "not-reflectance"  # none is left
+    _, first, *others = lamps.split("Entry ID")
+    first = first.replace("emission spectrum", "reflectance spectrum")
+    (home / "lamps.txt").write_text("Entry ID".join(["", first, *others]), "utf-8")
     result = run("atlas lamps.txt")
     assert warning_lines(result)
-    assert (
-        "0 entries, 0 out of the sRGB gamut, 24 skipped (dark skin, light skin,"
-        in result.stdout
-    )
+    assert "1 entry, 0 out of the sRGB gamut, 23 skipped (light skin," in result.stdout
 
 
 def test_conversion_round_trip(run, refuse, home):

@@ -99,16 +99,6 @@ def test_no_two_boxes_overlap(rgb):
                 assert widths[first] + widths[second] <= apart + 1e-12
 
 
-def test_only_the_first_entry_of_a_colour_has_a_box():
-    rgb = np.array([[0.2, 0.2, 0.2], [0.2, 0.2, 0.2], [0.9, 0.9, 0.9], [0.2, 0.2, 0.2]])
-    assert half_widths(LATTICE.to_steps(rgb)).tolist() == [
-        MAX_HALF_WIDTH,
-        0,
-        MAX_HALF_WIDTH,
-        0,
-    ]
-
-
 @given(
     arrays(
         float, st.tuples(st.integers(1, 8), st.just(3)), elements=st.floats(-0.3, 1.3)

@@ -379,7 +379,7 @@ def _sample_faults(wavelengths: Array, values: Array) -> Iterator[tuple[str, str
             f"an entry needs at least 2 samples, got {len(wavelengths)}",
             "add the missing samples",
         )
-    for i in np.flatnonzero(~(np.isfinite(wavelengths) & np.isfinite(values))):
+    for i in (~(np.isfinite(wavelengths) & np.isfinite(values))).nonzero()[0]:
         problem = (
             f"sample {i + 1} is not finite: {values[i]:g} at {wavelengths[i]:g} nm"
         )
@@ -390,7 +390,7 @@ def _sample_faults(wavelengths: Array, values: Array) -> Iterator[tuple[str, str
         invalid = first if first <= 0 else last
         problem = f"wavelengths must be in (0, {LONGEST:g}] nm, got {invalid:g}"
         yield problem, "give wavelengths in nm"
-    for i in np.flatnonzero(np.diff(wavelengths) < SLACK):
+    for i in (wavelengths[1:] - wavelengths[:-1] < SLACK).nonzero()[0]:
         problem = (
             f"wavelengths must ascend, got {wavelengths[i]:g} nm, then "
             f"{wavelengths[i + 1]:g} nm"
@@ -402,7 +402,7 @@ def _sample_faults(wavelengths: Array, values: Array) -> Iterator[tuple[str, str
             f"{first:g}–{last:g} nm"
         )
         yield problem, "add the missing samples and give wavelengths in nm"
-    for i in np.flatnonzero((values > HIGHEST) | (values < LOWEST)):
+    for i in ((values > HIGHEST) | (values < LOWEST)).nonzero()[0]:
         problem = (
             f"reflectance must be in [{LOWEST:g}, {HIGHEST:g}], got {values[i]:g} at "
             f"{wavelengths[i]:g} nm"

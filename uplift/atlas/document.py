@@ -2,18 +2,22 @@
 
 import hashlib
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 from uplift.common.arrays import StrPath
 from uplift.common.errors import AtlasError
-from uplift.common.files import IMAGES, read_bytes, recognise
+from uplift.common.files import read_bytes, recognise
 from uplift.common.text import parse_float, printable, shorten
 
 MAX_BYTES = 64 << 20
 """Largest file that is read, some 100,000 entries."""
 UTF_16_START = 16
 """Bytes by which UTF-16 without a byte-order mark is recognised."""
+READABLE = (
+    "export a table (CSV, text or a spreadsheet), a CGATS, CxF3, TM-27 or JCAMP-DX "
+    "file, or an ENVI library"
+)
 EXPORT = "export the file again, or export a CSV table"
 
 
@@ -29,7 +33,7 @@ class SourceLocation:
 
     def at(self, line: int | None = None, entry: str | None = None) -> "SourceLocation":
         """Return the location of another line or entry of the same file."""
-        return replace(self, line=line or self.line, entry=entry or self.entry)
+        return SourceLocation(self.path, line or self.line, entry or self.entry)
 
     def error(self, problem: str, hint: str, *, code: str | None = None) -> AtlasError:
         """Create an error at this location."""
@@ -76,13 +80,14 @@ class Document:
                     "the UTF-16 text is damaged", hint
                 ) from None
             text = data.decode("latin-1")
-        if "\0" in text or data.startswith(IMAGES):
-            if kind := recognise(data):
+        if kind := recognise(data):
+            if kind != "text":
                 problem = f"must be a file of spectra, got {kind}"
-                raise self.location.error(problem, "name an atlas", code="not-spectra")
+                raise self.location.error(problem, READABLE, code="not-spectra")
+        elif "\0" in text:
             line = text[: text.index("\0")].count("\n") + 1
             raise self.location.at(line).error(
-                "binary data (a NUL character) instead of text", hint
+                "binary data (a NUL character) instead of text", READABLE
             )
         if not text.strip():
             raise self.location.error(

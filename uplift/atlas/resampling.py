@@ -8,12 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.atlas.atlas import SLACK, Atlas, Entry
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, blocks
 from uplift.common.errors import UpliftWarning, warn
 from uplift.common.text import listed, pluralise
 
 WIDEST = 20.0
 """Largest step in nm of a grid whose bands are averaged over."""
+BLOCK = 1000
+"""Entries that are interpolated at once."""
 NOISE = 1e-6
 """Distance from [0, 1] that is clipped without a warning, such as −2e−16 for black."""
 
@@ -129,20 +131,24 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
     raw = np.empty((len(entries), len(grid)))
     for row, entry in enumerate(entries):
         alike[entry.wavelengths.tobytes()].append(row)
-    for rows in alike.values():
-        nm = entries[rows[0]].wavelengths
-        values = np.stack([entries[row].values for row in rows])
-        raw[rows] = (
-            values if np.array_equal(nm, grid) else _interpolate(nm, values, grid)
-        )
+    for same in alike.values():
+        nm = entries[same[0]].wavelengths
+        for block in blocks(len(same), BLOCK):
+            rows = same[block]
+            values = np.stack([entries[row].values for row in rows])
+            raw[rows] = (
+                values if np.array_equal(nm, grid) else _interpolate(nm, values, grid)
+            )
     clips = [clip for entry in entries if (clip := _clip(entry, grid))]
-    return Resampled(np.clip(raw, 0.0, 1.0), tuple(clips))
+    return Resampled(np.clip(raw, 0.0, 1.0, out=raw), tuple(clips))
 
 
 def _clip(entry: Entry, grid: Array) -> Clip | None:
     """Return the sample of an entry within the range of a grid that is farthest outside
     [0, 1].
     """
+    if entry.values.min() >= -NOISE and entry.values.max() <= 1 + NOISE:
+        return None
     # Distance from [0, 1]: x − 1 above, −x below
     excess = np.maximum(entry.values - 1.0, -entry.values)
     excess[(entry.wavelengths < grid.min()) | (entry.wavelengths > grid.max())] = 0

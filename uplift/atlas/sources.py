@@ -17,12 +17,12 @@ import numpy as np
 
 from uplift.atlas import art
 from uplift.atlas.atlas import Atlas, Entry, Header, Source, merge, skipped_warning
-from uplift.atlas.document import Document, SourceLocation, read_document
+from uplift.atlas.document import EXPORT, Document, SourceLocation, read_document
 from uplift.atlas.formats import ART, known_formats, read_any
 from uplift.common.arrays import StrPath
 from uplift.common.errors import OutputError, UpliftWarning, unknown_name, warn
 from uplift.common.files import write_text
-from uplift.common.text import pluralise
+from uplift.common.text import listed, pluralise
 
 Measured = Literal["auto", "percent", "fraction"]
 Missing = Literal["refuse", "interpolate", "skip"]
@@ -107,6 +107,15 @@ def read_atlas(
             content = content.to_atlas(document, chosen.name, measured, missing)
         atlases.append(content)
     atlas = merge(atlases)
+    if atlas.skipped and not atlas.entries:
+        first = atlas.skipped[0]
+        reasons = list(dict.fromkeys(entry.reason for entry in atlas.skipped))
+        raise SourceLocation(first.path, first.line).error(
+            f"none of {pluralise(len(atlas.skipped), 'entry')} is a reflectance: "
+            f"{listed(reasons)}",
+            EXPORT,
+            code="not-reflectance",
+        )
     for entry in atlas:
         _warn_of_odd(entry)
     if atlas.skipped:
@@ -122,6 +131,8 @@ def _warn_of_odd(entry: Entry) -> None:
     after = values[2:]
     above = value > ODD * np.maximum(before, after)
     below = value * ODD < np.minimum(before, after)
+    if not (above | below).any():
+        return
     is_near = entry.wavelengths[2:] - entry.wavelengths[:-2] <= 2 * COARSE
     is_bright = np.maximum(value, before) > VISIBLY
     odd = np.flatnonzero((above | below) & is_near & is_bright) + 1

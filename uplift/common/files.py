@@ -8,6 +8,7 @@ With concurrent writers the last one to finish wins.
 import contextlib
 import functools
 import os
+import re
 import stat
 import time
 from collections.abc import Iterable, Iterator
@@ -21,8 +22,19 @@ killed.
 """
 KERNEL = "/proc"
 """Folder of the files of the kernel, where there is one."""
-IMAGES = (b"\x89PNG", b"v/1\x01", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"#?")
-"""First bytes of PNG, OpenEXR, JPEG, both orders of TIFF, and HDR."""
+MARKS = {
+    # PNG, OpenEXR, JPEG, both orders of TIFF, HDR; GIF, WebP, HEIF and AVIF
+    rb"\x89PNG|v/1\x01|\xff\xd8\xff|II\*\0|MM\0\*|#\?": "an image",
+    rb"GIF8|RIFF.{4}WEBP|.{4}ftyp": "an image",
+    rb"PK\x03\x04.{26}[^\0]{1,99}\.npy": "a NumPy archive (.npz)",
+    rb"PK\x03\x04": "a ZIP archive",
+    rb"\x93NUMPY": "a NumPy array (.npy)",
+    rb"MATLAB \d\.\d MAT": "a MATLAB file",
+    rb"\x89HDF": "an HDF5 file",
+    rb"%PDF": "a PDF document",
+    rb"\x1f\x8b": "a file compressed by gzip",
+}
+"""Kinds of files by regular expressions of their first bytes."""
 CONTAINERS = {b"uplift cube": "a cube", b"uplift emission table": "an emission table"}
 """Kinds of files by their mark in the header of safetensors."""
 PREFIX = ".{}."
@@ -67,11 +79,12 @@ def read_bytes(
 
 
 def recognise(data: bytes) -> str:
-    """Name what a file is by its bytes: an image, a cube, an emission table or text;
-    empty for all others.
+    """Name what a file is by its bytes: a kind of `MARKS`, a cube, an emission table or
+    text; empty for all others.
     """
-    if data.startswith(IMAGES):
-        return "an image"
+    for mark, kind in MARKS.items():
+        if re.match(mark, data, re.DOTALL):
+            return kind
     if data[8:9] == b"{":  # safetensors: the length of a header, and the header as JSON
         return next((kind for mark, kind in CONTAINERS.items() if mark in data), "")
     return "" if b"\0" in data else "text"

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.colorimetry import delta_e_1976, delta_e_spectra, rgb_to_lab
-from uplift.common.arrays import Array, Indices, Mask, blocks
+from uplift.common.arrays import Array, Indices, Mask
 from uplift.fit.entries import FittedEntries
 from uplift.fit.neighbours import nearest_other
 from uplift.fit.prior import Prior, blended
@@ -32,15 +32,9 @@ CORNER_SHARE = 0.8
 """Weight of an entry in the start of near corners, if no other entry is close."""
 MAX_HALF_WIDTH = 1.0
 """Lattice steps: the half width of an entry box without other entries nearby."""
-SAME_COLOUR = 1e-6
-"""Lattice steps. Entries that are closer have the same colour, and only the first of
-them is used.
-"""
 DIMS = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128)
 """Lattices that `choose_lattice` tries."""
 MAX_PASSES = 32
-BLOCK = 64
-"""Entries whose distances from others of their colour are in memory at once."""
 
 
 def half_widths(steps: Array) -> Array:
@@ -48,21 +42,9 @@ def half_widths(steps: Array) -> Array:
     lattice steps.
 
     No two boxes overlap: a box extends at most half the distance to the nearest other
-    entry (docs/mathematics.md, 8). An entry whose colour an earlier entry has gets 0.
+    entry (docs/mathematics.md, 8).
     """
-    nearest = nearest_other(steps, np.inf)
-    close = np.flatnonzero(nearest <= SAME_COLOUR)
-    if not close.size:
-        return np.minimum(MAX_HALF_WIDTH, nearest / 2)
-    unique = np.ones(len(steps), dtype=bool)
-    for rows in blocks(len(close), BLOCK):
-        apart = np.abs(steps[close[rows], None] - steps[close]).max(axis=-1)
-        earlier = np.tril(apart <= SAME_COLOUR, rows.start - 1)
-        unique[close[rows]] = ~earlier.any(axis=1)
-    widths = np.zeros(len(steps))
-    nearest = nearest_other(steps[unique], np.inf)
-    widths[unique] = np.minimum(MAX_HALF_WIDTH, nearest / 2)
-    return widths
+    return np.minimum(MAX_HALF_WIDTH, nearest_other(steps, np.inf) / 2)
 
 
 def outside_half_widths(lattice: Lattice, rgb: Array) -> Array:

@@ -36,6 +36,8 @@ SPREAD = 1.0
 """
 RELATED = 0.5
 """Likewise."""
+SAME_COLOUR = 1e-8
+"""Step of linear RGB within which entries have the same colour."""
 
 
 class MeasuredEntries(NamedTuple):
@@ -157,13 +159,14 @@ def as_atlas(atlas: AtlasLike) -> Atlas:
 def split_by_gamut(
     atlas: Atlas, sensor: Sensor
 ) -> tuple[MeasuredEntries, MeasuredEntries]:
-    """Return the entries in the RGB space, and those outside; all outside
-    are an error.
+    """Return the entries in the RGB space, and those outside; all outside are an error.
+    Warn of entries whose colour an earlier one has, which are left out.
     """
     measured = on_grid(atlas, sensor.wavelengths)
     # t = W m of measured reflectances m
     rgb = sensor.rgb(measured)
     inside = in_unit_cube(rgb)
+    rgb[inside] = np.clip(rgb[inside], 0, 1)
     if (atlas.entries or atlas.skipped) and not inside.any():
         space = smallest_space(
             resample(atlas, grid()).values, sensor.illuminant, sensor.observer
@@ -177,12 +180,20 @@ def split_by_gamut(
             hint = f'use space="{space}", which holds all entries'
         raise AtlasError(problem, code="atlas-out-of-gamut", hint=hint)
     names = np.array(atlas.names, dtype=object)
-    return (
-        MeasuredEntries(
-            tuple(names[inside]), np.clip(rgb[inside], 0, 1), measured[inside]
-        ),
-        MeasuredEntries(tuple(names[~inside]), rgb[~inside], measured[~inside]),
-    )
+    colours = np.round(rgb / SAME_COLOUR)
+    first = np.zeros(len(names), dtype=bool)
+    first[np.unique(colours, axis=0, return_index=True)[1]] = True
+    if not first.all():
+        listing = _listed(names[~first].tolist())
+        problem = (
+            "left out: an earlier entry has the same colour, which has only one answer"
+        )
+        warn(UpliftWarning(f"{listing} {problem}", code="entry-duplicate"))
+    within, outside = [
+        MeasuredEntries(tuple(names[rows]), rgb[rows], measured[rows])
+        for rows in (inside & first, ~inside & first)
+    ]
+    return within, outside
 
 
 def fit_constraints(
@@ -213,44 +224,25 @@ def replaced(
     return replace(entries, at_nodes=at_nodes, at_entries=at_entries)
 
 
-def warn_of_close(
-    names: Sequence[str], half_width: Array, crowded: Sequence[int] = ()
-) -> None:
-    """Warn of entries of the same colour, and of ``crowded`` ones, whose nearest node a
-    closer entry owns.
-    """
-    if duplicates := np.flatnonzero(half_width == 0).tolist():
-        problem = (
-            "left out: an earlier entry has the same colour, which has only one answer"
-        )
-        warn(
-            UpliftWarning(
-                f"{_listed(names, duplicates)} {problem}", code="entry-duplicate"
-            )
-        )
-    if near := [row for row in crowded if half_width[row]]:
+def warn_of_crowded(names: Sequence[str], crowded: Sequence[int]) -> None:
+    """Warn of entries whose nearest node a closer entry owns."""
+    if crowded:
         problem = (
             "crowded: closer entries own the nearest node. Queries at the entries' "
-            "own colours stay exact"
+            "own colours stay exact, queries near them are less accurate"
         )
         hint = (
             'use dim="auto" for a lattice that is large enough, or see the report of '
             "the cube"
         )
-        warn(
-            UpliftWarning(
-                f"{_listed(names, near)} {problem}, "
-                "queries near them are less accurate",
-                code="entry-crowded",
-                hint=hint,
-            )
-        )
+        listing = _listed([names[row] for row in crowded])
+        warn(UpliftWarning(f"{listing} {problem}", code="entry-crowded", hint=hint))
 
 
-def _listed(names: Sequence[str], rows: Sequence[int]) -> str:
+def _listed(names: Sequence[str]) -> str:
     """'entry 'a' is', 'entries 'a', 'b', 'c' and 12 more are'."""
-    shown = listed([f"'{names[row]}'" for row in rows])
-    return f"entry {shown} is" if len(rows) == 1 else f"entries {shown} are"
+    shown = listed([f"'{name}'" for name in names])
+    return f"entry {shown} is" if len(names) == 1 else f"entries {shown} are"
 
 
 def read_libraries(

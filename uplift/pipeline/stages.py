@@ -262,7 +262,7 @@ def _place_entries(
     boxes = EntryBoxes(lattice, rgb, seeded.half_width)
     # The choice of the lattice has counted the entries that none keeps.
     crowded = () if is_chosen else seeded.crowded
-    entries.warn_of_close(constraints.names, boxes.half_width, crowded)
+    entries.warn_of_crowded(constraints.names, crowded)
     return options, seeded, boxes
 
 
@@ -380,7 +380,6 @@ def _outside_table(
     if not outside.names:
         return None
     half_width = seeds.outside_half_widths(lattice, outside.rgb)
-    entries.warn_of_close(outside.names, half_width)
     fitted = entries.fit_constraints(problem, entry_model, outside)
     values = _stored_spectra(prior, outside)
     return fitted.table(problem.model, half_width, values)

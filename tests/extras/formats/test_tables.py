@@ -282,6 +282,17 @@ def test_a_value_ten_times_its_neighbours_is_warned_of(read, value):
             for at, value in zip(NM, VALUES, strict=True)
         ),
         "nm,a,,\n" + lines("{:g},{:g},,"),
+        "nm,a,nm,b\n" + lines("{0:g},{1:g},{0:g},{1:g}") + ",,900,\n,,920,\n",
+        "nm,a\n" + lines().replace("600", "nm,a\n600"),
+        HEADER + row("a") + HEADER + row("b"),
+        HEADER + "".join(",%" for _ in NM) + "\n" + row("a", 100),
+        HEADER + "".join(",nm" for _ in NM) + "\n" + row("a"),
+        f"{len(NM)}\n" + lines("{:g}\t{:g}"),
+        "a,,b,\nnm,R,nm,R\n" + lines("{0:g},{1:g},{0:g},{1:g}"),
+        lines("{:g},{:g},").replace("\n", ""),
+        lines("{:g} {:g}, ").replace("\n", ""),
+        "Paint,wave,R\n"
+        + "".join(lines(f"{name},{{:g}},{{:g}}") for name in ("NA", 1)),
         "Sample No,"
         + HEADER[5:]
         + "".join(row(str(number)) for number in range(101, 801, 100)),
@@ -289,6 +300,14 @@ def test_a_value_ten_times_its_neighbours_is_warned_of(read, value):
 )
 def test_where_a_table_begins_and_ends(read, text):
     check_values(read(text))
+
+
+@pytest.mark.parametrize("pair", ["ochre,", "ochre,R", "ochre nm,ochre", "w 1,ochre"])
+def test_a_column_before_each_spectrum_may_have_its_name(read, pair):
+    heads = f"{pair},{pair.replace('ochre', 'umber')}\n"
+    atlas = read(heads + lines("{0:g},{1:g},{0:g},{1:g}"))
+    assert atlas.names == ("ochre", "umber")
+    check_values(atlas)
 
 
 def test_pairs_on_a_line_are_one_spectrum(read):

@@ -15,6 +15,7 @@ from tests.helpers import raises, warns
 from uplift.atlas import known_formats, read_atlas
 from uplift.common.errors import AtlasError, UnknownNameError
 from uplift.extras.formats import spreadsheet
+from uplift.extras.formats.envi import TYPES
 
 MACBETH = sample(read_atlas("macbeth"))
 LAYOUTS = {vendor.name: vendor for vendor in VENDORS}
@@ -193,7 +194,9 @@ def test_missing_packages_are_named(tmp_path, monkeypatch, format):
             ),
             "atlas",
         ),
-        (b"PK\x03\x04junk", "atlas"),
+        (b"PK\x03\x04junk", "not-spectra"),
+        (b"PK\x03\x04" + bytes(26) + b"x.npy", "not-spectra"),
+        (b"%PDF-1.7\n", "not-spectra"),
         ("ENVI\nsamples = 3\n", "file-not-found"),
         ("name,nm410,nm550,nm690\na,1,1,1\n", "atlas"),
     ],
@@ -243,6 +246,10 @@ def test_content_of_archives_is_limited(tmp_path, monkeypatch, limit, value):
         (lambda text: text.replace("factor = 100000000", "factor = -1"), "atlas"),
         (lambda text: text.replace("{0.38000", "{1e306"), "atlas"),
         (lambda text: text.replace("ENVI", "NVI"), "not-an-atlas"),
+        (lambda text: text.replace("data type = 3", "data type = 6"), "atlas"),
+        (lambda text: text.replace("offset = 0", "offset = 8"), "atlas"),
+        (lambda text: text.replace("bands = 1", "bands = 2"), "atlas"),
+        (lambda text: text.replace("dark skin, ", ""), "atlas"),
     ],
 )
 def test_damaged_libraries_raise(tmp_path, change, code):
@@ -251,6 +258,30 @@ def test_damaged_libraries_raise(tmp_path, change, code):
     header.write_text(change(header.read_text()))
     with np.errstate(over="raise"), raises(AtlasError, code):
         read_atlas(path)
+
+
+@pytest.mark.parametrize(("number", "kind"), TYPES.items())
+@pytest.mark.parametrize("order", "<>")
+def test_libraries_of_all_types(tmp_path, number, kind, order):
+    path = LAYOUTS["envi"].save(MACBETH, tmp_path)
+    header = path.with_suffix(".hdr")
+    text = header.read_text().replace("factor = 100000000", "factor = 100")
+    for old, new in (
+        ("data type = 3", f"Data Type = {number}"),
+        ("byte order = 0", f"byte order = {'<>'.index(order)}"),
+        ("offset = 0", "offset = 3"),
+        ("{ paints }", "{\nDeckweiß,\n; x = 1\n grün}"),
+    ):
+        text = text.replace(old, new)
+    header.unlink()
+    path.with_suffix(".sli.hdr").write_bytes(
+        text.replace("\n", "\r\n").encode("cp1252")
+    )
+    values = np.array([np.rint(100 * entry.values) for entry in MACBETH])
+    path.write_bytes(b"abc" + values.astype(order + kind).tobytes())
+    atlas = read_atlas(path)
+    assert atlas.names == MACBETH.names
+    assert_allclose([entry.values for entry in atlas], values / 100)
 
 
 def test_a_library_without_its_other_file_raises(tmp_path):

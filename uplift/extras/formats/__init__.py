@@ -11,7 +11,7 @@ FORMATS = (
     Format(
         name="spreadsheet",
         suffixes=(".xlsx", ".xls", ".ods"),
-        pattern=rb"\A(PK\x03\x04|\xd0\xcf\x11\xe0)",
+        pattern=rb"(?s)\A(PK\x03\x04.*?(xl/|content\.xml)|\xd0\xcf\x11\xe0)",
         module="uplift.extras.formats.spreadsheet",
         library="python-calamine",
         extra="io",
@@ -19,10 +19,8 @@ FORMATS = (
     Format(
         name="ENVI spectral library",
         suffixes=(".sli", ".hdr"),
-        pattern=rb"\A\s*ENVI",
+        pattern=rb"\A(?:\xef\xbb\xbf)?\s*ENVI\s*[\r\n]",
         module="uplift.extras.formats.envi",
-        library="spectral",
-        extra="io",
         unmarked=".sli",  # numbers, whose header is another file
     ),
     Format(

@@ -1,7 +1,6 @@
 """Delimited text: rows of cells, whose spectra `read_grid` finds."""
 
 import csv
-import io
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -16,7 +15,14 @@ from uplift.extras.files.csv import csv_text, find_delimiter, plain_cell
 from uplift.extras.formats.measurements import Measurements
 from uplift.extras.formats.quantities import POWER, REFLECTANCE, name_quantities
 from uplift.extras.formats.statements import remark_scale
-from uplift.extras.formats.tables.cells import Cell, Row, is_value, line_texts, trimmed
+from uplift.extras.formats.tables.cells import (
+    Cell,
+    Line,
+    Row,
+    is_value,
+    line_texts,
+    trimmed,
+)
 from uplift.extras.formats.tables.grid import LAYOUT, Grid
 from uplift.extras.formats.tables.read import read_grid
 
@@ -28,6 +34,10 @@ QUOTED = re.compile(r'"\s*[+-]?\d{1,3},\d{3}')
 """A number in quotes that may have commas of thousands."""
 SAMPLE_ROWS = 200
 """Rows by which the delimiter is chosen."""
+COUNTED = ("Wavelength", "Reflectance", "standard deviation")
+"""Columns below a line with their number of lines, as RELAB has them."""
+SIGNATURE = ("nm", "reference (radiance)", "target (radiance)", "Reflectance [%]")
+"""Columns below a line ``data=``, as spectrometers of Spectra Vista write them."""
 WAVELENGTHS = "*[Ww]avelength*.txt"
 """Names of files of wavelengths, one a line below a title."""
 
@@ -39,7 +49,7 @@ def read(document: Document) -> Measurements:
     ]
     try:
         delimiter = _delimiter(document)
-        rows = list(_split(document, delimiter))
+        rows = _labelled(list(_split(document, delimiter)))
     except (csv.Error, ValueError) as error:
         raise document.location.error(
             f"not a readable table: {error}", LAYOUT
@@ -55,6 +65,20 @@ def read(document: Document) -> Measurements:
     name, rows = _with_wavelengths(document, title, numbers)
     found = read_grid(Grid(rows, document.location, comments), document.stem)
     return replace(found, notes=(*found.notes, f"wavelengths: those of {name}"))
+
+
+def _labelled(rows: list[Row]) -> list[Row]:
+    """Return rows with labels in place of the line above columns that a layout has
+    without labels.
+    """
+    for at, row in enumerate(rows[:SAMPLE_ROWS]):
+        body = rows[at + 1 :]
+        labels = {"data=": SIGNATURE, str(len(body)): COUNTED}.get(row[0].text)
+        if labels and body and is_value(body[0][0].text):
+            width = len(body[0])
+            if len(row) == 1 < width <= len(labels):
+                return [*rows[:at], Line(labels[:width], row[0].line), *body]
+    return rows
 
 
 def _with_wavelengths(
@@ -126,9 +150,11 @@ def _delimiter(document: Document) -> str:
 def _split(document: Document, delimiter: str) -> Iterator[Row]:
     """Yield the rows that are neither blank nor comments."""
     line = 1
-    lines = list(io.StringIO(document.text, newline=""))
+    lines = document.lines
     reader = csv.reader(
-        lines, delimiter=delimiter, skipinitialspace=delimiter == BLANKS
+        (f"{text}\n" for text in lines),
+        delimiter=delimiter,
+        skipinitialspace=delimiter == BLANKS,
     )
     for cells in reader:
         # A row of csv may span several lines; `line` is its first one.
@@ -138,14 +164,16 @@ def _split(document: Document, delimiter: str) -> Iterator[Row]:
             and not is_comment
             and not (line == 1 and SEPARATOR.match(cells[0].lstrip()))
         ):
-            texts = [plain_cell(cell.strip()) for cell in cells]
+            texts = list(map(str.strip, cells))
+            if "'" in "".join(texts):
+                texts = list(map(plain_cell, texts))
             if delimiter == BLANKS:
-                texts = list(filter(None, texts))
+                texts = [text.rstrip(",;:") for text in texts if text]
                 words = re.split(r"\s{2,}", lines[line - 1].strip())
                 if len(words) > 1 and not any(
                     map(is_value, texts)
                 ):  # labels of several words, in columns
                     texts = words
-            if row := trimmed(Cell(text, line) for text in texts):
-                yield row
+            if texts := trimmed(texts):
+                yield Line(texts, line)
         line = reader.line_num + 1

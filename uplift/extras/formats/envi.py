@@ -1,17 +1,19 @@
-"""Reader of ENVI spectral libraries (``.sli`` with ``.hdr``), by the
-package spectral.
-"""
+"""Reader of ENVI spectral libraries: a header (``.hdr``) and numbers (``.sli``)."""
 
-import os
 from pathlib import Path
 
 import numpy as np
 
-from uplift.atlas import MAX_BYTES, Document, SourceLocation, check_scale, one_line
-from uplift.common.errors import AtlasError
-from uplift.common.files import read_bytes
-from uplift.common.text import pluralise
-from uplift.extras.formats.measurements import Measurements, parsed_by
+from uplift.atlas import (
+    Document,
+    check_scale,
+    one_line,
+    parse_number,
+    read_document,
+)
+from uplift.common.arrays import Array
+from uplift.common.text import parse_float, parse_whole
+from uplift.extras.formats.measurements import Measurements
 from uplift.extras.formats.quantities import REFLECTANCE, Quantity, remark_quantity
 from uplift.extras.formats.samples import Spectrum
 from uplift.extras.formats.statements import (
@@ -23,9 +25,22 @@ from uplift.extras.formats.statements import (
 )
 
 HEADER = ".hdr"
-LIBRARY = ".sli"
+SUFFIXES = (".sli", ".SLI", "", ".img", ".dat", ".bin", ".lib", ".esl")
+"""Suffixes of files of numbers."""
 MAGIC = b"ENVI"
-FILE_TYPE = "ENVI Spectral Library"
+FILE_TYPE = "envi spectral library"
+TYPES = {
+    "1": "u1", "2": "i2", "3": "i4", "4": "f4", "5": "f8",
+    "12": "u2", "13": "u4", "14": "i8", "15": "u8",
+}  # fmt: skip
+"""Types of numbers by the field ``data type``."""
+BYTE_ORDERS = {"0": "<", "1": ">"}
+CHOICES = {"bands": ("1",), "byte order": BYTE_ORDERS, "data type": TYPES}
+"""Fields whose values are limited."""
+DEFAULTS = {
+    "bands": "1", "byte order": "0", "data type": "", "header offset": "0",
+    "lines": "", "samples": "",
+}  # fmt: skip
 FACTOR = "reflectance scale factor"
 """Field of the divisor of the values."""
 IGNORED = "data ignore value"
@@ -38,98 +53,113 @@ HINT = "write the library again as an ENVI spectral library, or export a CSV tab
 
 def read(document: Document) -> Measurements:
     """Read the spectra of a library, from the path of either of its two files."""
-    location = document.location
     header, data = _pair(document)
-    with parsed_by("spectral", "ENVI spectral libraries", document):
-        from spectral.io import envi
-
-        fields = envi.read_envi_header(os.fspath(header))
-        if fields.get("file type") != FILE_TYPE:
-            raise location.error(
-                "is an ENVI image, not a spectral library", HINT, code="not-an-atlas"
-            )
-        # The library allocates what the header states: samples are wavelengths, lines
-        # are spectra.
-        count = int(fields["samples"]) * int(fields["lines"])
-        if (
-            count <= 0
-            or count > data.stat().st_size
-            or int(fields.get("header offset", 0)) != 0
-        ):
-            problem = (
-                f"the header states {pluralise(count, 'value')}, which the file "
-                f"{data.name} does not hold"
-            )
-            raise location.error(problem, HINT)
-        library = envi.open(os.fspath(header), os.fspath(data))
-        names = list(map(one_line, library.names))
-        centers = library.bands.centers
-        values = np.asarray(library.spectra, dtype=float)
-        scales = _scales(fields, location)
-        if IGNORED in fields:
-            ignored = float(fields[IGNORED])
-            values[np.isclose(values, ignored, rtol=1e-6, atol=0)] = np.nan
-    if centers is None:
-        raise location.error("the header has no wavelengths", HINT)
+    location = header.location
+    fields = _fields(header)
+    if fields.get("file type", "").casefold() != FILE_TYPE:
+        raise location.error(
+            "is an ENVI image, not a spectral library", HINT, code="not-an-atlas"
+        )
+    try:
+        values = _values(fields, data)
+        names = _items(fields, "spectra names") or [
+            str(number) for number in range(1, len(values) + 1)
+        ]
+        centers = list(map(parse_float, _items(fields, "wavelength")))
+        if values.shape != (len(names), len(centers)):
+            counts = f"names: {len(names)}, wavelengths: {len(centers)}"
+            raise ValueError(f"values of {values.shape}, {counts}")
+    except ValueError as error:
+        problem = f"the header does not describe the file {data.name}: {error}"
+        raise location.error(problem, HINT) from None
     unit = one_line(fields.get("wavelength units"))
+    is_stated = unit.lower() not in UNSPECIFIED
     nm = to_nm(
-        centers,
-        stated_unit(unit, location)
-        if unit.lower() not in UNSPECIFIED
-        else unit_by_values(centers),
+        centers, stated_unit(unit, location) if is_stated else unit_by_values(centers)
     )
-    spectra = tuple(
-        Spectrum(name, nm, row) for name, row in zip(names, values, strict=True)
-    )
-    texts = [one_line(fields.get(key)) for key in TEXTS]
+    if IGNORED in fields:
+        ignored = parse_number(fields[IGNORED], location, IGNORED)
+        values[np.isclose(values, ignored, rtol=1e-6, atol=0)] = np.nan
+    texts = [", ".join(_items(fields, key)) for key in TEXTS]
+    scales = tuple(filter(None, map(remark_scale, texts)))
+    quantity = remark_quantity(texts)
+    if FACTOR in fields:
+        factor = parse_number(fields[FACTOR], location, FACTOR)
+        check_scale(factor, FACTOR, location)
+        scales = (Scale(factor, f"{FACTOR} = {fields[FACTOR]}"),)
+        quantity = Quantity(REFLECTANCE, FACTOR)
     return Measurements(
-        spectra,
-        scales=scales or tuple(filter(None, map(remark_scale, texts))),
+        tuple(Spectrum(name, nm, row) for name, row in zip(names, values, strict=True)),
+        scales=scales,
         notes=(f"layout: {data.name} with its header",),
-        quantity=Quantity(REFLECTANCE, FACTOR)
-        if FACTOR in fields
-        else remark_quantity(texts),
+        quantity=quantity,
     )
 
 
-def _scales(fields: dict[str, str], location: SourceLocation) -> tuple[Scale, ...]:
-    """Return the scale that a header states."""
-    if FACTOR not in fields:
-        return ()
-    factor = check_scale(float(fields[FACTOR]), f"the {FACTOR}", location)
-    return (Scale(factor, f"{FACTOR} = {fields[FACTOR]}"),)
+def _fields(header: Document) -> dict[str, str]:
+    """Return the fields of a header by their names in lower case. A value in braces may
+    have several lines.
+    """
+    fields = dict(DEFAULTS)
+    lines = iter([line for line in header.lines if not line.startswith(";")])
+    for line in lines:
+        key, _, value = line.partition("=")
+        parts = [value.strip()]
+        while parts[0].startswith("{") and not parts[-1].endswith("}"):
+            parts.append(next(lines, "}").strip())
+        fields[key.strip().lower()] = " ".join(parts)
+    return fields
 
 
-def _pair(document: Document) -> tuple[Path, Path]:
-    """Return the paths of header and data. Raise `AtlasError` if one is missing, too
-    large or not a file.
+def _items(fields: dict[str, str], key: str) -> list[str]:
+    """Return the items of a field in braces."""
+    text = fields.get(key, "").strip("{} ")
+    return list(map(one_line, text.split(","))) if text else []
+
+
+def _values(fields: dict[str, str], data: Document) -> Array:
+    """Return the values, a row per spectrum. Raise `ValueError` for numbers that are
+    not as the header states them.
+    """
+    for key, known in CHOICES.items():
+        if fields[key] not in known:
+            listing = ", ".join(known)
+            raise ValueError(f"{key} must be one of {listing}, got '{fields[key]}'")
+    dtype = np.dtype(BYTE_ORDERS[fields["byte order"]] + TYPES[fields["data type"]])
+    # Samples are wavelengths, lines are spectra.
+    keys = ("header offset", "lines", "samples")
+    offset, lines, samples = [parse_whole(fields[key]) for key in keys]
+    size = lines * samples * dtype.itemsize
+    if offset < 0 or lines < 1 or samples < 1 or offset + size > len(data.data):
+        raise ValueError(f"{lines} × {samples} values from byte {offset} on")
+    content = data.data[offset : offset + size]
+    return np.frombuffer(content, dtype).reshape(lines, samples).astype(float)
+
+
+def _pair(document: Document) -> tuple[Document, Document]:
+    """Return header and data. Raise `AtlasError` if one is missing, too large or not a
+    file.
     """
     path = Path(document.path)
-    is_header = document.data.lstrip().startswith(MAGIC)
-    if is_header:
-        candidates = [
-            path.with_suffix(""),
-            path.with_suffix(LIBRARY),
-            path.with_suffix(LIBRARY.upper()),
-        ]
-    else:
-        candidates = [
-            path.with_suffix(HEADER),
-            path.with_suffix(HEADER.upper()),
-            Path(f"{path}{HEADER}"),
-        ]
-    other = next(
-        (
-            candidate
-            for candidate in candidates
-            if candidate.is_file() and candidate != path
-        ),
-        candidates[0],
+    is_header = _is_header(document)
+    suffixes = SUFFIXES if is_header else (HEADER, HEADER.upper(), path.suffix + HEADER)
+    candidates = [path.with_suffix(suffix) for suffix in suffixes]
+    for candidate in candidates:
+        if candidate.is_file() and candidate != path:
+            other = read_document(candidate)
+            if is_header:
+                return document, other
+            if _is_header(other):
+                return other, document
+            raise other.location.error(
+                "is not an ENVI header", HINT, code="not-an-atlas"
+            )
+    raise document.location.error(
+        f"an ENVI library has two files, and {candidates[0].name} is missing",
+        f"put {candidates[0].name} next to it",
+        code="file-not-found",
     )
-    hint = f"put {other.name} next to it: an ENVI library has two files"
-    content = read_bytes(other, AtlasError, limit=MAX_BYTES, hint=hint)
-    if not is_header and not content.lstrip().startswith(MAGIC):
-        raise SourceLocation(os.fspath(other)).error(
-            "is not an ENVI header", HINT, code="not-an-atlas"
-        )
-    return (path, other) if is_header else (other, path)
+
+
+def _is_header(document: Document) -> bool:
+    return document.data.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(MAGIC)

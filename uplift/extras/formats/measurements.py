@@ -148,7 +148,8 @@ def _entry(samples: Samples, scale: float, document: Document) -> Entry:
     scaled = samples.values / scale
     location = document.location.at(spectrum.line, spectrum.name)
     outside = (scaled > HIGHEST) | (scaled < LOWEST)
-    if nm.shape == scaled.shape and nm.ndim == 1:
+    is_pair = nm.shape == scaled.shape and nm.ndim == 1
+    if is_pair and (outside.any() or (nm[1:] - nm[:-1] < SLACK).any()):
         invalid = outside.copy()
         invalid[1:] |= np.diff(nm) < SLACK
         first = np.flatnonzero(invalid & (nm < USED[0])).max(initial=-1) + 1

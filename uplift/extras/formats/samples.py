@@ -3,7 +3,7 @@ missing values.
 """
 
 from collections.abc import Sequence
-from dataclasses import KW_ONLY, dataclass, replace
+from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -53,13 +53,16 @@ class Samples:
     def used(self) -> "Samples":
         """Return the samples in the range that a cube uses."""
         inside = (self.nm >= USED[0]) & (self.nm <= USED[1]) & np.isfinite(self.values)
-        return replace(self, nm=self.nm[inside], values=self.values[inside])
+        return Samples(self.spectrum, self.nm[inside], self.values[inside])
 
 
 def is_missing(values: ArrayLike) -> Mask:
     """Return where values are marks of missing ones."""
     values = np.asarray(values, dtype=float)
-    return ~(np.abs(values) < HUGE) | np.isin(values, MARKERS)
+    absent = ~(np.abs(values) < HUGE)
+    if values.min(initial=0) <= max(MARKERS):
+        absent |= np.isin(values, MARKERS)
+    return absent
 
 
 def in_order(spectrum: Spectrum, location: SourceLocation, missing: str) -> Samples:
@@ -71,17 +74,21 @@ def in_order(spectrum: Spectrum, location: SourceLocation, missing: str) -> Samp
     notes = list[str]()
     if nm.ndim != 1 or nm.shape != values.shape:
         return Samples(spectrum, nm, values)  # an entry refuses them
-    steps = np.diff(nm)
-    if (steps < 0).any():
+    falls = nm[1:] < nm[:-1]
+    if falls.any():
         notes.append(
             "descending, reversed"
-            if (steps < 0).all()
+            if falls.all()
             else "not in order of wavelength, sorted"
         )
         order = np.argsort(nm, kind="stable")
         nm = nm[order]
         values = values[order]
     absent = is_missing(values)
+    # A large table has millions of values, and few are missing.
+    is_whole = not absent.any() and np.ptp(np.searchsorted(nm, VISIBLE)) > 0
+    if is_whole:
+        return Samples(spectrum, nm, values, tuple(notes))
     is_used = (nm >= USED[0]) & (nm <= USED[1])
     is_visible = (nm >= VISIBLE[0]) & (nm <= VISIBLE[1])
     if not (is_visible & ~absent).any():

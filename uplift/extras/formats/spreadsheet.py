@@ -13,7 +13,7 @@ from uplift.atlas import Document, one_line
 from uplift.common.errors import AtlasError
 from uplift.extras.files.csv import plain_cell
 from uplift.extras.formats.measurements import Measurements, parsed_by
-from uplift.extras.formats.tables.cells import Cell, Row, trimmed
+from uplift.extras.formats.tables.cells import Line, Row, trimmed
 from uplift.extras.formats.tables.grid import Grid
 from uplift.extras.formats.tables.read import NO_TABLE, read_grid
 
@@ -59,9 +59,9 @@ def _rows(book: Any, name: str, document: Document) -> list[Row]:
         lines = sheet.to_python(skip_empty_area=True)
     rows = list[Row]()
     for line, values in enumerate(lines, start + 1):
-        row = trimmed(Cell(_text(value), line) for value in values)
-        if row and not row[0].text.startswith("#"):
-            rows.append(row)
+        texts = trimmed(list(map(_text, values)))
+        if texts and not texts[0].startswith("#"):
+            rows.append(Line(texts, line))
     return rows
 
 

@@ -1,10 +1,9 @@
 """Cells of tables: numbers, missing values, and labels of wavelengths."""
 
 import itertools
-import operator
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,7 +21,7 @@ values.
 MISSING = frozenset(TABLE["words"]["missing"])
 PREFIXES = frozenset(TABLE["words"]["prefixes"])
 LABEL = re.compile(
-    r"([^\d.,+-]{0,40}?)[\s_([]*(\d{1,5}(?:[.,]\d{1,8})?)\s*[([]?\s*(nm|[µμu]m|microns?|å|1/cm)?\s*[)\]]?",
+    r"([^\d.,+-]{0,40}?)[\s_([]*(\d{1,5}(?:[.,]\d{1,8})?)\s*[([]?\s*(nm|[µμu]m|microns?|å|1/cm)?\s*[)\]]?(?:\s*[([]?%[)\]]?)?",
     re.IGNORECASE,
 )
 """A prefix, a wavelength, and perhaps its unit: ``nm400``, ``R_400``, ``380[nm]``,
@@ -37,20 +36,42 @@ class Cell(NamedTuple):
     line: int
 
 
-Row = tuple[Cell, ...]
+Row = Sequence[Cell]
 
 
-def trimmed(cells: Iterable[Cell]) -> Row:
-    """Return a row without the empty cells at its end, which spreadsheets add."""
-    kept = list(cells)
-    while kept and not kept[-1].text.strip():
-        kept.pop()
-    return tuple(kept)
+class Line(Row):
+    """Cells of a line, made when they are used: large tables have millions."""
+
+    __slots__ = ("line", "texts")
+
+    def __init__(self, texts: Sequence[str], line: int) -> None:
+        self.texts = tuple(texts)
+        self.line = line
+
+    def __len__(self) -> int:
+        return len(self.texts)
+
+    def __getitem__(self, key: Any) -> Any:
+        part = self.texts[key]
+        kind = Cell if isinstance(part, str) else Line
+        return kind(part, self.line)
+
+
+def trimmed(texts: list[str]) -> list[str]:
+    """Leave out the empty cells at the end of a line, which spreadsheets add."""
+    while texts and not texts[-1].strip():
+        texts.pop()
+    return texts
+
+
+def texts_of(row: Row) -> Sequence[str]:
+    """Return the texts of cells."""
+    return row.texts if isinstance(row, Line) else [cell.text for cell in row]
 
 
 def line_texts(rows: Iterable[Row]) -> list[str]:
     """Return the text of each row."""
-    return [" ".join(map(operator.attrgetter("text"), row)) for row in rows]
+    return [" ".join(texts_of(row)) for row in rows]
 
 
 def parse_cell(text: str) -> float | None:
@@ -63,11 +84,11 @@ def parse_cell(text: str) -> float | None:
     try:
         return parse_float(text)
     except ValueError:
-        plain = text.strip().removesuffix("%").rstrip()
+        plain = text.strip()
     if plain.casefold() in MISSING:
         return np.nan
     try:
-        return parse_decimal(plain)
+        return parse_decimal(plain.removesuffix("%").rstrip())
     except ValueError:
         return None
 
@@ -158,3 +179,22 @@ def is_visible(nm: Array) -> bool:
     wavelengths next to their values.
     """
     return bool(nm.min() >= SHORTEST) and covers_visible(nm)
+
+
+def are_wavelengths(nm: Array, *, is_named: bool = False) -> bool:
+    """Whether numbers, NaN where a cell is empty, are wavelengths in nm: by their range
+    and order if a label names them so, else also by their steps, which differ less than
+    those of values.
+    """
+    known = nm[np.isfinite(nm)]
+    if len(known) < 3:
+        return False
+    before = known[:-1]
+    after = known[1:]
+    is_sorted = (before < after).all() or (before > after).all()
+    if is_named:
+        return is_visible(known) or bool(is_sorted and known.max() >= SHORTEST)
+    if not (is_sorted and is_visible(known)):
+        return False
+    steps = np.diff(known)
+    return bool(np.ptp(steps) < abs(steps.mean()))

@@ -3,7 +3,7 @@ each, or pairs on a line.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
 
@@ -25,16 +25,23 @@ from uplift.extras.formats.tables.cells import (
     Cell,
     Row,
     Run,
+    are_wavelengths,
     is_value,
     is_visible,
+    line_texts,
     parse_cell,
-    parse_label,
     runs,
+    texts_of,
 )
-from uplift.extras.formats.tables.grid import MAX_AXIS, Grid, Series, Table, cell_at
+from uplift.extras.formats.tables.grid import (
+    MAX_AXIS,
+    MAX_HEADS,
+    Grid,
+    Series,
+    Table,
+    cell_at,
+)
 
-MAX_HEADS = 4
-"""Rows of labels above columns."""
 EQUAL = 1e-6
 """Tolerance in nm of equal steps."""
 
@@ -125,10 +132,9 @@ class Block:
             ":"
         ):
             return False
-        corner = row[self.column].text
-        labels = [
-            cell.text for cell in row if cell.text and cell is not row[self.column]
-        ]
+        texts = list(texts_of(row))
+        corner = texts.pop(self.column)
+        labels = list(filter(None, texts))
         has_numbers = any(map(is_value, labels))
         if names_wavelengths(corner):
             return bool(labels) or len(corner.split()) == 1
@@ -140,8 +146,37 @@ def blocks(grid: Grid) -> Iterator[Block]:
     for column in range(MAX_AXIS):
         for run in runs(grid.column(column)):
             block = Block(grid, run, column)
+            if not is_visible(block.nm):  # numbers of the preamble, a line each
+                block = Block(grid, _without_preamble(grid, run, column), column)
             if is_visible(block.nm) and block.width > column + 1:
                 yield block
+
+
+def longest(found: Sequence[Block]) -> Block | None:
+    """Return the block of most rows, from the first column on that has wavelengths in
+    some of them.
+    """
+    if not found:
+        return None
+    rows = max(found, key=lambda block: len(block.rows)).run
+    block = next(
+        each
+        for each in found
+        if rows.first <= each.run.first and each.run.last <= rows.last
+    )
+    before = [np.nan] * (block.run.first - rows.first)
+    after = [np.nan] * (rows.last - block.run.last)
+    numbers = [*before, *block.run.numbers, *after]
+    run = block.run._replace(first=rows.first, last=rows.last, numbers=numbers)
+    return replace(block, run=run)
+
+
+def _without_preamble(grid: Grid, run: Run, column: int) -> Run:
+    """Return a run without the rows at its beginning that end with its column."""
+    last = run.last - 1
+    rows = range(run.first, last)
+    first = next((at for at in rows if len(grid.rows[at]) > column + 1), last)
+    return run._replace(first=first, numbers=run.numbers[first - run.first :])
 
 
 def spectra_of(block: Block, others: Sequence[Block]) -> Table:
@@ -160,7 +195,7 @@ def spectra_of(block: Block, others: Sequence[Block]) -> Table:
             # it in other units.
             axis = axis if column - 1 in axes else column
         elif column > block.column and block.has_values(column):
-            series.append(_series(block, column, axis, axes[axis]))
+            series.append(_series(block, column, axis, axes))
         else:
             unused.append(block.label(column))
     layout = (
@@ -176,13 +211,14 @@ def spectra_of(block: Block, others: Sequence[Block]) -> Table:
     )
 
 
-def _series(block: Block, column: int, axis: int, nm: Array) -> Series:
-    """Return the spectrum of a column, at the wavelengths in nm of the column ``axis``,
-    NaN where a cell is empty.
+def _series(block: Block, column: int, axis: int, axes: dict[int, Array]) -> Series:
+    """Return the spectrum of a column, at the wavelengths of the column ``axis``, one
+    of the ``axes``.
     """
+    nm = axes[axis]
     cells = block.cells(column)
     labels = block.labels(column)
-    if axis != block.column:  # the name may stand above the wavelengths
+    if len(axes) > 1:  # the name may stand above the wavelengths
         above = block.labels(axis)
         labels = [cell for cell in above if not names_wavelengths(cell.text)] + labels
     if block.heads and not labels:
@@ -191,15 +227,16 @@ def _series(block: Block, column: int, axis: int, nm: Array) -> Series:
         raise block.grid.location.at(cells[0].line).error(problem, hint)
     known = np.flatnonzero(np.isfinite(nm)).tolist()
     values = tuple(cells[row] for row in known)
-    return Series(block.label(column), nm[known].tolist(), values, _name(labels))
+    return Series(block.label(column), nm[known], values, _name(labels))
 
 
 def _name(labels: Sequence[Cell]) -> Cell | None:
     """Return the label that names a sample: the lowest one, as it stands above quantity
     and unit; None for none.
     """
-    names = [cell for cell in reversed(labels) if not is_plain(cell.text)]
-    return next((cell for cell in names if len(cell.text) > 1), next(iter(names), None))
+    names = [cell for cell in labels if not is_plain(cell.text)]
+    long = [cell for cell in names if len(cell.text) > 1]
+    return next(iter(long[-1:] or names), None)
 
 
 def _skipped(block: Block) -> SkippedEntry:
@@ -210,21 +247,34 @@ def _skipped(block: Block) -> SkippedEntry:
 
 
 def _axes(block: Block) -> dict[int, Array]:
-    """Return the wavelengths in nm of each column that has them, NaN where a cell is
-    empty.
+    """Return the wavelengths in nm of each column that has them, by its label or its
+    numbers, NaN where a cell is empty.
     """
     axes = {block.column: block.nm}
-    own_labels = [cell.text for cell in block.labels(block.column)]
     for column in range(block.column + 1, block.width):
         labels = [cell.text for cell in block.labels(column)]
-        if labels and (labels == own_labels or any(map(names_wavelengths, labels))):
-            numbers = np.array(
-                [parse_cell(cell.text) for cell in block.cells(column)], dtype=float
-            )
-            nm = to_nm(numbers, find_unit(" ".join(labels)) or block.unit)
-            if (nm >= SHORTEST).any():
-                axes[column] = nm
+        cells = [parse_cell(cell.text) for cell in block.cells(column)]
+        nm = to_nm(np.array(cells, float), find_unit(" ".join(labels)) or block.unit)
+        if are_wavelengths(nm, is_named=any(map(names_wavelengths, labels))):
+            axes[column] = nm
     return axes
+
+
+def pairs_of_lines(grid: Grid) -> Table | None:
+    """Read a table with a spectrum on each line, perhaps behind its name."""
+    series = list[Series]()
+    remarks = list[str]()
+    for row in grid.rows:
+        if not any(is_value(cell.text) for cell in row):
+            remarks += line_texts([row])
+            continue
+        name = None if is_value(row[0].text) else row[0]
+        cells = row if name is None else row[1:]
+        nm = _wavelengths(cells, grid.unit or NANOMETRE)
+        if nm is None or not (np.isfinite(nm).all() and are_wavelengths(nm)):
+            return None
+        series.append(Series(str(len(series) + 1), nm, cells[1::2], name))
+    return Table(series, remarks, ("layout: pairs, a line per spectrum",))
 
 
 def _pairs(block: Block) -> Series | None:
@@ -234,11 +284,19 @@ def _pairs(block: Block) -> Series | None:
     for cell in chain.from_iterable(block.heads):
         if not (is_plain(cell.text) or names_wavelengths(cell.text)):
             return None
-    odd = chain.from_iterable(row[::2] for row in block.rows)
-    wavelengths = [parse_label(cell.text) for cell in odd]
-    cells = tuple(chain.from_iterable(row[1::2] for row in block.rows))
-    numbers = [label.number for label in wavelengths if label is not None]
-    if block.width < 4 or not len(numbers) == len(wavelengths) == len(cells):
+    cells = tuple(chain.from_iterable(block.rows))
+    nm = _wavelengths(cells, block.unit)
+    if nm is None or block.width < 4:
         return None
-    nm = to_nm(numbers, block.unit)
-    return None if np.ptp(np.diff(nm)) > EQUAL else Series("", nm.tolist(), cells, None)
+    have_equal_steps = np.ptp(np.diff(nm)) <= EQUAL  # not with NaN
+    return Series("", nm, cells[1::2], None) if have_equal_steps else None
+
+
+def _wavelengths(cells: Row, unit: float) -> Array | None:
+    """Return the first numbers of pairs in nm; None for cells that are not pairs."""
+    numbers = np.array(list(map(parse_cell, texts_of(cells))), float)
+    first = numbers[::2]
+    second = numbers[1::2]
+    if len(first) != len(second) or not (second < SHORTEST).any():
+        return None
+    return to_nm(first, unit)

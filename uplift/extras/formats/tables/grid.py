@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from uplift.atlas import SkippedEntry, SourceLocation
+from uplift.common.arrays import Array
 from uplift.extras.formats.quantities import TABLE
 from uplift.extras.formats.statements import remark_unit
 from uplift.extras.formats.tables.cells import Cell, Row, line_texts
@@ -14,6 +15,8 @@ from uplift.extras.formats.tables.cells import Cell, Row, line_texts
 LAYOUT = "write a header row of wavelengths in nm and a row per entry, or the transpose"
 MAX_PREAMBLE = 1000
 """Rows among which the row of wavelengths is searched."""
+MAX_HEADS = 4
+"""Rows of labels above columns."""
 MAX_AXIS = 3
 """Columns among which that of the wavelengths is searched."""
 NAME_LABELS = tuple(TABLE["words"]["names"])
@@ -25,7 +28,7 @@ class Series(NamedTuple):
     """
 
     label: str
-    nm: Sequence[float]
+    nm: Sequence[float] | Array
     cells: Row
     name: Cell | None
 

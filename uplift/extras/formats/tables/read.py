@@ -5,7 +5,12 @@ spectrum; or in a column before each spectrum. All else is text: preamble, comme
 lines below. It states scale, quantity and unit.
 """
 
+import contextlib
+from collections.abc import Sequence
+from dataclasses import replace
 from itertools import chain
+
+import numpy as np
 
 from uplift.atlas import SourceLocation, truncate
 from uplift.common.arrays import Array
@@ -35,8 +40,14 @@ from uplift.extras.formats.tables.cells import (
     line_texts,
     parse_cell,
     runs,
+    texts_of,
 )
-from uplift.extras.formats.tables.columns import blocks, spectra_of
+from uplift.extras.formats.tables.columns import (
+    blocks,
+    longest,
+    pairs_of_lines,
+    spectra_of,
+)
 from uplift.extras.formats.tables.grid import (
     LAYOUT,
     MAX_AXIS,
@@ -54,7 +65,13 @@ NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
 
 def read_grid(grid: Grid, stem: str) -> Measurements:
     """Read the spectra of a grid. One without a name has that of the file, ``stem``."""
-    table = find_samples(grid) or _rows_or_columns(grid)
+    try:
+        table = _find_table(grid)
+    except AtlasError:
+        rows = _without_repeats(grid.rows)
+        if len(rows) == len(grid.rows):
+            raise
+        table = _find_table(replace(grid, rows=rows))
     if not table.series:
         raise _no_table(grid)
     scales = [remark_scale(text) for text in table.remarks]
@@ -98,10 +115,15 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
 
 def _values(
     cells: Row, mark: str, location: SourceLocation
-) -> tuple[list[float], Scale | None]:
+) -> tuple[Sequence[float] | Array, Scale | None]:
     """Parse the values of a spectrum without the ``mark`` of thousands, NaN where one
     is missing, and the scale that percent signs in cells state.
     """
+    texts = texts_of(cells)
+    joined = "".join(texts)
+    if joined.isascii() and "_" not in joined:  # which Python accepts in numbers
+        with contextlib.suppress(ValueError):
+            return np.array(list(map(float, texts))), None
     values = list[float]()
     percents = [cell.text for cell in cells if cell.text.endswith("%")]
     for cell in cells:
@@ -125,22 +147,39 @@ def _values(
     return values, Scale(PERCENT, percents[0])
 
 
+def _find_table(grid: Grid) -> Table:
+    return find_samples(grid) or pairs_of_lines(grid) or _rows_or_columns(grid)
+
+
+def _without_repeats(rows: Sequence[Row]) -> list[Row]:
+    """Leave out rows of labels that are repeated, as on a new page."""
+    kept = list[Row]()
+    labels = set[str]()
+    for row in rows:
+        text = line_texts([row])[0]
+        if _has_number(row) or text not in labels:
+            kept.append(row)
+            labels.add(text)
+    return kept
+
+
 def _rows_or_columns(grid: Grid) -> Table:
     """Find the row or the column of wavelengths. Raise `AtlasError` if there is none,
     or if both may be meant.
     """
     header = max(headers(grid), key=lambda header: len(header.nm), default=None)
     found = list(blocks(grid))
-    block = max(found, key=lambda block: len(block.rows), default=None)
+    block = longest(found)
     if block is None:
         if header is None:
             raise _no_table(grid)
         return spectra_below(grid, header)
     if header is None or header.at != block.run.first - 1:
+        rows = range(block.run.first, block.run.last)
         others = [
             other
             for other in found
-            if other.column == block.column and other is not block
+            if other.column == block.column and other.run.first not in rows
         ]
         return spectra_of(block, others)
     corner = grid.rows[header.at][block.column]

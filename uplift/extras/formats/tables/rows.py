@@ -24,6 +24,7 @@ from uplift.extras.formats.statements import (
 )
 from uplift.extras.formats.tables.cells import (
     Cell,
+    Line,
     Row,
     Run,
     covers_visible,
@@ -33,8 +34,10 @@ from uplift.extras.formats.tables.cells import (
     parse_cell,
     parse_label,
     runs,
+    texts_of,
 )
 from uplift.extras.formats.tables.grid import (
+    MAX_HEADS,
     MAX_PREAMBLE,
     NAME_LABELS,
     Grid,
@@ -80,13 +83,16 @@ def _is_meant(grid: Grid, header: Header) -> bool:
 
 
 def _has_values_below(grid: Grid, header: Header) -> bool:
-    """Whether the row below wavelengths has numbers that are not wavelengths."""
-    if header.at + 1 == len(grid.rows):
-        return False
-    below = grid.rows[header.at + 1][header.run.first : header.run.last]
-    numbers = [parse_cell(cell.text) for cell in below]
-    values = np.array([number for number in numbers if number is not None])
-    return len(values) > 0 and not (len(values) > 1 and is_visible(values))
+    """Whether the row below wavelengths, or below their units, has numbers that are not
+    wavelengths.
+    """
+    for row in grid.rows[header.at + 1 : header.at + 1 + MAX_HEADS]:
+        below = row[header.run.first : header.run.last]
+        numbers = [parse_cell(cell.text) for cell in below]
+        values = np.array([number for number in numbers if number is not None])
+        if len(values):
+            return len(values) == 1 or not is_visible(values)
+    return False
 
 
 def spectra_below(grid: Grid, wavelengths: Header) -> Table:
@@ -99,6 +105,8 @@ def spectra_below(grid: Grid, wavelengths: Header) -> Table:
     body = list[Row]()
     for row in grid.rows[index + 1 :]:
         line = row[0].line
+        if texts_of(row) == texts_of(header):  # repeated on a new page
+            continue
         if not any(is_value(cell.text) for cell in row[run.first : run.last]):
             remarks += line_texts([row])
             continue
@@ -112,10 +120,11 @@ def spectra_below(grid: Grid, wavelengths: Header) -> Table:
                 "other cells"
             )
             raise grid.location.at(line).error(problem, hint)
-        body.append((*row, *[Cell("", line)] * (len(header) - len(row))))
+        missing = len(header) - len(row)
+        body.append(Line([*texts_of(row), *[""] * missing], line) if missing else row)
     others = [*range(run.first), *range(run.last, len(header))]
     column = _name_column(header, body, others)
-    prefix = header[run.first].text if run.prefix else ""
+    prefix = header[run.first].text
     kinds = [
         other
         for other in others
@@ -125,7 +134,7 @@ def spectra_below(grid: Grid, wavelengths: Header) -> Table:
     for number, row in enumerate(body, 1):
         name = Cell(f"sample {number}", row[0].line) if column is None else row[column]
         label = " ".join([prefix, *(row[kind].text for kind in kinds)]).strip()
-        series.append(Series(label, nm.tolist(), row[run.first : run.last], name))
+        series.append(Series(label, nm, row[run.first : run.last], name))
     unused = [header[other].text for other in others if other != column]
     remarks += filter(is_photometric, unused)
     if column is not None:
@@ -158,11 +167,12 @@ def find_samples(grid: Grid) -> Table | None:
     for index, header in enumerate(grid.rows[:MAX_PREAMBLE]):
         if is_value(header[-1].text):
             continue
-        name = _first(header, lambda text: plain_label(text) in NAME_LABELS)
         wavelength = _first(header, names_wavelengths)
-        value = _first(header, lambda text: is_plain(text) or text in ("R", "r"))
-        if name is not None and wavelength is not None and value is not None:
-            return _sample_table(grid, index, (name, wavelength, value))
+        value = _first(header, _names_values)
+        if wavelength is not None and value is not None:
+            table = _sample_table(grid, index, wavelength, value)
+            if table is not None:
+                return table
     return None
 
 
@@ -173,44 +183,67 @@ def _first(header: Row, is_wanted: Callable[[str], bool]) -> int | None:
     )
 
 
-def _sample_table(
-    grid: Grid, index: int, columns: tuple[int, int, int]
-) -> Table | None:
-    """Return a spectrum for each name in the first of three columns; the header is the
-    row of an index.
+def _names_values(text: str) -> bool:
+    """Whether a label is that of reflectances, and not that of a sample."""
+    return (is_plain(text) or text in ("R", "r")) and not names_wavelengths(text)
+
+
+def _sample_table(grid: Grid, index: int, wavelength: int, value: int) -> Table | None:
+    """Return a spectrum for each name in a table with a row per sample below the row of
+    an index; None for another layout.
     """
     header = grid.rows[index]
     remarks = grid.remarks(index)
-    wavelengths = defaultdict[str, list[float]](list)
-    values = defaultdict[str, list[Cell]](list)
+    rows = list[Row]()
+    numbers = list[float]()
     for row in grid.rows[index + 1 :]:
-        name, wavelength, value = [cell_at(row, column) for column in columns]
-        label = parse_label(wavelength.text)
-        if label is not None:
-            wavelengths[name.text].append(label.number)
-            values[name.text].append(value)
-        elif is_value(value.text):
-            problem = f"wavelength '{truncate(wavelength.text)}' is not a number"
-            raise grid.location.at(row[0].line, name.text).error(
-                problem, "write a plain number such as 400"
-            )
-        else:
+        label = parse_label(cell_at(row, wavelength).text)
+        if label is None and not is_value(cell_at(row, value).text):
             remarks += line_texts([row])
-    are_measured = any(is_value(name) and not name.isdigit() for name in values)
-    fewest = min(map(len, values.values()), default=0)
-    if are_measured or fewest < 2:  # another layout
+            continue
+        rows.append(row)
+        numbers.append(np.nan if label is None else label.number)
+    others = [at for at in range(len(header)) if at not in (wavelength, value)]
+    groups = _samples_by_name(header, rows, numbers, others)
+    if groups is None:
         return None
-    _, wavelength_column, value_column = columns
-    stated = find_unit(header[wavelength_column].text) or grid.unit
-    unit = stated or unit_by_values(np.unique(np.concatenate([*wavelengths.values()])))
-    label_text = header[value_column].text
-    series = [
-        Series(
-            label_text,
-            to_nm(wavelengths[name], unit).tolist(),
-            tuple(cells),
-            Cell(name, cells[0].line),
-        )
-        for name, cells in values.items()
-    ]
+    unit = find_unit(header[wavelength].text) or grid.unit
+    if unit is None:
+        unit = unit_by_values(np.unique(numbers))
+    series = list[Series]()
+    for name, members in groups.items():
+        for at in members:
+            if np.isnan(numbers[at]):
+                text = truncate(cell_at(rows[at], wavelength).text)
+                raise grid.location.at(rows[at][0].line, name).error(
+                    f"wavelength '{text}' is not a number",
+                    "write a plain number such as 400",
+                )
+        nm = to_nm([numbers[at] for at in members], unit).tolist()
+        cells = tuple(cell_at(rows[at], value) for at in members)
+        series.append(Series(header[value].text, nm, cells, Cell(name, cells[0].line)))
     return Table(series, remarks, ("layout: a row per sample",))
+
+
+def _samples_by_name(
+    header: Row, rows: Sequence[Row], numbers: Sequence[float], others: Sequence[int]
+) -> dict[str, list[int]] | None:
+    """Return the rows of each name: a column with a usual label, or else another one
+    whose names have each wavelength once; None if no column has the names.
+    """
+    usual = [at for at in others if plain_label(header[at].text) in NAME_LABELS]
+    are_repeated = len(set(numbers)) < len(numbers)
+    for column in (*usual, *others) if are_repeated else usual:
+        groups = defaultdict[str, list[int]](list)
+        name = ""
+        for at, row in enumerate(rows):
+            name = cell_at(row, column).text or name  # merged cells of spreadsheets
+            groups[name].append(at)
+        are_measured = any(is_value(name) and {".", ","} & {*name} for name in groups)
+        counts = [
+            (len(members), len({numbers[at] for at in members}))
+            for members in groups.values()
+        ]
+        if not are_measured and all(1 < count == each for count, each in counts):
+            return groups
+    return None
