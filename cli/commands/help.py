@@ -50,7 +50,8 @@ time.
 LAMP_FILES = """
 The file of a measured lamp is a light as well: wavelengths in nm and powers of any unit
 as CSV, SPD, CGATS, TM-27 (.spdx) or another format of 'uplift atlas', or JSON of
-rawtoaces. 'lamps.csv:NAME' is one lamp of several.
+rawtoaces. 'lamps.csv:NAME' is one lamp of several. Photons, such as µmol/m²/s/nm, are
+divided by the wavelength; a label or a line of the file states the unit.
 """
 CAMERA_FILES = """
 The file of a camera is used with --space camera: wavelengths in nm and sensitivities of

@@ -260,11 +260,8 @@ class Atlas:
         for entry in self.entries:
             first = named.setdefault(entry.name, entry)
             if first is not entry:
-                where = (
-                    ""
-                    if first.path is None
-                    else f": first used at {first.path}:{first.line}"
-                )
+                place = ":".join(map(str, filter(None, (first.path, first.line))))
+                where = f": first used at {place}" if place else ""
                 location = SourceLocation(entry.path, entry.line, entry.name)
                 is_copy = (
                     first.wavelengths.shape == entry.wavelengths.shape

@@ -179,8 +179,8 @@ def build(
     Warns
     -----
     UpliftWarning
-        Entries with the colour of another entry (``entry-duplicate``), close to another
-        entry (``entry-crowded``) or unlike all others of close colours
+        Entries with the colour of an earlier entry, which are left out
+        (``entry-duplicate``), close to another entry (``entry-crowded``) or unlike all others of close colours
         (``entry-smoothed``). Spectra of a library out of gamut
         (``entry-out-of-gamut``) or outside [0, 1] (``entry-clipped``). Looks that no
         reflectance meets (``look-impossible``), or that the coefficients of entries do

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import uplift
-from tests.helpers import raises, warns
+from tests.helpers import warns
 from uplift.atlas import Atlas, Entry
-from uplift.common.errors import AtlasError, OptionError
+from uplift.common.errors import OptionError
 from uplift.extras.emission.build import build_emission
 from uplift.extras.emission.lamps import read_lamps
 
@@ -88,10 +88,6 @@ TM27 = (
     'wavelength="700">0.4</SpectralData>'
     "</SpectralDistribution></IESTM2714>"
 )
-JCAMP = (
-    "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS={}\n##XYPOINTS=(XY..XY)\n400, 0.1\n700, "
-    "0.4\n##END=\n"
-)
 
 
 @pytest.mark.parametrize("quantity", ["flux", "irradiance", "Relative"])
@@ -99,19 +95,3 @@ def test_lamps_of_the_lighting_standard_state_power(tmp_path, quantity):
     path = tmp_path / "lamp.spdx"
     path.write_text(TM27.format(quantity))
     assert read_lamps(path)[0].values == pytest.approx([0.25, 1])
-
-
-@pytest.mark.parametrize(
-    ("layout", "quantity"),
-    [
-        (TM27, "reflectance"),
-        (TM27, "R-Factor"),
-        (TM27, "transmittance"),
-        (JCAMP, "REFLECTANCE"),
-    ],
-)
-def test_stated_quantities_of_materials_are_refused(tmp_path, layout, quantity):
-    path = tmp_path / "material.txt"
-    path.write_text(layout.format(quantity))
-    with raises(AtlasError, "not-a-lamp"):
-        read_lamps(path)

@@ -115,7 +115,7 @@ def test_formats_of_files(write, warm):
 
 
 def test_lamps_of_one_file_have_names(write):
-    path = write("two.csv", "name,400,550,700\nA,1,2,3\nwarm,3,-0.01,1\n")
+    path = write("two.csv", "SPD,400,550,700\nA,1,2,3\nwarm,3,-0.01,1\n")
     assert read_lamp(path, "warm") == find_light(f"{path}:warm")
     assert (read_lamp(path, "warm").name, read_lamp(path, "A").name) == (
         "warm",
@@ -130,8 +130,8 @@ def test_lamps_of_one_file_have_names(write):
 
 
 def test_names_of_illuminants_are_not_taken(write):
-    assert read_lamp(write("D65.csv", ROWS)).name == "D65.csv"
-    assert read_lamp(write("3200K.txt", ROWS)).name == "3200K.txt"
+    for name in ("D65.csv", "3200K.txt"):
+        assert read_lamp(write(name, f"nm\tpower\n{ROWS}")).name == name
     with raises(OptionError, "option"):
         observer.light(Lamp("A", (400, 700), (1, 1)))
     with raises(OptionError, "option"):

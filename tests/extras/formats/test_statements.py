@@ -1,18 +1,15 @@
-"""What texts state about scale, quantity and unit of wavelengths, and what
-they do not.
-"""
+"""What texts state about scale and unit of wavelengths, and what they do not."""
 
 import numpy as np
 import pytest
 
+from uplift.extras.formats.quantities import TABLE
 from uplift.extras.formats.statements import (
     WAVE_NUMBER,
     find_unit,
     is_plain,
-    label_quantity,
     label_scale,
     names_wavelengths,
-    remark_quantity,
     remark_scale,
     remark_unit,
     unit_by_values,
@@ -21,10 +18,6 @@ from uplift.extras.formats.statements import (
 
 def divisor(scale):
     return None if scale is None else scale.divisor
-
-
-def name(quantity):
-    return None if quantity is None else quantity.name
 
 
 @pytest.mark.parametrize(
@@ -55,6 +48,9 @@ def name(quantity):
                 "0 to 1",
             ],
             1,
+        ).items(),
+        *dict.fromkeys(
+            ["Reflectance × 10,000", "R (x10000)", "scale factor: 0.0001"], 1e4
         ).items(),
         *dict.fromkeys(
             [
@@ -103,58 +99,6 @@ def test_scales_of_remarks(text, expected):
 
 
 @pytest.mark.parametrize(
-    ("text", "expected", "of_light"),
-    [
-        ("Reflectance", "reflectance", False),
-        ("%R", "reflectance", False),
-        ("Réflectance (%)", "reflectance", False),
-        ("Reflexionsgrad [%]", "reflectance", False),
-        ("%T", "transmittance", False),
-        ("T (%)", "transmittance", False),
-        ("T400", "transmittance", False),
-        ("Abs 400", "absorbance", False),
-        ("Absorbance", "absorbance", False),
-        ("log(1/R)", "log(1/r", False),
-        ("Rad. (Ref.)", "rad", True),
-        ("SPD", "spd", True),
-        ("[counts]", "counts", True),
-        ("Irradiance", "irradiance", True),
-        ("µW/cm²/nm", "µw/cm²", True),
-        ("W·m-2·nm-1", "w·m-2", True),
-        ("mW m^-2 nm^-1", "mw m^-2", True),
-        ("ochre", None, False),
-        ("Std", None, False),
-        ("T1", None, False),
-        ("T12 blue", None, False),
-        ("STD Blue", None, False),
-        ("Std. Dev.", "std. dev", False),
-        ("Reflectance std", "reflectance std", False),
-        ("a", None, False),
-        ("R", None, False),
-    ],
-)
-def test_quantities_of_labels(text, expected, of_light):
-    found = label_quantity(text)
-    assert name(found) == expected
-    assert found is None or found.of_light is of_light
-
-
-@pytest.mark.parametrize(
-    "text",
-    ["LUX 250.5", "CCT: 3050", "CCT(K)=3050", "fc 23.3", "Duv 0.001", "CRI(Ra) 92",
-    "Tcp [K] 3000", "PPFD 3",
-     "LUX 250,5", "Illuminance [lx] 300", "Color temperature 3000 K"],
-)  # fmt: skip
-def test_keys_of_light_meters(text):
-    assert remark_quantity([text]).of_light
-    assert remark_quantity([text, "Mode: reflectance"]).is_reflectance
-    assert (
-        remark_quantity(["x 0.43", "Illuminant: D65", "Lamp: xenon", "Scan counts: 3"])
-        is None
-    )
-
-
-@pytest.mark.parametrize(
     ("text", "expected"),
     [
         ("Wavelength (nm)", 1), ("[nm]", 1), ("Wavelength nm.", 1), ("WavelengthNM", 1),
@@ -168,6 +112,12 @@ def test_keys_of_light_meters(text):
 )  # fmt: skip
 def test_units(text, expected):
     assert find_unit(text) == expected
+
+
+def test_examples_of_units_are_found():
+    for row in TABLE["unit"]:
+        found = set(map(find_unit, row["examples"].split(", ")))
+        assert found == {row["nm"]}, row
 
 
 def test_units_of_remarks_are_about_wavelengths():

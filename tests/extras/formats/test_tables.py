@@ -89,6 +89,47 @@ def test_percent_signs_in_some_cells_are_refused(read):
         read(HEADER + row("a").replace("\n", "%\n"))
 
 
+@pytest.mark.parametrize(
+    ("factor", "pattern", "divisor"),
+    [
+        (10000, '{:g},"{:,.0f}"', 10000),
+        (18200, '{:g},"{:,.0f}"', 10000),
+        (100, '{:g},"{:.3f}"', 100),
+        (1, '{:g},"{:.4f}"', 1),
+        (100, "{:g};{:.3f}", 100),
+        (15000, '{:g}\t"{:,.0f}"', None),
+        (15, '{:g},"{:.3f}"', None),
+        (10000, "{:g},{:.0f}", None),
+    ],
+)
+def test_commas_of_thousands(read, factor, pattern, divisor):
+    """Those of 8 % × 10,000 have no comma, those of 8 % × 18,200 reach that of a white;
+    the others may be decimal.
+    """
+    text = lines(pattern, factor)
+    if ".0f" not in pattern:
+        text = text.replace(".", ",")
+    if divisor is None:
+        with raises(AtlasError):
+            read("nm,a\n".replace(",", pattern[4]) + text)
+        return
+    with warns(*["values-in-percent"] * (divisor == 100)):
+        atlas = read("nm,a\n".replace(",", pattern[4]) + text)
+    digits = 0 if ".0f" in pattern else 4
+    check_values(atlas, np.round(VALUES * factor, digits) / divisor)
+
+
+@pytest.mark.parametrize(("top", "code"), [(1.05, ""), (1.3, "x"), (9, "x"), (20, "")])
+def test_values_without_any_label_may_be_of_another_quantity(read, top, code):
+    text = lines("{:g} {:.6f}", top / VALUES.max())
+    with warns(*["values-in-percent"] * (top == 20)):
+        if code:
+            with raises(AtlasError, "scale-not-stated"):
+                read(text)
+        else:
+            check_values(read(text), VALUES / VALUES.max() * top / (100 ** (top == 20)))
+
+
 def test_names_with_percentages_are_names(read):
     atlas = read(HEADER + row("grey 50%") + row("100 % black"))
     assert atlas.names == ("grey 50%", "100 % black")
@@ -96,53 +137,24 @@ def test_names_with_percentages_are_names(read):
     check_values(atlas)
 
 
-LIGHTS = (
+LIGHTS = ("wavelength,A,D65\n" + lines("{0:g},{1:g},{1:g}"),)
+LIGHTS_WITHOUT_A_UNIT = (
     "LUX\t250.5\nCCT\t3050\nCRI\t92.1\nx\t0.43\n" + lines("{:g}nm\t{:g}"),
     "Illuminance [lx],344\n" + lines("Spectral Data {:g}[nm],{:g}"),
     "Name,LUX,CCT," + HEADER[5:] + row("a,300,3000"),
-    "Wavelength,SPD\n" + lines(),
-    "Wavelength (nm),Irradiance (µW/cm²/nm)\n" + lines(),
     "nm,Counts\n" + lines(factor=1000),
 )
-MATERIALS = (
-    "nm,Transmittance\n" + lines(),
-    "nm,%T\n" + lines(factor=100),
-    "nm,Absorbance\n" + lines(),
-    "name," + ",".join(f"Abs {at}" for at in NM) + "\n" + row("a"),
-)
 
 
-@pytest.mark.parametrize("text", LIGHTS)
+@pytest.mark.parametrize("text", [*LIGHTS, *LIGHTS_WITHOUT_A_UNIT])
 def test_lights_are_no_reflectances(save, text):
     path = save(text)
     with raises(AtlasError, "not-reflectance") as caught:
         read_atlas(path)
     assert "read_lamps" in caught.value.hint
-    check_values(read_lamps(path), VALUES / VALUES.max())
-
-
-@pytest.mark.parametrize("text", MATERIALS)
-def test_other_quantities_of_materials_are_neither(save, read, text):
-    with raises(AtlasError, "not-reflectance"):
-        read(text)
-    with raises(AtlasError, "not-a-lamp"):
-        read_lamps(save(text))
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "nm,R%\n" + lines(factor=100),
-        "# Reflectance\n" + HEADER + row("a"),
-        HEADER + row("%R a"),
-    ],
-)
-def test_reflectances_are_no_lamps(save, text):
-    path = save(text)
-    if "%R a" in text:
-        path = save(text.replace("name", "Reflectance"))
-    with raises(AtlasError, "not-a-lamp"):
-        read_lamps(path)
+    with warns(*["lamp-unit"] * (text in LIGHTS_WITHOUT_A_UNIT)):
+        lamps = read_lamps(path)
+    check_values(lamps, VALUES / VALUES.max())
 
 
 def test_columns_of_other_quantities_are_skipped_by_name(read):
@@ -151,6 +163,10 @@ def test_columns_of_other_quantities_are_skipped_by_name(read):
         atlas = read(text)
     assert atlas.names == ("ochre",)
     assert [entry.name for entry in atlas.skipped] == ["Transmittance", "Std Dev"]
+    two = "Sample,ochre,ochre,red,red\nnm,Mean,SD,K,S\n"
+    with warns("entry-skipped"):
+        heads = read(two + lines("{:g},{:g},0.01,0.2,0.3"))
+    assert heads.names == ("ochre",)
     with warns("entry-skipped"):
         rows = read(HEADER + row("ochre") + row("Std Dev", 0.01))
     assert rows.names == ("ochre",)

@@ -80,29 +80,6 @@ def test_scale_given_by_the_caller(save):
             read_atlas(dark, measured=scale)
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "# Transmittance of filters\n" + ROW + "a,0.2,0.3,0.4,0.5\n",
-        "Mode,Transmission\n" + ROW + "a,0.2,0.3,0.4,0.5\n",
-        "name,T400,T500,T600,T700\na,0.2,0.3,0.4,0.5\n",
-        'CTI3\nDEVICE_CLASS "DISPLAY"' + SETS,
-        (
-            "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS=ABSORBANCE\n"
-            "##XYPOINTS=(XY..XY)\n400, 1\n700, 1\n##END=\n"
-        ),
-        "<IESTM2714 "
-        'xmlns="iestm2714"><SpectralDistribution><SpectralQuantity>flux</SpectralQuantity>'
-        '<SpectralData wavelength="400">1</SpectralData><SpectralData '
-        'wavelength="700">1</SpectralData>'
-        "</SpectralDistribution></IESTM2714>",
-    ],
-)
-def test_other_quantities_are_refused(read, text):
-    with raises(AtlasError, "not-reflectance"):
-        read(text)
-
-
 def test_conditions_of_cxf_are_kept_in_names(tmp_path):
     path = LAYOUTS["cxf3"].save(MACBETH[:2], tmp_path)
     spectrum = re.compile(r'<cc:ReflectanceSpectrum ColorSpecification="[^"]*"')
@@ -118,6 +95,19 @@ def test_conditions_of_cxf_are_kept_in_names(tmp_path):
     atlas = read_atlas(path)
     assert atlas.names == ("dark skin M0", "dark skin M1", "dark skin U", "light skin")
     assert any("M0, M1" in note for note in atlas.sources[0].notes)
+    (other,) = re.findall(r'"M1">(.*?)</', path.read_text())
+    path.write_text(path.read_text().replace(other, "0.75 " * len(other.split()), 1))
+    first = next(note for note in read_atlas(path).sources[0].notes if "M0" in note)
+    least = min(read_atlas(path)["dark skin M0"].values)
+    assert f"differ by up to {0.75 - least:.2g}" in first
+
+
+def test_two_objects_of_a_name_are_refused_with_the_place_of_the_first(tmp_path):
+    path = LAYOUTS["cxf3"].save(MACBETH[:2], tmp_path)
+    path.write_text(path.read_text().replace("light skin", "dark skin"))
+    with raises(AtlasError, "atlas") as caught:
+        read_atlas(path)
+    assert caught.value.problem.endswith(str(path))
 
 
 def test_ignored_values_of_libraries_are_missing(tmp_path):

@@ -16,7 +16,6 @@ from uplift.atlas import (
     read_any,
     read_named,
     skipped_warning,
-    truncate,
 )
 from uplift.colorimetry import tables
 from uplift.colorimetry.illuminants import Illuminant, Lamp
@@ -32,14 +31,20 @@ from uplift.common.errors import (
     AtlasError,
     UnknownNameError,
     UpliftError,
+    UpliftWarning,
     unknown_name,
     warn,
 )
 from uplift.common.text import listed, printable
 from uplift.extras.colour.spectra_json import POWER, is_json, read_spectra
 from uplift.extras.emission.discs import Lamps
-from uplift.extras.formats.measurements import Measurements
-from uplift.extras.formats.samples import is_missing
+from uplift.extras.formats.measurements import Measurements, wrong_quantity
+from uplift.extras.formats.quantities import (
+    PHOTONS,
+    REFLECTANCE,
+    Quantity,
+)
+from uplift.extras.formats.samples import Spectrum, is_missing
 
 SAME_LAMP = 1e-3
 """Difference, as a fraction of the largest power, below which two lamps are one."""
@@ -74,7 +79,7 @@ def read_lamps(*paths: StrPath) -> Atlas:
     `uplift.atlas.read_atlas`.
 
     Powers have no common scale: the largest one of each lamp is 1. `AtlasError` for
-    files of reflectances and lamps without power.
+    files of other quantities and lamps without power.
     """
     atlas = merge(map(_read, map(read_named, map(find_atlas_file, paths))))
     if atlas.skipped:
@@ -90,7 +95,8 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
     path : path-like
         File of spectral powers, in a format of `uplift.read_atlas`: such as CSV or SPD
         with lines of a wavelength in nm and a power, CGATS, IES TM-27 (.spdx) or a
-        spreadsheet, or JSON of rawtoaces. The powers have any one unit.
+        spreadsheet, or JSON of rawtoaces. The powers have any one unit. Photons, such
+        as µmol/m²/s/nm, are divided by the wavelength.
     name : str, optional
         Name of a lamp in a file of several.
 
@@ -108,6 +114,12 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
         ``name`` is given.
     UnknownNameError
         No lamp of the file has the name.
+
+    Warns
+    -----
+    UpliftWarning
+        No unit is stated (``lamp-unit``), or spectra of other quantities were left out
+        (``lamp-skipped``).
 
     Examples
     --------
@@ -186,36 +198,36 @@ def is_illuminant(name: str) -> bool:
 def _read(document: Document) -> Atlas:
     chosen, content = read_any(document)
     if not isinstance(content, Measurements):
-        raise _not_a_lamp("reflectance spectrum", document)
-    stated = [spectrum.quantity or content.quantity for spectrum in content.spectra]
-    of_material = [
-        quantity for quantity in stated if quantity and not quantity.of_light
-    ]
-    if of_material and len(of_material) == len(stated):
-        raise _not_a_lamp(of_material[0].text, document)
-    return _scaled(document, content).to_atlas(document, chosen.name, "fraction")
+        stated = Quantity(REFLECTANCE, "reflectance spectrum")
+        raise wrong_quantity(stated, document.location, lamps=True)
+    content = content.select(document, lamps=True)
+    powers = tuple(_power(spectrum, document) for spectrum in content.spectra)
+    lamps = replace(content, spectra=powers)
+    atlas = lamps.to_atlas(document, chosen.name, "fraction", lamps=True)
+    is_spd = document.path.lower().endswith(".spd")
+    if not is_spd and not all(map(_has_unit, content.spectra)):
+        problem = "no unit of power is stated: values are read as power, not as photons"
+        hint = "state it in a label, such as 'W/m²/nm' or 'µmol/m²/s/nm'"
+        warn(UpliftWarning(problem, code="lamp-unit", path=document.path, hint=hint))
+    return atlas
 
 
-def _not_a_lamp(stated: str, document: Document) -> AtlasError:
-    problem = f"the file states '{truncate(stated)}', not the power of a lamp"
-    return document.location.error(
-        problem, "give spectral powers, such as a CSV table", code="not-a-lamp"
-    )
+def _has_unit(spectrum: Spectrum) -> bool:
+    quantity = spectrum.quantity
+    return quantity is not None and "warning" not in quantity.kind.lamp
 
 
-def _scaled(document: Document, measurements: Measurements) -> Measurements:
-    """Divide each lamp by its largest power."""
-    spectra = []
-    for spectrum in measurements.spectra:
-        quantity = spectrum.quantity or measurements.quantity
-        if quantity and not quantity.of_light:
-            continue
-        values = np.array(spectrum.values, dtype=float)
-        values[is_missing(values)] = np.nan
-        highest = float(np.nan_to_num(values).max(initial=0))
-        if highest <= 0:
-            raise document.location.at(spectrum.line, spectrum.name).error(
-                "a lamp must have power, got none above 0", "remove the lamp"
-            )
-        spectra.append(replace(spectrum, values=values / highest, quantity=None))
-    return replace(measurements, spectra=tuple(spectra), quantity=None)
+def _power(spectrum: Spectrum, document: Document) -> Spectrum:
+    """Return the power of a lamp, divided by its largest one. Photons have an energy of
+    h c / λ.
+    """
+    values = np.array(spectrum.values, dtype=float)
+    values[is_missing(values)] = np.nan
+    if spectrum.quantity and spectrum.quantity.kind is PHOTONS:
+        values /= np.asarray(spectrum.wavelengths)
+    highest = float(np.nan_to_num(values).max(initial=0))
+    if highest <= 0:
+        raise document.location.at(spectrum.line, spectrum.name).error(
+            "a lamp must have power, got none above 0", "remove the lamp"
+        )
+    return replace(spectrum, values=values / highest)

@@ -14,8 +14,9 @@ import numpy as np
 from uplift.atlas import EXPORT, Document, Header, check_scale, one_line, parse_number
 from uplift.common.text import parse_float
 from uplift.extras.files.csv import split_line
-from uplift.extras.formats.measurements import Measurements
-from uplift.extras.formats.statements import Quantity, Scale
+from uplift.extras.formats.measurements import Measurements, wrong_quantity
+from uplift.extras.formats.quantities import remark_quantity
+from uplift.extras.formats.statements import Scale
 from uplift.extras.formats.tables.cells import Cell, Row, parse_label
 from uplift.extras.formats.tables.grid import Grid
 from uplift.extras.formats.tables.read import read_grid
@@ -31,8 +32,6 @@ SECTIONS = {
 """What begins with a line that is one of these words."""
 TOKEN = re.compile(r'"((?:[^"]|"")*)"|(\S+)')
 KEYWORD = re.compile(r'(\w+)\s+(?:"((?:[^"]|"")*)"|(.+))')
-LIGHT_SOURCES = re.compile(r'^\s*DEVICE_CLASS\s+"?DISPLAY', re.MULTILINE)
-"""Keyword of ArgyllCMS for measurements of a screen."""
 
 
 def read(document: Document) -> Measurements:
@@ -42,6 +41,8 @@ def read(document: Document) -> Measurements:
     location = document.location
     preamble, rows = _parse(document)
     if not any(parse_label(cell.text) for cell in rows[0]):
+        if quantity := remark_quantity(preamble):
+            raise wrong_quantity(quantity, location.at(rows[0][0].line))
         problem = "the CGATS file has no spectral fields"
         raise location.at(rows[0][0].line).error(
             problem, "export the spectra with the colours"
@@ -59,13 +60,6 @@ def read(document: Document) -> Measurements:
         stated = f"SPECTRAL_NORM {keywords['SPECTRAL_NORM']}"
         found = replace(
             found, scales=(Scale(check_scale(norm, "SPECTRAL_NORM", location), stated),)
-        )
-    if light := LIGHT_SOURCES.search("\n".join(preamble)):
-        found = replace(
-            found,
-            quantity=Quantity(
-                "the light of a display", light[0].strip(), of_light=True
-            ),
         )
     return replace(found, header=Header(one_line(keywords.get("DESCRIPTOR"))))
 

@@ -5,15 +5,21 @@ package colour-cxf.
 import re
 from collections import defaultdict
 from collections.abc import Sequence, Set
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Document, Header, SkippedEntry, one_line
+from uplift.atlas import Document, Header, one_line
 from uplift.common.text import listed
 from uplift.extras.formats.measurements import Measurements, not_used_note, parsed_by
+from uplift.extras.formats.quantities import (
+    OTHER,
+    Quantity,
+    label_quantity,
+)
 from uplift.extras.formats.samples import Spectrum
-from uplift.extras.formats.statements import Quantity, Scale
+from uplift.extras.formats.statements import Scale
 from uplift.extras.formats.xml import check_xml
 
 START = 380.0
@@ -23,18 +29,14 @@ CONDITION = re.compile(r"(?<![A-Za-z])M[0-3](?![0-9A-Za-z])")
 """Measurement conditions of ISO 13655: with incandescent light, daylight, without UV,
 with a polariser.
 """
-REFLECTANCE = "ReflectanceSpectrum"
-OTHER_SPECTRA = {
-    "TransmittanceSpectrum": "transmittance",
-    "EmissiveSpectrum": "emission",
-    "CustomSpectrum": "a custom quantity",
-}
+SPECTRA = ("ReflectanceSpectrum", "TransmittanceSpectrum", "EmissiveSpectrum")
+"""Types of values of an object."""
+CUSTOM = "CustomSpectrum"
+"""Type of values of any quantity."""
 
 
 def read(document: Document) -> Measurements:
-    """Read the reflectance spectra of the objects of a CxF3 file; objects with other
-    spectra only are skipped.
-    """
+    """Read the spectra of the objects of a CxF3 file."""
     check_xml(document)
     with parsed_by("colour-cxf", "CxF files", document):
         from colour_cxf import cxf3
@@ -45,44 +47,43 @@ def read(document: Document) -> Measurements:
         lenient = ParserConfig(
             fail_on_unknown_properties=False, fail_on_unknown_attributes=False
         )
-        found = _content(
-            XmlParser(config=lenient).from_bytes(document.data, cxf3.CxF), document.path
-        )
-    if not found.spectra and not found.skipped:
+        found = _content(XmlParser(config=lenient).from_bytes(document.data, cxf3.CxF))
+    if not found.spectra:
         problem = "has no object with a spectrum"
         hint = "export the spectra with the colours"
         raise document.location.error(problem, hint, code="not-an-atlas")
     return found
 
 
-def _content(cxf: Any, path: str) -> Measurements:
+def _content(cxf: Any) -> Measurements:
     specifications = _measurements(cxf.resources)
     spectra = list[Spectrum]()
-    skipped = list[SkippedEntry]()
     colours = set[str]()
     conditions = set[str]()
+    difference = 0.0
     for sample in _objects(cxf.resources):
         name = (sample.name or sample.id or "").strip()
         by_type = _by_type(sample)
-        reflectances = by_type[REFLECTANCE]
-        labels = _labels(name, reflectances, specifications)
-        for label, choice in zip(labels, reflectances, strict=True):
-            spectra.append(_spectrum(label, choice, specifications))
-            conditions.add(_condition(choice, specifications))
-        others = [kind for kind in by_type if kind in OTHER_SPECTRA]
-        if others and not reflectances:
-            reason = f"it is {OTHER_SPECTRA[others[0]]}, not reflectance"
-            skipped.append(SkippedEntry(name, reason, path))
+        for kind in SPECTRA:
+            quantity = label_quantity(kind)
+            labels = _labels(name, by_type[kind], specifications)
+            for label, choice in zip(labels, by_type[kind], strict=True):
+                spectrum = _spectrum(label, choice, specifications)
+                spectra.append(replace(spectrum, quantity=quantity))
+                conditions.add(_condition(choice, specifications))
+        if by_type[CUSTOM]:
+            custom = Quantity(OTHER, CUSTOM)
+            spectra.append(Spectrum(name, (), (), quantity=custom))
+        difference = max(difference, _difference(by_type[SPECTRA[0]]))
         colours.update(kind for kind in by_type if kind.startswith("Color"))
     description = cxf.file_information and cxf.file_information.description
     return Measurements(
         tuple(spectra),
-        skipped=tuple(skipped),
         scales=_scales(spectra),
         header=Header(one_line(description)),
         notes=(
             "layout: an object per spectrum",
-            *_condition_note(conditions - {""}),
+            *_condition_note(conditions - {""}, difference),
             *not_used_note(sorted(colours)),
         ),
     )
@@ -123,12 +124,18 @@ def _scales(spectra: Sequence[Spectrum]) -> tuple[Scale, ...]:
     return (Scale(1.0, "the schema of CxF3"),) if is_of_schema else ()
 
 
-def _condition_note(conditions: Set[str]) -> tuple[str, ...]:
+def _difference(choices: Sequence[Any]) -> float:
+    """Return the largest difference of the spectra of an object."""
+    samples = zip(*(choice.value for choice in choices), strict=False)
+    return max((float(max(values) - min(values)) for values in samples), default=0.0)
+
+
+def _condition_note(conditions: Set[str], difference: float) -> tuple[str, ...]:
     if not conditions:
         return ()
     note = f"measurement conditions: {listed(sorted(conditions))}"
     if len(conditions) > 1:
-        note += "; the entries of an object are nearly the same"
+        note += f"; values of one object differ by up to {difference:.2g}"
     return (note,)
 
 
@@ -179,5 +186,4 @@ def _spectrum(name: str, choice: Any, specifications: dict[str, Any]) -> Spectru
         nm,
         values,
         date=one_line(choice.measure_date),
-        quantity=Quantity("reflectance", REFLECTANCE),
     )

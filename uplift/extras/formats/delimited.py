@@ -13,7 +13,8 @@ from uplift.common.errors import OutputError
 from uplift.common.text import pluralise
 from uplift.extras.files.csv import csv_text, find_delimiter, plain_cell
 from uplift.extras.formats.measurements import Measurements
-from uplift.extras.formats.statements import name_quantity, remark_scale
+from uplift.extras.formats.quantities import POWER, REFLECTANCE, name_quantities
+from uplift.extras.formats.statements import remark_scale
 from uplift.extras.formats.tables.cells import (
     Cell,
     Line,
@@ -29,6 +30,8 @@ BLANKS = " "
 """Delimiter that stands for any number of blanks."""
 SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
 """First line of a table that states its delimiter to spreadsheets."""
+QUOTED = re.compile(r'"\s*[+-]?\d{1,3},\d{3}')
+"""A number in quotes that may have commas of thousands."""
 SAMPLE_ROWS = 200
 """Rows by which the delimiter is chosen."""
 COUNTED = ("Wavelength", "Reflectance", "standard deviation")
@@ -45,14 +48,17 @@ def read(document: Document) -> Measurements:
         line.strip("# \t") for line in document.lines if line.lstrip().startswith("#")
     ]
     try:
-        rows = _labelled(list(_split(document, _delimiter(document))))
+        delimiter = _delimiter(document)
+        rows = _labelled(list(_split(document, delimiter)))
     except (csv.Error, ValueError) as error:
         raise document.location.error(
             f"not a readable table: {error}", LAYOUT
         ) from None
     numbers = [row for row in rows if is_value(row[0].text)]
     if len(numbers) < 2 or max(map(len, numbers)) > 1:
-        return read_grid(Grid(rows, document.location, comments), document.stem)
+        may_group = delimiter in ",\t" and bool(QUOTED.search(document.text))
+        grid = Grid(rows, document.location, comments, may_group)
+        return read_grid(grid, document.stem)
     title = next(
         (text for text in line_texts(rows) if not is_value(text)), document.stem
     )
@@ -120,10 +126,14 @@ def text(atlas: Atlas, _: Header) -> str:
                 problem,
                 hint="write atlas text, which keeps each sampling, or separate tables",
             )
-        if remark_scale(entry.name) or name_quantity(entry.name):
+    stated = name_quantities(atlas.names)
+    for name, quantity in zip(atlas.names, stated, strict=True):
+        if remark_scale(name) or (
+            quantity and quantity.kind not in (POWER, REFLECTANCE)
+        ):
             raise OutputError(
-                f"the name '{entry.name}' states a scale or a quantity, which a table "
-                "is read by",
+                f"the name '{name}' states a scale or a quantity, which a table is "
+                "read by",
                 hint="rename the entry, or write atlas text",
             )
     rows = ([entry.name, *entry.values.tolist()] for entry in atlas)

@@ -14,11 +14,10 @@ from uplift.atlas import (
 from uplift.common.arrays import Array
 from uplift.common.text import parse_float, parse_whole
 from uplift.extras.formats.measurements import Measurements
+from uplift.extras.formats.quantities import REFLECTANCE, Quantity, remark_quantity
 from uplift.extras.formats.samples import Spectrum
 from uplift.extras.formats.statements import (
-    Quantity,
     Scale,
-    remark_quantity,
     remark_scale,
     stated_unit,
     to_nm,
@@ -88,7 +87,7 @@ def read(document: Document) -> Measurements:
         factor = parse_number(fields[FACTOR], location, FACTOR)
         check_scale(factor, FACTOR, location)
         scales = (Scale(factor, f"{FACTOR} = {fields[FACTOR]}"),)
-        quantity = Quantity("reflectance", FACTOR)
+        quantity = Quantity(REFLECTANCE, FACTOR)
     return Measurements(
         tuple(Spectrum(name, nm, row) for name, row in zip(names, values, strict=True)),
         scales=scales,

@@ -10,11 +10,10 @@ import numpy as np
 from uplift.atlas import EXPORT, Document, one_line, truncate
 from uplift.common.text import pluralise
 from uplift.extras.formats.measurements import Measurements, parsed_by
+from uplift.extras.formats.quantities import OTHER, Quantity, label_quantity
 from uplift.extras.formats.samples import Spectrum
 from uplift.extras.formats.statements import (
-    Quantity,
     Scale,
-    label_quantity,
     label_scale,
     stated_unit,
     to_nm,
@@ -67,7 +66,7 @@ def read(document: Document) -> Measurements:
         unit = one_line(block.get("yunits"))
         quantity = label_quantity(f"{unit} {block.get('data type', '')}")
         if quantity is None and unit.lower() not in REFLECTANCES:
-            quantity = Quantity("another quantity", f"YUNITS={unit}")
+            quantity = Quantity(OTHER, f"YUNITS={unit}")
         nm = to_nm(
             block.get("x", ()), stated_unit(one_line(block.get("xunits")), location)
         )
@@ -90,9 +89,8 @@ def _with_points(text: str) -> str:
         chain.from_iterable(COMMA.finditer(data) for data in DATA.findall(text))
     )
     wavelengths = [float(match[1]) for match in pairs]
-    are_pairs = wavelengths == sorted(wavelengths) or wavelengths == sorted(
-        wavelengths, reverse=True
-    )
+    ascending = sorted(set(wavelengths))
+    are_pairs = wavelengths in (ascending, ascending[::-1])
     if not FIRST.search(text) and (are_pairs or not pairs):
         return text
     return COMMA.sub(r"\1.\2", text)

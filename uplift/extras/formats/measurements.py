@@ -3,10 +3,11 @@ order, scale and quantity.
 """
 
 import contextlib
+import operator
 import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
 from itertools import chain
 
 import numpy as np
@@ -28,9 +29,15 @@ from uplift.atlas import (
 )
 from uplift.common.errors import AtlasError, needs_package
 from uplift.common.text import listed, pluralise, printable
+from uplift.extras.formats.quantities import (
+    DEVIATION,
+    Quantity,
+    name_quantities,
+    value_quantity,
+)
 from uplift.extras.formats.samples import Samples, Spectrum, in_order
 from uplift.extras.formats.scales import find_scale
-from uplift.extras.formats.statements import Quantity, Scale
+from uplift.extras.formats.statements import Scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +57,33 @@ class Measurements:
     """How the content was understood."""
     quantity: Quantity | None = None
     """Quantity that the file states of all spectra that state none."""
+    labelled: bool = True
+    """Whether the values have a label."""
+
+    def select(self, document: Document, *, lamps: bool = False) -> "Measurements":
+        """Return the reflectances, or the powers of lamps; others are skipped.
+
+        A spectrum has the quantity that its label states, or else that which the names,
+        the file or the values do. Raises `AtlasError` if all are of other quantities.
+        """
+        kept = list[Spectrum]()
+        skipped = list(self.skipped)
+        refusals = list[tuple[bool, AtlasError]]()
+        names = name_quantities([spectrum.name for spectrum in self.spectra])
+        for spectrum, by_name in zip(self.spectra, names, strict=True):
+            quantity = spectrum.quantity or by_name or self.quantity
+            quantity = quantity or value_quantity(spectrum.wavelengths, spectrum.values)
+            if quantity is None or quantity.kind.is_used(lamps=lamps):
+                kept.append(replace(spectrum, quantity=quantity))
+                continue
+            error = wrong_quantity(
+                quantity, document.location.at(spectrum.line), lamps=lamps
+            )
+            refusals.append((quantity.kind is DEVIATION, error))
+            skipped.append(_skip(spectrum, error.problem, document))
+        if refusals and not kept:
+            raise min(refusals, key=operator.itemgetter(0))[1]
+        return replace(self, spectra=tuple(kept), skipped=tuple(skipped))
 
     def to_atlas(
         self,
@@ -57,21 +91,29 @@ class Measurements:
         format_name: str,
         measured: str = "auto",
         missing: str = "refuse",
+        *,
+        lamps: bool = False,
     ) -> Atlas:
-        """Make entries of the reflectances: in order of wavelength, without missing
-        values, in units of 1.
+        """Make entries of the reflectances, or of the powers of lamps: in order of
+        wavelength, without missing values, in units of 1.
         """
-        reflectances, skipped = _reflectances(document, self)
+        selected = self.select(document, lamps=lamps)
         location = document.location
-        samples = [in_order(spectrum, location, missing) for spectrum in reflectances]
+        samples = [
+            in_order(spectrum, location, missing) for spectrum in selected.spectra
+        ]
         kept = [spectrum for spectrum in samples if not spectrum.skipped]
-        if kept:
-            skipped += [_skipped(left, document) for left in samples if left.skipped]
-        else:  # the error of an entry states what is wrong
-            kept = samples
+        skipped = [
+            _skip(left.spectrum, left.skipped, document)
+            for left in samples
+            if left.skipped and kept
+        ]
+        kept = kept or samples  # the error of an entry states what is wrong
         # One scale for all spectra: a dark one alone does not show whether it is in
         # percent.
-        scale, scale_note = find_scale(location, self.scales, kept, measured)
+        scale, scale_note = find_scale(
+            location, self.scales, kept, measured, labelled=self.labelled
+        )
         entries = tuple(_entry(spectrum, scale, document) for spectrum in kept)
         notes = (*self.notes, *_changes(kept), scale_note) if entries else ()
         source = Source(
@@ -83,12 +125,11 @@ class Measurements:
             tuple(map(printable, notes)),
             missing,
         )
-        return Atlas(entries, (*self.skipped, *skipped), (source,))
+        return Atlas(entries, (*selected.skipped, *skipped), (source,))
 
 
-def _skipped(samples: Samples, document: Document) -> SkippedEntry:
-    spectrum = samples.spectrum
-    return SkippedEntry(spectrum.name, samples.skipped, document.path, spectrum.line)
+def _skip(spectrum: Spectrum, reason: str, document: Document) -> SkippedEntry:
+    return SkippedEntry(spectrum.name, reason, document.path, spectrum.line)
 
 
 def _changes(samples: Sequence[Samples]) -> list[str]:
@@ -96,32 +137,6 @@ def _changes(samples: Sequence[Samples]) -> list[str]:
     counts = Counter(chain.from_iterable(spectrum.notes for spectrum in samples))
     total = pluralise(len(samples), "entry")
     return [f"{count} of {total}: {note}" for note, count in counts.items()]
-
-
-def _reflectances(
-    document: Document, measurements: Measurements
-) -> tuple[list[Spectrum], list[SkippedEntry]]:
-    """Separate reflectances from other spectra. Raise `AtlasError` if none may be a
-    reflectance.
-    """
-    kept = list[Spectrum]()
-    skipped = list[SkippedEntry]()
-    refusals = list[AtlasError]()
-    for spectrum in measurements.spectra:
-        quantity = spectrum.quantity or measurements.quantity
-        if quantity is None or quantity.is_reflectance:
-            kept.append(spectrum)
-        else:
-            reason = f"it is {quantity.name}, not reflectance"
-            skipped.append(
-                SkippedEntry(spectrum.name, reason, document.path, spectrum.line)
-            )
-            refusals.append(
-                wrong_quantity(quantity, document.location.at(spectrum.line))
-            )
-    if refusals and not kept:
-        raise refusals[0]
-    return kept, skipped
 
 
 def _entry(samples: Samples, scale: float, document: Document) -> Entry:
@@ -161,19 +176,17 @@ def not_used_note(labels: Iterable[str]) -> tuple[str, ...]:
     return (f"not used: {listed(names)}",) if names else ()
 
 
-def wrong_quantity(quantity: Quantity, location: SourceLocation) -> AtlasError:
-    """Create the error for values that are not reflectances."""
-    hint = (
-        "measure the reflectance, or correct the statement if it is wrong: a cube "
-        "holds reflectances"
-    )
-    if quantity.of_light:
-        hint = "it is read by read_lamps(): an atlas holds reflectances"
-    problem = (
-        f"the file states {quantity.name} ('{truncate(quantity.text)}'), not "
-        "reflectance"
-    )
-    return location.error(problem, hint, code="not-reflectance")
+def wrong_quantity(
+    quantity: Quantity, location: SourceLocation, *, lamps: bool = False
+) -> AtlasError:
+    """Create the error for values that are not reflectances, or not powers of lamps."""
+    stated = f"the file states {quantity.kind.name} ('{truncate(quantity.text)}')"
+    if lamps:
+        problem = f"{stated}, not the power of a lamp"
+        hint = "give spectral powers, such as a CSV table"
+        return location.error(problem, hint, code="not-a-lamp")
+    problem = f"{stated}, not reflectance"
+    return location.error(problem, quantity.kind.hint, code="not-reflectance")
 
 
 @contextlib.contextmanager

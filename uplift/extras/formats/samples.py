@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas import USED, VISIBLE, SourceLocation
 from uplift.common.arrays import Array, Mask
-from uplift.extras.formats.statements import Quantity
+from uplift.extras.formats.quantities import Quantity
 
 MARKERS = (-999.0, -9999.0, -99999.0)
 """Numbers for missing values."""

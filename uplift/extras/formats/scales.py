@@ -17,6 +17,8 @@ common material.
 """
 DIM = 5.0
 """Largest value in percent of dark samples that may be another quantity."""
+UNLABELLED = (1.1, 10.0)
+"""The same range without any label: from above a white to DIM samples."""
 JUMP = 30.0
 """Ratio of neighbouring samples that no reflectance has."""
 FLOOR = 0.1
@@ -28,9 +30,11 @@ def find_scale(
     stated: Sequence[Scale],
     samples: Sequence[Samples],
     measured: str,
+    *,
+    labelled: bool = True,
 ) -> tuple[float, str]:
     """Return the divisor of all values, and a note about it. What is stated wins over
-    what the values suggest.
+    what the values suggest, and those without a label suggest less.
     """
     if measured != "auto":
         name, divisor = GIVEN[measured]
@@ -47,13 +51,21 @@ def find_scale(
             hint = "pass measured='fraction' if they are from 0 to 1"
             code = "dark-percent"
             warn(UpliftWarning(problem, code=code, path=location.path, hint=hint))
-        return divisor, f"scale: 0 to {divisor:g}, as stated: '{text}'"
-    if HIGHEST < top <= DIM:
+        how = ASSUMED if stated[0].is_assumed else ", as stated: "
+        return divisor, f"scale: 0 to {divisor:g}{how}'{text}'"
+    everything = np.concatenate([np.empty(0), *(spectrum.values for spectrum in used)])
+    low, high = (HIGHEST, DIM) if labelled else UNLABELLED
+    are_above = (everything > 1).sum() * 2 > len(everything)
+    if low < top <= high or (top <= HIGHEST and are_above):
         problem = (
             f"values up to {top:g} may be dark samples in percent, or another "
-            "quantity, and no scale is stated"
+            "quantity, such as K/S, and no scale is stated"
         )
         raise location.error(problem, WHICH_SCALE, code="scale-not-stated")
+    if top > HIGHEST and np.median(everything) > HIGHEST * PERCENT:
+        problem = f"values up to {top:g} may be counts, or reflectances × 10,000"
+        hint = "divide counts by those of a white, or write 'reflectance × 10000' above"
+        raise location.error(problem, hint, code="not-reflectance")
     if top > HIGHEST:
         _check_one_scale(location, used, highest)
         problem = f"values up to {top:g} are read as percent and divided by 100"
@@ -64,10 +76,6 @@ def find_scale(
             )
         )
         return PERCENT, f"scale: percent, by values up to {top:g}"
-    everything = np.concatenate([np.empty(0), *(spectrum.values for spectrum in used)])
-    if (everything > 1).sum() * 2 > len(everything):
-        problem = f"most values exceed 1, up to {top:g}, and no scale is stated"
-        raise location.error(problem, WHICH_SCALE, code="scale-not-stated")
     return (
         1.0,
         f"scale: 0 to 1{ASSUMED}none is stated, and the largest value is {top:g}",

@@ -40,7 +40,8 @@ def read(document: Document) -> Measurements:
     problem = document.location.error(NO_TABLE, HINT, code="not-an-atlas")
     for name in names:
         try:
-            grid = Grid(_rows(book, name, document), document.location, [name])
+            rows = _rows(book, name, document)
+            grid = Grid(rows, document.location, [name], may_group=True)
             table = read_grid(grid, document.stem)
             return replace(table, notes=(f"sheet: {name}", *table.notes))
         except AtlasError as error:

@@ -1,5 +1,5 @@
-"""What a text of a file states about its numbers: their scale, their quantity, and the
-unit of wavelengths.
+"""What a text of a file states about its numbers: their scale, and the unit of
+wavelengths.
 """
 
 import re
@@ -11,131 +11,28 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas import SourceLocation, truncate
 from uplift.common.arrays import Array
+from uplift.extras.formats.quantities import TABLE, any_of, plain_text
 
 PERCENT = 100.0
 """Divisor of values in percent."""
+TEN_THOUSAND = 1e4
+"""Divisor of reflectances that remote sensing stores as whole numbers."""
 
 
-def _any(*patterns: str) -> re.Pattern[str]:
-    return re.compile("|".join(patterns), re.IGNORECASE)
-
-
-_TO = r" ?(?:-|–|\.\.\.?|…|to) ?"
-_PERCENT = _any(
-    r"(?<!\d)(?<!\d )%",
-    r"\bpercent(?:age)?\b",
-    r"\bper cent\b",
-    r"\bpct\b",
-    rf"\b0{_TO}100\b",
+_SCALES = {row["divisor"]: any_of(row["patterns"]) for row in TABLE["scale"]}
+_SCALED = any_of(TABLE["words"]["scaled"])
+_UNSCALED = any_of(TABLE["words"]["not-scaled"])
+_ONLY_SCALE = any_of(
+    [r"\W*(?:in |as )?(?:%|percent(?:age)?|per cent|pct|fractions?)\W*"]
 )
-_FRACTION = _any(
-    r"\bfractions?\b(?! ?\d)",
-    r"\b(?:reflectance|reflectivity|r)[- ]?factor\b",
-    rf"(?<![\d.,-])0(?:\.0)?{_TO}1(?:\.0)?(?![\d.,-])",
-    r"[\[(]0, ?1[\])]",
-    r"\bunits? of 1\b",
-)
-_SCALED = _any(
-    "r[eé]fl", r"\br\b", "remission", "remittance", "albedo", r"\bunits?\b", "scale",
-    r"\bvalues?\b", r"\bdata\b", r"spectr", r"\by\b", r"measured in",
-)  # fmt: skip
-"""What a remark on the scale is about."""
-_UNSCALED = _any(
-    "humid", "moist", "gloss", "opacity", "haze", "cover", "batter", "confiden",
-    "uncertain", "error", "accura",
-    "precis", "toleran", "noise", "deviat", r"\bink", "dot",
-)  # fmt: skip
-"""What another percentage is about."""
-_ONLY_SCALE = _any(r"\W*(?:in |as )?(?:%|percent(?:age)?|per cent|pct|fractions?)\W*")
-
-_REFLECTANCE = _any(
-    "r[eé]fl",
-    "remission",
-    "remittance",
-    "albedo",
-    r"\br-factor",
-    r"\brefl\b",
-    r"\brfl\b",
-    r"%r\b",
-    r"\br ?[\[(]?%",
-)
-_MATERIAL = _any(
-    "transmi(?:ttance|ssion|ssive|ssivity)", "absor(?:bance|ptance|ption|ptivity)",
-    "extinction", "optical density",
-    r"\bk/s\b", "emissivity", "t-factor", "fluorescence", r"\bst(?:d|andard)?[ .]*dev",
-    r"r[eé]fl.*\bstd\b",
-    "uncertaint", r"log ?\(? ?1/r",
-)  # fmt: skip
-_LIGHT = _any(
-    "irradiance", "radiance", "radiant", r"\brad\b", "exitance", "emissi(?:on|ve)",
-    "emittance", "illuminance",
-    "luminance(?! factor)", "luminous (?:flux|intensity)", r"\bspd\b",
-    "(?:spectral|relative) power",
-    "(?:spectral|photon) flux", r"\bcounts?\b(?!\W*\d)",
-    r"[µμumn]?w ?[/·* ] ?\(?[cm]?m ?\^?(?:[²2]|-2|⁻²)", r"\bcd/m",
-)  # fmt: skip
-_TRANSMITTANCE = _any(
-    r"\W*(?:%?\W*t\W*%\W*|%\W*t|t ?\d{3,4}(?:\D.*)?|trans|t ?nm.*|τ.*)\W*"
-)
-_ABSORBANCE = _any(r"\W*(?:abs|od)\W*\d*\W*")
-"""Short labels of other quantities."""
-_KEYS = (
-    "lux|lx|fc|foot-?candles?|cct|tcp|duv|cri|ra|ppfd|tlci|lumens?|lm|colou?r "
-    "temperature"
-)
-_PHOTOMETRIC = _any(
-    rf"\W*(?:{_KEYS}) ?(?:[([][^)\]]*[)\]])? ?[:=,;]? ?(?:[+-]?[\d.,]+ ?\w*)?\W*"
-)
-"""A key of light meters, perhaps with its value."""
-_UNCERTAINTY = _any(
-    r"\W*(?:standard deviation|st(?:d|andard)?\.? ?dev(?:iation|\.)?|σ|uncertainty)\W*"
-)
-
-_PLAIN = frozenset(
-    (
-        "r", "y", "refl", "rfl", "remission", "albedo", "value", "values", "intensity",
-        "percent", "pct", "fraction",
-        "factor", "spectral", "data",
-    )
-)  # fmt: skip
-"""Words of labels without a name of a sample, next to those that begin with 'reflect'.
-"""
-NANOMETRE, MICROMETRE, ANGSTROM, METRE = 1.0, 1e3, 0.1, 1e9
+NANOMETRE, MICROMETRE, METRE = 1.0, 1e3, 1e9
 """Lengths in nm."""
 WAVE_NUMBER = -1e7
 """Unit 1/cm, below 0: the wavelength in nm is 1e7 divided by the wave number."""
 FEW = 10
 """Numbers that may be wavelengths in micrometres without a statement."""
-_UNITS = (
-    (_any(r"(?<![a-z])nm(?![a-z])", "wavelengthnm", "nanomet(?:er|re)s?"), NANOMETRE),
-    (
-        _any(r"(?<![a-zµμ])[µμu]m(?![a-z])", "micromet(?:er|re)s?", r"microns?\b"),
-        MICROMETRE,
-    ),
-    (_any(r"å(?![a-z])", "[aå]ngstr[oö]ms?", r"[(\[]a[)\]]"), ANGSTROM),
-    (_any("1 ?/ ?cm", r"cm ?\^?\(?(?:[-−]1|⁻¹)", "wave ?numbers?"), WAVE_NUMBER),
-    (_any(r"[(\[]m[)\]]", r"(?<![a-z])met(?:er|re)s?\b", r"\A\s*m\s*\Z"), METRE),
-)
-_WAVES = _any(
-    "wave", r"\bwl\b", r"\bwvl\b", "lambda", "λ", r"\bx ?units?", "abscissa", "wellenl"
-)
-"""What a remark on the unit of wavelengths is about."""
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A quantity that a file states, in the words of ``text``; of a light, or of a
-    material.
-    """
-
-    name: str
-    text: str
-    of_light: bool = False
-
-    @property
-    def is_reflectance(self) -> bool:
-        """Whether a cube can hold it."""
-        return self.name == "reflectance"
+_UNITS = {row["nm"]: any_of(row["patterns"]) for row in TABLE["unit"]}
+_WAVES = any_of(TABLE["words"]["waves"])
 
 
 @dataclass(frozen=True)
@@ -144,18 +41,22 @@ class Scale:
 
     divisor: float
     text: str
+    is_assumed: bool = False
+    """Whether it is a likely reading of the numbers, and no statement."""
 
 
 def label_scale(text: str) -> Scale | None:
     """Return the scale that the label of values states; None if it states none. '50 %'
     is a part of a name.
 
-    >>> [label_scale(text) for text in ("R% 400", "grey 50%")]
-    [Scale(divisor=100.0, text='R% 400'), None]
+    >>> scales = map(label_scale, ("R% 400", "grey 50%", "R × 10000"))
+    >>> [scale and scale.divisor for scale in scales]
+    [100.0, None, 10000.0]
     """
-    if _PERCENT.search(text):
-        return Scale(PERCENT, text)
-    return Scale(1.0, text) if _FRACTION.search(text) else None
+    for divisor, pattern in _SCALES.items():
+        if pattern.search(text):
+            return Scale(divisor, text)
+    return None
 
 
 def remark_scale(text: str) -> Scale | None:
@@ -166,64 +67,16 @@ def remark_scale(text: str) -> Scale | None:
     return label_scale(text) if is_about else None
 
 
-def label_quantity(text: str) -> Quantity | None:
-    """Return the quantity that the label of values states; that of a material wins over
-    that of a light.
-
-    >>> quantities = map(label_quantity, ("%T", "R [%]", "SPD", "ochre"))
-    >>> [quantity and quantity.name for quantity in quantities]
-    ['transmittance', 'reflectance', 'spd', None]
-    """
-    if found := _MATERIAL.search(text):
-        return Quantity(found[0].lower(), text)
-    if _REFLECTANCE.search(text):
-        return Quantity("reflectance", text)
-    if found := _LIGHT.search(text):
-        return Quantity(found[0].lower(), text, of_light=True)
-    if _TRANSMITTANCE.fullmatch(text):
-        return Quantity("transmittance", text)
-    return Quantity("absorbance", text) if _ABSORBANCE.fullmatch(text) else None
-
-
-def is_photometric(text: str) -> bool:
-    """Whether a label is a key of light meters, such as 'CCT (K)'."""
-    return bool(_PHOTOMETRIC.fullmatch(text))
-
-
-def name_quantity(text: str) -> Quantity | None:
-    """Return the quantity of a row of deviations of the others, which is
-    not a sample.
-    """
-    return (
-        Quantity("standard deviation", text) if _UNCERTAINTY.fullmatch(text) else None
-    )
-
-
-def remark_quantity(texts: Iterable[str]) -> Quantity | None:
-    """Return reflectance if a line of text states it, else the first other quantity
-    that one states.
-    """
-    others = list[Quantity]()
-    for text in texts:
-        if _REFLECTANCE.search(text):
-            return Quantity("reflectance", text)
-        if _PHOTOMETRIC.fullmatch(text):
-            others.append(Quantity("the measurement of a light", text, of_light=True))
-        elif found := _LIGHT.search(text):
-            others.append(Quantity(found[0].lower(), text, of_light=True))
-        elif found := _MATERIAL.search(text):
-            others.append(Quantity(found[0].lower(), text))
-    return others[0] if others else None
-
-
 def is_plain(text: str) -> bool:
     """Whether a label of values names no sample, only what is measured: 'R [%]',
     'Reflectance', '[counts]'.
     """
     if re.fullmatch(r"[\[(].*[\])]", text):
         return True
-    words = [word for word in re.split(r"[\W_]+", text.casefold()) if word]
-    has_only = all(word in _PLAIN or _REFLECTANCE.match(word) for word in words)
+    words = list(filter(None, re.split(r"\W+", plain_text(text).casefold())))
+    has_only = all(
+        word in TABLE["words"]["plain"] or word.startswith("refl") for word in words
+    )
     return bool(words or text) and has_only and not (len(text) == 1 and text.isalpha())
 
 
@@ -234,7 +87,9 @@ def find_unit(text: str) -> float | None:
     >>> [find_unit(text) for text in ("Wavelength_um", "[nm]", "cm-1", "lambda")]
     [1000.0, 1.0, -10000000.0, None]
     """
-    return next((unit for pattern, unit in _UNITS if pattern.search(text)), None)
+    return next(
+        (unit for unit, pattern in _UNITS.items() if pattern.search(text)), None
+    )
 
 
 def stated_unit(text: str, location: SourceLocation) -> float:

@@ -3,14 +3,9 @@
 from uplift.atlas import Document, one_line
 from uplift.common.colour_science import colour_science
 from uplift.extras.formats.measurements import Measurements, parsed_by
+from uplift.extras.formats.quantities import POWER, Quantity, label_quantity
 from uplift.extras.formats.samples import Spectrum
-from uplift.extras.formats.statements import Quantity
 from uplift.extras.formats.xml import check_xml
-
-REFLECTANCES = ("reflectance", "r-factor")
-"""Spectral quantities of the standard that a cube can hold."""
-MATERIALS = (*REFLECTANCES, "transmittance", "t-factor", "absorptance")
-"""Spectral quantities of the standard that no lamp has."""
 
 
 def read(document: Document) -> Measurements:
@@ -24,7 +19,6 @@ def read(document: Document) -> Measurements:
         date = one_line(spectrum.header.report_date)
         nm = spectrum.wavelengths.tolist()
         values = spectrum.values.tolist()
-    name = "reflectance" if quantity in REFLECTANCES else quantity
     return Measurements(
         (
             Spectrum(
@@ -32,7 +26,7 @@ def read(document: Document) -> Measurements:
             ),
         ),
         notes=(f"layout: one spectrum, quantity '{quantity}'",),
-        quantity=Quantity(name, quantity, of_light=quantity not in MATERIALS)
+        quantity=label_quantity(quantity) or Quantity(POWER, quantity)
         if quantity
         else None,
     )

@@ -11,48 +11,21 @@ from uplift.atlas import SLACK, VISIBLE
 from uplift.common.arrays import Array
 from uplift.common.text import parse_float
 from uplift.extras.files.csv import parse_decimal
-from uplift.extras.formats.statements import NANOMETRE, find_unit, label_quantity
+from uplift.extras.formats.quantities import TABLE, label_quantity
+from uplift.extras.formats.statements import NANOMETRE, find_unit
 
 SHORTEST = 100.0
 """Wavelength in nm that distinguishes a row of wavelengths from a wavelength and its
 values.
 """
-MISSING = frozenset(
-    (
-        "",
-        "-",
-        "--",
-        "---",
-        "n/a",
-        "#n/a",
-        "na",
-        "n.a.",
-        "nan",
-        "null",
-        "none",
-        "#div/0!",
-        "#value!",
-    )
-)
-"""Texts for a value that is missing, in lower case."""
+MISSING = frozenset(TABLE["words"]["missing"])
+PREFIXES = frozenset(TABLE["words"]["prefixes"])
 LABEL = re.compile(
     r"([^\d.,+-]{0,40}?)[\s_([]*(\d{1,5}(?:[.,]\d{1,8})?)\s*[([]?\s*(nm|[µμu]m|microns?|å|1/cm)?\s*[)\]]?(?:\s*[([]?%[)\]]?)?",
     re.IGNORECASE,
 )
 """A prefix, a wavelength, and perhaps its unit: ``nm400``, ``R_400``, ``380[nm]``,
 ``Refl (400 nm)``.
-"""
-PREFIXES = frozenset(
-    (
-        "", "nm", "r", "%r", "r%", "%", "rnm", "ρ", "refl", "refl%", "rfl", "spec",
-        "spectral", "spectrum",
-        "spectralnm", "spectrumnm", "spectraldata", "wl", "wavelength", "lambda", "λ",
-        "w", "x", "sci", "sce", "specin",
-        "specex", "reflsci", "reflsce", "t", "%t", "t%", "tnm", "τ",
-    )
-)  # fmt: skip
-"""What labels of wavelengths begin with, in lower case and without blanks, next to the
-names of quantities.
 """
 
 

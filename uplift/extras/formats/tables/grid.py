@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from uplift.atlas import SkippedEntry, SourceLocation
 from uplift.common.arrays import Array
+from uplift.extras.formats.quantities import TABLE
 from uplift.extras.formats.statements import remark_unit
 from uplift.extras.formats.tables.cells import Cell, Row, line_texts
 
@@ -18,15 +19,7 @@ MAX_HEADS = 4
 """Rows of labels above columns."""
 MAX_AXIS = 3
 """Columns among which that of the wavelengths is searched."""
-NAME_LABELS = (
-    "samplename", "name", "colorname", "colourname", "patchname", "patch", "label",
-    "title", "sample", "material",
-    "target", "spectrum", "sampleid", "patchid", "id", "sampleloc", "sampleno", "no",
-    "number", "index",
-)  # fmt: skip
-"""Labels of names, in lower case without blanks and punctuation, the preferred ones
-first.
-"""
+NAME_LABELS = tuple(TABLE["words"]["names"])
 
 
 class Series(NamedTuple):
@@ -57,6 +50,8 @@ class Grid:
     rows: Sequence[Row]
     location: SourceLocation
     comments: Sequence[str] = ()
+    may_group: bool = False
+    """Whether commas in numbers may be those of thousands."""
 
     @cached_property
     def unit(self) -> float | None:

@@ -8,6 +8,7 @@ lines below. It states scale, quantity and unit.
 import contextlib
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
@@ -15,16 +16,19 @@ from uplift.atlas import SourceLocation, truncate
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError
 from uplift.common.text import pluralise
-from uplift.extras.formats.measurements import Measurements
+from uplift.extras.formats.measurements import Measurements, wrong_quantity
+from uplift.extras.formats.quantities import (
+    REFLECTANCE,
+    label_quantity,
+    name_quantities,
+    remark_quantity,
+)
 from uplift.extras.formats.samples import Spectrum, is_missing
 from uplift.extras.formats.statements import (
     NANOMETRE,
     PERCENT,
     Scale,
-    label_quantity,
     label_scale,
-    name_quantity,
-    remark_quantity,
     remark_scale,
     to_nm,
 )
@@ -54,6 +58,7 @@ from uplift.extras.formats.tables.grid import (
     plain_label,
 )
 from uplift.extras.formats.tables.rows import find_samples, headers, spectra_below
+from uplift.extras.formats.tables.thousands import comma_scales
 
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
 
@@ -70,19 +75,30 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
     if not table.series:
         raise _no_table(grid)
     scales = [remark_scale(text) for text in table.remarks]
+    labels = [series.label for series in table.series]
+    commas = list[Scale]()
+    if grid.may_group:
+        cells = chain.from_iterable(series.cells for series in table.series)
+        stated = filter(None, [*scales, *map(label_scale, labels)])
+        divisors = [scale.divisor for scale in stated]
+        commas = comma_scales([cell.text for cell in cells], divisors)
+    mark = "," if len(commas) == 1 else ""
     nameless = sum(series.name is None for series in table.series)
     spectra = list[Spectrum]()
-    for series in table.series:
+    for series, by_set in zip(table.series, name_quantities(labels), strict=True):
         name = series.name
+        quantity = label_quantity(series.label) or by_set
         if name is None:
             first = series.cells[0]
             name = Cell(stem if nameless == 1 else series.label, first.line)
+            quantity = quantity or label_quantity(stem)
             if not name.text:
                 location = grid.location.at(first.line)
+                if quantity:
+                    raise wrong_quantity(quantity, location)
                 raise location.error("the header row is missing", LAYOUT)
-        quantity = label_quantity(series.label) or name_quantity(name.text)
-        values, percent = _values(series.cells, grid.location.at(entry=name.text))
-        if quantity is None or quantity.is_reflectance:
+        values, percent = _values(series.cells, mark, grid.location.at(entry=name.text))
+        if quantity is None or quantity.kind is REFLECTANCE:
             scales += [label_scale(series.label), remark_scale(name.text), percent]
         spectra.append(
             Spectrum(name.text, series.nm, values, line=name.line, quantity=quantity)
@@ -90,17 +106,18 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
     return Measurements(
         tuple(spectra),
         skipped=table.skipped,
-        scales=tuple(filter(None, scales)),
+        scales=tuple(filter(None, [*scales, *commas])),
         notes=table.notes,
         quantity=remark_quantity(table.remarks),
+        labelled=not nameless or any(labels),
     )
 
 
 def _values(
-    cells: Row, location: SourceLocation
+    cells: Row, mark: str, location: SourceLocation
 ) -> tuple[Sequence[float] | Array, Scale | None]:
-    """Parse the values of a spectrum, NaN where one is missing, and the scale that
-    percent signs in cells state.
+    """Parse the values of a spectrum without the ``mark`` of thousands, NaN where one
+    is missing, and the scale that percent signs in cells state.
     """
     texts = texts_of(cells)
     joined = "".join(texts)
@@ -110,7 +127,7 @@ def _values(
     values = list[float]()
     percents = [cell.text for cell in cells if cell.text.endswith("%")]
     for cell in cells:
-        value = parse_cell(cell.text)
+        value = parse_cell(cell.text.replace(mark, ""))
         if value is None:
             problem = f"value '{truncate(cell.text)}' is not a number"
             raise location.at(cell.line).error(

@@ -12,11 +12,11 @@ from uplift.atlas import truncate
 from uplift.common.arrays import Array
 from uplift.common.text import pluralise
 from uplift.extras.formats.measurements import not_used_note
+from uplift.extras.formats.quantities import TABLE, is_photometric
 from uplift.extras.formats.statements import (
     METRE,
     NANOMETRE,
     find_unit,
-    is_photometric,
     is_plain,
     names_wavelengths,
     to_nm,
@@ -124,10 +124,16 @@ def spectra_below(grid: Grid, wavelengths: Header) -> Table:
         body.append(Line([*texts_of(row), *[""] * missing], line) if missing else row)
     others = [*range(run.first), *range(run.last, len(header))]
     column = _name_column(header, body, others)
-    label = header[run.first].text
+    prefix = header[run.first].text
+    kinds = [
+        other
+        for other in others
+        if plain_label(header[other].text) in TABLE["words"]["kinds"]
+    ]
     series = list[Series]()
     for number, row in enumerate(body, 1):
         name = Cell(f"sample {number}", row[0].line) if column is None else row[column]
+        label = " ".join([prefix, *(row[kind].text for kind in kinds)]).strip()
         series.append(Series(label, nm, row[run.first : run.last], name))
     unused = [header[other].text for other in others if other != column]
     remarks += filter(is_photometric, unused)
