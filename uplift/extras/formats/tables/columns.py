@@ -42,6 +42,8 @@ from uplift.extras.formats.tables.grid import (
     cell_at,
 )
 
+PAIRS = 4
+"""Cells of at least two pairs."""
 EQUAL = 1e-6
 """Tolerance in nm of equal steps."""
 
@@ -265,7 +267,7 @@ def pairs_of_lines(grid: Grid) -> Table | None:
     series = list[Series]()
     remarks = list[str]()
     for row in grid.rows:
-        if not any(is_value(cell.text) for cell in row):
+        if len(row) < PAIRS or not any(is_value(cell.text) for cell in row):
             remarks += line_texts([row])
             continue
         name = None if is_value(row[0].text) else row[0]
@@ -274,7 +276,8 @@ def pairs_of_lines(grid: Grid) -> Table | None:
         if nm is None or not (np.isfinite(nm).all() and are_wavelengths(nm)):
             return None
         series.append(Series(str(len(series) + 1), nm, cells[1::2], name))
-    return Table(series, remarks, ("layout: pairs, a line per spectrum",))
+    notes = ("layout: pairs, a line per spectrum",)
+    return Table(series, remarks, notes) if series else None
 
 
 def _pairs(block: Block) -> Series | None:
@@ -286,7 +289,7 @@ def _pairs(block: Block) -> Series | None:
             return None
     cells = tuple(chain.from_iterable(block.rows))
     nm = _wavelengths(cells, block.unit)
-    if nm is None or block.width < 4:
+    if nm is None or block.width < PAIRS:
         return None
     have_equal_steps = np.ptp(np.diff(nm)) <= EQUAL  # not with NaN
     return Series("", nm, cells[1::2], None) if have_equal_steps else None
