@@ -3,7 +3,7 @@ each, or pairs on a line.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
 
@@ -152,25 +152,6 @@ def blocks(grid: Grid) -> Iterator[Block]:
                 block = Block(grid, _without_preamble(grid, run, column), column)
             if is_visible(block.nm) and block.width > column + 1:
                 yield block
-
-
-def longest(found: Sequence[Block]) -> Block | None:
-    """Return the block of most rows, from the first column on that has wavelengths in
-    some of them.
-    """
-    if not found:
-        return None
-    rows = max(found, key=lambda block: len(block.rows)).run
-    block = next(
-        each
-        for each in found
-        if rows.first <= each.run.first and each.run.last <= rows.last
-    )
-    before = [np.nan] * (block.run.first - rows.first)
-    after = [np.nan] * (rows.last - block.run.last)
-    numbers = [*before, *block.run.numbers, *after]
-    run = block.run._replace(first=rows.first, last=rows.last, numbers=numbers)
-    return replace(block, run=run)
 
 
 def _without_preamble(grid: Grid, run: Run, column: int) -> Run:
