@@ -180,8 +180,8 @@ def build(
     -----
     UpliftWarning
         Entries with the colour of an earlier entry, which are left out
-        (``entry-duplicate``), close to another entry (``entry-crowded``) or unlike all others of close colours
-        (``entry-smoothed``). Spectra of a library out of gamut
+        (``entry-duplicate``), close to another entry (``entry-crowded``) or unlike all
+        others of close colours (``entry-smoothed``). Spectra of a library out of gamut
         (``entry-out-of-gamut``) or outside [0, 1] (``entry-clipped``). Looks that no
         reflectance meets (``look-impossible``), or that the coefficients of entries do
         not reach (``look-not-reached``); the nearest colour is used. Entries out of

@@ -289,7 +289,7 @@ def test_a_value_ten_times_its_neighbours_is_warned_of(read, value):
         HEADER + "".join(",nm" for _ in NM) + "\n" + row("a"),
         f"{len(NM)}\n" + lines("{:g}\t{:g}"),
         "a,,b,\nnm,R,nm,R\n" + lines("{0:g},{1:g},{0:g},{1:g}"),
-        lines("{:g},{:g},").replace("\n", ""),
+        "of 2024,1\n" + lines("{:g},{:g},").replace("\n", "") + "\nn,9\n",
         lines("{:g} {:g}, ").replace("\n", ""),
         "Paint,wave,R\n"
         + "".join(lines(f"{name},{{:g}},{{:g}}") for name in ("NA", 1)),

@@ -4,6 +4,7 @@ import csv
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -72,12 +73,13 @@ def _labelled(rows: list[Row]) -> list[Row]:
     without labels.
     """
     for at, row in enumerate(rows[:SAMPLE_ROWS]):
-        body = rows[at + 1 :]
+        if len(row) > 1:
+            continue
+        body = list(takewhile(lambda row: is_value(row[0].text), rows[at + 1 :]))
         labels = {"data=": SIGNATURE, str(len(body)): COUNTED}.get(row[0].text)
-        if labels and body and is_value(body[0][0].text):
-            width = len(body[0])
-            if len(row) == 1 < width <= len(labels):
-                return [*rows[:at], Line(labels[:width], row[0].line), *body]
+        if labels and body and 1 < len(body[0]) <= len(labels):
+            heads = Line(labels[: len(body[0])], row[0].line)
+            return [*rows[:at], heads, *rows[at + 1 :]]
     return rows
 
 

@@ -3,7 +3,7 @@ each, or pairs on a line.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
 
@@ -42,6 +42,8 @@ from uplift.extras.formats.tables.grid import (
     cell_at,
 )
 
+PAIRS = 4
+"""Cells of at least two pairs."""
 EQUAL = 1e-6
 """Tolerance in nm of equal steps."""
 
@@ -152,25 +154,6 @@ def blocks(grid: Grid) -> Iterator[Block]:
                 yield block
 
 
-def longest(found: Sequence[Block]) -> Block | None:
-    """Return the block of most rows, from the first column on that has wavelengths in
-    some of them.
-    """
-    if not found:
-        return None
-    rows = max(found, key=lambda block: len(block.rows)).run
-    block = next(
-        each
-        for each in found
-        if rows.first <= each.run.first and each.run.last <= rows.last
-    )
-    before = [np.nan] * (block.run.first - rows.first)
-    after = [np.nan] * (rows.last - block.run.last)
-    numbers = [*before, *block.run.numbers, *after]
-    run = block.run._replace(first=rows.first, last=rows.last, numbers=numbers)
-    return replace(block, run=run)
-
-
 def _without_preamble(grid: Grid, run: Run, column: int) -> Run:
     """Return a run without the rows at its beginning that end with its column."""
     last = run.last - 1
@@ -265,7 +248,7 @@ def pairs_of_lines(grid: Grid) -> Table | None:
     series = list[Series]()
     remarks = list[str]()
     for row in grid.rows:
-        if not any(is_value(cell.text) for cell in row):
+        if len(row) < PAIRS or not any(is_value(cell.text) for cell in row):
             remarks += line_texts([row])
             continue
         name = None if is_value(row[0].text) else row[0]
@@ -274,7 +257,8 @@ def pairs_of_lines(grid: Grid) -> Table | None:
         if nm is None or not (np.isfinite(nm).all() and are_wavelengths(nm)):
             return None
         series.append(Series(str(len(series) + 1), nm, cells[1::2], name))
-    return Table(series, remarks, ("layout: pairs, a line per spectrum",))
+    notes = ("layout: pairs, a line per spectrum",)
+    return Table(series, remarks, notes) if series else None
 
 
 def _pairs(block: Block) -> Series | None:
@@ -286,7 +270,7 @@ def _pairs(block: Block) -> Series | None:
             return None
     cells = tuple(chain.from_iterable(block.rows))
     nm = _wavelengths(cells, block.unit)
-    if nm is None or block.width < 4:
+    if nm is None or block.width < PAIRS:
         return None
     have_equal_steps = np.ptp(np.diff(nm)) <= EQUAL  # not with NaN
     return Series("", nm, cells[1::2], None) if have_equal_steps else None

@@ -43,8 +43,8 @@ from uplift.extras.formats.tables.cells import (
     texts_of,
 )
 from uplift.extras.formats.tables.columns import (
+    Block,
     blocks,
-    longest,
     pairs_of_lines,
     spectra_of,
 )
@@ -169,7 +169,7 @@ def _rows_or_columns(grid: Grid) -> Table:
     """
     header = max(headers(grid), key=lambda header: len(header.nm), default=None)
     found = list(blocks(grid))
-    block = longest(found)
+    block = _longest(found)
     if block is None:
         if header is None:
             raise _no_table(grid)
@@ -189,6 +189,25 @@ def _rows_or_columns(grid: Grid) -> Table:
     raise grid.location.at(corner.line).error(
         problem, "label the names 'name', or give them letters"
     )
+
+
+def _longest(found: Sequence[Block]) -> Block | None:
+    """Return the block of most rows, from the first column on that has wavelengths in
+    some of them.
+    """
+    if not found:
+        return None
+    rows = max(found, key=lambda block: len(block.rows)).run
+    block = next(
+        each
+        for each in found
+        if rows.first <= each.run.first and each.run.last <= rows.last
+    )
+    before = [np.nan] * (block.run.first - rows.first)
+    after = [np.nan] * (rows.last - block.run.last)
+    numbers = [*before, *block.run.numbers, *after]
+    run = block.run._replace(first=rows.first, last=rows.last, numbers=numbers)
+    return replace(block, run=run)
 
 
 def _no_table(grid: Grid) -> AtlasError:
