@@ -189,16 +189,16 @@ class Paints:
         OptionError
             Parts or thickness are invalid.
         """
-        parts = as_array(parts)
-        if parts.shape[-1:] != (len(self),):
+        amounts: Array = as_array(parts)
+        if amounts.shape[-1:] != (len(self),):
             raise OptionError(
                 f"parts must have one number for each of {len(self)} paints, "
-                f"got shape {parts.shape}",
+                f"got shape {amounts.shape}",
                 hint="pass 0 for paints that are not in the mixture",
             )
         medium = Medium(thickness, self.surface)
         backing = np.broadcast_to(ground, self.wavelengths.shape)
-        return coat_of_pigments(self.pigments, parts, medium).over(backing)
+        return coat_of_pigments(self.pigments, amounts, medium).over(backing)
 
     def cost(self, parts: ArrayLike) -> Array:
         """Compute the price of one part of mixtures.
@@ -213,10 +213,10 @@ class Paints:
         ndarray, shape (...)
             The price, NaN if that of a paint in the mixture is unknown.
         """
-        parts = as_array(parts)
+        amounts: Array = as_array(parts)
         prices = np.array(self.prices or (np.nan,) * len(self))
-        used = np.where(parts > 0, parts * np.where(parts > 0, prices, 0), 0)
-        return np.asarray(used.sum(axis=-1) / parts.sum(axis=-1))
+        used = np.where(amounts > 0, amounts * np.where(amounts > 0, prices, 0), 0)
+        return np.asarray(used.sum(axis=-1) / amounts.sum(axis=-1))
 
 
 def strengths(paints: Paints, white: int) -> Array:
