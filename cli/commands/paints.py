@@ -11,7 +11,6 @@ from uplift.common.text import pluralise
 
 from .. import options
 from ..output.console import paragraph, print_json, say
-from ..output.diagnostics import warn
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
 from ..paints import (
@@ -28,7 +27,7 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
-    from uplift.extras.paint import Paints, Surface
+    from uplift.extras.paint import Surface
 
 paints_option = click.option(
     "--paints",
@@ -56,7 +55,6 @@ paint_names = options.repeatable(
     Examples:
       uplift paints fit swatches.csv -o paints.toml
       uplift paints match '#3e7d4b' --paints paints.toml
-      uplift paints match --input wood.png --paints paints.toml -o layers.exr
       uplift mix '3:lemon yellow' '1:deep blue' --paints paints.toml
       uplift export paints.toml -o paints.html
     """,
@@ -165,7 +163,7 @@ def _surface(
 
     COLOUR is '#rrggbb', 'r,g,b' in linear RGB, or an entry of --atlas. The spectrum
     that it has is measured (--atlas, --spectrum) or that of a cube; the lights state
-    how far the match holds elsewhere. With --input, a picture becomes layers of paint.
+    how far the match holds elsewhere.
 
     \b
     Examples:
@@ -173,7 +171,6 @@ def _surface(
       uplift paints match '#3e7d4b' --paints paints.toml --count 2 --light A
       uplift paints match green --atlas macbeth --paints paints.toml --plot
       uplift paints match '#c8a878' --paints paints.toml --thickness 0.2
-      uplift paints match --input wood.png --paints paints.toml -o layers.exr
     """,
 )
 @click.argument("colour", metavar="[COLOUR]", required=False)
@@ -219,10 +216,6 @@ def _surface(
 )
 @options.cube()
 @options.atlas("Measured spectra whose entries are colours", "none")
-@click.option(
-    "--input", "image", metavar="IMAGE", help="Picture to divide into layers of paint."
-)
-@options.output(help="With --input: OpenEXR file of a layer per paint.")
 @options.plot("Plot the colour and the recipes")
 @options.table_or_json
 @options.force
@@ -239,22 +232,18 @@ def match(
     ground: str | None,
     cube_path: str | None,
     files: Sequence[str],
-    image: str | None,
-    output: str | None,
     plot_path: str | None,
     style: str,
     force: bool,
 ) -> None:
     from uplift.extras import paint
 
-    _check_subject(colour, spectrum_path, image, output)
-    check_outputs(output, plot_path, inputs=[paints_path, *filter(None, [image])])
+    if (colour is None) == (spectrum_path is None):
+        raise click.UsageError("Give one of COLOUR and --spectrum.")
+    check_outputs(plot_path, inputs=[paints_path])
     paints = paint.read_paints(paints_path)
     if names:
         paints = paints.select(names)
-    if image is not None and output is not None:
-        _write_layers(paints, image, output, style=style, force=force)
-        return
     target = read_target(
         paints, colour, spectrum_path, cube_path, files, lights, thickness, ground
     )
@@ -267,41 +256,6 @@ def match(
         print_json(match_fields(target, paints, found))
     else:
         print_recipes(target, paints, found, count)
-
-
-def _check_subject(
-    colour: str | None, spectrum: str | None, image: str | None, output: str | None
-) -> None:
-    subjects = [subject for subject in (colour, spectrum, image) if subject is not None]
-    if len(subjects) != 1:
-        raise click.UsageError("Give one of COLOUR, --spectrum and --input.")
-    if (image is None) != (output is None):
-        raise click.UsageError("--input IMAGE and --output EXR require each other.")
-    of_recipes = {"count", "steps", "alternatives", "lights", "thickness", "ground"}
-    of_recipes |= {"cube_path", "files", "plot_path"}
-    given = options.given()
-    if image is not None and (unused := of_recipes & given.keys()):
-        raise click.UsageError(f"{given[min(unused)]} does not apply to --input.")
-
-
-def _write_layers(
-    paints: Paints, image: str, output: str, *, style: str, force: bool
-) -> None:
-    from uplift.extras import paint, texture
-
-    with progress_bar("rows", quiet=style == "json") as progress:
-        layers = paint.paint_layers(paints)
-        written = texture.convert(layers, image, output, force=force, progress=progress)
-    warn(written.warnings)
-    fields = {
-        "output": output,
-        "layers": layers.channels,
-        "pixels": written.counts.pixels,
-    }
-    if style == "json":
-        print_json(fields)
-    else:
-        paragraph(f"{output}: layers {', '.join(layers.channels)}")
 
 
 @command.command(

@@ -91,7 +91,6 @@ paints fit samples.csv --recipes recipes.csv | -o x.toml | x.toml
 paints match #c8342a --paints paints.toml --atlas atlas.txt --cube cube.uplift \
 | --plot x.png | x.png
 paints match --spectrum atlas.txt --paints paints.toml | --plot x.png | x.png
-paints match --input image.exr --paints paints.toml | -o x.exr | x.exr
 export paints.toml | -o x.h | x.h
 palette palette.toml | -o x.txt | x.txt
 palette palette.toml | --plot x.png | x.png

@@ -158,18 +158,6 @@ def test_colours_out_of_reach_are_stated(run, paints):
     assert "No mixture of 1 paint reaches" in " ".join(reached.split())
 
 
-def test_pictures_become_layers(run, ask, refuse, paints, home):
-    rgb = np.random.default_rng(0).random((3, 4, 3)).astype(np.float32)
-    write_exr(home / "in.exr", planes(rgb))
-    words = "paints match --input in.exr --paints paints.toml --paint white"
-    text = run(f"{words} --paint blue -o out.exr").stdout
-    assert "white.Y, blue.Y" in text
-    assert set(channels(home / "out.exr")) == {*"RGB", "white.Y", "blue.Y"}
-    assert refuse(f"{words} -o out.exr").code == "file-exists"
-    answer = ask(f"{words} -o out.exr --force")
-    assert answer == {"output": "out.exr", "layers": ["white.Y"], "pixels": 12}
-
-
 def test_info_shows_what_the_file_has(run, ask, paints):
     answer = ask("paints info paints.toml")
     assert answer["wavelengths"] == paints.wavelengths.tolist()
@@ -271,12 +259,6 @@ def test_bad_input(refuse, paints, home, code, words):
         "paints match --paints paints.toml",
         "paints match #888",
         "paints match #888 --spectrum a.csv --paints paints.toml",
-        "paints match #888 --input a.exr -o b.exr --paints paints.toml",
-        "paints match --input a.exr --paints paints.toml",
-        "paints match #888 --paints paints.toml -o b.exr",
-        "paints match --input a.exr -o b.exr --paints paints.toml --count 2",
-        "paints match --input a.exr -o b.exr --paints paints.toml --light A",
-        "paints match --input a.exr -o b.exr --paints paints.toml --plot a.png",
         "paints match #888 --paints paints.toml --count 6",
         "paints match #888 --paints paints.toml --count 0",
         "paints match #888 --paints paints.toml --parts 0",

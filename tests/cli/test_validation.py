@@ -144,8 +144,6 @@ unknown-name paints match #888 --paints paints.toml --paint green --plot x.png
 unknown-name paints match #888 --paints paints.toml --light none --plot x.png
 colour paints match #888 --paints paints.toml --ground none --plot x.png
 file-not-found paints match #888 --paints paints.toml --atlas none.csv --plot x.png
-file-not-found paints match --input none.png --paints paints.toml -o x.exr
-file-exists paints match --input wood.png --paints paints.toml -o mine
 file-not-found palette palette.toml --image none.png --html x.html --plot x.png
 file-not-found palette none.toml -o x.csv
 unknown-name palette palette.toml --label none=#888 --image wood.png --html x.html

@@ -13,7 +13,6 @@ from uplift.extras.paint.optics import Surface
 from uplift.extras.paint.overpaint import overpainter
 from uplift.extras.paint.paint_advice import PaintAdvice, advise_samples
 from uplift.extras.paint.paint_fit import PaintFit, fit_paints
-from uplift.extras.paint.paint_layers import paint_layers
 from uplift.extras.paint.paint_samples import PaintSamples, read_paint_samples
 from uplift.extras.paint.paints import Paints, strengths
 from uplift.extras.paint.paints_file import read_paints, write_paints
@@ -37,7 +36,6 @@ __all__ = [
     "match",
     "mix",
     "overpainter",
-    "paint_layers",
     "read_paint_samples",
     "read_paints",
     "strengths",
