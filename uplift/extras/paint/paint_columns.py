@@ -3,7 +3,7 @@
 A column whose label names another quantity is not a paint. Of the others all are, if
 their parts make up the same whole in each row, or else those that do so without a few.
 Parts in other units, such as 1 to 4, have no whole. There, a column that has a number
-in each row next to paints that have not cannot be told from another quantity.
+in each row next to paints that have not may be another quantity, and raises.
 """
 
 import re
@@ -85,8 +85,8 @@ class Columns:
 def find_columns(
     head: Sequence[str], rows: Sequence[Sequence[str]], location: SourceLocation
 ) -> Columns:
-    """Tell columns apart by the header and the rows below, which are as long. Raise
-    `AtlasError` for one that cannot be told.
+    """Classify columns by the header and the rows below, which are as long. Raise
+    `AtlasError` for an ambiguous one.
     """
     labels = [plain_label(text) for text in head]
     words = [_words(text) for text in head]
