@@ -134,8 +134,9 @@ def find_columns(
 
 
 def _amounts(cells: Sequence[str]) -> Array:
-    """Return the numbers of cells, 0 for others."""
-    return np.nan_to_num([parse_cell(cell) or 0.0 for cell in cells])
+    """Return the finite numbers of cells, 0 for others."""
+    numbers = [parse_cell(cell) or 0.0 for cell in cells]
+    return np.nan_to_num(numbers, posinf=0, neginf=0)
 
 
 def _words(label: str) -> str:
