@@ -83,10 +83,10 @@ def advise_samples(fit: PaintFit, count: int = 5) -> PaintAdvice:
     left = list(range(len(names)))
     while left and len(advice) < count:
         # C Hᵀ (H C Hᵀ + 1)⁻¹ H C is what a measurement with the Jacobian H takes off C.
-        seen = covariance @ aims.T
-        variances = (aims.T * seen).sum(axis=0)
+        projected = covariance @ aims.T
+        variances = (aims.T * projected).sum(axis=0)
         roots = [_gain_root(covariance, rows[row]) @ rows[row] for row in left]
-        taken = [((root @ seen) ** 2).sum(axis=0) for root in roots]
+        taken = [((root @ projected) ** 2).sum(axis=0) for root in roots]
         errors = [_mean_error(variances - reduction) for reduction in taken]
         best = int(np.argmin(errors))
         advice.append(NextSample(names[left[best]], errors[best]))

@@ -3,13 +3,14 @@
 A column whose label names another quantity is not a paint. Of the others all are, if
 their parts make up the same whole in each row, or else those that do so without a few.
 Parts in other units, such as 1 to 4, have no whole. There, a column that has a number
-in each row next to paints that have not cannot be told from another quantity.
+in each row next to paints that have not may be another quantity, and raises.
 """
 
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from functools import partial
+from itertools import chain, combinations
 
 import numpy as np
 
@@ -48,13 +49,15 @@ OTHER = re.compile(
     r"instrument|observer|angle|geometry|aperture|description|comments?|remarks?|"
     r"gloss|haze|opacity|hiding|contrast|ratio|coverage|price|cost|count|layers?|coats?|"
     r"temp|temperature|humidity|rh|delta|δ?[eabhlc]|d[eabhlc]|hue|chroma|lightness|"
-    r"luminance|whiteness|yellowness|thickness|film|dry|drying|wet|paint|mix|mixture|"
+    r"luminance|whiteness|yellowness|thickness|film|dry|drying|wet|mix|mixture|"
     r"mixing|mean|average|avg|std|sd|stdev|deviation|error|min|max|[rgbxyzlhsvu]|"
     rf"{LENGTH}|m?g|kg|ml|f|gu|deg|percent"
 )
 """Words of labels that name other quantities, with their units."""
 SPACES = ("rgb", "xyz", "xy", "lab", "lch", "luv", "hsv", "hsl")
-"""Letters that name colours if all of them are labels. One alone may be a paint."""
+"""Letters that name colours if all of them are labels, and have a number in each row.
+One alone may be a paint.
+"""
 STATED = re.compile(
     r"\(parts\)|\b(white|base|medium|binder|vehicle|extender|PW ?\d+)\b", re.IGNORECASE
 )
@@ -82,8 +85,8 @@ class Columns:
 def find_columns(
     head: Sequence[str], rows: Sequence[Sequence[str]], location: SourceLocation
 ) -> Columns:
-    """Tell columns apart by the header and the rows below, which are as long. Raise
-    `AtlasError` for one that cannot be told.
+    """Classify columns by the header and the rows below, which are as long. Raise
+    `AtlasError` for an ambiguous one.
     """
     labels = [plain_label(text) for text in head]
     words = [_words(text) for text in head]
@@ -100,12 +103,16 @@ def find_columns(
     columns = [at for at in filled if at not in known and parse_label(head[at]) is None]
     below = cells[grounds[0]] if grounds else ()
     painted = [name not in below for name in cells[names[0]]]
-    letters = "".join(filter(set(words).issuperset, SPACES))
     candidates = {
         at: _amounts(cells[at])[painted]
         for at in columns
-        if any(map(is_value, cells[at])) and not _is_other(head[at], words[at], letters)
+        if any(map(is_value, cells[at])) and not _is_other(head[at], words[at])
     }
+    if _deviation(candidates, list(candidates)) > ROUNDING:
+        letters = set("".join(filter(set(labels).issuperset, SPACES)))
+        for at in columns:
+            if labels[at] in letters and all(cells[at]):
+                candidates.pop(at, None)
     paints = dict[str, int]()
     for at in _paints(candidates, head, location):
         label = head[at].replace("(parts)", "").strip()
@@ -127,8 +134,9 @@ def find_columns(
 
 
 def _amounts(cells: Sequence[str]) -> Array:
-    """Return the numbers of cells, 0 for others."""
-    return np.nan_to_num([parse_cell(cell) or 0.0 for cell in cells])
+    """Return the finite numbers of cells, 0 for others."""
+    numbers = [parse_cell(cell) or 0.0 for cell in cells]
+    return np.nan_to_num(numbers, posinf=0, neginf=0)
 
 
 def _words(label: str) -> str:
@@ -138,28 +146,25 @@ def _words(label: str) -> str:
     return " ".join(re.findall(r"[^\W\d_]+", spaced.casefold()))
 
 
-def _is_other(label: str, words: str, letters: str) -> bool:
-    """Whether a label names another quantity than the parts of a paint. ``letters`` are
-    those of colours.
-    """
-    if STATED.search(label):
+def _is_other(label: str, words: str) -> bool:
+    """Whether a label names another quantity than the parts of a paint."""
+    if "(parts)" in label:
         return False
     if "*" in label or not words or "note" in words.split():
         return True
-    if len(words) == 1:
-        return words in letters
-    return all(map(OTHER.fullmatch, words.split()))
+    return len(words) > 1 and all(map(OTHER.fullmatch, words.split()))
 
 
 def _paints(
     candidates: dict[int, Array], head: Sequence[str], location: SourceLocation
-) -> list[int]:
-    """Return the columns (n,) that make up a whole without few others, or else all."""
-    for count in range(MAX_OTHERS + 1):
-        for others in combinations(candidates, count):
-            rest = [at for at in candidates if at not in others]
-            if _is_whole(candidates, rest):
-                return rest
+) -> Sequence[int]:
+    """Return the columns that make up a whole best, without a few, or else all."""
+    least = len(candidates) - MAX_OTHERS
+    sizes = range(len(candidates), max(least, 2) - 1, -1)
+    subsets = chain.from_iterable(combinations(candidates, size) for size in sizes)
+    best = min(subsets, key=partial(_deviation, candidates), default=())
+    if _deviation(candidates, best) <= ROUNDING:
+        return best
     present = np.array([values > 0 for values in candidates.values()])
     counts = present.sum(axis=0)
     is_mixed = counts.any() and (counts != 1).all()
@@ -171,15 +176,15 @@ def _paints(
     return list(candidates)
 
 
-def _is_whole(candidates: dict[int, Array], columns: Sequence[int]) -> bool:
-    """Whether columns make up one of `WHOLES` in all rows with numbers, and some rows
-    mix them.
+def _deviation(candidates: dict[int, Array], columns: Sequence[int]) -> float:
+    """Return the largest relative difference of the sums of columns from one of
+    `WHOLES`, in rows with numbers; infinite if no row mixes them.
     """
     parts = np.array([candidates[at] for at in columns])
     if not (parts > 0).sum(axis=0).max(initial=0) > 1:
-        return False
+        return np.inf
     sums = parts.sum(axis=0)[np.any(list(candidates.values()), axis=0)]
-    return any((abs(sums / whole - 1) <= ROUNDING).all() for whole in WHOLES)
+    return min(float(abs(sums / whole - 1).max()) for whole in WHOLES)
 
 
 def _ambiguous(label: str, problem: str, location: SourceLocation) -> AtlasError:
