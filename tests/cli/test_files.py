@@ -79,7 +79,6 @@ export paints.toml | -o x.html | x.html
 lights build --atlas atlas.txt | -o x.uplift | x.uplift
 lights export lights.uplift | -o x.h | x.h
 lights info lights.uplift | --plot x.svg | x.svg
-lights info lights.uplift | --html x.html | x.html
 lights query --lights lights.uplift --input colours.csv | --plot x.png | x.png
 lights texture image.exr --lights lights.uplift | -o x.exr | x.exr
 mix #c8342a --atlas atlas.txt --cube cube.uplift | --plot x.png | x.png
@@ -232,7 +231,7 @@ def full_disk():
         "slices cube.uplift -o x.exr",
         "slices cube.uplift --plot x.png",
         "export cube.uplift -o x.npz",
-        "export cube.uplift -o x.csv",
+        "export cube.uplift -o x.npz",
         "export cube.uplift -o x.h",
         "relight --cube cube.uplift -o x.html",
         "texture image.exr --wavelengths 400:700:1 -o x.exr",
