@@ -49,8 +49,8 @@ def test_expected_errors_are_possible(ask, cube):
     colours = "#000000 #ffffff #00ffff #ffff00 #ff00ff #fefefe #010203 #f0ffff #888888"
     words = f"--cube {cube} --input-space sRGB --out-of-gamut clip"
     found = ask("bounds", *colours.split(), *words.split(), *LIGHTS)
-    asked = ask("query", *colours.split(), *words.split(), *LIGHTS)
-    for answer, query in zip(found, asked, strict=True):
+    queried = ask("query", *colours.split(), *words.split(), *LIGHTS)
+    for answer, query in zip(found, queried, strict=True):
         for name, bounds in answer["bounds"].items():
             largest = bounds["largest_delta_e_2000"] + 1e-9
             assert answer["error_bounds"][name] <= largest

@@ -19,6 +19,14 @@ from uplift.common.errors import CubeFileError, OutputError, UpliftError
 from uplift.common.files import atomic_write, check_regular, recognise
 from uplift.common.text import format_value, parse_json, printable
 
+RANGE = 300.0, 1000.0
+"""Limits of wavelengths in nm: illuminants and observers have no shorter ones, atlases
+hardly longer ones.
+"""
+VISIBLE = 380.0, 780.0
+"""Wavelengths in nm between which every file has values."""
+MAX_UNEVENNESS = 1e-6
+"""Difference in nm between steps of wavelengths that is rounding."""
 KEY = "uplift"
 """The only metadata entry: safetensors does not keep the order of several."""
 STORED_TYPES = ("F64", "F32", "U8", "I32", "I16", "U32")
@@ -223,6 +231,14 @@ def require(condition: bool, problem: str) -> None:
     """Raise `CubeFileError` unless the condition is met."""
     if not condition:
         raise CubeFileError(problem)
+
+
+def check_wavelengths(nm: NDArray[Any]) -> None:
+    """Raise `CubeFileError` unless wavelengths (N,) in nm can be those of a sensor."""
+    first, last = VISIBLE
+    even = float(np.ptp(np.diff(nm))) < MAX_UNEVENNESS
+    problem = f"the wavelengths must ascend evenly and hold {first:g} to {last:g} nm"
+    require(even and nm[0] <= first < last <= nm[-1], problem)
 
 
 def check_arrays(

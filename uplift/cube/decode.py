@@ -15,6 +15,7 @@ from uplift.cube.container import (
     Tensors,
     check_arrays,
     check_metadata,
+    check_wavelengths,
     require,
 )
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
@@ -25,7 +26,6 @@ from uplift.cube.schema import (
     METADATA,
     POINTS,
     SENSOR,
-    VISIBLE,
 )
 from uplift.lattice import CORNERS, Lattice, PointTable
 from uplift.models import Model, from_description
@@ -34,8 +34,6 @@ MAX_POINTS = 1 << 27
 """Nodes of the largest lattice of a sparse file, as a small file must not claim all
 memory.
 """
-MAX_UNEVENNESS = 1e-6
-"""Difference in nm between the steps of wavelengths that is rounding."""
 MAX_CONDITION = 1e6
 """Limit of the condition number of the matrix from XYZ to RGB."""
 
@@ -170,8 +168,7 @@ def _check(data: CubeData) -> None:
     atlas = data.atlas
     sensor = data.sensor
     nodes = data.lattice.nodes
-    nm = sensor.wavelengths
-    first, last = VISIBLE
+    check_wavelengths(sensor.wavelengths)
     names = (*atlas.names, *(() if atlas.outside is None else atlas.outside.names))
     looks = tuple(look["name"] for look in data.provenance.get("looks", ()))
     with np.errstate(all="ignore"):
@@ -214,10 +211,6 @@ def _check(data: CubeData) -> None:
         (
             regular,
             "observer, RGB space and camera must have three independent channels",
-        ),
-        (
-            nm[0] <= first < last <= nm[-1] and np.ptp(np.diff(nm)) < MAX_UNEVENNESS,
-            f"the wavelengths must ascend evenly and hold {first:g} to {last:g} nm",
         ),
         (
             (np.diff(sensor.decoding) >= 0).all(),

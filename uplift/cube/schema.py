@@ -2,7 +2,7 @@
 (docs/cube-file.md).
 """
 
-from uplift.cube.container import Stored
+from uplift.cube.container import RANGE, Stored
 from uplift.lattice import Status
 
 MIN_THRESHOLD = 1e-12
@@ -12,12 +12,6 @@ MAX_THRESHOLD = 0.1
 MAX_LIGHTS = 64
 MAX_FILES = 10_000
 
-RANGE = 300.0, 1000.0
-"""Limits of wavelengths in nm: illuminants and observers have no shorter ones, atlases
-hardly longer ones.
-"""
-VISIBLE = 380.0, 780.0
-"""Wavelengths in nm between which every cube has values."""
 
 SINGLE = ("float32",)
 POINTS = {

@@ -440,14 +440,15 @@ def expected_errors(
     if data.points.standard_error is None:
         return None
     from uplift.colorimetry import observer  # reads tables of illuminants
-    from uplift.lookup.errors_under_lights import light_errors, limit_errors
+    from uplift.lookup.errors_under_lights import light_errors
 
     lit = light or data.error_illuminant
     if isinstance(lit, Illuminant):
         lit = observer.light(lit, cube.observer, *data.sensor.range)
 
     def of_nodes(rgb: Array) -> Array:
-        return limit_errors(data, lit, rgb, node_errors(data, rgb))
+        limit = extension("errors", "limits")
+        return np.asarray(limit(data, lit, rgb, node_errors(data, rgb)))
 
     is_stored = lit.name == data.error_illuminant
     function = of_nodes if is_stored else light_errors(data, lit)

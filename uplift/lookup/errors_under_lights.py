@@ -50,7 +50,8 @@ class LightErrors:
         remaining = np.tile(radii * np.sqrt(self.expected.floor), (len(rgb), 1))
         remaining = nodes.hits.mix(remaining, self.entries[nodes.hits.entry])
         errors = np.sqrt(radii**2 * squares + remaining**2)
-        return limit_errors(self.data, self.light, rgb, errors)
+        limit = extension("errors", "limits")
+        return np.asarray(limit(self.data, self.light, rgb, errors))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -77,12 +78,6 @@ class Evidence:
         missed = delta_e_spectra(light, self.left_out, self.measured)
         remaining = delta_e_spectra(light, self.kept, self.measured)
         return expected_error(self.lab, missed, remaining, products, self.family)
-
-
-def limit_errors(data: CubeData, light: Light, rgb: Array, errors: Array) -> Array:
-    """Limit expected errors (n, k) at linear RGB (n, 3) by possible ones."""
-    limited: Array = extension("errors", "limits")(data, light, rgb, errors)
-    return limited
 
 
 def has_evidence(data: CubeData) -> bool:

@@ -18,7 +18,8 @@ from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP
 from uplift.common import machine
 from uplift.common.errors import OptionError, unknown_name
 from uplift.common.text import format_value
-from uplift.cube.schema import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD, RANGE
+from uplift.cube.container import RANGE
+from uplift.cube.schema import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
 from uplift.lattice import AXES
 from uplift.models import Model, Moments, Sigmoid
 from uplift.models.moments import MAX_COUNT

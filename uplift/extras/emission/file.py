@@ -16,11 +16,13 @@ from numpy.typing import NDArray
 from uplift.common.arrays import Array
 from uplift.common.text import pluralise
 from uplift.cube.container import (
+    RANGE,
     Kind,
     Stored,
     Tensors,
     check_arrays,
     check_metadata,
+    check_wavelengths,
     content_digest,
     load,
     require,
@@ -50,7 +52,7 @@ ARRAYS = {
     "rings": Stored("R", low=0),
     "spectra": Stored("K R N", ("float32",), low=0),
     "error": Stored("K R", ("float32",), low=0),
-    "wavelengths": Stored("N", low=0),
+    "wavelengths": Stored("N", low=RANGE[0], high=RANGE[1]),
     "cmfs": Stored("N 3"),
     "rgb_to_xyz": Stored("3 3"),
     "entries.uv": Stored("E 2", low=0),
@@ -192,9 +194,7 @@ def _decode(tensors: Tensors, metadata: Mapping[str, Any]) -> EmissionData:
 
 def _check(data: EmissionData) -> None:
     """Check that the arrays belong together."""
-    steps = np.diff(data.wavelengths)
-    even = len(steps) > 0 and bool((steps > 0).all()) and float(np.ptp(steps)) < 1e-6
-    require(even, "the wavelengths must ascend evenly")
+    check_wavelengths(data.wavelengths)
     require(
         float(data.cmfs[:, 1].sum()) > 0, "the colour-matching functions must respond"
     )

@@ -137,12 +137,12 @@ class Passes:
         """
         return power @ self.light_projection.T
 
-    def light(self, illuminant: Illuminant) -> PassesLight:
+    def light(self, name: Illuminant) -> PassesLight:
         """Find a light by its name, or a lamp by its spectrum.
 
         Parameters
         ----------
-        illuminant : str or Lamp
+        name : str or Lamp
             Name in the passes, or a lamp.
 
         Returns
@@ -156,12 +156,12 @@ class Passes:
         """
         named = {light.name: light for light in self.lights}
         known = named
-        key = str(illuminant)
-        if isinstance(illuminant, Lamp):
+        key = str(name)
+        if isinstance(name, Lamp):
             known = {light.digest: light for light in self.lights}
-            key = power_digest(scaled_power(illuminant))
+            key = power_digest(scaled_power(name))
         if key not in known:
-            raise unknown_name(str(illuminant), named, "light of the passes")
+            raise unknown_name(str(name), named, "light of the passes")
         return known[key]
 
 
