@@ -19,7 +19,6 @@ import numpy as np
 from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftWarning, warn
-from uplift.common.machine import compiled
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.paint.optics import Surface, beneath_surface, through_surface
@@ -294,6 +293,8 @@ def _solver(
     import jax
     import lineax
     import optimistix
+
+    from uplift.common.compilation import compiled
 
     solver = optimistix.LevenbergMarquardt(
         PRECISION, PRECISION, linear_solver=lineax.Normal(lineax.Cholesky())
