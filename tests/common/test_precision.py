@@ -72,12 +72,8 @@ def lowered(tmp_path_factory):
 
 def test_products_of_all_compiled_functions_are_in_full_precision(lowered):
     callers, programs = lowered
-    source = {
-        str(path)
-        for folder in ("uplift", "cli")
-        for path in ROOT.glob(f"{folder}/**/*.py")
-        if USE.search(path.read_text())
-    }
+    files = [*ROOT.glob("uplift/**/*.py"), *ROOT.glob("cli/**/*.py")]
+    source = {str(path) for path in files if USE.search(path.read_text())}
     assert set(callers) == source - {str(ROOT / SOURCE)}
     found = products("\n".join(programs))
     assert len(found) > 50
