@@ -15,7 +15,7 @@ from benchmarks import DOCS, Row, record
 from benchmarks.checker import Layout, chart, show_srgb
 from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
-from uplift.common.machine import compiled
+from uplift.common.compilation import compiled
 from uplift.extras.pages.figure import (
     INK,
     new_figure,

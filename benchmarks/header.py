@@ -24,7 +24,7 @@ from uplift.lookup.interpolate import is_inexact
 FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-w")
 COLOURS = 20_000
 COMPARED = 100_000
-"""Colours anywhere, and as many on the faces of RGB, whose answers are compared."""
+"""Colours anywhere, and as many on the faces of RGB, that are compared."""
 RUNS = 9
 RAY = np.array([450.0, 510.0, 570.0, 630.0])
 INSIDE = -2e-3

@@ -13,20 +13,20 @@ import pytest
 
 from tests.conftest import ROOT
 from tests.helpers import run_python
-from uplift.common.machine import compiled
+from uplift.common.compilation import compiled
 
-MACHINE = "uplift/common/machine.py"
+SOURCE = "uplift/common/compilation.py"
 PRODUCT = re.compile(r"stablehlo\.dot_general.*")
 USE = re.compile(r"@compiled\b|(?<!\w)compiled\(")
 FULL = "precision = [HIGHEST, HIGHEST]"
 USES = """
 import json, sys
 import jax, numpy as np
-from uplift.common import machine
+from uplift.common import compilation
 
 jax.config.update("jax_dump_ir_to", sys.argv[1])
 callers = set()
-compiled = machine.compiled
+compiled = compilation.compiled
 
 def record(function, **options):
     caller = sys._getframe(1).f_code.co_filename
@@ -35,7 +35,7 @@ def record(function, **options):
         return function(*arguments)
     return compiled(traced, **options)
 
-machine.compiled = record
+compilation.compiled = record
 
 import uplift
 from tests.extras.paint.invented import invented, measured, plan
@@ -72,13 +72,9 @@ def lowered(tmp_path_factory):
 
 def test_products_of_all_compiled_functions_are_in_full_precision(lowered):
     callers, programs = lowered
-    source = {
-        str(path)
-        for folder in ("uplift", "cli")
-        for path in ROOT.glob(f"{folder}/**/*.py")
-        if USE.search(path.read_text())
-    }
-    assert set(callers) == source - {str(ROOT / MACHINE)}
+    files = [*ROOT.glob("uplift/**/*.py"), *ROOT.glob("cli/**/*.py")]
+    source = {str(path) for path in files if USE.search(path.read_text())}
+    assert set(callers) == source - {str(ROOT / SOURCE)}
     found = products("\n".join(programs))
     assert len(found) > 50
     assert [line for line in found if FULL not in line] == []
@@ -90,7 +86,7 @@ def test_nothing_else_compiles():
     for folder in ("uplift", "cli", "benchmarks"):
         for path in Path(ROOT, folder).rglob("*.py"):
             text = re.sub(r'"""[\s\S]*?"""|#.*', "", path.read_text())
-            if str(path) != str(ROOT / MACHINE):
+            if str(path) != str(ROOT / SOURCE):
                 assert not plain.search(text), path
 
 

@@ -29,14 +29,14 @@ Values = NDArray[Any]
 SHORTEST = 100.0
 """Shortest wavelength in nm: smaller numbers are in micrometres or metres."""
 LONGEST = 5000.0
-"""Longest wavelength in nm at which a spectrum is asked for."""
+"""Longest wavelength in nm of spectra that are requested."""
 
 
 def as_array(
     values: Any,
     error: Callable[..., UpliftError] = OptionError,
     dtype: DTypeLike = float,
-) -> Any:
+) -> Values:
     """Convert to an array of numpy; ``error`` for anything but numbers, masked values
     (``masked-values``) and numbers that JAX traces (``traced-values``).
     """
@@ -65,7 +65,7 @@ def as_nm(wavelengths: ArrayLike) -> Array:
     """Convert to wavelengths (N,) in nm; `OptionError` outside `SHORTEST` to
     `LONGEST`.
     """
-    array: Array = np.atleast_1d(as_array(wavelengths))
+    array = np.atleast_1d(as_array(wavelengths))
     limits = f"wavelengths must be a list of numbers in [{SHORTEST:g}, {LONGEST:g}] nm"
     if array.ndim != 1 or not array.size:
         raise OptionError(f"{limits}, got the shape {array.shape}")

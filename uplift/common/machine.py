@@ -1,11 +1,11 @@
-"""The machine: threads and precision of linear algebra, and memory."""
+"""The machine: threads of linear algebra, and memory."""
 
 import contextlib
 import os
 import re
 import threading
-from collections.abc import Callable, Iterator
-from functools import cache, wraps
+from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -54,21 +54,6 @@ def single_threaded_blas() -> Iterator[None]:
                     # it.
                     OpenBLASController.clear_controlling_thread(force=True)
                     _LIMITS.pop().restore_original_limits()
-
-
-def compiled(function: Callable[..., Any], **options: Any) -> Any:
-    """Compile a function by ``jax.jit``, with matrix products in full precision.
-
-    JAX multiplies matrices of float32 in TF32 on accelerators, with 10 bits.
-    """
-    import jax
-
-    @wraps(function)
-    def traced(*arguments: Any) -> Any:
-        with jax.default_matmul_precision("highest"):
-            return function(*arguments)
-
-    return jax.jit(traced, **options)
 
 
 AVAILABLE = re.compile(r"^(?:MemAvailable|SwapFree): +(\d+)", re.MULTILINE)

@@ -13,7 +13,8 @@ from jax import lax
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from uplift.common.arrays import Array, blocks
-from uplift.common.machine import compiled, require_xla
+from uplift.common.compilation import compiled
+from uplift.common.machine import require_xla
 from uplift.models import ForwardMap, Model, Moments
 from uplift.models.arithmetic import arctan
 from uplift.models.duality import integrate, moments_from_multipliers

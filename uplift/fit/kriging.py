@@ -13,7 +13,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from uplift.common.arrays import Array, Indices, blocks, distances
-from uplift.common.machine import compiled, require_xla
+from uplift.common.compilation import compiled
+from uplift.common.machine import require_xla
 
 METRIC = np.array([0.5, 1.0, 1.0])
 """Weights of differences of L*, a* and b*: materials of one hue are more alike than

@@ -21,7 +21,7 @@ import optimistix
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, Indices, blocks, largest
-from uplift.common.machine import compiled
+from uplift.common.compilation import compiled
 from uplift.fit.batch import map_batches
 from uplift.models import ForwardMap, anchored_step
 from uplift.models.arithmetic import blocked_matmul

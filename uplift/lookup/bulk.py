@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from uplift.colorimetry import Sensor, as_rgb
 from uplift.common.arrays import Floats
-from uplift.common.machine import compiled, require_xla
+from uplift.common.compilation import compiled
+from uplift.common.machine import require_xla
 from uplift.common.text import pluralise
 from uplift.lookup.blocks import (
     as_coefficient_count,

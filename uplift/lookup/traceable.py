@@ -17,8 +17,9 @@ from numpy.typing import ArrayLike as NumpyArrayLike
 from numpy.typing import DTypeLike
 
 from uplift.common.arrays import Array, as_array
+from uplift.common.compilation import compiled
 from uplift.common.errors import ColourError, OptionError, UpliftWarning, warn
-from uplift.common.machine import compiled, require_xla
+from uplift.common.machine import require_xla
 from uplift.common.text import pluralise
 from uplift.cube import CubeData
 from uplift.lookup.blocks import as_coefficient_count, as_float_type, as_wavelengths

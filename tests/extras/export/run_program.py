@@ -131,7 +131,7 @@ def cpp(path, rgb, wavelengths, form="header"):
 
 
 def fast(path, rgb, wavelengths, form="header"):
-    """Told that nothing is NaN."""
+    """Compiled as if nothing was NaN."""
     return c(path, rgb, wavelengths, form, ("cc", "-std=c99", "-O2", "-ffast-math"))
 
 

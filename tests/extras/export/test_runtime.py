@@ -219,7 +219,7 @@ def test_forged_files_are_refused(small_cube, tmp_path, change, result, open_fil
     assert open_file(path) == result
 
 
-def test_numbers_are_checked_where_nothing_is_said_to_be_nan(small_cube, tmp_path):
+def test_numbers_are_checked_where_compilers_assume_no_nan(small_cube, tmp_path):
     """Of colours, and of files."""
     rgb = np.clip(np.nan_to_num(OUTSIDE, posinf=1), 0, 1)
     found = answers(small_cube, OUTSIDE, AT, "-O2", "-ffast-math")

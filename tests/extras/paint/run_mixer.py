@@ -100,7 +100,7 @@ def sanitized(path, pairs, shares):
 
 
 def fast(path, pairs, shares):
-    """Told that nothing is NaN."""
+    """Compiled as if nothing was NaN."""
     return c(path, pairs, shares, ("cc", "-O2", "-ffast-math"))
 
 

@@ -14,7 +14,6 @@ import numpy as np
 
 from uplift.colorimetry import delta_e_2000_weights
 from uplift.common.arrays import Array
-from uplift.common.machine import compiled
 from uplift.extras.paint.paint_fit import PaintFit
 from uplift.extras.paint.paint_samples import MeasuredSpectra, PaintSamples
 
@@ -123,6 +122,8 @@ def _mean_error(variances: Array) -> float:
 
 def _jacobian(fit: PaintFit, samples: PaintSamples, name: str) -> Array:
     import jax
+
+    from uplift.common.compilation import compiled
 
     function = getattr(fit.model, name)
 

@@ -20,7 +20,6 @@ import numpy as np
 from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError, UpliftWarning, warn
-from uplift.common.machine import compiled
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.paint.optics import Surface, beneath_surface, through_surface
@@ -246,6 +245,8 @@ def _fit(
     progress: ProgressCallback,
 ) -> PaintFit:
     import jax
+
+    from uplift.common.compilation import compiled
 
     values = samples.measured.values
     noise = _smallest_noise(samples)
