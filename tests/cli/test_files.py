@@ -231,7 +231,6 @@ def full_disk():
         "slices cube.uplift -o x.exr",
         "slices cube.uplift --plot x.png",
         "export cube.uplift -o x.npz",
-        "export cube.uplift -o x.npz",
         "export cube.uplift -o x.h",
         "relight --cube cube.uplift -o x.html",
         "texture image.exr --wavelengths 400:700:1 -o x.exr",

@@ -17,6 +17,7 @@ from uplift.colorimetry import rgb_to_lab
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.arrays import Array, Mask, as_array
 from uplift.common.errors import ColourError, unknown_name
+from uplift.common.extensions import extension
 from uplift.cube import CubeData, read, write
 from uplift.lookup import blocks
 from uplift.lookup.interpolate import (
