@@ -22,7 +22,7 @@ from uplift.colorimetry import (
     solid_volume,
 )
 from uplift.colorimetry.gamut import SRGB, conversion
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import ColourError
 from uplift.cube import CubeData
 from uplift.extras.looks import mesh, mismatch
@@ -142,26 +142,52 @@ def limit_errors(data: CubeData, light: Light, rgb: Array, errors: Array) -> Arr
     """
     srgb = rgb @ conversion(data.sensor, SRGB).T
     corners, weights = NODES.cell_corners(*NODES.cell(srgb.clip(0, 1)))
-    nodes = _nodes(data.sensor, light)[corners]
-    metamers = np.einsum("nc,ncdk->ndk", weights, nodes)
+    nodes = _nodes(data.sensor, light)
+    nodes.add(corners)
+    metamers = np.einsum("nc,ncdk->ndk", weights, nodes.metamers[corners])
     unknown = ~in_unit_cube(srgb) | np.isnan(metamers).any(axis=(1, 2))
-    metamers[unknown] = _extremes(data.sensor, light, rgb[unknown])
+    if unknown.any():
+        metamers[unknown] = _extremes(data.sensor, light, rgb[unknown])
     answers = spectra(data, rgb, data.sensor.wavelengths) @ light.xyz.T
     reference = lab(answers, light.white)[:, None]
     possible = delta_e_2000(lab(metamers, light.white), reference)
     return np.fmin(errors, possible.max(axis=1, keepdims=True))
 
 
+@dataclass(frozen=True, eq=False)
+class NodeMetamers:
+    """Metamers at `NODES`, added when a colour needs them: a query needs few."""
+
+    sensor: Sensor
+    light: Light
+    metamers: Array
+    """(125, d, 3) XYZ, NaN where they are not known."""
+    known: Mask
+
+    def add(self, corners: Indices) -> None:
+        """Compute the metamers at corners (n, 8)."""
+        missing = np.unique(corners)
+        missing = missing[~self.known[missing]]
+        if len(missing):
+            to_rgb = np.linalg.inv(conversion(self.sensor, SRGB))
+            rgb = NODES.points[missing] @ to_rgb.T
+            self.metamers[missing] = _extremes(self.sensor, self.light, rgb)
+            self.known[missing] = True
+
+
 @lru_cache(maxsize=16)
-def _nodes(sensor: Sensor, light: Light) -> Array:
-    rgb = NODES.points @ np.linalg.inv(conversion(sensor, SRGB)).T
-    return _extremes(sensor, light, rgb)
+def _nodes(sensor: Sensor, light: Light) -> NodeMetamers:
+    count = len(NODES.points)
+    metamers = np.full((count, mismatch.COUNTS[0], 3), np.nan)
+    return NodeMetamers(sensor, light, metamers, np.zeros(count, dtype=bool))
 
 
 def _extremes(sensor: Sensor, light: Light, rgb: Array) -> Array:
     """XYZ (n, d, 3) of the metamers that differ most; NaN for colours that no
     reflectance has.
     """
+    with contextlib.suppress(ColourError):
+        return mismatch.mismatch_volumes(sensor, light, rgb, 0).xyz
     xyz = np.full((len(rgb), mismatch.COUNTS[0], 3), np.nan)
     real = solid(sensor.matrix).contains(rgb)
     with contextlib.suppress(ColourError):
