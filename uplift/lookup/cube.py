@@ -17,7 +17,6 @@ from uplift.colorimetry import rgb_to_lab
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.arrays import Array, Mask, as_array
 from uplift.common.errors import ColourError, unknown_name
-from uplift.common.extensions import extension
 from uplift.cube import CubeData, read, write
 from uplift.lookup import blocks
 from uplift.lookup.interpolate import (
@@ -441,15 +440,14 @@ def expected_errors(
     if data.points.standard_error is None:
         return None
     from uplift.colorimetry import observer  # reads tables of illuminants
-    from uplift.lookup.errors_under_lights import light_errors
+    from uplift.lookup.errors_under_lights import light_errors, limited
 
     lit = light or data.error_illuminant
     if isinstance(lit, Illuminant):
         lit = observer.light(lit, cube.observer, *data.sensor.range)
 
     def of_nodes(rgb: Array) -> Array:
-        limit = extension("errors", "limits")
-        return np.asarray(limit(data, lit, rgb, node_errors(data, rgb)))
+        return limited(data, lit, rgb, node_errors(data, rgb))
 
     is_stored = lit.name == data.error_illuminant
     function = of_nodes if is_stored else light_errors(data, lit)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry import Light, delta_e_spectra, rgb_to_lab
+from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.likely_errors import ExpectedError, expected_error
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
@@ -20,6 +21,21 @@ from uplift.common.extensions import extension
 from uplift.cube import CubeData
 from uplift.lookup.interpolate import around
 from uplift.models import reflectance
+
+END = 1 / 16
+"""Distance in linear sRGB from the ends of [0, 1] within which few reflectances may be
+possible. Elsewhere the expected errors of no cube are near to the possible ones.
+"""
+
+
+def limited(data: CubeData, light: Light, rgb: Array, errors: Array) -> Array:
+    """Limit expected errors (n, 2) of linear RGB (n, 3) by what metamers differ by."""
+    srgb = rgb @ conversion(data.sensor, SRGB).T
+    near = (np.abs(srgb - 0.5) > 0.5 - END).any(axis=1)
+    if near.any():
+        limit = extension("errors", "limits")
+        errors[near] = limit(data, light, rgb[near], errors[near])
+    return errors
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -50,8 +66,7 @@ class LightErrors:
         remaining = np.tile(radii * np.sqrt(self.expected.floor), (len(rgb), 1))
         remaining = nodes.hits.mix(remaining, self.entries[nodes.hits.entry])
         errors = np.sqrt(radii**2 * squares + remaining**2)
-        limit = extension("errors", "limits")
-        return np.asarray(limit(self.data, self.light, rgb, errors))
+        return limited(self.data, self.light, rgb, errors)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
