@@ -456,7 +456,7 @@ def test_progress_off_terminals_is_a_line_now_and_then(monkeypatch, capsys):
         ("build --observer paints.csv", "use --space camera"),
         (
             "lights build --atlas macbeth",
-            "macbeth: the file states 'reflectance spectrum'",
+            "macbeth: the file states reflectance ('reflectance spectrum')",
         ),
         ("build --atlas colorchecker", "'uplift atlas' lists"),
         (

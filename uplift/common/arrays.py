@@ -49,6 +49,8 @@ def as_array(
             hint = "fill them, or leave them out"
             raise error(problem, code="masked-values", hint=hint)
     try:
+        if np.iscomplexobj(values):
+            raise ValueError("imaginary parts would be dropped")
         return np.asarray(values, dtype=dtype)
     except (TypeError, ValueError) as cause:
         if type(cause).__module__.startswith("jax"):

@@ -166,8 +166,9 @@ class NodeMetamers:
 
     def add(self, corners: Indices) -> None:
         """Compute the metamers at corners (n, 8)."""
-        missing = np.unique(corners)
-        missing = missing[~self.known[missing]]
+        needed = np.zeros_like(self.known)
+        needed[corners] = True
+        missing = np.flatnonzero(needed & ~self.known)
         if len(missing):
             to_rgb = np.linalg.inv(conversion(self.sensor, SRGB))
             rgb = NODES.points[missing] @ to_rgb.T
