@@ -378,6 +378,8 @@ def _parse_words(words: Sequence[str]) -> list[Colour]:
             raise _not_a_colour(" ".join(cells[:4]) if colours else text)
         colours.append(colour)
         cells = cells[length:]
+    if words and not colours:
+        raise _not_a_colour(text)
     return colours
 
 

@@ -121,6 +121,7 @@ file-not-found lights texture wood.png none.png -o out
 unknown-name lights texture wood.png fire.exr -o out --input-space none
 option lights texture wood.png fire.exr -o out --wavelengths 1:2:1
 colour mix teal
+colour mix '1: '
 ambiguous-numbers mix 0,2,0,3,0,4
 rgb-out-of-gamut mix #888 1.5,0,0
 option mix -1:#ffffff

@@ -199,6 +199,15 @@ def descending(tensors, metadata):
     tensors["nodes"] = tensors["nodes"][::-1]
 
 
+def wavelengths(factor):
+    """Multiply the wavelengths by a factor."""
+
+    def change(tensors, metadata):
+        tensors["sensor.wavelengths"] = tensors["sensor.wavelengths"] * factor
+
+    return change
+
+
 def no_spectrum(tensors, metadata):
     tensors["coefficients"] = tensors["coefficients"] + 2
 
@@ -210,6 +219,8 @@ def no_spectrum(tensors, metadata):
         (feature, 5),
         (not_finite, INVALID),
         (descending, INVALID),
+        (wavelengths(1e3), INVALID),
+        (wavelengths(1.25), INVALID),
         (no_spectrum, INVALID),
     ],
 )

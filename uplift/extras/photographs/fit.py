@@ -120,6 +120,8 @@ def estimate_noise(bands: Sequence[Array], steps: int) -> Noise:
     rows = []
     for low, high in pairwise(edges):
         members = np.flatnonzero((level >= low) & (level <= high))
+        if not len(members):  # small pictures have fewer blocks than levels
+            continue
         flat = members[variance[members] <= np.quantile(variance[members], FLATTEST)]
         rows.append((level[flat].mean(), variance[flat].mean()))
     at, observed = np.array(rows).T

@@ -240,7 +240,7 @@ static int uplift_read_sensor(const uplift_content *content, uplift_sensor *sens
     if (length < 2) return UPLIFT_INVALID;
     if (length > UPLIFT_SAMPLE_ROOM) return UPLIFT_UNSUPPORTED;
     samples = UPLIFT_CAST(int, length);
-    wavelengths = uplift_find_array(content, "sensor.wavelengths", UPLIFT_F64, UPLIFT_F64, length, 0, 0, most);
+    wavelengths = uplift_find_array(content, "sensor.wavelengths", UPLIFT_F64, UPLIFT_F64, length, 0, 300, 1000);
     cmfs = uplift_find_array(content, "sensor.cmfs", UPLIFT_F64, UPLIFT_F64, length, 3, -most, most);
     power = uplift_find_array(content, "sensor.power", UPLIFT_F64, UPLIFT_F64, length, 0, 0, most);
     to_rgb = uplift_find_array(content, "sensor.xyz_to_rgb", UPLIFT_F64, UPLIFT_F64, 3, 3, -most, most);
@@ -253,6 +253,7 @@ static int uplift_read_sensor(const uplift_content *content, uplift_sensor *sens
     sensor->first = uplift_number_at(wavelengths, 0);
     sensor->step = uplift_number_at(wavelengths, 1) - sensor->first;
     if (!(sensor->step > 0)) return UPLIFT_INVALID;
+    if (sensor->first > 380 || uplift_number_at(wavelengths, UPLIFT_CAST(size_t, samples - 1)) < 780) return UPLIFT_INVALID;
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) matrix[row][column] = uplift_number_at(to_rgb, UPLIFT_CAST(size_t, 3 * row + column));
     if (!uplift_invert(matrix, inverse)) return UPLIFT_INVALID;
