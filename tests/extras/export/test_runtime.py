@@ -219,8 +219,6 @@ def no_spectrum(tensors, metadata):
         (feature, 5),
         (not_finite, INVALID),
         (descending, INVALID),
-        (wavelengths(1e3), INVALID),
-        (wavelengths(1.25), INVALID),
         (no_spectrum, INVALID),
     ],
 )
@@ -228,6 +226,14 @@ def no_spectrum(tensors, metadata):
 def test_forged_files_are_refused(small_cube, tmp_path, change, result, open_file):
     path = forge(small_cube.data, tmp_path / "a.uplift", change)
     assert open_file(path) == result
+
+
+@pytest.mark.parametrize("factor", [1e3, 1.25])
+@both_open
+def test_wavelengths_of_another_unit_are_refused(rare, tmp_path, factor, open_file):
+    """Where colours are moved, which takes the wavelengths of the sensor."""
+    path = forge(rare["wide"].data, tmp_path / "a.uplift", wavelengths(factor))
+    assert open_file(path) == INVALID
 
 
 def test_numbers_are_checked_where_compilers_assume_no_nan(small_cube, tmp_path):
