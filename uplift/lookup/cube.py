@@ -439,18 +439,17 @@ def expected_errors(
     data = cube.data
     if data.points.standard_error is None:
         return None
-    from uplift.colorimetry import observer  # reads tables of illuminants
-    from uplift.lookup.errors_under_lights import light_errors, limited
+    from uplift.lookup.errors_under_lights import as_light, light_errors, limited
 
-    lit = light or data.error_illuminant
-    if isinstance(lit, Illuminant):
-        lit = observer.light(lit, cube.observer, *data.sensor.range)
+    lit = None if light is None else as_light(data, light)
+    if lit is None or lit.name == data.error_illuminant:
 
-    def of_nodes(rgb: Array) -> Array:
-        return limited(data, lit, rgb, node_errors(data, rgb))
+        def function(rgb: Array) -> Array:
+            errors = node_errors(data, rgb)
+            return limited(data, lit or data.error_illuminant, rgb, errors)
 
-    is_stored = lit.name == data.error_illuminant
-    function = of_nodes if is_stored else light_errors(data, lit)
+    else:
+        function = light_errors(data, lit)
     return blocks.blockwise(function, blocks.as_colours(rgb, data.sensor), 2)
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from uplift.colorimetry import Light, delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.gamut import SRGB, conversion
+from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.likely_errors import ExpectedError, expected_error
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
@@ -28,13 +29,24 @@ possible. Elsewhere the expected errors of no cube are near to the possible ones
 """
 
 
-def limited(data: CubeData, light: Light, rgb: Array, errors: Array) -> Array:
+def as_light(data: CubeData, light: Illuminant | Light) -> Light:
+    """Return the light of an illuminant, which reads tables, for a cube."""
+    if isinstance(light, Light):
+        return light
+    from uplift.colorimetry.observer import light as make_light
+
+    return make_light(light, data.sensor.observer, *data.sensor.range)
+
+
+def limited(
+    data: CubeData, light: Illuminant | Light, rgb: Array, errors: Array
+) -> Array:
     """Limit expected errors (n, 2) of linear RGB (n, 3) by what metamers differ by."""
     srgb = rgb @ conversion(data.sensor, SRGB).T
     near = (np.abs(srgb - 0.5) > 0.5 - END).any(axis=1)
     if near.any():
         limit = extension("errors", "limits")
-        errors[near] = limit(data, light, rgb[near], errors[near])
+        errors[near] = limit(data, as_light(data, light), rgb[near], errors[near])
     return errors
 
 
