@@ -35,7 +35,8 @@ def pair_frames(sequences: Sequence[Sequence[str]]) -> list[tuple[str, ...]]:
         return list(zip(*columns, strict=True))
     _check_same([", ".join(sources) for sources in sequences], frames)
     tables = list(map(dict, map(zip, frames, columns)))
-    return [tuple(table[frame] for table in tables) for frame in frames[0]]
+    ordered = [map(table.__getitem__, frames[0]) for table in tables]
+    return list(zip(*ordered, strict=True))
 
 
 def matched(pattern: str, path: str) -> tuple[str, ...]:

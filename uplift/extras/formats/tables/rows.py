@@ -240,10 +240,12 @@ def _samples_by_name(
             name = cell_at(row, column).text or name  # merged cells of spreadsheets
             groups[name].append(at)
         are_measured = any(is_value(name) and {".", ","} & {*name} for name in groups)
-        counts = [
-            (len(members), len({numbers[at] for at in members}))
-            for members in groups.values()
-        ]
-        if not are_measured and all(1 < count == each for count, each in counts):
+        are_spectra = all(_are_distinct(numbers, group) for group in groups.values())
+        if are_spectra and not are_measured:
             return groups
     return None
+
+
+def _are_distinct(numbers: Sequence[float], rows: Sequence[int]) -> bool:
+    """Whether rows, two or more, have different numbers."""
+    return 1 < len(rows) == len({numbers[row] for row in rows})
