@@ -1,17 +1,25 @@
-"""Measurements shown in docs/, one file per page: ``make measure PAGE=name`` runs one
-and renders the pages.
+"""Measurements shown in docs/, one module per page.
+
+The ``QUESTIONS`` of a page are functions by the name that their answers have in
+docs/data/PAGE.json. Answers are stored as soon as a question is done, with its time and
+the commit of the code. A question that only draws returns None.
 """
 
 import csv
+import json
 import sys
+import time
 import warnings
+from collections.abc import Callable, Collection, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from pydantic_core import to_jsonable_python
+
 from uplift.common.errors import UpliftWarning
 from uplift.common.progress import Progress
-from uplift.lab.timing import write_record
+from uplift.lab.timing import commit, environment, write_record
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -22,12 +30,62 @@ CUBES = ROOT / "cubes"
 REFERENCE = ROOT / "tests" / "reference"
 MACBETH = ATLASES / "macbeth.txt"
 Row = dict[str, Any]
+Questions = Mapping[str, Callable[[], Any]]
 
 
-def measure(page: str) -> None:
-    """Run the program of a page, without the warnings of builds."""
+def questions(page: str) -> Questions:
+    """Return the questions of a page."""
+    module = import_module(f"{__name__}.{page.replace('-', '_')}")
+    found: Questions = module.QUESTIONS
+    return found
+
+
+def measure(page: str, names: Collection[str] = ()) -> None:
+    """Answer questions of a page, by default all, without the warnings of builds."""
     warnings.simplefilter("ignore", UpliftWarning)
-    import_module(f"{__name__}.{page.replace('-', '_')}").main()
+    for name, answer in questions(page).items():
+        if not names or name in names:
+            begin = time.perf_counter()
+            values = to_jsonable_python(answer(), fallback=lambda array: array.tolist())
+            seconds = time.perf_counter() - begin
+            store(page, name, values, seconds)
+            print(f"{page} {name}: {seconds:.1f} s", file=sys.stderr)
+
+
+def measure_stale(page: str) -> None:
+    """Answer the questions of a page whose answers are of an older commit."""
+    measured = read_answers(page).get("measured", {})
+    now = commit()
+    for name in questions(page):
+        if measured.get(name, {}).get("commit") != now:
+            measure(page, [name])
+
+
+def read_answers(page: str) -> dict[str, Any]:
+    """Return the stored answers of a page, and what is known about them."""
+    path = DATA / f"{page}.json"
+    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+
+
+def store(page: str, name: str, answer: Any, seconds: float) -> None:
+    """Store the answers of a question next to those of the page's other questions."""
+    stored = read_answers(page)
+    machine = environment()
+    measured = stored.get("measured", {})
+    measured[name] = {"commit": machine["commit"], "seconds": round(seconds, 1)}
+    known = [question for question in questions(page) if question in measured]
+    commits = dict.fromkeys(measured[question]["commit"] for question in known)
+    content = {
+        "command": f"make measure PAGE={page}",
+        "environment": {**machine, "commit": ", ".join(commits)},
+        "measured": {question: measured[question] for question in known},
+    }
+    answers = {**stored, name: answer}
+    for question in known:
+        if answers.get(question) is not None:
+            content[question] = answers[question]
+    text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
+    (DATA / f"{page}.json").write_text(text + "\n", encoding="utf-8")
 
 
 def record(page: str, data: str = "", **figures: Any) -> None:

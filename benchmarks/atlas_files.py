@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks import record
+from benchmarks import Row
 from tests.atlas.vendor_files import VENDORS, Vendor, sample
 from uplift.atlas import Atlas, known_formats, read_atlas
 from uplift.common.errors import UpliftWarning
@@ -30,8 +30,8 @@ def largest_difference(vendor: Vendor, atlas: Atlas) -> float:
     )
 
 
-def main() -> None:
-    """Measure all layouts."""
+def layouts() -> Row:
+    """Return the largest difference of the files of each format, and of all."""
     atlas = sample(read_atlas("macbeth"))
     differences = {vendor: largest_difference(vendor, atlas) for vendor in VENDORS}
     rows = []
@@ -52,14 +52,19 @@ def main() -> None:
                 "difference": max(read, default=None),
             }
         )
-    programs = [
+    return {
+        "files": len(differences),
+        "largest": max(differences.values()),
+        "formats": rows,
+    }
+
+
+def programs() -> list[Row]:
+    """Return the programs whose layouts are read."""
+    return [
         {"program": vendor.program, "format": vendor.format, "sample": vendor.template}
         for vendor in VENDORS
     ]
-    record(
-        "atlas-files",
-        layouts=len(differences),
-        largest=max(differences.values()),
-        formats=rows,
-        programs=programs,
-    )
+
+
+QUESTIONS = {"layouts": layouts, "programs": programs}

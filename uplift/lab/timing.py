@@ -165,6 +165,11 @@ def commit() -> str:
     )
 
 
+def commit_time(text: str) -> float:
+    """Return the time of a commit, as of `commit`, in seconds; 0 if it is unknown."""
+    return float(_git("log", "-1", "--format=%ct", text.partition(" ")[0], "--") or 0)
+
+
 def _git(*arguments: str) -> str:
     """Output of git in the source folder, empty without git."""
     try:
