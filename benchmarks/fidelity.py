@@ -2,7 +2,7 @@
 docs/materials.md, docs/prior.md and docs/accuracy.md.
 
 All answers are rows of `uplift.lab.runner`. No method knows the families of the set
-that it is asked for.
+that it is queried for.
 """
 
 from itertools import chain
@@ -23,7 +23,7 @@ from uplift.fit import shipped_library
 from uplift.lab.chart.selection import select_methods
 from uplift.lab.methods import local_linear
 from uplift.lab.methods.cubes import cube
-from uplift.lab.runner import Prepare, ask, join, measure, named_lights
+from uplift.lab.runner import Prepare, join, measure, named_lights
 from uplift.lab.study.held_out import (
     HALF,
     LIBRARY_METHODS,
@@ -55,13 +55,13 @@ ALONE: dict[str, Prepare] = {
 
 
 def halves() -> list[Row]:
-    """Ask methods with half of a set as the atlas for the other half."""
+    """Query methods with half of a set as the atlas for the other half."""
     rows = (measure(WITH_ATLAS, split_tasks(name), LIGHTS, set=name) for name in SPLIT)
     return list(chain.from_iterable(rows))
 
 
 def parts() -> list[Row]:
-    """Ask methods that know more of the mixture for the others."""
+    """Query methods that know more of the mixture for the others."""
     rows: list[Row] = []
     for count in PARTS:
         tasks = split_tasks(MIXTURE, count)
@@ -71,12 +71,12 @@ def parts() -> list[Row]:
 
 
 def alone() -> list[Row]:
-    """Ask methods without an atlas for whole sets, and pool the shipped ones."""
+    """Query methods without an atlas for whole sets, and pool the shipped ones."""
     rows: list[Row] = []
     lights = list(LIGHTS.values())
     for method, prepare in ALONE.items():
         errors = {
-            name: ask(prepare, [task(name)], lights)
+            name: pooled_errors(prepare, [task(name)], lights)
             for name in (*SHIPPED, *FETCHED, MIXTURE)
         }
         errors[POOLED] = join([errors[name] for name in SHIPPED])
@@ -86,7 +86,7 @@ def alone() -> list[Row]:
 
 
 def of_chart() -> list[Row]:
-    """Ask a cube of the ColorChecker for its patches, and for materials of others."""
+    """Query a cube of the ColorChecker for its patches, and for materials of others."""
     chart = spectra(CHART)
     cubes = {CHART: WITH_ATLAS[HALF]}
     rows: list[Row] = []

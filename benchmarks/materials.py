@@ -48,6 +48,8 @@ DERIVED = {"munsell": ("otsu2018",)}
 """
 SENSOR = observer.sensor()
 SPLITS = 3
+VISIBLE = 1.0
+"""ΔE00 that is just visible."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,14 +112,14 @@ def shipped_families(name: str) -> tuple[str, ...]:
     return (*families_like(materials(name).measured), *DERIVED.get(name, ()))
 
 
-def task(asked: str, known: Atlas | None = None) -> Task:
-    """Ask for a whole set, whose families are not known, next to a known atlas."""
-    measured = materials(asked).measured
-    return Task(SENSOR, known or Atlas(), measured, shipped_families(asked))
+def task(queried: str, known: Atlas | None = None) -> Task:
+    """Query a whole set, whose families are not known, next to a known atlas."""
+    measured = materials(queried).measured
+    return Task(SENSOR, known or Atlas(), measured, shipped_families(queried))
 
 
 def split_tasks(name: str, parts: int = 2) -> list[Task]:
-    """Ask for each part of a set, divided at random, where the others are known."""
+    """Query each part of a set, divided at random, where the others are known."""
     left_out = shipped_families(name)
     return list(divided(materials(name).atlas, left_out, SENSOR, parts, SPLITS))
 
@@ -129,8 +131,8 @@ def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:
     entries = materials(name)
     left_out = shipped_families(name)
     return [
-        (entries.take(known).cube(leave_out=left_out, **options), entries.take(asked))
-        for known, asked in folds(len(entries.rgb), seeds=SPLITS)
+        (entries.take(known).cube(leave_out=left_out, **options), entries.take(queried))
+        for known, queried in folds(len(entries.rgb), seeds=SPLITS)
     ]
 
 

@@ -76,7 +76,7 @@ class PreparedMethod:
     def errors(self, task: Task, lights: Sequence[Light]) -> Errors:
         """Compare the spectra of a task's colours with its measurements."""
         predicted = self.uplift(task.rgb, task.sensor.wavelengths)
-        errors = spectrum_errors(predicted, task.asked, lights)
+        errors = spectrum_errors(predicted, task.queried, lights)
         if self.stated is None:
             return errors
         stated = [self.stated(task.rgb, light) for light in lights]
@@ -97,7 +97,7 @@ class PreparedMap:
         columns = []
         for light in lights:
             mapped = lab(self.colours(task.rgb, light), np.ones(3))
-            actual = lab(task.asked @ light.xyz.T, light.white)
+            actual = lab(task.queried @ light.xyz.T, light.white)
             columns.append(delta_e_2000(mapped, actual))
         return Errors(np.stack(columns, axis=1))
 

@@ -1,9 +1,9 @@
 """Methods × materials × lights: errors of methods of spectral upsampling at measured
 materials, as rows.
 
-A method is prepared for a task: materials that it may know, and materials that it is
-asked for by their colours. Its answers are compared with the measurements under lights.
-Errors at several tasks are pooled; `Errors.rows` summarises them.
+A method is prepared for a task: materials that it may know, and materials whose colours
+it is queried for. Its answers are compared with the measurements under lights. Errors
+at several tasks are pooled; `Errors.rows` summarises them.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -33,23 +33,23 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """Materials that a method may know, and materials that it is asked for.
+    """Materials that a method may know, and materials that it is queried for.
 
-    ``known``: measured entries. ``asked`` (n, N): reflectances whose colours are within
-    the space of the sensor. ``left_out``: families of the shipped library that no
-    method may know. ``builds``: builds of each cube, of which the last is timed.
+    ``known``: measured entries. ``queried`` (n, N): reflectances whose colours are
+    within the space of the sensor. ``left_out``: families of the shipped library that
+    no method may know. ``builds``: builds of each cube, of which the last is timed.
     """
 
     sensor: Sensor
     known: Atlas
-    asked: Array
+    queried: Array
     left_out: tuple[str, ...] = ()
     builds: int = 1
 
     @property
     def rgb(self) -> Array:
-        """Return the linear RGB (n, 3) of the materials that are asked for."""
-        return np.clip(self.sensor.rgb(self.asked), 0, 1)
+        """Return the linear RGB (n, 3) of the queries."""
+        return np.clip(self.sensor.rgb(self.queried), 0, 1)
 
     @cached_property
     def known_spectra(self) -> Array:
@@ -66,7 +66,7 @@ class Task:
 
 
 class Prepared(Protocol):
-    """A method that is ready to be asked."""
+    """A method that is ready to be queried."""
 
     def errors(self, task: Task, lights: Sequence[Light]) -> "Errors":
         """Compare the answers for the materials of a task with the measurements."""
@@ -126,7 +126,9 @@ def join(parts: Sequence[Errors]) -> Errors:
     return Errors(joined("delta_e"), joined("rms"), joined("stated"))
 
 
-def ask(prepare: Prepare, tasks: Iterable[Task], lights: Sequence[Light]) -> Errors:
+def pooled_errors(
+    prepare: Prepare, tasks: Iterable[Task], lights: Sequence[Light]
+) -> Errors:
     """Return the errors of a method at the materials of all tasks."""
     return join([prepare(task).errors(task, lights) for task in tasks])
 
@@ -144,7 +146,7 @@ def measure(
 ) -> Iterator[Row]:
     """Yield the rows of methods at tasks, with ``labels`` such as the set."""
     for name, prepare in methods.items():
-        errors = ask(prepare, tasks, list(lights.values()))
+        errors = pooled_errors(prepare, tasks, list(lights.values()))
         yield from errors.rows(lights, method=name, **labels)
 
 
@@ -165,7 +167,7 @@ def select(atlas: Atlas, rows: Indices) -> Atlas:
 
 
 def whole(entries: Atlas, left_out: tuple[str, ...], sensor: Sensor) -> Task:
-    """Ask for all entries, of which none is known."""
+    """Query all entries, of which none is known."""
     return Task(sensor, Atlas(), spectra_of(entries, sensor), left_out)
 
 
@@ -176,19 +178,19 @@ def divided(
     parts: int = 2,
     seeds: int = 3,
 ) -> Iterator[Task]:
-    """Ask for each part of entries, divided at random, where the others are known."""
+    """Query each part of entries, divided at random, where the others are known."""
     spectra = spectra_of(entries, sensor)
-    for known, asked in folds(len(entries), parts, seeds):
-        yield Task(sensor, select(entries, known), spectra[asked], left_out)
+    for known, queried in folds(len(entries), parts, seeds):
+        yield Task(sensor, select(entries, known), spectra[queried], left_out)
 
 
 def folds(
     count: int, parts: int = 2, seeds: int = 3
 ) -> Iterator[tuple[Indices, Indices]]:
-    """Yield known and asked numbers up to ``count``: each is asked once for a seed."""
+    """Yield known and queried numbers up to ``count``: each is queried once a seed."""
     for seed in range(seeds):
         shuffled = np.random.default_rng(seed).permutation(count)
         blocks = np.array_split(shuffled, parts)
-        for asked in reversed(range(parts)):
-            known = [block for number, block in enumerate(blocks) if number != asked]
-            yield np.concatenate(known), blocks[asked]
+        for queried in reversed(range(parts)):
+            known = [block for number, block in enumerate(blocks) if number != queried]
+            yield np.concatenate(known), blocks[queried]

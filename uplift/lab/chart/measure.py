@@ -216,13 +216,13 @@ def _errors(checked: CheckedMethod, task: ChartTask) -> dict[str, float]:
     lights = [observer.light(name) for name in CHART_LIGHTS]
     numbers: dict[str, float] = {}
     for prefix, name, measured in (
-        ("", "unseen", task.unseen.asked),
+        ("", "unseen", task.unseen.queried),
         ("own_", "own", task.own),
     ):
         rgb = np.clip(sensor.rgb(measured), 0, 1)
         spectra = checked.spectra(rgb, sensor.wavelengths)
-        asked = measured[: len(spectra)]
-        errors = spectrum_errors(spectra, asked, lights)
+        queried = measured[: len(spectra)]
+        errors = spectrum_errors(spectra, queried, lights)
         for light, delta_e in zip(CHART_LIGHTS, errors.delta_e.T, strict=True):
             numbers |= _summary(f"{prefix}{light}", delta_e)
         numbers |= _summary(f"{prefix}lights", errors.delta_e.mean(axis=1))

@@ -55,10 +55,10 @@ QUICK = Effort(
 
 @dataclass(frozen=True, eq=False)
 class ChartTask:
-    """What a chart asks of each method, in random order, so that slow methods may
-    process the first ones only.
+    """The queries of a chart, in random order, so that slow methods may process the
+    first ones only.
 
-    ``unseen``: asks for spectra that no method knows. ``own`` (k, N): the spectra that
+    ``unseen``: spectra that no method knows. ``own`` (k, N): the spectra that
     it knows. ``colours`` (n, 3): random RGB, and those along the edges and the grey
     diagonal of the RGB cube.
     """
@@ -107,8 +107,8 @@ def make_task(
     }
     rgb = random.permutation(rgb)
     own = random.permutation(own)
-    asked = random.permutation(unseen)
-    task = Task(sensor, known, asked, families_like(asked), effort.builds)
+    queried = random.permutation(unseen)
+    task = Task(sensor, known, queried, families_like(queried), effort.builds)
     return ChartTask(task, own, rgb, effort, facts)
 
 

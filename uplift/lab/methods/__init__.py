@@ -1,6 +1,6 @@
 """Methods of spectral upsampling, a file for each family.
 
-A file is found by itself: its ``METHODS`` are those of `uplift chart`.
+The ``METHODS`` of every file in this folder are those of `uplift chart`.
 """
 
 from importlib import import_module

@@ -63,7 +63,7 @@ def terms(xyz: Array, exponents: Array) -> Array:
 
 
 def prepare(task: Task, degree: int) -> PreparedMap:
-    """Fit a map to the library, for each light that is asked for."""
+    """Fit a map to the library, for each light that is queried for."""
     build = task.sensor.light
 
     def colours(rgb: Array, light: Light) -> Array:

@@ -21,9 +21,9 @@ from uplift.lab.runner import (
     Errors,
     Prepare,
     Task,
-    ask,
     divided,
     named_lights,
+    pooled_errors,
     spectra_of,
     whole,
     within,
@@ -85,8 +85,8 @@ def holdout(
     records: list[dict[str, Any]] = []
     for number, (method, (prepare, tasks)) in enumerate(plan.items(), 1):
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-            errors = ask(prepare, tasks, list(lights.values()))
-        colours = len(tasks[0].asked)
+            errors = pooled_errors(prepare, tasks, list(lights.values()))
+        colours = len(tasks[0].queried)
         records.append({"cube": method, "colours": colours, **_means(errors)})
         if method == HALF:
             records[0]["standard_error"] = _calibration(errors)
