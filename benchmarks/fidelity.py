@@ -23,7 +23,7 @@ from uplift.fit import shipped_library
 from uplift.lab.chart.selection import select_methods
 from uplift.lab.methods import local_linear
 from uplift.lab.methods.cubes import cube
-from uplift.lab.runner import Prepare, join, measure, named_lights
+from uplift.lab.runner import Prepare, join, measure, named_lights, pooled_errors
 from uplift.lab.study.held_out import (
     HALF,
     LIBRARY_METHODS,
