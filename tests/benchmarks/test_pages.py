@@ -7,16 +7,14 @@ import json
 import jinja2
 import pytest
 
-from benchmarks import choices, questions
+from benchmarks import chart, choices, questions
 from benchmarks.__main__ import pages
-from benchmarks.chart import RIVALS, optimistic_mark
 from benchmarks.choices import MARK, mark
 from benchmarks.materials import MIXTURE, SHIPPED
 from tests.conftest import ROOT
 from tests.parts import MITSUBA, need
 from tools import render_docs
 from tools.render_docs import read_data, render
-from uplift.lab.chart.results import read_chart
 from uplift.lab.study.held_out import HALF, NO_ATLAS
 
 DOCS = ROOT / "docs"
@@ -64,11 +62,7 @@ def test_a_choice_marks_its_methods_on_its_sets(monkeypatch):
     assert mark("vs", HALF) == mark("macbeth", NO_ATLAS) == ""
 
 
-def test_marks_of_the_chart_are_those_of_its_rows():
-    rows = read_chart(ROOT / "uplift" / "lab" / "chart" / "measured.csv").measured
-    methods = read_data("chart")["chart"]["methods"]
-    stored = {row["name"]: row["mark"] for row in methods}
-    assert stored == {row.method: optimistic_mark(row) for row in rows}
-    for name, text in stored.items():
-        of_moments = name.removeprefix("c-").startswith("moments")
-        assert bool(text) == (of_moments or name in RIVALS)
+def test_choices_mark_cubes_of_moments_and_rivals_of_the_chart():
+    for row in chart.figures()["methods"]:
+        of_moments = row["name"].removeprefix("c-").startswith("moments")
+        assert bool(row["mark"]) == (of_moments or row["name"] in chart.RIVALS)

@@ -25,9 +25,9 @@ from uplift.lab.method import (
     interpolated,
     nbytes,
     ours,
-    stopwatch,
 )
 from uplift.lab.runner import Task
+from uplift.lab.timing import stopwatch
 from uplift.lookup.refine import FIRST_DAMPING, MAX_STEPS
 from uplift.models import Moments, forward_map, minimum_norm_step
 
@@ -149,8 +149,8 @@ def prepare_on_library(task: Task) -> PreparedMethod:
 
 
 def _on_spectra(task: Task, known: Array) -> PreparedMethod:
-    regression, seconds = stopwatch(lambda: tune(task.sensor, known))
-    return interpolated(regression, task, nbytes(known), seconds)
+    regression, run = stopwatch(lambda: tune(task.sensor, known))
+    return interpolated(regression, task, nbytes(known), run.cpu)
 
 
 METHODS = (

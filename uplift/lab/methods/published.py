@@ -32,10 +32,10 @@ from uplift.lab.method import (
     nbytes,
     published_srgb,
     stated_sensor,
-    stopwatch,
 )
 from uplift.lab.methods import mitsuba3
 from uplift.lab.runner import Task
+from uplift.lab.timing import stopwatch
 from uplift.models.sigmoid import evaluate_unscaled
 
 MENG_STEP = 10.0
@@ -75,14 +75,14 @@ def prepare_jakob_table(task: Task) -> PreparedMethod:
     """Let colour-science read the table of 64 that is part of Mitsuba 3."""
     path = mitsuba3.table_file()
     table = colour_science().recovery.LUT3D_Jakob2019()
-    _, seconds = stopwatch(lambda: table.read(str(path)))
+    _, run = stopwatch(lambda: table.read(str(path)))
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         # For one colour the coefficients have no axis of colours.
         coefficients = table.RGB_to_coefficients(rgb).reshape(-1, 3)
         return evaluate_unscaled(coefficients, wavelengths)
 
-    return PreparedMethod(uplift, table.coefficients.nbytes, None, seconds)
+    return PreparedMethod(uplift, table.coefficients.nbytes, None, run.cpu)
 
 
 def prepare_basis(
@@ -94,13 +94,13 @@ def prepare_basis(
     """Prepare a method whose spectra are sums of K basis spectra; ``weights`` has
     shapes (n, 3) to (n, K).
     """
-    (centres, basis), seconds = stopwatch(read)
+    (centres, basis), run = stopwatch(read)
 
     def uplift(rgb: Values, wavelengths: Array) -> Values:
         at = np.stack([np.interp(wavelengths, centres, row) for row in basis])
         return weights(rgb) @ at.astype(dtype, copy=False)
 
-    return PreparedMethod(uplift, basis.nbytes, load_s=seconds)
+    return PreparedMethod(uplift, basis.nbytes, load_s=run.cpu)
 
 
 def _mallett_basis() -> tuple[Array, Array]:
