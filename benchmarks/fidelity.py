@@ -5,7 +5,7 @@ All answers are rows of `uplift.lab.runner`. No method knows the families of the
 that it is queried for.
 """
 
-from itertools import chain
+from collections.abc import Iterator
 
 from benchmarks import Row
 from benchmarks.choices import ALONE_SMOOTH, POOLED
@@ -54,25 +54,22 @@ ALONE: dict[str, Prepare] = {
 """Methods that know no atlas."""
 
 
-def halves() -> list[Row]:
+def halves() -> Iterator[Row]:
     """Query methods with half of a set as the atlas for the other half."""
-    rows = (measure(WITH_ATLAS, split_tasks(name), LIGHTS, set=name) for name in SPLIT)
-    return list(chain.from_iterable(rows))
+    for name in SPLIT:
+        yield from measure(WITH_ATLAS, split_tasks(name), LIGHTS, set=name)
 
 
-def parts() -> list[Row]:
+def parts() -> Iterator[Row]:
     """Query methods that know more of the mixture for the others."""
-    rows: list[Row] = []
     for count in PARTS:
         tasks = split_tasks(MIXTURE, count)
         known = 1 - 1 / count
-        rows += measure(WITH_ATLAS, tasks, LIGHTS, set=MIXTURE, known=known)
-    return rows
+        yield from measure(WITH_ATLAS, tasks, LIGHTS, set=MIXTURE, known=known)
 
 
-def alone() -> list[Row]:
+def alone() -> Iterator[Row]:
     """Query methods without an atlas for whole sets, and pool the shipped ones."""
-    rows: list[Row] = []
     lights = list(LIGHTS.values())
     for method, prepare in ALONE.items():
         errors = {
@@ -80,19 +77,15 @@ def alone() -> list[Row]:
             for name in (*SHIPPED, *FETCHED, MIXTURE)
         }
         errors[POOLED] = join([errors[name] for name in SHIPPED])
-        for name, each in errors.items():
-            rows += each.rows(LIGHTS, method=method, set=name)
-    return rows
+        for name, of_set in errors.items():
+            yield from of_set.rows(LIGHTS, method=method, set=name)
 
 
-def of_chart() -> list[Row]:
+def of_chart() -> Iterator[Row]:
     """Query a cube of the ColorChecker for its patches, and for materials of others."""
-    chart = spectra(CHART)
-    cubes = {CHART: WITH_ATLAS[HALF]}
-    rows: list[Row] = []
+    cubes = {HALF: WITH_ATLAS[HALF]}
     for name in (CHART, *LARGE):
-        rows += measure(cubes, [task(name, chart)], LIGHTS, set=name)
-    return rows
+        yield from measure(cubes, [task(name, spectra(CHART))], LIGHTS, set=name)
 
 
 def left_out() -> list[Row]:

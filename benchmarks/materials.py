@@ -1,7 +1,7 @@
 """Sets of measured materials, on which the pages measure methods.
 
-A set is a line of `FILES`. `uplift.lab.runner` measures methods at the tasks that
-`task` and `split_tasks` make of a set.
+A further set is a line of `FURTHER`. `uplift.lab.runner` measures methods at the tasks
+that `task` and `split_tasks` make of a set.
 """
 
 from dataclasses import dataclass
@@ -27,11 +27,11 @@ from uplift.lab.runner import (
 )
 from uplift.lookup import Cube
 
-MUNSELL = ROOT / "out" / "munsell.csv"
-"""The 1,269 chips of the Munsell book, if `make munsell` has fetched them: they cannot
-be redistributed.
+FURTHER = {"munsell": ROOT / "out" / "munsell.csv"}
+"""Files of large sets that cannot be redistributed: the 1,269 chips of the Munsell
+book, if `make munsell` has fetched them.
 """
-FETCHED = ("munsell",) if MUNSELL.exists() else ()
+FETCHED = tuple(name for name, file in FURTHER.items() if file.exists())
 LARGE = ("rawtoaces", "cie2017", *FETCHED)
 """Atlases that are large enough to split."""
 SHIPPED = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017", "tcs", "vs")
@@ -39,10 +39,6 @@ MIXTURE = "all sets"
 """The shipped sets, and all of them as one: a mixture of families, several of which
 have materials of one colour.
 """
-FILES = {name: (ATLASES / f"{name}.txt",) for name in SHIPPED}
-FILES |= {MIXTURE: tuple(ATLASES / f"{name}.txt" for name in SHIPPED)}
-FILES |= {"munsell": (MUNSELL,)}
-"""Files of each set."""
 DERIVED = {"munsell": ("otsu2018",)}
 """Families derived from a set: the clusters of Otsu et al. were learnt from this book.
 """
@@ -93,7 +89,8 @@ def read_atlases() -> dict[str, Atlas]:
 @cache
 def spectra(name: str) -> Atlas:
     """Read a set of measured spectra."""
-    return read_atlas(*FILES[name])
+    names = SHIPPED if name == MIXTURE else [name]
+    return read_atlas(*(FURTHER.get(one, ATLASES / f"{one}.txt") for one in names))
 
 
 @cache
