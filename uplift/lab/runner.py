@@ -9,6 +9,7 @@ at several tasks are pooled; `Errors.rows` summarises them.
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter
 from typing import Any, Protocol
 
 import numpy as np
@@ -63,6 +64,12 @@ class Task:
         return np.concatenate(
             [np.zeros((0, 81)), *(each.measured for each in families)]
         )
+
+
+Known = Callable[[Task], Array]
+KNOWN: Known = attrgetter("known_spectra")
+LIBRARY: Known = attrgetter("library")
+"""What a method may know of a task."""
 
 
 class Prepared(Protocol):

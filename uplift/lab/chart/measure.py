@@ -15,7 +15,7 @@ from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.extras.images.processes import ChildError, call_in_child
-from uplift.lab.chart.call_times import BrokenError, Call, affordable, call_times
+from uplift.lab.chart.call_times import BrokenError, call_times
 from uplift.lab.chart.results import Chart, MethodResult, State
 from uplift.lab.chart.task import ChartTask
 from uplift.lab.method import (
@@ -88,15 +88,18 @@ def _numbers(method: Method, task: ChartTask) -> dict[str, float]:
     effort = task.effort
 
     wavelengths = task.unseen.sensor.wavelengths
-    call = Call(lambda rgb: prepared.uplift(rgb, wavelengths), method.dtype)
+
+    def uplift(rgb: Values) -> Values:
+        return prepared.uplift(rgb, wavelengths)
+
     # The first call may compile, which is charged to the set-up.
-    rgb = call.colours(1)[0]
-    first, second = (run_call(lambda: call.uplift(rgb)) for _ in range(2))
+    rgb = task.colours[:1].astype(method.dtype)
+    first, second = (run_call(lambda: uplift(rgb)) for _ in range(2))
     load = prepared.load_s + max(first.cpu - second.cpu, 0.0)
     build = {} if prepared.build_s is None else {"build_s": prepared.build_s}
     count = len(task.colours)
     if not method.batch:
-        count = affordable(call, count, effort.seconds_per_error)
+        count = max(1, int(effort.seconds_per_error / max(second.cpu, 1e-9)))
     checked = _checked(method, prepared)
     return {
         "bytes": prepared.bytes,
@@ -105,7 +108,7 @@ def _numbers(method: Method, task: ChartTask) -> dict[str, float]:
         "setup_s": sum(build.values()) + load,
         **_round_trips(method, checked, task, count),
         **_errors(checked, task, count),
-        **call_times(call, effort, method.batch),
+        **call_times(uplift, method.dtype, effort),
     }
 
 

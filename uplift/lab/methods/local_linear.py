@@ -25,7 +25,7 @@ from uplift.lab.method import (
     nbytes,
     ours,
 )
-from uplift.lab.runner import Task
+from uplift.lab.runner import KNOWN, Known, Task
 from uplift.lab.timing import stopwatch
 from uplift.lookup.refine import FIRST_DAMPING, MAX_STEPS
 from uplift.models import Moments, forward_map, minimum_norm_step
@@ -47,10 +47,11 @@ MODEL = Moments()
 
 
 def tune(sensor: Sensor, known: Array) -> Callable[[Array], Array]:
-    """Return the regression on known reflectances (E, N), from linear RGB (n, 3), whose
-    bandwidth and ridge have the least mean leave-one-out ΔE00 of the known materials
-    under the lights of a build.
+    """Return the regression on known reflectances (E, N), those within the space, whose
+    bandwidth and ridge have the least mean leave-one-out ΔE00 under the lights of a
+    build.
     """
+    known = known[in_unit_cube(sensor.rgb(known))]
     lights = observer.lights(SCENE_LIGHTS, sensor.observer, sensor.range)
     colours = np.clip(sensor.rgb(known), 0, 1)
     left_out = squared_distances(sensor, colours, colours)
@@ -126,20 +127,11 @@ def with_least_change(sensor: Sensor, spectra: Array, rgb: Array) -> Array:
     return MODEL.to_reflectance(linear).T
 
 
-def prepare(task: Task) -> PreparedMethod:
-    """Tune a regression on the known spectra."""
-    return _on_spectra(task, task.known_spectra)
-
-
-def prepare_on_library(task: Task) -> PreparedMethod:
-    """Tune a regression on the library within the space of the sensor."""
-    colours = task.sensor.rgb(task.library)
-    return _on_spectra(task, task.library[in_unit_cube(colours)])
-
-
-def _on_spectra(task: Task, known: Array) -> PreparedMethod:
-    regression, run = stopwatch(lambda: tune(task.sensor, known))
-    return interpolated(regression, task, nbytes(known), run.cpu)
+def prepare(task: Task, known: Known = KNOWN) -> PreparedMethod:
+    """Tune a regression on what is known of a task."""
+    spectra = known(task)
+    regression, run = stopwatch(lambda: tune(task.sensor, spectra))
+    return interpolated(regression, task, nbytes(spectra), run.cpu)
 
 
 METHODS = (

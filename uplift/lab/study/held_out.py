@@ -4,6 +4,7 @@ atlas predict the other half, compared with methods that know the library.
 
 import warnings
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from uplift.atlas import Atlas
@@ -17,6 +18,7 @@ from uplift.lab.methods import burns2019, local_linear, metamer_mean
 from uplift.lab.methods.colour_maps import MAPS
 from uplift.lab.methods.cubes import cube
 from uplift.lab.runner import (
+    LIBRARY,
     Prepare,
     divided,
     named_lights,
@@ -37,8 +39,8 @@ LIBRARY_REGRESSION = "local-linear regression of the library"
 METAMER_MEAN = "mean of metamers"
 LIBRARY_METHODS: Mapping[str, Prepare] = {
     **MAPS,
-    LIBRARY_REGRESSION: local_linear.prepare_on_library,
-    METAMER_MEAN: metamer_mean.prepare_of_library,
+    LIBRARY_REGRESSION: partial(local_linear.prepare, known=LIBRARY),
+    METAMER_MEAN: partial(metamer_mean.prepare, known=LIBRARY),
     "Burns 2019": burns2019.prepare,
 }
 """Methods that know the library, as the prior does, or nothing."""
