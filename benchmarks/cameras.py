@@ -18,15 +18,12 @@ from uplift.lab.look_alikes import families_like
 from uplift.lab.method import PreparedMap
 from uplift.lab.methods.cubes import cube
 from uplift.lab.runner import Prepare, Task, divided, measure, spectra_of
-from uplift.lab.study.held_out import HALF, NO_ATLAS
 from uplift.lattice import Lattice, axis_nodes
 
 ATLAS = "macbeth"
 LIGHTS = ("D65", "A")
 SPLITS = 5
 DIM = 32
-CHOSEN_AS = {"cube without an atlas": NO_ATLAS, "cube": HALF, "cube, refined": HALF}
-"""Methods that depend on choices of the design, by their names there."""
 WHITE = np.ones(3)
 Fit = Callable[[Array, Array], Array]
 """From raw values (n, 3) and XYZ (n, 3), relative to white, to a matrix (3, 3)."""

@@ -5,7 +5,6 @@
 from itertools import chain
 
 from benchmarks import DOCS, ROOT, Row, show
-from benchmarks.choices import POOLED, mark
 from benchmarks.materials import read_atlases
 from uplift.common.files import write_text
 from uplift.extras.colour.light_sets import CHART_LIGHTS
@@ -14,19 +13,12 @@ from uplift.lab.chart.picture import render_chart, write_picture
 from uplift.lab.chart.results import (
     MEASURED,
     Chart,
-    MethodResult,
     chart_csv,
     criteria,
     shipped_chart,
 )
 from uplift.lab.chart.selection import select_methods
 from uplift.lab.chart.task import make_task
-from uplift.lab.study.held_out import HALF, LOCAL_LINEAR, METAMER_MEAN, NO_ATLAS
-
-RIVALS = {"local-linear": LOCAL_LINEAR, "metamer-mean": METAMER_MEAN}
-"""Methods without a cube whose choices were made with measured materials."""
-UNSEEN = ("lights", "rms")
-"""Errors of panels that are those of unseen materials."""
 
 
 def measure() -> None:
@@ -50,8 +42,8 @@ def figures() -> Row:
     chart = shipped_chart()
     methods = []
     for row in chart.measured:
-        texts = {"name": row.method, "method": row.title, "mark": optimistic_mark(row)}
-        methods.append({**texts, "dtype": row.dtype, "note": row.note, **row.numbers})
+        texts = {"name": row.method, "method": row.title, "dtype": row.dtype}
+        methods.append({**texts, "note": row.note, **row.numbers})
     return {
         "facts": chart.facts,
         "lights": CHART_LIGHTS,
@@ -73,22 +65,9 @@ def fronts(chart: Chart) -> list[Row]:
                     "method": row.title,
                     "time": criterion.time(row),
                     "error": row.numbers[f"{criterion.error}_mean"],
-                    "mark": optimistic_mark(row) if criterion.error in UNSEEN else "",
                 }
             )
     return rows
-
-
-def optimistic_mark(row: MethodResult) -> str:
-    """Return the mark of the errors of unseen materials, which are of all shipped sets.
-
-    The choices are those of cubes of moments; the colour alone determines a sigmoid.
-    """
-    if row.method in RIVALS:
-        return mark(POOLED, RIVALS[row.method])
-    if not row.build or "--model" in row.build:
-        return ""
-    return mark(POOLED, HALF if "--atlas" in row.build else NO_ATLAS)
 
 
 QUESTIONS = {"methods": measure}

@@ -8,7 +8,6 @@ that it is queried for.
 from collections.abc import Iterator
 
 from benchmarks import Row
-from benchmarks.choices import ALONE_SMOOTH, POOLED
 from benchmarks.materials import (
     FETCHED,
     LARGE,
@@ -33,6 +32,8 @@ from uplift.lab.study.held_out import (
 )
 
 DIM = 32
+POOLED = "all shipped"
+"""Set of the errors of all shipped sets, each without its family."""
 CHART = "macbeth"
 SPLIT = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017", *FETCHED, MIXTURE)
 """Sets of at least 20 entries; the others are too small to split."""
@@ -46,7 +47,7 @@ WITH_ATLAS: dict[str, Prepare] = {
 PUBLISHED = select_methods(["otsu2018", "mallett2019", "smits1999"])
 ALONE: dict[str, Prepare] = {
     NO_ATLAS: cube(dim=DIM),
-    ALONE_SMOOTH: cube(dim=DIM, prior="smooth"),
+    f"{NO_ATLAS}, smooth prior": cube(dim=DIM, prior="smooth"),
     SIGMOID: cube(dim=DIM, model="sigmoid"),
     **LIBRARY_METHODS,
     **{method.title: method.prepare for method in PUBLISHED},

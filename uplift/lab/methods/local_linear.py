@@ -128,7 +128,7 @@ def with_least_change(sensor: Sensor, spectra: Array, rgb: Array) -> Array:
 
 
 def prepare(task: Task, known: Known = KNOWN) -> PreparedMethod:
-    """Tune a regression on what is known of a task."""
+    """Tune a regression on the known spectra of a task."""
     spectra = known(task)
     regression, run = stopwatch(lambda: tune(task.sensor, spectra))
     return interpolated(regression, task, nbytes(spectra), run.cpu)

@@ -83,7 +83,7 @@ def _responses(light: Light, spectra: Array) -> Array:
 
 
 def prepare(task: Task, known: Known = KNOWN) -> PreparedMethod:
-    """Mix metamers from what is known of a task."""
+    """Mix metamers from the known spectra of a task."""
     spectra = known(task)
     mean = partial(metamer_mean, task.sensor, spectra)
     return interpolated(mean, task, nbytes(spectra))

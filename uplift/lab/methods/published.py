@@ -17,7 +17,7 @@ primary decomposition for rendering with sRGB reflectance", EGSR. Jakob & Hanika
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -89,7 +89,6 @@ def prepare_basis(
     task: Task,
     read: Callable[[], tuple[Array, Array]],
     weights: Callable[[Values], Values],
-    dtype: str = "float64",
 ) -> PreparedMethod:
     """Prepare a method whose spectra are sums of K basis spectra; ``weights`` has
     shapes (n, 3) to (n, K).
@@ -98,7 +97,7 @@ def prepare_basis(
 
     def uplift(rgb: Values, wavelengths: Array) -> Values:
         at = np.stack([np.interp(wavelengths, centres, row) for row in basis])
-        return weights(rgb) @ at.astype(dtype, copy=False)
+        return weights(rgb) @ at.astype(rgb.dtype, copy=False)
 
     return PreparedMethod(uplift, basis.nbytes, load_s=run.cpu)
 
@@ -160,7 +159,6 @@ def _in_single(method: Method) -> Method:
         title=f"{method.title}, float32",
         label=f"{method.title} f32",
         dtype="float32",
-        prepare=partial(cast(Any, method.prepare), dtype="float32"),
     )
 
 
