@@ -70,15 +70,18 @@ def holdout(
     left_out = families_like(spectra_of(atlas, sensor))
     halves = list(divided(entries, left_out, sensor, seeds=splits))
     all_entries = [whole(entries, left_out, sensor)]
-    of_halves = {HALF: cube(atlas=True, **options), LOCAL_LINEAR: local_linear.prepare}
-    sigmoid = cube(**options | {"model": "sigmoid"})
-    methods = {**of_halves, NO_ATLAS: cube(**options), SIGMOID: sigmoid}
+    methods: dict[str, Prepare] = {
+        HALF: cube(atlas=True, **options),
+        NO_ATLAS: cube(**options),
+        SIGMOID: cube(**options | {"model": "sigmoid"}),
+        LOCAL_LINEAR: local_linear.prepare,
+    }
     if len(all_entries[0].library):
         methods |= LIBRARY_METHODS
     lights = list(named_lights().values())
     records: list[dict[str, Any]] = []
     for method, prepare in methods.items():
-        tasks = halves if method in of_halves else all_entries
+        tasks = halves if method in (HALF, LOCAL_LINEAR) else all_entries
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
             errors = pooled_errors(prepare, tasks, lights)
         rms = None if errors.rms is None else float(errors.rms.mean())
