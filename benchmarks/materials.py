@@ -11,19 +11,16 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import ATLAS_FILES, ATLASES, ROOT, Row
+from benchmarks import ATLAS_FILES, ATLASES, ROOT
 from uplift.atlas import Atlas, Entry, read_atlas
 from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.arrays import Array, Indices
-from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
 from uplift.lab.look_alikes import families_like
 from uplift.lab.runner import (
     Task,
     divided,
     folds,
-    named_lights,
     spectra_of,
-    spectrum_errors,
 )
 from uplift.lookup import Cube
 
@@ -131,15 +128,3 @@ def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:
         (entries.take(known).cube(leave_out=left_out, **options), entries.take(queried))
         for known, queried in folds(len(entries.rgb), seeds=SPLITS)
     ]
-
-
-def errors(answers: Array, queried: Materials) -> Row:
-    """Return the mean rms and the mean ΔE00 under each light."""
-    lights = list(named_lights().values())
-    compared = spectrum_errors(answers, queried.measured, lights)
-    return {"rms": compared.rms.mean(), "errors": by_light(compared.delta_e.mean(0))}
-
-
-def by_light(values: Array) -> Row:
-    """Name values for each of `HELD_OUT_LIGHTS`."""
-    return dict(zip(HELD_OUT_LIGHTS, values, strict=True))
