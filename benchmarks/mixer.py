@@ -146,7 +146,7 @@ def ramps() -> None:
         colours = np.broadcast_to(linear(*codes), (len(shares), 2, 3))
         for way, title in DRAWN.items():
             drawn[f"{pair}: {title}"] = mixers[way](colours, shares)
-    draw_ramps(drawn, cube.data.sensor, DOCS / "mixing" / "mixer.png")
+    draw_ramps(drawn, DOCS / "mixing" / "mixer.png")
 
 
 QUESTIONS = {

@@ -89,7 +89,6 @@ def greens() -> dict[str, str]:
 def pictures() -> None:
     """Draw ramps from blue to yellow by theories, and by other tools."""
     cube = uplift.load()
-    sensor = cube.data.sensor
     theories = {theory.name: theory for theory in mixers(cube)}
     paints = linear(*BLUE_YELLOW)
     # Parts are the thickness of filters and products, so that a ramp ends at its
@@ -97,8 +96,8 @@ def pictures() -> None:
     parts = ramp(np.ones(2), STEPS)
     drawn = [theories[name] for name in DRAWN]
     ramps = {theory.title: theory.mix(paints, parts) for theory in drawn}
-    draw_ramps(ramps, sensor, DOCS / "mixing" / "blue-yellow.png")
-    draw_ramps(tools(cube), sensor, DOCS / "mixing" / "tools.png")
+    draw_ramps(ramps, DOCS / "mixing" / "blue-yellow.png")
+    draw_ramps(tools(cube), DOCS / "mixing" / "tools.png")
 
 
 def tools(cube: Cube) -> dict[str, Array]:

@@ -13,7 +13,7 @@ import numpy as np
 from benchmarks import read_reference
 from uplift.colorimetry import Sensor, delta_e_rgb
 from uplift.common.arrays import Array, Indices
-from uplift.extras.colour.srgb import decode, encode, parse_colour, to_display_codes
+from uplift.extras.colour.srgb import decode, encode, parse_colour
 from uplift.extras.pages.plots import Strip, plot_strips
 from uplift.extras.paint.optics import average_areas
 from uplift.extras.paint.pigments import Pigment, Scattering, from_opaque
@@ -162,10 +162,7 @@ def mean_of_codes(rgb: Array, shares: Array) -> Array:
     return decode(average_areas(encode(rgb), shares))
 
 
-def draw_ramps(ramps: Mapping[str, Array], sensor: Sensor, path: Path) -> None:
-    """Write a strip for each of linear RGB (n, 3) by title."""
-    strips = [
-        Strip(title, to_display_codes(rgb, sensor) / 255)
-        for title, rgb in ramps.items()
-    ]
+def draw_ramps(ramps: Mapping[str, Array], path: Path) -> None:
+    """Write a strip for each ramp, linear sRGB (n, 3), by title."""
+    strips = [Strip(title, encode(rgb)) for title, rgb in ramps.items()]
     plot_strips(strips, path, force=True)

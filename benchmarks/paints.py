@@ -262,14 +262,14 @@ def pictures() -> None:
     for first, second in RAMPS:
         parts = shares @ [alone[first], alone[second]]
         ramps[f"{first} to {second}"] = paints.sensor.rgb(paints.reflectance(parts))
-    draw_ramps(ramps, paints.sensor, folder / "paints.png")
+    draw_ramps(ramps, folder / "paints.png")
     films = {}
     for ground, name in ((1.0, "white"), (0.0, "black")):
         for paint in FILMS:
             title = f"{paint} on {name}, {DEPTHS[0]:g} to {DEPTHS[-1]:g} mm"
             layers = [paints.reflectance(alone[paint], x, ground) for x in DEPTHS]
             films[title] = paints.sensor.rgb(np.array(layers))
-    draw_ramps(films, paints.sensor, folder / "films.png")
+    draw_ramps(films, folder / "films.png")
 
 
 QUESTIONS = {
