@@ -12,13 +12,12 @@ import numpy as np
 import uplift
 from benchmarks import DOCS, Row, summary
 from benchmarks.mixing import ARTISTS, DEFAULT, ways
-from benchmarks.mixtures import Mixtures, by_spectra, draw_ramps, linear
+from benchmarks.mixtures import Mixtures, by_spectra, draw_ramps, ramp_between
 from benchmarks.programs import compile_c, numbers, program_version
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import decode
 from uplift.extras.paint import dispersive
 from uplift.extras.paint.bands import REALISED
-from uplift.extras.paint.coats import ramp
 from uplift.extras.paint.mixer_programs import write_mixer
 from uplift.extras.paint.optics import average_areas
 from uplift.extras.paint.rgb_mixer import DIM, make_mixer
@@ -61,7 +60,8 @@ def rates() -> Iterator[Row]:
         rgb = decode(np.random.default_rng(1).random((PAIRS, 6)))
         pairs = folder / "pairs"
         rgb.astype(np.float32).tofile(pairs)
-        write_mixer(uplift.load(), folder / "paint.h")
+        header = folder / "paint.h"
+        write_mixer(uplift.load(), header)
         for compiler in filter(shutil.which, COMPILERS):
             for flags in FLAGS:
                 program = compile_c(
@@ -72,6 +72,7 @@ def rates() -> Iterator[Row]:
                 yield {
                     "program": program_version(compiler),
                     "flags": " ".join(flags),
+                    "bytes": header.stat().st_size,
                     **dict(zip(FUNCTIONS, millions, strict=True)),
                 }
         write_mixer(uplift.load(), folder / "paint.mjs", style="mixer-js")
@@ -79,14 +80,6 @@ def rates() -> Iterator[Row]:
         (seconds,) = numbers("node", folder / "mixer.mjs", pairs, str(RUNS))
         version = f"Node.js {program_version('node')}"
         yield {"program": version, "flags": "", "mix": 1e-6 / seconds}
-
-
-def header() -> int:
-    """Return the bytes of the header."""
-    with tempfile.TemporaryDirectory() as name:
-        path = Path(name) / "paint.h"
-        write_mixer(uplift.load(), path)
-        return path.stat().st_size
 
 
 def random_mixtures(cube: Cube) -> tuple[Mixtures, Array]:
@@ -138,20 +131,16 @@ def clipped() -> Row:
 
 def ramps() -> None:
     """Draw ramps between pairs of colours."""
-    cube = uplift.load()
-    mixers = ways(cube)
-    shares = ramp(np.ones(2), STEPS)
+    mixers = ways(uplift.load())
     drawn = {}
     for pair, codes in RAMPS.items():
-        colours = np.broadcast_to(linear(*codes), (len(shares), 2, 3))
         for way, title in DRAWN.items():
-            drawn[f"{pair}: {title}"] = mixers[way](colours, shares)
+            drawn[f"{pair}: {title}"] = ramp_between(*codes, mixers[way], STEPS)
     draw_ramps(drawn, DOCS / "mixing" / "mixer.png")
 
 
 QUESTIONS = {
     "rates": rates,
-    "header": header,
     "errors": errors,
     "clipped": clipped,
     "ramps": ramps,

@@ -16,11 +16,11 @@ from benchmarks.mixtures import (
     mean_of_codes,
     mixture_sets,
     published,
+    ramp_between,
 )
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.paint import dispersive
-from uplift.extras.paint.coats import ramp
 from uplift.extras.paint.optics import average_areas
 from uplift.extras.paint.pigments import CONSTANT, SQUARE_ROOT, PowerOfReflectance
 from uplift.extras.paint.rgb_mixer import make_mixer
@@ -76,47 +76,44 @@ def mixtures() -> list[Row]:
 
 def greens() -> dict[str, str]:
     """Return the codes of cobalt blue and Hansa yellow 1:1 by each way."""
-    cube = uplift.load()
-    paints = linear(*ARTISTS)[None]
-    equal = np.full((1, 2), 0.5)
     codes = {}
-    for way, mix in ways(cube).items():
-        green = np.clip(mix(paints, equal), 0, 1)
-        (codes[way],) = hex_codes(green, cube.data.sensor)
+    for way, mix in ways(uplift.load()).items():
+        _, green, _ = ramp_between(*ARTISTS, mix, 3)
+        (codes[way],) = hex_codes(np.clip([green], 0, 1))
     return codes
 
 
 def pictures() -> None:
     """Draw ramps from blue to yellow by theories, and by other tools."""
-    cube = uplift.load()
-    theories = {theory.name: theory for theory in mixers(cube)}
-    paints = linear(*BLUE_YELLOW)
     # Parts are the thickness of filters and products, so that a ramp ends at its
     # colours.
-    parts = ramp(np.ones(2), STEPS)
-    drawn = [theories[name] for name in DRAWN]
-    ramps = {theory.title: theory.mix(paints, parts) for theory in drawn}
+    ramps = {
+        theory.title: ramp_between(*BLUE_YELLOW, theory.mix, STEPS)
+        for theory in mixers(uplift.load())
+        if theory.name in DRAWN
+    }
     draw_ramps(ramps, DOCS / "mixing" / "blue-yellow.png")
-    draw_ramps(tools(cube), DOCS / "mixing" / "tools.png")
+    draw_ramps(tools(), DOCS / "mixing" / "tools.png")
 
 
-def tools(cube: Cube) -> dict[str, Array]:
+def tools() -> dict[str, Array]:
     """Return the ramp of two artists' paints by RGB, by us, and by other tools."""
-    steps = published("coloraide")
+    ours = ways(uplift.load())
+    mixes = {
+        "mean of sRGB codes": mean_of_codes,
+        "uplift mix --scattering root": ours["R^½"],
+        "uplift mix": ours[DEFAULT],
+    }
+    coloraide = published("coloraide").expected
     mixbox = published("mixbox").expected[:1]
-    ends = steps.paints[:2]
-    shares = np.concatenate([[[1, 0]], steps.shares, [[0, 1]]])
-    colours = np.broadcast_to(ends, (len(shares), 2, 3))
-    root = by_spectra(cube, SQUARE_ROOT)
-    best = by_spectra(cube, dispersive(cube.data.sensor))
+    first, second = linear(*ARTISTS)
+    steps = len(coloraide) + 2
     return {
-        "mean of sRGB codes": mean_of_codes(colours, shares),
-        "uplift mix --scattering root": root(colours, shares),
-        "uplift mix": best(colours, shares),
-        "coloraide's spectral, after spectral.js (published)": np.concatenate(
-            [ends[:1], steps.expected, ends[1:]]
+        **{title: ramp_between(*ARTISTS, mix, steps) for title, mix in mixes.items()},
+        "coloraide's spectral, after spectral.js (published)": np.array(
+            [first, *coloraide, second]
         ),
-        "Mixbox 1:1 (published)": np.concatenate([ends[:1], mixbox, ends[1:]]),
+        "Mixbox 1:1 (published)": np.array([first, *mixbox, second]),
     }
 
 

@@ -15,6 +15,7 @@ from uplift.colorimetry import Sensor, delta_e_rgb
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.srgb import decode, encode, parse_colour
 from uplift.extras.pages.plots import Strip, plot_strips
+from uplift.extras.paint.coats import ramp
 from uplift.extras.paint.optics import average_areas
 from uplift.extras.paint.pigments import Pigment, Scattering, from_opaque
 from uplift.lookup import Cube
@@ -160,6 +161,13 @@ def by_spectra(cube: Cube, rule: Scattering) -> MixRgb:
 def mean_of_codes(rgb: Array, shares: Array) -> Array:
     """Mix codes of the curve of sRGB."""
     return decode(average_areas(encode(rgb), shares))
+
+
+def ramp_between(first: str, second: str, mix: MixRgb, steps: int) -> Array:
+    """Return linear RGB (steps, 3) from one colour to another."""
+    shares = ramp(np.ones(2), steps)
+    ends = linear(first, second)
+    return mix(np.broadcast_to(ends, (steps, *ends.shape)), shares)
 
 
 def draw_ramps(ramps: Mapping[str, Array], path: Path) -> None:
