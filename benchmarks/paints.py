@@ -4,7 +4,6 @@ pictures, for docs/guides/paints.md.
 
 import json
 import tempfile
-import time
 from collections.abc import Iterator, Sequence
 from functools import cache
 from itertools import combinations
@@ -33,6 +32,7 @@ from uplift.extras.paint.coats import ramp
 from uplift.extras.paint.paint_page import SCRIPTS, page_numbers, write_page
 from uplift.extras.paint.paint_program import few_samples, write_program
 from uplift.extras.paint.paint_samples import MeasuredColours, MeasuredSpectra
+from uplift.lab.timing import stopwatch
 
 INVENTED = read_paints(REFERENCE / "invented_paints.toml")
 """Paints of which the swatches of ``uplift samples`` are made."""
@@ -156,10 +156,8 @@ def fit_acrylics(split: int) -> tuple[Paints, Mixtures, float]:
     names = [f"paint {number}" for number in range(count)]
     parts = np.concatenate([np.eye(count), known.parts])
     samples = opaque_samples(names, parts, MeasuredColours(rounded))
-    begin = time.perf_counter()
-    paints = fit_paints(samples).paints
-    seconds = time.perf_counter() - begin
-    return paints, mixtures.take(order[third:]), seconds
+    fit, run = stopwatch(lambda: fit_paints(samples))
+    return fit.paints, mixtures.take(order[third:]), run.wall
 
 
 def acrylic_fits() -> Iterator[Row]:
