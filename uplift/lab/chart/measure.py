@@ -15,7 +15,7 @@ from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.extras.images.processes import ChildError, call_in_child
-from uplift.lab.chart.call_times import BrokenError, call_times
+from uplift.lab.chart.call_times import BrokenError, UpliftRgb, call_times
 from uplift.lab.chart.results import Chart, MethodResult, State
 from uplift.lab.chart.task import ChartTask
 from uplift.lab.method import (
@@ -99,7 +99,7 @@ def _numbers(method: Method, task: ChartTask) -> dict[str, float]:
     build = {} if prepared.build_s is None else {"build_s": prepared.build_s}
     count = len(task.colours)
     if not method.batch:
-        count = max(1, int(effort.seconds_per_error / max(second.cpu, 1e-9)))
+        count = _affordable(uplift, task.colours, effort.seconds_per_error)
     checked = _checked(method, prepared)
     return {
         "bytes": prepared.bytes,
@@ -110,6 +110,16 @@ def _numbers(method: Method, task: ChartTask) -> dict[str, float]:
         **_errors(checked, task, count),
         **call_times(uplift, method.dtype, effort),
     }
+
+
+def _affordable(uplift: UpliftRgb, rgb: Array, seconds: float) -> int:
+    """Count the colours, from the first, that take some CPU seconds one by one."""
+    begin = time.process_time()
+    for count in range(1, len(rgb)):
+        uplift(rgb[count - 1 : count])
+        if time.process_time() - begin > seconds:
+            return count
+    return len(rgb)
 
 
 def _checked(method: Method, prepared: PreparedMethod) -> PreparedMethod:
