@@ -154,9 +154,6 @@ def test_unmet_requirement_names_the_closest_cube(requirement, closest):
 def test_limits_are_required_and_positive(limits):
     with raises(OptionError, "option"):
         Requirement(**limits)
-
-
-def test_light_must_be_in_the_chart():
     with raises(UnknownNameError, "unknown-name"):
         Requirement(delta_e=1, light="FL111")
 
