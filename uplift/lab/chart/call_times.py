@@ -1,6 +1,7 @@
 """CPU times of calls of a method by the number of colours per call."""
 
 from collections.abc import Callable
+from functools import partial
 from itertools import cycle
 
 import numpy as np
@@ -9,8 +10,11 @@ from uplift.common.arrays import Values
 from uplift.common.text import pluralise
 from uplift.lab.chart.results import REFERENCE
 from uplift.lab.chart.task import Effort
-from uplift.lab.timing import TimingStats, time_short_call
+from uplift.lab.timing import TimingStats, run_call, time_short_call
 
+GROWTH = 10
+"""Factor between the numbers of colours from which the duration of a call is estimated.
+"""
 INPUTS = 64
 """Largest number of different inputs of repeated calls."""
 INPUT_COLOURS = 1 << 16
@@ -29,25 +33,44 @@ class BrokenError(Exception):
 def call_times(uplift: UpliftRgb, dtype: str, effort: Effort) -> dict[str, float]:
     """Time calls with each number of colours of an effort, in ns per colour.
 
-    A call that would take more than `Effort.longest` seconds has the times of the next
-    smaller one.
+    A call of more than `Effort.longest` seconds takes fewer colours. All larger batches
+    then have its times.
     """
     numbers: dict[str, float] = {}
-    ns = count = 0.0
+    count = last = 0
     for size in effort.batches:
-        if size * ns <= 1e9 * effort.longest:
-            count = size
-            inputs = max(1, min(INPUTS, INPUT_COLOURS // size))
-            rgb = np.random.default_rng(2).random((inputs, size, 3)).astype(dtype)
+        if count == last:
+            count = affordable(uplift, dtype, size, effort.longest)
+            inputs = max(1, min(INPUTS, INPUT_COLOURS // count))
+            rgb = _colours(inputs, count, dtype)
             _check_batch(uplift, rgb[0])
-            stats = _time_batch(uplift, rgb, effort)
-            ns = stats.median
+            ns = _time_batch(uplift, rgb, effort)
+        last = size
         name = f"ns_{size}"
-        numbers |= {name: ns, f"{name}_least": stats.min, f"{name}_most": stats.max}
-        numbers |= {f"{name}_runs": stats.runs, f"{name}_colours": count}
+        numbers |= {name: ns.median, f"{name}_least": ns.min, f"{name}_most": ns.max}
+        numbers |= {f"{name}_runs": ns.runs, f"{name}_colours": count}
     known = [size for size in effort.batches if size <= REFERENCE]
     reference = max(known, default=effort.batches[0])
     return numbers | {"time_ns": numbers[f"ns_{reference}"]}
+
+
+def affordable(uplift: UpliftRgb, dtype: str, size: int, longest: float) -> int:
+    """Return the number of colours, at most ``size``, of a call of ``longest`` CPU
+    seconds.
+    """
+    count = 1
+    while True:
+        call = partial(uplift, _colours(1, count, dtype)[0])
+        call()
+        seconds = run_call(call).cpu
+        if count == size or GROWTH * seconds > longest:
+            return max(1, min(size, int(count * longest / max(seconds, 1e-9))))
+        count = min(size, count * GROWTH)
+
+
+def _colours(inputs: int, count: int, dtype: str) -> Values:
+    """Random RGB (inputs, count, 3)."""
+    return np.random.default_rng(2).random((inputs, count, 3)).astype(dtype)
 
 
 def _time_batch(uplift: UpliftRgb, inputs: Values, effort: Effort) -> TimingStats:
