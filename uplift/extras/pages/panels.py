@@ -11,7 +11,9 @@ from itertools import zip_longest
 from typing import Any, Literal
 
 import numpy as np
+from markupsafe import Markup
 
+from uplift.common.arrays import Array
 from uplift.extras.pages.figure import (
     GREY,
     INK,
@@ -19,6 +21,7 @@ from uplift.extras.pages.figure import (
     new_figure,
     style_axes,
     styled,
+    to_page_svg,
 )
 from uplift.extras.pages.marks import Mark
 
@@ -28,8 +31,10 @@ LABEL_SIZE = 7.5
 """Points of the font of labels."""
 CLEARANCE = 4.0
 """Points that labels keep from the middle of markers."""
-DISTANCES = (5.0, 42.0)
+DISTANCES = (6.0, 42.0)
 """Smallest and largest distance in points between a dot and its label."""
+PAGE_SIZE = (4.8, 3.4)
+"""Inches of a panel on a page."""
 LEADER = 9.0
 """Distance in points from which a line joins a dot and its label."""
 TEXT_HEIGHT = 0.19
@@ -146,6 +151,12 @@ def draw(
         for axes, panel in drawn:
             _write_labels(axes, panel.dots)
     return figure
+
+
+def page_svg(panel: Panel, size: tuple[float, float] = PAGE_SIZE) -> Markup:
+    """Draw a panel as an ``svg`` element of a page, which has its title as text."""
+    figure = draw([replace(panel, title="")], size=size)
+    return to_page_svg(figure, f"{panel.title}, over {panel.x.label}")
 
 
 def sheet(titles: Sequence[str], rows: Mapping[str, Sequence[Panel]]) -> list[Panel]:
@@ -291,7 +302,7 @@ def _write_labels(axes: Any, dots: Sequence[Dot]) -> None:
     point = axes.figure.dpi / 72
     width = axes.get_window_extent().width
     nearest, farthest = np.multiply(DISTANCES, point / width)
-    curves = [curve.get_xydata().T for curve in axes.lines if _is_curve(curve)]
+    curves = [_places(curve) for curve in axes.lines if _is_joined(curve)]
     axes.autoscale(enable=False)
     # It prints a line if no text has room.
     with redirect_stdout(io.StringIO()):
@@ -324,10 +335,15 @@ def _write_labels(axes: Any, dots: Sequence[Dot]) -> None:
             leader.remove()
 
 
-def _is_curve(line: Any) -> bool:
-    """Whether a line joins points: markers and thresholds do not."""
-    is_joined = line.get_linestyle() != "None" and len(line.get_xydata()) > 1
-    return is_joined and line.get_transform() == line.axes.transData
+def _is_joined(line: Any) -> bool:
+    return line.get_linestyle() != "None" and len(line.get_xydata()) > 1
+
+
+def _places(line: Any) -> Array:
+    """Return the points (2, n) of a line in data, those of thresholds too."""
+    pixels = line.get_transform().transform(line.get_xydata())
+    places: Array = line.axes.transData.inverted().transform(pixels).T
+    return places
 
 
 def _length(line: Any) -> float:
