@@ -124,11 +124,6 @@ def draw_pictures() -> Row:
     }
 
 
-def summary(delta_e: Array) -> Row:
-    """Return mean and 95 % of ΔE00."""
-    return {"mean": delta_e.mean(), "p95": np.quantile(delta_e, QUANTILE)}
-
-
 def page_panels(scene: Scene) -> list[Panel | None]:
     """Return both photographs, and the picture under further lights with its errors."""
     panels = [

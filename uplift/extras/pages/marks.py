@@ -48,6 +48,19 @@ def line(
     return draw
 
 
+def outline(
+    corners: ArrayLike, label: str = "", colour: Any = INK, **style: Any
+) -> Mark:
+    """Draw the edge of the region with corners (n, 2)."""
+
+    def draw(axes: Any) -> None:
+        style_axes(axes)
+        edge = {"facecolor": "none", "edgecolor": colour, "linewidth": 1.0, **style}
+        axes.fill(*np.transpose(corners), label=figure_text(label), **edge)
+
+    return draw
+
+
 def whiskers(
     x: ArrayLike, y: ArrayLike, low: ArrayLike, high: ArrayLike, colour: Any = INK
 ) -> Mark:

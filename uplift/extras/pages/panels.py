@@ -74,6 +74,7 @@ class Dot:
     hollow: bool = False
     bold: bool = False
     key: str = ""
+    size: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,7 +198,7 @@ def _draw_panel(axes: Any, panel: Panel) -> None:
             fontweight="bold",
             color=INK,
         )
-    if panel.legend:
+    if panel.legend and axes.get_legend_handles_labels()[1]:
         axes.legend(loc=panel.legend, **LEGEND)
 
 
@@ -210,10 +211,10 @@ def _draw_dot(axes: Any, dot: Dot) -> None:
         zorder=3 if dot.bold else 2,
         linestyle="",
         marker=dot.marker,
-        markersize=MARKER_SIZES.get(dot.marker, 6.5),
+        markersize=dot.size * MARKER_SIZES.get(dot.marker, 6.5),
         markerfacecolor=face,
         markeredgecolor=edge,
-        markeredgewidth=1.2 if dot.hollow else 0.5,
+        markeredgewidth=1.2 * dot.size if dot.hollow else 0.5,
         clip_on=False,
     )
 
