@@ -5,6 +5,7 @@ falls on it, so that its spectrum is known.
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -69,7 +70,7 @@ def materials_of(names: list[str], shape: Array, place: list[Array]) -> Indices:
     return material + tiles * (material == len(BALLS))
 
 
-def scene_parts(transform: Row) -> Row:
+def scene_parts(transform: Any) -> Row:
     """Return the scene: all surfaces are white, and reflect no light to each other."""
     white = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 1.0}}
     away = math.dist(LAMP, TARGET) / LAMP_RADIUS

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from benchmarks import DOCS, Row
+from benchmarks import DOCS, Row, summary
 from benchmarks.materials import SENSOR, Materials, other_halves
 from benchmarks.still_life import BALLS, MATERIALS, still_life
 from uplift.colorimetry import delta_e_spectra, observer, rgb_to_lab
@@ -28,7 +28,6 @@ NAMES = {"FL11": "tubes (FL11)", "HP1": "sodium lamp (HP1)"}
 FOLDER = DOCS / "two-lights"
 LARGEST = 5.0
 """ΔE00 at the end of the scale of maps."""
-QUANTILE = 0.95
 INCHES = 2.5
 """Width of a panel."""
 
@@ -113,7 +112,7 @@ def draw_pictures() -> Row:
     write_png(readme, FOLDER / "sodium.png", force=True)
     errors = {}
     for name, (one, two) in scene.errors.items():
-        errors[name] = {"one": summary(one), "two": summary(two)}
+        errors[name] = {"one": summary(one.ravel()), "two": summary(two.ravel())}
     return {
         "set": SET,
         "materials": MATERIALS,

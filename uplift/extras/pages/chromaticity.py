@@ -53,10 +53,10 @@ def colours_panel(table: EmissionTable) -> Panel:
     """Return the colours of lights, the triangle of the RGB space and the wavelengths
     of the spectral locus.
     """
-    corners = chromaticity(table.xyz(np.eye(3)[[0, 1, 2, 0]]))
+    u, v = chromaticity(table.xyz(np.eye(3)[[0, 1, 2, 0]])).T
     space = f"{table.space} primaries"
     marks = [
-        line(*corners.T, space, linewidth=0.9, linestyle=(0, (4, 2))),
+        line(u, v, space, linewidth=0.9, linestyle=(0, (4, 2))),
         _wavelengths(table),
         line([], [], "lamp that is exact", marker="o", linestyle="", mfc="white"),
         _map(table, ALL, _codes(table, ALL)),

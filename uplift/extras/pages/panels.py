@@ -98,7 +98,7 @@ def draw(
     *,
     legend: Literal["", "above", "below"] = "",
     title: str = "",
-    scale: str = "ΔE00",
+    scale: str | None = "ΔE00",
     dpi: float = 130,
     share: str = "",
 ) -> Any:
@@ -114,7 +114,7 @@ def draw(
     legend
         Place of one legend for all labels of the marks.
     scale
-        Label of the scale of all `error_map`.
+        Label of the scales of all `error_map`; None for none.
     share
         ``"x"``, ``"y"`` or ``"xy"``: axes that have the same limits in all panels.
     """
@@ -143,7 +143,8 @@ def draw(
             _remove_labels(cells[:, 1:], "y")
         if isinstance(size, float | int):
             _fit_heights(figure, cells, width)
-        _add_scale(figure, cells, scale)
+        if scale is not None:
+            _add_scales(figure, cells, scale)
         if title:
             figure.suptitle(figure_text(title), fontsize=9, color=INK)
         if legend:
@@ -260,16 +261,19 @@ def _height(axes: Any, width: float) -> float:
     return width * shapes[0][0] / shapes[0][1] + lines * TEXT_HEIGHT
 
 
-def _add_scale(figure: Any, cells: Any, label: str) -> None:
-    """Draw one scale of all maps of errors, right of the last column."""
-    maps = [
-        image for axes in cells.flat for image in axes.images if image.norm.scaled()
-    ]
-    maps = [image for image in maps if image.get_array().ndim == 2]
-    if maps:
-        bar = figure.colorbar(
-            maps[0], ax=list(cells[:, -1]), fraction=0.05, pad=0.02, extend="max"
-        )
+def _add_scales(figure: Any, cells: Any, label: str) -> None:
+    """Draw the scale of all maps right of the last column if they have one, and else
+    that of each map next to it.
+    """
+    maps = []
+    for axes in cells.flat:
+        maps += [image for image in axes.images if image.get_array().ndim == 2]
+    scales = {(type(image.norm), *image.get_clim()) for image in maps}
+    beside = {maps[0]: list(cells[:, -1])} if len(scales) == 1 else {}
+    for image in maps if len(scales) > 1 else ():
+        beside[image] = image.axes
+    for image, axes in beside.items():
+        bar = figure.colorbar(image, ax=axes, fraction=0.05, pad=0.02, extend="max")
         bar.set_label(label, color=INK)
         bar.outline.set_visible(False)
 

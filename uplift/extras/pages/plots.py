@@ -149,7 +149,7 @@ def _region_panel(
     region = bounds.outline(row)
     lightness, a, b = bounds.lab[row]
     likely = bounds.likely(row)
-    inside = [region, [(a, b)]]
+    inside = [region, np.array([(a, b)])]
     drawn = [_filled(screen, region, lightness)]
     drawn.append(outline(region, "all reflectances", INK))
     if likely is not None:

@@ -89,8 +89,8 @@ def drawn_results(criterion: Criterion, chart: Chart) -> list[MethodResult]:
 
 def criterion_panel(criterion: Criterion, chart: Chart, number: int) -> Panel:
     """Return the panel of a criterion, whose markers have the keys NUMBER-ROW."""
-    named = []
-    unnamed = []
+    named: list[Dot] = []
+    unnamed: list[Dot] = []
     for result in drawn_results(criterion, chart):
         dot = Dot(
             *(criterion.point(result) or (1.0, 1.0)),

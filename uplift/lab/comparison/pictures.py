@@ -68,7 +68,7 @@ def cost_panels(comparison: Comparison) -> list[Panel]:
     a family are joined by a line.
     """
     rows = names(comparison)
-    panels = []
+    panels: list[Panel] = []
     for (name, title), (axis, cost) in product(comparison.sets.items(), COSTS.items()):
         families: dict[str, list[Dot]] = {}
         for result in sorted(comparison.of(name), key=lambda result: result.floats):
