@@ -69,7 +69,7 @@ def whiskers(
     def draw(axes: Any) -> None:
         style_axes(axes)
         axes.vlines(x, low, high, color=colour, linewidth=1)
-        axes.plot(x, y, "o", color=colour, markersize=4)
+        axes.plot(x, y, "o", color=colour, markersize=4, zorder=1.5)
 
     return draw
 

@@ -257,8 +257,11 @@ def _height(axes: Any, width: float) -> float:
     """Return the inches that the picture of a panel takes, if any, and its texts."""
     texts = (axes.get_title(loc="left"), axes.get_xlabel())
     lines = sum(text.count("\n") + 1 for text in texts if text)
-    shapes = [image.get_size() for image in axes.images] or [(1, 3)]
-    return width * shapes[0][0] / shapes[0][1] + lines * TEXT_HEIGHT
+    # Other panels, and stretched pictures, fill what is there.
+    height, columns = 1, 3
+    if axes.images and axes.get_aspect() != "auto":
+        height, columns = axes.images[0].get_size()
+    return width * height / columns + lines * TEXT_HEIGHT
 
 
 def _add_scales(figure: Any, cells: Any, label: str) -> None:
