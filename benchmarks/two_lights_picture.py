@@ -14,7 +14,7 @@ from uplift.colorimetry import delta_e_spectra, observer, rgb_to_lab
 from uplift.colorimetry.gamut import SRGB
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.extras.colour.srgb import to_display_codes
-from uplift.extras.pages.figure import ACCENT, GREY, write_png
+from uplift.extras.pages.figure import ACCENT, GREY, write_figure
 from uplift.extras.pages.marks import error_map, line, picture
 from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.photographs import Noise, photograph, prepare
@@ -108,8 +108,8 @@ def draw_pictures() -> Row:
     FOLDER.mkdir(exist_ok=True)
     page = draw(page_panels(scene), 3, INCHES)
     readme = draw(relit_panels(scene, RELIT[-1]), 3, INCHES)
-    write_png(page, FOLDER / "scene.png", force=True)
-    write_png(readme, FOLDER / "sodium.png", force=True)
+    write_figure(page, FOLDER / "scene.png", force=True)
+    write_figure(readme, FOLDER / "sodium.png", force=True)
     errors = {}
     for name, (one, two) in scene.errors.items():
         errors[name] = {"one": summary(one.ravel()), "two": summary(two.ravel())}

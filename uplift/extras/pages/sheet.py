@@ -4,6 +4,7 @@ Status colours differ by at least 16 ΔE00 for protanopes, deuteranopes and trit
 (Machado et al. 2009), and the frequent regular nodes are inconspicuous.
 """
 
+import io
 import math
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from uplift.common.text import pluralise
 from uplift.cube import CubeData
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.images import exr
-from uplift.extras.pages.figure import HIGHLIGHT, matplotlib, write_figure
+from uplift.extras.pages.figure import HIGHLIGHT, matplotlib, render, write_figure
 from uplift.extras.pages.marks import error_map, line, picture
 from uplift.extras.pages.panels import Axis, Panel, draw
 
@@ -45,11 +46,10 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
     if Path(path).suffix.lower() == ".png":
         write_figure(figure, path, force=force)
         return
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.image import imread
 
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    image = decode(np.asarray(canvas.buffer_rgba())[..., :3] / 255).astype(np.float32)
+    codes = imread(io.BytesIO(render(figure, ".png")))[..., :3]
+    image = decode(codes).astype(np.float32)
     channels = {letter: image[..., i] for i, letter in enumerate("RGB")}
     part = exr.make_part("sheet", exr.attributes(data), channels)
     exr.write_parts([part], path, force=force)
