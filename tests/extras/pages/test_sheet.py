@@ -88,7 +88,9 @@ def test_files_have_equal_pixels(tmp_path):
 @pytest.mark.parametrize("deficiency", ["Protanomaly", "Deuteranomaly", "Tritanomaly"])
 @pytest.mark.filterwarnings("ignore::colour.utilities.ColourUsageWarning")
 def test_status_colours_differ_for_colour_vision_deficiencies(deficiency):
-    seen = decode(CODES) @ colour.blindness.matrix_cvd_Machado2009(deficiency, 1.0).T
-    labs = colour.XYZ_to_Lab(colour.RGB_to_XYZ(np.clip(seen, 0, 1), "sRGB"))
+    perceived = (
+        decode(CODES) @ colour.blindness.matrix_cvd_Machado2009(deficiency, 1.0).T
+    )
+    labs = colour.XYZ_to_Lab(colour.RGB_to_XYZ(np.clip(perceived, 0, 1), "sRGB"))
     for one, other in combinations(labs, 2):
         assert colour.difference.delta_E_CIE2000(one, other) >= 16

@@ -162,7 +162,8 @@ def render(figure: Any, suffix: str) -> bytes:
     """Return the file of a figure in the format of a suffix."""
     content = io.BytesIO()
     with styled():
-        figure.savefig(content, format=suffix[1:], metadata=METADATA[suffix])
+        options = {"metadata": METADATA[suffix], "dpi": figure.dpi}
+        figure.savefig(content, format=suffix[1:], **options)
     return content.getvalue()
 
 
