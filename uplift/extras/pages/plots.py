@@ -19,7 +19,14 @@ from uplift.extras.looks.lab_errors import LIKELY
 from uplift.extras.looks.metamer_bounds import Bounds
 from uplift.extras.pages.figure import ACCENT, INK, PALE, write_figure
 from uplift.extras.pages.marks import Mark, line, outline, picture
-from uplift.extras.pages.panels import Axis, Dot, Panel, draw, spectra_panel
+from uplift.extras.pages.panels import (
+    Axis,
+    Dot,
+    Panel,
+    draw,
+    spectra_panel,
+    square_limits,
+)
 from uplift.lookup import Cube
 
 SIZE = (7.2, 4.0)
@@ -102,8 +109,6 @@ MAX_COLOURS = 24
 """Largest number of colours in one plot."""
 PIXELS = 160
 """Pixels of the colours in a region, along each side."""
-MARGIN = 0.06
-"""Space around a region, as a share of its size."""
 MIN_EXTENT = 5.0
 """Smallest extent of an axis in a* or b*."""
 
@@ -154,7 +159,7 @@ def _region_panel(
         further = part.outline(row)
         marks.append(outline(further, "with further photographs", linestyle="--"))
     marks.append(line([], [], "answer", INK, marker="o", linestyle=""))
-    u, v = _extent(np.concatenate(inside))
+    u, v = square_limits(np.concatenate(inside), MIN_EXTENT)
     title = f"{inner.light.name}: ΔE00 up to {inner.largest.delta_e_2000[row]:.1f}"
     x = Axis("a*", limits=tuple(u))
     return Panel(marks, title, x, Axis("b*", limits=tuple(v)), [Dot(a, b)])
@@ -162,7 +167,7 @@ def _region_panel(
 
 def _filled(screen: Sensor, region: Array, lightness: float) -> Mark:
     """Fill a region with its colours on a screen."""
-    extent = _extent(region)
+    extent = square_limits(region, MIN_EXTENT)
 
     def draw_colours(axes: Any) -> None:
         codes = _colours(screen, extent, lightness)
@@ -171,15 +176,6 @@ def _filled(screen: Sensor, region: Array, lightness: float) -> Mark:
         image.set_clip_path(edge)
 
     return draw_colours
-
-
-def _extent(points: Array) -> Array:
-    """Limits (2, 2) of a* and b* of a square around points (n, 2)."""
-    low = points.min(axis=0)
-    high = points.max(axis=0)
-    half = max(float((high - low).max()) * (0.5 + MARGIN), MIN_EXTENT / 2)
-    middle = (low + high) / 2
-    return np.stack([middle - half, middle + half], axis=1)
 
 
 def _colours(screen: Sensor, extent: Array, lightness: float) -> Array:
