@@ -201,7 +201,7 @@ def _set_axis(axis: Any, wanted: Axis) -> None:
         low, high = sorted(axis.get_view_interval())
         # Axes of few decades have ticks between the powers of ten.
         steps = (1, 2, 5) if high < 1000 * low else (1,)
-        axis.set_major_locator(LogLocator(subs=steps, numticks=40))
+        axis.set_major_locator(LogLocator(subs=steps, numticks=9))
         axis.set_minor_locator(LogLocator(subs=()))
     if wanted.ticks:
         axis.set_ticks(list(wanted.ticks))
