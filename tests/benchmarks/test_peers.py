@@ -51,7 +51,7 @@ def write(path, coefficients):
 
 def test_colours_of_a_table_come_back(table):
     found, target = peers.table_colours(table[0])
-    assert peers.check_answers(found, target, least=1.0)["worst"] < 1e-5
+    assert peers.check_share(found, target, least=1.0)["worst"] < 1e-5
     assert sorted(set(target.ravel())) == [0, *LEVELS]
     assert (target.reshape(3, -1, 3).max(axis=1) == max(LEVELS)).all()
 
@@ -62,12 +62,13 @@ def test_axes_that_are_swapped_are_wrong_answers(table, tmp_path):
     with pytest.raises(
         RuntimeError, match=r"wrong answer, not timed: 50\.0% of the nodes"
     ):
-        peers.check_answers(*peers.table_colours(tmp_path / "swapped.coeff"), least=0.9)
+        peers.check_share(*peers.table_colours(tmp_path / "swapped.coeff"), least=0.9)
 
 
 def test_a_point_without_a_number_is_not_within_the_threshold():
     found = np.array([[0.5, 0.5, np.nan], [0.5, 0.5, 0.5]])
-    assert peers.check_answers(found, np.full((2, 3), 0.5), least=0.5) == {
+    assert peers.check_share(found, np.full((2, 3), 0.5), least=0.5) == {
+        "points": 2,
         "share": 0.5,
         "worst": np.inf,
     }
@@ -81,4 +82,4 @@ def test_the_sensor_of_a_table_keeps_white():
 def test_without_its_source_the_tool_says_what_it_needs(monkeypatch, tmp_path):
     monkeypatch.setattr(peers, "RGB2SPEC", tmp_path)
     with pytest.raises(RuntimeError, match="make peers"):
-        peers.rgb2spec(1)
+        next(peers.rgb2spec())
