@@ -20,7 +20,11 @@ RUNS = 5
 FEW_RUNS = 3
 """Runs of processes and large builds, which take long and vary little."""
 DIMS = (16, 32, 64, 128)
-LINES = ("python -c 'import numpy'", "uplift query '#cc3319'", "uplift --help")
+LINES = (
+    "python -c 'import numpy'",
+    "uplift query '#cc3319' --format json",
+    "uplift --help",
+)
 MIXTURES = (24, 396, 10_000)
 """Entries of atlases of mixtures of three shipped spectra."""
 MIXTURE_DIM = 32
