@@ -17,7 +17,7 @@ from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import error_map
 from uplift.extras.pages.panels import Panel, draw
 from uplift.extras.report.diff_page import mosaic
-from uplift.lab.chart.method import at_1_nm, published_srgb
+from uplift.lab.method import at_1_nm, published_srgb
 from uplift.lab.timing import time_call
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance

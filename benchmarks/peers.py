@@ -21,7 +21,7 @@ from benchmarks import ROOT, Row
 from benchmarks.programs import Words, output
 from uplift.colorimetry import Sensor, observer
 from uplift.common.arrays import Array
-from uplift.lab.chart.mitsuba3 import XYZ_TO_RGB
+from uplift.lab.methods.mitsuba3 import XYZ_TO_RGB
 from uplift.lab.timing import time_call, time_command, timing_stats
 from uplift.lattice import Lattice, axis_nodes
 from uplift.models import Moments, Sigmoid, evaluate, reflectance
