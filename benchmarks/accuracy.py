@@ -174,7 +174,7 @@ def rounds() -> None:
     """Draw the round of each node of the ColorChecker, a tile for each blue."""
     points = cubes()[DEFAULT].data.points
     tiles = mosaic(blue_slices(points.round.astype(float), DIM))
-    panel = Panel([error_map(tiles, tiles.max())])
+    panel = Panel([error_map(tiles, points.round.max())])
     figure = draw([panel], 1, 6.0, scale="round")
     write_figure(figure, DOCS / "accuracy" / "rounds.png", force=True)
 
