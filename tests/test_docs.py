@@ -128,7 +128,7 @@ def test_the_skeleton_of_an_export_writes_a_file(tmp_path, small_cube):
 
 
 def test_the_skeleton_of_a_reader_and_its_test_run(tmp_path, monkeypatch):
-    *_, reader, registration, test = SKELETONS
+    reader, registration, test = SKELETONS[2:5]
     module = ModuleType("uplift.extras.formats.spectrograph")
     exec(compile(reader, "reader", "exec"), module.__dict__)
     monkeypatch.setitem(sys.modules, module.__name__, module)
@@ -140,6 +140,14 @@ def test_the_skeleton_of_a_reader_and_its_test_run(tmp_path, monkeypatch):
     assert len(functions) > 1
     for function in functions:
         function(tmp_path)
+
+
+def test_the_skeleton_of_a_page_of_measurements_runs():
+    page: dict = {}
+    exec(compile(SKELETONS[5], "example", "exec"), page)
+    assert list(page["QUESTIONS"]) == ["errors", "times"]
+    assert next(page["errors"]())["light"] == "A"
+    assert next(page["times"]())["cpu_s"].min > 0
 
 
 def test_links_resolve():
