@@ -110,24 +110,6 @@ def largest(error: Callable[[Array], Array], rgb: Array) -> float:
     return -search.fun
 
 
-def fits() -> Iterator[Row]:
-    """Yield the rounds of growth, counts of nodes and the largest residual."""
-    for name, cube in cubes().items():
-        yield {"cube": name, **fit_quality(cube)}
-
-
-def fit_quality(cube: Cube) -> Row:
-    """Return the rounds of growth, counts of nodes and the largest residual."""
-    points = cube.data.points
-    counts = points.counts()
-    return {
-        "rounds": points.round.max() + 1,
-        "improved": counts["improved"],
-        "unfitted": counts["unfitted"],
-        "worst": points.distance.max(),
-    }
-
-
 def ranges() -> Iterator[Row]:
     """Yield errors at 1 nm, and of the entries, of the ColorChecker by range."""
     atlas = uplift.read_atlas(MACBETH)
@@ -155,10 +137,14 @@ def options() -> Iterator[Row]:
             uplift.build, MACBETH, dim=OPTION_DIM, debug=True, **{option: value}
         )
         cube = build()
+        points = cube.data.points
+        counts = points.counts()
         yield {
             "option": f"--{option} {value}",
             "cpu_s": time_call(build, RUNS).cpu,
-            **fit_quality(cube),
+            "rounds": points.round.max() + 1,
+            "improved": counts["improved"],
+            "unfitted": counts["unfitted"],
             **summary(delta_e_spectra(light, default, node_spectra(cube))),
         }
 
@@ -181,7 +167,6 @@ def rounds() -> None:
 
 QUESTIONS = {
     "round_trips": round_trips,
-    "fits": fits,
     "ranges": ranges,
     "options": options,
     "rounds": rounds,

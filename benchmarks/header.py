@@ -2,10 +2,10 @@
 which read cube files at run time, for docs/integrate.md and docs/speed.md.
 """
 
-import base64
 import shutil
 import tempfile
 from collections.abc import Iterator
+from functools import partial
 from itertools import product
 from pathlib import Path
 
@@ -18,7 +18,6 @@ from uplift.common.arrays import Array
 from uplift.extras.export import write_program
 from uplift.extras.export.module import compose_module, write_module
 from uplift.extras.export.runtime import HEADER, compose_header, write_header
-from uplift.extras.report import live_page
 from uplift.lab.timing import check_answer
 from uplift.lookup import Cube, load
 from uplift.lookup.cube import PACKAGED
@@ -41,6 +40,11 @@ COMPARED = 100_000
 """Colours anywhere, and as many on the faces of RGB, that are compared."""
 RAY = np.array([450.0, 510.0, 570.0, 630.0])
 SPECTRUM_WIDTH = 16
+HEADERS = ("exported", "uplift.h")
+MODULES = ("uplift.js",)
+"""Programs whose times `header.c` and `header.mjs` print; the last one's spectra are
+compared.
+"""
 INSIDE = -2e-3
 """Distance from the solid of the moved answers that are compared."""
 
@@ -96,39 +100,48 @@ def time_export(cube: Cube, mode: str, rgb: Array) -> Row:
 
 
 def sizes() -> Row:
-    """Return the bytes of uplift.h and uplift.js, of the live page of the packaged
-    cube, and what uplift.js and the file of the cube would add to it.
-    """
-    path = PACKAGED["srgb"]
-    file = base64.b64encode(path.read_bytes())
-    return {
-        "header": len(compose_header()),
-        "module": len(compose_module()),
-        "page": len(live_page.page(load(path).data).encode()),
-        "added": len(compose_module()) + len(file),
-    }
+    """Return the bytes of uplift.h and uplift.js."""
+    return {"header": len(compose_header()), "module": len(compose_module())}
 
 
 def lookups() -> Iterator[Row]:
     """Yield the nanoseconds of a lookup in stored and packaged cubes by an exported
     header, uplift.h and uplift.js, and differences of the latter two from Python.
     """
-    for path in (*sorted(CUBES.glob("*.uplift")), *PACKAGED.values()):
+    for path in (*sorted(CUBES.glob("*-16*.uplift")), *PACKAGED.values()):
         cube = load(path)
         rgb = compared_colours(cube)
         for at, width in ((cube.wavelengths, SPECTRUM_WIDTH), (RAY, len(RAY))):
             expected = cube.reflectance(rgb.astype(float), at)
-            header, (exported, runtime) = run_headers(path, cube, rgb, at, width)
-            script, (module,) = run_module(path, rgb, at)
-            yield {
-                "cube": path.stem,
-                "wavelengths": len(at),
-                "exported": exported,
-                "runtime": runtime,
-                "module": module,
-                "difference": np.abs(header - expected).max(),
-                "module_difference": np.abs(script - expected).max(),
-            }
+            row = {"cube": path.stem, "wavelengths": len(at)}
+            with tempfile.TemporaryDirectory() as name:
+                folder = Path(name)
+                run = partial(run_lookups, folder=folder, at=at)
+                header = [write_headers(cube, folder, width), path]
+                module = [*write_script(folder), path]
+                for command, programs in ((header, HEADERS), (module, MODULES)):
+                    spectra, _ = run(*command, rgb=rgb, runs=1)
+                    _, times = run(*command, rgb=random_colours(COLOURS), runs=RUNS)
+                    difference = np.abs(spectra - expected).max()
+                    for program, ns in zip(programs, times, strict=True):
+                        compared = difference if program == programs[-1] else None
+                        found = {"program": program, "ns": ns, "difference": compared}
+                        yield row | found
+
+
+def write_headers(cube: Cube, folder: Path, width: int) -> Path:
+    """Compile the program of the exported header and uplift.h, which take turns."""
+    write_program(cube.data, folder / "cube.h")
+    write_header(folder / HEADER)
+    widths = (f"-DUPLIFT_WIDTH={width}", f"-DCUBE_WIDTH={width}")
+    return compile_c(ROOT / "benchmarks" / "header.c", folder, *NATIVE, *widths)
+
+
+def write_script(folder: Path) -> tuple[str, str]:
+    """Write uplift.js, and return the command of the script that runs it."""
+    write_module(folder / "uplift.mjs")
+    shutil.copy(ROOT / "benchmarks" / "header.mjs", folder)
+    return "node", "header.mjs"
 
 
 def compared_colours(cube: Cube) -> Array:
@@ -143,43 +156,6 @@ def compared_colours(cube: Cube) -> Array:
     exact = rgb.astype(float)
     inside = cube.data.solid.signed_distance(exact) < INSIDE
     return rgb[inside | ~is_inexact(cube.data, exact)]
-
-
-def run_headers(
-    path: Path, cube: Cube, rgb: Array, at: Array, width: int
-) -> tuple[Array, list[float]]:
-    """Return reflectances by uplift.h, and nanoseconds by the exported header and it,
-    which take turns.
-    """
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        write_program(cube.data, folder / "cube.h")
-        write_header(folder / HEADER)
-        widths = (f"-DUPLIFT_WIDTH={width}", f"-DCUBE_WIDTH={width}")
-        source = ROOT / "benchmarks" / "header.c"
-        program = compile_c(source, folder, *NATIVE, *widths)
-        return compare_and_time(program, path, folder=folder, rgb=rgb, at=at)
-
-
-def run_module(path: Path, rgb: Array, at: Array) -> tuple[Array, list[float]]:
-    """Return reflectances by uplift.js in node, and nanoseconds."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        write_module(folder / "uplift.mjs")
-        shutil.copy(ROOT / "benchmarks" / "header.mjs", folder)
-        return compare_and_time(
-            "node", "header.mjs", path, folder=folder, rgb=rgb, at=at
-        )
-
-
-def compare_and_time(
-    *command: Words, folder: Path, rgb: Array, at: Array
-) -> tuple[Array, list[float]]:
-    """Return the reflectances of colours, and nanoseconds for random ones."""
-    spectra, _ = run_lookups(*command, folder=folder, rgb=rgb, at=at, runs=1)
-    timed = random_colours(COLOURS)
-    _, nanoseconds = run_lookups(*command, folder=folder, rgb=timed, at=at, runs=RUNS)
-    return spectra, nanoseconds
 
 
 QUESTIONS = {"programs": programs, "sizes": sizes, "lookups": lookups}

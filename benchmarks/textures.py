@@ -1,12 +1,11 @@
 """Accuracy, speed and memory of spectral textures, for docs/textures.md."""
 
 import tempfile
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
-import OpenEXR
 
 import uplift
 from benchmarks import CUBES, MACBETH, UPLIFT, Row, summary
@@ -14,11 +13,12 @@ from benchmarks.pictures import pictures
 from uplift.colorimetry import delta_e_rgb, observer
 from uplift.common.arrays import Array
 from uplift.extras import texture
+from uplift.extras.mitsuba.texels import Samples, read_texels
 from uplift.extras.texture.uplifter import PixelEncoding
 from uplift.lab.timing import time_command
-from uplift.lookup import Cube
+from uplift.lookup import blockwise
 from uplift.models import evaluate
-from uplift.models.moments import multipliers_of_rounded
+from uplift.samples import sample_path
 
 GRIDS = ((380, 780, 5), (400, 700, 5), (380, 780, 10), (400, 700, 10), (400, 700, 20))
 """First and last wavelength and step in nm of half-float spectra."""
@@ -28,32 +28,27 @@ OTHERS: tuple[tuple[PixelEncoding, str], ...] = (
     (texture.Moments(), "float"),
     (texture.Multipliers(), "float"),
 )
-BLOCK = 50_000
-"""Pixels that are evaluated at once."""
 
 
-@dataclass(frozen=True)
-class Form:
-    """A representation, its depth, and the wavelengths in nm of its spectra."""
+class Form(NamedTuple):
+    """A representation and its depth."""
 
     name: str
     encoding: PixelEncoding
     depth: str
-    grid: tuple[int, int, int] = GRIDS[0]
 
 
 def forms() -> Iterator[Form]:
     """Yield spectra by wavelengths, then the other forms."""
-    for grid in GRIDS:
-        first, last, step = grid
+    for first, last, step in GRIDS:
         spectrum = texture.Spectrum(tuple(map(float, range(first, last + 1, step))))
-        yield Form(f"spectrum, half, {first}:{last}:{step}", spectrum, "half", grid)
+        yield Form(f"spectrum, half, {first}:{last}:{step}", spectrum, "half")
     for encoding, depth in OTHERS:
         yield Form(f"{encoding.name}, {depth}", encoding, depth)
 
 
 def round_trips() -> Iterator[Row]:
-    """Yield the ΔE00 between images and their textures, read as Mitsuba reads them."""
+    """Yield the ΔE00 between images and their textures, read as for Mitsuba."""
     cube = uplift.build(MACBETH, dim=32)
     images = list(pictures())
     with tempfile.TemporaryDirectory() as folder:
@@ -63,38 +58,30 @@ def round_trips() -> Iterator[Row]:
             for picture in images:
                 texture.convert(uplifter, picture.path, target, force=True)
                 linear = np.clip(picture.linear(), 0, 1)
-                found = colours(cube, form, uplifter.channels, target)
+                errors = delta_e_rgb(cube.data.sensor, linear, colours(target))
                 yield {
                     "form": form.name,
                     "channels": len(uplifter.channels),
                     "image": f"{picture.path.name} ({picture.package})",
-                    **summary(delta_e_rgb(cube.data.sensor, linear, found).ravel()),
+                    **summary(errors.ravel()),
                 }
 
 
-def colours(cube: Cube, form: Form, names: Sequence[str], path: Path) -> Array:
+def colours(path: Path) -> Array:
     """Return the linear RGB (h, w, 3) of a texture."""
-    sensor = observer.sensor(wavelengths=form.grid)
-    channels = OpenEXR.File(str(path), separate_channels=True).channels()
-    pixels = np.stack([channels[name].pixels for name in names], axis=-1)
-    values = pixels.reshape(-1, len(names))
-    blocks = [
-        sensor.rgb(reflectances(cube, form.encoding, values[first : first + BLOCK]))
-        for first in range(0, len(values), BLOCK)
-    ]
-    return np.concatenate(blocks).reshape(*pixels.shape[:2], 3)
+    texels = read_texels(path)
+    assert texels is not None
+    model = texels.model
+    if isinstance(model, Samples):
+        step = (model.end - model.start) / (model.count - 1)
+        grid = (model.start, model.end, step)
+        return blockwise(observer.sensor(wavelengths=grid).rgb, texels.numbers, 3)
+    sensor = observer.sensor()
 
+    def rgb(multipliers: Array) -> Array:
+        return sensor.rgb(evaluate(model, multipliers, sensor.wavelengths))
 
-def reflectances(cube: Cube, form: PixelEncoding, values: Array) -> Array:
-    """Return the reflectances (n, N) of pixels (n, channels). Raises `ValueError`."""
-    values = values.astype(float)
-    if isinstance(form, texture.Spectrum):
-        return values
-    if isinstance(form, texture.Moments):
-        values, valid = multipliers_of_rounded(cube.data.model, values)
-        if not valid.all():
-            raise ValueError(f"{(~valid).sum()} pixels hold no moments of reflectances")
-    return evaluate(cube.data.model, values, cube.wavelengths)
+    return blockwise(rgb, texels.numbers, 3)
 
 
 JOBS = (
@@ -127,24 +114,15 @@ def speed() -> Iterator[Row]:
 
 
 def write_image(path: Path, size: int) -> None:
-    """Write a photograph tiled to size² pixels as PNG, with noise against
+    """Write a sample of size² pixels, with noise in the last bits against
     compression.
     """
-    import OpenImageIO
     from PIL import Image
 
-    photo = np.asarray(Image.open(next(pictures()).path).convert("RGB"), dtype=int)
-    rng = np.random.default_rng(0)
-    height = photo.shape[0]
-    tiled = np.tile(photo, (1, size // photo.shape[1], 1))
-    image = OpenImageIO.ImageOutput.create("png")
-    spec = OpenImageIO.ImageSpec(size, size, 3, "uint8")
-    if image is None or not image.open(str(path), spec):
-        raise RuntimeError(OpenImageIO.geterror())
-    for first in range(0, size, height):
-        noisy = np.clip(tiled + rng.integers(-3, 4, tiled.shape), 0, 255)
-        image.write_scanlines(first, first + height, 0, noisy.astype(np.uint8))
-    image.close()
+    image = Image.open(sample_path("still-life.png")).convert("RGB")
+    pixels = np.asarray(image.resize((size, size)))
+    noise = np.random.default_rng(0).integers(0, 4, pixels.shape, dtype=np.uint8)
+    Image.fromarray(pixels ^ noise).save(path)
 
 
 QUESTIONS = {"speed": speed, "round_trips": round_trips}
