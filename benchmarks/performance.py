@@ -19,6 +19,8 @@ from uplift.lookup import bulk
 RUNS = 5
 FEW_RUNS = 3
 """Runs of processes and large builds, which take long and vary little."""
+FIRST_RUN = {"JAX_ENABLE_COMPILATION_CACHE": "false"}
+"""Variables with which a command finds no program that an earlier run compiled."""
 DIMS = (16, 32, 64, 128)
 LINES = (
     "python -c 'import numpy'",
@@ -42,20 +44,13 @@ def processes() -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as folder:
         build = [UPLIFT, "build", "-q", "--force", "--atlas", str(MACBETH)]
         build += ["-o", f"{folder}/cube.uplift", "--dim"]
-        for dim in DIMS:
-            compiled = {"JAX_COMPILATION_CACHE_DIR": f"{folder}/{dim}"}
-            for state, runs in (("first run", 1), ("compiled before", FEW_RUNS)):
-                timing = time_command([*build, str(dim)], runs, variables=compiled)
-                yield {
-                    "what": f"uplift build --dim {dim}, {state}",
-                    "wall": timing.wall,
-                    "megabytes": timing.megabytes,
-                }
-    for line in LINES:
-        program, *words = shlex.split(line)
-        command = [str(Path(UPLIFT).with_name(program)), *words]
-        timing = time_command(command, 2 * RUNS)
-        yield {"what": line, "wall": timing.wall, "megabytes": timing.megabytes}
+        jobs = [(f"uplift build --dim {dim}", [*build, str(dim)]) for dim in DIMS]
+        for line in LINES:
+            program, *words = shlex.split(line)
+            jobs.append((line, [str(Path(UPLIFT).with_name(program)), *words]))
+        for line, command in jobs:
+            timing = time_command(command, FEW_RUNS, variables=FIRST_RUN)
+            yield {"what": line, "wall": timing.wall, "megabytes": timing.megabytes}
 
 
 def builds() -> Iterator[Row]:
