@@ -22,8 +22,9 @@ from tests.conftest import ROOT
 from tests.examples import BLOCKS, CUBE, examples, examples_by_page, page_examples
 from tests.helpers import output_of, warns
 from tests.parts import MITSUBA, need
-from uplift.atlas import Format
+from uplift.atlas import Format, read_atlas
 from uplift.extras import formats
+from uplift.lab.runner import divided
 from uplift.samples import sample_path
 
 PAGES = {
@@ -142,9 +143,19 @@ def test_the_skeleton_of_a_reader_and_its_test_run(tmp_path, monkeypatch):
         function(tmp_path)
 
 
+def test_the_skeleton_of_a_method_returns_known_spectra(sensor):
+    functions: dict = {}
+    exec(compile(SKELETONS[5], "method", "exec"), functions)
+    (method,) = functions["METHODS"]
+    task = next(divided(read_atlas("tcs"), (), sensor))
+    known = task.known_spectra
+    uplift = method.prepare(task).uplift
+    assert (uplift(sensor.rgb(known), sensor.wavelengths) == known).all()
+
+
 def test_the_skeleton_of_a_page_of_measurements_runs():
     page: dict = {}
-    exec(compile(SKELETONS[5], "example", "exec"), page)
+    exec(compile(SKELETONS[6], "example", "exec"), page)
     assert list(page["QUESTIONS"]) == ["errors", "times"]
     assert next(page["errors"]())["light"] == "A"
     assert next(page["times"]())["cpu_s"].min > 0

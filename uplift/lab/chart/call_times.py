@@ -1,75 +1,68 @@
 """CPU times of calls of a method by the number of colours per call."""
 
 from collections.abc import Callable
-from functools import partial
 from itertools import cycle
 
 import numpy as np
 
-from uplift.common.arrays import Array, Values
+from uplift.common.arrays import Values
+from uplift.common.text import pluralise
 from uplift.lab.chart.results import REFERENCE
 from uplift.lab.chart.task import Effort
-from uplift.lab.method import stopwatch
-from uplift.lab.timing import TimingStats, time_laps
+from uplift.lab.timing import TimingStats, time_short_call
 
-GROWTH = 10
-"""Factor between the numbers of colours from which the duration of a call is estimated.
-"""
 INPUTS = 64
 """Largest number of different inputs of repeated calls."""
 INPUT_COLOURS = 1 << 16
 """Largest number of colours of all inputs."""
-UpliftRgb = Callable[[Array], Values]
+SAMPLE = 50
+"""Colours of a large batch that are computed again in a small one."""
+SAMPLE_TOLERANCE = 2e-5
+"""Reflectance that rounding may change."""
+UpliftRgb = Callable[[Values], Values]
+
+
+class BrokenError(Exception):
+    """An answer is wrong; the text gives the reason."""
 
 
 def call_times(uplift: UpliftRgb, dtype: str, effort: Effort) -> dict[str, float]:
     """Time calls with each number of colours of an effort, in ns per colour.
 
-    A call of more than `Effort.longest` seconds takes fewer colours. All larger batches
-    then have its times.
+    A call that would take more than `Effort.longest` seconds has the times of the next
+    smaller one.
     """
     numbers: dict[str, float] = {}
-    count = last = 0
+    ns = count = 0.0
     for size in effort.batches:
-        if count == last:
-            count = affordable(uplift, dtype, size, effort.longest)
-            ns = _time_batch(uplift, dtype, count, effort)
-        last = size
-        values = {
-            "": ns.median,
-            "_least": ns.min,
-            "_most": ns.max,
-            "_runs": ns.runs,
-            "_colours": count,
-        }
-        numbers |= {f"ns_{size}{suffix}": value for suffix, value in values.items()}
+        if size * ns <= 1e9 * effort.longest:
+            count = size
+            inputs = max(1, min(INPUTS, INPUT_COLOURS // size))
+            rgb = np.random.default_rng(2).random((inputs, size, 3)).astype(dtype)
+            _check_batch(uplift, rgb[0])
+            stats = _time_batch(uplift, rgb, effort)
+            ns = stats.median
+        name = f"ns_{size}"
+        numbers |= {name: ns, f"{name}_least": stats.min, f"{name}_most": stats.max}
+        numbers |= {f"{name}_runs": stats.runs, f"{name}_colours": count}
     known = [size for size in effort.batches if size <= REFERENCE]
     reference = max(known, default=effort.batches[0])
     return numbers | {"time_ns": numbers[f"ns_{reference}"]}
 
 
-def _time_batch(
-    uplift: UpliftRgb, dtype: str, count: int, effort: Effort
-) -> TimingStats:
-    inputs = cycle(_colours(max(1, min(INPUTS, INPUT_COLOURS // count)), count, dtype))
-    times = time_laps(lambda: uplift(next(inputs)), effort.lap, effort.runs)
-    return times.scaled(1e9 / count)
+def _time_batch(uplift: UpliftRgb, inputs: Values, effort: Effort) -> TimingStats:
+    """Time calls with inputs (k, n, 3) in turn, in ns per colour."""
+    rgb = cycle(inputs)
+    timing = time_short_call(lambda: uplift(next(rgb)), effort.lap, effort.runs)
+    return timing.cpu.scaled(1e9 / inputs.shape[1])
 
 
-def affordable(uplift: UpliftRgb, dtype: str, size: int, longest: float) -> int:
-    """Return the number of colours, at most ``size``, of a call of ``longest`` CPU
-    seconds.
-    """
-    count = 1
-    while True:
-        rgb = _colours(1, count, dtype)[0]
-        uplift(rgb)
-        _, seconds = stopwatch(partial(uplift, rgb))
-        if count == size or GROWTH * seconds > longest:
-            return max(1, min(size, int(count * longest / max(seconds, 1e-9))))
-        count = min(size, count * GROWTH)
-
-
-def _colours(inputs: int, count: int, dtype: str) -> Values:
-    """Random RGB (inputs, count, 3)."""
-    return np.random.default_rng(2).random((inputs, count, 3)).astype(dtype)
+def _check_batch(uplift: UpliftRgb, rgb: Values) -> None:
+    """Check that a large batch has the spectra of a small one."""
+    rows = np.unique(np.linspace(0, len(rgb) - 1, SAMPLE, dtype=int))
+    difference = np.abs(uplift(rgb)[rows] - uplift(rgb[rows])).max()
+    if not difference <= SAMPLE_TOLERANCE:
+        raise BrokenError(
+            f"{pluralise(len(rgb), 'colour')} per call give other reflectances than "
+            f"{len(rows)}, by {difference:.2g}"
+        )

@@ -28,7 +28,7 @@ class Effort:
 
     ``seconds_per_error``: CPU time for the answers of one error; slow methods process
     fewer colours. ``lap``: shortest duration of a repetition in seconds. ``longest``:
-    CPU seconds of a call; slower ones take fewer colours than the batch has.
+    CPU seconds of a call; calls with more colours are not timed.
     ``builds``: number of builds of each cube; the last one is timed. ``limit``: wall
     seconds after which a method in a child process counts as hung.
     """
