@@ -16,13 +16,13 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from pydantic_core import to_jsonable_python
 
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.files import write_text
 from uplift.common.progress import Progress
+from uplift.extras.report.measures import mean_p95_max
 from uplift.lab.timing import commit, environment, write_record
 
 ROOT = Path(__file__).parents[1]
@@ -122,12 +122,7 @@ def show(progress: Progress) -> None:
 
 def summary(errors: Array) -> Row:
     """Return number, mean, 95 % and maximum of errors."""
-    return {
-        "n": len(errors),
-        "mean": errors.mean(),
-        "p95": np.quantile(errors, 0.95),
-        "max": errors.max(),
-    }
+    return {"n": len(errors), **mean_p95_max(errors)}
 
 
 def read_reference(name: str) -> list[dict[str, str]]:
