@@ -53,10 +53,9 @@ def pages() -> dict[str, str]:
     """Return the sentence about each module with ``QUESTIONS``, by its page."""
     lines = {}
     for path in sorted(Path(__file__).parent.glob("[!_]*.py")):
-        module = ast.parse(path.read_text(encoding="utf-8"))
-        assigned = [node for node in module.body if isinstance(node, ast.Assign)]
-        if "QUESTIONS" in [ast.unparse(node.targets[0]) for node in assigned]:
-            about = ast.get_docstring(module) or ""
+        text = path.read_text(encoding="utf-8")
+        if "\nQUESTIONS" in text:
+            about = ast.get_docstring(ast.parse(text)) or ""
             sentence = about.partition("\n\n")[0].replace("\n", " ")
             lines[path.stem.replace("_", "-")] = sentence
     return lines

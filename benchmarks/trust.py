@@ -1,24 +1,17 @@
-"""What an atlas does to materials unlike it, and to gradients, for docs/prior.md."""
+"""What an atlas does to materials unlike it, for docs/prior.md."""
 
 from collections.abc import Iterator
 from functools import cache
 from itertools import permutations
-from typing import Any
-
-import numpy as np
 
 from benchmarks import Row
 from benchmarks.materials import FETCHED, MIXTURE, materials, split_tasks, task
-from uplift.colorimetry import delta_e_spectra, observer
 from uplift.common.arrays import Array
-from uplift.extras.report.measures import delta_e_under
 from uplift.lab.methods.cubes import cube
 from uplift.lab.runner import ALL_LIGHTS, DELTA_E, measure, named_lights, pooled_errors
-from uplift.lookup import Cube
 
 DIM = 32
 LIGHTS = ("A", "FL2", "FL11", "LED-B3", "LED-RGB1", "HP1")
-RAMP_LIGHTS = ("A", "FL2", "FL11", "LED-B3", "HP1")
 ATLASES = ("macbeth", "pmc", "cie2017", "rawtoaces", *FETCHED)
 SETS = (*ATLASES, MIXTURE)
 ALONE = cube(dim=DIM)
@@ -26,11 +19,6 @@ TRUSTING = {
     "learnt trust": cube(atlas=True, dim=DIM),
     "full trust": cube(atlas=True, dim=DIM, trust_atlas=True),
 }
-SPECTRA: dict[str, dict[str, Any]] = {"smoothed": {}, "exact": {"exact_entries": True}}
-"""Options of cubes by the spectra of their entries."""
-CODES = 14
-"""Codes of a ramp to each side of an entry."""
-DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]])
 
 
 def own() -> Iterator[Row]:
@@ -64,40 +52,4 @@ def others() -> Iterator[Row]:
             yield row | {"mean": errors.mean() / alone.mean(), "worst": ratios.max()}
 
 
-def gradients() -> Iterator[Row]:
-    """Yield how steep gradients through the entries of a set are."""
-    for name in SETS:
-        for spectra, options in SPECTRA.items():
-            built = materials(name).cube(dim=DIM, **options)
-            excess = steepest(built)
-            yield {
-                "set": name,
-                "spectra": spectra,
-                "entries": len(excess),
-                "smoothed": len(built.data.provenance["smoothed"]),
-                "largest": excess.max(),
-                "above": (excess > 1).sum(),
-            }
-
-
-def steepest(cube: Cube) -> Array:
-    """The largest ΔE00 (E,) by which a light's step of an 8-bit code exceeds that of
-    daylight, on ramps through each entry.
-    """
-    spectra = cube.reflectance(ramps(cube, cube.data.atlas.rgb))
-    before = spectra[:, :, :-1].reshape(-1, spectra.shape[-1])
-    after = spectra[:, :, 1:].reshape(-1, spectra.shape[-1])
-    daylight = delta_e_spectra(observer.light("D65"), before, after)
-    lights = list(named_lights(RAMP_LIGHTS).values())
-    excess = delta_e_under(lights, before, after).max(axis=1) - daylight
-    return excess.reshape(len(spectra), -1).max(axis=1)
-
-
-def ramps(cube: Cube, rgb: Array) -> Array:
-    """Linear RGB (n, D, 2 CODES + 1, 3) of ramps through colours (n, 3)."""
-    codes = np.round(cube.encode(rgb))
-    offsets = np.arange(-CODES, CODES + 1)[:, None] * DIRECTIONS[:, None]
-    return cube.decode(np.clip(codes[:, None, None] + offsets, 0, 255))
-
-
-QUESTIONS = {"own": own, "others": others, "gradients": gradients}
+QUESTIONS = {"own": own, "others": others}
