@@ -16,7 +16,7 @@ from uplift.extras.images.exr import blue_slices
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import error_map
 from uplift.extras.pages.panels import Panel, draw
-from uplift.extras.report.diff_page import mosaic
+from uplift.extras.pages.sheet import mosaic
 from uplift.lab.method import at_1_nm, published_srgb
 from uplift.lab.timing import time_call
 from uplift.lookup import MODES, Cube
