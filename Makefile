@@ -8,7 +8,6 @@ INSTALLED := $(VENV)/.installed
 OUT := out
 PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
-RGB2SPEC := $(OUT)/rgb2spec
 
 .PHONY: build lint test bare basic site notebooks demo measure peers library module nightly munsell docs atlases cubes lock names release clean pictures axe examples
 
@@ -80,14 +79,8 @@ $(AXE): $(INSTALLED)
 	-$(PIP) --no-deps --upgrade --target $(OUT)/axe axe-playwright-python==0.1.8 && touch $(AXE)
 
 # Tools for comparison in the pages speed and chart. Ceres comes from the system: libceres-dev, cmake, g++.
-peers: $(INSTALLED) $(RGB2SPEC)
+peers: $(INSTALLED)
 	$(PIP) -c constraints.txt --no-build-isolation -e '.[peers]'
-
-# The program of Jakob & Hanika 2019, which no package index has, at the two commits that benchmarks/peers.py compiles.
-$(RGB2SPEC):
-	git clone --quiet --no-checkout https://github.com/mitsuba-renderer/rgb2spec $@
-	for commit in e162107a2dfd7efe4384618ecd14e97d4a035685 30a97d414f7cdb1c2c553daf3b4a83c333e6365e; do \
-	  git -C $@ worktree add --quiet --detach $$commit $$commit || exit 1; done
 
 # The library of the learnt prior, uplift/fit/library.npz, from atlases/ and colour-science.
 library: $(INSTALLED)

@@ -9,18 +9,20 @@ import csv
 import json
 import sys
 import time
+import traceback
 import warnings
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from pydantic_core import to_jsonable_python
 
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
+from uplift.common.files import write_text
 from uplift.common.progress import Progress
+from uplift.extras.report.measures import mean_p95_max
 from uplift.lab.timing import commit, environment, write_record
 
 ROOT = Path(__file__).parents[1]
@@ -31,6 +33,7 @@ ATLAS_FILES = sorted(ATLASES.glob("*.txt"))
 CUBES = ROOT / "cubes"
 REFERENCE = ROOT / "tests" / "reference"
 MACBETH = ATLASES / "macbeth.txt"
+UPLIFT = str(Path(sys.executable).with_name("uplift"))
 Row = dict[str, Any]
 Questions = Mapping[str, Callable[[], Any]]
 
@@ -42,29 +45,46 @@ def questions(page: str) -> Questions:
     return found
 
 
-def measure(page: str, names: Collection[str] = ()) -> None:
-    """Answer questions of a page, by default all, without the warnings of builds."""
+def measure(page: str, names: Iterable[str]) -> int:
+    """Answer questions of a page, without the warnings of builds, and return how many
+    failed, which does not stop the others.
+    """
     warnings.simplefilter("ignore", UpliftWarning)
-    for name, answer in questions(page).items():
-        if not names or name in names:
-            begin = time.perf_counter()
-            values = to_jsonable_python(answer(), fallback=lambda array: array.tolist())
+    known = questions(page)
+    failures = 0
+    for name in names:
+        if name not in known:
+            print(f"no '{name}' in {page}: {', '.join(known)}", file=sys.stderr)
+            failures += 1
+            continue
+        begin = time.perf_counter()
+        try:
+            answer = known[name]()
+            values = to_jsonable_python(answer, fallback=lambda array: array.tolist())
+        except Exception:
+            traceback.print_exc()
+            print(f"{page}.{name}: failed", file=sys.stderr)
+            failures += 1
+        else:
             seconds = time.perf_counter() - begin
             store(page, name, values, seconds)
-            print(f"{page} {name}: {seconds:.1f} s", file=sys.stderr)
+            print(f"{page}.{name}: {seconds:.1f} s", file=sys.stderr)
+    return failures
 
 
-def measure_stale(page: str) -> None:
-    """Answer the questions of a page whose answers are of an older commit."""
+def stale(page: str) -> list[str]:
+    """Return the questions of a page whose answers are of an older commit."""
     measured = read_answers(page).get("measured", {})
     now = commit()
-    for name in questions(page):
-        if measured.get(name, {}).get("commit") != now:
-            measure(page, [name])
+    return [
+        name for name in questions(page) if measured.get(name, {}).get("commit") != now
+    ]
 
 
 def read_answers(page: str) -> dict[str, Any]:
-    """Return the stored answers of a page, and what is known about them."""
+    """Return the stored answers of a page, with their commits and times under
+    ``measured``.
+    """
     path = DATA / f"{page}.json"
     return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
 
@@ -87,7 +107,7 @@ def store(page: str, name: str, answer: Any, seconds: float) -> None:
         if answers.get(question) is not None:
             content[question] = answers[question]
     text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
-    (DATA / f"{page}.json").write_text(text + "\n", encoding="utf-8")
+    write_text(text + "\n", DATA / f"{page}.json", force=True)
 
 
 def record(page: str, data: str = "", **figures: Any) -> None:
@@ -102,12 +122,7 @@ def show(progress: Progress) -> None:
 
 def summary(errors: Array) -> Row:
     """Return number, mean, 95 % and maximum of errors."""
-    return {
-        "n": len(errors),
-        "mean": errors.mean(),
-        "p95": np.quantile(errors, 0.95),
-        "max": errors.max(),
-    }
+    return {"n": len(errors), **mean_p95_max(errors)}
 
 
 def read_reference(name: str) -> list[dict[str, str]]:

@@ -2,29 +2,60 @@
 
 Each page is measured in a process with BLAS on one thread, and all pages are rendered
 at the end. ``all`` answers the questions whose answers are not of the last commit of
-the code, pages with the oldest first: an interrupted run continues. A page that fails
-does not stop the others.
+the code, pages with the oldest first: an interrupted run continues. A question that
+fails does not stop the others.
 """
 
 import ast
 import os
 import subprocess
 import sys
-from collections import defaultdict
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from benchmarks import ROOT, read_answers
-from uplift.lab.timing import ONE_THREAD, commit_time
+from uplift.lab.timing import ONE_THREAD, commit, commit_time
+
+CHILD = """
+import sys
+import benchmarks
+
+page, *names = sys.argv[1:]
+if names == ["stale"]:
+    names = benchmarks.stale(page)
+sys.exit(benchmarks.measure(page, names or benchmarks.questions(page)) > 0)
+"""
+STALE = "stale"
+"""In place of the names of questions: those whose answers are not of this commit."""
+UNTIMED = frozenset(
+    [
+        "advice",
+        "atlas-files",
+        "cameras",
+        "determinism",
+        "fidelity",
+        "film",
+        "grading",
+        "install",
+        "meyer",
+        "moments",
+        "palette",
+        "stability",
+        "trust",
+        "wavelengths",
+    ]
+)
+"""Pages without timings, which may be measured two at once."""
 
 
 def pages() -> dict[str, str]:
     """Return the sentence about each module with ``QUESTIONS``, by its page."""
     lines = {}
     for path in sorted(Path(__file__).parent.glob("[!_]*.py")):
-        module = ast.parse(path.read_text(encoding="utf-8"))
-        assigned = [node for node in module.body if isinstance(node, ast.Assign)]
-        if "QUESTIONS" in [ast.unparse(node.targets[0]) for node in assigned]:
-            about = ast.get_docstring(module) or ""
+        text = path.read_text(encoding="utf-8")
+        if "\nQUESTIONS" in text:
+            about = ast.get_docstring(ast.parse(text)) or ""
             sentence = about.partition("\n\n")[0].replace("\n", " ")
             lines[path.stem.replace("_", "-")] = sentence
     return lines
@@ -36,38 +67,69 @@ def age(page: str) -> float:
     return min((commit_time(run["commit"]) for run in runs), default=0)
 
 
-def programs(arguments: list[str], known: list[str]) -> dict[str, str]:
-    """Return the program of each page that arguments name."""
+def estimate(known: Sequence[str]) -> str:
+    """Return how long the stale answers took when they were measured last."""
+    now = commit()
+    seconds = []
+    for page in known:
+        runs = read_answers(page).get("measured", {}).values()
+        seconds += [run["seconds"] for run in runs if run["commit"] != now]
+    timed = [value for value in seconds if value is not None]
+    unknown = len(seconds) - len(timed)
+    return (
+        f"{len(seconds)} answers are stale: they took {sum(timed) / 60:.0f} minutes"
+        + (f", and {unknown} an unknown time" if unknown else "")
+    )
+
+
+def run(page: str, names: Sequence[str]) -> bool:
+    """Measure a page in a process, and return whether all questions were answered."""
+    command = [sys.executable, "-c", CHILD, page, *names]
+    variables = os.environ | ONE_THREAD
+    done = subprocess.run(command, cwd=ROOT, env=variables, check=False)
+    return done.returncode == 0
+
+
+def run_all(jobs: dict[str, list[str]]) -> list[str]:
+    """Measure pages, those without timings first and two at once, and return the pages
+    that failed.
+    """
+    alone = [page for page in jobs if page not in UNTIMED]
+    shared = [page for page in jobs if page in UNTIMED]
+    with ThreadPoolExecutor(2) as pool:
+        try:
+            outcomes = list(pool.map(lambda page: run(page, jobs[page]), shared))
+        finally:
+            pool.shutdown(cancel_futures=True)
+    outcomes += [run(page, jobs[page]) for page in alone]
+    pairs = zip([*shared, *alone], outcomes, strict=True)
+    return [page for page, answered in pairs if not answered]
+
+
+def jobs_of(arguments: list[str], known: Sequence[str]) -> dict[str, list[str]]:
+    """Return the questions by the pages that arguments name, none for all of a page."""
     if arguments == ["all"]:
-        return {page: f"measure_stale('{page}')" for page in sorted(known, key=age)}
-    asked: dict[str, list[str]] = defaultdict(list)
+        return {page: [STALE] for page in sorted(known, key=age)}
+    jobs: dict[str, list[str]] = {}
     for argument in arguments:
         page, _, question = argument.partition(".")
-        asked[page] += [question] if question else []
-    return {page: f"measure('{page}', {names})" for page, names in asked.items()}
+        jobs.setdefault(page, []).extend([question] if question else [])
+    return jobs
 
 
 def main(arguments: list[str]) -> int:
     """Measure the pages and return the exit status."""
     known = pages()
-    if not arguments:
-        print(*(f"{name:16}{line}" for name, line in known.items()), sep="\n")
-        return 0
-    asked = programs(arguments, list(known))
-    if unknown := [page for page in asked if page not in known]:
+    jobs = jobs_of(arguments, list(known))
+    if unknown := [page for page in jobs if page not in known]:
         print(f"no page '{unknown[0]}'; pages are {', '.join(known)}", file=sys.stderr)
         return 2
-    failed = []
-    for page, program in asked.items():
-        print(page, file=sys.stderr)
-        command = [
-            sys.executable,
-            "-c",
-            f"from benchmarks import measure, measure_stale; {program}",
-        ]
-        variables = os.environ | ONE_THREAD
-        if subprocess.run(command, cwd=ROOT, env=variables, check=False).returncode:
-            failed.append(page)
+    if not jobs:
+        print(*(f"{name:16}{line}" for name, line in known.items()), sep="\n")
+        return 0
+    if arguments == ["all"]:
+        print(estimate(list(known)), file=sys.stderr)
+    failed = run_all(jobs)
     if failed:
         print(f"failed: {', '.join(failed)}", file=sys.stderr)
     subprocess.run([sys.executable, "-m", "tools.render_docs"], cwd=ROOT, check=True)

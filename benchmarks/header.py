@@ -1,80 +1,147 @@
-"""Rates, sizes and differences of uplift.h and uplift.js, which read cube files at run
-time, for docs/integrate.md.
+"""Rates, sizes and differences of exported programs, and of uplift.h and uplift.js,
+which read cube files at run time, for docs/integrate.md and docs/speed.md.
 """
 
-import base64
 import shutil
-import subprocess
 import tempfile
+from collections.abc import Iterator
+from functools import partial
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks import CUBES, ROOT, Row, record
+import uplift
+from benchmarks import CUBES, MACBETH, ROOT, Row
+from benchmarks.programs import Words, compile_c, numbers, program_version
 from uplift.common.arrays import Array
 from uplift.extras.export import write_program
 from uplift.extras.export.module import compose_module, write_module
 from uplift.extras.export.runtime import HEADER, compose_header, write_header
-from uplift.extras.report import live_page
-from uplift.lab.timing import environment
+from uplift.lab.timing import check_answer
 from uplift.lookup import Cube, load
 from uplift.lookup.cube import PACKAGED
 from uplift.lookup.interpolate import is_inexact
 
-FLAGS = ("-O3", "-march=native", "-fno-math-errno", "-w")
+PORTABLE = ("-O3", "-march=x86-64-v3", "-fno-math-errno", "-fno-trapping-math")
+NATIVE = ("-O3", "-march=native", "-fno-math-errno", "-w")
+"""Flags of the exported program alone, and of both headers."""
+MODES = ("spectra", "moments")
+MODELS = ("moments", "sigmoid")
+EXPORT_DIM = 32
+EXPORTED = 400_000
+EXPORT_RUNS = 5
+CHECKED = 10_000
+"""Colours of the timed ones whose reflectances are compared."""
+MAX_DIFFERENCE = 1e-3
 COLOURS = 20_000
+RUNS = 9
 COMPARED = 100_000
 """Colours anywhere, and as many on the faces of RGB, that are compared."""
-RUNS = 9
 RAY = np.array([450.0, 510.0, 570.0, 630.0])
+SPECTRUM_WIDTH = 16
+HEADERS = ("exported", "uplift.h")
+MODULES = ("uplift.js",)
+"""Programs whose times `header.c` and `header.mjs` print; the last one's spectra are
+compared.
+"""
 INSIDE = -2e-3
 """Distance from the solid of the moved answers that are compared."""
-WIDTHS = {"spectrum": 16, "ray": 4}
 
 
-def main() -> None:
-    """Measure stored and packaged cubes, and write docs/data/header.json."""
-    sizes = {
-        "header": len(compose_header()),
-        "module": len(compose_module()),
-        "page": measure_page(PACKAGED["srgb"]),
+def run_lookups(
+    *command: Words, folder: Path, rgb: Array, at: Array, runs: int
+) -> tuple[Array, list[float]]:
+    """Run a program on colours; return the reflectances (n, N) that it writes, and the
+    nanoseconds of a lookup of the CPU seconds that it prints.
+    """
+    rgb.astype(np.float32).tofile(folder / "rgb")
+    at.astype(np.float32).tofile(folder / "at")
+    seconds = numbers(*command, "rgb", "at", str(runs), "spectra", folder=folder)
+    spectra = np.fromfile(folder / "spectra", np.float32).astype(float)
+    return spectra.reshape(-1, len(at)), [1e9 * each / len(rgb) for each in seconds]
+
+
+def random_colours(count: int) -> Array:
+    """Return linear RGB (n, 3), float32."""
+    return np.random.default_rng(1).random((count, 3)).astype(np.float32)
+
+
+def programs() -> Row:
+    """Return million colours per second of exported programs on one core: colours one
+    by one, many in a call, and of stored multipliers.
+    """
+    rgb = random_colours(EXPORTED)
+    cubes = [uplift.build(MACBETH, dim=EXPORT_DIM, model=name) for name in MODELS]
+    rows = [time_export(cube, mode, rgb) for mode, cube in product(MODES, cubes)]
+    return {"compiler": program_version("cc"), "rows": rows}
+
+
+def time_export(cube: Cube, mode: str, rgb: Array) -> Row:
+    """Compile the program of a cube, check its reflectances and time it."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        write_program(cube.data, folder / "cube.h", mode=mode)
+        rates = compile_c(ROOT / "benchmarks" / "rates.c", folder, *PORTABLE)
+        spectra, nanoseconds = run_lookups(
+            rates, folder=folder, rgb=rgb, at=cube.wavelengths, runs=EXPORT_RUNS
+        )
+    expected = cube.reflectance(rgb[:CHECKED].astype(float), mode=mode)
+    one, many, multipliers = (1e3 / each for each in nanoseconds)
+    return {
+        "model": cube.data.model.name,
+        "coefficients": cube.data.model.count,
+        "mode": mode,
+        "lookup": one,
+        "many": many,
+        "evaluation": multipliers,
+        "difference": check_answer(spectra, expected, MAX_DIFFERENCE),
     }
-    paths = [*sorted(CUBES.glob("*.uplift")), *PACKAGED.values()]
-    rows = [measure_cube(path) for path in paths]
-    record("header", environment=environment(), sizes=sizes, cubes=rows)
 
 
-def measure_page(path: Path) -> Row:
-    """Return the bytes of the live page of a cube, and of uplift.js and the file of the
-    cube, which it could contain.
+def sizes() -> Row:
+    """Return the bytes of uplift.h and uplift.js."""
+    return {"header": len(compose_header()), "module": len(compose_module())}
+
+
+def lookups() -> Iterator[Row]:
+    """Yield the nanoseconds of a lookup in stored and packaged cubes by an exported
+    header, uplift.h and uplift.js, and differences of the latter two from Python.
     """
-    page = live_page.page(load(path).data)
-    file = base64.b64encode(path.read_bytes())
-    added = len(compose_module()) + len(file)
-    return {"cube": path.stem, "size": len(page.encode()), "added": added}
+    for path in (*sorted(CUBES.glob("*-16*.uplift")), *PACKAGED.values()):
+        cube = load(path)
+        rgb = compared_colours(cube)
+        for at, width in ((cube.wavelengths, SPECTRUM_WIDTH), (RAY, len(RAY))):
+            expected = cube.reflectance(rgb.astype(float), at)
+            row = {"cube": path.stem, "wavelengths": len(at)}
+            with tempfile.TemporaryDirectory() as name:
+                folder = Path(name)
+                run = partial(run_lookups, folder=folder, at=at)
+                header = [write_headers(cube, folder, width), path]
+                module = [*write_script(folder), path]
+                for command, programs in ((header, HEADERS), (module, MODULES)):
+                    spectra, _ = run(*command, rgb=rgb, runs=1)
+                    _, times = run(*command, rgb=random_colours(COLOURS), runs=RUNS)
+                    difference = np.abs(spectra - expected).max()
+                    for program, ns in zip(programs, times, strict=True):
+                        compared = difference if program == programs[-1] else None
+                        found = {"program": program, "ns": ns, "difference": compared}
+                        yield row | found
 
 
-def measure_cube(path: Path) -> Row:
-    """Return the nanoseconds of a lookup by both headers and by uplift.js, and the
-    largest differences of uplift.h and uplift.js from Python.
-    """
-    cube = load(path)
-    rgb = compared_colours(cube)
-    exact = rgb.astype(float)
-    row: Row = {"cube": path.stem}
-    for kind, at in (("spectrum", cube.wavelengths), ("ray", RAY)):
-        expected = cube.reflectance(exact, at)
-        found, compiled, runtime = run(path, cube, rgb, at, WIDTHS[kind])
-        module_found, module = run_module(path, rgb, at)
-        row[kind] = {
-            "compiled": compiled,
-            "runtime": runtime,
-            "ratio": runtime / compiled,
-            "difference": float(np.abs(found - expected).max()),
-            "module": module,
-            "module_difference": float(np.abs(module_found - expected).max()),
-        }
-    return row
+def write_headers(cube: Cube, folder: Path, width: int) -> Path:
+    """Compile the program of the exported header and uplift.h, which take turns."""
+    write_program(cube.data, folder / "cube.h")
+    write_header(folder / HEADER)
+    widths = (f"-DUPLIFT_WIDTH={width}", f"-DCUBE_WIDTH={width}")
+    return compile_c(ROOT / "benchmarks" / "header.c", folder, *NATIVE, *widths)
+
+
+def write_script(folder: Path) -> tuple[str, str]:
+    """Write uplift.js, and return the command of the script that runs it."""
+    write_module(folder / "uplift.mjs")
+    shutil.copy(ROOT / "benchmarks" / "header.mjs", folder)
+    return "node", "header.mjs"
 
 
 def compared_colours(cube: Cube) -> Array:
@@ -91,53 +158,4 @@ def compared_colours(cube: Cube) -> Array:
     return rgb[inside | ~is_inexact(cube.data, exact)]
 
 
-def timed_colours() -> Array:
-    """Return linear RGB (n, 3), float32, of which lookups are timed."""
-    return np.random.default_rng(1).random((COLOURS, 3)).astype(np.float32)
-
-
-def run(
-    path: Path, cube: Cube, rgb: Array, at: Array, width: int
-) -> tuple[Array, float, float]:
-    """Return reflectances (n, N) by uplift.h, and nanoseconds of a lookup by the
-    exported header and by uplift.h.
-    """
-    source = ROOT / "benchmarks" / "header.c"
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        write_program(cube.data, folder / "cube.h")
-        write_header(folder / HEADER)
-        widths = (f"-DUPLIFT_WIDTH={width}", f"-DCUBE_WIDTH={width}")
-        compiler = ["cc", *FLAGS, *widths, "-I.", str(source), "-o", "rates", "-lm"]
-        subprocess.run(compiler, cwd=folder, check=True)
-        rates = ["./rates"]
-        _, (compiled, runtime) = answer(rates, folder, path, timed_colours(), at)
-        found, _ = answer(rates, folder, path, rgb, at)
-    return found, compiled, runtime
-
-
-def run_module(path: Path, rgb: Array, at: Array) -> tuple[Array, float]:
-    """Return reflectances (n, N) by uplift.js in node, and nanoseconds of a lookup."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        write_module(folder / "uplift.mjs")
-        shutil.copy(ROOT / "benchmarks" / "header.mjs", folder)
-        node = ["node", "header.mjs"]
-        _, (module,) = answer(node, folder, path, timed_colours(), at)
-        found, _ = answer(node, folder, path, rgb, at)
-    return found, module
-
-
-def answer(
-    command: list[str], folder: Path, path: Path, rgb: Array, at: Array
-) -> tuple[Array, list[float]]:
-    """Run a program in a folder: return the reflectances (n, N) that it writes, and the
-    nanoseconds of a lookup of the seconds that it prints.
-    """
-    rgb.tofile(folder / "rgb")
-    at.astype(np.float32).tofile(folder / "at")
-    words = [*command, str(path), "rgb", "at", str(RUNS), "spectra"]
-    printed = subprocess.check_output(words, cwd=folder, text=True)
-    spectra = np.fromfile(folder / "spectra", np.float32).astype(float)
-    rates = [float(word) / len(rgb) * 1e9 for word in printed.split()]
-    return spectra.reshape(len(rgb), -1), rates
+QUESTIONS = {"programs": programs, "sizes": sizes, "lookups": lookups}

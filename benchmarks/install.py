@@ -2,52 +2,39 @@
 distribution.
 """
 
-import importlib.metadata
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
+from importlib.metadata import Distribution, distributions
 from pathlib import Path
 
-from benchmarks import ROOT, record
+from benchmarks import ROOT, Row
 
+WAYS = {".": "pip install .", ".[plots]": "pip install '.[plots]'"}
 OF_PIP = {"pip", "setuptools"}
 """Distributions of every environment, not counted."""
 
 
-def sizes(requirement: str) -> dict[str, int]:
-    """Install into an empty environment; return bytes by distribution, with compiled
-    modules.
-    """
-    with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([sys.executable, "-m", "venv", folder], check=True)
-        python = Path(folder) / "bin" / "python"
-        subprocess.run(
-            [python, "-m", "pip", "install", "-q", requirement], cwd=ROOT, check=True
-        )
-        packages = next(Path(folder).glob("lib/python*/site-packages"))
-        bytes_of = {}
-        for distribution in importlib.metadata.distributions(path=[str(packages)]):
-            paths = map(Path, map(distribution.locate_file, distribution.files or []))
-            size = sum(path.stat().st_size for path in paths)
-            bytes_of[distribution.metadata["Name"]] = size
-        return {name: size for name, size in bytes_of.items() if name not in OF_PIP}
+def megabytes(distribution: Distribution) -> float:
+    """Return the size of the files of a distribution, with compiled modules."""
+    files = distribution.files or []
+    paths = [Path(distribution.locate_file(file)) for file in files]
+    return sum(path.stat().st_size for path in paths) / 1e6
 
 
-def main() -> None:
-    """Measure and store."""
-    plain = sizes(".")
-    plots = sizes(".[plots]")
-    rows = [
-        {"name": name, "megabytes": size / 1e6, "plots_only": name not in plain}
-        for name, size in sorted(plots.items(), key=lambda item: -item[1])
-        if size > 1e6
-    ]
-    ways = [
-        {
-            "way": way,
-            "distributions": len(listed),
-            "megabytes": sum(listed.values()) / 1e6,
-        }
-        for way, listed in (("pip install .", plain), ("pip install '.[plots]'", plots))
-    ]
-    record("install", ways=ways, distributions=rows)
+def sizes() -> Iterator[Row]:
+    """Yield the distributions that each way installs into an empty environment."""
+    for requirement, way in WAYS.items():
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, "-m", "venv", folder], check=True)
+            pip = [f"{folder}/bin/python", "-m", "pip", "install", "-q"]
+            subprocess.run([*pip, requirement], cwd=ROOT, check=True)
+            packages = [str(path) for path in Path(folder).glob("lib/*/site-packages")]
+            for each in distributions(path=packages):
+                name = each.metadata["Name"]
+                if name not in OF_PIP:
+                    yield {"way": way, "name": name, "megabytes": megabytes(each)}
+
+
+QUESTIONS = {"sizes": sizes}

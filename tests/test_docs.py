@@ -153,6 +153,14 @@ def test_the_skeleton_of_a_method_returns_known_spectra(sensor):
     assert (uplift(sensor.rgb(known), sensor.wavelengths) == known).all()
 
 
+def test_the_skeleton_of_a_page_of_measurements_runs():
+    page: dict = {}
+    exec(compile(SKELETONS[6], "example", "exec"), page)
+    assert list(page["QUESTIONS"]) == ["errors", "times"]
+    assert next(page["errors"]())["light"] == "A"
+    assert next(page["times"]())["cpu_s"].min > 0
+
+
 def test_links_resolve():
     for page, text in PAGES.items():
         for target in re.findall(r"\]\((?!http)([^)#]+)\)", text):

@@ -45,6 +45,6 @@ def test_committed_pages_and_tables_are_the_rendering_of_the_committed_data():
 
 def test_a_missing_figure_is_an_error():
     data = read_data("accuracy")
-    del data["queries"]
-    with pytest.raises(jinja2.UndefinedError, match="queries"):
+    del data["ranges"]
+    with pytest.raises(jinja2.UndefinedError, match="ranges"):
         render("accuracy", data=data)

@@ -6,15 +6,39 @@ from numpy.testing import assert_allclose
 
 import uplift
 from benchmarks.materials import MIXTURE, SHIPPED, materials
-from benchmarks.trust import steepest
 from tests.conftest import MACBETH
 from tests.helpers import quiet_build, warns
 from uplift.colorimetry import delta_e_spectra, observer
+from uplift.extras.report.measures import delta_e_under
 from uplift.extras.texture.scene_colours import ColourSet
 from uplift.lookup import Cube
 
 STEEP = (152, 78, 119)
 """Codes in a cell of the mixed atlas that would be steep."""
+RAMP_LIGHTS = ("A", "FL2", "FL11", "LED-B3", "HP1")
+CODES = 14
+"""Codes of a ramp to each side of an entry."""
+DIRECTIONS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]])
+
+
+def steepest(cube):
+    """Largest ΔE00 (E,) by which a light's step of an 8-bit code exceeds that of
+    daylight, on ramps through each entry.
+    """
+    spectra = cube.reflectance(ramps(cube, cube.data.atlas.rgb))
+    before = spectra[:, :, :-1].reshape(-1, spectra.shape[-1])
+    after = spectra[:, :, 1:].reshape(-1, spectra.shape[-1])
+    daylight = delta_e_spectra(observer.light("D65"), before, after)
+    lights = [observer.light(name) for name in RAMP_LIGHTS]
+    excess = delta_e_under(lights, before, after).max(axis=1) - daylight
+    return excess.reshape(len(spectra), -1).max(axis=1)
+
+
+def ramps(cube, rgb):
+    """Linear RGB (n, D, 2 CODES + 1, 3) of ramps through colours (n, 3)."""
+    codes = np.round(cube.encode(rgb))
+    offsets = np.arange(-CODES, CODES + 1)[:, None] * DIRECTIONS[:, None]
+    return cube.decode(np.clip(codes[:, None, None] + offsets, 0, 255))
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,6 @@ import re
 import statistics
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -131,31 +130,41 @@ def run_call(function: Callable[[], object]) -> Run:
     return stopwatch(function)[1]
 
 
+_TIMED_CHILD = """
+import os, sys, time
+
+silence = [(os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0)]
+begin = time.perf_counter()
+child = os.posix_spawnp(sys.argv[1], sys.argv[1:], os.environ, file_actions=silence)
+_, status, usage = os.wait4(child, 0)
+wall = time.perf_counter() - begin
+print(wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)  # kB on Linux
+sys.exit(os.waitstatus_to_exitcode(status))
+"""
+"""A small process that times a command: a child of this one would count the memory that
+this one has when it starts it.
+"""
+
+
 def run_command(
     command: Sequence[str | Path],
     *,
     variables: Mapping[str, str] | None = None,
     folder: Path | None = None,
 ) -> Run:
-    """Time a process and those that it waits for. Raises `RuntimeError` if it fails.
-
-    A process counts the memory that this one has when it is started as its own.
-    """
-    environ = os.environ | (variables or {})
-    with tempfile.TemporaryFile() as problems:
-        begin = time.perf_counter()
-        child = subprocess.Popen(
-            command, env=environ, cwd=folder, stdout=subprocess.DEVNULL, stderr=problems
-        )
-        _, status, usage = os.wait4(child.pid, 0)
-        wall = time.perf_counter() - begin
-        child.returncode = os.waitstatus_to_exitcode(status)
-        if child.returncode:
-            problems.seek(0)
-            text = problems.read().decode(errors="replace")
-            raise RuntimeError(f"{' '.join(map(str, command))} failed\n{text}")
-    kilobytes = usage.ru_maxrss  # on Linux
-    return Run(wall, usage.ru_utime + usage.ru_stime, kilobytes / 1024)
+    """Time a process and those that it waits for. Raises `RuntimeError` if it fails."""
+    done = subprocess.run(
+        [sys.executable, "-S", "-c", _TIMED_CHILD, *command],
+        env=os.environ | (variables or {}),
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if done.returncode:
+        words = " ".join(map(str, command))
+        raise RuntimeError(f"{words} failed\n{done.stderr}")
+    return Run(*map(float, done.stdout.split()))
 
 
 def time_in_turn(
