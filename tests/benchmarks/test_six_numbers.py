@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from benchmarks import six_numbers
 from benchmarks.materials import materials
 from uplift.colorimetry import observer
-from uplift.lab.study import six_numbers
 
 
 @pytest.fixture(scope="module")
