@@ -15,8 +15,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pydantic_core import to_jsonable_python
 
+from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.progress import Progress
 from uplift.lab.timing import commit, environment, write_record
@@ -96,6 +98,16 @@ def record(page: str, data: str = "", **figures: Any) -> None:
 def show(progress: Progress) -> None:
     """Print the progress of a long measurement."""
     print(f"{progress.done} of {progress.total} {progress.stage}", file=sys.stderr)
+
+
+def summary(errors: Array) -> Row:
+    """Return number, mean, 95 % and maximum of errors."""
+    return {
+        "n": len(errors),
+        "mean": errors.mean(),
+        "p95": np.quantile(errors, 0.95),
+        "max": errors.max(),
+    }
 
 
 def read_reference(name: str) -> list[dict[str, str]]:
