@@ -74,38 +74,40 @@ class Change:
         }
 
 
-def study_sensitivity(
-    cube: Cube,
-    atlas: Atlas | None,
-    entries: int,
-    progress: ProgressCallback = ignore_progress,
-) -> tuple[list[Row], list[Change]]:
-    """Perturb queries, and rebuild the cube with changes of its atlas, ``entries`` of
-    them one at a time.
+def comparison_light(data: CubeData) -> Light:
+    """Return the light under which answers of a cube are compared."""
+    sensor = data.sensor
+    return observer.light(NARROW_BAND_LIGHT, sensor.observer, *sensor.range)
 
-    Returns the changes of the answers, and those of the nodes, none without an atlas.
-    """
+
+def perturb_atlas(
+    data: CubeData,
+    atlas: Atlas,
+    count: int,
+    progress: ProgressCallback = ignore_progress,
+) -> list[Change]:
+    """Rebuild a cube with changes of its atlas, ``count`` entries one at a time."""
+    options = recorded_options(data.provenance["options"])
+    before = rebuild(atlas.entries, options)
+    kept = [entry for entry in atlas.entries if entry.name in before.atlas.names]
+    jobs = list(changed_atlases(kept, before.atlas.names[:count]))
+    changes = []
+    for number, (description, name, changed) in enumerate(jobs, 1):
+        after = rebuild(changed, options)
+        changes.append(
+            compare(before, after, comparison_light(data), description, name)
+        )
+        progress(Progress("builds", number, len(jobs)))
+    return changes
+
+
+def perturb(cube: Cube, count: int = COLOURS) -> list[Row]:
+    """Perturb the queries of every mode of a cube. Raises `OptionError`."""
     data = cube.data
     if data.complete_cells is not None:
         problem = "a sparse cube has no answers between the cells of its scene"
         raise OptionError(problem, code="sparse-cube", hint="build it without a scene")
-    light = observer.light(NARROW_BAND_LIGHT, data.sensor.observer, *data.sensor.range)
-    changes = []
-    if atlas is not None and entries > 0:
-        options = recorded_options(data.provenance["options"])
-        before = rebuild(atlas.entries, options)
-        kept = [entry for entry in atlas.entries if entry.name in before.atlas.names]
-        jobs = list(changed_atlases(kept, before.atlas.names[:entries]))
-        for number, (description, name, changed) in enumerate(jobs, 1):
-            after = rebuild(changed, options)
-            changes.append(compare(before, after, light, description, name))
-            progress(Progress("builds", number, len(jobs)))
-    return perturb(cube, light), changes
-
-
-def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Row]:
-    """Perturb the queries of every mode of a cube."""
-    lights = light, cube.data.sensor.light
+    lights = comparison_light(data), data.sensor.light
     rows: list[Row] = []
     for mode in CONTINUOUS_MODES:
         answer = partial(cube.reflectance, mode=mode)
