@@ -4,6 +4,7 @@
 
 from collections.abc import Callable, Sequence
 from itertools import product
+from operator import itemgetter
 from typing import Any
 
 from markupsafe import Markup
@@ -21,13 +22,9 @@ from uplift.extras.pages.figure import (
 from uplift.extras.pages.format import capitalise, format_error, format_time
 from uplift.extras.pages.html import Tooltip, render
 from uplift.extras.pages.scatter import style_title
-from uplift.lab.comparison.compare import (
-    HEADINGS,
-    Comparison,
-    RepresentationResult,
-)
-from uplift.lab.comparison.tuning import TunedFilter
+from uplift.lab.comparison.compare import HEADINGS, Comparison
 from uplift.lab.panels import Panel, Point, family_colours, page_panel, write_panels
+from uplift.lab.statistics import Row
 
 COLOURS = {
     "point sampling": "#1f6fb4",
@@ -47,11 +44,9 @@ COLOURS = {
 """Colours of families; others are dark grey."""
 MIN_ERROR = 1e-3
 """Smaller ΔE00 are not visible and are drawn here."""
-COSTS: dict[
-    str, tuple[Callable[[RepresentationResult], float], Callable[[float], str]]
-] = {
-    "CPU time of a product": (lambda result: max(result.ns.median, 1.0), format_time),
-    "floats stored of a surface": (lambda result: result.floats, "{:g}".format),
+COSTS: dict[str, tuple[Callable[[Row], float], Callable[[float], str]]] = {
+    "CPU time of a product": (lambda row: max(row["ns"], 1.0), format_time),
+    "floats stored of a surface": (lambda row: row["floats"], "{:g}".format),
 }
 """Costs, and their texts, by title."""
 BOX_SIZE = (4.1, 0.155)
@@ -71,31 +66,31 @@ SOURCES = (
 
 def names(comparison: Comparison) -> list[str]:
     """Return the names of the representations; their order numbers the markers."""
-    return list(dict.fromkeys(result.name for result in comparison.results))
+    return list(dict.fromkeys(row["representation"] for row in comparison.rows))
 
 
 def cost_panels(comparison: Comparison) -> list[Panel]:
     """Return the panels of error over each cost, for each set of lights."""
     rows = names(comparison)
 
-    def point(result: RepresentationResult, cost: float) -> Point:
-        name = result.name
-        error = max(result.statistics.q97_5, MIN_ERROR)
-        colour = COLOURS.get(result.family, OTHER)
-        return Point(rows.index(name), name, cost, error, colour, group=result.family)
+    def point(row: Row, cost: float) -> Point:
+        name = row["representation"]
+        error = max(row["q97_5"], MIN_ERROR)
+        colour = COLOURS.get(row["family"], OTHER)
+        return Point(rows.index(name), name, cost, error, colour, group=row["family"])
 
     panels = []
     for (name, title), (axis, (cost, text)) in product(
         comparison.sets.items(), COSTS.items()
     ):
-        results = sorted(comparison.of(name), key=lambda result: result.floats)
+        results = sorted(comparison.of(name), key=itemgetter("floats"))
         points = [point(result, cost(result)) for result in results]
         panels.append(Panel(f"{capitalise(title)}, ΔE00 of 97.5 %", axis, text, points))
     return panels
 
 
 def _families(comparison: Comparison) -> dict[str, str]:
-    return family_colours((result.family for result in comparison.results), COLOURS)
+    return family_colours((row["family"] for row in comparison.rows), COLOURS)
 
 
 def write_costs(comparison: Comparison, path: StrPath, *, force: bool = False) -> None:
@@ -133,19 +128,20 @@ def draw_boxes(
     for axes, name in zip(cells, sets, strict=True):
         results = comparison.of(name)
         for row, result in enumerate(results):
-            values = result.statistics
-            colour = COLOURS.get(result.family, OTHER)
-            low = max(values.q2_5, MIN_ERROR)
-            axes.hlines(row, low, values.q97_5, color=colour, linewidth=1)
-            width = values.q75 - values.q25
-            axes.barh(row, width, left=values.q25, height=0.62, color=colour)
+            colour = COLOURS.get(result["family"], OTHER)
+            low = max(result["q2_5"], MIN_ERROR)
+            axes.hlines(row, low, result["q97_5"], color=colour, linewidth=1)
+            width = result["q75"] - result["q25"]
+            axes.barh(row, width, left=result["q25"], height=0.62, color=colour)
             ends = row - 0.31, row + 0.31
-            axes.vlines(values.median, *ends, color="white", linewidth=1.4)
+            axes.vlines(result["median"], *ends, color="white", linewidth=1.4)
         axes.axvline(
             JUST_VISIBLE, color=INK, linewidth=0.8, linestyle=(0, (3, 2)), zorder=0
         )
         axes.set(xscale="log", xlabel="ΔE00")
-        axes.set_yticks(range(len(results)), [result.name for result in results])
+        axes.set_yticks(
+            range(len(results)), [result["representation"] for result in results]
+        )
         axes.margins(y=0.01)
         axes.invert_yaxis()
         axes.xaxis.set_major_formatter("{x:g}")
@@ -157,7 +153,7 @@ def draw_boxes(
     return figure
 
 
-def render_comparison(comparison: Comparison, tuned: Sequence[TunedFilter] = ()) -> str:
+def render_comparison(comparison: Comparison, tuned: Sequence[Row] = ()) -> str:
     """Render the page of a comparison."""
     panels = enumerate(cost_panels(comparison))
     return render(
@@ -178,16 +174,14 @@ def render_comparison(comparison: Comparison, tuned: Sequence[TunedFilter] = ())
 
 
 def _tooltip(name: str, comparison: Comparison) -> Tooltip:
-    results = [result for result in comparison.results if result.name == name]
-    lines = [("floats of a surface", f"{results[0].floats:.1f}")]
-    for result in results:
-        errors = (
-            f"{format_error(result.statistics.mean)} / "
-            f"{format_error(result.statistics.q97_5)}"
-        )
+    rows = [row for row in comparison.rows if row["representation"] == name]
+    lines = [("floats of a surface", f"{rows[0]['floats']:.1f}")]
+    for row in rows:
+        lights = row["lights"]
+        errors = f"{format_error(row['mean'])} / {format_error(row['q97_5'])}"
         lines += [
-            (f"{result.lights}: ΔE00, mean / 97.5 %", errors),
-            (f"{result.lights}: floats of a light", f"{result.light_floats:.1f}"),
-            (f"{result.lights}: product", format_time(result.ns.median)),
+            (f"{lights}: ΔE00, mean / 97.5 %", errors),
+            (f"{lights}: floats of a light", f"{row['light_floats']:.1f}"),
+            (f"{lights}: product", format_time(row["ns"])),
         ]
-    return {"title": name, "family": results[0].family, "lines": lines}
+    return {"title": name, "family": rows[0]["family"], "lines": lines}

@@ -4,9 +4,7 @@ alike.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import product
-from typing import Any
 
 import numpy as np
 
@@ -15,12 +13,8 @@ from uplift.common.arrays import Array
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.extras.scene.representations import filters, samples
 from uplift.extras.scene.representations.filters import Filter
-from uplift.lab.comparison.compare import (
-    LightSet,
-    Scene,
-    Statistics,
-    error_statistics,
-)
+from uplift.lab.comparison.compare import LightSet, Scene, error_statistics
+from uplift.lab.statistics import Row
 
 COUNTS = (4, 8, 16)
 """Numbers of samples after a filter in the thesis."""
@@ -30,28 +24,12 @@ COARSE_STRIDE = 5
 """A search tries every first or every fifth choice of each parameter."""
 
 
-@dataclass(frozen=True)
-class TunedFilter:
-    """The best filter of a kind, ``none`` for unfiltered samples, and its errors under
-    a set of lights.
-    """
-
-    kind: str
-    count: int
-    lights: str
-    low_pass: Filter | None
-    statistics: Statistics
-
-    @property
-    def parameters(self) -> str:
-        """Return the filter's parameters as text."""
-        if self.low_pass is None:
-            return ""
-        text = f"extent {self.low_pass.extent}"
-        names = filters.KINDS[self.kind].choices
-        for name, value in zip(names, self.low_pass.parameters, strict=True):
-            text += f", {name} {value:g}"
-        return text
+def filter_text(low_pass: Filter) -> str:
+    """Return extent and parameters of a filter as text."""
+    names = filters.KINDS[low_pass.kind].choices
+    pairs = zip(names, low_pass.parameters, strict=True)
+    parameters = [f"{name} {value:g}" for name, value in pairs]
+    return ", ".join([f"extent {low_pass.extent}", *parameters])
 
 
 def candidates(kind: str, stride: int = FINE_STRIDE) -> list[Filter]:
@@ -69,25 +47,37 @@ def tune_filters(
     kinds: Sequence[str] = tuple(filters.KINDS),
     counts: Sequence[int] = COUNTS,
     progress: ProgressCallback = ignore_progress,
-) -> tuple[TunedFilter, ...]:
+) -> list[Row]:
     """Search the best filter of each kind, for each number of samples and each set of
-    lights.
+    lights; the kind ``none`` is no filter.
     """
-    results = []
+    rows = []
+
+    def add(light_set: LightSet, count: int, low_pass: Filter | None) -> None:
+        sampled = samples.point_samples(count)
+        if low_pass is not None:
+            sampled = filters.filtered_point_samples(count, low_pass)
+        rows.append(
+            {
+                "lights": light_set.name,
+                "samples": count,
+                "filter": low_pass.kind if low_pass else NONE,
+                "parameters": filter_text(low_pass) if low_pass else "",
+                **error_statistics(sampled, light_set),
+            }
+        )
+
     for count, light_set in product(counts, scene.sets):
-        errors = error_statistics(samples.point_samples(count), light_set)
-        results.append(TunedFilter(NONE, count, light_set.name, None, errors))
+        add(light_set, count, None)
     tasks = list(product(kinds, counts))
     for done, (kind, count) in enumerate(tasks, 1):
         tried = candidates(kind, stride)
         encoders = [filters.resampling_matrix(low_pass, count).T for low_pass in tried]
         for light_set in scene.sets:
-            best = tried[_mean_errors(light_set, count, encoders).argmin()]
-            filtered = filters.filtered_point_samples(count, best)
-            errors = error_statistics(filtered, light_set)
-            results.append(TunedFilter(kind, count, light_set.name, best, errors))
+            errors = _mean_errors(light_set, count, encoders)
+            add(light_set, count, tried[errors.argmin()])
         progress(Progress("filters", done, len(tasks)))
-    return tuple(results)
+    return rows
 
 
 def _mean_errors(light_set: LightSet, count: int, encoders: Iterable[Array]) -> Array:
@@ -103,17 +93,3 @@ def _mean_errors(light_set: LightSet, count: int, encoders: Iterable[Array]) -> 
         lab = light_set.to_lab(to_xyz(products))
         errors.append(delta_e_2000(lab, light_set.lab).mean())
     return np.array(errors)
-
-
-def filter_records(tuned: Iterable[TunedFilter]) -> list[dict[str, Any]]:
-    """Convert tuned filters to records."""
-    return [
-        {
-            "lights": best.lights,
-            "samples": best.count,
-            "filter": best.kind,
-            "parameters": best.parameters,
-            **best.statistics._asdict(),
-        }
-        for best in tuned
-    ]
