@@ -11,14 +11,9 @@ from benchmarks import DOCS, MACBETH, Row, read_reference
 from uplift.atlas import on_grid
 from uplift.colorimetry import delta_e_1976, lab
 from uplift.common.arrays import Array
-from uplift.extras.pages.figure import (
-    GREY,
-    INK,
-    colour_map,
-    new_figure,
-    styled,
-    write_png,
-)
+from uplift.extras.pages.figure import GREY, INK, colour_map, write_figure
+from uplift.extras.pages.marks import Mark, line
+from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.scene.quadrature import QuadratureRule
 from uplift.extras.scene.wavelengths import grid, make_setup
 from uplift.extras.scene.wavelengths import meyer as paper
@@ -26,6 +21,7 @@ from uplift.extras.scene.wavelengths.sampling import RenderSetup, interp_curves
 
 SPACES = {"AC1C2": "opponent", "SML": "cones", "XYZ": "xyz"}
 """Names of the paper, and of `uplift.extras.scene.wavelengths.choose_orders`."""
+COLOURS = {"AC1C2": "#20509a", "SML": "#d1495b", "XYZ": "#2e8b57"}
 CHANNELS = ("A", "C1", "C2")
 CORNERS = np.array([[0.5, np.sqrt(0.75)], [0.0, 0.0], [1.0, 0.0]])
 """Corners of figure 7, where the first, second and third channel have all wavelengths.
@@ -86,10 +82,10 @@ def matrix_values(setup: RenderSetup) -> list[Row]:
     printed = read_reference("meyer1988_matrices.csv")
     elements = np.concatenate([matrix(setup, "SML"), matrix(setup, "AC1C2")])
     _, eigenvalues = paper.opponent_space(setup.wavelengths, setup.cmfs)
-    columns = dict(zip("XYZ", elements.T, strict=True))
+    by_axis = dict(zip("XYZ", elements.T, strict=True))
     return [
-        *compared("matrices", "space", printed, **columns),
-        *compared("matrices", "space", printed[3:], eigenvalue=eigenvalues),
+        *compared("matrices", "space", printed, **by_axis),
+        *compared("eigenvalues", "space", printed[3:], eigenvalue=eigenvalues),
     ]
 
 
@@ -103,28 +99,30 @@ def rule_values(setup: RenderSetup) -> list[Row]:
     rules = paper.quadrature_rules(space, setup.wavelengths, setup.cmfs)
     orders = chain.from_iterable(of_channel.values() for of_channel in rules)
     defined = [rule for rule in orders if isinstance(rule, QuadratureRule)]
-    first = read_reference("meyer1988_table1.csv")
-    nodes, weights = joined(defined)
-    expected = [float(row["weight"]) for row in first]
-    factor = weights @ expected / (weights @ weights)
     functions = paper.channel_functions(space, setup.wavelengths, setup.cmfs)
     separate = [rules[0][3], rules[1][2], rules[2][1]]
     shared = paper.four_wavelength_rule(functions)
-    second = read_reference("meyer1988_table2.csv")
-    four, of_four = joined([*separate, *shared])
     errors = [mean_error(setup, space, each) for each in (separate, shared)]
-    stated = {row["row"]: row for row in second}
+    first = read_reference("meyer1988_table1.csv")
+    second = read_reference("meyer1988_table2.csv")
+    expected = [float(row["weight"]) for row in first]
+    weights = columns(defined)["weight"]
+    factor = weights @ expected / (weights @ weights)
+    four = [*separate, *shared]
+    with_error = {row["row"]: row for row in second}.values()
     return [
-        *compared("1", "order", first, wavelength=nodes, weight=factor * weights),
-        *compared("2", "row", second, wavelength=four, weight=factor * of_four),
-        *compared("2", "row", stated.values(), error=errors),
+        *compared("1", "order", first, **columns(defined, factor)),
+        *compared("2", "row", second, **columns(four, factor)),
+        *compared("2", "row", with_error, error=errors),
     ]
 
 
-def joined(rules: Allocation) -> tuple[Array, Array]:
-    """Return the wavelengths and the weights of rules."""
-    nodes = np.concatenate([rule.nodes for rule in rules])
-    return nodes, np.concatenate([rule.weights for rule in rules])
+def columns(rules: Allocation, factor: float = 1.0) -> dict[str, Array]:
+    """Return the wavelengths and the scaled weights of rules."""
+    return {
+        "wavelength": np.concatenate([rule.nodes for rule in rules]),
+        "weight": factor * np.concatenate([rule.weights for rule in rules]),
+    }
 
 
 def tables() -> list[Row]:
@@ -143,33 +141,47 @@ def trials(setup: RenderSetup, space: Array) -> tuple[Array, Array]:
     return np.array(counts), np.array(errors)
 
 
+def by_total(counts: Array, errors: Array) -> dict[int, Array]:
+    """Group the errors of allocations by their total number of wavelengths."""
+    totals = counts.sum(axis=1)
+    return {int(total): errors[totals == total] for total in np.unique(totals)}
+
+
 def figures() -> None:
-    """Draw figure 6, errors over the number of wavelengths, and figure 7, errors over
-    the shares of the channels.
-    """
+    """Draw figure 6, mean and smallest errors of all allocations, and figure 7."""
     setup = checker()
-    found = {space: trials(setup, matrix(setup, space)) for space in SPACES}
-    with styled():
-        write_png(figure_6(found), PICTURES / "figure-6.png", force=True)
-        write_png(figure_7(*found["AC1C2"]), PICTURES / "figure-7.png", force=True)
+    lines = []
+    for space, colour in COLOURS.items():
+        counts, errors = trials(setup, matrix(setup, space))
+        if space == "AC1C2":
+            figure = draw([Panel([cells(counts, errors)])], size=(5.0, 3.8))
+            write_figure(figure, PICTURES / "figure-7.png", force=True)
+        found = by_total(counts, errors)
+        means = list(map(np.mean, found.values()))
+        least = list(map(np.min, found.values()))
+        lines.append(line(list(found), means, space, colour, marker="o", markersize=3))
+        lines.append(line(list(found), least, colour=colour, linestyle=":"))
+    panel = Panel(lines, "", Axis("wavelengths"), Axis("mean ΔE76", log=True))
+    figure = draw([panel], size=(7.2, 3.6), legend="above")
+    write_figure(figure, PICTURES / "figure-6.png", force=True)
 
 
-def figure_7(counts: Array, errors: Array) -> Any:
-    """Plot the mean error over the channels' shares."""
+def cells(counts: Array, errors: Array) -> Mark:
+    """Draw the mean error of trials in cells over the shares of the channels."""
     shares = counts / counts.sum(axis=1, keepdims=True)
-    figure = new_figure(6.0, 4.6)
-    axes = figure.subplots()
-    axes.plot(*CORNERS[[0, 1, 2, 0]].T, color=GREY, linewidth=0.8)
-    points = (shares @ CORNERS).T
-    style = {"cmap": colour_map(), "edgecolors": "white", "gridsize": CELLS}
-    cells = axes.hexbin(*points, C=errors, **style)
-    for name, (x, y) in zip(CHANNELS, CORNERS, strict=True):
-        side = "bottom" if y else "top"
-        axes.text(x, y, f"all for {name}", ha="center", va=side, color=INK)
-    axes.set_aspect("equal")
-    axes.set_axis_off()
-    figure.colorbar(cells, ax=axes, shrink=0.8, label="mean ΔE76")
-    return figure
+
+    def mark(axes: Any) -> None:
+        style = {"cmap": colour_map(), "edgecolors": "white", "gridsize": CELLS}
+        drawn = axes.hexbin(*(shares @ CORNERS).T, C=errors, **style)
+        axes.plot(*CORNERS[[0, 1, 2, 0]].T, color=GREY, linewidth=0.8)
+        for name, (x, y) in zip(CHANNELS, CORNERS, strict=True):
+            side = "bottom" if y else "top"
+            axes.text(x, y, f"all for {name}", ha="center", va=side, color=INK)
+        axes.set_aspect("equal")
+        axes.set_axis_off()
+        axes.figure.colorbar(drawn, ax=axes, shrink=0.8, label="mean ΔE76")
+
+    return mark
 
 
 QUESTIONS = {"tables": tables, "figures": figures}

@@ -5,17 +5,20 @@ from itertools import product
 import numpy as np
 
 import uplift
-from benchmarks import ATLAS_FILES, DOCS, Row
+from benchmarks import ATLAS_FILES, DOCS, Row, summary
 from uplift.atlas import on_grid
+from uplift.extras.pages.figure import write_figure
+from uplift.extras.pages.marks import line
+from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.scene.wavelengths import METHODS, grid, make_setup
 from uplift.extras.scene.wavelengths.sampling import evaluate
-from uplift.lab.statistics import statistics
 
 OTHERS = ("meyer", "uniform", "bins")
 """Methods that are not fitted to materials."""
 COUNTS = range(4, 17)
 LIGHTS = (("A", "B", "C", "D65"), ("FL2", "FL7", "FL11"))
 """Smooth ones, and spiky ones."""
+COLOURS = ("#20509a", "#d1495b", "#2e8b57", "#c98a1b", "#7fa3d9")
 
 
 def errors() -> list[Row]:
@@ -35,8 +38,24 @@ def errors() -> list[Row]:
             known = tested if method in OTHERS else fitted
             found = evaluate(tested, METHODS[method](known, count))
             head = {"lights": ", ".join(lights), "method": method, "count": count}
-            rows.append({**head, "n": found.size, **statistics(found)})
+            rows.append({**head, **summary(found.ravel())})
+    plot(rows)
     return rows
+
+
+def plot(rows: list[Row]) -> None:
+    """Plot mean ΔE00 over the number of wavelengths."""
+    panels = []
+    for lights in LIGHTS:
+        marks = []
+        for method, colour in zip(METHODS, COLOURS, strict=True):
+            same = {"lights": ", ".join(lights), "method": method}
+            means = [row["mean"] for row in rows if row.items() >= same.items()]
+            marks.append(line(COUNTS, means, method, colour, marker="o", markersize=3))
+        y = Axis("mean ΔE00, unseen materials", log=True)
+        panels.append(Panel(marks, ", ".join(lights), Axis("wavelengths"), y))
+    figure = draw(panels, 2, legend="above", share="y")
+    write_figure(figure, DOCS / "wavelengths" / "methods.png", force=True)
 
 
 QUESTIONS = {"errors": errors}
