@@ -17,6 +17,7 @@ from tests.browsing import check_page
 from tests.conftest import MACBETH
 from tests.helpers import raises, warns
 from tests.pages import Page
+from tools.render_docs import pick, where
 from uplift.atlas import Atlas, on_grid, read_atlas, write_atlas
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError, UpliftError
@@ -36,11 +37,9 @@ from uplift.extras.scene.representations.samples import (
     xyz_weights,
 )
 from uplift.lab.comparison.compare import (
-    Comparison,
-    RepresentationResult,
+    COSTS,
     cheapest,
     compare,
-    compute_statistics,
     error_statistics,
     make_scene,
     pareto,
@@ -54,8 +53,13 @@ from uplift.lab.comparison.pictures import (
     write_boxes,
     write_costs,
 )
-from uplift.lab.comparison.tuning import COARSE_STRIDE, NONE, candidates, tune_filters
-from uplift.lab.timing import TimingStats
+from uplift.lab.comparison.tuning import (
+    COARSE_STRIDE,
+    NONE,
+    candidates,
+    filter_text,
+    tune_filters,
+)
 
 
 @pytest.fixture(scope="module")
@@ -86,12 +90,10 @@ def test_errors_match_explicit_loops(checker):
                 lab((power * surface) @ xyz_weights(), white),
             )
             apart.append(float(delta_e_2000(*pair)))
-    expected = [
-        np.mean(apart),
-        np.std(apart),
-        *np.quantile(apart, (0.5, 0.025, 0.25, 0.75, 0.975)),
-    ]
-    assert_allclose(error_statistics(samples, part), expected, rtol=1e-9)
+    quantiles = np.quantile(apart, (0.5, 0.025, 0.25, 0.75, 0.975))
+    expected = [np.mean(apart), np.std(apart), *quantiles]
+    actual = list(error_statistics(samples, part).values())
+    assert_allclose(actual, expected, rtol=1e-9)
 
 
 def test_result_that_is_not_finite_is_an_error(checker):
@@ -104,23 +106,25 @@ def test_results_are_ranked_within_their_sets(checker, found):
     assert_allclose(checker.powers @ xyz_weights()[:, 1], 1)
     assert list(found.sets) == ["smooth", "spiky"]
     for name in found.sets:
-        means = [row.statistics.mean for row in found.of(name)]
+        means = [row["mean"] for row in found.of(name)]
         assert means == sorted(means)
         assert len(means) == 8
-    assert all(row.ns.median > 0 and row.ns.runs == 3 for row in found.results)
+    assert all(0 < row["ns_least"] <= row["ns"] <= row["ns_most"] for row in found.rows)
 
 
 def test_storage_includes_spikes(found):
-    (row,) = [row for row in found.of("spiky") if row.name == "RE16"]
-    assert row.floats == 16
-    assert 16 + 2 * 2 < row.light_floats < 16 + 2 * 10
-    (row,) = [row for row in found.of("spiky") if row.name == "TM9"]
-    assert (row.floats, row.light_floats) == (9, 81)
+    row = pick(found.of("spiky"), representation="RE16")
+    assert row["floats"] == 16
+    assert 16 + 2 * 2 < row["light_floats"] < 16 + 2 * 10
+    row = pick(found.of("spiky"), representation="TM9")
+    assert (row["floats"], row["light_floats"]) == (9, 81)
 
 
 def test_findings_of_the_thesis_hold_for_the_colorchecker(found):
-    smooth = {row.name: row.statistics.mean for row in found.of("smooth")}
-    spiky = {row.name: row.statistics.mean for row in found.of("spiky")}
+    smooth, spiky = (
+        {row["representation"]: row["mean"] for row in found.of(lights)}
+        for lights in found.sets
+    )
     assert all(smooth[f"{family}32"] < 1 for family in ("PS", "RS", "RE"))
     assert spiky["PS16"] > 10 * smooth["PS16"]
     assert spiky["RS16"] < spiky["PS32"] < spiky["PS16"]
@@ -197,24 +201,16 @@ def test_named_lights_form_one_set():
         make_scene({"none": Atlas()})
 
 
-def row(name, high, floats, light_floats=8.0, ns=5.0, lights="smooth"):
-    found = compute_statistics([high])
-    return RepresentationResult(
-        name, "made up", lights, found, floats, light_floats, TimingStats(ns, ns, ns, 3)
+ROWS = [
+    {"name": name, "q97_5": error, "floats": floats, "light_floats": light_floats}
+    for name, error, floats, light_floats in (
+        ("near", 0.2, 32, 8),
+        ("even", 0.8, 9, 12),
+        ("rough", 0.9, 9, 12),
+        ("tabled", 0.7, 9, 81),
+        ("far", 1.1, 3, 8),
     )
-
-
-ROWS = (
-    row("near", 0.2, 32.0),
-    row("even", 0.8, 9.0, 12.0, 30.0),
-    row("rough", 0.9, 9.0, 12.0, 3.0),
-    row("tabled", 0.7, 9.0, 81.0, 1.0),
-    row("far", 1.1, 3.0),
-    row("other", 0.1, 1.0, lights="spiky"),
-)
-FOUND = Comparison(
-    {}, {"smooth": "smooth lights (A)", "spiky": "spiky lights (FL2)"}, ROWS
-)
+]
 
 
 @pytest.mark.parametrize(
@@ -222,48 +218,40 @@ FOUND = Comparison(
     [(2.0, "far"), (1.0, "even"), (0.75, "tabled"), (0.5, "near"), (0.1, None)],
 )
 def test_surfaces_count_first_then_lights_then_errors(target, name):
-    best = cheapest(FOUND, "smooth", target)
-    assert (best and best.name) == name
-    assert cheapest(FOUND, "spiky", 0.5).name == "other"
+    best = cheapest(ROWS, target)
+    assert (best and best["name"]) == name
 
 
 @pytest.mark.parametrize("target", [0, float("nan"), float("inf")])
 def test_target_must_be_positive(target):
     with raises(OptionError, "option"):
-        cheapest(FOUND, "smooth", target)
+        cheapest(ROWS, target)
 
 
 @pytest.fixture(scope="module")
 def tuned(checker):
     kinds = ("tent", "lanczos", "mitchell")
-    return {
-        (one.lights, one.kind): one
-        for one in tune_filters(checker, COARSE_STRIDE, kinds, (16,))
-    }
+    return tune_filters(checker, COARSE_STRIDE, kinds, (16,))
 
 
 @pytest.mark.parametrize("kind", ["tent", "lanczos"])
 def test_no_candidate_filter_is_better(checker, tuned, kind):
     part = checker.sets[1]
-    means = {
-        one: error_statistics(filtered_point_samples(16, one), part).mean
-        for one in candidates(kind, COARSE_STRIDE)
-    }
-    best = tuned[part.name, kind]
-    assert best.low_pass == min(means, key=means.__getitem__)
-    assert best.statistics.mean == pytest.approx(min(means.values()), rel=1e-9)
+    means = {}
+    for tried in candidates(kind, COARSE_STRIDE):
+        errors = error_statistics(filtered_point_samples(16, tried), part)
+        means[filter_text(tried)] = errors["mean"]
+    best = pick(tuned, lights=part.name, filter=kind)
+    assert best["parameters"] == min(means, key=means.__getitem__)
+    assert best["mean"] == pytest.approx(min(means.values()), rel=1e-9)
 
 
 def test_filters_improve_point_sampling_under_spiky_lights(checker, tuned):
     for part in checker.sets:
-        assert tuned[part.name, NONE].statistics == error_statistics(
-            point_samples(16), part
-        )
-    for kind in ("mitchell", "lanczos"):
-        assert (
-            tuned["spiky", kind].statistics.mean
-            < 0.3 * tuned["spiky", NONE].statistics.mean
-        )
+        bare = pick(tuned, lights=part.name, filter=NONE)
+        assert bare.items() >= error_statistics(point_samples(16), part).items()
+    means = {row["filter"]: row["mean"] for row in where(tuned, lights="spiky")}
+    assert max(means["mitchell"], means["lanczos"]) < 0.3 * means[NONE]
 
 
 def test_stored_tables_of_the_thesis_agree():
@@ -317,7 +305,7 @@ def test_page_has_every_representation_fits_and_is_accessible(found, tmp_path):
     assert [row["title"] for row in json.loads(data)] == known
     tables = [first_column(table[1:]) for table in Page(html).tables]
     for name in found.sets:
-        assert [result.name for result in found.of(name)] in tables
+        assert [row["representation"] for row in found.of(name)] in tables
     check_page(html, tmp_path)
 
 
@@ -331,7 +319,7 @@ def test_representations_fitted_to_a_scene_follow_its_products(fitted):
     scene, named = fitted
     (lights,) = scene.sets
     errors = {
-        name: error_statistics(named[name], lights).mean
+        name: error_statistics(named[name], lights)["mean"]
         for name in ("FW5", "FW12", "BF5", "CM9", "CM17")
     }
     assert errors["FW12"] < 0.1 < errors["FW5"] < 2
@@ -341,14 +329,11 @@ def test_representations_fitted_to_a_scene_follow_its_products(fitted):
     assert_array_equal(encode(lights.powers[::-1]), encode(lights.powers)[::-1])
 
 
-def costs_of(row):
-    return np.array([row.floats, row.light_floats, row.statistics.q97_5])
-
-
 def test_the_front_has_all_that_nothing_dominates(found):
     for name in found.sets:
-        front = pareto(found, name)
-        for row in found.of(name):
-            others = [costs_of(other) for other in front if other is not row]
-            is_beaten = np.all(others <= costs_of(row), axis=1).any()
+        rows = found.of(name)
+        front = pareto(rows)
+        for row in rows:
+            others = [COSTS(other) for other in front if other is not row]
+            is_beaten = np.all(np.array(others) <= COSTS(row), axis=1).any()
             assert is_beaten != (row in front)
