@@ -2,13 +2,12 @@
 docs/reproductions.md and their pictures.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import cache
-from typing import Any
 
 import numpy as np
 
-from benchmarks import DOCS, Row, read_reference
+from benchmarks import DOCS, Row, with_printed
 from benchmarks.materials import read_atlases
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
@@ -28,26 +27,6 @@ FOLDER = DOCS / "representations"
 def scene() -> Scene:
     """Return all atlases under the lights of the thesis."""
     return make_scene(read_atlases())
-
-
-def with_thesis(
-    rows: Iterable[Row],
-    table: str,
-    keys: Iterable[str],
-    **columns: Callable[[str], Any],
-) -> list[Row]:
-    """Add columns of a printed table, converted by functions, to the rows that agree
-    with its rows in ``keys``; None to others.
-    """
-    printed = {tuple(row[key] for key in keys): row for row in read_reference(table)}
-    found = []
-    for row in rows:
-        same = printed.get(tuple(str(row[key]) for key in keys))
-        of_thesis = {}
-        for name, convert in columns.items():
-            of_thesis[f"thesis_{name}"] = same and convert(same[name])
-        found.append(row | of_thesis)
-    return found
 
 
 def errors() -> list[Row]:
@@ -71,7 +50,7 @@ def with_tables_6(rows: Iterable[Row]) -> list[Row]:
     """Add the figures of tables 6.1 and 6.2."""
     table = "representations_kment2011.csv"
     keys = ("lights", "representation")
-    return with_thesis(rows, table, keys, mean=float, q97_5=float)
+    return with_printed(rows, table, keys, mean=float, q97_5=float)
 
 
 def compare_all(scene: Scene) -> Comparison:
@@ -83,7 +62,8 @@ def filters() -> list[Row]:
     """Search the best filter of each kind."""
     table = "filters_kment2011.csv"
     keys = ("lights", "samples", "filter")
-    return with_thesis(tune_filters(scene()), table, keys, mean=float, parameters=str)
+    rows = tune_filters(scene())
+    return with_printed(rows, table, keys, mean=float, parameters=str)
 
 
 def closed(count: int) -> Representation:
