@@ -35,11 +35,13 @@ NUMPY_SSE4 = {"NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR"}
 """numpy at its baseline. A feature is disabled by its own name only, those above it
 must be named too.
 """
-NUMPY_AVX2 = {"NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR"}
 XLA_SSE4 = {"XLA_FLAGS": "--xla_cpu_max_isa=SSE4_2"}
-XLA_AVX2 = {"XLA_FLAGS": "--xla_cpu_max_isa=AVX2"}
 BLAS_SSE4 = {"OPENBLAS_CORETYPE": "Nehalem"}
-BLAS_AVX2 = {"OPENBLAS_CORETYPE": "Haswell"}
+AVX2 = {
+    "NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR",
+    "XLA_FLAGS": "--xla_cpu_max_isa=AVX2",
+    "OPENBLAS_CORETYPE": "Haswell",
+}
 THREADS: dict[str, Variables] = {
     "again": {},
     "one core": {},
@@ -47,21 +49,14 @@ THREADS: dict[str, Variables] = {
     "8 threads of BLAS": {"OPENBLAS_NUM_THREADS": "8"},
     "1 thread of XLA": {"NPROC": "1"},
     "16 threads of XLA": {"NPROC": "16"},
-    "no threads in a product of XLA": {
-        "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false"
-    },
     "3 devices": {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"},
 }
 """Environment variables of settings that must not change a byte."""
 INSTRUCTIONS = {
-    "numpy without AVX-512": NUMPY_AVX2,
     "numpy without AVX2": NUMPY_SSE4,
-    "XLA with AVX2": XLA_AVX2,
     "XLA with SSE 4.2": XLA_SSE4,
-    "BLAS for Haswell (AVX2)": BLAS_AVX2,
-    "BLAS for Sandy Bridge (AVX)": {"OPENBLAS_CORETYPE": "Sandybridge"},
     "BLAS for Nehalem (SSE 4.2)": BLAS_SSE4,
-    "all three without AVX-512": NUMPY_AVX2 | XLA_AVX2 | BLAS_AVX2,
+    "all three without AVX-512": AVX2,
     "all three without AVX": NUMPY_SSE4 | XLA_SSE4 | BLAS_SSE4,
 }
 """Environment variables of settings that must not change where the nodes lie."""

@@ -19,9 +19,8 @@ from uplift.extras.scene.wavelengths import grid, make_setup
 from uplift.extras.scene.wavelengths import meyer as paper
 from uplift.extras.scene.wavelengths.sampling import RenderSetup, interp_curves
 
-SPACES = {"AC1C2": "opponent", "SML": "cones", "XYZ": "xyz"}
-"""Names of the paper, and of `uplift.extras.scene.wavelengths.choose_orders`."""
-COLOURS = {"AC1C2": "#20509a", "SML": "#d1495b", "XYZ": "#2e8b57"}
+COLOURS = {"opponent": "#20509a", "cones": "#d1495b", "xyz": "#2e8b57"}
+"""Colours of the spaces AC1C2, SML and XYZ of the paper."""
 CHANNELS = ("A", "C1", "C2")
 CORNERS = np.array([[0.5, np.sqrt(0.75)], [0.0, 0.0], [1.0, 0.0]])
 """Corners of figure 7, where the first, second and third channel have all wavelengths.
@@ -39,8 +38,8 @@ def checker() -> RenderSetup:
 
 
 def matrix(setup: RenderSetup, space: str) -> Array:
-    """Return the matrix from XYZ to the channels of a space of the paper."""
-    return paper.SPACES[SPACES[space]](setup.wavelengths, setup.cmfs)
+    """Return the matrix from XYZ to the channels of a space."""
+    return paper.SPACES[space](setup.wavelengths, setup.cmfs)
 
 
 def mean_error(setup: RenderSetup, space: Array, allocation: Allocation) -> float:
@@ -71,16 +70,23 @@ def compared(
     rows = []
     for quantity, values in ours.items():
         for row, value in zip(printed, values, strict=True):
-            head = {"table": table, "set": row[key], "channel": row["channel"]}
-            number = {"printed": float(row[quantity]), "ours": value}
-            rows.append({**head, "quantity": quantity, **number})
+            rows.append(
+                {
+                    "table": table,
+                    "set": row[key],
+                    "channel": row["channel"],
+                    "quantity": quantity,
+                    "printed": float(row[quantity]),
+                    "ours": value,
+                }
+            )
     return rows
 
 
 def matrix_values(setup: RenderSetup) -> list[Row]:
     """Return the elements of both matrices, and the eigenvalues."""
     printed = read_reference("meyer1988_matrices.csv")
-    elements = np.concatenate([matrix(setup, "SML"), matrix(setup, "AC1C2")])
+    elements = np.concatenate([matrix(setup, "cones"), matrix(setup, "opponent")])
     _, eigenvalues = paper.opponent_space(setup.wavelengths, setup.cmfs)
     by_axis = dict(zip("XYZ", elements.T, strict=True))
     return [
@@ -95,7 +101,7 @@ def rule_values(setup: RenderSetup) -> list[Row]:
 
     One factor takes the recomputed weights to the printed ones, by least squares.
     """
-    space = matrix(setup, "AC1C2")
+    space = matrix(setup, "opponent")
     rules = paper.quadrature_rules(space, setup.wavelengths, setup.cmfs)
     orders = chain.from_iterable(of_channel.values() for of_channel in rules)
     defined = [rule for rule in orders if isinstance(rule, QuadratureRule)]
@@ -153,7 +159,7 @@ def figures() -> None:
     lines = []
     for space, colour in COLOURS.items():
         counts, errors = trials(setup, matrix(setup, space))
-        if space == "AC1C2":
+        if space == "opponent":
             figure = draw([Panel([cells(counts, errors)])], size=(5.0, 3.8))
             write_figure(figure, PICTURES / "figure-7.png", force=True)
         found = by_total(counts, errors)

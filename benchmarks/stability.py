@@ -10,12 +10,7 @@ from uplift.extras.report.rebuild import recorded_atlas
 from uplift.lab.chart.selection import perturb_method, select_methods
 from uplift.lab.study.plots import plot_locality, plot_map
 from uplift.lab.study.sensitivity import perturb, perturb_atlas
-from uplift.lab.study.stability import (
-    NO_ATLAS,
-    DesignSpace,
-    study_stability,
-    synthetic_atlases,
-)
+from uplift.lab.study.stability import DESIGN, study_stability, synthetic_atlases
 
 FOLDER = DOCS / "stability"
 CONSTRAINED = "moments-16-macbeth"
@@ -28,8 +23,8 @@ ENTRIES = 24
 def builds() -> list[Row]:
     """Run the builds of the design, and plot them."""
     atlases = {"macbeth": uplift.read_atlas("macbeth"), **synthetic_atlases()}
-    design = DesignSpace(atlases=(NO_ATLAS, *atlases))
-    rows = study_stability(design.configs(), atlases, show)
+    configs = DESIGN.with_atlases(atlases).configs()
+    rows = study_stability(configs, atlases, show)
     plot_map(rows, FOLDER / "map.png", force=True)
     return rows
 

@@ -1,7 +1,6 @@
 """``uplift study``: measurements of models, solver and errors."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -257,17 +256,14 @@ def stability(
 ) -> None:
     enable_jit_cache()
     from uplift.lab.study.stability import (
-        NO_ATLAS,
+        DESIGN,
         QUICK_DESIGN,
-        DesignSpace,
         study_stability,
         synthetic_atlases,
     )
 
     atlases = read_atlases(files or (MACBETH,)) | synthetic_atlases()
-    design = replace(
-        QUICK_DESIGN if quick else DesignSpace(), atlases=(NO_ATLAS, *atlases)
-    )
+    design = (QUICK_DESIGN if quick else DESIGN).with_atlases(atlases)
     check_folder(output, STABILITY_PLOTS, inputs=atlas_files(files))
     with progress_bar("builds") as progress:
         rows = study_stability(design.configs(), atlases, progress)

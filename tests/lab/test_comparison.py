@@ -57,7 +57,7 @@ from uplift.lab.comparison.tuning import (
     COARSE_STRIDE,
     NONE,
     candidates,
-    filter_text,
+    parameters,
     tune_filters,
 )
 
@@ -240,7 +240,7 @@ def test_no_candidate_filter_is_better(checker, tuned, kind):
     means = {}
     for tried in candidates(kind, COARSE_STRIDE):
         errors = error_statistics(filtered_point_samples(16, tried), part)
-        means[filter_text(tried)] = errors["mean"]
+        means[parameters(tried)] = errors["mean"]
     best = pick(tuned, lights=part.name, filter=kind)
     assert best["parameters"] == min(means, key=means.__getitem__)
     assert best["mean"] == pytest.approx(min(means.values()), rel=1e-9)

@@ -13,9 +13,9 @@ from uplift.common.errors import UnknownNameError
 from uplift.common.progress import Progress
 from uplift.lab.study import stability
 from uplift.lab.study.stability import (
-    DesignSpace,
+    DESIGN,
     RunConfig,
-    run,
+    evaluate,
     study_stability,
     synthetic_atlases,
 )
@@ -23,7 +23,7 @@ from uplift.lattice import Lattice, axis_nodes
 
 
 def test_build_is_evaluated_over_its_realisable_nodes():
-    result = run(RunConfig(dim=4, space="ITU-R BT.2020"), {})
+    result = evaluate(RunConfig(dim=4, space="ITU-R BT.2020"), {})
     nodes = Lattice(axis_nodes("srgb", 4)).points
     inside = solid(observer.sensor("ITU-R BT.2020").matrix).contains(nodes)
     assert result["points"] == 64 > inside.sum() == result["realisable"]
@@ -36,14 +36,14 @@ def test_study_runs_every_configuration_once_ordered_by_model(monkeypatch):
     first = RunConfig(dim=8)
     configs = [first, RunConfig("sigmoid", 3), RunConfig(dim=4), first]
     events = []
-    monkeypatch.setattr(stability, "run", lambda config, atlases: config)
+    monkeypatch.setattr(stability, "evaluate", lambda config, atlases: config)
     result = study_stability(configs, {}, events.append)
     assert result == [configs[2], configs[0], configs[1]]
     assert events == [Progress("builds", done, 3) for done in (1, 2, 3)]
 
 
 def test_unknown_atlas_raises_before_any_build(monkeypatch):
-    monkeypatch.setattr(stability, "run", lambda *args: pytest.fail("a build ran"))
+    monkeypatch.setattr(stability, "evaluate", lambda *args: pytest.fail("a build ran"))
     with raises(UnknownNameError, "unknown-name"):
         study_stability([RunConfig(), RunConfig(atlas="paint")], {})
 
@@ -52,15 +52,15 @@ def test_sample_covers_every_value_of_every_axis():
     """A Latin hypercube of 12 has two points or more for each of up to five values of
     an axis.
     """
-    space = DesignSpace()
-    sample = list(space.sample())
-    assert sample == list(space.sample())
-    assert len(set(sample)) == space.samples == 12
-    for name, values in space.axes.items():
+    design = DESIGN.with_atlases(("macbeth", "noisy"))
+    sample = list(design.sample())
+    assert sample == list(design.sample())
+    assert len(set(sample)) == design.samples == 12
+    for name, values in design.axes.items():
         drawn = {getattr(config, name) for config in sample}
         assert drawn == {value for value in values if name != "dim" or value <= 17}
     models = {(config.model, config.coefficients) for config in sample}
-    assert len(models) == len(space.variants)
+    assert len(models) == len(design.variants)
 
 
 def test_atlases_are_crowded_spiky_and_noisy(sensor):

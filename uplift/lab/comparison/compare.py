@@ -14,7 +14,7 @@ from operator import itemgetter
 import numpy as np
 
 from uplift.atlas import Atlas, Entry, merge, on_grid
-from uplift.colorimetry import delta_e_2000, observer
+from uplift.colorimetry import delta_e_2000
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array
@@ -31,7 +31,7 @@ from uplift.extras.colour.light_sets import KMENT_LIGHTS
 from uplift.extras.scene.plan.candidates import front
 from uplift.extras.scene.representations import samples
 from uplift.extras.scene.representations.samples import Representation
-from uplift.extras.scene.wavelengths.sampling import RenderSetup
+from uplift.extras.scene.wavelengths.sampling import RenderSetup, make_setup
 from uplift.lab.statistics import Row, statistics
 from uplift.lab.timing import TimingStats, environment, time_short_call
 
@@ -88,22 +88,17 @@ def make_scene(
         raise AtlasError(
             "the atlases have no entries", hint="give an atlas of reflectances"
         )
-    observer.check_distinct(lights)
-    named: Mapping[str, tuple[Illuminant, ...]] = KMENT_LIGHTS
+    named: Mapping[str, Sequence[Illuminant]] = KMENT_LIGHTS
     if lights:
-        named = {"given": tuple(dict.fromkeys(lights))}
-    nm = samples.wavelengths()
+        named = {"given": lights}
+    surfaces = on_grid(merged, samples.wavelengths())
     weights = samples.xyz_weights()
-    surfaces = on_grid(merged, nm)
     sets = []
     for name, members in named.items():
-        spectra = [
-            observer.illuminant_spd(member, step=samples.STEP) for member in members
-        ]
-        powers = np.stack(spectra)
-        powers /= powers @ weights[:, 1:2]
-        labels = tuple(map(str, members))
-        sets.append(LightSet(nm, surfaces, labels, powers, weights, members, name))
+        setup = make_setup(surfaces, members, wavelengths=samples.wavelengths())
+        powers = setup.powers / (setup.powers @ weights[:, 1:2])
+        of_lights = setup.lights, powers, weights, setup.illuminants
+        sets.append(LightSet(setup.wavelengths, surfaces, *of_lights, name))
     return Scene(tuple(sets))
 
 

@@ -13,6 +13,7 @@ from uplift.common.arrays import Array
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.extras.scene.representations import filters, samples
 from uplift.extras.scene.representations.filters import Filter
+from uplift.extras.scene.representations.samples import Representation
 from uplift.lab.comparison.compare import LightSet, Scene, error_statistics
 from uplift.lab.statistics import Row
 
@@ -22,14 +23,6 @@ NONE = "none"
 FINE_STRIDE = 1
 COARSE_STRIDE = 5
 """A search tries every first or every fifth choice of each parameter."""
-
-
-def filter_text(low_pass: Filter) -> str:
-    """Return extent and parameters of a filter as text."""
-    names = filters.KINDS[low_pass.kind].choices
-    pairs = zip(names, low_pass.parameters, strict=True)
-    parameters = [f"{name} {value:g}" for name, value in pairs]
-    return ", ".join([f"extent {low_pass.extent}", *parameters])
 
 
 def candidates(kind: str, stride: int = FINE_STRIDE) -> list[Filter]:
@@ -52,32 +45,34 @@ def tune_filters(
     lights; the kind ``none`` is no filter.
     """
     rows = []
-
-    def add(light_set: LightSet, count: int, low_pass: Filter | None) -> None:
-        sampled = samples.point_samples(count)
-        if low_pass is not None:
-            sampled = filters.filtered_point_samples(count, low_pass)
-        rows.append(
-            {
-                "lights": light_set.name,
-                "samples": count,
-                "filter": low_pass.kind if low_pass else NONE,
-                "parameters": filter_text(low_pass) if low_pass else "",
-                **error_statistics(sampled, light_set),
-            }
-        )
-
     for count, light_set in product(counts, scene.sets):
-        add(light_set, count, None)
+        rows.append(_row(light_set, count, NONE, "", samples.point_samples(count)))
     tasks = list(product(kinds, counts))
     for done, (kind, count) in enumerate(tasks, 1):
         tried = candidates(kind, stride)
         encoders = [filters.resampling_matrix(low_pass, count).T for low_pass in tried]
         for light_set in scene.sets:
-            errors = _mean_errors(light_set, count, encoders)
-            add(light_set, count, tried[errors.argmin()])
+            best = tried[_mean_errors(light_set, count, encoders).argmin()]
+            filtered = filters.filtered_point_samples(count, best)
+            rows.append(_row(light_set, count, kind, parameters(best), filtered))
         progress(Progress("filters", done, len(tasks)))
     return rows
+
+
+def _row(
+    light_set: LightSet, count: int, kind: str, text: str, sampled: Representation
+) -> Row:
+    head = {"lights": light_set.name, "samples": count, "filter": kind}
+    return {**head, "parameters": text, **error_statistics(sampled, light_set)}
+
+
+def parameters(low_pass: Filter) -> str:
+    """Return extent and parameters of a filter as text."""
+    text = f"extent {low_pass.extent}"
+    names = filters.KINDS[low_pass.kind].choices
+    for name, value in zip(names, low_pass.parameters, strict=True):
+        text += f", {name} {value:g}"
+    return text
 
 
 def _mean_errors(light_set: LightSet, count: int, encoders: Iterable[Array]) -> Array:

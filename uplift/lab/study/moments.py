@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, merge, on_grid
-from uplift.colorimetry import delta_e_1976, delta_e_2000, lab, observer
+from uplift.colorimetry import delta_e_1976, lab, observer
 from uplift.common.arrays import Array, Complex
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.extras.colour.light_sets import REPORT_LIGHTS
+from uplift.extras.report.measures import delta_e_under
 from uplift.extras.scene.representations import samples
 from uplift.lab.statistics import Row, statistics
 from uplift.models import Moments, duality
@@ -176,27 +177,22 @@ def study_moments(
     measured = on_grid(atlas, samples.wavelengths())
     original = measured[:, :: samples.TABLE_STRIDE]
     lights = [observer.light(name) for name in REPORT_LIGHTS]
+    d65 = lights[0]
 
-    def labs(spectra: Array) -> list[Array]:
-        return [lab(spectra @ light.xyz.T, light.white) for light in lights]
+    def to_lab(spectra: Array) -> Array:
+        return lab(spectra @ d65.xyz.T, d65.white)
 
-    expected = labs(original)
     counts = max_moments + 1
     errors = np.empty((len(techniques), counts, len(measured), len(MEASURES)))
-    for row, technique in enumerate(techniques):
-        moments = technique.moments(measured, samples.wavelengths(), max_moments)
-        for count in range(counts):
-            spectra = technique.reconstruct(moments[:, : count + 1], observer.grid())
-            actual = labs(spectra)
-            rms = np.sqrt(((spectra - original) ** 2).mean(axis=1))
-            delta_e = [
-                delta_e_1976(actual[0], expected[0]),
-                *map(delta_e_2000, actual, expected),
-            ]
-            errors[row, count] = np.stack([*delta_e, rms], axis=1)
-            done = row * counts + count + 1
-            progress(Progress("reconstructions", done, len(techniques) * counts))
-    origins: list[str] = []
-    for name, entries in atlases.items():
-        origins += [name] * len(entries)
+    cases = list(product(range(len(techniques)), range(counts)))
+    for done, (row, count) in enumerate(cases, 1):
+        technique = techniques[row]
+        moments = technique.moments(measured, samples.wavelengths(), count)
+        spectra = technique.reconstruct(moments, observer.grid())
+        delta_e_76 = delta_e_1976(to_lab(spectra), to_lab(original))
+        delta_e_00 = delta_e_under(lights, spectra, original)
+        rms = np.sqrt(((spectra - original) ** 2).mean(axis=1))
+        errors[row, count] = np.column_stack([delta_e_76, delta_e_00, rms])
+        progress(Progress("reconstructions", done, len(cases)))
+    origins = [name for name in atlases for _ in atlases[name]]
     return MomentsStudy(atlas.names, tuple(origins), measured, techniques, errors)

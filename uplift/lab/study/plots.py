@@ -129,7 +129,7 @@ def plot_map(
     for each build, in every panel.
 
     Dots to the right of the line are failures, hollow ones builds with failed stand-ins
-    of unrealisable nodes. ``runs`` are records of `uplift.lab.study.stability.run`.
+    of unrealisable nodes. ``runs`` are rows of `uplift.lab.study.stability.evaluate`.
     """
     panels = []
     for option in PANELS:

@@ -6,11 +6,11 @@ which it has an effect. A Latin hypercube sample of all combinations covers the 
 Synthetic atlases are difficult to fit.
 """
 
-import time
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import product
+from operator import getitem
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from uplift.colorimetry import observer, solid
 from uplift.common.errors import UpliftWarning, unknown_name
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.statistics import Row
+from uplift.lab.timing import stopwatch
 from uplift.lattice import Status
 from uplift.models import Sigmoid
 from uplift.pipeline.build import build
@@ -89,12 +90,12 @@ def study_stability(
             raise unknown_name(config.atlas, (NO_ATLAS, *atlases), "atlas")
     rows = []
     for number, config in enumerate(ordered, 1):
-        rows.append(run(config, atlases))
+        rows.append(evaluate(config, atlases))
         progress(Progress("builds", number, len(ordered)))
     return rows
 
 
-def run(config: RunConfig, atlases: Mapping[str, Atlas]) -> Row:
+def evaluate(config: RunConfig, atlases: Mapping[str, Atlas]) -> Row:
     """Build one configuration, count the realisable nodes that failed, and find the
     worst.
 
@@ -110,12 +111,10 @@ def run(config: RunConfig, atlases: Mapping[str, Atlas]) -> Row:
     steps = [0]
     options = asdict(config)
     atlas = atlases.get(options.pop("atlas"))
-    start = time.perf_counter()
+    options["progress"] = lambda progress: steps.append(progress.step)
     with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-        data = build(
-            atlas, progress=lambda progress: steps.append(progress.step), **options
-        ).data
-    seconds = time.perf_counter() - start
+        cube, run = stopwatch(lambda: build(atlas, **options))
+    data = cube.data
     nodes = data.lattice.points
     realisable = solid(data.sensor.matrix).contains(nodes)
     distance = np.where(realisable, data.points.distance, -1)
@@ -133,11 +132,10 @@ def run(config: RunConfig, atlases: Mapping[str, Atlas]) -> Row:
         "calls": sum(step["tried"] for step in data.provenance["improvements"]),
         "worst": float(distance[worst]),
         **dict(zip("rgb", nodes[worst].tolist(), strict=True)),
-        "seconds": seconds,
+        "seconds": run.wall,
     }
 
 
-SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 MAX_SAMPLED_DIM = 17
 """Largest size in the sample."""
 SEED = 4
@@ -145,37 +143,29 @@ SEED = 4
 
 @dataclass(frozen=True)
 class DesignSpace:
-    """Values of each axis of the design, and the size of the Latin hypercube sample.
+    """Numbers of coefficients, values of ``axes``, which are other options of builds,
+    and the size of the Latin hypercube sample.
 
     Grids vary one axis at the other values of `RunConfig` in lattices of ``usual_dim``.
     Thresholds near the rounding of stored numbers are slow in wide-gamut spaces, and
     vary there in lattices of ``small_dim``.
     """
 
-    dims: tuple[int, ...] = (4, 8, 17, 32, 64)
-    coefficients: tuple[int, ...] = (3, 5, 9, 17)
-    spaces: tuple[str, ...] = SPACES
-    thresholds: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-    atlases: tuple[str, ...] = (NO_ATLAS,)
-    samples: int = 12
-    usual_dim: int = 17
-    small_dim: int = 8
+    coefficients: tuple[int, ...]
+    axes: dict[str, Sequence[Any]]
+    samples: int
+    usual_dim: int
+    small_dim: int
+
+    def with_atlases(self, names: Iterable[str]) -> "DesignSpace":
+        """Add an axis of atlases, and none."""
+        return replace(self, axes=self.axes | {"atlas": (NO_ATLAS, *names)})
 
     @property
-    def variants(self) -> tuple[RunConfig, ...]:
+    def variants(self) -> list[RunConfig]:
         """A configuration for every model and number of coefficients."""
         moments = [RunConfig("moments", count) for count in self.coefficients]
-        return (*moments, RunConfig("sigmoid", Sigmoid.count))
-
-    @property
-    def axes(self) -> dict[str, Sequence[Any]]:
-        """Values of the options that vary with every variant."""
-        return {
-            "dim": self.dims,
-            "space": self.spaces,
-            "threshold": self.thresholds,
-            "atlas": self.atlases,
-        }
+        return [*moments, RunConfig("sigmoid", Sigmoid.count)]
 
     def grids(self) -> Iterator[RunConfig]:
         """Yield every variant at the values of one axis, the others fixed, and at all
@@ -184,8 +174,8 @@ class DesignSpace:
         for axis, values in self.axes.items():
             for variant, value in product(self.variants, values):
                 yield replace(variant, **{"dim": self.usual_dim, axis: value})
-        for variant, threshold in product(self.variants, self.thresholds):
-            slow = replace(variant, dim=self.small_dim, space=self.spaces[-1])
+        for variant, threshold in product(self.variants, self.axes["threshold"]):
+            slow = replace(variant, dim=self.small_dim, space=self.axes["space"][-1])
             yield replace(slow, threshold=threshold)
 
     def sample(self) -> Iterator[RunConfig]:
@@ -194,26 +184,38 @@ class DesignSpace:
         """
         from scipy.stats import qmc
 
-        dims = [dim for dim in self.dims if dim <= MAX_SAMPLED_DIM]
+        dims = [dim for dim in self.axes["dim"] if dim <= MAX_SAMPLED_DIM]
         axes = self.axes | {"dim": dims}
-        values = (self.variants, *axes.values())
-        hypercube = qmc.LatinHypercube(len(values), rng=np.random.default_rng(SEED))
-        rows = hypercube.random(self.samples) * list(map(len, values))
-        for row in rows.astype(int):
-            pairs = zip(values, row, strict=True)
-            variant, *drawn = (axis[index] for axis, index in pairs)
-            yield replace(variant, **dict(zip(axes, drawn, strict=True)))
+        lengths = [len(self.variants), *map(len, axes.values())]
+        hypercube = qmc.LatinHypercube(len(lengths), rng=np.random.default_rng(SEED))
+        rows = hypercube.random(self.samples) * lengths
+        for variant, *row in rows.astype(int):
+            drawn = dict(zip(axes, map(getitem, axes.values(), row), strict=True))
+            yield replace(self.variants[variant], **drawn)
 
-    def configs(self) -> tuple[RunConfig, ...]:
+    def configs(self) -> list[RunConfig]:
         """List every configuration of the grids and of the sample once."""
-        return tuple(dict.fromkeys([*self.grids(), *self.sample()]))
+        return list(dict.fromkeys([*self.grids(), *self.sample()]))
 
 
+DESIGN = DesignSpace(
+    coefficients=(3, 5, 9, 17),
+    axes={
+        "dim": (4, 8, 17, 32, 64),
+        "space": ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB"),
+        "threshold": (1e-2, 1e-3, 1e-4, 1e-5, 1e-6),
+    },
+    samples=12,
+    usual_dim=17,
+    small_dim=8,
+)
 QUICK_DESIGN = DesignSpace(
-    dims=(4, 9),
     coefficients=(3, 9),
-    spaces=(SPACES[0], SPACES[-1]),
-    thresholds=(1e-3, 1e-4, 1e-5),
+    axes={
+        "dim": (4, 9),
+        "space": ("sRGB", "ProPhoto RGB"),
+        "threshold": (1e-3, 1e-4, 1e-5),
+    },
     samples=4,
     usual_dim=9,
     small_dim=9,
