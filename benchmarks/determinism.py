@@ -55,6 +55,7 @@ THREADS: dict[str, Variables] = {
 INSTRUCTIONS = {
     "numpy without AVX2": NUMPY_SSE4,
     "XLA with SSE 4.2": XLA_SSE4,
+    "BLAS for Sandy Bridge (AVX)": {"OPENBLAS_CORETYPE": "Sandybridge"},
     "BLAS for Nehalem (SSE 4.2)": BLAS_SSE4,
     "all three without AVX-512": AVX2,
     "all three without AVX": NUMPY_SSE4 | XLA_SSE4 | BLAS_SSE4,
