@@ -3,6 +3,7 @@ docs/palette.md.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from itertools import product
 
@@ -36,11 +37,6 @@ Product = Callable[[Array, Array], Array]
 """From a power (N,) and the reflectances (n, k, N) along paths to linear RGB (n, 3)."""
 
 
-def by_spectra(sensor: Sensor, power: Array, met: Array) -> Array:
-    """Return products of complete spectra."""
-    return (power * met.prod(axis=1)) @ screen_matrix(sensor).T
-
-
 def by_rgb(sensor: Sensor, power: Array, met: Array) -> Array:
     """Return RGB products with the surfaces' RGB under a flat white.
 
@@ -56,12 +52,15 @@ def by_factors(model: FactorModel, power: Array, met: Array) -> Array:
     return model.rgb(model.reflectance(met).prod(axis=1) * model.light(power))
 
 
-def unsharpened(model: FactorModel, power: Array, met: Array) -> Array:
-    """Return products of components in the principal basis, without sharpening."""
-    back = np.linalg.inv(model.transform).T
-    surfaces = (model.reflectance(met) @ back).prod(axis=1)
-    light = model.reflectance(power) @ back
-    return model.rgb((surfaces * light) @ model.transform.T)
+def without_sharpening(model: FactorModel) -> FactorModel:
+    """Return the model of the principal basis."""
+    projection = np.linalg.inv(model.transform) @ model.projection
+    return replace(
+        model,
+        projection=projection,
+        light_projection=projection,
+        matrix=model.matrix @ model.transform,
+    )
 
 
 def by_matrices(model: FactorModel, power: Array, met: Array) -> Array:
@@ -91,7 +90,8 @@ def errors() -> list[Row]:
         products[f"factor model, m = {count}"] = partial(by_factors, model)
         products[f"Λ model, m = {count}"] = partial(by_matrices, model)
         if count == DEFAULT:
-            products[f"m = {count}, not sharpened"] = partial(unsharpened, model)
+            plain = without_sharpening(model)
+            products[f"m = {count}, not sharpened"] = partial(by_factors, plain)
     materials = on_grid(read_atlas(*ATLAS_FILES), sensor.wavelengths)
     rng = np.random.default_rng(2004)
     paths = {1: materials[:, None]}
@@ -101,7 +101,7 @@ def errors() -> list[Row]:
     for light, reflections in product(LIGHTS, REFLECTIONS):
         power = illuminant(sensor, light)
         met = paths[reflections]
-        full = by_spectra(sensor, power, met)
+        full = (power * met.prod(axis=1)) @ screen_matrix(sensor).T
         gain = exposure(sensor, full)[:, None]
         for name, multiply in products.items():
             found = delta_e_rgb(sensor, gain * full, gain * multiply(power, met))
