@@ -1,17 +1,15 @@
 """Programs of pages whose computations nothing else tests: matrices of cameras, closed
-cells, the scan.
+cells.
 """
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from benchmarks import palette_dial as scan
 from benchmarks.accuracy import largest
 from benchmarks.cameras import lab_matrix, realisable_share, xyz_matrix
 from benchmarks.representations import closed, enhanced, with_tables_6
 from uplift.colorimetry import observer, tables
-from uplift.extras.palette.picture import read_weights
 from uplift.extras.scene.representations.samples import xyz_weights
 
 
@@ -60,19 +58,3 @@ def test_thesis_tables_have_the_printed_values():
     of_thesis = {"thesis_mean": 0.316, "thesis_q97_5": 0.816}
     expected = [row | of_thesis, other | dict.fromkeys(of_thesis)]
     assert with_tables_6([row, other]) == expected
-
-
-def test_the_viewer_reads_the_scan_in_which_every_material_is_visible(tmp_path):
-    weights = scan.cast(scan.scan(90), 90)
-    assert weights.min() >= 0
-    assert weights.sum(axis=-1).max() <= 1
-    assert (weights.max(axis=(0, 1)) > 0.02).all()
-    assert not weights[0, 0].any()
-    scan.write_weights(weights, tmp_path / "engine.exr")
-    order = ["block", "haze", "piston", "valve"]
-    found = read_weights(tmp_path / "engine.exr", order, {})
-    assert_allclose(
-        found,
-        weights[..., [list(scan.DENSITIES).index(name) for name in order]],
-        atol=1e-6,
-    )

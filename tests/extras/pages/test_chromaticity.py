@@ -8,8 +8,8 @@ import pytest
 import uplift
 from uplift.extras.emission.discs import LampEntries
 from uplift.extras.emission.lookup import EmissionTable
-from uplift.extras.pages.chromaticity import ALL, MARGIN, draw_errors, lamp_window
-from uplift.extras.pages.scatter import new_panels
+from uplift.extras.pages.chromaticity import ALL, MARGIN, errors_panel, lamp_window
+from uplift.extras.pages.panels import draw
 
 
 @pytest.fixture(scope="module")
@@ -18,8 +18,7 @@ def table():
 
 
 def test_the_map_has_the_expected_errors(table):
-    _, ((axes,),) = new_panels(1, 1, (2, 2), {})
-    draw_errors(axes, table)
+    axes, _ = draw([errors_panel(table)]).axes
     (image,) = axes.images
     errors = image.get_array()
     assert image.get_extent() == [*ALL.u, *ALL.v]

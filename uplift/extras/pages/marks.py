@@ -48,6 +48,19 @@ def line(
     return draw
 
 
+def outline(
+    corners: ArrayLike, label: str = "", colour: Any = INK, **style: Any
+) -> Mark:
+    """Draw the edge of the region with corners (n, 2)."""
+
+    def draw(axes: Any) -> None:
+        style_axes(axes)
+        edge = {"facecolor": "none", "edgecolor": colour, "linewidth": 1.0, **style}
+        axes.fill(*np.transpose(corners), label=figure_text(label), **edge)
+
+    return draw
+
+
 def whiskers(
     x: ArrayLike, y: ArrayLike, low: ArrayLike, high: ArrayLike, colour: Any = INK
 ) -> Mark:
@@ -56,7 +69,7 @@ def whiskers(
     def draw(axes: Any) -> None:
         style_axes(axes)
         axes.vlines(x, low, high, color=colour, linewidth=1)
-        axes.plot(x, y, "o", color=colour, markersize=4)
+        axes.plot(x, y, "o", color=colour, markersize=4, zorder=1.5)
 
     return draw
 
@@ -175,19 +188,33 @@ def picture(codes: NDArray[Any], **options: Any) -> Mark:
     return draw
 
 
-def error_map(values: Array, largest: float, exponent: float = 1.0) -> Mark:
-    """Draw a map (H, W) of ΔE00 or another error: white at 0, dark from ``largest`` on.
+def error_map(
+    values: Array,
+    largest: float,
+    *,
+    lowest: float = 0.0,
+    exponent: float = 1.0,
+    over: str = "",
+) -> Mark:
+    """Draw a map (H, W) of ΔE00 or another error: white at ``lowest``, dark at
+    ``largest``, and beyond it of the colour ``over``, if any.
 
-    Exponents below 1 spread small values. Figures give their maps one scale.
+    Scales from 0 have an exponent; below 1 it spreads small values. Others are
+    logarithmic. NaN is grey.
     """
 
     def draw(axes: Any) -> None:
-        from matplotlib.colors import PowerNorm
+        from matplotlib.colors import LogNorm, PowerNorm
 
         _remove_frame(axes)
         norm = PowerNorm(exponent, 0, largest)
-        axes.imshow(values, cmap=colour_map(), norm=norm, interpolation="nearest")
-        axes.set_facecolor(PALE)  # of NaN
+        if lowest:
+            norm = LogNorm(lowest, largest)
+        colours = colour_map()
+        if over:
+            colours = colours.with_extremes(over=over)
+        axes.imshow(values, cmap=colours, norm=norm, interpolation="nearest")
+        axes.set_facecolor(PALE)
 
     return draw
 

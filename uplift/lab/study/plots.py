@@ -11,7 +11,7 @@ import numpy as np
 from uplift.common.arrays import Array, StrPath
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
-from uplift.extras.pages.figure import ACCENT, BAND, HIGHLIGHT, write_png
+from uplift.extras.pages.figure import ACCENT, BAND, HIGHLIGHT, write_figure
 from uplift.extras.pages.marks import density, line, statistics_over, threshold
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw, spectra_panel
 from uplift.extras.scene.representations import samples
@@ -56,7 +56,7 @@ def plot_errors(
             y = Axis("ΔE76 under D65", log=True)
             panels.append(Panel(marks, f"{name}: {title}", x, y))
     figure = draw(panels, 2, legend="above", share="xy")
-    write_png(figure, path, force=force)
+    write_figure(figure, path, force=force)
 
 
 def _style(technique: Technique) -> dict[str, Any]:
@@ -92,7 +92,7 @@ def _plot_spectra(
 ) -> None:
     """Draw entries, two in a row, measured and reconstructed."""
     panels = [_spectra_panel(study, entry) for entry in entries]
-    write_png(draw(panels, 2), path, force=force)
+    write_figure(draw(panels, 2), path, force=force)
 
 
 def _spectra_panel(study: MomentsStudy, entry: int) -> Panel:
@@ -146,7 +146,7 @@ def plot_map(
         panels.append(Panel([failure], option, x, Axis(names=names), dots))
     title = "largest residual / threshold; 1 would be a failure"
     figure = draw(panels, len(PANELS), (1.8, 2.2), title=title)
-    write_png(figure, path, force=force)
+    write_figure(figure, path, force=force)
 
 
 def _value(run: Mapping[str, Any], option: str) -> Any:
@@ -186,7 +186,7 @@ def plot_locality(
     ]
     title = f"{pluralise(len(changes), 'entry')}, removed one at a time"
     figure = draw(panels, 2, title=title, share="y", legend="below")
-    write_png(figure, path, force=force)
+    write_figure(figure, path, force=force)
 
 
 def _locality_panel(distance: Array, delta_e: Array, unit: str) -> Panel:
