@@ -42,7 +42,7 @@ def tune_filters(
     progress: ProgressCallback = ignore_progress,
 ) -> list[Row]:
     """Search the best filter of each kind, for each number of samples and each set of
-    lights; the kind ``none`` is no filter.
+    lights; rows without a filter have the kind ``none``.
     """
     rows = []
     for count, light_set in product(counts, scene.sets):
