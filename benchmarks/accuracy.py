@@ -11,7 +11,7 @@ from scipy.optimize import differential_evolution
 
 import uplift
 from benchmarks import DOCS, MACBETH, Row, record
-from benchmarks.materials import errors, materials
+from benchmarks.materials import materials
 from uplift.atlas import on_grid
 from uplift.colorimetry import Sensor, delta_e_rgb
 from uplift.common.arrays import Array
@@ -20,6 +20,7 @@ from uplift.extras.pages.figure import colour_map, new_figure, show_image, write
 from uplift.extras.pages.sheet import mosaic
 from uplift.fit import Problem, shells
 from uplift.lab.method import at_1_nm, published_srgb
+from uplift.lab.runner import named_lights, spectrum_errors
 from uplift.lab.timing import time_calls
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube
@@ -194,7 +195,14 @@ def growth(space: str, order: str) -> Row:
     if space == SPACES[0]:
         for name in OTHERS:
             queried = materials(name)
-            answers[name] = errors(cube.reflectance(queried.rgb), queried)
+            predicted = cube.reflectance(queried.rgb)
+            lights = list(named_lights().values())
+            compared = spectrum_errors(predicted, queried.measured, lights)
+            delta_e = compared.delta_e.mean(axis=0)
+            answers[name] = {
+                "rms": compared.rms.mean(),
+                "errors": dict(zip(named_lights(), delta_e, strict=True)),
+            }
     status = cube.data.points.status
     return {
         "growth": order,

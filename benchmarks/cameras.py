@@ -4,7 +4,7 @@ docs/guides/cameras.md.
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from itertools import chain, product, starmap
+from itertools import product
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -18,15 +18,12 @@ from uplift.lab.look_alikes import families_like
 from uplift.lab.method import PreparedMap
 from uplift.lab.methods.cubes import cube
 from uplift.lab.runner import Prepare, Task, divided, measure, spectra_of
-from uplift.lab.study.held_out import HALF, NO_ATLAS
 from uplift.lattice import Lattice, axis_nodes
 
 ATLAS = "macbeth"
 LIGHTS = ("D65", "A")
 SPLITS = 5
 DIM = 32
-CHOSEN_AS = {"cube without an atlas": NO_ATLAS, "cube": HALF, "cube, refined": HALF}
-"""Methods that depend on choices of the design, by their names there."""
 WHITE = np.ones(3)
 Fit = Callable[[Array, Array], Array]
 """From raw values (n, 3) and XYZ (n, 3), relative to white, to a matrix (3, 3)."""
@@ -56,44 +53,30 @@ def lab_matrix(raw: Array, xyz: Array) -> Array:
     return matrix(least_squares(residuals, start[:, :2].ravel()).x)
 
 
-def known(task: Task) -> Array:
-    """Return the known reflectances."""
-    return task.known_spectra
+def map_by(fit: Fit, task: Task, measured: Array) -> PreparedMap:
+    """Map raw values by a matrix that is fitted to reflectances (k, N)."""
+    raw = task.sensor.rgb(measured)
 
-
-def known_and_library(task: Task) -> Array:
-    """Return the known reflectances and those that the prior of the cubes knows."""
-    return np.concatenate([task.known_spectra, task.library])
-
-
-def prepare_matrix(
-    task: Task, fit: Fit, training: Callable[[Task], Array]
-) -> PreparedMap:
-    """Fit a matrix to reflectances."""
-    measured = training(task)
-
-    def colours(raw: Array, light: Light) -> Array:
-        matrix = fit(task.sensor.rgb(measured), measured @ light.xyz.T / light.white)
-        return raw @ matrix.T
+    def colours(queried: Array, light: Light) -> Array:
+        return queried @ fit(raw, measured @ light.xyz.T / light.white).T
 
     return PreparedMap(colours)
 
 
+def with_library(task: Task) -> Array:
+    """Return the known reflectances, and those that the prior of the cubes knows."""
+    return np.concatenate([task.known_spectra, task.library])
+
+
 def methods(sensor: Sensor) -> dict[str, Prepare]:
     """Return the methods for a camera under a light."""
-    of_camera = partial(
-        cube,
-        dim=DIM,
-        space=CAMERA,
-        observer=sensor.space,
-        illuminant=sensor.illuminant,
-    )
-    matrix = partial(partial, prepare_matrix)
+    names = {"observer": sensor.space, "illuminant": sensor.illuminant}
+    of_camera = partial(cube, dim=DIM, space=CAMERA, **names)
     return {
-        "matrix, XYZ": matrix(fit=xyz_matrix, training=known),
-        "matrix, L*a*b*": matrix(fit=lab_matrix, training=known),
-        "matrix, L*a*b*, with the library": matrix(
-            fit=lab_matrix, training=known_and_library
+        "matrix, XYZ": lambda task: map_by(xyz_matrix, task, task.known_spectra),
+        "matrix, L*a*b*": lambda task: map_by(lab_matrix, task, task.known_spectra),
+        "matrix, L*a*b*, with the library": lambda task: map_by(
+            lab_matrix, task, with_library(task)
         ),
         "cube without an atlas": of_camera(),
         "cube": of_camera(atlas=True),
@@ -101,14 +84,14 @@ def methods(sensor: Sensor) -> dict[str, Prepare]:
     }
 
 
-def compare(camera: str, illuminant: str) -> Iterator[Row]:
+def errors() -> Iterator[Row]:
     """Compare the methods on the held-out halves of all splits."""
     atlas = spectra(ATLAS)
-    sensor = observer.sensor(CAMERA, illuminant, camera)
-    left_out = families_like(spectra_of(atlas, sensor))
-    halves = list(divided(atlas, left_out, sensor, seeds=SPLITS))[::2]
-    light = {illuminant: sensor.light}
-    return measure(methods(sensor), halves, light, camera=camera)
+    for camera, sensor in SENSORS:
+        left_out = families_like(spectra_of(atlas, sensor))
+        halves = list(divided(atlas, left_out, sensor, seeds=SPLITS))[::2]
+        light = {sensor.illuminant: sensor.light}
+        yield from measure(methods(sensor), halves, light, camera=camera)
 
 
 def realisable_share(sensor: Sensor, dim: int = DIM) -> float:
@@ -119,20 +102,15 @@ def realisable_share(sensor: Sensor, dim: int = DIM) -> float:
 
 def realisable() -> list[Row]:
     """Return the share of raw values that are realisable, by camera and light."""
-    return [
-        {
-            "camera": camera,
-            "light": light,
-            "share": realisable_share(observer.sensor(CAMERA, light, camera)),
-        }
-        for camera, light in CASES
-    ]
+    rows = []
+    for camera, sensor in SENSORS:
+        share = realisable_share(sensor)
+        rows.append({"camera": camera, "light": sensor.illuminant, "share": share})
+    return rows
 
 
-def errors() -> list[Row]:
-    """Return the errors of all cameras and lights."""
-    return list(chain.from_iterable(starmap(compare, CASES)))
-
-
-CASES = list(product(tables.names("camera"), LIGHTS))
+SENSORS = [
+    (camera, observer.sensor(CAMERA, light, camera))
+    for camera, light in product(tables.names("camera"), LIGHTS)
+]
 QUESTIONS = {"realisable": realisable, "errors": errors}

@@ -5,10 +5,9 @@ All answers are rows of `uplift.lab.runner`. No method knows the families of the
 that it is queried for.
 """
 
-from itertools import chain
+from collections.abc import Iterator
 
 from benchmarks import Row
-from benchmarks.choices import ALONE_SMOOTH, POOLED
 from benchmarks.materials import (
     FETCHED,
     LARGE,
@@ -33,6 +32,8 @@ from uplift.lab.study.held_out import (
 )
 
 DIM = 32
+POOLED = "all shipped"
+"""Set of the errors of all shipped sets, each without its family."""
 CHART = "macbeth"
 SPLIT = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017", *FETCHED, MIXTURE)
 """Sets of at least 20 entries; the others are too small to split."""
@@ -46,7 +47,7 @@ WITH_ATLAS: dict[str, Prepare] = {
 PUBLISHED = select_methods(["otsu2018", "mallett2019", "smits1999"])
 ALONE: dict[str, Prepare] = {
     NO_ATLAS: cube(dim=DIM),
-    ALONE_SMOOTH: cube(dim=DIM, prior="smooth"),
+    f"{NO_ATLAS}, smooth prior": cube(dim=DIM, prior="smooth"),
     SIGMOID: cube(dim=DIM, model="sigmoid"),
     **LIBRARY_METHODS,
     **{method.title: method.prepare for method in PUBLISHED},
@@ -54,25 +55,22 @@ ALONE: dict[str, Prepare] = {
 """Methods that know no atlas."""
 
 
-def halves() -> list[Row]:
+def halves() -> Iterator[Row]:
     """Query methods with half of a set as the atlas for the other half."""
-    rows = (measure(WITH_ATLAS, split_tasks(name), LIGHTS, set=name) for name in SPLIT)
-    return list(chain.from_iterable(rows))
+    for name in SPLIT:
+        yield from measure(WITH_ATLAS, split_tasks(name), LIGHTS, set=name)
 
 
-def parts() -> list[Row]:
+def parts() -> Iterator[Row]:
     """Query methods that know more of the mixture for the others."""
-    rows: list[Row] = []
     for count in PARTS:
         tasks = split_tasks(MIXTURE, count)
         known = 1 - 1 / count
-        rows += measure(WITH_ATLAS, tasks, LIGHTS, set=MIXTURE, known=known)
-    return rows
+        yield from measure(WITH_ATLAS, tasks, LIGHTS, set=MIXTURE, known=known)
 
 
-def alone() -> list[Row]:
+def alone() -> Iterator[Row]:
     """Query methods without an atlas for whole sets, and pool the shipped ones."""
-    rows: list[Row] = []
     lights = list(LIGHTS.values())
     for method, prepare in ALONE.items():
         errors = {
@@ -80,19 +78,15 @@ def alone() -> list[Row]:
             for name in (*SHIPPED, *FETCHED, MIXTURE)
         }
         errors[POOLED] = join([errors[name] for name in SHIPPED])
-        for name, each in errors.items():
-            rows += each.rows(LIGHTS, method=method, set=name)
-    return rows
+        for name, of_set in errors.items():
+            yield from of_set.rows(LIGHTS, method=method, set=name)
 
 
-def of_chart() -> list[Row]:
+def of_chart() -> Iterator[Row]:
     """Query a cube of the ColorChecker for its patches, and for materials of others."""
-    chart = spectra(CHART)
-    cubes = {CHART: WITH_ATLAS[HALF]}
-    rows: list[Row] = []
+    cubes = {HALF: WITH_ATLAS[HALF]}
     for name in (CHART, *LARGE):
-        rows += measure(cubes, [task(name, chart)], LIGHTS, set=name)
-    return rows
+        yield from measure(cubes, [task(name, spectra(CHART))], LIGHTS, set=name)
 
 
 def left_out() -> list[Row]:

@@ -1,7 +1,7 @@
 """Sets of measured materials, on which the pages measure methods.
 
-A set is a line of `FILES`. `uplift.lab.runner` measures methods at the tasks that
-`task` and `split_tasks` make of a set.
+A further set is a line of `FURTHER`. `uplift.lab.runner` measures methods at the tasks
+that `task` and `split_tasks` make of a set.
 """
 
 from dataclasses import dataclass
@@ -11,27 +11,24 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import ATLAS_FILES, ATLASES, ROOT, Row
+from benchmarks import ATLAS_FILES, ATLASES, ROOT
 from uplift.atlas import Atlas, Entry, read_atlas
 from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.arrays import Array, Indices
-from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
 from uplift.lab.look_alikes import families_like
 from uplift.lab.runner import (
     Task,
     divided,
     folds,
-    named_lights,
     spectra_of,
-    spectrum_errors,
 )
 from uplift.lookup import Cube
 
-MUNSELL = ROOT / "out" / "munsell.csv"
-"""The 1,269 chips of the Munsell book, if `make munsell` has fetched them: they cannot
-be redistributed.
+FURTHER = {"munsell": ROOT / "out" / "munsell.csv"}
+"""Files of large sets that cannot be redistributed: the 1,269 chips of the Munsell
+book, if `make munsell` has fetched them.
 """
-FETCHED = ("munsell",) if MUNSELL.exists() else ()
+FETCHED = tuple(name for name, file in FURTHER.items() if file.exists())
 LARGE = ("rawtoaces", "cie2017", *FETCHED)
 """Atlases that are large enough to split."""
 SHIPPED = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017", "tcs", "vs")
@@ -39,10 +36,6 @@ MIXTURE = "all sets"
 """The shipped sets, and all of them as one: a mixture of families, several of which
 have materials of one colour.
 """
-FILES = {name: (ATLASES / f"{name}.txt",) for name in SHIPPED}
-FILES |= {MIXTURE: tuple(ATLASES / f"{name}.txt" for name in SHIPPED)}
-FILES |= {"munsell": (MUNSELL,)}
-"""Files of each set."""
 DERIVED = {"munsell": ("otsu2018",)}
 """Families derived from a set: the clusters of Otsu et al. were learnt from this book.
 """
@@ -93,7 +86,8 @@ def read_atlases() -> dict[str, Atlas]:
 @cache
 def spectra(name: str) -> Atlas:
     """Read a set of measured spectra."""
-    return read_atlas(*FILES[name])
+    names = SHIPPED if name == MIXTURE else [name]
+    return read_atlas(*(FURTHER.get(one, ATLASES / f"{one}.txt") for one in names))
 
 
 @cache
@@ -134,15 +128,3 @@ def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:
         (entries.take(known).cube(leave_out=left_out, **options), entries.take(queried))
         for known, queried in folds(len(entries.rgb), seeds=SPLITS)
     ]
-
-
-def errors(answers: Array, queried: Materials) -> Row:
-    """Return the mean rms and the mean ΔE00 under each light."""
-    lights = list(named_lights().values())
-    compared = spectrum_errors(answers, queried.measured, lights)
-    return {"rms": compared.rms.mean(), "errors": by_light(compared.delta_e.mean(0))}
-
-
-def by_light(values: Array) -> Row:
-    """Name values for each of `HELD_OUT_LIGHTS`."""
-    return dict(zip(HELD_OUT_LIGHTS, values, strict=True))

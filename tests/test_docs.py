@@ -22,8 +22,9 @@ from tests.conftest import ROOT
 from tests.examples import BLOCKS, CUBE, examples, examples_by_page, page_examples
 from tests.helpers import output_of, warns
 from tests.parts import MITSUBA, need
-from uplift.atlas import Format
+from uplift.atlas import Format, read_atlas
 from uplift.extras import formats
+from uplift.lab.runner import divided
 from uplift.samples import sample_path
 
 PAGES = {
@@ -128,7 +129,7 @@ def test_the_skeleton_of_an_export_writes_a_file(tmp_path, small_cube):
 
 
 def test_the_skeleton_of_a_reader_and_its_test_run(tmp_path, monkeypatch):
-    *_, reader, registration, test = SKELETONS
+    reader, registration, test = SKELETONS[2:5]
     module = ModuleType("uplift.extras.formats.spectrograph")
     exec(compile(reader, "reader", "exec"), module.__dict__)
     monkeypatch.setitem(sys.modules, module.__name__, module)
@@ -140,6 +141,16 @@ def test_the_skeleton_of_a_reader_and_its_test_run(tmp_path, monkeypatch):
     assert len(functions) > 1
     for function in functions:
         function(tmp_path)
+
+
+def test_the_skeleton_of_a_method_returns_known_spectra(sensor):
+    functions: dict = {}
+    exec(compile(SKELETONS[5], "method", "exec"), functions)
+    (method,) = functions["METHODS"]
+    task = next(divided(read_atlas("tcs"), (), sensor))
+    known = task.known_spectra
+    uplift = method.prepare(task).uplift
+    assert (uplift(sensor.rgb(known), sensor.wavelengths) == known).all()
 
 
 def test_links_resolve():

@@ -6,11 +6,10 @@ matrix that a method states. No method was fitted at 1 nm. Cubes are fitted to 3
 nm at 5 nm: errors there would favour our range, step and matrix.
 """
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +21,6 @@ from uplift.lab.runner import Errors, Task, spectrum_errors
 
 RANGE = (360.0, 830.0, 1.0)
 """First and last wavelength and step in nm: those of the CIE 1931 observer."""
-Result = TypeVar("Result")
 Uplift = Callable[[Values, Array], Values]
 """From linear sRGB (n, 3) in [0, 1] and wavelengths (N,) in nm to reflectances (n, N),
 in the method's data type.
@@ -146,13 +144,6 @@ class Method(Description):
     claimed_range: tuple[float, float] = (0.0, 1.0)
     batch: bool = True
     needs: str = ""
-
-
-def stopwatch(function: Callable[[], Result]) -> tuple[Result, float]:
-    """Call a function; return its result and the CPU seconds of all threads."""
-    begin = time.process_time()
-    result = function()
-    return result, time.process_time() - begin
 
 
 def nbytes(*arrays: Values | Any) -> int:

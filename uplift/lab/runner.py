@@ -9,6 +9,7 @@ at several tasks are pooled; `Errors.rows` summarises them.
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter
 from typing import Any, Protocol
 
 import numpy as np
@@ -65,6 +66,12 @@ class Task:
         )
 
 
+Known = Callable[[Task], Array]
+KNOWN: Known = attrgetter("known_spectra")
+LIBRARY: Known = attrgetter("library")
+"""What a method may know of a task."""
+
+
 class Prepared(Protocol):
     """A method that is ready to be queried."""
 
@@ -88,15 +95,19 @@ class Errors:
     rms: Array | None = None
     stated: Array | None = None
 
+    def calibration(self, number: int) -> dict[str, float]:
+        """Compare the errors under a light, by its number, with the stated ones."""
+        if self.stated is None:
+            return {}
+        stated = self.stated[:, number].T
+        calibration = check_calibration(self.delta_e[:, number], *stated)
+        return {} if calibration is None else calibration.to_json()
+
     def rows(self, lights: Iterable[str], **labels: Any) -> Iterator[Row]:
         """Yield a row of the ΔE00 under each light, of all lights, and of the rms."""
         for number, light in enumerate(lights):
-            delta_e = self.delta_e[:, number]
-            row = _row(delta_e, light, DELTA_E, labels)
-            if self.stated is not None:
-                calibration = check_calibration(delta_e, *self.stated[:, number].T)
-                row |= {} if calibration is None else calibration.to_json()
-            yield row
+            row = _row(self.delta_e[:, number], light, DELTA_E, labels)
+            yield row | self.calibration(number)
         yield _row(self.delta_e, ALL_LIGHTS, DELTA_E, labels)
         if self.rms is not None:
             yield _row(self.rms, ALL_LIGHTS, RMS, labels)

@@ -2,7 +2,6 @@
 
 import pytest
 
-from tests.conftest import MACBETH
 from uplift.atlas import read_atlas
 from uplift.lab.chart.results import FACTS, REQUIRED, TEXTS, Chart, MethodResult, State
 from uplift.lab.chart.task import Effort, make_task
@@ -17,46 +16,26 @@ HASTE = Effort(
 @pytest.fixture(scope="session")
 def small_task():
     """Sixteen colours, the edges, and the ColorChecker, with short timings."""
-    return make_task({"macbeth": read_atlas(MACBETH)}, 16, HASTE)
+    return make_task({"macbeth": read_atlas("macbeth")}, 16, HASTE)
 
 
 def method_of(uplift, prepare=None, **fields):
     """Make a method from a function of RGB and wavelengths."""
-    texts = {"method": "test", "title": "Test", "family": "Tests", "source": "a test"}
-    return Method(
-        **texts, prepare=prepare or (lambda task: PreparedMethod(uplift, 8)), **fields
-    )
+    texts = dict.fromkeys(("method", "title", "family", "source"), "test")
+    prepare = prepare or (lambda task: PreparedMethod(uplift, 8))
+    return Method(**texts, prepare=prepare, **fields)
 
 
 def row_of(name, time, error, **fields):
     """Make a result in which all errors are equal."""
-    numbers = dict.fromkeys(REQUIRED, error) | {
-        "time_ns": time,
-        "bytes": 1e4,
-        "build_s": 1.0,
-        "load_s": 0.5,
-    }
-    numbers |= {
-        "setup_s": 1.5,
-        "round_trip_colours": 16,
-        "unseen_spectra": 12,
-        "own_spectra": 12,
-    }
+    numbers = dict.fromkeys(REQUIRED, error)
+    numbers |= {"time_ns": time, "bytes": 1e4, "build_s": 1.0, "setup_s": 1.5}
     for batch, each in zip(BATCHES, (10 * time, time), strict=True):
         key = f"ns_{batch}"
-        numbers |= {
-            key: each,
-            f"{key}_least": each,
-            f"{key}_most": 2 * each,
-            f"{key}_colours": batch,
-        }
+        numbers |= {key: each, f"{key}_least": each, f"{key}_most": 2 * each}
+        numbers[f"{key}_colours"] = batch
     texts = dict.fromkeys(TEXTS, "") | dict.fromkeys(("method", "label", "title"), name)
-    plain = {
-        "family": "Mallett 2019",
-        "source": "a test",
-        "state": State.MEASURED,
-        "numbers": numbers,
-    }
+    plain = {"family": "Mallett 2019", "state": State.MEASURED, "numbers": numbers}
     return MethodResult(**(texts | plain | fields))
 
 

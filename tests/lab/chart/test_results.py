@@ -53,27 +53,25 @@ def test_csv_round_trip(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "spoil",
+    ("old", "new"),
     [
-        lambda text: "",
-        lambda text: "name,r,g,b\nred,1,0,0\n",
-        lambda text: text.splitlines()[0] + "\n",
-        lambda text: text.replace("measured", "excellent"),
-        lambda text: text.replace("12.5", "fast"),
-        lambda text: text.replace("12.5", "nan"),
-        lambda text: text.replace("12.5", "-1"),
-        lambda text: text.replace("unseen_spectra", "seen_spectra"),
-        lambda text: text.replace("rms_p99", "rms_p98"),
-        lambda text: text.rstrip()[:-30],
-        lambda text: text.rstrip() + ",one,more\n",
-        lambda text: text + "\udcff",
+        (r"(?s).*", ""),
+        (r"(?s)\n.*", ""),
+        ("measured", "excellent"),
+        ("12.5", "fast"),
+        ("12.5", "nan"),
+        ("12.5", "-1"),
+        ("unseen_spectra", "seen_spectra"),
+        ("$", ",one,more"),
+        ("$", "\udcff"),
     ],
 )
-def test_invalid_table_is_an_error(spoil):
-    text = chart_csv(chart_of(row_of("one", 12.5, 1)))
+def test_invalid_table_is_an_error(old, new):
+    text = chart_csv(chart_of(row_of("one", 12.5, 1))).rstrip()
     assert parse_chart(text.encode(), "chart.csv").results
+    spoilt = re.sub(old, new, text)
     with raises(ChartFileError, "chart-file") as caught:
-        parse_chart(spoil(text).encode(errors="surrogateescape"), "chart.csv")
+        parse_chart(spoilt.encode(errors="surrogateescape"), "chart.csv")
     assert caught.value.path == "chart.csv"
 
 
@@ -84,21 +82,17 @@ errors = st.floats(1e-6, 10)
 
 @given(st.lists(st.tuples(times, errors), min_size=1, max_size=12))
 def test_front_is_clearly_more_accurate_than_all_faster_methods(points):
-    rows = [
-        row_of(str(number), time, error) for number, (time, error) in enumerate(points)
-    ]
+    rows = {}
+    for number, (time, error) in enumerate(points):
+        rows[row_of(str(number), time, error)] = time, max(error, MIN_ERROR)
     front = ROUND_TRIP.front(chart_of(*rows))
-    points_of = {
-        row: (row.numbers["ns_64"], max(row.numbers["round_trip_mean"], MIN_ERROR))
-        for row in rows
-    }
     for one, other in pairwise(front):
-        assert points_of[one][0] < points_of[other][0]
-        assert points_of[other][1] < CLEAR_RATIO * points_of[one][1]
+        assert rows[one][0] < rows[other][0]
+        assert rows[other][1] < CLEAR_RATIO * rows[one][1]
     for row in set(rows) - set(front):
-        time, error = points_of[row]
+        time, error = rows[row]
         assert any(
-            points_of[other][0] <= time and CLEAR_RATIO * points_of[other][1] <= error
+            rows[other][0] <= time and CLEAR_RATIO * rows[other][1] <= error
             for other in front
         )
 
@@ -110,12 +104,15 @@ def test_set_up_is_part_of_the_time_of_a_call():
     assert WITH_SET_UP.labels(row) == ("1.5 s", "1")
 
 
+SMALL = row_of("small", 900, 0.9, build="uplift build --dim 4")
 CUBES = chart_of(
     row_of("peer", 1, 1e-3),
     row_of("rough", 50, 2.0, build="uplift build --dim 8"),
     row_of("good", 90, 0.5, build="uplift build --dim 32"),
     row_of("better", 900, 0.2, build="uplift build --dim 64"),
     row_of("no better", 9000, 0.199, build="uplift build --dim 128"),
+    row_of("atlas", 10, 3.0, build="uplift build --atlas FILE"),
+    replace(SMALL, numbers=dict(SMALL.numbers) | {"bytes": 1.0}),
 )
 
 
@@ -123,11 +120,12 @@ CUBES = chart_of(
     ("requirement", "name"),
     [
         (Requirement(time_ns=100), "good"),
-        (Requirement(time_ns=60), "rough"),
         (Requirement(time_ns=1e6, light="FL11"), "better"),
         (Requirement(delta_e=0.5, light="FL11"), "good"),
         (Requirement(delta_e=0.3, light="D65"), "better"),
-        (Requirement(delta_e=10, own=True), "rough"),
+        (Requirement(delta_e=10, own=True), "atlas"),
+        (Requirement(delta_e=10, plain=True), "rough"),
+        (Requirement(delta_e=1, plain=True, smallest=True), "small"),
         (Requirement(time_ns=100, delta_e=1), "good"),
     ],
 )
@@ -135,30 +133,10 @@ def test_fastest_accurate_enough_or_most_accurate_in_time(requirement, name):
     assert recommend_cube(CUBES, requirement).method == name
 
 
-def test_smallest_cube_and_cube_without_an_atlas():
-    small = row_of("small", 900, 0.9, build="uplift build --dim 4")
-    small = replace(small, numbers=dict(small.numbers) | {"bytes": 1.0})
-    chart = chart_of(
-        row_of("atlas", 10, 0.1, build="uplift build --atlas FILE"),
-        *CUBES.results,
-        small,
-    )
-    assert recommend_cube(chart, Requirement(delta_e=1)).method == "atlas"
-    assert recommend_cube(chart, Requirement(delta_e=1, plain=True)).method == "good"
-    assert (
-        recommend_cube(chart, Requirement(delta_e=1, plain=True, smallest=True)).method
-        == "small"
-    )
-
-
 @pytest.mark.parametrize(
     ("requirement", "closest"),
     [
-        (Requirement(time_ns=10), "the fastest, rough, takes 50 ns"),
-        (
-            Requirement(delta_e=0.1, light="A"),
-            "the most accurate, no better, has 0.199",
-        ),
+        (Requirement(time_ns=9), "the fastest, atlas, takes 10 ns"),
         (Requirement(delta_e=0.3, time_ns=100), "the most accurate, good, has 0.5"),
     ],
 )
@@ -171,21 +149,11 @@ def test_unmet_requirement_names_the_closest_cube(requirement, closest):
 
 
 @pytest.mark.parametrize(
-    "limits",
-    [
-        {},
-        {"time_ns": 0},
-        {"delta_e": -1},
-        {"time_ns": float("nan")},
-        {"time_ns": 1, "delta_e": float("inf")},
-    ],
+    "limits", [{}, {"time_ns": 0}, {"time_ns": 1, "delta_e": float("inf")}]
 )
 def test_limits_are_required_and_positive(limits):
     with raises(OptionError, "option"):
         Requirement(**limits)
-
-
-def test_light_must_be_in_the_chart():
     with raises(UnknownNameError, "unknown-name"):
         Requirement(delta_e=1, light="FL111")
 
@@ -215,39 +183,21 @@ HOSTILE = "</script><b>$x</b>"
 
 
 def test_page_has_markers_of_measured_methods_fits_and_is_accessible(tmp_path):
-    rows = [
+    chart = chart_of(
         row_of(HOSTILE, 80, 0.4),
-        row_of(
-            "9 · 32³",
-            900,
-            0.02,
-            build="uplift build",
-            mode="refined",
-            family="of another version",
-        ),
-        row_of(
-            "alone",
-            1e6,
-            0.1,
-            numbers=row_of("one", 1e6, 0.1).numbers | {"ns_64_colours": 3},
-        ),
+        row_of("9 · 32³", 900, 0.02, build="uplift build", family="unknown"),
         row_of("wrong", 1, 1e-9, state=State.BROKEN, why=HOSTILE, numbers={}),
-    ]
-    chart = chart_of(*rows)
+    )
     text = render_chart(chart)
     panels = range(len(chart.batches) * len(criteria(64)))
     markers = re.findall(r'id="marker-(\d+)-(\d+)"', text)
-    assert sorted(markers) == sorted(itertools.product(map(str, panels), "012"))
+    assert sorted(markers) == sorted(itertools.product(map(str, panels), "01"))
     assert HOSTILE not in text
     assert external_links(text) == []
-    page = Page(text)
-    assert HOSTILE in page.text
-    (row,) = page.table("method", "state", "reason")
+    (row,) = Page(text).table("method", "state", "reason")
     assert [cell.text for cell in row] == ["wrong", "broken", HOSTILE]
-    (data,) = re.findall(
-        r'<script type="application/json" id="rows">(.*?)</script>', text, re.DOTALL
-    )
-    first, *_, last = json.loads(data)
+    data = re.search(r'json" id="rows">(.*?)</script>', text, re.DOTALL)
+    first, *_, last = json.loads(data[1])
     assert (first["title"], last["lines"]) == (HOSTILE, [])
     assert ["memory", "10 kB"] in first["lines"]
     check_page(text, tmp_path)

@@ -23,14 +23,9 @@ D65 = observer.light("D65")
 FL11 = observer.light("FL11")
 
 
-@pytest.fixture(scope="module")
-def task(sensor):
-    return whole(within(read_atlas("tcs"), sensor), ("tcs",), sensor)
-
-
-@pytest.fixture(scope="module")
-def measured(task):
-    return task.queried
+SENSOR = observer.sensor()
+TASK = whole(within(read_atlas("tcs"), SENSOR), ("tcs",), SENSOR)
+MEASURED = TASK.queried
 
 
 @pytest.mark.parametrize(("degree", "count"), [(1, 3), (2, 6), (3, 13)])
@@ -41,26 +36,26 @@ def test_terms_are_those_of_the_paper_and_scale_with_the_exposure(degree, count)
     assert_allclose(terms(3 * xyz, exponents), 3 * terms(xyz, exponents))
 
 
-def test_a_matrix_is_exact_for_three_basis_spectra(measured):
+def test_a_matrix_is_exact_for_three_basis_spectra():
     weights = np.random.default_rng(1).dirichlet(np.ones(3), 40)
-    spectra = weights @ measured[:3]
+    spectra = weights @ MEASURED[:3]
     mapped = fit_map(1, D65, FL11, spectra[:30])(spectra @ D65.xyz.T / D65.white)
     assert_allclose(mapped, spectra @ FL11.xyz.T / FL11.white, atol=1e-9)
 
 
-def test_maps_know_the_library_without_the_families_of_the_task(task):
-    prepared = prepare(task, degree=1)
-    to_light = fit_map(1, D65, FL11, task.library)
-    expected = to_light(task.sensor.xyz(task.rgb) / D65.white)
-    assert_allclose(prepared.colours(task.rgb, FL11), expected)
-    errors = prepared.errors(task, [D65, FL11])
+def test_maps_know_the_library_without_the_families_of_the_task():
+    prepared = prepare(TASK, degree=1)
+    to_light = fit_map(1, D65, FL11, TASK.library)
+    expected = to_light(SENSOR.xyz(TASK.rgb) / D65.white)
+    assert_allclose(prepared.colours(TASK.rgb, FL11), expected)
+    errors = prepared.errors(TASK, [D65, FL11])
     assert errors.delta_e[:, 1].mean() > 100 * errors.delta_e[:, 0].mean()
     assert errors.rms is None
 
 
-def test_burns_spectra_have_their_colours_and_the_least_slope(measured, monkeypatch):
+def test_burns_spectra_have_their_colours_and_the_least_slope(monkeypatch):
     monkeypatch.setattr("uplift.lab.methods.burns2019.BLOCK", 5)
-    xyz = measured @ D65.xyz.T
+    xyz = MEASURED @ D65.xyz.T
     spectra = reconstruct(D65.xyz, xyz)
     assert spectra.min() > 0
     assert_allclose(spectra @ D65.xyz.T, xyz, atol=1e-12)
@@ -68,7 +63,7 @@ def test_burns_spectra_have_their_colours_and_the_least_slope(measured, monkeypa
 
     # A general solver, on fewer wavelengths.
     coarse = D65.xyz[:, ::8] * 8
-    goal = measured[0, ::8] @ coarse.T
+    goal = MEASURED[0, ::8] @ coarse.T
     found = minimize(
         lambda logs: (np.diff(logs) ** 2).sum(),
         np.full(coarse.shape[1], -1.0),
@@ -78,24 +73,23 @@ def test_burns_spectra_have_their_colours_and_the_least_slope(measured, monkeypa
     assert_allclose(reconstruct(coarse, goal[None])[0], np.exp(found.x), atol=1e-4)
 
 
-def test_metamer_means_have_their_colours(task, measured):
-    sensor = task.sensor
-    spectra = metamer_mean(sensor, task.library, task.rgb)
-    assert_allclose(sensor.rgb(spectra), task.rgb, atol=1e-6)
+def test_metamer_means_have_their_colours():
+    spectra = metamer_mean(SENSOR, TASK.library, TASK.rgb)
+    assert_allclose(SENSOR.rgb(spectra), TASK.rgb, atol=1e-6)
     assert spectra.min() > 0
     assert spectra.max() < 1
 
     # No mixture of these has the colour.
     red = np.array([[0.9, 0.05, 0.05]])
-    (moved,) = metamer_mean(sensor, measured[:3], red)
-    assert_allclose(sensor.rgb(moved), red[0], atol=1e-3)
+    (moved,) = metamer_mean(SENSOR, MEASURED[:3], red)
+    assert_allclose(SENSOR.rgb(moved), red[0], atol=1e-3)
 
 
-def test_the_only_metamer_is_found(measured):
+def test_the_only_metamer_is_found():
     groups = np.array([[0, 1, 2, 3]])
-    mixture = np.array([0.1, 0.2, 0.3, 0.4]) @ measured[:4]
+    mixture = np.array([0.1, 0.2, 0.3, 0.4]) @ MEASURED[:4]
     xyz = mixture @ D65.xyz.T
-    found = metamers(D65, measured[:4], groups, xyz)
+    found = metamers(D65, MEASURED[:4], groups, xyz)
     assert_allclose(found, mixture[None], atol=1e-6)
-    assert len(metamers(D65, measured[:4], groups, 2 * D65.white)) == 0
-    assert_allclose(nearest_mixture(D65, measured[:4], xyz) @ D65.xyz.T, xyz, atol=1e-9)
+    assert len(metamers(D65, MEASURED[:4], groups, 2 * D65.white)) == 0
+    assert_allclose(nearest_mixture(D65, MEASURED[:4], xyz) @ D65.xyz.T, xyz, atol=1e-9)

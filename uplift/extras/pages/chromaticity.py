@@ -16,7 +16,7 @@ from uplift.extras.emission.lattice import chromaticity, unit_xyz
 from uplift.extras.emission.lookup import EmissionTable
 from uplift.extras.pages.figure import GREY, INK, colour_map
 from uplift.extras.pages.marks import Mark, line
-from uplift.extras.pages.panels import Axis, Dot, Panel, draw
+from uplift.extras.pages.panels import Axis, Dot, Panel, draw, square_limits
 
 SIZE = (4.6, 4.4)
 """Inches of a diagram."""
@@ -28,8 +28,8 @@ MAX_NAMES = 12
 """Lamps that are named; the report lists all."""
 FADED = 0.35
 """Opacity of colours below names."""
-MARGIN = 0.012
-"""u′v′ between the lamps and the edge of their window."""
+MIN_EXTENT = 0.02
+"""Smallest extent of the window of lamps in u′ or v′."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,9 @@ class Window:
     v: tuple[float, float]
 
 
-ALL = Window((-0.04, 0.64), (0.0, 0.62))  # all chromaticities of lights, with a margin
+ALL = Window(
+    (-0.03, 0.65), (-0.03, 0.65)
+)  # all chromaticities of lights, with a margin
 
 
 def light_figure(table: EmissionTable) -> Any:
@@ -108,16 +110,9 @@ def _panel(
 
 
 def lamp_window(table: EmissionTable) -> Window:
-    """Return the part of the diagram that has the lamps, of the proportions
-    of `ALL`.
-    """
-    uv = np.concatenate([table.data.entries.uv, table.data.lattice.white[None]])
-    low = uv.min(axis=0) - MARGIN
-    high = uv.max(axis=0) + MARGIN
-    full = np.array([ALL.u[1] - ALL.u[0], ALL.v[1] - ALL.v[0]])
-    half = full * ((high - low) / full).max() / 2
-    middle = (low + high) / 2
-    u, v = np.stack([middle - half, middle + half], axis=1).tolist()
+    """Return the part of the diagram that has the lamps and white."""
+    uv = np.append(table.data.entries.uv, table.data.lattice.white[None], axis=0)
+    u, v = square_limits(uv, MIN_EXTENT).tolist()
     return Window(tuple(u), tuple(v))
 
 

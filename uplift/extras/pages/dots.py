@@ -70,6 +70,8 @@ def write_labels(axes: Any, dots: Sequence[Dot]) -> None:
     named = sorted((dot for dot in dots if dot.text), key=lambda dot: not dot.bold)
     if not named:
         return
+    # Texts take the first free place of a fixed list, so equal figures have equal
+    # texts. adjustText moves them by forces: its results vary, and cover markers.
     import textalloc
 
     point = axes.figure.dpi / 72

@@ -26,6 +26,8 @@ from uplift.extras.pages.figure import (
 
 Mark = Callable[[Any], None]
 DASHED = (0, (3, 2))
+BINS = 40
+"""Bins of x for maximum and median."""
 
 
 def line(
@@ -147,32 +149,33 @@ def boxes(rows: Sequence[Box]) -> Mark:
     return draw
 
 
-def density(x: Array, y: Array, low: tuple[float, float], high: Array | Any) -> Mark:
-    """Draw the density of points on a logarithmic axis of y, within the corners ``low``
-    and ``high``: darker where there are more.
+def density(x: Array, y: Array, lowest: float, highest: float) -> list[Mark]:
+    """Draw the density of points on a logarithmic axis of y, darker where there are
+    more, and the maximum and the median of y over x. Points at ``lowest`` count, but
+    are not drawn.
     """
-    extent = (low[0], high[0], np.log10(low[1]), np.log10(high[1]))
+    drawn = y > lowest
+    right = x[drawn].max(initial=0.1)
     bins: dict[str, Any] = {"yscale": "log", "bins": "log", "gridsize": (60, 34)}
+    bins["extent"] = (0, right, np.log10(lowest), np.log10(highest))
 
     def draw(axes: Any) -> None:
         style_axes(axes)
-        axes.hexbin(
-            x, y, extent=extent, cmap=colour_map(), linewidths=0, mincnt=1, **bins
-        )
+        style: dict[str, Any] = {"cmap": colour_map(), "linewidths": 0, "mincnt": 1}
+        axes.hexbin(x[drawn], y[drawn], **bins, **style)
 
-    return draw
-
-
-def statistics_over(x: Array, y: Array, edges: Array) -> tuple[Mark, Mark]:
-    """Draw the maximum and the median of y in bins of x with given edges."""
+    edges = np.linspace(0, right, BINS + 1)
     bin_of = np.digitize(x, edges[1:-1])
     used = np.unique(bin_of)
     centres = (edges[1:] + edges[:-1])[used] / 2
     members = [y[bin_of == row] for row in used]
-    return (
-        line(centres, list(map(np.max, members)), "maximum", HIGHLIGHT, linewidth=1.6),
-        line(centres, list(map(np.median, members)), "median", INK, linewidth=1.6),
-    )
+    largest = list(map(np.max, members))
+    medians = list(map(np.median, members))
+    return [
+        draw,
+        line(centres, largest, "maximum", HIGHLIGHT),
+        line(centres, medians, "median"),
+    ]
 
 
 def picture(codes: NDArray[Any], **options: Any) -> Mark:

@@ -8,8 +8,10 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import Any, Literal
 
+import numpy as np
 from markupsafe import Markup
 
+from uplift.common.arrays import Array
 from uplift.extras.pages.dots import Dot, draw_dot, write_labels
 from uplift.extras.pages.figure import (
     INK,
@@ -21,10 +23,21 @@ from uplift.extras.pages.figure import (
 )
 from uplift.extras.pages.marks import Mark
 
-__all__ = ["Axis", "Dot", "Panel", "draw", "page_svg", "sheet", "spectra_panel"]
+__all__ = [
+    "Axis",
+    "Dot",
+    "Panel",
+    "draw",
+    "page_svg",
+    "sheet",
+    "spectra_panel",
+    "square_limits",
+]
 
 PAGE_SIZE = (4.8, 3.4)
 """Inches of a panel on a page."""
+MARGIN = 0.06
+"""Space around dots and regions, as a share of their extent."""
 TEXT_HEIGHT = 0.19
 """Inches of a line of text above or below a picture."""
 LEGEND: dict[str, Any] = {"frameon": False, "fontsize": 8}
@@ -154,7 +167,7 @@ def _draw_panel(axes: Any, panel: Panel) -> None:
             axes.set(**{f"{name}scale": "log"})
     if panel.dots:
         style_axes(axes)
-        axes.margins(0.06)
+        axes.margins(MARGIN)
     for dot in panel.dots:
         draw_dot(axes, dot)
     for mark in panel.marks:
@@ -188,7 +201,7 @@ def _set_axis(axis: Any, wanted: Axis) -> None:
         low, high = sorted(axis.get_view_interval())
         # Axes of few decades have ticks between the powers of ten.
         steps = (1, 2, 5) if high < 1000 * low else (1,)
-        axis.set_major_locator(LogLocator(subs=steps, numticks=40))
+        axis.set_major_locator(LogLocator(subs=steps, numticks=9))
         axis.set_minor_locator(LogLocator(subs=()))
     if wanted.ticks:
         axis.set_ticks(list(wanted.ticks))
@@ -258,3 +271,14 @@ def spectra_panel(marks: Sequence[Mark], title: str = "", top: float = 1.02) -> 
     x = Axis("wavelength / nm")
     y = Axis("reflectance", limits=(-0.02, top))
     return Panel(marks, title, x, y, legend="best")
+
+
+def square_limits(points: Array, smallest: float) -> Array:
+    """Return limits (2, 2) of x and y of a square around points (n, 2), whose side is
+    ``smallest`` or more.
+    """
+    low = points.min(axis=0)
+    high = points.max(axis=0)
+    half = max(float((high - low).max()) * (0.5 + MARGIN), smallest / 2)
+    middle = (low + high) / 2
+    return np.stack([middle - half, middle + half], axis=1)

@@ -4,6 +4,7 @@ metamers in a* and b*.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,14 @@ from uplift.extras.looks.lab_errors import LIKELY
 from uplift.extras.looks.metamer_bounds import Bounds
 from uplift.extras.pages.figure import ACCENT, INK, PALE, write_figure
 from uplift.extras.pages.marks import Mark, line, outline, picture
-from uplift.extras.pages.panels import Axis, Dot, Panel, draw, spectra_panel
+from uplift.extras.pages.panels import (
+    Axis,
+    Dot,
+    Panel,
+    draw,
+    spectra_panel,
+    square_limits,
+)
 from uplift.lookup import Cube
 
 SIZE = (7.2, 4.0)
@@ -101,8 +109,6 @@ MAX_COLOURS = 24
 """Largest number of colours in one plot."""
 PIXELS = 160
 """Pixels of the colours in a region, along each side."""
-MARGIN = 0.06
-"""Space around a region, as a share of its size."""
 MIN_EXTENT = 5.0
 """Smallest extent of an axis in a* or b*."""
 
@@ -124,52 +130,44 @@ def plot_bounds(
     lights = [bounds.light.illuminant for bounds in blocks[0]]
     screens = display_sensors(lights, cube.observer, *cube.data.sensor.range)
     panels = []
-    if cut:
-        for screen, whole, part in zip(screens, blocks[0], cut, strict=True):
-            dashed = outline(
-                part.outline(0), "with further photographs", INK, linestyle="--"
-            )
-            shown = replace(part, volumes=whole.volumes)
-            panels.append(_region_panel(screen, shown, 0, [dashed]))
-    else:
-        for block in blocks:
-            for row in range(len(block[0].xyz)):
-                for screen, bounds in zip(screens, block, strict=True):
-                    panels.append(_region_panel(screen, bounds, row))
-    columns = len(screens)
-    shown_panels = panels[: MAX_COLOURS * columns]
-    figure = draw(shown_panels, columns, (3.1, 3.1), legend="below")
+    for block in blocks:
+        for row in range(len(block[0].xyz)):
+            for screen, bounds, part in zip_longest(screens, block, cut):
+                panels.append(_region_panel(screen, bounds, row, part))
+    shown = panels[: MAX_COLOURS * len(screens)]
+    figure = draw(shown, len(screens), (3.1, 3.1), legend="below")
     write_figure(figure, path, force=force)
 
 
 def _region_panel(
-    screen: Sensor, bounds: Bounds, row: int, marks: Sequence[Mark] = ()
+    screen: Sensor, bounds: Bounds, row: int, part: Bounds | None
 ) -> Panel:
-    """Return the colours that one colour may have under a light, and its answer."""
+    """Return the colours that one colour may have under a light, and its answer; also a
+    ``part`` of them.
+    """
     region = bounds.outline(row)
-    lightness, a, b = bounds.lab[row]
-    likely = bounds.likely(row)
+    inner = bounds if part is None else part
+    lightness, a, b = inner.lab[row]
+    likely = inner.likely(row)
+    marks = [_filled(screen, region, lightness)]
+    marks.append(outline(region, "all reflectances", INK))
     inside = [region, np.array([(a, b)])]
-    drawn = [_filled(screen, region, lightness)]
-    drawn.append(outline(region, "all reflectances", INK))
     if likely is not None:
         inside.append(likely)
-        drawn.append(outline(likely, f"likely {LIKELY:.0%}", ACCENT, linewidth=1.4))
-    answer = line([], [], "answer", INK, marker="o", linestyle="")
-    extent = _extent(np.concatenate(inside))
-    largest = bounds.largest.delta_e_2000[row]
-    return Panel(
-        [*drawn, *marks, answer],
-        f"{bounds.light.name}: ΔE00 up to {largest:.1f}",
-        Axis("a*", limits=tuple(extent[0])),
-        Axis("b*", limits=tuple(extent[1])),
-        [Dot(a, b)],
-    )
+        marks.append(outline(likely, f"likely {LIKELY:.0%}", ACCENT, linewidth=1.4))
+    if part is not None:
+        further = part.outline(row)
+        marks.append(outline(further, "with further photographs", linestyle="--"))
+    marks.append(line([], [], "answer", INK, marker="o", linestyle=""))
+    u, v = square_limits(np.concatenate(inside), MIN_EXTENT)
+    title = f"{inner.light.name}: ΔE00 up to {inner.largest.delta_e_2000[row]:.1f}"
+    x = Axis("a*", limits=tuple(u))
+    return Panel(marks, title, x, Axis("b*", limits=tuple(v)), [Dot(a, b)])
 
 
 def _filled(screen: Sensor, region: Array, lightness: float) -> Mark:
     """Fill a region with its colours on a screen."""
-    extent = _extent(region)
+    extent = square_limits(region, MIN_EXTENT)
 
     def draw_colours(axes: Any) -> None:
         codes = _colours(screen, extent, lightness)
@@ -178,15 +176,6 @@ def _filled(screen: Sensor, region: Array, lightness: float) -> Mark:
         image.set_clip_path(edge)
 
     return draw_colours
-
-
-def _extent(points: Array) -> Array:
-    """Limits (2, 2) of a* and b* of a square around points (n, 2)."""
-    low = points.min(axis=0)
-    high = points.max(axis=0)
-    half = max(float((high - low).max()) * (0.5 + MARGIN), MIN_EXTENT / 2)
-    middle = (low + high) / 2
-    return np.stack([middle - half, middle + half], axis=1)
 
 
 def _colours(screen: Sensor, extent: Array, lightness: float) -> Array:

@@ -6,11 +6,11 @@ from itertools import cycle
 
 import numpy as np
 
-from uplift.common.arrays import Array, Values
+from uplift.common.arrays import Values
+from uplift.common.text import pluralise
 from uplift.lab.chart.results import REFERENCE
 from uplift.lab.chart.task import Effort
-from uplift.lab.method import stopwatch
-from uplift.lab.timing import TimingStats, time_laps
+from uplift.lab.timing import TimingStats, run_call, time_short_call
 
 GROWTH = 10
 """Factor between the numbers of colours from which the duration of a call is estimated.
@@ -19,7 +19,15 @@ INPUTS = 64
 """Largest number of different inputs of repeated calls."""
 INPUT_COLOURS = 1 << 16
 """Largest number of colours of all inputs."""
-UpliftRgb = Callable[[Array], Values]
+SAMPLE = 50
+"""Colours of a large batch that are computed again in a small one."""
+SAMPLE_TOLERANCE = 2e-5
+"""Reflectance that rounding may change."""
+UpliftRgb = Callable[[Values], Values]
+
+
+class BrokenError(Exception):
+    """An answer is wrong; the text gives the reason."""
 
 
 def call_times(uplift: UpliftRgb, dtype: str, effort: Effort) -> dict[str, float]:
@@ -33,27 +41,17 @@ def call_times(uplift: UpliftRgb, dtype: str, effort: Effort) -> dict[str, float
     for size in effort.batches:
         if count == last:
             count = affordable(uplift, dtype, size, effort.longest)
-            ns = _time_batch(uplift, dtype, count, effort)
+            inputs = max(1, min(INPUTS, INPUT_COLOURS // count))
+            rgb = _colours(inputs, count, dtype)
+            _check_batch(uplift, rgb[0])
+            ns = _time_batch(uplift, rgb, effort)
         last = size
-        values = {
-            "": ns.median,
-            "_least": ns.min,
-            "_most": ns.max,
-            "_runs": ns.runs,
-            "_colours": count,
-        }
-        numbers |= {f"ns_{size}{suffix}": value for suffix, value in values.items()}
+        name = f"ns_{size}"
+        numbers |= {name: ns.median, f"{name}_least": ns.min, f"{name}_most": ns.max}
+        numbers |= {f"{name}_runs": ns.runs, f"{name}_colours": count}
     known = [size for size in effort.batches if size <= REFERENCE]
     reference = max(known, default=effort.batches[0])
     return numbers | {"time_ns": numbers[f"ns_{reference}"]}
-
-
-def _time_batch(
-    uplift: UpliftRgb, dtype: str, count: int, effort: Effort
-) -> TimingStats:
-    inputs = cycle(_colours(max(1, min(INPUTS, INPUT_COLOURS // count)), count, dtype))
-    times = time_laps(lambda: uplift(next(inputs)), effort.lap, effort.runs)
-    return times.scaled(1e9 / count)
 
 
 def affordable(uplift: UpliftRgb, dtype: str, size: int, longest: float) -> int:
@@ -62,9 +60,9 @@ def affordable(uplift: UpliftRgb, dtype: str, size: int, longest: float) -> int:
     """
     count = 1
     while True:
-        rgb = _colours(1, count, dtype)[0]
-        uplift(rgb)
-        _, seconds = stopwatch(partial(uplift, rgb))
+        call = partial(uplift, _colours(1, count, dtype)[0])
+        call()
+        seconds = run_call(call).cpu
         if count == size or GROWTH * seconds > longest:
             return max(1, min(size, int(count * longest / max(seconds, 1e-9))))
         count = min(size, count * GROWTH)
@@ -73,3 +71,21 @@ def affordable(uplift: UpliftRgb, dtype: str, size: int, longest: float) -> int:
 def _colours(inputs: int, count: int, dtype: str) -> Values:
     """Random RGB (inputs, count, 3)."""
     return np.random.default_rng(2).random((inputs, count, 3)).astype(dtype)
+
+
+def _time_batch(uplift: UpliftRgb, inputs: Values, effort: Effort) -> TimingStats:
+    """Time calls with inputs (k, n, 3) in turn, in ns per colour."""
+    rgb = cycle(inputs)
+    timing = time_short_call(lambda: uplift(next(rgb)), effort.lap, effort.runs)
+    return timing.cpu.scaled(1e9 / inputs.shape[1])
+
+
+def _check_batch(uplift: UpliftRgb, rgb: Values) -> None:
+    """Check that a large batch has the spectra of a small one."""
+    rows = np.unique(np.linspace(0, len(rgb) - 1, SAMPLE, dtype=int))
+    difference = np.abs(uplift(rgb)[rows] - uplift(rgb[rows])).max()
+    if not difference <= SAMPLE_TOLERANCE:
+        raise BrokenError(
+            f"{pluralise(len(rgb), 'colour')} per call give other reflectances than "
+            f"{len(rows)}, by {difference:.2g}"
+        )

@@ -5,43 +5,31 @@ timed.
 import time
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields, replace
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_rgb, observer
+from uplift.colorimetry import Light, delta_e_rgb, observer
 from uplift.common.arrays import Array, Values
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.extras.images.processes import ChildError, call_in_child
-from uplift.lab.chart.call_times import UpliftRgb, affordable, call_times
-from uplift.lab.chart.results import REFERENCE, Chart, MethodResult, State
-from uplift.lab.chart.task import ChartTask, Effort
+from uplift.lab.chart.call_times import BrokenError, UpliftRgb, call_times
+from uplift.lab.chart.results import Chart, MethodResult, State
+from uplift.lab.chart.task import ChartTask
 from uplift.lab.method import (
     Description,
     Method,
     NotInstalledError,
-    Uplift,
-    stopwatch,
+    PreparedMethod,
 )
-from uplift.lab.runner import spectrum_errors
-from uplift.lab.timing import environment
+from uplift.lab.timing import environment, run_call
 
 MAX_CLAIM_RATIO = 10
 """A method is broken if its mean round-trip error is larger than the claimed one by
 more than this factor.
 """
-SLOW_STEP = 3
-"""Colours of slow methods between two looks at the time."""
-SAMPLE = 50
-"""Colours of a large batch that are computed again in a small one."""
-SAMPLE_TOLERANCE = 2e-5
-"""Reflectance that rounding may change."""
-
-
-class BrokenError(Exception):
-    """An answer is wrong; the text gives the reason."""
 
 
 def measure_methods(
@@ -60,10 +48,9 @@ def measure_methods(
     wavelengths = pluralise(len(task.unseen.sensor.wavelengths), "wavelength")
     summary = (
         f"CPU time of all threads; up to {effort.runs} runs of calls of at most "
-        f"{effort.longest:g} s, spectra at {wavelengths}; errors of slow "
-        "methods are of the colours of "
-        f"{effort.seconds_per_error:g} s; {(time.perf_counter() - begin) / 60:.1f} "
-        "minutes in all"
+        f"{effort.longest:g} s, spectra at {wavelengths}; errors of slow methods are "
+        f"of the colours of {effort.seconds_per_error:g} s; "
+        f"{(time.perf_counter() - begin) / 60:.1f} minutes in all"
     )
     return Chart({**machine, **task.facts, "effort": summary}, tuple(results))
 
@@ -84,165 +71,123 @@ def measure_method(method: Method, task: ChartTask) -> MethodResult:
     except NotInstalledError as error:
         state = State.MISSING
         why = str(error)
-    except (BrokenError, ChildError) as error:
+    except Exception as error:  # code of other packages may raise anything
         state = State.BROKEN
-        why = f"{error}; it needs {method.needs}" if method.needs else str(error)
+        why = f"raises {type(error).__name__}: {str(error)[:80]}"
+        if isinstance(error, BrokenError | ChildError):
+            why = str(error)
+        if method.needs:
+            why += f"; it needs {method.needs}"
     texts = {field.name: getattr(method, field.name) for field in fields(Description)}
     texts["label"] = method.label or method.title
     return MethodResult(**texts, state=state, why=why, numbers=numbers)
 
 
 def _numbers(method: Method, task: ChartTask) -> dict[str, float]:
-    try:
-        prepared = method.prepare(task.unseen)
-    except NotInstalledError:
-        raise
-    except Exception as error:  # code of other packages may raise anything
-        raise BrokenError(f"cannot be prepared: {_text(error)}") from error
+    prepared = method.prepare(task.unseen)
     effort = task.effort
-    checked = CheckedMethod(method, prepared.uplift, effort.seconds_per_error)
-    uplift = checked.at(task.unseen.sensor.wavelengths)
+
+    wavelengths = task.unseen.sensor.wavelengths
+
+    def uplift(rgb: Values) -> Values:
+        return prepared.uplift(rgb, wavelengths)
+
     # The first call may compile, which is charged to the set-up.
-    first, second = (stopwatch(lambda: uplift(task.colours[:1]))[1] for _ in range(2))
-    load = prepared.load_s + max(first - second, 0.0)
+    rgb = task.colours[:1].astype(method.dtype)
+    first, second = (run_call(lambda: uplift(rgb)) for _ in range(2))
+    load = prepared.load_s + max(first.cpu - second.cpu, 0.0)
     build = {} if prepared.build_s is None else {"build_s": prepared.build_s}
-    round_trips = _round_trips(checked, task)
-    errors = _errors(checked, task)
-    if method.batch:
-        _check_batch(uplift, method.dtype, effort)
+    count = len(task.colours)
+    if not method.batch:
+        count = _affordable(uplift, task.colours, effort.seconds_per_error)
+    checked = _checked(method, prepared)
     return {
         "bytes": prepared.bytes,
         **build,
         "load_s": load,
         "setup_s": sum(build.values()) + load,
-        **round_trips,
-        **errors,
+        **_round_trips(method, checked, task, count),
+        **_errors(checked, task, count),
         **call_times(uplift, method.dtype, effort),
     }
 
 
-@dataclass(frozen=True, eq=False)
-class CheckedMethod:
-    """A method that raises no error but `BrokenError`, and ``seconds`` of CPU time for
-    the answers of one error.
-    """
+def _affordable(uplift: UpliftRgb, rgb: Array, seconds: float) -> int:
+    """Count the colours, from the first, that take some CPU seconds one by one."""
+    begin = time.process_time()
+    for count in range(1, len(rgb)):
+        uplift(rgb[count - 1 : count])
+        if time.process_time() - begin > seconds:
+            return count
+    return len(rgb)
 
-    method: Method
-    uplift: Uplift
-    seconds: float
 
-    def at(self, wavelengths: Array) -> UpliftRgb:
-        """Return the function of colours (n, 3) alone."""
-        dtype = self.method.dtype
+def _checked(method: Method, prepared: PreparedMethod) -> PreparedMethod:
+    """Return a method that raises `BrokenError` for invalid answers."""
+    dtype = method.dtype
+    low, high = method.claimed_range
 
-        def uplift_rgb(rgb: Array) -> Values:
-            try:
-                spectra = self.uplift(rgb.astype(dtype, copy=False), wavelengths)
-            except Exception as error:  # code of other packages may raise anything
-                raise BrokenError(f"raises {_text(error)}") from error
-            if spectra.shape != (len(rgb), len(wavelengths)):
-                raise BrokenError(
-                    f"spectra have shape {spectra.shape} instead of ({len(rgb)}, "
-                    f"{len(wavelengths)})"
-                )
-            if spectra.dtype != dtype:
-                raise BrokenError(f"spectra are {spectra.dtype} instead of {dtype}")
-            return spectra
-
-        return uplift_rgb
-
-    def spectra(self, rgb: Array, wavelengths: Array) -> Array:
-        """Return the spectra (k, N) in float64 of as many of the colours as time
-        allows.
-        """
-        uplift = self.at(wavelengths)
-        uplift(rgb[:1])
-        step = len(rgb) if self.method.batch else SLOW_STEP
-        parts = []
-        begin = time.process_time()
-        for first in range(0, len(rgb), step):
-            parts.append(uplift(rgb[first : first + step]))
-            if time.process_time() - begin > self.seconds:
-                break
-        spectra = np.concatenate(parts).astype(float)
-        self._check_range(spectra)
-        return spectra
-
-    def _check_range(self, spectra: Array) -> None:
+    def uplift(rgb: Values, wavelengths: Array) -> Values:
+        spectra = prepared.uplift(rgb.astype(dtype), wavelengths)
+        shape = (len(rgb), len(wavelengths))
+        if spectra.shape != shape:
+            raise BrokenError(f"spectra have shape {spectra.shape} instead of {shape}")
+        if spectra.dtype != dtype:
+            raise BrokenError(f"spectra are {spectra.dtype} instead of {dtype}")
         infinite = ~np.isfinite(spectra).all(axis=1)
         if infinite.any():
             count = infinite.sum()
-            raise BrokenError(f"{count} of {len(spectra)} spectra are not finite")
-        low, high = self.method.claimed_range
+            raise BrokenError(f"{count} of {len(rgb)} spectra are not finite")
         if spectra.min() < low or spectra.max() > high:
             raise BrokenError(
                 f"reflectances from {spectra.min():.4g} to {spectra.max():.4g}, "
                 f"{low:g} to {high:g} are claimed"
             )
+        return spectra.astype(float)
+
+    return replace(prepared, uplift=uplift, stated=None)
 
 
-def _text(error: Exception) -> str:
-    return f"{type(error).__name__}: {str(error)[:80]}"
-
-
-def _round_trips(checked: CheckedMethod, task: ChartTask) -> dict[str, float]:
+def _round_trips(
+    method: Method, checked: PreparedMethod, task: ChartTask, count: int
+) -> dict[str, float]:
     """Judge at 1 nm with the stated white and matrix, and with the tables that cubes
     are fitted to.
     """
-    method = checked.method
+    rgb = task.colours[:count]
     stated = method.reference_sensor()
-    fitted = task.unseen.sensor
-    spectra = checked.spectra(task.colours, stated.wavelengths)
-    rgb = task.colours[: len(spectra)]
-    errors = delta_e_rgb(stated, rgb, stated.rgb(spectra))
+    errors, coarse = (
+        delta_e_rgb(sensor, rgb, sensor.rgb(checked.uplift(rgb, sensor.wavelengths)))
+        for sensor in (stated, task.unseen.sensor)
+    )
     claimed = method.claimed_error
     if claimed is not None and errors.mean() > MAX_CLAIM_RATIO * claimed:
         raise BrokenError(
             f"mean round-trip ΔE00 is {errors.mean():.3g}, {claimed:g} is claimed"
         )
-    coarse = checked.at(fitted.wavelengths)(rgb).astype(float)
     return {
         **_summary("round_trip", errors),
-        **_summary("coarse_round_trip", delta_e_rgb(fitted, rgb, fitted.rgb(coarse))),
+        **_summary("coarse_round_trip", coarse),
         "round_trip_colours": len(rgb),
     }
 
 
-def _errors(checked: CheckedMethod, task: ChartTask) -> dict[str, float]:
+def _errors(checked: PreparedMethod, task: ChartTask, count: int) -> dict[str, float]:
     """Compare spectra with those of materials that the method does not know, and that
     it knows.
     """
-    sensor = task.unseen.sensor
-    lights = [observer.light(name) for name in CHART_LIGHTS]
+    lights: list[Light] = [observer.light(name) for name in CHART_LIGHTS]
+    own = replace(task.unseen, queried=task.own)
     numbers: dict[str, float] = {}
-    for prefix, name, measured in (
-        ("", "unseen", task.unseen.queried),
-        ("own_", "own", task.own),
-    ):
-        rgb = np.clip(sensor.rgb(measured), 0, 1)
-        spectra = checked.spectra(rgb, sensor.wavelengths)
-        queried = measured[: len(spectra)]
-        errors = spectrum_errors(spectra, queried, lights)
+    for name, prefix, materials in ("unseen", "", task.unseen), ("own", "own_", own):
+        queried = replace(materials, queried=materials.queried[:count])
+        errors = checked.errors(queried, lights)
         for light, delta_e in zip(CHART_LIGHTS, errors.delta_e.T, strict=True):
             numbers |= _summary(f"{prefix}{light}", delta_e)
         numbers |= _summary(f"{prefix}lights", errors.delta_e.mean(axis=1))
         numbers |= _summary(f"{prefix}rms", np.asarray(errors.rms))
-        numbers[f"{name}_spectra"] = len(spectra)
+        numbers[f"{name}_spectra"] = len(errors.delta_e)
     return numbers
-
-
-def _check_batch(uplift: UpliftRgb, dtype: str, effort: Effort) -> None:
-    """Check that large batches, which are timed, give the spectra of small ones."""
-    size = min(effort.batches[-1], REFERENCE)
-    count = affordable(uplift, dtype, size, effort.longest)
-    rgb = np.random.default_rng(4).random((count, 3))
-    rows = np.linspace(0, count - 1, SAMPLE, dtype=int)
-    difference = np.abs(uplift(rgb)[rows] - uplift(rgb[rows])).max()
-    if not difference <= SAMPLE_TOLERANCE:
-        raise BrokenError(
-            f"{pluralise(count, 'colour')} per call give other reflectances than "
-            f"{SAMPLE}, by {difference:.2g}"
-        )
 
 
 def _summary(name: str, values: Array) -> dict[str, float]:

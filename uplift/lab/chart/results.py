@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from enum import StrEnum
 from importlib.resources import files
 from itertools import product
+from typing import Any
 
 from uplift.common.arrays import StrPath
 from uplift.common.errors import ChartFileError
@@ -87,8 +88,8 @@ class Chart:
     def batches(self) -> tuple[int, ...]:
         """Return the numbers of colours per call that were timed, ascending."""
         names = set[str]().union(*(result.numbers for result in self.measured))
-        matches = filter(None, map(BATCH.fullmatch, names))
-        return tuple(sorted(int(match[1]) for match in matches))
+        matches = map(BATCH.fullmatch, names)
+        return tuple(sorted(int(match[1]) for match in matches if match))
 
 
 def chart_csv(chart: Chart) -> str:
@@ -96,15 +97,13 @@ def chart_csv(chart: Chart) -> str:
     names: dict[str, None] = {}
     for result in chart.results:
         names |= dict.fromkeys(result.numbers)
-    facts = [chart.facts.get(name, "") for name in FACTS]
+    columns = [*TEXTS, *names, *FACTS]
     rows = []
     for result in chart.results:
-        numbers = (
-            f"{result.numbers[name]:.9g}" if name in result.numbers else ""
-            for name in names
-        )
-        rows.append([*(getattr(result, name) for name in TEXTS), *numbers, *facts])
-    return csv_text([*TEXTS, *names, *FACTS], rows)
+        numbers = {name: f"{value:.9g}" for name, value in result.numbers.items()}
+        cells = vars(result) | numbers | dict(chart.facts)
+        rows.append([cells.get(name, "") for name in columns])
+    return csv_text(columns, rows)
 
 
 def read_chart(path: StrPath) -> Chart:
@@ -138,19 +137,18 @@ def parse_chart(data: bytes, path: StrPath) -> Chart:
 def _result(line: dict[str, str]) -> MethodResult:
     if not {*TEXTS, *FACTS} <= line.keys():
         raise ValueError("columns are missing")
-    texts = {name: line[name] for name in TEXTS if name != "state"}
-    numbers = {
-        name: _number(name, line[name])
-        for name in line
-        if name not in (*TEXTS, *FACTS) and line[name].strip()
-    }
-    state = State(line["state"])
+    texts: dict[str, Any] = {name: line[name] for name in TEXTS}
+    numbers = {}
     required = set(REQUIRED)
-    for name in filter(BATCH.fullmatch, numbers):
-        required |= {f"{name}_{suffix}" for suffix in SPREAD}
+    for name, text in line.items():
+        if name not in (*TEXTS, *FACTS) and text.strip():
+            numbers[name] = _number(name, text)
+            if BATCH.fullmatch(name):
+                required |= {f"{name}_{suffix}" for suffix in SPREAD}
+    state = State(line["state"])
     if state == State.MEASURED and (missing := required - numbers.keys()):
         raise ValueError(f"{format_value(line['method'])} has no {min(missing)}")
-    return MethodResult(**texts, state=state, numbers=numbers)
+    return MethodResult(**texts | {"state": state}, numbers=numbers)
 
 
 def _number(name: str, text: str) -> float:

@@ -19,13 +19,6 @@ from uplift.common.arrays import Array
 from uplift.lab.method import PreparedMap
 from uplift.lab.runner import Prepare, Task
 
-DEGREES = {
-    "3 × 3 matrix": 1,
-    "root polynomial, 6 terms": 2,
-    "root polynomial, 13 terms": 3,
-}
-"""Degree of a map by its name."""
-
 
 def fit_map(
     degree: int, first: Light, second: Light, measured: Array
@@ -74,6 +67,8 @@ def prepare(task: Task, degree: int) -> PreparedMap:
 
 
 MAPS: dict[str, Prepare] = {
-    name: partial(prepare, degree=degree) for name, degree in DEGREES.items()
+    "3 × 3 matrix": partial(prepare, degree=1),
+    "root polynomial, 6 terms": partial(prepare, degree=2),
+    "root polynomial, 13 terms": partial(prepare, degree=3),
 }
 """Maps by their names."""

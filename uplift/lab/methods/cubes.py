@@ -10,10 +10,11 @@ import ctypes
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import Any, Protocol, cast
+from typing import Any
 
 import numpy as np
 
@@ -29,10 +30,10 @@ from uplift.lab.method import (
     Uplift,
     nbytes,
     ours,
-    stopwatch,
 )
 from uplift.lab.runner import Prepare, Task
-from uplift.lookup import Cube, load
+from uplift.lab.timing import Run, stopwatch
+from uplift.lookup import MODES, Cube, load
 from uplift.models import Moments
 from uplift.pipeline.build import build
 
@@ -40,30 +41,24 @@ KEPT = 4
 """Cubes that are kept for further lookups of the same one."""
 
 
-@dataclass(frozen=True, eq=False)
-class BuiltCube:
-    """A stored and loaded cube, with the CPU seconds of both."""
-
-    cube: Cube
-    build_s: float
-    load_s: float
-
-
 @lru_cache(maxsize=KEPT)
-def _built(atlas: Atlas | None, builds: int, **options: Any) -> BuiltCube:
+def _build(atlas: Atlas | None, builds: int, **options: Any) -> tuple[Cube, Run, Run]:
     for _ in range(builds):
-        cube, seconds = stopwatch(lambda: build(atlas, **options))
+        cube, building = stopwatch(lambda: build(atlas, **options))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.uplift"
         cube.save(path)
-        loaded, loading = stopwatch(lambda: load(path))
-    return BuiltCube(loaded, seconds, loading)
+        return *stopwatch(lambda: load(path)), building
 
 
-def built_cube(task: Task, atlas: bool, **options: Any) -> BuiltCube:
-    """Build the cube of a task with options of `uplift.build`, once for all lookups."""
+def built_cube(task: Task, *, atlas: bool, **options: Any) -> tuple[Cube, float, float]:
+    """Build, store and load the cube of a task with options of `uplift.build`, once for
+    all lookups; return the CPU seconds of building and loading too.
+    """
     known = task.known if atlas else None
-    return _built(known, task.builds, leave_out=task.left_out, **options)
+    left_out = task.left_out
+    cube, loading, building = _build(known, task.builds, leave_out=left_out, **options)
+    return cube, building.cpu, loading.cpu
 
 
 def cube(atlas: bool = False, **options: Any) -> Prepare:
@@ -74,16 +69,10 @@ def cube(atlas: bool = False, **options: Any) -> Prepare:
 
 
 def prepare_lookup(
-    task: Task,
-    *,
-    atlas: bool,
-    mode: str = "spectra",
-    dtype: str = "float64",
-    **options: Any,
+    task: Task, mode: str = "spectra", dtype: str = "float64", **options: Any
 ) -> PreparedMethod:
     """Prepare `Cube.reflectance` in a mode."""
-    built = built_cube(task, atlas, **options)
-    cube = built.cube
+    cube, build_s, load_s = built_cube(task, **options)
     data = cube.data
     size = nbytes(
         data.points.coefficients,
@@ -100,7 +89,7 @@ def prepare_lookup(
         return np.stack([np.asarray(column) for column in columns], axis=1)
 
     known = None if data.points.standard_error is None else stated
-    return PreparedMethod(uplift, size, built.build_s, built.load_s, known)
+    return PreparedMethod(uplift, size, build_s, load_s, known)
 
 
 def within(cube: Cube, wavelengths: Array) -> Array:
@@ -108,26 +97,25 @@ def within(cube: Cube, wavelengths: Array) -> Array:
     return np.clip(wavelengths, *cube.wavelengths[[0, -1]])
 
 
-def prepare_bulk(task: Task, *, atlas: bool, **options: Any) -> PreparedMethod:
+def prepare_bulk(task: Task, **options: Any) -> PreparedMethod:
     """Prepare a bulk sampler of the sensor's wavelengths, which compiles again."""
     import jax
 
     from uplift.lookup import bulk
 
-    built = built_cube(task, atlas, **options)
+    cube, build_s, load_s = built_cube(task, **options)
     jax.clear_caches()  # type: ignore[no-untyped-call]
     at = task.sensor.wavelengths
-    sampler, preparing = stopwatch(lambda: bulk.spectra(built.cube, at, threads=1))
+    sampler, preparing = stopwatch(lambda: bulk.spectra(cube, at, threads=1))
     _, compiling = stopwatch(lambda: sampler(task.rgb[:1]))
 
     def uplift(rgb: Values, wavelengths: Array) -> Values:
         if np.array_equal(wavelengths, at):
             return sampler(rgb)
-        inside = within(built.cube, wavelengths)
-        return bulk.spectra(built.cube, inside, threads=1)(rgb)
+        return bulk.spectra(cube, within(cube, wavelengths), threads=1)(rgb)
 
-    loading = built.load_s + preparing + compiling
-    return PreparedMethod(uplift, sampler.nbytes, built.build_s, loading)
+    loading = load_s + preparing.cpu + compiling.cpu
+    return PreparedMethod(uplift, sampler.nbytes, build_s, loading)
 
 
 COMPILER = "a C compiler, cc: apt install gcc"
@@ -154,18 +142,18 @@ void uplift_colours(
 """
 
 
-def prepare_c(task: Task, *, atlas: bool, mode: str, **options: Any) -> PreparedMethod:
+def prepare_c(task: Task, mode: str, **options: Any) -> PreparedMethod:
     """Build the cube, export and compile it, and load the library."""
-    built = built_cube(task, atlas, **options)
+    cube, build_s, _ = built_cube(task, **options)
     with tempfile.TemporaryDirectory() as folder:
         library, compiling = stopwatch(
-            lambda: compile_cube(built.cube.data, mode, Path(folder))
+            lambda: compile_cube(cube.data, mode, Path(folder))
         )
         uplift, loading = stopwatch(lambda: load_library(library))
         # The file may go: the loaded library stays in memory, except on Windows, which
         # has no cc.
         size = library.stat().st_size
-        return PreparedMethod(uplift, size, built.build_s + compiling, loading)
+        return PreparedMethod(uplift, size, build_s + compiling.cpu, loading.cpu)
 
 
 def compile_cube(data: CubeData, mode: str, folder: Path) -> Path:
@@ -205,7 +193,7 @@ def load_library(path: Path) -> Uplift:
 
 @dataclass(frozen=True)
 class CubeKind:
-    """A kind of cube, and the texts about it."""
+    """A kind of cube; the fields are keywords of `built_cube`."""
 
     model: str
     coefficients: int
@@ -213,172 +201,115 @@ class CubeKind:
     atlas: bool = False
 
     @property
-    def options(self) -> dict[str, Any]:
-        """Return the keywords of `built_cube`."""
-        return vars(self)
-
-    @property
-    def name(self) -> str:
-        """Return the name for the command line."""
-        count = self.coefficients if self.is_moments else ""
-        return f"{self.model}{count}-{self.dim}{'-atlas' if self.atlas else ''}"
-
-    @property
-    def title(self) -> str:
-        """Return the name to display."""
-        count = f" {self.coefficients}" if self.is_moments else ""
-        return f"{self.model}{count}, {self.dim}³{', atlas' if self.atlas else ''}"
-
-    @property
-    def label(self) -> str:
-        """Return the label of its markers."""
-        return f"{self.coefficients} · {self.dim}³"
-
-    @property
-    def family(self) -> str:
-        """Return the name in the legend."""
-        return f"uplift, {self.model}{' with atlas' if self.atlas else ''}"
-
-    @property
     def is_moments(self) -> bool:
         """Whether the number of coefficients is free."""
         return self.model == Moments.name
 
-    def claim(self, mode: str) -> float | None:
-        """Return the error of round trips: nodes of all modes are exact; colours
-        between them are not in ``moments`` and ``nearest``, and refined sigmoids.
-        """
-        exact = mode == "spectra" or (mode == "refined" and self.is_moments)
-        return 0.01 if exact else None
-
-    def method(self, **fields: Any) -> Method:
-        """Describe a lookup of the cube."""
+    @property
+    def command(self) -> str:
+        """Return the command that builds the cube."""
         count = f"--coefficients {self.coefficients}"
         model = count if self.is_moments else f"--model {self.model}"
         atlas = "--atlas FILE " if self.atlas else ""
-        command = f"uplift build {atlas}--dim {self.dim} {model}"
-        common = {"family": self.family, "source": "this package", "build": command}
-        return Method(reference_sensor=ours, **common | fields)
+        return f"uplift build {atlas}--dim {self.dim} {model}"
 
 
-class Lookup(Protocol):
-    """A way to look up the spectra of a cube."""
-
-    def of(self, kind: CubeKind) -> Method:
-        """Return the method of a kind of cube."""
-
-
-@dataclass(frozen=True)
-class PythonLookup:
-    """`Cube.reflectance` in a mode."""
-
-    mode: str
-
-    def of(self, kind: CubeKind) -> Method:
-        """Return the method in float64."""
-        return kind.method(
-            method=f"{kind.name}-{self.mode}",
-            title=f"{kind.title}, {self.mode}",
-            label=f"{kind.label} {self.mode}",
-            mode=self.mode,
-            call=f'cube.reflectance(rgb, mode="{self.mode}")',
-            claimed_error=kind.claim(self.mode),
-            prepare=partial(prepare_lookup, mode=self.mode, **kind.options),
-        )
+def in_python(kind: CubeKind, mode: str) -> Method:
+    """Describe `Cube.reflectance` in a mode."""
+    count = str(kind.coefficients) if kind.is_moments else ""
+    # Nodes of all modes are exact; colours between them are not in ``moments`` and
+    # ``nearest``, and refined sigmoids.
+    exact = mode == "spectra" or (mode == "refined" and kind.is_moments)
+    return Method(
+        method=f"{kind.model}{count}-{kind.dim}{'-atlas' * kind.atlas}-{mode}",
+        title=f"{kind.model} {count}".rstrip()
+        + f", {kind.dim}³{', atlas' * kind.atlas}, {mode}",
+        label=f"{kind.coefficients} · {kind.dim}³ {mode}",
+        family=f"uplift, {kind.model}{' with atlas' * kind.atlas}",
+        source="this package",
+        mode=mode,
+        build=kind.command,
+        call=f'cube.reflectance(rgb, mode="{mode}")',
+        prepare=partial(prepare_lookup, mode=mode, **vars(kind)),
+        reference_sensor=ours,
+        claimed_error=0.01 if exact else None,
+    )
 
 
-@dataclass(frozen=True)
-class SinglePrecision(PythonLookup):
-    """`Cube.reflectance` in a mode, in float32."""
-
-    def of(self, kind: CubeKind) -> Method:
-        """Return the method in float32."""
-        double = super().of(kind)
-        return replace(
-            double,
-            method=f"{double.method}-float32",
-            title=f"{double.title}, float32",
-            label=f"{double.label} f32",
-            dtype="float32",
-            call=f'{double.call[:-1]}, dtype="float32")',
-            prepare=partial(cast(Any, double.prepare), dtype="float32"),
-        )
+def in_float32(kind: CubeKind, mode: str) -> Method:
+    """Describe `Cube.reflectance` in a mode, in float32."""
+    double = in_python(kind, mode)
+    return replace(
+        double,
+        method=f"{double.method}-float32",
+        title=f"{double.title}, float32",
+        label=f"{double.label} f32",
+        dtype="float32",
+        call=f'cube.reflectance(rgb, mode="{mode}", dtype="float32")',
+        prepare=partial(prepare_lookup, mode=mode, dtype="float32", **vars(kind)),
+    )
 
 
-@dataclass(frozen=True)
-class Bulk:
-    """`uplift.bulk`, by JAX."""
-
-    def of(self, kind: CubeKind) -> Method:
-        """Return the method in float32."""
-        return kind.method(
-            method=f"{kind.name}-bulk",
-            title=f"{kind.title}, bulk",
-            label=f"{kind.label} bulk f32",
-            mode="bulk",
-            dtype="float32",
-            call="uplift.bulk.spectra(cube)(rgb)",
-            claimed_error=kind.claim("spectra"),
-            prepare=partial(prepare_bulk, **kind.options),
-        )
+def in_bulk(kind: CubeKind) -> Method:
+    """Describe `uplift.bulk`, by JAX."""
+    return replace(
+        in_python(kind, "bulk"),
+        label=f"{kind.coefficients} · {kind.dim}³ bulk f32",
+        dtype="float32",
+        call="uplift.bulk.spectra(cube)(rgb)",
+        prepare=partial(prepare_bulk, **vars(kind)),
+        claimed_error=0.01,
+    )
 
 
-@dataclass(frozen=True)
-class CProgram:
-    """The exported program of a mode."""
-
-    mode: str
-
-    def of(self, kind: CubeKind) -> Method:
-        """Return the method in float32."""
-        return kind.method(
-            method=f"c-{kind.name}-{self.mode}",
-            title=f"C, {kind.title}, {self.mode}",
-            label=f"C {kind.label} {self.mode}",
-            family="uplift, C export",
-            mode=self.mode,
-            dtype="float32",
-            call=(
-                f"uplift export CUBE -o cube.h --mode {self.mode}; "
-                "cube_reflectances(rgb, wavelengths, count, out)"
-            ),
-            note=f"cc {' '.join(FLAGS[:5])}, called by ctypes",
-            claimed_error=kind.claim(self.mode),
-            prepare=partial(prepare_c, mode=self.mode, **kind.options),
-            needs=COMPILER,
-        )
+def in_c(kind: CubeKind, mode: str) -> Method:
+    """Describe the exported program of a mode."""
+    python = in_python(kind, mode)
+    return replace(
+        python,
+        method=f"c-{python.method}",
+        title=f"C, {python.title}",
+        label=f"C {python.label}",
+        family="uplift, C export",
+        dtype="float32",
+        call=(
+            f"uplift export CUBE -o cube.h --mode {mode}; cube_reflectances(rgb, "
+            "wavelengths, count, out)"
+        ),
+        note=f"cc {' '.join(FLAGS[:5])}, called by ctypes",
+        prepare=partial(prepare_c, mode=mode, **vars(kind)),
+        needs=COMPILER,
+    )
 
 
-SPECTRA = PythonLookup("spectra")
-MOMENTS = PythonLookup("moments")
-REFINED = PythonLookup("refined")
-NEAREST = PythonLookup("nearest")
-BULK = Bulk()
-C_MOMENTS = CProgram("moments")
-C_SPECTRA = CProgram("spectra")
-BOTH: list[Lookup] = [SPECTRA, MOMENTS, REFINED]
-BOTH += map(SinglePrecision, ("spectra", "moments", "refined"))
-JOBS: dict[CubeKind, tuple[Lookup, ...]] = {
-    CubeKind("moments", 3, 32, atlas=True): (SPECTRA, BULK),
-    CubeKind("moments", 5, 32, atlas=True): (SPECTRA, BULK),
-    CubeKind("moments", 9, 8, atlas=True): (SPECTRA, MOMENTS, REFINED, BULK),
-    CubeKind("moments", 9, 16, atlas=True): (SPECTRA, MOMENTS, BULK),
-    CubeKind("moments", 9, 32, atlas=True): (*BOTH, BULK, C_MOMENTS, C_SPECTRA),
-    CubeKind("moments", 9, 64, atlas=True): (SPECTRA, MOMENTS, BULK),
-    CubeKind("moments", 13, 32, atlas=True): (SPECTRA, BULK),
-    CubeKind("moments", 17, 32, atlas=True): (SPECTRA, BULK),
-    CubeKind("moments", 17, 64, atlas=True): (SPECTRA, BULK),
-    CubeKind("moments", 9, 8): (SPECTRA, MOMENTS, REFINED, BULK),
-    CubeKind("moments", 9, 16): (SPECTRA, MOMENTS, BULK),
-    CubeKind("moments", 9, 32): (*BOTH, BULK, C_MOMENTS, C_SPECTRA),
-    CubeKind("moments", 9, 64): (SPECTRA, MOMENTS, NEAREST, BULK),
-    CubeKind("sigmoid", 3, 32, atlas=True): (SPECTRA,),
-    CubeKind("sigmoid", 3, 8): (SPECTRA, MOMENTS, REFINED),
-    CubeKind("sigmoid", 3, 16): (SPECTRA, MOMENTS),
-    CubeKind("sigmoid", 3, 32): (*BOTH, C_MOMENTS, C_SPECTRA),
-    CubeKind("sigmoid", 3, 64): (SPECTRA, MOMENTS, C_MOMENTS),
+LOOKUPS: dict[str, Callable[[CubeKind], Method]] = {
+    **{mode: partial(in_python, mode=mode) for mode in MODES},
+    **{f"{mode}-float32": partial(in_float32, mode=mode) for mode in MODES},
+    **{f"c-{mode}": partial(in_c, mode=mode) for mode in MODES},
+    "bulk": in_bulk,
+}
+_BOTH = "spectra spectra-float32 moments moments-float32 refined refined-float32"
+JOBS = {
+    CubeKind("moments", 3, 32, atlas=True): "spectra bulk",
+    CubeKind("moments", 5, 32, atlas=True): "spectra bulk",
+    CubeKind("moments", 9, 8, atlas=True): "spectra moments refined bulk",
+    CubeKind("moments", 9, 16, atlas=True): "spectra moments bulk",
+    CubeKind("moments", 9, 32, atlas=True): f"{_BOTH} bulk c-moments c-spectra",
+    CubeKind("moments", 9, 64, atlas=True): "spectra moments bulk",
+    CubeKind("moments", 13, 32, atlas=True): "spectra bulk",
+    CubeKind("moments", 17, 32, atlas=True): "spectra bulk",
+    CubeKind("moments", 17, 64, atlas=True): "spectra bulk",
+    CubeKind("moments", 9, 8): "spectra moments refined bulk",
+    CubeKind("moments", 9, 16): "spectra moments bulk",
+    CubeKind("moments", 9, 32): f"{_BOTH} bulk c-moments c-spectra",
+    CubeKind("moments", 9, 64): "spectra moments nearest bulk",
+    CubeKind("sigmoid", 3, 32, atlas=True): "spectra",
+    CubeKind("sigmoid", 3, 8): "spectra moments refined",
+    CubeKind("sigmoid", 3, 16): "spectra moments",
+    CubeKind("sigmoid", 3, 32): f"{_BOTH} c-moments c-spectra",
+    CubeKind("sigmoid", 3, 64): "spectra moments c-moments",
 }
 """Kinds of cubes and their lookups."""
 METHODS: list[Method] = []
 for _kind, _lookups in JOBS.items():
-    METHODS += [lookup.of(_kind) for lookup in _lookups]
+    METHODS += [LOOKUPS[name](_kind) for name in _lookups.split()]

@@ -3,9 +3,8 @@
 Cleveland & Devlin 1988, "Locally weighted regression", JASA 83(403).
 """
 
-from dataclasses import dataclass
-from functools import partial
-from itertools import product, starmap
+from collections.abc import Callable
+from itertools import product
 
 import numpy as np
 from scipy.spatial.distance import cdist
@@ -25,9 +24,9 @@ from uplift.lab.method import (
     interpolated,
     nbytes,
     ours,
-    stopwatch,
 )
-from uplift.lab.runner import Task
+from uplift.lab.runner import KNOWN, Known, Task
+from uplift.lab.timing import stopwatch
 from uplift.lookup.refine import FIRST_DAMPING, MAX_STEPS
 from uplift.models import Moments, forward_map, minimum_norm_step
 
@@ -47,42 +46,60 @@ MODEL = Moments()
 """Model in which predictions move to their colours."""
 
 
-@dataclass(frozen=True, eq=False)
-class LocalLinear:
-    """Regression on known reflectances (E, N), with a bandwidth and a ridge."""
-
-    sensor: Sensor
-    known: Array
-    width: float
-    ridge: float
-
-    def __call__(self, rgb: Array, leave_out: bool = False) -> Array:
-        """Predict reflectances (n, N) of linear RGB (n, 3); ``leave_out`` ignores a
-        query's own row.
-        """
-        spectra = regress(
-            self.sensor, self.known, rgb, self.width, self.ridge, leave_out
-        )
-        clipped = np.clip(spectra, LOWEST, 1 - LOWEST)
-        return with_least_change(self.sensor, clipped, rgb)
-
-
-def tune(sensor: Sensor, known: Array) -> LocalLinear:
-    """Choose the bandwidth and the ridge with the least mean leave-one-out ΔE00 of the
-    known materials under the lights of a build.
+def tune(sensor: Sensor, known: Array) -> Callable[[Array], Array]:
+    """Return the regression on known reflectances (E, N), those within the space, whose
+    bandwidth and ridge have the least mean leave-one-out ΔE00 under the lights of a
+    build.
     """
-    lights = [
-        observer.light(name, sensor.observer, *sensor.range) for name in SCENE_LIGHTS
-    ]
+    known = known[in_unit_cube(sensor.rgb(known))]
+    lights = observer.lights(SCENE_LIGHTS, sensor.observer, sensor.range)
     colours = np.clip(sensor.rgb(known), 0, 1)
+    left_out = squared_distances(sensor, colours, colours)
+    np.fill_diagonal(left_out, np.inf)
 
-    def error(regression: LocalLinear) -> float:
-        spectra = regression(colours, leave_out=True)
+    def error(smoothing: tuple[float, float]) -> float:
+        spectra = regress(sensor, known, colours, left_out, smoothing)
         errors = [delta_e_spectra(light, spectra, known) for light in lights]
         return float(np.mean(errors))
 
-    smoothings = product(BANDWIDTHS, RIDGES)
-    return min(starmap(partial(LocalLinear, sensor, known), smoothings), key=error)
+    smoothing = min(product(BANDWIDTHS, RIDGES), key=error)
+
+    def predict(rgb: Array) -> Array:
+        squares = squared_distances(sensor, rgb, colours)
+        return regress(sensor, known, rgb, squares, smoothing)
+
+    return predict
+
+
+def squared_distances(sensor: Sensor, rgb: Array, known: Array) -> Array:
+    """Squares (n, E) of the distances of colours in CIE L*a*b*."""
+    places = rgb_to_lab(sensor, rgb), rgb_to_lab(sensor, known)
+    return cdist(*places, "sqeuclidean")
+
+
+def regress(
+    sensor: Sensor,
+    known: Array,
+    rgb: Array,
+    squares: Array,
+    smoothing: tuple[float, float],
+) -> Array:
+    """Predict reflectances (n, N) of linear RGB (n, 3) from known ones (E, N) at
+    squared distances (n, E), with a bandwidth and a ridge.
+    """
+    width, ridge = smoothing
+    # Far queries keep the weight of the nearest colour.
+    beyond_nearest = squares - squares.min(axis=1, keepdims=True)
+    weights = np.exp(-beyond_nearest / (2 * width**2))
+    weights /= weights.sum(axis=1, keepdims=True)
+    offsets = np.clip(sensor.rgb(known), 0, 1)[None] - rgb[:, None]
+    terms = np.concatenate([np.ones((*offsets.shape[:2], 1)), offsets], axis=2)
+    weighted = weights[:, :, None] * terms
+    matrix = weighted.mT @ terms + ridge * np.diag([0.0, 1, 1, 1])
+    first = np.linalg.solve(matrix, np.broadcast_to(np.eye(4)[:, :1], (len(rgb), 4, 1)))
+    spectra = (weighted @ first)[:, :, 0] @ known
+    clipped = np.clip(spectra, LOWEST, 1 - LOWEST)
+    return with_least_change(sensor, clipped, rgb)
 
 
 def with_least_change(sensor: Sensor, spectra: Array, rgb: Array) -> Array:
@@ -110,47 +127,11 @@ def with_least_change(sensor: Sensor, spectra: Array, rgb: Array) -> Array:
     return MODEL.to_reflectance(linear).T
 
 
-def regress(
-    sensor: Sensor,
-    known: Array,
-    rgb: Array,
-    width: float,
-    ridge: float,
-    leave_out: bool = False,
-) -> Array:
-    """Local-linear predictions (n, N) at linear RGB (n, 3); ``leave_out`` ignores a
-    query's own row.
-    """
-    colours = np.clip(sensor.rgb(known), 0, 1)
-    squares = cdist(rgb_to_lab(sensor, rgb), rgb_to_lab(sensor, colours), "sqeuclidean")
-    if leave_out:
-        np.fill_diagonal(squares, np.inf)
-    # Far queries keep the weight of the nearest colour.
-    squares -= squares.min(axis=1, keepdims=True)
-    weights = np.exp(-squares / (2 * width**2))
-    weights /= weights.sum(axis=1, keepdims=True)
-    offsets = colours[None] - rgb[:, None]
-    terms = np.concatenate([np.ones((*offsets.shape[:2], 1)), offsets], axis=2)
-    weighted = weights[:, :, None] * terms
-    matrix = weighted.mT @ terms + ridge * np.diag([0.0, 1, 1, 1])
-    first = np.linalg.solve(matrix, np.broadcast_to(np.eye(4)[:, :1], (len(rgb), 4, 1)))
-    return (weighted @ first)[:, :, 0] @ known
-
-
-def prepare(task: Task) -> PreparedMethod:
-    """Tune a regression on the known spectra."""
-    return _on_spectra(task, task.known_spectra)
-
-
-def prepare_on_library(task: Task) -> PreparedMethod:
-    """Tune a regression on the library within the space of the sensor."""
-    colours = task.sensor.rgb(task.library)
-    return _on_spectra(task, task.library[in_unit_cube(colours)])
-
-
-def _on_spectra(task: Task, known: Array) -> PreparedMethod:
-    regression, seconds = stopwatch(lambda: tune(task.sensor, known))
-    return interpolated(regression, task, nbytes(known), seconds)
+def prepare(task: Task, known: Known = KNOWN) -> PreparedMethod:
+    """Tune a regression on the known spectra of a task."""
+    spectra = known(task)
+    regression, run = stopwatch(lambda: tune(task.sensor, spectra))
+    return interpolated(regression, task, nbytes(spectra), run.cpu)
 
 
 METHODS = (

@@ -20,7 +20,7 @@ from uplift.colorimetry import Light, Sensor, lab
 from uplift.common.arrays import Array, Indices
 from uplift.lab.method import Method, PreparedMethod, interpolated, nbytes, ours
 from uplift.lab.methods.local_linear import LOWEST, with_least_change
-from uplift.lab.runner import Task
+from uplift.lab.runner import KNOWN, Known, Task
 
 NEAREST = 20
 """Measured spectra that are mixed, the nearest in CIE L*a*b*: of 12 to 28, a compromise
@@ -82,19 +82,11 @@ def _responses(light: Light, spectra: Array) -> Array:
     return np.column_stack([spectra @ light.xyz.T, np.ones(len(spectra))])
 
 
-def prepare(task: Task) -> PreparedMethod:
-    """Mix metamers from the known spectra."""
-    return _of_spectra(task, task.known_spectra)
-
-
-def prepare_of_library(task: Task) -> PreparedMethod:
-    """Mix metamers from the library."""
-    return _of_spectra(task, task.library)
-
-
-def _of_spectra(task: Task, known: Array) -> PreparedMethod:
-    spectra = partial(metamer_mean, task.sensor, known)
-    return interpolated(spectra, task, nbytes(known))
+def prepare(task: Task, known: Known = KNOWN) -> PreparedMethod:
+    """Mix metamers from the known spectra of a task."""
+    spectra = known(task)
+    mean = partial(metamer_mean, task.sensor, spectra)
+    return interpolated(mean, task, nbytes(spectra))
 
 
 METHODS = (

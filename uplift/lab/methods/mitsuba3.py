@@ -26,9 +26,9 @@ from uplift.lab.method import (
     NotInstalledError,
     PreparedMethod,
     stated_sensor,
-    stopwatch,
 )
 from uplift.lab.runner import Task
+from uplift.lab.timing import stopwatch
 from uplift.models.sigmoid import evaluate_unscaled
 
 VARIANT = "scalar_spectral"
@@ -97,10 +97,8 @@ def prepare_compiled(task: Task) -> PreparedMethod:
     if not drjit.has_backend(drjit.JitBackend.LLVM):
         raise NotInstalledError(f"needs {LLVM}")
     drjit.flush_kernel_cache()
-    _, seconds = stopwatch(
-        lambda: compiled_spectra(task.rgb[:1], task.sensor.wavelengths)
-    )
-    return PreparedMethod(compiled_spectra, size, None, seconds)
+    _, run = stopwatch(lambda: compiled_spectra(task.rgb[:1], task.sensor.wavelengths))
+    return PreparedMethod(compiled_spectra, size, None, run.cpu)
 
 
 def compiled_spectra(rgb: Array, wavelengths: Array) -> Array:

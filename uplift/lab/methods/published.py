@@ -17,7 +17,7 @@ primary decomposition for rendering with sRGB reflectance", EGSR. Jakob & Hanika
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -32,10 +32,10 @@ from uplift.lab.method import (
     nbytes,
     published_srgb,
     stated_sensor,
-    stopwatch,
 )
 from uplift.lab.methods import mitsuba3
 from uplift.lab.runner import Task
+from uplift.lab.timing import stopwatch
 from uplift.models.sigmoid import evaluate_unscaled
 
 MENG_STEP = 10.0
@@ -75,32 +75,31 @@ def prepare_jakob_table(task: Task) -> PreparedMethod:
     """Let colour-science read the table of 64 that is part of Mitsuba 3."""
     path = mitsuba3.table_file()
     table = colour_science().recovery.LUT3D_Jakob2019()
-    _, seconds = stopwatch(lambda: table.read(str(path)))
+    _, run = stopwatch(lambda: table.read(str(path)))
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         # For one colour the coefficients have no axis of colours.
         coefficients = table.RGB_to_coefficients(rgb).reshape(-1, 3)
         return evaluate_unscaled(coefficients, wavelengths)
 
-    return PreparedMethod(uplift, table.coefficients.nbytes, None, seconds)
+    return PreparedMethod(uplift, table.coefficients.nbytes, None, run.cpu)
 
 
 def prepare_basis(
     task: Task,
     read: Callable[[], tuple[Array, Array]],
     weights: Callable[[Values], Values],
-    dtype: str = "float64",
 ) -> PreparedMethod:
     """Prepare a method whose spectra are sums of K basis spectra; ``weights`` has
     shapes (n, 3) to (n, K).
     """
-    (centres, basis), seconds = stopwatch(read)
+    (centres, basis), run = stopwatch(read)
 
     def uplift(rgb: Values, wavelengths: Array) -> Values:
         at = np.stack([np.interp(wavelengths, centres, row) for row in basis])
-        return weights(rgb) @ at.astype(dtype, copy=False)
+        return weights(rgb) @ at.astype(rgb.dtype, copy=False)
 
-    return PreparedMethod(uplift, basis.nbytes, load_s=seconds)
+    return PreparedMethod(uplift, basis.nbytes, load_s=run.cpu)
 
 
 def _mallett_basis() -> tuple[Array, Array]:
@@ -160,7 +159,6 @@ def _in_single(method: Method) -> Method:
         title=f"{method.title}, float32",
         label=f"{method.title} f32",
         dtype="float32",
-        prepare=partial(cast(Any, method.prepare), dtype="float32"),
     )
 
 

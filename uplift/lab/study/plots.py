@@ -12,7 +12,7 @@ from uplift.common.arrays import Array, StrPath
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
 from uplift.extras.pages.figure import ACCENT, BAND, HIGHLIGHT, write_figure
-from uplift.extras.pages.marks import density, line, statistics_over, threshold
+from uplift.extras.pages.marks import density, line, threshold
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw, spectra_panel
 from uplift.extras.scene.representations import samples
 from uplift.lab.statistics import Row
@@ -164,8 +164,6 @@ def _shown(value: Any, option: str) -> str:
 
 MIN_DELTA_E = 1e-4
 """Smallest ΔE00 that is drawn."""
-BINS = 40
-"""Bins of distance for maximum and median."""
 
 
 def plot_locality(
@@ -191,15 +189,9 @@ def plot_locality(
 
 def _locality_panel(distance: Array, delta_e: Array, unit: str) -> Panel:
     """Return the density of changes over the distance, with maximum and median."""
-    visible = delta_e > MIN_DELTA_E
-    farthest = distance[visible].max(initial=0.1)
-    top = (farthest, max(delta_e.max(), 2 * MOVED_DELTA_E))
-    edges = np.linspace(0, farthest, BINS + 1)
-    marks = [
-        density(distance[visible], delta_e[visible], (0, MIN_DELTA_E), top),
-        *statistics_over(distance, delta_e, edges),
-        threshold(MOVED_DELTA_E, f"ΔE00 {MOVED_DELTA_E:g}"),
-    ]
-    x = Axis(f"distance from the entry, {unit}", limits=(0, 1.05 * farthest))
+    highest = max(delta_e.max(), 2 * MOVED_DELTA_E)
+    marks = density(distance, delta_e, MIN_DELTA_E, highest)
+    marks.append(threshold(MOVED_DELTA_E, f"ΔE00 {MOVED_DELTA_E:g}"))
+    x = Axis(f"distance from the entry, {unit}", limits=(0, None))
     y = Axis(f"ΔE00 change of a node, {NARROW_BAND_LIGHT}", log=True)
     return Panel(marks, "", x, y)
