@@ -11,7 +11,7 @@ import sys
 import time
 import traceback
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -123,6 +123,26 @@ def show(progress: Progress) -> None:
 def summary(errors: Array) -> Row:
     """Return number, mean, 95 % and maximum of errors."""
     return {"n": len(errors), **mean_p95_max(errors)}
+
+
+def with_printed(
+    rows: Iterable[Row],
+    table: str,
+    keys: Sequence[str],
+    **columns: Callable[[str], Any],
+) -> list[Row]:
+    """Add columns of a table in tests/reference, converted by functions, to the rows
+    that agree with its rows in ``keys``; None to others.
+    """
+    printed = {tuple(row[key] for key in keys): row for row in read_reference(table)}
+    joined = []
+    for row in rows:
+        same = printed.get(tuple(str(row[key]) for key in keys))
+        added = {}
+        for name, convert in columns.items():
+            added[f"thesis_{name}"] = same and convert(same[name])
+        joined.append(row | added)
+    return joined
 
 
 def read_reference(name: str) -> list[dict[str, str]]:

@@ -11,15 +11,14 @@ import sys
 import tempfile
 import warnings
 from dataclasses import replace
-from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
 
 import uplift
-from benchmarks import ROOT, Row, record
+from benchmarks import ROOT, Row
 from uplift.atlas import Atlas
-from uplift.extras.report.regression import LIMITS, compare_rebuilt
+from uplift.extras.report.regression import compare_rebuilt
 
 Variables = dict[str, str]
 CASES = {
@@ -36,115 +35,91 @@ NUMPY_SSE4 = {"NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR"}
 """numpy at its baseline. A feature is disabled by its own name only, those above it
 must be named too.
 """
-NUMPY_AVX2 = {"NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR"}
 XLA_SSE4 = {"XLA_FLAGS": "--xla_cpu_max_isa=SSE4_2"}
-XLA_AVX2 = {"XLA_FLAGS": "--xla_cpu_max_isa=AVX2"}
 BLAS_SSE4 = {"OPENBLAS_CORETYPE": "Nehalem"}
-BLAS_AVX2 = {"OPENBLAS_CORETYPE": "Haswell"}
-WITHOUT_AVX512 = NUMPY_AVX2 | XLA_AVX2 | BLAS_AVX2
-"""Environment of a process that computes as on a CPU with AVX2 and without AVX-512."""
-SAME = {
+AVX2 = {
+    "NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR",
+    "XLA_FLAGS": "--xla_cpu_max_isa=AVX2",
+    "OPENBLAS_CORETYPE": "Haswell",
+}
+THREADS: dict[str, Variables] = {
     "again": {},
     "one core": {},
     "1 thread of BLAS": {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
-    "2 threads of BLAS": {"OPENBLAS_NUM_THREADS": "2", "OMP_NUM_THREADS": "2"},
     "8 threads of BLAS": {"OPENBLAS_NUM_THREADS": "8"},
     "1 thread of XLA": {"NPROC": "1"},
     "16 threads of XLA": {"NPROC": "16"},
-    "no threads in a product of XLA": {
-        "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false"
-    },
     "3 devices": {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"},
 }
 """Environment variables of settings that must not change a byte."""
-APART = {
-    "numpy without AVX-512": NUMPY_AVX2,
+INSTRUCTIONS = {
     "numpy without AVX2": NUMPY_SSE4,
-    "XLA with AVX2": XLA_AVX2,
-    "XLA with AVX": {"XLA_FLAGS": "--xla_cpu_max_isa=AVX"},
     "XLA with SSE 4.2": XLA_SSE4,
-    "BLAS for Haswell (AVX2)": BLAS_AVX2,
     "BLAS for Sandy Bridge (AVX)": {"OPENBLAS_CORETYPE": "Sandybridge"},
     "BLAS for Nehalem (SSE 4.2)": BLAS_SSE4,
-    "all three without AVX-512": WITHOUT_AVX512,
+    "all three without AVX-512": AVX2,
     "all three without AVX": NUMPY_SSE4 | XLA_SSE4 | BLAS_SSE4,
 }
 """Environment variables of settings that must not change where the nodes lie."""
 PREFIXES = {"one core": ("taskset", "-c", "0")}
 """Commands before that of a setting."""
-
-
 BUILD = (
     "import sys; from benchmarks.determinism import build_cubes; "
     "build_cubes(sys.argv[1])"
 )
 
 
-def main() -> None:
-    """Build under all settings and compare."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        run("default", {}, folder)
-        same = [measure(*setting, folder) for setting in SAME.items()]
-        apart = [measure(*setting, folder) for setting in APART.items()]
-    record(
-        "determinism",
-        "stability-determinism",
-        cubes=list(CASES),
-        same=same,
-        apart=apart,
-    )
-    failed = [row["setting"] for row in same if row["different"]]
-    failed += [row["setting"] for row in apart if row["different_nodes"]]
-    print(
-        "settings that change bytes, or nodes across instruction sets: "
-        f"{', '.join(failed) or 'none'}"
-    )
-    raise SystemExit(bool(failed))
-
-
 def build_cubes(folder: str) -> None:
     """Build the cubes of all cases; names of entries get their atlas as prefix."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
-    for number, (names, options) in enumerate(CASES.values()):
+    for name, (atlases, options) in CASES.items():
         entries = []
-        for name in names:
+        for atlas in atlases:
             entries += [
-                replace(entry, name=f"{name} {entry.name}")
-                for entry in uplift.read_atlas(name)
+                replace(entry, name=f"{atlas} {entry.name}")
+                for entry in uplift.read_atlas(atlas)
             ]
-        uplift.build(Atlas(tuple(entries)), **options).save(f"{folder}/{number}.uplift")
+        uplift.build(Atlas(tuple(entries)), **options).save(f"{folder}/{name}.uplift")
 
 
-def run(name: str, variables: Variables, folder: Path) -> Path:
-    """Build the cubes in a process with a setting, into a folder of its name."""
-    into = folder / name
+def build_under(setting: str, variables: Variables, folder: Path) -> Path:
+    """Build the cubes in a process with a setting; return their folder."""
+    into = folder / setting
     into.mkdir()
-    command = [*PREFIXES.get(name, ()), sys.executable, "-c", BUILD, str(into)]
+    command = [*PREFIXES.get(setting, ()), sys.executable, "-c", BUILD, str(into)]
     # Code that was compiled under another setting must not be used.
     uncached = {"JAX_ENABLE_COMPILATION_CACHE": "false"}
     subprocess.run(command, env=os.environ | uncached | variables, cwd=ROOT, check=True)
     return into
 
 
-def measure(name: str, variables: Variables, folder: Path) -> Row:
-    """Build the cubes under a setting, and compare them with the default ones."""
-    into = run(name, variables, folder)
-    different = 0
-    different_nodes = 0
-    measures = []
-    for number in range(len(CASES)):
-        file = f"{number}.uplift"
-        first = folder / "default" / file
-        second = into / file
-        different += first.read_bytes() != second.read_bytes()
-        cubes = [uplift.load(path).data for path in (first, second)]
-        different_nodes += not np.array_equal(*(cube.lattice.nodes for cube in cubes))
-        measures.append(compare_rebuilt(second, *cubes).measures)
+def compare_settings(settings: dict[str, Variables]) -> list[Row]:
+    """Compare the cubes of every setting with the default ones."""
+    rows = []
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        default = build_under("default", {}, folder)
+        for setting, variables in settings.items():
+            other = build_under(setting, variables, folder)
+            for cube in CASES:
+                head = {"setting": setting, "cube": cube}
+                files = [into / f"{cube}.uplift" for into in (default, other)]
+                rows.append(head | compare_files(*files))
+    return rows
+
+
+def compare_files(first: Path, second: Path) -> Row:
+    """Compare bytes, nodes, and what `uplift check` limits."""
+    cubes = [uplift.load(path).data for path in (first, second)]
+    nodes = [cube.lattice.nodes for cube in cubes]
     return {
-        "setting": name,
-        "cubes": len(CASES),
-        "different": different,
-        "different_nodes": different_nodes,
-        "measures": {limit: max(map(itemgetter(limit), measures)) for limit in LIMITS},
+        "different": first.read_bytes() != second.read_bytes(),
+        "different_nodes": not np.array_equal(*nodes),
+        **compare_rebuilt(second, *cubes).measures,
     }
+
+
+QUESTIONS = {
+    "threads": lambda: compare_settings(THREADS),
+    "instructions": lambda: compare_settings(INSTRUCTIONS),
+}

@@ -7,7 +7,7 @@ from itertools import chain, product
 
 import numpy as np
 
-from benchmarks import Row, record
+from benchmarks import Row, record, six_numbers
 from benchmarks.materials import (
     FETCHED,
     SENSOR,
@@ -23,7 +23,6 @@ from uplift.common.arrays import Array
 from uplift.extras.photographs import Noise, Photographs, photograph, prepare
 from uplift.extras.photographs.errors import photographed
 from uplift.extras.report.measures import delta_e_under
-from uplift.lab.study import six_numbers
 from uplift.lab.timing import time_calls
 from uplift.lookup import Cube
 from uplift.lookup.errors_under_lights import Evidence, errors_from, evidence

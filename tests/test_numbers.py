@@ -70,8 +70,8 @@ def test_prose_has_no_number_of_its_own(path):
 
 def test_constants_data_and_stated_numbers():
     assert code("uplift.colorimetry.illuminants:TEMPERATURES.0") == 1000
-    place = "weights[channel=C2,order=7].printed.2"
-    assert datum("wavelengths", place) == 0.27643
+    place = "tables[table=eigenvalues,channel=C1].printed"
+    assert datum("meyer", place) == 2.29
     assert stated("2e−7", "uplift/models/model.py") == "2e−7"
     assert stated("501.5", "Meyer 1988, table 1a") == "501.5"
     with pytest.raises(ValueError, match="does not have"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from operator import attrgetter
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import click
@@ -22,7 +22,7 @@ from ..startup import use_one_blas_thread
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
     from uplift.lab.comparison.compare import Comparison
-    from uplift.lab.comparison.tuning import TunedFilter
+    from uplift.lab.statistics import Row
 
 FILES = ("compare-boxes.png", "compare-cost.png", "compare.html")
 SPECTRA = ("surfaces.csv", "lights.csv")
@@ -162,7 +162,7 @@ def _measure(
     *,
     filters: bool,
     quick: bool,
-) -> tuple[Comparison, tuple[TunedFilter, ...]]:
+) -> tuple[Comparison, list[Row]]:
     from uplift.lab.comparison.compare import compare, make_scene
     from uplift.lab.comparison.fitted import scene_representations
     from uplift.lab.comparison.tuning import COARSE_STRIDE, FINE_STRIDE, tune_filters
@@ -175,7 +175,7 @@ def _measure(
             scene, scene_representations(scene), quick=quick, progress=progress
         )
     if not filters:
-        return comparison, ()
+        return comparison, []
     with progress_bar("filters") as progress:
         return comparison, tune_filters(
             scene, COARSE_STRIDE if quick else FINE_STRIDE, progress=progress
@@ -187,26 +187,23 @@ def _print_advice(comparison: Comparison, tolerance: float) -> None:
     from uplift.lab.comparison.compare import cheapest
 
     for name, title in comparison.sets.items():
-        row = cheapest(comparison, name, tolerance)
+        rows = comparison.of(name)
+        row = cheapest(rows, tolerance)
         if row is None:
-            best = min(comparison.of(name), key=lambda result: result.statistics.q97_5)
-            text = (
-                f"none; the most accurate, {best.name}, has "
-                f"{format_error(best.statistics.q97_5)}"
-            )
+            best = min(rows, key=itemgetter("q97_5"))
+            name, error = best["representation"], format_error(best["q97_5"])
+            text = f"none; the most accurate, {name}, has {error}"
         else:
             text = (
-                f"{row.name} ({row.family}): 97.5 % below "
-                f"{format_error(row.statistics.q97_5)}, {row.floats:.4g} floats per "
-                f"surface, {row.light_floats:.4g} per light, "
-                f"{format_time(row.ns.median)} per product"
+                f"{row['representation']} ({row['family']}): 97.5 % below "
+                f"{format_error(row['q97_5'])}, {row['floats']:.4g} floats per "
+                f"surface, {row['light_floats']:.4g} per light, "
+                f"{format_time(row['ns'])} per product"
             )
         say(f"{title}: {text}")
 
 
-def _print_table(
-    comparison: Comparison, tuned: tuple[TunedFilter, ...], *, every: bool
-) -> None:
+def _print_table(comparison: Comparison, tuned: list[Row], *, every: bool) -> None:
     from uplift.extras.pages.format import format_time
     from uplift.lab.comparison.compare import HEADINGS, pareto
 
@@ -214,32 +211,28 @@ def _print_table(
     for name, title in comparison.sets.items():
         numbers = ("mean", "median", "97.5 %", "floats", "of a light", "product")
         table = make_table(("representation",), numbers, title=f"ΔE00 under {title}")
-        for row in comparison.of(name) if every else pareto(comparison, name):
-            errors = (row.statistics.mean, row.statistics.median, row.statistics.q97_5)
-            floats = map("{:.1f}".format, (row.floats, row.light_floats))
-            time = format_time(row.ns.median)
-            table.add_row(row.name, *map("{:.3f}".format, errors), *floats, time)
+        rows = comparison.of(name)
+        for row in rows if every else pareto(rows):
+            errors = (f"{row[key]:.3f}" for key in ("mean", "median", "q97_5"))
+            floats = (f"{row[key]:.1f}" for key in ("floats", "light_floats"))
+            time = format_time(row["ns"])
+            table.add_row(row["representation"], *errors, *floats, time)
         tables.append(table)
     if tuned:
         title = "point sampling after the best low-pass filter of each kind"
         texts = ("lights", "samples", "filter", "parameters")
-        table = make_table(texts, HEADINGS, title=title)
-        order = attrgetter("lights", "count", "statistics.mean")
-        for best in sorted(tuned, key=order):
-            setting = (best.lights, str(best.count), best.kind, best.parameters)
-            table.add_row(*setting, *map("{:.3f}".format, best.statistics))
+        table = make_table(texts, HEADINGS.values(), title=title)
+        for row in sorted(tuned, key=itemgetter("lights", "samples", "mean")):
+            errors = (f"{row[key]:.3f}" for key in HEADINGS)
+            table.add_row(*(str(row[key]) for key in texts), *errors)
         tables.append(table)
     show(*tables)
 
 
-def _print_records(
-    comparison: Comparison, tuned: tuple[TunedFilter, ...], style: str
-) -> None:
-    from uplift.lab.comparison.compare import records
-    from uplift.lab.comparison.tuning import filter_records
+def _print_records(comparison: Comparison, tuned: list[Row], style: str) -> None:
     from uplift.lab.timing import records_csv
 
-    tables = {"representations": records(comparison), "filters": filter_records(tuned)}
+    tables = {"representations": comparison.rows, "filters": tuned}
     if style == "json":
         print_json({"facts": dict(comparison.facts), **tables})
         return

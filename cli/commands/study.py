@@ -1,8 +1,8 @@
 """``uplift study``: measurements of models, solver and errors."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -141,31 +141,31 @@ def moments(
     style: str,
     force: bool,
 ) -> None:
-    from uplift.lab.study.moments import TECHNIQUES, study_moments
+    from uplift.lab.study.moments import study_moments
 
     atlases = read_atlases(files)
     check_folder(output, MOMENTS_PLOTS, inputs=atlas_files(files))
     with progress_bar("reconstructions") as progress:
-        study = study_moments(atlases, max_moments, progress)
+        study = study_moments(atlases, max_moments, progress=progress)
+    rows = study.rows()
     if output is not None:
         from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
 
         write_files(
             output,
             MOMENTS_PLOTS,
-            partial(plot_errors, {"all entries": study.curves()}),
+            partial(plot_errors, {"all entries": rows}),
             partial(plot_patches, study),
             partial(plot_worst, study),
         )
-    table = []
-    for count in range(max_moments + 1):
-        row = {"moments": str(count)}
-        for technique in TECHNIQUES:
-            errors = study.result(technique, count)
-            row[technique.label] = f"{errors.mean[0]:.2f} / {errors.max[0]:6.2f}"
-        table.append(row)
-    records = study.records()
-    _print(style, records, records, table, "mean / largest ΔE76 under D65")
+    counts = range(max_moments + 1)
+    table = [{"moments": str(count)} for count in counts]
+    cases = product(study.techniques, counts)
+    # The rows of all atlases together come first.
+    for (technique, count), row in zip(cases, rows, strict=False):
+        mean, largest = row["delta_e_76_D65_mean"], row["delta_e_76_D65_max"]
+        table[count][technique.label] = f"{mean:.2f} / {largest:6.2f}"
+    _print(style, rows, rows, table, "mean / largest ΔE76 under D65")
 
 
 @command.command(
@@ -256,33 +256,27 @@ def stability(
 ) -> None:
     enable_jit_cache()
     from uplift.lab.study.stability import (
-        NO_ATLAS,
+        DESIGN,
         QUICK_DESIGN,
-        SYNTHETIC_ATLASES,
-        DesignSpace,
         study_stability,
+        synthetic_atlases,
     )
 
-    atlases = read_atlases(files or (MACBETH,)) | {
-        name: make() for name, make in SYNTHETIC_ATLASES.items()
-    }
-    design = replace(
-        QUICK_DESIGN if quick else DesignSpace(), atlases=(NO_ATLAS, *atlases)
-    )
+    atlases = read_atlases(files or (MACBETH,)) | synthetic_atlases()
+    design = (QUICK_DESIGN if quick else DESIGN).with_atlases(atlases)
     check_folder(output, STABILITY_PLOTS, inputs=atlas_files(files))
     with progress_bar("builds") as progress:
-        results = study_stability(design.configs(), atlases, progress)
-    records = list(results.values())
+        rows = study_stability(design.configs(), atlases, progress)
     if output is not None:
         from uplift.lab.study.plots import plot_map
 
-        write_files(output, STABILITY_PLOTS, partial(plot_map, records))
-    table = _without(records, "success", "points", "stand_ins")
-    _print(style, records, records, table)
+        write_files(output, STABILITY_PLOTS, partial(plot_map, rows))
+    table = _without(rows, "success", "points", "stand_ins")
+    _print(style, rows, rows, table)
     if style == "table":
-        failed = [row["unfitted"] for row in records if row["unfitted"]]
-        nodes = sum(row["realisable"] for row in records)
-        builds = pluralise(len(records), "build")
+        failed = [row["unfitted"] for row in rows if row["unfitted"]]
+        nodes = sum(row["realisable"] for row in rows)
+        builds = pluralise(len(rows), "build")
         missed = pluralise(len(failed), "build")
         say(
             f"{builds}, {pluralise(nodes, 'realisable node')}: {sum(failed)} unfitted "
@@ -346,16 +340,17 @@ def sensitivity(
     from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
     from uplift.extras.report.rebuild import recorded_atlas, recorded_files
     from uplift.lab.chart.selection import perturb_method, select_methods
-    from uplift.lab.study.sensitivity import study_sensitivity
+    from uplift.lab.study.sensitivity import perturb, perturb_atlas
     from uplift.lookup import load
 
     others = select_methods(methods) if methods else ()
     loaded = load(cube)
+    data = loaded.data
     recorded: tuple[Path, ...] = ()
     atlas = None
     if cube is not None and entries:
-        recorded = recorded_files(loaded.data, cube, folders)
-        atlas = recorded_atlas(loaded.data, cube, folders)
+        recorded = recorded_files(data, cube, folders)
+        atlas = recorded_atlas(data, cube, folders)
     if output is not None and atlas is None:
         raise click.UsageError(
             "--output draws the effect of entries: it needs a CUBE with an atlas, and "
@@ -365,14 +360,16 @@ def sensitivity(
     of_methods = []
     for method in others:
         of_methods += perturb_method(method, observer.light(NARROW_BAND_LIGHT))
-    with progress_bar("builds") as progress:
-        moves, changes = study_sensitivity(loaded, atlas, entries, progress)
+    moves = perturb(loaded) + of_methods
+    changes = []
+    if atlas is not None:
+        with progress_bar("builds") as progress:
+            changes = perturb_atlas(data, atlas, entries, progress)
     if output is not None:
         from uplift.lab.study.plots import plot_locality
 
         write_files(output, SENSITIVITY_PLOTS, partial(plot_locality, changes))
-    moves += of_methods
-    record = {"moves": moves, "changes": [change.record() for change in changes]}
-    _print(style, record, (), moves)
-    if style == "table" and changes:
-        _print_table(record["changes"])
+    rows = [change.row() for change in changes]
+    _print(style, {"moves": moves, "changes": rows}, (), moves)
+    if style == "table" and rows:
+        _print_table(rows)

@@ -8,13 +8,7 @@ from numpy.testing import assert_allclose
 
 from benchmarks.accuracy import largest
 from benchmarks.cameras import lab_matrix, realisable_share, xyz_matrix
-from benchmarks.representations import (
-    Printed,
-    closed,
-    enhanced,
-    printed_filters,
-    printed_tables,
-)
+from benchmarks.representations import closed, enhanced, with_tables_6
 from uplift.colorimetry import observer, tables
 from uplift.extras.scene.representations.samples import xyz_weights
 
@@ -59,8 +53,8 @@ def test_a_sample_on_a_border_counts_twice():
 
 
 def test_thesis_tables_have_the_printed_values():
-    assert printed_tables()["spiky", "CS15"] == Printed(0.316, 0.816)
-    assert (
-        printed_filters()["spiky", 16, "mitchell"].parameters
-        == "extent 19, b -0.4, c 1"
-    )
+    row = {"lights": "spiky", "representation": "CS15"}
+    other = row | {"representation": "TM9"}
+    of_thesis = {"thesis_mean": 0.316, "thesis_q97_5": 0.816}
+    expected = [row | of_thesis, other | dict.fromkeys(of_thesis)]
+    assert with_tables_6([row, other]) == expected

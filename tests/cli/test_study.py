@@ -117,9 +117,10 @@ def test_held_out_has_the_same_numbers_in_all_formats(
 
 
 def test_stability(run, rows, home, monkeypatch, tcs):
-    design = stability.DesignSpace((4,), (), ("sRGB",), (1e-3, 1e-4), samples=1)
+    axes = {"dim": (4,), "space": ("sRGB",), "threshold": (1e-3, 1e-4)}
+    design = stability.DesignSpace((), axes, samples=1, usual_dim=4, small_dim=4)
     monkeypatch.setattr(stability, "QUICK_DESIGN", design)
-    monkeypatch.setattr(stability, "SYNTHETIC_ATLASES", {})
+    monkeypatch.setattr(stability, "synthetic_atlases", dict)
     compute_once(monkeypatch, stability, "study_stability")
     words = ("stability", "--quick", "--atlas", tcs)
     result = run("study", *words, "-o", "out")

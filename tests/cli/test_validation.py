@@ -38,7 +38,7 @@ COMPUTES = {
     "report": "uplift.extras.report.assessment.assess",
     "study held-out": "uplift.pipeline.entries.fit_constraints",
     "study moments": "uplift.lab.study.moments.Technique.moments",
-    "study sensitivity": "uplift.lab.study.sensitivity.study_sensitivity",
+    "study sensitivity": "uplift.lab.study.sensitivity.perturb_answers",
     "study stability": "uplift.lab.study.stability.study_stability",
     "texture": "uplift.extras.texture.sequence.convert",
     "wavelengths": "uplift.extras.scene.wavelengths.sampling.evaluate",

@@ -5,7 +5,6 @@ is found, pictures have all.
 import itertools
 import json
 import re
-from dataclasses import replace
 
 import matplotlib.image
 import numpy as np
@@ -17,30 +16,23 @@ from tests.browsing import check_page
 from tests.conftest import MACBETH
 from tests.helpers import raises, warns
 from tests.pages import Page
+from tools.render_docs import pick, where
 from uplift.atlas import Atlas, on_grid, read_atlas, write_atlas
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError, UpliftError
 from uplift.extras.emission.lamps import read_lamps
 from uplift.extras.scene.representations import find_representation
-from uplift.extras.scene.representations.composite import (
-    enhanced_riemann,
-    sun_composite,
-)
 from uplift.extras.scene.representations.filters import filtered_point_samples
-from uplift.extras.scene.representations.models import trigonometric_moments
 from uplift.extras.scene.representations.samples import (
     linear,
-    point_samples,
-    riemann_sums,
     wavelengths,
     xyz_weights,
 )
 from uplift.lab.comparison.compare import (
-    Comparison,
-    RepresentationResult,
+    COSTS,
+    Scene,
     cheapest,
     compare,
-    compute_statistics,
     error_statistics,
     make_scene,
     pareto,
@@ -54,8 +46,13 @@ from uplift.lab.comparison.pictures import (
     write_boxes,
     write_costs,
 )
-from uplift.lab.comparison.tuning import COARSE_STRIDE, NONE, candidates, tune_filters
-from uplift.lab.timing import TimingStats
+from uplift.lab.comparison.tuning import (
+    COARSE_STRIDE,
+    NONE,
+    candidates,
+    parameters,
+    tune_filters,
+)
 
 
 @pytest.fixture(scope="module")
@@ -65,33 +62,25 @@ def checker():
 
 @pytest.fixture(scope="module")
 def found(checker):
-    representations = [sun_composite(15), trigonometric_moments(9)]
-    for make in (point_samples, riemann_sums, enhanced_riemann):
-        representations += [make(16), make(32)]
-    return compare(checker, representations, quick=True)
+    compared = ["CS15", "TM9", "PS16", "PS32", "RS16", "RS32", "RE16", "RE32"]
+    return compare(checker, list(map(find_representation, compared)), quick=True)
 
 
 def test_errors_match_explicit_loops(checker):
     part = checker.sets[1]
-    samples = point_samples(16)
+    samples = find_representation("PS16")
     apart = []
-    for power in part.powers:
+    for power, surface in itertools.product(part.powers, checker.surfaces):
         white = power @ xyz_weights()
-        for surface in checker.surfaces:
-            product = samples.multiply(
-                samples.encode_light(power[None]), samples.encode_surface(surface[None])
-            )
-            pair = (
-                lab(samples.xyz(product)[0], white),
-                lab((power * surface) @ xyz_weights(), white),
-            )
-            apart.append(float(delta_e_2000(*pair)))
-    expected = [
-        np.mean(apart),
-        np.std(apart),
-        *np.quantile(apart, (0.5, 0.025, 0.25, 0.75, 0.975)),
-    ]
-    assert_allclose(error_statistics(samples, part), expected, rtol=1e-9)
+        light = samples.encode_light(power[None])
+        product = samples.multiply(light, samples.encode_surface(surface[None]))
+        dense = (power * surface) @ xyz_weights()
+        pair = lab(samples.xyz(product)[0], white), lab(dense, white)
+        apart.append(float(delta_e_2000(*pair)))
+    quantiles = np.quantile(apart, (0.5, 0.025, 0.25, 0.75, 0.975))
+    expected = [np.mean(apart), np.std(apart), *quantiles]
+    actual = list(error_statistics(samples, part).values())
+    assert_allclose(actual, expected, rtol=1e-9)
 
 
 def test_result_that_is_not_finite_is_an_error(checker):
@@ -104,84 +93,68 @@ def test_results_are_ranked_within_their_sets(checker, found):
     assert_allclose(checker.powers @ xyz_weights()[:, 1], 1)
     assert list(found.sets) == ["smooth", "spiky"]
     for name in found.sets:
-        means = [row.statistics.mean for row in found.of(name)]
+        means = [row["mean"] for row in found.of(name)]
         assert means == sorted(means)
         assert len(means) == 8
-    assert all(row.ns.median > 0 and row.ns.runs == 3 for row in found.results)
+    assert all(0 < row["ns_least"] <= row["ns"] <= row["ns_most"] for row in found.rows)
 
 
 def test_storage_includes_spikes(found):
-    (row,) = [row for row in found.of("spiky") if row.name == "RE16"]
-    assert row.floats == 16
-    assert 16 + 2 * 2 < row.light_floats < 16 + 2 * 10
-    (row,) = [row for row in found.of("spiky") if row.name == "TM9"]
-    assert (row.floats, row.light_floats) == (9, 81)
+    row = pick(found.of("spiky"), representation="RE16")
+    assert row["floats"] == 16
+    assert 16 + 2 * 2 < row["light_floats"] < 16 + 2 * 10
+    row = pick(found.of("spiky"), representation="TM9")
+    assert (row["floats"], row["light_floats"]) == (9, 81)
 
 
 def test_findings_of_the_thesis_hold_for_the_colorchecker(found):
-    smooth = {row.name: row.statistics.mean for row in found.of("smooth")}
-    spiky = {row.name: row.statistics.mean for row in found.of("spiky")}
+    smooth, spiky = (
+        {row["representation"]: row["mean"] for row in found.of(lights)}
+        for lights in found.sets
+    )
     assert all(smooth[f"{family}32"] < 1 for family in ("PS", "RS", "RE"))
     assert spiky["PS16"] > 10 * smooth["PS16"]
     assert spiky["RS16"] < spiky["PS32"] < spiky["PS16"]
     assert max(spiky["CS15"], spiky["RE16"]) < spiky["RS16"]
 
 
-@pytest.mark.parametrize(
-    "name", ["PS16", "PF32", "RS16", "PS16:gaussian:7:0.5", "TM9", "SG3"]
-)
+@pytest.mark.parametrize("name", ["PF32", "RS16", "PS16:gaussian:7:0.5", "TM9", "SG3"])
 def test_written_spectra_have_the_colours_of_the_representation(
     checker, name, tmp_path
 ):
     """They are read again as surfaces and lamps."""
     made = find_representation(name)
-    atlas = read_atlas(MACBETH)
-    scene = replace(checker, sets=checker.sets[:1])
-    for part, file in zip(
-        represent(made, scene, atlas.names), ("surfaces.csv", "lights.csv"), strict=True
-    ):
-        write_atlas(part, tmp_path / file)
-    surfaces = read_atlas(tmp_path / "surfaces.csv")
+    smooth = checker.sets[0]
+    written = represent(made, Scene((smooth,)), read_atlas(MACBETH).names)
+    paths = tmp_path / "surfaces.csv", tmp_path / "lights.csv"
+    for atlas, path in zip(written, paths, strict=True):
+        write_atlas(atlas, path)
     with warns("lamp-unit"):
-        lamps = read_lamps(tmp_path / "lights.csv")
-    assert (surfaces.names, lamps.names) == (atlas.names, scene.sets[0].lights)
-    code = made.encode_surface(scene.surfaces)
-    # A linear code of samples is that of a light too; models are multiplied with a flat
-    # one.
-    flat = made.encode_light(np.ones_like(scene.surfaces))
-    expected = made.xyz(made.multiply(flat, code) if name[:2] in ("TM", "SG") else code)
-    assert_allclose(
-        on_grid(surfaces, wavelengths()) @ xyz_weights(), expected, atol=1e-12
-    )
+        lamps = read_lamps(paths[1])
+    assert lamps.names == smooth.lights
+    code = made.encode_surface(smooth.reflectances)
+    if name[:2] in ("TM", "SG"):
+        # A linear code of samples is that of a light too.
+        code = made.multiply(made.encode_light(np.ones_like(smooth.reflectances)), code)
+    surfaces = on_grid(read_atlas(paths[0]), wavelengths())
+    assert_allclose(surfaces @ xyz_weights(), made.xyz(code), atol=1e-12)
     powers = on_grid(lamps, wavelengths()) @ xyz_weights()
-    light_xyz = made.xyz(made.encode_light(scene.powers))
+    light_xyz = made.xyz(made.encode_light(smooth.powers))
     assert_allclose(powers / powers[:, 1:2], light_xyz / light_xyz[:, 1:2], atol=1e-12)
 
 
 def test_negative_lobes_of_a_filter_are_clipped_with_a_warning(checker):
+    filtered = find_representation("PF16")
     with warns("entry-clipped"):
-        _, lights = represent(
-            find_representation("PF16"), checker, read_atlas(MACBETH).names
-        )
+        _, lights = represent(filtered, checker, read_atlas(MACBETH).names)
     assert min(entry.values.min() for entry in lights) == 0
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "XX4",
-        "SG5",
-        "TM18",
-        "PS16:gaussian:7:nan",
-        "PS",
-        "PS1",
-        "PS999",
-        "RS16:box:3",
-        "PS16:box:4",
-        "PS16:box:3:1",
-        "PS16:cone:3",
-    ],
-)
+UNKNOWN = """XX4 SG5 TM18 PS PS1 PS999 PS16:gaussian:7:nan RS16:box:3 PS16:box:4
+PS16:box:3:1 PS16:cone:3"""
+
+
+@pytest.mark.parametrize("name", UNKNOWN.split())
 def test_unknown_representations_raise(name):
     with raises(OptionError, "option"):
         find_representation(name)
@@ -197,99 +170,64 @@ def test_named_lights_form_one_set():
         make_scene({"none": Atlas()})
 
 
-def row(name, high, floats, light_floats=8.0, ns=5.0, lights="smooth"):
-    found = compute_statistics([high])
-    return RepresentationResult(
-        name, "made up", lights, found, floats, light_floats, TimingStats(ns, ns, ns, 3)
-    )
-
-
-ROWS = (
-    row("near", 0.2, 32.0),
-    row("even", 0.8, 9.0, 12.0, 30.0),
-    row("rough", 0.9, 9.0, 12.0, 3.0),
-    row("tabled", 0.7, 9.0, 81.0, 1.0),
-    row("far", 1.1, 3.0),
-    row("other", 0.1, 1.0, lights="spiky"),
-)
-FOUND = Comparison(
-    {}, {"smooth": "smooth lights (A)", "spiky": "spiky lights (FL2)"}, ROWS
-)
-
-
-@pytest.mark.parametrize(
-    ("target", "name"),
-    [(2.0, "far"), (1.0, "even"), (0.75, "tabled"), (0.5, "near"), (0.1, None)],
-)
-def test_surfaces_count_first_then_lights_then_errors(target, name):
-    best = cheapest(FOUND, "smooth", target)
-    assert (best and best.name) == name
-    assert cheapest(FOUND, "spiky", 0.5).name == "other"
-
-
-@pytest.mark.parametrize("target", [0, float("nan"), float("inf")])
-def test_target_must_be_positive(target):
-    with raises(OptionError, "option"):
-        cheapest(FOUND, "smooth", target)
+def test_surfaces_count_first_then_lights_then_errors():
+    rows = [
+        {"q97_5": 0.2, "floats": 32, "light_floats": 8},
+        {"q97_5": 0.8, "floats": 9, "light_floats": 12},
+        {"q97_5": 0.9, "floats": 9, "light_floats": 12},
+        {"q97_5": 0.7, "floats": 9, "light_floats": 81},
+        {"q97_5": 1.1, "floats": 3, "light_floats": 8},
+    ]
+    chosen = [cheapest(rows, target) for target in (2.0, 1.0, 0.75, 0.5, 0.1)]
+    assert chosen == [rows[4], rows[1], rows[3], rows[0], None]
+    for target in (0, float("nan"), float("inf")):
+        with raises(OptionError, "option"):
+            cheapest(rows, target)
 
 
 @pytest.fixture(scope="module")
 def tuned(checker):
     kinds = ("tent", "lanczos", "mitchell")
-    return {
-        (one.lights, one.kind): one
-        for one in tune_filters(checker, COARSE_STRIDE, kinds, (16,))
-    }
+    return tune_filters(checker, COARSE_STRIDE, kinds, (16,))
 
 
 @pytest.mark.parametrize("kind", ["tent", "lanczos"])
 def test_no_candidate_filter_is_better(checker, tuned, kind):
     part = checker.sets[1]
-    means = {
-        one: error_statistics(filtered_point_samples(16, one), part).mean
-        for one in candidates(kind, COARSE_STRIDE)
-    }
-    best = tuned[part.name, kind]
-    assert best.low_pass == min(means, key=means.__getitem__)
-    assert best.statistics.mean == pytest.approx(min(means.values()), rel=1e-9)
+    means = {}
+    for tried in candidates(kind, COARSE_STRIDE):
+        errors = error_statistics(filtered_point_samples(16, tried), part)
+        means[parameters(tried)] = errors["mean"]
+    best = pick(tuned, lights=part.name, filter=kind)
+    assert best["parameters"] == min(means, key=means.__getitem__)
+    assert best["mean"] == pytest.approx(min(means.values()), rel=1e-9)
 
 
 def test_filters_improve_point_sampling_under_spiky_lights(checker, tuned):
+    bare = find_representation("PS16")
     for part in checker.sets:
-        assert tuned[part.name, NONE].statistics == error_statistics(
-            point_samples(16), part
-        )
-    for kind in ("mitchell", "lanczos"):
-        assert (
-            tuned["spiky", kind].statistics.mean
-            < 0.3 * tuned["spiky", NONE].statistics.mean
-        )
+        unfiltered = pick(tuned, lights=part.name, filter=NONE)
+        assert unfiltered.items() >= error_statistics(bare, part).items()
+    means = {row["filter"]: row["mean"] for row in where(tuned, lights="spiky")}
+    assert max(means["mitchell"], means["lanczos"]) < 0.3 * means[NONE]
 
 
 def test_stored_tables_of_the_thesis_agree():
-    tables = {
-        (row["lights"], row["representation"]): row
-        for row in read_reference("representations_kment2011.csv")
-    }
+    tables = read_reference("representations_kment2011.csv")
     filters = read_reference("filters_kment2011.csv")
-    bare = [row for row in filters if row["filter"] == "none" and row["samples"] != "4"]
-    assert len(bare) == 4
-    for row in bare:
-        other = tables[row["lights"], f"PS{row['samples']}"]
-        assert (row["mean"], row["deviation"]) == (other["mean"], other["deviation"])
-    means = {
-        row["filter"]: float(row["mean"])
-        for row in filters
-        if (row["lights"], row["samples"]) == ("spiky", "16")
-    }
-    for kind, change in (
-        ("mitchell", -85.32),
-        ("lanczos", -83.89),
-        ("tent", -76.80),
-    ):  # table 7.1
-        assert 100 * (means[kind] / means["none"] - 1) == pytest.approx(
-            change, abs=0.005
-        )
+    for row in where(filters, filter="none"):
+        same = {"lights": row["lights"], "representation": f"PS{row['samples']}"}
+        for other in where(tables, **same):
+            assert (
+                other.items()
+                >= {key: row[key] for key in ("mean", "deviation")}.items()
+            )
+    spiky = where(filters, lights="spiky", samples="16")
+    means = {row["filter"]: float(row["mean"]) for row in spiky}
+    table_7_1 = {"mitchell": -85.32, "lanczos": -83.89, "tent": -76.80}
+    for kind, change in table_7_1.items():
+        ratio = means[kind] / means["none"]
+        assert 100 * (ratio - 1) == pytest.approx(change, abs=0.005)
 
 
 def test_files_are_images(found, tmp_path):
@@ -317,7 +255,7 @@ def test_page_has_every_representation_fits_and_is_accessible(found, tmp_path):
     assert [row["title"] for row in json.loads(data)] == known
     tables = [first_column(table[1:]) for table in Page(html).tables]
     for name in found.sets:
-        assert [result.name for result in found.of(name)] in tables
+        assert [row["representation"] for row in found.of(name)] in tables
     check_page(html, tmp_path)
 
 
@@ -331,7 +269,7 @@ def test_representations_fitted_to_a_scene_follow_its_products(fitted):
     scene, named = fitted
     (lights,) = scene.sets
     errors = {
-        name: error_statistics(named[name], lights).mean
+        name: error_statistics(named[name], lights)["mean"]
         for name in ("FW5", "FW12", "BF5", "CM9", "CM17")
     }
     assert errors["FW12"] < 0.1 < errors["FW5"] < 2
@@ -341,14 +279,11 @@ def test_representations_fitted_to_a_scene_follow_its_products(fitted):
     assert_array_equal(encode(lights.powers[::-1]), encode(lights.powers)[::-1])
 
 
-def costs_of(row):
-    return np.array([row.floats, row.light_floats, row.statistics.q97_5])
-
-
 def test_the_front_has_all_that_nothing_dominates(found):
     for name in found.sets:
-        front = pareto(found, name)
-        for row in found.of(name):
-            others = [costs_of(other) for other in front if other is not row]
-            is_beaten = np.all(others <= costs_of(row), axis=1).any()
+        rows = found.of(name)
+        front = pareto(rows)
+        for row in rows:
+            others = [COSTS(other) for other in front if other is not row]
+            is_beaten = np.all(np.array(others) <= COSTS(row), axis=1).any()
             assert is_beaten != (row in front)

@@ -10,7 +10,7 @@ from tests.helpers import near_black, raises, with_absent_points
 from uplift.common.errors import ColourError, OptionError
 from uplift.cube import contents
 from uplift.extras.export import write_coeff, write_npz, write_program
-from uplift.lab.study.sensitivity import study_sensitivity
+from uplift.lab.study.sensitivity import perturb
 from uplift.lookup import Cube
 from uplift.models import evaluate, reflectance
 
@@ -75,5 +75,5 @@ def test_formats_of_all_colours_reject_a_sparse_cube(sparse, tmp_path):
     with raises(ColourError, "colour-not-in-scene"):
         write_coeff(sparse, tmp_path / "cube.coeff", res=2)
     with raises(OptionError, "sparse-cube"):
-        study_sensitivity(Cube(sparse), None, 0)
+        perturb(Cube(sparse))
     assert not list(tmp_path.iterdir())

@@ -252,7 +252,7 @@ def test_spikes_multiply_exactly_on_constant_spectra(make):
 
 def test_moments_equal_the_integrals(checker):
     actual = trigonometric_moments(9).encode_surface(checker.surfaces)
-    exact = Technique(mirrored=True, warped=False).moments(
+    exact = Technique(mirrored=True, warp="none").moments(
         checker.surfaces, wavelengths(), 8
     )
     assert_allclose(actual, exact, atol=2e-5)

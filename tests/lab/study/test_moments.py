@@ -2,147 +2,127 @@
 of its page.
 """
 
-import warnings
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
-import uplift
-from benchmarks.moments import FLOATS, max_moments, read_thesis
+from benchmarks import read_reference
+from benchmarks.materials import read_atlases
 from tests.helpers import raises
+from tools.render_docs import pick, where
 from uplift.atlas import Atlas, read_atlas
 from uplift.colorimetry import observer
 from uplift.common.errors import AtlasError, OptionError
 from uplift.extras.scene.representations.samples import wavelengths
-from uplift.lab.study.moments import ALL_ATLASES, MAX_MOMENTS, TECHNIQUES, study_moments
+from uplift.lab.study.moments import (
+    ALL_ATLASES,
+    MAX_MOMENTS,
+    TECHNIQUES,
+    study_moments,
+)
 from uplift.models import Moments, duality, evaluate
 
-MIRRORED = [technique for technique in TECHNIQUES if technique.mirrored]
-UNMIRRORED = [technique for technique in TECHNIQUES if not technique.mirrored]
+MIRRORED = TECHNIQUES[:2]
+UNMIRRORED = TECHNIQUES[2:]
 
 
-def bumps(rows: int, wavelengths: np.ndarray) -> np.ndarray:
-    """Smooth reflectances (rows, N) in (0, 1) whose ends differ."""
-    rng = np.random.default_rng(2020)
-    slope, wave, shift = rng.normal(size=(3, rows, 1))
-    t = (wavelengths - 380) / 400
-    return (
-        0.5
-        + np.arctan(3 * slope * (t - 0.5) + 2 * wave * np.cos(7 * t + 3 * shift))
-        / np.pi
-    )
+@pytest.fixture
+def bumps():
+    """Smooth reflectances (20, 401) in (0, 1) whose ends differ."""
+    slope, wave, shift = np.random.default_rng(2020).normal(size=(3, 20, 1))
+    t = (wavelengths() - 380) / 400
+    angle = 3 * slope * (t - 0.5) + 2 * wave * np.cos(7 * t + 3 * shift)
+    return 0.5 + np.arctan(angle) / np.pi
 
 
-def by_label(techniques):
+def by_name(techniques):
     return pytest.mark.parametrize(
         "technique", techniques, ids=lambda technique: technique.short
     )
 
 
-@by_label(TECHNIQUES)
+@by_name(TECHNIQUES)
 def test_moments_equal_the_integrals(technique):
     """Compared with adaptive integration of the same piecewise linear function."""
     samples = np.array([380.0, 430, 520, 560, 640, 780])
-    values = np.array([[0.1, 0.9, 0.3, 0.35, 1.0, 0.6]])
+    values = np.array([0.1, 0.9, 0.3, 0.35, 1.0, 0.6])
     phase = technique.phase(samples)
-    actual = technique.moments(values, samples, 6)[0]
-    for j, moment in enumerate(actual):
+    actual = technique.moments(values[None], samples, 6)[0]
 
-        def part(phi, function, j=j):
-            return np.interp(phi, phase, values[0]) * function(-j * phi) / np.ptp(phase)
+    def moment(order, function):
+        def part(phi):
+            return np.interp(phi, phase, values) * function(-order * phi)
 
-        real = quad(
-            part, phase[0], phase[-1], (np.cos,), points=phase[1:-1], epsabs=1e-13
-        )[0]
-        assert moment.real == pytest.approx(real, abs=1e-12)
-        if not technique.mirrored:
-            imaginary = quad(
-                part, phase[0], phase[-1], (np.sin,), points=phase[1:-1], epsabs=1e-13
-            )[0]
-            assert moment.imag == pytest.approx(imaginary, abs=1e-12)
+        ends = phase[[0, -1]]
+        integral, _ = quad(part, *ends, points=phase[1:-1], epsabs=1e-13)
+        return integral / np.ptp(phase)
+
+    real = [moment(order, np.cos) for order in range(7)]
+    assert_allclose(actual.real, real, atol=1e-12)
+    if not technique.mirrored:
+        imaginary = [moment(order, np.sin) for order in range(7)]
+        assert_allclose(actual.imag, imaginary, atol=1e-12)
 
 
-@by_label(UNMIRRORED)
+@by_name(UNMIRRORED)
 @pytest.mark.parametrize("count", [0, 1, 4, 15])
-def test_reconstruction_has_its_complex_moments(technique, count):
+def test_reconstruction_has_its_complex_moments(technique, count, bumps):
     """Computed by the trapezoid rule on the circle, which converges exponentially."""
-    moments = technique.moments(bumps(20, wavelengths()), wavelengths(), count)
-    circle = -np.pi + 2 * np.pi * np.arange(1 << 14) / (1 << 14)
+    moments = technique.moments(bumps, wavelengths(), count)
+    circle = np.linspace(-np.pi, np.pi, 1 << 14, endpoint=False)
+    solve = duality.try_complex_multipliers
+    multipliers = duality.multipliers_from_moments(moments, solve)
     waves = duality.fourier_basis(circle, count + 1)
-    multipliers = duality.multipliers_from_moments(
-        moments, duality.try_complex_multipliers
-    )
     reflectance = 0.5 + np.arctan((multipliers @ waves.T).real) / np.pi
-    again = (
-        reflectance @ np.exp(-1j * circle[:, None] * np.arange(count + 1)) / len(circle)
-    )
-    assert_allclose(again, moments, rtol=0, atol=1e-10)
+    turns = np.exp(-1j * circle[:, None] * np.arange(count + 1))
+    assert_allclose(reflectance @ turns / len(circle), moments, rtol=0, atol=1e-10)
 
 
-@by_label(MIRRORED)
+@by_name(MIRRORED)
 @pytest.mark.parametrize("count", [3, 9, 16])
-def test_mirrored_moments_are_those_of_cubes(technique, count):
+def test_mirrored_moments_are_those_of_cubes(technique, count, bumps):
     """The model of cubes gives the same spectra and the same moments."""
-    model = Moments(count, warp="vision" if technique.warped else "none")
-    moments = technique.moments(bumps(20, wavelengths()), wavelengths(), count - 1)
+    model = Moments(count, warp=technique.warp)
+    moments = technique.moments(bumps, wavelengths(), count - 1)
     multipliers = model.from_storage(moments)
-    assert_allclose(
-        technique.reconstruct(moments, observer.grid()),
-        evaluate(model, multipliers, observer.grid()),
-        rtol=0,
-        atol=1e-12,
-    )
+    actual = technique.reconstruct(moments, observer.grid())
+    expected = evaluate(model, multipliers, observer.grid())
+    assert_allclose(actual, expected, rtol=0, atol=1e-12)
     assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=1e-10)
 
 
-@by_label(TECHNIQUES)
-def test_black_white_and_a_step_are_reconstructed(technique):
-    extremes = np.stack(
-        [np.zeros(401), np.ones(401), (wavelengths() > 580).astype(float)]
-    )
-    actual = technique.reconstruct(
-        technique.moments(extremes, wavelengths(), 15), observer.grid()
-    )
-    assert ((actual >= 0) & (actual <= 1)).all()
-    assert_allclose(actual[:2], [[0] * 81, [1] * 81], atol=1e-4)
-
-
 @pytest.fixture(scope="module")
-def study(repository):
-    """Study of all shipped atlases."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
-        return study_moments(
-            {
-                path.stem: read_atlas(path)
-                for path in sorted((repository / "atlases").glob("*.txt"))
-            }
-        )
+def rows():
+    """Errors of all shipped atlases together."""
+    return where(study_moments(read_atlases(), 12).rows(), atlas=ALL_ATLASES)
 
 
-@pytest.mark.parametrize("group", ["macbeth", ALL_ATLASES])
-def test_mirrored_techniques_have_the_least_error(study, group):
-    for floats in FLOATS:
-        means = np.array(
-            [
-                study.result(one, max_moments(one, floats), group).mean
-                for one in TECHNIQUES
-            ]
-        )
-        assert means[:2, 0].min() < means[2:, 0].min(), floats
-        if floats >= 9:
-            assert means[2:, -1].min() > 2.5 * means[:2, -1].min(), floats
+@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
+@pytest.mark.parametrize("floats", [3, 5, 9, 13])
+def test_mirrored_techniques_have_the_least_error(rows, floats):
+    mirrored, others = (
+        where(rows, floats=floats, mirrored=value) for value in (True, False)
+    )
+
+    def least(rows, name):
+        return min(row[name] for row in rows)
+
+    error = "delta_e_76_D65_mean"
+    assert least(mirrored, error) < least(others, error)
+    if floats >= 9:
+        assert 2.5 * least(mirrored, "rms_mean") < least(others, "rms_mean")
 
 
-def test_errors_agree_with_those_of_the_thesis(study):
-    thesis = read_thesis()
-    assert len(thesis) == 64
-    for technique in MIRRORED:
-        found = study.result(technique, 8)
-        assert found.mean[0] == pytest.approx(thesis[technique, 8][0], abs=0.2)
-        assert found.max[0] == pytest.approx(thesis[technique, 8][1], abs=0.35)
+@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
+@by_name(MIRRORED)
+def test_errors_agree_with_those_of_the_thesis(rows, technique):
+    row = pick(rows, mirrored=True, warped=technique.warped, moments=8)
+    table = read_reference("moments_todova2020.csv")
+    printed = pick(table, method=technique.short, moments="8")
+    mean, largest = row["delta_e_76_D65_mean"], row["delta_e_76_D65_max"]
+    assert mean == pytest.approx(float(printed["mean"]), abs=0.2)
+    assert largest == pytest.approx(float(printed["max"]), abs=0.35)
 
 
 def test_invalid_studies_are_refused(repository):

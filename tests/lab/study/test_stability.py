@@ -4,7 +4,6 @@ difficult as their names.
 
 import numpy as np
 import pytest
-from numpy.testing import assert_array_equal
 
 from tests.helpers import raises
 from uplift.colorimetry import observer
@@ -14,47 +13,37 @@ from uplift.common.errors import UnknownNameError
 from uplift.common.progress import Progress
 from uplift.lab.study import stability
 from uplift.lab.study.stability import (
-    SYNTHETIC_ATLASES,
-    DesignSpace,
+    DESIGN,
     RunConfig,
-    run,
+    evaluate,
     study_stability,
+    synthetic_atlases,
 )
 from uplift.lattice import Lattice, axis_nodes
 
 
 def test_build_is_evaluated_over_its_realisable_nodes():
-    result = run(RunConfig(dim=4, space="ITU-R BT.2020"), {})
-    sensor = observer.sensor("ITU-R BT.2020")
-    lattice = Lattice(axis_nodes("srgb", 4))
-    assert result["points"] == 64
-    assert (
-        result["realisable"] == solid(sensor.matrix).contains(lattice.points).sum() < 64
-    )
+    result = evaluate(RunConfig(dim=4, space="ITU-R BT.2020"), {})
+    nodes = Lattice(axis_nodes("srgb", 4)).points
+    inside = solid(observer.sensor("ITU-R BT.2020").matrix).contains(nodes)
+    assert result["points"] == 64 > inside.sum() == result["realisable"]
     assert (result["unfitted"], result["stand_ins"], result["success"]) == (0, 0, 1)
     assert result["worst"] <= result["threshold"]
-    assert lattice.points.tolist().count([result["r"], result["g"], result["b"]]) == 1
+    assert nodes.tolist().count([result["r"], result["g"], result["b"]]) == 1
 
 
 def test_study_runs_every_configuration_once_ordered_by_model(monkeypatch):
-    configs = [
-        RunConfig(dim=8),
-        RunConfig("sigmoid", 3),
-        RunConfig(dim=4),
-        RunConfig(dim=8),
-    ]
-    runs = []
+    first = RunConfig(dim=8)
+    configs = [first, RunConfig("sigmoid", 3), RunConfig(dim=4), first]
     events = []
-    monkeypatch.setattr(
-        stability, "run", lambda config, atlases: runs.append(config) or {}
-    )
+    monkeypatch.setattr(stability, "evaluate", lambda config, atlases: config)
     result = study_stability(configs, {}, events.append)
-    assert list(result) == runs == [configs[2], configs[0], configs[1]]
+    assert result == [configs[2], configs[0], configs[1]]
     assert events == [Progress("builds", done, 3) for done in (1, 2, 3)]
 
 
 def test_unknown_atlas_raises_before_any_build(monkeypatch):
-    monkeypatch.setattr(stability, "run", lambda *args: pytest.fail("a build ran"))
+    monkeypatch.setattr(stability, "evaluate", lambda *args: pytest.fail("a build ran"))
     with raises(UnknownNameError, "unknown-name"):
         study_stability([RunConfig(), RunConfig(atlas="paint")], {})
 
@@ -63,31 +52,24 @@ def test_sample_covers_every_value_of_every_axis():
     """A Latin hypercube of 12 has two points or more for each of up to five values of
     an axis.
     """
-    space = DesignSpace()
-    sample = space.sample()
-    assert sample == space.sample()
-    assert len(set(sample)) == space.samples == 12
-    for name, values in (
-        ("dim", [dim for dim in space.dims if dim <= 17]),
-        ("space", space.spaces),
-        ("threshold", space.thresholds),
-        ("atlas", space.atlases),
-        ("model_label", [variant.model_label for variant in space.variants]),
-    ):
-        assert {getattr(config, name) for config in sample} == set(values), name
+    design = DESIGN.with_atlases(("macbeth", "noisy"))
+    sample = list(design.sample())
+    assert sample == list(design.sample())
+    assert len(set(sample)) == design.samples == 12
+    for name, values in design.axes.items():
+        drawn = {getattr(config, name) for config in sample}
+        assert drawn == {value for value in values if name != "dim" or value <= 17}
+    models = {(config.model, config.coefficients) for config in sample}
+    assert len(models) == len(design.variants)
 
 
 def test_atlases_are_crowded_spiky_and_noisy(sensor):
-    atlases = []
-    for make in SYNTHETIC_ATLASES.values():
-        values = np.array([entry.values for entry in make()])
-        assert_array_equal([entry.values for entry in make()], values)
-        atlases.append(values)
-    crowded, spiky, noisy = atlases
+    atlases = synthetic_atlases()
+    spectra = [np.array([entry.values for entry in atlases[name]]) for name in atlases]
+    crowded, spiky, noisy = spectra
     lab = rgb_to_lab(sensor, sensor.rgb(crowded))
     distance = np.linalg.norm(lab[:, None] - lab, axis=-1) + 1e3 * np.eye(len(lab))
     assert np.median(distance.min(axis=1)) < 1
     assert (np.abs(np.diff(spiky, axis=1)).max(axis=1) > 0.2).all()
     assert np.diff(noisy, n=2, axis=1).std() == pytest.approx(0.05 * 6**0.5, rel=0.1)
-    assert noisy.min() < 0
-    assert noisy.max() > 1
+    assert noisy.min() < 0 < 1 < noisy.max()

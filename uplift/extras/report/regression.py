@@ -20,7 +20,7 @@ from uplift.lattice import Status
 from uplift.models import reflectance
 
 # Largest differences allowed between machines: at least thirty times the effect of
-# other instruction sets (docs/data/stability-determinism.json). On one machine there
+# other instruction sets (docs/data/determinism.json). On one machine there
 # are none, for any number of threads.
 LIMITS = {"rgb": 1e-6, "spectra_max": 1e-5, "spectra_rms": 1e-7} | {
     f"delta_e_{name}": 1e-4 for name in REGRESSION_LIGHTS

@@ -6,16 +6,15 @@ Measured reflectances under sets of lights, with the statistics of Kment 2011, s
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
-from typing import Any, NamedTuple
+from operator import itemgetter
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, Entry, merge, on_grid
-from uplift.colorimetry import delta_e_2000, observer
+from uplift.colorimetry import delta_e_2000
 from uplift.colorimetry.illuminants import Illuminant
 from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array
@@ -32,8 +31,9 @@ from uplift.extras.colour.light_sets import KMENT_LIGHTS
 from uplift.extras.scene.plan.candidates import front
 from uplift.extras.scene.representations import samples
 from uplift.extras.scene.representations.samples import Representation
-from uplift.extras.scene.wavelengths.sampling import RenderSetup
-from uplift.lab.timing import TimingStats, environment, time_laps
+from uplift.extras.scene.wavelengths.sampling import RenderSetup, make_setup
+from uplift.lab.statistics import Row, statistics
+from uplift.lab.timing import TimingStats, environment, time_short_call
 
 TIMING = (1024, 0.05, 7)
 QUICK_TIMING = (256, 0.005, 3)
@@ -88,84 +88,50 @@ def make_scene(
         raise AtlasError(
             "the atlases have no entries", hint="give an atlas of reflectances"
         )
-    observer.check_distinct(lights)
-    named: Mapping[str, tuple[Illuminant, ...]] = KMENT_LIGHTS
+    named: Mapping[str, Sequence[Illuminant]] = KMENT_LIGHTS
     if lights:
-        named = {"given": tuple(dict.fromkeys(lights))}
-    nm = samples.wavelengths()
+        named = {"given": lights}
+    surfaces = on_grid(merged, samples.wavelengths())
     weights = samples.xyz_weights()
-    surfaces = on_grid(merged, nm)
     sets = []
     for name, members in named.items():
-        spectra = [
-            observer.illuminant_spd(member, step=samples.STEP) for member in members
-        ]
-        powers = np.stack(spectra)
-        powers /= powers @ weights[:, 1:2]
-        labels = tuple(map(str, members))
-        sets.append(LightSet(nm, surfaces, labels, powers, weights, members, name))
+        setup = make_setup(surfaces, members, wavelengths=samples.wavelengths())
+        powers = setup.powers / (setup.powers @ weights[:, 1:2])
+        of_lights = setup.lights, powers, weights, setup.illuminants
+        sets.append(LightSet(setup.wavelengths, surfaces, *of_lights, name))
     return Scene(tuple(sets))
 
 
-HEADINGS = ("mean", "σ", "median", "2.5 %", "25 %", "75 %", "97.5 %")
-"""Headings of tables, in the order of `Statistics`."""
-
-
-class Statistics(NamedTuple):
-    """Mean, standard deviation, median and four quantiles in percent of ΔE00."""
-
-    mean: float
-    deviation: float
-    median: float
-    q2_5: float
-    q25: float
-    q75: float
-    q97_5: float
-
-
-def compute_statistics(errors: ArrayLike) -> Statistics:
-    """Compute the statistics of errors."""
-    values = np.asarray(errors, dtype=float).ravel()
-    low, first, median, third, high = np.quantile(
-        values, (0.025, 0.25, 0.5, 0.75, 0.975)
-    ).tolist()
-    return Statistics(
-        float(values.mean()), float(values.std()), median, low, first, third, high
-    )
-
-
-@dataclass(frozen=True)
-class RepresentationResult:
-    """Error and cost of a representation under a set of lights.
-
-    ``statistics``: ΔE00 between its products and the dense ones.
-    ``floats``, ``light_floats``: mean storage of a surface and of a light.
-    ``ns``: CPU time of all threads per product, of many products per call.
-    """
-
-    name: str
-    family: str
-    lights: str
-    statistics: Statistics
-    floats: float
-    light_floats: float
-    ns: TimingStats
+HEADINGS = {
+    "mean": "mean",
+    "deviation": "σ",
+    "median": "median",
+    "q2_5": "2.5 %",
+    "q25": "25 %",
+    "q75": "75 %",
+    "q97_5": "97.5 %",
+}
+"""Statistics of ΔE00 with their headings in tables."""
 
 
 @dataclass(frozen=True)
 class Comparison:
     """Results by mean error in each set of lights, and ``facts`` of the machine.
 
-    ``sets``: titles of the sets by name.
+    ``sets``: titles of the sets by name. ``rows``: ``lights``, the name of a set;
+    ``representation`` and its ``family``; `HEADINGS`, the statistics of ΔE00 between
+    its products and the dense ones; ``floats`` and ``light_floats``, the mean storage
+    of a surface and of a light; ``ns``, the CPU time of all threads per product, of
+    many products per call, with its range.
     """
 
     facts: Mapping[str, str]
     sets: Mapping[str, str]
-    results: tuple[RepresentationResult, ...]
+    rows: Sequence[Row]
 
-    def of(self, name: str) -> tuple[RepresentationResult, ...]:
-        """Return the results under a set of lights."""
-        return tuple(result for result in self.results if result.lights == name)
+    def of(self, name: str) -> list[Row]:
+        """Return the rows of a set of lights."""
+        return [row for row in self.rows if row["lights"] == name]
 
 
 def compare(
@@ -179,29 +145,31 @@ def compare(
 
     Raises `UpliftError`.
     """
-    sets = {light_set.name: light_set.title for light_set in scene.sets}
-    results = []
+    rows: list[Row] = []
     for done, representation in enumerate(representations, 1):
         for light_set in scene.sets:
-            light_floats, floats = representation.numbers(
-                light_set.powers, scene.surfaces
-            )
+            floats = representation.numbers(light_set.powers, scene.surfaces)
             errors = error_statistics(representation, light_set)
             ns = _time(representation, light_set, quick)
-            names = representation.name, representation.family, light_set.name
-            results.append(
-                RepresentationResult(*names, errors, floats, light_floats, ns)
+            rows.append(
+                {
+                    "lights": light_set.name,
+                    "representation": representation.name,
+                    "family": representation.family,
+                    **errors,
+                    "floats": floats[1],
+                    "light_floats": floats[0],
+                    "ns": ns.median,
+                    "ns_least": ns.min,
+                    "ns_most": ns.max,
+                }
             )
         progress(Progress("representations", done, len(representations)))
+    sets = {light_set.name: light_set.title for light_set in scene.sets}
     order = list(sets)
-    results.sort(
-        key=lambda result: (order.index(result.lights), result.statistics.mean)
-    )
-    facts = {
-        **environment(),
-        "products": f"{pluralise(len(scene.surfaces), 'surface')} under each light",
-    }
-    return Comparison(facts, sets, tuple(results))
+    rows.sort(key=lambda row: (order.index(row["lights"]), row["mean"]))
+    products = f"{pluralise(len(scene.surfaces), 'surface')} under each light"
+    return Comparison({**environment(), "products": products}, sets, rows)
 
 
 def represent(
@@ -236,7 +204,9 @@ def represent(
     )
 
 
-def error_statistics(representation: Representation, light_set: LightSet) -> Statistics:
+def error_statistics(
+    representation: Representation, light_set: LightSet
+) -> dict[str, float]:
     """Compute the errors of a representation under a set of lights. Raises
     `UpliftError`.
     """
@@ -247,7 +217,7 @@ def error_statistics(representation: Representation, light_set: LightSet) -> Sta
             f"{representation.name} returns values that are not finite under "
             f"{light_set.title}"
         )
-    return compute_statistics(errors)
+    return statistics(errors, *HEADINGS)
 
 
 def _time(
@@ -256,8 +226,8 @@ def _time(
     """CPU time of a product, in ns: each light of a set in turn, with many surfaces per
     call.
     """
-    rows, lap, runs = QUICK_TIMING if quick else TIMING
-    spectra = np.resize(light_set.reflectances, (rows, len(light_set.wavelengths)))
+    count, lap, runs = QUICK_TIMING if quick else TIMING
+    spectra = np.resize(light_set.reflectances, (count, len(light_set.wavelengths)))
     surfaces = representation.encode_surface(spectra)
     lights = [
         representation.encode_light(np.broadcast_to(power, spectra.shape))
@@ -268,7 +238,8 @@ def _time(
         for light in lights:
             representation.multiply(light, surfaces)
 
-    return time_laps(multiply, lap, runs).scaled(1e9 / (len(lights) * rows))
+    timing = time_short_call(multiply, lap, runs)
+    return timing.cpu.scaled(1e9 / (len(lights) * count))
 
 
 def check_target(target: float) -> float:
@@ -278,48 +249,23 @@ def check_target(target: float) -> float:
     return target
 
 
-def cheapest(
-    comparison: Comparison, lights: str, target: float
-) -> RepresentationResult | None:
-    """Choose the representation that stores least among those accurate enough under a
-    set of lights.
+COSTS = itemgetter("floats", "light_floats", "q97_5")
+"""Floats of a surface and of a light, and the error of 97.5 %."""
+
+
+def cheapest(rows: Iterable[Row], target: float) -> Row | None:
+    """Choose the representation that stores least among those accurate enough.
 
     Of equally small ones the smaller light, then the smaller error decides. Times are
     not considered: among representations of equal size they depend on other work of the
     machine. Raises `OptionError`.
     """
     check_target(target)
-    accurate = [
-        result for result in comparison.of(lights) if result.statistics.q97_5 <= target
-    ]
-    return min(accurate, key=_costs, default=None)
+    accurate = [row for row in rows if row["q97_5"] <= target]
+    return min(accurate, key=COSTS, default=None)
 
 
-def _costs(result: RepresentationResult) -> tuple[float, float, float]:
-    """Return the floats of a surface and of a light, and the error of 97.5 %."""
-    return result.floats, result.light_floats, result.statistics.q97_5
-
-
-def pareto(comparison: Comparison, lights: str) -> list[RepresentationResult]:
-    """Return the results that no other dominates in both floats and error of 97.5 %."""
-    results = comparison.of(lights)
-    costs = np.array(list(map(_costs, results)))
-    return [results[row] for row in sorted(front(costs))]
-
-
-def records(comparison: Comparison) -> list[dict[str, Any]]:
-    """Convert the results of a comparison to records."""
-    return [
-        {
-            "lights": result.lights,
-            "representation": result.name,
-            "family": result.family,
-            **result.statistics._asdict(),
-            "floats": result.floats,
-            "light_floats": result.light_floats,
-            "ns": result.ns.median,
-            "ns_least": result.ns.min,
-            "ns_most": result.ns.max,
-        }
-        for result in comparison.results
-    ]
+def pareto(rows: Sequence[Row]) -> list[Row]:
+    """Return the rows that no other dominates in both floats and error of 97.5 %."""
+    costs = np.array(list(map(COSTS, rows)))
+    return [rows[number] for number in sorted(front(costs))]

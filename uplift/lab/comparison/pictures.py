@@ -3,7 +3,9 @@
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import product
+from operator import itemgetter
 
 from uplift.common.arrays import StrPath
 from uplift.extras.pages.figure import OTHER, write_figure
@@ -12,12 +14,8 @@ from uplift.extras.pages.html import Tooltip, render
 from uplift.extras.pages.marks import Box, Mark, boxes, line, threshold
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw, page_svg
 from uplift.extras.pages.pareto import family_colours, front_panel
-from uplift.lab.comparison.compare import (
-    HEADINGS,
-    Comparison,
-    RepresentationResult,
-)
-from uplift.lab.comparison.tuning import TunedFilter
+from uplift.lab.comparison.compare import HEADINGS, Comparison
+from uplift.lab.statistics import Row
 
 COLOURS = {
     "point sampling": "#1f6fb4",
@@ -37,11 +35,11 @@ COLOURS = {
 """Colours of families; others are dark grey."""
 MIN_ERROR = 1e-3
 """Smaller ΔE00 are not visible and are drawn here."""
-COSTS: dict[Axis, Callable[[RepresentationResult], float]] = {
+COSTS: dict[Axis, Callable[[Row], float]] = {
     Axis("CPU time of a product", log=True, text=format_time): (
-        lambda result: max(result.ns.median, 1.0)
+        lambda row: max(row["ns"], 1.0)
     ),
-    Axis("floats stored of a surface", log=True): lambda result: result.floats,
+    Axis("floats stored of a surface", log=True): itemgetter("floats"),
 }
 BOX_SIZE = (4.1, 0.155)
 """Inches of the width of box plots, and of the height of a box."""
@@ -60,7 +58,7 @@ SOURCES = (
 
 def names(comparison: Comparison) -> list[str]:
     """Return the names of the representations; their order numbers the markers."""
-    return list(dict.fromkeys(result.name for result in comparison.results))
+    return list(dict.fromkeys(row["representation"] for row in comparison.rows))
 
 
 def cost_panels(comparison: Comparison) -> list[Panel]:
@@ -71,12 +69,13 @@ def cost_panels(comparison: Comparison) -> list[Panel]:
     panels: list[Panel] = []
     for (name, title), (axis, cost) in product(comparison.sets.items(), COSTS.items()):
         families: dict[str, list[Dot]] = {}
-        for result in sorted(comparison.of(name), key=lambda result: result.floats):
-            error = max(result.statistics.q97_5, MIN_ERROR)
-            colour = COLOURS.get(result.family, OTHER)
-            key = f"{len(panels)}-{rows.index(result.name)}"
-            dot = Dot(cost(result), error, result.name, colour, key=key)
-            families.setdefault(result.family, []).append(dot)
+        for row in sorted(comparison.of(name), key=itemgetter("floats")):
+            error = max(row["q97_5"], MIN_ERROR)
+            colour = COLOURS.get(row["family"], OTHER)
+            short = row["representation"]
+            key = f"{len(panels)}-{rows.index(short)}"
+            dot = Dot(cost(row), error, short, colour, key=key)
+            families.setdefault(row["family"], []).append(dot)
         dots = []
         joined = []
         for family, members in families.items():
@@ -105,14 +104,14 @@ def write_costs(comparison: Comparison, path: StrPath, *, force: bool = False) -
 
 def box_panel(comparison: Comparison, name: str) -> Panel:
     """Return box plots under a set of lights: quartiles, median, and 2.5 to 97.5 %."""
-    rows = []
-    for result in comparison.of(name):
-        values = result.statistics
-        low = max(values.q2_5, MIN_ERROR)
-        quantiles = (low, values.q25, values.median, values.q75, values.q97_5)
-        rows.append(Box(*quantiles, COLOURS.get(result.family, OTHER)))
-    marks = [boxes(rows), threshold(JUST_VISIBLE, axis="x")]
-    shown = Axis(names=[result.name for result in comparison.of(name)])
+    drawn = []
+    rows = comparison.of(name)
+    for row in rows:
+        low = max(row["q2_5"], MIN_ERROR)
+        box = Box(low, row["q25"], row["median"], row["q75"], row["q97_5"])
+        drawn.append(replace(box, colour=COLOURS.get(row["family"], OTHER)))
+    marks = [boxes(drawn), threshold(JUST_VISIBLE, axis="x")]
+    shown = Axis(names=[row["representation"] for row in rows])
     title = capitalise(comparison.sets[name])
     return Panel(marks, title, Axis("ΔE00", log=True), shown)
 
@@ -129,7 +128,7 @@ def write_boxes(comparison: Comparison, path: StrPath, *, force: bool = False) -
     write_figure(figure, path, force=force)
 
 
-def render_comparison(comparison: Comparison, tuned: Sequence[TunedFilter] = ()) -> str:
+def render_comparison(comparison: Comparison, tuned: Sequence[Row] = ()) -> str:
     """Render the page of a comparison."""
     pictures = []
     for panel in cost_panels(comparison):
@@ -139,7 +138,7 @@ def render_comparison(comparison: Comparison, tuned: Sequence[TunedFilter] = ())
         panel = box_panel(comparison, name)
         picture = page_svg(panel, _box_size(comparison))
         distributions.append((panel.title, picture))
-    families = [result.family for result in comparison.results]
+    families = [row["family"] for row in comparison.rows]
     return render(
         "lab/comparison/templates/page.html.j2",
         title=TITLE,
@@ -155,16 +154,14 @@ def render_comparison(comparison: Comparison, tuned: Sequence[TunedFilter] = ())
 
 
 def _tooltip(name: str, comparison: Comparison) -> Tooltip:
-    results = [result for result in comparison.results if result.name == name]
-    lines = [("floats of a surface", f"{results[0].floats:.1f}")]
-    for result in results:
-        errors = (
-            f"{format_error(result.statistics.mean)} / "
-            f"{format_error(result.statistics.q97_5)}"
-        )
+    rows = [row for row in comparison.rows if row["representation"] == name]
+    lines = [("floats of a surface", f"{rows[0]['floats']:.1f}")]
+    for row in rows:
+        lights = row["lights"]
+        errors = f"{format_error(row['mean'])} / {format_error(row['q97_5'])}"
         lines += [
-            (f"{result.lights}: ΔE00, mean / 97.5 %", errors),
-            (f"{result.lights}: floats of a light", f"{result.light_floats:.1f}"),
-            (f"{result.lights}: product", format_time(result.ns.median)),
+            (f"{lights}: ΔE00, mean / 97.5 %", errors),
+            (f"{lights}: floats of a light", f"{row['light_floats']:.1f}"),
+            (f"{lights}: product", format_time(row["ns"])),
         ]
-    return {"title": name, "family": results[0].family, "lines": lines}
+    return {"title": name, "family": rows[0]["family"], "lines": lines}

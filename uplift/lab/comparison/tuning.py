@@ -4,9 +4,7 @@ alike.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import product
-from typing import Any
 
 import numpy as np
 
@@ -15,12 +13,9 @@ from uplift.common.arrays import Array
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.extras.scene.representations import filters, samples
 from uplift.extras.scene.representations.filters import Filter
-from uplift.lab.comparison.compare import (
-    LightSet,
-    Scene,
-    Statistics,
-    error_statistics,
-)
+from uplift.extras.scene.representations.samples import Representation
+from uplift.lab.comparison.compare import LightSet, Scene, error_statistics
+from uplift.lab.statistics import Row
 
 COUNTS = (4, 8, 16)
 """Numbers of samples after a filter in the thesis."""
@@ -28,30 +23,6 @@ NONE = "none"
 FINE_STRIDE = 1
 COARSE_STRIDE = 5
 """A search tries every first or every fifth choice of each parameter."""
-
-
-@dataclass(frozen=True)
-class TunedFilter:
-    """The best filter of a kind, ``none`` for unfiltered samples, and its errors under
-    a set of lights.
-    """
-
-    kind: str
-    count: int
-    lights: str
-    low_pass: Filter | None
-    statistics: Statistics
-
-    @property
-    def parameters(self) -> str:
-        """Return the filter's parameters as text."""
-        if self.low_pass is None:
-            return ""
-        text = f"extent {self.low_pass.extent}"
-        names = filters.KINDS[self.kind].choices
-        for name, value in zip(names, self.low_pass.parameters, strict=True):
-            text += f", {name} {value:g}"
-        return text
 
 
 def candidates(kind: str, stride: int = FINE_STRIDE) -> list[Filter]:
@@ -69,14 +40,13 @@ def tune_filters(
     kinds: Sequence[str] = tuple(filters.KINDS),
     counts: Sequence[int] = COUNTS,
     progress: ProgressCallback = ignore_progress,
-) -> tuple[TunedFilter, ...]:
+) -> list[Row]:
     """Search the best filter of each kind, for each number of samples and each set of
-    lights.
+    lights; rows without a filter have the kind ``none``.
     """
-    results = []
+    rows = []
     for count, light_set in product(counts, scene.sets):
-        errors = error_statistics(samples.point_samples(count), light_set)
-        results.append(TunedFilter(NONE, count, light_set.name, None, errors))
+        rows.append(_row(light_set, count, NONE, "", samples.point_samples(count)))
     tasks = list(product(kinds, counts))
     for done, (kind, count) in enumerate(tasks, 1):
         tried = candidates(kind, stride)
@@ -84,10 +54,25 @@ def tune_filters(
         for light_set in scene.sets:
             best = tried[_mean_errors(light_set, count, encoders).argmin()]
             filtered = filters.filtered_point_samples(count, best)
-            errors = error_statistics(filtered, light_set)
-            results.append(TunedFilter(kind, count, light_set.name, best, errors))
+            rows.append(_row(light_set, count, kind, parameters(best), filtered))
         progress(Progress("filters", done, len(tasks)))
-    return tuple(results)
+    return rows
+
+
+def _row(
+    light_set: LightSet, count: int, kind: str, text: str, sampled: Representation
+) -> Row:
+    head = {"lights": light_set.name, "samples": count, "filter": kind}
+    return {**head, "parameters": text, **error_statistics(sampled, light_set)}
+
+
+def parameters(low_pass: Filter) -> str:
+    """Return extent and parameters of a filter as text."""
+    text = f"extent {low_pass.extent}"
+    names = filters.KINDS[low_pass.kind].choices
+    for name, value in zip(names, low_pass.parameters, strict=True):
+        text += f", {name} {value:g}"
+    return text
 
 
 def _mean_errors(light_set: LightSet, count: int, encoders: Iterable[Array]) -> Array:
@@ -103,17 +88,3 @@ def _mean_errors(light_set: LightSet, count: int, encoders: Iterable[Array]) -> 
         lab = light_set.to_lab(to_xyz(products))
         errors.append(delta_e_2000(lab, light_set.lab).mean())
     return np.array(errors)
-
-
-def filter_records(tuned: Iterable[TunedFilter]) -> list[dict[str, Any]]:
-    """Convert tuned filters to records."""
-    return [
-        {
-            "lights": best.lights,
-            "samples": best.count,
-            "filter": best.kind,
-            "parameters": best.parameters,
-            **best.statistics._asdict(),
-        }
-        for best in tuned
-    ]

@@ -9,18 +9,19 @@ measurement, as in Tódová 2020, *Constrained Spectral Uplifting*, table 4.1, s
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product, starmap
-from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, merge, on_grid
-from uplift.colorimetry import delta_e_1976, delta_e_2000, lab, observer
-from uplift.common.arrays import Array, Complex, Indices
+from uplift.colorimetry import delta_e_1976, lab, observer
+from uplift.common.arrays import Array, Complex
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.extras.colour.light_sets import REPORT_LIGHTS
+from uplift.extras.report.measures import delta_e_under
 from uplift.extras.scene.representations import samples
+from uplift.lab.statistics import Row, statistics
 from uplift.models import Moments, duality
 
 
@@ -31,13 +32,17 @@ class Technique:
     ``mirrored``: map [start, end] nm to the half circle [−π, 0] and mirror it, which
     makes the moments real.
         Otherwise the range covers the circle [−π, π], and its two ends meet.
-    ``warped``: warp the phase towards wavelengths to which the eye is sensitive, by the
-    ``warp`` of this name.
+    ``warp``: name of the warp of the phase towards wavelengths to which the eye is
+    sensitive, or ``none``.
     """
 
     mirrored: bool
-    warped: bool
-    warp: str = "vision"
+    warp: str
+
+    @property
+    def warped(self) -> bool:
+        """Whether the phase is warped."""
+        return self.warp != "none"
 
     @property
     def short(self) -> str:
@@ -56,7 +61,7 @@ class Technique:
 
     def phase(self, wavelengths: ArrayLike) -> Array:
         """Phases (N,) of wavelengths (N,)."""
-        half = Moments(warp=self.warp if self.warped else "none").phase(wavelengths)
+        half = Moments(warp=self.warp).phase(wavelengths)
         return half if self.mirrored else 2 * half + np.pi
 
     def moments(
@@ -94,10 +99,8 @@ class Technique:
         return 0.5 + np.arctan((multipliers @ waves.T).real) / np.pi
 
 
-TECHNIQUES = tuple(starmap(Technique, product((True, False), repeat=2)))
-"""All techniques, in the order of the tables of the thesis."""
-
-
+TECHNIQUES = tuple(starmap(Technique, product((True, False), ("vision", "none"))))
+"""The techniques of the thesis, in the order of its tables."""
 MAX_MOMENTS = 32
 """Largest number of cosines that a 5 nm grid still resolves."""
 MEASURES = ("delta_e_76_D65", *(f"delta_e_00_{name}" for name in REPORT_LIGHTS), "rms")
@@ -108,97 +111,57 @@ ALL_ATLASES = "all"
 """Name of the group of all entries."""
 
 
-class MomentsResult(NamedTuple):
-    """Mean and largest errors (len(MEASURES),) of a group, and the entry with the
-    largest ΔE76.
-    """
-
-    mean: Array
-    max: Array
-    worst: int
-
-
 @dataclass(frozen=True, eq=False)
 class MomentsStudy:
     """Errors of every entry for every technique and number of moments.
 
     ``names``, ``atlases``: names and atlases of the E entries. ``measured`` (E, N):
     reflectances at `uplift.extras.scene.representations.samples.wavelengths`.
-    ``errors`` (4, max_moments + 1, E, len(MEASURES)): errors, by the order of
-    `TECHNIQUES` and by moments from 0.
+    ``errors`` (T, max_moments + 1, E, len(MEASURES)): errors, by the order of the
+    techniques and by moments from 0.
     """
 
     names: tuple[str, ...]
     atlases: tuple[str, ...]
     measured: Array
+    techniques: tuple[Technique, ...]
     errors: Array
 
-    @property
-    def max_moments(self) -> int:
-        """Largest number of moments."""
-        return self.errors.shape[1] - 1
-
-    @property
-    def groups(self) -> tuple[str, ...]:
-        """Names of the groups: all entries, and every atlas."""
-        return (ALL_ATLASES, *dict.fromkeys(self.atlases))
-
-    def rows(self, group: str = ALL_ATLASES) -> Indices:
-        """Entries of a group."""
-        atlases = np.array(self.atlases)
-        return np.flatnonzero((group == ALL_ATLASES) | (atlases == group))
-
-    def result(
-        self, technique: Technique, moments: int, group: str = ALL_ATLASES
-    ) -> MomentsResult:
-        """Summarise the errors of a group for one technique and number of moments."""
-        rows = self.rows(group)
-        errors = self.errors[TECHNIQUES.index(technique), moments, rows]
-        worst = int(rows[errors[:, 0].argmax()])
-        return MomentsResult(errors.mean(axis=0), errors.max(axis=0), worst)
-
-    def curves(self) -> dict[Technique, Array]:
-        """Numbers stored, mean and largest ΔE76 (max_moments + 1, 3) of all entries
-        together, by technique.
+    def rows(self) -> list[Row]:
+        """Return mean and maximum of every measure for all entries and for those of
+        each atlas, by technique and count.
         """
-        counts = range(self.max_moments + 1)
-        floats = [list(map(technique.floats, counts)) for technique in TECHNIQUES]
-        errors = self.errors[..., 0]
-        curves = np.stack([floats, errors.mean(axis=2), errors.max(axis=2)], axis=-1)
-        return dict(zip(TECHNIQUES, curves, strict=True))
-
-    def records(self) -> list[dict[str, Any]]:
-        """Return a flat record for every group, technique and count, with mean and
-        maximum of every measure.
-        """
-        counts = range(self.max_moments + 1)
-        return list(starmap(self._record, product(self.groups, TECHNIQUES, counts)))
-
-    def _record(self, group: str, technique: Technique, moments: int) -> dict[str, Any]:
-        result = self.result(technique, moments, group)
-        errors = {}
-        for row, name in enumerate(MEASURES):
-            errors[f"{name}_mean"] = float(result.mean[row])
-            errors[f"{name}_max"] = float(result.max[row])
-        return {
-            "atlas": group,
-            "entries": len(self.rows(group)),
-            "mirrored": technique.mirrored,
-            "warped": technique.warped,
-            "moments": moments,
-            "floats": technique.floats(moments),
-            **errors,
-            "worst": self.names[result.worst],
-        }
+        everywhere = np.ones(len(self.names), dtype=bool)
+        groups = {ALL_ATLASES: everywhere}
+        for atlas in dict.fromkeys(self.atlases):
+            groups[atlas] = np.array(self.atlases) == atlas
+        rows = []
+        cases = product(groups, self.techniques, range(self.errors.shape[1]))
+        for group, technique, moments in cases:
+            (members,) = groups[group].nonzero()
+            errors = self.errors[self.techniques.index(technique), moments, members]
+            row = {
+                "atlas": group,
+                "entries": len(members),
+                "mirrored": technique.mirrored,
+                "warped": technique.warped,
+                "moments": moments,
+                "floats": technique.floats(moments),
+            }
+            for name, values in zip(MEASURES, errors.T, strict=True):
+                row |= statistics(values, "mean", "max", prefix=f"{name}_")
+            rows.append(row | {"worst": self.names[members[errors[:, 0].argmax()]]})
+        return rows
 
 
 def study_moments(
     atlases: Mapping[str, Atlas],
     max_moments: int = 15,
+    techniques: tuple[Technique, ...] = TECHNIQUES,
     progress: ProgressCallback = ignore_progress,
 ) -> MomentsStudy:
-    """Reduce every entry to 0 … ``max_moments`` moments, and reconstruct it, by all
-    four techniques.
+    """Reduce every entry to 0 … ``max_moments`` moments, and reconstruct it, by several
+    techniques.
     """
     if not 0 <= max_moments <= MAX_MOMENTS:
         raise OptionError(
@@ -214,27 +177,22 @@ def study_moments(
     measured = on_grid(atlas, samples.wavelengths())
     original = measured[:, :: samples.TABLE_STRIDE]
     lights = [observer.light(name) for name in REPORT_LIGHTS]
+    d65 = lights[0]
 
-    def labs(spectra: Array) -> list[Array]:
-        return [lab(spectra @ light.xyz.T, light.white) for light in lights]
+    def to_lab(spectra: Array) -> Array:
+        return lab(spectra @ d65.xyz.T, d65.white)
 
-    expected = labs(original)
     counts = max_moments + 1
-    errors = np.empty((len(TECHNIQUES), counts, len(measured), len(MEASURES)))
-    for row, technique in enumerate(TECHNIQUES):
-        moments = technique.moments(measured, samples.wavelengths(), max_moments)
-        for count in range(counts):
-            spectra = technique.reconstruct(moments[:, : count + 1], observer.grid())
-            actual = labs(spectra)
-            rms = np.sqrt(((spectra - original) ** 2).mean(axis=1))
-            delta_e = [
-                delta_e_1976(actual[0], expected[0]),
-                *map(delta_e_2000, actual, expected),
-            ]
-            errors[row, count] = np.stack([*delta_e, rms], axis=1)
-            done = row * counts + count + 1
-            progress(Progress("reconstructions", done, len(TECHNIQUES) * counts))
-    origins: list[str] = []
-    for name, entries in atlases.items():
-        origins += [name] * len(entries)
-    return MomentsStudy(atlas.names, tuple(origins), measured, errors)
+    errors = np.empty((len(techniques), counts, len(measured), len(MEASURES)))
+    cases = list(product(range(len(techniques)), range(counts)))
+    for done, (row, count) in enumerate(cases, 1):
+        technique = techniques[row]
+        moments = technique.moments(measured, samples.wavelengths(), count)
+        spectra = technique.reconstruct(moments, observer.grid())
+        delta_e_76 = delta_e_1976(to_lab(spectra), to_lab(original))
+        delta_e_00 = delta_e_under(lights, spectra, original)
+        rms = np.sqrt(((spectra - original) ** 2).mean(axis=1))
+        errors[row, count] = np.column_stack([delta_e_76, delta_e_00, rms])
+        progress(Progress("reconstructions", done, len(cases)))
+    origins = [name for name in atlases for _ in atlases[name]]
+    return MomentsStudy(atlas.names, tuple(origins), measured, techniques, errors)

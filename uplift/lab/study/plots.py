@@ -3,6 +3,7 @@ an entry affects a cube.
 """
 
 from collections.abc import Mapping, Sequence
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,13 @@ from uplift.extras.pages.figure import ACCENT, BAND, HIGHLIGHT, write_figure
 from uplift.extras.pages.marks import density, line, threshold
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw, spectra_panel
 from uplift.extras.scene.representations import samples
-from uplift.lab.study.moments import TECHNIQUES, MomentsStudy, Technique
+from uplift.lab.statistics import Row
+from uplift.lab.study.moments import (
+    ALL_ATLASES,
+    TECHNIQUES,
+    MomentsStudy,
+    Technique,
+)
 from uplift.lab.study.sensitivity import MOVED_DELTA_E, Change
 from uplift.models import Sigmoid
 
@@ -26,25 +33,25 @@ PATCHES = ("neutral 5 (.70 D)", "blue flower")
 """Patches of the ColorChecker in the thesis."""
 WARPED, UNWARPED = TECHNIQUES[:2]
 COLOURS = {WARPED: "#d1495b", UNWARPED: "#1f6fb4"}
+KIND = itemgetter("atlas", "mirrored", "warped")
 
 
 def plot_errors(
-    rows: Mapping[str, Mapping[Technique, Array]], path: StrPath, *, force: bool = False
+    sets: Mapping[str, Sequence[Row]], path: StrPath, *, force: bool = False
 ) -> None:
-    """Write mean and largest ΔE76 over the numbers stored as PNG, a row of panels per
-    name.
-
-    Each technique has an array (n, 3) of numbers stored, mean and largest error, as of
-    `MomentsStudy.curves`.
+    """Write mean and largest ΔE76 over the numbers stored as PNG, a row of panels for
+    the rows of each name, as of `MomentsStudy.rows`.
     """
     panels = []
-    for name, curves in rows.items():
-        for column, title in ((1, "mean"), (2, "largest")):
+    for name, rows in sets.items():
+        for statistic, title in (("mean", "mean"), ("max", "largest")):
             marks = []
-            for technique, curve in curves.items():
-                style = _style(technique)
-                label = technique.label
-                marks.append(line(curve[:, 0], curve[:, column], label, **style))
+            for technique in TECHNIQUES:
+                kind = (ALL_ATLASES, technique.mirrored, technique.warped)
+                drawn = [row for row in rows if KIND(row) == kind]
+                floats = [row["floats"] for row in drawn]
+                errors = [row[f"delta_e_76_D65_{statistic}"] for row in drawn]
+                marks.append(line(floats, errors, technique.label, **_style(technique)))
             x = Axis("numbers stored per spectrum")
             y = Axis("ΔE76 under D65", log=True)
             panels.append(Panel(marks, f"{name}: {title}", x, y))
@@ -77,7 +84,7 @@ def plot_worst(study: MomentsStudy, path: StrPath, *, force: bool = False) -> No
 
 
 def _drawn_moments(study: MomentsStudy) -> int:
-    return min(FLOATS - 1, study.max_moments)
+    return min(FLOATS, study.errors.shape[1]) - 1
 
 
 def _plot_spectra(
@@ -122,7 +129,7 @@ def plot_map(
     for each build, in every panel.
 
     Dots to the right of the line are failures, hollow ones builds with failed stand-ins
-    of unrealisable nodes. ``runs`` are records of `uplift.lab.study.stability.run`.
+    of unrealisable nodes. ``runs`` are rows of `uplift.lab.study.stability.evaluate`.
     """
     panels = []
     for option in PANELS:

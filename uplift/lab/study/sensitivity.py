@@ -4,18 +4,18 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 from scipy.spatial.distance import cdist
 
 from uplift.atlas import HIGHEST, LOWEST, Atlas, Entry
 from uplift.colorimetry import Light, delta_e_spectra, observer, rgb_to_lab
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.cube import CubeData
 from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
+from uplift.lab.statistics import Row, statistics
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
 from uplift.pipeline.build import build
@@ -34,9 +34,9 @@ HALVINGS = 16
 """Halvings of a step, after which that of an 8-bit code is rounding."""
 HALVED = 16
 """Number of colours whose steps are halved."""
+MEAN_AND_MOST = ("mean", "most")
 MOVED_DELTA_E = 0.5
 """ΔE00 above which a node counts as moved: half of a just noticeable difference."""
-Record = dict[str, Any]
 Answer = Callable[[Array], Array]
 """From linear RGB (n, 3) to reflectances (n, N), or from 8-bit codes to linear RGB."""
 
@@ -56,74 +56,63 @@ class Change:
     delta_e: Array
     distance: Array | None
 
-    @property
-    def moved(self) -> Mask:
-        """Nodes (n,) that change by more than `MOVED_DELTA_E`."""
-        return self.delta_e > MOVED_DELTA_E
-
-    def record(self) -> Record:
-        """Convert to JSON values; the radii are the largest distances of moved nodes, 0
-        if no node moved.
+    def row(self) -> Row:
+        """Summarise the change: the share of nodes that move by more than
+        `MOVED_DELTA_E`, their largest distances, 0 if none moved, and statistics.
         """
+        moved = self.delta_e > MOVED_DELTA_E
         radii = [None, None]
         if self.distance is not None:
-            radii = self.distance[:, self.moved].max(axis=1, initial=0).tolist()
+            radii = self.distance[:, moved].max(axis=1, initial=0).tolist()
         return {
             "change": self.description,
-            "moved": float(self.moved.mean()),
+            "moved": float(moved.mean()),
             "rgb_radius": radii[0],
             "lab_radius": radii[1],
-            **_mean_and_most("delta_e", self.delta_e),
-            **_mean_and_most("rms", self.rms),
+            **statistics(self.delta_e, *MEAN_AND_MOST, prefix="delta_e_"),
+            **statistics(self.rms, *MEAN_AND_MOST, prefix="rms_"),
         }
 
 
-def study_sensitivity(
-    cube: Cube,
-    atlas: Atlas | None,
-    entries: int,
-    progress: ProgressCallback = ignore_progress,
-) -> tuple[list[Record], list[Change]]:
-    """Perturb queries, and rebuild the cube with changes of its atlas, ``entries`` of
-    them one at a time.
+def comparison_light(data: CubeData) -> Light:
+    """Return the light under which answers of a cube are compared."""
+    sensor = data.sensor
+    return observer.light(NARROW_BAND_LIGHT, sensor.observer, *sensor.range)
 
-    Returns the changes of the answers, and those of the nodes, none without an atlas.
-    """
+
+def perturb_atlas(
+    data: CubeData,
+    atlas: Atlas,
+    count: int,
+    progress: ProgressCallback = ignore_progress,
+) -> list[Change]:
+    """Rebuild a cube with changes of its atlas, ``count`` entries one at a time."""
+    options = recorded_options(data.provenance["options"])
+    before = rebuild(atlas.entries, options)
+    kept = [entry for entry in atlas.entries if entry.name in before.atlas.names]
+    jobs = list(changed_atlases(kept, before.atlas.names[:count]))
+    changes = []
+    for number, (description, name, changed) in enumerate(jobs, 1):
+        after = rebuild(changed, options)
+        changes.append(
+            compare(before, after, comparison_light(data), description, name)
+        )
+        progress(Progress("builds", number, len(jobs)))
+    return changes
+
+
+def perturb(cube: Cube, count: int = COLOURS) -> list[Row]:
+    """Perturb the queries of every mode of a cube. Raises `OptionError`."""
     data = cube.data
     if data.complete_cells is not None:
         problem = "a sparse cube has no answers between the cells of its scene"
         raise OptionError(problem, code="sparse-cube", hint="build it without a scene")
-    light = observer.light(NARROW_BAND_LIGHT, data.sensor.observer, *data.sensor.range)
-    changes = []
-    if atlas is not None and entries > 0:
-        options = recorded_options(data.provenance["options"])
-        before = rebuild(atlas.entries, options)
-        kept = [entry for entry in atlas.entries if entry.name in before.atlas.names]
-        jobs = list(changed_atlases(kept, before.atlas.names[:entries]))
-        for number, (description, name, changed) in enumerate(jobs, 1):
-            after = rebuild(changed, options)
-            changes.append(compare(before, after, light, description, name))
-            progress(Progress("builds", number, len(jobs)))
-    return perturb(cube, light), changes
-
-
-def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Record]:
-    """Move random colours, uniform in 8-bit codes, by every step and compare the
-    answers of every mode.
-
-    Every channel moves up or down, at random, by the full step. ``rms`` is the change
-    of the reflectance over wavelength, ``largest`` that at any wavelength; ``light``
-    and ``own`` are ΔE00 under a light and under the illuminant of the cube, where the
-    change of the query causes it. ``_mean`` and ``_most`` are over the colours.
-    ``jump`` is the largest ΔE00 under the light that remains when steps are halved: 0
-    but for rounding, unless answers jump.
-    """
-    lights = light, cube.data.sensor.light
-    moves: list[Record] = []
+    lights = comparison_light(data), data.sensor.light
+    rows: list[Row] = []
     for mode in CONTINUOUS_MODES:
         answer = partial(cube.reflectance, mode=mode)
-        moves += perturb_answers(mode, answer, cube.decode, lights, count)
-    return moves
+        rows += perturb_answers(mode, answer, cube.decode, lights, count)
+    return rows
 
 
 def perturb_answers(
@@ -132,9 +121,16 @@ def perturb_answers(
     decode: Answer,
     lights: tuple[Light, Light],
     count: int = COLOURS,
-) -> list[Record]:
-    """Perturb the queries of a function, as `perturb` does; of two lights the second
-    one defines its RGB.
+) -> list[Row]:
+    """Move random colours, uniform in 8-bit codes, by every step and compare the
+    answers; of two lights the second one defines the RGB.
+
+    Every channel moves up or down, at random, by the full step. ``rms`` is the change
+    of the reflectance over wavelength, ``largest`` that at any wavelength; ``light``
+    and ``own`` are ΔE00 under the lights; the change of the query causes that of
+    ``own``. ``_mean`` and ``_most`` are over the colours. ``jump`` is the largest ΔE00
+    under the first light that remains when steps are halved: 0 but for rounding, unless
+    answers jump.
     """
     rng = np.random.default_rng(5)
     codes = rng.uniform(1, 254, (count, 3))
@@ -143,45 +139,40 @@ def perturb_answers(
     moved = {name: decode(codes + step * signs) for name, step in CODE_STEPS.items()}
     moved["1e-7"] = np.clip(rgb + 1e-7 * signs, 0, 1)  # rounding of a float32
     before = answer(rgb)
-    moves: list[Record] = []
+    rows = []
     for step, colours in moved.items():
         after = answer(colours)
-        delta_e, of_illuminant = (
-            delta_e_spectra(light, before, after) for light in lights
-        )
-        largest = np.argsort(delta_e)[-HALVED:]
+        light, own = (delta_e_spectra(light, before, after) for light in lights)
+        largest = np.argsort(light)[-HALVED:]
         ends = rgb[largest], colours[largest]
-        moves.append(
+        rows.append(
             {
                 "mode": mode,
                 "step": step,
-                **_mean_and_most("rms", _rms(after - before)),
+                **statistics(_rms(after - before), *MEAN_AND_MOST, prefix="rms_"),
                 "largest": float(np.abs(after - before).max()),
-                **_mean_and_most("light", delta_e),
-                **_mean_and_most("own", of_illuminant),
+                **statistics(light, *MEAN_AND_MOST, prefix="light_"),
+                **statistics(own, *MEAN_AND_MOST, prefix="own_"),
                 "jump": _largest_jump(answer, lights[0], *ends),
             }
         )
-    return moves
+    return rows
 
 
 def _largest_jump(answer: Answer, light: Light, first: Array, second: Array) -> float:
     """Halve the steps between colours (n, 3), keep the halves with the larger ΔE00, and
     return the largest one left.
     """
-    before = answer(first)
-    after = answer(second)
+
+    def change(begin: Array, end: Array) -> Array:
+        return delta_e_spectra(light, answer(begin), answer(end))
+
     for _ in range(HALVINGS):
         middle = (first + second) / 2
-        between = answer(middle)
-        to_middle = delta_e_spectra(light, before, between)
-        from_middle = delta_e_spectra(light, between, after)
-        is_first = (to_middle > from_middle)[:, None]
+        is_first = (change(first, middle) > change(middle, second))[:, None]
         first = np.where(is_first, first, middle)
         second = np.where(is_first, middle, second)
-        before = np.where(is_first, before, between)
-        after = np.where(is_first, between, after)
-    return float(delta_e_spectra(light, before, after).max())
+    return float(change(first, second).max())
 
 
 def changed_atlases(
@@ -235,7 +226,7 @@ def compare(
     return Change(description, rms, delta_e_spectra(light, *spectra), distance)
 
 
-def rebuild(entries: Sequence[Entry], options: Record) -> CubeData:
+def rebuild(entries: Sequence[Entry], options: Row) -> CubeData:
     """Build a cube from entries without the warnings that changed entries cause."""
     with warnings.catch_warnings(action="ignore", category=UpliftWarning):
         return build(Atlas(tuple(entries)), **options).data
@@ -243,7 +234,3 @@ def rebuild(entries: Sequence[Entry], options: Record) -> CubeData:
 
 def _rms(difference: Array) -> Array:
     return np.sqrt((difference**2).mean(axis=1))
-
-
-def _mean_and_most(name: str, values: Array) -> Record:
-    return {f"{name}_mean": float(values.mean()), f"{name}_most": float(values.max())}

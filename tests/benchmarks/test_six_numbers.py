@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from benchmarks import six_numbers
 from benchmarks.materials import materials
 from uplift.colorimetry import observer
-from uplift.lab.study import six_numbers
 
 
 @pytest.fixture(scope="module")
@@ -68,17 +68,3 @@ def test_the_posterior_mean_is_that_of_joint_gaussians(matrix):
         gain = of_both[:81, 81:] @ np.linalg.inv(of_both[81:, 81:])
         change = gain @ (numbers[row] - matrix @ expected[row])
         assert_allclose(moved[row], expected[row] + change, atol=1e-10)
-
-
-def test_numbers_without_noise_are_kept_and_noise_moves_less(chart, matrix):
-    covariance = np.cov(chart.T) + 1e-6 * np.eye(81)
-    expected = chart.mean(axis=0) + 0 * chart
-    numbers = chart @ matrix.T
-    exact = six_numbers.posterior_mean(
-        expected, covariance, matrix, no_noise(len(chart), matrix), numbers
-    )
-    assert_allclose(exact @ matrix.T, numbers, atol=1e-7)
-    noisy = six_numbers.posterior_mean(
-        expected, covariance, matrix, np.ones_like(numbers), numbers
-    )
-    assert np.abs(noisy - expected).max() < np.abs(exact - expected).max()
