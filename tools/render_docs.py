@@ -108,9 +108,58 @@ def table(rows: Iterable[Row], caller: Callable[[], str]) -> str:
     row.
     """
     heading, pattern = filter(None, caller().splitlines())
-    rule = " | ".join(["---"] * (heading.count(" | ") + 1))
     body = [RowFormatter().vformat(pattern, (), row) for row in rows]
+    return markdown(heading, body)
+
+
+def markdown(heading: str, body: Iterable[str]) -> str:
+    """Return a Markdown table of lines whose cells are separated by bars."""
+    rule = " | ".join(["---"] * (heading.count(" | ") + 1))
     return "".join(f"| {line} |\n" for line in (heading, rule, *body))
+
+
+def wide(rows: Iterable[Row], down: str, across: str) -> list[Row]:
+    """Return a row for each combination of the columns ``down`` (words), which has the
+    rows of that combination by their values ``across``: ``{A.mean:.2f}`` is a cell.
+    """
+    found: dict[tuple[Any, ...], dict[str, Any]] = {}
+    for row in rows:
+        names = {column: row[column] for column in down.split()}
+        found.setdefault(tuple(names.values()), names)[str(row[across])] = row
+    return list(found.values())
+
+
+def pivot(rows: Sequence[Row], down: str, across: str, cell: str) -> str:
+    """Return `wide` rows as a Markdown table whose cells have a pattern, such as
+    ``{mean:.2f} / {p95:.2f}``.
+    """
+    columns = list(dict.fromkeys(str(row[across]) for row in rows))
+    body = []
+    for row in wide(rows, down, across):
+        cells = [number(row[name]) for name in down.split()]
+        for name in columns:
+            known = name in row
+            cells.append(RowFormatter().vformat(cell, (), row[name]) if known else "")
+        body.append(" | ".join(cells))
+    return markdown(" | ".join([*down.split(), *columns]), body)
+
+
+def average(rows: Iterable[Row], by: str) -> list[Row]:
+    """Return the means of the floats of rows that agree in the columns ``by``
+    (words).
+    """
+    groups: dict[tuple[Any, ...], list[Row]] = {}
+    for row in rows:
+        groups.setdefault(tuple(row[name] for name in by.split()), []).append(row)
+    found: list[Row] = []
+    for names, same in groups.items():
+        means = {
+            column: statistics.fmean(row[column] for row in same)
+            for column, value in same[0].items()
+            if isinstance(value, float)
+        }
+        found.append(means | dict(zip(by.split(), names, strict=True)))
+    return found
 
 
 def leaves(
@@ -247,6 +296,9 @@ def render(name: str, data: Mapping[str, Any] | None = None) -> dict[Path, str]:
         "table": table,
         "where": where,
         "pick": pick,
+        "wide": wide,
+        "pivot": pivot,
+        "average": average,
     }
     environment.globals |= functions | {
         "long_table": long_table,

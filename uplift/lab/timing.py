@@ -1,5 +1,6 @@
-"""Timings with median and range, the environment in which they are taken, and records
-of both.
+"""Timings of calls and processes, and the environment in which they are taken.
+
+numpy is not imported here: its threads are limited by `ONE_THREAD` before that.
 """
 
 import contextlib
@@ -10,17 +11,21 @@ import re
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic_core import to_jsonable_python
 
 from uplift.common.version import version
 from uplift.extras.files.csv import csv_text
+
+if TYPE_CHECKING:
+    from uplift.common.arrays import Values
 
 PACKAGES = ("numpy", "scipy", "jax", "colour-science", "safetensors")
 ONE_THREAD = {
@@ -41,10 +46,14 @@ CODE = (
 of the package.
 """
 SOURCES = Path(__file__).parents[1]
+RUNS = 5
 MIN_RUNS = 3
-"""Fewest runs."""
+"""Fewest runs of a short call."""
 MAX_LAPS = 75
-"""Duration of all runs in units of the shortest, unless `MIN_RUNS` take longer."""
+"""Duration of all runs of a short call in units of a lap, unless `MIN_RUNS` take
+longer.
+"""
+Result = TypeVar("Result")
 
 
 @dataclass(frozen=True)
@@ -63,28 +72,163 @@ class TimingStats:
         )
 
 
-def timing_stats(values: list[float]) -> TimingStats:
+def timing_stats(values: Sequence[float]) -> TimingStats:
     """Summarise the values of several runs."""
     return TimingStats(statistics.median(values), min(values), max(values), len(values))
+
+
+@dataclass(frozen=True)
+class Run:
+    """Wall and CPU seconds of a call or a process, and the peak memory of a process in
+    MB.
+    """
+
+    wall: float
+    cpu: float
+    megabytes: float = 0.0
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Runs of one call or process. CPU seconds are those of all threads."""
+
+    runs: tuple[Run, ...]
+
+    @property
+    def wall(self) -> TimingStats:
+        """Wall seconds."""
+        return timing_stats([run.wall for run in self.runs])
+
+    @property
+    def cpu(self) -> TimingStats:
+        """CPU seconds."""
+        return timing_stats([run.cpu for run in self.runs])
+
+    @property
+    def megabytes(self) -> float:
+        """Peak memory of a process."""
+        return max(run.megabytes for run in self.runs)
+
+    def ratio_to(self, other: "Timing") -> TimingStats:
+        """CPU seconds relative to those of another, run by run: load of the machine
+        that lasts longer than a run cancels if they were timed in turn.
+        """
+        pairs = zip(self.runs, other.runs, strict=True)
+        return timing_stats([run.cpu / reference.cpu for run, reference in pairs])
+
+
+def stopwatch(function: Callable[[], Result]) -> tuple[Result, Run]:
+    """Call a function; return its result and the time."""
+    begin = time.perf_counter()
+    begin_cpu = time.process_time()
+    result = function()
+    cpu = time.process_time() - begin_cpu
+    return result, Run(time.perf_counter() - begin, cpu)
+
+
+def run_call(function: Callable[[], object]) -> Run:
+    """Time a call, whose result must be complete when it returns."""
+    return stopwatch(function)[1]
+
+
+def run_command(
+    command: Sequence[str | Path],
+    *,
+    variables: Mapping[str, str] | None = None,
+    folder: Path | None = None,
+) -> Run:
+    """Time a process and those that it waits for. Raises `RuntimeError` if it fails.
+
+    A process counts the memory that this one has when it is started as its own.
+    """
+    environ = os.environ | (variables or {})
+    with tempfile.TemporaryFile() as problems:
+        begin = time.perf_counter()
+        child = subprocess.Popen(
+            command, env=environ, cwd=folder, stdout=subprocess.DEVNULL, stderr=problems
+        )
+        _, status, usage = os.wait4(child.pid, 0)
+        wall = time.perf_counter() - begin
+        child.returncode = os.waitstatus_to_exitcode(status)
+        if child.returncode:
+            problems.seek(0)
+            text = problems.read().decode(errors="replace")
+            raise RuntimeError(f"{' '.join(map(str, command))} failed\n{text}")
+    kilobytes = usage.ru_maxrss  # on Linux
+    return Run(wall, usage.ru_utime + usage.ru_stime, kilobytes / 1024)
+
+
+def time_in_turn(
+    tasks: Mapping[str, Callable[[], Run]], runs: int = RUNS
+) -> dict[str, Timing]:
+    """Time tasks, `run_call` or `run_command` of something, in turn: round by round,
+    so that all of them share the load of the machine.
+    """
+    found: dict[str, list[Run]] = {name: [] for name in tasks}
+    for _ in range(runs):
+        for name, task in tasks.items():
+            found[name].append(task())
+    return {name: Timing(tuple(of_task)) for name, of_task in found.items()}
+
+
+def time_call(function: Callable[[], object], runs: int = RUNS) -> Timing:
+    """Time calls. The caller has called the function, which warms it up, and has
+    checked the answer.
+    """
+    return Timing(tuple(run_call(function) for _ in range(runs)))
+
+
+def time_short_call(
+    function: Callable[[], object], lap: float, runs: int = RUNS
+) -> Timing:
+    """Time a call after one that warms up, by up to ``runs`` runs that repeat it for at
+    least ``lap`` CPU seconds.
+    """
+    function()
+    once = max(run_call(function).cpu, 1e-7)
+    calls = max(1, round(lap / once))
+
+    def run() -> None:
+        for _ in range(calls):
+            function()
+
+    affordable = max(MIN_RUNS, int(MAX_LAPS * lap / (calls * once)))
+    laps = time_call(run, min(affordable, runs)).runs
+    return Timing(tuple(Run(run.wall / calls, run.cpu / calls) for run in laps))
+
+
+def time_command(
+    command: Sequence[str | Path],
+    runs: int = RUNS,
+    *,
+    variables: Mapping[str, str] | None = None,
+) -> Timing:
+    """Time a process several times."""
+    timed = (run_command(command, variables=variables) for _ in range(runs))
+    return Timing(tuple(timed))
+
+
+def check_answer(answer: "Values", expected: "Values", tolerance: float) -> float:
+    """Return the largest difference of an answer; raise `RuntimeError` if it exceeds
+    the tolerance or is not a number, as there is nothing to time then.
+    """
+    worst = float(abs(answer - expected).max())
+    if not worst <= tolerance:
+        raise RuntimeError(
+            f"wrong answer, not timed: differs by {worst:g}, more than {tolerance:g}"
+        )
+    return worst
+
+
+# Earlier names, until every page is converted.
 
 
 def time_calls(
     function: Callable[[], object], runs: int
 ) -> tuple[TimingStats, TimingStats]:
-    """Measure wall and CPU seconds of repeated calls.
-
-    The caller has called the function once to warm up. Asynchronous results must be
-    complete when it returns.
-    """
-    wall = []
-    cpu = []
-    for _ in range(runs):
-        begin = time.perf_counter()
-        begin_cpu = time.process_time()
-        function()
-        wall.append(time.perf_counter() - begin)
-        cpu.append(time.process_time() - begin_cpu)
-    return timing_stats(wall), timing_stats(cpu)
+    """Return wall and CPU seconds of `time_call`."""
+    timing = time_call(function, runs)
+    return timing.wall, timing.cpu
 
 
 def children_cpu(function: Callable[[], object]) -> float:
@@ -95,41 +239,16 @@ def children_cpu(function: Callable[[], object]) -> float:
 
 
 def time_laps(function: Callable[[], object], lap: float, runs: int) -> TimingStats:
-    """Measure the CPU seconds of a call after one that warms up, by up to ``runs`` runs
-    of at least ``lap`` seconds.
-    """
-    function()
-    once = max(time_calls(function, 1)[1].median, 1e-7)
-    calls = max(1, round(lap / once))
-
-    def run() -> None:
-        for _ in range(calls):
-            function()
-
-    affordable = max(MIN_RUNS, int(MAX_LAPS * lap / (calls * once)))
-    return time_calls(run, min(affordable, runs))[1].scaled(1 / calls)
+    """Return CPU seconds of `time_short_call`."""
+    return time_short_call(function, lap, runs).cpu
 
 
 def time_process(
     command: list[str], runs: int, variables: dict[str, str] | None = None
 ) -> tuple[TimingStats, float]:
-    """Measure the wall seconds of a process, and its peak memory in MB (Linux counts in
-    kB).
-    """
-    wall = []
-    peak = 0
-    for _ in range(runs):
-        begin = time.perf_counter()
-        quiet = subprocess.DEVNULL
-        child = subprocess.Popen(
-            command, env=os.environ | (variables or {}), stdout=quiet, stderr=quiet
-        )
-        _, status, usage = os.wait4(child.pid, 0)
-        wall.append(time.perf_counter() - begin)
-        peak = max(peak, usage.ru_maxrss)
-        if status:
-            raise RuntimeError(f"{' '.join(command)} failed")
-    return timing_stats(wall), peak / 1024
+    """Return wall seconds and peak memory of `time_command`."""
+    timing = time_command(command, runs, variables=variables)
+    return timing.wall, timing.megabytes
 
 
 def environment() -> dict[str, str]:
