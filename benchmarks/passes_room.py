@@ -10,17 +10,16 @@ those of the representation alone.
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from benchmarks import DOCS, Row, mitsuba_scenes
 from benchmarks.checker import Layout, chart
+from benchmarks.passes import without_family
 from uplift.colorimetry import delta_e_2000, lab, observer
 from uplift.common.arrays import Array
 from uplift.extras.images.processes import call_in_child
 from uplift.extras.scene import passes
-from uplift.fit import shipped_library
 
 LAMPS = ("D65", "HP1")
 """Lights of the left and of the right lamp."""
@@ -176,8 +175,7 @@ def representations(
         SPECTRA: Representation(spectra, powers, to_xyz),
         RGB: Representation(chart().painted, rgb_lamps, screen.rgb_to_xyz),
     }
-    others = [family.measured for family in shipped_library([FAMILY])]
-    materials = passes.Materials(np.concatenate(others), spectra, {"source": "library"})
+    materials = without_family(FAMILY, spectra)
     for count in counts:
         chosen = passes.choose(materials, LAMPS, count)
         lamps = RADIANCE * np.stack([light.numbers for light in chosen.lights])
