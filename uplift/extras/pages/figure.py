@@ -27,6 +27,7 @@ ACCENT = "#20509a"
 BAND = "#c2c2c2"
 # A group that has no colour.
 OTHER = "#444444"
+HIGHLIGHT = "#ff5a00"
 # For `matplotlib.rc_context`.
 STYLE: dict[str, Any] = {
     "svg.fonttype": "none",
@@ -67,9 +68,12 @@ _IDENTIFIER = re.compile(r'(id="|#)([mp][0-9a-f]{10})(?=["\)])')
 
 
 def matplotlib() -> Any:
-    """Import matplotlib. Raises `OutputError` if it is not installed."""
+    """Import matplotlib. Raises `OutputError` if it, or what places labels, is not
+    installed.
+    """
     with needs_package("figures", OutputError):
         import matplotlib
+        import textalloc  # noqa: F401
     return matplotlib
 
 
@@ -85,7 +89,7 @@ def figure_text(text: str) -> str:
     matplotlib reads text between dollar signs as mathematics, and leaves labels that
     begin with an underscore out of legends.
     """
-    shown = printable(text).replace("$", r"\$")
+    shown = "\n".join(map(printable, text.split("\n"))).replace("$", r"\$")
     return f"{HAIR_SPACE}{shown}" if shown.startswith("_") else shown
 
 
@@ -188,7 +192,8 @@ def to_svg(figure: Any, label: str = "") -> Markup:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     out = io.StringIO()
-    FigureCanvasSVG(figure).print_svg(out, metadata=_NO_METADATA)
+    with styled():
+        FigureCanvasSVG(figure).print_svg(out, metadata=_NO_METADATA)
     text = out.getvalue()
     text = text[text.index("<svg") :].replace("xlink:href", "href")
     text = _UNUSED.sub("", text)

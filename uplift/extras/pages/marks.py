@@ -1,0 +1,197 @@
+"""Marks of a panel: lines with their uncertainty, references, distributions, densities,
+pictures and maps of errors.
+
+A mark is a function that draws on axes of matplotlib. Keyword arguments that a mark
+does not name are properties of matplotlib's artists.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from uplift.common.arrays import Array
+from uplift.extras.pages.figure import (
+    ACCENT,
+    GREY,
+    HIGHLIGHT,
+    INK,
+    PALE,
+    colour_map,
+    figure_text,
+    style_axes,
+)
+
+Mark = Callable[[Any], None]
+DASHED = (0, (3, 2))
+
+
+def line(
+    x: ArrayLike,
+    y: ArrayLike,
+    label: str = "",
+    colour: Any = INK,
+    *,
+    band: tuple[ArrayLike, ArrayLike] | None = None,
+    **style: Any,
+) -> Mark:
+    """Draw y over x, with a band between the lower and upper ends of uncertainty."""
+
+    def draw(axes: Any) -> None:
+        style_axes(axes)
+        if band is not None:
+            axes.fill_between(x, *band, color=colour, alpha=0.2, linewidth=0)
+        axes.plot(x, y, color=colour, label=figure_text(label), **style)
+
+    return draw
+
+
+def whiskers(
+    x: ArrayLike, y: ArrayLike, low: ArrayLike, high: ArrayLike, colour: Any = INK
+) -> Mark:
+    """Draw points with lines from their lower to their upper ends of uncertainty."""
+
+    def draw(axes: Any) -> None:
+        style_axes(axes)
+        axes.vlines(x, low, high, color=colour, linewidth=1)
+        axes.plot(x, y, "o", color=colour, markersize=4)
+
+    return draw
+
+
+def threshold(
+    value: float,
+    text: str = "",
+    axis: Literal["x", "y"] = "y",
+    colour: str = GREY,
+) -> Mark:
+    """Draw a dashed line across the panel at a value of y or x, with its meaning at the
+    right end of that of y.
+    """
+
+    def draw(axes: Any) -> None:
+        cross = axes.axhline if axis == "y" else axes.axvline
+        cross(value, color=colour, linewidth=0.8, linestyle=DASHED, zorder=1)
+        axes.annotate(
+            figure_text(text),
+            (0.99, value),
+            xycoords=axes.get_yaxis_transform(),
+            xytext=(0, -3),
+            textcoords="offset points",
+            ha="right",
+            va="top",
+            color=colour,
+        )
+
+    return draw
+
+
+def shade(low: float, high: float) -> Mark:
+    """Shade the values of y between two."""
+    return lambda axes: axes.axhspan(
+        low, high, color=PALE, alpha=0.45, linewidth=0, zorder=0
+    )
+
+
+def histogram(counts: ArrayLike, edges: ArrayLike, colour: str = ACCENT) -> Mark:
+    """Draw counts (B,) as bars between edges (B + 1,)."""
+
+    def draw(axes: Any) -> None:
+        axes.stairs(counts, edges, fill=True, color=colour)
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.set_axisbelow(True)
+
+    return draw
+
+
+@dataclass(frozen=True)
+class Box:
+    """Quantiles of a distribution: the ends, the quartiles and the median."""
+
+    low: float
+    first: float
+    median: float
+    third: float
+    high: float
+    colour: str = INK
+
+
+def boxes(rows: Sequence[Box]) -> Mark:
+    """Draw distributions below one another at y = 0, 1, …"""
+
+    def draw(axes: Any) -> None:
+        style_axes(axes)
+        axes.yaxis.grid(visible=False)
+        for row, box in enumerate(rows):
+            ends = row - 0.31, row + 0.31
+            width = box.third - box.first
+            axes.hlines(row, box.low, box.high, color=box.colour, linewidth=1)
+            axes.barh(row, width, left=box.first, height=0.62, color=box.colour)
+            axes.vlines(box.median, *ends, color="white", linewidth=1.4)
+
+    return draw
+
+
+def density(x: Array, y: Array, low: tuple[float, float], high: Array | Any) -> Mark:
+    """Draw the density of points on a logarithmic axis of y, within the corners ``low``
+    and ``high``: darker where there are more.
+    """
+    extent = (low[0], high[0], np.log10(low[1]), np.log10(high[1]))
+    bins: dict[str, Any] = {"yscale": "log", "bins": "log", "gridsize": (60, 34)}
+
+    def draw(axes: Any) -> None:
+        style_axes(axes)
+        axes.hexbin(
+            x, y, extent=extent, cmap=colour_map(), linewidths=0, mincnt=1, **bins
+        )
+
+    return draw
+
+
+def statistics_over(x: Array, y: Array, edges: Array) -> tuple[Mark, Mark]:
+    """Draw the maximum and the median of y in bins of x with given edges."""
+    bin_of = np.digitize(x, edges[1:-1])
+    used = np.unique(bin_of)
+    centres = (edges[1:] + edges[:-1])[used] / 2
+    members = [y[bin_of == row] for row in used]
+    return (
+        line(centres, list(map(np.max, members)), "maximum", HIGHLIGHT, linewidth=1.6),
+        line(centres, list(map(np.median, members)), "median", INK, linewidth=1.6),
+    )
+
+
+def picture(codes: NDArray[Any], **options: Any) -> Mark:
+    """Draw a picture (H, W, 3) of 8-bit codes, or of codes in [0, 1], without a frame.
+
+    ``aspect="auto"`` stretches it over the panel.
+    """
+
+    def draw(axes: Any) -> None:
+        _remove_frame(axes)
+        axes.imshow(codes, **{"interpolation": "nearest", **options})
+
+    return draw
+
+
+def error_map(values: Array, largest: float, exponent: float = 1.0) -> Mark:
+    """Draw a map (H, W) of ΔE00 or another error: white at 0, dark from ``largest`` on.
+
+    Exponents below 1 spread small values. Figures give their maps one scale.
+    """
+
+    def draw(axes: Any) -> None:
+        from matplotlib.colors import PowerNorm
+
+        _remove_frame(axes)
+        norm = PowerNorm(exponent, 0, largest)
+        axes.imshow(values, cmap=colour_map(), norm=norm, interpolation="nearest")
+        axes.set_facecolor(PALE)  # of NaN
+
+    return draw
+
+
+def _remove_frame(axes: Any) -> None:
+    axes.set(xticks=(), yticks=())
+    axes.spines[:].set_visible(False)
