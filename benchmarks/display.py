@@ -16,7 +16,9 @@ from uplift.colorimetry import delta_e_2000, in_unit_cube, lab
 from uplift.colorimetry.gamut import METHODS, SRGB, Primaries, conversion, map_to_gamut
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import encode
-from uplift.extras.pages.figure import new_figure, write_png
+from uplift.extras.pages.figure import write_figure
+from uplift.extras.pages.marks import picture
+from uplift.extras.pages.panels import Panel, draw
 from uplift.lab.timing import time_short_call
 
 DARKEST = 2
@@ -135,7 +137,7 @@ def costs() -> Iterator[Row]:
         yield {"method": method, "ns": seconds.scaled(1e9 / TIMED)}
 
 
-def picture() -> None:
+def draw_hues() -> None:
     """Draw the hues of Rec. 2020 as each method maps them, from dark to three times
     white.
     """
@@ -143,13 +145,12 @@ def picture() -> None:
     pure = np.clip(np.abs((hue[:, None] + [3, 1, 5]) % 6 - 3) - 1, 0, 1)
     brightness = np.geomspace(3, 0.02, 180)[:, None, None]
     image = (brightness * pure) @ conversion(REC_2020, SRGB).T
-    figure = new_figure(15, 2.25)
-    for axes, method in zip(figure.subplots(1, len(MAPPINGS)), MAPPINGS, strict=True):
-        mapped = map_to_gamut(image, SRGB, method).rgb
-        axes.imshow(encode(mapped), interpolation="antialiased")
-        axes.set_title(method, fontsize=17, pad=8)
-        axes.set_axis_off()
-    write_png(figure, DOCS / "display" / "ways.png", force=True)
+    panels = []
+    for method in MAPPINGS:
+        mapped = encode(map_to_gamut(image, SRGB, method).rgb)
+        panels.append(Panel([picture(mapped, interpolation="antialiased")], method))
+    figure = draw(panels, len(panels), 2.4)
+    write_figure(figure, DOCS / "display" / "ways.png", force=True)
 
 
-QUESTIONS = {"shifts": shifts, "costs": costs, "picture": picture}
+QUESTIONS = {"shifts": shifts, "costs": costs, "picture": draw_hues}

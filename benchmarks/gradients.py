@@ -12,17 +12,13 @@ import numpy as np
 
 import uplift
 from benchmarks import DOCS, Row
-from benchmarks.checker import Layout, chart, show_srgb
+from benchmarks.checker import BACKGROUND, Layout, chart, photo
 from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.common.compilation import compiled
-from uplift.extras.pages.figure import (
-    INK,
-    new_figure,
-    style_axes,
-    styled,
-    write_png,
-)
+from uplift.extras.pages.figure import write_figure
+from uplift.extras.pages.marks import line
+from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.photographs import photograph
 from uplift.lab.timing import time_call
 from uplift.lookup import Cube, bulk
@@ -99,7 +95,7 @@ def example() -> Row:
         return delta_e[~painted.outside]
 
     by_step = np.array([errors(paths[:, step]).mean() for step in range(STEPS + 1)])
-    draw(paths, observed, painted.painted, by_step)
+    draw_descent(paths, observed, painted.painted, by_step)
     by_light = zip(LIGHTS, map(errors, observed), strict=True)
     return {
         "patches": int((~painted.outside).sum()),
@@ -110,7 +106,9 @@ def example() -> Row:
     }
 
 
-def draw(paths: Array, observed: list[Array], truth: Array, errors: Array) -> None:
+def draw_descent(
+    paths: Array, observed: list[Array], truth: Array, errors: Array
+) -> None:
     """Draw the chart under the lamps, in steps of the descent, and its errors."""
     names = [f"under {name}" for name in LIGHTS]
     pictures = {
@@ -118,22 +116,15 @@ def draw(paths: Array, observed: list[Array], truth: Array, errors: Array) -> No
         **{f"{step} steps": paths[:, step] for step in (*SHOWN, STEPS)},
         "measured, D65": truth,
     }
-    with styled():
-        figure = new_figure(9.6, 2.9)
-        grid = figure.add_gridspec(2, 6)
-        for number, (title, rgb) in enumerate(pictures.items()):
-            axes = figure.add_subplot(grid[number // 4, number % 4])
-            image = LAYOUT.paint(np.clip(rgb, 0, 1), np.full(3, 0.03))
-            show_srgb(axes, image)
-            axes.set_title(title, fontsize=9, color=INK)
-        axes = figure.add_subplot(grid[:, 4:])
-        axes.plot(errors, color=INK)
-        axes.set(xlabel="steps", ylabel="mean ΔE00 to the measured colours")
-        axes.set_yscale("log")
-        axes.set_xlim(0, STEPS)
-        style_axes(axes)
-        figure.set_dpi(150)
-        write_png(figure, DOCS / "gradients" / "patches.png", force=True)
+    panels = []
+    for title, rgb in pictures.items():
+        image = LAYOUT.paint(np.clip(rgb, 0, 1), np.full(3, BACKGROUND))
+        panels.append(Panel([photo(image)], title))
+    curve = line(np.arange(STEPS + 1), errors)
+    steps = Axis("steps")
+    panels.append(Panel([curve], "mean ΔE00 to the truth", steps, Axis(log=True)))
+    figure = draw(panels, 3, 2.4)
+    write_figure(figure, DOCS / "gradients" / "patches.png", force=True)
 
 
 def colours(cube: Cube) -> Array:

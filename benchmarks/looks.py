@@ -10,14 +10,13 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from itertools import chain, starmap
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks import CUBES, DOCS, MACBETH, Row, record
+from benchmarks import CUBES, DOCS, MACBETH, Row, mitsuba_scenes, record
 from benchmarks.browser import SETTLE, SHIFT, browser
-from benchmarks.checker import constant_light, show_srgb, start_mitsuba, xyz_film
+from benchmarks.checker import photo
 from benchmarks.materials import LARGE, SPLITS, other_halves
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import delta_e_rgb, lab
@@ -27,7 +26,8 @@ from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import hex_codes
 from uplift.extras.looks.lab_errors import lab_errors
 from uplift.extras.looks.metamer_bounds import Bounds, bounds
-from uplift.extras.pages.figure import figure_text, new_figure, write_png
+from uplift.extras.pages.figure import write_figure
+from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.pages.plots import plot_bounds
 from uplift.extras.report.look_page import page
 from uplift.lab.timing import time_calls
@@ -58,6 +58,7 @@ IMPOSSIBLE = (
     ("#8a2a20", "A", "#8a4020"),
     ("#40a060", "A", "#50a050"),
 )
+TWO_CUBES = DOCS / "look-cubes" / "two-cubes.png"
 PIXELS = 220
 """Pixels along each side of the picture of a ball."""
 SPP = 256
@@ -198,53 +199,49 @@ def impossible(rgb: str, light: str, wish: str) -> Row:
 
 def render(plain: Cube, looked: Cube) -> Row:
     """Render balls of one RGB and two cubes under daylight and the light of a look."""
-    version = start_mitsuba()
+    version = mitsuba_scenes.start_mitsuba()
     look = looked.data.provenance["looks"][0]
     lamps = ("D65", look["lights"][0]["light"])
     lights = {}
-    figure = new_figure(4.5, 4.3)
+    panels = []
     with tempfile.TemporaryDirectory() as folder:
         paths = [str(Path(folder, f"{stem}.uplift")) for stem in ("plain", "looks")]
         for cube, path in zip((plain, looked), paths, strict=True):
             cube.save(path)
-        for axes, lamp in zip(figure.subplots(2, 1), lamps, strict=True):
+        for lamp in lamps:
             here = sensor(illuminant=lamp)
-            image = balls(paths, look["rgb"], lamp) @ here.xyz_to_rgb.T
+            scene = balls(paths, look["rgb"], lamp)
+            image = mitsuba_scenes.render(scene, SPP) @ here.xyz_to_rgb.T
             middle = slice(PIXELS // 2 - 12, PIXELS // 2 + 12)
             patches = [
                 half[middle, middle].mean(axis=(0, 1))
                 for half in np.split(image, 2, axis=1)
             ]
             lights[lamp] = {"delta_e": delta_e_rgb(here, *patches)}
-            show_srgb(axes, image)
-            axes.set_ylabel(figure_text(lamp), fontsize=11)
-    write_png(figure, DOCS / "look-cubes" / "two-cubes.png", force=True)
+            panels.append(Panel([photo(image)], y=Axis(lamp)))
+    write_figure(draw(panels, 1, 4.5), TWO_CUBES, force=True)
     return {"mitsuba": version, "look": look["name"], "lights": lights}
 
 
-def balls(cubes: Sequence[str], rgb: Sequence[float], lamp: str) -> Array:
-    """Return XYZ (height, width, 3) of two balls on the ground, left and right."""
+def balls(cubes: Sequence[str], rgb: Sequence[float], lamp: str) -> Row:
+    """Describe two balls on the ground, left and right."""
     import mitsuba as mi
 
     transform = mi.ScalarTransform4f
 
-    def diffuse(**reflectance: Any) -> Row:
-        return {"type": "diffuse", "reflectance": reflectance}
-
     def ball(cube: str, x: float) -> Row:
-        paint = diffuse(type="uplift", cube=cube, rgb=list(rgb))
-        return {"type": "sphere", "center": [x, 1, 0], "radius": 1.0, "bsdf": paint}
+        paint = {"type": "uplift", "cube": cube, "rgb": list(rgb)}
+        bsdf = mitsuba_scenes.diffuse(paint)
+        return {"type": "sphere", "center": [x, 1, 0], "radius": 1.0, "bsdf": bsdf}
 
-    ground = transform().rotate([1, 0, 0], -90).scale([30, 30, 1])
     view = transform().look_at(origin=[0, 1.2, 12], target=[0, 0.55, 0], up=[0, 1, 0])
-    scene = {
-        "type": "scene",
+    return {
         "integrator": {"type": "path", "max_depth": 4},
-        "sky": constant_light(lamp),
+        "sky": mitsuba_scenes.sky(lamp),
         "ground": {
             "type": "rectangle",
-            "to_world": ground,
-            "bsdf": diffuse(type="uniform", value=0.5),
+            "to_world": transform().rotate([1, 0, 0], -90).scale([30, 30, 1]),
+            "bsdf": mitsuba_scenes.diffuse({"type": "uniform", "value": 0.5}),
         },
         "left": ball(cubes[0], -1.35),
         "right": ball(cubes[1], 1.35),
@@ -253,7 +250,6 @@ def balls(cubes: Sequence[str], rgb: Sequence[float], lamp: str) -> Array:
             "fov": 28,
             "fov_axis": "x",
             "to_world": view,
-            "film": xyz_film(2 * PIXELS, PIXELS),
+            "film": mitsuba_scenes.film(2 * PIXELS, PIXELS),
         },
     }
-    return np.array(mi.render(mi.load_dict(scene), spp=SPP, seed=0), dtype=float)

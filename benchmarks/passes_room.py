@@ -14,11 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks import DOCS, Row, mitsuba_scenes
-from benchmarks.checker import Layout, chart
+from benchmarks.checker import Layout, chart, photo
 from benchmarks.passes import without_family
 from uplift.colorimetry import delta_e_2000, lab, observer
 from uplift.common.arrays import Array
 from uplift.extras.images.processes import call_in_child
+from uplift.extras.pages.figure import write_figure
+from uplift.extras.pages.marks import error_map
+from uplift.extras.pages.panels import Panel, draw
 from uplift.extras.scene import passes
 
 LAMPS = ("D65", "HP1")
@@ -45,6 +48,7 @@ RADIANCE = 12.0
 SPECTRA = "spectra, 81 wavelengths"
 RGB = "RGB"
 SPECTRAL = mitsuba_scenes.VARIANT
+TITLES = {SPECTRA: "spectra", RGB: "plain RGB", "1": "one pass", "2": "two passes"}
 PICTURE = DOCS / "passes" / "room.png"
 
 
@@ -237,3 +241,30 @@ def errors(rendered: dict[str, Rendering]) -> Iterator[Row]:
             "to_spectral": delta_e(spectral, blocks(rendering.xyz), level).mean(),
             "seconds": rendering.seconds,
         }
+
+
+def draw_room(rendered: dict[str, Rendering]) -> None:
+    """Draw the renderings, and below each its differences from all wavelengths."""
+    truth = rendered[SPECTRA].xyz
+    level = white_level(truth)
+    to_srgb = observer.sensor().xyz_to_rgb / level
+    errors = {name: delta_e(truth, rendered[name].xyz, level) for name in TITLES}
+    largest = float(np.quantile(errors[RGB], 0.95))
+    panels = []
+    for name, title in TITLES.items():
+        panels.append(Panel([photo(rendered[name].xyz @ to_srgb.T)], title))
+    panels.append(Panel([photo(rendered[SPECTRAL].xyz @ to_srgb.T)], SPECTRAL))
+    for name in list(TITLES)[1:]:
+        title = f"mean ΔE00 {errors[name].mean():.2f}"
+        panels.append(Panel([error_map(errors[name], largest)], title))
+    write_figure(draw(panels, len(TITLES), 2.4), PICTURE, force=True)
+
+
+def measure() -> list[Row]:
+    """Render and draw the room, and return the errors."""
+    rendered = render_all(SIZE, RGB_SAMPLES, SPECTRAL_SAMPLES, COUNTS)
+    draw_room(rendered)
+    return list(errors(rendered))
+
+
+QUESTIONS = {"errors": measure}

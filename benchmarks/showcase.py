@@ -30,9 +30,7 @@ METHODS = MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
 )
 Cubes = dict[str, uplift.Cube]
 LAYOUT = Layout(patch=32, gap=4)
-SIZE = (11.2, 5.2)
 TRUTH_LIGHTS = RELIGHT_LIGHTS[:2]
-TRUTH_SIZE = (7.4, 3.8)
 JPEG_WIDTH = 1500
 JPEG_QUALITY = 88
 DIM = 32
@@ -106,11 +104,11 @@ def draw_charts(cubes: Cubes) -> list[Row]:
             errors[lamp.name, name] = delta_e
             images[lamp.name, name] = LAYOUT.paint(xyz[name], BACKGROUND * lamp.white)
     picture = FOLDER / "charts.png"
-    draw(images, errors, to_screen, METHODS, LAYOUT.middles(), picture, SIZE)
+    draw(images, errors, to_screen, METHODS, LAYOUT.middles(), picture)
     shown = {name: to_screen[name] for name in TRUTH_LIGHTS}
     methods = (MEASURED, PRODUCT, ATLAS)
     picture = FOLDER / "truth.png"
-    draw(images, errors, shown, methods, LAYOUT.halves(), picture, TRUTH_SIZE)
+    draw(images, errors, shown, methods, LAYOUT.halves(), picture)
     return [rows[name] for name in METHODS[1:]]
 
 
