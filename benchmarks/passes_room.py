@@ -26,6 +26,15 @@ from uplift.extras.scene import passes
 
 LAMPS = ("D65", "HP1")
 """Lights of the left and of the right lamp."""
+PAINTED = {
+    "floor": 20,
+    "ceiling": 18,
+    "back": 21,
+    "red-wall": 14,
+    "green-wall": 13,
+    "small-box": 15,
+}
+"""Patches of the ColorChecker that parts of the Cornell box are painted in."""
 FAMILY = "checker"
 """Family of the library that holds the paints of the room, and is left out."""
 COUNTS = (1, 2, 3)
@@ -72,67 +81,38 @@ class Rendering:
 
 
 def room(surfaces: Sequence[Row], lamps: Sequence[Row], film: Row) -> Row:
-    """Describe a box with a chart, two blocks, a ball and two lamps, from reflectances
-    of the patches (24) and radiances of the lamps.
+    """Describe the Cornell box of Mitsuba with a chart, a ball and two lamps, from
+    reflectances of the patches (24) and radiances of the lamps.
     """
     import mitsuba as mi
 
     transform = mi.ScalarTransform4f
     paint = [mitsuba_scenes.diffuse(surface) for surface in surfaces]
-
-    def wall(patch: int, at: list[float], axis: list[float], angle: float) -> Row:
-        placed = transform().translate(at).rotate(axis, angle)
-        return {"type": "rectangle", "to_world": placed, "bsdf": paint[patch]}
-
-    def block(patch: int, at: list[float], angle: float, size: list[float]) -> Row:
-        placed = transform().translate(at).rotate([0, 1, 0], angle).scale(size)
-        return {"type": "cube", "to_world": placed, "bsdf": paint[patch]}
-
-    def lamp(radiance: Row, x: float) -> Row:
-        at = transform().translate([x, 0.99, 0.0])
-        placed = at.rotate([1, 0, 0], 90).scale([0.25, 0.3, 1])
-        emitter = {"type": "area", "radiance": radiance}
-        return {"type": "rectangle", "to_world": placed, "emitter": emitter}
-
-    scene: Row = {
-        # Every path is traced to its end: random numbers then stay those of one pass.
-        "integrator": {"type": "path", "max_depth": REFLECTIONS + 1, "rr_depth": 1000},
-        "camera": {
-            "type": "perspective",
-            "fov": 39,
-            "to_world": transform().look_at([0, 0, 3.9], [0, 0, 0], [0, 1, 0]),
-            "film": film,
-            "sampler": {"type": "independent"},
-        },
-        "floor": wall(20, [0, -1, 0], [1, 0, 0], -90),
-        "ceiling": wall(18, [0, 1, 0], [1, 0, 0], 90),
-        "back": wall(21, [0, 0, -1], [1, 0, 0], 0),
-        "left": wall(14, [-1, 0, 0], [0, 1, 0], 90),
-        "right": wall(13, [1, 0, 0], [0, 1, 0], -90),
-        "tall": block(15, [-0.5, -0.55, -0.3], 20, [0.22, 0.45, 0.22]),
-        "short": block(12, [0.1, -0.78, 0.2], -18, [0.2, 0.22, 0.2]),
-        "ball": {
-            "type": "sphere",
-            "center": [0.6, -0.72, -0.1],
-            "radius": 0.28,
-            "bsdf": paint[7],
-        },
-        "day": lamp(lamps[0], -0.55),
-        "sodium": lamp(lamps[1], 0.55),
-    }
+    scene = {name: mi.cornell_box()[name] for name in ("sensor", *PAINTED)}
+    scene["sensor"]["film"] = film
+    # Every path is traced to its end: random numbers then stay those of one pass.
+    depths = {"max_depth": REFLECTIONS + 1, "rr_depth": 1000}
+    scene["integrator"] = {"type": "path", **depths}
+    scene["ball"] = {"type": "sphere", "center": [-0.5, -0.72, -0.1], "radius": 0.28}
+    for name, x, radiance in zip(LAMPS, (-0.55, 0.55), lamps, strict=True):
+        turned = transform().translate([x, 0.99, 0]).rotate([1, 0, 0], 90)
+        scene[name] = {
+            "type": "rectangle",
+            "to_world": turned.scale([0.25, 0.3, 1]),
+            "emitter": {"type": "area", "radiance": radiance},
+        }
     layout = Layout(patch=20, gap=3)
     width, height = layout.size
-    scale = 1.2 / width
     half = layout.patch / 2
+    to_wall = transform().translate([0, 0.45, -0.99]).scale(1.2 / width)
     for number, (x, y) in enumerate(layout.corners()):
-        right = scale * (x + half - width / 2)
-        up = 0.45 + scale * (height / 2 - y - half)
-        placed = transform().translate([right, up, -0.99]).scale(scale * half)
-        scene[f"patch_{number}"] = {
-            "type": "rectangle",
-            "to_world": placed,
-            "bsdf": paint[number],
-        }
+        middle = [x + half - width / 2, height / 2 - y - half, 0]
+        placed = to_wall.translate(middle).scale(half)
+        scene[f"patch {number}"] = {"type": "rectangle", "to_world": placed}
+    painted = {**PAINTED, "ball": 7}
+    painted |= {f"patch {number}": number for number in range(len(paint))}
+    for name, patch in painted.items():
+        scene[name]["bsdf"] = paint[patch]
     return scene
 
 
