@@ -19,7 +19,7 @@ from uplift.extras.images.exr import blue_slices
 from uplift.extras.pages.figure import colour_map, new_figure, show_image, write_figure
 from uplift.extras.report.diff_page import mosaic
 from uplift.fit import Problem, shells
-from uplift.lab.chart.method import at_1_nm, published_srgb
+from uplift.lab.method import at_1_nm, published_srgb
 from uplift.lab.timing import time_calls
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube

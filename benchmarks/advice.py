@@ -17,7 +17,7 @@ from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
 from uplift.extras.report.measures import delta_e_under
 from uplift.extras.scene.advice import advise, uncertainty
 from uplift.extras.texture.scene_colours import ColourSet, PixelSample
-from uplift.lab.study.look_alikes import families_like
+from uplift.lab.look_alikes import families_like
 
 SETS = ("rawtoaces", "cie2017")
 SCENES = 6

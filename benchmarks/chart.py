@@ -4,13 +4,12 @@
 
 from itertools import chain
 
-from benchmarks import DOCS, ROOT, Row, record, show
-from benchmarks.choices import ALONE, OURS, mark
-from benchmarks.materials import SHIPPED, read_atlases
+from benchmarks import DOCS, ROOT, Row, show
+from benchmarks.choices import POOLED, mark
+from benchmarks.materials import read_atlases
 from uplift.common.files import write_text
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.lab.chart.measure import measure_methods
-from uplift.lab.chart.method import Effort, make_task
 from uplift.lab.chart.picture import render_chart, write_picture
 from uplift.lab.chart.results import (
     MEASURED,
@@ -21,8 +20,8 @@ from uplift.lab.chart.results import (
     criteria,
 )
 from uplift.lab.chart.selection import select_methods
-from uplift.lab.study.held_out import LOCAL_LINEAR
-from uplift.lab.study.rivals import METAMER_MEAN
+from uplift.lab.chart.task import make_task
+from uplift.lab.study.held_out import HALF, LOCAL_LINEAR, METAMER_MEAN, NO_ATLAS
 
 RIVALS = {"local-linear": LOCAL_LINEAR, "metamer-mean": METAMER_MEAN}
 """Methods without a cube whose choices were made with measured materials."""
@@ -30,14 +29,14 @@ UNSEEN = ("lights", "rms")
 """Errors of panels that are those of unseen materials."""
 
 
-def main(effort: Effort | None = None) -> None:
+def chart() -> Row:
     """Measure, draw and store."""
-    task = make_task(read_atlases(), effort=effort)
-    publish(measure_methods(select_methods(), task, show))
+    return publish(measure_methods(select_methods(), make_task(read_atlases()), show))
 
 
-def publish(chart: Chart) -> None:
-    """Write the table that the package carries, the pictures and the data of the page.
+def publish(chart: Chart) -> Row:
+    """Write the table that the package carries and the pictures; return the data of
+    the page.
 
     ``publish(shipped_chart())`` does so without measuring again.
     """
@@ -46,32 +45,28 @@ def publish(chart: Chart) -> None:
     write_text(chart_csv(chart), table, force=True)
     write_picture(chart, folder / "chart.png", force=True)
     write_text(render_chart(chart), folder / "chart.html", force=True)
-    record(
-        "chart",
-        environment=dict(chart.facts),
-        batches=chart.batches,
-        lights=CHART_LIGHTS,
-        fronts=fronts(chart),
-        methods=[method_record(row, chart.batches) for row in chart.measured],
-        excluded=[
+    return {
+        "facts": dict(chart.facts),
+        "batches": chart.batches,
+        "lights": CHART_LIGHTS,
+        "fronts": fronts(chart),
+        "methods": [method_record(row, chart.batches) for row in chart.measured],
+        "excluded": [
             {"method": row.title, "state": row.state, "reason": row.why}
             for row in chart.results
             if row.state != State.MEASURED
         ],
-    )
+    }
 
 
 def fronts(chart: Chart) -> list[Row]:
-    """Return the Pareto front of every panel, fastest first; its first row names it.
-
-    Times are in ns.
-    """
+    """Return the Pareto front of every panel, fastest first. Times are in ns."""
     rows = []
     for criterion in chain.from_iterable(map(criteria, chart.batches)):
-        for number, row in enumerate(criterion.front(chart)):
+        for row in criterion.front(chart):
             rows.append(
                 {
-                    "panel": "" if number else criterion.title,
+                    "panel": criterion.title,
                     "colours": criterion.batch,
                     "method": row.title,
                     "time": criterion.time(row),
@@ -111,7 +106,10 @@ def optimistic_mark(row: MethodResult) -> str:
     The choices are those of cubes of moments; the colour alone determines a sigmoid.
     """
     if row.method in RIVALS:
-        return mark(SHIPPED, RIVALS[row.method])
+        return mark(POOLED, RIVALS[row.method])
     if not row.build or "--model" in row.build:
         return ""
-    return mark(SHIPPED, OURS if "--atlas" in row.build else ALONE)
+    return mark(POOLED, HALF if "--atlas" in row.build else NO_ATLAS)
+
+
+QUESTIONS = {"chart": chart}

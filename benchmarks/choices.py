@@ -5,73 +5,66 @@ measured on.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from benchmarks import Row
 from benchmarks.materials import MIXTURE, SHIPPED
-from uplift.lab.study.held_out import HALF, LOCAL_LINEAR, NO_ATLAS
-from uplift.lab.study.rivals import LIBRARY_REGRESSION, MAPS, METAMER_MEAN
+from uplift.lab.methods.colour_maps import MAPS
+from uplift.lab.study.held_out import (
+    HALF,
+    LIBRARY_REGRESSION,
+    LOCAL_LINEAR,
+    METAMER_MEAN,
+    NO_ATLAS,
+)
 
-CHOSEN_ON = ("rawtoaces", "babelcolor", "pmc", "tcs", "vs")
-MEASURED = (*SHIPPED, "munsell")
-OURS = HALF
-OURS_SMOOTH = f"{HALF}, smooth prior"
-WITH_ATLAS = (OURS, OURS_SMOOTH)
-ALONE = NO_ATLAS
+MEASURED = [*SHIPPED, "munsell"]
+POOLED = "all shipped"
+"""Set of the errors of all shipped sets, each without its family."""
 ALONE_SMOOTH = f"{NO_ATLAS}, smooth prior"
-"""Methods: cubes of moments with and without an atlas."""
+WITH_ATLAS = [HALF]
+CUBES = [HALF, NO_ATLAS, ALONE_SMOOTH]
 MARK = " ○"
 """Follows an optimistic figure on a page."""
 
 
-@dataclass(frozen=True)
-class Choice:
-    """A choice, the sets it was made with, and the methods that depend on it."""
-
-    choice: str
-    sets: tuple[str, ...]
-    methods: tuple[str, ...]
+def _choice(choice: str, sets: Iterable[str], methods: Iterable[str]) -> Row:
+    return {"choice": choice, "sets": list(sets), "methods": list(methods)}
 
 
-CHOICES = (
-    Choice(
-        "metric, phase and start of smooth spectra",
-        ("rawtoaces",),
-        (OURS, OURS_SMOOTH, ALONE, ALONE_SMOOTH),
+CHOICES = [
+    _choice("metric, phase and start of smooth spectra", ["rawtoaces"], CUBES),
+    _choice(
+        "weights of entries: lights, ends, curvature",
+        ["rawtoaces", "babelcolor", "pmc", "tcs", "vs"],
+        WITH_ATLAS,
     ),
-    Choice("weights of entries: lights, ends, curvature", CHOSEN_ON, WITH_ATLAS),
-    Choice("weight of smooth multipliers of entries", SHIPPED, WITH_ATLAS),
-    Choice("kriging: metric, noise, median, default, corners", MEASURED, WITH_ATLAS),
-    Choice("standard errors: few entries", MEASURED, WITH_ATLAS),
-    Choice(
+    _choice("weight of smooth multipliers of entries", SHIPPED, WITH_ATLAS),
+    _choice("kriging: metric, noise, median, default, corners", MEASURED, WITH_ATLAS),
+    _choice("standard errors: few entries", MEASURED, WITH_ATLAS),
+    _choice(
         "learnt prior: length, spreads, noise, bounds, relevance",
         MEASURED,
-        (OURS, ALONE),
+        [HALF, NO_ATLAS],
     ),
-    Choice(
+    _choice(
         "local-linear regression: regressors, criterion and ridge",
-        ("rawtoaces", "cie2017"),
-        (LOCAL_LINEAR, LIBRARY_REGRESSION),
+        ["rawtoaces", "cie2017"],
+        [LOCAL_LINEAR, LIBRARY_REGRESSION],
     ),
-    Choice("matrix and root polynomials: criterion", MEASURED, MAPS),
-    Choice(
+    _choice("matrix and root polynomials: criterion", MEASURED, MAPS),
+    _choice(
         "mean of metamers: number of spectra, mean of spectra",
-        ("macbeth", "tcs", "cie2017", "rawtoaces"),
-        (METAMER_MEAN,),
+        ["macbeth", "tcs", "cie2017", "rawtoaces"],
+        [METAMER_MEAN],
     ),
-)
+]
+"""Choices, the sets they were made with, and the methods that depend on them."""
 
 
-def is_optimistic(sets: Iterable[str], method: str) -> bool:
-    """Whether a choice behind a method was made with one of the sets."""
-    names = {*sets}
-    if MIXTURE in names:
-        names.update(SHIPPED)
-    return any(
-        method in choice.methods and not names.isdisjoint(choice.sets)
-        for choice in CHOICES
-    )
-
-
-def mark(sets: Iterable[str], method: str) -> str:
-    """Return the mark of a figure of a method on the sets, or an empty text."""
-    return MARK if is_optimistic(sets, method) else ""
+def mark(name: str, method: str) -> str:
+    """Return the mark of a figure of a method on a set, or an empty text."""
+    sets = set(SHIPPED if name in (MIXTURE, POOLED) else [name])
+    for choice in CHOICES:
+        if method in choice["methods"] and not sets.isdisjoint(choice["sets"]):
+            return MARK
+    return ""

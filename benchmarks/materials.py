@@ -1,4 +1,8 @@
-"""Measured materials that cubes are tested on, and the errors of answers for them."""
+"""Sets of measured materials, on which the pages measure methods.
+
+A set is a line of `FILES`. `uplift.lab.runner` measures methods at the tasks that
+`task` and `split_tasks` make of a set.
+"""
 
 from dataclasses import dataclass
 from functools import cache
@@ -8,12 +12,19 @@ import numpy as np
 
 import uplift
 from benchmarks import ATLAS_FILES, ATLASES, ROOT, Row
-from uplift.atlas import Atlas, Entry, read_atlas, resample
+from uplift.atlas import Atlas, Entry, read_atlas
 from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
-from uplift.lab.study.held_out import halves_both_ways, spectrum_errors
-from uplift.lab.study.look_alikes import families_like
+from uplift.lab.look_alikes import families_like
+from uplift.lab.runner import (
+    Task,
+    divided,
+    folds,
+    named_lights,
+    spectra_of,
+    spectrum_errors,
+)
 from uplift.lookup import Cube
 
 MUNSELL = ROOT / "out" / "munsell.csv"
@@ -28,11 +39,17 @@ MIXTURE = "all sets"
 """The shipped sets, and all of them as one: a mixture of families, several of which
 have materials of one colour.
 """
+FILES = {name: (ATLASES / f"{name}.txt",) for name in SHIPPED}
+FILES |= {MIXTURE: tuple(ATLASES / f"{name}.txt" for name in SHIPPED)}
+FILES |= {"munsell": (MUNSELL,)}
+"""Files of each set."""
 DERIVED = {"munsell": ("otsu2018",)}
 """Families derived from a set: the clusters of Otsu et al. were learnt from this book.
 """
 SENSOR = observer.sensor()
 SPLITS = 3
+VISIBLE = 1.0
+"""ΔE00 that is just visible."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,18 +63,23 @@ class Materials:
         """Select some of the entries."""
         return Materials(self.measured[rows], self.rgb[rows])
 
-    def cube(self, **options: Any) -> Cube:
-        """Build a cube whose atlas they are."""
+    @property
+    def atlas(self) -> Atlas:
+        """Return the entries as an atlas."""
         entries = (
             Entry(str(row), SENSOR.wavelengths, values)
             for row, values in enumerate(self.measured)
         )
-        return uplift.build(Atlas(tuple(entries)), **options)
+        return Atlas(tuple(entries))
+
+    def cube(self, **options: Any) -> Cube:
+        """Build a cube whose atlas they are."""
+        return uplift.build(self.atlas, **options)
 
 
 def inside(atlas: Atlas) -> Materials:
     """Return the entries of an atlas that are inside sRGB."""
-    measured = resample(atlas, SENSOR.wavelengths).values
+    measured = spectra_of(atlas, SENSOR)
     rgb = SENSOR.rgb(measured)
     rows = in_unit_cube(rgb)
     return Materials(measured[rows], np.clip(rgb[rows], 0, 1))
@@ -70,10 +92,8 @@ def read_atlases() -> dict[str, Atlas]:
 
 @cache
 def spectra(name: str) -> Atlas:
-    """Read a set of measured spectra, or all shipped sets."""
-    if name == MIXTURE:
-        return read_atlas(*(ATLASES / f"{member}.txt" for member in SHIPPED))
-    return read_atlas(MUNSELL if name == "munsell" else ATLASES / f"{name}.txt")
+    """Read a set of measured spectra."""
+    return read_atlas(*FILES[name])
 
 
 @cache
@@ -84,6 +104,7 @@ def materials(name: str) -> Materials:
     return entries.take(np.sort(first))
 
 
+@cache
 def shipped_families(name: str) -> tuple[str, ...]:
     """Return the shipped families that a prior tested on a set must not know: those
     that have its spectra, look-alikes of many, or were derived from it.
@@ -91,26 +112,35 @@ def shipped_families(name: str) -> tuple[str, ...]:
     return (*families_like(materials(name).measured), *DERIVED.get(name, ()))
 
 
+def task(queried: str, known: Atlas | None = None) -> Task:
+    """Query a whole set, whose families are not known, next to a known atlas."""
+    measured = materials(queried).measured
+    return Task(SENSOR, known or Atlas(), measured, shipped_families(queried))
+
+
+def split_tasks(name: str, parts: int = 2) -> list[Task]:
+    """Query each part of a set, divided at random, where the others are known."""
+    left_out = shipped_families(name)
+    return list(divided(materials(name).atlas, left_out, SENSOR, parts, SPLITS))
+
+
 def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:
     """Return cubes of random halves of a set, and the other halves: every material is
     queried equally often.
     """
-    whole = materials(name)
+    entries = materials(name)
     left_out = shipped_families(name)
     return [
-        (whole.take(kept).cube(leave_out=left_out, **options), whole.take(queried))
-        for kept, queried in halves_both_ways(np.arange(len(whole.rgb)), SPLITS)
+        (entries.take(known).cube(leave_out=left_out, **options), entries.take(queried))
+        for known, queried in folds(len(entries.rgb), seeds=SPLITS)
     ]
 
 
 def errors(answers: Array, queried: Materials) -> Row:
     """Return the mean rms and the mean ΔE00 under each light."""
-    return as_record(spectrum_errors(answers, queried.measured).means())
-
-
-def as_record(means: Array) -> Row:
-    """Convert mean rms and mean ΔE00, as of `spectrum_errors`, to names."""
-    return {"rms": means[0], "errors": by_light(means[1:])}
+    lights = list(named_lights().values())
+    compared = spectrum_errors(answers, queried.measured, lights)
+    return {"rms": compared.rms.mean(), "errors": by_light(compared.delta_e.mean(0))}
 
 
 def by_light(values: Array) -> Row:

@@ -21,7 +21,7 @@ from benchmarks import ROOT, Row, record
 from uplift.colorimetry import Sensor, observer
 from uplift.common.arrays import Array
 from uplift.extras.images.processes import call_in_child
-from uplift.lab.chart.mitsuba3 import XYZ_TO_RGB
+from uplift.lab.methods.mitsuba3 import XYZ_TO_RGB
 from uplift.lab.timing import TimingStats, children_cpu, time_calls, timing_stats
 from uplift.lattice import Lattice, axis_nodes
 from uplift.models import Moments, Sigmoid, evaluate, reflectance

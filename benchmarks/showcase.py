@@ -17,7 +17,7 @@ from uplift.colorimetry import delta_e_2000, lab
 from uplift.colorimetry.observer import light, sensor
 from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
 from uplift.extras.relight.relight import relight, write_relit_sheet
-from uplift.lab.chart import mitsuba3
+from uplift.lab.methods import mitsuba3
 from uplift.samples import sample_path
 
 FOLDER = DOCS / "showcase"

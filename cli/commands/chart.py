@@ -145,8 +145,8 @@ def _measure(
     files: tuple[str, ...], patterns: tuple[str, ...], *, quick: bool
 ) -> Chart:
     from uplift.lab.chart.measure import measure_methods
-    from uplift.lab.chart.method import QUICK, Effort, make_task
     from uplift.lab.chart.selection import QUICK_METHODS, select_methods
+    from uplift.lab.chart.task import QUICK, Effort, make_task
 
     methods = select_methods(patterns or (QUICK_METHODS if quick else ()))
     task = make_task(read_atlases(files), COLOURS, QUICK if quick else Effort())

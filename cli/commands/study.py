@@ -205,13 +205,13 @@ def held_out(
     files: Sequence[str], splits: int, dim: int, coefficients: int, style: str
 ) -> None:
     enable_jit_cache()
-    from uplift.lab.study.held_out import holdout, split_records
+    from uplift.lab.study.held_out import holdout
 
     records: list[dict[str, Any]] = []
     for name, atlas in read_atlases(files).items():
         with progress_bar(name) as progress:
-            split = holdout(atlas, splits, progress, dim=dim, coefficients=coefficients)
-        records += [{"atlas": name, **record} for record in split_records(split)]
+            study = holdout(atlas, splits, progress, dim=dim, coefficients=coefficients)
+        records += [{"atlas": name, **record} for record in study]
     rows = _without(records, "standard_error")
     _print(style, records, rows, rows)
     for record in records if style == "table" else ():

@@ -2,23 +2,22 @@
 in benchmarks/.
 """
 
-import importlib
 import json
 
 import jinja2
 import pytest
 
-from benchmarks import choices
+from benchmarks import choices, questions
 from benchmarks.__main__ import pages
-from benchmarks.cameras import ATLAS, CHOSEN_AS
 from benchmarks.chart import RIVALS, optimistic_mark
-from benchmarks.choices import ALONE, MARK, OURS, is_optimistic, mark
-from benchmarks.materials import SHIPPED
+from benchmarks.choices import MARK, mark
+from benchmarks.materials import MIXTURE, SHIPPED
 from tests.conftest import ROOT
 from tests.parts import MITSUBA, need
 from tools import render_docs
 from tools.render_docs import read_data, render
 from uplift.lab.chart.results import read_chart
+from uplift.lab.study.held_out import HALF, NO_ATLAS
 
 DOCS = ROOT / "docs"
 
@@ -27,9 +26,7 @@ DOCS = ROOT / "docs"
 def test_every_program_can_be_imported(name):
     if name in ("render", "looks", "showcase"):
         need(MITSUBA)
-    assert callable(
-        importlib.import_module(f"benchmarks.{name.replace('-', '_')}").main
-    )
+    assert all(map(callable, questions(name).values()))
 
 
 def test_every_stored_figure_names_a_page_that_can_be_measured():
@@ -59,31 +56,18 @@ def test_a_missing_figure_is_an_error():
 
 
 def test_a_choice_marks_its_methods_on_its_sets(monkeypatch):
-    assert sorted(SHIPPED) == sorted(
-        path.stem for path in (ROOT / "atlases").glob("*.txt")
-    )
-    monkeypatch.setattr(
-        choices, "CHOICES", (choices.Choice("length", ("macbeth",), (OURS,)),)
-    )
-    assert is_optimistic(["vs", "macbeth"], OURS)
-    assert not is_optimistic(["vs"], OURS)
-    assert (mark(["macbeth"], OURS), mark(["macbeth"], ALONE)) == (MARK, "")
-
-
-def test_stored_marks_agree_with_the_choices():
-    held_out = read_data("held-out")
-    current = json.dumps([vars(choice) for choice in choices.CHOICES])
-    assert held_out["choices"] == json.loads(current)
-    for results in held_out["sets"]:
-        for row in results["rows"]:
-            assert row["optimistic"] == is_optimistic([results["set"]], row["method"])
-    marks = {name: text for name, text in read_data("cameras")["marks"].items() if text}
-    assert marks == {name: mark([ATLAS], method) for name, method in CHOSEN_AS.items()}
+    stems = {path.stem for path in (ROOT / "atlases").glob("*.txt")}
+    assert set(SHIPPED) == stems
+    choice = {"choice": "length", "sets": ["macbeth"], "methods": [HALF]}
+    monkeypatch.setattr(choices, "CHOICES", [choice])
+    assert mark("macbeth", HALF) == mark(MIXTURE, HALF) == MARK
+    assert mark("vs", HALF) == mark("macbeth", NO_ATLAS) == ""
 
 
 def test_marks_of_the_chart_are_those_of_its_rows():
     rows = read_chart(ROOT / "uplift" / "lab" / "chart" / "measured.csv").measured
-    stored = {row["name"]: row["mark"] for row in read_data("chart")["methods"]}
+    methods = read_data("chart")["chart"]["methods"]
+    stored = {row["name"]: row["mark"] for row in methods}
     assert stored == {row.method: optimistic_mark(row) for row in rows}
     for name, text in stored.items():
         of_moments = name.removeprefix("c-").startswith("moments")

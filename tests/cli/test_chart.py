@@ -11,7 +11,7 @@ from uplift_cli.commands import chart
 from uplift_cli.main import main
 
 from tests.lab.chart import faulty
-from uplift.lab.chart import method, selection
+from uplift.lab.chart import selection, task
 from uplift.lab.chart.results import read_chart
 from uplift.lab.timing import ONE_THREAD
 
@@ -29,9 +29,9 @@ def quick(repository, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         patch.setattr(
-            method,
+            task,
             "QUICK",
-            replace(method.QUICK, seconds_per_error=0.1, lap=0.002, longest=0.02),
+            replace(task.QUICK, seconds_per_error=0.1, lap=0.002, longest=0.02),
         )
         for name, value in ONE_THREAD.items():
             patch.setenv(name, value)
@@ -83,7 +83,7 @@ def test_an_atlas_improves_its_own_materials(numbers):
     ("limit", "reasons"),
     [
         (
-            method.QUICK.limit,
+            task.QUICK.limit,
             {
                 "abort": ("broken", f"crashed: signal 6; it needs {faulty.NEEDS}"),
                 "lack": ("not installed", f"needs {faulty.NEEDS}"),
@@ -95,7 +95,7 @@ def test_an_atlas_improves_its_own_materials(numbers):
 def test_methods_that_crash_hang_or_are_missing_have_rows(
     run, macbeth, monkeypatch, limit, reasons
 ):
-    monkeypatch.setattr(method, "QUICK", replace(method.QUICK, limit=limit))
+    monkeypatch.setattr(task, "QUICK", replace(task.QUICK, limit=limit))
     monkeypatch.setattr(selection, "METHODS", (*selection.METHODS, *faulty.METHODS))
     names = [f"--method=faulty-{name}" for name in reasons]
     result = run(

@@ -4,8 +4,9 @@ import pytest
 
 from tests.conftest import MACBETH
 from uplift.atlas import read_atlas
-from uplift.lab.chart.method import Effort, Method, PreparedMethod, make_task
 from uplift.lab.chart.results import FACTS, REQUIRED, TEXTS, Chart, MethodResult, State
+from uplift.lab.chart.task import Effort, make_task
+from uplift.lab.method import Method, PreparedMethod
 
 BATCHES = (1, 64)
 HASTE = Effort(

@@ -5,7 +5,7 @@ this module.
 import os
 import time
 
-from uplift.lab.chart.method import Method, NotInstalledError, PreparedMethod
+from uplift.lab.method import Method, NotInstalledError, PreparedMethod
 
 NEEDS = "a library that works: install it"
 

@@ -8,9 +8,9 @@ import pytest
 from tests.lab.chart.conftest import BATCHES, method_of
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.lab.chart.measure import MAX_CLAIM_RATIO, SLOW_STEP, measure_method
-from uplift.lab.chart.method import PreparedMethod, ours
 from uplift.lab.chart.results import State
-from uplift.lab.study.held_out import spectrum_errors
+from uplift.lab.method import PreparedMethod, ours
+from uplift.lab.runner import named_lights, spectrum_errors
 
 
 def grey(rgb, wavelengths):
@@ -82,14 +82,13 @@ def test_answer_is_broken_only_if_far_off_its_claim(small_task):
         assert measure_method(claimed, small_task).state == state
 
 
-def test_errors_are_those_of_the_holdout_study(small_task):
+def test_errors_are_those_of_the_runner(small_task):
     numbers = measure_method(method_of(grey), small_task).numbers
-    for prefix, measured in (("", small_task.unseen), ("own_", small_task.own)):
-        errors = spectrum_errors(
-            grey(small_task.sensor.rgb(measured), small_task.sensor.wavelengths),
-            measured,
-            CHART_LIGHTS,
-        )
+    sensor = small_task.unseen.sensor
+    lights = list(named_lights(CHART_LIGHTS).values())
+    for prefix, measured in (("", small_task.unseen.queried), ("own_", small_task.own)):
+        spectra = grey(sensor.rgb(measured), sensor.wavelengths)
+        errors = spectrum_errors(spectra, measured, lights)
         for column, light in enumerate(CHART_LIGHTS):
             assert numbers[f"{prefix}{light}_mean"] == pytest.approx(
                 errors.delta_e[:, column].mean()

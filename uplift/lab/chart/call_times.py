@@ -7,8 +7,9 @@ from itertools import cycle
 import numpy as np
 
 from uplift.common.arrays import Array, Values
-from uplift.lab.chart.method import Effort, stopwatch
 from uplift.lab.chart.results import REFERENCE
+from uplift.lab.chart.task import Effort
+from uplift.lab.method import stopwatch
 from uplift.lab.timing import TimingStats, time_laps
 
 GROWTH = 10

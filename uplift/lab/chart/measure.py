@@ -5,28 +5,27 @@ timed.
 import time
 import warnings
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import dataclass, fields
 
 import numpy as np
 
-from uplift.colorimetry import delta_e_rgb
+from uplift.colorimetry import delta_e_rgb, observer
 from uplift.common.arrays import Array, Values
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.extras.images.processes import ChildError, call_in_child
 from uplift.lab.chart.call_times import UpliftRgb, affordable, call_times
-from uplift.lab.chart.method import (
+from uplift.lab.chart.results import REFERENCE, Chart, MethodResult, State
+from uplift.lab.chart.task import ChartTask, Effort
+from uplift.lab.method import (
     Description,
-    Effort,
     Method,
     NotInstalledError,
-    PreparedMethod,
-    Task,
+    Uplift,
     stopwatch,
 )
-from uplift.lab.chart.results import REFERENCE, Chart, MethodResult, State
-from uplift.lab.study.held_out import spectrum_errors
+from uplift.lab.runner import spectrum_errors
 from uplift.lab.timing import environment
 
 MAX_CLAIM_RATIO = 10
@@ -46,7 +45,9 @@ class BrokenError(Exception):
 
 
 def measure_methods(
-    methods: Sequence[Method], task: Task, progress: ProgressCallback = ignore_progress
+    methods: Sequence[Method],
+    task: ChartTask,
+    progress: ProgressCallback = ignore_progress,
 ) -> Chart:
     """Measure methods at a task."""
     results = []
@@ -56,10 +57,10 @@ def measure_methods(
     for method in methods:
         results.append(measure_method(method, task))
         progress(Progress("methods", len(results), len(methods)))
+    wavelengths = pluralise(len(task.unseen.sensor.wavelengths), "wavelength")
     summary = (
         f"CPU time of all threads; up to {effort.runs} runs of calls of at most "
-        f"{effort.longest:g} s, spectra at "
-        f"{pluralise(len(task.sensor.wavelengths), 'wavelength')}; errors of slow "
+        f"{effort.longest:g} s, spectra at {wavelengths}; errors of slow "
         "methods are of the colours of "
         f"{effort.seconds_per_error:g} s; {(time.perf_counter() - begin) / 60:.1f} "
         "minutes in all"
@@ -67,7 +68,7 @@ def measure_methods(
     return Chart({**machine, **task.facts, "effort": summary}, tuple(results))
 
 
-def measure_method(method: Method, task: Task) -> MethodResult:
+def measure_method(method: Method, task: ChartTask) -> MethodResult:
     """Measure one method."""
     state = State.MEASURED
     why = ""
@@ -87,30 +88,28 @@ def measure_method(method: Method, task: Task) -> MethodResult:
         state = State.BROKEN
         why = f"{error}; it needs {method.needs}" if method.needs else str(error)
     texts = {field.name: getattr(method, field.name) for field in fields(Description)}
-    return MethodResult(
-        **texts | {"label": method.label or method.title},
-        state=state,
-        why=why,
-        numbers=numbers,
-    )
+    texts["label"] = method.label or method.title
+    return MethodResult(**texts, state=state, why=why, numbers=numbers)
 
 
-def _numbers(method: Method, task: Task) -> dict[str, float]:
+def _numbers(method: Method, task: ChartTask) -> dict[str, float]:
     try:
-        prepared = method.prepare(task)
+        prepared = method.prepare(task.unseen)
     except NotInstalledError:
         raise
     except Exception as error:  # code of other packages may raise anything
         raise BrokenError(f"cannot be prepared: {_text(error)}") from error
-    uplift = _guarded(method, prepared, task.sensor.wavelengths)
+    effort = task.effort
+    checked = CheckedMethod(method, prepared.uplift, effort.seconds_per_error)
+    uplift = checked.at(task.unseen.sensor.wavelengths)
     # The first call may compile, which is charged to the set-up.
-    first, second = (stopwatch(lambda: uplift(task.rgb[:1]))[1] for _ in range(2))
+    first, second = (stopwatch(lambda: uplift(task.colours[:1]))[1] for _ in range(2))
     load = prepared.load_s + max(first - second, 0.0)
     build = {} if prepared.build_s is None else {"build_s": prepared.build_s}
-    round_trips = _round_trips(method, prepared, uplift, task)
-    errors = _errors(method, uplift, task)
+    round_trips = _round_trips(checked, task)
+    errors = _errors(checked, task)
     if method.batch:
-        _check_batch(uplift, method.dtype, task.effort)
+        _check_batch(uplift, method.dtype, effort)
     return {
         "bytes": prepared.bytes,
         **build,
@@ -118,99 +117,118 @@ def _numbers(method: Method, task: Task) -> dict[str, float]:
         "setup_s": sum(build.values()) + load,
         **round_trips,
         **errors,
-        **call_times(uplift, method.dtype, task.effort),
+        **call_times(uplift, method.dtype, effort),
     }
 
 
-def _guarded(method: Method, prepared: PreparedMethod, wavelengths: Array) -> UpliftRgb:
-    """Function of colours (n, 3) alone that raises no error but `BrokenError`."""
+@dataclass(frozen=True, eq=False)
+class CheckedMethod:
+    """A method that raises no error but `BrokenError`, and ``seconds`` of CPU time for
+    the answers of one error.
+    """
 
-    def uplift_rgb(rgb: Array) -> Values:
-        try:
-            spectra = prepared.uplift(rgb.astype(method.dtype, copy=False), wavelengths)
-        except Exception as error:  # code of other packages may raise anything
-            raise BrokenError(f"raises {_text(error)}") from error
-        if spectra.shape != (len(rgb), len(wavelengths)):
-            raise BrokenError(
-                f"spectra have shape {spectra.shape} instead of ({len(rgb)}, "
-                f"{len(wavelengths)})"
-            )
-        if spectra.dtype != method.dtype:
-            raise BrokenError(f"spectra are {spectra.dtype} instead of {method.dtype}")
+    method: Method
+    uplift: Uplift
+    seconds: float
+
+    def at(self, wavelengths: Array) -> UpliftRgb:
+        """Return the function of colours (n, 3) alone."""
+        dtype = self.method.dtype
+
+        def uplift_rgb(rgb: Array) -> Values:
+            try:
+                spectra = self.uplift(rgb.astype(dtype, copy=False), wavelengths)
+            except Exception as error:  # code of other packages may raise anything
+                raise BrokenError(f"raises {_text(error)}") from error
+            if spectra.shape != (len(rgb), len(wavelengths)):
+                raise BrokenError(
+                    f"spectra have shape {spectra.shape} instead of ({len(rgb)}, "
+                    f"{len(wavelengths)})"
+                )
+            if spectra.dtype != dtype:
+                raise BrokenError(f"spectra are {spectra.dtype} instead of {dtype}")
+            return spectra
+
+        return uplift_rgb
+
+    def spectra(self, rgb: Array, wavelengths: Array) -> Array:
+        """Return the spectra (k, N) in float64 of as many of the colours as time
+        allows.
+        """
+        uplift = self.at(wavelengths)
+        uplift(rgb[:1])
+        step = len(rgb) if self.method.batch else SLOW_STEP
+        parts = []
+        begin = time.process_time()
+        for first in range(0, len(rgb), step):
+            parts.append(uplift(rgb[first : first + step]))
+            if time.process_time() - begin > self.seconds:
+                break
+        spectra = np.concatenate(parts).astype(float)
+        self._check_range(spectra)
         return spectra
 
-    return uplift_rgb
+    def _check_range(self, spectra: Array) -> None:
+        infinite = ~np.isfinite(spectra).all(axis=1)
+        if infinite.any():
+            count = infinite.sum()
+            raise BrokenError(f"{count} of {len(spectra)} spectra are not finite")
+        low, high = self.method.claimed_range
+        if spectra.min() < low or spectra.max() > high:
+            raise BrokenError(
+                f"reflectances from {spectra.min():.4g} to {spectra.max():.4g}, "
+                f"{low:g} to {high:g} are claimed"
+            )
 
 
 def _text(error: Exception) -> str:
     return f"{type(error).__name__}: {str(error)[:80]}"
 
 
-def _round_trips(
-    method: Method, prepared: PreparedMethod, uplift: UpliftRgb, task: Task
-) -> dict[str, float]:
+def _round_trips(checked: CheckedMethod, task: ChartTask) -> dict[str, float]:
     """Judge at 1 nm with the stated white and matrix, and with the tables that cubes
     are fitted to.
     """
-    sensor = method.reference_sensor()
-    fine = _guarded(method, prepared, sensor.wavelengths)
-    rgb, spectra = _spectra(method, fine, task, task.rgb)
-    errors = delta_e_rgb(sensor, rgb, sensor.rgb(spectra))
+    method = checked.method
+    stated = method.reference_sensor()
+    fitted = task.unseen.sensor
+    spectra = checked.spectra(task.colours, stated.wavelengths)
+    rgb = task.colours[: len(spectra)]
+    errors = delta_e_rgb(stated, rgb, stated.rgb(spectra))
     claimed = method.claimed_error
     if claimed is not None and errors.mean() > MAX_CLAIM_RATIO * claimed:
         raise BrokenError(
             f"mean round-trip ΔE00 is {errors.mean():.3g}, {claimed:g} is claimed"
         )
-    fitted = delta_e_rgb(task.sensor, rgb, task.sensor.rgb(uplift(rgb).astype(float)))
+    coarse = checked.at(fitted.wavelengths)(rgb).astype(float)
     return {
         **_summary("round_trip", errors),
-        **_summary("coarse_round_trip", fitted),
+        **_summary("coarse_round_trip", delta_e_rgb(fitted, rgb, fitted.rgb(coarse))),
         "round_trip_colours": len(rgb),
     }
 
 
-def _errors(method: Method, uplift: UpliftRgb, task: Task) -> dict[str, float]:
+def _errors(checked: CheckedMethod, task: ChartTask) -> dict[str, float]:
+    """Compare spectra with those of materials that the method does not know, and that
+    it knows.
+    """
+    sensor = task.unseen.sensor
+    lights = [observer.light(name) for name in CHART_LIGHTS]
     numbers: dict[str, float] = {}
     for prefix, name, measured in (
-        ("", "unseen", task.unseen),
+        ("", "unseen", task.unseen.queried),
         ("own_", "own", task.own),
     ):
-        colours = np.clip(task.sensor.rgb(measured), 0, 1)
-        rgb, spectra = _spectra(method, uplift, task, colours)
-        errors = spectrum_errors(spectra, measured[: len(rgb)], CHART_LIGHTS)
-        values = dict(zip(CHART_LIGHTS, errors.delta_e.T, strict=True))
-        values |= {"lights": errors.delta_e.mean(axis=1), "rms": errors.rms}
-        for key, array in values.items():
-            numbers |= _summary(f"{prefix}{key}", array)
-        numbers[f"{name}_spectra"] = len(rgb)
+        rgb = np.clip(sensor.rgb(measured), 0, 1)
+        spectra = checked.spectra(rgb, sensor.wavelengths)
+        queried = measured[: len(spectra)]
+        errors = spectrum_errors(spectra, queried, lights)
+        for light, delta_e in zip(CHART_LIGHTS, errors.delta_e.T, strict=True):
+            numbers |= _summary(f"{prefix}{light}", delta_e)
+        numbers |= _summary(f"{prefix}lights", errors.delta_e.mean(axis=1))
+        numbers |= _summary(f"{prefix}rms", np.asarray(errors.rms))
+        numbers[f"{name}_spectra"] = len(spectra)
     return numbers
-
-
-def _spectra(
-    method: Method, uplift: UpliftRgb, task: Task, rgb: Array
-) -> tuple[Array, Array]:
-    """As many of the colours as time allows, (k, 3), and their spectra (k, N) in
-    float64.
-    """
-    uplift(rgb[:1])
-    step = len(rgb) if method.batch else SLOW_STEP
-    parts = []
-    begin = time.process_time()
-    for first in range(0, len(rgb), step):
-        parts.append(uplift(rgb[first : first + step]))
-        if time.process_time() - begin > task.effort.seconds_per_error:
-            break
-    spectra = np.concatenate(parts)
-    finite = np.isfinite(spectra).all(axis=1)
-    low, high = method.claimed_range
-    if not finite.all():
-        raise BrokenError(f"{(~finite).sum()} of {len(spectra)} spectra are not finite")
-    if spectra.min() < low or spectra.max() > high:
-        raise BrokenError(
-            f"reflectances from {spectra.min():.4g} to {spectra.max():.4g}, {low:g} to "
-            f"{high:g} are claimed"
-        )
-    return rgb[: len(spectra)], spectra.astype(float)
 
 
 def _check_batch(uplift: UpliftRgb, dtype: str, effort: Effort) -> None:

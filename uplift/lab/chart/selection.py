@@ -9,16 +9,12 @@ from uplift.atlas import read_atlas
 from uplift.colorimetry import Light
 from uplift.common.errors import OptionError
 from uplift.extras.colour.srgb import decode
-from uplift.lab.chart import cubes, mitsuba3, published, rivals
-from uplift.lab.chart.method import Method, NotInstalledError, make_task
+from uplift.lab.chart.task import make_task
+from uplift.lab.method import Method, NotInstalledError
+from uplift.lab.methods import find_methods
 from uplift.lab.study.sensitivity import COLOURS, perturb_answers
 
-METHODS = (
-    *published.METHODS,
-    *rivals.METHODS,
-    *mitsuba3.METHODS,
-    *cubes.METHODS,
-)
+METHODS = tuple(find_methods())
 QUICK_METHODS = (
     "jakob2019-*",
     "mallett2019",
@@ -57,7 +53,7 @@ def perturb_method(
     """Perturb queries of a method, in sRGB under D65, as
     `uplift.lab.study.sensitivity`. Raises `OptionError`.
     """
-    task = make_task({"macbeth": read_atlas("macbeth")})
+    task = make_task({"macbeth": read_atlas("macbeth")}).unseen
     lights = (light, task.sensor.light)
     # colour-science warns how it aligns wavelengths.
     with warnings.catch_warnings(action="ignore"):

@@ -1,32 +1,36 @@
-"""Rivals of cubes: linear worlds, exposures, exact colours, and look-alikes."""
+"""Colour maps, Burns 2019 and means of metamers: linear worlds, exposures, exact
+colours.
+"""
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
-import uplift
-from benchmarks.materials import materials
+from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
-from uplift.fit import families_with
-from uplift.lab.study.burns2019 import reconstruct
-from uplift.lab.study.colour_maps import fit_map, term_exponents, terms
-from uplift.lab.study.look_alikes import families_like
-from uplift.lab.study.metamer_mean import metamer_mean, metamers, nearest_mixture
-from uplift.lab.study.rivals import library_spectra
+from uplift.lab.methods.burns2019 import reconstruct
+from uplift.lab.methods.colour_maps import (
+    fit_map,
+    prepare,
+    term_exponents,
+    terms,
+)
+from uplift.lab.methods.metamer_mean import metamer_mean, metamers, nearest_mixture
+from uplift.lab.runner import whole, within
 
 D65 = observer.light("D65")
 FL11 = observer.light("FL11")
 
 
 @pytest.fixture(scope="module")
-def measured():
-    return materials("tcs").measured
+def task(sensor):
+    return whole(within(read_atlas("tcs"), sensor), ("tcs",), sensor)
 
 
 @pytest.fixture(scope="module")
-def data():
-    return uplift.load().data
+def measured(task):
+    return task.queried
 
 
 @pytest.mark.parametrize(("degree", "count"), [(1, 3), (2, 6), (3, 13)])
@@ -44,7 +48,18 @@ def test_a_matrix_is_exact_for_three_basis_spectra(measured):
     assert_allclose(mapped, spectra @ FL11.xyz.T / FL11.white, atol=1e-9)
 
 
-def test_burns_spectra_have_their_colours_and_the_least_slope(measured):
+def test_maps_know_the_library_without_the_families_of_the_task(task):
+    prepared = prepare(task, degree=1)
+    to_light = fit_map(1, D65, FL11, task.library)
+    expected = to_light(task.sensor.xyz(task.rgb) / D65.white)
+    assert_allclose(prepared.colours(task.rgb, FL11), expected)
+    errors = prepared.errors(task, [D65, FL11])
+    assert errors.delta_e[:, 1].mean() > 100 * errors.delta_e[:, 0].mean()
+    assert errors.rms is None
+
+
+def test_burns_spectra_have_their_colours_and_the_least_slope(measured, monkeypatch):
+    monkeypatch.setattr("uplift.lab.methods.burns2019.BLOCK", 5)
     xyz = measured @ D65.xyz.T
     spectra = reconstruct(D65.xyz, xyz)
     assert spectra.min() > 0
@@ -63,24 +78,17 @@ def test_burns_spectra_have_their_colours_and_the_least_slope(measured):
     assert_allclose(reconstruct(coarse, goal[None])[0], np.exp(found.x), atol=1e-4)
 
 
-def test_blocks_do_not_change_burns_spectra(measured, monkeypatch):
-    xyz = measured @ D65.xyz.T
-    whole = reconstruct(D65.xyz, xyz)
-    monkeypatch.setattr("uplift.lab.study.burns2019.BLOCK", 5)
-    assert_allclose(reconstruct(D65.xyz, xyz), whole, rtol=1e-10)
-
-
-def test_metamer_means_have_their_colours(data, measured):
-    rgb = data.sensor.rgb(measured)
-    spectra = metamer_mean(data, library_spectra(("tcs",)), rgb)
-    assert_allclose(data.sensor.rgb(spectra), rgb, atol=1e-6)
+def test_metamer_means_have_their_colours(task, measured):
+    sensor = task.sensor
+    spectra = metamer_mean(sensor, task.library, task.rgb)
+    assert_allclose(sensor.rgb(spectra), task.rgb, atol=1e-6)
     assert spectra.min() > 0
     assert spectra.max() < 1
 
     # No mixture of these has the colour.
     red = np.array([[0.9, 0.05, 0.05]])
-    (moved,) = metamer_mean(data, measured[:3], red)
-    assert_allclose(data.sensor.rgb(moved), red[0], atol=1e-3)
+    (moved,) = metamer_mean(sensor, measured[:3], red)
+    assert_allclose(sensor.rgb(moved), red[0], atol=1e-3)
 
 
 def test_the_only_metamer_is_found(measured):
@@ -91,17 +99,3 @@ def test_the_only_metamer_is_found(measured):
     assert_allclose(found, mixture[None], atol=1e-6)
     assert len(metamers(D65, measured[:4], groups, 2 * D65.white)) == 0
     assert_allclose(nearest_mixture(D65, measured[:4], xyz) @ D65.xyz.T, xyz, atol=1e-9)
-
-
-def test_families_with_many_look_alikes_are_not_known():
-    for name in ("macbeth", "babelcolor"):
-        assert families_like(materials(name).measured) == ("checker", "rawtoaces")
-    for name in ("pmc", "tcs", "vs", "cie2017", "rawtoaces"):
-        spectra = materials(name).measured
-        assert families_like(spectra) == families_with(spectra) == (name,)
-    assert families_like(np.zeros((0, 81))) == ()
-
-
-def test_nothing_is_known_without_all_families():
-    names = ("checker", "pmc", "tcs", "vs", "cie2017", "rawtoaces", "otsu2018")
-    assert library_spectra(names).shape == (0, 81)

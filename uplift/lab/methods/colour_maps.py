@@ -8,13 +8,16 @@ Finlayson, Mackiewicz & Hurlbert 2015, "Color correction using root-polynomial
 regression", IEEE Transactions on Image Processing 24(5), section III.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from functools import partial
 from itertools import combinations_with_replacement
 
 import numpy as np
 
 from uplift.colorimetry import Light, delta_e_2000_weights, lab, lab_jacobian
 from uplift.common.arrays import Array
+from uplift.lab.method import PreparedMap
+from uplift.lab.runner import Prepare, Task
 
 DEGREES = {
     "3 × 3 matrix": 1,
@@ -24,24 +27,11 @@ DEGREES = {
 """Degree of a map by its name."""
 
 
-@dataclass(frozen=True, eq=False)
-class ColourMap:
-    """Map of XYZ under a light to XYZ under another one, both relative to their whites.
-
-    ``exponents`` (K, 3): those of X, Y and Z in each term. ``matrix`` (K, 3): weights
-    of the terms.
-    """
-
-    exponents: Array
-    matrix: Array
-
-    def __call__(self, xyz: Array) -> Array:
-        """Map XYZ (n, 3)."""
-        return np.maximum(terms(xyz, self.exponents) @ self.matrix, 0)
-
-
-def fit_map(degree: int, first: Light, second: Light, measured: Array) -> ColourMap:
-    """Fit a map from one light to another to reflectances (E, N).
+def fit_map(
+    degree: int, first: Light, second: Light, measured: Array
+) -> Callable[[Array], Array]:
+    """Fit a map of XYZ (n, 3) from one light to another to reflectances (E, N), both
+    relative to their whites.
 
     It has the least squares of ΔE00, linear about the measured colours: on unseen
     materials this is better than least squares of XYZ.
@@ -54,8 +44,8 @@ def fit_map(degree: int, first: Light, second: Light, measured: Array) -> Colour
     # A residual is weights · (matrixᵀ · terms − goal): a row for each of its parts.
     rows = np.einsum("nij,nk->nikj", weights, known).reshape(3 * len(known), -1)
     right = np.einsum("nij,nj->ni", weights, goal).ravel()
-    solution = np.linalg.lstsq(rows, right)[0]
-    return ColourMap(exponents, solution.reshape(-1, 3))
+    matrix = np.linalg.lstsq(rows, right)[0].reshape(-1, 3)
+    return lambda xyz: np.maximum(terms(xyz, exponents) @ matrix, 0)
 
 
 def term_exponents(degree: int) -> Array:
@@ -70,3 +60,20 @@ def term_exponents(degree: int) -> Array:
 def terms(xyz: Array, exponents: Array) -> Array:
     """Terms (n, K) of XYZ (n, 3)."""
     return np.prod(xyz[:, None] ** exponents, axis=2)
+
+
+def prepare(task: Task, degree: int) -> PreparedMap:
+    """Fit a map to the library, for each light that is queried for."""
+    build = task.sensor.light
+
+    def colours(rgb: Array, light: Light) -> Array:
+        to_light = fit_map(degree, build, light, task.library)
+        return to_light(task.sensor.xyz(rgb) / build.white)
+
+    return PreparedMap(colours)
+
+
+MAPS: dict[str, Prepare] = {
+    name: partial(prepare, degree=degree) for name, degree in DEGREES.items()
+}
+"""Maps by their names."""

@@ -9,6 +9,8 @@ to 1.
 import numpy as np
 
 from uplift.common.arrays import Array, blocks
+from uplift.lab.method import Method, PreparedMethod, interpolated, nbytes, ours
+from uplift.lab.runner import Task
 
 STEPS = 20
 """Newton steps: after them, measured colours within sRGB are met up to rounding."""
@@ -59,3 +61,29 @@ def _solve(matrix: Array, goal: Array) -> Array:
         logs = logs - step[:, :count]
         multipliers = multipliers - step[:, count:]
     return np.exp(logs)
+
+
+def prepare(task: Task) -> PreparedMethod:
+    """Solve for reflectances."""
+    sensor = task.sensor
+    matrix = sensor.light.xyz
+    size = nbytes(matrix)
+    return interpolated(lambda rgb: reconstruct(matrix, sensor.xyz(rgb)), task, size)
+
+
+METHODS = (
+    Method(
+        method="burns2019",
+        title="Burns 2019",
+        family="Burns 2019",
+        source=(
+            "Burns, Chromatic adaptation transform by spectral reconstruction, Color "
+            "Research & Application 44(5), 2019"
+        ),
+        prepare=prepare,
+        reference_sensor=ours,
+        claimed_range=(0, 1000),
+        batch=False,
+        note="our solver; reflectances may exceed 1",
+    ),
+)

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import KDTree
 
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array
 from uplift.fit import families_with, shipped_library
 
 LOOK_ALIKE = 0.02
@@ -21,18 +21,10 @@ def families_like(measured: Array) -> tuple[str, ...]:
     if not len(measured):
         return ()
     same = families_with(measured)
-    names = []
-    for name, alike in look_alikes(measured).items():
-        if name in same or alike.mean() >= MANY:
-            names.append(name)
-    return tuple(names)
-
-
-def look_alikes(measured: Array) -> dict[str, Mask]:
-    """Whether each of some spectra (n, 81) has a look-alike, by shipped family."""
     limit = LOOK_ALIKE * np.sqrt(measured.shape[1])
-    alike = {}
+    names = []
     for family in shipped_library():
         distance = KDTree(family.measured).query(measured)[0]
-        alike[family.name] = distance <= limit
-    return alike
+        if family.name in same or (distance <= limit).mean() >= MANY:
+            names.append(family.name)
+    return tuple(names)

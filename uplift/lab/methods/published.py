@@ -26,16 +26,16 @@ from uplift.colorimetry.observer import END, START, STEP
 from uplift.colorimetry.tables import aligned, look_up
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science
-from uplift.lab.chart import mitsuba3
-from uplift.lab.chart.method import (
+from uplift.lab.method import (
     Method,
     PreparedMethod,
-    Task,
     nbytes,
     published_srgb,
     stated_sensor,
     stopwatch,
 )
+from uplift.lab.methods import mitsuba3
+from uplift.lab.runner import Task
 from uplift.models.sigmoid import evaluate_unscaled
 
 MENG_STEP = 10.0

@@ -21,14 +21,14 @@ import numpy as np
 
 from uplift.colorimetry import Sensor
 from uplift.common.arrays import Array
-from uplift.lab.chart.method import (
+from uplift.lab.method import (
     Method,
     NotInstalledError,
     PreparedMethod,
-    Task,
     stated_sensor,
     stopwatch,
 )
+from uplift.lab.runner import Task
 from uplift.models.sigmoid import evaluate_unscaled
 
 VARIANT = "scalar_spectral"

@@ -9,16 +9,18 @@ polytope. Its vertices mix four spectra each, and their mean stands for the cent
 on unseen materials it is better than the centroid of the hull of their colours.
 """
 
+from functools import partial
 from itertools import combinations
 
 import numpy as np
 from scipy.optimize import nnls
 from scipy.spatial.distance import cdist
 
-from uplift.colorimetry import Light, lab
+from uplift.colorimetry import Light, Sensor, lab
 from uplift.common.arrays import Array, Indices
-from uplift.cube import CubeData
-from uplift.lab.study.local_linear import LOWEST, with_least_change
+from uplift.lab.method import Method, PreparedMethod, interpolated, nbytes, ours
+from uplift.lab.methods.local_linear import LOWEST, with_least_change
+from uplift.lab.runner import Task
 
 NEAREST = 20
 """Measured spectra that are mixed, the nearest in CIE L*a*b*: of 12 to 28, a compromise
@@ -32,14 +34,14 @@ SLACK = 1e-9
 """Negative weight that counts as rounding."""
 
 
-def metamer_mean(data: CubeData, known: Array, rgb: Array) -> Array:
+def metamer_mean(sensor: Sensor, known: Array, rgb: Array) -> Array:
     """Predict reflectances (n, N) of linear RGB (n, 3) from known ones (E, N).
 
     A colour that no mixture has takes the mixture of all known spectra that is nearest
     to it in XYZ, moved to its colour.
     """
-    light = data.sensor.light
-    xyz = data.sensor.xyz(rgb)
+    light = sensor.light
+    xyz = sensor.xyz(rgb)
     ends = np.stack([np.zeros(known.shape[1]), np.ones(known.shape[1])])
     locations = lab(known @ light.xyz.T, light.white)
     distances = cdist(lab(xyz, light.white), locations)
@@ -54,7 +56,7 @@ def metamer_mean(data: CubeData, known: Array, rgb: Array) -> Array:
             vertices = nearest_mixture(light, every, colour)[None]
         predicted.append(vertices.mean(axis=0))
     clipped = np.clip(np.stack(predicted), LOWEST, 1 - LOWEST)
-    return with_least_change(data, clipped, rgb)
+    return with_least_change(sensor, clipped, rgb)
 
 
 def metamers(light: Light, spectra: Array, groups: Indices, xyz: Array) -> Array:
@@ -78,3 +80,35 @@ def nearest_mixture(light: Light, spectra: Array, xyz: Array) -> Array:
 def _responses(light: Light, spectra: Array) -> Array:
     """XYZ of spectra (K, N), and the 1 that sums their weights: (K, 4)."""
     return np.column_stack([spectra @ light.xyz.T, np.ones(len(spectra))])
+
+
+def prepare(task: Task) -> PreparedMethod:
+    """Mix metamers from the known spectra."""
+    return _of_spectra(task, task.known_spectra)
+
+
+def prepare_of_library(task: Task) -> PreparedMethod:
+    """Mix metamers from the library."""
+    return _of_spectra(task, task.library)
+
+
+def _of_spectra(task: Task, known: Array) -> PreparedMethod:
+    spectra = partial(metamer_mean, task.sensor, known)
+    return interpolated(spectra, task, nbytes(known))
+
+
+METHODS = (
+    Method(
+        method="metamer-mean",
+        title="Mean of metamers",
+        family="Mean of metamers",
+        source=(
+            "after Zhang, Funt & Mirzaei, Metamer mismatching in practice versus "
+            "theory, JOSA A 33(3), 2016"
+        ),
+        prepare=prepare,
+        reference_sensor=ours,
+        batch=False,
+        note="measured spectra as those of cubes with an atlas, mixed for each colour",
+    ),
+)

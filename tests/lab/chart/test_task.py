@@ -1,0 +1,43 @@
+"""Colours and spectra of a chart."""
+
+import numpy as np
+
+from tests.helpers import raises
+from uplift.atlas import Atlas, Entry, merge, on_grid, read_atlas
+from uplift.colorimetry.sensor import in_unit_cube
+from uplift.common.errors import AtlasError, OptionError
+from uplift.lab.chart.task import edges, make_task
+from uplift.lab.look_alikes import families_like
+
+
+def test_every_second_entry_is_known_and_the_others_test():
+    # The first atlas has an odd number of entries; counting starts again with each
+    # atlas.
+    atlases = {name: read_atlas(name) for name in ("vs", "macbeth")}
+    task = make_task(atlases, 16)
+    unseen = task.unseen
+    vs, macbeth = atlases.values()
+    assert unseen.known.names == vs.names[::2] + macbeth.names[::2]
+    rows = set(map(tuple, task.own.round(12)))
+    assert not rows & set(map(tuple, unseen.queried.round(12)))
+    spectra = on_grid(merge(atlases.values()), unseen.sensor.wavelengths)
+    inside = in_unit_cube(unseen.sensor.rgb(spectra))
+    assert len(task.own) + len(unseen.queried) == inside.sum()
+    assert unseen.left_out == families_like(unseen.queried) != ()
+
+
+def test_edges_contain_every_corner_and_grey_once():
+    rgb = edges()
+    assert len(np.unique(rgb, axis=0)) == len(rgb)
+    is_extreme = np.isin(rgb, (0, 1))
+    is_grey = np.ptp(rgb, axis=1) == 0
+    assert (is_extreme.any(axis=1) | is_grey).all()
+    assert (is_extreme.all(axis=1).sum(), is_grey.sum()) == (8, 9)
+
+
+def test_too_few_colours_or_entries_are_an_error():
+    with raises(OptionError, "option"):
+        make_task({"macbeth": read_atlas("macbeth")}, 15)
+    greys = (Entry(name, [380, 780], [0.5, 0.5]) for name in ("one", "other"))
+    with raises(AtlasError, "too-few-entries"):
+        make_task({"two": Atlas(tuple(greys))}, 16)

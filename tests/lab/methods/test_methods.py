@@ -1,0 +1,122 @@
+"""Methods of the chart against reference implementations."""
+
+from importlib import import_module
+
+import numpy as np
+import pytest
+from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999
+from numpy.testing import assert_allclose
+
+from tests.helpers import raises
+from tests.parts import LLVM, need
+from uplift.atlas import read_atlas
+from uplift.colorimetry import observer
+from uplift.common.errors import OptionError
+from uplift.extras.images.processes import call_in_child
+from uplift.lab.chart.selection import METHODS, select_methods
+from uplift.lab.method import NotInstalledError
+from uplift.lab.methods import mitsuba3
+from uplift.lab.methods.cubes import built_cube
+from uplift.lab.runner import divided
+
+SENSOR = observer.sensor()
+AT = SENSOR.wavelengths
+COLOURS = np.concatenate(
+    [np.random.default_rng(4).random((20, 3)), np.eye(3), [[0, 0, 0], [1, 1, 1]]]
+)
+
+
+@pytest.fixture(scope="module")
+def task():
+    """Half of the smallest atlas, and the families of the other half."""
+    return next(divided(read_atlas("tcs"), ("tcs",), SENSOR))
+
+
+def prepared(name, task):
+    (method,) = select_methods((name,))
+    return method.prepare(task).uplift
+
+
+def test_methods_are_selected_by_pattern():
+    assert select_methods() == list(METHODS)
+    assert {method.method for method in select_methods(("mallett2019", "sm*9"))} == {
+        "mallett2019",
+        "smits1999",
+    }
+    with raises(OptionError, "option") as caught:
+        select_methods(("mallett2019", "malet"))
+    assert "'malet'" in caught.value.problem
+
+
+def test_smits_and_mallett_match_colour_science(task):
+    for name, theirs in (
+        ("smits1999", RGB_to_sd_Smits1999),
+        ("mallett2019", RGB_to_sd_Mallett2019),
+    ):
+        expected = [
+            np.interp(AT, sd.wavelengths, sd.values) for sd in map(theirs, COLOURS)
+        ]
+        assert_allclose(prepared(name, task)(COLOURS, AT), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "tolerance"),
+    [
+        ("jakob2019-direct", 2e-3),
+        ("local-linear", 1e-6),
+        ("metamer-mean", 1e-6),
+        ("burns2019", 1e-6),
+    ],
+)
+def test_slow_methods_have_the_colour(task, name, tolerance):
+    rgb = np.array([[0.5, 0.4, 0.3], [0.2, 0.3, 0.35]])
+    found = prepared(name, task)(rgb, AT)
+    assert_allclose(SENSOR.rgb(found), rgb, atol=tolerance)
+
+
+@pytest.mark.parametrize(
+    "name", ["mallett2019", "smits1999", "moments9-8-spectra", "sigmoid-32-moments"]
+)
+def test_float32_and_bulk_give_the_same_spectra(task, name):
+    double = prepared(name, task)(COLOURS, AT)
+    other = name.replace("spectra", "bulk")
+    single = prepared(other if other != name else f"{name}-float32", task)
+    found = single(COLOURS.astype(np.float32), AT)
+    assert found.dtype == np.float32
+    assert_allclose(found, double, atol=2e-6)
+
+
+def test_missing_mitsuba_is_not_installed(task, monkeypatch):
+    monkeypatch.setattr(mitsuba3, "find_spec", lambda name: None)
+    for name in ("mitsuba3-table", "mitsuba3-llvm", "jakob2019-table64"):
+        with pytest.raises(NotInstalledError, match="Mitsuba 3: pip install"):
+            prepared(name, task)
+
+
+def vectorised_and_table(task):
+    """Reflectances by Mitsuba's vectorised variant and by its table, for one colour and
+    for many.
+    """
+    compiled, table = (
+        prepared(name, task) for name in ("mitsuba3-llvm", "mitsuba3-table")
+    )
+    some = (COLOURS[:1], COLOURS)
+    drjit = import_module("drjit")
+    threads = drjit.thread_count()
+    found = [compiled(each, AT) for each in some]
+    assert drjit.thread_count() == threads
+    return found, [table(each, AT) for each in some]
+
+
+def test_vectorised_mitsuba_gives_the_reflectances_of_its_table(task):
+    need(LLVM)
+    found, expected = call_in_child(vectorised_and_table, task, seconds=120)
+    for compiled, table in zip(found, expected, strict=True):
+        assert_allclose(compiled, table, atol=1e-4)
+
+
+def test_cubes_do_not_know_the_families_of_a_task(task):
+    built = built_cube(task, atlas=True, dim=16, coefficients=3)
+    assert built is built_cube(task, atlas=True, dim=16, coefficients=3)
+    assert built.cube.atlas_names == task.known.names
+    assert tuple(built.cube.data.provenance["options"]["leave_out"]) == ("tcs",)
