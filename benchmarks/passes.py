@@ -2,7 +2,6 @@
 of a room, for docs/guides/passes.md.
 """
 
-import base64
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
@@ -198,8 +197,7 @@ def write_page() -> None:
         tab.window(*WINDOW)
         tab.open(ROOM)
         time.sleep(FRAMES_SECONDS)
-        shot = tab.call("Page.captureScreenshot", format="jpeg", quality=85)
-    ROOM.with_suffix(".jpg").write_bytes(base64.b64decode(shot["data"]))
+        ROOM.with_suffix(".jpg").write_bytes(tab.screenshot("main"))
 
 
 def counts() -> Row:

@@ -2,7 +2,7 @@
 
 import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import product
 from pathlib import Path
@@ -25,7 +25,7 @@ from uplift.common.arrays import Array
 from uplift.extras.images.exr import make_part, write_parts
 from uplift.extras.photographs import Noise, Photographs, photograph, prepare
 from uplift.extras.photographs.errors import photographed
-from uplift.extras.report.measures import delta_e_under
+from uplift.lab.runner import Errors, join, named_lights, spectrum_errors
 from uplift.lab.study import six_numbers
 from uplift.lab.timing import run_call, run_command, time_in_turn
 from uplift.lookup import Cube
@@ -86,35 +86,23 @@ class Case:
 CASES = [Case(further, share) for further, share in product(FURTHER, SHARES)]
 
 
-@dataclass(frozen=True, eq=False)
-class Result:
-    """ΔE00 (n, U) of each method under the unseen lights, and which (n, U, 2) of the
-    photographs' errors lie within the stated ones.
+def of_case(cube: Cube, queried: Materials, case: Case, seed: int) -> dict[str, Errors]:
+    """Photograph materials; return the errors of all methods under the unseen lights,
+    and those that we state.
     """
-
-    errors: dict[str, Array]
-    within: Array
-
-
-light = cache(observer.light)
-
-
-def of_case(cube: Cube, queried: Materials, case: Case, seed: int) -> Result:
-    """Photograph materials, and answer the photographs by all methods."""
     random = np.random.default_rng(seed)
     further = [photograph(SENSOR, name) for name in case.further]
     photographs = prepare(cube, further, case.noise)
     rgb = np.clip(noisy(queried.rgb, case.noise, random), 0, 1)
     others = noisy(queried.measured @ photographs.matrix.T, case.noise, random)
-    lights = [light(name) for name in case.unseen]
+    lights = list(named_lights(case.unseen).values())
     errors = {
-        method: delta_e_under(lights, spectra, queried.measured)
+        method: spectrum_errors(spectra, queried.measured, lights)
         for method, spectra in answers(photographs, rgb, others).items()
     }
     known = photographed(photographs)
-    radii = [errors_from(cube.data, lit, known)(rgb) for lit in lights]
-    within = errors[OURS][:, :, None] <= np.stack(radii, axis=1)
-    return Result(errors, within)
+    stated = [errors_from(cube.data, light, known)(rgb) for light in lights]
+    return {**errors, OURS: replace(errors[OURS], stated=np.stack(stated, axis=1))}
 
 
 def noisy(values: Array, noise: Noise, random: np.random.Generator) -> Array:
@@ -156,91 +144,55 @@ def second_moment(known: Evidence) -> Array:
     return differences.T @ differences / len(differences) + least
 
 
-def joined(parts: list[Result]) -> Result:
-    """Join the results of several halves or sets."""
-    errors = {
-        method: np.concatenate([part.errors[method] for part in parts])
-        for method in parts[0].errors
-    }
-    return Result(errors, np.concatenate([part.within for part in parts]))
-
-
 @cache
-def of_set(name: str) -> dict[Case, Result]:
-    """Return the results at the unseen halves of a set, or of all sets together."""
+def of_set(name: str) -> dict[Case, dict[str, Errors]]:
+    """Return the errors at the unseen halves of a set, or of all sets together."""
     if name == TOGETHER:
         return {
             case: joined([of_set(other)[case] for other in OTHERS]) for case in CASES
         }
-    halves = other_halves(name, dim=DIM)
-    results = {}
-    for case in CASES:
-        parts = [of_case(*half, case, seed) for seed, half in enumerate(halves)]
-        results[case] = joined(parts)
-        if name in CHART_LIKE:
-            del results[case].errors[CHART_MATRIX]
-    return results
+    halves = list(enumerate(other_halves(name, dim=DIM)))
+    return {
+        case: joined([of_case(*half, case, seed) for seed, half in halves])
+        for case in CASES
+    }
 
 
-def results() -> Iterator[tuple[str, Case, Result]]:
-    """Yield the results of all sets and cases."""
-    for name in (*SETS, TOGETHER):
-        for case, result in of_set(name).items():
-            yield name, case, result
+def joined(parts: list[dict[str, Errors]]) -> dict[str, Errors]:
+    """Pool the errors of each method."""
+    return {method: join([part[method] for part in parts]) for method in parts[0]}
 
 
 def errors() -> Iterator[Row]:
-    """Yield the errors under all unseen lights, by set, case and method."""
-    for name, case, result in results():
-        for method, delta_e in result.errors.items():
-            yield {"set": name, **case.columns, "method": method, **summary(delta_e)}
+    """Yield the errors under all unseen lights, by set, case and method.
+
+    Ratios are those of the means of the photographs to those of the method, over all
+    lights and under the least favourable one.
+    """
+    for name, case in product((*SETS, TOGETHER), CASES):
+        ours = of_set(name)[case][OURS]
+        for method, found in of_set(name)[case].items():
+            if method == CHART_MATRIX and name in CHART_LIKE:
+                continue
+            row = {"set": name, **case.columns, "method": method}
+            ratios = ours.delta_e.mean(axis=0) / found.delta_e.mean(axis=0)
+            row |= summary(found.delta_e)
+            row["ratio"] = ours.delta_e.mean() / found.delta_e.mean()
+            row["worst_light"] = ratios.max()
+            if found.stated is not None:
+                within = found.delta_e[:, :, None] <= found.stated
+                row["standard"], row["bound"] = within.mean(axis=(0, 1))
+            yield row
 
 
 def by_light() -> Iterator[Row]:
     """Yield the errors of `TOGETHER` under each light, from one photograph and more."""
-    for case, result in of_set(TOGETHER).items():
-        noise = case.columns["noise"]
-        for method, lights in ((CUBE, ("D65",)), (OURS, ("D65", *case.further))):
-            place = {"noise": noise, "photographs": ", ".join(lights)}
-            for name, delta_e in zip(case.unseen, result.errors[method].T, strict=True):
-                yield {**place, "light": name, **summary(delta_e)}
-
-
-def claims() -> Row:
-    """Return how the photographs compare with the other methods: ratios of means over
-    sets and cases, cases in which another method is ahead, and unseen lights under
-    which one photograph is.
-    """
-    ratios = []
-    under_lights = []
-    for name, case, result in results():
-        ours = result.errors[OURS]
-        under_lights += list(ours.mean(axis=0) / result.errors[CUBE].mean(axis=0))
-        for method, delta_e in result.errors.items():
-            place = {"set": name, **case.columns, "method": method}
-            ratios.append({**place, "ratio": ours.mean() / delta_e.mean()})
-    worst: dict[str, float] = {}
-    for row in ratios:
-        worst[row["method"]] = max(row["ratio"], worst.get(row["method"], 0))
-    return {
-        "cases": len(CASES) * (len(SETS) + 1),
-        "worst": worst,
-        "ahead": [row for row in ratios if row["ratio"] > 1],
-        "lights": len(under_lights),
-        "lights_worse": sum(ratio > 1 for ratio in under_lights),
-        "light_worst": max(under_lights),
-    }
-
-
-def coverage() -> Iterator[Row]:
-    """Yield the shares of materials within the stated errors, with one further
-    light.
-    """
-    for name, case, result in results():
-        if case.further == FURTHER[0]:
-            standard, bound = result.within.mean(axis=(0, 1))
-            place = {"set": name, "noise": case.columns["noise"]}
-            yield {**place, "standard": standard, "bound": bound}
+    for case, by_method in of_set(TOGETHER).items():
+        for method, known in ((CUBE, ("D65",)), (OURS, ("D65", *case.further))):
+            columns = {**case.columns, "photographs": ", ".join(known)}
+            delta_e = by_method[method].delta_e
+            for name, of_light in zip(case.unseen, delta_e.T, strict=True):
+                yield {**columns, "light": name, **summary(of_light)}
 
 
 def speed() -> Row:
@@ -297,8 +249,6 @@ QUESTIONS = {
     "texture": texture,
     "errors": errors,
     "by_light": by_light,
-    "claims": claims,
-    "coverage": coverage,
     "scene": draw_pictures,
     "speed": speed,
 }
