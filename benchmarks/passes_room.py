@@ -8,12 +8,12 @@ those of the representation alone.
 """
 
 import time
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmarks import DOCS, Row, mitsuba_scenes
+from benchmarks import DOCS, Row, mitsuba_scenes, summary
 from benchmarks.checker import Layout, chart, photo
 from benchmarks.passes import without_family
 from uplift.colorimetry import delta_e_2000, lab, observer
@@ -24,6 +24,7 @@ from uplift.extras.pages.marks import error_map
 from uplift.extras.pages.panels import Panel, draw
 from uplift.extras.scene import passes
 
+SPECTRAL = mitsuba_scenes.VARIANT
 LAMPS = ("D65", "HP1")
 """Lights of the left and of the right lamp."""
 PAINTED = {
@@ -42,39 +43,34 @@ SIZE = 160
 """Rows and columns of pictures, a multiple of `BLOCK`."""
 BLOCK = 8
 """Rows and columns of pixels whose means have little noise."""
-RGB_SAMPLES = 144
-"""Samples per pixel of passes."""
-SPECTRAL_SAMPLES = 576
-"""Samples of four wavelengths per pixel of the spectral variant."""
+SAMPLES = {"scalar_rgb": 144, SPECTRAL: 576}
+"""Samples per pixel by variant, of three numbers and of four wavelengths."""
 REFLECTIONS = 6
 SEED = 3
 LIMIT = 3600
 """Seconds after which a rendering counts as hung."""
 WHITE_LEVEL = 0.97
 """Quantile of luminance that pictures show as white."""
-RADIANCE = 12.0
-"""Luminance of the lamps."""
 SPECTRA = "spectra, 81 wavelengths"
 RGB = "RGB"
-SPECTRAL = mitsuba_scenes.VARIANT
 TITLES = {SPECTRA: "spectra", RGB: "plain RGB", "1": "one pass", "2": "two passes"}
 PICTURE = DOCS / "passes" / "room.png"
 
 
 @dataclass(frozen=True, eq=False)
-class Representation:
-    """Numbers (24, K) of the patches and (2, K) of the lamps, and the matrix (3, K) to
-    XYZ from those of pixels.
+class Pass:
+    """Reflectances of the patches (24) and radiances of the lamps (2) in Mitsuba, and
+    the matrix (3, 3) from the numbers of pixels to XYZ.
     """
 
-    surfaces: Array
-    lamps: Array
+    surfaces: list[Row]
+    lamps: list[Row]
     to_xyz: Array
 
 
 @dataclass(frozen=True, eq=False)
 class Rendering:
-    """XYZ (height, width, 3) of a representation, and the seconds that it took."""
+    """XYZ (height, width, 3) of a picture, and the seconds that it took."""
 
     xyz: Array
     seconds: float
@@ -116,86 +112,78 @@ def room(surfaces: Sequence[Row], lamps: Sequence[Row], film: Row) -> Row:
     return scene
 
 
-def render_passes(represented: Representation, size: int, samples: int) -> Rendering:
-    """Render three numbers at a time as RGB, and decode."""
-    mitsuba_scenes.start_mitsuba("scalar_rgb")
-    film = mitsuba_scenes.film(size, size, "rgb")
-    xyz = np.zeros((size, size, 3))
-    begin = time.perf_counter()
-    for first in range(0, represented.to_xyz.shape[1], 3):
-        three = slice(first, first + 3)
-        surfaces = map(mitsuba_scenes.rgb, represented.surfaces[:, three])
-        lamps = map(mitsuba_scenes.rgb, represented.lamps[:, three])
-        scene = room(list(surfaces), list(lamps), film)
-        numbers = mitsuba_scenes.render(scene, samples, SEED)
-        xyz += numbers @ represented.to_xyz[:, three].T
-    return Rendering(xyz, time.perf_counter() - begin)
-
-
-def render_spectra(
-    reflectances: Array, lamps: Array, size: int, samples: int
-) -> Rendering:
-    """Render reflectances (24, 81) under lamps of power (2, 81)."""
-    mitsuba_scenes.start_mitsuba()
-    surfaces = map(mitsuba_scenes.spectrum, reflectances)
-    radiances = map(mitsuba_scenes.radiance, lamps)
-    film = mitsuba_scenes.film(size, size)
-    scene = room(list(surfaces), list(radiances), film)
-    begin = time.perf_counter()
-    xyz = mitsuba_scenes.render(scene, samples, SEED)
-    return Rendering(xyz, time.perf_counter() - begin)
-
-
-def representations(
-    spectra: Array, powers: Array, counts: Sequence[int]
-) -> dict[str, Representation]:
-    """Represent reflectances (24, 81) and lamps (2, 81) by all wavelengths, as RGB, and
-    by passes that are chosen without the paints.
+def divide(surfaces: Array, lamps: Array, to_xyz: Array) -> list[Pass]:
+    """Divide the numbers (24, K) of surfaces and (2, K) of lamps, and the columns of
+    the matrix (3, K) to XYZ, among passes of three.
     """
+    rgb = mitsuba_scenes.rgb
+    threes = [slice(first, first + 3) for first in range(0, to_xyz.shape[1], 3)]
+    return [
+        Pass(
+            list(map(rgb, surfaces[:, three])),
+            list(map(rgb, lamps[:, three])),
+            to_xyz[:, three],
+        )
+        for three in threes
+    ]
+
+
+def all_passes(counts: Sequence[int]) -> dict[str, list[Pass]]:
+    """Return the passes of all wavelengths, of RGB, of bands that are chosen without
+    the paints, and one of spectra.
+    """
+    spectra = np.clip(chart().measured, 0, 1)
+    powers = np.stack([passes.scaled_power(name) for name in LAMPS])
     screen = observer.sensor()
     to_xyz = observer.matching_functions().T
     rgb_lamps = np.maximum(powers @ to_xyz.T @ screen.xyz_to_rgb.T, 0)
-    represented = {
-        SPECTRA: Representation(spectra, powers, to_xyz),
-        RGB: Representation(chart().painted, rgb_lamps, screen.rgb_to_xyz),
+    divided = {
+        SPECTRA: divide(spectra, powers, to_xyz),
+        RGB: divide(chart().painted, rgb_lamps, screen.rgb_to_xyz),
     }
     materials = without_family(FAMILY, spectra)
     for count in counts:
         chosen = passes.choose(materials, LAMPS, count)
-        lamps = RADIANCE * np.stack([light.numbers for light in chosen.lights])
+        lamps = np.stack([light.numbers for light in chosen.lights])
         surfaces = chosen.reflectance_numbers(spectra)
-        represented[f"{count}"] = Representation(surfaces, lamps, chosen.to_xyz)
-    return represented
+        divided[f"{count}"] = divide(surfaces, lamps, chosen.to_xyz)
+    reflectances = list(map(mitsuba_scenes.spectrum, spectra))
+    radiances = list(map(mitsuba_scenes.radiance, powers))
+    divided[SPECTRAL] = [Pass(reflectances, radiances, np.eye(3))]
+    return divided
+
+
+def render(divided: list[Pass], variant: str, size: int, samples: int) -> Rendering:
+    """Render passes by a variant of Mitsuba, and decode."""
+    mitsuba_scenes.start_mitsuba(variant)
+    film = mitsuba_scenes.film(size, size, "xyz" if variant == SPECTRAL else "rgb")
+    xyz = np.zeros((size, size, 3))
+    begin = time.perf_counter()
+    for one in divided:
+        scene = room(one.surfaces, one.lamps, film)
+        xyz += mitsuba_scenes.render(scene, samples, SEED) @ one.to_xyz.T
+    return Rendering(xyz, time.perf_counter() - begin)
 
 
 def render_all(
-    size: int, rgb_samples: int, spectral_samples: int, counts: Sequence[int]
+    size: int, samples: Mapping[str, int], counts: Sequence[int]
 ) -> dict[str, Rendering]:
-    """Render all representations, and the spectra by the spectral variant, in child
-    processes.
-    """
-    spectra = np.clip(chart().measured, 0, 1)
-    powers = RADIANCE * np.stack([passes.scaled_power(name) for name in LAMPS])
-    rendered = {
-        name: call_in_child(
-            render_passes, represented, size, rgb_samples, seconds=LIMIT
-        )
-        for name, represented in representations(spectra, powers, counts).items()
+    """Render all passes in child processes, as bright as pictures show them."""
+    rendered = {}
+    for name, divided in all_passes(counts).items():
+        variant = SPECTRAL if name == SPECTRAL else "scalar_rgb"
+        job = (divided, variant, size, samples[variant])
+        rendered[name] = call_in_child(render, *job, seconds=LIMIT)
+    white = np.quantile(rendered[SPECTRA].xyz[..., 1], WHITE_LEVEL)
+    return {
+        name: replace(rendering, xyz=rendering.xyz / white)
+        for name, rendering in rendered.items()
     }
-    rendered[SPECTRAL] = call_in_child(
-        render_spectra, spectra, powers, size, spectral_samples, seconds=LIMIT
-    )
-    return rendered
 
 
-def white_level(truth: Array) -> float:
-    """Return the luminance that pictures show as white."""
-    return float(np.quantile(truth[..., 1], WHITE_LEVEL))
-
-
-def delta_e(first: Array, second: Array, level: float) -> Array:
+def delta_e(first: Array, second: Array) -> Array:
     """ΔE00 (height, width) of XYZ (height, width, 3), for the white of D65."""
-    white = level * observer.light("D65").white
+    white = observer.light("D65").white
     return delta_e_2000(lab(first, white), lab(second, white))
 
 
@@ -210,39 +198,36 @@ def errors(rendered: dict[str, Rendering]) -> Iterator[Row]:
     seconds, by method.
     """
     truth = rendered[SPECTRA].xyz
-    level = white_level(truth)
+    spectral = blocks(rendered[SPECTRAL].xyz)
     for method, rendering in rendered.items():
-        pixels = delta_e(truth, rendering.xyz, level)
-        spectral = blocks(rendered[SPECTRAL].xyz)
         yield {
             "method": method,
-            "mean": pixels.mean(),
-            "p95": np.quantile(pixels, 0.95),
-            "to_spectral": delta_e(spectral, blocks(rendering.xyz), level).mean(),
+            **summary(delta_e(truth, rendering.xyz).ravel()),
+            "to_spectral": delta_e(spectral, blocks(rendering.xyz)).mean(),
             "seconds": rendering.seconds,
         }
 
 
 def draw_room(rendered: dict[str, Rendering]) -> None:
     """Draw the renderings, and below each its differences from all wavelengths."""
+    shown = {**TITLES, SPECTRAL: SPECTRAL}
+    to_srgb = observer.sensor().xyz_to_rgb.T
+    panels = [
+        Panel([photo(rendered[name].xyz @ to_srgb)], title)
+        for name, title in shown.items()
+    ]
     truth = rendered[SPECTRA].xyz
-    level = white_level(truth)
-    to_srgb = observer.sensor().xyz_to_rgb / level
-    errors = {name: delta_e(truth, rendered[name].xyz, level) for name in TITLES}
-    largest = float(np.quantile(errors[RGB], 0.95))
-    panels = []
-    for name, title in TITLES.items():
-        panels.append(Panel([photo(rendered[name].xyz @ to_srgb.T)], title))
-    panels.append(Panel([photo(rendered[SPECTRAL].xyz @ to_srgb.T)], SPECTRAL))
-    for name in list(TITLES)[1:]:
-        title = f"mean ΔE00 {errors[name].mean():.2f}"
-        panels.append(Panel([error_map(errors[name], largest)], title))
+    maps = [delta_e(truth, rendered[name].xyz) for name in list(TITLES)[1:]]
+    largest = float(np.quantile(maps[0], 0.95))
+    for values in maps:
+        marks = [error_map(values, largest)]
+        panels.append(Panel(marks, f"mean ΔE00 {values.mean():.2f}"))
     write_figure(draw(panels, len(TITLES), 2.4), PICTURE, force=True)
 
 
 def measure() -> list[Row]:
     """Render and draw the room, and return the errors."""
-    rendered = render_all(SIZE, RGB_SAMPLES, SPECTRAL_SAMPLES, COUNTS)
+    rendered = render_all(SIZE, SAMPLES, COUNTS)
     draw_room(rendered)
     return list(errors(rendered))
 

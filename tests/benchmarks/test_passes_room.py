@@ -7,13 +7,13 @@ from tests.parts import MITSUBA, need
 
 need(MITSUBA)
 
-from benchmarks.passes_room import RGB, errors, render_all
+from benchmarks.passes_room import RGB, SPECTRAL, errors, render_all
 
 
 @pytest.fixture(scope="module")
 def rows():
     """Errors of a picture of 16 × 16 pixels, by method."""
-    rendered = render_all(16, 8, 512, (1, 2))
+    rendered = render_all(16, {"scalar_rgb": 8, SPECTRAL: 512}, (1, 2))
     return {row["method"]: row for row in errors(rendered)}
 
 
