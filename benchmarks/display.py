@@ -6,7 +6,6 @@ import warnings
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 
 import colour
 import numpy as np
@@ -19,7 +18,6 @@ from uplift.extras.colour.srgb import encode
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import picture
 from uplift.extras.pages.panels import Panel, draw
-from uplift.lab.timing import time_short_call
 
 DARKEST = 2
 BRIGHTEST = 9
@@ -29,10 +27,6 @@ STEP = 0.25
 WHITE = SRGB.rgb_to_xyz.sum(axis=1)
 REC_2020 = Primaries((0.708, 0.292), (0.170, 0.797), (0.131, 0.046), (0.3127, 0.3290))
 MAPPINGS = tuple(method for method in METHODS if method != "error")
-TIMED = 1 << 16
-"""Colours, all of them outside."""
-LAP = 0.02
-RUNS = 7
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,16 +121,6 @@ def shifts() -> Iterator[Row]:
             yield {"method": method, "measure": measure, **summary(values)}
 
 
-def costs() -> Iterator[Row]:
-    """Yield the CPU time of a mapped colour in ns."""
-    rgb = np.random.default_rng(0).normal(0.5, 1, (3 * TIMED, 3))
-    rgb = rgb[~in_unit_cube(rgb)][:TIMED]
-    for method in MAPPINGS:
-        call = partial(map_to_gamut, rgb, SRGB, method)
-        seconds = time_short_call(call, LAP, RUNS).cpu
-        yield {"method": method, "ns": seconds.scaled(1e9 / TIMED)}
-
-
 def draw_hues() -> None:
     """Draw the hues of Rec. 2020 as each method maps them, from dark to three times
     white.
@@ -153,4 +137,4 @@ def draw_hues() -> None:
     write_figure(figure, DOCS / "display" / "ways.png", force=True)
 
 
-QUESTIONS = {"shifts": shifts, "costs": costs, "picture": draw_hues}
+QUESTIONS = {"shifts": shifts, "picture": draw_hues}
