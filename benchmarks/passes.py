@@ -17,7 +17,6 @@ from benchmarks.browser import browser
 from benchmarks.checker import chart
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError
 from uplift.common.files import write_text
 from uplift.extras import texture
 from uplift.extras.palette.factor import factor_model
@@ -99,27 +98,25 @@ def errors() -> Iterator[Row]:
 
 
 def other_bases() -> Iterator[Row]:
-    """Yield the errors of other choices of as many numbers, decoded in the same way."""
-    table = observer.grid()
+    """Yield the errors of other choices of as many numbers as two passes have, decoded
+    in the same way.
+    """
+    count = 2 * library.CHANNELS
     training = materials().training[:: -(-len(materials().training) // MATERIALS)]
     fine = wavelengths.grid()
+    table = observer.grid()
     resampled = [np.interp(fine, table, row) for row in np.clip(training, 0, 1)]
     setup = wavelengths.make_setup(np.stack(resampled), LIGHTS)
     smooth = np.stack([library.scaled_power(name) for name in SMOOTH])
-    for count in COUNTS:
-        bases = {}
-        for method in ("optimised", "meyer", "uniform"):
-            try:
-                found = wavelengths.choose(setup, count=3 * count, method=method)
-            except OptionError:
-                continue
-            bases[method] = point_weights(found.sampling.wavelengths)
-        model = factor_model(observer.sensor(), training, smooth, 3 * count)
-        bases["factor model"] = model.projection
-        for name, weights in bases.items():
-            if len(weights) == 3 * count:
-                fitted = library.fit_bands(Basis(weights), materials(), LIGHTS)
-                yield from both_decodings(fitted, kind=name, passes=count)
+    model = factor_model(observer.sensor(), training, smooth, count)
+    bases = {"factor model": model.projection}
+    for method in ("optimised", "meyer", "uniform"):
+        found = wavelengths.choose(setup, count=count, method=method)
+        bases[method] = point_weights(found.sampling.wavelengths)
+    for name, weights in bases.items():
+        fitted = library.fit_bands(Basis(weights), materials(), LIGHTS)
+        shared = np.stack([light.errors for light in fitted.lights])
+        yield {"kind": name, "mean": shared.mean()}
 
 
 def point_weights(nm: Array) -> Array:
@@ -200,16 +197,7 @@ def write_page() -> None:
         ROOM.with_suffix(".jpg").write_bytes(tab.screenshot("main"))
 
 
-def counts() -> Row:
-    """Return the numbers of materials."""
-    return {
-        "training": len(materials().training),
-        "held_out": len(materials().held_out),
-    }
-
-
 QUESTIONS = {
-    "materials": counts,
     "errors": errors,
     "bases": other_bases,
     "other_lights": other_lights,
