@@ -22,7 +22,7 @@ from uplift.extras import texture
 from uplift.extras.palette.factor import factor_model
 from uplift.extras.scene import passes as library
 from uplift.extras.scene import wavelengths
-from uplift.extras.scene.passes import Materials, Passes
+from uplift.extras.scene.passes import Bands, Materials, Passes
 from uplift.extras.scene.passes.browser_page import page
 from uplift.extras.scene.passes.choice import JUDGING_PATHS, JUDGING_SEED
 from uplift.extras.scene.passes.light_paths import draw_paths
@@ -109,21 +109,14 @@ def other_bases() -> Iterator[Row]:
     setup = wavelengths.make_setup(np.stack(resampled), LIGHTS)
     smooth = np.stack([library.scaled_power(name) for name in SMOOTH])
     model = factor_model(observer.sensor(), training, smooth, count)
-    bases = {"factor model": model.projection}
+    bases = {"factor model": Basis(model.projection)}
     for method in ("optimised", "meyer", "uniform"):
         found = wavelengths.choose(setup, count=count, method=method)
-        bases[method] = point_weights(found.sampling.wavelengths)
-    for name, weights in bases.items():
-        fitted = library.fit_bands(Basis(weights), materials(), LIGHTS)
+        bases[method] = Bands(tuple(found.sampling.wavelengths), 0.0)
+    for name, basis in bases.items():
+        fitted = library.fit_bands(basis, materials(), LIGHTS)
         shared = np.stack([light.errors for light in fitted.lights])
         yield {"kind": name, "mean": shared.mean()}
-
-
-def point_weights(nm: Array) -> Array:
-    """Weights (K, 81) of linear interpolation at wavelengths (K,) nm."""
-    table = observer.grid()
-    hats = [np.interp(nm, table, row) for row in np.eye(len(table))]
-    return np.stack(hats, axis=1)
 
 
 def other_lights() -> Iterator[Row]:
