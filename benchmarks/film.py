@@ -1,16 +1,14 @@
 """Exposure of films by tables of spectra, for docs/guides/film.md.
 
-The films are those of spektrafilm, if a copy of its repository is in `PROGRAM`; nothing
-of it comes with this package. Their layers are exposed to measured reflectances under
-`FILM_LIGHT`: by their spectra, by those of a cube that does not know their family, by
-the table of the cube, and by the table of the program. The program multiplies the
-sensitivities by a window, the product of two edges, erf in wavelength. Its setting
-switches the window off.
+The films are those of spektrafilm, of whose repository a copy must be in `PROGRAM`;
+nothing of it comes with this package. The program multiplies the sensitivities of a
+film by a window, the product of two edges, erf in wavelength. Its setting switches the
+window off.
 """
 
 import json
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -21,11 +19,9 @@ from scipy.ndimage import map_coordinates
 from scipy.special import ndtr
 
 import uplift
-from benchmarks import ROOT, Row, record
+from benchmarks import DOCS, ROOT, Row
 from benchmarks.checker import BACKGROUND, Layout, chart
 from benchmarks.materials import materials
-from benchmarks.showcase import ATLAS, DIM, FOLDER, MEASURED, PLAIN
-from uplift.colorimetry import Sensor
 from uplift.colorimetry.observer import (
     DEFAULT_OBSERVER,
     grid,
@@ -37,74 +33,23 @@ from uplift.colorimetry.observer import (
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import encode
 from uplift.extras.export import write_film
-from uplift.extras.export.film import CAT16, LAYER_WIDTH, LAYERS, SHARE
-from uplift.extras.pages.figure import new_figure, show_image, write_png
+from uplift.extras.export.film import CAT16, LAYER_WIDTH, LAYERS
+from uplift.extras.pages.figure import write_figure
+from uplift.extras.pages.marks import picture
+from uplift.extras.pages.panels import Panel, draw
 
 FILM_LIGHT = "D55"
-FILM_SIZE = (11.2, 2.9)
 LAYOUT = Layout(patch=32, gap=4)
+WIDTH = 2.7
+"""Inches of a chart's width in the picture."""
 PROGRAM = ROOT / "out" / "spektrafilm" / "src" / "spektrafilm" / "data"
-"""Data of the program; without them its films are not measured."""
+"""Data of the program."""
 PROGRAM_TABLE = PROGRAM / "luts" / "spectral_upsampling" / "irradiance_xy_tc.npy"
 TESTED = "cie2017"
-SHARES = (0.2, 0.3, 0.4, 0.5, 0.6, 0.8)
-"""Luminances of the stored reflectances that are compared."""
-SHARE_SETS = (TESTED, "rawtoaces", "pmc")
+DIM = 32
 
 
-@dataclass(frozen=True, eq=False)
-class Stock:
-    """A film: sensitivities (N, 3) of its layers, without and with the window."""
-
-    name: str
-    plain: Array
-    windowed: Array
-
-
-def main() -> None:
-    """Expose the chart and draw it, and measure the films of the program."""
-    FOLDER.mkdir(exist_ok=True)
-    expose_chart()
-    if PROGRAM_TABLE.exists():
-        stocks = read_stocks()
-        record(
-            "film",
-            "film-stocks",
-            light=FILM_LIGHT,
-            materials=TESTED,
-            stocks=measure_stocks(stocks),
-            shares=[measure_shares(stocks, name) for name in SHARE_SETS],
-        )
-
-
-def expose_chart() -> None:
-    """Expose the chart on a film by tables, draw the layers as red, green and blue, and
-    store the errors in stops.
-    """
-    cubes = {PLAIN: uplift.load(), ATLAS: uplift.build("macbeth", dim=DIM)}
-    painted = chart()
-    power = film_power()
-    layers = np.exp(-0.5 * ((grid()[:, None] - LAYERS[::-1]) / LAYER_WIDTH) ** 2)
-    measured = painted.measured * power @ layers
-    figure = new_figure(*FILM_SIZE)
-    panels = figure.subplots(1, 1 + len(cubes))
-    draw_layers(panels[0], MEASURED, measured / (power @ layers))
-    rows = []
-    for axes, (name, cube) in zip(panels[1:], cubes.items(), strict=True):
-        stated, table = film_table(cube, SHARE)
-        exposure = exposures(table @ layers, cube.data.sensor, painted.painted)
-        stops = np.abs(np.log2(exposure / measured)).mean(axis=1)
-        draw_layers(axes, name, exposure / (power @ layers), stops)
-        rows.append(
-            {
-                "cube": name,
-                "stated": stated,
-                "mean": stops.mean(),
-                "largest": stops.max(),
-            }
-        )
-    write_png(figure, FOLDER / "film.png", force=True)
-    record("film", light=FILM_LIGHT, cubes=rows)
+# --- a chart on a film with Gaussian layers ---
 
 
 def film_power() -> Array:
@@ -114,12 +59,87 @@ def film_power() -> Array:
     return spd / (spd @ luminous / luminous.sum())
 
 
-def film_table(cube: uplift.Cube, share: float) -> tuple[float, Array]:
+def film_table(cube: uplift.Cube) -> tuple[float, Array]:
     """Write the table of a cube; return the error that it states, and the spectra."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "film.npy"
-        stated = write_film(cube, path, light=FILM_LIGHT, share=share).stops
+        stated = write_film(cube, path, light=FILM_LIGHT).stops
         return stated, np.load(path).astype(float)
+
+
+def exposures(table: Array, rgb: Array) -> Array:
+    """Look up linear sRGB (n, 3) in a table (k, k, 3) of a film, as readers do.
+
+    They adapt to the light of the film, look up the chromaticity, and scale by X + Y +
+    Z.
+    """
+    srgb = sensor()
+    gain = (CAT16 @ light(FILM_LIGHT).white) / (CAT16 @ srgb.light.white)
+    xyz = np.linalg.solve(CAT16, gain[:, None] * (CAT16 @ srgb.xyz(rgb).T))
+    total = xyz.sum(axis=0)
+    x, y, _ = xyz / total
+    places = np.array([(1 - x) ** 2, y / (1 - x)]) * (len(table) - 1)
+    layers = [
+        map_coordinates(layer, places, order=1) for layer in np.moveaxis(table, -1, 0)
+    ]
+    return np.stack(layers, axis=1) * total[:, None]
+
+
+def stops(exposure: Array, truth: Array) -> Array:
+    """Return the mean |log₂| (n,) of ratios of exposures (n, 3)."""
+    return np.abs(np.log2(exposure / truth)).mean(axis=1)
+
+
+def expose_chart() -> list[Row]:
+    """Expose the chart by tables of two cubes; return the errors in stops, and draw the
+    layers as red, green and blue.
+    """
+    cubes = {
+        "uplift, no atlas": uplift.load(),
+        "uplift, with the chart": uplift.build("macbeth", dim=DIM),
+    }
+    painted = chart()
+    power = film_power()
+    layers = np.exp(-0.5 * ((grid()[:, None] - LAYERS[::-1]) / LAYER_WIDTH) ** 2)
+    white = power @ layers
+    measured = painted.measured * power @ layers
+    panels = [chart_panel("measured", measured / white)]
+    rows = []
+    for name, cube in cubes.items():
+        stated, table = film_table(cube)
+        exposure = exposures(table @ layers, painted.painted)
+        errors = stops(exposure, measured)
+        panels.append(chart_panel(name, exposure / white, errors))
+        about = {"cube": name, "stated": stated}
+        rows.append({**about, "mean": errors.mean(), "max": errors.max()})
+    figure = draw(panels, len(panels), WIDTH)
+    write_figure(figure, DOCS / "showcase" / "film.png", force=True)
+    return rows
+
+
+def chart_panel(title: str, exposure: Array, errors: Sequence[float] = ()) -> Panel:
+    """Show exposures (24, 3) as linear RGB, with errors in stops on the patches."""
+    image = LAYOUT.paint(exposure, np.full(3, BACKGROUND))
+
+    def write_errors(axes: Any) -> None:
+        for (rows, columns), error in zip(LAYOUT.patches(), errors, strict=False):
+            colour = "w" if image[rows, columns].mean() < 0.25 else "k"
+            place = columns.start + 2, rows.stop - 3
+            axes.text(*place, f"{error:.2f}", fontsize=7, color=colour)
+
+    return Panel([picture(encode(image)), write_errors], title)
+
+
+# --- films of spektrafilm ---
+
+
+@dataclass(frozen=True, eq=False)
+class Stock:
+    """A film: sensitivities (N, 3) of its layers, without and with the window."""
+
+    name: str
+    plain: Array
+    windowed: Array
 
 
 def read_stocks() -> list[Stock]:
@@ -144,85 +164,33 @@ def read_stocks() -> list[Stock]:
     return stocks
 
 
-def measure_stocks(stocks: Sequence[Stock]) -> list[Row]:
-    """Return the mean errors of the layers of each film in stops."""
+def measure_stocks() -> Iterator[Row]:
+    """Yield the mean errors of the layers of each film in stops: by a cube that does
+    not know the materials, by its table, and by the table of the program.
+
+    Balanced exposures are relative to that of white, for which a print is filtered.
+    """
     tested = materials(TESTED)
     cube = uplift.build(dim=DIM, leave_out=(TESTED,))
-    lit = cube.reflectance(tested.rgb) * film_power()
-    _, table = film_table(cube, SHARE)
-    tables = {"table": table, "program": np.load(PROGRAM_TABLE).astype(float)}
-    rows = []
-    for stock in stocks:
-        truth = tested.measured * film_power() @ stock.plain
-        row: Row = {"stock": stock.name, "cube": stops(lit @ stock.plain, truth)}
-        sensitivities = {"": stock.plain, ", window": stock.windowed}
-        for (name, spectra), (window, layers) in product(
-            tables.items(), sensitivities.items()
-        ):
-            exposed = spectra @ layers
-            row[f"{name}{window}"] = table_stops(exposed, tested.rgb, truth)
-            # white is exposed as it should be, as in a print that is balanced for white
-            white = exposures(exposed, sensor(), np.ones((1, 3)))
-            exposed *= film_power() @ stock.plain / white
-            row[f"{name}{window}, balanced"] = table_stops(exposed, tested.rgb, truth)
-        rows.append(row)
-    return rows
+    power = film_power()
+    lit = cube.reflectance(tested.rgb) * power
+    tables = {
+        "its table": film_table(cube)[1],
+        "the program's table": np.load(PROGRAM_TABLE).astype(float),
+    }
+    for stock in read_stocks():
+        truth = tested.measured * power @ stock.plain
+        by_cube = stops(lit @ stock.plain, truth).mean()
+        yield {"stock": stock.name, "table": "the cube", "stops": by_cube}
+        for (name, spectra), window in product(tables.items(), (False, True)):
+            table = spectra @ (stock.windowed if window else stock.plain)
+            exposure = exposures(table, tested.rgb)
+            balance = power @ stock.plain / exposures(table, np.ones((1, 3)))
+            about = {"stock": stock.name, "table": name, "window": window}
+            plain = stops(exposure, truth).mean()
+            yield {**about, "stops": plain, "balanced": False}
+            balanced = stops(balance * exposure, truth).mean()
+            yield {**about, "stops": balanced, "balanced": True}
 
 
-def measure_shares(stocks: Sequence[Stock], name: str) -> Row:
-    """Return the mean error of all films by the luminance of the table's spectra."""
-    tested = materials(name)
-    cube = uplift.build(dim=DIM, leave_out=(name,))
-    errors = {}
-    for share in SHARES:
-        _, table = film_table(cube, share)
-        by_stock = []
-        for stock in stocks:
-            truth = tested.measured * film_power() @ stock.plain
-            by_stock.append(table_stops(table @ stock.plain, tested.rgb, truth))
-        errors[str(share)] = float(np.mean(by_stock))
-    return {"materials": name, "stops": errors}
-
-
-def table_stops(table: Array, rgb: Array, truth: Array) -> float:
-    """Mean error of exposures of linear sRGB (n, 3) by a table (k, k, 3)."""
-    return stops(exposures(table, sensor(), rgb), truth)
-
-
-def stops(exposure: Array, truth: Array) -> float:
-    """Mean |log₂| of ratios of exposures (n, 3)."""
-    return float(np.abs(np.log2(exposure / truth)).mean())
-
-
-def exposures(table: Array, srgb: Sensor, rgb: Array) -> Array:
-    """Look up linear sRGB (n, 3) in a table (k, k, 3) of a film, as readers do.
-
-    They adapt to the light of the film, look up the chromaticity, and scale by X + Y +
-    Z.
-    """
-    gain = (CAT16 @ light(FILM_LIGHT).white) / (CAT16 @ srgb.light.white)
-    xyz = np.linalg.solve(CAT16, gain[:, None] * (CAT16 @ srgb.xyz(rgb).T))
-    total = xyz.sum(axis=0)
-    x, y, _ = xyz / total
-    places = np.array([(1 - x) ** 2, y / (1 - x)]) * (len(table) - 1)
-    layers = [
-        map_coordinates(layer, places, order=1) for layer in np.moveaxis(table, -1, 0)
-    ]
-    return np.stack(layers, axis=1) * total[:, None]
-
-
-def draw_layers(
-    axes: Any, name: str, exposure: Array, stops: Sequence[float] = ()
-) -> None:
-    """Show exposures (24, 3) as linear RGB, with errors in stops on the patches."""
-    image = LAYOUT.paint(exposure, np.full(3, BACKGROUND))
-    for (rows, columns), error in zip(LAYOUT.patches(), stops, strict=False):
-        axes.text(
-            columns.start + 2,
-            rows.stop - 3,
-            f"{error:.2f}",
-            fontsize=8,
-            color="w" if image[rows, columns].mean() < 0.25 else "k",
-        )
-    show_image(axes, encode(np.clip(image, 0, 1)), interpolation="nearest")
-    axes.set_title(name)
+QUESTIONS = {"chart": expose_chart, "stocks": measure_stocks}

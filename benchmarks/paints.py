@@ -1,340 +1,280 @@
-"""Measured paints: recovery of K and S, mixtures of acrylics, recipes, programs and a
-picture, for docs/guides/paints.md.
+"""Measured paints: recovery of K and S, mixtures of acrylics, recipes, programs and
+pictures, for docs/guides/paints.md.
 """
 
 import json
-import shutil
-import subprocess
 import tempfile
-import time
 from collections.abc import Iterator, Sequence
+from functools import cache
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 
 import uplift
-from benchmarks import DOCS, ROOT, Row, record
-from benchmarks.invented_paints import NM, invented_paints
-from benchmarks.mixing import acrylics
-from uplift.colorimetry import Sensor, delta_e_rgb, observer
-from uplift.common.arrays import Array, Indices
+from benchmarks import DOCS, REFERENCE, Row, summary
+from benchmarks.mixtures import Mixtures, acrylics, draw_ramps
+from benchmarks.programs import compile_c, numbers, program_version
+from uplift.colorimetry import delta_e_rgb
+from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.pages.html import resource
-from uplift.extras.pages.plots import Strip, plot_strips
 from uplift.extras.paint import (
-    PaintFit,
     Paints,
     PaintSamples,
     PaintTarget,
     advise_samples,
     fit_paints,
     match,
+    read_paints,
 )
+from uplift.extras.paint.coats import ramp
 from uplift.extras.paint.paint_page import SCRIPTS, page_numbers, write_page
 from uplift.extras.paint.paint_program import few_samples, write_program
 from uplift.extras.paint.paint_samples import MeasuredColours, MeasuredSpectra
+from uplift.lab.timing import stopwatch
 
-RANGE = (400.0, 700.0, 10.0)
+INVENTED = read_paints(REFERENCE / "invented_paints.toml")
+"""Paints of which the swatches of ``uplift samples`` are made."""
+NM = INVENTED.wavelengths
 NOISES = (0.0, 0.002, 0.01)
 """Standard deviation of reflectances."""
 JUDGED = 400
-SPLITS = 3
 TINTS = (4, 20)
 """Parts of white to one of a paint."""
+SPLITS = 3
 RECIPES = 60
 """Left-out mixtures whose recipes are searched."""
 COUNTS = (5, 6, 8, 10, 12)
 FLAGS = ("-O3", "-march=x86-64-v3", "-fno-math-errno")
 RUNS = 25
 STEPS = 13
-
-
-def opaque_samples(
-    paints: Sequence[str], shares: Array, measured: MeasuredSpectra | MeasuredColours
-) -> PaintSamples:
-    """Return opaque samples of paints."""
-    count = len(shares)
-    names = tuple(f"sample {number}" for number in range(count))
-    return PaintSamples(
-        names,
-        tuple(paints),
-        shares / shares.sum(axis=1, keepdims=True),
-        np.full(count, np.inf),
-        np.ones((count, len(NM))),
-        NM,
-        measured,
-    )
+RAMPS = (
+    ("deep blue", "lemon yellow"),
+    ("titanium white", "deep blue"),
+    ("warm red", "titanium white"),
+    ("lemon yellow", "carbon black"),
+)
+FILMS = ("lemon yellow", "warm red", "deep blue")
+DEPTHS = np.geomspace(0.05, 5, STEPS)
+"""Thickness of films in mm."""
 
 
 # --- recovery of invented paints ---
 
 
 def recovery() -> Iterator[Row]:
-    """Yield how well paints are recovered from samples with noise."""
-    truth = invented_paints()
-    count = len(truth)
-    own = np.eye(count)
-    tints = [own[1:] + parts * own[0] for parts in TINTS]
-    pairs = [
-        own[first] + own[second]
-        for first in range(1, count)
-        for second in range(first + 1, count)
-    ]
-    sets = {
-        "each paint alone": own,
-        "and a tint 1:4": np.concatenate([own, tints[0]]),
-        "and tints 1:4, 1:20": np.concatenate([own, *tints]),
-        "and pairs 1:1": np.concatenate([own, *tints, pairs]),
-    }
-    sensor = observer.sensor(wavelengths=RANGE)
-    test = np.random.default_rng(1).dirichlet(np.full(count, 0.5), JUDGED)
+    """Yield how well paints are recovered from opaque swatches with noise."""
+    test = np.random.default_rng(1).dirichlet(np.full(len(INVENTED), 0.5), JUDGED)
+    expected = opaque_colours(INVENTED, test)
     for noise in NOISES:
-        for name, shares in sets.items():
-            random = np.random.default_rng(2)
-            spectra = truth.reflectance(shares)
-            noisy = spectra + noise * random.standard_normal(spectra.shape)
-            measured = MeasuredSpectra(np.clip(noisy, 0, 1))
-            fit = fit_paints(opaque_samples(truth.names, shares, measured))
-            advice = advise_samples(fit, count=1)
-            errors = _log_errors(fit, truth)
+        for name, parts in swatches(len(INVENTED)).items():
+            spectra = INVENTED.reflectance(parts)
+            spread = np.random.default_rng(2).standard_normal(spectra.shape)
+            measured = MeasuredSpectra(np.clip(spectra + noise * spread, 0, 1))
+            fit = fit_paints(opaque_samples(INVENTED.names, parts, measured))
             yield {
                 "samples": name,
-                "count": len(shares),
+                "count": len(parts),
                 "noise": noise,
-                "mixtures": _spread(_differences(fit.paints, truth, test, sensor)),
-                "expected": advice.error,
-                "next": advice.samples[0].name,
-                "log_errors": float(np.sqrt((errors**2).mean())),
-                "coverage": _coverage(fit, errors),
-                "inside": fit.paints.surface.inside,
+                **summary(opaque_errors(fit.paints, test, expected)),
+                "expected": advise_samples(fit, count=1).error,
+                **log_errors(fit.paints, INVENTED),
             }
 
 
-def _differences(paints: Paints, truth: Paints, parts: Array, sensor: Sensor) -> Array:
-    colours = [
-        np.clip(sensor.rgb(known.reflectance(parts)), 0, 1) for known in (paints, truth)
-    ]
-    return delta_e_rgb(sensor, *colours)
-
-
-def _log_errors(fit: PaintFit, truth: Paints) -> Array:
-    """Return the errors (2, P, N) of log K and log S, without a factor common to all
-    paints at a wavelength, which opaque mixtures do not show.
-    """
-    pairs = (
-        (fit.paints.pigments.absorption, truth.pigments.absorption),
-        (fit.paints.pigments.scattering, truth.pigments.scattering),
-    )
-    errors = np.array([np.log(fitted / true) for fitted, true in pairs])
-    return np.asarray(errors - errors[1].mean(axis=0))
-
-
-def _coverage(fit: PaintFit, errors: Array) -> float:
-    """Return the fraction of errors within one standard error."""
-    expected = fit.paints.errors
-    assert expected is not None
-    spreads = np.array([expected.absorption, expected.scattering])
-    return float((np.abs(errors) <= spreads).mean())
-
-
-def _spread(errors: Array) -> Row:
+def swatches(count: int) -> dict[str, Array]:
+    """Return parts (n, P) of growing sets of swatches; the first paint is white."""
+    alone = np.eye(count)
+    white, *coloured = alone
+    weak, weaker = (alone[1:] + parts * white for parts in TINTS)
+    pairs = [first + second for first, second in combinations(coloured, 2)]
     return {
-        "mean": float(errors.mean()),
-        "p95": float(np.quantile(errors, 0.95)),
-        "max": float(errors.max()),
+        "each paint alone": alone,
+        "and a tint 1:4": np.concatenate([alone, weak]),
+        "and tints 1:4, 1:20": np.concatenate([alone, weak, weaker]),
+        "and pairs 1:1": np.concatenate([alone, weak, weaker, pairs]),
     }
+
+
+def opaque_samples(
+    paints: Sequence[str], parts: Array, measured: MeasuredSpectra | MeasuredColours
+) -> PaintSamples:
+    """Return opaque samples of parts (n, P) of paints."""
+    count = len(parts)
+    names = tuple(f"sample {number}" for number in range(count))
+    shares = parts / parts.sum(axis=1, keepdims=True)
+    opaque = np.full(count, np.inf)
+    grounds = np.ones((count, len(NM)))
+    return PaintSamples(names, tuple(paints), shares, opaque, grounds, NM, measured)
+
+
+def opaque_colours(paints: Paints, parts: Array) -> Array:
+    """Return linear RGB (n, 3) of opaque mixtures."""
+    return np.clip(paints.sensor.rgb(paints.reflectance(parts)), 0, 1)
+
+
+def opaque_errors(paints: Paints, parts: Array, expected: Array) -> Array:
+    """Return ΔE00 (n,) of opaque mixtures from linear RGB (n, 3)."""
+    return delta_e_rgb(paints.sensor, expected, opaque_colours(paints, parts))
+
+
+def log_errors(paints: Paints, truth: Paints) -> Row:
+    """Return the root mean square of errors of log K and log S, and the fraction within
+    one standard error.
+
+    A factor common to all paints at a wavelength, which opaque mixtures do not show, is
+    left out.
+    """
+    assert paints.errors is not None
+    ratios = [
+        paints.pigments.absorption / truth.pigments.absorption,
+        paints.pigments.scattering / truth.pigments.scattering,
+    ]
+    errors = np.log(ratios)
+    errors -= errors[1].mean(axis=0)
+    spreads = np.array([paints.errors.absorption, paints.errors.scattering])
+    within = np.abs(errors) <= spreads
+    return {"log_errors": np.sqrt((errors**2).mean()), "within": within.mean()}
 
 
 # --- acrylics by colours ---
 
 
-def acrylic_fits() -> tuple[list[Row], list[tuple[PaintFit, Indices]]]:
-    """Fit 19 acrylics to their colours and a third of their mixtures, as 8-bit codes,
-    and judge the others.
+@cache
+def fit_acrylics(split: int) -> tuple[Paints, Mixtures, float]:
+    """Fit 19 acrylics to their colours and a third of their mixtures, as 8-bit codes;
+    return the other mixtures and the seconds, too.
     """
     mixtures = acrylics()
+    order = np.random.default_rng(split).permutation(len(mixtures.pairs))
+    third = len(order) // 3
+    known = mixtures.take(order[:third])
     count = len(mixtures.paints)
-    parts = np.zeros((len(mixtures.pairs), count))
-    np.put_along_axis(parts, mixtures.pairs, mixtures.shares, axis=1)
-    rows = list[Row]()
-    fits = []
+    colours = np.concatenate([mixtures.paints, known.expected])
+    rounded = decode(np.rint(255 * encode(colours)) / 255)
+    names = [f"paint {number}" for number in range(count)]
+    parts = np.concatenate([np.eye(count), known.parts])
+    samples = opaque_samples(names, parts, MeasuredColours(rounded))
+    fit, run = stopwatch(lambda: fit_paints(samples))
+    return fit.paints, mixtures.take(order[third:]), run.wall
+
+
+def acrylic_fits() -> Iterator[Row]:
+    """Yield the errors of the mixtures that a fit does not know, by split."""
     for split in range(SPLITS):
-        order = np.random.default_rng(split).permutation(len(parts))
-        third = len(parts) // 3
-        known, others = order[:third], order[third:]
-        shares = np.concatenate([np.eye(count), parts[known]])
-        colours = np.concatenate([mixtures.paints, mixtures.expected[known]])
-        rounded = decode(np.rint(255 * encode(colours)) / 255)
-        names = [f"paint {number}" for number in range(count)]
-        samples = opaque_samples(names, shares, MeasuredColours(rounded))
-        begin = time.perf_counter()
-        fit = fit_paints(samples)
-        seconds = time.perf_counter() - begin
-        sensor = fit.model.sensor
-        rgb = np.clip(sensor.rgb(fit.paints.reflectance(parts[others])), 0, 1)
-        errors = delta_e_rgb(sensor, mixtures.expected[others], rgb)
-        rows.append(
-            {
-                "known": third,
-                "judged": len(others),
-                "errors": _spread(errors),
-                "inside": fit.paints.surface.inside,
-                "seconds": seconds,
-            }
-        )
-        fits.append((fit, others))
-    return rows, fits
+        paints, others, seconds = fit_acrylics(split)
+        errors = opaque_errors(paints, others.parts, others.expected)
+        known = len(acrylics().pairs) - len(errors)
+        yield {"known": known, **summary(errors), "seconds": seconds}
 
 
-def recipes(fit: PaintFit, others: Indices) -> Row:
+def recipes() -> Row:
     """Search the recipes of left-out mixtures, whose colours are all that is known."""
-    mixtures = acrylics()
-    sensor = fit.model.sensor
-    paints = fit.paints
-    parts = np.zeros((len(mixtures.pairs), len(paints)))
-    np.put_along_axis(parts, mixtures.pairs, mixtures.shares, axis=1)
-    chosen = others[:RECIPES]
-    cube = uplift.load()
-    errors = []
-    right = []
-    ratios = []
-    seconds = []
-    for row in chosen:
-        spectrum = cube.reflectance(mixtures.expected[row], NM)
-        goal = PaintTarget(spectrum, (sensor.light,))
-        begin = time.perf_counter()
-        found = match(goal, paints, count=2, alternatives=1)[0]
-        seconds.append(time.perf_counter() - begin)
-        mixed = np.zeros(len(paints))
-        for name, part in zip(found.paints, found.parts, strict=True):
-            mixed[paints.index(name)] = part
-        rgb = np.clip(sensor.rgb(paints.reflectance(mixed)), 0, 1)
-        errors.append(float(delta_e_rgb(sensor, mixtures.expected[row], rgb)))
-        is_right = set(np.flatnonzero(mixed)) == set(np.flatnonzero(parts[row]))
-        right.append(is_right)
-        if is_right:
-            ratios.append(np.abs(mixed / mixed.sum() - parts[row]).max())
+    paints, others, _ = fit_acrylics(0)
+    wanted = others.take(np.arange(RECIPES))
+    found = np.zeros_like(wanted.parts)
+    spectra = uplift.load().reflectance(wanted.expected, NM)
+    for row, spectrum in enumerate(spectra):
+        goal = PaintTarget(spectrum, (paints.sensor.light,))
+        (recipe, *_) = match(goal, paints, count=2, alternatives=1)
+        indices = [paints.index(name) for name in recipe.paints]
+        found[row, indices] = np.array(recipe.parts) / sum(recipe.parts)
+    is_right = ((found > 0) == (wanted.parts > 0)).all(axis=1)
+    off = np.abs(found - wanted.parts).max(axis=1)
     return {
-        "searched": len(chosen),
-        "right": float(np.mean(right)),
-        "errors": _spread(np.array(errors)),
-        "share_error": float(np.mean(ratios)),
-        "seconds": float(np.median(seconds)),
+        "right": is_right.mean(),
+        "share_error": off[is_right].mean(),
+        **summary(opaque_errors(paints, found, wanted.expected)),
     }
 
 
 # --- programs ---
 
 
-def program_rates(paints: Paints) -> Row:
-    """Return errors by number of wavelengths, and the rate in C."""
-    rows = []
-    for count in COUNTS:
-        few = few_samples(paints, count)
-        rows.append(
-            {
-                "count": count,
-                "opaque": _spread(few.opaque_errors),
-                "layers": _spread(few.layer_errors),
-            }
-        )
-    return {"errors": rows, **_c_rate(paints)}
+def both_paints() -> dict[str, Paints]:
+    """Return the invented paints and the acrylics."""
+    return {"invented": INVENTED, "acrylics": fit_acrylics(0)[0]}
 
 
-def _c_rate(paints: Paints) -> Row:
-    compiler = shutil.which("gcc") or shutil.which("clang")
-    if compiler is None:
-        raise RuntimeError("the rate needs a compiler")
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        write_program(paints, folder / "mixer.h")
-        source = str(ROOT / "benchmarks" / "paints.c")
-        command = [compiler, *FLAGS, "-I.", source, "-o", "rates", "-lm"]
-        subprocess.run(command, cwd=folder, check=True)
-        printed = subprocess.check_output(["./rates", str(RUNS)], cwd=folder, text=True)
-        version = subprocess.check_output([compiler, "--version"], text=True)
-        size = (folder / "mixer.h").stat().st_size
-    return {
-        "compiler": version.splitlines()[0],
-        "flags": " ".join(FLAGS),
-        "rate": 1e-6 / float(printed.split()[0]),
-        "header": size,
-        "paints": len(paints),
-    }
+def few_wavelengths() -> Iterator[Row]:
+    """Yield the errors of opaque mixtures and of layers at few wavelengths."""
+    for name, paints in both_paints().items():
+        for count in COUNTS:
+            few = few_samples(paints, count)
+            about = {"paints": name, "count": count}
+            yield {**about, "coat": "opaque", **summary(few.opaque_errors)}
+            yield {**about, "coat": "layers", **summary(few.layer_errors)}
 
 
-PAGE_TIMES = """
+RECIPE_TIME = """
 const goalOf = i => [30 + 5 * i, 40 * Math.cos(i), 40 * Math.sin(i)];
 const goals = Array.from({ length: 8 }, (_, i) => goalOf(i));
 recipesFor(goals[0], 3);
-let begin = performance.now();
+const begin = performance.now();
 for (const goal of goals) recipesFor(goal, 3);
-const recipe = (performance.now() - begin) / goals.length;
-begin = performance.now();
-for (let i = 0; i < 20000; ++i) opaque([0, 1, 2], [1, i % 7, 2]);
-console.log(recipe / 1e3, (performance.now() - begin) / 20000 / 1e3);
+console.log((performance.now() - begin) / goals.length / 1e3);
 """
 
 
-def page_times(paints: Paints) -> Row:
-    """Return seconds of a recipe of three paints and of a mixture in Node.js, by the
-    scripts of the page.
+def programs() -> Iterator[Row]:
+    """Yield the size of the header in C, millions of mixtures a second, and the seconds
+    of a recipe of three paints in Node.js.
     """
-    numbers = json.dumps(json.dumps(page_numbers(paints)))
-    stub = f"{{ getElementById: () => ({{ textContent: {numbers} }}) }}"
-    kernels = [name for name in SCRIPTS if not name.endswith("page.js")]
-    text = f"globalThis.document = {stub};\n{resource(*kernels)}\n{PAGE_TIMES}"
     with tempfile.TemporaryDirectory() as name:
-        path = Path(name) / "times.mjs"
-        path.write_text(text, encoding="utf-8")
-        printed = subprocess.check_output(["node", path], text=True).split()
-    recipe, mixture = map(float, printed)
-    return {"paints": len(paints), "recipe": recipe, "mixture": mixture}
+        folder = Path(name)
+        for paints in both_paints().values():
+            header = folder / "mixer.h"
+            write_program(paints, header, force=True)
+            source = Path(__file__).with_suffix(".c")
+            seconds, _ = numbers(compile_c(source, folder, *FLAGS), str(RUNS))
+            script = folder / "recipes.mjs"
+            script.write_text(page_script(paints) + RECIPE_TIME, encoding="utf-8")
+            (recipe,) = numbers("node", script)
+            yield {
+                "paints": len(paints),
+                "compiler": program_version("cc"),
+                "header": header.stat().st_size,
+                "rate": 1e-6 / seconds,
+                "recipe": recipe,
+            }
 
 
-# --- pictures ---
+def page_script(paints: Paints) -> str:
+    """Return the scripts of the page of paints without those that show it."""
+    content = json.dumps(json.dumps(page_numbers(paints)))
+    kernels = [name for name in SCRIPTS if not name.endswith("page.js")]
+    element = f"{{ textContent: {content} }}"
+    stub = f"globalThis.document = {{ getElementById: () => ({element}) }};"
+    return f"{stub}\n{resource(*kernels)}\n"
 
 
-def draw(paints: Paints) -> None:
+def pictures() -> None:
     """Draw ramps of paints, and films on white and on black; write their page."""
-    write_page(paints, DOCS / "mixing" / "paints.html", force=True)
-    sensor = observer.sensor(wavelengths=RANGE)
-    ramp = np.linspace(0, 1, STEPS)[:, None]
-    own = np.eye(len(paints))
-    pairs = (
-        ("deep blue", "lemon yellow"),
-        ("titanium white", "deep blue"),
-        ("warm red", "titanium white"),
-        ("lemon yellow", "carbon black"),
-    )
-    strips = []
-    for first, second in pairs:
-        ends = own[[paints.index(first), paints.index(second)]]
-        rgb = sensor.rgb(paints.reflectance((1 - ramp) * ends[0] + ramp * ends[1]))
-        strips.append(Strip(f"{first} to {second}", encode(rgb)))
-    plot_strips(strips, DOCS / "mixing" / "paints.png", force=True)
-    strips = []
-    depths = np.geomspace(0.05, 5, STEPS)
+    paints = INVENTED
+    folder = DOCS / "mixing"
+    write_page(paints, folder / "paints.html", force=True)
+    alone = dict(zip(paints.names, np.eye(len(paints)), strict=True))
+    shares = ramp(np.ones(2), STEPS)
+    ramps = {}
+    for first, second in RAMPS:
+        parts = shares @ [alone[first], alone[second]]
+        ramps[f"{first} to {second}"] = paints.sensor.rgb(paints.reflectance(parts))
+    draw_ramps(ramps, folder / "paints.png")
+    films = {}
     for ground, name in ((1.0, "white"), (0.0, "black")):
-        for paint in ("lemon yellow", "warm red", "deep blue"):
-            parts = own[paints.index(paint)]
-            films = [paints.reflectance(parts, depth, ground) for depth in depths]
-            title = f"{paint} on {name}, {depths[0]:g} to {depths[-1]:g} mm"
-            strips.append(Strip(title, encode(sensor.rgb(np.array(films)))))
-    plot_strips(strips, DOCS / "mixing" / "films.png", force=True)
+        for paint in FILMS:
+            title = f"{paint} on {name}, {DEPTHS[0]:g} to {DEPTHS[-1]:g} mm"
+            layers = [paints.reflectance(alone[paint], x, ground) for x in DEPTHS]
+            films[title] = paints.sensor.rgb(np.array(layers))
+    draw_ramps(films, folder / "films.png")
 
 
-def main() -> None:
-    """Measure, draw and store."""
-    draw(invented_paints())
-    fits, fitted = acrylic_fits()
-    record(
-        "paints",
-        recovery=list(recovery()),
-        acrylics=fits,
-        recipes=recipes(*fitted[0]),
-        programs=program_rates(invented_paints()),
-        acrylic_program=program_rates(fitted[0][0].paints),
-        browser=page_times(invented_paints()),
-        acrylic_browser=page_times(fitted[0][0].paints),
-    )
+QUESTIONS = {
+    "recovery": recovery,
+    "acrylics": acrylic_fits,
+    "recipes": recipes,
+    "few_wavelengths": few_wavelengths,
+    "programs": programs,
+    "pictures": pictures,
+}

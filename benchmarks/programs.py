@@ -31,5 +31,5 @@ def numbers(*command: Words, folder: Path | None = None) -> list[float]:
 
 
 def program_version(program: str) -> str:
-    """Return the first line of what a program says about its version."""
+    """Return the version that a program states."""
     return output(program, "--version").decode().splitlines()[0]

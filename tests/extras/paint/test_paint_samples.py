@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from tests.helpers import raises, warns
 from uplift.common.errors import AtlasError
 from uplift.extras.colour.srgb import decode
-from uplift.extras.paint import read_paint_samples
+from uplift.extras.paint import read_paint_samples, read_paints
 from uplift.extras.paint.paint_samples import MeasuredColours, MeasuredSpectra
 from uplift.extras.paint.recipe_table import read_recipes
 from uplift.samples import sample_path
@@ -66,12 +66,19 @@ def test_parts_of_any_unit_are_shares(read):
     assert_allclose(read(doubled).shares, read(TWO).shares, rtol=1e-12)
 
 
-def test_the_packaged_samples():
+def test_the_packaged_samples_are_of_invented_paints(repository):
     samples = read_paint_samples(sample_path("swatches.csv"))
     assert len(samples.paints) == 6
     assert np.isfinite(samples.thickness).sum() == 6
     assert_allclose(samples.shares.sum(axis=1), 1)
     assert_allclose(samples.grounds[-1].mean(), 0.045, atol=0.002)
+    paints = read_paints(repository / "tests" / "reference" / "invented_paints.toml")
+    rows = zip(samples.shares, samples.thickness, samples.grounds, strict=True)
+    exact = [
+        paints.reflectance(shares, None if np.isinf(depth) else depth, ground)
+        for shares, depth, ground in rows
+    ]
+    assert_allclose(samples.measured.values, exact, atol=0.01)
 
 
 def test_films_have_a_thickness_and_a_ground(read):
