@@ -1,7 +1,7 @@
 """Pictures of the README and docs/materials.md, and their numbers.
 
 The light on the charts is uniform, so that spectra are integrated
-instead of rendered; docs/scene.md has renderings of the same chart, which agree.
+instead of rendered.
 """
 
 import tempfile
