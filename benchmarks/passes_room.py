@@ -70,7 +70,7 @@ class Pass:
 
 @dataclass(frozen=True, eq=False)
 class Rendering:
-    """XYZ (height, width, 3) of a picture, and the seconds that it took."""
+    """XYZ (height, width, 3) of a picture, and the CPU seconds that it took."""
 
     xyz: Array
     seconds: float
@@ -158,11 +158,11 @@ def render(divided: list[Pass], variant: str, size: int, samples: int) -> Render
     mitsuba_scenes.start_mitsuba(variant)
     film = mitsuba_scenes.film(size, size, "xyz" if variant == SPECTRAL else "rgb")
     xyz = np.zeros((size, size, 3))
-    begin = time.perf_counter()
+    begin = time.process_time()
     for one in divided:
         scene = room(one.surfaces, one.lamps, film)
         xyz += mitsuba_scenes.render(scene, samples, SEED) @ one.to_xyz.T
-    return Rendering(xyz, time.perf_counter() - begin)
+    return Rendering(xyz, time.process_time() - begin)
 
 
 def render_all(
