@@ -17,7 +17,7 @@ from uplift.colorimetry import Sensor, delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.extras.images.exr import blue_slices
 from uplift.extras.pages.figure import colour_map, new_figure, show_image, write_figure
-from uplift.extras.report.diff_page import mosaic
+from uplift.extras.pages.sheet import mosaic
 from uplift.fit import Problem, shells
 from uplift.lab.method import at_1_nm, published_srgb
 from uplift.lab.timing import time_calls

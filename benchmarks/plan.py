@@ -7,7 +7,7 @@ import shlex
 import shutil
 import subprocess
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import starmap
 from pathlib import Path
@@ -21,12 +21,14 @@ from benchmarks.pictures import Picture, pictures
 from uplift.colorimetry import delta_e_spectra
 from uplift.colorimetry.illuminants import SCENE_LIGHTS
 from uplift.colorimetry.observer import light
-from uplift.extras.pages.figure import ACCENT, INK
+from uplift.extras.pages.figure import ACCENT, INK, write_figure
 from uplift.extras.pages.format import format_size
+from uplift.extras.pages.marks import line
+from uplift.extras.pages.panels import Axis, Dot, draw
+from uplift.extras.pages.pareto import front_panel
 from uplift.extras.scene.plan.candidates import SearchGrid
 from uplift.extras.scene.plan.space import CEILING, FLOOR, MARGIN
 from uplift.extras.texture.scene_colours import MAX_LIST, MAX_PIXELS, Images
-from uplift.lab.panels import Panel, Point, write_panels
 from uplift.lab.timing import TimingStats, children_cpu, time_calls
 from uplift.lookup import Cube
 from uplift.samples import copy_samples
@@ -86,7 +88,7 @@ def main() -> None:
         for source in (*sources, MACBETH, ATLASES / "babelcolor.txt"):
             shutil.copy(source, folder)
         scenes, plans = zip(*(run(folder, case) for case in CASES), strict=True)
-    draw(plans[0])
+    draw_front(plans[0])
     grid = SearchGrid()
     record(
         "plan",
@@ -136,27 +138,25 @@ def call(folder: Path, line: str) -> None:
     )
 
 
-def draw(plan: Row) -> None:
+def draw_front(plan: Row) -> None:
     """Draw error over memory and over samples for the front of a plan."""
     axes = {
-        "memory": ("cube file and pixels", format_size),
-        "samples": ("samples per ray", "{:g}".format),
+        "memory": Axis("cube file and pixels", log=True, text=format_size),
+        "samples": Axis("samples per ray", log=True),
     }
     panels = []
-    for key, (title, text) in axes.items():
-        points = []
-        for row, candidate in enumerate(plan["front"]):
+    for key, axis in axes.items():
+        dots = []
+        for candidate in plan["front"]:
             name = candidate["name"]
-            style = (ACCENT, "D") if name == plan["name"] else (INK, "o")
+            colour, marker = (ACCENT, "D") if name == plan["name"] else (INK, "o")
             error = candidate["error"]["quantile"]
-            points.append(Point(row, name, candidate[key], error, *style, named=False))
-        panels.append(Panel(f"ΔE00 over {key}", title, text, points))
+            dots.append(Dot(candidate[key], error, name, colour, marker))
+        panels.append(front_panel(f"ΔE00 over {key}", axis, [], dots))
+    chosen = line([], [], "chosen", ACCENT, marker="D", linestyle="")
+    panels[0] = replace(panels[0], marks=[*panels[0].marks, chosen])
     PICTURE.parent.mkdir(exist_ok=True)
-    legend = {
-        "on the front": {"color": INK},
-        "chosen": {"color": ACCENT, "marker": "D"},
-    }
-    write_panels(panels, 2, PICTURE, legend, force=True)
+    write_figure(draw(panels, 2, (4.8, 3.4), legend="below"), PICTURE, force=True)
 
 
 def sparse_cubes() -> None:

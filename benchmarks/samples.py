@@ -3,27 +3,21 @@ out, for docs/guides/gradients.md.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, DOCS, Row, record
+from benchmarks import ATLASES, DOCS, Row
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
 from uplift.colorimetry.gamut import SRGB
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import to_display_codes
-from uplift.extras.pages.figure import (
-    INK,
-    new_figure,
-    show_image,
-    style_spectrum_axes,
-    styled,
-    write_png,
-)
+from uplift.extras.pages.figure import write_figure
+from uplift.extras.pages.marks import line, picture
+from uplift.extras.pages.panels import Axis, Panel, draw, spectra_panel
 from uplift.extras.photographs import SpectrumSampler, photograph, prepare_samples
-from uplift.lab.timing import time_calls
+from uplift.lab.timing import TimingStats, time_call
 from uplift.lookup import Cube
 from uplift.lookup.errors_under_lights import evidence
 
@@ -73,14 +67,6 @@ class Spread:
             "within_95": within[1],
         }
 
-    def overall(self) -> Row:
-        """Return the means over all lights."""
-        rows = [self.under(name) for name in LIGHTS]
-        means = {}
-        for name in ("materials", "samples", "within_68", "within_95"):
-            means[name] = np.mean([row[name] for row in rows])
-        return means
-
 
 def left_out(cube: Cube) -> Spread:
     """The materials from which a cube learns, each without its family."""
@@ -109,55 +95,53 @@ def other_half(name: str) -> Spread:
     return Spread(cube.reflectance(rgb), samples, measured[inside])
 
 
-def draw(sampler: SpectrumSampler) -> None:
+def sampler() -> SpectrumSampler:
+    """Return the sampler of the packaged cube."""
+    return prepare_samples(uplift.load())
+
+
+def examples() -> None:
     """Draw spectra of two colours, and their colours under lights."""
-    sensor = sampler.cube.data.sensor
+    sample = sampler()
+    cube = sample.cube
+    sensor = cube.data.sensor
     matrices = [sensor.matrix]
     matrices += [photograph(sensor, name).matrix for name in LIGHTS]
-    with styled():
-        figure = new_figure(9.6, 4.4)
-        for row, (name, rgb) in zip(
-            figure.subplots(len(DRAWN), 2), DRAWN.items(), strict=True
-        ):
-            spectra = sampler(rgb, SHOWN, SEED)
-            draw_spectra(row[0], name, sampler.cube, rgb, spectra)
-            colours = np.stack([spectra @ matrix.T for matrix in matrices])
-            codes = to_display_codes(np.clip(colours, 0, 1), SRGB).astype(np.uint8)
-            show_image(row[1], codes, interpolation="nearest", aspect="auto")
-            lights = (sensor.illuminant, *LIGHTS)
-            row[1].set_yticks(range(len(lights)), lights)
-            row[1].tick_params(length=0)
-        figure.set_dpi(150)
-        write_png(figure, DOCS / "samples" / "samples.png", force=True)
+    lights = Axis(names=(sensor.illuminant, *LIGHTS))
+    panels = []
+    for name, rgb in DRAWN.items():
+        spectra = sample(rgb, SHOWN, SEED)
+        colour = to_display_codes(rgb, SRGB) / 255
+        marks = [
+            line(cube.wavelengths, spectra.T, "", colour, linewidth=0.7, alpha=0.6),
+            line(cube.wavelengths, cube.reflectance(rgb)),
+        ]
+        panels.append(spectra_panel(marks, f"one {name}"))
+        colours = np.stack([spectra @ matrix.T for matrix in matrices])
+        codes = to_display_codes(np.clip(colours, 0, 1), SRGB).astype(np.uint8)
+        panels.append(Panel([picture(codes, aspect="auto")], y=lights))
+    figure = draw(panels, 2, (4.8, 2.2))
+    write_figure(figure, DOCS / "samples" / "samples.png", force=True)
 
 
-def draw_spectra(axes: Any, name: str, cube: Cube, rgb: Any, spectra: Array) -> None:
-    """Draw samples in the colour that they have, and the answer of the cube."""
-    colour = to_display_codes(rgb, SRGB) / 255
-    at = cube.wavelengths
-    axes.plot(at, spectra.T, color=colour, linewidth=0.7, alpha=0.6)
-    axes.plot(at, cube.reflectance(rgb), color=INK, linewidth=1.6)
-    style_spectrum_axes(axes)
-    axes.set_title(f"one {name}", loc="left", fontsize=9, color=INK)
+def spread() -> list[Row]:
+    """Compare samples with the materials from which the packaged cube learnt, and with
+    halves of sets, under each light.
+    """
+    spreads = {"packaged": left_out(uplift.load())}
+    spreads |= {name: other_half(name) for name in SETS}
+    rows = []
+    for name, compared in spreads.items():
+        of = {"cube": name, "count": len(compared.measured)}
+        rows += [{**of, **compared.under(light)} for light in LIGHTS]
+    return rows
 
 
-def main() -> None:
-    """Draw, measure and store."""
-    cube = uplift.load()
-    sampler = prepare_samples(cube)
-    draw(sampler)
+def seconds() -> TimingStats:
+    """Time a sample of a colour."""
+    sample = sampler()
     rgb = np.random.default_rng(SEED).random((TIMED, 3))
-    wall, _ = time_calls(lambda: sampler(rgb, 1, SEED), RUNS)
-    packaged = left_out(cube)
-    rows = [{"cube": "packaged", "count": len(packaged.measured)} | packaged.overall()]
-    for name in SETS:
-        spread = other_half(name)
-        rows.append({"cube": name, "count": len(spread.measured)} | spread.overall())
-    record(
-        "samples",
-        lights=LIGHTS,
-        samples=COUNT,
-        sets=rows,
-        by_light=[packaged.under(name) for name in LIGHTS],
-        spectra_s=wall.scaled(1 / TIMED),
-    )
+    return time_call(lambda: sample(rgb, 1, SEED), RUNS).wall.scaled(1 / TIMED)
+
+
+QUESTIONS = {"examples": examples, "spread": spread, "seconds": seconds}

@@ -5,18 +5,20 @@ instead of rendered.
 """
 
 import tempfile
+from functools import cache
 from pathlib import Path
 
 from PIL import Image
 
 import uplift
-from benchmarks import DOCS, Row, record
+from benchmarks import DOCS, Row, summary
 from benchmarks.checker import BACKGROUND, Layout, chart, draw
 from tests.examples import build_wheel, run_lines, unpack
 from uplift.colorimetry import delta_e_2000, lab
 from uplift.colorimetry.observer import light, sensor
 from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
 from uplift.extras.relight.relight import relight, write_relit_sheet
+from uplift.extras.texture.picture import read_picture
 from uplift.lab.methods import mitsuba3
 from uplift.samples import sample_path
 
@@ -28,7 +30,6 @@ METHODS = MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
     "uplift, no atlas",
     "uplift, with the chart",
 )
-Cubes = dict[str, uplift.Cube]
 LAYOUT = Layout(patch=32, gap=4)
 TRUTH_LIGHTS = RELIGHT_LIGHTS[:2]
 JPEG_WIDTH = 1500
@@ -48,13 +49,10 @@ SESSION = (
 """Commands of the README."""
 
 
-def main() -> None:
-    """Draw the charts and the still life, and store the charts' errors."""
-    FOLDER.mkdir(exist_ok=True)
-    cubes = {PLAIN: uplift.load(), ATLAS: uplift.build("macbeth", dim=DIM)}
-    means = draw_charts(cubes)
-    draw_still_life(cubes)
-    record("showcase", session=session(), dim=DIM, means=means)
+@cache
+def cubes() -> dict[str, uplift.Cube]:
+    """Return the cubes of the pictures."""
+    return {PLAIN: uplift.load(), ATLAS: uplift.build("macbeth", dim=DIM)}
 
 
 def session() -> list[dict[str, str]]:
@@ -72,8 +70,9 @@ def session() -> list[dict[str, str]]:
     return rows
 
 
-def draw_charts(cubes: Cubes) -> list[Row]:
-    """Draw the chart by all methods, and by two; return the errors by method and light.
+def means() -> list[Row]:
+    """Draw the chart by all methods, and by two; return the errors of its patches, of
+    all and of those inside sRGB.
 
     Patches have a measured square by all methods, and a measured left half by two.
     """
@@ -82,12 +81,12 @@ def draw_charts(cubes: Cubes) -> list[Row]:
     spectra = {
         MEASURED: painted.measured,
         MITSUBA: mitsuba3.spectra(painted.painted, painted.wavelengths),
-        **{name: cube.reflectance(painted.painted) for name, cube in cubes.items()},
+        **{name: cube.reflectance(painted.painted) for name, cube in cubes().items()},
     }
     images = {}
     errors = {}
     to_screen = {}
-    rows = {name: {"method": name} for name in METHODS}
+    rows = []
     for lamp in map(light, RELIGHT_LIGHTS):
         to_screen[lamp.name] = sensor(illuminant=lamp.name).xyz_to_rgb
         xyz = {name: values @ lamp.xyz.T for name, values in spectra.items()}
@@ -95,30 +94,30 @@ def draw_charts(cubes: Cubes) -> list[Row]:
         truth = lab(xyz[MEASURED], lamp.white)
         for name in METHODS:
             delta_e = delta_e_2000(truth, lab(xyz[name], lamp.white))
-            inside = delta_e[~painted.outside]
-            rows[name][lamp.name] = {
-                "all": delta_e.mean(),
-                "inside": inside.mean(),
-                "largest": delta_e.max(),
-            }
+            of = {"method": name, "light": lamp.name}
+            rows.append({**of, "patches": "all", **summary(delta_e)})
+            inside = summary(delta_e[~painted.outside])
+            rows.append({**of, "patches": "inside sRGB", **inside})
             errors[lamp.name, name] = delta_e
             images[lamp.name, name] = LAYOUT.paint(xyz[name], BACKGROUND * lamp.white)
+    FOLDER.mkdir(exist_ok=True)
     picture = FOLDER / "charts.png"
     draw(images, errors, to_screen, METHODS, LAYOUT.middles(), picture)
     shown = {name: to_screen[name] for name in TRUTH_LIGHTS}
     methods = (MEASURED, PRODUCT, ATLAS)
     picture = FOLDER / "truth.png"
     draw(images, errors, shown, methods, LAYOUT.halves(), picture)
-    return [rows[name] for name in METHODS[1:]]
+    return [row for row in rows if row["method"] != MEASURED]
 
 
-def draw_still_life(cubes: Cubes) -> None:
+def still_life() -> None:
     """Draw what ``uplift relight`` shows, as JPEG."""
-    from uplift.extras.texture.picture import read_picture
-
     path = sample_path("still-life.png")
     picture = read_picture(path, sensor(), max_side=960)
-    shown = {"spectral": cubes[PLAIN], "spectral with macbeth": cubes[ATLAS]}
+    shown = {
+        "spectral": cubes()[PLAIN],
+        "spectral with macbeth": cubes()[ATLAS],
+    }
     relit = relight(path.name, picture.rgb, shown)
     with tempfile.TemporaryDirectory() as folder:
         png = Path(folder) / "relit.png"
@@ -127,3 +126,6 @@ def draw_still_life(cubes: Cubes) -> None:
             size = (JPEG_WIDTH, round(image.height * JPEG_WIDTH / image.width))
             small = image.convert("RGB").resize(size, Image.Resampling.LANCZOS)
     small.save(FOLDER / "relit.jpg", quality=JPEG_QUALITY, subsampling=0)
+
+
+QUESTIONS = {"session": session, "means": means, "still_life": still_life}

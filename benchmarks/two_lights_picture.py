@@ -7,14 +7,14 @@ from functools import cached_property
 
 import numpy as np
 
-from benchmarks import DOCS, Row
+from benchmarks import DOCS, Row, summary
 from benchmarks.materials import SENSOR, Materials, other_halves
 from benchmarks.still_life import BALLS, MATERIALS, still_life
 from uplift.colorimetry import delta_e_spectra, observer, rgb_to_lab
 from uplift.colorimetry.gamut import SRGB
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.extras.colour.srgb import to_display_codes
-from uplift.extras.pages.figure import ACCENT, GREY, write_png
+from uplift.extras.pages.figure import ACCENT, GREY, write_figure
 from uplift.extras.pages.marks import error_map, line, picture
 from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.photographs import Noise, photograph, prepare
@@ -28,7 +28,6 @@ NAMES = {"FL11": "tubes (FL11)", "HP1": "sodium lamp (HP1)"}
 FOLDER = DOCS / "two-lights"
 LARGEST = 5.0
 """ΔE00 at the end of the scale of maps."""
-QUANTILE = 0.95
 INCHES = 2.5
 """Width of a panel."""
 
@@ -109,11 +108,11 @@ def draw_pictures() -> Row:
     FOLDER.mkdir(exist_ok=True)
     page = draw(page_panels(scene), 3, INCHES)
     readme = draw(relit_panels(scene, RELIT[-1]), 3, INCHES)
-    write_png(page, FOLDER / "scene.png", force=True)
-    write_png(readme, FOLDER / "sodium.png", force=True)
+    write_figure(page, FOLDER / "scene.png", force=True)
+    write_figure(readme, FOLDER / "sodium.png", force=True)
     errors = {}
     for name, (one, two) in scene.errors.items():
-        errors[name] = {"one": summary(one), "two": summary(two)}
+        errors[name] = {"one": summary(one.ravel()), "two": summary(two.ravel())}
     return {
         "set": SET,
         "materials": MATERIALS,
@@ -122,11 +121,6 @@ def draw_pictures() -> Row:
         "second": SECOND,
         "errors": errors,
     }
-
-
-def summary(delta_e: Array) -> Row:
-    """Return mean and 95 % of ΔE00."""
-    return {"mean": delta_e.mean(), "p95": np.quantile(delta_e, QUANTILE)}
 
 
 def page_panels(scene: Scene) -> list[Panel | None]:

@@ -212,7 +212,7 @@ def _advise_swatches(
         pictures = {
             path: picture.rgb for path, picture in zip(shown, images_read, strict=True)
         }
-        texts = map("{hex}\nlowers the mean\nby ΔE00 {gain:.2f}".format_map, swatches)
+        texts = map("{hex}  ΔE00 −{gain:.2f}".format_map, swatches)
         chips = list(zip(texts, rgb, strict=True))
         figure = advice.draw_advice(cube, pictures, lit, chips)
         write_figure(figure, plot_path, force=force)

@@ -168,9 +168,9 @@ def _print_cut(
     ((results, whole),) = [_compute(answers, block) for block in answers]
     cut = _cut(answers, results, also)
     if plot_path is not None:
-        from uplift.extras.pages.plots import plot_cut_bounds
+        from uplift.extras.pages.plots import plot_bounds
 
-        plot_cut_bounds(answers.cube, whole, cut.by_light, plot_path, force=force)
+        plot_bounds(answers.cube, [whole], plot_path, cut=cut.by_light, force=force)
         say(f"{plot_path}: bounds", err=True)
     if style == "json":
         (text,) = _objects(answers, results, whole)

@@ -1,12 +1,11 @@
 """Programs of pages whose computations nothing else tests: matrices of cameras, closed
-cells, the scan.
+cells.
 """
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from benchmarks import palette_dial as scan
 from benchmarks.accuracy import largest
 from benchmarks.cameras import lab_matrix, realisable_share, xyz_matrix
 from benchmarks.representations import (
@@ -17,7 +16,6 @@ from benchmarks.representations import (
     printed_tables,
 )
 from uplift.colorimetry import observer, tables
-from uplift.extras.palette.picture import read_weights
 from uplift.extras.scene.representations.samples import xyz_weights
 
 
@@ -65,20 +63,4 @@ def test_thesis_tables_have_the_printed_values():
     assert (
         printed_filters()["spiky", 16, "mitchell"].parameters
         == "extent 19, b -0.4, c 1"
-    )
-
-
-def test_the_viewer_reads_the_scan_in_which_every_material_is_visible(tmp_path):
-    weights = scan.cast(scan.scan(90), 90)
-    assert weights.min() >= 0
-    assert weights.sum(axis=-1).max() <= 1
-    assert (weights.max(axis=(0, 1)) > 0.02).all()
-    assert not weights[0, 0].any()
-    scan.write_weights(weights, tmp_path / "engine.exr")
-    order = ["block", "haze", "piston", "valve"]
-    found = read_weights(tmp_path / "engine.exr", order, {})
-    assert_allclose(
-        found,
-        weights[..., [list(scan.DENSITIES).index(name) for name in order]],
-        atol=1e-6,
     )

@@ -1,4 +1,4 @@
-"""Contact sheet: positions, colours and legends."""
+"""Contact sheet: positions, colours and files."""
 
 from itertools import combinations, product
 
@@ -7,111 +7,90 @@ import numpy as np
 import OpenEXR
 import pytest
 from matplotlib.image import imread
-from numpy.testing import assert_allclose, assert_array_equal
+from numpy.testing import assert_allclose
 
 from tests.cube.hand_made import hand_made
-from uplift.extras.colour.srgb import encode
-from uplift.extras.pages.sheet import Layout, compose, write_sheet
-from uplift.extras.pages.sheet_panels import (
-    BACKGROUND,
-    HIGHLIGHT,
-    RAMP,
-    STATUS,
-    panels,
+from uplift.extras.colour.srgb import decode, encode
+from uplift.extras.pages.sheet import STATUS, draw_sheet, mosaic, write_sheet
+
+CODES = np.array([list(bytes.fromhex(code[1:])) for code in STATUS]) / 255
+COLOUR, DISTANCE, STATE, ERROR, ROUND = (
+    "Lattice RGB",
+    "Fitting distance",
+    "Status",
+    "Standard error",
+    "Round",
 )
 
-COLOUR, DISTANCE, STATE, ERROR, ROUND = range(5)
+
+def shown(data):
+    """The picture of each panel, by the beginning of its title."""
+    images = {}
+    for axes in draw_sheet(data).axes:
+        if axes.get_title(loc="left"):
+            (images[axes.get_title(loc="left").partition(",")[0]],) = axes.images
+    return images
 
 
-def pixel(data, image, panel, position):
-    """Return the pixel in the middle of the node at ``position`` (red, green, blue)."""
-    layout = Layout(data.lattice.dim, 5)
+def node(position):
+    """Place of the node at (red, green, blue) in tiles of a lattice of 4³."""
     red, green, blue = position
-    x, y = layout.tile(panel, blue)
-    half = layout.scale // 2
-    row = y + (layout.dim - 1 - green) * layout.scale + half
-    return image[row, x + red * layout.scale + half]
+    row, column = divmod(blue, 2)
+    return 5 * row + 3 - green, 5 * column + red
+
+
+def test_tiles_are_in_reading_order_with_a_gap():
+    tiles = mosaic(np.arange(27.0).reshape(3, 3, 3))
+    assert tiles.shape == (7, 7)
+    assert tiles[0, [0, 1, 2, 4, 5, 6]].tolist() == [0, 1, 2, 9, 10, 11]
+    assert tiles[4, :3].tolist() == [18, 19, 20]
+    assert np.isnan(tiles[3]).all()
+    assert np.isnan(tiles[4:, 4:]).all()
 
 
 def test_every_node_is_at_its_position():
     data = hand_made()
-    image = compose(data).image
-    shown = panels(data)
+    images = {name: image.get_array() for name, image in shown(data).items()}
+    assert list(images) == [COLOUR, DISTANCE, STATE, ERROR, ROUND]
+    low = data.threshold / 1000
     for position in product(range(4), repeat=3):
         point = data.lattice.index(np.array(position))
-        for number, panel in enumerate(shown):
-            assert_array_equal(
-                pixel(data, image, number, position),
-                panel.colours[point].astype(np.float32),
-            )
+        place = node(position)
+        assert_allclose(images[COLOUR][place], encode(data.points.rgb[point]))
+        assert_allclose(images[STATE][place], CODES[data.points.status[point]])
+        distance = max(data.points.distance[point], low)
+        assert images[DISTANCE][place] == pytest.approx(distance)
+        assert images[ERROR][place] == data.points.standard_error[point]
+        if data.points.round[point] >= 0:
+            assert images[ROUND][place] == data.points.round[point]
 
 
-def test_colours_agree_with_the_legend():
-    data = hand_made()
-    image = compose(data).image
-    assert_array_equal(
-        pixel(data, image, COLOUR, (3, 1, 2)), data.points.rgb[3 * 16 + 1 * 4 + 2]
-    )
-    assert_array_equal(
-        pixel(data, image, DISTANCE, (0, 0, 0)), HIGHLIGHT[0].astype(np.float32)
-    )
-    for blue in range(4):
-        assert_array_equal(
-            pixel(data, image, STATE, (0, 0, blue)), STATUS[blue].astype("f4")
-        )
-    assert_array_equal(
-        pixel(data, image, ROUND, (0, 0, 0)), HIGHLIGHT[0].astype(np.float32)
-    )
-    assert_array_equal(pixel(data, image, ROUND, (0, 0, 1)), RAMP[0].astype(np.float32))
+def test_distances_darken_to_the_threshold_and_stand_out_beyond():
+    data = hand_made(distance=np.full(64, 1e-4))
+    image = shown(data)[DISTANCE]
+    low, middle, high, over = image.cmap(image.norm([1e-7, 10**-5.5, 1e-4, 1.1e-4]))
+    assert low[:3].mean() > middle[:3].mean() > high[:3].mean()
+    assert_allclose(over[:3], CODES[4])
 
 
-@pytest.mark.parametrize(
-    ("distance", "colour"),
-    [
-        (0.0, RAMP[0]),
-        (1e-7, RAMP[0]),
-        (10**-5.5, RAMP[2]),
-        (1e-4, RAMP[-1]),
-        (1.1e-4, HIGHLIGHT[0]),
-    ],
-)
-def test_distance_is_logarithmic_up_to_the_threshold(distance, colour):
-    panel = panels(hand_made(distance=np.full(64, distance)))[DISTANCE]
-    assert_allclose(panel.colours, np.broadcast_to(colour, (64, 3)), atol=1e-9)
-
-
-def test_exr_is_flat_linear_rgb(tmp_path):
+def test_files_have_equal_pixels(tmp_path):
     data = hand_made()
     write_sheet(data, tmp_path / "sheet.exr")
+    write_sheet(data, tmp_path / "sheet.png")
     file = OpenEXR.File(str(tmp_path / "sheet.exr"))
     image = file.channels()["RGB"].pixels
     assert len(file.parts) == 1
     assert file.header()["uplift.dim"] == 4
     assert image.dtype == np.float32
-    for position in ((0, 0, 0), (3, 1, 2), (1, 3, 0)):
-        expected = data.points.rgb[data.lattice.index(np.array(position))]
-        assert_array_equal(pixel(data, image, COLOUR, position), expected)
-    assert (image[0] == np.float32(BACKGROUND)).all()
-
-
-def test_png_is_the_same_in_srgb(tmp_path):
-    data = hand_made()
-    write_sheet(data, tmp_path / "sheet.png")
-    image = imread(tmp_path / "sheet.png")
-    assert image.shape[1::-1] == Layout(4, 5).size
-    for position in ((0, 0, 0), (3, 1, 2), (1, 3, 0)):
-        expected = encode(data.points.rgb[data.lattice.index(np.array(position))])
-        assert_allclose(
-            pixel(data, image[..., :3], COLOUR, position), expected, atol=0.51 / 255
-        )
+    assert_allclose(image, decode(imread(tmp_path / "sheet.png")[..., :3]), atol=1e-6)
 
 
 @pytest.mark.parametrize("deficiency", ["Protanomaly", "Deuteranomaly", "Tritanomaly"])
 @pytest.mark.filterwarnings("ignore::colour.utilities.ColourUsageWarning")
 def test_status_colours_differ_for_colour_vision_deficiencies(deficiency):
-    perceived = np.clip(
-        STATUS @ colour.blindness.matrix_cvd_Machado2009(deficiency, 1.0).T, 0, 1
+    perceived = (
+        decode(CODES) @ colour.blindness.matrix_cvd_Machado2009(deficiency, 1.0).T
     )
-    labs = colour.XYZ_to_Lab(colour.RGB_to_XYZ(perceived, "sRGB"))
+    labs = colour.XYZ_to_Lab(colour.RGB_to_XYZ(np.clip(perceived, 0, 1), "sRGB"))
     for one, other in combinations(labs, 2):
         assert colour.difference.delta_E_CIE2000(one, other) >= 16

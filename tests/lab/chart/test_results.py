@@ -23,6 +23,7 @@ from tests.lab.chart.conftest import chart_of, row_of
 from tests.pages import Page, external_links
 from tests.parts import CHROMIUM, need
 from uplift.common.errors import ChartFileError, OptionError, UnknownNameError
+from uplift.extras.pages.pareto import CLEAR_RATIO
 from uplift.lab.chart.picture import drawn_results, render_chart, write_picture
 from uplift.lab.chart.recommendation import Requirement, recommend_cube
 from uplift.lab.chart.results import (
@@ -34,7 +35,6 @@ from uplift.lab.chart.results import (
     read_chart,
     shipped_chart,
 )
-from uplift.lab.panels import CLEAR_RATIO
 
 
 def test_csv_round_trip(tmp_path):

@@ -1,7 +1,8 @@
-"""Chromaticity diagrams (CIE 1976 u′v′) of an emission table: colours, expected errors,
-and the exact lamps.
+"""Chromaticity diagrams (CIE 1976 u′v′) of an emission table: colours, the exact lamps,
+and expected errors.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,31 +14,22 @@ from uplift.extras.colour.light_sets import STANDARD_ILLUMINANTS
 from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.emission.lattice import chromaticity, unit_xyz
 from uplift.extras.emission.lookup import EmissionTable
-from uplift.extras.pages.figure import GREY, INK, colour_map, styled
-from uplift.extras.pages.scatter import (
-    LEGEND,
-    Label,
-    draw_labels,
-    new_panels,
-    style_title,
-)
+from uplift.extras.pages.figure import GREY, INK, colour_map
+from uplift.extras.pages.marks import Mark, line
+from uplift.extras.pages.panels import Axis, Dot, Panel, draw, square_limits
 
-PANEL = (5.6, 5.4)  # inches of a diagram with its margins
-MARGINS = {"left": 0.035, "right": 0.99, "bottom": 0.085, "top": 0.93, "wspace": 0.13}
-PIXELS = 320  # pixels of a picture along u′
-# Wavelengths in nm that are marked on the spectral locus.
+SIZE = (4.6, 4.4)
+"""Inches of a diagram."""
+PIXELS = 320
+"""Pixels of a picture along u′."""
 WAVELENGTHS = (460, 480, 490, 500, 510, 520, 540, 560, 580, 600, 620, 700)
-MAX_NAMES = 12  # lamps that are named; the report lists all
-FADED = 0.35  # opacity of colours below names
-MARGIN = 0.012  # u′v′ between the lamps and the edge of their window
-LAMP: dict[str, Any] = {
-    "linestyle": "none",
-    "marker": "o",
-    "markersize": 4.5,
-    "mfc": "white",
-    "mec": INK,
-    "mew": 0.8,
-}
+"""Wavelengths in nm that are marked on the spectral locus."""
+MAX_NAMES = 12
+"""Lamps that are named; the report lists all."""
+FADED = 0.35
+"""Opacity of colours below names."""
+MIN_EXTENT = 0.02
+"""Smallest extent of the window of lamps in u′ or v′."""
 
 
 @dataclass(frozen=True)
@@ -48,94 +40,79 @@ class Window:
     v: tuple[float, float]
 
 
-ALL = Window((-0.04, 0.64), (0.0, 0.62))  # all chromaticities of lights, with a margin
+ALL = Window(
+    (-0.03, 0.65), (-0.03, 0.65)
+)  # all chromaticities of lights, with a margin
 
 
 def light_figure(table: EmissionTable) -> Any:
-    """Draw colours, expected errors, and the region of the lamps side by side."""
-    with styled():
-        figure, ((colours, errors, lamps),) = new_panels(1, 3, PANEL, MARGINS)
-        draw_colours(colours, table)
-        draw_errors(errors, table)
-        draw_lamps(lamps, table)
-        knots, rings = table.data.lattice.shape
-        for axes, title in (
-            (colours, f"Colours  ·  {knots} × {rings} nodes, {table.space}"),
-            (errors, "Expected error"),
-            (lamps, "Exact lamps, and the discs in which answers blend to them"),
-        ):
-            style_title(axes, title)
-        return figure
+    """Draw colours, the region of the lamps, and expected errors side by side."""
+    panels = [colours_panel(table), lamps_panel(table), errors_panel(table)]
+    return draw(panels, 3, SIZE, scale="expected ΔE00 of surfaces")
 
 
-def draw_colours(axes: Any, table: EmissionTable) -> None:
-    """Draw the colours of lights, the triangle of the RGB space and the wavelengths of
-    the spectral locus.
+def colours_panel(table: EmissionTable) -> Panel:
+    """Return the colours of lights, the triangle of the RGB space and the wavelengths
+    of the spectral locus.
     """
-    _draw_map(axes, table, ALL, _codes(table, ALL))
-    corners = chromaticity(table.xyz(np.eye(3)[[0, 1, 2, 0]]))
-    axes.plot(
-        *corners.T,
-        color=INK,
-        linewidth=0.9,
-        linestyle=(0, (4, 2)),
-        label=f"{table.space} primaries",
-    )
-    _draw_wavelengths(axes, table)
-    _draw_lamp_marks(axes, table)
-    axes.legend(loc="lower right", **LEGEND)
+    u, v = chromaticity(table.xyz(np.eye(3)[[0, 1, 2, 0]])).T
+    space = f"{table.space} primaries"
+    marks = [
+        line(u, v, space, linewidth=0.9, linestyle=(0, (4, 2))),
+        _wavelengths(table),
+        line([], [], "lamp that is exact", marker="o", linestyle="", mfc="white"),
+        _map(table, ALL, _codes(table, ALL)),
+    ]
+    knots, rings = table.data.lattice.shape
+    title = f"Colours  ·  {knots} × {rings} nodes, {table.space}"
+    return _panel(table, ALL, title, marks)
 
 
-def draw_errors(axes: Any, table: EmissionTable) -> None:
-    """Draw the map of expected errors with its scale."""
+def errors_panel(table: EmissionTable) -> Panel:
+    """Return the map of expected errors."""
     errors = table.expected_error(_pixels(table, ALL))
     largest = float(table.data.error.max())
-    image = _draw_map(axes, table, ALL, errors, cmap=colour_map(), vmin=0, vmax=largest)
-    _draw_lamp_marks(axes, table)
-    place = axes.inset_axes((0.6, 0.12, 0.36, 0.03))
-    bar = axes.figure.colorbar(image, cax=place, orientation="horizontal")
-    bar.set_label("expected ΔE00 of surfaces", color=INK)
-    bar.outline.set_visible(False)
+    marks = [_map(table, ALL, errors, cmap=colour_map(), vmin=0, vmax=largest)]
+    return _panel(table, ALL, "Expected error", marks)
 
 
-def draw_lamps(axes: Any, table: EmissionTable) -> None:
-    """Draw the part of the diagram that has the lamps, and name the standard
-    illuminants and those with large discs.
+def lamps_panel(table: EmissionTable) -> Panel:
+    """Return the part of the diagram that has the lamps, with the names of the standard
+    illuminants and of those with large discs.
 
     Circles are the discs in which answers blend to a lamp.
     """
-    from matplotlib.patches import Circle
-
     entries = table.data.entries
     window = lamp_window(table)
-    _draw_map(axes, table, window, _codes(table, window), alpha=FADED)
-    for uv, radius in zip(entries.uv, entries.radius, strict=True):
-        axes.add_patch(
-            Circle(tuple(uv), radius, fill=False, edgecolor=GREY, linewidth=0.5)
-        )
-    _draw_lamp_marks(axes, table)
     is_standard = np.isin(entries.names, STANDARD_ILLUMINANTS)
     order = np.lexsort([-entries.radius, ~is_standard])
-    labels = [
-        Label(
-            entries.names[row], tuple(entries.uv[row]), INK, bool(is_standard[row]), ""
-        )
-        for row in order[:MAX_NAMES].tolist()
-    ]
-    draw_labels(axes, labels, entries.uv, np.empty((0, 2)))
+    marks = [_map(table, window, _codes(table, window), alpha=FADED), _discs(table)]
+    title = "Exact lamps, and the discs in which answers blend to them"
+    return _panel(table, window, title, marks, order[:MAX_NAMES].tolist())
+
+
+def _panel(
+    table: EmissionTable,
+    window: Window,
+    title: str,
+    marks: Sequence[Mark],
+    named: Sequence[int] = (),
+) -> Panel:
+    """Return a panel with all lamps, of which some are ``named``."""
+    entries = table.data.entries
+    dots = []
+    for row, (name, (u, v)) in enumerate(zip(entries.names, entries.uv, strict=True)):
+        text = name if row in named else ""
+        is_bold = name in STANDARD_ILLUMINANTS
+        dots.append(Dot(u, v, text, INK, hollow=True, bold=is_bold, size=0.6))
+    x = Axis("u′", limits=window.u)
+    return Panel(marks, title, x, Axis("v′", limits=window.v), dots, "lower right")
 
 
 def lamp_window(table: EmissionTable) -> Window:
-    """Return the part of the diagram that has the lamps, of the proportions
-    of `ALL`.
-    """
-    uv = np.concatenate([table.data.entries.uv, table.data.lattice.white[None]])
-    low = uv.min(axis=0) - MARGIN
-    high = uv.max(axis=0) + MARGIN
-    full = np.array([ALL.u[1] - ALL.u[0], ALL.v[1] - ALL.v[0]])
-    half = full * ((high - low) / full).max() / 2
-    middle = (low + high) / 2
-    u, v = np.stack([middle - half, middle + half], axis=1).tolist()
+    """Return the part of the diagram that has the lamps and white."""
+    uv = np.append(table.data.entries.uv, table.data.lattice.white[None], axis=0)
+    u, v = square_limits(uv, MIN_EXTENT).tolist()
     return Window(tuple(u), tuple(v))
 
 
@@ -164,56 +141,52 @@ def _codes(table: EmissionTable, window: Window) -> NDArray[np.uint8]:
     return np.asarray(to_display_codes(brightest, table), dtype=np.uint8)
 
 
-def _draw_map(
-    axes: Any, table: EmissionTable, window: Window, values: NDArray[Any], **style: Any
-) -> Any:
+def _map(
+    table: EmissionTable, window: Window, values: NDArray[Any], **style: Any
+) -> Mark:
     """Draw values (H, W) or codes (H, W, 3) of a window within the spectral locus."""
-    from matplotlib.patches import Polygon
-
-    edge = Polygon(
-        table.data.lattice.knots, closed=True, fill=False, edgecolor=GREY, linewidth=1
-    )
-    axes.add_patch(edge)
     extent = (*window.u, *window.v)
-    image = axes.imshow(
-        values,
-        extent=extent,
-        interpolation="bilinear",
-        aspect="equal",
-        zorder=0,
-        **style,
-    )
-    image.set_clip_path(edge)
-    axes.set(xlim=window.u, ylim=window.v, xlabel="u′", ylabel="v′")
-    axes.spines[["top", "right"]].set_visible(False)
-    return image
+    place: dict[str, Any] = {"extent": extent, "zorder": 0, "aspect": "equal"}
+
+    def draw_map(axes: Any) -> None:
+        edge = {"facecolor": "none", "edgecolor": GREY, "linewidth": 1}
+        (locus,) = axes.fill(*table.data.lattice.knots.T, **edge)
+        image = axes.imshow(values, interpolation="bilinear", **place, **style)
+        image.set_clip_path(locus)
+        axes.grid(visible=False)
+
+    return draw_map
 
 
-def _draw_lamp_marks(axes: Any, table: EmissionTable) -> None:
-    axes.plot(*table.data.entries.uv.T, label="lamp that is exact", **LAMP)
+def _discs(table: EmissionTable) -> Mark:
+    """Draw the disc of each lamp."""
+
+    def draw_discs(axes: Any) -> None:
+        from matplotlib.patches import Circle
+
+        entries = table.data.entries
+        style: dict[str, Any] = {"fill": False, "edgecolor": GREY, "linewidth": 0.5}
+        for uv, radius in zip(entries.uv, entries.radius, strict=True):
+            axes.add_patch(Circle(tuple(uv), radius, **style))
+
+    return draw_discs
 
 
-def _draw_wavelengths(axes: Any, table: EmissionTable) -> None:
+def _wavelengths(table: EmissionTable) -> Mark:
     """Name wavelengths outside the locus, away from white."""
-    places = {
-        float(at): uv for at, uv in zip(table.wavelengths, _locus(table), strict=True)
-    }
-    white = table.data.lattice.white
-    for wavelength in WAVELENGTHS:
-        if wavelength not in places:
-            continue
-        uv = places[wavelength]
-        outward = (uv - white) / np.linalg.norm(uv - white)
-        axes.plot(*uv, marker="o", markersize=2, color=GREY)
-        axes.annotate(
-            f"{wavelength}",
-            uv,
-            9 * outward,
-            textcoords="offset points",
-            ha="center",
-            va="center",
-            color=INK,
-        )
+    is_marked = np.isin(table.wavelengths, WAVELENGTHS)
+    places = _locus(table)[is_marked]
+    names = [f"{at:.0f}" for at in table.wavelengths[is_marked]]
+    outward = places - table.data.lattice.white
+    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+    middle: dict[str, Any] = {"ha": "center", "va": "center"}
+
+    def draw_names(axes: Any) -> None:
+        axes.plot(*places.T, "o", markersize=2, color=GREY)
+        for name, uv, away in zip(names, places, 9 * outward, strict=True):
+            axes.annotate(name, uv, away, textcoords="offset points", **middle)
+
+    return draw_names
 
 
 def _locus(table: EmissionTable) -> Array:

@@ -45,7 +45,14 @@ STYLE: dict[str, Any] = {
     "xtick.minor.width": 0.4,
 }
 
-SUFFIXES = (".png", ".svg", ".pdf")  # formats of figures
+# Formats of figures, and entries with which equal figures give equal files: without
+# them matplotlib writes its name and version, and the time.
+METADATA: dict[str, dict[str, str | None]] = {
+    ".png": {"Software": "uplift"},
+    ".svg": dict.fromkeys(("Creator", "Date", "Format", "Type")),
+    ".pdf": dict.fromkeys(("CreationDate", "Producer")),
+}
+SUFFIXES = tuple(METADATA)
 HAIR_SPACE = "\u200a"
 # Properties of the style sheet of pages in place of colours; it lightens all other
 # colours in the dark scheme.
@@ -59,7 +66,6 @@ PAGE_COLOURS = {
     "#ffffff": "var(--card)",
 }
 _COLOUR = re.compile(r"(?<=: )#[0-9a-f]{6}\b")
-_NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 # Names of groups, comments, and a style sheet that would apply to the whole page.
 _UNUSED = re.compile(
     r' id="[\w.]+_\d+"|<!--.*?-->|<defs>\s*<style.*?</style>\s*</defs>', re.DOTALL
@@ -112,13 +118,6 @@ def style_axes(axes: Any) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def style_spectrum_axes(axes: Any) -> None:
-    """Style axes of reflectance over wavelength."""
-    axes.set(xlabel="wavelength / nm", ylabel="reflectance", ylim=(-0.02, 1.02))
-    axes.margins(x=0.01)
-    style_axes(axes)
-
-
 def show_image(axes: Any, image: NDArray[Any], **options: Any) -> Any:
     """Draw an image without ticks and frame. Return what matplotlib's ``imshow``
     returns.
@@ -126,25 +125,6 @@ def show_image(axes: Any, image: NDArray[Any], **options: Any) -> Any:
     axes.set(xticks=(), yticks=())
     axes.spines[:].set_visible(False)
     return axes.imshow(image, **options)
-
-
-def write_png(
-    figure: Any, path: str | os.PathLike[str], *, force: bool = False
-) -> None:
-    """Write a figure as PNG."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    # Without this entry matplotlib writes its name and version, and files would differ
-    # between versions.
-    content = io.BytesIO()
-    FigureCanvasAgg(figure).print_png(content, metadata={"Software": "uplift"})
-    _write(content, path, force)
-
-
-def _write(content: io.BytesIO, path: str | os.PathLike[str], force: bool) -> None:
-    """Write a drawn file: matplotlib itself would fail in other ways on a full disk."""
-    with atomic_write(path, force=force) as temporary:
-        temporary.write_bytes(content.getvalue())
 
 
 def check_suffix(path: str | os.PathLike[str]) -> str:
@@ -169,32 +149,27 @@ def write_figure(
     """Write a figure as PNG, SVG or PDF, by the suffix of its file. Equal figures give
     equal files.
     """
-    from matplotlib.backends.backend_pdf import FigureCanvasPdf
-    from matplotlib.backends.backend_svg import FigureCanvasSVG
+    content = render(figure, check_suffix(path))
+    # matplotlib itself would fail in other ways on a full disk.
+    with atomic_write(path, force=force) as temporary:
+        temporary.write_bytes(content)
 
-    suffix = check_suffix(path)
-    if suffix == ".png":
-        write_png(figure, path, force=force)
-        return
+
+write_png = write_figure
+
+
+def render(figure: Any, suffix: str) -> bytes:
+    """Return the file of a figure in the format of a suffix."""
     content = io.BytesIO()
     with styled():
-        if suffix == ".svg":
-            FigureCanvasSVG(figure).print_svg(content, metadata=_NO_METADATA)
-        else:
-            FigureCanvasPdf(figure).print_pdf(
-                content, metadata={"CreationDate": None, "Producer": None}
-            )
-    _write(content, path, force)
+        options = {"metadata": METADATA[suffix], "dpi": figure.dpi}
+        figure.savefig(content, format=suffix[1:], **options)
+    return content.getvalue()
 
 
 def to_svg(figure: Any, label: str = "") -> Markup:
     """Render a figure as an ``svg`` element for a page that sets its size."""
-    from matplotlib.backends.backend_svg import FigureCanvasSVG
-
-    out = io.StringIO()
-    with styled():
-        FigureCanvasSVG(figure).print_svg(out, metadata=_NO_METADATA)
-    text = out.getvalue()
+    text = render(figure, ".svg").decode()
     text = text[text.index("<svg") :].replace("xlink:href", "href")
     text = _UNUSED.sub("", text)
     suffix = hashlib.sha256(text.encode()).hexdigest()[:8]

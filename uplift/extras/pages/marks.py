@@ -26,6 +26,8 @@ from uplift.extras.pages.figure import (
 
 Mark = Callable[[Any], None]
 DASHED = (0, (3, 2))
+BINS = 40
+"""Bins of x for maximum and median."""
 
 
 def line(
@@ -48,6 +50,19 @@ def line(
     return draw
 
 
+def outline(
+    corners: ArrayLike, label: str = "", colour: Any = INK, **style: Any
+) -> Mark:
+    """Draw the edge of the region with corners (n, 2)."""
+
+    def draw(axes: Any) -> None:
+        style_axes(axes)
+        edge = {"facecolor": "none", "edgecolor": colour, "linewidth": 1.0, **style}
+        axes.fill(*np.transpose(corners), label=figure_text(label), **edge)
+
+    return draw
+
+
 def whiskers(
     x: ArrayLike, y: ArrayLike, low: ArrayLike, high: ArrayLike, colour: Any = INK
 ) -> Mark:
@@ -56,7 +71,7 @@ def whiskers(
     def draw(axes: Any) -> None:
         style_axes(axes)
         axes.vlines(x, low, high, color=colour, linewidth=1)
-        axes.plot(x, y, "o", color=colour, markersize=4)
+        axes.plot(x, y, "o", color=colour, markersize=4, zorder=1.5)
 
     return draw
 
@@ -134,32 +149,33 @@ def boxes(rows: Sequence[Box]) -> Mark:
     return draw
 
 
-def density(x: Array, y: Array, low: tuple[float, float], high: Array | Any) -> Mark:
-    """Draw the density of points on a logarithmic axis of y, within the corners ``low``
-    and ``high``: darker where there are more.
+def density(x: Array, y: Array, lowest: float, highest: float) -> list[Mark]:
+    """Draw the density of points on a logarithmic axis of y, darker where there are
+    more, and the maximum and the median of y over x. Points at ``lowest`` count, but
+    are not drawn.
     """
-    extent = (low[0], high[0], np.log10(low[1]), np.log10(high[1]))
+    drawn = y > lowest
+    right = x[drawn].max(initial=0.1)
     bins: dict[str, Any] = {"yscale": "log", "bins": "log", "gridsize": (60, 34)}
+    bins["extent"] = (0, right, np.log10(lowest), np.log10(highest))
 
     def draw(axes: Any) -> None:
         style_axes(axes)
-        axes.hexbin(
-            x, y, extent=extent, cmap=colour_map(), linewidths=0, mincnt=1, **bins
-        )
+        style: dict[str, Any] = {"cmap": colour_map(), "linewidths": 0, "mincnt": 1}
+        axes.hexbin(x[drawn], y[drawn], **bins, **style)
 
-    return draw
-
-
-def statistics_over(x: Array, y: Array, edges: Array) -> tuple[Mark, Mark]:
-    """Draw the maximum and the median of y in bins of x with given edges."""
+    edges = np.linspace(0, right, BINS + 1)
     bin_of = np.digitize(x, edges[1:-1])
     used = np.unique(bin_of)
     centres = (edges[1:] + edges[:-1])[used] / 2
     members = [y[bin_of == row] for row in used]
-    return (
-        line(centres, list(map(np.max, members)), "maximum", HIGHLIGHT, linewidth=1.6),
-        line(centres, list(map(np.median, members)), "median", INK, linewidth=1.6),
-    )
+    largest = list(map(np.max, members))
+    medians = list(map(np.median, members))
+    return [
+        draw,
+        line(centres, largest, "maximum", HIGHLIGHT),
+        line(centres, medians, "median"),
+    ]
 
 
 def picture(codes: NDArray[Any], **options: Any) -> Mark:
@@ -175,19 +191,33 @@ def picture(codes: NDArray[Any], **options: Any) -> Mark:
     return draw
 
 
-def error_map(values: Array, largest: float, exponent: float = 1.0) -> Mark:
-    """Draw a map (H, W) of ΔE00 or another error: white at 0, dark from ``largest`` on.
+def error_map(
+    values: Array,
+    largest: float,
+    *,
+    lowest: float = 0.0,
+    exponent: float = 1.0,
+    over: str = "",
+) -> Mark:
+    """Draw a map (H, W) of ΔE00 or another error: white at ``lowest``, dark at
+    ``largest``, and beyond it of the colour ``over``, if any.
 
-    Exponents below 1 spread small values. Figures give their maps one scale.
+    Scales from 0 have an exponent; below 1 it spreads small values. Others are
+    logarithmic. NaN is grey.
     """
 
     def draw(axes: Any) -> None:
-        from matplotlib.colors import PowerNorm
+        from matplotlib.colors import LogNorm, PowerNorm
 
         _remove_frame(axes)
         norm = PowerNorm(exponent, 0, largest)
-        axes.imshow(values, cmap=colour_map(), norm=norm, interpolation="nearest")
-        axes.set_facecolor(PALE)  # of NaN
+        if lowest:
+            norm = LogNorm(lowest, largest)
+        colours = colour_map()
+        if over:
+            colours = colours.with_extremes(over=over)
+        axes.imshow(values, cmap=colours, norm=norm, interpolation="nearest")
+        axes.set_facecolor(PALE)
 
     return draw
 

@@ -2,36 +2,42 @@
 axes; a figure has panels in rows, one legend and one scale of errors.
 """
 
-import io
 import math
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import redirect_stdout
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import Any, Literal
 
 import numpy as np
+from markupsafe import Markup
 
+from uplift.common.arrays import Array
+from uplift.extras.pages.dots import Dot, draw_dot, write_labels
 from uplift.extras.pages.figure import (
-    GREY,
     INK,
     figure_text,
     new_figure,
     style_axes,
     styled,
+    to_page_svg,
 )
 from uplift.extras.pages.marks import Mark
 
-MARKER_SIZES = {"*": 9.5, "D": 5.5}
-"""Points; others are 6.5 wide."""
-LABEL_SIZE = 7.5
-"""Points of the font of labels."""
-CLEARANCE = 4.0
-"""Points that labels keep from the middle of markers."""
-DISTANCES = (5.0, 42.0)
-"""Smallest and largest distance in points between a dot and its label."""
-LEADER = 9.0
-"""Distance in points from which a line joins a dot and its label."""
+__all__ = [
+    "Axis",
+    "Dot",
+    "Panel",
+    "draw",
+    "page_svg",
+    "sheet",
+    "spectra_panel",
+    "square_limits",
+]
+
+PAGE_SIZE = (4.8, 3.4)
+"""Inches of a panel on a page."""
+MARGIN = 0.06
+"""Space around dots and regions, as a share of their extent."""
 TEXT_HEIGHT = 0.19
 """Inches of a line of text above or below a picture."""
 LEGEND: dict[str, Any] = {"frameon": False, "fontsize": 8}
@@ -50,25 +56,6 @@ class Axis:
     text: Callable[[float], str] | None = None
     names: Sequence[str] = ()
     ticks: Sequence[float] = ()
-
-
-@dataclass(frozen=True)
-class Dot:
-    """A marker at (x, y), and the text next to it.
-
-    ``marker`` is the name of one of matplotlib, ``key`` identifies the marker and its
-    text in SVG as ``marker-KEY`` and ``label-KEY``. Bold texts are placed first; a text
-    without room is left out.
-    """
-
-    x: float
-    y: float
-    text: str = ""
-    colour: str = INK
-    marker: str = "o"
-    hollow: bool = False
-    bold: bool = False
-    key: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +79,7 @@ def draw(
     *,
     legend: Literal["", "above", "below"] = "",
     title: str = "",
-    scale: str = "ΔE00",
+    scale: str | None = "ΔE00",
     dpi: float = 130,
     share: str = "",
 ) -> Any:
@@ -108,7 +95,7 @@ def draw(
     legend
         Place of one legend for all labels of the marks.
     scale
-        Label of the scale of all `error_map`.
+        Label of the scales of all `error_map`; None for none.
     share
         ``"x"``, ``"y"`` or ``"xy"``: axes that have the same limits in all panels.
     """
@@ -137,15 +124,22 @@ def draw(
             _remove_labels(cells[:, 1:], "y")
         if isinstance(size, float | int):
             _fit_heights(figure, cells, width)
-        _add_scale(figure, cells, scale)
+        if scale is not None:
+            _add_scales(figure, cells, scale)
         if title:
             figure.suptitle(figure_text(title), fontsize=9, color=INK)
         if legend:
             _add_legend(figure, cells, legend, columns)
         _fix_layout(figure)
         for axes, panel in drawn:
-            _write_labels(axes, panel.dots)
+            write_labels(axes, panel.dots)
     return figure
+
+
+def page_svg(panel: Panel, size: tuple[float, float] = PAGE_SIZE) -> Markup:
+    """Draw a panel as an ``svg`` element of a page, which has its title as text."""
+    figure = draw([replace(panel, title="")], size=size)
+    return to_page_svg(figure, f"{panel.title}, over {panel.x.label}")
 
 
 def sheet(titles: Sequence[str], rows: Mapping[str, Sequence[Panel]]) -> list[Panel]:
@@ -173,9 +167,9 @@ def _draw_panel(axes: Any, panel: Panel) -> None:
             axes.set(**{f"{name}scale": "log"})
     if panel.dots:
         style_axes(axes)
-        axes.margins(0.06)
+        axes.margins(MARGIN)
     for dot in panel.dots:
-        _draw_dot(axes, dot)
+        draw_dot(axes, dot)
     for mark in panel.marks:
         mark(axes)
     if panel.title:
@@ -186,25 +180,8 @@ def _draw_panel(axes: Any, panel: Panel) -> None:
             fontweight="bold",
             color=INK,
         )
-    if panel.legend:
+    if panel.legend and axes.get_legend_handles_labels()[1]:
         axes.legend(loc=panel.legend, **LEGEND)
-
-
-def _draw_dot(axes: Any, dot: Dot) -> None:
-    face, edge = ("white", dot.colour) if dot.hollow else (dot.colour, "white")
-    axes.plot(
-        dot.x,
-        dot.y,
-        gid=f"marker-{dot.key}" if dot.key else None,
-        zorder=3 if dot.bold else 2,
-        linestyle="",
-        marker=dot.marker,
-        markersize=MARKER_SIZES.get(dot.marker, 6.5),
-        markerfacecolor=face,
-        markeredgecolor=edge,
-        markeredgewidth=1.2 if dot.hollow else 0.5,
-        clip_on=False,
-    )
 
 
 def _set_axis(axis: Any, wanted: Axis) -> None:
@@ -224,7 +201,7 @@ def _set_axis(axis: Any, wanted: Axis) -> None:
         low, high = sorted(axis.get_view_interval())
         # Axes of few decades have ticks between the powers of ten.
         steps = (1, 2, 5) if high < 1000 * low else (1,)
-        axis.set_major_locator(LogLocator(subs=steps, numticks=40))
+        axis.set_major_locator(LogLocator(subs=steps, numticks=9))
         axis.set_minor_locator(LogLocator(subs=()))
     if wanted.ticks:
         axis.set_ticks(list(wanted.ticks))
@@ -244,20 +221,26 @@ def _height(axes: Any, width: float) -> float:
     """Return the inches that the picture of a panel takes, if any, and its texts."""
     texts = (axes.get_title(loc="left"), axes.get_xlabel())
     lines = sum(text.count("\n") + 1 for text in texts if text)
-    shapes = [image.get_size() for image in axes.images] or [(1, 3)]
-    return width * shapes[0][0] / shapes[0][1] + lines * TEXT_HEIGHT
+    # Other panels, and stretched pictures, fill the height of their row.
+    height, columns = 1, 3
+    if axes.images and axes.get_aspect() != "auto":
+        height, columns = axes.images[0].get_size()
+    return width * height / columns + lines * TEXT_HEIGHT
 
 
-def _add_scale(figure: Any, cells: Any, label: str) -> None:
-    """Draw one scale of all maps of errors, right of the last column."""
-    maps = [
-        image for axes in cells.flat for image in axes.images if image.norm.scaled()
-    ]
-    maps = [image for image in maps if image.get_array().ndim == 2]
-    if maps:
-        bar = figure.colorbar(
-            maps[0], ax=list(cells[:, -1]), fraction=0.05, pad=0.02, extend="max"
-        )
+def _add_scales(figure: Any, cells: Any, label: str) -> None:
+    """Draw the scale of all maps right of the last column if they share it, and else
+    that of each map next to it.
+    """
+    maps = []
+    for axes in cells.flat:
+        maps += [image for image in axes.images if image.get_array().ndim == 2]
+    scales = {(type(image.norm), *image.get_clim()) for image in maps}
+    places = {maps[0]: list(cells[:, -1])} if len(scales) == 1 else {}
+    for image in maps if len(scales) > 1 else ():
+        places[image] = image.axes
+    for image, axes in places.items():
+        bar = figure.colorbar(image, ax=axes, fraction=0.05, pad=0.02, extend="max")
         bar.set_label(label, color=INK)
         bar.outline.set_visible(False)
 
@@ -277,63 +260,10 @@ def _fix_layout(figure: Any) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     FigureCanvasAgg(figure)
+    # The second time, as axes of another size may have other ticks.
+    figure.draw_without_rendering()
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
-
-
-def _write_labels(axes: Any, dots: Sequence[Dot]) -> None:
-    """Write the texts of dots that have room, bold ones first."""
-    named = sorted((dot for dot in dots if dot.text), key=lambda dot: not dot.bold)
-    if not named:
-        return
-    import textalloc
-
-    point = axes.figure.dpi / 72
-    width = axes.get_window_extent().width
-    nearest, farthest = np.multiply(DISTANCES, point / width)
-    curves = [curve.get_xydata().T for curve in axes.lines if _is_curve(curve)]
-    axes.autoscale(enable=False)
-    # It prints a line if no text has room.
-    with redirect_stdout(io.StringIO()):
-        _, _, texts, leaders = textalloc.allocate(
-            axes,
-            [dot.x for dot in named],
-            [dot.y for dot in named],
-            [figure_text(dot.text) for dot in named],
-            x_scatter=[dot.x for dot in dots],
-            y_scatter=[dot.y for dot in dots],
-            scatter_sizes=[CLEARANCE * point] * len(dots),
-            x_lines=[x for x, _ in curves] or None,
-            y_lines=[y for _, y in curves] or None,
-            textsize=LABEL_SIZE,
-            fontweight=["bold" if dot.bold else "normal" for dot in named],
-            textcolor=[dot.colour for dot in named],
-            linecolor=GREY,
-            linewidth=0.5,
-            margin=0.003,
-            min_distance=nearest,
-            max_distance=farthest,
-            nbr_candidates=1000,
-            draw_all=False,
-            va="bottom",
-        )
-    for dot, text, leader in zip(named, texts, leaders, strict=True):
-        if text is not None and dot.key:
-            text.set_gid(f"label-{dot.key}")
-        if leader is not None and _length(leader) < LEADER * point:
-            leader.remove()
-
-
-def _is_curve(line: Any) -> bool:
-    """Whether a line joins points: markers and thresholds do not."""
-    is_joined = line.get_linestyle() != "None" and len(line.get_xydata()) > 1
-    return is_joined and line.get_transform() == line.axes.transData
-
-
-def _length(line: Any) -> float:
-    """Return the length of a straight line in pixels."""
-    first, last = line.axes.transData.transform(line.get_xydata())
-    return float(np.hypot(*(last - first)))
 
 
 def spectra_panel(marks: Sequence[Mark], title: str = "", top: float = 1.02) -> Panel:
@@ -341,3 +271,14 @@ def spectra_panel(marks: Sequence[Mark], title: str = "", top: float = 1.02) -> 
     x = Axis("wavelength / nm")
     y = Axis("reflectance", limits=(-0.02, top))
     return Panel(marks, title, x, y, legend="best")
+
+
+def square_limits(points: Array, smallest: float) -> Array:
+    """Return limits (2, 2) of x and y of a square around points (n, 2), whose side is
+    ``smallest`` or more.
+    """
+    low = points.min(axis=0)
+    high = points.max(axis=0)
+    half = max(float((high - low).max()) * (0.5 + MARGIN), smallest / 2)
+    middle = (low + high) / 2
+    return np.stack([middle - half, middle + half], axis=1)

@@ -1,47 +1,40 @@
-"""Contact sheets: all slices of constant blue of a cube on one image.
+"""Contact sheets: all slices of constant blue of a cube, a panel for each quantity.
 
-One panel per quantity with one colour per node, one tile per blue slice, and a legend;
-OpenEXR for colour work, PNG for viewing.
+Status colours differ by at least 16 ΔE00 for protanopes, deuteranopes and tritanopes
+(Machado et al. 2009), and the frequent regular nodes are inconspicuous.
 """
 
+import io
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import product
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OutputError
-from uplift.common.files import atomic_write, check_output
+from uplift.common.files import check_output
 from uplift.common.text import pluralise
 from uplift.cube import CubeData
-from uplift.extras.colour.srgb import encode
+from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.images import exr
-from uplift.extras.images.exr import blue_slices
-from uplift.extras.pages.figure import figure_text, matplotlib
-from uplift.extras.pages.sheet_panels import BACKGROUND, panels
+from uplift.extras.pages.figure import HIGHLIGHT, matplotlib, render, write_figure
+from uplift.extras.pages.marks import error_map, line, picture
+from uplift.extras.pages.panels import Axis, Panel, draw
 
-TEXT_GREY = 0.75  # linear grey of the text
-# A power of two: division is exact, so the canvas of the text has the size of the sheet
-DPI = 64
-# The font comes with matplotlib.
-STYLE: dict[str, Any] = {
-    "family": "DejaVu Sans",
-    "va": "center_baseline",
-    "usetex": False,
-    "parse_math": False,
-}
-
-Image = NDArray[np.float32]
+WIDTH = 5.0
+"""Inches of a panel."""
+DPI = 130
+DECADES = 3
+"""Decades of fitting distance below the threshold that colours span."""
+STATUS = ("#f0e442", "#9bd4f5", "#53708a", "#00a878", HIGHLIGHT, "#6a1b4d")
+"""Colours of every `Status` but absent, in its order."""
 
 
 def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
-    """Write the contact sheet of a cube: linear RGB in a single-part ``.exr``, or sRGB
-    in a ``.png``.
+    """Write the contact sheet of a cube: sRGB in a ``.png``, or linear RGB in a
+    single-part ``.exr``.
 
     Panels show lattice RGB, fitting distance, status, and, of cubes that store them,
     standard error and round.
@@ -49,21 +42,17 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
     check_sheet(path)
     check_output(path, force=force)
     exr.check_slices(data)
-    sheet = compose(data)
-    image = _draw_text(sheet.image, sheet.labels)
-    if Path(path).suffix.lower() == ".exr":
-        channels = {letter: image[..., i] for i, letter in enumerate("RGB")}
-        exr.write_parts(
-            [exr.make_part("sheet", exr.attributes(data), channels)], path, force=force
-        )
+    figure = draw_sheet(data)
+    if Path(path).suffix.lower() == ".png":
+        write_figure(figure, path, force=force)
         return
-    matplotlib()
-    from matplotlib.image import imsave
+    from matplotlib.image import imread
 
-    codes = np.rint(255 * encode(image)).astype(np.uint8)
-    # Without this entry matplotlib writes its own name and version.
-    with atomic_write(path, force=force) as temporary:
-        imsave(temporary, codes, format="png", metadata={"Software": "uplift"})
+    codes = imread(io.BytesIO(render(figure, ".png")))[..., :3]
+    image = decode(codes).astype(np.float32)
+    channels = {letter: image[..., i] for i, letter in enumerate("RGB")}
+    part = exr.make_part("sheet", exr.attributes(data), channels)
+    exr.write_parts([part], path, force=force)
 
 
 def check_sheet(path: StrPath) -> None:
@@ -75,146 +64,100 @@ def check_sheet(path: StrPath) -> None:
     matplotlib()
 
 
-def _draw_text(image: Image, labels: tuple["Label", ...]) -> Image:
-    """Draw the labels on the image (height, width, 3) in the font that comes with
-    matplotlib.
+def draw_sheet(data: CubeData) -> Any:
+    """Draw the sheet; every node has at least a pixel."""
+    panels = [_rgb_panel(data), _distance_panel(data), _status_panel(data)]
+    errors = data.points.standard_error
+    if errors is not None:
+        title = f"Standard error, ΔE00 under {data.error_illuminant}"
+        mark = error_map(_tiles(data, errors), float(errors.max()))
+        panels.append(Panel([mark], title))
+    rounds = data.points.round
+    if rounds is not None:
+        panels.append(_round_panel(data, rounds))
+    columns = 2 if len(panels) == 4 else 3
+    pixels = math.ceil(math.sqrt(data.lattice.dim)) * (data.lattice.dim + 1)
+    dpi = max(DPI, math.ceil(1.2 * pixels / WIDTH))
+    title = _heading(data)
+    return draw(panels, columns, WIDTH, legend="below", title=title, scale="", dpi=dpi)
+
+
+def mosaic(slices: Array) -> Array:
+    """Arrange square slices (dim, dim, dim, ...) in reading order, with a gap of NaN
+    between them.
     """
-    matplotlib()
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    height, width = image.shape[:2]
-    figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="none")
-    for label in labels:
-        text = figure.text(
-            label.x / width, 1 - label.y / height, figure_text(label.text), **STYLE
-        )
-        text.set_fontsize(label.size * 72 / DPI)
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    cover = np.asarray(canvas.buffer_rgba())[..., 3:] / np.float32(255)
-    return image + cover * (np.float32(TEXT_GREY) - image)
+    dim = len(slices)
+    columns = math.ceil(math.sqrt(dim))
+    rows = math.ceil(dim / columns)
+    size = (rows * (dim + 1) - 1, columns * (dim + 1) - 1)
+    tiles = np.full((*size, *slices.shape[3:]), np.nan)
+    for number, plane in enumerate(slices):
+        top, left = (dim + 1) * np.array(divmod(number, columns))
+        tiles[top : top + dim, left : left + dim] = plane
+    return tiles
 
 
-# approximate width of a panel in pixels; a node has at least one, so panels of large
-# lattices are wider
-PANEL = 640
-GAP = 3  # pixels between tiles
-PANELS_PER_ROW = {3: 3, 4: 2, 5: 3}  # panels per row, by the number of panels
-LINES = 3  # lines of the legend below every panel
+def _tiles(data: CubeData, values: NDArray[Any]) -> Array:
+    """Arrange values (n,) or colours (n, 3) of the nodes; absent ones are NaN."""
+    present = data.points.present.reshape(-1, *[1] * (values.ndim - 1))
+    shown = np.where(present, values, np.nan)
+    return mosaic(exr.blue_slices(shown, data.lattice.dim))
 
 
-class Label(NamedTuple):
-    """Text that starts at pixel x and is centred on pixel y, ``size`` pixels high."""
-
-    x: float
-    y: float
-    text: str
-    size: float
+def _colours(data: CubeData, colours: Array) -> Array:
+    """Arrange encoded colours (n, 3) of the nodes on white."""
+    return np.nan_to_num(_tiles(data, colours), nan=1.0)
 
 
-@dataclass(frozen=True, eq=False)
-class Sheet:
-    """Linear RGB (height, width, 3), and the text to draw on it."""
-
-    image: NDArray[np.float32]
-    labels: tuple[Label, ...]
+def _rgb_panel(data: CubeData) -> Panel:
+    directions = "red rises to the right, green upwards, blue from tile to tile"
+    codes = _colours(data, encode(data.points.rgb))
+    return Panel([picture(codes)], "Lattice RGB", Axis(directions))
 
 
-class Layout:
-    """Positions in pixels from the top left, for a number of panels with ``dim`` tiles
-    each.
-    """
-
-    def __init__(self, dim: int, panels: int) -> None:
-        self.dim = dim
-        self.columns = math.ceil(math.sqrt(dim))  # tiles per row of a panel
-        self.rows = math.ceil(dim / self.columns)
-        self.scale = max(1, round(PANEL / (self.columns * dim)))  # width of a node
-        self.pitch = dim * self.scale + GAP  # distance from tile to tile
-        # width and height of a panel's tiles
-        self.panel = (self.columns * self.pitch - GAP, self.rows * self.pitch - GAP)
-        # height of the text; all spacing around it is a multiple
-        self.em = max(13, self.panel[0] // 48)
-        # Distance from panel to panel: title, tiles, legend and spacing
-        self.block = (
-            self.panel[0] + 3 * self.em,
-            self.panel[1] + (5 + 2 * LINES) * self.em,
-        )
-        self.across = PANELS_PER_ROW[panels]
-        self.size = (
-            self.across * self.block[0] + self.em,
-            math.ceil(panels / self.across) * self.block[1] + 4 * self.em,
-        )
-
-    def origin(self, panel: int) -> tuple[int, int]:
-        """Return the top left pixel of a panel's tiles."""
-        row, column = divmod(panel, self.across)
-        return 2 * self.em + column * self.block[0], 7 * self.em + row * self.block[1]
-
-    def tile(self, panel: int, blue: int) -> tuple[int, int]:
-        """Return the top left pixel of a tile; blue rises in reading order."""
-        row, column = divmod(blue, self.columns)
-        x, y = self.origin(panel)
-        return x + column * self.pitch, y + row * self.pitch
-
-    def keys(self, panel: int) -> Iterator[tuple[int, int]]:
-        """Yield the top left pixels of keys below a panel: the left column, then the
-        right one.
-        """
-        x, y = self.origin(panel)
-        for half, line in product(range(2), range(LINES)):
-            yield (
-                x + half * self.panel[0] // 2,
-                y + self.panel[1] + (1 + 2 * line) * self.em,
-            )
+def _distance_panel(data: CubeData) -> Panel:
+    distance = data.points.distance
+    low = data.threshold / 10**DECADES
+    tiles = _tiles(data, np.maximum(distance, low))
+    mark = error_map(tiles, data.threshold, lowest=low, over=HIGHLIGHT)
+    over = pluralise(int((distance > data.threshold).sum()), "node")
+    caption = f"over the threshold: {over}; largest {distance.max():.2g}"
+    return Panel([mark], "Fitting distance", Axis(caption))
 
 
-def compose(data: CubeData) -> Sheet:
-    """Compose the sheet. Every node is a square of ``Layout.scale`` pixels, in the
-    order of `blue_slices`.
-    """
-    all_panels = panels(data)
-    layout = Layout(data.lattice.dim, len(all_panels))
-    width, height = layout.size
-    image = np.full((height, width, 3), BACKGROUND, dtype=np.float32)
-    em = layout.em
-    labels = [_heading(data, layout)]
-    for number, panel in enumerate(all_panels):
-        for blue, plane in enumerate(blue_slices(panel.colours, layout.dim)):
-            large = plane.repeat(layout.scale, axis=0).repeat(layout.scale, axis=1)
-            _paint(image, layout.tile(number, blue), large)
-        x, y = layout.origin(number)
-        labels.append(Label(x, y - em, panel.title, 1.2 * em))
-        for key, (left, top) in zip(panel.keys, layout.keys(number), strict=False):
-            # a square, or a strip for a ramp
-            width = em if len(key.colours) == 1 else 6 * em
-            strip = key.colours[np.arange(width) * len(key.colours) // width]
-            _paint(image, (left, top), np.broadcast_to(strip, (em, width, 3)))
-            labels.append(Label(left + width + 0.6 * em, top + em / 2, key.text, em))
-    return Sheet(image, tuple(labels))
+def _status_panel(data: CubeData) -> Panel:
+    codes = np.array([list(bytes.fromhex(colour[1:])) for colour in STATUS]) / 255
+    white = np.ones((1, 3))
+    marks = [
+        picture(_colours(data, np.append(codes, white, axis=0)[data.points.status]))
+    ]
+    for colour, (label, count) in zip(
+        STATUS, data.points.counts().items(), strict=False
+    ):
+        key = f"{label}: {count:,}"
+        marks.append(line([], [], key, colour, marker="s", linestyle=""))
+    return Panel(marks, "Status")
 
 
-def _paint(image: NDArray[np.float32], corner: tuple[int, int], patch: Array) -> None:
-    x, y = corner
-    height, width = patch.shape[:2]
-    image[y : y + height, x : x + width] = patch
+def _round_panel(data: CubeData, rounds: NDArray[Any]) -> Panel:
+    last = max(int(rounds.max()), 1)
+    is_unfitted = (rounds < 0) & data.points.present
+    shown = np.where(rounds < 0, last + 1, rounds)
+    mark = error_map(_tiles(data, shown), last, over=HIGHLIGHT)
+    caption = f"fitted in no round: {pluralise(int(is_unfitted.sum()), 'node')}"
+    return Panel([mark], "Round", Axis(caption))
 
 
-def _heading(data: CubeData, layout: Layout) -> Label:
+def _heading(data: CubeData) -> str:
     model = data.model
     sensor = data.sensor
-    points = data.points
-    present = (
-        ""
-        if data.complete_cells is None
-        else f"{np.count_nonzero(points.present):,} of "
-    )
-    facts = (
-        f"{present}{data.lattice.dim}³ nodes",
+    facts = [f"{data.lattice.dim}³ nodes"]
+    if data.complete_cells is not None:
+        facts = [f"{np.count_nonzero(data.points.present):,} of {facts[0]}"]
+    facts += [
         f"{model.name}, {pluralise(model.count, 'coefficient')}",
         f"{sensor.space} under {sensor.illuminant}",
         pluralise(len(data.atlas.names), "atlas entry"),
         f"threshold {data.threshold:g}",
-    )
-    return Label(2 * layout.em, 2.75 * layout.em, "  ·  ".join(facts), 1.4 * layout.em)
+    ]
+    return "  ·  ".join(facts)

@@ -14,9 +14,10 @@ from uplift.extras.pages.figure import (
     INK,
     figure_text,
     new_figure,
-    style_axes,
     write_figure,
 )
+from uplift.extras.pages.marks import line
+from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.palette.design import Design, Matrix
 from uplift.extras.palette.palette import SpectrumSpec
 
@@ -81,31 +82,20 @@ def plot_spectra(design: Design, path: StrPath, *, force: bool = False) -> None:
     """Draw powers of lights and reflectances of materials over wavelength; given
     spectra are dashed.
     """
-    figure = new_figure(10.0, 3.8)
-    for axes, title, label, specs, samples in zip(
-        figure.subplots(1, 2),
-        ("lights", "materials"),
-        ("power", "reflectance"),
-        (design.palette.lights, design.palette.materials),
-        (design.powers, design.reflectances),
-        strict=True,
+    panels = []
+    for title, label, specs, samples in (
+        ("lights", "power", design.palette.lights, design.powers),
+        ("materials", "reflectance", design.palette.materials, design.reflectances),
     ):
-        for spec, row in zip(specs, samples, strict=True):
+        marks = []
+        for number, (spec, row) in enumerate(zip(specs, samples, strict=True)):
             dash = "-" if spec.designed else (0, (4, 2))
-            name = figure_text(_short(spec.name))
-            axes.plot(
-                design.palette.sensor.wavelengths,
-                row,
-                linewidth=1.8,
-                linestyle=dash,
-                label=name,
-            )
-        axes.margins(x=0.01)
-        axes.legend(frameon=False, fontsize=8)
-        style_axes(axes)
-        axes.set(xlabel="wavelength / nm", ylabel=label)
-        axes.set_title(title, loc="left", fontsize=10, fontweight="bold", color=INK)
-    write_figure(figure, path, force=force)
+            at = design.palette.sensor.wavelengths
+            name = _short(spec.name)
+            marks.append(line(at, row, name, f"C{number % 10}", linestyle=dash))
+        x = Axis("wavelength / nm")
+        panels.append(Panel(marks, title, x, Axis(label), legend="best"))
+    write_figure(draw(panels, 2, (5.0, 3.8)), path, force=force)
 
 
 def _cell(

@@ -9,7 +9,7 @@ import base64
 import math
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 from pathlib import Path
@@ -28,18 +28,10 @@ from uplift.common.files import atomic_write
 from uplift.cube import common_sensor
 from uplift.extras.colour.light_sets import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.extras.colour.srgb import to_display_codes
-from uplift.extras.pages.figure import (
-    GREY,
-    INK,
-    RAMP,
-    colour_map,
-    figure_text,
-    new_figure,
-    ramp_codes,
-    show_image,
-    write_figure,
-)
+from uplift.extras.pages.figure import RAMP, ramp_codes, write_figure
 from uplift.extras.pages.html import render, resource
+from uplift.extras.pages.marks import error_map, picture
+from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.report.measures import mean_p95_max
 from uplift.extras.texture.image import read_error, utf8_name
 from uplift.lookup import Cube
@@ -222,7 +214,6 @@ def _by_spectra(
 
 PANEL = 3.4  # width of a panel in inches
 DPI = 140
-LABELS = 0.3  # height in inches of the texts of a row
 
 
 def write_relit_sheet(
@@ -237,78 +228,41 @@ def write_relit_sheet(
     With ``adapt`` the white of each light is shown as white; by default if it
     `looks_white`.
     """
-    rows = list[tuple[Relit, Rendering]]()
-    for image in relit:
-        rows += [(image, rendering) for rendering in image.renderings]
-    first, second = map(figure_text, relit[0].shown_pair)
-    titles = [
-        *map(figure_text, relit[0].methods),
-        f"ΔE00 between {first}\nand {second}",
-    ]
-    heights = [
-        image.original.shape[0] / image.original.shape[1] * PANEL + LABELS
-        for image, _ in rows
-    ]
-    figure = new_figure(len(titles) * (PANEL + 0.06) + 0.7, sum(heights) + 0.5)
-    figure.set_dpi(DPI)
-    figure.get_layout_engine().set(w_pad=0.03, h_pad=0.03, wspace=0, hspace=0)
-    grid = figure.subplots(len(rows), len(titles), squeeze=False, height_ratios=heights)
     limit = map_limit(relit)
-    for axes, (image, rendering) in zip(grid, rows, strict=True):
-        drawn = _draw_row(
-            axes, image, rendering, limit, balanced=rendering.is_balanced(adapt)
-        )
-    for axes, title in zip(grid[0], titles, strict=True):
-        axes.set_title(title, fontsize=11, color=INK, pad=6)
-    bar = figure.colorbar(
-        drawn,
-        ax=list(grid[:, -1]),
-        ticks=_ticks(limit),
-        fraction=0.04,
-        pad=0.02,
-        aspect=15 * len(rows),
-        extend="max",
-        format="%d",
-    )
-    bar.outline.set_visible(False)
+    panels: list[Panel] = []
+    for image in relit:
+        for rendering in image.renderings:
+            balanced = rendering.is_balanced(adapt)
+            panels += _sheet_row(image, rendering, limit, balanced=balanced)
+    first, second = relit[0].shown_pair
+    titles = [*relit[0].methods, f"ΔE00 between {first}\nand {second}"]
+    for number, title in enumerate(titles):
+        panels[number] = replace(panels[number], title=title)
+    figure = draw(panels, len(titles), PANEL, dpi=DPI)
     write_figure(figure, path, force=force)
 
 
-def _ticks(limit: int) -> tuple[int, int, int]:
-    """Return ΔE00 at the pale end, in the middle and at the dark end of a map."""
-    return 0, limit // 4, limit
-
-
-def _draw_row(
-    axes: Sequence[Any],
-    image: Relit,
-    rendering: Rendering,
-    limit: float,
-    *,
-    balanced: bool,
-) -> Any:
-    """Draw an image under one light; return the map."""
-    from matplotlib.colors import PowerNorm
-
-    for panel, method in zip(axes, image.methods, strict=False):
+def _sheet_row(
+    image: Relit, rendering: Rendering, limit: float, *, balanced: bool
+) -> list[Panel]:
+    """Return the panels of an image under one light: each method, and the map."""
+    panels = []
+    for method in image.methods:
         codes = rendering.screen_codes(method, balanced=balanced)
-        show_image(panel, codes, interpolation="antialiased")
+        caption = image.name
         if method != RGB_PRODUCT:
             errors = rendering.errors((RGB_PRODUCT, method))
-            text = (
+            caption = (
                 f"ΔE00 from RGB × light: mean {errors['mean']:.1f}, 95 % "
                 f"{errors['p95']:.1f}"
             )
-            panel.set_xlabel(text, fontsize=9, color=GREY)
+        marks = [picture(codes, interpolation="antialiased")]
+        panels.append(Panel(marks, x=Axis(caption)))
     state = "white-balanced" if balanced else "tinted"
-    axes[0].set_ylabel(
-        f"{rendering.light_label}\n{state}", fontsize=10, color=INK, labelpad=6
-    )
-    axes[0].set_xlabel(figure_text(image.name), fontsize=9, color=GREY)
+    panels[0] = replace(panels[0], y=Axis(f"{rendering.light_label}\n{state}"))
     difference = rendering.differences[image.shown_pair]
-    return show_image(
-        axes[-1], difference, cmap=colour_map(), norm=PowerNorm(MAP_EXPONENT, 0, limit)
-    )
+    panels.append(Panel([error_map(difference, limit, exponent=MAP_EXPONENT)]))
+    return panels
 
 
 def relit_page(relit: Sequence[Relit], *, adapt: bool | None = None) -> str:
@@ -333,7 +287,7 @@ def relit_page(relit: Sequence[Relit], *, adapt: bool | None = None) -> str:
         balanced=[rendering.is_balanced(adapt) for rendering in first.renderings],
         methods=first.methods,
         start=int(np.argmax(changes)),
-        ticks=_ticks(limit),
+        ticks=(0, limit // 4, limit),
         ramp=RAMP,
         sections=[_section(image, limit) for image in relit],
         script=resource("extras/relight/relight_page.js"),

@@ -3,28 +3,19 @@ spectra.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from markupsafe import Markup
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Indices
-from uplift.extras.pages.figure import (
-    ACCENT,
-    BAND,
-    INK,
-    new_figure,
-    style_axes,
-    styled,
-    to_page_svg,
-)
+from uplift.extras.pages.figure import ACCENT, BAND, INK, to_page_svg
 from uplift.extras.pages.format import format_power_of_ten
+from uplift.extras.pages.marks import histogram, line
+from uplift.extras.pages.marks import threshold as mark_threshold
+from uplift.extras.pages.panels import Axis, Panel, draw
 
-SIZE = (3.3, 1.75)  # inches at 72 dpi; the page scales charts to its columns
-# Position of the axes in a chart with and without an axis label.
-WITH_LABEL = (0.13, 0.24, 0.84, 0.72)
-WITHOUT_LABEL = (0.1, 0.12, 0.87, 0.84)
+SIZE = (3.3, 1.75)  # inches; the page scales charts to its columns
 # Upper ends of reflectance axes: few enough to compare charts, and dark colours remain
 # visible.
 REFLECTANCE_LIMITS = (0.1, 0.25, 0.5, 1.0)
@@ -40,24 +31,15 @@ def histogram_chart(
     """Draw counts over ``label``; the axis holds counts up to ``top``, a dashed line
     marks the threshold.
     """
-    with styled():
-        figure, axes = _new_axes(WITH_LABEL)
-        axes.stairs(values.counts, values.edges, fill=True, color=ACCENT)
-        highest = max(int(values.counts.max()), top or 0, 1)
-        axes.set(xlabel=label, ylim=(0, 1.06 * highest))
-        if values.logarithmic:
-            axes.set_xscale("log")
-            axes.xaxis.set_major_formatter(lambda value, _: format_power_of_ten(value))
-        else:
-            axes.locator_params(axis="x", nbins=6)
-            axes.xaxis.set_major_formatter("{x:g}")
-        if threshold is not None:
-            axes.axvline(threshold, color=INK, linewidth=0.8, linestyle=(0, (3, 2)))
-        else:
-            axes.set_xlim(values.edges[0], values.edges[-1])
-        axes.locator_params(axis="y", nbins=4, integer=True)
-        axes.yaxis.set_major_formatter("{x:,.0f}")
-        return to_page_svg(figure, f"Histogram of {label}")
+    highest = max(int(values.counts.max()), top or 0, 1)
+    text = format_power_of_ten if values.logarithmic else "{:g}".format
+    marks = [histogram(values.counts, values.edges)]
+    if threshold is not None:
+        marks.append(mark_threshold(threshold, axis="x", colour=INK))
+    x = Axis(label, log=values.logarithmic, text=text)
+    y = Axis(limits=(0, 1.06 * highest), text="{:,.0f}".format)
+    figure = draw([Panel(marks, x=x, y=y)], size=SIZE)
+    return to_page_svg(figure, f"Histogram of {label}")
 
 
 def spectra_chart(
@@ -72,38 +54,14 @@ def spectra_chart(
         (limit for limit in REFLECTANCE_LIMITS if highest <= limit),
         REFLECTANCE_LIMITS[-1],
     )
-    with styled():
-        figure, axes = _new_axes(WITHOUT_LABEL)
-        axes.plot(
-            wavelengths, measured, color=BAND, linewidth=4, solid_capstyle="round"
-        )
-        if lattice is not None:
-            axes.plot(
-                wavelengths,
-                lattice,
-                color=INK,
-                linewidth=1.1,
-                linestyle=(0, (1.2, 1.6)),
-            )
-        axes.plot(wavelengths, answered, color=ACCENT, linewidth=1.1)
-        axes.set(
-            xlim=(wavelengths[0], wavelengths[-1]),
-            xticks=range(400, 800, 100),
-            ylim=(0, 1.02 * top),
-            yticks=(0, top / 2, top),
-        )
-        axes.yaxis.set_major_formatter("{x:g}")
-        style_axes(axes)
-        return to_page_svg(figure, "Reflectance over wavelength")
-
-
-def _new_axes(position: tuple[float, float, float, float]) -> tuple[Any, Any]:
-    figure = new_figure(*SIZE, layout=None)
-    figure.set_dpi(72)
-    axes = figure.add_axes(position)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.set_axisbelow(True)
-    return figure, axes
+    marks = [line(wavelengths, measured, "", BAND, linewidth=4)]
+    if lattice is not None:
+        marks.append(line(wavelengths, lattice, linestyle=(0, (1.2, 1.6))))
+    marks.append(line(wavelengths, answered, "", ACCENT, linewidth=1.1))
+    x = Axis(limits=(wavelengths[0], wavelengths[-1]), ticks=range(400, 800, 100))
+    y = Axis(limits=(0, 1.02 * top), ticks=(0, top / 2, top), text="{:g}".format)
+    figure = draw([Panel(marks, x=x, y=y)], size=SIZE)
+    return to_page_svg(figure, "Reflectance over wavelength")
 
 
 BINS_PER_DECADE = 6

@@ -7,7 +7,8 @@ import numpy as np
 from uplift.colorimetry.gamut import SRGB
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import to_display_codes
-from uplift.extras.pages.figure import colour_map, new_figure, show_image
+from uplift.extras.pages.marks import error_map, picture
+from uplift.extras.pages.panels import Panel, draw
 from uplift.extras.report.conformance import Conformance
 from uplift.extras.report.conformance_chart import COLUMNS, ROWS
 
@@ -19,28 +20,19 @@ def plot_conformance(conformance: Conformance) -> Any:
     """Draw the reference, the picture or the colours of the spectra, both under the
     light, and ΔE00 of the patches. Returns a figure of matplotlib.
     """
-    figure = new_figure(10.5, 2.7)
-    axes = figure.subplots(1, 3)
-    names = (f"expected, {conformance.mode}", "compared")
-    for place, name, xyz in zip(
-        axes, names, (conformance.expected, conformance.found), strict=False
-    ):
-        show_image(place, _codes(xyz), interpolation="nearest")
-        place.set_title(f"{name}, under {conformance.light}", fontsize=10)
+    light = conformance.light
+    expected = f"expected, {conformance.mode}, under {light}"
     differences = conformance.differences
     errors = conformance.delta_e.reshape(ROWS, COLUMNS)
-    shown = show_image(
-        axes[2],
-        errors,
-        cmap=colour_map(),
-        vmin=0,
-        vmax=max(differences.largest, MIN_SCALE),
-        interpolation="nearest",
-    )
     verdict = "passed" if conformance.passed else "FAILED"
-    axes[2].set_title(f"ΔE00, mean {differences.mean:.2g}: {verdict}", fontsize=10)
-    figure.colorbar(shown, ax=axes[2], shrink=0.7)
-    return figure
+    title = f"ΔE00, mean {differences.mean:.2g}: {verdict}"
+    largest = max(differences.largest, MIN_SCALE)
+    panels = [
+        Panel([picture(_codes(conformance.expected))], expected),
+        Panel([picture(_codes(conformance.found))], f"compared, under {light}"),
+        Panel([error_map(errors, largest)], title),
+    ]
+    return draw(panels, len(panels), 3.5)
 
 
 def _codes(xyz: Array) -> Array:

@@ -12,16 +12,11 @@ from numpy.typing import NDArray
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import hex_codes, to_display_codes
 from uplift.extras.images.exr import blue_slices
-from uplift.extras.pages.figure import (
-    PALE,
-    RAMP,
-    colour_map,
-    new_figure,
-    show_image,
-    styled,
-    to_page_svg,
-)
+from uplift.extras.pages.figure import RAMP, to_page_svg
 from uplift.extras.pages.html import render
+from uplift.extras.pages.marks import error_map, picture
+from uplift.extras.pages.panels import Panel, draw
+from uplift.extras.pages.sheet import mosaic
 from uplift.extras.report.charts import spectra_chart
 from uplift.extras.report.diff import Changes, CubeDiff, to_json
 
@@ -70,44 +65,17 @@ def _worst_spectra(diff: CubeDiff, count: int) -> Iterator[dict[str, object]]:
             yield _spectra(diff, changes, int(row))
 
 
-def mosaic(slices: Array) -> Array:
-    """Arrange square slices (dim, dim, dim) in reading order, with a gap
-    between them.
-    """
-    dim = len(slices)
-    columns = math.ceil(math.sqrt(dim))
-    rows = math.ceil(dim / columns)
-    sheet = np.full((rows * (dim + 1) - 1, columns * (dim + 1) - 1), np.nan)
-    for number, plane in enumerate(slices):
-        top, left = (dim + 1) * np.array(divmod(number, columns))
-        sheet[top : top + dim, left : left + dim] = plane
-    return sheet
-
-
 def _map(
-    values: Array, limit: float, label: str, picture: NDArray[np.uint8] | None = None
+    values: Array, limit: float, label: str, codes: NDArray[np.uint8] | None = None
 ) -> Markup:
     """Draw a map of ΔE00 (height, width), next to a picture of 8-bit codes if one is
     given.
     """
-    with styled():
-        panels = 1 if picture is None else 2
-        figure = new_figure(
-            WIDTH, 0.94 * WIDTH * values.shape[0] / values.shape[1] / panels
-        )
-        grid = figure.subplots(1, panels, squeeze=False)[0]
-        if picture is not None:
-            show_image(grid[0], picture, interpolation="antialiased")
-        show_image(
-            grid[-1],
-            values,
-            cmap=colour_map(),
-            vmin=0,
-            vmax=limit,
-            interpolation="nearest",
-        )
-        grid[-1].set_facecolor(PALE)
-        return to_page_svg(figure, label)
+    panels = [Panel([error_map(values, limit)])]
+    if codes is not None:
+        panels.insert(0, Panel([picture(codes, interpolation="antialiased")]))
+    figure = draw(panels, len(panels), WIDTH / len(panels), scale=None)
+    return to_page_svg(figure, label)
 
 
 def _image(

@@ -18,13 +18,9 @@ from uplift.common.arrays import Array, Values, blocks, distances
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
 from uplift.extras.colour.srgb import to_display_codes
-from uplift.extras.pages.figure import (
-    ACCENT,
-    colour_map,
-    figure_text,
-    new_figure,
-    show_image,
-)
+from uplift.extras.pages.figure import ACCENT
+from uplift.extras.pages.marks import Mark, error_map, picture
+from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.texture.scene_colours import (
     BINS,
     Images,
@@ -44,8 +40,6 @@ MAX_COLOURS = 2048
 BLOCK_ROWS = 256
 """Swatches whose gains are computed at a time."""
 MAX_SWATCHES = 100
-MIN_CHIPS = 8
-"""Swatches that a row of a plot has place for."""
 ALIKE = 1.0
 """Distance in L*a*b* of pixels that have the colour of a swatch, for a plot."""
 TINY = 1e-9
@@ -245,47 +239,55 @@ def draw_advice(
     flat = {name: rgb.reshape(-1, 3).astype(float) for name, rgb in pictures.items()}
     maps = _mean_errors(cube, flat, lights)
     largest = max(float(np.quantile(errors, 0.99)) for errors in maps.values())
-    heights = [3.5 * rgb.shape[0] / rgb.shape[1] + 0.3 for rgb in pictures.values()]
-    figure = new_figure(7.6, sum(heights) + 1.5)
-    *rows, last = figure.subfigures(
-        len(pictures) + 1, 1, height_ratios=[*heights, 1.5], squeeze=False
-    )[:, 0]
-    chips = last.subplots(1, max(len(swatches), MIN_CHIPS))
-    panels = {}
-    for row, (name, rgb) in zip(rows, pictures.items(), strict=True):
-        panels[name], errors = row.subplots(1, 2)
-        show_image(panels[name], to_display_codes(rgb, sensor) / 255)
-        panels[name].set_title(figure_text(Path(name).name), fontsize=9, loc="left")
-        shown = show_image(
-            errors,
-            maps[name].reshape(rgb.shape[:2]),
-            cmap=colour_map(),
-            vmin=0,
-            vmax=largest,
-        )
-        names = ", ".join(light.name for light in lights)
-        title = (
-            f"expected ΔE00 between answer and measurement\naveraged over {names}; "
-            "dark: large"
-        )
-        errors.set_title(title, fontsize=9, loc="left")
-        row.colorbar(shown, ax=errors, format="%.1f")
-    box = {"boxstyle": "circle", "facecolor": "white", "edgecolor": ACCENT}
-    labs = {name: rgb_to_lab(sensor, rgb) for name, rgb in flat.items()}
-    for number, (text, rgb) in enumerate(swatches):
-        away = {
-            name: distances(lab, rgb_to_lab(sensor, rgb[None]))[:, 0]
-            for name, lab in labs.items()
-        }
+    names = ", ".join(light.name for light in lights)
+    title = f"expected ΔE00 to the measurement\naveraged over {names}"
+    numbers = _numbers(sensor, pictures, [rgb for _, rgb in swatches])
+    panels: list[Panel | None] = []
+    for name, rgb in pictures.items():
+        shown = [picture(to_display_codes(rgb, sensor) / 255), *numbers[name]]
+        errors = error_map(maps[name].reshape(rgb.shape[:2]), largest)
+        panels += [
+            Panel(shown, Path(name).name),
+            Panel([errors], title),
+            None,
+        ]
+    if swatches:
+        panels[2] = _swatches_panel(sensor, swatches)
+    return draw(panels, 3, 3.2)
+
+
+def _swatches_panel(sensor: Sensor, swatches: Sequence[tuple[str, Array]]) -> Panel:
+    """Return the numbered swatches below one another, with their texts."""
+    texts = [f"{row}   {text}" for row, (text, _) in enumerate(swatches, start=1)]
+    rgb = np.array([[rgb] for _, rgb in swatches])
+    codes = to_display_codes(rgb, sensor) / 255
+    return Panel(
+        [picture(codes, aspect="auto")],
+        "swatches lower the mean by",
+        y=Axis(names=texts),
+    )
+
+
+def _numbers(
+    sensor: Sensor, pictures: Mapping[str, Values], swatches: Sequence[Array]
+) -> dict[str, list[Mark]]:
+    """Return the numbers of swatches by image, at pixels of the nearest colours."""
+    labs = {}
+    for name, rgb in pictures.items():
+        labs[name] = rgb_to_lab(sensor, rgb.reshape(-1, 3).astype(float))
+    numbers: dict[str, list[Mark]] = {name: [] for name in pictures}
+    for number, rgb in enumerate(swatches, start=1):
+        away = {}
+        for name, lab in labs.items():
+            away[name] = distances(lab, rgb_to_lab(sensor, rgb[None]))[:, 0]
         name = min(away, key=lambda name: away[name].min())
         like = np.flatnonzero(away[name] <= away[name].min() + ALIKE)
         y, x = divmod(int(like[len(like) // 2]), pictures[name].shape[1])
-        panels[name].text(
-            x, y, str(number + 1), ha="center", va="center", fontsize=7, bbox=box
-        )
-        show_image(chips[number], to_display_codes(rgb[None, None], sensor) / 255)
-        chips[number].set_title(f"{number + 1}", fontsize=8, pad=2)
-        chips[number].set_xlabel(text, fontsize=7)
-    for unused in chips[len(swatches) :]:
-        unused.set_axis_off()
-    return figure
+        numbers[name].append(_number(x, y, number))
+    return numbers
+
+
+def _number(x: int, y: int, number: int) -> Mark:
+    box = {"boxstyle": "circle", "facecolor": "white", "edgecolor": ACCENT}
+    middle: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 7}
+    return lambda axes: axes.text(x, y, str(number), bbox=box, **middle)

@@ -4,21 +4,11 @@ Of the cubes of this package a panel of the page shows those that no other cube 
 same kind and mode beats.
 """
 
-from typing import Any
-
-import numpy as np
+from dataclasses import replace
 
 from uplift.common.arrays import StrPath
 from uplift.extras.colour.light_sets import CHART_LIGHTS
-from uplift.extras.pages.figure import (
-    ACCENT,
-    GREY,
-    OTHER,
-    PALE,
-    new_figure,
-    styled,
-    write_png,
-)
+from uplift.extras.pages.figure import ACCENT, GREY, OTHER, write_figure
 from uplift.extras.pages.format import (
     format_build_time,
     format_error,
@@ -26,7 +16,9 @@ from uplift.extras.pages.format import (
     format_time,
 )
 from uplift.extras.pages.html import Tooltip, render
-from uplift.extras.pages.scatter import Label, draw_labels
+from uplift.extras.pages.marks import shade, threshold
+from uplift.extras.pages.panels import Axis, Dot, Panel, draw, page_svg
+from uplift.extras.pages.pareto import family_colours, front_panel
 from uplift.lab.chart.results import (
     REFERENCE,
     Chart,
@@ -34,14 +26,6 @@ from uplift.lab.chart.results import (
     MethodResult,
     State,
     criteria,
-)
-from uplift.lab.panels import (
-    Panel,
-    Point,
-    family_colours,
-    fix_layout,
-    page_panel,
-    pareto_front,
 )
 
 COLOURS = {
@@ -88,133 +72,79 @@ ERRORS = {
 }
 """Columns of the table: headings by names of errors."""
 
-DrawnPoint = tuple[str, tuple[float, float], str]
-"""Name of a method, its time and error, and what the name is followed by."""
-
 
 def drawn_results(criterion: Criterion, chart: Chart) -> list[MethodResult]:
     """Cubes of this package that none of the same kind and mode beats, then all other
     methods, above them.
     """
-    groups: dict[tuple[str, str], dict[MethodResult, tuple[float, float]]] = {}
-    others = []
+    kinds: dict[tuple[str, ...], list[MethodResult]] = {}
     for result in chart.measured:
-        point = criterion.point(result)
-        if point is not None and result.build:
-            groups.setdefault((result.family, result.mode), {})[result] = point
-        elif point is not None:
-            others.append(result)
-    ours = []
-    for group in groups.values():
-        results = list(group)
-        ours += [results[row] for row in pareto_front(list(group.values()))]
-    return [*ours, *others]
+        kind = (result.family, result.mode) if result.build else (result.method,)
+        kinds.setdefault(kind, []).append(result)
+    drawn: list[MethodResult] = []
+    for results in kinds.values():
+        drawn += criterion.front(replace(chart, results=tuple(results)))
+    return sorted(drawn, key=lambda result: not result.build)
 
 
-def panel(criterion: Criterion, chart: Chart) -> Panel:
-    """Return the panel of a criterion."""
-    points = []
+def criterion_panel(criterion: Criterion, chart: Chart, number: int) -> Panel:
+    """Return the panel of a criterion, whose markers have the keys NUMBER-ROW."""
+    named: list[Dot] = []
+    unnamed: list[Dot] = []
     for result in drawn_results(criterion, chart):
-        place = criterion.point(result) or (1.0, 1.0)
-        row = chart.results.index(result)
-        style = COLOURS.get(result.family, OTHER), MODES.get(result.mode, "*")
-        is_part = result.numbers[f"ns_{criterion.batch}_colours"] < criterion.batch
-        is_named = not result.build and not result.method.endswith("-float32")
-        points.append(
-            Point(row, result.label, *place, *style, hollow=is_part, named=is_named)
+        dot = Dot(
+            *(criterion.point(result) or (1.0, 1.0)),
+            result.label,
+            COLOURS.get(result.family, OTHER),
+            MODES.get(result.mode, "*"),
+            hollow=result.numbers[f"ns_{criterion.batch}_colours"] < criterion.batch,
+            key=f"{number}-{chart.results.index(result)}",
         )
-    title = f"{criterion.title}\n{criterion.unit}, {criterion.colours}"
-    return Panel(title, criterion.axis, format_time, points)
+        is_variant = result.build or result.method.endswith("-float32")
+        (unnamed if is_variant else named).append(dot)
+    cost = Axis(criterion.axis, log=True, text=format_time)
+    return front_panel(criterion.title, cost, named, unnamed)
 
 
 def write_picture(chart: Chart, path: StrPath, *, force: bool = False) -> None:
-    """Write the mean error of unseen materials over the time per RGB as PNG. Raises
-    `OutputError`.
-    """
-    with styled():
-        write_png(draw_picture(chart), path, force=force)
-
-
-def draw_picture(chart: Chart) -> Any:
-    """Return the matplotlib figure of `write_picture`: every method has its name, this
-    package the only colour.
+    """Write the mean error of unseen materials over the time per RGB as PNG: every
+    method has its name, this package the only colour. Raises `OutputError`.
     """
     compared = criteria(reference_batch(chart))
     unseen = compared[1]
-    drawn = _drawn_points(chart, unseen, compared[4])
-    figure = new_figure(9, 5.2)
-    figure.set_dpi(130)
-    axes = figure.subplots()
-    largest = max(1.0, *(error for _, (_, error), _ in drawn))
-    axes.set(xscale="log", ylim=(-0.02, 1.12 * largest))
-    axes.set_xlabel(f"{unseen.axis}, {unseen.colours}", fontsize=11)
-    axes.set_ylabel(f"mean {unseen.unit} of unseen materials", fontsize=11)
-    axes.tick_params(labelsize=11)
-    axes.minorticks_off()
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.xaxis.set_major_formatter(lambda value, _: format_time(value))
-    axes.axhspan(0, 1, color=PALE, alpha=0.45, linewidth=0)
-    axes.annotate(
-        "just visible: 1",
-        (0.99, 1),
-        xycoords=("axes fraction", "data"),
-        ha="right",
-        va="top",
-        color=GREY,
-        size=11,
-    )
-    labels = []
-    for name, place, what in drawn:
-        colour = ACCENT if name == OURS else GREY
-        face = "white" if what else None
-        axes.plot(
-            *place,
-            "o",
-            color=colour,
-            markerfacecolor=face,
-            markersize=9,
-            markeredgewidth=2,
-            clip_on=False,
-        )
-        text = f" {name}{what}  {place[1]:.2f} "  # blanks, as markers are large
-        labels.append(Label(text, place, colour, name == OURS, ""))
-    axes.margins(x=0.09)
-    axes.set_title(
-        f"Smallest error on unseen materials: {_two_best(drawn)}",
-        loc="left",
-        fontsize=13,
-        fontweight="bold",
-        pad=12,
-    )
-    fix_layout(figure)
-    markers = np.array([label.point for label in labels]).reshape(-1, 2)
-    draw_labels(axes, labels, markers, np.empty((0, 2)), fontsize=12)
-    return figure
-
-
-def _drawn_points(
-    chart: Chart, unseen: Criterion, of_atlas: Criterion
-) -> list[DrawnPoint]:
-    """Return the methods that the figure shows, the atlas at its own materials too."""
     named = [result for result in chart.measured if result.method in NAMES]
-    drawn: list[DrawnPoint] = []
+    dots = []
     for result in named or chart.measured:
-        if point := unseen.point(result):
-            drawn.append((NAMES.get(result.method, result.title), point, ""))
+        dots += _dots(unseen, result, NAMES.get(result.method, result.title))
+    smallest = sorted(dots, key=lambda dot: dot.y)[:2]
+    ranks = [f"{dot.text} in {format_time(dot.x)}" for dot in smallest]
+    title = "Smallest errors on unseen materials\n" + ";  ".join(ranks)
     for result in chart.measured:
-        if result.method == ATLAS and (point := of_atlas.point(result)):
-            drawn.append((OURS, point, " with the atlas, its own materials"))
-    return drawn
+        if result.method == ATLAS:
+            for dot in _dots(
+                compared[4], result, OURS, " with the atlas, its own materials"
+            ):
+                dots.append(replace(dot, hollow=True))
+    panel = Panel(
+        [shade(0, 1), threshold(1, "just visible: 1")],
+        title,
+        Axis(f"{unseen.axis}, {unseen.colours}", log=True, text=format_time),
+        Axis(f"mean {unseen.unit} of unseen materials", limits=(-0.05, None)),
+        dots,
+    )
+    write_figure(draw([panel], size=(5.6, 3.4), dpi=200), path, force=force)
 
 
-def _two_best(drawn: list[DrawnPoint]) -> str:
-    """Return the two smallest errors of unseen materials, with their times."""
-    errors = []
-    for name, (time, error), what in drawn:
-        if not what:
-            errors.append((error, name, format_time(time)))
-    texts = [f"{name}, {error:.2f} in {time}" for error, name, time in sorted(errors)]
-    return "\nthe next: ".join(texts[:2])
+def _dots(
+    criterion: Criterion, result: MethodResult, name: str, of: str = ""
+) -> list[Dot]:
+    """Return the dot of a method, if it has an error and a time."""
+    point = criterion.point(result)
+    if point is None:
+        return []
+    colour = ACCENT if name == OURS else GREY
+    text = f"{name}{of}, {point[1]:.2f}"
+    return [Dot(*point, text, colour, bold=name == OURS)]
 
 
 def reference_batch(chart: Chart) -> int:
@@ -227,11 +157,11 @@ def render_chart(chart: Chart) -> str:
     compared: list[Criterion] = []
     for batch in chart.batches:
         compared += criteria(batch)
+    pictures = []
+    for number, criterion in enumerate(compared):
+        panel = criterion_panel(criterion, chart, number)
+        pictures.append((criterion, page_svg(panel)))
     sources = (f"{result.family}: {result.source}" for result in chart.results)
-    pictures = [
-        (criterion, page_panel(panel(criterion, chart), number))
-        for number, criterion in enumerate(compared)
-    ]
     return render(
         "lab/chart/templates/page.html.j2",
         title=TITLE,

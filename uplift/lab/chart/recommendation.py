@@ -6,8 +6,8 @@ from uplift.colorimetry.illuminants import DEFAULT_ILLUMINANT
 from uplift.common.errors import OptionError, unknown_name
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.extras.pages.format import format_error, format_time
+from uplift.extras.pages.pareto import CLEAR_RATIO
 from uplift.lab.chart.results import Chart, MethodResult
-from uplift.lab.panels import CLEAR_RATIO
 
 
 @dataclass(frozen=True)

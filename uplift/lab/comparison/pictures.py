@@ -4,30 +4,20 @@
 
 from collections.abc import Callable, Sequence
 from itertools import product
-from typing import Any
-
-from markupsafe import Markup
 
 from uplift.common.arrays import StrPath
-from uplift.extras.pages.figure import (
-    INK,
-    OTHER,
-    new_figure,
-    style_axes,
-    styled,
-    to_page_svg,
-    write_png,
-)
+from uplift.extras.pages.figure import OTHER, write_figure
 from uplift.extras.pages.format import capitalise, format_error, format_time
 from uplift.extras.pages.html import Tooltip, render
-from uplift.extras.pages.scatter import style_title
+from uplift.extras.pages.marks import Box, Mark, boxes, line, threshold
+from uplift.extras.pages.panels import Axis, Dot, Panel, draw, page_svg
+from uplift.extras.pages.pareto import family_colours, front_panel
 from uplift.lab.comparison.compare import (
     HEADINGS,
     Comparison,
     RepresentationResult,
 )
 from uplift.lab.comparison.tuning import TunedFilter
-from uplift.lab.panels import Panel, Point, family_colours, page_panel, write_panels
 
 COLOURS = {
     "point sampling": "#1f6fb4",
@@ -47,13 +37,12 @@ COLOURS = {
 """Colours of families; others are dark grey."""
 MIN_ERROR = 1e-3
 """Smaller ΔE00 are not visible and are drawn here."""
-COSTS: dict[
-    str, tuple[Callable[[RepresentationResult], float], Callable[[float], str]]
-] = {
-    "CPU time of a product": (lambda result: max(result.ns.median, 1.0), format_time),
-    "floats stored of a surface": (lambda result: result.floats, "{:g}".format),
+COSTS: dict[Axis, Callable[[RepresentationResult], float]] = {
+    Axis("CPU time of a product", log=True, text=format_time): (
+        lambda result: max(result.ns.median, 1.0)
+    ),
+    Axis("floats stored of a surface", log=True): lambda result: result.floats,
 }
-"""Costs, and their texts, by title."""
 BOX_SIZE = (4.1, 0.155)
 """Inches of the width of box plots, and of the height of a box."""
 JUST_VISIBLE = 1.0
@@ -75,101 +64,89 @@ def names(comparison: Comparison) -> list[str]:
 
 
 def cost_panels(comparison: Comparison) -> list[Panel]:
-    """Return the panels of error over each cost, for each set of lights."""
+    """Return the panels of error over each cost, for each set of lights. The markers of
+    a family are joined by a line.
+    """
     rows = names(comparison)
-
-    def point(result: RepresentationResult, cost: float) -> Point:
-        name = result.name
-        error = max(result.statistics.q97_5, MIN_ERROR)
-        colour = COLOURS.get(result.family, OTHER)
-        return Point(rows.index(name), name, cost, error, colour, group=result.family)
-
-    panels = []
-    for (name, title), (axis, (cost, text)) in product(
-        comparison.sets.items(), COSTS.items()
-    ):
-        results = sorted(comparison.of(name), key=lambda result: result.floats)
-        points = [point(result, cost(result)) for result in results]
-        panels.append(Panel(f"{capitalise(title)}, ΔE00 of 97.5 %", axis, text, points))
+    panels: list[Panel] = []
+    for (name, title), (axis, cost) in product(comparison.sets.items(), COSTS.items()):
+        families: dict[str, list[Dot]] = {}
+        for result in sorted(comparison.of(name), key=lambda result: result.floats):
+            error = max(result.statistics.q97_5, MIN_ERROR)
+            colour = COLOURS.get(result.family, OTHER)
+            key = f"{len(panels)}-{rows.index(result.name)}"
+            dot = Dot(cost(result), error, result.name, colour, key=key)
+            families.setdefault(result.family, []).append(dot)
+        dots = []
+        joined = []
+        for family, members in families.items():
+            joined += _family_marks(family, members)
+            dots += members
+        heading = f"{capitalise(title)}, ΔE00 of 97.5 %"
+        panels.append(front_panel(heading, axis, dots, marks=joined))
     return panels
 
 
-def _families(comparison: Comparison) -> dict[str, str]:
-    return family_colours((result.family for result in comparison.results), COLOURS)
+def _family_marks(family: str, dots: Sequence[Dot]) -> list[Mark]:
+    """Join the dots of a family by a line, and name it in legends."""
+    colour = dots[0].colour
+    x = [dot.x for dot in dots]
+    y = [dot.y for dot in dots]
+    gid = f"whisker-{dots[0].key}"
+    joined = line(x, y, "", colour, gid=gid, linewidth=0.8, alpha=0.45, zorder=1)
+    return [joined, line([], [], family, colour, marker="o", linestyle="")]
 
 
 def write_costs(comparison: Comparison, path: StrPath, *, force: bool = False) -> None:
     """Write the panels of error over cost as PNG. Raises `OutputError`."""
-    legend = {name: {"color": colour} for name, colour in _families(comparison).items()}
-    write_panels(cost_panels(comparison), len(COSTS), path, legend, force=force)
+    figure = draw(cost_panels(comparison), len(COSTS), (4.8, 3.4), legend="below")
+    write_figure(figure, path, force=force)
+
+
+def box_panel(comparison: Comparison, name: str) -> Panel:
+    """Return box plots under a set of lights: quartiles, median, and 2.5 to 97.5 %."""
+    rows = []
+    for result in comparison.of(name):
+        values = result.statistics
+        low = max(values.q2_5, MIN_ERROR)
+        quantiles = (low, values.q25, values.median, values.q75, values.q97_5)
+        rows.append(Box(*quantiles, COLOURS.get(result.family, OTHER)))
+    marks = [boxes(rows), threshold(JUST_VISIBLE, axis="x")]
+    shown = Axis(names=[result.name for result in comparison.of(name)])
+    title = capitalise(comparison.sets[name])
+    return Panel(marks, title, Axis("ΔE00", log=True), shown)
+
+
+def _box_size(comparison: Comparison) -> tuple[float, float]:
+    width, height = BOX_SIZE
+    return width, height * len(names(comparison)) + 0.9
 
 
 def write_boxes(comparison: Comparison, path: StrPath, *, force: bool = False) -> None:
     """Write box plots of all sets of lights as PNG. Raises `OutputError`."""
-    with styled():
-        write_png(draw_boxes(comparison, list(comparison.sets)), path, force=force)
-
-
-def page_boxes(comparison: Comparison) -> list[tuple[str, Markup]]:
-    """Draw the box plots of each set of lights for a page."""
-    pictures = []
-    with styled():
-        for name, title in comparison.sets.items():
-            figure = draw_boxes(comparison, [name], titles=False)
-            picture = to_page_svg(figure, f"Box plots under {title}")
-            pictures.append((capitalise(title), picture))
-    return pictures
-
-
-def draw_boxes(
-    comparison: Comparison, sets: Sequence[str], *, titles: bool = True
-) -> Any:
-    """Return the matplotlib figure of sets of lights side by side: quartiles, median,
-    and 2.5 to 97.5 %.
-    """
-    width, height = BOX_SIZE
-    figure = new_figure(width * len(sets), height * len(names(comparison)) + 0.9)
-    cells = figure.subplots(1, len(sets), squeeze=False)[0]
-    for axes, name in zip(cells, sets, strict=True):
-        results = comparison.of(name)
-        for row, result in enumerate(results):
-            values = result.statistics
-            colour = COLOURS.get(result.family, OTHER)
-            low = max(values.q2_5, MIN_ERROR)
-            axes.hlines(row, low, values.q97_5, color=colour, linewidth=1)
-            width = values.q75 - values.q25
-            axes.barh(row, width, left=values.q25, height=0.62, color=colour)
-            ends = row - 0.31, row + 0.31
-            axes.vlines(values.median, *ends, color="white", linewidth=1.4)
-        axes.axvline(
-            JUST_VISIBLE, color=INK, linewidth=0.8, linestyle=(0, (3, 2)), zorder=0
-        )
-        axes.set(xscale="log", xlabel="ΔE00")
-        axes.set_yticks(range(len(results)), [result.name for result in results])
-        axes.margins(y=0.01)
-        axes.invert_yaxis()
-        axes.xaxis.set_major_formatter("{x:g}")
-        axes.minorticks_off()
-        style_axes(axes)
-        axes.yaxis.grid(visible=False)
-        if titles:
-            style_title(axes, capitalise(comparison.sets[name]))
-    return figure
+    panels = [box_panel(comparison, name) for name in comparison.sets]
+    figure = draw(panels, len(panels), _box_size(comparison))
+    write_figure(figure, path, force=force)
 
 
 def render_comparison(comparison: Comparison, tuned: Sequence[TunedFilter] = ()) -> str:
     """Render the page of a comparison."""
-    panels = enumerate(cost_panels(comparison))
+    pictures = []
+    for panel in cost_panels(comparison):
+        pictures.append((f"{panel.title}, over {panel.x.label}", page_svg(panel)))
+    distributions = []
+    for name in comparison.sets:
+        panel = box_panel(comparison, name)
+        picture = page_svg(panel, _box_size(comparison))
+        distributions.append((panel.title, picture))
+    families = [result.family for result in comparison.results]
     return render(
         "lab/comparison/templates/page.html.j2",
         title=TITLE,
         comparison=comparison,
-        pictures=[
-            (f"{panel.title}, over {panel.axis}", page_panel(panel, number))
-            for number, panel in panels
-        ],
-        boxes=page_boxes(comparison),
-        families=_families(comparison),
+        pictures=pictures,
+        boxes=distributions,
+        families=family_colours(families, COLOURS),
         tooltips=[_tooltip(name, comparison) for name in names(comparison)],
         sources=SOURCES,
         statistics=HEADINGS,

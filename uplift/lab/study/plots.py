@@ -10,8 +10,8 @@ import numpy as np
 from uplift.common.arrays import Array, StrPath
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
-from uplift.extras.pages.figure import ACCENT, BAND, HIGHLIGHT, write_png
-from uplift.extras.pages.marks import density, line, statistics_over, threshold
+from uplift.extras.pages.figure import ACCENT, BAND, HIGHLIGHT, write_figure
+from uplift.extras.pages.marks import density, line, threshold
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw, spectra_panel
 from uplift.extras.scene.representations import samples
 from uplift.lab.study.moments import TECHNIQUES, MomentsStudy, Technique
@@ -49,7 +49,7 @@ def plot_errors(
             y = Axis("ΔE76 under D65", log=True)
             panels.append(Panel(marks, f"{name}: {title}", x, y))
     figure = draw(panels, 2, legend="above", share="xy")
-    write_png(figure, path, force=force)
+    write_figure(figure, path, force=force)
 
 
 def _style(technique: Technique) -> dict[str, Any]:
@@ -85,7 +85,7 @@ def _plot_spectra(
 ) -> None:
     """Draw entries, two in a row, measured and reconstructed."""
     panels = [_spectra_panel(study, entry) for entry in entries]
-    write_png(draw(panels, 2), path, force=force)
+    write_figure(draw(panels, 2), path, force=force)
 
 
 def _spectra_panel(study: MomentsStudy, entry: int) -> Panel:
@@ -139,7 +139,7 @@ def plot_map(
         panels.append(Panel([failure], option, x, Axis(names=names), dots))
     title = "largest residual / threshold; 1 would be a failure"
     figure = draw(panels, len(PANELS), (1.8, 2.2), title=title)
-    write_png(figure, path, force=force)
+    write_figure(figure, path, force=force)
 
 
 def _value(run: Mapping[str, Any], option: str) -> Any:
@@ -157,8 +157,6 @@ def _shown(value: Any, option: str) -> str:
 
 MIN_DELTA_E = 1e-4
 """Smallest ΔE00 that is drawn."""
-BINS = 40
-"""Bins of distance for maximum and median."""
 
 
 def plot_locality(
@@ -179,20 +177,14 @@ def plot_locality(
     ]
     title = f"{pluralise(len(changes), 'entry')}, removed one at a time"
     figure = draw(panels, 2, title=title, share="y", legend="below")
-    write_png(figure, path, force=force)
+    write_figure(figure, path, force=force)
 
 
 def _locality_panel(distance: Array, delta_e: Array, unit: str) -> Panel:
     """Return the density of changes over the distance, with maximum and median."""
-    visible = delta_e > MIN_DELTA_E
-    farthest = distance[visible].max(initial=0.1)
-    top = (farthest, max(delta_e.max(), 2 * MOVED_DELTA_E))
-    edges = np.linspace(0, farthest, BINS + 1)
-    marks = [
-        density(distance[visible], delta_e[visible], (0, MIN_DELTA_E), top),
-        *statistics_over(distance, delta_e, edges),
-        threshold(MOVED_DELTA_E, f"ΔE00 {MOVED_DELTA_E:g}"),
-    ]
-    x = Axis(f"distance from the entry, {unit}", limits=(0, 1.05 * farthest))
+    highest = max(delta_e.max(), 2 * MOVED_DELTA_E)
+    marks = density(distance, delta_e, MIN_DELTA_E, highest)
+    marks.append(threshold(MOVED_DELTA_E, f"ΔE00 {MOVED_DELTA_E:g}"))
+    x = Axis(f"distance from the entry, {unit}", limits=(0, None))
     y = Axis(f"ΔE00 change of a node, {NARROW_BAND_LIGHT}", log=True)
     return Panel(marks, "", x, y)

@@ -1,32 +1,27 @@
 """Figure of a choice of wavelengths: each light with its powers, and the weights."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from uplift.colorimetry.gamut import SRGB, map_to_gamut
 from uplift.common.arrays import Array, StrPath
 from uplift.common.text import pluralise
-from uplift.extras.colour.srgb import encode
-from uplift.extras.pages.figure import (
-    GREY,
-    INK,
-    new_figure,
-    style_axes,
-    styled,
-    write_figure,
-)
+from uplift.extras.colour.srgb import hex_codes
+from uplift.extras.pages.figure import GREY, write_figure
+from uplift.extras.pages.marks import line, whiskers
+from uplift.extras.pages.panels import Axis, Dot, Panel, draw
 from uplift.extras.scene.wavelengths import Choice
 from uplift.extras.scene.wavelengths.sampling import (
     RenderSetup,
+    Sampling,
     interp_curves,
     statistics,
 )
 
-WIDTH = 7.2
-"""Width of the figure in inches."""
-PANEL_HEIGHT = 1.55
-"""Height of a panel in inches."""
-MARGIN_HEIGHT = 0.9
-"""Height above and below all panels in inches."""
+SIZE = (7.2, 1.7)
+"""Inches of a panel."""
+_X = Axis("wavelength / nm")
 CHANNEL_COLOURS = {"X": "#c0392b", "Y": "#2e8b57", "Z": "#2f5fb3"}
 
 
@@ -46,51 +41,57 @@ def plot_choice(
         """
         return np.interp(nm, chosen, values).sum()
 
-    with styled():
-        count = len(sampling.lights) + 1
-        figure = new_figure(WIDTH, MARGIN_HEIGHT + PANEL_HEIGHT * count)
-        *panels, last = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
-        tints = _display_colours(setup, chosen)
-        for axes, name, power, powers in zip(
-            panels, sampling.lights, setup.powers, sampling.powers, strict=True
-        ):
-            curve = power * (area(powers) / power.sum())
-            axes.plot(nm, curve, color=GREY, linewidth=0.7)
-            axes.vlines(chosen, 0, powers, color=INK, linewidth=1)
-            axes.scatter(
-                chosen, powers, s=26, c=tints, edgecolors=INK, zorder=3, clip_on=False
-            )
-            axes.set(
-                ylim=(0, 1.3 * max(powers.max(), np.quantile(curve, 0.97))),
-                ylabel="power",
-            )
-            axes.set_title(name, loc="left", fontsize=9, color=INK)
-        cmfs = setup.cmfs * (area(sampling.to_xyz[:, 1]) / setup.cmfs[:, 1].sum())
-        for cmf, weights, (name, colour) in zip(
-            cmfs.T, sampling.to_xyz.T, CHANNEL_COLOURS.items(), strict=True
-        ):
-            last.plot(nm, cmf, color=colour, linewidth=0.7, alpha=0.5)
-            last.plot(
-                chosen, weights, "o", color=colour, markersize=4, label=f"to {name}"
-            )
-        last.set(xlabel="wavelength / nm", ylabel="weight", xlim=(nm[0], nm[-1]))
-        last.set_title(
-            "weights and colour-matching functions", loc="left", fontsize=9, color=INK
-        )
-        last.legend(frameon=False, ncols=3, loc="upper right")
-        for axes in (*panels, last):
-            style_axes(axes)
-        figure.align_ylabels()
-        mean, p95, largest = statistics(choice.errors).values()
-        measures = f"mean {mean:.2f}, 95th percentile {p95:.2f}, max {largest:.2f}"
-        chosen_text = pluralise(len(sampling), "wavelength")
-        title = f"{chosen_text}, {choice.method}: ΔE00 {measures}"
-        figure.suptitle(title, x=0.02, ha="left", fontsize=10, color=INK)
-        write_figure(figure, path, force=force)
+    panels = []
+    tints = _display_colours(setup, chosen)
+    for name, power, powers in zip(
+        sampling.lights, setup.powers, sampling.powers, strict=True
+    ):
+        curve = power * (area(powers) / power.sum())
+        marks = [
+            line(nm, curve, "", GREY, linewidth=0.7),
+            whiskers(chosen, powers, np.zeros_like(powers), powers),
+        ]
+        dots = [
+            Dot(x, y, colour=tint)
+            for x, y, tint in zip(chosen, powers, tints, strict=True)
+        ]
+        highest = 1.3 * max(powers.max(), np.quantile(curve, 0.97))
+        panels.append(Panel(marks, name, _X, Axis("power", limits=(0, highest)), dots))
+    panels.append(_weights_panel(setup, sampling, area))
+    mean, p95, largest = statistics(choice.errors).values()
+    measures = f"mean {mean:.2f}, 95th percentile {p95:.2f}, max {largest:.2f}"
+    chosen_text = pluralise(len(sampling), "wavelength")
+    title = f"{chosen_text}, {choice.method}: ΔE00 {measures}"
+    write_figure(draw(panels, size=SIZE, title=title, share="x"), path, force=force)
 
 
-def _display_colours(setup: RenderSetup, wavelengths: Array) -> Array:
-    """sRGB (n, 3) of monochromatic light, mapped to the gamut."""
+def _weights_panel(
+    setup: RenderSetup, sampling: Sampling, area: Callable[[Array], Array]
+) -> Panel:
+    """Return the weights of the samples, and the colour-matching functions."""
+    cmfs = setup.cmfs * (area(sampling.to_xyz[:, 1]) / setup.cmfs[:, 1].sum())
+    marks = []
+    for cmf, weights, (name, colour) in zip(
+        cmfs.T, sampling.to_xyz.T, CHANNEL_COLOURS.items(), strict=True
+    ):
+        marks += [
+            line(setup.wavelengths, cmf, "", colour, linewidth=0.7, alpha=0.5),
+            line(
+                sampling.wavelengths,
+                weights,
+                f"to {name}",
+                colour,
+                marker="o",
+                markersize=4,
+                linestyle="",
+            ),
+        ]
+    title = "weights and colour-matching functions"
+    return Panel(marks, title, _X, Axis("weight"), legend="upper right")
+
+
+def _display_colours(setup: RenderSetup, wavelengths: Array) -> list[str]:
+    """Codes ``#rrggbb`` (n,) of monochromatic light, mapped to the gamut of sRGB."""
     xyz = interp_curves(wavelengths, setup.wavelengths, setup.cmfs.T).T
     rgb = map_to_gamut(xyz @ np.linalg.inv(SRGB.rgb_to_xyz).T, SRGB, "scale").rgb + 1e-3
-    return encode(rgb / rgb.max(axis=1, keepdims=True))
+    return hex_codes(rgb / rgb.max(axis=1, keepdims=True))
