@@ -61,6 +61,7 @@ CANVAS = """(async () => {
 """Read from a copy: the page's own canvas is drawn to and never read."""
 SHIFT = 8
 """Modifier of keys."""
+COMPLAINTS = ("error", "warning", "assert")
 PATIENCE = 60.0
 """Seconds that an answer may take."""
 
@@ -190,16 +191,11 @@ class Browser:
         return dict(json.loads(message))
 
     def _note(self, message: Answer) -> None:
-        complaints = ("error", "warning", "assert")
-        match message:
-            case {"method": "Runtime.exceptionThrown", "params": params}:
-                self.errors.append(json.dumps(params["exceptionDetails"]))
-            case {"method": "Runtime.consoleAPICalled", "params": params}:
-                if params["type"] in complaints:
-                    self.errors.append(json.dumps(params["args"]))
-            case {"method": "Log.entryAdded", "params": {"entry": entry}}:
-                if entry["level"] in complaints:
-                    self.errors.append(entry["text"])
+        """Keep complaints of the console and the log, and exceptions."""
+        params = message.get("params", {})
+        level = params.get("entry", params).get("level") or params.get("type")
+        if level in COMPLAINTS or "exceptionDetails" in params:
+            self.errors.append(json.dumps(params))
 
 
 @contextlib.contextmanager

@@ -4,21 +4,20 @@ picture.
 
 import warnings
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
-from pathlib import Path
 
 import colour
 import numpy as np
 
-from benchmarks import DOCS, Row, record
-from uplift.colorimetry import delta_e_2000, lab
+from benchmarks import DOCS, Row, summary
+from uplift.colorimetry import delta_e_2000, in_unit_cube, lab
 from uplift.colorimetry.gamut import METHODS, SRGB, Primaries, conversion, map_to_gamut
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import encode
-from uplift.extras.pages.figure import new_figure, write_png
-from uplift.lab.timing import TimingStats, time_laps
+from uplift.extras.pages.figure import write_figure
+from uplift.extras.pages.marks import picture
+from uplift.extras.pages.panels import Panel, draw
 
 DARKEST = 2
 BRIGHTEST = 9
@@ -26,7 +25,8 @@ BRIGHTEST = 9
 STEP = 0.25
 """Step of chroma along a line of constant hue and value."""
 WHITE = SRGB.rgb_to_xyz.sum(axis=1)
-Lines = dict[tuple[str, float], Array]
+REC_2020 = Primaries((0.708, 0.292), (0.170, 0.797), (0.131, 0.046), (0.3127, 0.3290))
+MAPPINGS = tuple(method for method in METHODS if method != "error")
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,28 +38,35 @@ class Chips:
 
     rgb: Array
     hues: tuple[str, ...]
-    lines: Lines
+    lines: dict[tuple[str, int], Array]
 
-    def hue_shift(self, mapped: Array) -> Array:
-        """Return ΔE00 (n,) between mapped linear sRGB (n, 3) and the nearest colour of
-        the hue at equal luminance.
+    def line(self, hue: str, value: float) -> Array:
+        """Interpolate between the lines of the values below and above, at equal
+        chroma.
         """
-        light = (mapped @ SRGB.rgb_to_xyz.T)[:, 1]
-        values = np.clip(colour.notation.munsell_value_ASTMD1535(100 * light), 1, 9)
-        lines = map(self._line, self.hues, values)
-        differences = map(delta_e_2000, map(_lab_of, lines, light), _lab(mapped))
-        return np.array([difference.min() for difference in differences])
-
-    def _line(self, hue: str, value: float) -> Array:
-        """Interpolate between the lines of the values below and above."""
         low = min(int(value), 8)
         below = self.lines[hue, low]
         above = self.lines[hue, low + 1]
-        count = min(len(below), len(above))  # at equal chroma
+        count = min(len(below), len(above))
         return below[:count] + (value - low) * (above[:count] - below[:count])
 
+    def hue_shifts(self, mapped: Array) -> Array:
+        """Return ΔE00 (n,) between mapped linear sRGB (n, 3) and the nearest colour of
+        the hue at equal luminance.
+        """
+        luminance = (mapped @ SRGB.rgb_to_xyz.T)[:, 1]
+        values = colour.notation.munsell_value_ASTMD1535(100 * luminance)
+        shifts = []
+        for hue, value, light, found in zip(
+            self.hues, np.clip(values, 1, 9), luminance, rgb_to_lab(mapped), strict=True
+        ):
+            x, y = self.line(hue, value).T
+            xyz = np.stack([x, y, 1 - x - y], axis=1) * (light / y)[:, None]
+            shifts.append(delta_e_2000(lab(xyz, WHITE), found).min())
+        return np.array(shifts)
 
-def chips() -> Chips:
+
+def read_chips() -> Chips:
     """Return the chips outside sRGB; illuminant C is adapted to the white of the screen
     (Bradford).
     """
@@ -67,110 +74,67 @@ def chips() -> Chips:
     under_c = Primaries(SRGB.red, SRGB.green, SRGB.blue, c)
     from_xyz = conversion(under_c, SRGB) @ np.linalg.inv(under_c.rgb_to_xyz)
     real = {name for name, _ in colour.MUNSELL_COLOURS["Munsell Colours Real"]}
-    # Lines extend beyond the real chips.
-    names, xyy = zip(*colour.MUNSELL_COLOURS["Munsell Colours All"], strict=True)
-    rgb = colour.xyY_to_XYZ(np.array(xyy) / [1, 1, 100]) @ from_xyz.T
-    is_outside = _is_outside(rgb)
-    outside = [
-        row
-        for row, name in enumerate(names)
-        if name in real and DARKEST <= name[1] <= BRIGHTEST and is_outside[row]
-    ]
-    hues = tuple(names[row][0] for row in outside)
-    return Chips(rgb[outside], hues, _lines(names, rgb @ SRGB.rgb_to_xyz.T))
-
-
-def _is_outside(rgb: Array) -> Mask:
-    return ((rgb < 0) | (rgb > 1)).any(axis=1)
-
-
-def _lines(names: Iterable[tuple[str, float, float]], xyz: Array) -> Lines:
+    hues = []
+    outside = []
     points = defaultdict(list)
-    for (hue, value, chroma), row in zip(names, xyz, strict=True):
-        points[hue, value].append((chroma, *(row[:2] / row.sum())))
-    lines = {}
-    for key, line in points.items():
-        chroma, *xy = np.array([(0.0, *SRGB.white), *sorted(line)]).T
-        at = np.arange(0, chroma[-1] + STEP / 2, STEP)
-        lines[key] = np.stack([np.interp(at, chroma, axis) for axis in xy], axis=1)
-    return lines
+    # Lines extend beyond the real chips.
+    for name, (x, y, luminance) in colour.MUNSELL_COLOURS["Munsell Colours All"]:
+        hue, value, chroma = name
+        rgb = from_xyz @ colour.xyY_to_XYZ([x, y, luminance / 100])
+        xyz = SRGB.rgb_to_xyz @ rgb
+        points[hue, value].append((chroma, *(xyz[:2] / xyz.sum())))
+        is_known = name in real and DARKEST <= value <= BRIGHTEST
+        if is_known and not in_unit_cube(rgb):
+            hues.append(hue)
+            outside.append(rgb)
+    lines = {key: resample_line(line) for key, line in points.items()}
+    return Chips(np.array(outside), tuple(hues), lines)
 
 
-def _lab_of(xy: Array, light: float) -> Array:
-    x, y = xy.T
-    return lab(np.stack([x, y, 1 - x - y], axis=1) * (light / y)[:, None], WHITE)
+def resample_line(points: list[tuple[float, float, float]]) -> Array:
+    """Return x, y (k, 2) at even steps of chroma, from points of chroma, x and y."""
+    chroma, *xy = np.array([(0.0, *SRGB.white), *sorted(points)]).T
+    at = np.arange(0, chroma[-1] + STEP / 2, STEP)
+    return np.stack([np.interp(at, chroma, axis) for axis in xy], axis=1)
 
 
-def _lab(rgb: Array) -> Array:
+def rgb_to_lab(rgb: Array) -> Array:
+    """Return CIE L*a*b* of linear sRGB (n, 3)."""
     return lab(rgb @ SRGB.rgb_to_xyz.T, WHITE)
 
 
-REC_2020 = Primaries((0.708, 0.292), (0.170, 0.797), (0.131, 0.046), (0.3127, 0.3290))
-MAPPINGS = tuple(method for method in METHODS if method != "error")
+def shifts() -> Iterator[Row]:
+    """Yield the hue shift, |ΔL*| and ΔE00 of mapped chips."""
+    # colour-science warns about undefined values in some spaces.
+    warnings.simplefilter("ignore")
+    chips = read_chips()
+    original = rgb_to_lab(chips.rgb)
+    for method in MAPPINGS:
+        mapped = map_to_gamut(chips.rgb, SRGB, method).rgb
+        changed = rgb_to_lab(mapped)
+        measures = {
+            "hue": chips.hue_shifts(mapped),
+            "lightness": np.abs(original[:, 0] - changed[:, 0]),
+            "ΔE00": delta_e_2000(original, changed),
+        }
+        for measure, values in measures.items():
+            yield {"method": method, "measure": measure, **summary(values)}
 
 
-def draw(path: Path) -> None:
-    """Write the hues of Rec. 2020 as each method maps them, from dark to three times
+def draw_hues() -> None:
+    """Draw the hues of Rec. 2020 as each method maps them, from dark to three times
     white.
     """
-    figure = new_figure(15, 2.25)
     hue = np.linspace(0, 6, 360)
     pure = np.clip(np.abs((hue[:, None] + [3, 1, 5]) % 6 - 3) - 1, 0, 1)
     brightness = np.geomspace(3, 0.02, 180)[:, None, None]
     image = (brightness * pure) @ conversion(REC_2020, SRGB).T
-    for axes, method in zip(figure.subplots(1, len(MAPPINGS)), MAPPINGS, strict=True):
-        mapped = map_to_gamut(image, SRGB, method).rgb
-        axes.imshow(encode(mapped), interpolation="antialiased")
-        axes.set_title(method, fontsize=17, pad=8)
-        axes.set_axis_off()
-    write_png(figure, path, force=True)
+    panels = []
+    for method in MAPPINGS:
+        mapped = encode(map_to_gamut(image, SRGB, method).rgb)
+        panels.append(Panel([picture(mapped, interpolation="antialiased")], method))
+    figure = draw(panels, len(panels), 2.4)
+    write_figure(figure, DOCS / "display" / "ways.png", force=True)
 
 
-TIMED = 1 << 16
-"""Colours, all of them outside."""
-LAP = 0.02
-RUNS = 7
-
-
-def main() -> None:
-    """Draw, measure and store."""
-    # colour-science warns about undefined values in some spaces.
-    warnings.simplefilter("ignore")
-    draw(DOCS / "display" / "ways.png")
-    outside = chips()
-    record(
-        "display",
-        chips=len(outside.hues),
-        methods=[
-            {"name": name, **errors(outside, name), "ns": cost(name)}
-            for name in MAPPINGS
-        ],
-    )
-
-
-def errors(outside: Chips, method: str) -> Row:
-    """Return statistics of the hue shift, |ΔL*| and ΔE00 of mapped colours."""
-    mapped = map_to_gamut(outside.rgb, SRGB, method).rgb
-    original = _lab(outside.rgb)
-    changed = _lab(mapped)
-    values = {
-        "hue": outside.hue_shift(mapped),
-        "lightness": np.abs(original[:, 0] - changed[:, 0]),
-        "delta_e": delta_e_2000(original, changed),
-    }
-    return {
-        name: {
-            "mean": shifts.mean(),
-            "p95": np.percentile(shifts, 95),
-            "largest": shifts.max(),
-        }
-        for name, shifts in values.items()
-    }
-
-
-def cost(method: str) -> TimingStats:
-    """Return the CPU time per mapped colour in nanoseconds."""
-    rgb = np.random.default_rng(0).normal(0.5, 1, (3 * TIMED, 3))
-    rgb = rgb[_is_outside(rgb)][:TIMED]
-    call = partial(map_to_gamut, rgb, SRGB, method)
-    return time_laps(call, LAP, RUNS).scaled(1e9 / TIMED)
+QUESTIONS = {"shifts": shifts, "picture": draw_hues}

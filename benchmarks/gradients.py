@@ -2,8 +2,8 @@
 docs/guides/gradients.md.
 """
 
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Iterator
+from functools import cache, partial
 from typing import Any
 
 import jax
@@ -11,20 +11,16 @@ import jax.numpy as jnp
 import numpy as np
 
 import uplift
-from benchmarks import DOCS, Row, record
-from benchmarks.checker import Layout, chart, show_srgb
+from benchmarks import DOCS, Row
+from benchmarks.checker import BACKGROUND, Layout, chart, photo
 from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.common.compilation import compiled
-from uplift.extras.pages.figure import (
-    INK,
-    new_figure,
-    style_axes,
-    styled,
-    write_png,
-)
+from uplift.extras.pages.figure import write_figure
+from uplift.extras.pages.marks import line
+from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.photographs import photograph
-from uplift.lab.timing import time_calls
+from uplift.lab.timing import time_call
 from uplift.lookup import Cube, bulk
 from uplift.lookup.interpolate import is_inexact
 from uplift.lookup.traceable import TraceableCube, evaluate, traceable
@@ -38,16 +34,25 @@ STEPS = 50
 STEP = 0.15
 SHOWN = (0, 2, 5, 10)
 """Steps whose colours are drawn."""
-COLOURS = 1_000_000
-"""Colours of the rates."""
-WIDE_COLOURS = 20_000
-"""Colours of those of a wide-gamut cube, which take longer."""
+PACKAGED = "packaged"
+MACBETH = "macbeth, 32³"
+WIDE = "packaged ACEScg"
+RATES = {MACBETH: (1_000_000, (3, 16, 31, 81)), WIDE: (20_000, (3, 81))}
+"""Colours and wavelengths of the rates. Those of a wide-gamut cube take longer."""
 RUNS = 5
 CHECKED = 100_000
 """Colours of the precision."""
-WIDTHS = (3, 16, 31, 81)
-"""Wavelengths of the rates."""
 LAYOUT = Layout(32, 4)
+
+
+@cache
+def cubes() -> dict[str, Cube]:
+    """Return the cubes of precision and rates."""
+    return {
+        PACKAGED: uplift.load(),
+        MACBETH: uplift.build("macbeth", dim=32),
+        WIDE: uplift.load("acescg"),
+    }
 
 
 def loss(
@@ -69,106 +74,99 @@ def descend(traced: TraceableCube, matrix: Any, observed: Any) -> jax.Array:
     return jnp.concatenate([path, last[None]])
 
 
-def recover(cube: Cube) -> Row:
+def example() -> Row:
     """Recover the RGB under daylight of patches from their RGB under two lamps."""
+    cube = uplift.build(dim=DIM, leave_out=[FAMILY])
     sensor = cube.data.sensor
     painted = chart()
-    further = [photograph(sensor, name) for name in LIGHTS]
-    matrix = np.concatenate([taken.matrix for taken in further])
-    observed = painted.measured @ matrix.T
-    traced = traceable(cube)
+    matrices = [photograph(sensor, name).matrix for name in LIGHTS]
+    observed = [painted.measured @ matrix.T for matrix in matrices]
     of_patches = jax.vmap(descend, (None, None, 0))
-    paths = np.asarray(of_patches(traced, jnp.float32(matrix), jnp.float32(observed)))
-    inside = ~painted.outside
+    paths = np.asarray(
+        of_patches(
+            traceable(cube),
+            jnp.float32(np.concatenate(matrices)),
+            jnp.float32(np.concatenate(observed, axis=1)),
+        )
+    )
 
     def errors(rgb: Array) -> Array:
-        return delta_e_rgb(sensor, np.clip(rgb, 0, 1), painted.painted)[inside]
+        delta_e = delta_e_rgb(sensor, np.clip(rgb, 0, 1), painted.painted)
+        return delta_e[~painted.outside]
 
-    by_step = [errors(paths[:, step]).mean() for step in range(STEPS + 1)]
-    alone = {
-        name: errors(observed[:, 3 * number : 3 * number + 3]).mean()
-        for number, name in enumerate(LIGHTS)
-    }
-    draw(paths, observed, painted.painted, np.array(by_step))
+    by_step = np.array([errors(paths[:, step]).mean() for step in range(STEPS + 1)])
+    draw_descent(paths, observed, painted.painted, by_step)
+    by_light = zip(LIGHTS, map(errors, observed), strict=True)
     return {
-        "lights": LIGHTS,
-        "patches": int(inside.sum()),
-        "steps": STEPS,
-        "step": STEP,
-        "by_light": alone,
+        "patches": int((~painted.outside).sum()),
+        "by_light": {name: delta_e.mean() for name, delta_e in by_light},
         "mean": by_step[-1],
         "largest": errors(paths[:, -1]).max(),
-        "steps_to_end": int(np.argmax(np.array(by_step) < 1.05 * by_step[-1])),
+        "steps_to_end": int(np.argmax(by_step < 1.05 * by_step[-1])),
     }
 
 
-def draw(paths: Array, observed: Array, truth: Array, errors: Array) -> None:
+def draw_descent(
+    paths: Array, observed: list[Array], truth: Array, errors: Array
+) -> None:
     """Draw the chart under the lamps, in steps of the descent, and its errors."""
+    names = [f"under {name}" for name in LIGHTS]
     pictures = {
-        "under A": observed[:, :3],
-        "under FL11": observed[:, 3:],
-        **{f"{step} steps": paths[:, step] for step in SHOWN},
-        f"{STEPS} steps": paths[:, -1],
+        **dict(zip(names, observed, strict=True)),
+        **{f"{step} steps": paths[:, step] for step in (*SHOWN, STEPS)},
         "measured, D65": truth,
     }
-    with styled():
-        figure = new_figure(9.6, 2.9)
-        grid = figure.add_gridspec(2, 6)
-        for number, (title, rgb) in enumerate(pictures.items()):
-            axes = figure.add_subplot(grid[number // 4, number % 4])
-            image = LAYOUT.paint(np.clip(rgb, 0, 1), np.full(3, 0.03))
-            show_srgb(axes, image)
-            axes.set_title(title, fontsize=9, color=INK)
-        axes = figure.add_subplot(grid[:, 4:])
-        axes.plot(errors, color=INK)
-        axes.set(xlabel="steps", ylabel="mean ΔE00 to the measured colours")
-        axes.set_yscale("log")
-        axes.set_xlim(0, STEPS)
-        style_axes(axes)
-        figure.set_dpi(150)
-        write_png(figure, DOCS / "gradients" / "patches.png", force=True)
+    panels = []
+    for title, rgb in pictures.items():
+        image = LAYOUT.paint(np.clip(rgb, 0, 1), np.full(3, BACKGROUND))
+        panels.append(Panel([photo(image)], title))
+    curve = line(np.arange(STEPS + 1), errors)
+    steps = Axis("steps")
+    panels.append(Panel([curve], "mean ΔE00 to the truth", steps, Axis(log=True)))
+    figure = draw(panels, 3, 2.4)
+    write_figure(figure, DOCS / "gradients" / "patches.png", force=True)
 
 
-def colours(cube: Cube, count: int) -> Array:
+def colours(cube: Cube) -> Array:
     """Colours anywhere, and as many in entry boxes."""
     random = np.random.default_rng(1)
-    anywhere = random.random((count, 3))
+    anywhere = random.random((CHECKED, 3))
     low, high = cube.data.entry_boxes.faces
     if not len(low):
         return anywhere
-    entry = random.integers(0, len(low), count)
-    inside = low[entry] + random.random((count, 3)) * (high - low)[entry]
+    entry = random.integers(0, len(low), CHECKED)
+    inside = low[entry] + random.random((CHECKED, 3)) * (high - low)[entry]
     return np.concatenate([anywhere, np.clip(inside, 0, 1)])
 
 
-def precision(name: str, cube: Cube) -> Iterator[Row]:
+def precision() -> Iterator[Row]:
     """Yield largest differences from `Cube.reflectance` of single and double precision:
     of mixtures, and of spectra that are moved to their colours.
     """
-    rgb = colours(cube, CHECKED)
-    inexact = is_inexact(cube.data, rgb)
-    realisable = np.ones(len(rgb), dtype=bool)
-    realisable[inexact] = cube.data.solid.contains(rgb[inexact])
-    groups = {
-        "mixed": ~inexact,
-        "moved": inexact & realisable,
-        "unrealisable": inexact & ~realisable,
-    }
-    expected = cube.reflectance(rgb)
-    for kind in (np.float32, np.float64):
-        with jax.enable_x64(kind == np.float64):
-            found = np.asarray(evaluate(traceable(cube, dtype=kind), rgb))
-        off = np.abs(found - expected).max(axis=1)
-        for group, rows in groups.items():
-            if rows.any():
-                yield {
-                    "cube": name,
-                    "colours": group,
-                    "dtype": np.dtype(kind).name,
-                    "percent": 100 * rows.mean(),
-                    "largest": off[rows].max(),
-                    "percentile": np.percentile(off[rows], 99),
-                }
+    for name, cube in cubes().items():
+        rgb = colours(cube)
+        inexact = is_inexact(cube.data, rgb)
+        realisable = cube.data.solid.contains(rgb)
+        groups = {
+            "mixed": ~inexact,
+            "moved": inexact & realisable,
+            "unrealisable": inexact & ~realisable,
+        }
+        expected = cube.reflectance(rgb)
+        for kind in ("float32", "float64"):
+            with jax.enable_x64(kind == "float64"):
+                found = np.asarray(evaluate(traceable(cube, dtype=kind), rgb))
+            off = np.abs(found - expected).max(axis=1)
+            for group, rows in groups.items():
+                if rows.any():
+                    yield {
+                        "cube": name,
+                        "colours": group,
+                        "dtype": kind,
+                        "percent": 100 * rows.mean(),
+                        "largest": off[rows].max(),
+                        "percentile": np.percentile(off[rows], 99),
+                    }
 
 
 def mean(rgb: jax.Array, traced: TraceableCube) -> jax.Array:
@@ -176,48 +174,33 @@ def mean(rgb: jax.Array, traced: TraceableCube) -> jax.Array:
     return evaluate(traced, rgb).mean()
 
 
-def rates(name: str, cube: Cube, widths: tuple[int, ...], count: int) -> Iterator[Row]:
+def rates() -> Iterator[Row]:
     """Yield seconds per million colours in float32, compiled before."""
-    rgb = jnp.asarray(np.random.default_rng(2).random((count, 3)), jnp.float32)
-    images = np.asarray(rgb)
-    for width in widths:
-        at = cube.wavelengths
-        if width < len(at):
-            at = np.linspace(400, 700, width)
-        traced = traceable(cube, at)
-        sample = bulk.spectra(cube, at)
-        gradient = compiled(jax.grad(mean))
-        calls: dict[str, Callable[[], Any]] = {
-            "evaluate": partial(evaluate, traced, rgb),
-            "gradient": partial(gradient, rgb, traced),
-            "bulk": partial(sample, images),
-        }
-        row: Row = {"cube": name, "wavelengths": width}
-        for method, call in calls.items():
-            jax.block_until_ready(call())
-            wall, _ = time_calls(lambda call=call: jax.block_until_ready(call()), RUNS)
-            row[method] = wall.scaled(COLOURS / count)
-        yield row
+    gradient = compiled(jax.grad(mean))
+    for name, (count, widths) in RATES.items():
+        cube = cubes()[name]
+        images = np.random.default_rng(2).random((count, 3)).astype(np.float32)
+        rgb = jnp.asarray(images)
+        for width in widths:
+            whole = width == len(cube.wavelengths)
+            at = cube.wavelengths if whole else np.linspace(400, 700, width)
+            traced = traceable(cube, at)
+            calls = {
+                "evaluate": partial(evaluate, traced, rgb),
+                "gradient": partial(gradient, rgb, traced),
+                "bulk": partial(bulk.spectra(cube, at), images),
+            }
+            row: Row = {"cube": name, "wavelengths": width}
+            for method, call in calls.items():
+                finished = partial(finish, call)
+                finished()  # compiles
+                row[method] = time_call(finished, RUNS).wall.scaled(1e6 / count)
+            yield row
 
 
-def main() -> None:
-    """Recover, measure and store."""
-    cube = uplift.load()
-    macbeth = uplift.build("macbeth", dim=32)
-    wide = uplift.load("acescg")
-    cubes = {"packaged": cube, "macbeth, 32³": macbeth, "packaged ACEScg": wide}
-    rows = []
-    for name, checked in cubes.items():
-        rows += precision(name, checked)
-    record(
-        "gradients",
-        example=recover(uplift.build(dim=DIM, leave_out=[FAMILY])),
-        colours=COLOURS,
-        checked=CHECKED,
-        device=jax.devices()[0].platform,
-        precision=rows,
-        rates=[
-            *rates("macbeth, 32³", macbeth, WIDTHS, COLOURS),
-            *rates("packaged ACEScg", wide, WIDTHS[::3], WIDE_COLOURS),
-        ],
-    )
+def finish(call: Any) -> None:
+    """Call, and wait for the result."""
+    jax.block_until_ready(call())
+
+
+QUESTIONS = {"example": example, "precision": precision, "rates": rates}

@@ -6,25 +6,22 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks import CUBES, DOCS, MACBETH, Row
+from benchmarks import CUBES, DOCS, MACBETH, Row, mitsuba_scenes
 from benchmarks.browser import SETTLE, SHIFT, browser
-from benchmarks.checker import constant_light, start_mitsuba, xyz_film
+from benchmarks.checker import photo
 from benchmarks.materials import LARGE, SPLITS, other_halves
 from uplift.atlas import read_atlas
 from uplift.colorimetry import Light, delta_e_rgb, lab
 from uplift.colorimetry.likely_errors import mahalanobis
 from uplift.colorimetry.observer import display_sensors, light, sensor
 from uplift.common.arrays import Array
-from uplift.extras.colour.srgb import encode
 from uplift.extras.looks.lab_errors import lab_errors
 from uplift.extras.looks.metamer_bounds import Bounds, bounds
 from uplift.extras.pages.figure import write_figure
-from uplift.extras.pages.marks import picture
 from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.pages.plots import plot_bounds
 from uplift.extras.report.look_page import page
@@ -187,7 +184,7 @@ def scene() -> list[Row]:
     """Render balls of one RGB and two cubes under daylight and the light of a look;
     return how far they differ.
     """
-    start_mitsuba()
+    mitsuba_scenes.start_mitsuba()
     (look, *_) = look_cubes()[1].data.provenance["looks"]
     middle = slice(PIXELS // 2 - 12, PIXELS // 2 + 12)
     rows = []
@@ -198,42 +195,40 @@ def scene() -> list[Row]:
             cube.save(path)
         for lamp in ("D65", look["lights"][0]["light"]):
             here = sensor(illuminant=lamp)
-            image = balls(paths, look["rgb"], lamp) @ here.xyz_to_rgb.T
+            described = balls(paths, look["rgb"], lamp)
+            image = mitsuba_scenes.render(described, SPP) @ here.xyz_to_rgb.T
             left, right = (
                 half[middle, middle].mean(axis=(0, 1))
                 for half in np.split(image, 2, axis=1)
             )
             delta_e = delta_e_rgb(here, left, right)
             rows.append({"look": look["name"], "light": lamp, "delta_e": delta_e})
-            panels.append(Panel([picture(encode(image))], y=Axis(lamp)))
+            panels.append(Panel([photo(image)], y=Axis(lamp)))
     path = DOCS / "look-cubes" / "two-cubes.png"
     write_figure(draw(panels, 1, 4.5), path, force=True)
     return rows
 
 
-def balls(cubes: Sequence[str], rgb: Sequence[float], lamp: str) -> Array:
-    """Return XYZ (height, width, 3) of two balls on the ground, left and right."""
+def balls(cubes: Sequence[str], rgb: Sequence[float], lamp: str) -> Row:
+    """Describe two balls on the ground, left and right."""
     import mitsuba as mi
 
     transform = mi.ScalarTransform4f
 
-    def diffuse(**reflectance: Any) -> Row:
-        return {"type": "diffuse", "reflectance": reflectance}
-
     def ball(cube: str, x: float) -> Row:
-        paint = diffuse(type="uplift", cube=cube, rgb=list(rgb))
-        return {"type": "sphere", "center": [x, 1, 0], "radius": 1.0, "bsdf": paint}
+        paint = {"type": "uplift", "cube": cube, "rgb": list(rgb)}
+        bsdf = mitsuba_scenes.diffuse(paint)
+        return {"type": "sphere", "center": [x, 1, 0], "radius": 1.0, "bsdf": bsdf}
 
     ground = transform().rotate([1, 0, 0], -90).scale([30, 30, 1])
     view = transform().look_at(origin=[0, 1.2, 12], target=[0, 0.55, 0], up=[0, 1, 0])
-    content = {
-        "type": "scene",
+    return {
         "integrator": {"type": "path", "max_depth": 4},
-        "sky": constant_light(lamp),
+        "sky": mitsuba_scenes.sky(lamp),
         "ground": {
             "type": "rectangle",
             "to_world": ground,
-            "bsdf": diffuse(type="uniform", value=0.5),
+            "bsdf": mitsuba_scenes.diffuse({"type": "uniform", "value": 0.5}),
         },
         "left": ball(cubes[0], -1.35),
         "right": ball(cubes[1], 1.35),
@@ -242,10 +237,9 @@ def balls(cubes: Sequence[str], rgb: Sequence[float], lamp: str) -> Array:
             "fov": 28,
             "fov_axis": "x",
             "to_world": view,
-            "film": xyz_film(2 * PIXELS, PIXELS),
+            "film": mitsuba_scenes.film(2 * PIXELS, PIXELS),
         },
     }
-    return np.array(mi.render(mi.load_dict(content), spp=SPP, seed=0), dtype=float)
 
 
 QUESTIONS = {

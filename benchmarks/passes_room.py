@@ -1,5 +1,5 @@
 """A room with a ColorChecker, lit by daylight and by a sodium lamp: rendered by passes,
-as RGB, and as spectra.
+as RGB, and as spectra, for docs/guides/passes.md and its picture.
 
 Two renderings are the truth. ``scalar_spectral`` traces the measured spectra; its noise
 is that of other random numbers. ``scalar_rgb`` traces the 81 wavelengths of the spectra
@@ -8,349 +8,228 @@ those of the representation alone.
 """
 
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmarks import Row
-from benchmarks.checker import (
-    CIE_Y_INTEGRAL,
-    Layout,
-    chart,
-    regular_spectrum,
-    show_srgb,
-    xyz_film,
-)
+from benchmarks import DOCS, Row, mitsuba_scenes, summary
+from benchmarks.checker import Layout, chart, photo
+from benchmarks.passes import without_family
 from uplift.colorimetry import delta_e_2000, lab, observer
 from uplift.common.arrays import Array
 from uplift.extras.images.processes import call_in_child
-from uplift.extras.pages.figure import colour_map, new_figure, show_image, write_png
-from uplift.extras.scene import passes as library
-from uplift.extras.scene.passes import Materials
-from uplift.fit import shipped_library
+from uplift.extras.pages.figure import write_figure
+from uplift.extras.pages.marks import error_map
+from uplift.extras.pages.panels import Panel, draw
+from uplift.extras.scene import passes
 
+SPECTRAL = mitsuba_scenes.VARIANT
 LAMPS = ("D65", "HP1")
 """Lights of the left and of the right lamp."""
+PAINTED = {
+    "floor": 20,
+    "ceiling": 18,
+    "back": 21,
+    "red-wall": 14,
+    "green-wall": 13,
+    "small-box": 15,
+}
+"""Patches of the ColorChecker that parts of the Cornell box are painted in."""
 FAMILY = "checker"
 """Family of the library that holds the paints of the room, and is left out."""
 COUNTS = (1, 2, 3)
-DEPTH = 7
-"""Largest number of reflections and one."""
+SIZE = 160
+"""Rows and columns of pictures, a multiple of `BLOCK`."""
+BLOCK = 8
+"""Rows and columns of pixels whose means have little noise."""
+SAMPLES = {"scalar_rgb": 144, SPECTRAL: 576}
+"""Samples per pixel by variant, of three numbers and of four wavelengths."""
+REFLECTIONS = 6
 SEED = 3
 LIMIT = 3600
 """Seconds after which a rendering counts as hung."""
 WHITE_LEVEL = 0.97
 """Quantile of luminance that pictures show as white."""
-RADIANCE = 12.0
-"""Luminance of the lamps."""
 SPECTRA = "spectra, 81 wavelengths"
 RGB = "RGB"
-VARIANT = "scalar_spectral"
-"""Variant of Mitsuba that traces spectra."""
-PAINTED = {
-    "floor": 20,
-    "ceiling": 18,
-    "back": 21,
-    "left": 14,
-    "right": 13,
-    "tall": 15,
-    "short": 12,
-    "ball": 7,
-    **{f"patch_{number}": number for number in range(24)},
-}
-"""Patches of the ColorChecker that parts of the room are painted in."""
-LAMP_NAMES = ("day", "sodium")
-
-
-@dataclass(frozen=True)
-class Quality:
-    """Rows and columns of pictures, a multiple of 8, and samples per pixel of passes
-    and of the spectral variant.
-    """
-
-    size: int = 160
-    spp: int = 144
-    spectral_spp: int = 576
+TITLES = {SPECTRA: "spectra", RGB: "plain RGB", "1": "one pass", "2": "two passes"}
+PICTURE = DOCS / "passes" / "room.png"
 
 
 @dataclass(frozen=True, eq=False)
-class Paints:
-    """What a renderer gets: textures by the number of a patch (24), and radiances of
-    the two lamps.
+class Pass:
+    """Reflectances of the patches (24) and radiances of the lamps (2) in Mitsuba, and
+    the matrix (3, 3) from the numbers of pixels to XYZ.
     """
 
-    surfaces: list[Any]
-    lamps: list[Any]
+    surfaces: list[Row]
+    lamps: list[Row]
+    to_xyz: Array
 
 
-def rgb_value(numbers: Array) -> Row:
-    """Describe three numbers that a renderer multiplies as they are."""
-    return {"type": "rgb", "value": [float(number) for number in numbers]}
+@dataclass(frozen=True, eq=False)
+class Rendering:
+    """XYZ (height, width, 3) of a picture, and the CPU seconds that it took."""
+
+    xyz: Array
+    seconds: float
 
 
-def room(paints: Paints, film: Row) -> Row:
-    """Describe the room: a box with a chart, two blocks, a ball and two lamps."""
+def room(surfaces: Sequence[Row], lamps: Sequence[Row], film: Row) -> Row:
+    """Describe the Cornell box of Mitsuba with a chart, a ball and two lamps, from
+    reflectances of the patches (24) and radiances of the lamps.
+    """
     import mitsuba as mi
 
     transform = mi.ScalarTransform4f
-
-    def wall(at: list[float], axis: list[float], angle: float) -> Row:
-        placed = transform().translate(at).rotate(axis, angle)
-        return {"type": "rectangle", "to_world": placed}
-
-    def block(at: list[float], angle: float, size: list[float]) -> Row:
-        placed = transform().translate(at).rotate([0, 1, 0], angle).scale(size)
-        return {"type": "cube", "to_world": placed}
-
-    def lamp(number: int, at: list[float]) -> Row:
-        placed = transform().translate(at).rotate([1, 0, 0], 90).scale([0.25, 0.3, 1])
-        return {
+    paint = [mitsuba_scenes.diffuse(surface) for surface in surfaces]
+    scene = {name: mi.cornell_box()[name] for name in ("sensor", *PAINTED)}
+    scene["sensor"]["film"] = film
+    # Every path is traced to its end: random numbers then stay those of one pass.
+    depths = {"max_depth": REFLECTIONS + 1, "rr_depth": 1000}
+    scene["integrator"] = {"type": "path", **depths}
+    scene["ball"] = {"type": "sphere", "center": [-0.5, -0.72, -0.1], "radius": 0.28}
+    for name, x, radiance in zip(LAMPS, (-0.55, 0.55), lamps, strict=True):
+        turned = transform().translate([x, 0.99, 0]).rotate([1, 0, 0], 90)
+        scene[name] = {
             "type": "rectangle",
-            "to_world": placed,
-            "emitter": {"type": "area", "radiance": paints.lamps[number]},
+            "to_world": turned.scale([0.25, 0.3, 1]),
+            "emitter": {"type": "area", "radiance": radiance},
         }
-
-    scene: Row = {
-        "type": "scene",
-        # Every path is traced to its end: random numbers then stay those of one pass.
-        "integrator": {"type": "path", "max_depth": DEPTH, "rr_depth": 1000},
-        "camera": {
-            "type": "perspective",
-            "fov": 39,
-            "to_world": transform().look_at([0, 0, 3.9], [0, 0, 0], [0, 1, 0]),
-            "film": film,
-            "sampler": {"type": "independent"},
-        },
-        "floor": wall([0, -1, 0], [1, 0, 0], -90),
-        "ceiling": wall([0, 1, 0], [1, 0, 0], 90),
-        "back": wall([0, 0, -1], [1, 0, 0], 0),
-        "left": wall([-1, 0, 0], [0, 1, 0], 90),
-        "right": wall([1, 0, 0], [0, 1, 0], -90),
-        "tall": block([-0.5, -0.55, -0.3], 20, [0.22, 0.45, 0.22]),
-        "short": block([0.1, -0.78, 0.2], -18, [0.2, 0.22, 0.2]),
-        "ball": {"type": "sphere", "center": [0.6, -0.72, -0.1], "radius": 0.28},
-        "day": lamp(0, [-0.55, 0.99, 0.0]),
-        "sodium": lamp(1, [0.55, 0.99, 0.0]),
-    }
     layout = Layout(patch=20, gap=3)
     width, height = layout.size
-    scale = 1.2 / width
+    half = layout.patch / 2
+    to_wall = transform().translate([0, 0.45, -0.99]).scale(1.2 / width)
     for number, (x, y) in enumerate(layout.corners()):
-        half = layout.patch / 2
-        middle = [
-            scale * (x + half - width / 2),
-            0.45 + scale * (height / 2 - y - half),
-            -0.99,
-        ]
-        placed = transform().translate(middle).scale([scale * half, scale * half, 1])
-        scene[f"patch_{number}"] = {"type": "rectangle", "to_world": placed}
-    for name, patch in PAINTED.items():
-        scene[name]["bsdf"] = {
-            "type": "diffuse",
-            "reflectance": paints.surfaces[patch],
-        }
+        middle = [x + half - width / 2, height / 2 - y - half, 0]
+        placed = to_wall.translate(middle).scale(half)
+        scene[f"patch {number}"] = {"type": "rectangle", "to_world": placed}
+    painted = {**PAINTED, "ball": 7}
+    painted |= {f"patch {number}": number for number in range(len(paint))}
+    for name, patch in painted.items():
+        scene[name]["bsdf"] = paint[patch]
     return scene
 
 
-def render_rgb(passes: list[Paints], quality: Quality) -> tuple[Array, float]:
-    """Return the pictures (height, width, 3 P) of passes, and the seconds of one."""
-    import mitsuba as mi
-
-    mi.set_variant("scalar_rgb")
-    film = {
-        **xyz_film(quality.size, quality.size),
-        "pixel_format": "rgb",
-        "rfilter": {"type": "box"},
-    }
-    # One scene for all: the order of lamps, and so the use of random numbers, is a
-    # matter of chance when a scene is loaded.
-    scene = mi.load_dict(room(passes[0], film), optimize=False)
-    values = mi.traverse(scene)
-    pictures = []
-    begin = time.perf_counter()
-    for paints in passes:
-        for name, patch in PAINTED.items():
-            values[f"{name}.bsdf.reflectance.value"] = paints.surfaces[patch]["value"]
-        for name, lamp in zip(LAMP_NAMES, paints.lamps, strict=True):
-            values[f"{name}.emitter.radiance.value"] = lamp["value"]
-        values.update()
-        pictures.append(
-            np.array(mi.render(scene, spp=quality.spp, seed=SEED), dtype=float)
-        )
-    seconds = (time.perf_counter() - begin) / len(passes)
-    return np.concatenate(pictures, axis=-1), seconds
-
-
-def render_spectral(
-    spectra: Array, lamps: Array, seed: int, quality: Quality
-) -> tuple[Array, float]:
-    """Return the XYZ (height, width, 3) of measured spectra (24, 81) under lamps of
-    power (2, 81), and the seconds.
+def divide(surfaces: Array, lamps: Array, to_xyz: Array) -> list[Pass]:
+    """Divide the numbers (24, K) of surfaces and (2, K) of lamps, and the columns of
+    the matrix (3, K) to XYZ, among passes of three.
     """
-    import mitsuba as mi
-
-    mi.set_variant(VARIANT)
-    grid = observer.grid()
-    # Mitsuba divides XYZ by the integral of y.
-    radiance = lamps * CIE_Y_INTEGRAL / observer.STEP
-    paints = Paints(
-        [regular_spectrum(grid, row) for row in spectra],
-        [regular_spectrum(grid, row) for row in radiance],
-    )
-    film = {**xyz_film(quality.size, quality.size), "rfilter": {"type": "box"}}
-    scene = mi.load_dict(room(paints, film))
-    begin = time.perf_counter()
-    picture = np.array(
-        mi.render(scene, spp=quality.spectral_spp, seed=seed), dtype=float
-    )
-    return picture, time.perf_counter() - begin
-
-
-def numbers_in_passes(surfaces: Array, lamps: Array) -> list[Paints]:
-    """Divide the numbers (24, K) of surfaces and (2, K) of lamps among passes."""
-    paints = []
-    for first in range(0, surfaces.shape[1], 3):
-        bands = slice(first, first + 3)
-        paints.append(
-            Paints(
-                [rgb_value(row) for row in surfaces[:, bands]],
-                [rgb_value(row) for row in lamps[:, bands]],
-            )
+    rgb = mitsuba_scenes.rgb
+    threes = [slice(first, first + 3) for first in range(0, to_xyz.shape[1], 3)]
+    return [
+        Pass(
+            list(map(rgb, surfaces[:, three])),
+            list(map(rgb, lamps[:, three])),
+            to_xyz[:, three],
         )
-    return paints
+        for three in threes
+    ]
 
 
-def other_materials() -> Materials:
-    """Return the library without the paints of the room."""
-    families = shipped_library([FAMILY])
-    training = np.concatenate([family.measured for family in families])
-    return Materials(training, chart().measured, {"source": "library"})
-
-
-def measure(
-    folder: Path, quality: Quality | None = None, counts: Sequence[int] = COUNTS
-) -> Row:
-    """Render all, draw, and return figures."""
-    quality = quality or Quality()
-    painted = chart()
-    spectra = np.clip(painted.measured, 0, 1)
-    powers = RADIANCE * np.stack([library.scaled_power(name) for name in LAMPS])
-    jobs = {SPECTRA: (spectra, powers, spectral_decoding())}
+def all_passes(counts: Sequence[int]) -> dict[str, list[Pass]]:
+    """Return the passes of all wavelengths, of RGB, of bands that are chosen without
+    the paints, and one of spectra.
+    """
+    spectra = np.clip(chart().measured, 0, 1)
+    powers = np.stack([passes.scaled_power(name) for name in LAMPS])
     screen = observer.sensor()
-    rgb_lamps = powers @ observer.matching_functions() @ screen.xyz_to_rgb.T
-    jobs[RGB] = (painted.painted, np.maximum(rgb_lamps, 0), screen.rgb_to_xyz)
+    to_xyz = observer.matching_functions().T
+    rgb_lamps = np.maximum(powers @ to_xyz.T @ screen.xyz_to_rgb.T, 0)
+    divided = {
+        SPECTRA: divide(spectra, powers, to_xyz),
+        RGB: divide(chart().painted, rgb_lamps, screen.rgb_to_xyz),
+    }
+    materials = without_family(FAMILY, spectra)
     for count in counts:
-        chosen = library.choose(other_materials(), LAMPS, count)
-        lamps = RADIANCE * np.stack([light.numbers for light in chosen.lights])
+        chosen = passes.choose(materials, LAMPS, count)
+        lamps = np.stack([light.numbers for light in chosen.lights])
         surfaces = chosen.reflectance_numbers(spectra)
-        jobs[f"{count}"] = (surfaces, lamps, chosen.to_xyz)
-    every = []
-    for surfaces, lamps, _ in jobs.values():
-        every += numbers_in_passes(surfaces, lamps)
-    rendered, one = call_in_child(render_rgb, every, quality, seconds=LIMIT)
-    pictures = {}
-    seconds = {}
-    first = 0
-    for name, (surfaces, _, to_xyz) in jobs.items():
-        count = surfaces.shape[1] // 3
-        numbers = rendered[..., 3 * first : 3 * (first + count)]
-        pictures[name] = numbers @ to_xyz.T
-        seconds[name] = one * count
-        first += count
-    truth, spectral_seconds = call_in_child(
-        render_spectral, spectra, powers, SEED, quality, seconds=LIMIT
-    )
-    figures = draw_and_compare(pictures, seconds, truth, folder)
-    figures["room_spectra"] |= {
-        "seconds": spectral_seconds,
-        "spp": quality.spectral_spp,
+        divided[f"{count}"] = divide(surfaces, lamps, chosen.to_xyz)
+    reflectances = list(map(mitsuba_scenes.spectrum, spectra))
+    radiances = list(map(mitsuba_scenes.radiance, powers))
+    divided[SPECTRAL] = [Pass(reflectances, radiances, np.eye(3))]
+    return divided
+
+
+def render(divided: list[Pass], variant: str, size: int, samples: int) -> Rendering:
+    """Render passes by a variant of Mitsuba, and decode."""
+    mitsuba_scenes.start_mitsuba(variant)
+    film = mitsuba_scenes.film(size, size, "xyz" if variant == SPECTRAL else "rgb")
+    xyz = np.zeros((size, size, 3))
+    begin = time.process_time()
+    for one in divided:
+        scene = room(one.surfaces, one.lamps, film)
+        xyz += mitsuba_scenes.render(scene, samples, SEED) @ one.to_xyz.T
+    return Rendering(xyz, time.process_time() - begin)
+
+
+def render_all(
+    size: int, samples: Mapping[str, int], counts: Sequence[int]
+) -> dict[str, Rendering]:
+    """Render all passes in child processes, as bright as pictures show them."""
+    rendered = {}
+    for name, divided in all_passes(counts).items():
+        variant = SPECTRAL if name == SPECTRAL else "scalar_rgb"
+        job = (divided, variant, size, samples[variant])
+        rendered[name] = call_in_child(render, *job, seconds=LIMIT)
+    white = np.quantile(rendered[SPECTRA].xyz[..., 1], WHITE_LEVEL)
+    return {
+        name: replace(rendering, xyz=rendering.xyz / white)
+        for name, rendering in rendered.items()
     }
-    return figures | {
-        "room_size": quality.size,
-        "room_spp": quality.spp,
-        "room_lamps": LAMPS,
-        "room_depth": DEPTH - 1,
-    }
 
 
-def spectral_decoding() -> Array:
-    """Matrix (3, 81) from powers at all wavelengths to XYZ."""
-    return observer.matching_functions().T
+def delta_e(first: Array, second: Array) -> Array:
+    """ΔE00 (height, width) of XYZ (height, width, 3), for the white of D65."""
+    white = observer.light("D65").white
+    return delta_e_2000(lab(first, white), lab(second, white))
 
 
-def blocks_of(picture: Array, size: int) -> Array:
-    """Means of blocks of pixels, which have less noise."""
-    rows = len(picture) // size
-    return picture.reshape(rows, size, rows, size, 3).mean(axis=(1, 3))
+def blocks(picture: Array) -> Array:
+    """Return the means of blocks of pixels."""
+    rows = len(picture) // BLOCK
+    return picture.reshape(rows, BLOCK, rows, BLOCK, 3).mean(axis=(1, 3))
 
 
-def draw_and_compare(
-    pictures: dict[str, Array],
-    seconds: dict[str, float],
-    spectral: Array,
-    folder: Path,
-) -> Row:
-    """Draw pictures and maps of ΔE00, and return figures."""
-    truth = pictures[SPECTRA]
-    level = float(np.quantile(truth[..., 1], WHITE_LEVEL))
-    white = level * observer.light("D65").white
-    reference = lab(truth, white)
-    maps = {
-        name: delta_e_2000(reference, lab(picture, white))
-        for name, picture in pictures.items()
-    }
-    rows = []
-    for name in list(pictures)[1:]:
-        errors = maps[name]
-        blocks = delta_e_2000(
-            lab(blocks_of(spectral, 8), white),
-            lab(blocks_of(pictures[name], 8), white),
-        )
-        rows.append(
-            {
-                "method": name,
-                "mean": errors.mean(),
-                "p95": np.quantile(errors, 0.95),
-                "spectral_variant": blocks.mean(),
-                "seconds": seconds[name],
-            }
-        )
-    noise = delta_e_2000(
-        lab(blocks_of(spectral, 8), white), lab(blocks_of(truth, 8), white)
-    )
-    folder.mkdir(exist_ok=True)
-    _draw({**pictures, VARIANT: spectral}, maps, level, folder / "room.png")
-    return {"room": rows, "room_spectra": {"noise": noise.mean()}}
+def errors(rendered: dict[str, Rendering]) -> Iterator[Row]:
+    """Yield the errors of pixels, those of blocks to the spectral variant, and the
+    seconds, by method.
+    """
+    truth = rendered[SPECTRA].xyz
+    spectral = blocks(rendered[SPECTRAL].xyz)
+    for method, rendering in rendered.items():
+        yield {
+            "method": method,
+            **summary(delta_e(truth, rendering.xyz).ravel()),
+            "to_spectral": delta_e(spectral, blocks(rendering.xyz)).mean(),
+            "seconds": rendering.seconds,
+        }
 
 
-def _draw(
-    pictures: dict[str, Array], maps: dict[str, Array], level: float, path: Path
-) -> None:
-    names = {
-        SPECTRA: "spectra",
-        RGB: "plain RGB",
-        "1": "one pass",
-        "2": "two passes",
-    }
-    to_srgb = observer.sensor().xyz_to_rgb / level
-    figure = new_figure(11.0, 5.7)
-    figure.set_dpi(150)
-    grid = figure.subplots(2, len(names))
-    largest = float(np.quantile(maps[RGB], 0.95))
-    for column, (name, title) in enumerate(names.items()):
-        top = grid[0, column]
-        show_srgb(top, pictures[name] @ to_srgb.T)
-        top.set_title(title, fontsize=11, pad=6)
-        below = grid[1, column]
-        if name == SPECTRA:
-            show_srgb(below, pictures[VARIANT] @ to_srgb.T)
-            below.set_xlabel(VARIANT, fontsize=9, color="0.3")
-            continue
-        shown = show_image(below, maps[name], cmap=colour_map(), vmin=0, vmax=largest)
-        below.set_xlabel(f"mean ΔE00 {maps[name].mean():.2f}", fontsize=9, color="0.3")
-    bar = figure.colorbar(shown, ax=list(grid[:, -1]), format="%.0f", shrink=0.5)
-    bar.set_label("ΔE00", fontsize=9)
-    write_png(figure, path, force=True)
+def draw_room(rendered: dict[str, Rendering]) -> None:
+    """Draw the renderings, and below each its differences from all wavelengths."""
+    shown = {**TITLES, SPECTRAL: SPECTRAL}
+    to_srgb = observer.sensor().xyz_to_rgb.T
+    panels = [
+        Panel([photo(rendered[name].xyz @ to_srgb)], title)
+        for name, title in shown.items()
+    ]
+    truth = rendered[SPECTRA].xyz
+    maps = [delta_e(truth, rendered[name].xyz) for name in list(TITLES)[1:]]
+    largest = float(np.quantile(maps[0], 0.95))
+    for values in maps:
+        marks = [error_map(values, largest)]
+        panels.append(Panel(marks, f"mean ΔE00 {values.mean():.2f}"))
+    write_figure(draw(panels, len(TITLES), 2.4), PICTURE, force=True)
+
+
+def measure() -> list[Row]:
+    """Render and draw the room, and return the errors."""
+    rendered = render_all(SIZE, SAMPLES, COUNTS)
+    draw_room(rendered)
+    return list(errors(rendered))
+
+
+QUESTIONS = {"errors": measure}

@@ -1,7 +1,7 @@
 """Pictures of the README and docs/materials.md, and their numbers.
 
 The light on the charts is uniform, so that spectra are integrated
-instead of rendered; docs/scene.md has renderings of the same chart, which agree.
+instead of rendered.
 """
 
 import tempfile
@@ -31,9 +31,7 @@ METHODS = MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
     "uplift, with the chart",
 )
 LAYOUT = Layout(patch=32, gap=4)
-SIZE = (11.2, 5.2)
 TRUTH_LIGHTS = RELIGHT_LIGHTS[:2]
-TRUTH_SIZE = (7.4, 3.8)
 JPEG_WIDTH = 1500
 JPEG_QUALITY = 88
 DIM = 32
@@ -104,11 +102,11 @@ def means() -> list[Row]:
             images[lamp.name, name] = LAYOUT.paint(xyz[name], BACKGROUND * lamp.white)
     FOLDER.mkdir(exist_ok=True)
     picture = FOLDER / "charts.png"
-    draw(images, errors, to_screen, METHODS, LAYOUT.middles(), picture, SIZE)
+    draw(images, errors, to_screen, METHODS, LAYOUT.middles(), picture)
     shown = {name: to_screen[name] for name in TRUTH_LIGHTS}
     methods = (MEASURED, PRODUCT, ATLAS)
     picture = FOLDER / "truth.png"
-    draw(images, errors, shown, methods, LAYOUT.halves(), picture, TRUTH_SIZE)
+    draw(images, errors, shown, methods, LAYOUT.halves(), picture)
     return [row for row in rows if row["method"] != MEASURED]
 
 

@@ -19,7 +19,7 @@ DOCS = ROOT / "docs"
 
 @pytest.mark.parametrize("name", pages())
 def test_every_program_can_be_imported(name):
-    if name in ("render", "looks", "showcase"):
+    if name in ("looks", "showcase"):
         need(MITSUBA)
     assert all(map(callable, questions(name).values()))
 

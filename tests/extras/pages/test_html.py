@@ -1,9 +1,12 @@
 """Pages from templates: escaping, missing names, shared parts."""
 
+import html
+import re
+
 import jinja2
 import pytest
 
-from uplift.extras.pages.html import _environment, render
+from uplift.extras.pages.html import _environment, content_security_policy, render
 
 HOSTILE = "</script><b title='\"'>&"
 BASE = "extras/pages/templates/base.html.j2"
@@ -32,3 +35,11 @@ def test_json_cannot_end_its_script():
     assert "ΔE00" in text
     with pytest.raises(ValueError, match="not JSON compliant"):
         rendered("{{ rows | tojson }}", rows=[float("nan")])
+
+
+def test_the_script_of_a_stored_page_is_the_one_that_its_policy_allows(repository):
+    """A browser runs no other, such as one that was changed by hand."""
+    for path in (repository / "docs").rglob("*.html"):
+        page = path.read_text("utf-8")
+        for script in re.findall('<script type="module">(.*?)</script>', page, re.S):
+            assert content_security_policy(script) in html.unescape(page), path
