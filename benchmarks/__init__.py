@@ -23,7 +23,7 @@ from uplift.common.errors import UpliftWarning
 from uplift.common.files import write_text
 from uplift.common.progress import Progress
 from uplift.extras.report.measures import mean_p95_max
-from uplift.lab.timing import commit, environment, write_record
+from uplift.lab.timing import commit, environment
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -108,11 +108,6 @@ def store(page: str, name: str, answer: Any, seconds: float) -> None:
             content[question] = answers[question]
     text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
     write_text(text + "\n", DATA / f"{page}.json", force=True)
-
-
-def record(page: str, data: str = "", **figures: Any) -> None:
-    """Write figures to docs/data/PAGE.json, or to DATA.json if the page has several."""
-    write_record(DATA / f"{data or page}.json", f"make measure PAGE={page}", **figures)
 
 
 def show(progress: Progress) -> None:

@@ -230,7 +230,7 @@ def _print_table(comparison: Comparison, tuned: list[Row], *, every: bool) -> No
 
 
 def _print_records(comparison: Comparison, tuned: list[Row], style: str) -> None:
-    from uplift.lab.timing import records_csv
+    from uplift.extras.files.csv import records_csv
 
     tables = {"representations": comparison.rows, "filters": tuned}
     if style == "json":

@@ -68,7 +68,7 @@ def _print(
     title: str | None = None,
 ) -> None:
     """Print JSON of the records, CSV of rows, or a table with three digits."""
-    from uplift.lab.timing import records_csv
+    from uplift.extras.files.csv import records_csv
 
     if style == "json":
         print_json(records)

@@ -4,7 +4,6 @@ numpy is not imported here: its threads are limited by `ONE_THREAD` before that.
 """
 
 import contextlib
-import json
 import os
 import platform
 import re
@@ -16,12 +15,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
-
-from pydantic_core import to_jsonable_python
+from typing import TYPE_CHECKING, TypeVar
 
 from uplift.common.version import version
-from uplift.extras.files.csv import csv_text
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Values
@@ -229,37 +225,6 @@ def check_answer(answer: "Values", expected: "Values", tolerance: float) -> floa
     return worst
 
 
-# Earlier names, until every page is converted.
-
-
-def time_calls(
-    function: Callable[[], object], runs: int
-) -> tuple[TimingStats, TimingStats]:
-    """Return wall and CPU seconds of `time_call`."""
-    timing = time_call(function, runs)
-    return timing.wall, timing.cpu
-
-
-def children_cpu(function: Callable[[], object]) -> float:
-    """Measure the CPU seconds of the processes that a call starts and waits for."""
-    before = sum(os.times()[2:4])  # user and system time of child processes
-    function()
-    return sum(os.times()[2:4]) - before
-
-
-def time_laps(function: Callable[[], object], lap: float, runs: int) -> TimingStats:
-    """Return CPU seconds of `time_short_call`."""
-    return time_short_call(function, lap, runs).cpu
-
-
-def time_process(
-    command: list[str], runs: int, variables: dict[str, str] | None = None
-) -> tuple[TimingStats, float]:
-    """Return wall seconds and peak memory of `time_command`."""
-    timing = time_command(command, runs, variables=variables)
-    return timing.wall, timing.megabytes
-
-
 def environment() -> dict[str, str]:
     """Describe where measurements are taken."""
     cpu = platform.processor() or platform.machine()
@@ -311,18 +276,3 @@ def _git(*arguments: str) -> str:
     except OSError:
         return ""
     return done.stdout.strip()
-
-
-def records_csv(records: Sequence[Mapping[str, Any]]) -> str:
-    """Format dictionaries with equal keys as CSV with a header line."""
-    return csv_text(list(records[0]), [list(record.values()) for record in records])
-
-
-def write_record(path: Path, command: str, **figures: Any) -> None:
-    """Write figures with the command that measures them; ``environment`` is that of
-    this process by default.
-    """
-    content = {"command": command, "environment": environment(), **figures}
-    values = to_jsonable_python(content, fallback=lambda array: array.tolist())
-    text = json.dumps(values, indent=1, ensure_ascii=False, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8")
