@@ -162,29 +162,22 @@ def average(rows: Iterable[Row], by: str) -> list[Row]:
     return found
 
 
-def leaves(
-    value: Any, parts: Sequence[str], name: str = ""
-) -> Iterator[tuple[str, Any]]:
+def leaves(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the names and values of a nested row, the names joined by dots; floats have
-    six digits.
-
-    The items of a list have the names ``parts``. A list of another length is one value.
+    six digits, and the items of a list are one value.
     """
-    if isinstance(value, list) and len(value) == len(parts):
-        value = dict(zip(parts, value, strict=True))
     if isinstance(value, Mapping):
         for key, item in value.items():
-            yield from leaves(item, parts, f"{name}.{key}" if name else str(key))
+            yield from leaves(item, f"{name}.{key}" if name else str(key))
     elif isinstance(value, list):
-        items = chain.from_iterable(leaves(item, ()) for item in value)
-        yield name, "; ".join(str(leaf) for _, leaf in items)
+        yield name, "; ".join(str(leaf) for item in value for _, leaf in leaves(item))
     else:
         yield name, f"{value:.6g}" if isinstance(value, float) else value
 
 
-def flat_csv(rows: Iterable[Row], parts: Sequence[str]) -> str:
+def flat_csv(rows: Iterable[Row]) -> str:
     """Return nested rows as CSV, with a column for each leaf."""
-    flat = [dict(leaves(row, parts)) for row in rows]
+    flat = [dict(leaves(row)) for row in rows]
     columns = list(dict.fromkeys(chain.from_iterable(flat)))
     return csv_text(columns, (list(map(row.get, columns)) for row in flat))
 
@@ -272,11 +265,9 @@ def render(name: str, data: Mapping[str, Any] | None = None) -> dict[Path, str]:
     page = (ROOT if name == "README" else DOCS) / f"{name}.md"
     tables = {}
 
-    def long_table(
-        rows: Iterable[Row], table_name: str, parts: Sequence[str] = ()
-    ) -> str:
+    def long_table(rows: Iterable[Row], table_name: str) -> str:
         path = DOCS / "tables" / f"{table_name}.csv"
-        tables[path] = flat_csv(rows, parts)
+        tables[path] = flat_csv(rows)
         return f"[{path.name}]({Path(os.path.relpath(path, page.parent)).as_posix()})"
 
     environment = Environment(
