@@ -118,15 +118,6 @@ def style_axes(axes: Any) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def show_image(axes: Any, image: NDArray[Any], **options: Any) -> Any:
-    """Draw an image without ticks and frame. Return what matplotlib's ``imshow``
-    returns.
-    """
-    axes.set(xticks=(), yticks=())
-    axes.spines[:].set_visible(False)
-    return axes.imshow(image, **options)
-
-
 def check_suffix(path: str | os.PathLike[str]) -> str:
     """Return the format of a figure's file, by its suffix. Raises `OutputError`, also
     without matplotlib.
@@ -153,9 +144,6 @@ def write_figure(
     # matplotlib itself would fail in other ways on a full disk.
     with atomic_write(path, force=force) as temporary:
         temporary.write_bytes(content)
-
-
-write_png = write_figure
 
 
 def render(figure: Any, suffix: str) -> bytes:
