@@ -61,6 +61,8 @@ CANVAS = """(async () => {
 """Read from a copy: the page's own canvas is drawn to and never read."""
 SHIFT = 8
 """Modifier of keys."""
+ADVICE = "(OpenGL, Performance"
+"""In messages of drivers on their speed, which are not of the page."""
 PATIENCE = 60.0
 """Seconds that an answer may take."""
 
@@ -198,7 +200,7 @@ class Browser:
                 if params["type"] in complaints:
                     self.errors.append(json.dumps(params["args"]))
             case {"method": "Log.entryAdded", "params": {"entry": entry}}:
-                if entry["level"] in complaints:
+                if entry["level"] in complaints and ADVICE not in entry["text"]:
                     self.errors.append(entry["text"])
 
 
