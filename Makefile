@@ -30,11 +30,19 @@ lint: $(COMPLETE)
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo --cache-dir $(OUT)/cache/import_linter
 
+# Before a commit: formatting, names, contracts, and the tests of what changed since main. `make test` has the rest.
+check: $(COMPLETE)
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/python tools/lint.py
+	$(BIN)/lint-imports --no-logo --cache-dir $(OUT)/cache/import_linter
+	@tests=$$($(BIN)/python tools/changed_tests.py) && if [ -n "$$tests" ]; then set -x; $(BIN)/pytest $$tests; fi
+
 # One worker per core, at most four as each takes over 1 GB. A worker that crashes ends the run.
 test: lint axe $(TRIED)
 	$(BIN)/pytest --numprocesses auto --maxprocesses 4 --dist loadfile --max-worker-restart 0 --durations 10
 
-# The tests without compilers, browser, node and LLVM, in an empty home folder.
+# The tests without the machine's compilers, browser, node and LLVM, in an empty home folder.
 bare: $(COMPLETE)
 	rm -rf $(OUT)/bare
 	mkdir -p $(OUT)/bare/bin $(OUT)/bare/home

@@ -53,6 +53,7 @@ def pytest_terminal_summary(terminalreporter) -> None:
     for reason, count in skipped.most_common():
         line = f"{count} skipped: {reason.removeprefix('Skipped: ')}"
         terminalreporter.line(line[: terminalreporter._tw.fullwidth])
+    os.environ.pop("CI", None)  # with it, failures below have lines without end
 
 
 @pytest.fixture(scope="module", autouse=True)
