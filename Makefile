@@ -170,18 +170,21 @@ release: $(COMPLETE)
 	$(BIN)/twine check --strict $(OUT)/dist/*
 	$(BIN)/python -m tools.release $(OUT)/dist
 
-# Install with the names of the packages as they come. Python compiles modules when it first imports them: most never are.
-install = set -o pipefail; $(BIN)/pip install --disable-pip-version-check --no-compile -c constraints.txt $(1) | \
+# Install with the names of the packages as they come. Modules are compiled when they are first imported: most never are.
+install = set -o pipefail; export PYTHONWARNINGS=ignore; \
+  $(BIN)/pip install --disable-pip-version-check --no-compile -c constraints.txt $(1) 2> $(VENV)/errors | \
   while read -r step name _; do case $$step in \
     Collecting) printf '%s ' "$${name%%[<=>]*}";; \
     Installing) printf '\n$(VENV): unpacking them\n';; \
-  esac; done
+  esac; done || { cat $(VENV)/errors; false; }
 
+# By the pip of PYTHON, if it has one: venv would take seconds to copy another.
+INSTALLER := install -qq --no-compile --disable-pip-version-check -c constraints.txt pip==26.3 setuptools
 $(BIN)/pip: Makefile
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "uplift needs Python 3.11 or later: make PYTHON=python3.12")'
 	@echo "$(VENV): an environment"
-	@$(PYTHON) -m venv $(VENV)
-	@$(PIP) -c constraints.txt pip==26.3 setuptools
+	@$(PYTHON) -m venv --without-pip $(VENV)
+	@$(PYTHON) -m pip --python $(BIN)/python $(INSTALLER) 2> /dev/null || { $(PYTHON) -m venv $(VENV) && $(BIN)/pip $(INSTALLER); }
 	@touch $@
 
 $(INSTALLED): pyproject.toml constraints.txt $(BIN)/pip
@@ -189,10 +192,11 @@ $(INSTALLED): pyproject.toml constraints.txt $(BIN)/pip
 	@$(call install,--no-build-isolation -e '.[plots]')
 	@touch $@
 
+# All modules are compiled here: in tests, warnings of compilation would be errors.
 $(COMPLETE): pyproject.toml constraints.txt $(BIN)/pip
 	@echo "$(VENV): what developers need, 1.5 GB"
-	@PYTHONWARNINGS=ignore; export PYTHONWARNINGS; $(call install,--no-build-isolation -e '.[dev]')
-	@touch $(INSTALLED) $@
+	@$(call install,--no-build-isolation -e '.[dev]')
+	@PYTHONWARNINGS=ignore $(BIN)/python -m compileall -qq -j 0 $(VENV)/lib; touch $(INSTALLED) $@
 
 clean:
 	rm -rf $(VENV) $(OUT) build dist *.egg-info
