@@ -34,8 +34,11 @@ BROWSER = "@sparticuz/chromium@153.0.0"
 """Of npm, with SwiftShader, fonts and the libraries that slim systems lack."""
 UNPACK = "import('@sparticuz/chromium').then(found => found.default.executablePath())"
 UNPACKED = FETCHED / "chromium"
-UNPACKING = {"TMPDIR": str(UNPACKED), "AWS_LAMBDA_JS_RUNTIME": "nodejs24.x"}
-"""Variables for `UNPACK`: where to, and that the libraries are needed."""
+SETTINGS = {
+    "TMPDIR": str(UNPACKED),  # where the browser unpacks
+    "AWS_LAMBDA_JS_RUNTIME": "nodejs24.x",  # with its libraries
+    "NODE_OPTIONS": "--use-system-ca",  # as pip does
+}
 LAUNCHER = f"""#!/bin/sh
 export LD_LIBRARY_PATH='{UNPACKED}/al2023/lib' XDG_DATA_HOME='{UNPACKED}'
 exec '{UNPACKED}/chromium' "$@"
@@ -74,7 +77,7 @@ def _unpack_browser() -> None:
 def _run(name: str, *arguments: str) -> None:
     """Run a program of the environment, in its folder."""
     command = [FETCHED / "bin" / name, *arguments]
-    subprocess.run(command, cwd=FETCHED, env=os.environ | UNPACKING, check=True)
+    subprocess.run(command, cwd=FETCHED, env=os.environ | SETTINGS, check=True)
 
 
 if __name__ == "__main__":
