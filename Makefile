@@ -174,7 +174,7 @@ release: $(COMPLETE)
 install = set -o pipefail; export PYTHONWARNINGS=ignore; \
   $(BIN)/pip install --disable-pip-version-check --no-compile -c constraints.txt $(1) 2> $(VENV)/errors | \
   while read -r step name _; do case $$step in \
-    Collecting) printf '%s ' "$${name%%[<=>]*}";; \
+    Collecting) printf '%s ' "$${name%%[<=>!~]*}";; \
     Installing) printf '\n$(VENV): unpacking them\n';; \
   esac; done || { cat $(VENV)/errors; false; }
 
