@@ -48,7 +48,7 @@ bare: $(COMPLETE)
 	mkdir -p $(OUT)/bare/bin $(OUT)/bare/home
 	IFS=:; for folder in $$PATH; do ln -s $$folder/* $(OUT)/bare/bin 2> /dev/null || true; done
 	cd $(OUT)/bare/bin && rm -f *cc *++ *gcc-* *g++-* c89* c99* clang* chrom* google-chrome* node* np[mx] cmake glslang*
-	PATH=$(abspath $(OUT))/bare/bin HOME=$(abspath $(OUT))/bare/home DRJIT_LIBLLVM_PATH=/nonexistent $(MAKE) parts test
+	PATH=$(abspath $(OUT))/bare/bin HOME=$(abspath $(OUT))/bare/home DRJIT_LIBLLVM_PATH=$(abspath $(OUT))/parts/lib/libLLVM.so $(MAKE) parts test
 
 # The tests with numpy's code for processors without AVX-512.
 basic: $(COMPLETE)
