@@ -9,9 +9,9 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 COMPLETE := $(VENV)/.complete
 OUT := out
+TRIED := $(OUT)/parts/.tried
 PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
-TRIED := $(OUT)/parts/.tried
 RGB2SPEC := $(OUT)/rgb2spec
 
 .PHONY: build lint test check parts bare basic site notebooks demo measure peers library module nightly munsell docs atlases cubes lock names release clean pictures axe examples

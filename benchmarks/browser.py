@@ -42,6 +42,8 @@ os.execv(command[0], command)"""
 """Chromium reads from descriptor 3 and writes to 4."""
 SETTLE = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 """To evaluate: waits for the frame that is due."""
+ADVICE = "(OpenGL, Performance"
+"""In messages of drivers on their speed: nothing that a page has done wrong."""
 READY = (
     "location.protocol === 'file:' && document.readyState === 'complete'"
     " && document.querySelector('main')?.getAttribute('aria-busy') !== 'true'"
@@ -61,8 +63,6 @@ CANVAS = """(async () => {
 """Read from a copy: the page's own canvas is drawn to and never read."""
 SHIFT = 8
 """Modifier of keys."""
-ADVICE = "(OpenGL, Performance"
-"""In messages of drivers on their speed, which are not of the page."""
 PATIENCE = 60.0
 """Seconds that an answer may take."""
 
@@ -95,7 +95,8 @@ class Browser:
         message = {"id": number, "method": method, "params": params} | self._session
         os.write(self._write, json.dumps(message).encode() + b"\0")
         while (answer := self._next()).get("id") != number:
-            self._note(answer)
+            if ADVICE not in str(answer):
+                self._note(answer)
         if "error" in answer:
             raise RuntimeError(f"{method}: {answer['error']['message']}")
         return dict(answer["result"])
@@ -200,7 +201,7 @@ class Browser:
                 if params["type"] in complaints:
                     self.errors.append(json.dumps(params["args"]))
             case {"method": "Log.entryAdded", "params": {"entry": entry}}:
-                if entry["level"] in complaints and ADVICE not in entry["text"]:
+                if entry["level"] in complaints:
                     self.errors.append(entry["text"])
 
 
