@@ -42,6 +42,8 @@ os.execv(command[0], command)"""
 """Chromium reads from descriptor 3 and writes to 4."""
 SETTLE = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 """To evaluate: waits for the frame that is due."""
+ADVICE = "(OpenGL, Performance"
+"""In messages of drivers on their speed: nothing that a page has done wrong."""
 READY = (
     "location.protocol === 'file:' && document.readyState === 'complete'"
     " && document.querySelector('main')?.getAttribute('aria-busy') !== 'true'"
@@ -94,7 +96,8 @@ class Browser:
         message = {"id": number, "method": method, "params": params} | self._session
         os.write(self._write, json.dumps(message).encode() + b"\0")
         while (answer := self._next()).get("id") != number:
-            self._note(answer)
+            if ADVICE not in str(answer):
+                self._note(answer)
         if "error" in answer:
             raise RuntimeError(f"{method}: {answer['error']['message']}")
         return dict(answer["result"])

@@ -47,12 +47,13 @@ MACBETH = ATLASES / "macbeth.txt"
 
 
 def pytest_terminal_summary(terminalreporter) -> None:
-    """List why tests were skipped, one line for each reason."""
-    skipped = Counter(
-        report.longrepr[2] for report in terminalreporter.stats.get("skipped", ())
-    )
+    """List why tests were skipped, one line for each reason, before the failures."""
+    reports = terminalreporter.stats.get("skipped", ())
+    skipped = Counter(report.longrepr[2] for report in reports)
     for reason, count in skipped.most_common():
-        terminalreporter.line(f"{count:4} {reason}")
+        line = f"{count} skipped: {reason.removeprefix('Skipped: ')}"
+        terminalreporter.line(line[: terminalreporter._tw.fullwidth])
+    os.environ.pop("CI", None)  # with it, failures below have lines without end
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -2,8 +2,11 @@
 a test relies on it.
 
 A part that is there need not work: Dr.Jit finds any LLVM and aborts with an old one.
+Those that `make parts` has fetched come after the machine's own.
 """
 
+import ctypes
+import os
 import subprocess
 import tempfile
 from collections.abc import Callable
@@ -17,6 +20,9 @@ import pytest
 from benchmarks.browser import browser
 from uplift.extras.images.processes import call_in_child
 
+FETCHED = Path(__file__).parents[1] / "out" / "parts"
+"""A virtual environment; see tests/fetch_parts.py."""
+SWIFTSHADER = FETCHED / "vulkan"
 PATIENCE = 60.0
 """Seconds that a trial may take."""
 EMPTY_KERNEL = "__global__ void nothing() {}\n"
@@ -24,6 +30,10 @@ EMPTY_PROGRAM = "int main(void) { return 0; }\n"
 SANITIZED = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 STREAMS = "process.exitCode = globalThis.DecompressionStream ? 0 : 1;"
 EMPTY_SHADER = "#version 430\nlayout(local_size_x = 1) in;\nvoid main() {}\n"
+
+os.environ["PATH"] += os.pathsep + str(FETCHED / "bin")
+if (library := FETCHED / "lib" / "libLLVM.so").exists():
+    os.environ.setdefault("DRJIT_LIBLLVM_PATH", str(library))
 
 
 @dataclass(frozen=True)
@@ -40,15 +50,14 @@ class Part:
 def need(*parts: Part) -> None:
     """Skip the test, or the module that is being imported, unless these parts work."""
     for part in parts:
-        if problem := _problem(part):
-            pytest.skip(
-                f"needs {part.name}, {part.installation}: {problem}",
-                allow_module_level=True,
-            )
+        if trouble := problem(part):
+            reason = f"{part.name} ({part.installation}): {trouble}"
+            pytest.skip(reason, allow_module_level=True)
 
 
 @cache
-def _problem(part: Part) -> str:
+def problem(part: Part) -> str:
+    """Return why a part does not work, empty if it does."""
     try:
         call_in_child(part.trial, seconds=PATIENCE)
     except Exception as error:
@@ -88,6 +97,10 @@ def vulkan_device():
     """
     import wgpu
 
+    if SWIFTSHADER.exists():
+        ctypes.CDLL(str(SWIFTSHADER / "libvulkan.so.1"))  # that wgpu opens by its name
+        driver = SWIFTSHADER / "vk_swiftshader_icd.json"
+        os.environ["VK_DRIVER_FILES"] = str(driver)
     adapters = wgpu.gpu.enumerate_adapters_sync()
     return next(
         each for each in adapters if each.info["backend_type"] == "Vulkan"
@@ -155,8 +168,5 @@ NVCC = Part(
     "nvcc",
     "the CUDA toolkit",
     partial(_compile, "a.cu", EMPTY_KERNEL, "nvcc -ptx a.cu"),
-)
-NODE = Part(
-    "Node.js", "apt install nodejs", partial(_compile, "a.mjs", "", "node a.mjs")
 )
 GLSLANG = Part("glslangValidator", "apt install glslang-tools", _glslang)
