@@ -34,6 +34,8 @@ BROWSER = "@sparticuz/chromium@153.0.0"
 """Of npm, with SwiftShader, fonts and the libraries that slim systems lack."""
 UNPACK = "import('@sparticuz/chromium').then(found => found.default.executablePath())"
 UNPACKED = FETCHED / "chromium"
+PATIENCE = 300.0
+"""Seconds that a step may take: a network may hang."""
 SETTINGS = {
     "TMPDIR": str(UNPACKED),  # where the browser unpacks
     "AWS_LAMBDA_JS_RUNTIME": "nodejs24.x",  # with its libraries
@@ -61,7 +63,7 @@ def main() -> None:
                 _unpack_browser()
             if part is parts.VULKAN:
                 parts.SWIFTSHADER.symlink_to(UNPACKED)
-        except (OSError, subprocess.CalledProcessError) as error:
+        except (OSError, subprocess.SubprocessError) as error:
             print(f"{part.name} cannot be had: {error}")
 
 
@@ -77,7 +79,8 @@ def _unpack_browser() -> None:
 def _run(name: str, *arguments: str) -> None:
     """Run a program of the environment, in its folder."""
     command = [FETCHED / "bin" / name, *arguments]
-    subprocess.run(command, cwd=FETCHED, env=os.environ | SETTINGS, check=True)
+    variables = os.environ | SETTINGS
+    subprocess.run(command, cwd=FETCHED, env=variables, check=True, timeout=PATIENCE)
 
 
 if __name__ == "__main__":
