@@ -16,12 +16,7 @@ from uplift.atlas import Atlas, Entry, read_atlas
 from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.arrays import Array, Indices
 from uplift.lab.look_alikes import families_like
-from uplift.lab.runner import (
-    Task,
-    divided,
-    folds,
-    spectra_of,
-)
+from uplift.lab.runner import Task, divided, spectra_of
 from uplift.lookup import Cube
 
 FURTHER = {"munsell": ROOT / "out" / "munsell.csv"}
@@ -64,10 +59,6 @@ class Materials:
             for row, values in enumerate(self.measured)
         )
         return Atlas(tuple(entries))
-
-    def cube(self, **options: Any) -> Cube:
-        """Build a cube whose atlas they are."""
-        return uplift.build(self.atlas, **options)
 
 
 def inside(atlas: Atlas) -> Materials:
@@ -118,13 +109,11 @@ def split_tasks(name: str, parts: int = 2) -> list[Task]:
     return list(divided(materials(name).atlas, left_out, SENSOR, parts, SPLITS))
 
 
-def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:
-    """Return cubes of random halves of a set, and the other halves: every material is
-    queried equally often.
+def other_halves(name: str, **options: Any) -> list[tuple[Cube, Task]]:
+    """Return cubes of random halves of a set, and the tasks of the other halves: every
+    material is queried equally often.
     """
-    entries = materials(name)
-    left_out = shipped_families(name)
     return [
-        (entries.take(known).cube(leave_out=left_out, **options), entries.take(queried))
-        for known, queried in folds(len(entries.rgb), seeds=SPLITS)
+        (uplift.build(task.known, leave_out=task.left_out, **options), task)
+        for task in split_tasks(name)
     ]
