@@ -29,7 +29,6 @@ class Chart:
     ``outside`` (24,) marks the colours outside sRGB, which are painted clipped.
     """
 
-    names: tuple[str, ...]
     wavelengths: Array
     measured: Array
     painted: Array
@@ -39,12 +38,11 @@ class Chart:
 def chart() -> Chart:
     """Read the shipped ColorChecker."""
     sensor = observer.sensor()
-    atlas = read_atlas(MACBETH)
-    measured = on_grid(atlas, sensor.wavelengths)
+    measured = on_grid(read_atlas(MACBETH), sensor.wavelengths)
     rgb = sensor.rgb(measured)
     painted = np.clip(rgb, 0, 1)
     outside = ~in_unit_cube(rgb)
-    return Chart(atlas.names, sensor.wavelengths, measured, painted, outside)
+    return Chart(sensor.wavelengths, measured, painted, outside)
 
 
 @dataclass(frozen=True)
