@@ -10,7 +10,6 @@ from uplift.lab.chart.measure import measure_methods
 from uplift.lab.chart.picture import render_chart, write_picture
 from uplift.lab.chart.results import (
     MEASURED,
-    Chart,
     chart_csv,
     shipped_chart,
 )
@@ -19,14 +18,10 @@ from uplift.lab.chart.task import make_task
 
 
 def measure() -> None:
-    """Measure, draw and store."""
-    publish(measure_methods(select_methods(), make_task(read_atlases()), show))
-
-
-def publish(chart: Chart) -> None:
-    """Write the table that the package carries, from which `figures` are, and the
-    pictures.
+    """Measure, and write the table that the package carries, from which `figures` are,
+    and the pictures.
     """
+    chart = measure_methods(select_methods(), make_task(read_atlases()), show)
     folder = DOCS / "chart"
     table = ROOT / "uplift" / "lab" / "chart" / MEASURED
     write_text(chart_csv(chart), table, force=True)
