@@ -106,7 +106,7 @@ def denser_search() -> Iterator[Row]:
 def likely() -> Iterator[Row]:
     """Yield the share of held-out materials in the likely region."""
     for name in LARGE:
-        pairs = other_halves(name, dim=DIM, coefficients=9)
+        pairs = list(other_halves(name, dim=DIM, coefficients=9))
         for lamp in map(light, LIKELY_LIGHTS):
             inside = []
             for cube, task in pairs:

@@ -4,6 +4,7 @@ A further set is a line of `FURTHER`. `uplift.lab.runner` measures methods at th
 that `task` and `split_tasks` make of a set.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -109,11 +110,9 @@ def split_tasks(name: str, parts: int = 2) -> list[Task]:
     return list(divided(materials(name).atlas, left_out, SENSOR, parts, SPLITS))
 
 
-def other_halves(name: str, **options: Any) -> list[tuple[Cube, Task]]:
-    """Return cubes of random halves of a set, and the tasks of the other halves: every
+def other_halves(name: str, **options: Any) -> Iterator[tuple[Cube, Task]]:
+    """Yield cubes of random halves of a set, and the tasks of the other halves: every
     material is queried equally often.
     """
-    return [
-        (uplift.build(task.known, leave_out=task.left_out, **options), task)
-        for task in split_tasks(name)
-    ]
+    for task in split_tasks(name):
+        yield uplift.build(task.known, leave_out=task.left_out, **options), task

@@ -99,25 +99,19 @@ def of_half(cube: Cube, task: Task, seed: int) -> Found:
 def answers(photographs: Photographs, rgb: Array, others: Array) -> dict[str, Array]:
     """Return the spectra (n, 81) of all methods from linear RGB under all lights."""
     cube = photographs.cube
-    variance = photographs.noise.variance
     matrix = np.concatenate([SENSOR.matrix, photographs.matrix])
-    numbers = np.concatenate([rgb, others], axis=1)
+    seen = matrix, photographs.noise, np.concatenate([rgb, others], axis=1)
     left_out = evidence(cube.data)
     known = np.asarray(left_out.measured, dtype=float)
     chart = materials(CHART).measured
     expected = cube.reflectance(rgb)
+    covariance = second_moment(left_out)
     return {
         CUBE: expected,
         OURS: photographs.reflectance(rgb, others),
-        FORMULA: six_numbers.posterior_mean(
-            expected, second_moment(left_out), matrix, variance(numbers), numbers
-        ),
-        PCA: six_numbers.principal_components(
-            known, matrix, variance(known @ matrix.T), numbers
-        ),
-        CHART_MATRIX: six_numbers.chart_matrix(
-            chart, matrix, variance(chart @ matrix.T), numbers
-        ),
+        FORMULA: six_numbers.posterior_mean(expected, covariance, *seen),
+        PCA: six_numbers.trained(known, six_numbers.projected(known), *seen),
+        CHART_MATRIX: six_numbers.trained(chart, chart, *seen),
     }
 
 

@@ -14,7 +14,7 @@ from benchmarks.materials import SENSOR, other_halves
 from benchmarks.still_life import BALLS, MATERIALS, still_life
 from uplift.colorimetry import delta_e_spectra, observer, rgb_to_lab
 from uplift.common.arrays import Array, Indices, Mask
-from uplift.extras.pages.figure import ACCENT, GREY, write_figure
+from uplift.extras.pages.figure import ACCENT, GREY, INK, write_figure
 from uplift.extras.pages.marks import error_map, line
 from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.photographs import Noise, Photographs, photograph, prepare
@@ -86,7 +86,7 @@ def take_photographs(
 
 def make_scene() -> Scene:
     """Photograph materials that a cube does not know, and answer the photographs."""
-    cube, task = other_halves(SET, dim=DIM)[0]
+    cube, task = next(other_halves(SET, dim=DIM))
     weights = still_life()
     measured = weights @ task.queried[choose(task.rgb, MATERIALS)]
     photographs, first, second = take_photographs(cube, measured, [SECOND], NOISE, 0)
@@ -138,15 +138,15 @@ def missed_ball(scene: Scene) -> Panel:
     errors = scene.errors("HP1", ONE)
     missed = [errors[ball].mean() for ball in np.moveaxis(scene.balls, -1, 0)]
     ball = scene.balls[..., np.argmax(missed)]
-    styles = {
-        MEASURED: {},
-        ONE: {"colour": GREY, "linestyle": ":"},
-        BOTH: {"colour": ACCENT, "linestyle": "--"},
+    curves = {
+        MEASURED: ("measured", INK, "-"),
+        ONE: ("one", GREY, ":"),
+        BOTH: ("both", ACCENT, "--"),
     }
     marks = []
-    for name, style in styles.items():
+    for name, (label, colour, dashes) in curves.items():
         mean = scene.spectra[name][ball].mean(axis=0)
-        marks.append(line(SENSOR.wavelengths, mean, name, **style))
+        marks.append(line(SENSOR.wavelengths, mean, label, colour, linestyle=dashes))
     x = Axis(ticks=(400, 500, 600, 700))
     title = "reflectance of a ball, over nm"
     return Panel(marks, title, x, Axis(limits=(0, None)), legend="best")
