@@ -19,6 +19,7 @@ from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.files import write_text
 from uplift.extras import texture
+from uplift.extras.colour.light_sets import PALETTE_LIGHTS
 from uplift.extras.palette.factor import factor_model
 from uplift.extras.scene import passes as library
 from uplift.extras.scene import wavelengths
@@ -34,8 +35,6 @@ LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3", "HP1")
 COUNTS = (1, 2, 3, 4)
 OTHER_LIGHTS = ("D50", "FL4", "FL7", "LED-V1", "LED-RGB1")
 """Lights that no passes are fitted to."""
-SMOOTH = ("D65", "A", "D50", "E")
-"""Lights of the factor model, which spiky ones do not improve."""
 MATERIALS = 100
 """Materials that wavelengths are optimised for, which takes long for more."""
 IMAGE = "still-life.png"
@@ -43,9 +42,6 @@ WINDOW = (1240, 830)
 """Pixels of the window of the page."""
 FRAMES_SECONDS = 40
 """Seconds until a picture of the page is taken."""
-RGB = "RGB"
-BANDS = "bands"
-POINTS = "points"
 ROOM = DOCS / "passes" / "room.html"
 
 
@@ -83,10 +79,10 @@ def errors() -> Iterator[Row]:
     matrix for all lights and by a matrix for each.
     """
     plain = library.rgb_errors(materials(), LIGHTS)
-    yield from rows_of(plain, LIGHTS, kind=RGB, passes=0, decoding="shared")
+    yield from rows_of(plain, LIGHTS, kind="RGB", passes=0, decoding="shared")
     for count in COUNTS:
         points = library.choose(materials(), LIGHTS, count, width=0)
-        for kind, fitted in ((BANDS, chosen(count)), (POINTS, points)):
+        for kind, fitted in (("bands", chosen(count)), ("points", points)):
             shared = np.stack([light.errors for light in fitted.lights])
             own = np.stack([light.own_errors for light in fitted.lights])
             of = {"kind": kind, "passes": count}
@@ -104,7 +100,7 @@ def other_bases() -> Iterator[Row]:
     table = observer.grid()
     resampled = [np.interp(fine, table, row) for row in np.clip(training, 0, 1)]
     setup = wavelengths.make_setup(np.stack(resampled), LIGHTS)
-    smooth = np.stack([library.scaled_power(name) for name in SMOOTH])
+    smooth = np.stack([library.scaled_power(name) for name in PALETTE_LIGHTS])
     model = factor_model(observer.sensor(), training, smooth, count)
     bases = {"factor model": Basis(model.projection)}
     for method in ("optimised", "meyer", "uniform"):

@@ -94,9 +94,9 @@ def patches(lamp: Light) -> dict[str, tuple[Array, Array]]:
     srgb = sensor()
     xyz = {name: values @ lamp.xyz.T for name, values in spectra().items()}
     xyz[PRODUCT] = srgb.xyz(chart().painted * (srgb.xyz_to_rgb @ lamp.white))
-    seen = {name: lab(xyz[name], lamp.white) for name in METHODS}
-    truth = seen[MEASURED]
-    return {name: (xyz[name], delta_e_2000(truth, seen[name])) for name in METHODS}
+    in_lab = {name: lab(xyz[name], lamp.white) for name in METHODS}
+    truth = in_lab[MEASURED]
+    return {name: (xyz[name], delta_e_2000(truth, in_lab[name])) for name in METHODS}
 
 
 def means() -> Iterator[Row]:

@@ -29,11 +29,11 @@ def trained(
     expected squares for the noisy numbers of known spectra (K, N) under sensors
     (3 L, N) and their targets (K, N): chart spectra themselves, or `projected` ones.
     """
-    seen = known @ matrix.T
+    observed = known @ matrix.T
     # E Σ |A (t + n) − s|² = Σ |A t − s|² + tr A (Σ R) Aᵀ
-    gram = seen.T @ seen + np.diag(noise.variance(seen).sum(axis=0))
+    gram = observed.T @ observed + np.diag(noise.variance(observed).sum(axis=0))
     # Without noise few spectra, or a third light, may leave numbers that depend.
-    return numbers @ np.linalg.pinv(gram, hermitian=True) @ (seen.T @ targets)
+    return numbers @ np.linalg.pinv(gram, hermitian=True) @ (observed.T @ targets)
 
 
 def projected(known: Array) -> Array:

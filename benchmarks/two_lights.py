@@ -100,7 +100,7 @@ def answers(photographs: Photographs, rgb: Array, others: Array) -> dict[str, Ar
     """Return the spectra (n, 81) of all methods from linear RGB under all lights."""
     cube = photographs.cube
     matrix = np.concatenate([SENSOR.matrix, photographs.matrix])
-    seen = matrix, photographs.noise, np.concatenate([rgb, others], axis=1)
+    observed = matrix, photographs.noise, np.concatenate([rgb, others], axis=1)
     left_out = evidence(cube.data)
     known = np.asarray(left_out.measured, dtype=float)
     chart = materials(CHART).measured
@@ -109,9 +109,9 @@ def answers(photographs: Photographs, rgb: Array, others: Array) -> dict[str, Ar
     return {
         CUBE: expected,
         OURS: photographs.reflectance(rgb, others),
-        FORMULA: six_numbers.posterior_mean(expected, covariance, *seen),
-        PCA: six_numbers.trained(known, six_numbers.projected(known), *seen),
-        CHART_MATRIX: six_numbers.trained(chart, chart, *seen),
+        FORMULA: six_numbers.posterior_mean(expected, covariance, *observed),
+        PCA: six_numbers.trained(known, six_numbers.projected(known), *observed),
+        CHART_MATRIX: six_numbers.trained(chart, chart, *observed),
     }
 
 
