@@ -8,15 +8,10 @@ import numpy as np
 from scipy.optimize import differential_evolution
 
 import uplift
-from benchmarks import DOCS, MACBETH, Row, summary
+from benchmarks import MACBETH, Row, summary
 from uplift.atlas import on_grid
 from uplift.colorimetry import Sensor, delta_e_rgb, delta_e_spectra, observer
 from uplift.common.arrays import Array
-from uplift.extras.images.exr import blue_slices
-from uplift.extras.pages.figure import write_figure
-from uplift.extras.pages.marks import error_map
-from uplift.extras.pages.panels import Panel, draw
-from uplift.extras.pages.sheet import mosaic
 from uplift.lab.method import at_1_nm, published_srgb
 from uplift.lab.timing import time_call
 from uplift.lookup import MODES, Cube
@@ -59,7 +54,7 @@ RUNS = 3
 @cache
 def cubes() -> dict[str, Cube]:
     """Return cubes by their names."""
-    build = partial(uplift.build, dim=DIM, debug=True)
+    build = partial(uplift.build, dim=DIM)
     built = {}
     for model, atlas in product(MODELS, (MACBETH, None)):
         name = f"{model}, {'Macbeth' if atlas else 'no atlas'}"
@@ -156,18 +151,4 @@ def node_spectra(cube: Cube) -> Array:
     )
 
 
-def rounds() -> None:
-    """Draw the round of each node of the ColorChecker, a tile for each blue."""
-    points = cubes()[DEFAULT].data.points
-    tiles = mosaic(blue_slices(points.round.astype(float), DIM))
-    panel = Panel([error_map(tiles, points.round.max())])
-    figure = draw([panel], 1, 6.0, scale="round")
-    write_figure(figure, DOCS / "accuracy" / "rounds.png", force=True)
-
-
-QUESTIONS = {
-    "round_trips": round_trips,
-    "ranges": ranges,
-    "options": options,
-    "rounds": rounds,
-}
+QUESTIONS = {"round_trips": round_trips, "ranges": ranges, "options": options}

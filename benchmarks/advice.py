@@ -63,8 +63,8 @@ def run_scene(entries: Materials, seed: int) -> Iterator[tuple[str, int, float, 
     left_out = families_like(entries.measured)
 
     def build(swatches: Indices) -> uplift.Cube:
-        atlas = entries.take(np.concatenate([known, hidden[swatches]]))
-        return atlas.cube(dim=16, leave_out=left_out, scene=ColourSet(rgb))
+        atlas = entries.take(np.concatenate([known, hidden[swatches]])).atlas
+        return uplift.build(atlas, dim=16, leave_out=left_out, scene=ColourSet(rgb))
 
     def error(cube: uplift.Cube) -> float:
         answers = cube.reflectance(rgb)

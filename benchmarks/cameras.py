@@ -94,19 +94,12 @@ def errors() -> Iterator[Row]:
         yield from measure(methods(sensor), halves, light, camera=camera)
 
 
-def realisable_share(sensor: Sensor, dim: int = DIM) -> float:
-    """Return the share of the nodes of a lattice of raw values that are realisable."""
-    nodes = Lattice(axis_nodes("srgb", dim)).points
-    return solid(sensor.matrix).contains(nodes).mean()
-
-
-def realisable() -> list[Row]:
-    """Return the share of raw values that are realisable, by camera and light."""
-    rows = []
+def realisable() -> Iterator[Row]:
+    """Yield the share of a lattice of raw values that is realisable, by camera."""
+    nodes = Lattice(axis_nodes("srgb", DIM)).points
     for camera, sensor in SENSORS:
-        share = realisable_share(sensor)
-        rows.append({"camera": camera, "light": sensor.illuminant, "share": share})
-    return rows
+        share = solid(sensor.matrix).contains(nodes).mean()
+        yield {"camera": camera, "light": sensor.illuminant, "share": share}
 
 
 SENSORS = [

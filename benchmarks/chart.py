@@ -2,8 +2,6 @@
 ``uplift chart --recommend``.
 """
 
-from itertools import chain
-
 from benchmarks import DOCS, ROOT, Row, show
 from benchmarks.materials import read_atlases
 from uplift.common.files import write_text
@@ -12,9 +10,7 @@ from uplift.lab.chart.measure import measure_methods
 from uplift.lab.chart.picture import render_chart, write_picture
 from uplift.lab.chart.results import (
     MEASURED,
-    Chart,
     chart_csv,
-    criteria,
     shipped_chart,
 )
 from uplift.lab.chart.selection import select_methods
@@ -22,14 +18,10 @@ from uplift.lab.chart.task import make_task
 
 
 def measure() -> None:
-    """Measure, draw and store."""
-    publish(measure_methods(select_methods(), make_task(read_atlases()), show))
-
-
-def publish(chart: Chart) -> None:
-    """Write the table that the package carries, from which `figures` are, and the
-    pictures.
+    """Measure, and write the table that the package carries, from which `figures` are,
+    and the pictures.
     """
+    chart = measure_methods(select_methods(), make_task(read_atlases()), show)
     folder = DOCS / "chart"
     table = ROOT / "uplift" / "lab" / "chart" / MEASURED
     write_text(chart_csv(chart), table, force=True)
@@ -47,27 +39,9 @@ def figures() -> Row:
     return {
         "facts": chart.facts,
         "lights": CHART_LIGHTS,
-        "fronts": fronts(chart),
         "methods": methods,
         "is_complete": len(chart.measured) == len(chart.results),
     }
-
-
-def fronts(chart: Chart) -> list[Row]:
-    """Return the Pareto front of every panel, fastest first. Times are in ns."""
-    rows = []
-    for criterion in chain.from_iterable(map(criteria, chart.batches)):
-        for row in criterion.front(chart):
-            rows.append(
-                {
-                    "panel": criterion.title,
-                    "colours": criterion.batch,
-                    "method": row.title,
-                    "time": criterion.time(row),
-                    "error": row.numbers[f"{criterion.error}_mean"],
-                }
-            )
-    return rows
 
 
 QUESTIONS = {"methods": measure}

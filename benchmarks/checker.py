@@ -1,8 +1,7 @@
 """The ColorChecker: measured spectra and painted RGB, and pictures of it."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -11,19 +10,13 @@ from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import in_unit_cube, observer
 from uplift.colorimetry.gamut import SRGB
 from uplift.common.arrays import Array
-from uplift.extras.colour.light_sets import DESCRIPTIONS
 from uplift.extras.colour.srgb import to_display_codes
-from uplift.extras.pages import panels as figures
-from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import Mark, picture
-from uplift.extras.pages.panels import Axis, Panel, sheet
 
 COLUMNS = 6
 ROWS = 4
 BACKGROUND = 0.03
 """Reflectance between the patches."""
-WIDTH = 2.2
-"""Inches of a picture."""
 Place = tuple[slice, slice]
 """Rows and columns of a part of a picture."""
 
@@ -36,7 +29,6 @@ class Chart:
     ``outside`` (24,) marks the colours outside sRGB, which are painted clipped.
     """
 
-    names: tuple[str, ...]
     wavelengths: Array
     measured: Array
     painted: Array
@@ -46,12 +38,11 @@ class Chart:
 def chart() -> Chart:
     """Read the shipped ColorChecker."""
     sensor = observer.sensor()
-    atlas = read_atlas(MACBETH)
-    measured = on_grid(atlas, sensor.wavelengths)
+    measured = on_grid(read_atlas(MACBETH), sensor.wavelengths)
     rgb = sensor.rgb(measured)
     painted = np.clip(rgb, 0, 1)
     outside = ~in_unit_cube(rgb)
-    return Chart(atlas.names, sensor.wavelengths, measured, painted, outside)
+    return Chart(sensor.wavelengths, measured, painted, outside)
 
 
 @dataclass(frozen=True)
@@ -108,33 +99,3 @@ class Layout:
 def photo(rgb: Array) -> Mark:
     """Draw linear sRGB (height, width, 3), a pixel a sample, white to white."""
     return picture(to_display_codes(rgb, SRGB).astype(np.uint8))
-
-
-def draw(
-    images: Mapping[tuple[str, str], Array],
-    delta_e: Mapping[tuple[str, str], Array],
-    to_screen: Mapping[str, Array],
-    methods: Sequence[str],
-    reference: Sequence[Place],
-    path: Path,
-) -> None:
-    """Draw XYZ ``images`` by light and method, with the first method in the places
-    ``reference`` of all.
-
-    ``delta_e`` has the errors of the patches, ``to_screen`` the matrices (3, 3) from
-    XYZ to linear sRGB by light.
-    """
-    rows = {}
-    for name, matrix in to_screen.items():
-        panels = []
-        for method in methods:
-            image = images[name, method].copy()
-            for place in reference:
-                image[place] = images[name, methods[0]][place]
-            errors = delta_e[name, method]
-            text = f"mean ΔE00 {errors.mean():.1f}, largest {errors.max():.1f}"
-            caption = "" if method == methods[0] else text
-            panels.append(Panel([photo(image @ matrix.T)], x=Axis(caption)))
-        rows[f"{name}\n{DESCRIPTIONS[name]}"] = panels
-    figure = figures.draw(sheet(methods, rows), len(methods), WIDTH)
-    write_figure(figure, path, force=True)

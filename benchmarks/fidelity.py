@@ -18,7 +18,6 @@ from benchmarks.materials import (
     split_tasks,
     task,
 )
-from uplift.fit import shipped_library
 from uplift.lab.chart.selection import select_methods
 from uplift.lab.methods import local_linear
 from uplift.lab.methods.cubes import cube
@@ -95,19 +94,10 @@ def left_out() -> list[Row]:
     return [{"set": name, "families": shipped_families(name)} for name in sets]
 
 
-def library() -> list[Row]:
-    """Return the families of the shipped library and their sizes."""
-    return [
-        {"name": family.name, "spectra": len(family.measured)}
-        for family in shipped_library()
-    ]
-
-
 QUESTIONS = {
     "halves": halves,
     "parts": parts,
     "alone": alone,
     "of_chart": of_chart,
     "left_out": left_out,
-    "library": library,
 }

@@ -94,37 +94,29 @@ def example() -> Row:
         delta_e = delta_e_rgb(sensor, np.clip(rgb, 0, 1), painted.painted)
         return delta_e[~painted.outside]
 
-    by_step = np.array([errors(paths[:, step]).mean() for step in range(STEPS + 1)])
-    draw_descent(paths, observed, painted.painted, by_step)
+    by_step = [errors(path).mean() for path in np.moveaxis(paths, 1, 0)]
+    pictures = {
+        **{f"under {name}": rgb for name, rgb in zip(LIGHTS, observed, strict=True)},
+        **{f"{step} steps": paths[:, step] for step in (*SHOWN, STEPS)},
+        "measured, D65": painted.painted,
+    }
+    panels = []
+    for title, rgb in pictures.items():
+        image = LAYOUT.paint(np.clip(rgb, 0, 1), np.full(3, BACKGROUND))
+        panels.append(Panel([photo(image)], title))
+    curve = line(range(STEPS + 1), by_step)
+    steps = Axis("steps")
+    panels.append(Panel([curve], "mean ΔE00 to the truth", steps, Axis(log=True)))
+    figure = draw(panels, 3, 2.4)
+    write_figure(figure, DOCS / "gradients" / "patches.png", force=True)
     by_light = zip(LIGHTS, map(errors, observed), strict=True)
     return {
         "patches": int((~painted.outside).sum()),
         "by_light": {name: delta_e.mean() for name, delta_e in by_light},
         "mean": by_step[-1],
         "largest": errors(paths[:, -1]).max(),
-        "steps_to_end": int(np.argmax(by_step < 1.05 * by_step[-1])),
+        "steps_to_end": int(np.argmax(np.array(by_step) < 1.05 * by_step[-1])),
     }
-
-
-def draw_descent(
-    paths: Array, observed: list[Array], truth: Array, errors: Array
-) -> None:
-    """Draw the chart under the lamps, in steps of the descent, and its errors."""
-    names = [f"under {name}" for name in LIGHTS]
-    pictures = {
-        **dict(zip(names, observed, strict=True)),
-        **{f"{step} steps": paths[:, step] for step in (*SHOWN, STEPS)},
-        "measured, D65": truth,
-    }
-    panels = []
-    for title, rgb in pictures.items():
-        image = LAYOUT.paint(np.clip(rgb, 0, 1), np.full(3, BACKGROUND))
-        panels.append(Panel([photo(image)], title))
-    curve = line(np.arange(STEPS + 1), errors)
-    steps = Axis("steps")
-    panels.append(Panel([curve], "mean ΔE00 to the truth", steps, Axis(log=True)))
-    figure = draw(panels, 3, 2.4)
-    write_figure(figure, DOCS / "gradients" / "patches.png", force=True)
 
 
 def colours(cube: Cube) -> Array:
@@ -192,15 +184,12 @@ def rates() -> Iterator[Row]:
             }
             row: Row = {"cube": name, "wavelengths": width}
             for method, call in calls.items():
-                finished = partial(finish, call)
-                finished()  # compiles
-                row[method] = time_call(finished, RUNS).wall.scaled(1e6 / count)
+                jax.block_until_ready(call())  # compiles
+                timing = time_call(
+                    lambda call=call: jax.block_until_ready(call()), RUNS
+                )
+                row[method] = timing.wall.scaled(1e6 / count)
             yield row
-
-
-def finish(call: Any) -> None:
-    """Call, and wait for the result."""
-    jax.block_until_ready(call())
 
 
 QUESTIONS = {"example": example, "precision": precision, "rates": rates}

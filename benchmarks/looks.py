@@ -106,17 +106,17 @@ def denser_search() -> Iterator[Row]:
 def likely() -> Iterator[Row]:
     """Yield the share of held-out materials in the likely region."""
     for name in LARGE:
-        pairs = other_halves(name, dim=DIM, coefficients=9)
+        pairs = list(other_halves(name, dim=DIM, coefficients=9))
         for lamp in map(light, LIKELY_LIGHTS):
             inside = []
-            for cube, queried in pairs:
+            for cube, task in pairs:
                 errors = lab_errors(cube.data, lamp)
-                answers = cube.reflectance(queried.rgb)
+                answers = cube.reflectance(task.rgb)
                 measured, answered = (
                     lab(spectra @ lamp.xyz.T, lamp.white)[:, 1:]
-                    for spectra in (queried.measured, answers)
+                    for spectra in (task.queried, answers)
                 )
-                covariance = errors.covariance(queried.rgb)[:, 1:, 1:]
+                covariance = errors.covariance(task.rgb)[:, 1:, 1:]
                 distance = mahalanobis(covariance, measured - answered)
                 inside.append(distance <= errors.likely_radius)
             all_inside = np.concatenate(inside)

@@ -4,6 +4,7 @@ A further set is a line of `FURTHER`. `uplift.lab.runner` measures methods at th
 that `task` and `split_tasks` make of a set.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -16,12 +17,7 @@ from uplift.atlas import Atlas, Entry, read_atlas
 from uplift.colorimetry import in_unit_cube, observer
 from uplift.common.arrays import Array, Indices
 from uplift.lab.look_alikes import families_like
-from uplift.lab.runner import (
-    Task,
-    divided,
-    folds,
-    spectra_of,
-)
+from uplift.lab.runner import Task, divided, spectra_of
 from uplift.lookup import Cube
 
 FURTHER = {"munsell": ROOT / "out" / "munsell.csv"}
@@ -64,10 +60,6 @@ class Materials:
             for row, values in enumerate(self.measured)
         )
         return Atlas(tuple(entries))
-
-    def cube(self, **options: Any) -> Cube:
-        """Build a cube whose atlas they are."""
-        return uplift.build(self.atlas, **options)
 
 
 def inside(atlas: Atlas) -> Materials:
@@ -118,13 +110,9 @@ def split_tasks(name: str, parts: int = 2) -> list[Task]:
     return list(divided(materials(name).atlas, left_out, SENSOR, parts, SPLITS))
 
 
-def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:
-    """Return cubes of random halves of a set, and the other halves: every material is
-    queried equally often.
+def other_halves(name: str, **options: Any) -> Iterator[tuple[Cube, Task]]:
+    """Yield cubes of random halves of a set, and the tasks of the other halves: every
+    material is queried equally often.
     """
-    entries = materials(name)
-    left_out = shipped_families(name)
-    return [
-        (entries.take(known).cube(leave_out=left_out, **options), entries.take(queried))
-        for known, queried in folds(len(entries.rgb), seeds=SPLITS)
-    ]
+    for task in split_tasks(name):
+        yield uplift.build(task.known, leave_out=task.left_out, **options), task

@@ -19,13 +19,13 @@ from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.files import write_text
 from uplift.extras import texture
+from uplift.extras.colour.light_sets import PALETTE_LIGHTS
 from uplift.extras.palette.factor import factor_model
 from uplift.extras.scene import passes as library
 from uplift.extras.scene import wavelengths
 from uplift.extras.scene.passes import Bands, Materials, Passes
 from uplift.extras.scene.passes.browser_page import page
-from uplift.extras.scene.passes.choice import JUDGING_PATHS, JUDGING_SEED
-from uplift.extras.scene.passes.light_paths import draw_paths
+from uplift.extras.scene.passes.choice import judging_paths
 from uplift.extras.texture.uplifter import Converter
 from uplift.fit import shipped_library
 from uplift.lab.timing import time_call
@@ -35,8 +35,6 @@ LIGHTS = ("D65", "A", "FL2", "FL11", "LED-B3", "HP1")
 COUNTS = (1, 2, 3, 4)
 OTHER_LIGHTS = ("D50", "FL4", "FL7", "LED-V1", "LED-RGB1")
 """Lights that no passes are fitted to."""
-SMOOTH = ("D65", "A", "D50", "E")
-"""Lights of the factor model, which spiky ones do not improve."""
 MATERIALS = 100
 """Materials that wavelengths are optimised for, which takes long for more."""
 IMAGE = "still-life.png"
@@ -44,9 +42,6 @@ WINDOW = (1240, 830)
 """Pixels of the window of the page."""
 FRAMES_SECONDS = 40
 """Seconds until a picture of the page is taken."""
-RGB = "RGB"
-BANDS = "bands"
-POINTS = "points"
 ROOM = DOCS / "passes" / "room.html"
 
 
@@ -79,22 +74,20 @@ def rows_of(errors: Array, lights: Sequence[str], **labels: object) -> Iterator[
         yield {**labels, "light": light, **by_number, "mean": of_light.mean()}
 
 
-def both_decodings(fitted: Passes, **labels: object) -> Iterator[Row]:
-    """Yield the errors of one matrix for all lights, and of a matrix for each."""
-    shared = np.stack([light.errors for light in fitted.lights])
-    own = np.stack([light.own_errors for light in fitted.lights])
-    yield from rows_of(shared, LIGHTS, decoding="shared", **labels)
-    yield from rows_of(own, LIGHTS, decoding="own", **labels)
-
-
 def errors() -> Iterator[Row]:
-    """Yield the errors of RGB, and of bands and points of one to four passes."""
+    """Yield the errors of RGB, and of bands and points of one to four passes, by one
+    matrix for all lights and by a matrix for each.
+    """
     plain = library.rgb_errors(materials(), LIGHTS)
-    yield from rows_of(plain, LIGHTS, kind=RGB, passes=0, decoding="shared")
+    yield from rows_of(plain, LIGHTS, kind="RGB", passes=0, decoding="shared")
     for count in COUNTS:
         points = library.choose(materials(), LIGHTS, count, width=0)
-        yield from both_decodings(chosen(count), kind=BANDS, passes=count)
-        yield from both_decodings(points, kind=POINTS, passes=count)
+        for kind, fitted in (("bands", chosen(count)), ("points", points)):
+            shared = np.stack([light.errors for light in fitted.lights])
+            own = np.stack([light.own_errors for light in fitted.lights])
+            of = {"kind": kind, "passes": count}
+            yield from rows_of(shared, LIGHTS, **of, decoding="shared")
+            yield from rows_of(own, LIGHTS, **of, decoding="own")
 
 
 def other_bases() -> Iterator[Row]:
@@ -107,7 +100,7 @@ def other_bases() -> Iterator[Row]:
     table = observer.grid()
     resampled = [np.interp(fine, table, row) for row in np.clip(training, 0, 1)]
     setup = wavelengths.make_setup(np.stack(resampled), LIGHTS)
-    smooth = np.stack([library.scaled_power(name) for name in SMOOTH])
+    smooth = np.stack([library.scaled_power(name) for name in PALETTE_LIGHTS])
     model = factor_model(observer.sensor(), training, smooth, count)
     bases = {"factor model": Basis(model.projection)}
     for method in ("optimised", "meyer", "uniform"):
@@ -121,13 +114,12 @@ def other_bases() -> Iterator[Row]:
 
 def other_lights() -> Iterator[Row]:
     """Yield the errors under lights that no passes are fitted to."""
-    powers = np.stack([library.scaled_power(name) for name in OTHER_LIGHTS])
-    judged = draw_paths(materials().held_out, powers, JUDGING_PATHS, JUDGING_SEED)
+    judged = judging_paths(materials(), OTHER_LIGHTS)
     plain = library.rgb_errors(materials(), OTHER_LIGHTS)
     yield from rows_of(plain, OTHER_LIGHTS, passes=0)
     for count in COUNTS:
         passes = chosen(count)
-        numbers = np.maximum(passes.light_numbers(powers), 0)
+        numbers = np.maximum(passes.light_numbers(judged.powers), 0)
         lit = judged.numbers(passes.bands.weights) * numbers[:, None]
         by_bounce = judged.by_bounce(judged.errors(lit @ passes.to_xyz.T))
         yield from rows_of(by_bounce, OTHER_LIGHTS, passes=count)

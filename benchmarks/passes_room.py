@@ -58,13 +58,15 @@ PICTURE = DOCS / "passes" / "room.png"
 
 
 @dataclass(frozen=True, eq=False)
-class Pass:
-    """Reflectances of the patches (24) and radiances of the lamps (2) in Mitsuba, and
-    the matrix (3, 3) from the numbers of pixels to XYZ.
+class Numbers:
+    """Numbers of the patches (24, K) and of the lamps (2, K), three of them a pass, and
+    the matrix (3, K) from those of pixels to XYZ.
+
+    The spectral variant takes all 81 at once, and returns XYZ.
     """
 
-    surfaces: list[Row]
-    lamps: list[Row]
+    surfaces: Array
+    lamps: Array
     to_xyz: Array
 
 
@@ -112,56 +114,46 @@ def room(surfaces: Sequence[Row], lamps: Sequence[Row], film: Row) -> Row:
     return scene
 
 
-def divide(surfaces: Array, lamps: Array, to_xyz: Array) -> list[Pass]:
-    """Divide the numbers (24, K) of surfaces and (2, K) of lamps, and the columns of
-    the matrix (3, K) to XYZ, among passes of three.
-    """
-    rgb = mitsuba_scenes.rgb
-    threes = [slice(first, first + 3) for first in range(0, to_xyz.shape[1], 3)]
-    return [
-        Pass(
-            list(map(rgb, surfaces[:, three])),
-            list(map(rgb, lamps[:, three])),
-            to_xyz[:, three],
-        )
-        for three in threes
-    ]
-
-
-def all_passes(counts: Sequence[int]) -> dict[str, list[Pass]]:
-    """Return the passes of all wavelengths, of RGB, of bands that are chosen without
-    the paints, and one of spectra.
+def all_numbers(counts: Sequence[int]) -> dict[str, Numbers]:
+    """Return the numbers of all wavelengths, of RGB, of bands that are chosen without
+    the paints, and of spectra.
     """
     spectra = np.clip(chart().measured, 0, 1)
     powers = np.stack([passes.scaled_power(name) for name in LAMPS])
     screen = observer.sensor()
     to_xyz = observer.matching_functions().T
     rgb_lamps = np.maximum(powers @ to_xyz.T @ screen.xyz_to_rgb.T, 0)
-    divided = {
-        SPECTRA: divide(spectra, powers, to_xyz),
-        RGB: divide(chart().painted, rgb_lamps, screen.rgb_to_xyz),
+    numbers = {
+        SPECTRA: Numbers(spectra, powers, to_xyz),
+        RGB: Numbers(chart().painted, rgb_lamps, screen.rgb_to_xyz),
     }
     materials = without_family(FAMILY, spectra)
     for count in counts:
         chosen = passes.choose(materials, LAMPS, count)
         lamps = np.stack([light.numbers for light in chosen.lights])
         surfaces = chosen.reflectance_numbers(spectra)
-        divided[f"{count}"] = divide(surfaces, lamps, chosen.to_xyz)
-    reflectances = list(map(mitsuba_scenes.spectrum, spectra))
-    radiances = list(map(mitsuba_scenes.radiance, powers))
-    divided[SPECTRAL] = [Pass(reflectances, radiances, np.eye(3))]
-    return divided
+        numbers[f"{count}"] = Numbers(surfaces, lamps, chosen.to_xyz)
+    return {**numbers, SPECTRAL: Numbers(spectra, powers, np.eye(3))}
 
 
-def render(divided: list[Pass], variant: str, size: int, samples: int) -> Rendering:
-    """Render passes by a variant of Mitsuba, and decode."""
+def render(numbers: Numbers, variant: str, size: int, samples: int) -> Rendering:
+    """Render all passes by a variant of Mitsuba, and decode."""
     mitsuba_scenes.start_mitsuba(variant)
-    film = mitsuba_scenes.film(size, size, "xyz" if variant == SPECTRAL else "rgb")
+    surface = light = mitsuba_scenes.rgb
+    width = passes.CHANNELS
+    film = mitsuba_scenes.film(size, size, "rgb")
+    if variant == SPECTRAL:
+        surface, light = mitsuba_scenes.spectrum, mitsuba_scenes.radiance
+        width = numbers.surfaces.shape[1]
+        film = mitsuba_scenes.film(size, size)
     xyz = np.zeros((size, size, 3))
     begin = time.process_time()
-    for one in divided:
-        scene = room(one.surfaces, one.lamps, film)
-        xyz += mitsuba_scenes.render(scene, samples, SEED) @ one.to_xyz.T
+    for first in range(0, numbers.surfaces.shape[1], width):
+        part = slice(first, first + width)
+        surfaces = list(map(surface, numbers.surfaces[:, part]))
+        lamps = list(map(light, numbers.lamps[:, part]))
+        picture = mitsuba_scenes.render(room(surfaces, lamps, film), samples, SEED)
+        xyz += picture @ numbers.to_xyz[:, part].T
     return Rendering(xyz, time.process_time() - begin)
 
 
@@ -170,9 +162,9 @@ def render_all(
 ) -> dict[str, Rendering]:
     """Render all passes in child processes, as bright as pictures show them."""
     rendered = {}
-    for name, divided in all_passes(counts).items():
+    for name, numbers in all_numbers(counts).items():
         variant = SPECTRAL if name == SPECTRAL else "scalar_rgb"
-        job = (divided, variant, size, samples[variant])
+        job = (numbers, variant, size, samples[variant])
         rendered[name] = call_in_child(render, *job, seconds=LIMIT)
     white = np.quantile(rendered[SPECTRA].xyz[..., 1], WHITE_LEVEL)
     return {
@@ -222,7 +214,7 @@ def draw_room(rendered: dict[str, Rendering]) -> None:
     for values in maps:
         marks = [error_map(values, largest)]
         panels.append(Panel(marks, f"mean ΔE00 {values.mean():.2f}"))
-    write_figure(draw(panels, len(TITLES), 2.4), PICTURE, force=True)
+    write_figure(draw(panels, len(TITLES), 2.4, dpi=180), PICTURE, force=True)
 
 
 def measure() -> list[Row]:

@@ -2,21 +2,22 @@
 out, for docs/guides/gradients.md.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, DOCS, Row
-from uplift.atlas import read_atlas, resample
-from uplift.colorimetry import delta_e_spectra, in_unit_cube, observer
+from benchmarks import DOCS, Row
+from benchmarks.materials import inside, spectra
+from uplift.colorimetry import delta_e_spectra, observer
 from uplift.colorimetry.gamut import SRGB
 from uplift.common.arrays import Array
 from uplift.extras.colour.srgb import to_display_codes
 from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import line, picture
 from uplift.extras.pages.panels import Axis, Panel, draw, spectra_panel
-from uplift.extras.photographs import SpectrumSampler, photograph, prepare_samples
+from uplift.extras.photographs import photograph, prepare_samples
 from uplift.lab.timing import TimingStats, time_call
 from uplift.lookup import Cube
 from uplift.lookup.errors_under_lights import evidence
@@ -38,31 +39,26 @@ RUNS = 3
 
 @dataclass(frozen=True, eq=False)
 class Spread:
-    """Materials, the answers to their colours, and samples of these."""
+    """Materials (M, 81), the answers to their colours, and samples (M, n, 81)."""
 
-    around: Array
-    """(M, N)."""
-    samples: Array
-    """(M, n, N)."""
     measured: Array
-    """(M, N)."""
+    around: Array
+    samples: Array
 
     def under(self, name: str) -> Row:
         """Return mean ΔE00 of materials and samples from the answers under a light, and
         the percentage of materials within that of samples.
         """
         light = observer.light(name)
-        count = self.samples.shape[1]
-        means = np.repeat(self.around, count, axis=0)
-        spread = delta_e_spectra(light, self.samples.reshape(means.shape), means)
-        spread = spread.reshape(-1, count)
-        radii = np.quantile(spread, LEVELS, axis=1).T
+        samples = np.moveaxis(self.samples, 1, 0)
+        spread = [delta_e_spectra(light, sample, self.around) for sample in samples]
+        radii = np.quantile(spread, LEVELS, axis=0)
         error = delta_e_spectra(light, self.around, self.measured)
-        within = 100 * (error[:, None] <= radii).mean(axis=0)
+        within = 100 * (error <= radii).mean(axis=1)
         return {
             "light": name,
             "materials": error.mean(),
-            "samples": spread.mean(),
+            "samples": np.mean(spread),
             "within_68": within[0],
             "within_95": within[1],
         }
@@ -79,30 +75,21 @@ def left_out(cube: Cube) -> Spread:
     random = np.random.default_rng(SEED)
     at = cube.wavelengths
     samples = sampler.draw(around, rgb, covariance, COUNT, random, at)
-    return Spread(around, samples, measured)
+    return Spread(measured, around, samples)
 
 
 def other_half(name: str) -> Spread:
     """Every second entry of a set, answered by a cube of the others."""
-    atlas = read_atlas(ATLASES / f"{name}.txt")
+    atlas = spectra(name)
     cube = uplift.build(atlas[::2], dim=DIM, leave_out=[name])
-    sensor = cube.data.sensor
-    measured = resample(atlas[1::2], sensor.wavelengths).values
-    rgb = sensor.rgb(measured)
-    inside = in_unit_cube(rgb)
-    rgb = np.clip(rgb[inside], 0, 1)
-    samples = prepare_samples(cube)(rgb, COUNT, SEED)
-    return Spread(cube.reflectance(rgb), samples, measured[inside])
-
-
-def sampler() -> SpectrumSampler:
-    """Return the sampler of the packaged cube."""
-    return prepare_samples(uplift.load())
+    queried = inside(atlas[1::2])
+    samples = prepare_samples(cube)(queried.rgb, COUNT, SEED)
+    return Spread(queried.measured, cube.reflectance(queried.rgb), samples)
 
 
 def examples() -> None:
     """Draw spectra of two colours, and their colours under lights."""
-    sample = sampler()
+    sample = prepare_samples(uplift.load())
     cube = sample.cube
     sensor = cube.data.sensor
     matrices = [sensor.matrix]
@@ -110,36 +97,35 @@ def examples() -> None:
     lights = Axis(names=(sensor.illuminant, *LIGHTS))
     panels = []
     for name, rgb in DRAWN.items():
-        spectra = sample(rgb, SHOWN, SEED)
+        drawn = sample(rgb, SHOWN, SEED)
         colour = to_display_codes(rgb, SRGB) / 255
         marks = [
-            line(cube.wavelengths, spectra.T, "", colour, linewidth=0.7, alpha=0.6),
+            line(cube.wavelengths, drawn.T, "", colour, linewidth=0.7, alpha=0.6),
             line(cube.wavelengths, cube.reflectance(rgb)),
         ]
         panels.append(spectra_panel(marks, f"one {name}"))
-        colours = np.stack([spectra @ matrix.T for matrix in matrices])
+        colours = np.stack([drawn @ matrix.T for matrix in matrices])
         codes = to_display_codes(np.clip(colours, 0, 1), SRGB).astype(np.uint8)
         panels.append(Panel([picture(codes, aspect="auto")], y=lights))
     figure = draw(panels, 2, (4.8, 2.2))
     write_figure(figure, DOCS / "samples" / "samples.png", force=True)
 
 
-def spread() -> list[Row]:
+def spread() -> Iterator[Row]:
     """Compare samples with the materials from which the packaged cube learnt, and with
     halves of sets, under each light.
     """
     spreads = {"packaged": left_out(uplift.load())}
     spreads |= {name: other_half(name) for name in SETS}
-    rows = []
     for name, compared in spreads.items():
         of = {"cube": name, "count": len(compared.measured)}
-        rows += [{**of, **compared.under(light)} for light in LIGHTS]
-    return rows
+        for light in LIGHTS:
+            yield {**of, **compared.under(light)}
 
 
 def seconds() -> TimingStats:
     """Time a sample of a colour."""
-    sample = sampler()
+    sample = prepare_samples(uplift.load())
     rgb = np.random.default_rng(SEED).random((TIMED, 3))
     return time_call(lambda: sample(rgb, 1, SEED), RUNS).wall.scaled(1 / TIMED)
 

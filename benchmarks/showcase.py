@@ -5,6 +5,7 @@ instead of rendered.
 """
 
 import tempfile
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -12,11 +13,14 @@ from PIL import Image
 
 import uplift
 from benchmarks import DOCS, Row, summary
-from benchmarks.checker import BACKGROUND, Layout, chart, draw
+from benchmarks.checker import BACKGROUND, Layout, Place, chart, photo
 from tests.examples import build_wheel, run_lines, unpack
-from uplift.colorimetry import delta_e_2000, lab
+from uplift.colorimetry import Light, delta_e_2000, lab
 from uplift.colorimetry.observer import light, sensor
-from uplift.extras.colour.light_sets import RELIGHT_LIGHTS
+from uplift.common.arrays import Array
+from uplift.extras.colour.light_sets import DESCRIPTIONS, RELIGHT_LIGHTS
+from uplift.extras.pages.figure import write_figure
+from uplift.extras.pages.panels import Axis, Panel, draw, sheet
 from uplift.extras.relight.relight import relight, write_relit_sheet
 from uplift.extras.texture.picture import read_picture
 from uplift.lab.methods import mitsuba3
@@ -31,7 +35,9 @@ METHODS = MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
     "uplift, with the chart",
 )
 LAYOUT = Layout(patch=32, gap=4)
-TRUTH_LIGHTS = RELIGHT_LIGHTS[:2]
+LIGHTS = tuple(map(light, RELIGHT_LIGHTS))
+WIDTH = 2.2
+"""Inches of a picture of the chart."""
 JPEG_WIDTH = 1500
 JPEG_QUALITY = 88
 DIM = 32
@@ -70,44 +76,69 @@ def session() -> list[dict[str, str]]:
     return rows
 
 
-def means() -> list[Row]:
-    """Draw the chart by all methods, and by two; return the errors of its patches, of
+@cache
+def spectra() -> dict[str, Array]:
+    """Return the spectra (24, 81) of the patches, by method."""
+    painted = chart()
+    known = {
+        MEASURED: painted.measured,
+        MITSUBA: mitsuba3.spectra(painted.painted, painted.wavelengths),
+    }
+    for name, cube in cubes().items():
+        known[name] = cube.reflectance(painted.painted)
+    return known
+
+
+def patches(lamp: Light) -> dict[str, tuple[Array, Array]]:
+    """Return XYZ (24, 3) of the patches under a light, and their ΔE00, by method."""
+    srgb = sensor()
+    xyz = {name: values @ lamp.xyz.T for name, values in spectra().items()}
+    xyz[PRODUCT] = srgb.xyz(chart().painted * (srgb.xyz_to_rgb @ lamp.white))
+    in_lab = {name: lab(xyz[name], lamp.white) for name in METHODS}
+    truth = in_lab[MEASURED]
+    return {name: (xyz[name], delta_e_2000(truth, in_lab[name])) for name in METHODS}
+
+
+def means() -> Iterator[Row]:
+    """Draw the chart by all methods, and by two; yield the errors of its patches, of
     all and of those inside sRGB.
 
     Patches have a measured square by all methods, and a measured left half by two.
     """
-    painted = chart()
-    srgb = sensor()
-    spectra = {
-        MEASURED: painted.measured,
-        MITSUBA: mitsuba3.spectra(painted.painted, painted.wavelengths),
-        **{name: cube.reflectance(painted.painted) for name, cube in cubes().items()},
-    }
-    images = {}
-    errors = {}
-    to_screen = {}
-    rows = []
-    for lamp in map(light, RELIGHT_LIGHTS):
-        to_screen[lamp.name] = sensor(illuminant=lamp.name).xyz_to_rgb
-        xyz = {name: values @ lamp.xyz.T for name, values in spectra.items()}
-        xyz[PRODUCT] = srgb.xyz(painted.painted * (srgb.xyz_to_rgb @ lamp.white))
-        truth = lab(xyz[MEASURED], lamp.white)
-        for name in METHODS:
-            delta_e = delta_e_2000(truth, lab(xyz[name], lamp.white))
-            of = {"method": name, "light": lamp.name}
-            rows.append({**of, "patches": "all", **summary(delta_e)})
-            inside = summary(delta_e[~painted.outside])
-            rows.append({**of, "patches": "inside sRGB", **inside})
-            errors[lamp.name, name] = delta_e
-            images[lamp.name, name] = LAYOUT.paint(xyz[name], BACKGROUND * lamp.white)
-    FOLDER.mkdir(exist_ok=True)
-    picture = FOLDER / "charts.png"
-    draw(images, errors, to_screen, METHODS, LAYOUT.middles(), picture)
-    shown = {name: to_screen[name] for name in TRUTH_LIGHTS}
+    draw_sheet("charts.png", METHODS, LIGHTS, LAYOUT.middles())
     methods = (MEASURED, PRODUCT, ATLAS)
-    picture = FOLDER / "truth.png"
-    draw(images, errors, shown, methods, LAYOUT.halves(), picture)
-    return [row for row in rows if row["method"] != MEASURED]
+    draw_sheet("truth.png", methods, LIGHTS[:2], LAYOUT.halves())
+    inside = ~chart().outside
+    for lamp in LIGHTS:
+        for name, (_, errors) in patches(lamp).items():
+            if name != MEASURED:
+                of = {"method": name, "light": lamp.name}
+                yield {**of, "patches": "all", **summary(errors)}
+                yield {**of, "patches": "inside sRGB", **summary(errors[inside])}
+
+
+def draw_sheet(
+    file: str, methods: Sequence[str], lamps: Sequence[Light], places: Sequence[Place]
+) -> None:
+    """Draw the chart by methods under lights, with the measured one in places."""
+    rows = {}
+    for lamp in lamps:
+        known = patches(lamp)
+        background = BACKGROUND * lamp.white
+        truth = LAYOUT.paint(known[MEASURED][0], background)
+        to_screen = sensor(illuminant=lamp.name).xyz_to_rgb.T
+        panels = []
+        for name in methods:
+            xyz, errors = known[name]
+            image = LAYOUT.paint(xyz, background)
+            for place in places:
+                image[place] = truth[place]
+            text = f"mean ΔE00 {errors.mean():.1f}, largest {errors.max():.1f}"
+            caption = "" if name == MEASURED else text
+            panels.append(Panel([photo(image @ to_screen)], x=Axis(caption)))
+        rows[f"{lamp.name}\n{DESCRIPTIONS[lamp.name]}"] = panels
+    figure = draw(sheet(methods, rows), len(methods), WIDTH)
+    write_figure(figure, FOLDER / file, force=True)
 
 
 def still_life() -> None:

@@ -16,51 +16,44 @@ All are linear in the numbers t of the photographs, three of each, with the sens
 import numpy as np
 
 from uplift.common.arrays import Array
+from uplift.extras.photographs import Noise
 
 COMPONENTS = 6
 """Principal components: as many as two photographs have numbers."""
 
 
-def train_matrix(numbers: Array, targets: Array, variance: Array) -> Array:
-    """Matrix (3 L, K) from numbers to targets, the least expected squares for training
-    pairs (n, 3 L), (n, K) whose numbers have noise of some variance (n, 3 L).
-    """
-    # E Σ |A (t + n) − s|² = Σ |A t − s|² + tr A (Σ R) Aᵀ
-    gram = numbers.T @ numbers + np.diag(variance.sum(axis=0))
-    # Without noise few spectra, or a third light, may leave numbers that depend.
-    return np.linalg.pinv(gram, hermitian=True) @ (numbers.T @ targets)
-
-
-def chart_matrix(chart: Array, matrix: Array, variance: Array, numbers: Array) -> Array:
-    """Estimate spectra (n, N) from numbers (n, 3 L), by a matrix trained on the spectra
-    (K, N) of a chart under sensors (3 L, N).
-    """
-    return numbers @ train_matrix(chart @ matrix.T, chart, variance)
-
-
-def principal_components(
-    known: Array, matrix: Array, variance: Array, numbers: Array
+def trained(
+    known: Array, targets: Array, matrix: Array, noise: Noise, numbers: Array
 ) -> Array:
-    """Estimate spectra (n, N) from numbers (n, 3 L), by `COMPONENTS` principal
-    components of known spectra (K, N), whose scores are linear in the numbers.
+    """Estimate spectra (n, N) from numbers (n, 3 L), by a matrix with the least
+    expected squares for the noisy numbers of known spectra (K, N) under sensors
+    (3 L, N) and their targets (K, N): chart spectra themselves, or `projected` ones.
     """
+    observed = known @ matrix.T
+    # E Σ |A (t + n) − s|² = Σ |A t − s|² + tr A (Σ R) Aᵀ
+    gram = observed.T @ observed + np.diag(noise.variance(observed).sum(axis=0))
+    # Without noise few spectra, or a third light, may leave numbers that depend.
+    return numbers @ np.linalg.pinv(gram, hermitian=True) @ (observed.T @ targets)
+
+
+def projected(known: Array) -> Array:
+    """Project spectra (K, N) on their first `COMPONENTS` principal components."""
     _, _, axes = np.linalg.svd(known, full_matrices=False)
     components = axes[:COMPONENTS]
-    scores = known @ components.T
-    return numbers @ train_matrix(known @ matrix.T, scores, variance) @ components
+    return known @ components.T @ components
 
 
 def posterior_mean(
-    expected: Array, covariance: Array, matrix: Array, variance: Array, numbers: Array
+    expected: Array, covariance: Array, matrix: Array, noise: Noise, numbers: Array
 ) -> Array:
-    """Move expected spectra (n, N) to numbers (n, 3 L) with a variance (n, 3 L), for
-    differences of spectra that have a covariance (N, N).
+    """Move expected spectra (n, N) to noisy numbers (n, 3 L), for differences of
+    spectra that have a covariance (N, N).
     """
     # p + C Mᵀ (M C Mᵀ + R)⁻¹ (t − M p)
     to_spectra = covariance @ matrix.T
     gram = np.tile(matrix @ to_spectra, (len(numbers), 1, 1))
     diagonal = np.arange(len(matrix))
-    gram[:, diagonal, diagonal] += variance
+    gram[:, diagonal, diagonal] += noise.variance(numbers)
     residual = numbers - expected @ matrix.T
     weights = np.linalg.solve(gram, residual[..., None])[..., 0]
     return expected + weights @ to_spectra.T

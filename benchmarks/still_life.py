@@ -5,12 +5,11 @@ falls on it, so that its spectrum is known.
 """
 
 import math
-from typing import Any
 
 import numpy as np
 
-from benchmarks import Row
-from uplift.common.arrays import Array, Indices
+from benchmarks import Row, mitsuba_scenes
+from uplift.common.arrays import Array
 
 WIDTH = 480
 HEIGHT = 250
@@ -45,37 +44,27 @@ def still_life() -> Array:
     """Weights (HEIGHT, WIDTH, MATERIALS) of the reflectances of all materials in each
     pixel; their sum is at most 1.
     """
-    import mitsuba
-
-    mitsuba.set_variant("scalar_rgb")
-    parts = scene_parts(mitsuba.ScalarTransform4f())
-    scene = mitsuba.load_dict(parts, optimize=False)  # which would join rectangles
-    rays = np.array(mitsuba.render(scene, spp=1, seed=0)).reshape(-1, 7)
-    shade, _, _, shape, *place = rays.T
-    material = materials_of([part.id() for part in scene.shapes()], shape, place)
+    mitsuba_scenes.start_mitsuba("scalar_rgb")
+    rays = mitsuba_scenes.render(scene_parts(), 1).reshape(-1, 7)
+    shade, _, _, shape, x, y, _ = rays.T
+    # Shapes are counted from 1 in the order of the scene; the cloth has two materials.
+    number = shape.astype(int) - 1
+    cloth = len(BALLS)
+    tiles = (np.floor(x / TILE) + np.floor(y / TILE)).astype(int) % 2
+    material = number + (number > cloth) + tiles * (number == cloth)
     weights = np.zeros((len(rays), MATERIALS))
     weights[np.arange(len(rays)), material] = np.minimum(shade, 1)
     fine = weights.reshape(HEIGHT, SAMPLES, WIDTH, SAMPLES, MATERIALS)
     return fine.mean(axis=(1, 3))
 
 
-def materials_of(names: list[str], shape: Array, place: list[Array]) -> Indices:
-    """Return the materials (n,) of shapes (n,), which are counted from 1; the cloth has
-    tiles by the place.
-    """
-    numbers = np.array([int(name.partition("-")[2] or -1) for name in names])
-    material = numbers[shape.astype(int) - 1]
-    x, y, _ = place
-    tiles = (np.floor(x / TILE) + np.floor(y / TILE)).astype(int) % 2
-    return material + tiles * (material == len(BALLS))
-
-
-def scene_parts(transform: Any) -> Row:
+def scene_parts() -> Row:
     """Return the scene: all surfaces are white, and reflect no light to each other."""
-    white = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 1.0}}
+    from mitsuba import ScalarTransform4f as Transform
+
+    white = mitsuba_scenes.diffuse(grey(1))
     away = math.dist(LAMP, TARGET) / LAMP_RADIUS
-    parts = {
-        "type": "scene",
+    parts: Row = {
         "integrator": {
             "type": "aov",
             "aovs": "shape:shape_index,place:position",
@@ -88,42 +77,28 @@ def scene_parts(transform: Any) -> Row:
         "sensor": {
             "type": "perspective",
             "fov": math.degrees(2 * math.atan(1 / FOCAL)),
-            "to_world": transform.look_at(EYE, TARGET, (0, 0, 1)),
-            "film": {
-                "type": "hdrfilm",
-                "width": WIDTH * SAMPLES,
-                "height": HEIGHT * SAMPLES,
-                "rfilter": {"type": "box"},
-                "pixel_format": "rgb",
-            },
+            "to_world": Transform().look_at(EYE, TARGET, (0, 0, 1)),
+            "film": mitsuba_scenes.film(WIDTH * SAMPLES, HEIGHT * SAMPLES, "rgb"),
         },
-        "around": {
-            "type": "constant",
-            "radiance": {"type": "rgb", "value": AMBIENT},
-        },
-        "lamp": {
-            "type": "sphere",
-            "center": LAMP,
-            "radius": LAMP_RADIUS,
-            "emitter": {
-                "type": "area",
-                "radiance": {"type": "rgb", "value": (1 - AMBIENT) * away**2},
-            },
-        },
-        f"cloth-{len(BALLS)}": {
-            "type": "rectangle",
-            "to_world": transform.scale(100),
-            "bsdf": white,
-        },
-        f"wall-{MATERIALS - 1}": {
-            "type": "rectangle",
-            "to_world": transform.translate((0, WALL, 0))
-            .rotate((1, 0, 0), 90)
-            .scale(100),
-            "bsdf": white,
-        },
+        "around": {"type": "constant", "radiance": grey(AMBIENT)},
     }
     for number, (x, y, radius) in enumerate(BALLS):
         ball = {"type": "sphere", "center": (x, y, radius), "radius": radius}
-        parts[f"ball-{number}"] = {**ball, "bsdf": white}
+        parts[f"ball {number}"] = {**ball, "bsdf": white}
+    to_wall = Transform().translate((0, WALL, 0)).rotate((1, 0, 0), 90)
+    planes = {"cloth": Transform(), "wall": to_wall}
+    for name, place in planes.items():
+        to_world = place.scale(100)
+        parts[name] = {"type": "rectangle", "to_world": to_world, "bsdf": white}
+    parts["lamp"] = {
+        "type": "sphere",
+        "center": LAMP,
+        "radius": LAMP_RADIUS,
+        "emitter": {"type": "area", "radiance": grey((1 - AMBIENT) * away**2)},
+    }
     return parts
+
+
+def grey(value: float) -> Row:
+    """Describe three equal numbers."""
+    return mitsuba_scenes.rgb(np.full(3, value))

@@ -10,22 +10,15 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks import UPLIFT, Row, six_numbers, summary
-from benchmarks.materials import (
-    FETCHED,
-    SENSOR,
-    SHIPPED,
-    Materials,
-    materials,
-    other_halves,
-)
-from benchmarks.two_lights_picture import draw_pictures
+from benchmarks.materials import FETCHED, SENSOR, SHIPPED, materials, other_halves
+from benchmarks.two_lights_picture import draw_pictures, take_photographs
 from uplift.common.arrays import Array
 from uplift.extras.images.exr import make_part, write_parts
-from uplift.extras.photographs import Noise, Photographs, photograph, prepare
+from uplift.extras.photographs import Noise, Photographs
 from uplift.extras.photographs.errors import photographed
 from uplift.extras.texture.picture import read_picture
-from uplift.lab.runner import Errors, join, named_lights, spectrum_errors
-from uplift.lab.timing import run_call, run_command, time_in_turn
+from uplift.lab.runner import Errors, Task, join, named_lights, spectrum_errors
+from uplift.lab.timing import run_command, time_in_turn
 from uplift.lookup import Cube
 from uplift.lookup.errors_under_lights import Evidence, errors_from, evidence
 from uplift.samples import sample_path
@@ -50,8 +43,6 @@ OURS = "photographs"
 FORMULA = "formula of 81 samples"
 PCA = "principal components"
 CHART_MATRIX = "chart matrix"
-SPEED_COLOURS = 1 << 17
-SPEED_RUNS = 12
 IMAGE = "still-life.png"
 TILES = (8, 4, 1)
 """Repetitions of the image in the photographs of a texture."""
@@ -82,55 +73,45 @@ class Case:
 
 
 CASES = [Case(further, share) for further, share in product(FURTHER, SHARES)]
+Found = dict[tuple[Case, str], Errors]
+"""Errors by case and method."""
 
 
-def of_case(cube: Cube, queried: Materials, case: Case, seed: int) -> dict[str, Errors]:
+def of_half(cube: Cube, task: Task, seed: int) -> Found:
     """Photograph materials; return the errors of all methods under the unseen lights,
     and those that we state.
     """
-    random = np.random.default_rng(seed)
-    further = [photograph(SENSOR, name) for name in case.further]
-    photographs = prepare(cube, further, case.noise)
-    rgb = np.clip(noisy(queried.rgb, case.noise, random), 0, 1)
-    others = noisy(queried.measured @ photographs.matrix.T, case.noise, random)
-    lights = list(named_lights(case.unseen).values())
-    errors = {
-        method: spectrum_errors(spectra, queried.measured, lights)
-        for method, spectra in answers(photographs, rgb, others).items()
-    }
-    known = photographed(photographs)
-    stated = [errors_from(cube.data, light, known)(rgb) for light in lights]
-    return {**errors, OURS: replace(errors[OURS], stated=np.stack(stated, axis=1))}
-
-
-def noisy(values: Array, noise: Noise, random: np.random.Generator) -> Array:
-    """Return values of a photograph with noise."""
-    scale = np.sqrt(noise.variance(values))
-    return values + scale * random.standard_normal(values.shape)
+    errors = {}
+    for case in CASES:
+        photographs, rgb, others = take_photographs(
+            cube, task.queried, case.further, case.noise, seed
+        )
+        lights = list(named_lights(case.unseen).values())
+        for method, spectra in answers(photographs, rgb, others).items():
+            errors[case, method] = spectrum_errors(spectra, task.queried, lights)
+        known = photographed(photographs)
+        stated = [errors_from(cube.data, light, known)(rgb) for light in lights]
+        ours = errors[case, OURS]
+        errors[case, OURS] = replace(ours, stated=np.stack(stated, axis=1))
+    return errors
 
 
 def answers(photographs: Photographs, rgb: Array, others: Array) -> dict[str, Array]:
     """Return the spectra (n, 81) of all methods from linear RGB under all lights."""
     cube = photographs.cube
-    variance = photographs.noise.variance
     matrix = np.concatenate([SENSOR.matrix, photographs.matrix])
-    numbers = np.concatenate([rgb, others], axis=1)
+    observed = matrix, photographs.noise, np.concatenate([rgb, others], axis=1)
     left_out = evidence(cube.data)
     known = np.asarray(left_out.measured, dtype=float)
     chart = materials(CHART).measured
     expected = cube.reflectance(rgb)
+    covariance = second_moment(left_out)
     return {
         CUBE: expected,
         OURS: photographs.reflectance(rgb, others),
-        FORMULA: six_numbers.posterior_mean(
-            expected, second_moment(left_out), matrix, variance(numbers), numbers
-        ),
-        PCA: six_numbers.principal_components(
-            known, matrix, variance(known @ matrix.T), numbers
-        ),
-        CHART_MATRIX: six_numbers.chart_matrix(
-            chart, matrix, variance(chart @ matrix.T), numbers
-        ),
+        FORMULA: six_numbers.posterior_mean(expected, covariance, *observed),
+        PCA: six_numbers.trained(known, six_numbers.projected(known), *observed),
+        CHART_MATRIX: six_numbers.trained(chart, chart, *observed),
     }
 
 
@@ -143,22 +124,14 @@ def second_moment(known: Evidence) -> Array:
 
 
 @cache
-def of_set(name: str) -> dict[Case, dict[str, Errors]]:
+def of_set(name: str) -> Found:
     """Return the errors at the unseen halves of a set, or of all sets together."""
     if name == TOGETHER:
-        return {
-            case: joined([of_set(other)[case] for other in OTHERS]) for case in CASES
-        }
-    halves = list(enumerate(other_halves(name, dim=DIM)))
-    return {
-        case: joined([of_case(*half, case, seed) for seed, half in halves])
-        for case in CASES
-    }
-
-
-def joined(parts: list[dict[str, Errors]]) -> dict[str, Errors]:
-    """Pool the errors of each method."""
-    return {method: join([part[method] for part in parts]) for method in parts[0]}
+        parts = [of_set(other) for other in OTHERS]
+    else:
+        halves = enumerate(other_halves(name, dim=DIM))
+        parts = [of_half(*half, seed) for seed, half in halves]
+    return {key: join([part[key] for part in parts]) for key in parts[0]}
 
 
 def errors() -> Iterator[Row]:
@@ -167,44 +140,34 @@ def errors() -> Iterator[Row]:
     Ratios are those of the means of the photographs to those of the method, over all
     lights and under the least favourable one.
     """
-    for name, case in product((*SETS, TOGETHER), CASES):
-        ours = of_set(name)[case][OURS]
-        for method, found in of_set(name)[case].items():
+    for name in (*SETS, TOGETHER):
+        found = of_set(name)
+        for (case, method), of_method in found.items():
             if method == CHART_MATRIX and name in CHART_LIKE:
                 continue
-            row = {"set": name, **case.columns, "method": method}
-            ratios = ours.delta_e.mean(axis=0) / found.delta_e.mean(axis=0)
-            row |= summary(found.delta_e)
-            row["ratio"] = ours.delta_e.mean() / found.delta_e.mean()
-            row["worst_light"] = ratios.max()
-            if found.stated is not None:
-                within = found.delta_e[:, :, None] <= found.stated
+            ours = found[case, OURS].delta_e
+            delta_e = of_method.delta_e
+            row = {
+                "set": name,
+                **case.columns,
+                "method": method,
+                **summary(delta_e),
+                "ratio": ours.mean() / delta_e.mean(),
+                "worst_light": (ours.mean(axis=0) / delta_e.mean(axis=0)).max(),
+            }
+            if of_method.stated is not None:
+                within = delta_e[:, :, None] <= of_method.stated
                 row["standard"], row["bound"] = within.mean(axis=(0, 1))
             yield row
 
 
 def by_light() -> Iterator[Row]:
     """Yield the errors of `TOGETHER` under each light, from one photograph and more."""
-    for case, by_method in of_set(TOGETHER).items():
-        for method, known in ((CUBE, ("D65",)), (OURS, ("D65", *case.further))):
-            columns = {**case.columns, "photographs": ", ".join(known)}
-            delta_e = by_method[method].delta_e
-            for name, of_light in zip(case.unseen, delta_e.T, strict=True):
-                yield {**columns, "light": name, **summary(of_light)}
-
-
-def speed() -> Row:
-    """Return how many times the CPU time of one photograph two take for a colour."""
-    cube, _ = other_halves("rawtoaces", dim=DIM)[0]
-    photographs = prepare(cube, [photograph(SENSOR, "A")])
-    rgb = np.random.default_rng(0).random((SPEED_COLOURS, 3))
-    others = cube.reflectance(rgb) @ photographs.matrix.T
-    one = partial(cube.reflectance, rgb)
-    two = partial(photographs.reflectance, rgb, others)
-    two()  # compiles
-    tasks = {"one": partial(run_call, one), "two": partial(run_call, two)}
-    times = time_in_turn(tasks, SPEED_RUNS)
-    return {"ratio": times["two"].ratio_to(times["one"])}
+    found = of_set(TOGETHER)
+    for case in CASES:
+        for method, further in ((CUBE, ()), (OURS, case.further)):
+            known = {"photographs": ", ".join(["D65", *further])}
+            yield from found[case, method].rows(case.unseen, **case.columns, **known)
 
 
 def texture() -> Row:
@@ -235,5 +198,4 @@ QUESTIONS = {
     "errors": errors,
     "by_light": by_light,
     "scene": draw_pictures,
-    "speed": speed,
 }

@@ -7,9 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from benchmarks.accuracy import largest
-from benchmarks.cameras import lab_matrix, realisable_share, xyz_matrix
+from benchmarks.cameras import lab_matrix, xyz_matrix
 from benchmarks.representations import closed, enhanced, with_tables_6
-from uplift.colorimetry import observer, tables
 from uplift.extras.scene.representations.samples import xyz_weights
 
 
@@ -26,14 +25,6 @@ def test_known_camera_matrices_are_found_and_keep_white():
 def test_the_largest_error_is_searched_for():
     starts = np.random.default_rng(0).uniform(0, 0.5, (32, 3))
     assert largest(lambda rgb: rgb @ [1, 2, -3], starts) == pytest.approx(3, abs=0.05)
-
-
-def test_overlapping_channels_leave_few_raw_values():
-    shares = [
-        realisable_share(observer.sensor("camera", "D65", name), 12)
-        for name in tables.names("camera")
-    ]
-    assert 0 < shares[1] < shares[0] < 1
 
 
 @pytest.mark.parametrize("count", [8, 32])

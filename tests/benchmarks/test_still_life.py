@@ -1,27 +1,17 @@
 """The still life of measured materials: what is visible, and the light on it."""
 
-import pytest
-
 from benchmarks import still_life
 from tests.parts import MITSUBA, need
 
 
-@pytest.fixture(scope="module")
-def weights():
+def test_pixels_are_mixtures_of_lit_materials_that_are_all_visible(monkeypatch):
     need(MITSUBA)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(still_life, "WIDTH", 96)
-        patch.setattr(still_life, "HEIGHT", 50)
-        patch.setattr(still_life, "LIGHT_SAMPLES", 4)
-        return still_life.still_life()
-
-
-def test_pixels_are_mixtures_of_lit_materials(weights):
+    for name, value in {"WIDTH": 96, "HEIGHT": 50, "LIGHT_SAMPLES": 4}.items():
+        monkeypatch.setattr(still_life, name, value)
+    weights = still_life.still_life()
     assert weights.shape == (50, 96, still_life.MATERIALS)
     assert weights.min() >= 0
-    assert weights.sum(axis=2).max() <= 1 + 1e-12
-    assert 0.2 < weights.sum(axis=2).mean() < 0.9
-
-
-def test_every_material_is_visible(weights):
+    lit = weights.sum(axis=2)
+    assert lit.max() <= 1 + 1e-12
+    assert 0.2 < lit.mean() < 0.9
     assert (weights.max(axis=(0, 1)) > 0.1).all()
