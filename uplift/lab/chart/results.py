@@ -23,10 +23,12 @@ FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
 MAX_BYTES = 16 << 20
 """Largest file that is read."""
 MAX_NUMBER = 1e30
+SUMMARY = ("mean", "p99", "max")
+"""Statistics of each error."""
 ERRORS = ("round_trip", "coarse_round_trip", *CHART_LIGHTS, "lights", "rms")
 OWN_ERRORS = tuple(f"own_{name}" for name in ERRORS[2:])
 REQUIRED = {"bytes", "time_ns", "setup_s", "round_trip_colours", "unseen_spectra"}
-REQUIRED |= set(map("_".join, product((*ERRORS, *OWN_ERRORS), ("mean", "p99", "max"))))
+REQUIRED |= set(map("_".join, product((*ERRORS, *OWN_ERRORS), SUMMARY)))
 """Numbers of every method that was measured."""
 BATCH = re.compile(r"ns_([1-9]\d{0,8})")
 """Name of a time by the number of colours per call."""

@@ -83,7 +83,6 @@ METHODS = (
         prepare=prepare,
         reference_sensor=ours,
         claimed_range=(0, 1000),
-        batch=False,
         note="our solver; reflectances may exceed 1",
     ),
 )

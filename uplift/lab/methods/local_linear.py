@@ -145,7 +145,6 @@ METHODS = (
         ),
         prepare=prepare,
         reference_sensor=ours,
-        batch=False,
         note="measured spectra as those of cubes with an atlas, without a table",
     ),
 )

@@ -100,7 +100,6 @@ METHODS = (
         ),
         prepare=prepare,
         reference_sensor=ours,
-        batch=False,
         note="measured spectra as those of cubes with an atlas, mixed for each colour",
     ),
 )

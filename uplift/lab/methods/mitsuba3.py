@@ -151,7 +151,6 @@ METHODS = (
         method="mitsuba3-table",
         title="Mitsuba 3, table of 64",
         prepare=prepare,
-        batch=False,
         note="coefficients from Python, one colour per call; spectra by numpy",
         needs=MITSUBA,
     ),

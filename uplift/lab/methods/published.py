@@ -15,7 +15,6 @@ primary decomposition for rendering with sRGB reflectance", EGSR. Jakob & Hanika
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache, partial
 from typing import Any
 
@@ -29,6 +28,7 @@ from uplift.common.colour_science import colour_science
 from uplift.lab.method import (
     Method,
     PreparedMethod,
+    in_float32,
     nbytes,
     published_srgb,
     stated_sensor,
@@ -151,17 +151,6 @@ def _method(
     )
 
 
-def _in_single(method: Method) -> Method:
-    """Return a method of `prepare_basis` in float32."""
-    return replace(
-        method,
-        method=f"{method.method}-float32",
-        title=f"{method.title}, float32",
-        label=f"{method.title} f32",
-        dtype="float32",
-    )
-
-
 JAKOB = (
     "Jakob & Hanika, A low-dimensional function space for efficient spectral "
     "upsampling, CGF 38(2), 2019"
@@ -197,7 +186,6 @@ METHODS = (
         JAKOB,
         partial(prepare_one_by_one, name="XYZ_to_sd_Jakob2019"),
         claimed_error=0.1,
-        batch=False,
         note="colour-science, which stops at ΔE76 0.024",
     ),
     _method(
@@ -210,7 +198,7 @@ METHODS = (
         note="looked up by colour-science in the table of Mitsuba 3",
     ),
     MALLETT,
-    _in_single(MALLETT),
+    in_float32(MALLETT),
     _method(
         "meng2015",
         "Meng 2015",
@@ -223,7 +211,6 @@ METHODS = (
         ),
         claimed_error=0.5,
         claimed_range=(0, 1000),
-        batch=False,
         note=(
             f"colour-science at {MENG_STEP:g} nm, interpolated; reflectances may "
             "exceed 1"
@@ -237,9 +224,8 @@ METHODS = (
             "tristimulus colours, CGF 37(6), 2018"
         ),
         partial(prepare_one_by_one, name="XYZ_to_sd_Otsu2018", grid=OTSU_GRID),
-        batch=False,
         note="colour-science with its own data, clipped to [0, 1]",
     ),
     SMITS,
-    _in_single(SMITS),
+    in_float32(SMITS),
 )
