@@ -4,7 +4,7 @@
 
 from itertools import chain
 
-from benchmarks import DOCS, ROOT, Row, show
+from benchmarks import DOCS, Row, show
 from benchmarks.materials import read_atlases
 from uplift.common.files import write_text
 from uplift.extras.colour.light_sets import CHART_LIGHTS
@@ -31,8 +31,7 @@ def publish(chart: Chart) -> None:
     pictures.
     """
     folder = DOCS / "chart"
-    table = ROOT / "uplift" / "lab" / "chart" / MEASURED
-    write_text(chart_csv(chart), table, force=True)
+    write_text(chart_csv(chart), MEASURED, force=True)
     write_picture(chart, folder / "chart.png", force=True)
     write_text(render_chart(chart), folder / "chart.html", force=True)
 
@@ -57,7 +56,7 @@ def fronts(chart: Chart) -> list[Row]:
     """Return the Pareto front of every panel, fastest first. Times are in ns."""
     rows = []
     for criterion in chain.from_iterable(map(criteria, chart.batches)):
-        for row in criterion.front(chart):
+        for row in criterion.front(chart.measured):
             rows.append(
                 {
                     "panel": criterion.title,

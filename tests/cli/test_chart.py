@@ -7,7 +7,6 @@ from dataclasses import replace
 import matplotlib.image
 import pytest
 from click.testing import CliRunner
-from uplift_cli.commands import chart
 from uplift_cli.main import main
 
 from tests.lab.chart import faulty
@@ -31,12 +30,11 @@ def quick(repository, tmp_path_factory):
         patch.setattr(
             task,
             "QUICK",
-            replace(task.QUICK, seconds_per_error=0.1, lap=0.002, longest=0.02),
+            replace(task.QUICK, colours=300, seconds_per_error=0.1, longest=0.02),
         )
         for name, value in ONE_THREAD.items():
             patch.setenv(name, value)
         atlas = str(repository / "atlases" / "macbeth.txt")
-        patch.setattr(chart, "COLOURS", 300)
         words = ["chart", "--quick", "--atlas", atlas, "-o", "out"]
         words += [
             f"--method={name}"

@@ -102,7 +102,7 @@ def test_slow_methods_process_as_many_colours_as_time_allows(small_task):
         burn(0.01 * len(rgb))
         return grey(rgb, wavelengths)
 
-    numbers = measure_method(method_of(slow, batch=False), small_task).numbers
+    numbers = measure_method(method_of(slow), small_task).numbers
     assert 1 <= numbers["round_trip_colours"] <= 5
     assert numbers["unseen_spectra"] == numbers["round_trip_colours"]
     assert numbers["ns_1_colours"] == 1

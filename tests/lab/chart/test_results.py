@@ -31,7 +31,6 @@ from uplift.lab.chart.results import (
     State,
     chart_csv,
     criteria,
-    parse_chart,
     read_chart,
     shipped_chart,
 )
@@ -66,13 +65,15 @@ def test_csv_round_trip(tmp_path):
         ("$", "\udcff"),
     ],
 )
-def test_invalid_table_is_an_error(old, new):
+def test_invalid_table_is_an_error(tmp_path, old, new):
     text = chart_csv(chart_of(row_of("one", 12.5, 1))).rstrip()
-    assert parse_chart(text.encode(), "chart.csv").results
-    spoilt = re.sub(old, new, text)
+    file = tmp_path / "chart.csv"
+    file.write_text(text)
+    assert read_chart(file).results
+    file.write_bytes(re.sub(old, new, text).encode(errors="surrogateescape"))
     with raises(ChartFileError, "chart-file") as caught:
-        parse_chart(spoilt.encode(errors="surrogateescape"), "chart.csv")
-    assert caught.value.path == "chart.csv"
+        read_chart(file)
+    assert caught.value.path == file
 
 
 ROUND_TRIP, LIGHTS, WITH_SET_UP, *_ = criteria(64)
@@ -85,7 +86,7 @@ def test_front_is_clearly_more_accurate_than_all_faster_methods(points):
     rows = {}
     for number, (time, error) in enumerate(points):
         rows[row_of(str(number), time, error)] = time, max(error, MIN_ERROR)
-    front = ROUND_TRIP.front(chart_of(*rows))
+    front = ROUND_TRIP.front(rows)
     for one, other in pairwise(front):
         assert rows[one][0] < rows[other][0]
         assert rows[other][1] < CLEAR_RATIO * rows[one][1]
@@ -99,8 +100,8 @@ def test_front_is_clearly_more_accurate_than_all_faster_methods(points):
 
 def test_set_up_is_part_of_the_time_of_a_call():
     row = row_of("one", 1000, 1.0)
-    assert LIGHTS.point(row) == (1000, 1)
-    assert WITH_SET_UP.point(row) == (1.5e9 + 64 * 1000, 1)
+    assert LIGHTS.points([row]) == {row: (1000, 1)}
+    assert WITH_SET_UP.points([row]) == {row: (1.5e9 + 64 * 1000, 1)}
     assert WITH_SET_UP.labels(row) == ("1.5 s", "1")
 
 

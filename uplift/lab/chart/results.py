@@ -1,11 +1,11 @@
 """A chart as rows of numbers and as CSV, and its panels with Pareto fronts."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from enum import StrEnum
-from importlib.resources import files
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 from uplift.common.arrays import StrPath
@@ -35,8 +35,8 @@ BATCH = re.compile(r"ns_([1-9]\d{0,8})")
 SPREAD = ("least", "most", "colours")
 """Suffixes of the numbers that come with a time."""
 REFERENCE = 65_536
-"""Colours per call of the time by which cubes are recommended."""
-MEASURED = "measured.csv"
+MEASURED = Path(__file__).with_name("measured.csv")
+"""The chart that is part of the package."""
 HINT = "give the CSV file of a chart"
 
 
@@ -108,22 +108,14 @@ def chart_csv(chart: Chart) -> str:
     return csv_text(columns, rows)
 
 
-def read_chart(path: StrPath) -> Chart:
-    """Read the CSV file of a chart. Raises `ChartFileError`."""
-    return parse_chart(
-        read_bytes(path, ChartFileError, limit=MAX_BYTES, hint=HINT), path
-    )
-
-
 def shipped_chart() -> Chart:
     """Return the chart of docs/speed.md, which is part of the package."""
-    return parse_chart(
-        files("uplift.lab.chart").joinpath(MEASURED).read_bytes(), MEASURED
-    )
+    return read_chart(MEASURED)
 
 
-def parse_chart(data: bytes, path: StrPath) -> Chart:
-    """Parse the CSV file of a chart. Raises `ChartFileError`."""
+def read_chart(path: StrPath) -> Chart:
+    """Read the CSV file of a chart. Raises `ChartFileError`."""
+    data = read_bytes(path, ChartFileError, limit=MAX_BYTES, hint=HINT)
     try:
         lines = parse_csv(data)
         if not lines:
@@ -160,6 +152,14 @@ def _number(name: str, text: str) -> float:
             f"{shorten(name)} must be in [0, {MAX_NUMBER:g}], got {format_value(text)}"
         )
     return value
+
+
+def reference_batch(batches: Sequence[int]) -> int:
+    """Return the colours per call of the time by which cubes are recommended, and which
+    the page shows at first: at most `REFERENCE`, if there are so few.
+    """
+    few = [batch for batch in batches if batch <= REFERENCE]
+    return max(few, default=min(batches, default=0))
 
 
 MIN_TIME = 1.0
@@ -202,13 +202,17 @@ class Criterion:
             return per_rgb
         return 1e9 * result.numbers["setup_s"] + self.batch * per_rgb
 
-    def point(self, result: MethodResult) -> tuple[float, float] | None:
-        """Return time and mean error, None if either is unknown."""
-        time = self.time(result)
-        error = result.numbers.get(f"{self.error}_mean")
-        if time is None or error is None:
-            return None
-        return max(time, MIN_TIME), max(error, MIN_ERROR)
+    def points(
+        self, results: Iterable[MethodResult]
+    ) -> dict[MethodResult, tuple[float, float]]:
+        """Return time and mean error of the results that have both."""
+        points = {}
+        for result in results:
+            time = self.time(result)
+            error = result.numbers.get(f"{self.error}_mean")
+            if time is not None and error is not None:
+                points[result] = max(time, MIN_TIME), max(error, MIN_ERROR)
+        return points
 
     def labels(self, result: MethodResult) -> tuple[str, str]:
         """Return time and mean error as text."""
@@ -216,17 +220,13 @@ class Criterion:
             result.numbers[f"{self.error}_mean"]
         )
 
-    def front(self, chart: Chart) -> tuple[MethodResult, ...]:
+    def front(self, results: Iterable[MethodResult]) -> list[MethodResult]:
         """Return the Pareto front, fastest first: each is clearly more accurate than
         all faster methods.
         """
-        results = []
-        points = []
-        for result in chart.measured:
-            if point := self.point(result):
-                results.append(result)
-                points.append(point)
-        return tuple(results[row] for row in pareto_front(points))
+        points = self.points(results)
+        compared = list(points)
+        return [compared[row] for row in pareto_front(list(points.values()))]
 
 
 UNSEEN = "Unseen materials, mean of five lights"

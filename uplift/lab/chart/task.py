@@ -11,14 +11,11 @@ import numpy as np
 from uplift.atlas import Atlas, merge
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.common.errors import AtlasError, OptionError
+from uplift.common.errors import AtlasError
 from uplift.common.text import pluralise
 from uplift.lab.look_alikes import families_like
 from uplift.lab.runner import Task, spectra_of, within
 
-COLOURS = 2000
-"""Default number of random colours."""
-MIN_COLOURS = 16
 MIN_SPECTRA = 2
 
 
@@ -26,13 +23,15 @@ MIN_SPECTRA = 2
 class Effort:
     """Time spent on a method.
 
-    ``seconds_per_error``: CPU time for the answers of one error; slow methods process
-    fewer colours. ``lap``: shortest duration of a repetition in seconds. ``longest``:
-    CPU seconds of a call; slower ones take fewer colours than the batch has.
-    ``builds``: number of builds of each cube; the last one is timed. ``limit``: wall
-    seconds after which a method in a child process counts as hung.
+    ``colours``: number of random colours of the round trip. ``seconds_per_error``: CPU
+    time for the answers of one error; slow methods process fewer colours. ``lap``:
+    shortest duration of a repetition in seconds. ``longest``: CPU seconds of a call;
+    slower ones take fewer colours than the batch has. ``builds``: number of builds of
+    each cube; the last one is timed. ``limit``: wall seconds after which a method in a
+    child process counts as hung.
     """
 
+    colours: int = 2000
     seconds_per_error: float = 6.0
     runs: int = 7
     lap: float = 0.02
@@ -70,16 +69,12 @@ class ChartTask:
     facts: Mapping[str, str]
 
 
-def make_task(
-    atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effort | None = None
-) -> ChartTask:
+def make_task(atlases: Mapping[str, Atlas], effort: Effort | None = None) -> ChartTask:
     """Make a task from measured spectra in linear sRGB: of each atlas the first, third,
     … entry builds cubes, the others test them.
 
-    Raises `OptionError`, `AtlasError`.
+    Raises `AtlasError`.
     """
-    if colours < MIN_COLOURS:
-        raise OptionError(f"colours must be at least {MIN_COLOURS}, got {colours}")
     effort = effort or Effort()
     sensor = observer.sensor()
     known = merge(atlas[::2] for atlas in atlases.values())
@@ -94,11 +89,11 @@ def make_task(
         hint = "give an atlas of 8 or more entries"
         raise AtlasError(problem, code="too-few-entries", hint=hint)
     random = np.random.default_rng(1)
-    rgb = np.concatenate([random.random((colours, 3)), edges()])
+    rgb = np.concatenate([random.random((effort.colours, 3)), edges()])
     facts = {
         "colours": (
-            f"{colours:,} random and {len(edges())} along edges and greys of linear "
-            "sRGB, under D65"
+            f"{effort.colours:,} random and {len(edges())} along edges and greys of "
+            "linear sRGB, under D65"
         ),
         "spectra": f"{len(known)} of {pluralise(len(known) + len(others), 'entry')} of "
         f"{', '.join(atlases)} (every "
