@@ -5,16 +5,13 @@ cube, pictures and pages.
 import itertools
 import json
 import re
-import shlex
 from dataclasses import replace
 from itertools import pairwise
 
-import click
 import matplotlib.image
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from uplift_cli.main import main
 
 from benchmarks.browser import browser
 from tests.browsing import check_page, open_page
@@ -22,7 +19,7 @@ from tests.helpers import raises
 from tests.lab.chart.conftest import chart_of, row_of
 from tests.pages import Page, external_links
 from tests.parts import CHROMIUM, need
-from uplift.common.errors import ChartFileError, OptionError, UnknownNameError
+from uplift.common.errors import ChartFileError, OptionError
 from uplift.extras.pages.pareto import CLEAR_RATIO
 from uplift.lab.chart.picture import drawn_results, render_chart, write_picture
 from uplift.lab.chart.recommendation import Requirement, recommend_cube
@@ -32,7 +29,6 @@ from uplift.lab.chart.results import (
     chart_csv,
     criteria,
     read_chart,
-    shipped_chart,
 )
 
 
@@ -155,16 +151,6 @@ def test_unmet_requirement_names_the_closest_cube(requirement, closest):
 def test_limits_are_required_and_positive(limits):
     with raises(OptionError, "option"):
         Requirement(**limits)
-    with raises(UnknownNameError, "unknown-name"):
-        Requirement(delta_e=1, light="FL111")
-
-
-def test_recommendation_of_the_shipped_chart_is_a_valid_command():
-    found = recommend_cube(shipped_chart(), Requirement(time_ns=1e5))
-    assert found.numbers["time_ns"] <= 1e5
-    name, *arguments = shlex.split(found.build)[1:]
-    with click.Context(main, **main.context_settings) as context:
-        main.get_command(context, name).make_context(name, arguments, parent=context)
 
 
 def test_cubes_that_others_of_their_kind_beat_are_not_drawn(tmp_path):

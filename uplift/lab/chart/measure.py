@@ -49,7 +49,7 @@ def measure_methods(
         progress(Progress("methods", len(results), len(methods)))
     wavelengths = pluralise(len(task.unseen.sensor.wavelengths), "wavelength")
     summary = (
-        f"CPU time of all threads; up to {effort.runs} runs of calls of at most "
+        f"CPU time of all threads; {effort.runs} runs of calls of at most "
         f"{effort.longest:g} s, spectra at {wavelengths}; errors of slow methods are "
         f"of the colours of {effort.seconds_per_error:g} s; "
         f"{(time.perf_counter() - begin) / 60:.1f} minutes in all"
