@@ -18,7 +18,6 @@ STATISTICS: Mapping[str, Callable[..., Any]] = {
     "q2_5": partial(np.quantile, q=0.025),
     "q25": partial(np.quantile, q=0.25),
     "q75": partial(np.quantile, q=0.75),
-    "p99": partial(np.quantile, q=0.99),
     "q97_5": partial(np.quantile, q=0.975),
 }
 """Statistics by the column that they have in tables; ``most`` is the maximum."""

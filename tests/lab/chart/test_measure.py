@@ -68,9 +68,10 @@ def test_errors_are_those_of_the_runner(small_task):
     claim = 1.01 * numbers["round_trip_mean"] / MAX_CLAIM_RATIO
     claimed = method_of(grey, claimed_error=claim)
     assert measure_method(claimed, small_task).state == State.MEASURED
-    sensor = small_task.unseen.sensor
+    unseen = small_task.unseen
+    sensor = unseen.sensor
     lights = named_lights(CHART_LIGHTS)
-    for prefix, measured in (("", small_task.unseen.queried), ("own_", small_task.own)):
+    for prefix, measured in (("", unseen.queried), ("own_", unseen.known_spectra)):
         spectra = grey(sensor.rgb(measured), sensor.wavelengths)
         errors = spectrum_errors(spectra, measured, list(lights.values()))
         of_lights = [numbers[f"{prefix}{light}_mean"] for light in lights]

@@ -14,14 +14,13 @@ def test_every_second_entry_is_known_and_the_others_test():
     # The first atlas has an odd number of entries; counting starts again with each
     # atlas.
     atlases = {name: read_atlas(name) for name in ("vs", "macbeth")}
-    task = make_task(atlases)
-    unseen = task.unseen
+    unseen = make_task(atlases).unseen
     vs, macbeth = atlases.values()
     assert unseen.known.names == vs.names[::2] + macbeth.names[::2]
-    rows = set(map(tuple, task.own.round(12)))
+    rows = set(map(tuple, unseen.known_spectra.round(12)))
     assert not rows & set(map(tuple, unseen.queried.round(12)))
     inside = within(merge(atlases.values()), unseen.sensor)
-    assert len(task.own) + len(unseen.queried) == len(inside)
+    assert len(unseen.known_spectra) + len(unseen.queried) == len(inside)
     assert unseen.left_out == families_like(unseen.queried) != ()
 
 

@@ -25,7 +25,6 @@ from uplift.lab.method import (
     PreparedMethod,
 )
 from uplift.lab.runner import named_lights
-from uplift.lab.statistics import statistics
 from uplift.lab.timing import environment, run_call
 
 MAX_CLAIM_RATIO = 10
@@ -103,7 +102,8 @@ def _numbers(method: Method, task: ChartTask) -> dict[str, float]:
     numbers = {"bytes": prepared.bytes, **build, "load_s": load}
     numbers["setup_s"] = sum(build.values()) + load
     for name, values in errors.items():
-        numbers |= statistics(values, *SUMMARY, prefix=f"{name}_")
+        for kind, summarise in SUMMARY.items():
+            numbers[f"{name}_{kind}"] = float(summarise(values))
     return {
         **numbers,
         "round_trip_colours": len(errors["round_trip"]),
@@ -159,7 +159,8 @@ def _errors(
     if claimed is not None and mean > MAX_CLAIM_RATIO * claimed:
         raise BrokenError(f"mean round-trip ΔE00 is {mean:.3g}, {claimed:g} is claimed")
     lights = named_lights(CHART_LIGHTS)
-    for prefix, measured in {"": task.unseen.queried, "own_": task.own}.items():
+    own = np.random.default_rng(1).permutation(task.unseen.known_spectra)
+    for prefix, measured in {"": task.unseen.queried, "own_": own}.items():
         queried = replace(task.unseen, queried=measured[:count])
         found = checked.errors(queried, list(lights.values()))
         for light, delta_e in zip(lights, found.delta_e.T, strict=True):

@@ -1,14 +1,17 @@
 """A chart as rows of numbers and as CSV, and its panels with Pareto fronts."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from enum import StrEnum
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Any
 
-from uplift.common.arrays import StrPath
+import numpy as np
+
+from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ChartFileError
 from uplift.common.files import read_bytes
 from uplift.common.text import format_value, parse_float, pluralise, shorten
@@ -23,7 +26,11 @@ FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
 MAX_BYTES = 16 << 20
 """Largest file that is read."""
 MAX_NUMBER = 1e30
-SUMMARY = ("mean", "p99", "max")
+SUMMARY: Mapping[str, Callable[[Array], Any]] = {
+    "mean": np.mean,
+    "p99": partial(np.quantile, q=0.99),
+    "max": np.max,
+}
 """Statistics of each error."""
 ERRORS = ("round_trip", "coarse_round_trip", *CHART_LIGHTS, "lights", "rms")
 OWN_ERRORS = tuple(f"own_{name}" for name in ERRORS[2:])

@@ -57,13 +57,11 @@ class ChartTask:
     """The queries of a chart, in random order, so that slow methods may process the
     first ones only.
 
-    ``unseen``: spectra that no method knows. ``own`` (k, N): the spectra that
-    it knows. ``colours`` (n, 3): random RGB, and those along the edges and the grey
-    diagonal of the RGB cube.
+    ``unseen``: spectra that no method knows, next to those that it knows. ``colours``
+    (n, 3): random RGB, and those along the edges and the grey diagonal of the RGB cube.
     """
 
     unseen: Task
-    own: Array
     colours: Array
     effort: Effort
     facts: Mapping[str, str]
@@ -79,8 +77,12 @@ def make_task(atlases: Mapping[str, Atlas], effort: Effort | None = None) -> Cha
     sensor = observer.sensor()
     known = merge(atlas[::2] for atlas in atlases.values())
     others = merge(atlas[1::2] for atlas in atlases.values())
-    own = spectra_of(within(known, sensor), sensor)
-    unseen = spectra_of(within(others, sensor), sensor)
+    random = np.random.default_rng(1)
+    rgb = np.concatenate([random.random((effort.colours, 3)), edges()])
+    rgb = random.permutation(rgb)
+    unseen = random.permutation(spectra_of(within(others, sensor), sensor))
+    task = Task(sensor, known, unseen, families_like(unseen), effort.builds)
+    own = task.known_spectra
     if min(len(own), len(unseen)) < MIN_SPECTRA:
         problem = (
             f"at least {MIN_SPECTRA} entries within sRGB must build and test cubes "
@@ -88,8 +90,6 @@ def make_task(atlases: Mapping[str, Atlas], effort: Effort | None = None) -> Cha
         )
         hint = "give an atlas of 8 or more entries"
         raise AtlasError(problem, code="too-few-entries", hint=hint)
-    random = np.random.default_rng(1)
-    rgb = np.concatenate([random.random((effort.colours, 3)), edges()])
     facts = {
         "colours": (
             f"{effort.colours:,} random and {len(edges())} along edges and greys of "
@@ -100,11 +100,7 @@ def make_task(atlases: Mapping[str, Atlas], effort: Effort | None = None) -> Cha
         f"second) build the cubes with an atlas; of the others, {len(unseen)} within "
         "sRGB test all methods",
     }
-    rgb = random.permutation(rgb)
-    own = random.permutation(own)
-    queried = random.permutation(unseen)
-    task = Task(sensor, known, queried, families_like(queried), effort.builds)
-    return ChartTask(task, own, rgb, effort, facts)
+    return ChartTask(task, rgb, effort, facts)
 
 
 def edges() -> Array:

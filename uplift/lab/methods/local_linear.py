@@ -22,7 +22,6 @@ from uplift.lab.method import (
     Method,
     PreparedMethod,
     interpolated,
-    nbytes,
     ours,
 )
 from uplift.lab.runner import KNOWN, Known, Task
@@ -131,7 +130,7 @@ def prepare(task: Task, known: Known = KNOWN) -> PreparedMethod:
     """Tune a regression on the known spectra of a task."""
     spectra = known(task)
     regression, run = stopwatch(lambda: tune(task.sensor, spectra))
-    return interpolated(regression, task, nbytes(spectra), run.cpu)
+    return interpolated(regression, task, spectra.nbytes, run.cpu)
 
 
 METHODS = (

@@ -18,7 +18,7 @@ from scipy.spatial.distance import cdist
 
 from uplift.colorimetry import Light, Sensor, lab
 from uplift.common.arrays import Array, Indices
-from uplift.lab.method import Method, PreparedMethod, interpolated, nbytes, ours
+from uplift.lab.method import Method, PreparedMethod, interpolated, ours
 from uplift.lab.methods.local_linear import LOWEST, with_least_change
 from uplift.lab.runner import KNOWN, Known, Task
 
@@ -86,7 +86,7 @@ def prepare(task: Task, known: Known = KNOWN) -> PreparedMethod:
     """Mix metamers from the known spectra of a task."""
     spectra = known(task)
     mean = partial(metamer_mean, task.sensor, spectra)
-    return interpolated(mean, task, nbytes(spectra))
+    return interpolated(mean, task, spectra.nbytes)
 
 
 METHODS = (
