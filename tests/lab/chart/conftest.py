@@ -19,7 +19,7 @@ def small_task():
 
 def method_of(uplift, prepare=None, **fields):
     """Make a method from a function of RGB and wavelengths."""
-    texts = dict.fromkeys(("method", "title", "family", "source"), "test")
+    texts = dict.fromkeys(("method", "title", "source"), "test")
     prepare = prepare or (lambda task: PreparedMethod(uplift, 8))
     return Method(**texts, prepare=prepare, **fields)
 

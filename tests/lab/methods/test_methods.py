@@ -50,19 +50,10 @@ def test_smits_and_mallett_match_colour_science(task, name, theirs):
     assert_allclose(found, expected, atol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("name", "tolerance"),
-    [
-        ("jakob2019-direct", 2e-3),
-        ("local-linear", 1e-6),
-        ("metamer-mean", 1e-6),
-        ("burns2019", 1e-6),
-    ],
-)
-def test_slow_methods_have_the_colour(task, name, tolerance):
+def test_jakob_has_the_colour(task):
     rgb = np.array([[0.5, 0.4, 0.3], [0.2, 0.3, 0.35]])
-    found = prepared(name, task)(rgb, AT)
-    assert_allclose(SENSOR.rgb(found), rgb, atol=tolerance)
+    found = prepared("jakob2019-direct", task)(rgb, AT)
+    assert_allclose(SENSOR.rgb(found), rgb, atol=2e-3)
 
 
 @pytest.mark.parametrize(

@@ -81,6 +81,7 @@ def measure_method(method: Method, task: ChartTask) -> MethodResult:
             why += f"; it needs {method.needs}"
     texts = {field.name: getattr(method, field.name) for field in fields(Description)}
     texts["label"] = method.label or method.title
+    texts["family"] = method.family or method.title.partition(",")[0]
     return MethodResult(**texts, state=state, why=why, numbers=numbers)
 
 

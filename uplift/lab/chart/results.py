@@ -39,8 +39,6 @@ REQUIRED |= set(map("_".join, product((*ERRORS, *OWN_ERRORS), SUMMARY)))
 """Numbers of every method that was measured."""
 BATCH = re.compile(r"ns_([1-9]\d{0,8})")
 """Name of a time by the number of colours per call."""
-SPREAD = ("least", "most", "colours")
-"""Suffixes of the numbers that come with a time."""
 REFERENCE = 65_536
 MEASURED = Path(__file__).with_name("measured.csv")
 """The chart that is part of the package."""
@@ -145,7 +143,7 @@ def _result(line: dict[str, str]) -> MethodResult:
         if name not in (*TEXTS, *FACTS) and text.strip():
             numbers[name] = _number(name, text)
             if BATCH.fullmatch(name):
-                required |= {f"{name}_{suffix}" for suffix in SPREAD}
+                required.add(f"{name}_colours")
     state = State(line["state"])
     if state == State.MEASURED and (missing := required - numbers.keys()):
         raise ValueError(f"{format_value(line['method'])} has no {min(missing)}")

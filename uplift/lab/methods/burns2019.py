@@ -78,7 +78,6 @@ METHODS = (
     Method(
         method="burns2019",
         title="Burns 2019",
-        family="Burns 2019",
         source=(
             "Burns, Chromatic adaptation transform by spectral reconstruction, Color "
             "Research & Application 44(5), 2019"

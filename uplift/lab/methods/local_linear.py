@@ -137,7 +137,6 @@ METHODS = (
     Method(
         method="local-linear",
         title="Local-linear regression",
-        family="Local-linear regression",
         source=(
             "Cleveland & Devlin, Locally weighted regression, JASA 83(403), 1988, of "
             "reflectance on RGB"

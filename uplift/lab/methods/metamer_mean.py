@@ -93,7 +93,6 @@ METHODS = (
     Method(
         method="metamer-mean",
         title="Mean of metamers",
-        family="Mean of metamers",
         source=(
             "after Zhang, Funt & Mirzaei, Metamer mismatching in practice versus "
             "theory, JOSA A 33(3), 2016"

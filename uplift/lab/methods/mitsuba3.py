@@ -141,7 +141,6 @@ def _evaluate(mitsuba: Any, drjit: Any, rgb: Array, wavelengths: Array) -> Array
 
 _table = partial(
     Method,
-    family="Mitsuba 3",
     source="Jakob et al., Mitsuba 3, the table of Jakob & Hanika 2019 for sRGB",
     reference_sensor=reference_sensor,
     claimed_error=0.1,
