@@ -2,6 +2,8 @@
 ``uplift chart --recommend``.
 """
 
+from itertools import chain
+
 from benchmarks import DOCS, Row, show
 from benchmarks.materials import read_atlases
 from uplift.common.files import write_text
@@ -12,6 +14,7 @@ from uplift.lab.chart.results import (
     MEASURED,
     Chart,
     chart_csv,
+    criteria,
     shipped_chart,
 )
 from uplift.lab.chart.selection import select_methods
@@ -43,9 +46,27 @@ def figures() -> Row:
     return {
         "facts": chart.facts,
         "lights": CHART_LIGHTS,
+        "fronts": fronts(chart),
         "methods": methods,
         "is_complete": len(chart.measured) == len(chart.results),
     }
+
+
+def fronts(chart: Chart) -> list[Row]:
+    """Return the Pareto front of every panel, fastest first. Times are in ns."""
+    rows = []
+    for criterion in chain.from_iterable(map(criteria, chart.batches)):
+        for row in criterion.front(chart.measured):
+            rows.append(
+                {
+                    "panel": criterion.title,
+                    "colours": criterion.batch,
+                    "method": row.title,
+                    "time": criterion.time(row),
+                    "error": row.numbers[f"{criterion.error}_mean"],
+                }
+            )
+    return rows
 
 
 QUESTIONS = {"methods": measure}
