@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from enum import StrEnum
 from functools import partial
-from itertools import product
+from itertools import chain, product
 from pathlib import Path
 from typing import Any
 
@@ -101,9 +101,8 @@ class Chart:
 
 def chart_csv(chart: Chart) -> str:
     """Convert a chart to CSV."""
-    names: dict[str, None] = {}
-    for result in chart.results:
-        names |= dict.fromkeys(result.numbers)
+    of_results = (result.numbers for result in chart.results)
+    names = dict.fromkeys(chain.from_iterable(of_results))
     columns = [*TEXTS, *names, *FACTS]
     rows = []
     for result in chart.results:
