@@ -1,8 +1,8 @@
 """The methods of charts, their selection by name, and the stability of one."""
 
-import fnmatch
 import warnings
 from collections.abc import Sequence
+from fnmatch import fnmatchcase
 from typing import Any
 
 from uplift.atlas import read_atlas
@@ -32,18 +32,19 @@ QUICK_METHODS = (
 
 def select_methods(patterns: Sequence[str] = ()) -> list[Method]:
     """Select methods by name, by default all. Raises `OptionError`."""
-    known = {method.method: method for method in METHODS}
-    selected: set[str] = set()
+    selected = set()
     for pattern in patterns or "*":
-        matches = fnmatch.filter(known, pattern)
+        matches = {
+            method.method for method in METHODS if fnmatchcase(method.method, pattern)
+        }
         if not matches:
             hint = (
                 "names are 'mallett2019', 'moments9-32-spectra' and others; '*' "
                 "matches any characters"
             )
             raise OptionError(f"no method matches '{pattern}'", hint=hint)
-        selected.update(matches)
-    return [method for name, method in known.items() if name in selected]
+        selected |= matches
+    return [method for method in METHODS if method.method in selected]
 
 
 def perturb_method(

@@ -66,8 +66,8 @@ def built_cube(
 
 
 def cube(**options: Any) -> Prepare:
-    """Return the method of a cube, whose atlas is what is known with ``atlas=True``,
-    and with options of `uplift.build`.
+    """Return the method of a cube with options of `uplift.build`; with ``atlas=True``
+    the known materials are its atlas.
     """
     return partial(prepare_lookup, **options)
 
