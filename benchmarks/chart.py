@@ -2,7 +2,7 @@
 ``uplift chart --recommend``.
 """
 
-from benchmarks import DOCS, ROOT, Row, show
+from benchmarks import DOCS, Row, show
 from benchmarks.materials import read_atlases
 from uplift.common.files import write_text
 from uplift.extras.colour.light_sets import CHART_LIGHTS
@@ -23,8 +23,7 @@ def measure() -> None:
     """
     chart = measure_methods(select_methods(), make_task(read_atlases()), show)
     folder = DOCS / "chart"
-    table = ROOT / "uplift" / "lab" / "chart" / MEASURED
-    write_text(chart_csv(chart), table, force=True)
+    write_text(chart_csv(chart), MEASURED, force=True)
     write_picture(chart, folder / "chart.png", force=True)
     write_text(render_chart(chart), folder / "chart.html", force=True)
 

@@ -10,7 +10,7 @@ REPLACEMENTS = {
         "--start": "--growth",
     },
     "chart": {
-        "--colours": "uplift.lab.chart.task.make_task in Python",
+        "--colours": "uplift.lab.chart.task.Effort in Python",
         "--delta-e": "--tolerance",
         "--methods": "--method",
     },

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
 PRINTED = 3
 """Pareto fronts of each number of colours that are printed; the page has all."""
-COLOURS = 2000
-"""Random colours of the round trip."""
 FILES = ("chart.csv", "chart.png", "chart.html")
 
 
@@ -134,7 +132,7 @@ def _recommend(source: str | None, required: dict[str, Any]) -> None:
         paragraph(
             f"{title}{': ' * bool(title)}{row.title}: "
             f"{format_time(row.numbers['time_ns'])} per RGB, mean ΔE00 "
-            f"{format_error(row.numbers[requirement.error])} "
+            f"{format_error(requirement.error_of(row))} "
             f"{requirement.description}, {format_size(row.numbers['bytes'])}"
         )
         say(f"  {row.build}")
@@ -149,7 +147,7 @@ def _measure(
     from uplift.lab.chart.task import QUICK, Effort, make_task
 
     methods = select_methods(patterns or (QUICK_METHODS if quick else ()))
-    task = make_task(read_atlases(files), COLOURS, QUICK if quick else Effort())
+    task = make_task(read_atlases(files), QUICK if quick else Effort())
     with progress_bar("methods") as progress:
         return measure_methods(methods, task, progress)
 
@@ -165,7 +163,7 @@ def _print_fronts(chart: Chart) -> None:
             title = f"{criterion.title}: {criterion.colours}"
             numbers = ("time", criterion.unit, "bytes")
             table = make_table(("method",), numbers, title=title)
-            for row in criterion.front(chart):
+            for row in criterion.front(chart.measured):
                 size = format_size(row.numbers["bytes"])
                 table.add_row(row.method, *criterion.labels(row), size)
             tables.append(table)

@@ -16,7 +16,6 @@ from uplift.lab.runner import (
     measure,
     named_lights,
     spectra_of,
-    whole,
     within,
 )
 
@@ -52,9 +51,9 @@ def test_rows_pool_the_errors_of_all_tasks(sensor):
     rows = list(measure({"grey": prepare}, tasks, LIGHTS, set="tcs"))
     assert [row["light"] for row in rows] == ["A", "FL11", "all", "all"]
     assert [row["measure"] for row in rows] == 3 * ["ΔE00"] + ["rms"]
-    task = whole(entries, ("tcs",), sensor)
-    answers = grey(task.rgb, sensor.wavelengths)
-    actual = delta_e_spectra(LIGHTS["A"], answers, task.queried)
+    spectra = spectra_of(entries, sensor)
+    answers = grey(np.clip(sensor.rgb(spectra), 0, 1), sensor.wavelengths)
+    actual = delta_e_spectra(LIGHTS["A"], answers, spectra)
     row = rows[0]
     assert (row["set"], row["method"], row["n"]) == ("tcs", "grey", 2 * len(entries))
     assert row["mean"] == pytest.approx(actual.mean())

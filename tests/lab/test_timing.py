@@ -9,15 +9,13 @@ import pytest
 from uplift.lab import timing
 
 
-def test_laps_are_long_enough_and_runs_are_limited(monkeypatch):
+def test_laps_are_long_enough(monkeypatch):
     calls: list[float] = []
     # a clock that only the calls move
     monkeypatch.setattr("time.process_time", lambda: sum(calls))
     found = timing.time_short_call(lambda: calls.append(0.001), 0.01, 5)
     assert (found.cpu.runs, len(calls)) == (5, 2 + 5 * 10)
     assert found.cpu.median == pytest.approx(0.001)
-    slow = timing.time_short_call(lambda: calls.append(1.0), 1e-4, 7)
-    assert slow.cpu.runs == timing.MIN_RUNS
 
 
 def test_tasks_take_turns_and_are_compared_round_by_round():

@@ -105,16 +105,16 @@ class Description:
     """Texts about a method: columns of the table of a chart.
 
     ``method``, ``title``: name for the command line, and name to display. ``label``:
-    label of its marker, by default the title. ``family``, ``source``: name in the
-    legend, and publication. ``mode``: mode of lookup of a cube, which determines the
-    shape of the marker. ``build``, ``call``: command and call that give a user of this
-    package the same; empty for other methods.
+    label of its marker, by default the title. ``family``: name in the legend, by
+    default the title up to a comma. ``source``: publication. ``mode``: mode of lookup
+    of a cube, which determines the shape of the marker. ``build``, ``call``: command
+    and call that give a user of this package the same; empty for other methods.
     """
 
     method: str
     title: str
     label: str = ""
-    family: str
+    family: str = ""
     source: str
     mode: str = ""
     dtype: str = "float64"
@@ -132,7 +132,6 @@ class Method(Description):
     ``reference_sensor``: returns the sensor of the white and the matrix that the method
     states, see `published_srgb`. ``claimed_error``: mean ΔE00 of round trips that its
     authors claim. ``claimed_range``: range of reflectances that its authors claim.
-    ``batch``: whether it accepts many colours per call; otherwise it loops over them.
     ``needs``: native code beyond this package and how to install it; empty if there is
     none. A method that needs some is measured in a child process, as it may crash or
     hang.
@@ -142,8 +141,18 @@ class Method(Description):
     reference_sensor: Callable[[], Sensor] = published_srgb
     claimed_error: float | None = None
     claimed_range: tuple[float, float] = (0.0, 1.0)
-    batch: bool = True
     needs: str = ""
+
+
+def in_float32(double: Method) -> Method:
+    """Describe a method in float32."""
+    return replace(
+        double,
+        method=f"{double.method}-float32",
+        title=f"{double.title}, float32",
+        label=f"{double.label or double.title} f32",
+        dtype="float32",
+    )
 
 
 def nbytes(*arrays: Values | Any) -> int:

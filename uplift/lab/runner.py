@@ -177,11 +177,6 @@ def select(atlas: Atlas, rows: Indices) -> Atlas:
     return Atlas(tuple(atlas.entries[row] for row in rows), (), atlas.sources)
 
 
-def whole(entries: Atlas, left_out: tuple[str, ...], sensor: Sensor) -> Task:
-    """Query all entries, of which none is known."""
-    return Task(sensor, Atlas(), spectra_of(entries, sensor), left_out)
-
-
 def divided(
     entries: Atlas,
     left_out: tuple[str, ...],

@@ -42,12 +42,6 @@ of the package.
 """
 SOURCES = Path(__file__).parents[1]
 RUNS = 5
-MIN_RUNS = 3
-"""Fewest runs of a short call."""
-MAX_LAPS = 75
-"""Duration of all runs of a short call in units of a lap, unless `MIN_RUNS` take
-longer.
-"""
 Result = TypeVar("Result")
 
 
@@ -186,19 +180,17 @@ def time_call(function: Callable[[], object], runs: int = RUNS) -> Timing:
 def time_short_call(
     function: Callable[[], object], lap: float, runs: int = RUNS
 ) -> Timing:
-    """Time a call after one that warms up, by up to ``runs`` runs that repeat it for at
-    least ``lap`` CPU seconds.
+    """Time a call after one that warms up, by runs that repeat it for at least ``lap``
+    CPU seconds.
     """
     function()
-    once = max(run_call(function).cpu, 1e-7)
-    calls = max(1, round(lap / once))
+    calls = max(1, round(lap / max(run_call(function).cpu, 1e-7)))
 
-    def run() -> None:
+    def repeat() -> None:
         for _ in range(calls):
             function()
 
-    affordable = max(MIN_RUNS, int(MAX_LAPS * lap / (calls * once)))
-    laps = time_call(run, min(affordable, runs)).runs
+    laps = time_call(repeat, runs).runs
     return Timing(tuple(Run(run.wall / calls, run.cpu / calls) for run in laps))
 
 

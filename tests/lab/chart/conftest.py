@@ -8,20 +8,18 @@ from uplift.lab.chart.task import Effort, make_task
 from uplift.lab.method import Method, PreparedMethod
 
 BATCHES = (1, 64)
-HASTE = Effort(
-    seconds_per_error=0.05, runs=3, lap=0.001, batches=BATCHES, longest=0.05, builds=1
-)
+HASTE = Effort(16, 0.05, runs=3, lap=0.001, batches=BATCHES, longest=0.05, builds=1)
 
 
 @pytest.fixture(scope="session")
 def small_task():
     """Sixteen colours, the edges, and the ColorChecker, with short timings."""
-    return make_task({"macbeth": read_atlas("macbeth")}, 16, HASTE)
+    return make_task({"macbeth": read_atlas("macbeth")}, HASTE)
 
 
 def method_of(uplift, prepare=None, **fields):
     """Make a method from a function of RGB and wavelengths."""
-    texts = dict.fromkeys(("method", "title", "family", "source"), "test")
+    texts = dict.fromkeys(("method", "title", "source"), "test")
     prepare = prepare or (lambda task: PreparedMethod(uplift, 8))
     return Method(**texts, prepare=prepare, **fields)
 

@@ -27,7 +27,6 @@ METHODS = tuple(
     Method(
         method=f"faulty-{prepare.__name__}",
         title="Faulty",
-        family="Faulty",
         source="a test",
         prepare=prepare,
         needs=NEEDS,

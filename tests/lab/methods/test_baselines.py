@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
-from uplift.atlas import read_atlas
+from uplift.atlas import Atlas, read_atlas
 from uplift.colorimetry import observer
 from uplift.lab.methods.burns2019 import reconstruct
 from uplift.lab.methods.colour_maps import (
@@ -17,15 +17,15 @@ from uplift.lab.methods.colour_maps import (
     terms,
 )
 from uplift.lab.methods.metamer_mean import metamer_mean, metamers, nearest_mixture
-from uplift.lab.runner import whole, within
+from uplift.lab.runner import Task, spectra_of, within
 
 D65 = observer.light("D65")
 FL11 = observer.light("FL11")
 
 
 SENSOR = observer.sensor()
-TASK = whole(within(read_atlas("tcs"), SENSOR), ("tcs",), SENSOR)
-MEASURED = TASK.queried
+MEASURED = spectra_of(within(read_atlas("tcs"), SENSOR), SENSOR)
+TASK = Task(SENSOR, Atlas(), MEASURED, ("tcs",))
 
 
 @pytest.mark.parametrize(("degree", "count"), [(1, 3), (2, 6), (3, 13)])

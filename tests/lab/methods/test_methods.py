@@ -7,11 +7,9 @@ import pytest
 from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999
 from numpy.testing import assert_allclose
 
-from tests.helpers import raises
 from tests.parts import LLVM, need
 from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
-from uplift.common.errors import OptionError
 from uplift.extras.images.processes import call_in_child
 from uplift.lab.chart.selection import METHODS, select_methods
 from uplift.lab.method import NotInstalledError
@@ -40,9 +38,6 @@ def test_methods_are_selected_by_pattern():
     assert select_methods() == list(METHODS)
     selected = {method.method for method in select_methods(("mallett2019", "sm*9"))}
     assert selected == {"mallett2019", "smits1999"}
-    with raises(OptionError, "option") as caught:
-        select_methods(("mallett2019", "malet"))
-    assert "'malet'" in caught.value.problem
 
 
 @pytest.mark.parametrize(
@@ -55,19 +50,10 @@ def test_smits_and_mallett_match_colour_science(task, name, theirs):
     assert_allclose(found, expected, atol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("name", "tolerance"),
-    [
-        ("jakob2019-direct", 2e-3),
-        ("local-linear", 1e-6),
-        ("metamer-mean", 1e-6),
-        ("burns2019", 1e-6),
-    ],
-)
-def test_slow_methods_have_the_colour(task, name, tolerance):
+def test_jakob_has_the_colour(task):
     rgb = np.array([[0.5, 0.4, 0.3], [0.2, 0.3, 0.35]])
-    found = prepared(name, task)(rgb, AT)
-    assert_allclose(SENSOR.rgb(found), rgb, atol=tolerance)
+    found = prepared("jakob2019-direct", task)(rgb, AT)
+    assert_allclose(SENSOR.rgb(found), rgb, atol=2e-3)
 
 
 @pytest.mark.parametrize(

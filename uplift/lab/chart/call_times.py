@@ -8,7 +8,7 @@ import numpy as np
 
 from uplift.common.arrays import Values
 from uplift.common.text import pluralise
-from uplift.lab.chart.results import REFERENCE
+from uplift.lab.chart.results import reference_batch
 from uplift.lab.chart.task import Effort
 from uplift.lab.timing import TimingStats, run_call, time_short_call
 
@@ -41,17 +41,12 @@ def call_times(uplift: UpliftRgb, dtype: str, effort: Effort) -> dict[str, float
     for size in effort.batches:
         if count == last:
             count = affordable(uplift, dtype, size, effort.longest)
-            inputs = max(1, min(INPUTS, INPUT_COLOURS // count))
-            rgb = _colours(inputs, count, dtype)
-            _check_batch(uplift, rgb[0])
-            ns = _time_batch(uplift, rgb, effort)
+            ns = _time_batch(uplift, dtype, count, effort)
         last = size
         name = f"ns_{size}"
         numbers |= {name: ns.median, f"{name}_least": ns.min, f"{name}_most": ns.max}
         numbers |= {f"{name}_runs": ns.runs, f"{name}_colours": count}
-    known = [size for size in effort.batches if size <= REFERENCE]
-    reference = max(known, default=effort.batches[0])
-    return numbers | {"time_ns": numbers[f"ns_{reference}"]}
+    return numbers | {"time_ns": numbers[f"ns_{reference_batch(effort.batches)}"]}
 
 
 def affordable(uplift: UpliftRgb, dtype: str, size: int, longest: float) -> int:
@@ -61,8 +56,8 @@ def affordable(uplift: UpliftRgb, dtype: str, size: int, longest: float) -> int:
     count = 1
     while True:
         call = partial(uplift, _colours(1, count, dtype)[0])
-        call()
-        seconds = run_call(call).cpu
+        # The first call may compile.
+        seconds = min(run_call(call).cpu for _ in range(2))
         if count == size or GROWTH * seconds > longest:
             return max(1, min(size, int(count * longest / max(seconds, 1e-9))))
         count = min(size, count * GROWTH)
@@ -73,11 +68,16 @@ def _colours(inputs: int, count: int, dtype: str) -> Values:
     return np.random.default_rng(2).random((inputs, count, 3)).astype(dtype)
 
 
-def _time_batch(uplift: UpliftRgb, inputs: Values, effort: Effort) -> TimingStats:
-    """Time calls with inputs (k, n, 3) in turn, in ns per colour."""
-    rgb = cycle(inputs)
-    timing = time_short_call(lambda: uplift(next(rgb)), effort.lap, effort.runs)
-    return timing.cpu.scaled(1e9 / inputs.shape[1])
+def _time_batch(
+    uplift: UpliftRgb, dtype: str, count: int, effort: Effort
+) -> TimingStats:
+    """Time calls with several inputs in turn, in ns per colour."""
+    inputs = max(1, min(INPUTS, INPUT_COLOURS // count))
+    rgb = _colours(inputs, count, dtype)
+    _check_batch(uplift, rgb[0])
+    turns = cycle(rgb)
+    timing = time_short_call(lambda: uplift(next(turns)), effort.lap, effort.runs)
+    return timing.cpu.scaled(1e9 / count)
 
 
 def _check_batch(uplift: UpliftRgb, rgb: Values) -> None:

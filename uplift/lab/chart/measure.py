@@ -9,14 +9,14 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from uplift.colorimetry import Light, delta_e_rgb, observer
+from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array, Values
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import CHART_LIGHTS
 from uplift.extras.images.processes import ChildError, call_in_child
-from uplift.lab.chart.call_times import BrokenError, UpliftRgb, call_times
-from uplift.lab.chart.results import Chart, MethodResult, State
+from uplift.lab.chart.call_times import BrokenError, affordable, call_times
+from uplift.lab.chart.results import SUMMARY, Chart, MethodResult, State
 from uplift.lab.chart.task import ChartTask
 from uplift.lab.method import (
     Description,
@@ -24,6 +24,7 @@ from uplift.lab.method import (
     NotInstalledError,
     PreparedMethod,
 )
+from uplift.lab.runner import named_lights
 from uplift.lab.timing import environment, run_call
 
 MAX_CLAIM_RATIO = 10
@@ -47,7 +48,7 @@ def measure_methods(
         progress(Progress("methods", len(results), len(methods)))
     wavelengths = pluralise(len(task.unseen.sensor.wavelengths), "wavelength")
     summary = (
-        f"CPU time of all threads; up to {effort.runs} runs of calls of at most "
+        f"CPU time of all threads; {effort.runs} runs of calls of at most "
         f"{effort.longest:g} s, spectra at {wavelengths}; errors of slow methods are "
         f"of the colours of {effort.seconds_per_error:g} s; "
         f"{(time.perf_counter() - begin) / 60:.1f} minutes in all"
@@ -80,46 +81,37 @@ def measure_method(method: Method, task: ChartTask) -> MethodResult:
             why += f"; it needs {method.needs}"
     texts = {field.name: getattr(method, field.name) for field in fields(Description)}
     texts["label"] = method.label or method.title
+    texts["family"] = method.family or method.title.partition(",")[0]
     return MethodResult(**texts, state=state, why=why, numbers=numbers)
 
 
 def _numbers(method: Method, task: ChartTask) -> dict[str, float]:
     prepared = method.prepare(task.unseen)
     effort = task.effort
-
-    wavelengths = task.unseen.sensor.wavelengths
+    dtype = method.dtype
 
     def uplift(rgb: Values) -> Values:
-        return prepared.uplift(rgb, wavelengths)
+        return prepared.uplift(rgb, task.unseen.sensor.wavelengths)
 
     # The first call may compile, which is charged to the set-up.
-    rgb = task.colours[:1].astype(method.dtype)
+    rgb = task.colours[:1].astype(dtype)
     first, second = (run_call(lambda: uplift(rgb)) for _ in range(2))
     load = prepared.load_s + max(first.cpu - second.cpu, 0.0)
     build = {} if prepared.build_s is None else {"build_s": prepared.build_s}
-    count = len(task.colours)
-    if not method.batch:
-        count = _affordable(uplift, task.colours, effort.seconds_per_error)
-    checked = _checked(method, prepared)
+    count = affordable(uplift, dtype, len(task.colours), effort.seconds_per_error)
+    errors = _errors(method, _checked(method, prepared), task, count)
+    numbers = {"bytes": prepared.bytes, **build, "load_s": load}
+    numbers["setup_s"] = sum(build.values()) + load
+    for name, values in errors.items():
+        for kind, summarise in SUMMARY.items():
+            numbers[f"{name}_{kind}"] = float(summarise(values))
     return {
-        "bytes": prepared.bytes,
-        **build,
-        "load_s": load,
-        "setup_s": sum(build.values()) + load,
-        **_round_trips(method, checked, task, count),
-        **_errors(checked, task, count),
-        **call_times(uplift, method.dtype, effort),
+        **numbers,
+        "round_trip_colours": len(errors["round_trip"]),
+        "unseen_spectra": len(errors["rms"]),
+        "own_spectra": len(errors["own_rms"]),
+        **call_times(uplift, dtype, effort),
     }
-
-
-def _affordable(uplift: UpliftRgb, rgb: Array, seconds: float) -> int:
-    """Count the colours, from the first, that take some CPU seconds one by one."""
-    begin = time.process_time()
-    for count in range(1, len(rgb)):
-        uplift(rgb[count - 1 : count])
-        if time.process_time() - begin > seconds:
-            return count
-    return len(rgb)
 
 
 def _checked(method: Method, prepared: PreparedMethod) -> PreparedMethod:
@@ -148,51 +140,32 @@ def _checked(method: Method, prepared: PreparedMethod) -> PreparedMethod:
     return replace(prepared, uplift=uplift, stated=None)
 
 
-def _round_trips(
+def _errors(
     method: Method, checked: PreparedMethod, task: ChartTask, count: int
-) -> dict[str, float]:
-    """Judge at 1 nm with the stated white and matrix, and with the tables that cubes
-    are fitted to.
+) -> dict[str, Array]:
+    """Return errors of the first colours and materials by name.
+
+    Round trips are judged at 1 nm with the stated white and matrix, and with the tables
+    that cubes are fitted to, spectra by materials that the method does not know, and
+    that it knows.
     """
     rgb = task.colours[:count]
-    stated = method.reference_sensor()
-    errors, coarse = (
-        delta_e_rgb(sensor, rgb, sensor.rgb(checked.uplift(rgb, sensor.wavelengths)))
-        for sensor in (stated, task.unseen.sensor)
-    )
+    errors: dict[str, Array] = {}
+    sensors = {"": method.reference_sensor(), "coarse_": task.unseen.sensor}
+    for prefix, sensor in sensors.items():
+        answers = sensor.rgb(checked.uplift(rgb, sensor.wavelengths))
+        errors[f"{prefix}round_trip"] = delta_e_rgb(sensor, rgb, answers)
     claimed = method.claimed_error
-    if claimed is not None and errors.mean() > MAX_CLAIM_RATIO * claimed:
-        raise BrokenError(
-            f"mean round-trip ΔE00 is {errors.mean():.3g}, {claimed:g} is claimed"
-        )
-    return {
-        **_summary("round_trip", errors),
-        **_summary("coarse_round_trip", coarse),
-        "round_trip_colours": len(rgb),
-    }
-
-
-def _errors(checked: PreparedMethod, task: ChartTask, count: int) -> dict[str, float]:
-    """Compare spectra with those of materials that the method does not know, and that
-    it knows.
-    """
-    lights: list[Light] = [observer.light(name) for name in CHART_LIGHTS]
-    own = replace(task.unseen, queried=task.own)
-    numbers: dict[str, float] = {}
-    for name, prefix, materials in ("unseen", "", task.unseen), ("own", "own_", own):
-        queried = replace(materials, queried=materials.queried[:count])
-        errors = checked.errors(queried, lights)
-        for light, delta_e in zip(CHART_LIGHTS, errors.delta_e.T, strict=True):
-            numbers |= _summary(f"{prefix}{light}", delta_e)
-        numbers |= _summary(f"{prefix}lights", errors.delta_e.mean(axis=1))
-        numbers |= _summary(f"{prefix}rms", np.asarray(errors.rms))
-        numbers[f"{name}_spectra"] = len(errors.delta_e)
-    return numbers
-
-
-def _summary(name: str, values: Array) -> dict[str, float]:
-    return {
-        f"{name}_mean": float(values.mean()),
-        f"{name}_p99": float(np.quantile(values, 0.99)),
-        f"{name}_max": float(values.max()),
-    }
+    mean = errors["round_trip"].mean()
+    if claimed is not None and mean > MAX_CLAIM_RATIO * claimed:
+        raise BrokenError(f"mean round-trip ΔE00 is {mean:.3g}, {claimed:g} is claimed")
+    lights = named_lights(CHART_LIGHTS)
+    own = np.random.default_rng(1).permutation(task.unseen.known_spectra)
+    for prefix, measured in {"": task.unseen.queried, "own_": own}.items():
+        queried = replace(task.unseen, queried=measured[:count])
+        found = checked.errors(queried, list(lights.values()))
+        for light, delta_e in zip(lights, found.delta_e.T, strict=True):
+            errors[prefix + light] = delta_e
+        errors[f"{prefix}lights"] = found.delta_e.mean(axis=1)
+        errors[f"{prefix}rms"] = np.asarray(found.rms)
+    return errors

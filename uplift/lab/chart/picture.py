@@ -20,12 +20,13 @@ from uplift.extras.pages.marks import shade, threshold
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw, page_svg
 from uplift.extras.pages.pareto import family_colours, front_panel
 from uplift.lab.chart.results import (
-    REFERENCE,
+    SUMMARY,
     Chart,
     Criterion,
     MethodResult,
     State,
     criteria,
+    reference_batch,
 )
 
 COLOURS = {
@@ -83,7 +84,7 @@ def drawn_results(criterion: Criterion, chart: Chart) -> list[MethodResult]:
         kinds.setdefault(kind, []).append(result)
     drawn: list[MethodResult] = []
     for results in kinds.values():
-        drawn += criterion.front(replace(chart, results=tuple(results)))
+        drawn += criterion.front(results)
     return sorted(drawn, key=lambda result: not result.build)
 
 
@@ -91,9 +92,10 @@ def criterion_panel(criterion: Criterion, chart: Chart, number: int) -> Panel:
     """Return the panel of a criterion, whose markers have the keys NUMBER-ROW."""
     named: list[Dot] = []
     unnamed: list[Dot] = []
-    for result in drawn_results(criterion, chart):
+    drawn = drawn_results(criterion, chart)
+    for result, point in criterion.points(drawn).items():
         dot = Dot(
-            *(criterion.point(result) or (1.0, 1.0)),
+            *point,
             result.label,
             COLOURS.get(result.family, OTHER),
             MODES.get(result.mode, "*"),
@@ -110,21 +112,18 @@ def write_picture(chart: Chart, path: StrPath, *, force: bool = False) -> None:
     """Write the mean error of unseen materials over the time per RGB as PNG: every
     method has its name, this package the only colour. Raises `OutputError`.
     """
-    compared = criteria(reference_batch(chart))
-    unseen = compared[1]
+    _, unseen, *_, own = criteria(reference_batch(chart.batches))
     named = [result for result in chart.measured if result.method in NAMES]
     dots = []
-    for result in named or chart.measured:
-        dots += _dots(unseen, result, NAMES.get(result.method, result.title))
+    for result, point in unseen.points(named or chart.measured).items():
+        dots.append(_dot(point, NAMES.get(result.method, result.title)))
     smallest = sorted(dots, key=lambda dot: dot.y)[:2]
     ranks = [f"{dot.text} in {format_time(dot.x)}" for dot in smallest]
     title = "Smallest errors on unseen materials\n" + ";  ".join(ranks)
-    for result in chart.measured:
-        if result.method == ATLAS:
-            for dot in _dots(
-                compared[4], result, OURS, " with the atlas, its own materials"
-            ):
-                dots.append(replace(dot, hollow=True))
+    with_atlas = [result for result in chart.measured if result.method == ATLAS]
+    for point in own.points(with_atlas).values():
+        dot = _dot(point, OURS, " with the atlas, its own materials")
+        dots.append(replace(dot, hollow=True))
     panel = Panel(
         [shade(0, 1), threshold(1, "just visible: 1")],
         title,
@@ -135,21 +134,10 @@ def write_picture(chart: Chart, path: StrPath, *, force: bool = False) -> None:
     write_figure(draw([panel], size=(5.6, 3.4), dpi=200), path, force=force)
 
 
-def _dots(
-    criterion: Criterion, result: MethodResult, name: str, of: str = ""
-) -> list[Dot]:
-    """Return the dot of a method, if it has an error and a time."""
-    point = criterion.point(result)
-    if point is None:
-        return []
+def _dot(point: tuple[float, float], name: str, of: str = "") -> Dot:
     colour = ACCENT if name == OURS else GREY
     text = f"{name}{of}, {point[1]:.2f}"
-    return [Dot(*point, text, colour, bold=name == OURS)]
-
-
-def reference_batch(chart: Chart) -> int:
-    """Return the colours per call of the figure, which the page shows at first."""
-    return max((batch for batch in chart.batches if batch <= REFERENCE), default=0)
+    return Dot(*point, text, colour, bold=name == OURS)
 
 
 def render_chart(chart: Chart) -> str:
@@ -170,7 +158,7 @@ def render_chart(chart: Chart) -> str:
         families=family_colours((result.family for result in chart.measured), COLOURS),
         tooltips=[_tooltip(chart, result) for result in chart.results],
         sources=list(dict.fromkeys(sources)),
-        chosen=reference_batch(chart),
+        chosen=reference_batch(chart.batches),
         errors=ERRORS,
         not_measured=[
             result for result in chart.results if result.state != State.MEASURED
@@ -192,7 +180,7 @@ def _tooltip(chart: Chart, result: MethodResult) -> Tooltip:
             ("errors", "mean / 99 % / largest"),
         ]
         for error, name in ERRORS.items():
-            values = (numbers[f"{error}_{kind}"] for kind in ("mean", "p99", "max"))
+            values = (numbers[f"{error}_{kind}"] for kind in SUMMARY)
             lines.append((name, " / ".join(map(format_error, values))))
         lines += [
             ("", text) for text in (result.build, result.call, result.note) if text

@@ -42,12 +42,12 @@ class Requirement:
                 str(self.light), (DEFAULT_ILLUMINANT, *CHART_LIGHTS), "light"
             )
 
-    @property
-    def error(self) -> str:
-        """Return the name of the error in `MethodResult.numbers`."""
+    def error_of(self, cube: MethodResult) -> float:
+        """Return the mean ΔE00 of a cube."""
+        name = f"{'own_' if self.own else ''}{self.light or 'lights'}"
         if self.light == DEFAULT_ILLUMINANT:
-            return "round_trip_mean"
-        return f"{'own_' if self.own else ''}{self.light or 'lights'}_mean"
+            name = "round_trip"
+        return cube.numbers[f"{name}_mean"]
 
     @property
     def description(self) -> str:
@@ -73,28 +73,26 @@ def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
     """Choose the fastest or smallest cube within the limits, or the most accurate in
     time. Raises `OptionError`.
     """
-    name = requirement.error
     longest = requirement.time_ns
     largest = requirement.delta_e
-    cubes = _eligible_cubes(chart, requirement)
+    cubes = []
+    for result in chart.measured:
+        is_excluded = requirement.plain and "--atlas" in result.build
+        if result.build and not is_excluded:
+            cubes.append(result)
     if not cubes:
-        raise _unmet(f"the chart has no cube with {name}", "measure a chart with cubes")
-    times = {
-        cube: cube.numbers["time_ns"]
-        for cube in cubes
-        if longest is None or cube.numbers["time_ns"] <= longest
-    }
-    if not times:
-        fastest = min(cubes, key=lambda cube: cube.numbers["time_ns"])
-        took = format_time(fastest.numbers["time_ns"])
+        raise _unmet("the chart has no such cube", "measure a chart with cubes")
+    fastest = min(cubes, key=_time)
+    in_time = [cube for cube in cubes if longest is None or _time(cube) <= longest]
+    if not in_time:
         raise _unmet(
             f"no cube takes at most {longest:g} ns per RGB",
-            f"the fastest, {fastest.method}, takes {took}",
+            f"the fastest, {fastest.method}, takes {format_time(_time(fastest))}",
         )
-    best = min(times, key=lambda cube: cube.numbers[name])
-    smallest = best.numbers[name]
+    best = min(in_time, key=requirement.error_of)
+    smallest = requirement.error_of(best)
     limit = smallest / CLEAR_RATIO if largest is None else largest
-    sufficient = [cube for cube in times if cube.numbers[name] <= limit]
+    sufficient = [cube for cube in in_time if requirement.error_of(cube) <= limit]
     if not sufficient:
         problem = f"no cube has at most ΔE00 {largest:g} {requirement.description}"
         raise _unmet(
@@ -102,19 +100,12 @@ def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
         )
     return min(
         sufficient,
-        key=lambda cube: (cube.numbers["bytes"] * requirement.smallest, times[cube]),
+        key=lambda cube: (cube.numbers["bytes"] * requirement.smallest, _time(cube)),
     )
 
 
-def _eligible_cubes(chart: Chart, requirement: Requirement) -> list[MethodResult]:
-    """Return the cubes with the error of a requirement; none with an atlas if plain."""
-    cubes = []
-    for result in chart.measured:
-        has_error = bool(result.build) and requirement.error in result.numbers
-        is_excluded = requirement.plain and "--atlas" in result.build
-        if has_error and not is_excluded:
-            cubes.append(result)
-    return cubes
+def _time(cube: MethodResult) -> float:
+    return cube.numbers["time_ns"]
 
 
 def _unmet(problem: str, hint: str) -> OptionError:

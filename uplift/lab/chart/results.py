@@ -1,14 +1,17 @@
 """A chart as rows of numbers and as CSV, and its panels with Pareto fronts."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from enum import StrEnum
-from importlib.resources import files
-from itertools import product
+from functools import partial
+from itertools import chain, product
+from pathlib import Path
 from typing import Any
 
-from uplift.common.arrays import StrPath
+import numpy as np
+
+from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ChartFileError
 from uplift.common.files import read_bytes
 from uplift.common.text import format_value, parse_float, pluralise, shorten
@@ -23,18 +26,22 @@ FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
 MAX_BYTES = 16 << 20
 """Largest file that is read."""
 MAX_NUMBER = 1e30
+SUMMARY: Mapping[str, Callable[[Array], Any]] = {
+    "mean": np.mean,
+    "p99": partial(np.quantile, q=0.99),
+    "max": np.max,
+}
+"""Statistics of each error."""
 ERRORS = ("round_trip", "coarse_round_trip", *CHART_LIGHTS, "lights", "rms")
 OWN_ERRORS = tuple(f"own_{name}" for name in ERRORS[2:])
 REQUIRED = {"bytes", "time_ns", "setup_s", "round_trip_colours", "unseen_spectra"}
-REQUIRED |= set(map("_".join, product((*ERRORS, *OWN_ERRORS), ("mean", "p99", "max"))))
+REQUIRED |= set(map("_".join, product((*ERRORS, *OWN_ERRORS), SUMMARY)))
 """Numbers of every method that was measured."""
 BATCH = re.compile(r"ns_([1-9]\d{0,8})")
 """Name of a time by the number of colours per call."""
-SPREAD = ("least", "most", "colours")
-"""Suffixes of the numbers that come with a time."""
 REFERENCE = 65_536
-"""Colours per call of the time by which cubes are recommended."""
-MEASURED = "measured.csv"
+MEASURED = Path(__file__).with_name("measured.csv")
+"""The chart that is part of the package."""
 HINT = "give the CSV file of a chart"
 
 
@@ -94,9 +101,8 @@ class Chart:
 
 def chart_csv(chart: Chart) -> str:
     """Convert a chart to CSV."""
-    names: dict[str, None] = {}
-    for result in chart.results:
-        names |= dict.fromkeys(result.numbers)
+    of_results = (result.numbers for result in chart.results)
+    names = dict.fromkeys(chain.from_iterable(of_results))
     columns = [*TEXTS, *names, *FACTS]
     rows = []
     for result in chart.results:
@@ -106,22 +112,14 @@ def chart_csv(chart: Chart) -> str:
     return csv_text(columns, rows)
 
 
-def read_chart(path: StrPath) -> Chart:
-    """Read the CSV file of a chart. Raises `ChartFileError`."""
-    return parse_chart(
-        read_bytes(path, ChartFileError, limit=MAX_BYTES, hint=HINT), path
-    )
-
-
 def shipped_chart() -> Chart:
     """Return the chart of docs/speed.md, which is part of the package."""
-    return parse_chart(
-        files("uplift.lab.chart").joinpath(MEASURED).read_bytes(), MEASURED
-    )
+    return read_chart(MEASURED)
 
 
-def parse_chart(data: bytes, path: StrPath) -> Chart:
-    """Parse the CSV file of a chart. Raises `ChartFileError`."""
+def read_chart(path: StrPath) -> Chart:
+    """Read the CSV file of a chart. Raises `ChartFileError`."""
+    data = read_bytes(path, ChartFileError, limit=MAX_BYTES, hint=HINT)
     try:
         lines = parse_csv(data)
         if not lines:
@@ -144,7 +142,7 @@ def _result(line: dict[str, str]) -> MethodResult:
         if name not in (*TEXTS, *FACTS) and text.strip():
             numbers[name] = _number(name, text)
             if BATCH.fullmatch(name):
-                required |= {f"{name}_{suffix}" for suffix in SPREAD}
+                required.add(f"{name}_colours")
     state = State(line["state"])
     if state == State.MEASURED and (missing := required - numbers.keys()):
         raise ValueError(f"{format_value(line['method'])} has no {min(missing)}")
@@ -158,6 +156,14 @@ def _number(name: str, text: str) -> float:
             f"{shorten(name)} must be in [0, {MAX_NUMBER:g}], got {format_value(text)}"
         )
     return value
+
+
+def reference_batch(batches: Sequence[int]) -> int:
+    """Return the colours per call of the time by which cubes are recommended, and which
+    the page shows at first: at most `REFERENCE`, if there are so few.
+    """
+    few = [batch for batch in batches if batch <= REFERENCE]
+    return max(few, default=min(batches, default=0))
 
 
 MIN_TIME = 1.0
@@ -200,13 +206,17 @@ class Criterion:
             return per_rgb
         return 1e9 * result.numbers["setup_s"] + self.batch * per_rgb
 
-    def point(self, result: MethodResult) -> tuple[float, float] | None:
-        """Return time and mean error, None if either is unknown."""
-        time = self.time(result)
-        error = result.numbers.get(f"{self.error}_mean")
-        if time is None or error is None:
-            return None
-        return max(time, MIN_TIME), max(error, MIN_ERROR)
+    def points(
+        self, results: Iterable[MethodResult]
+    ) -> dict[MethodResult, tuple[float, float]]:
+        """Return time and mean error of the results that have both."""
+        points = {}
+        for result in results:
+            time = self.time(result)
+            error = result.numbers.get(f"{self.error}_mean")
+            if time is not None and error is not None:
+                points[result] = max(time, MIN_TIME), max(error, MIN_ERROR)
+        return points
 
     def labels(self, result: MethodResult) -> tuple[str, str]:
         """Return time and mean error as text."""
@@ -214,17 +224,13 @@ class Criterion:
             result.numbers[f"{self.error}_mean"]
         )
 
-    def front(self, chart: Chart) -> tuple[MethodResult, ...]:
+    def front(self, results: Iterable[MethodResult]) -> list[MethodResult]:
         """Return the Pareto front, fastest first: each is clearly more accurate than
         all faster methods.
         """
-        results = []
-        points = []
-        for result in chart.measured:
-            if point := self.point(result):
-                results.append(result)
-                points.append(point)
-        return tuple(results[row] for row in pareto_front(points))
+        points = self.points(results)
+        compared = list(points)
+        return [compared[row] for row in pareto_front(list(points.values()))]
 
 
 UNSEEN = "Unseen materials, mean of five lights"

@@ -11,14 +11,11 @@ import numpy as np
 from uplift.atlas import Atlas, merge
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.common.errors import AtlasError, OptionError
+from uplift.common.errors import AtlasError
 from uplift.common.text import pluralise
 from uplift.lab.look_alikes import families_like
 from uplift.lab.runner import Task, spectra_of, within
 
-COLOURS = 2000
-"""Default number of random colours."""
-MIN_COLOURS = 16
 MIN_SPECTRA = 2
 
 
@@ -26,13 +23,15 @@ MIN_SPECTRA = 2
 class Effort:
     """Time spent on a method.
 
-    ``seconds_per_error``: CPU time for the answers of one error; slow methods process
-    fewer colours. ``lap``: shortest duration of a repetition in seconds. ``longest``:
-    CPU seconds of a call; slower ones take fewer colours than the batch has.
-    ``builds``: number of builds of each cube; the last one is timed. ``limit``: wall
-    seconds after which a method in a child process counts as hung.
+    ``colours``: number of random colours of the round trip. ``seconds_per_error``: CPU
+    time for the answers of one error; slow methods process fewer colours. ``lap``:
+    shortest duration of a repetition in seconds. ``longest``: CPU seconds of a call;
+    slower ones take fewer colours than the batch has. ``builds``: number of builds of
+    each cube; the last one is timed. ``limit``: wall seconds after which a method in a
+    child process counts as hung.
     """
 
+    colours: int = 2000
     seconds_per_error: float = 6.0
     runs: int = 7
     lap: float = 0.02
@@ -58,34 +57,32 @@ class ChartTask:
     """The queries of a chart, in random order, so that slow methods may process the
     first ones only.
 
-    ``unseen``: spectra that no method knows. ``own`` (k, N): the spectra that
-    it knows. ``colours`` (n, 3): random RGB, and those along the edges and the grey
-    diagonal of the RGB cube.
+    ``unseen``: spectra that no method knows, next to those that it knows. ``colours``
+    (n, 3): random RGB, and those along the edges and the grey diagonal of the RGB cube.
     """
 
     unseen: Task
-    own: Array
     colours: Array
     effort: Effort
     facts: Mapping[str, str]
 
 
-def make_task(
-    atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effort | None = None
-) -> ChartTask:
+def make_task(atlases: Mapping[str, Atlas], effort: Effort | None = None) -> ChartTask:
     """Make a task from measured spectra in linear sRGB: of each atlas the first, third,
     … entry builds cubes, the others test them.
 
-    Raises `OptionError`, `AtlasError`.
+    Raises `AtlasError`.
     """
-    if colours < MIN_COLOURS:
-        raise OptionError(f"colours must be at least {MIN_COLOURS}, got {colours}")
     effort = effort or Effort()
     sensor = observer.sensor()
     known = merge(atlas[::2] for atlas in atlases.values())
     others = merge(atlas[1::2] for atlas in atlases.values())
-    own = spectra_of(within(known, sensor), sensor)
-    unseen = spectra_of(within(others, sensor), sensor)
+    random = np.random.default_rng(1)
+    rgb = np.concatenate([random.random((effort.colours, 3)), edges()])
+    rgb = random.permutation(rgb)
+    unseen = random.permutation(spectra_of(within(others, sensor), sensor))
+    task = Task(sensor, known, unseen, families_like(unseen), effort.builds)
+    own = task.known_spectra
     if min(len(own), len(unseen)) < MIN_SPECTRA:
         problem = (
             f"at least {MIN_SPECTRA} entries within sRGB must build and test cubes "
@@ -93,23 +90,17 @@ def make_task(
         )
         hint = "give an atlas of 8 or more entries"
         raise AtlasError(problem, code="too-few-entries", hint=hint)
-    random = np.random.default_rng(1)
-    rgb = np.concatenate([random.random((colours, 3)), edges()])
     facts = {
         "colours": (
-            f"{colours:,} random and {len(edges())} along edges and greys of linear "
-            "sRGB, under D65"
+            f"{effort.colours:,} random and {len(edges())} along edges and greys of "
+            "linear sRGB, under D65"
         ),
         "spectra": f"{len(known)} of {pluralise(len(known) + len(others), 'entry')} of "
         f"{', '.join(atlases)} (every "
         f"second) build the cubes with an atlas; of the others, {len(unseen)} within "
         "sRGB test all methods",
     }
-    rgb = random.permutation(rgb)
-    own = random.permutation(own)
-    queried = random.permutation(unseen)
-    task = Task(sensor, known, queried, families_like(queried), effort.builds)
-    return ChartTask(task, own, rgb, effort, facts)
+    return ChartTask(task, rgb, effort, facts)
 
 
 def edges() -> Array:

@@ -9,7 +9,7 @@ to 1.
 import numpy as np
 
 from uplift.common.arrays import Array, blocks
-from uplift.lab.method import Method, PreparedMethod, interpolated, nbytes, ours
+from uplift.lab.method import Method, PreparedMethod, interpolated, ours
 from uplift.lab.runner import Task
 
 STEPS = 20
@@ -67,15 +67,17 @@ def prepare(task: Task) -> PreparedMethod:
     """Solve for reflectances."""
     sensor = task.sensor
     matrix = sensor.light.xyz
-    size = nbytes(matrix)
-    return interpolated(lambda rgb: reconstruct(matrix, sensor.xyz(rgb)), task, size)
+
+    def spectra(rgb: Array) -> Array:
+        return reconstruct(matrix, sensor.xyz(rgb))
+
+    return interpolated(spectra, task, matrix.nbytes)
 
 
 METHODS = (
     Method(
         method="burns2019",
         title="Burns 2019",
-        family="Burns 2019",
         source=(
             "Burns, Chromatic adaptation transform by spectral reconstruction, Color "
             "Research & Application 44(5), 2019"
@@ -83,7 +85,6 @@ METHODS = (
         prepare=prepare,
         reference_sensor=ours,
         claimed_range=(0, 1000),
-        batch=False,
         note="our solver; reflectances may exceed 1",
     ),
 )

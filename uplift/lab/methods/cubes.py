@@ -7,11 +7,12 @@ system's compiler. A call takes all colours, on one thread.
 """
 
 import ctypes
+import re
 import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
@@ -28,13 +29,13 @@ from uplift.lab.method import (
     NotInstalledError,
     PreparedMethod,
     Uplift,
+    in_float32,
     nbytes,
     ours,
 )
 from uplift.lab.runner import Prepare, Task
-from uplift.lab.timing import Run, stopwatch
+from uplift.lab.timing import stopwatch
 from uplift.lookup import MODES, Cube, load
-from uplift.models import Moments
 from uplift.pipeline.build import build
 
 KEPT = 4
@@ -42,30 +43,33 @@ KEPT = 4
 
 
 @lru_cache(maxsize=KEPT)
-def _build(atlas: Atlas | None, builds: int, **options: Any) -> tuple[Cube, Run, Run]:
+def _build(
+    atlas: Atlas | None, builds: int, **options: Any
+) -> tuple[Cube, float, float]:
     for _ in range(builds):
         cube, building = stopwatch(lambda: build(atlas, **options))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.uplift"
         cube.save(path)
-        return *stopwatch(lambda: load(path)), building
+        loaded, loading = stopwatch(lambda: load(path))
+    return loaded, building.cpu, loading.cpu
 
 
-def built_cube(task: Task, *, atlas: bool, **options: Any) -> tuple[Cube, float, float]:
+def built_cube(
+    task: Task, *, atlas: bool = False, **options: Any
+) -> tuple[Cube, float, float]:
     """Build, store and load the cube of a task with options of `uplift.build`, once for
     all lookups; return the CPU seconds of building and loading too.
     """
     known = task.known if atlas else None
-    left_out = task.left_out
-    cube, loading, building = _build(known, task.builds, leave_out=left_out, **options)
-    return cube, building.cpu, loading.cpu
+    return _build(known, task.builds, leave_out=task.left_out, **options)
 
 
-def cube(atlas: bool = False, **options: Any) -> Prepare:
-    """Return the method of a cube, with the known materials as its ``atlas`` or without
-    one, and with options of `uplift.build`.
+def cube(**options: Any) -> Prepare:
+    """Return the method of a cube with options of `uplift.build`; with ``atlas=True``
+    the known materials are its atlas.
     """
-    return partial(prepare_lookup, atlas=atlas, **options)
+    return partial(prepare_lookup, **options)
 
 
 def prepare_lookup(
@@ -97,8 +101,10 @@ def within(cube: Cube, wavelengths: Array) -> Array:
     return np.clip(wavelengths, *cube.wavelengths[[0, -1]])
 
 
-def prepare_bulk(task: Task, **options: Any) -> PreparedMethod:
-    """Prepare a bulk sampler of the sensor's wavelengths, which compiles again."""
+def prepare_bulk(task: Task, mode: str, **options: Any) -> PreparedMethod:
+    """Prepare a bulk sampler of the sensor's wavelengths, which compiles again; its
+    only mode is ``bulk``.
+    """
     import jax
 
     from uplift.lookup import bulk
@@ -191,80 +197,58 @@ def load_library(path: Path) -> Uplift:
     return uplift
 
 
-@dataclass(frozen=True)
-class CubeKind:
-    """A kind of cube; the fields are keywords of `built_cube`."""
-
-    model: str
-    coefficients: int
-    dim: int
-    atlas: bool = False
-
-    @property
-    def is_moments(self) -> bool:
-        """Whether the number of coefficients is free."""
-        return self.model == Moments.name
-
-    @property
-    def command(self) -> str:
-        """Return the command that builds the cube."""
-        count = f"--coefficients {self.coefficients}"
-        model = count if self.is_moments else f"--model {self.model}"
-        atlas = "--atlas FILE " if self.atlas else ""
-        return f"uplift build {atlas}--dim {self.dim} {model}"
+_CUBE = re.compile(r"([a-z]+)(\d*)-(\d+)(-atlas)?")
 
 
-def in_python(kind: CubeKind, mode: str) -> Method:
-    """Describe `Cube.reflectance` in a mode."""
-    count = str(kind.coefficients) if kind.is_moments else ""
+def in_python(
+    cube: str, mode: str, prepare: Callable[..., PreparedMethod] = prepare_lookup
+) -> Method:
+    """Describe `Cube.reflectance` in a mode, for a cube of `CUBES`."""
+    ((model, count, dim, atlas),) = _CUBE.findall(cube)
+    options = {"model": model, "dim": int(dim), "atlas": bool(atlas)}
+    if count:
+        options["coefficients"] = int(count)
     # Nodes of all modes are exact; colours between them are not in ``moments`` and
     # ``nearest``, and refined sigmoids.
-    exact = mode == "spectra" or (mode == "refined" and kind.is_moments)
+    exact = mode in ("spectra", "bulk") or (mode == "refined" and count)
     return Method(
-        method=f"{kind.model}{count}-{kind.dim}{'-atlas' * kind.atlas}-{mode}",
-        title=f"{kind.model} {count}".rstrip()
-        + f", {kind.dim}³{', atlas' * kind.atlas}, {mode}",
-        label=f"{kind.coefficients} · {kind.dim}³ {mode}",
-        family=f"uplift, {kind.model}{' with atlas' * kind.atlas}",
+        method=f"{cube}-{mode}",
+        title=f"{model} {count}".rstrip()
+        + f", {dim}³{', atlas' * bool(atlas)}, {mode}",
+        label=f"{count or 3} · {dim}³ {mode}",
+        family=f"uplift, {model}{' with atlas' * bool(atlas)}",
         source="this package",
         mode=mode,
-        build=kind.command,
+        build=f"uplift build {'--atlas FILE ' * bool(atlas)}--dim {dim} "
+        + (f"--coefficients {count}" if count else f"--model {model}"),
         call=f'cube.reflectance(rgb, mode="{mode}")',
-        prepare=partial(prepare_lookup, mode=mode, **vars(kind)),
+        prepare=partial(prepare, mode=mode, **options),
         reference_sensor=ours,
         claimed_error=0.01 if exact else None,
     )
 
 
-def in_float32(kind: CubeKind, mode: str) -> Method:
+def in_single(cube: str, mode: str) -> Method:
     """Describe `Cube.reflectance` in a mode, in float32."""
-    double = in_python(kind, mode)
-    return replace(
-        double,
-        method=f"{double.method}-float32",
-        title=f"{double.title}, float32",
-        label=f"{double.label} f32",
-        dtype="float32",
-        call=f'cube.reflectance(rgb, mode="{mode}", dtype="float32")',
-        prepare=partial(prepare_lookup, mode=mode, dtype="float32", **vars(kind)),
-    )
+    prepare = partial(prepare_lookup, dtype="float32")
+    call = f'cube.reflectance(rgb, mode="{mode}", dtype="float32")'
+    return in_float32(replace(in_python(cube, mode, prepare), call=call))
 
 
-def in_bulk(kind: CubeKind) -> Method:
+def in_bulk(cube: str) -> Method:
     """Describe `uplift.bulk`, by JAX."""
+    python = in_python(cube, "bulk", prepare_bulk)
     return replace(
-        in_python(kind, "bulk"),
-        label=f"{kind.coefficients} · {kind.dim}³ bulk f32",
+        python,
+        label=f"{python.label} f32",
         dtype="float32",
         call="uplift.bulk.spectra(cube)(rgb)",
-        prepare=partial(prepare_bulk, **vars(kind)),
-        claimed_error=0.01,
     )
 
 
-def in_c(kind: CubeKind, mode: str) -> Method:
+def in_c(cube: str, mode: str) -> Method:
     """Describe the exported program of a mode."""
-    python = in_python(kind, mode)
+    python = in_python(cube, mode, prepare_c)
     return replace(
         python,
         method=f"c-{python.method}",
@@ -277,39 +261,38 @@ def in_c(kind: CubeKind, mode: str) -> Method:
             "wavelengths, count, out)"
         ),
         note=f"cc {' '.join(FLAGS[:5])}, called by ctypes",
-        prepare=partial(prepare_c, mode=mode, **vars(kind)),
         needs=COMPILER,
     )
 
 
-LOOKUPS: dict[str, Callable[[CubeKind], Method]] = {
+LOOKUPS: dict[str, Callable[[str], Method]] = {
     **{mode: partial(in_python, mode=mode) for mode in MODES},
-    **{f"{mode}-float32": partial(in_float32, mode=mode) for mode in MODES},
+    **{f"{mode}-float32": partial(in_single, mode=mode) for mode in MODES},
     **{f"c-{mode}": partial(in_c, mode=mode) for mode in MODES},
     "bulk": in_bulk,
 }
 _BOTH = "spectra spectra-float32 moments moments-float32 refined refined-float32"
-JOBS = {
-    CubeKind("moments", 3, 32, atlas=True): "spectra bulk",
-    CubeKind("moments", 5, 32, atlas=True): "spectra bulk",
-    CubeKind("moments", 9, 8, atlas=True): "spectra moments refined bulk",
-    CubeKind("moments", 9, 16, atlas=True): "spectra moments bulk",
-    CubeKind("moments", 9, 32, atlas=True): f"{_BOTH} bulk c-moments c-spectra",
-    CubeKind("moments", 9, 64, atlas=True): "spectra moments bulk",
-    CubeKind("moments", 13, 32, atlas=True): "spectra bulk",
-    CubeKind("moments", 17, 32, atlas=True): "spectra bulk",
-    CubeKind("moments", 17, 64, atlas=True): "spectra bulk",
-    CubeKind("moments", 9, 8): "spectra moments refined bulk",
-    CubeKind("moments", 9, 16): "spectra moments bulk",
-    CubeKind("moments", 9, 32): f"{_BOTH} bulk c-moments c-spectra",
-    CubeKind("moments", 9, 64): "spectra moments nearest bulk",
-    CubeKind("sigmoid", 3, 32, atlas=True): "spectra",
-    CubeKind("sigmoid", 3, 8): "spectra moments refined",
-    CubeKind("sigmoid", 3, 16): "spectra moments",
-    CubeKind("sigmoid", 3, 32): f"{_BOTH} c-moments c-spectra",
-    CubeKind("sigmoid", 3, 64): "spectra moments c-moments",
+CUBES = {
+    "moments3-32-atlas": "spectra bulk",
+    "moments5-32-atlas": "spectra bulk",
+    "moments9-8-atlas": "spectra moments refined bulk",
+    "moments9-16-atlas": "spectra moments bulk",
+    "moments9-32-atlas": f"{_BOTH} bulk c-moments c-spectra",
+    "moments9-64-atlas": "spectra moments bulk",
+    "moments13-32-atlas": "spectra bulk",
+    "moments17-32-atlas": "spectra bulk",
+    "moments17-64-atlas": "spectra bulk",
+    "moments9-8": "spectra moments refined bulk",
+    "moments9-16": "spectra moments bulk",
+    "moments9-32": f"{_BOTH} bulk c-moments c-spectra",
+    "moments9-64": "spectra moments nearest bulk",
+    "sigmoid-32-atlas": "spectra",
+    "sigmoid-8": "spectra moments refined",
+    "sigmoid-16": "spectra moments",
+    "sigmoid-32": f"{_BOTH} c-moments c-spectra",
+    "sigmoid-64": "spectra moments c-moments",
 }
-"""Kinds of cubes and their lookups."""
+"""Models, coefficients and nodes of cubes, and their lookups."""
 METHODS: list[Method] = []
-for _kind, _lookups in JOBS.items():
-    METHODS += [LOOKUPS[name](_kind) for name in _lookups.split()]
+for _cube, _lookups in CUBES.items():
+    METHODS += [LOOKUPS[name](_cube) for name in _lookups.split()]

@@ -22,7 +22,6 @@ from uplift.lab.method import (
     Method,
     PreparedMethod,
     interpolated,
-    nbytes,
     ours,
 )
 from uplift.lab.runner import KNOWN, Known, Task
@@ -131,21 +130,19 @@ def prepare(task: Task, known: Known = KNOWN) -> PreparedMethod:
     """Tune a regression on the known spectra of a task."""
     spectra = known(task)
     regression, run = stopwatch(lambda: tune(task.sensor, spectra))
-    return interpolated(regression, task, nbytes(spectra), run.cpu)
+    return interpolated(regression, task, spectra.nbytes, run.cpu)
 
 
 METHODS = (
     Method(
         method="local-linear",
         title="Local-linear regression",
-        family="Local-linear regression",
         source=(
             "Cleveland & Devlin, Locally weighted regression, JASA 83(403), 1988, of "
             "reflectance on RGB"
         ),
         prepare=prepare,
         reference_sensor=ours,
-        batch=False,
         note="measured spectra as those of cubes with an atlas, without a table",
     ),
 )

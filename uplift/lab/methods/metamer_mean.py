@@ -18,7 +18,7 @@ from scipy.spatial.distance import cdist
 
 from uplift.colorimetry import Light, Sensor, lab
 from uplift.common.arrays import Array, Indices
-from uplift.lab.method import Method, PreparedMethod, interpolated, nbytes, ours
+from uplift.lab.method import Method, PreparedMethod, interpolated, ours
 from uplift.lab.methods.local_linear import LOWEST, with_least_change
 from uplift.lab.runner import KNOWN, Known, Task
 
@@ -86,21 +86,19 @@ def prepare(task: Task, known: Known = KNOWN) -> PreparedMethod:
     """Mix metamers from the known spectra of a task."""
     spectra = known(task)
     mean = partial(metamer_mean, task.sensor, spectra)
-    return interpolated(mean, task, nbytes(spectra))
+    return interpolated(mean, task, spectra.nbytes)
 
 
 METHODS = (
     Method(
         method="metamer-mean",
         title="Mean of metamers",
-        family="Mean of metamers",
         source=(
             "after Zhang, Funt & Mirzaei, Metamer mismatching in practice versus "
             "theory, JOSA A 33(3), 2016"
         ),
         prepare=prepare,
         reference_sensor=ours,
-        batch=False,
         note="measured spectra as those of cubes with an atlas, mixed for each colour",
     ),
 )

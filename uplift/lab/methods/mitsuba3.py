@@ -141,7 +141,6 @@ def _evaluate(mitsuba: Any, drjit: Any, rgb: Array, wavelengths: Array) -> Array
 
 _table = partial(
     Method,
-    family="Mitsuba 3",
     source="Jakob et al., Mitsuba 3, the table of Jakob & Hanika 2019 for sRGB",
     reference_sensor=reference_sensor,
     claimed_error=0.1,
@@ -151,7 +150,6 @@ METHODS = (
         method="mitsuba3-table",
         title="Mitsuba 3, table of 64",
         prepare=prepare,
-        batch=False,
         note="coefficients from Python, one colour per call; spectra by numpy",
         needs=MITSUBA,
     ),

@@ -15,9 +15,7 @@ primary decomposition for rendering with sRGB reflectance", EGSR. Jakob & Hanika
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache, partial
-from typing import Any
 
 import numpy as np
 
@@ -29,6 +27,7 @@ from uplift.common.colour_science import colour_science
 from uplift.lab.method import (
     Method,
     PreparedMethod,
+    in_float32,
     nbytes,
     published_srgb,
     stated_sensor,
@@ -134,112 +133,81 @@ def smits_sensor() -> Sensor:
     return stated_sensor(space.matrix_XYZ_to_RGB, space.whitepoint_name)
 
 
-def _method(
-    name: str,
-    title: str,
-    source: str,
-    prepare: Callable[..., PreparedMethod],
-    **fields: Any,
-) -> Method:
-    return Method(
-        method=name,
-        title=title,
-        family=title.partition(",")[0],
-        source=source,
-        prepare=prepare,
-        **fields,
-    )
-
-
-def _in_single(method: Method) -> Method:
-    """Return a method of `prepare_basis` in float32."""
-    return replace(
-        method,
-        method=f"{method.method}-float32",
-        title=f"{method.title}, float32",
-        label=f"{method.title} f32",
-        dtype="float32",
-    )
-
-
 JAKOB = (
     "Jakob & Hanika, A low-dimensional function space for efficient spectral "
     "upsampling, CGF 38(2), 2019"
 )
-MALLETT = _method(
-    "mallett2019",
-    "Mallett 2019",
-    (
+MALLETT = Method(
+    method="mallett2019",
+    title="Mallett 2019",
+    source=(
         "Mallett & Yuksel, Spectral primary decomposition for rendering with sRGB "
         "reflectance, EGSR 2019"
     ),
-    partial(prepare_basis, read=_mallett_basis, weights=np.asarray),
+    prepare=partial(prepare_basis, read=_mallett_basis, weights=np.asarray),
     claimed_error=0.01,
     claimed_range=(0, 1 + 1e-6),
     note="basis of colour-science, one product of matrices",
 )
-SMITS = _method(
-    "smits1999",
-    "Smits 1999",
-    (
+SMITS = Method(
+    method="smits1999",
+    title="Smits 1999",
+    source=(
         "Smits, An RGB-to-spectrum conversion for reflectances, Journal of Graphics "
         "Tools 4(4), 1999"
     ),
-    partial(prepare_basis, read=_smits_basis, weights=_smits_weights),
+    prepare=partial(prepare_basis, read=_smits_basis, weights=_smits_weights),
     claimed_range=(0, 1.02),
     reference_sensor=smits_sensor,
     note="table of colour-science, used with sRGB; reflectances up to 1.015",
 )
 METHODS = (
-    _method(
-        "jakob2019-direct",
-        "Jakob 2019, direct",
-        JAKOB,
-        partial(prepare_one_by_one, name="XYZ_to_sd_Jakob2019"),
+    Method(
+        method="jakob2019-direct",
+        title="Jakob 2019, direct",
+        source=JAKOB,
+        prepare=partial(prepare_one_by_one, name="XYZ_to_sd_Jakob2019"),
         claimed_error=0.1,
-        batch=False,
         note="colour-science, which stops at ΔE76 0.024",
     ),
-    _method(
-        "jakob2019-table64",
-        "Jakob 2019, table of 64",
-        JAKOB,
-        prepare_jakob_table,
+    Method(
+        method="jakob2019-table64",
+        title="Jakob 2019, table of 64",
+        source=JAKOB,
+        prepare=prepare_jakob_table,
         claimed_error=0.1,
         reference_sensor=mitsuba3.reference_sensor,
         note="looked up by colour-science in the table of Mitsuba 3",
     ),
     MALLETT,
-    _in_single(MALLETT),
-    _method(
-        "meng2015",
-        "Meng 2015",
-        (
+    in_float32(MALLETT),
+    Method(
+        method="meng2015",
+        title="Meng 2015",
+        source=(
             "Meng, Simon, Hanika & Dachsbacher, Physically meaningful rendering using "
             "tristimulus colours, CGF 34(4), 2015"
         ),
-        partial(
+        prepare=partial(
             prepare_one_by_one, name="XYZ_to_sd_Meng2015", grid=(START, END, MENG_STEP)
         ),
         claimed_error=0.5,
         claimed_range=(0, 1000),
-        batch=False,
         note=(
             f"colour-science at {MENG_STEP:g} nm, interpolated; reflectances may "
             "exceed 1"
         ),
     ),
-    _method(
-        "otsu2018",
-        "Otsu 2018",
-        (
+    Method(
+        method="otsu2018",
+        title="Otsu 2018",
+        source=(
             "Otsu, Yamamoto & Hachisuka, Reproducing spectral reflectances from "
             "tristimulus colours, CGF 37(6), 2018"
         ),
-        partial(prepare_one_by_one, name="XYZ_to_sd_Otsu2018", grid=OTSU_GRID),
-        batch=False,
+        prepare=partial(prepare_one_by_one, name="XYZ_to_sd_Otsu2018", grid=OTSU_GRID),
         note="colour-science with its own data, clipped to [0, 1]",
     ),
     SMITS,
-    _in_single(SMITS),
+    in_float32(SMITS),
 )

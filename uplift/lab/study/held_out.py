@@ -20,11 +20,11 @@ from uplift.lab.methods.cubes import cube
 from uplift.lab.runner import (
     LIBRARY,
     Prepare,
+    Task,
     divided,
     named_lights,
     pooled_errors,
     spectra_of,
-    whole,
     within,
 )
 
@@ -69,7 +69,7 @@ def holdout(
         raise AtlasError(problem, code="too-few-entries", hint="use a larger atlas")
     left_out = families_like(spectra_of(atlas, sensor))
     halves = list(divided(entries, left_out, sensor, seeds=splits))
-    all_entries = [whole(entries, left_out, sensor)]
+    all_entries = [Task(sensor, Atlas(), spectra_of(entries, sensor), left_out)]
     methods: dict[str, Prepare] = {
         HALF: cube(atlas=True, **options),
         NO_ATLAS: cube(**options),
