@@ -6,16 +6,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import product
 from operator import itemgetter
+from typing import Any
 
 from uplift.common.arrays import StrPath
 from uplift.extras.pages.figure import OTHER, write_figure
 from uplift.extras.pages.format import capitalise, format_error, format_time
 from uplift.extras.pages.html import Tooltip, render
-from uplift.extras.pages.marks import Box, Mark, boxes, line, threshold
+from uplift.extras.pages.marks import Box, boxes, line, threshold
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw, page_svg
 from uplift.extras.pages.pareto import family_colours, front_panel
 from uplift.lab.comparison.compare import HEADINGS, Comparison
-from uplift.lab.statistics import Row
+from uplift.lab.runner import Row
 
 COLOURS = {
     "point sampling": "#1f6fb4",
@@ -79,21 +80,14 @@ def cost_panels(comparison: Comparison) -> list[Panel]:
         dots = []
         joined = []
         for family, members in families.items():
-            joined += _family_marks(family, members)
+            x = [dot.x for dot in members]
+            y = [dot.y for dot in members]
+            style: dict[str, Any] = {"gid": f"whisker-{members[0].key}", "zorder": 1}
+            joined.append(line(x, y, family, members[0].colour, alpha=0.6, **style))
             dots += members
         heading = f"{capitalise(title)}, ΔE00 of 97.5 %"
         panels.append(front_panel(heading, axis, dots, marks=joined))
     return panels
-
-
-def _family_marks(family: str, dots: Sequence[Dot]) -> list[Mark]:
-    """Join the dots of a family by a line, and name it in legends."""
-    colour = dots[0].colour
-    x = [dot.x for dot in dots]
-    y = [dot.y for dot in dots]
-    gid = f"whisker-{dots[0].key}"
-    joined = line(x, y, "", colour, gid=gid, linewidth=0.8, alpha=0.45, zorder=1)
-    return [joined, line([], [], family, colour, marker="o", linestyle="")]
 
 
 def write_costs(comparison: Comparison, path: StrPath, *, force: bool = False) -> None:
