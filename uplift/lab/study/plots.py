@@ -23,7 +23,6 @@ from uplift.lab.study.moments import (
     Technique,
 )
 from uplift.lab.study.sensitivity import MOVED_DELTA_E, Change
-from uplift.models import Sigmoid
 
 FLOATS = 9
 """Numbers stored of the spectra that are drawn, as in figures 4.1 and 4.2 of the
@@ -129,35 +128,23 @@ def plot_map(
     Dots to the right of the line are failures, hollow ones builds with failed stand-ins
     of unrealisable nodes. ``runs`` are rows of `uplift.lab.study.stability.evaluate`.
     """
+    failure = threshold(1, axis="x", colour=HIGHLIGHT)
+    x = Axis(log=True, limits=RATIOS)
+    variants = [f"{run['model']} {run['coefficients']:2}" for run in runs]
     panels = []
     for option in PANELS:
-        values = sorted({_value(run, option) for run in runs})
+        of_runs = variants if option == "model" else [run[option] for run in runs]
+        values = sorted(set(of_runs))
         dots = []
-        for run in runs:
+        for run, value in zip(runs, of_runs, strict=True):
             ratio = float(np.clip(run["worst"] / run["threshold"], *RATIOS))
-            row = values.index(_value(run, option))
             hollow = bool(run["stand_ins"])
-            dots.append(Dot(ratio, row, colour=ACCENT, hollow=hollow))
-        names = [_shown(value, option) for value in values]
-        failure = threshold(1, axis="x", colour=HIGHLIGHT)
-        x = Axis(log=True, limits=RATIOS)
-        panels.append(Panel([failure], option, x, Axis(names=names), dots))
+            dots.append(Dot(ratio, values.index(value), colour=ACCENT, hollow=hollow))
+        y = Axis(names=[str(value).removeprefix("ITU-R ") for value in values])
+        panels.append(Panel([failure], option, x, y, dots))
     title = "largest residual / threshold; 1 would be a failure"
     figure = draw(panels, len(PANELS), (1.8, 2.2), title=title)
     write_figure(figure, path, force=force)
-
-
-def _value(run: Mapping[str, Any], option: str) -> Any:
-    """Return the value of an option; that of a model has its coefficients."""
-    if option == "model" and run["model"] != Sigmoid.name:
-        return f"moments {run['coefficients']:2}"
-    return run[option]
-
-
-def _shown(value: Any, option: str) -> str:
-    if option == "threshold":
-        return f"{value:.0e}"
-    return str(value).removeprefix("ITU-R ")
 
 
 MIN_DELTA_E = 1e-4
