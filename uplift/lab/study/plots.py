@@ -103,10 +103,11 @@ def _spectra_panel(study: MomentsStudy, entry: int) -> Panel:
         stored = technique.moments(measured, nm, moments)
         spectrum = technique.reconstruct(stored, nm)[0]
         error = study.errors[number, moments, entry, 0]
-        label = f"{technique.label}, ΔE76 {error:.2f}"
+        warp = technique.label.removeprefix("mirrored, ")
+        label = f"{warp}, ΔE76 {error:.2f}"
         marks.append(line(nm, spectrum, label, colour))
-    numbers = pluralise(moments + 1, "number")
-    title = f"{study.names[entry]} ({study.atlases[entry]}), {numbers}"
+    stored_as = f"mirrored, {pluralise(moments + 1, 'number')}"
+    title = f"{study.names[entry]} ({study.atlases[entry]}), {stored_as}"
     # Dark entries fill their panel, with room for the legend above.
     return spectra_panel(marks, title, min(1.02, 1.5 * measured.max() + 0.02))
 
