@@ -1,7 +1,6 @@
 """Reproduction of the tables and figures of Meyer 1988, for docs/reproductions.md."""
 
 from collections.abc import Iterable, Sequence
-from itertools import chain
 
 import numpy as np
 
@@ -91,7 +90,7 @@ def rule_values(setup: RenderSetup) -> list[Row]:
     """
     space = matrix(setup, "opponent")
     rules = paper.quadrature_rules(space, setup.wavelengths, setup.cmfs)
-    orders = chain.from_iterable(of_channel.values() for of_channel in rules)
+    orders = [rule for of_channel in rules for rule in of_channel.values()]
     defined = [rule for rule in orders if isinstance(rule, QuadratureRule)]
     functions = paper.channel_functions(space, setup.wavelengths, setup.cmfs)
     separate = [rules[0][3], rules[1][2], rules[2][1]]

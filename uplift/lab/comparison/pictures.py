@@ -3,7 +3,6 @@
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from itertools import product
 from operator import itemgetter
 from typing import Any
@@ -96,18 +95,22 @@ def write_costs(comparison: Comparison, path: StrPath, *, force: bool = False) -
     write_figure(figure, path, force=force)
 
 
-def box_panel(comparison: Comparison, name: str) -> Panel:
-    """Return box plots under a set of lights: quartiles, median, and 2.5 to 97.5 %."""
-    drawn = []
-    rows = comparison.of(name)
-    for row in rows:
-        low = max(row["q2_5"], MIN_ERROR)
-        box = Box(low, row["q25"], row["median"], row["q75"], row["q97_5"])
-        drawn.append(replace(box, colour=COLOURS.get(row["family"], OTHER)))
-    marks = [boxes(drawn), threshold(JUST_VISIBLE, axis="x")]
-    shown = Axis(names=[row["representation"] for row in rows])
-    title = capitalise(comparison.sets[name])
-    return Panel(marks, title, Axis("ΔE00", log=True), shown)
+def box_panels(comparison: Comparison) -> list[Panel]:
+    """Return box plots for each set of lights: quartiles, median, and 2.5 to 97.5 %."""
+    visible = threshold(JUST_VISIBLE, axis="x")
+    panels = []
+    for name, title in comparison.sets.items():
+        drawn = []
+        rows = comparison.of(name)
+        for row in rows:
+            low = max(row["q2_5"], MIN_ERROR)
+            quartiles = row["q25"], row["median"], row["q75"]
+            colour = COLOURS.get(row["family"], OTHER)
+            drawn.append(Box(low, *quartiles, row["q97_5"], colour))
+        y = Axis(names=[row["representation"] for row in rows])
+        x = Axis("ΔE00", log=True)
+        panels.append(Panel([boxes(drawn), visible], capitalise(title), x, y))
+    return panels
 
 
 def _box_size(comparison: Comparison) -> tuple[float, float]:
@@ -117,7 +120,7 @@ def _box_size(comparison: Comparison) -> tuple[float, float]:
 
 def write_boxes(comparison: Comparison, path: StrPath, *, force: bool = False) -> None:
     """Write box plots of all sets of lights as PNG. Raises `OutputError`."""
-    panels = [box_panel(comparison, name) for name in comparison.sets]
+    panels = box_panels(comparison)
     figure = draw(panels, len(panels), _box_size(comparison))
     write_figure(figure, path, force=force)
 
@@ -127,11 +130,10 @@ def render_comparison(comparison: Comparison, tuned: Sequence[Row] = ()) -> str:
     pictures = []
     for panel in cost_panels(comparison):
         pictures.append((f"{panel.title}, over {panel.x.label}", page_svg(panel)))
-    distributions = []
-    for name in comparison.sets:
-        panel = box_panel(comparison, name)
-        picture = page_svg(panel, _box_size(comparison))
-        distributions.append((panel.title, picture))
+    size = _box_size(comparison)
+    distributions = [
+        (panel.title, page_svg(panel, size)) for panel in box_panels(comparison)
+    ]
     families = [row["family"] for row in comparison.rows]
     return render(
         "lab/comparison/templates/page.html.j2",
