@@ -1,6 +1,7 @@
 """Reproduction of the tables and figures of Meyer 1988, for docs/reproductions.md."""
 
 from collections.abc import Iterable, Sequence
+from itertools import chain
 
 import numpy as np
 
@@ -90,7 +91,7 @@ def rule_values(setup: RenderSetup) -> list[Row]:
     """
     space = matrix(setup, "opponent")
     rules = paper.quadrature_rules(space, setup.wavelengths, setup.cmfs)
-    orders = [rule for of_channel in rules for rule in of_channel.values()]
+    orders = chain.from_iterable(of_channel.values() for of_channel in rules)
     defined = [rule for rule in orders if isinstance(rule, QuadratureRule)]
     functions = paper.channel_functions(space, setup.wavelengths, setup.cmfs)
     separate = [rules[0][3], rules[1][2], rules[2][1]]

@@ -7,7 +7,6 @@ from numpy.testing import assert_array_equal
 import uplift
 from uplift.atlas import Atlas, read_atlas
 from uplift.colorimetry import delta_e_spectra, observer
-from uplift.lab.chart.selection import perturb_method, select_methods
 from uplift.lab.study.sensitivity import (
     CONTINUOUS_MODES,
     Change,
@@ -53,13 +52,6 @@ def test_jumps_are_found_and_only_those(width):
     jump = perturb_answers("", answer, lambda codes: codes / 255, lights)[0]["jump"]
     expected = float(delta_e_spectra(LIGHT, dark, bright))
     assert jump == pytest.approx(expected * (width < 1e-6), abs=1e-3 * expected)
-
-
-def test_otsu_2018_jumps_and_mallett_2019_does_not():
-    methods = select_methods(("otsu2018", "mallett2019"))
-    mallett, otsu = (perturb_method(method, LIGHT, 300) for method in methods)
-    assert otsu[0]["light_most"] >= otsu[0]["jump"] > 2
-    assert max(row["jump"] for row in mallett) < 2e-3
 
 
 @pytest.fixture(scope="module")

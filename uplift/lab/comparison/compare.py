@@ -7,6 +7,7 @@ Measured reflectances under sets of lights, with the statistics of Kment 2011, s
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from operator import itemgetter
 
 import numpy as np
@@ -69,7 +70,7 @@ class Scene:
     @property
     def illuminants(self) -> list[Illuminant]:
         """Return all lights."""
-        return [light for light_set in self.sets for light in light_set.illuminants]
+        return list(chain.from_iterable(each.illuminants for each in self.sets))
 
     def thinned(self, count: int = 40) -> "Scene":
         """Select at most ``count`` surfaces, evenly spaced."""

@@ -45,15 +45,6 @@ BOX_SIZE = (4.1, 0.155)
 """Inches of the width of box plots, and of the height of a box."""
 JUST_VISIBLE = 1.0
 """ΔE00 that is just visible side by side; the thesis prints smaller ones in bold."""
-TITLE = "Representations of spectra"
-SOURCES = (
-    "Kment 2011, Spectral data representation techniques for realistic image "
-    "synthesis: point sampling, Riemann sums "
-    "and their enhancement, the lights and the statistics.",
-    "Sun, Drew & Fracchia 1999: the composite model. Peercy 1993: linear models. "
-    "Wilkie et al. 2014: hero wavelengths. "
-    "Peters et al. 2019: trigonometric moments. Jakob & Hanika 2019: the sigmoid.",
-)
 
 
 def names(comparison: Comparison) -> list[str]:
@@ -137,13 +128,12 @@ def render_comparison(comparison: Comparison, tuned: Sequence[Row] = ()) -> str:
     families = [row["family"] for row in comparison.rows]
     return render(
         "lab/comparison/templates/page.html.j2",
-        title=TITLE,
+        title="Representations of spectra",
         comparison=comparison,
         pictures=pictures,
         boxes=distributions,
         families=family_colours(families, COLOURS),
         tooltips=[_tooltip(name, comparison) for name in names(comparison)],
-        sources=SOURCES,
         statistics=HEADINGS,
         tuned=tuned,
     )

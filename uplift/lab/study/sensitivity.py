@@ -93,14 +93,15 @@ def perturb_atlas(
 ) -> list[Change]:
     """Rebuild a cube with changes of its atlas, ``count`` entries one at a time."""
     options = recorded_options(data.provenance["options"])
-    before = rebuild(atlas.entries, options)
-    kept = [entry for entry in atlas.entries if entry.name in before.atlas.names]
-    jobs = list(changed_atlases(kept, before.atlas.names[:count]))
     light = comparison_light(data)
     changes = []
-    for description, name, changed in reported(jobs, "builds", progress):
-        after = rebuild(changed, options)
-        changes.append(compare(before, after, light, description, name))
+    with warnings.catch_warnings(action="ignore", category=UpliftWarning):
+        before = build(atlas, **options).data
+        kept = [entry for entry in atlas if entry.name in before.atlas.names]
+        jobs = list(changed_atlases(kept, before.atlas.names[:count]))
+        for description, name, changed in reported(jobs, "builds", progress):
+            after = build(Atlas(tuple(changed)), **options).data
+            changes.append(compare(before, after, light, description, name))
     return changes
 
 
@@ -206,7 +207,7 @@ def changed_atlases(
 
 
 def compare(
-    before: CubeData, after: CubeData, light: Light, description: str, name: str = ""
+    before: CubeData, after: CubeData, light: Light, description: str, name: str
 ) -> Change:
     """Compare the nodes of a cube with those after a change of its atlas, of all
     entries or of a named one.
@@ -227,9 +228,3 @@ def compare(
         distance = np.array([cdist(*pair).min(axis=1) for pair in (colours, labs)])
     rms = rms_difference(*spectra)
     return Change(description, rms, delta_e_spectra(light, *spectra), distance)
-
-
-def rebuild(entries: Sequence[Entry], options: Row) -> CubeData:
-    """Build a cube from entries without the warnings that changed entries cause."""
-    with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-        return build(Atlas(tuple(entries)), **options).data
