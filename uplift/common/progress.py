@@ -32,7 +32,7 @@ def ignore_progress(progress: Progress) -> None:
 def reported(
     items: Sequence[Item], stage: str, progress: ProgressCallback
 ) -> Iterator[Item]:
-    """Yield items, and report each one when the next is asked for."""
+    """Yield items, and report each one when it is done."""
     for done, item in enumerate(items, 1):
         yield item
         progress(Progress(stage, done, len(items)))

@@ -90,26 +90,24 @@ def _plot_spectra(
     study: MomentsStudy, entries: Sequence[int], path: StrPath, force: bool
 ) -> None:
     """Draw entries, two in a row, measured and reconstructed."""
-    panels = [_spectra_panel(study, entry) for entry in entries]
-    write_figure(draw(panels, 2), path, force=force)
-
-
-def _spectra_panel(study: MomentsStudy, entry: int) -> Panel:
     moments = _drawn_moments(study)
     nm = samples.wavelengths()
-    measured = study.measured[entry : entry + 1]
-    marks = [line(nm, measured[0], "measured", BAND, linewidth=3)]
-    for number, (technique, colour) in enumerate(COLOURS.items()):
-        stored = technique.moments(measured, nm, moments)
-        spectrum = technique.reconstruct(stored, nm)[0]
-        error = study.errors[number, moments, entry, 0]
-        warp = technique.label.removeprefix("mirrored, ")
-        label = f"{warp}, ΔE76 {error:.2f}"
-        marks.append(line(nm, spectrum, label, colour))
-    stored_as = f"mirrored, {pluralise(moments + 1, 'number')}"
-    title = f"{study.names[entry]} ({study.atlases[entry]}), {stored_as}"
-    # Dark entries fill their panel, with room for the legend above.
-    return spectra_panel(marks, title, min(1.02, 1.5 * measured.max() + 0.02))
+    panels = []
+    for entry in entries:
+        measured = study.measured[entry : entry + 1]
+        marks = [line(nm, measured[0], "measured", BAND, linewidth=3)]
+        for number, (technique, colour) in enumerate(COLOURS.items()):
+            stored = technique.moments(measured, nm, moments)
+            spectrum = technique.reconstruct(stored, nm)[0]
+            error = study.errors[number, moments, entry, 0]
+            warp = technique.label.removeprefix("mirrored, ")
+            marks.append(line(nm, spectrum, f"{warp}, ΔE76 {error:.2f}", colour))
+        stored_as = f"mirrored, {pluralise(moments + 1, 'number')}"
+        title = f"{study.names[entry]} ({study.atlases[entry]}), {stored_as}"
+        # Dark entries fill their panel, with room for the legend above.
+        top = min(1.02, 1.5 * measured.max() + 0.02)
+        panels.append(spectra_panel(marks, title, top))
+    write_figure(draw(panels, 2), path, force=force)
 
 
 PANELS = ("model", "space", "threshold", "dim", "atlas")

@@ -167,16 +167,15 @@ def _largest_jump(answer: Answer, light: Light, first: Array, second: Array) -> 
     """Halve the steps between colours (n, 3), keep the halves with the larger ΔE00, and
     return the largest one left.
     """
-
-    def change(begin: Array, end: Array) -> Array:
-        return delta_e_spectra(light, answer(begin), answer(end))
-
     for _ in range(HALVINGS):
         middle = (first + second) / 2
-        is_first = (change(first, middle) > change(middle, second))[:, None]
+        before, between, after = map(answer, (first, middle, second))
+        below = delta_e_spectra(light, before, between)
+        above = delta_e_spectra(light, between, after)
+        is_first = (below > above)[:, None]
         first = np.where(is_first, first, middle)
         second = np.where(is_first, middle, second)
-    return float(change(first, second).max())
+    return float(delta_e_spectra(light, answer(first), answer(second)).max())
 
 
 def changed_atlases(
