@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Sequence
 from itertools import chain
-from typing import Any
 
 import numpy as np
 
@@ -11,23 +10,18 @@ from benchmarks import DOCS, MACBETH, Row, read_reference
 from uplift.atlas import on_grid
 from uplift.colorimetry import delta_e_1976, lab
 from uplift.common.arrays import Array
-from uplift.extras.pages.figure import GREY, INK, colour_map, write_figure
+from uplift.extras.pages.figure import write_figure
 from uplift.extras.pages.marks import Mark, line
 from uplift.extras.pages.panels import Axis, Panel, draw
 from uplift.extras.scene.quadrature import QuadratureRule
 from uplift.extras.scene.wavelengths import grid, make_setup
 from uplift.extras.scene.wavelengths import meyer as paper
-from uplift.extras.scene.wavelengths.sampling import RenderSetup, interp_curves
+from uplift.extras.scene.wavelengths.sampling import RenderSetup
 
 COLOURS = {"opponent": "#20509a", "cones": "#d1495b", "xyz": "#2e8b57"}
 """Colours of the spaces AC1C2, SML and XYZ of the paper."""
 CHANNELS = ("A", "C1", "C2")
-CORNERS = np.array([[0.5, np.sqrt(0.75)], [0.0, 0.0], [1.0, 0.0]])
-"""Corners of figure 7, where the first, second and third channel have all wavelengths.
-"""
 PICTURES = DOCS / "wavelengths"
-CELLS = 10
-"""Cells of figure 7 along a side."""
 Allocation = Sequence[QuadratureRule]
 """A rule for each channel."""
 
@@ -49,16 +43,10 @@ def mean_error(setup: RenderSetup, space: Array, allocation: Allocation) -> floa
     materials. The paper uses the light itself. So it comes close to the printed errors;
     sampled at all wavelengths it does not.
     """
-    channels = []
-    for rule in allocation:
-        spd = interp_curves(rule.nodes, setup.wavelengths, setup.powers)
-        powers = spd * rule.weights
-        responses = powers @ setup.curves(rule.nodes).T
-        white = powers.sum(axis=1, keepdims=True)
-        channels.append(np.concatenate([responses, white], axis=1))
-    xyz = np.stack(channels, axis=-1) @ np.linalg.inv(space).T  # (K, M + 1, 3)
-    colours = [lab(materials, white) for *materials, white in xyz]
-    return delta_e_1976(setup.lab, colours).mean()
+    sampling = paper.combine_rules(setup, space, allocation)
+    xyz = sampling.xyz(setup.curves(sampling.wavelengths))
+    whites = sampling.powers @ sampling.to_xyz
+    return delta_e_1976(setup.lab, lab(xyz, whites[:, None])).mean()
 
 
 def compared(
@@ -137,57 +125,44 @@ def tables() -> list[Row]:
     return [*matrix_values(setup), *rule_values(setup)]
 
 
-def trials(setup: RenderSetup, space: Array) -> tuple[Array, Array]:
-    """Evaluate all allocations of defined orders up to 10: numbers of wavelengths (T,
-    3) and mean ΔE76 (T,).
+def trials(setup: RenderSetup, name: str) -> tuple[Array, Array]:
+    """Evaluate all allocations of defined orders up to 10 in a space: numbers of
+    wavelengths (T, 3) and mean ΔE76 (T,).
     """
+    space = matrix(setup, name)
     allocations = list(paper.allocations(setup, space))
     counts = [list(map(len, allocation)) for allocation in allocations]
     errors = [mean_error(setup, space, allocation) for allocation in allocations]
     return np.array(counts), np.array(errors)
 
 
-def by_total(counts: Array, errors: Array) -> dict[int, Array]:
-    """Group the errors of allocations by their total number of wavelengths."""
-    totals = counts.sum(axis=1)
-    return {int(total): errors[totals == total] for total in np.unique(totals)}
+def means(at: Array, errors: Array, label: str, colour: str) -> Mark:
+    """Draw the means of the errors over the values (T,) at which they are."""
+    x = np.unique(at)
+    y = [errors[at == value].mean() for value in x]
+    return line(x, y, label, colour, marker="o", markersize=3)
 
 
 def figures() -> None:
     """Draw figure 6, mean and smallest errors of all allocations, and figure 7."""
     setup = checker()
-    lines = []
-    for space, colour in COLOURS.items():
-        counts, errors = trials(setup, matrix(setup, space))
-        if space == "opponent":
-            figure = draw([Panel([cells(counts, errors)])], size=(5.0, 3.8))
-            write_figure(figure, PICTURES / "figure-7.png", force=True)
-        found = by_total(counts, errors)
-        means = list(map(np.mean, found.values()))
-        least = list(map(np.min, found.values()))
-        lines.append(line(list(found), means, space, colour, marker="o", markersize=3))
-        lines.append(line(list(found), least, colour=colour, linestyle=":"))
-    panel = Panel(lines, "", Axis("wavelengths"), Axis("mean ΔE76", log=True))
-    figure = draw([panel], size=(7.2, 3.6), legend="above")
-    write_figure(figure, PICTURES / "figure-6.png", force=True)
-
-
-def cells(counts: Array, errors: Array) -> Mark:
-    """Draw the mean error of trials in cells over the shares of the channels."""
-    shares = counts / counts.sum(axis=1, keepdims=True)
-
-    def mark(axes: Any) -> None:
-        style = {"cmap": colour_map(), "edgecolors": "white", "gridsize": CELLS}
-        drawn = axes.hexbin(*(shares @ CORNERS).T, C=errors, **style)
-        axes.plot(*CORNERS[[0, 1, 2, 0]].T, color=GREY, linewidth=0.8)
-        for name, (x, y) in zip(CHANNELS, CORNERS, strict=True):
-            side = "bottom" if y else "top"
-            axes.text(x, y, f"all for {name}", ha="center", va=side, color=INK)
-        axes.set_aspect("equal")
-        axes.set_axis_off()
-        axes.figure.colorbar(drawn, ax=axes, shrink=0.8, label="mean ΔE76")
-
-    return mark
+    by_space = {name: trials(setup, name) for name in COLOURS}
+    of_totals = []
+    for name, (counts, errors) in by_space.items():
+        totals = counts.sum(axis=1)
+        of_totals.append(means(totals, errors, name, COLOURS[name]))
+    counts, errors = by_space["opponent"]
+    shares = (counts / counts.sum(axis=1, keepdims=True)).round(1)
+    styles = zip(shares.T, CHANNELS, COLOURS.values(), strict=True)
+    of_shares = [means(share, errors, *style) for share, *style in styles]
+    error = Axis("mean ΔE76", log=True)
+    plots = {
+        "figure-6.png": Panel(of_totals, "", Axis("wavelengths"), error),
+        "figure-7.png": Panel(of_shares, "", Axis("share of the wavelengths"), error),
+    }
+    for name, panel in plots.items():
+        figure = draw([panel], size=(7.2, 3.6), legend="above")
+        write_figure(figure, PICTURES / name, force=True)
 
 
 QUESTIONS = {"tables": tables, "figures": figures}

@@ -22,7 +22,7 @@ from ..startup import use_one_blas_thread
 if TYPE_CHECKING:
     from uplift.colorimetry.illuminants import Illuminant
     from uplift.lab.comparison.compare import Comparison
-    from uplift.lab.statistics import Row
+    from uplift.lab.runner import Row
 
 FILES = ("compare-boxes.png", "compare-cost.png", "compare.html")
 SPECTRA = ("surfaces.csv", "lights.csv")

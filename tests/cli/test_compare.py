@@ -6,6 +6,7 @@ import os
 import re
 from functools import cache
 
+import matplotlib.image
 import pytest
 from click.testing import CliRunner
 from uplift_cli.commands import compare
@@ -49,6 +50,8 @@ def once(monkeypatch):
 def test_all_files_are_written_and_tables_printed(quick):
     folder, result = quick
     assert sorted(os.listdir(folder)) == FILES
+    for name in FILES[:2]:
+        assert matplotlib.image.imread(folder / name).std() > 0.05
     assert "smooth lights (A, B, C)" in result.stdout
     assert "spiky lights (FL2, FL7, FL11)" in result.stdout
     assert "FW7" in result.stdout

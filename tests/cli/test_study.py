@@ -10,6 +10,7 @@ import shutil
 import matplotlib.image
 import pytest
 
+from tools.render_docs import pick
 from uplift.lab.methods.colour_maps import MAPS
 from uplift.lab.study import held_out, stability
 
@@ -66,17 +67,9 @@ def test_moments(run, ask, rows, home, macbeth, tcs, monkeypatch):
     )
     found = rows(*words)
     assert len(found) == 3 * 4 * 10
-    key = ("macbeth", "True", "False", "8")
-    (nine,) = [
-        row
-        for row in found
-        if (row["atlas"], row["mirrored"], row["warped"], row["moments"]) == key
-    ]
-    assert (nine["entries"], nine["floats"], nine["worst"]) == (
-        "24",
-        "9",
-        "blue flower",
-    )
+    key = {"atlas": "macbeth", "mirrored": "True", "warped": "False", "moments": "8"}
+    expected = {"entries": "24", "floats": "9", "worst": "blue flower"}
+    assert pick(found, **key).items() >= expected.items()
     assert list(map(as_text, ask("study", *words))) == found
     words = [line.split()[0] for line in table.stdout.splitlines() if line]
     assert set("0123456789") <= set(words)
@@ -85,16 +78,13 @@ def test_moments(run, ask, rows, home, macbeth, tcs, monkeypatch):
 def test_default_atlases_are_those_of_the_working_folder_or_the_shipped_ones(
     rows, home, tcs
 ):
-    shipped = {path.stem for path in tcs.parent.glob("*.txt")}
-    assert {row["atlas"] for row in rows("moments", "--max-moments", 0)} == {
-        "all"
-    } | shipped
+    def studied():
+        return {row["atlas"] for row in rows("moments", "--max-moments", 0)} - {"all"}
+
+    assert studied() == {path.stem for path in tcs.parent.glob("*.txt")}
     (home / "atlases").mkdir()
     shutil.copy(tcs, home / "atlases")
-    assert {row["atlas"] for row in rows("moments", "--max-moments", 0)} == {
-        "all",
-        "tcs",
-    }
+    assert studied() == {"tcs"}
 
 
 def test_held_out_has_the_same_numbers_in_all_formats(

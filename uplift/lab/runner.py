@@ -22,6 +22,7 @@ from uplift.extras.report.measures import (
     check_calibration,
     delta_e_under,
     mean_p95_max,
+    rms_difference,
 )
 from uplift.fit import shipped_library
 
@@ -122,8 +123,8 @@ def spectrum_errors(
     predicted: Array, measured: Array, lights: Sequence[Light]
 ) -> Errors:
     """Compare predicted with measured reflectances (n, N)."""
-    rms = np.sqrt(((predicted - measured) ** 2).mean(axis=1))
-    return Errors(delta_e_under(lights, predicted, measured), rms)
+    delta_e = delta_e_under(lights, predicted, measured)
+    return Errors(delta_e, rms_difference(predicted, measured))
 
 
 def join(parts: Sequence[Errors]) -> Errors:

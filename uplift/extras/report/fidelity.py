@@ -13,7 +13,7 @@ from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.observer import light, on_range
 from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
-from uplift.extras.report.measures import delta_e_under
+from uplift.extras.report.measures import delta_e_under, rms_difference
 from uplift.lookup import Cube, load, refine_to_rgb
 from uplift.lookup.interpolate import lattice_spectra
 from uplift.lookup.outside import MAPPING, reflectance_anywhere
@@ -225,7 +225,7 @@ def _inside(data: CubeData, rgb: Array) -> Array:
 def compare_spectra(spectra: Array, target: Array, lights: Iterable[Light]) -> Answers:
     """Compare answers with targets, both reflectances (E, N)."""
     delta_e = delta_e_under(lights, spectra, target)
-    return Answers(spectra, delta_e, np.sqrt(((spectra - target) ** 2).mean(axis=1)))
+    return Answers(spectra, delta_e, rms_difference(spectra, target))
 
 
 WITHOUT_ATLAS = "without atlas"

@@ -21,6 +21,11 @@ def delta_e_under(lights: Iterable[Light], first: Array, second: Array) -> Array
     return np.stack([delta_e_spectra(light, first, second) for light in lights], axis=1)
 
 
+def rms_difference(first: Array, second: Array) -> Array:
+    """Compute the rms difference (n,) between reflectances (n, N)."""
+    return np.sqrt(((first - second) ** 2).mean(axis=1))
+
+
 def mean_p95_max(delta_e: Array) -> dict[str, float]:
     """Summarise ΔE00 by the mean, the value that 95 % stay within, and the largest
     value.

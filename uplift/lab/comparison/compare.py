@@ -5,7 +5,6 @@ Measured reflectances under sets of lights, with the statistics of Kment 2011, s
 5.4.
 """
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
@@ -25,14 +24,14 @@ from uplift.common.errors import (
     UpliftWarning,
     warn,
 )
-from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import KMENT_LIGHTS
 from uplift.extras.scene.plan.candidates import front
 from uplift.extras.scene.representations import samples
 from uplift.extras.scene.representations.samples import Representation
 from uplift.extras.scene.wavelengths.sampling import RenderSetup, make_setup
-from uplift.lab.statistics import Row, statistics
+from uplift.lab.runner import Row
 from uplift.lab.timing import TimingStats, environment, time_short_call
 
 TIMING = (1024, 0.05, 7)
@@ -68,6 +67,11 @@ class Scene:
         """Return the powers of all lights, (L, 401)."""
         return np.concatenate([light_set.powers for light_set in self.sets])
 
+    @property
+    def illuminants(self) -> list[Illuminant]:
+        """Return all lights."""
+        return list(chain.from_iterable(each.illuminants for each in self.sets))
+
     def thinned(self, count: int = 40) -> "Scene":
         """Select at most ``count`` surfaces, evenly spaced."""
         rows = np.linspace(0, len(self.surfaces) - 1, count).round().astype(np.intp)
@@ -88,9 +92,7 @@ def make_scene(
         raise AtlasError(
             "the atlases have no entries", hint="give an atlas of reflectances"
         )
-    named: Mapping[str, Sequence[Illuminant]] = KMENT_LIGHTS
-    if lights:
-        named = {"given": lights}
+    named = {"given": lights} if lights else KMENT_LIGHTS
     surfaces = on_grid(merged, samples.wavelengths())
     weights = samples.xyz_weights()
     sets = []
@@ -102,14 +104,10 @@ def make_scene(
     return Scene(tuple(sets))
 
 
-HEADINGS = {
-    "mean": "mean",
-    "deviation": "σ",
-    "median": "median",
-    "q2_5": "2.5 %",
-    "q25": "25 %",
-    "q75": "75 %",
-    "q97_5": "97.5 %",
+QUANTILES = {"q2_5": 2.5, "q25": 25, "q75": 75, "q97_5": 97.5}
+"""Percentages of ΔE00 by the name of their quantile in tables."""
+HEADINGS = {"mean": "mean", "deviation": "σ", "median": "median"} | {
+    name: f"{share:g} %" for name, share in QUANTILES.items()
 }
 """Statistics of ΔE00 with their headings in tables."""
 
@@ -146,7 +144,7 @@ def compare(
     Raises `UpliftError`.
     """
     rows: list[Row] = []
-    for done, representation in enumerate(representations, 1):
+    for representation in reported(representations, "representations", progress):
         for light_set in scene.sets:
             floats = representation.numbers(light_set.powers, scene.surfaces)
             errors = error_statistics(representation, light_set)
@@ -164,7 +162,6 @@ def compare(
                     "ns_most": ns.max,
                 }
             )
-        progress(Progress("representations", done, len(representations)))
     sets = {light_set.name: light_set.title for light_set in scene.sets}
     order = list(sets)
     rows.sort(key=lambda row: (order.index(row["lights"]), row["mean"]))
@@ -182,7 +179,6 @@ def represent(
     after a filter with negative lobes, are clipped with a warning. Raises
     `UpliftError`.
     """
-    lights = list(chain.from_iterable(light_set.lights for light_set in scene.sets))
     powers, surfaces = representation.stored(scene.powers, scene.surfaces)
 
     def atlas(names: Sequence[str], spectra: Array) -> Atlas:
@@ -194,11 +190,10 @@ def represent(
                 f"{representation.name} and are clipped"
             )
             warn(UpliftWarning(problem, code="entry-clipped"))
-        pairs = zip(names, clipped, strict=True)
-        return Atlas(
-            tuple(Entry(name, samples.wavelengths(), values) for name, values in pairs)
-        )
+        nm = [samples.wavelengths()] * len(names)
+        return Atlas(tuple(map(Entry, names, nm, clipped)))
 
+    lights = list(map(str, scene.illuminants))
     return atlas(names, surfaces), atlas(
         lights, powers / powers.max(axis=1, keepdims=True)
     )
@@ -217,7 +212,9 @@ def error_statistics(
             f"{representation.name} returns values that are not finite under "
             f"{light_set.title}"
         )
-    return statistics(errors, *HEADINGS)
+    found = [errors.mean(), errors.std(), np.median(errors)]
+    found += np.percentile(errors, list(QUANTILES.values())).tolist()
+    return dict(zip(HEADINGS, map(float, found), strict=True))
 
 
 def _time(
@@ -242,11 +239,10 @@ def _time(
     return timing.cpu.scaled(1e9 / (len(lights) * count))
 
 
-def check_target(target: float) -> float:
+def check_target(target: float) -> None:
     """Check the largest ΔE00 that a representation may have. Raises `OptionError`."""
-    if not (math.isfinite(target) and target > 0):
+    if not 0 < target < np.inf:
         raise OptionError(f"target must be a positive ΔE00, got {target:g}")
-    return target
 
 
 COSTS = itemgetter("floats", "light_floats", "q97_5")

@@ -4,12 +4,10 @@ moments as cubes have them.
 
 from collections.abc import Iterator
 from functools import partial
-from itertools import chain
 
 import numpy as np
 
 from uplift.colorimetry import observer
-from uplift.colorimetry.illuminants import Illuminant
 from uplift.common.arrays import Array
 from uplift.extras.palette.factor import factor_model
 from uplift.extras.scene.representations import (
@@ -18,7 +16,7 @@ from uplift.extras.scene.representations import (
     samples,
 )
 from uplift.extras.scene.representations.models import tabulated
-from uplift.extras.scene.wavelengths import Sampling, choose, make_setup
+from uplift.extras.scene.wavelengths import choose, make_setup
 from uplift.fit import Problem, fit_entries
 from uplift.lab.comparison.compare import Scene
 from uplift.models import Moments
@@ -41,34 +39,28 @@ def _known_rows(known: Array, codes: Array, spectra: Array) -> Array:
 def scene_representations(scene: Scene) -> tuple[Representation, ...]:
     """Every registered representation, and those that are fitted to a scene."""
     registered = all_representations(scene.powers, scene.surfaces)
-    return (*registered, *chain(_wavelengths(scene), _factors(scene), _moments(scene)))
-
-
-def _illuminants(scene: Scene) -> list[Illuminant]:
-    return list(chain.from_iterable(light_set.illuminants for light_set in scene.sets))
+    return (*registered, *_wavelengths(scene), *_factors(scene), *_moments(scene))
 
 
 def _wavelengths(scene: Scene) -> Iterator[Representation]:
     """Wavelengths, weights, and powers of the lights, as
     `uplift.extras.scene.wavelengths` fits them together.
     """
-    setup = make_setup(
-        scene.surfaces, _illuminants(scene), wavelengths=samples.wavelengths()
-    )
-    for count in WAVELENGTHS:
-        yield fitted_wavelengths(choose(setup, count=count).sampling, scene.powers)
+    nm = samples.wavelengths()
+    setup = make_setup(scene.surfaces, scene.illuminants, wavelengths=nm)
 
+    def of_size(count: int) -> Representation:
+        sampling = choose(setup, count=count).sampling
+        points = samples.interpolation_matrix(sampling.wavelengths)
+        return Representation(
+            f"FW{count}",
+            "fitted wavelengths",
+            partial(_known_rows, scene.powers, sampling.powers),
+            lambda reflectance: reflectance @ points,
+            lambda light: light @ sampling.to_xyz,
+        )
 
-def fitted_wavelengths(sampling: Sampling, lights: Array) -> Representation:
-    """Representation by a sampling for known lights (L, 401)."""
-    points = samples.interpolation_matrix(sampling.wavelengths)
-    return Representation(
-        f"FW{len(sampling)}",
-        "fitted wavelengths",
-        partial(_known_rows, lights, sampling.powers),
-        lambda reflectance: reflectance @ points,
-        lambda light: light @ sampling.to_xyz,
-    )
+    return map(of_size, WAVELENGTHS)
 
 
 def _factors(scene: Scene) -> Iterator[Representation]:
@@ -97,7 +89,7 @@ def _moments(scene: Scene) -> Iterator[Representation]:
     and RGB.
     """
     sensor = observer.sensor()
-    lights = tuple(map(observer.light, _illuminants(scene)))
+    lights = tuple(map(observer.light, scene.illuminants))
     measured = scene.surfaces[:, :: samples.TABLE_STRIDE]
     for count in MOMENTS:
         model = Moments(count)

@@ -3,19 +3,19 @@
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from itertools import product
 from operator import itemgetter
+from typing import Any
 
 from uplift.common.arrays import StrPath
 from uplift.extras.pages.figure import OTHER, write_figure
 from uplift.extras.pages.format import capitalise, format_error, format_time
 from uplift.extras.pages.html import Tooltip, render
-from uplift.extras.pages.marks import Box, Mark, boxes, line, threshold
+from uplift.extras.pages.marks import Box, boxes, line, threshold
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw, page_svg
 from uplift.extras.pages.pareto import family_colours, front_panel
 from uplift.lab.comparison.compare import HEADINGS, Comparison
-from uplift.lab.statistics import Row
+from uplift.lab.runner import Row
 
 COLOURS = {
     "point sampling": "#1f6fb4",
@@ -45,15 +45,6 @@ BOX_SIZE = (4.1, 0.155)
 """Inches of the width of box plots, and of the height of a box."""
 JUST_VISIBLE = 1.0
 """ΔE00 that is just visible side by side; the thesis prints smaller ones in bold."""
-TITLE = "Representations of spectra"
-SOURCES = (
-    "Kment 2011, Spectral data representation techniques for realistic image "
-    "synthesis: point sampling, Riemann sums "
-    "and their enhancement, the lights and the statistics.",
-    "Sun, Drew & Fracchia 1999: the composite model. Peercy 1993: linear models. "
-    "Wilkie et al. 2014: hero wavelengths. "
-    "Peters et al. 2019: trigonometric moments. Jakob & Hanika 2019: the sigmoid.",
-)
 
 
 def names(comparison: Comparison) -> list[str]:
@@ -79,21 +70,14 @@ def cost_panels(comparison: Comparison) -> list[Panel]:
         dots = []
         joined = []
         for family, members in families.items():
-            joined += _family_marks(family, members)
+            x = [dot.x for dot in members]
+            y = [dot.y for dot in members]
+            style: dict[str, Any] = {"gid": f"whisker-{members[0].key}", "zorder": 1}
+            joined.append(line(x, y, family, members[0].colour, alpha=0.6, **style))
             dots += members
         heading = f"{capitalise(title)}, ΔE00 of 97.5 %"
         panels.append(front_panel(heading, axis, dots, marks=joined))
     return panels
-
-
-def _family_marks(family: str, dots: Sequence[Dot]) -> list[Mark]:
-    """Join the dots of a family by a line, and name it in legends."""
-    colour = dots[0].colour
-    x = [dot.x for dot in dots]
-    y = [dot.y for dot in dots]
-    gid = f"whisker-{dots[0].key}"
-    joined = line(x, y, "", colour, gid=gid, linewidth=0.8, alpha=0.45, zorder=1)
-    return [joined, line([], [], family, colour, marker="o", linestyle="")]
 
 
 def write_costs(comparison: Comparison, path: StrPath, *, force: bool = False) -> None:
@@ -102,18 +86,22 @@ def write_costs(comparison: Comparison, path: StrPath, *, force: bool = False) -
     write_figure(figure, path, force=force)
 
 
-def box_panel(comparison: Comparison, name: str) -> Panel:
-    """Return box plots under a set of lights: quartiles, median, and 2.5 to 97.5 %."""
-    drawn = []
-    rows = comparison.of(name)
-    for row in rows:
-        low = max(row["q2_5"], MIN_ERROR)
-        box = Box(low, row["q25"], row["median"], row["q75"], row["q97_5"])
-        drawn.append(replace(box, colour=COLOURS.get(row["family"], OTHER)))
-    marks = [boxes(drawn), threshold(JUST_VISIBLE, axis="x")]
-    shown = Axis(names=[row["representation"] for row in rows])
-    title = capitalise(comparison.sets[name])
-    return Panel(marks, title, Axis("ΔE00", log=True), shown)
+def box_panels(comparison: Comparison) -> list[Panel]:
+    """Return box plots for each set of lights: quartiles, median, and 2.5 to 97.5 %."""
+    visible = threshold(JUST_VISIBLE, axis="x")
+    panels = []
+    for name, title in comparison.sets.items():
+        drawn = []
+        rows = comparison.of(name)
+        for row in rows:
+            low = max(row["q2_5"], MIN_ERROR)
+            quartiles = row["q25"], row["median"], row["q75"]
+            colour = COLOURS.get(row["family"], OTHER)
+            drawn.append(Box(low, *quartiles, row["q97_5"], colour))
+        y = Axis(names=[row["representation"] for row in rows])
+        x = Axis("ΔE00", log=True)
+        panels.append(Panel([boxes(drawn), visible], capitalise(title), x, y))
+    return panels
 
 
 def _box_size(comparison: Comparison) -> tuple[float, float]:
@@ -123,7 +111,7 @@ def _box_size(comparison: Comparison) -> tuple[float, float]:
 
 def write_boxes(comparison: Comparison, path: StrPath, *, force: bool = False) -> None:
     """Write box plots of all sets of lights as PNG. Raises `OutputError`."""
-    panels = [box_panel(comparison, name) for name in comparison.sets]
+    panels = box_panels(comparison)
     figure = draw(panels, len(panels), _box_size(comparison))
     write_figure(figure, path, force=force)
 
@@ -133,21 +121,19 @@ def render_comparison(comparison: Comparison, tuned: Sequence[Row] = ()) -> str:
     pictures = []
     for panel in cost_panels(comparison):
         pictures.append((f"{panel.title}, over {panel.x.label}", page_svg(panel)))
-    distributions = []
-    for name in comparison.sets:
-        panel = box_panel(comparison, name)
-        picture = page_svg(panel, _box_size(comparison))
-        distributions.append((panel.title, picture))
+    size = _box_size(comparison)
+    distributions = [
+        (panel.title, page_svg(panel, size)) for panel in box_panels(comparison)
+    ]
     families = [row["family"] for row in comparison.rows]
     return render(
         "lab/comparison/templates/page.html.j2",
-        title=TITLE,
+        title="Representations of spectra",
         comparison=comparison,
         pictures=pictures,
         boxes=distributions,
         families=family_colours(families, COLOURS),
         tooltips=[_tooltip(name, comparison) for name in names(comparison)],
-        sources=SOURCES,
         statistics=HEADINGS,
         tuned=tuned,
     )

@@ -10,12 +10,12 @@ import numpy as np
 
 from uplift.colorimetry import delta_e_2000
 from uplift.common.arrays import Array
-from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.extras.scene.representations import filters, samples
 from uplift.extras.scene.representations.filters import Filter
 from uplift.extras.scene.representations.samples import Representation
 from uplift.lab.comparison.compare import LightSet, Scene, error_statistics
-from uplift.lab.statistics import Row
+from uplift.lab.runner import Row
 
 COUNTS = (4, 8, 16)
 """Numbers of samples after a filter in the thesis."""
@@ -48,14 +48,13 @@ def tune_filters(
     for count, light_set in product(counts, scene.sets):
         rows.append(_row(light_set, count, NONE, "", samples.point_samples(count)))
     tasks = list(product(kinds, counts))
-    for done, (kind, count) in enumerate(tasks, 1):
+    for kind, count in reported(tasks, "filters", progress):
         tried = candidates(kind, stride)
         encoders = [filters.resampling_matrix(low_pass, count).T for low_pass in tried]
         for light_set in scene.sets:
             best = tried[_mean_errors(light_set, count, encoders).argmin()]
             filtered = filters.filtered_point_samples(count, best)
             rows.append(_row(light_set, count, kind, parameters(best), filtered))
-        progress(Progress("filters", done, len(tasks)))
     return rows
 
 

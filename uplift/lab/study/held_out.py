@@ -11,7 +11,7 @@ from uplift.atlas import Atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.illuminants import ERROR_ILLUMINANT
 from uplift.common.errors import AtlasError, UpliftWarning
-from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.extras.colour.light_sets import HELD_OUT_LIGHTS
 from uplift.lab.look_alikes import families_like
 from uplift.lab.methods import burns2019, local_linear, metamer_mean
@@ -80,10 +80,10 @@ def holdout(
         methods |= LIBRARY_METHODS
     lights = list(named_lights().values())
     records: list[dict[str, Any]] = []
-    for method, prepare in methods.items():
+    for method in reported(list(methods), "methods", progress):
         tasks = halves if method in (HALF, LOCAL_LINEAR) else all_entries
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-            errors = pooled_errors(prepare, tasks, lights)
+            errors = pooled_errors(methods[method], tasks, lights)
         rms = None if errors.rms is None else float(errors.rms.mean())
         delta_e = errors.delta_e.mean(axis=0).tolist()
         means = {"rms": rms, **dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True))}
@@ -91,5 +91,4 @@ def holdout(
         if method == HALF:
             calibration = errors.calibration(HELD_OUT_LIGHTS.index(ERROR_ILLUMINANT))
             records[0]["standard_error"] = calibration or None
-        progress(Progress("methods", len(records), len(methods)))
     return records

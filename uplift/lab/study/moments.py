@@ -17,11 +17,11 @@ from uplift.atlas import Atlas, merge, on_grid
 from uplift.colorimetry import delta_e_1976, lab, observer
 from uplift.common.arrays import Array, Complex
 from uplift.common.errors import AtlasError, OptionError
-from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.extras.colour.light_sets import REPORT_LIGHTS
-from uplift.extras.report.measures import delta_e_under
+from uplift.extras.report.measures import delta_e_under, rms_difference
 from uplift.extras.scene.representations import samples
-from uplift.lab.statistics import Row, statistics
+from uplift.lab.runner import Row, named_lights
 from uplift.models import Moments, duality
 
 
@@ -131,16 +131,15 @@ class MomentsStudy:
         """Return mean and maximum of every measure for all entries and for those of
         each atlas, by technique and count.
         """
-        everywhere = np.ones(len(self.names), dtype=bool)
-        groups = {ALL_ATLASES: everywhere}
+        groups = {ALL_ATLASES: np.arange(len(self.names))}
         for atlas in dict.fromkeys(self.atlases):
-            groups[atlas] = np.array(self.atlases) == atlas
+            groups[atlas] = np.flatnonzero(np.array(self.atlases) == atlas)
         rows = []
         cases = product(groups, self.techniques, range(self.errors.shape[1]))
         for group, technique, moments in cases:
-            (members,) = groups[group].nonzero()
+            members = groups[group]
             errors = self.errors[self.techniques.index(technique), moments, members]
-            row = {
+            row: Row = {
                 "atlas": group,
                 "entries": len(members),
                 "mirrored": technique.mirrored,
@@ -149,7 +148,8 @@ class MomentsStudy:
                 "floats": technique.floats(moments),
             }
             for name, values in zip(MEASURES, errors.T, strict=True):
-                row |= statistics(values, "mean", "max", prefix=f"{name}_")
+                row[f"{name}_mean"] = float(values.mean())
+                row[f"{name}_max"] = float(values.max())
             rows.append(row | {"worst": self.names[members[errors[:, 0].argmax()]]})
         return rows
 
@@ -176,23 +176,22 @@ def study_moments(
         )
     measured = on_grid(atlas, samples.wavelengths())
     original = measured[:, :: samples.TABLE_STRIDE]
-    lights = [observer.light(name) for name in REPORT_LIGHTS]
+    lights = list(named_lights(REPORT_LIGHTS).values())
     d65 = lights[0]
-
-    def to_lab(spectra: Array) -> Array:
-        return lab(spectra @ d65.xyz.T, d65.white)
-
     counts = max_moments + 1
-    errors = np.empty((len(techniques), counts, len(measured), len(MEASURES)))
-    cases = list(product(range(len(techniques)), range(counts)))
-    for done, (row, count) in enumerate(cases, 1):
-        technique = techniques[row]
+    errors = []
+    cases = list(product(techniques, range(counts)))
+    for technique, count in reported(cases, "reconstructions", progress):
         moments = technique.moments(measured, samples.wavelengths(), count)
         spectra = technique.reconstruct(moments, observer.grid())
-        delta_e_76 = delta_e_1976(to_lab(spectra), to_lab(original))
-        delta_e_00 = delta_e_under(lights, spectra, original)
-        rms = np.sqrt(((spectra - original) ** 2).mean(axis=1))
-        errors[row, count] = np.column_stack([delta_e_76, delta_e_00, rms])
-        progress(Progress("reconstructions", done, len(cases)))
+        colours = [lab(each @ d65.xyz.T, d65.white) for each in (spectra, original)]
+        columns = [
+            delta_e_1976(*colours),
+            delta_e_under(lights, spectra, original),
+            rms_difference(spectra, original),
+        ]
+        errors.append(np.column_stack(columns))
+    shape = (len(techniques), counts, len(measured), len(MEASURES))
     origins = [name for name in atlases for _ in atlases[name]]
-    return MomentsStudy(atlas.names, tuple(origins), measured, techniques, errors)
+    by_case = np.reshape(errors, shape)
+    return MomentsStudy(atlas.names, tuple(origins), measured, techniques, by_case)

@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from uplift.common.arrays import Array, StrPath
+from uplift.common.arrays import StrPath
 from uplift.common.text import pluralise
 from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
 from uplift.extras.pages.figure import ACCENT, BAND, HIGHLIGHT, write_figure
 from uplift.extras.pages.marks import density, line, threshold
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw, spectra_panel
 from uplift.extras.scene.representations import samples
-from uplift.lab.statistics import Row
+from uplift.lab.runner import Row
 from uplift.lab.study.moments import (
     ALL_ATLASES,
     TECHNIQUES,
@@ -23,7 +23,6 @@ from uplift.lab.study.moments import (
     Technique,
 )
 from uplift.lab.study.sensitivity import MOVED_DELTA_E, Change
-from uplift.models import Sigmoid
 
 FLOATS = 9
 """Numbers stored of the spectra that are drawn, as in figures 4.1 and 4.2 of the
@@ -31,8 +30,8 @@ thesis.
 """
 PATCHES = ("neutral 5 (.70 D)", "blue flower")
 """Patches of the ColorChecker in the thesis."""
-WARPED, UNWARPED = TECHNIQUES[:2]
-COLOURS = {WARPED: "#d1495b", UNWARPED: "#1f6fb4"}
+COLOURS = dict(zip(TECHNIQUES, ("#d1495b", "#1f6fb4"), strict=False))
+"""Colours of the mirrored techniques."""
 KIND = itemgetter("atlas", "mirrored", "warped")
 
 
@@ -73,7 +72,7 @@ def _style(technique: Technique) -> dict[str, Any]:
 def plot_patches(study: MomentsStudy, path: StrPath, *, force: bool = False) -> None:
     """Write the patches of the thesis, or other first entries, as PNG."""
     patches = [study.names.index(name) for name in PATCHES if name in study.names]
-    _plot_spectra(study, patches or range(min(2, len(study.names))), path, force)
+    _plot_spectra(study, patches or range(len(study.names))[:2], path, force)
 
 
 def plot_worst(study: MomentsStudy, path: StrPath, *, force: bool = False) -> None:
@@ -91,27 +90,24 @@ def _plot_spectra(
     study: MomentsStudy, entries: Sequence[int], path: StrPath, force: bool
 ) -> None:
     """Draw entries, two in a row, measured and reconstructed."""
-    panels = [_spectra_panel(study, entry) for entry in entries]
-    write_figure(draw(panels, 2), path, force=force)
-
-
-def _spectra_panel(study: MomentsStudy, entry: int) -> Panel:
     moments = _drawn_moments(study)
     nm = samples.wavelengths()
-    measured = study.measured[entry : entry + 1]
-    marks = [line(nm, measured[0], "measured", BAND, linewidth=3)]
-    for technique, colour in COLOURS.items():
-        stored = technique.moments(measured, nm, moments)
-        spectrum = technique.reconstruct(stored, nm)[0]
-        error = study.errors[TECHNIQUES.index(technique), moments, entry, 0]
-        label = f"{'warped' if technique.warped else 'unwarped'}, ΔE76 {error:.2f}"
-        marks.append(line(nm, spectrum, label, colour))
-    title = (
-        f"{study.names[entry]} ({study.atlases[entry]}), mirrored, "
-        f"{pluralise(moments + 1, 'number')}"
-    )
-    # Dark entries fill their panel, with room for the legend above.
-    return spectra_panel(marks, title, min(1.02, 1.5 * measured.max() + 0.02))
+    panels = []
+    for entry in entries:
+        measured = study.measured[entry : entry + 1]
+        marks = [line(nm, measured[0], "measured", BAND, linewidth=3)]
+        for number, (technique, colour) in enumerate(COLOURS.items()):
+            stored = technique.moments(measured, nm, moments)
+            spectrum = technique.reconstruct(stored, nm)[0]
+            error = study.errors[number, moments, entry, 0]
+            warp = technique.label.removeprefix("mirrored, ")
+            marks.append(line(nm, spectrum, f"{warp}, ΔE76 {error:.2f}", colour))
+        stored_as = f"mirrored, {pluralise(moments + 1, 'number')}"
+        title = f"{study.names[entry]} ({study.atlases[entry]}), {stored_as}"
+        # Dark entries fill their panel, with room for the legend above.
+        top = min(1.02, 1.5 * measured.max() + 0.02)
+        panels.append(spectra_panel(marks, title, top))
+    write_figure(draw(panels, 2), path, force=force)
 
 
 PANELS = ("model", "space", "threshold", "dim", "atlas")
@@ -131,35 +127,23 @@ def plot_map(
     Dots to the right of the line are failures, hollow ones builds with failed stand-ins
     of unrealisable nodes. ``runs`` are rows of `uplift.lab.study.stability.evaluate`.
     """
+    failure = threshold(1, axis="x", colour=HIGHLIGHT)
+    x = Axis(log=True, limits=RATIOS)
+    variants = [f"{run['model']} {run['coefficients']:2}" for run in runs]
     panels = []
     for option in PANELS:
-        values = sorted({_value(run, option) for run in runs})
+        of_runs = variants if option == "model" else [run[option] for run in runs]
+        values = sorted(set(of_runs))
         dots = []
-        for run in runs:
+        for run, value in zip(runs, of_runs, strict=True):
             ratio = float(np.clip(run["worst"] / run["threshold"], *RATIOS))
-            row = values.index(_value(run, option))
             hollow = bool(run["stand_ins"])
-            dots.append(Dot(ratio, row, colour=ACCENT, hollow=hollow))
-        names = [_shown(value, option) for value in values]
-        failure = threshold(1, axis="x", colour=HIGHLIGHT)
-        x = Axis(log=True, limits=RATIOS)
-        panels.append(Panel([failure], option, x, Axis(names=names), dots))
+            dots.append(Dot(ratio, values.index(value), colour=ACCENT, hollow=hollow))
+        y = Axis(names=[str(value).removeprefix("ITU-R ") for value in values])
+        panels.append(Panel([failure], option, x, y, dots))
     title = "largest residual / threshold; 1 would be a failure"
     figure = draw(panels, len(PANELS), (1.8, 2.2), title=title)
     write_figure(figure, path, force=force)
-
-
-def _value(run: Mapping[str, Any], option: str) -> Any:
-    """Return the value of an option; that of a model has its coefficients."""
-    if option == "model" and run["model"] != Sigmoid.name:
-        return f"moments {run['coefficients']:2}"
-    return run[option]
-
-
-def _shown(value: Any, option: str) -> str:
-    if option == "threshold":
-        return f"{value:.0e}"
-    return str(value).removeprefix("ITU-R ")
 
 
 MIN_DELTA_E = 1e-4
@@ -172,26 +156,18 @@ def plot_locality(
     """Write the changes of nodes by an entry left out, over the distance from it, as
     PNG.
     """
-    changes = [change for change in changes if change.description.endswith("left out")]
-    delta_e = np.concatenate([change.delta_e for change in changes])
-    delta_e = np.maximum(delta_e, MIN_DELTA_E)
-    distances = np.concatenate(
-        [change.distance for change in changes if change.distance is not None], axis=1
-    )
-    panels = [
-        _locality_panel(distances[0], delta_e, "linear RGB"),
-        _locality_panel(distances[1], delta_e, "ΔE*ab"),
-    ]
-    title = f"{pluralise(len(changes), 'entry')}, removed one at a time"
+    removed = [change for change in changes if change.description.endswith("left out")]
+    delta_e = np.concatenate([change.delta_e for change in removed])
+    distances = np.concatenate([change.distance for change in removed], axis=1)
+    highest = max(delta_e.max(), 2 * MOVED_DELTA_E)
+    y = Axis(f"ΔE00 change of a node, {NARROW_BAND_LIGHT}", log=True)
+    panels = []
+    for unit, distance in zip(("linear RGB", "ΔE*ab"), distances, strict=True):
+        drawn = np.maximum(delta_e, MIN_DELTA_E)
+        marks = density(distance, drawn, MIN_DELTA_E, highest)
+        marks.append(threshold(MOVED_DELTA_E, f"ΔE00 {MOVED_DELTA_E:g}"))
+        x = Axis(f"distance from the entry, {unit}", limits=(0, None))
+        panels.append(Panel(marks, "", x, y))
+    title = f"{pluralise(len(removed), 'entry')}, removed one at a time"
     figure = draw(panels, 2, title=title, share="y", legend="below")
     write_figure(figure, path, force=force)
-
-
-def _locality_panel(distance: Array, delta_e: Array, unit: str) -> Panel:
-    """Return the density of changes over the distance, with maximum and median."""
-    highest = max(delta_e.max(), 2 * MOVED_DELTA_E)
-    marks = density(distance, delta_e, MIN_DELTA_E, highest)
-    marks.append(threshold(MOVED_DELTA_E, f"ΔE00 {MOVED_DELTA_E:g}"))
-    x = Axis(f"distance from the entry, {unit}", limits=(0, None))
-    y = Axis(f"ΔE00 change of a node, {NARROW_BAND_LIGHT}", log=True)
-    return Panel(marks, "", x, y)

@@ -12,10 +12,11 @@ from uplift.atlas import HIGHEST, LOWEST, Atlas, Entry
 from uplift.colorimetry import Light, delta_e_spectra, observer, rgb_to_lab
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftWarning
-from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.common.progress import ProgressCallback, ignore_progress, reported
 from uplift.cube import CubeData
 from uplift.extras.colour.light_sets import NARROW_BAND_LIGHT
-from uplift.lab.statistics import Row, statistics
+from uplift.extras.report.measures import delta_e_under, rms_difference
+from uplift.lab.runner import Row
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
 from uplift.pipeline.build import build
@@ -34,7 +35,6 @@ HALVINGS = 16
 """Halvings of a step, after which that of an 8-bit code is rounding."""
 HALVED = 16
 """Number of colours whose steps are halved."""
-MEAN_AND_MOST = ("mean", "most")
 MOVED_DELTA_E = 0.5
 """ΔE00 above which a node counts as moved: half of a just noticeable difference."""
 Answer = Callable[[Array], Array]
@@ -69,9 +69,14 @@ class Change:
             "moved": float(moved.mean()),
             "rgb_radius": radii[0],
             "lab_radius": radii[1],
-            **statistics(self.delta_e, *MEAN_AND_MOST, prefix="delta_e_"),
-            **statistics(self.rms, *MEAN_AND_MOST, prefix="rms_"),
+            **mean_and_most("delta_e", self.delta_e),
+            **mean_and_most("rms", self.rms),
         }
+
+
+def mean_and_most(name: str, errors: Array) -> dict[str, float]:
+    """Return the mean and the largest of errors, with their names in tables."""
+    return {f"{name}_mean": float(errors.mean()), f"{name}_most": float(errors.max())}
 
 
 def comparison_light(data: CubeData) -> Light:
@@ -88,16 +93,15 @@ def perturb_atlas(
 ) -> list[Change]:
     """Rebuild a cube with changes of its atlas, ``count`` entries one at a time."""
     options = recorded_options(data.provenance["options"])
-    before = rebuild(atlas.entries, options)
-    kept = [entry for entry in atlas.entries if entry.name in before.atlas.names]
-    jobs = list(changed_atlases(kept, before.atlas.names[:count]))
+    light = comparison_light(data)
     changes = []
-    for number, (description, name, changed) in enumerate(jobs, 1):
-        after = rebuild(changed, options)
-        changes.append(
-            compare(before, after, comparison_light(data), description, name)
-        )
-        progress(Progress("builds", number, len(jobs)))
+    with warnings.catch_warnings(action="ignore", category=UpliftWarning):
+        before = build(atlas, **options).data
+        kept = [entry for entry in atlas if entry.name in before.atlas.names]
+        jobs = list(changed_atlases(kept, before.atlas.names[:count]))
+        for description, name, changed in reported(jobs, "builds", progress):
+            after = build(Atlas(tuple(changed)), **options).data
+            changes.append(compare(before, after, light, description, name))
     return changes
 
 
@@ -142,17 +146,17 @@ def perturb_answers(
     rows = []
     for step, colours in moved.items():
         after = answer(colours)
-        light, own = (delta_e_spectra(light, before, after) for light in lights)
+        light, own = delta_e_under(lights, before, after).T
         largest = np.argsort(light)[-HALVED:]
         ends = rgb[largest], colours[largest]
         rows.append(
             {
                 "mode": mode,
                 "step": step,
-                **statistics(_rms(after - before), *MEAN_AND_MOST, prefix="rms_"),
+                **mean_and_most("rms", rms_difference(after, before)),
                 "largest": float(np.abs(after - before).max()),
-                **statistics(light, *MEAN_AND_MOST, prefix="light_"),
-                **statistics(own, *MEAN_AND_MOST, prefix="own_"),
+                **mean_and_most("light", light),
+                **mean_and_most("own", own),
                 "jump": _largest_jump(answer, lights[0], *ends),
             }
         )
@@ -163,16 +167,15 @@ def _largest_jump(answer: Answer, light: Light, first: Array, second: Array) -> 
     """Halve the steps between colours (n, 3), keep the halves with the larger ΔE00, and
     return the largest one left.
     """
-
-    def change(begin: Array, end: Array) -> Array:
-        return delta_e_spectra(light, answer(begin), answer(end))
-
     for _ in range(HALVINGS):
         middle = (first + second) / 2
-        is_first = (change(first, middle) > change(middle, second))[:, None]
+        before, between, after = map(answer, (first, middle, second))
+        below = delta_e_spectra(light, before, between)
+        above = delta_e_spectra(light, between, after)
+        is_first = (below > above)[:, None]
         first = np.where(is_first, first, middle)
         second = np.where(is_first, middle, second)
-    return float(change(first, second).max())
+    return float(delta_e_spectra(light, answer(first), answer(second)).max())
 
 
 def changed_atlases(
@@ -203,7 +206,7 @@ def changed_atlases(
 
 
 def compare(
-    before: CubeData, after: CubeData, light: Light, description: str, name: str = ""
+    before: CubeData, after: CubeData, light: Light, description: str, name: str
 ) -> Change:
     """Compare the nodes of a cube with those after a change of its atlas, of all
     entries or of a named one.
@@ -222,15 +225,5 @@ def compare(
         colours = (before.lattice.points, np.array(rgb))
         labs = [rgb_to_lab(before.sensor, colour) for colour in colours]
         distance = np.array([cdist(*pair).min(axis=1) for pair in (colours, labs)])
-    rms = _rms(spectra[1] - spectra[0])
+    rms = rms_difference(*spectra)
     return Change(description, rms, delta_e_spectra(light, *spectra), distance)
-
-
-def rebuild(entries: Sequence[Entry], options: Row) -> CubeData:
-    """Build a cube from entries without the warnings that changed entries cause."""
-    with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-        return build(Atlas(tuple(entries)), **options).data
-
-
-def _rms(difference: Array) -> Array:
-    return np.sqrt((difference**2).mean(axis=1))

@@ -18,8 +18,8 @@ import numpy as np
 from uplift.atlas import LOWEST, Atlas, Entry
 from uplift.colorimetry import observer, solid
 from uplift.common.errors import UpliftWarning, unknown_name
-from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lab.statistics import Row
+from uplift.common.progress import ProgressCallback, ignore_progress, reported
+from uplift.lab.runner import Row
 from uplift.lab.timing import stopwatch
 from uplift.lattice import Status
 from uplift.models import Sigmoid
@@ -88,11 +88,9 @@ def study_stability(
     for config in ordered:
         if config.atlas not in (NO_ATLAS, *atlases):
             raise unknown_name(config.atlas, (NO_ATLAS, *atlases), "atlas")
-    rows = []
-    for number, config in enumerate(ordered, 1):
-        rows.append(evaluate(config, atlases))
-        progress(Progress("builds", number, len(ordered)))
-    return rows
+    return [
+        evaluate(config, atlases) for config in reported(ordered, "builds", progress)
+    ]
 
 
 def evaluate(config: RunConfig, atlases: Mapping[str, Atlas]) -> Row:
@@ -174,9 +172,9 @@ class DesignSpace:
         for axis, values in self.axes.items():
             for variant, value in product(self.variants, values):
                 yield replace(variant, **{"dim": self.usual_dim, axis: value})
+        slow = {"dim": self.small_dim, "space": self.axes["space"][-1]}
         for variant, threshold in product(self.variants, self.axes["threshold"]):
-            slow = replace(variant, dim=self.small_dim, space=self.axes["space"][-1])
-            yield replace(slow, threshold=threshold)
+            yield replace(variant, **slow, threshold=threshold)
 
     def sample(self) -> Iterator[RunConfig]:
         """Draw configurations up to `MAX_SAMPLED_DIM` from a Latin hypercube with a
@@ -188,8 +186,7 @@ class DesignSpace:
         axes = self.axes | {"dim": dims}
         lengths = [len(self.variants), *map(len, axes.values())]
         hypercube = qmc.LatinHypercube(len(lengths), rng=np.random.default_rng(SEED))
-        rows = hypercube.random(self.samples) * lengths
-        for variant, *row in rows.astype(int):
+        for variant, *row in hypercube.integers(lengths, n=self.samples):
             drawn = dict(zip(axes, map(getitem, axes.values(), row), strict=True))
             yield replace(self.variants[variant], **drawn)
 
