@@ -14,7 +14,7 @@ from benchmarks import read_reference
 from uplift.colorimetry import Sensor, delta_e_rgb
 from uplift.common.arrays import Array, Indices
 from uplift.extras.colour.srgb import decode, encode, parse_colour
-from uplift.extras.pages.plots import Strip, plot_strips
+from uplift.extras.pages.plots import plot_strips
 from uplift.extras.paint.coats import ramp
 from uplift.extras.paint.optics import average_areas
 from uplift.extras.paint.pigments import Pigment, Scattering, from_opaque
@@ -172,5 +172,5 @@ def ramp_between(first: str, second: str, mix: MixRgb, steps: int) -> Array:
 
 def draw_ramps(ramps: Mapping[str, Array], path: Path) -> None:
     """Write a strip for each ramp, linear sRGB (n, 3), by title."""
-    strips = [Strip(title, encode(rgb)) for title, rgb in ramps.items()]
+    strips = {title: encode(rgb) for title, rgb in ramps.items()}
     plot_strips(strips, path, force=True)

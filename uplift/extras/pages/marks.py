@@ -191,6 +191,38 @@ def picture(codes: NDArray[Any], **options: Any) -> Mark:
     return draw
 
 
+def patches(codes: NDArray[Any]) -> Mark:
+    """Draw colours (H, W, 3) as even patches that fill the panel, with an edge, so that
+    white is visible on white.
+    """
+
+    def draw(axes: Any) -> None:
+        picture(codes, aspect="auto")(axes)
+        axes.spines[:].set(visible=True, color=PALE, linewidth=0.6)
+
+    return draw
+
+
+def region(
+    values: NDArray[Any],
+    limits: Array,
+    corners: ArrayLike,
+    edge: str = "none",
+    **style: Any,
+) -> Mark:
+    """Draw values (H, W) or colours (H, W, 3), the first row at the bottom, over limits
+    (2, 2) of x and y, within corners (n, 2).
+    """
+
+    def draw(axes: Any) -> None:
+        (border,) = axes.fill(*np.transpose(corners), facecolor="none", edgecolor=edge)
+        place: dict[str, Any] = {"extent": limits.ravel(), "origin": "lower"}
+        image = axes.imshow(values, zorder=0.6, **place, **style)
+        image.set_clip_path(border)
+
+    return draw
+
+
 def error_map(
     values: Array,
     largest: float,
