@@ -4,7 +4,6 @@ Status colours differ by at least 16 ΔE00 for protanopes, deuteranopes and trit
 (Machado et al. 2009), and the frequent regular nodes are inconspicuous.
 """
 
-import io
 import math
 from pathlib import Path
 from typing import Any
@@ -19,7 +18,7 @@ from uplift.common.text import pluralise
 from uplift.cube import CubeData
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.images import exr
-from uplift.extras.pages.figure import HIGHLIGHT, matplotlib, render, write_figure
+from uplift.extras.pages.figure import HIGHLIGHT, matplotlib, write_figure
 from uplift.extras.pages.marks import error_map, line, picture
 from uplift.extras.pages.panels import Axis, Panel, draw
 
@@ -46,10 +45,9 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
     if Path(path).suffix.lower() == ".png":
         write_figure(figure, path, force=force)
         return
-    from matplotlib.image import imread
-
-    codes = imread(io.BytesIO(render(figure, ".png")))[..., :3]
-    image = decode(codes).astype(np.float32)
+    figure.canvas.draw()
+    codes = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+    image = decode(codes / 255).astype(np.float32)
     channels = {letter: image[..., i] for i, letter in enumerate("RGB")}
     part = exr.make_part("sheet", exr.attributes(data), channels)
     exr.write_parts([part], path, force=force)
