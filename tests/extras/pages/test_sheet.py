@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 from tests.cube.hand_made import hand_made
 from uplift.extras.colour.srgb import decode, encode
-from uplift.extras.pages.sheet import STATUS, draw_sheet, mosaic, write_sheet
+from uplift.extras.pages.sheet import STATUS, draw_sheet, write_sheet
 
 CODES = np.array([list(bytes.fromhex(code[1:])) for code in STATUS]) / 255
 COLOUR, DISTANCE, STATE, ERROR, ROUND = (
@@ -39,19 +39,13 @@ def node(position):
     return 5 * row + 3 - green, 5 * column + red
 
 
-def test_tiles_are_in_reading_order_with_a_gap():
-    tiles = mosaic(np.arange(27.0).reshape(3, 3, 3))
-    assert tiles.shape == (7, 7)
-    assert tiles[0, [0, 1, 2, 4, 5, 6]].tolist() == [0, 1, 2, 9, 10, 11]
-    assert tiles[4, :3].tolist() == [18, 19, 20]
-    assert np.isnan(tiles[3]).all()
-    assert np.isnan(tiles[4:, 4:]).all()
-
-
 def test_every_node_is_at_its_position():
     data = hand_made()
     images = {name: image.get_array() for name, image in shown(data).items()}
     assert list(images) == [COLOUR, DISTANCE, STATE, ERROR, ROUND]
+    gaps = np.ma.getmaskarray(images[DISTANCE])
+    assert np.flatnonzero(gaps.all(axis=0)).tolist() == [4]
+    assert np.flatnonzero(gaps.all(axis=1)).tolist() == [4]
     low = data.threshold / 1000
     for position in product(range(4), repeat=3):
         point = data.lattice.index(np.array(position))

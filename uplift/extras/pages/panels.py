@@ -16,7 +16,7 @@ from uplift.extras.pages.dots import Dot, draw_dot, write_labels
 from uplift.extras.pages.figure import (
     INK,
     figure_text,
-    new_figure,
+    matplotlib,
     style_axes,
     styled,
     to_page_svg,
@@ -105,8 +105,8 @@ def draw(
     rows = math.ceil(len(panels) / columns)
     width, height = size if isinstance(size, tuple) else (size, 1.0)
     with styled():
-        figure = new_figure(columns * width, rows * height)
-        figure.set_dpi(dpi)
+        extent = columns * width, rows * height
+        figure = matplotlib().figure.Figure(extent, dpi, layout="constrained")
         cells = figure.subplots(
             rows, columns, squeeze=False, sharex="x" in share, sharey="y" in share
         )

@@ -5,23 +5,22 @@ Status colours differ by at least 16 ΔE00 for protanopes, deuteranopes and trit
 """
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, StrPath
-from uplift.common.errors import OutputError
 from uplift.common.files import check_output
 from uplift.common.text import pluralise
 from uplift.cube import CubeData
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.images import exr
-from uplift.extras.pages.figure import HIGHLIGHT, matplotlib, write_figure
+from uplift.extras.pages.figure import HIGHLIGHT, check_suffix, write_figure
 from uplift.extras.pages.marks import error_map, line, picture
 from uplift.extras.pages.panels import Axis, Panel, draw
 
+FORMATS = (".exr", ".png")
 WIDTH = 5.0
 """Inches of a panel."""
 DPI = 130
@@ -38,11 +37,11 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
     Panels show lattice RGB, fitting distance, status, and, of cubes that store them,
     standard error and round.
     """
-    check_sheet(path)
+    suffix = check_suffix(path, FORMATS)
     check_output(path, force=force)
     exr.check_slices(data)
     figure = draw_sheet(data)
-    if Path(path).suffix.lower() == ".png":
+    if suffix == ".png":
         write_figure(figure, path, force=force)
         return
     figure.canvas.draw()
@@ -51,15 +50,6 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
     channels = {letter: image[..., i] for i, letter in enumerate("RGB")}
     part = exr.make_part("sheet", exr.attributes(data), channels)
     exr.write_parts([part], path, force=force)
-
-
-def check_sheet(path: StrPath) -> None:
-    """Check the suffix of a contact sheet, which needs matplotlib."""
-    if Path(path).suffix.lower() not in (".exr", ".png"):
-        problem = "the name of a sheet must end in .exr or .png"
-        hint = "name the file .exr or .png"
-        raise OutputError(problem, path=path, hint=hint)
-    matplotlib()
 
 
 def draw_sheet(data: CubeData) -> Any:

@@ -3,7 +3,6 @@
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from itertools import product
 from operator import itemgetter
 
@@ -11,7 +10,7 @@ from uplift.common.arrays import StrPath
 from uplift.extras.pages.figure import OTHER, write_figure
 from uplift.extras.pages.format import capitalise, format_error, format_time
 from uplift.extras.pages.html import Tooltip, render
-from uplift.extras.pages.marks import Box, Mark, boxes, line, threshold
+from uplift.extras.pages.marks import Mark, boxes, line, threshold
 from uplift.extras.pages.panels import Axis, Dot, Panel, draw, page_svg
 from uplift.extras.pages.pareto import family_colours, front_panel
 from uplift.lab.comparison.compare import HEADINGS, Comparison
@@ -104,13 +103,13 @@ def write_costs(comparison: Comparison, path: StrPath, *, force: bool = False) -
 
 def box_panel(comparison: Comparison, name: str) -> Panel:
     """Return box plots under a set of lights: quartiles, median, and 2.5 to 97.5 %."""
-    drawn = []
     rows = comparison.of(name)
+    quantiles = []
     for row in rows:
         low = max(row["q2_5"], MIN_ERROR)
-        box = Box(low, row["q25"], row["median"], row["q75"], row["q97_5"])
-        drawn.append(replace(box, colour=COLOURS.get(row["family"], OTHER)))
-    marks = [boxes(drawn), threshold(JUST_VISIBLE, axis="x")]
+        quantiles.append((low, row["q25"], row["median"], row["q75"], row["q97_5"]))
+    colours = [COLOURS.get(row["family"], OTHER) for row in rows]
+    marks = [boxes(quantiles, colours), threshold(JUST_VISIBLE, axis="x")]
     shown = Axis(names=[row["representation"] for row in rows])
     title = capitalise(comparison.sets[name])
     return Panel(marks, title, Axis("ΔE00", log=True), shown)
