@@ -70,7 +70,7 @@ def test_a_legend_has_each_label_once_and_fits_and_shared_axes_have_one_label():
 
 
 def test_maps_share_one_scale_that_is_dark_at_large_errors():
-    maps = [Panel([error_map(np.full((4, 6), 2.0), 5)]), None]
+    maps = [Panel([error_map(np.full((4, 6), 2.0), 5, over="#ff0000")]), None]
     figure = draw([Panel([picture(np.zeros((4, 6, 3)))]), *maps], 2, 2.0)
     (*_, bar) = figure.axes
     assert len(figure.axes) == 5
@@ -79,6 +79,7 @@ def test_maps_share_one_scale_that_is_dark_at_large_errors():
     assert image.get_clim() == (0, 5)
     light, dark = image.cmap([0.0, 1.0])[:, :3].mean(axis=1)
     assert dark < 0.3 < 0.9 < light
+    assert image.cmap(image.norm(5.1)) == (1, 0, 0, 1)
 
 
 def test_pictures_have_their_proportions_and_a_sheet_its_titles():

@@ -59,14 +59,6 @@ def test_every_node_is_at_its_position():
             assert images[ROUND][place] == data.points.round[point]
 
 
-def test_distances_darken_to_the_threshold_and_stand_out_beyond():
-    data = hand_made(distance=np.full(64, 1e-4))
-    image = shown(data)[DISTANCE]
-    low, middle, high, over = image.cmap(image.norm([1e-7, 10**-5.5, 1e-4, 1.1e-4]))
-    assert low[:3].mean() > middle[:3].mean() > high[:3].mean()
-    assert_allclose(over[:3], CODES[4])
-
-
 def test_files_have_equal_pixels(tmp_path):
     data = hand_made()
     write_sheet(data, tmp_path / "sheet.exr")
