@@ -130,8 +130,13 @@ def published(tool: str) -> Mixtures:
     kept = [row for row in rows if row["tool"] == tool]
     paints = [linear(row["first"], row["second"]) for row in kept]
     expected = linear(*(row["mixture"] for row in kept))
-    pairs = np.arange(2 * len(kept)).reshape(-1, 2)
-    return Mixtures(np.concatenate(paints), pairs, _shares(kept), expected)
+    return of_pairs(np.array(paints), _shares(kept), expected)
+
+
+def of_pairs(colours: Array, shares: Array, expected: Array) -> Mixtures:
+    """Return mixtures of pairs (n, 2, 3) of linear RGB by their shares (n, 2)."""
+    pairs = np.arange(2 * len(colours)).reshape(-1, 2)
+    return Mixtures(colours.reshape(-1, 3), pairs, shares, expected)
 
 
 def linear(*codes: str) -> Array:

@@ -16,7 +16,7 @@ from uplift.common.text import pluralise
 from uplift.cube import CubeData
 from uplift.extras.colour.srgb import decode, encode
 from uplift.extras.images import exr
-from uplift.extras.pages.figure import HIGHLIGHT, check_suffix, write_figure
+from uplift.extras.pages.figure import HIGHLIGHT, check_suffix, matplotlib, write_figure
 from uplift.extras.pages.marks import error_map, line, picture
 from uplift.extras.pages.panels import Axis, Panel, draw
 
@@ -114,11 +114,8 @@ def _distance_panel(data: CubeData) -> Panel:
 
 
 def _status_panel(data: CubeData) -> Panel:
-    codes = np.array([list(bytes.fromhex(colour[1:])) for colour in STATUS]) / 255
-    white = np.ones((1, 3))
-    marks = [
-        picture(_colours(data, np.append(codes, white, axis=0)[data.points.status]))
-    ]
+    codes = matplotlib().colors.to_rgba_array([*STATUS, "white"])[:, :3]
+    marks = [picture(_colours(data, codes[data.points.status]))]
     for colour, (label, count) in zip(
         STATUS, data.points.counts().items(), strict=False
     ):
