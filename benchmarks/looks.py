@@ -145,7 +145,7 @@ def looks() -> Iterator[Row]:
                 about = {"look": look["name"], "light": lamp}
                 yield {**about, "without": without, "with_look": with_look}
         panels.extend([None] * (COLUMNS - len(lights)))
-    figure = draw(panels, COLUMNS, (2.4, 0.9))
+    figure = draw(panels, COLUMNS, (1.7, 0.8))
     write_figure(figure, DOCS / "looks" / "two-cubes.png", force=True)
 
 

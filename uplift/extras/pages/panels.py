@@ -233,10 +233,9 @@ def _add_scales(figure: Any, cells: Any, label: str) -> None:
     maps = []
     for axes in cells.flat:
         maps += [image for image in axes.images if image.get_array().ndim == 2]
-    scales = {(type(image.norm), *image.get_clim()) for image in maps}
-    places = {maps[0]: list(cells[:, -1])} if len(scales) == 1 else {}
-    for image in maps if len(scales) > 1 else ():
-        places[image] = image.axes
+    places = {image: image.axes for image in maps}
+    if len({(type(image.norm), *image.get_clim()) for image in maps}) == 1:
+        places = {maps[0]: list(cells[:, -1])}
     for image, axes in places.items():
         bar = figure.colorbar(image, ax=axes, fraction=0.05, pad=0.02, extend="max")
         bar.set_label(label, color=INK)
